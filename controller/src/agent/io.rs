@@ -1,0 +1,106 @@
+//! What goes into a step and what comes out of it.
+
+use crate::geom::Vec3;
+use crate::grid::{Cell, Dir, Window};
+use crate::time::{Duration, Instant};
+use crate::wire::{Mode, RequestKind, RobotId};
+use heapless::Vec;
+
+/// Bytes that one step can send: a beacon and a few requests and acknowledgements.
+pub const OUTBOX: usize = 256;
+/// Events that one step can report.
+pub const EVENTS: usize = 8;
+
+/// The robot's own state, from its sensors or its autopilot.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pose<S> {
+    /// World position, metres.
+    pub position_m: Vec3<S>,
+    /// World velocity, metres per second.
+    pub velocity_mps: Vec3<S>,
+}
+
+/// The robot's state on the grid, for guidance that moves cell by cell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CellState {
+    /// The cell it occupies.
+    pub cell: Cell,
+    /// Time until it may leave; zero or less: free now (KUZ eq. 6).
+    pub busy: Duration,
+}
+
+/// What one step gets.
+#[derive(Clone, Copy, Debug)]
+pub struct Inputs<'a, S> {
+    /// Own state.
+    pub pose: Pose<S>,
+    /// Own state on the grid; `None` for robots that do not move cell by cell.
+    pub cell: Option<CellState>,
+    /// The terrain that the robot can see; `None`: none this time.
+    pub window: Option<Window<'a>>,
+    /// What the radio delivered since the last step: COBS frames, each ended by a zero byte, in
+    /// order of arrival. Damaged, foreign and partial frames are recognised and counted.
+    pub inbox: &'a [u8],
+}
+
+/// What the body should do until the next step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Command {
+    /// Stand.
+    #[default]
+    Hold,
+    /// Take the first of these moves whose cell is free and passable; none free: stand
+    /// (KUZ algorithm 4).
+    Move(Vec<Dir, 8>),
+}
+
+/// Something that the robot's owner may want to know.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Event {
+    /// The supervisor changed its mode.
+    ModeChanged {
+        /// Before.
+        from: Mode,
+        /// Now.
+        to: Mode,
+    },
+    /// No exit of the window can be reached.
+    NoRoute,
+    /// The target lay in an impassable cell and moved to the nearest passable one.
+    TargetMoved {
+        /// As assigned.
+        from: Cell,
+        /// As used.
+        to: Cell,
+    },
+    /// A request ran out of retries.
+    RequestExpired {
+        /// Whom it asked.
+        to: RobotId,
+        /// What it asked.
+        kind: RequestKind,
+    },
+    /// A neighbour came into the table.
+    NeighborFound(RobotId),
+    /// A neighbour was silent for too long.
+    NeighborLost(RobotId),
+    /// The table was full and a neighbour had to go.
+    NeighborEvicted(RobotId),
+    /// A neighbour's clock or sequence restarted.
+    NeighborRebooted(RobotId),
+}
+
+/// What one step gives.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[must_use = "a step only decides; the caller moves the body and sends the bytes"]
+pub struct Outputs {
+    /// What the body should do.
+    pub command: Command,
+    /// Bytes for the radio: COBS frames, each ended by a zero byte.
+    pub outbox: Vec<u8, OUTBOX>,
+    /// What happened; the oldest ones when more than [`EVENTS`].
+    pub events: Vec<Event, EVENTS>,
+    /// When to call again if nothing arrives before.
+    pub call_again: Instant,
+}

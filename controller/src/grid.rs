@@ -1,0 +1,349 @@
+//! The lattice: cells, the eight unit moves, norms, the borrowed window of terrain, and the one
+//! place that converts between cells and metres.
+//!
+//! Source: A. V. Kuznetsov 2017 (KUZ), sections 2 and 3. Cells are (x, y), x east and y north.
+
+use crate::geom::Vec2;
+use crate::scalar::Scalar;
+use core::ops::{Add, Sub};
+use serde::{Deserialize, Serialize};
+
+/// Fixed-point cost units per cell of an axis move: sqrt 2 is 99/70, off by 5.1e-5 relative.
+///
+/// All route costs, formation distances and tick counts of the grid use this unit, so that host
+/// and device agree to the bit.
+pub const UNIT: u32 = 70;
+/// Cost units of a diagonal move under the Euclidean norm.
+pub const DIAGONAL: u32 = 99;
+
+/// Impassability of a cell that no robot can enter.
+pub const BLOCKED: u8 = 0;
+
+/// A cell of the grid, or the difference of two cells.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
+)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Cell {
+    /// Column, growing east.
+    pub x: i16,
+    /// Row, growing north.
+    pub y: i16,
+}
+
+impl Cell {
+    /// The cell in column `x` and row `y`.
+    #[must_use]
+    pub const fn new(x: i16, y: i16) -> Self {
+        Self { x, y }
+    }
+
+    /// Chebyshev distance to `other` in cells.
+    #[must_use]
+    pub fn chebyshev(self, other: Self) -> u32 {
+        let dx = i32::from(self.x).abs_diff(i32::from(other.x));
+        let dy = i32::from(self.y).abs_diff(i32::from(other.y));
+        dx.max(dy)
+    }
+
+    /// Squared Euclidean distance to `other` in cells squared.
+    #[must_use]
+    pub fn distance_squared(self, other: Self) -> u64 {
+        let dx = u64::from(i32::from(self.x).abs_diff(i32::from(other.x)));
+        let dy = u64::from(i32::from(self.y).abs_diff(i32::from(other.y)));
+        dx * dx + dy * dy
+    }
+
+    /// Distance to `other` in [`UNIT`]s per cell under `norm`, rounded down.
+    #[must_use]
+    pub fn distance(self, other: Self, norm: Norm) -> u32 {
+        match norm {
+            Norm::Chebyshev => self.chebyshev(other) * UNIT,
+            // At most 65535 * sqrt 2 cells * 70 < 2^23.
+            Norm::Euclidean => {
+                (self.distance_squared(other) * u64::from(UNIT * UNIT)).isqrt() as u32
+            }
+        }
+    }
+}
+
+impl Add for Cell {
+    type Output = Self;
+    /// Saturates at the edges of the coordinate range.
+    fn add(self, other: Self) -> Self {
+        Self::new(
+            self.x.saturating_add(other.x),
+            self.y.saturating_add(other.y),
+        )
+    }
+}
+
+impl Sub for Cell {
+    type Output = Self;
+    /// Saturates at the edges of the coordinate range.
+    fn sub(self, other: Self) -> Self {
+        Self::new(
+            self.x.saturating_sub(other.x),
+            self.y.saturating_sub(other.y),
+        )
+    }
+}
+
+/// The norm of a unit move (KUZ section 2: a parameter).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[serde(rename_all = "snake_case")]
+pub enum Norm {
+    /// A diagonal move is sqrt 2 long.
+    #[default]
+    Euclidean,
+    /// A diagonal move is 1 long.
+    Chebyshev,
+}
+
+/// One of the eight unit moves, counter-clockwise from east, or `Stay`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(u8)]
+#[expect(missing_docs, reason = "compass points")]
+pub enum Dir {
+    East = 0,
+    NorthEast = 1,
+    North = 2,
+    NorthWest = 3,
+    West = 4,
+    SouthWest = 5,
+    South = 6,
+    SouthEast = 7,
+    #[default]
+    Stay = 8,
+}
+
+impl Dir {
+    /// The eight moves in the order of their numbers.
+    pub const MOVES: [Self; 8] = [
+        Self::East,
+        Self::NorthEast,
+        Self::North,
+        Self::NorthWest,
+        Self::West,
+        Self::SouthWest,
+        Self::South,
+        Self::SouthEast,
+    ];
+
+    /// The number of the move, 0..=7, or 8 for `Stay`.
+    #[must_use]
+    pub const fn index(self) -> usize {
+        self as usize
+    }
+
+    /// The move with that number; anything above 7 is `Stay`.
+    #[must_use]
+    pub fn from_index(index: u8) -> Self {
+        Self::MOVES
+            .get(usize::from(index))
+            .copied()
+            .unwrap_or(Self::Stay)
+    }
+
+    /// The cell difference of the move.
+    #[must_use]
+    pub const fn offset(self) -> Cell {
+        match self {
+            Self::East => Cell::new(1, 0),
+            Self::NorthEast => Cell::new(1, 1),
+            Self::North => Cell::new(0, 1),
+            Self::NorthWest => Cell::new(-1, 1),
+            Self::West => Cell::new(-1, 0),
+            Self::SouthWest => Cell::new(-1, -1),
+            Self::South => Cell::new(0, -1),
+            Self::SouthEast => Cell::new(1, -1),
+            Self::Stay => Cell::new(0, 0),
+        }
+    }
+
+    /// The move from one cell to an adjacent one (or the same); `None` when farther apart.
+    #[must_use]
+    pub fn between(from: Cell, to: Cell) -> Option<Self> {
+        let step = to - from;
+        Self::MOVES
+            .into_iter()
+            .chain([Self::Stay])
+            .find(|dir| dir.offset() == step)
+    }
+
+    /// Whether the move changes both coordinates.
+    #[must_use]
+    pub const fn is_diagonal(self) -> bool {
+        matches!(
+            self,
+            Self::NorthEast | Self::NorthWest | Self::SouthWest | Self::SouthEast
+        )
+    }
+
+    /// Length of the move in [`UNIT`]s; `Stay` counts as one cell, the price of waiting.
+    #[must_use]
+    pub const fn length(self, norm: Norm) -> u32 {
+        match norm {
+            Norm::Euclidean if self.is_diagonal() => DIAGONAL,
+            _ => UNIT,
+        }
+    }
+}
+
+/// A rectangle of terrain around the robot, borrowed from the caller for one step.
+///
+/// `cells` holds the impassability of each cell, row by row from the south-west corner:
+/// 1..=255 ticks to cross, or [`BLOCKED`]. Cells outside the rectangle are unknown.
+#[derive(Clone, Copy, Debug)]
+pub struct Window<'a> {
+    cells: &'a [u8],
+    origin: Cell,
+    width: u16,
+    height: u16,
+}
+
+impl<'a> Window<'a> {
+    /// A window whose south-west cell is `origin`; `None` unless `cells` has `width * height` entries.
+    #[must_use]
+    pub fn new(cells: &'a [u8], origin: Cell, width: u16, height: u16) -> Option<Self> {
+        let fits = cells.len() == usize::from(width) * usize::from(height);
+        fits.then_some(Self {
+            cells,
+            origin,
+            width,
+            height,
+        })
+    }
+
+    /// The south-west cell.
+    #[must_use]
+    pub const fn origin(&self) -> Cell {
+        self.origin
+    }
+
+    /// Cells from west to east.
+    #[must_use]
+    pub const fn width(&self) -> u16 {
+        self.width
+    }
+
+    /// Cells from south to north.
+    #[must_use]
+    pub const fn height(&self) -> u16 {
+        self.height
+    }
+
+    /// The impassabilities, row by row from the south-west corner.
+    #[must_use]
+    pub const fn cells(&self) -> &'a [u8] {
+        self.cells
+    }
+
+    /// Position of `cell` in [`Window::cells`]; `None` outside.
+    #[must_use]
+    pub fn index(&self, cell: Cell) -> Option<usize> {
+        let dx = u16::try_from(i32::from(cell.x) - i32::from(self.origin.x)).ok()?;
+        let dy = u16::try_from(i32::from(cell.y) - i32::from(self.origin.y)).ok()?;
+        let inside = dx < self.width && dy < self.height;
+        inside.then(|| usize::from(dy) * usize::from(self.width) + usize::from(dx))
+    }
+
+    /// Impassability of `cell`: `None` when outside the window, `Some(BLOCKED)` for a wall.
+    #[must_use]
+    pub fn get(&self, cell: Cell) -> Option<u8> {
+        self.cells.get(self.index(cell)?).copied()
+    }
+
+    /// Whether `cell` is known and passable.
+    #[must_use]
+    pub fn is_passable(&self, cell: Cell) -> bool {
+        self.get(cell).is_some_and(|u| u != BLOCKED)
+    }
+}
+
+/// Where the grid lies in the world: the one place that converts between cells and metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GridFrame<S> {
+    /// World position of the south-west corner of cell (0, 0), metres.
+    pub origin_m: Vec2<S>,
+    /// Side of a cell, metres; more than 0.
+    pub cell_m: S,
+}
+
+impl<S: Scalar> GridFrame<S> {
+    /// World position of the centre of `cell`, metres.
+    #[must_use]
+    pub fn center(&self, cell: Cell) -> Vec2<S> {
+        let half = S::HALF;
+        Vec2::new(
+            self.origin_m.x + (S::from_i32(i32::from(cell.x)) + half) * self.cell_m,
+            self.origin_m.y + (S::from_i32(i32::from(cell.y)) + half) * self.cell_m,
+        )
+    }
+
+    /// The cell that holds a world position; `None` outside the coordinate range or for NaN.
+    #[must_use]
+    pub fn cell(&self, position_m: Vec2<S>) -> Option<Cell> {
+        let index = |at: S, origin: S| -> Option<i16> {
+            i16::try_from(((at - origin).checked_div(self.cell_m)?).floor_to_i32()?).ok()
+        };
+        Some(Cell::new(
+            index(position_m.x, self.origin_m.x)?,
+            index(position_m.y, self.origin_m.y)?,
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn diagonal_is_sqrt_two_within_1e_4() {
+        let ratio = f64::from(DIAGONAL) / f64::from(UNIT);
+        assert!((ratio - core::f64::consts::SQRT_2).abs() < 1e-4);
+    }
+
+    #[test]
+    fn every_move_is_found_again_and_has_unit_chebyshev_length() {
+        for dir in Dir::MOVES {
+            let from = Cell::new(-3, 7);
+            assert_eq!(Dir::between(from, from + dir.offset()), Some(dir));
+            assert_eq!(Cell::default().chebyshev(dir.offset()), 1);
+            assert_eq!(Dir::from_index(dir.index() as u8), dir);
+        }
+        assert_eq!(Dir::between(Cell::new(0, 0), Cell::new(2, 0)), None);
+        assert_eq!(Dir::from_index(200), Dir::Stay);
+    }
+
+    #[test]
+    fn distance_covers_the_whole_coordinate_range() {
+        let (a, b) = (Cell::new(i16::MIN, i16::MIN), Cell::new(i16::MAX, i16::MAX));
+        assert_eq!(a.chebyshev(b), 65_535);
+        assert_eq!(a.distance(b, Norm::Euclidean), 6_487_633);
+        assert_eq!(
+            Cell::new(0, 0).distance(Cell::new(3, 4), Norm::Euclidean),
+            5 * UNIT
+        );
+    }
+
+    #[test]
+    fn window_refuses_a_slice_of_the_wrong_length() {
+        assert!(Window::new(&[1; 5], Cell::default(), 2, 3).is_none());
+        assert!(Window::new(&[], Cell::default(), 0, 0).is_some());
+    }
+
+    #[test]
+    fn window_answers_only_inside() {
+        let cells = [1, 2, 3, 4, 5, BLOCKED];
+        let window = Window::new(&cells, Cell::new(-1, 10), 3, 2).unwrap();
+        assert_eq!(window.get(Cell::new(-1, 10)), Some(1));
+        assert_eq!(window.get(Cell::new(1, 11)), Some(BLOCKED));
+        assert!(!window.is_passable(Cell::new(1, 11)));
+        for outside in [(-2, 10), (2, 10), (0, 9), (0, 12), (i16::MIN, i16::MAX)] {
+            assert_eq!(window.get(Cell::new(outside.0, outside.1)), None);
+        }
+    }
+}

@@ -1,0 +1,29 @@
+//! Onboard control of a robot in a swarm.
+//!
+//! The robot's brain is a pure function of what it has sensed and received: [`agent::Agent::step`]
+//! takes the time, the own pose, a window of terrain and the bytes that the radio delivered, and
+//! returns a motion command, bytes to send, events and the time of the next call. It never
+//! allocates, never panics, never blocks, reads no clock and keeps no statics, so that the same
+//! code gives the same bits on a microcontroller, in a simulator and beside an autopilot.
+//!
+//! Layers point down only:
+//! numbers and geometry ([`scalar`], [`geom`], [`time`], [`rand`], [`grid`])
+//! < what is known of others ([`wire`], [`neighbor`])
+//! < behaviours ([`route`], [`formation`]; they never import each other)
+//! < composition ([`supervisor`], [`agent`]).
+#![no_std]
+
+#[cfg(test)]
+extern crate std;
+
+pub mod agent;
+pub mod formation;
+pub mod geom;
+pub mod grid;
+pub mod neighbor;
+pub mod rand;
+pub mod route;
+pub mod scalar;
+pub mod supervisor;
+pub mod time;
+pub mod wire;

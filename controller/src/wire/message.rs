@@ -1,0 +1,186 @@
+//! The messages, in integers: millimetres, millimetres per second, microseconds, cells.
+
+use crate::grid::{Cell, Dir};
+use crate::time::Instant;
+use serde::{Deserialize, Serialize};
+
+/// A robot's number; 0 means nobody (the paper's "anyone").
+///
+/// 32 bits, because a simulated swarm has up to a million robots; small numbers stay small on the
+/// wire (varint).
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
+)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[serde(transparent)]
+pub struct RobotId(pub u32);
+
+impl RobotId {
+    /// Nobody in particular; as an addressee: everybody.
+    pub const NOBODY: Self = Self(0);
+
+    /// Whether this is the number of a robot.
+    #[must_use]
+    pub const fn is_somebody(self) -> bool {
+        self.0 != 0
+    }
+}
+
+/// What the robot is doing as a whole; see [`crate::supervisor`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(u8)]
+pub enum Mode {
+    /// No goal yet.
+    #[default]
+    Idle,
+    /// Taking its place in the formation, before or during travel.
+    Forming,
+    /// On the way to its target.
+    Cruise,
+    /// Standing because somebody asked or no way is open.
+    Hold,
+    /// At its target.
+    Arrived,
+    /// Own input is missing or wrong; standing.
+    Fault,
+}
+
+/// What a robot says of itself, periodically. Everything that others may rely on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Beacon {
+    /// Sender's clock when it sampled its state.
+    pub time: Instant,
+    /// World position, mm.
+    pub position_mm: [i32; 3],
+    /// World velocity, mm/s.
+    pub velocity_mmps: [i16; 3],
+    /// Radius of the smallest disc (ball) around the body, mm.
+    pub radius_mm: u16,
+    /// Cell that the robot occupies.
+    pub cell: Cell,
+    /// The move it wants next.
+    pub heading: Dir,
+    /// Time until it is free to leave its cell, ms (saturating).
+    pub busy_ms: u16,
+    /// Its leader, or nobody.
+    pub leader: RobotId,
+    /// Its place in the formation.
+    pub slot: u8,
+    /// What it is doing.
+    pub mode: Mode,
+    /// Cell it is heading for.
+    pub target: Cell,
+}
+
+/// The beacon for radios that carry 30 bytes: what collision avoidance and flocking need, in the plane.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CompactBeacon {
+    /// Sender's clock when it sampled its state, ms (wraps after 65 s).
+    pub time_ms: u16,
+    /// World position in the plane, mm.
+    pub position_mm: [i32; 2],
+    /// World velocity in the plane, mm/s.
+    pub velocity_mmps: [i16; 2],
+    /// Radius of the smallest disc around the body, cm.
+    pub radius_cm: u8,
+    /// What it is doing.
+    pub mode: Mode,
+}
+
+/// What one robot asks of another (KUZ section 7: requests go hop by hop up the leader chain).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum RequestKind {
+    /// Stand until told to resume (or the request expires).
+    Stop,
+    /// Go on.
+    Resume,
+    /// Choose another direction than the last one.
+    Redirect,
+}
+
+/// A request to one robot; resent until acknowledged, given up after its expiry.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Request {
+    /// Whom it asks.
+    pub to: RobotId,
+    /// Who first asked, when it travels up the chain.
+    pub origin: RobotId,
+    /// Distinguishes requests of one sender; resent unchanged with each retry.
+    pub number: u8,
+    /// What it asks.
+    pub kind: RequestKind,
+    /// How long the request stands after it was received, ms.
+    pub valid_ms: u16,
+}
+
+/// "I have your request", whatever became of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Ack {
+    /// The robot that asked.
+    pub to: RobotId,
+    /// The number of its request.
+    pub number: u8,
+    /// Whether it will be followed.
+    pub accepted: bool,
+}
+
+/// Where a neighbour in the formation should be, relative to oneself (KUZ section 3: template).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TemplateEntry {
+    /// Wanted cell difference, neighbour minus self.
+    pub offset: Cell,
+    /// Which robot should stand there; nobody = anyone.
+    pub id: RobotId,
+}
+
+/// Entries in one [`TemplateAssignment`].
+pub const TEMPLATE_PART: usize = 4;
+
+/// A part of a formation template, from whoever commands the swarm to one robot.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TemplateAssignment {
+    /// Who it is for.
+    pub to: RobotId,
+    /// Counts assignments; parts of different versions never mix.
+    pub version: u8,
+    /// This part, 0..`parts`.
+    pub part: u8,
+    /// How many parts make the template.
+    pub parts: u8,
+    /// The robot's place in the formation.
+    pub slot: u8,
+    /// Cell difference from the top leader's place to this robot's place.
+    pub offset: Cell,
+    /// The neighbours within the geodesic radius that this part lists.
+    pub entries: heapless::Vec<TemplateEntry, TEMPLATE_PART>,
+}
+
+/// A new goal for one robot, or for all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct GoalAssignment {
+    /// Who it is for; nobody = everybody.
+    pub to: RobotId,
+    /// Counts assignments of this sender; an older one never replaces a newer one.
+    pub version: u8,
+    /// The goal of the formation's top leader (each robot adds its own offset).
+    pub target: Cell,
+}
+
+/// Everything that a frame can carry.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Message {
+    /// Periodic state.
+    Beacon(Beacon),
+    /// Periodic state for narrow radios.
+    Compact(CompactBeacon),
+    /// A request to one robot.
+    Request(Request),
+    /// Its acknowledgement.
+    Ack(Ack),
+    /// A part of a formation template.
+    Template(TemplateAssignment),
+    /// A goal.
+    Goal(GoalAssignment),
+}

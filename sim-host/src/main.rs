@@ -1,0 +1,2 @@
+//! staya
+fn main() {}
