@@ -2,6 +2,8 @@
 //!
 //! [`scenario`] reads what to simulate, [`terrain`] the land, [`engine`] runs every robot's
 //! [`staya_controller::agent::Agent`] through two-phase ticks over [`world`] and [`radio`],
-//! [`record`] keeps what happened, [`plot`] draws it, [`experiment`] reproduces papers.
+//! [`metrics`] measures, [`record`] keeps what happened, [`plot`] draws it, [`experiment`]
+//! reproduces papers, [`cli`] is the command `staya`.
 
+pub mod cli;
 pub mod terrain;

@@ -1,2 +1,7 @@
-//! staya
-fn main() {}
+//! The `staya` command.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    staya_sim::cli::main()
+}

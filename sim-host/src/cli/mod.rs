@@ -1,0 +1,120 @@
+//! The command line: `staya run | terrain | experiment`.
+//!
+//! A new command is a module with a `clap::Args` struct and `run(&self, &Global) -> Result<Ended>`,
+//! and one line in [`Command`]. Results go to standard output, progress and errors to standard
+//! error. Exit codes: 0 done, 1 failed, 2 wrong usage, 130 stopped by Ctrl-C (what was done until
+//! then is kept).
+
+mod progress;
+
+pub use progress::{Progress, Stop};
+
+use anyhow::{Context as _, Result};
+use clap::{Args, Parser, Subcommand};
+use serde::Serialize;
+use std::io::{self, ErrorKind, Write as _};
+use std::process::ExitCode;
+
+/// Many robots, each with its own onboard controller, over one world and a lossy radio.
+#[derive(Debug, Parser)]
+#[command(name = "staya", version, propagate_version = true)]
+struct Cli {
+    #[command(flatten)]
+    global: Global,
+    #[command(subcommand)]
+    command: Command,
+}
+
+/// Options that every command understands.
+#[derive(Args, Clone, Copy, Debug, Default)]
+pub struct Global {
+    /// Print one JSON object on standard output instead of tables.
+    #[arg(long, global = true)]
+    pub json: bool,
+    /// Threads to use; results never depend on it. Default: one per processor.
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Show no progress.
+    #[arg(long, short, global = true)]
+    pub quiet: bool,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {}
+
+/// How a command that did not fail came to its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ended {
+    /// By itself.
+    Done,
+    /// By Ctrl-C or a termination signal; what was done until then is kept.
+    Interrupted,
+}
+
+impl Ended {
+    /// `Interrupted` when `stop` was requested.
+    #[must_use]
+    pub fn by(stop: &Stop) -> Self {
+        if stop.is_requested() {
+            Self::Interrupted
+        } else {
+            Self::Done
+        }
+    }
+}
+
+/// Parses the command line, runs the command and reports its errors.
+#[must_use]
+pub fn main() -> ExitCode {
+    let cli = Cli::parse();
+    match run(&cli) {
+        Ok(Ended::Done) => ExitCode::SUCCESS,
+        Ok(Ended::Interrupted) => ExitCode::from(130),
+        // The reader of a pipe (`staya ... | head`) went away: nothing to tell anybody.
+        Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) => {
+            // Standard error may be closed as well; the exit code still tells.
+            let _ = writeln!(io::stderr(), "staya: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(cli: &Cli) -> Result<Ended> {
+    if let Some(threads) = cli.global.threads {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(usize::from(threads))
+            .build_global()
+            .with_context(|| format!("cannot start {threads} threads"))?;
+    }
+    match cli.command {}
+}
+
+fn is_broken_pipe(error: &anyhow::Error) -> bool {
+    error.chain().any(|cause| {
+        cause
+            .downcast_ref::<io::Error>()
+            .is_some_and(|e| e.kind() == ErrorKind::BrokenPipe)
+    })
+}
+
+/// Writes text to standard output.
+///
+/// # Errors
+/// When standard output is closed or full.
+pub fn print(text: &str) -> Result<()> {
+    let mut out = io::stdout().lock();
+    out.write_all(text.as_bytes())
+        .and_then(|()| out.flush())
+        .context("cannot write to standard output")
+}
+
+/// Writes one JSON object and a line feed to standard output.
+///
+/// # Errors
+/// When standard output is closed or full, or `value` has no JSON form.
+pub fn print_json(value: &impl Serialize) -> Result<()> {
+    let mut text = serde_json::to_string_pretty(value)?;
+    text.push('\n');
+    print(&text)
+}

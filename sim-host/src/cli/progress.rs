@@ -1,0 +1,99 @@
+//! Progress on standard error, and the request to stop.
+
+use super::Global;
+use anyhow::{Context as _, Result};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::{self, IsTerminal as _, Write as _};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// Without a terminal: at most one line of progress in this time.
+const LINE_EVERY: Duration = Duration::from_secs(5);
+
+/// Whether the user asked for an early end. Clones share the request.
+#[derive(Clone, Debug, Default)]
+pub struct Stop(Arc<AtomicBool>);
+
+impl Stop {
+    /// A request that Ctrl-C or a termination signal makes. The second one ends the process at once.
+    ///
+    /// # Errors
+    /// When the signal handler cannot be installed, as on the second call in one process.
+    pub fn on_ctrl_c() -> Result<Self> {
+        let stop = Self::default();
+        let request = stop.clone();
+        ctrlc::set_handler(move || {
+            if request.0.swap(true, Ordering::Relaxed) {
+                std::process::exit(130);
+            }
+        })
+        .context("cannot listen for Ctrl-C")?;
+        Ok(stop)
+    }
+
+    /// Asks for an early end.
+    pub fn request(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether somebody asked.
+    #[must_use]
+    pub fn is_requested(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+/// How far long work has come: a bar with an estimate on a terminal, a line now and then elsewhere.
+#[derive(Debug)]
+pub struct Progress {
+    bar: ProgressBar,
+    /// Without a terminal: when the last line was written.
+    lines: Option<Instant>,
+}
+
+impl Progress {
+    /// Progress of `total` steps, shown as `label`.
+    #[must_use]
+    pub fn new(label: &str, total: u64, global: &Global) -> Self {
+        let terminal = io::stderr().is_terminal();
+        let target = if terminal && !global.quiet {
+            ProgressDrawTarget::stderr_with_hz(10)
+        } else {
+            ProgressDrawTarget::hidden()
+        };
+        let bar = ProgressBar::with_draw_target(Some(total), target);
+        let style = "{prefix} [{bar:30}] {pos}/{len} {msg} ({elapsed} gone, {eta} to go)";
+        if let Ok(style) = ProgressStyle::with_template(style) {
+            bar.set_style(style.progress_chars("=> "));
+        }
+        bar.set_prefix(label.to_owned());
+        Self {
+            bar,
+            lines: (!terminal && !global.quiet).then(Instant::now),
+        }
+    }
+
+    /// `done` steps are behind; `message` says what is worth watching.
+    pub fn set(&mut self, done: u64, message: impl FnOnce() -> String) {
+        self.bar.set_position(done);
+        if !self.bar.is_hidden() {
+            self.bar.set_message(message());
+        } else if self.lines.is_some_and(|at| at.elapsed() >= LINE_EVERY) {
+            self.lines = Some(Instant::now());
+            let (label, total) = (self.bar.prefix(), self.bar.length().unwrap_or(0));
+            let left = self.bar.eta().as_secs();
+            // A closed standard error must not stop the work.
+            let _ = writeln!(
+                io::stderr(),
+                "{label}: {done}/{total} {}, about {left} s to go",
+                message()
+            );
+        }
+    }
+
+    /// Removes the bar.
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}
