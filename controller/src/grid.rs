@@ -322,7 +322,7 @@ mod tests {
     fn distance_covers_the_whole_coordinate_range() {
         let (a, b) = (Cell::new(i16::MIN, i16::MIN), Cell::new(i16::MAX, i16::MAX));
         assert_eq!(a.chebyshev(b), 65_535);
-        assert_eq!(a.distance(b, Norm::Euclidean), 6_487_633);
+        assert_eq!(a.distance(b, Norm::Euclidean), 6_487_634);
         assert_eq!(
             Cell::new(0, 0).distance(Cell::new(3, 4), Norm::Euclidean),
             5 * UNIT

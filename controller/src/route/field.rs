@@ -1,0 +1,536 @@
+//! The reverse search: cost to the exit from every cell of the window.
+//!
+//! A move's cost depends only on the cell that it enters, so settling a cell offers its eight
+//! predecessors one of two costs. The queue is a ring of buckets (Dial 1969); a bucket is no wider
+//! than the cheapest move, so that (Denardo and Fox 1979) a cell leaves the queue only once. All
+//! arrays have one cell of blocked border around the window: neighbours are plain index offsets.
+
+use super::{Cost, EXCLUDED, ExitRule, RouteParams, VisitMemory, Weights};
+use crate::grid::{BLOCKED, Cell, DIAGONAL, Dir, Norm, UNIT, Window};
+
+/// Buckets in the ring; a power of two.
+const RING: u32 = 64;
+/// End of a list, and "in no list".
+const NIL: u16 = u16::MAX;
+
+/// The robot's surroundings are closed: no exit can be reached.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Unreachable;
+
+/// Scratch memory of one search; 14 bytes a cell of the window with its border of one.
+///
+/// `CELLS` is at least (w + 2) * (h + 2) for the largest window used: 169 for r = 5. A larger
+/// window is cut to the rows that fit. Holds no state between calls: many robots can share one.
+#[derive(Clone, Debug)]
+pub struct CostField<const CELLS: usize> {
+    /// South-west cell of the window, its size, and the array index of a row's successor.
+    origin: Cell,
+    width: u16,
+    height: u16,
+    stride: usize,
+    impassability: [u8; CELLS],
+    /// Costs of entering a cell beside crossing it: other robots and earlier visits.
+    extra: [Cost; CELLS],
+    /// Least known cost to the exit. 0 in cells that no route may use: nothing undercuts it.
+    cost: [Cost; CELLS],
+    next: [u16; CELLS],
+    previous: [u16; CELLS],
+    /// Bucket that holds the cell, or `RING` if none.
+    bucket: [u8; CELLS],
+    heads: [u16; RING as usize],
+    /// Which buckets are not empty.
+    occupied: u64,
+    /// log2 of a bucket's width.
+    shift: u32,
+    /// The robot's own cell, which no route may use.
+    closed: usize,
+}
+
+impl<const CELLS: usize> Default for CostField<CELLS> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The window as the search sees it, between [`CostField::load`] and the end of a query.
+#[derive(Clone, Copy)]
+struct Query<'a> {
+    params: &'a RouteParams,
+    from: usize,
+    from_cell: Cell,
+    target: Cell,
+}
+
+impl<const CELLS: usize> CostField<CELLS> {
+    /// Scratch memory, ready for use.
+    #[must_use]
+    pub const fn new() -> Self {
+        const { assert!(CELLS < NIL as usize, "cells are numbered in 16 bits") };
+        Self {
+            origin: Cell::new(0, 0),
+            width: 0,
+            height: 0,
+            stride: 0,
+            impassability: [BLOCKED; CELLS],
+            extra: [0; CELLS],
+            cost: [0; CELLS],
+            next: [NIL; CELLS],
+            previous: [NIL; CELLS],
+            bucket: [RING as u8; CELLS],
+            heads: [NIL; RING as usize],
+            occupied: 0,
+            shift: 0,
+            closed: 0,
+        }
+    }
+
+    /// Weights of the eight moves out of `from` towards `target` (alg. 3): the least cost of the
+    /// routes that begin with the move, stay in the window and do not return to `from`.
+    ///
+    /// The window is `window` cut to radius r around `from`. With the target inside, routes end
+    /// there; otherwise (or if no way inside leads to it) on the border by [`ExitRule`]. `others`
+    /// are the cells of other robots.
+    ///
+    /// # Errors
+    /// [`Unreachable`] when no exit can be reached, or `from` is not in the window.
+    ///
+    /// Work: O(w h) for costs of bounded ratio; at most three searches.
+    pub fn weights<const M: usize>(
+        &mut self,
+        params: &RouteParams,
+        window: &Window<'_>,
+        from: Cell,
+        target: Cell,
+        others: impl IntoIterator<Item = Cell>,
+        visits: Option<&VisitMemory<M>>,
+    ) -> Result<Weights, Unreachable> {
+        self.load(params, window, from, others, visits);
+        let from_index = self.index(from).ok_or(Unreachable)?;
+        let query = Query {
+            params,
+            from: from_index,
+            from_cell: from,
+            target,
+        };
+        if let Some(inside) = self.index(target) {
+            self.search(&query, |field| field.offer(inside, 0));
+            let weights = self.outgoing(&query);
+            if weights.best().is_some() {
+                return Ok(weights);
+            }
+        }
+        match params.exit {
+            ExitRule::Best => self.search(&query, |field| field.offer_border(&query)),
+            ExitRule::Ray => {
+                let exit = ray_exit(params.radius, from, target);
+                let at = self
+                    .index(exit)
+                    .filter(|&at| self.is_passable(at) && at != from_index);
+                self.search(&query, |field| {
+                    at.into_iter().for_each(|at| field.offer(at, 0))
+                });
+                if self.outgoing(&query).best().is_none() {
+                    let nearest = self
+                        .nearest_reachable_border(&query, exit)
+                        .ok_or(Unreachable)?;
+                    self.search(&query, |field| field.offer(nearest, 0));
+                }
+            }
+        }
+        let weights = self.outgoing(&query);
+        weights.best().map(|_| weights).ok_or(Unreachable)
+    }
+
+    /// Cost to the exit of the last query from `cell`; `None` if it has none. The robot's own cell
+    /// counts as blocked.
+    #[must_use]
+    pub fn cost(&self, cell: Cell) -> Option<Cost> {
+        let cost = *self.cost.get(self.index(cell)?)?;
+        let open = self
+            .index(cell)
+            .is_some_and(|at| self.is_passable(at) && at != self.closed);
+        (open && cost != EXCLUDED).then_some(cost)
+    }
+
+    /// The first move of the cheapest route from `cell` under the last query; `None` at an exit
+    /// and where no route starts.
+    #[must_use]
+    pub fn descend(&self, params: &RouteParams, cell: Cell) -> Option<Dir> {
+        let here = self.cost(cell)?;
+        let at = self.index(cell)?;
+        let weights = self.outgoing(&Query {
+            params,
+            from: at,
+            from_cell: cell,
+            target: cell,
+        });
+        let dir = weights.best()?;
+        // An exit's own price may undercut every way on from it.
+        (weights.get(dir) <= here).then_some(dir)
+    }
+
+    /// Array index of a cell inside the loaded window.
+    fn index(&self, cell: Cell) -> Option<usize> {
+        let dx = u16::try_from(i32::from(cell.x) - i32::from(self.origin.x)).ok()?;
+        let dy = u16::try_from(i32::from(cell.y) - i32::from(self.origin.y)).ok()?;
+        let inside = dx < self.width && dy < self.height;
+        inside.then(|| (usize::from(dy) + 1) * self.stride + usize::from(dx) + 1)
+    }
+
+    fn is_passable(&self, at: usize) -> bool {
+        self.impassability.get(at).is_some_and(|&u| u != BLOCKED)
+    }
+
+    /// Copies the part of `window` within the radius and prices its cells.
+    fn load<const M: usize>(
+        &mut self,
+        params: &RouteParams,
+        window: &Window<'_>,
+        from: Cell,
+        others: impl IntoIterator<Item = Cell>,
+        visits: Option<&VisitMemory<M>>,
+    ) {
+        let radius = i32::from(params.radius);
+        let span = |center: i16, origin: i16, size: u16| {
+            let low = (i32::from(center) - radius).max(i32::from(origin));
+            let high = (i32::from(center) + radius).min(i32::from(origin) + i32::from(size) - 1);
+            (low, u16::try_from(high - low + 1).unwrap_or(0))
+        };
+        let (west, width) = span(from.x, window.origin().x, window.width());
+        let (south, height) = span(from.y, window.origin().y, window.height());
+        // Both lie between two i16 values, or the window is empty.
+        self.origin = Cell::new(west as i16, south as i16);
+        self.stride = usize::from(width) + 2;
+        let rows = CELLS
+            .checked_div(self.stride)
+            .unwrap_or(0)
+            .saturating_sub(2);
+        self.width = if height == 0 { 0 } else { width };
+        self.height = if width == 0 {
+            0
+        } else {
+            height.min(rows.min(usize::from(u16::MAX)) as u16)
+        };
+
+        let used = (usize::from(self.height) + 2) * self.stride;
+        for at in self.impassability.iter_mut().take(used) {
+            *at = BLOCKED;
+        }
+        for at in self.extra.iter_mut().take(used) {
+            *at = 0;
+        }
+        let mut least = u8::MAX;
+        for row in 0..self.height {
+            let source = window
+                .index(self.origin + Cell::new(0, row.cast_signed()))
+                .and_then(|start| window.cells().get(start..start + usize::from(self.width)));
+            let start = (usize::from(row) + 1) * self.stride + 1;
+            let sink = self
+                .impassability
+                .get_mut(start..start + usize::from(self.width));
+            let (Some(source), Some(sink)) = (source, sink) else {
+                continue;
+            };
+            sink.copy_from_slice(source);
+            least = source
+                .iter()
+                .copied()
+                .filter(|&u| u != BLOCKED)
+                .fold(least, u8::min);
+        }
+        let cheapest = params.a0.of(u32::from(least) * UNIT);
+        self.shift = cheapest.checked_ilog2().unwrap_or(0);
+
+        let occupied = params.a1.of(UNIT);
+        for cell in others {
+            self.add_extra(cell, occupied);
+        }
+        for (cell, count) in visits.into_iter().flat_map(VisitMemory::iter) {
+            self.add_extra(cell, params.a2.of(UNIT * u32::from(count)));
+        }
+    }
+
+    fn add_extra(&mut self, cell: Cell, cost: Cost) {
+        if let Some(extra) = self.index(cell).and_then(|at| self.extra.get_mut(at)) {
+            *extra = extra.saturating_add(cost);
+        }
+    }
+
+    /// One search from the exits that `offer` names; the robot's own cell is closed.
+    fn search(&mut self, query: &Query<'_>, offer: impl FnOnce(&mut Self)) {
+        let used = (usize::from(self.height) + 2) * self.stride;
+        for ((cost, &u), bucket) in self
+            .cost
+            .iter_mut()
+            .zip(&self.impassability)
+            .zip(&mut self.bucket)
+            .take(used)
+        {
+            *cost = if u == BLOCKED { 0 } else { EXCLUDED };
+            *bucket = RING as u8;
+        }
+        self.closed = query.from;
+        if let Some(own) = self.cost.get_mut(query.from) {
+            *own = 0;
+        }
+        self.heads = [NIL; RING as usize];
+        self.occupied = 0;
+        offer(self);
+
+        // Costs of the exits may lie far from 0: start the ring at the least of them.
+        let mut at = self.lowest_offer();
+        while self.occupied != 0 {
+            let gap = self.occupied.rotate_right(at & (RING - 1)).trailing_zeros();
+            at = at.saturating_add(gap);
+            while let Some(cell) = self.pop(at & (RING - 1)) {
+                let cost = self.cost.get(cell).copied().unwrap_or(0);
+                let due = cost >> self.shift;
+                if due > at {
+                    // Was farther away than the ring is long.
+                    self.link(cell, due.min(at.saturating_add(RING - 1)));
+                } else {
+                    self.settle(query.params, cell, cost, at);
+                }
+            }
+        }
+    }
+
+    /// Number of the first bucket in use, as if the ring were endless.
+    fn lowest_offer(&self) -> u32 {
+        let heads = self.heads.iter().copied().filter(|&head| head != NIL);
+        let chain = heads.flat_map(|head| {
+            core::iter::successors(Some(head), |&cell| {
+                self.next
+                    .get(usize::from(cell))
+                    .copied()
+                    .filter(|&next| next != NIL)
+            })
+        });
+        let costs = chain.filter_map(|cell| self.cost.get(usize::from(cell)).copied());
+        costs.min().unwrap_or(0) >> self.shift
+    }
+
+    /// Offers the predecessors of a settled cell the way through it.
+    fn settle(&mut self, params: &RouteParams, cell: usize, cost: Cost, at: u32) {
+        let u = u32::from(self.impassability.get(cell).copied().unwrap_or(BLOCKED));
+        let beyond = cost.saturating_add(self.extra.get(cell).copied().unwrap_or(0));
+        let axis = beyond.saturating_add(params.a0.of(UNIT * u));
+        let diagonal = match params.norm {
+            Norm::Chebyshev => axis,
+            Norm::Euclidean => beyond.saturating_add(params.a0.of(DIAGONAL * u)),
+        };
+        let s = self.stride;
+        let (east, west) = (cell + 1, cell.wrapping_sub(1));
+        let (north, south) = (cell + s, cell.wrapping_sub(s));
+        for beside in [east, west, north, south] {
+            self.relax(beside, axis, at);
+        }
+        let corners = [
+            (north + 1, north, east),
+            (north.wrapping_sub(1), north, west),
+            (south + 1, south, east),
+            (south.wrapping_sub(1), south, west),
+        ];
+        for (corner, one, other) in corners {
+            if params.corner_cutting || (self.is_passable(one) && self.is_passable(other)) {
+                self.relax(corner, diagonal, at);
+            }
+        }
+    }
+
+    #[inline]
+    fn relax(&mut self, cell: usize, cost: Cost, at: u32) {
+        let Some(known) = self.cost.get_mut(cell) else {
+            return;
+        };
+        if cost < *known {
+            *known = cost;
+            self.unlink(cell);
+            self.link(
+                cell,
+                (cost >> self.shift).clamp(at, at.saturating_add(RING - 1)),
+            );
+        }
+    }
+
+    /// Makes a cell an exit of the given price.
+    fn offer(&mut self, cell: usize, price: Cost) {
+        let Some(known) = self.cost.get_mut(cell) else {
+            return;
+        };
+        if price < *known {
+            *known = price;
+            self.unlink(cell);
+            self.link(cell, price >> self.shift);
+        }
+    }
+
+    /// Makes every border cell an exit, priced by its distance to the target (eq. 10).
+    fn offer_border(&mut self, query: &Query<'_>) {
+        for cell in self.border() {
+            let price = query
+                .params
+                .a3
+                .of(cell.distance(query.target, query.params.norm));
+            if let Some(at) = self.index(cell) {
+                self.offer(at, price);
+            }
+        }
+    }
+
+    /// The cells of the window's outermost ring.
+    fn border(&self) -> impl Iterator<Item = Cell> + use<CELLS> {
+        let (origin, width, height) = (
+            self.origin,
+            self.width.cast_signed(),
+            self.height.cast_signed(),
+        );
+        let rows = (0..width).flat_map(move |x| [(x, 0), (x, height - 1)]);
+        let columns = (1..height - 1).flat_map(move |y| [(0, y), (width - 1, y)]);
+        rows.chain(columns)
+            .map(move |(x, y)| origin + Cell::new(x, y))
+    }
+
+    /// The border cell nearest to `exit` (then in the order of [`Cell`]) that the robot can reach.
+    fn nearest_reachable_border(&mut self, query: &Query<'_>, exit: Cell) -> Option<usize> {
+        // Moves are symmetric in what they may enter, so a search from the own cell's neighbours
+        // that are open to it finds what can be reached.
+        let open = self.outgoing_with(query, |_| Some(0));
+        self.search(query, |field| {
+            for (dir, cost) in open.iter() {
+                if let (true, Some(at)) = (
+                    cost != EXCLUDED,
+                    field.index(query.from_cell + dir.offset()),
+                ) {
+                    field.offer(at, 0);
+                }
+            }
+        });
+        let reached = self.border().filter(|&cell| self.cost(cell).is_some());
+        let reached = reached.filter(|&cell| cell != query.from_cell);
+        let nearest = reached.min_by_key(|&cell| (cell.distance_squared(exit), cell))?;
+        self.index(nearest)
+    }
+
+    /// Weights of the moves out of the query's cell.
+    fn outgoing(&self, query: &Query<'_>) -> Weights {
+        self.outgoing_with(query, |at| {
+            self.cost.get(at).copied().filter(|&cost| cost != EXCLUDED)
+        })
+    }
+
+    fn outgoing_with(&self, query: &Query<'_>, rest: impl Fn(usize) -> Option<Cost>) -> Weights {
+        let params = query.params;
+        let step = |dir: Dir| {
+            let next = self.index(query.from_cell + dir.offset())?;
+            let u = self
+                .impassability
+                .get(next)
+                .copied()
+                .filter(|&u| u != BLOCKED)?;
+            if next == self.closed {
+                return None;
+            }
+            if dir.is_diagonal() && !params.corner_cutting {
+                let beside = dir.offset();
+                let open = |dx, dy| {
+                    self.index(query.from_cell + Cell::new(dx, dy))
+                        .is_some_and(|at| self.is_passable(at))
+                };
+                if !(open(beside.x, 0) && open(0, beside.y)) {
+                    return None;
+                }
+            }
+            let enter = params.a0.of(dir.length(params.norm) * u32::from(u));
+            let extra = self.extra.get(next).copied()?;
+            Some(
+                rest(next)?
+                    .saturating_add(enter)
+                    .saturating_add(extra)
+                    .min(EXCLUDED - 1),
+            )
+        };
+        Weights::new(Dir::MOVES.map(|dir| step(dir).unwrap_or(EXCLUDED)))
+    }
+
+    #[inline]
+    fn link(&mut self, cell: usize, bucket: u32) {
+        let slot = bucket & (RING - 1);
+        let name = cell as u16;
+        let (Some(head), Some(next), Some(previous), Some(of)) = (
+            self.heads.get_mut(slot as usize),
+            self.next.get_mut(cell),
+            self.previous.get_mut(cell),
+            self.bucket.get_mut(cell),
+        ) else {
+            return;
+        };
+        let second = *head;
+        *next = second;
+        *previous = NIL;
+        *of = slot as u8;
+        *head = name;
+        if let Some(back) = self.previous.get_mut(usize::from(second)) {
+            *back = name;
+        }
+        self.occupied |= 1 << slot;
+    }
+
+    #[inline]
+    fn unlink(&mut self, cell: usize) {
+        let Some(of) = self.bucket.get_mut(cell) else {
+            return;
+        };
+        let slot = u32::from(*of);
+        if slot == RING {
+            return;
+        }
+        *of = RING as u8;
+        let next = self.next.get(cell).copied().unwrap_or(NIL);
+        let previous = self.previous.get(cell).copied().unwrap_or(NIL);
+        if let Some(back) = self.previous.get_mut(usize::from(next)) {
+            *back = previous;
+        }
+        match self.next.get_mut(usize::from(previous)) {
+            Some(forth) => *forth = next,
+            None => {
+                if let Some(head) = self.heads.get_mut(slot as usize) {
+                    *head = next;
+                }
+                if next == NIL {
+                    self.occupied &= !(1 << slot);
+                }
+            }
+        }
+    }
+
+    #[inline]
+    fn pop(&mut self, slot: u32) -> Option<usize> {
+        let head = self
+            .heads
+            .get(slot as usize)
+            .copied()
+            .filter(|&head| head != NIL)?;
+        self.unlink(usize::from(head));
+        Some(usize::from(head))
+    }
+}
+
+/// The cell where the ray from `from` to `target` crosses the border of the square of that radius.
+fn ray_exit(radius: u8, from: Cell, target: Cell) -> Cell {
+    let (dx, dy) = (
+        i64::from(target.x) - i64::from(from.x),
+        i64::from(target.y) - i64::from(from.y),
+    );
+    let longest = dx.abs().max(dy.abs());
+    let scale = |d: i64| {
+        // Rounded to nearest, away from 0 at one half.
+        let half = if d < 0 { -longest } else { longest };
+        (2 * d * i64::from(radius) + half)
+            .checked_div(2 * longest)
+            .unwrap_or(0)
+    };
+    // At most the radius in each coordinate.
+    from + Cell::new(scale(dx) as i16, scale(dy) as i16)
+}

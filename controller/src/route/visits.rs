@@ -1,0 +1,78 @@
+//! What the robot remembers of its own way (eq. 9).
+
+use crate::grid::Cell;
+use heapless::Vec;
+
+/// How often the robot entered each of the last `M` different cells.
+///
+/// When full, the cell that was entered longest ago is forgotten. Memory: 6 bytes a cell.
+#[derive(Clone, Debug, Default)]
+pub struct VisitMemory<const M: usize> {
+    /// In order of the last entry, oldest first.
+    visits: Vec<(Cell, u8), M>,
+}
+
+impl<const M: usize> VisitMemory<M> {
+    /// Nothing visited yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { visits: Vec::new() }
+    }
+
+    /// Counts one entry into `cell`. O(M).
+    pub fn enter(&mut self, cell: Cell) {
+        let known = self.visits.iter().position(|&(at, _)| at == cell);
+        let count = known.map_or(0, |at| self.visits.remove(at).1);
+        if self.visits.is_full() && M > 0 {
+            self.visits.remove(0);
+        }
+        // Fails only for M = 0, a memory that remembers nothing.
+        let _ = self.visits.push((cell, count.saturating_add(1)));
+    }
+
+    /// Remembered entries into `cell`. O(M).
+    #[must_use]
+    pub fn count(&self, cell: Cell) -> u8 {
+        self.iter()
+            .find(|&(at, _)| at == cell)
+            .map_or(0, |(_, count)| count)
+    }
+
+    /// The remembered cells with their counts, oldest first.
+    pub fn iter(&self) -> impl Iterator<Item = (Cell, u8)> + '_ {
+        self.visits.iter().copied()
+    }
+
+    /// Forgets everything, as for a new target.
+    pub fn clear(&mut self) {
+        self.visits.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn full_memory_forgets_the_cell_entered_longest_ago() {
+        let mut memory = VisitMemory::<2>::new();
+        let [a, b, c] = [Cell::new(0, 0), Cell::new(1, 0), Cell::new(2, 0)];
+        memory.enter(a);
+        memory.enter(b);
+        memory.enter(a);
+        memory.enter(c);
+        assert_eq!([a, b, c].map(|cell| memory.count(cell)), [2, 0, 1]);
+    }
+
+    #[test]
+    fn counts_saturate_and_a_memory_of_nothing_works() {
+        let mut memory = VisitMemory::<1>::new();
+        for _ in 0..300 {
+            memory.enter(Cell::new(5, 5));
+        }
+        assert_eq!(memory.count(Cell::new(5, 5)), 255);
+        let mut nothing = VisitMemory::<0>::new();
+        nothing.enter(Cell::new(5, 5));
+        assert_eq!(nothing.count(Cell::new(5, 5)), 0);
+    }
+}
