@@ -6,4 +6,6 @@
 //! reproduces papers, [`cli`] is the command `staya`.
 
 pub mod cli;
+pub mod plot;
+pub mod record;
 pub mod terrain;

@@ -1,0 +1,192 @@
+//! The lines of `trace.csv` and `series.csv` and the sidecars that explain them.
+
+use super::{Error, RobotRow, TickRow, write_atomically};
+use staya_controller::wire::Mode;
+use std::io::Write;
+use std::path::Path;
+
+/// Name, type, unit and meaning of one column.
+type Column = (&'static str, &'static str, &'static str, &'static str);
+
+/// `trace.csv`: one line per robot and sampled tick.
+pub const TRACE: [Column; 12] = [
+    ("tick", "integer", "1", "number of the tick"),
+    ("time_s", "number", "s", "simulated time"),
+    ("robot", "integer", "1", "the robot's number"),
+    (
+        "x_cell",
+        "integer",
+        "cells",
+        "column of its cell, growing east",
+    ),
+    (
+        "y_cell",
+        "integer",
+        "cells",
+        "row of its cell, growing north",
+    ),
+    ("x_m", "number", "m", "world position, east"),
+    ("y_m", "number", "m", "world position, north"),
+    (
+        "mode",
+        "string",
+        "",
+        "idle, forming, cruise, hold, arrived or fault",
+    ),
+    ("leader", "integer", "1", "its leader's number, 0 = none"),
+    (
+        "target_x",
+        "integer",
+        "cells",
+        "column of the cell it heads for",
+    ),
+    (
+        "target_y",
+        "integer",
+        "cells",
+        "row of the cell it heads for",
+    ),
+    (
+        "formation_error_cells",
+        "number",
+        "cells",
+        "distance from its place in the formation; empty: it has none",
+    ),
+];
+
+/// `series.csv`: one line per tick.
+pub const SERIES: [Column; 9] = [
+    ("tick", "integer", "1", "number of the tick"),
+    ("time_s", "number", "s", "simulated time"),
+    (
+        "formation_error",
+        "number",
+        "cells",
+        "mean distance of the robots from their places; empty: no formation",
+    ),
+    (
+        "graph_distance",
+        "number",
+        "1",
+        "distance of the actual from the wanted graph; empty: no formation",
+    ),
+    (
+        "sent",
+        "integer",
+        "packets",
+        "handed to the radio in this tick",
+    ),
+    (
+        "delivered",
+        "integer",
+        "packets",
+        "handed to a receiver in this tick",
+    ),
+    ("lost", "integer", "packets", "lost on the way in this tick"),
+    (
+        "corrupted",
+        "integer",
+        "packets",
+        "delivered with flipped bits in this tick",
+    ),
+    (
+        "rejected",
+        "integer",
+        "packets",
+        "refused by a receiver in this tick",
+    ),
+];
+
+/// The first line of a file.
+pub fn header(columns: &[Column]) -> String {
+    let names: Vec<_> = columns.iter().map(|column| column.0).collect();
+    names.join(",") + "\n"
+}
+
+/// Writes `trace.schema.json` and `series.schema.json`.
+pub fn write_schemas(dir: &Path) -> Result<(), Error> {
+    for (name, columns) in [("trace", &TRACE[..]), ("series", &SERIES[..])] {
+        let columns: Vec<_> = columns
+            .iter()
+            .map(|(name, kind, unit, meaning)| {
+                serde_json::json!({ "name": name, "type": kind, "unit": unit, "meaning": meaning })
+            })
+            .collect();
+        let schema = serde_json::json!({
+            "file": format!("{name}.csv"),
+            "format": "CSV: one header line, comma, no quotes, lines end with \\n, an empty field is an unknown value",
+            "columns": columns,
+        });
+        write_atomically(
+            &dir.join(format!("{name}.schema.json")),
+            format!("{schema:#}\n").as_bytes(),
+        )?;
+    }
+    Ok(())
+}
+
+/// Appends the line of one robot.
+pub fn trace_line(out: &mut Vec<u8>, tick: &TickRow, robot: &RobotRow) {
+    let mode = match robot.mode {
+        Mode::Idle => "idle",
+        Mode::Forming => "forming",
+        Mode::Cruise => "cruise",
+        Mode::Hold => "hold",
+        Mode::Arrived => "arrived",
+        Mode::Fault => "fault",
+    };
+    append(
+        out,
+        format_args!(
+            "{},{},{},{},{},{},{},{mode},{},{},{},{}\n",
+            tick.tick,
+            Number(tick.time_s),
+            robot.id,
+            robot.cell.x,
+            robot.cell.y,
+            Number(robot.position_m[0]),
+            Number(robot.position_m[1]),
+            robot.leader,
+            robot.target.x,
+            robot.target.y,
+            Number(f64::from(robot.formation_error_cells)),
+        ),
+    );
+}
+
+/// Appends the line of one tick.
+pub fn series_line(out: &mut Vec<u8>, tick: &TickRow) {
+    let packets = &tick.packets;
+    append(
+        out,
+        format_args!(
+            "{},{},{},{},{},{},{},{},{}\n",
+            tick.tick,
+            Number(tick.time_s),
+            Number(tick.formation_error_per_agent),
+            Number(tick.graph_distance),
+            packets.sent,
+            packets.delivered,
+            packets.lost,
+            packets.corrupted,
+            packets.rejected,
+        ),
+    );
+}
+
+fn append(out: &mut Vec<u8>, line: std::fmt::Arguments) {
+    out.write_fmt(line).expect("memory takes every line");
+}
+
+/// Six decimals without trailing zeros (micrometres and microseconds); nothing for NaN and infinity.
+struct Number(f64);
+
+impl std::fmt::Display for Number {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        if !self.0.is_finite() {
+            return Ok(());
+        }
+        let text = format!("{:.6}", self.0);
+        f.write_str(text.trim_end_matches('0').trim_end_matches('.'))
+    }
+}
