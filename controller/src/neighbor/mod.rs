@@ -1,0 +1,363 @@
+//! What is known of other robots: a table on a fixed buffer.
+//!
+//! Read this first. Entries lie sorted by id, so that no result depends on the order in which
+//! packets arrived. The owner calls [`NeighborTable::expire`] at the start of every step: the
+//! 32-bit clock cannot tell a neighbour that has been silent for 71.6 minutes from a fresh one, and
+//! a table that is swept more often than that never holds one.
+
+use crate::geom::Vec3;
+use crate::grid::{Cell, Dir};
+use crate::scalar::Scalar;
+use crate::time::{Duration, Instant};
+use crate::wire::{Beacon, CompactBeacon, Mode, RobotId};
+use heapless::Vec;
+
+#[cfg(test)]
+mod tests;
+
+/// One robot as last heard.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Neighbor<S> {
+    /// Who it is.
+    pub id: RobotId,
+    /// When it was heard, own clock.
+    pub heard: Instant,
+    /// When it is free to leave its cell, own clock (KUZ eq. 6).
+    pub busy_until: Instant,
+    /// World position when heard, metres.
+    pub position_m: Vec3<S>,
+    /// World velocity when heard, metres per second.
+    pub velocity_mps: Vec3<S>,
+    /// Radius of the ball around its body, metres.
+    pub radius_m: S,
+    /// The cell that it occupies.
+    pub cell: Cell,
+    /// The cell that it is heading for.
+    pub target: Cell,
+    /// Its leader, or nobody.
+    pub leader: RobotId,
+    /// The move that it wants next.
+    pub heading: Dir,
+    /// Its place in the formation.
+    pub slot: u8,
+    /// What it is doing.
+    pub mode: Mode,
+}
+
+impl<S: Scalar> Neighbor<S> {
+    /// The robot `id` as its beacon, received at `now`, describes it.
+    #[must_use]
+    pub fn from_beacon(id: RobotId, beacon: &Beacon, now: Instant) -> Self {
+        Self {
+            id,
+            heard: now,
+            busy_until: now + Duration::from_millis(i32::from(beacon.busy_ms)),
+            position_m: vec3_from_milli(beacon.position_mm),
+            velocity_mps: vec3_from_milli(beacon.velocity_mmps.map(i32::from)),
+            radius_m: S::from_milli(i32::from(beacon.radius_mm)),
+            cell: beacon.cell,
+            target: beacon.target,
+            leader: beacon.leader,
+            heading: beacon.heading,
+            slot: beacon.slot,
+            mode: beacon.mode,
+        }
+    }
+
+    /// The robot `id` as its compact beacon, received at `now`, describes it: at height 0, without
+    /// a leader, standing in `cell`, which the caller finds from the position if it uses cells.
+    #[must_use]
+    pub fn from_compact(id: RobotId, beacon: &CompactBeacon, cell: Cell, now: Instant) -> Self {
+        let [x, y] = beacon.position_mm;
+        let [vx, vy] = beacon.velocity_mmps.map(i32::from);
+        Self {
+            id,
+            heard: now,
+            busy_until: now,
+            position_m: vec3_from_milli([x, y, 0]),
+            velocity_mps: vec3_from_milli([vx, vy, 0]),
+            radius_m: S::from_milli(i32::from(beacon.radius_cm) * 10),
+            cell,
+            target: cell,
+            leader: RobotId::NOBODY,
+            heading: Dir::Stay,
+            slot: 0,
+            mode: beacon.mode,
+        }
+    }
+
+    /// Time since it was heard; `None` when that lies in the future, which means that more than
+    /// half the clock's range has passed.
+    #[must_use]
+    pub fn age(&self, now: Instant) -> Option<Duration> {
+        Some(now.since(self.heard)).filter(|age| *age >= Duration::ZERO)
+    }
+
+    /// Where it is at `now` if it kept its velocity for at most `longest` since it was heard and
+    /// then stood; metres. Bounding the age bounds the error: a robot that fell silent does not
+    /// run off the map. [`Ages::stale_after`] is a good bound.
+    #[must_use]
+    pub fn position_at(&self, now: Instant, longest: Duration) -> Vec3<S> {
+        let span = self.age(now).map_or(longest, |age| age.min(longest));
+        self.position_m + self.velocity_mps * S::from_micro(span.as_micros())
+    }
+}
+
+fn vec3_from_milli<S: Scalar>(milli: [i32; 3]) -> Vec3<S> {
+    let [x, y, z] = milli.map(S::from_milli);
+    Vec3::new(x, y, z)
+}
+
+/// How old news may be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Ages {
+    /// Older than this is [`Knowledge::Stale`]: a few beacon periods. Too short: a lossy radio makes
+    /// everybody stale; too long: robots trust positions that are no longer true.
+    pub stale_after: Duration,
+    /// Older than this is forgotten; at most half an hour, so that the clock's wrap is never near.
+    pub expire_after: Duration,
+}
+
+/// What is known of one robot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Knowledge<'a, S> {
+    /// Heard a short while ago.
+    Fresh(&'a Neighbor<S>),
+    /// Heard, but not lately.
+    Stale(&'a Neighbor<S>),
+    /// Never heard, forgotten, or pushed out.
+    Unknown,
+}
+
+impl<'a, S> Knowledge<'a, S> {
+    /// The neighbour if it is fresh.
+    #[must_use]
+    pub const fn fresh(self) -> Option<&'a Neighbor<S>> {
+        match self {
+            Self::Fresh(neighbor) => Some(neighbor),
+            Self::Stale(_) | Self::Unknown => None,
+        }
+    }
+
+    /// The neighbour, fresh or stale.
+    #[must_use]
+    pub const fn known(self) -> Option<&'a Neighbor<S>> {
+        match self {
+            Self::Fresh(neighbor) | Self::Stale(neighbor) => Some(neighbor),
+            Self::Unknown => None,
+        }
+    }
+}
+
+/// What became of a neighbour that was put into the table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[must_use = "an eviction is news for the robot's owner"]
+pub enum Put {
+    /// It is new.
+    Inserted,
+    /// It replaced what was known of the same robot.
+    Updated,
+    /// It is new, and this one had to go.
+    Evicted(RobotId),
+    /// The table is full of more important ones, or the newcomer is nobody.
+    Refused,
+}
+
+/// The known robots, at most `N`, sorted by id.
+///
+/// Bytes: `N` times those of [`Neighbor`] (56 for `f32` and fixed point) and 12 more.
+#[derive(Clone, Debug)]
+pub struct NeighborTable<S, const N: usize> {
+    entries: Vec<Neighbor<S>, N, u16>,
+    ages: Ages,
+}
+
+impl<S: Scalar, const N: usize> NeighborTable<S, N> {
+    /// An empty table.
+    #[must_use]
+    pub const fn new(ages: Ages) -> Self {
+        Self {
+            entries: Vec::new(),
+            ages,
+        }
+    }
+
+    /// The ages that it was built with.
+    #[must_use]
+    pub const fn ages(&self) -> Ages {
+        self.ages
+    }
+
+    /// Puts `newcomer` in, replacing what was known of the same robot. O(N).
+    ///
+    /// When the table is full, somebody has to go, though never a robot that `protect` names (the
+    /// leader, members of the formation's template):
+    /// 1. the stalest of those older than [`Ages::expire_after`];
+    /// 2. else the one farthest from `own_position_m`, if the newcomer is nearer or protected;
+    /// 3. else the newcomer is refused.
+    ///
+    /// Ties go to the smaller id. Distances are taken at the extrapolated positions; an unknown
+    /// distance (NaN) is the largest. So the content after a burst of beacons does not depend on
+    /// their order (unless more than `N` of them are protected).
+    pub fn put(
+        &mut self,
+        newcomer: Neighbor<S>,
+        own_position_m: Vec3<S>,
+        now: Instant,
+        protect: impl Fn(RobotId) -> bool,
+    ) -> Put {
+        if !newcomer.id.is_somebody() {
+            return Put::Refused;
+        }
+        let place = self.place(newcomer.id);
+        if let Some(entry) = place.and_then(|i| self.entries.get_mut(i)) {
+            *entry = newcomer;
+            return Put::Updated;
+        }
+        let mut answer = Put::Inserted;
+        if self.entries.is_full() {
+            let Some(victim) = self.victim(&newcomer, own_position_m, now, protect) else {
+                return Put::Refused;
+            };
+            self.entries.retain(|entry| entry.id != victim);
+            answer = Put::Evicted(victim);
+        }
+        if self.entries.push(newcomer).is_err() {
+            return Put::Refused; // Only a table without any room comes here.
+        }
+        sink_last(&mut self.entries, |before, after| before.id > after.id);
+        answer
+    }
+
+    /// Who must go so that `newcomer` can come in; `None`: nobody.
+    fn victim(
+        &self,
+        newcomer: &Neighbor<S>,
+        own_position_m: Vec3<S>,
+        now: Instant,
+        protect: impl Fn(RobotId) -> bool,
+    ) -> Option<RobotId> {
+        let candidates = || self.entries.iter().filter(|entry| !protect(entry.id));
+        // An age beyond half the clock's range is older than any that can be told.
+        let age = |entry: &Neighbor<S>| entry.age(now).unwrap_or(Duration::MAX);
+        let stalest = candidates()
+            .filter(|entry| age(entry) > self.ages.expire_after)
+            .max_by_key(|entry| (age(entry), entry.id));
+        if let Some(stalest) = stalest {
+            return Some(stalest.id);
+        }
+        let distance = |entry: &Neighbor<S>| {
+            let position_m = entry.position_at(now, self.ages.stale_after);
+            ((position_m - own_position_m).length_key(), entry.id)
+        };
+        let farthest = candidates().map(distance).max()?;
+        let comes_in = protect(newcomer.id) || distance(newcomer) < farthest;
+        comes_in.then_some(farthest.1)
+    }
+
+    /// Forgets everybody older than [`Ages::expire_after`], reporting each in the order of ids. O(N).
+    ///
+    /// Call it every step: see the head of this module.
+    pub fn expire(&mut self, now: Instant, mut lost: impl FnMut(RobotId)) {
+        let ages = self.ages;
+        self.entries.retain(|entry| {
+            let keep = entry.age(now).is_some_and(|age| age <= ages.expire_after);
+            if !keep {
+                lost(entry.id);
+            }
+            keep
+        });
+    }
+
+    /// What is known of robot `id`. O(log N).
+    #[must_use]
+    pub fn get(&self, id: RobotId, now: Instant) -> Knowledge<'_, S> {
+        match self.place(id).and_then(|i| self.entries.get(i)) {
+            Some(entry) => self.judge(entry, now),
+            None => Knowledge::Unknown,
+        }
+    }
+
+    fn place(&self, id: RobotId) -> Option<usize> {
+        self.entries
+            .binary_search_by_key(&id, |entry| entry.id)
+            .ok()
+    }
+
+    /// How far an entry of this table can be trusted at `now`.
+    #[must_use]
+    pub fn judge<'a>(&self, entry: &'a Neighbor<S>, now: Instant) -> Knowledge<'a, S> {
+        match entry.age(now) {
+            Some(age) if age > self.ages.expire_after => Knowledge::Unknown,
+            Some(age) if age > self.ages.stale_after => Knowledge::Stale(entry),
+            Some(_) => Knowledge::Fresh(entry),
+            None => Knowledge::Unknown,
+        }
+    }
+
+    /// Everybody, in the order of ids; fresh and stale ones, if [`NeighborTable::expire`] is called
+    /// every step.
+    pub fn iter(&self) -> core::slice::Iter<'_, Neighbor<S>> {
+        self.entries.iter()
+    }
+
+    /// How many are known.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// Whether nobody is known.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.entries.is_empty()
+    }
+
+    /// Fills `out` with the `K` neighbours nearest to `position_m` at `now` (all when fewer), nearest
+    /// first, ties by id; positions are extrapolated for at most [`Ages::stale_after`], and an
+    /// unknown distance (NaN) comes last. O(N K); 16 K bytes of stack.
+    pub fn k_nearest<'a, const K: usize>(
+        &'a self,
+        position_m: Vec3<S>,
+        now: Instant,
+        out: &mut Vec<&'a Neighbor<S>, K>,
+    ) {
+        let mut nearest = Vec::<(u64, &Neighbor<S>), K>::new();
+        for entry in &self.entries {
+            let there_m = entry.position_at(now, self.ages.stale_after);
+            let key = (there_m - position_m).length_key();
+            // Entries come in the order of ids, so that the later of two equal keys stays behind.
+            if nearest.is_full() && nearest.last().is_some_and(|(farthest, _)| *farthest > key) {
+                nearest.pop();
+            }
+            if nearest.push((key, entry)).is_ok() {
+                sink_last(&mut nearest, |before, after| before.0 > after.0);
+            }
+        }
+        out.clear();
+        out.extend(nearest.iter().map(|&(_, entry)| entry));
+    }
+}
+
+/// Moves the last item towards the front past all that must come after it.
+fn sink_last<T>(items: &mut [T], must_swap: impl Fn(&T, &T) -> bool) {
+    for i in (1..items.len()).rev() {
+        match items.get_mut(i - 1..=i) {
+            Some([before, after]) if must_swap(before, after) => core::mem::swap(before, after),
+            _ => break,
+        }
+    }
+}
+
+impl<'a, S: Scalar, const N: usize> IntoIterator for &'a NeighborTable<S, N> {
+    type Item = &'a Neighbor<S>;
+    type IntoIter = core::slice::Iter<'a, Neighbor<S>>;
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter()
+    }
+}
+
+// Every byte counts 16 times per robot, and a simulated swarm has 100,000 of them.
+const _: () = assert!(size_of::<Neighbor<f32>>() == 56);
+const _: () = assert!(size_of::<NeighborTable<f32, 16>>() == 16 * 56 + 12);

@@ -1,0 +1,373 @@
+#![allow(
+    clippy::unwrap_used,
+    clippy::indexing_slicing,
+    clippy::std_instead_of_alloc
+)]
+
+use super::*;
+use proptest::prelude::*;
+use std::vec::Vec as StdVec;
+
+const AGES: Ages = Ages {
+    stale_after: Duration::from_millis(1_000),
+    expire_after: Duration::from_millis(5_000),
+};
+
+fn at(micros: u32) -> Instant {
+    Instant::from_micros(micros)
+}
+
+/// A robot that stands `x` metres east of the origin.
+fn standing(id: u32, x: f32, heard: Instant) -> Neighbor<f32> {
+    let beacon = Beacon::default();
+    let mut neighbor = Neighbor::from_beacon(RobotId(id), &beacon, heard);
+    neighbor.position_m.x = x;
+    neighbor
+}
+
+fn put<const N: usize>(table: &mut NeighborTable<f32, N>, n: Neighbor<f32>, now: Instant) -> Put {
+    table.put(n, Vec3::ZERO, now, |_| false)
+}
+
+fn ids<const N: usize>(table: &NeighborTable<f32, N>) -> StdVec<u32> {
+    table.iter().map(|n| n.id.0).collect()
+}
+
+fn expired<const N: usize>(table: &mut NeighborTable<f32, N>, now: Instant) -> StdVec<u32> {
+    let mut lost = StdVec::new();
+    table.expire(now, |id| lost.push(id.0));
+    lost
+}
+
+/// A table whose robots 1, 2, .. stand at 1 m, 2 m, ...
+fn full<const N: usize>(now: Instant) -> NeighborTable<f32, N> {
+    let mut table = NeighborTable::new(AGES);
+    for i in 1..=N as u32 {
+        assert_eq!(
+            put(&mut table, standing(i, i as f32, now), now),
+            Put::Inserted
+        );
+    }
+    table
+}
+
+#[test]
+fn table_without_room_refuses() {
+    let mut table = NeighborTable::<f32, 0>::new(AGES);
+    assert_eq!(
+        put(&mut table, standing(1, 0.0, at(0)), at(0)),
+        Put::Refused
+    );
+    let mut out = heapless::Vec::<_, 4>::new();
+    table.k_nearest(Vec3::ZERO, at(0), &mut out);
+    assert!(table.is_empty() && out.is_empty());
+}
+
+#[test]
+fn table_of_one_keeps_the_nearer_of_two() {
+    let mut table = full::<1>(at(0));
+    assert_eq!(
+        put(&mut table, standing(2, 0.5, at(0)), at(0)),
+        Put::Evicted(RobotId(1))
+    );
+    assert_eq!(
+        put(&mut table, standing(1, 1.0, at(0)), at(0)),
+        Put::Refused
+    );
+    assert_eq!(ids(&table), [2]);
+}
+
+#[test]
+fn nobody_is_refused() {
+    let mut table = NeighborTable::<f32, 4>::new(AGES);
+    assert_eq!(
+        put(&mut table, standing(0, 1.0, at(0)), at(0)),
+        Put::Refused
+    );
+    assert_eq!(table.get(RobotId::NOBODY, at(0)), Knowledge::Unknown);
+}
+
+#[test]
+fn known_robot_is_updated_in_a_full_table() {
+    let mut table = full::<4>(at(0));
+    assert_eq!(
+        put(&mut table, standing(3, 99.0, at(7)), at(7)),
+        Put::Updated
+    );
+    assert_eq!(table.len(), 4);
+    let known = table.get(RobotId(3), at(7)).fresh().unwrap();
+    assert_eq!((known.position_m.x, known.heard), (99.0, at(7)));
+}
+
+#[test]
+fn full_table_evicts_the_stalest_expired_one_even_for_a_far_newcomer() {
+    let mut table = full::<4>(at(0));
+    let _ = put(&mut table, standing(2, 2.0, at(100)), at(100));
+    let _ = put(&mut table, standing(4, 4.0, at(9_000_000)), at(9_000_000));
+    let now = at(9_000_000);
+    // 1 and 3 are equally old: the larger id goes.
+    assert_eq!(
+        put(&mut table, standing(8, 800.0, now), now),
+        Put::Evicted(RobotId(3))
+    );
+    assert_eq!(
+        put(&mut table, standing(9, 900.0, now), now),
+        Put::Evicted(RobotId(1))
+    );
+    assert_eq!(
+        put(&mut table, standing(7, 700.0, now), now),
+        Put::Evicted(RobotId(2))
+    );
+    assert_eq!(ids(&table), [4, 7, 8, 9]);
+}
+
+#[test]
+fn full_table_evicts_the_farthest_for_a_nearer_one_only() {
+    let mut table = full::<4>(at(0));
+    assert_eq!(
+        put(&mut table, standing(9, 4.5, at(0)), at(0)),
+        Put::Refused
+    );
+    // Equally far: the smaller id stays.
+    assert_eq!(
+        put(&mut table, standing(9, -4.0, at(0)), at(0)),
+        Put::Refused
+    );
+    assert_eq!(
+        put(&mut table, standing(9, -3.5, at(0)), at(0)),
+        Put::Evicted(RobotId(4))
+    );
+    assert_eq!(ids(&table), [1, 2, 3, 9]);
+}
+
+#[test]
+fn distance_counts_from_the_own_position() {
+    let mut table = full::<4>(at(0));
+    let own = Vec3::new(5.0, 0.0, 0.0);
+    assert_eq!(
+        table.put(standing(9, 6.0, at(0)), own, at(0), |_| false),
+        Put::Evicted(RobotId(1))
+    );
+}
+
+#[test]
+fn protected_robots_stay_and_come_in() {
+    let mut table = full::<3>(at(0));
+    let old = at(9_000_000);
+    let far = |id| standing(id, 1000.0, old);
+    let protect = |id: RobotId| id.0 >= 3;
+    // All are expired, yet the protected 3 stays; then nobody may go.
+    assert_eq!(
+        table.put(far(4), Vec3::ZERO, old, protect),
+        Put::Evicted(RobotId(2))
+    );
+    assert_eq!(
+        table.put(far(5), Vec3::ZERO, old, protect),
+        Put::Evicted(RobotId(1))
+    );
+    assert_eq!(table.put(far(6), Vec3::ZERO, old, protect), Put::Refused);
+    assert_eq!(ids(&table), [3, 4, 5]);
+}
+
+#[test]
+fn protected_newcomer_displaces_a_nearer_one() {
+    let mut table = full::<2>(at(0));
+    let far = standing(9, 1000.0, at(0));
+    assert_eq!(
+        table.put(far, Vec3::ZERO, at(0), |id| id.0 == 9),
+        Put::Evicted(RobotId(2))
+    );
+}
+
+#[test]
+fn unknown_distance_is_the_largest() {
+    let mut table = full::<2>(at(0));
+    assert_eq!(
+        put(&mut table, standing(3, f32::NAN, at(0)), at(0)),
+        Put::Refused
+    );
+    let _ = put(&mut table, standing(1, f32::NAN, at(0)), at(0));
+    assert_eq!(
+        put(&mut table, standing(3, 1e9, at(0)), at(0)),
+        Put::Evicted(RobotId(1))
+    );
+
+    let _ = put(&mut table, standing(2, f32::NAN, at(0)), at(0));
+    let mut out = heapless::Vec::<_, 2>::new();
+    table.k_nearest(Vec3::ZERO, at(0), &mut out);
+    assert_eq!([out[0].id.0, out[1].id.0], [3, 2]);
+}
+
+#[test]
+fn knowledge_ages_from_fresh_to_stale_to_unknown() {
+    let mut table = NeighborTable::<f32, 4>::new(AGES);
+    let heard = at(u32::MAX - 500_000); // The clock wraps before the first limit.
+    let _ = put(&mut table, standing(1, 0.0, heard), heard);
+    let get = |micros: i32| table.get(RobotId(1), heard + Duration::from_micros(micros));
+    assert!(matches!(get(0), Knowledge::Fresh(_)));
+    assert!(matches!(get(1_000_000), Knowledge::Fresh(_)));
+    assert!(matches!(get(1_000_001), Knowledge::Stale(_)));
+    assert!(get(1_000_001).fresh().is_none() && get(1_000_001).known().is_some());
+    assert!(matches!(get(5_000_000), Knowledge::Stale(_)));
+    assert_eq!(get(5_000_001), Knowledge::Unknown);
+    assert_eq!(get(i32::MAX), Knowledge::Unknown);
+    // Half the clock's range later the difference is negative.
+    assert_eq!(get(i32::MIN), Knowledge::Unknown);
+    assert_eq!(table.get(RobotId(2), heard), Knowledge::Unknown);
+}
+
+#[test]
+fn expiry_reports_each_lost_robot_once_in_order() {
+    let mut table = full::<4>(at(0));
+    let _ = put(&mut table, standing(2, 2.0, at(3_000_000)), at(3_000_000));
+    assert_eq!(expired(&mut table, at(5_000_000)), []);
+    assert_eq!(expired(&mut table, at(5_000_001)), [1, 3, 4]);
+    assert_eq!(expired(&mut table, at(5_000_001)), []);
+    assert_eq!(ids(&table), [2]);
+}
+
+#[test]
+fn silence_beyond_half_the_clock_expires() {
+    let mut table = full::<2>(at(0));
+    // 40 minutes: the wrapped difference is negative.
+    assert_eq!(expired(&mut table, at(2_400_000_000)), [1, 2]);
+}
+
+#[test]
+fn position_runs_on_for_a_bounded_time() {
+    let mut neighbor = standing(1, 10.0, at(u32::MAX));
+    neighbor.velocity_mps = Vec3::new(2.0, -1.0, 0.5);
+    let longest = Duration::from_millis(1_500);
+    let after =
+        |micros: i32| neighbor.position_at(neighbor.heard + Duration::from_micros(micros), longest);
+    assert_eq!(after(0), Vec3::new(10.0, 0.0, 0.0));
+    assert_eq!(after(500_000), Vec3::new(11.0, -0.5, 0.25));
+    assert_eq!(after(1_500_000), Vec3::new(13.0, -1.5, 0.75));
+    assert_eq!(after(i32::MAX), after(1_500_000));
+    assert_eq!(after(i32::MIN), after(1_500_000));
+}
+
+#[test]
+fn beacon_becomes_metres_and_own_time() {
+    let beacon = Beacon {
+        time: at(123),
+        position_mm: [1_500, -2_250, i32::MAX],
+        velocity_mmps: [500, i16::MIN, 0],
+        radius_mm: 150,
+        cell: Cell::new(1, -2),
+        heading: Dir::North,
+        busy_ms: u16::MAX,
+        leader: RobotId(7),
+        slot: 3,
+        mode: Mode::Cruise,
+        target: Cell::new(9, 9),
+    };
+    let n = Neighbor::<f64>::from_beacon(RobotId(5), &beacon, at(u32::MAX));
+    assert_eq!(n.position_m, Vec3::new(1.5, -2.25, 2_147_483.647));
+    assert_eq!(n.velocity_mps, Vec3::new(0.5, -32.768, 0.0));
+    assert_eq!((n.radius_m, n.id, n.leader), (0.15, RobotId(5), RobotId(7)));
+    assert_eq!((n.heard, n.busy_until), (at(u32::MAX), at(65_534_999)));
+    assert_eq!((n.cell, n.target), (beacon.cell, beacon.target));
+    assert_eq!((n.heading, n.slot, n.mode), (Dir::North, 3, Mode::Cruise));
+}
+
+#[test]
+fn compact_beacon_becomes_a_neighbour_in_the_plane() {
+    let beacon = CompactBeacon {
+        time_ms: 1,
+        position_mm: [i32::MIN, 250],
+        velocity_mmps: [-250, 125],
+        radius_cm: 255,
+        mode: Mode::Hold,
+    };
+    let n = Neighbor::<f64>::from_compact(RobotId(5), &beacon, Cell::new(4, 2), at(10));
+    assert_eq!(n.position_m, Vec3::new(-2_147_483.648, 0.25, 0.0));
+    assert_eq!(n.velocity_mps, Vec3::new(-0.25, 0.125, 0.0));
+    assert_eq!((n.radius_m, n.mode), (2.55, Mode::Hold));
+    assert_eq!(
+        (n.cell, n.target, n.busy_until),
+        (Cell::new(4, 2), Cell::new(4, 2), at(10))
+    );
+}
+
+/// A robot per id, at small whole distances so that ties occur.
+fn robots() -> impl Strategy<Value = StdVec<(u32, i8, i8)>> {
+    proptest::collection::btree_map(1..60u32, (-4..4i8, -4..4i8), 0..40)
+        .prop_map(|map| map.into_iter().map(|(id, (x, y))| (id, x, y)).collect())
+}
+
+fn fill(robots: &[(u32, i8, i8)], protect: impl Fn(RobotId) -> bool) -> NeighborTable<f32, 8> {
+    let mut table = NeighborTable::new(AGES);
+    for &(id, x, y) in robots {
+        let mut robot = standing(id, x.into(), at(0));
+        robot.position_m.y = y.into();
+        let _ = table.put(robot, Vec3::ZERO, at(0), &protect);
+    }
+    table
+}
+
+/// What the policy promises, by sorting everything.
+fn expected(robots: &[(u32, i8, i8)], protect: impl Fn(RobotId) -> bool, k: usize) -> StdVec<u32> {
+    let mut sorted = robots.to_vec();
+    sorted.sort_by_key(|&(id, x, y)| {
+        let squared = i32::from(x) * i32::from(x) + i32::from(y) * i32::from(y);
+        (!protect(RobotId(id)), squared, id)
+    });
+    sorted.truncate(k);
+    sorted.iter().map(|robot| robot.0).collect()
+}
+
+proptest! {
+    #[test]
+    fn content_is_the_nearest_whatever_the_order_of_arrival(
+        (robots, shuffled) in robots().prop_flat_map(|r| (Just(r.clone()), Just(r).prop_shuffle())),
+    ) {
+        let protect = |id: RobotId| [3, 30, 50].contains(&id.0);
+        let mut kept = expected(&robots, protect, 8);
+        kept.sort_unstable();
+        prop_assert_eq!(ids(&fill(&shuffled, protect)), kept);
+    }
+
+    #[test]
+    fn k_nearest_is_the_head_of_a_full_sort(robots in robots()) {
+        let table = fill(&robots, |_| false);
+        for entry in &table {
+            prop_assert!(table.get(entry.id, at(0)).fresh() == Some(entry));
+        }
+        let mut out = heapless::Vec::<_, 5>::new();
+        table.k_nearest(Vec3::ZERO, at(0), &mut out);
+        let got: StdVec<u32> = out.iter().map(|n| n.id.0).collect();
+        prop_assert_eq!(got, expected(&robots, |_| false, 5));
+    }
+
+    #[test]
+    fn any_numbers_keep_the_table_sorted_and_bounded(
+        news in proptest::collection::vec((any::<u32>(), any::<u32>(), any::<f32>()), 0..40),
+        own in any::<f32>(),
+    ) {
+        let mut table = NeighborTable::<f32, 5>::new(AGES);
+        for (id, now, x) in news {
+            let before = ids(&table);
+            let answer = put_from(&mut table, standing(id, x, at(now)), own, at(now));
+            let after = ids(&table);
+            prop_assert!(after.is_sorted_by(|a, b| a < b) && after.len() <= 5);
+            prop_assert_eq!(after.contains(&id), answer != Put::Refused);
+            match answer {
+                Put::Inserted => prop_assert_eq!(after.len(), before.len() + 1),
+                Put::Updated | Put::Refused => prop_assert_eq!(after, before),
+                Put::Evicted(gone) => {
+                    prop_assert!(before.contains(&gone.0) && !after.contains(&gone.0));
+                }
+            }
+        }
+    }
+}
+
+fn put_from(
+    table: &mut NeighborTable<f32, 5>,
+    newcomer: Neighbor<f32>,
+    own: f32,
+    now: Instant,
+) -> Put {
+    table.put(newcomer, Vec3::new(own, 0.0, 0.0), now, |id| id.0 < 1 << 30)
+}

@@ -1,0 +1,141 @@
+//! `f32` and `f64` through libm: software routines, hence the same bits on every target.
+
+use super::{Scalar, sealed};
+
+macro_rules! impl_scalar {
+    ($float:ident, $nan_bits:expr, $floor:ident, $round:ident, $sqrt:ident, $sincos:ident, $atan2:ident, $exp:ident, $log:ident) => {
+        impl sealed::Sealed for $float {}
+
+        impl Scalar for $float {
+            const ZERO: Self = 0.0;
+            const ONE: Self = 1.0;
+            const TWO: Self = 2.0;
+            const HALF: Self = 0.5;
+            const PI: Self = core::$float::consts::PI;
+            const EPSILON: Self = $float::EPSILON;
+            const MAX: Self = $float::MAX;
+
+            fn from_i32(value: i32) -> Self {
+                value as $float
+            }
+
+            fn from_ratio(numerator: i32, denominator: i32) -> Self {
+                (f64::from(numerator) / f64::from(denominator)) as $float
+            }
+
+            fn from_milli(milli: i32) -> Self {
+                milli as $float / 1e3
+            }
+
+            fn from_micro(micro: i32) -> Self {
+                micro as $float / 1e6
+            }
+
+            fn to_milli(self) -> Option<i32> {
+                // The cast saturates.
+                (!self.is_nan()).then(|| libm::$round(self * 1e3) as i32)
+            }
+
+            fn from_f64(value: f64) -> Option<Self> {
+                let nearest = value as $float;
+                (!value.is_nan()).then(|| nearest.clamp(-$float::MAX, $float::MAX))
+            }
+
+            fn to_f64(self) -> f64 {
+                self.into()
+            }
+
+            fn to_bits(self) -> u64 {
+                // The sign and payload of a computed NaN differ between processors.
+                if self.is_nan() {
+                    $nan_bits
+                } else {
+                    $float::to_bits(self).into()
+                }
+            }
+
+            fn is_finite(self) -> bool {
+                $float::is_finite(self)
+            }
+
+            fn checked_div(self, other: Self) -> Option<Self> {
+                let quotient = self / other;
+                quotient.is_finite().then_some(quotient)
+            }
+
+            fn floor_to_i32(self) -> Option<i32> {
+                let floor = libm::$floor(self);
+                (-2_147_483_648.0..2_147_483_648.0)
+                    .contains(&floor)
+                    .then_some(floor as i32)
+            }
+
+            fn sqrt(self) -> Self {
+                // Correctly rounded, so that a hardware root (VSQRT) gives the same bits.
+                if self < 0.0 { 0.0 } else { libm::$sqrt(self) }
+            }
+
+            fn sin_cos(self) -> (Self, Self) {
+                libm::$sincos(self)
+            }
+
+            fn atan2(self, x: Self) -> Self {
+                libm::$atan2(self, x)
+            }
+
+            fn exp(self) -> Self {
+                libm::$exp(self)
+            }
+
+            fn ln(self) -> Option<Self> {
+                (self > 0.0).then(|| libm::$log(self))
+            }
+
+            fn norm([x, y, z]: [Self; 3]) -> Self {
+                libm::$sqrt(x * x + y * y + z * z)
+            }
+
+            fn length_key([x, y, z]: [Self; 3]) -> u64 {
+                let squared = x * x + y * y + z * z;
+                // The bits of non-negative floats have the order of their values.
+                if squared.is_nan() {
+                    u64::MAX
+                } else {
+                    $float::to_bits(squared).into()
+                }
+            }
+
+            fn unit([x, y, z]: [Self; 3]) -> Option<[Self; 3]> {
+                let squared = x * x + y * y + z * z;
+                // A subnormal square has lost the bits that the direction needs.
+                (squared.is_normal()).then(|| {
+                    let scale = 1.0 / libm::$sqrt(squared);
+                    [x * scale, y * scale, z * scale]
+                })
+            }
+        }
+    };
+}
+
+impl_scalar!(
+    f32,
+    0x7FC0_0000,
+    floorf,
+    roundf,
+    sqrtf,
+    sincosf,
+    atan2f,
+    expf,
+    logf
+);
+impl_scalar!(
+    f64,
+    0x7FF8_0000_0000_0000,
+    floor,
+    round,
+    sqrt,
+    sincos,
+    atan2,
+    exp,
+    log
+);

@@ -1,0 +1,186 @@
+//! The one numeric trait, and the four numbers that implement it.
+//!
+//! `f32` ships, `f64` is the oracle, Q16 serves parts without an FPU and Fast32 trades
+//! accuracy for speed. Everything beyond + - * goes through [`Scalar`] and hence through the same
+//! software routines on every target: same bits everywhere.
+//!
+//! NaN fails closed: it passes through arithmetic, `min`, `max` and `clamp` unchanged, is the last
+//! in [`Scalar::order`], and conversions to integers answer `None`.
+
+mod float;
+
+use core::cmp::Ordering;
+use core::fmt::Debug;
+use core::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
+mod sealed {
+    pub trait Sealed {}
+}
+
+/// A real number of limited range and precision; sealed.
+///
+/// There is no `Div`: a division by zero must be met where it happens, see
+/// [`Scalar::checked_div`].
+pub trait Scalar:
+    sealed::Sealed
+    + Copy
+    + Debug
+    + Default
+    + PartialEq
+    + PartialOrd
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+    + MulAssign
+    + Send
+    + Sync
+    + 'static
+{
+    /// 0.
+    const ZERO: Self;
+    /// 1.
+    const ONE: Self;
+    /// 2.
+    const TWO: Self;
+    /// 1/2.
+    const HALF: Self;
+    /// Half a turn, radians.
+    const PI: Self;
+    /// Distance from 1 to the next larger number.
+    const EPSILON: Self;
+    /// The largest finite number; its negative is in range too.
+    const MAX: Self;
+
+    /// An integer, rounded to nearest; saturates.
+    #[must_use]
+    fn from_i32(value: i32) -> Self;
+
+    /// The fraction `numerator / denominator`, for constants and parameters.
+    ///
+    /// Saturates; a zero denominator gives an infinity or NaN, in fixed point ±[`Scalar::MAX`].
+    #[must_use]
+    fn from_ratio(numerator: i32, denominator: i32) -> Self;
+
+    /// From thousandths (mm, mm/s); saturates.
+    #[must_use]
+    fn from_milli(milli: i32) -> Self;
+
+    /// From millionths (a time in microseconds to seconds).
+    #[must_use]
+    fn from_micro(micro: i32) -> Self;
+
+    /// To thousandths, rounded to nearest, saturating; NaN gives `None`.
+    #[must_use]
+    fn to_milli(self) -> Option<i32>;
+
+    /// The nearest number, saturating; NaN gives `None`. For hosts and start-up: slow without a
+    /// double-precision FPU.
+    #[must_use]
+    fn from_f64(value: f64) -> Option<Self>;
+
+    /// The exact value, for hosts.
+    #[must_use]
+    fn to_f64(self) -> f64;
+
+    /// The bits, for hashes: equal for equal states on every target (there is one NaN).
+    #[must_use]
+    fn to_bits(self) -> u64;
+
+    /// Neither NaN nor infinite.
+    #[must_use]
+    fn is_finite(self) -> bool;
+
+    /// `self / other`; `None` when `other` is zero or the result is not finite or out of range.
+    #[must_use]
+    fn checked_div(self, other: Self) -> Option<Self>;
+
+    /// The greatest integer not above `self`; `None` when it is NaN or does not fit.
+    #[must_use]
+    fn floor_to_i32(self) -> Option<i32>;
+
+    /// The square root; a negative number counts as 0, the usual meaning of a rounding error just
+    /// below it.
+    #[must_use]
+    fn sqrt(self) -> Self;
+
+    /// Sine and cosine of an angle in radians.
+    #[must_use]
+    fn sin_cos(self) -> (Self, Self);
+
+    /// The angle of the vector (`x`, `self`) on [-pi, pi], radians; 0 for the zero vector.
+    #[must_use]
+    fn atan2(self, x: Self) -> Self;
+
+    /// e to the power of `self`; too large: infinity, in fixed point [`Scalar::MAX`].
+    #[must_use]
+    fn exp(self) -> Self;
+
+    /// The natural logarithm; `None` unless `self` is more than 0.
+    #[must_use]
+    fn ln(self) -> Option<Self>;
+
+    /// Length of the vector with these components. Fixed point: exact to one bit and saturating,
+    /// though the squares do not fit; floats: infinite beyond 1e19 (f32).
+    #[must_use]
+    fn norm(components: [Self; 3]) -> Self;
+
+    /// An integer that grows with the length of the vector, for comparing lengths without a root
+    /// and without overflow; `u64::MAX` when a component is NaN.
+    #[must_use]
+    fn length_key(components: [Self; 3]) -> u64;
+
+    /// The vector of length 1 with the same direction, to the full precision of the type whatever
+    /// the length; `None` for the zero vector (floats: also shorter than 2e-19) and when a
+    /// component is not finite.
+    #[must_use]
+    fn unit(components: [Self; 3]) -> Option<[Self; 3]>;
+
+    /// The magnitude.
+    #[must_use]
+    fn abs(self) -> Self {
+        if self < Self::ZERO { -self } else { self }
+    }
+
+    /// The smaller one; NaN if either is.
+    #[must_use]
+    fn min(self, other: Self) -> Self {
+        if is_nan(self) || self < other {
+            self
+        } else {
+            other
+        }
+    }
+
+    /// The larger one; NaN if either is.
+    #[must_use]
+    fn max(self, other: Self) -> Self {
+        if is_nan(self) || self > other {
+            self
+        } else {
+            other
+        }
+    }
+
+    /// The nearest number in [`low`, `high`]; `high` when the interval is empty, NaN for NaN.
+    #[must_use]
+    fn clamp(self, low: Self, high: Self) -> Self {
+        self.max(low).min(high)
+    }
+
+    /// A total order by value with NaN after everything else, so that what is unknown is never the
+    /// least.
+    #[must_use]
+    fn order(self, other: Self) -> Ordering {
+        self.partial_cmp(&other)
+            .unwrap_or_else(|| is_nan(self).cmp(&is_nan(other)))
+    }
+}
+
+/// Whether `x` is no number at all.
+#[expect(clippy::eq_op, reason = "only NaN differs from itself")]
+fn is_nan<S: Scalar>(x: S) -> bool {
+    x != x
+}
