@@ -1,0 +1,251 @@
+//! Bodies on the grid: who stands where, who may move when, and who gives way.
+//!
+//! Source: KUZ sections 2 and 3, eq. 6 (timing) and algorithm 4 (moves). The paper leaves open who
+//! moves first; here the order of a tick is drawn anew each tick from (seed, tick, robot), so
+//! that no robot has precedence for good and the order of robots in memory plays no part.
+
+mod window;
+
+use crate::terrain::Terrain;
+use staya_controller::agent::Command;
+use staya_controller::grid::{BLOCKED, Cell, Dir, Norm, UNIT};
+use staya_controller::rand::Rng;
+use staya_controller::wire::RobotId;
+use thiserror::Error;
+
+/// Keeps the draws of this module apart from all others.
+const PRIORITY: u32 = 0x0057_0001;
+
+/// How bodies may move.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct MoveRules {
+    /// Norm of a diagonal move.
+    pub norm: Norm,
+    /// Whether a diagonal move may pass between two cells of which one (or both) is a wall.
+    /// Robots in those cells do not hinder it.
+    pub corner_cutting: bool,
+}
+
+/// A robot's body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Body {
+    /// The robot.
+    pub id: RobotId,
+    /// The cell it occupies, alone.
+    pub cell: Cell,
+    /// The move by which it came into the cell; `Stay` at the start.
+    pub entered_by: Dir,
+    /// When it may leave, in [`UNIT`]ths of a tick after the start.
+    pub free_at: u64,
+}
+
+/// A start that the world refuses.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+pub enum Misplaced {
+    /// A wall, or no part of the map.
+    #[error("robot {} starts in the impassable cell ({}, {})", .robot.0, .cell.x, .cell.y)]
+    Blocked {
+        /// The robot.
+        robot: RobotId,
+        /// Its start.
+        cell: Cell,
+    },
+    /// Two robots in one cell.
+    #[error("robots {} and {} both start in cell ({}, {})", .first.0, .second.0, .cell.x, .cell.y)]
+    Overlap {
+        /// The robot that came first in the list.
+        first: RobotId,
+        /// The other one.
+        second: RobotId,
+        /// Their start.
+        cell: Cell,
+    },
+}
+
+/// The terrain and the bodies on it.
+#[derive(Clone, Debug)]
+pub struct World {
+    terrain: Terrain,
+    rules: MoveRules,
+    seed: u64,
+    bodies: Vec<Body>,
+    /// Per cell of the terrain: index of its body plus 1, or 0.
+    occupancy: Vec<u32>,
+    /// Scratch: who wants to move this tick, by priority.
+    movers: Vec<(u64, RobotId, u32)>,
+    /// Per cell: the tick (plus 1) in which the check last saw a body there.
+    seen: Vec<u32>,
+}
+
+impl World {
+    /// A world with bodies at their starts, free to move at tick 0.
+    ///
+    /// # Errors
+    /// When a start is impassable, outside the map or taken.
+    pub fn new(
+        terrain: Terrain,
+        rules: MoveRules,
+        seed: u64,
+        starts: impl IntoIterator<Item = (RobotId, Cell)>,
+    ) -> Result<Self, Misplaced> {
+        let cells = terrain.cells().len();
+        let mut world = Self {
+            terrain,
+            rules,
+            seed,
+            bodies: Vec::new(),
+            occupancy: vec![0; cells],
+            movers: Vec::new(),
+            seen: vec![0; cells],
+        };
+        for (robot, cell) in starts {
+            world.place(robot, cell)?;
+        }
+        Ok(world)
+    }
+
+    fn place(&mut self, robot: RobotId, cell: Cell) -> Result<(), Misplaced> {
+        let at = match self.terrain.index(cell) {
+            Some(at) if self.terrain.is_passable(cell) => at,
+            _ => return Err(Misplaced::Blocked { robot, cell }),
+        };
+        if let Some(other) = self.body_at(cell) {
+            let first = self.bodies[other].id;
+            let second = robot;
+            return Err(Misplaced::Overlap {
+                first,
+                second,
+                cell,
+            });
+        }
+        self.bodies.push(Body {
+            id: robot,
+            cell,
+            entered_by: Dir::Stay,
+            free_at: 0,
+        });
+        self.occupancy[at] = self.bodies.len() as u32;
+        Ok(())
+    }
+
+    /// The land.
+    #[must_use]
+    pub fn terrain(&self) -> &Terrain {
+        &self.terrain
+    }
+
+    /// The bodies, in the order in which they were placed.
+    #[must_use]
+    pub fn bodies(&self) -> &[Body] {
+        &self.bodies
+    }
+
+    /// Index of the body in a cell.
+    #[must_use]
+    pub fn body_at(&self, cell: Cell) -> Option<usize> {
+        let at = self.terrain.index(cell)?;
+        (self.occupancy[at] as usize).checked_sub(1)
+    }
+
+    /// Length of the body's last crossing, [`UNIT`]ths of a tick; 0 for a body that never moved.
+    #[must_use]
+    pub fn crossing(&self, body: &Body) -> u64 {
+        match body.entered_by {
+            Dir::Stay => 0,
+            dir => u64::from(dir.length(self.rules.norm)) * u64::from(self.terrain.get(body.cell)),
+        }
+    }
+
+    /// Moves the bodies as their robots command; `commands[i]` belongs to body `i`.
+    ///
+    /// A body that is free takes the first of its preferred moves whose cell is free and passable.
+    /// Bodies do so one after the other in the order of this tick's priorities, so a cell that was
+    /// left earlier in the tick is free. Entering cell c by move d keeps the body busy for
+    /// length(d) * u(c) ticks (eq. 6); a body that goes on at the first tick after it became free
+    /// carries the fraction of a tick over, so that a journey takes exactly the sum of eq. 7.
+    ///
+    /// # Panics
+    /// When there are fewer commands than bodies.
+    pub fn advance(&mut self, tick: u32, commands: &[Command]) {
+        let now = u64::from(tick) * u64::from(UNIT);
+        let mut movers = std::mem::take(&mut self.movers);
+        movers.clear();
+        for (index, body) in self.bodies.iter().enumerate() {
+            if body.free_at <= now && matches!(commands[index], Command::Move(_)) {
+                let priority = Rng::keyed(self.seed, PRIORITY, body.id.0, tick).next_u64();
+                movers.push((priority, body.id, index as u32));
+            }
+        }
+        movers.sort_unstable();
+        for &(_, _, index) in &movers {
+            if let Command::Move(preferred) = &commands[index as usize] {
+                self.move_body(index as usize, preferred, now);
+            }
+        }
+        self.movers = movers;
+    }
+
+    fn move_body(&mut self, index: usize, preferred: &[Dir], now: u64) {
+        let body = self.bodies[index];
+        let open = preferred
+            .iter()
+            .find(|&&dir| dir == Dir::Stay || self.is_open(body.cell, dir));
+        let Some(&dir) = open else { return };
+        let to = body.cell + dir.offset();
+        let (Some(from_at), Some(to_at)) = (self.terrain.index(body.cell), self.terrain.index(to))
+        else {
+            return;
+        };
+        if dir == Dir::Stay {
+            return;
+        }
+        self.occupancy[from_at] = 0;
+        self.occupancy[to_at] = index as u32 + 1;
+        let idle = now - body.free_at;
+        let start = if idle < u64::from(UNIT) {
+            body.free_at
+        } else {
+            now
+        };
+        let moved = Body {
+            cell: to,
+            entered_by: dir,
+            ..body
+        };
+        let free_at = start + self.crossing(&moved);
+        self.bodies[index] = Body { free_at, ..moved };
+    }
+
+    /// Whether a body in `from` may move by `dir` right now.
+    fn is_open(&self, from: Cell, dir: Dir) -> bool {
+        let step = dir.offset();
+        let to = from + step;
+        let passable = |x, y| self.terrain.is_passable(Cell::new(x, y));
+        self.terrain.is_passable(to)
+            && self.body_at(to).is_none()
+            && (self.rules.corner_cutting
+                || !dir.is_diagonal()
+                || (passable(to.x, from.y) && passable(from.x, to.y)))
+    }
+
+    /// How many bodies stand in a blocked cell, or in a cell that another body already has.
+    ///
+    /// Looks at the bodies and the terrain alone, not at the bookkeeping that [`World::advance`]
+    /// uses: a check that trusts what it checks finds nothing. Call it once per tick.
+    pub fn count_collisions(&mut self, tick: u32) -> u64 {
+        let stamp = tick.wrapping_add(1);
+        let mut collisions = 0;
+        for body in &self.bodies {
+            match self.terrain.index(body.cell) {
+                Some(at) if self.terrain.cells()[at] != BLOCKED && self.seen[at] != stamp => {
+                    self.seen[at] = stamp;
+                }
+                _ => collisions += 1,
+            }
+        }
+        collisions
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,296 @@
+use super::*;
+use proptest::prelude::*;
+
+fn moves(dirs: &[Dir]) -> Command {
+    Command::Move(dirs.iter().copied().collect())
+}
+
+fn world(terrain: Terrain, rules: MoveRules, starts: &[(i16, i16)]) -> World {
+    let starts = (1..)
+        .zip(starts)
+        .map(|(id, &(x, y))| (RobotId(id), Cell::new(x, y)));
+    World::new(terrain, rules, 7, starts).expect("starts are free")
+}
+
+fn walled(wall: &[(i16, i16)], width: u16, height: u16) -> Terrain {
+    let mut terrain = Terrain::flat(width, height);
+    for &(x, y) in wall {
+        terrain.set(Cell::new(x, y), BLOCKED);
+    }
+    terrain
+}
+
+#[test]
+fn starts_in_walls_outside_or_on_each_other_are_refused() {
+    let at = |x, y| {
+        World::new(
+            walled(&[(1, 1)], 3, 3),
+            MoveRules::default(),
+            0,
+            [(RobotId(4), Cell::new(0, 0)), (RobotId(9), Cell::new(x, y))],
+        )
+    };
+    for (x, y) in [(1, 1), (3, 0), (-1, 0), (i16::MAX, i16::MIN)] {
+        let (robot, cell) = (RobotId(9), Cell::new(x, y));
+        assert_eq!(at(x, y).err(), Some(Misplaced::Blocked { robot, cell }));
+    }
+    let (first, second, cell) = (RobotId(4), RobotId(9), Cell::new(0, 0));
+    assert_eq!(
+        at(0, 0).err(),
+        Some(Misplaced::Overlap {
+            first,
+            second,
+            cell
+        })
+    );
+    assert!(at(2, 2).is_ok());
+}
+
+#[test]
+fn first_open_move_is_taken_and_nothing_open_means_stay() {
+    let mut world = world(
+        walled(&[(1, 0)], 2, 2),
+        MoveRules::default(),
+        &[(0, 0), (0, 1)],
+    );
+    world.advance(
+        0,
+        &[moves(&[Dir::East, Dir::North, Dir::South]), Command::Hold],
+    );
+    assert_eq!(world.bodies()[0].cell, Cell::new(0, 0));
+    world.advance(1, &[Command::Hold, moves(&[Dir::West, Dir::East])]);
+    assert_eq!(world.bodies()[1].cell, Cell::new(1, 1));
+    assert_eq!(world.body_at(Cell::new(1, 1)), Some(1));
+    assert_eq!(world.body_at(Cell::new(0, 1)), None);
+}
+
+#[test]
+fn diagonal_between_walls_needs_corner_cutting() {
+    for (wall, corner_cutting, passes) in [
+        (&[(1, 0)][..], false, false),
+        (&[(0, 1)][..], false, false),
+        (&[(1, 0), (0, 1)][..], true, true),
+        (&[][..], false, true),
+    ] {
+        let rules = MoveRules {
+            corner_cutting,
+            ..MoveRules::default()
+        };
+        let mut world = world(walled(wall, 2, 2), rules, &[(0, 0)]);
+        world.advance(0, &[moves(&[Dir::NorthEast])]);
+        assert_eq!(
+            world.bodies()[0].cell == Cell::new(1, 1),
+            passes,
+            "{wall:?}"
+        );
+    }
+}
+
+#[test]
+fn robots_beside_a_diagonal_do_not_hinder_it() {
+    let mut world = world(
+        Terrain::flat(2, 2),
+        MoveRules::default(),
+        &[(0, 0), (1, 0), (0, 1)],
+    );
+    world.advance(0, &[moves(&[Dir::NorthEast]), Command::Hold, Command::Hold]);
+    assert_eq!(world.bodies()[0].cell, Cell::new(1, 1));
+}
+
+#[test]
+fn a_journey_takes_exactly_the_route_cost_of_eq_7() {
+    let mut terrain = Terrain::flat(40, 40);
+    let path: Vec<Dir> = (0..30)
+        .map(|i| {
+            if i % 3 == 1 {
+                Dir::North
+            } else {
+                Dir::NorthEast
+            }
+        })
+        .collect();
+    let mut cell = Cell::new(0, 0);
+    let mut cost = 0;
+    for (i, dir) in path.iter().enumerate() {
+        cell = cell + dir.offset();
+        terrain.set(cell, 1 + (i % 4) as u8);
+        cost += u64::from(dir.length(Norm::Euclidean)) * u64::from(terrain.get(cell));
+    }
+    let mut world = world(terrain, MoveRules::default(), &[(0, 0)]);
+    let mut next = path.iter();
+    let mut tick = 0;
+    while !next.as_slice().is_empty() {
+        let before = world.bodies()[0].cell;
+        world.advance(tick, &[moves(&next.as_slice()[..1])]);
+        if world.bodies()[0].cell != before {
+            next.next();
+        }
+        tick += 1;
+    }
+    assert_eq!(world.bodies()[0].cell, cell);
+    assert_eq!(world.bodies()[0].free_at, cost);
+}
+
+#[test]
+fn waiting_a_whole_tick_forfeits_the_fraction() {
+    let mut world = world(Terrain::flat(9, 9), MoveRules::default(), &[(0, 0)]);
+    world.advance(0, &[moves(&[Dir::NorthEast])]);
+    assert_eq!(world.bodies()[0].free_at, 99);
+    world.advance(1, &[moves(&[Dir::NorthEast])]);
+    assert_eq!(
+        world.bodies()[0].cell,
+        Cell::new(1, 1),
+        "1.41 ticks are not over at tick 1"
+    );
+    world.advance(2, &[Command::Hold]);
+    world.advance(3, &[moves(&[Dir::NorthEast])]);
+    assert_eq!(world.bodies()[0].free_at, 3 * 70 + 99);
+}
+
+#[test]
+fn two_robots_never_swap_cells() {
+    let mut world = world(Terrain::flat(2, 1), MoveRules::default(), &[(0, 0), (1, 0)]);
+    for tick in 0..50 {
+        world.advance(tick, &[moves(&[Dir::East]), moves(&[Dir::West])]);
+        assert_eq!(world.bodies()[0].cell, Cell::new(0, 0));
+    }
+}
+
+#[test]
+fn a_contested_cell_goes_to_each_robot_equally_often() {
+    let mut wins = [0_u32; 3];
+    for tick in 0..3000 {
+        let mut world = world(
+            Terrain::flat(3, 2),
+            MoveRules::default(),
+            &[(0, 0), (1, 0), (2, 0)],
+        );
+        let up = [
+            moves(&[Dir::NorthEast]),
+            moves(&[Dir::North]),
+            moves(&[Dir::NorthWest]),
+        ];
+        world.advance(tick, &up);
+        wins[world.body_at(Cell::new(1, 1)).expect("somebody moved")] += 1;
+    }
+    // Three standard deviations of a binomial(3000, 1/3) are 77.
+    assert!(wins.iter().all(|&w| w.abs_diff(1000) < 80), "{wins:?}");
+}
+
+#[test]
+fn a_queue_moves_on_together_when_the_first_goes_first() {
+    let starts = [(0, 0), (1, 0)];
+    let together = (0..200)
+        .filter(|&tick| {
+            let mut world = world(Terrain::flat(3, 1), MoveRules::default(), &starts);
+            world.advance(tick, &[moves(&[Dir::East]), moves(&[Dir::East])]);
+            assert_eq!(world.bodies()[1].cell, Cell::new(2, 0));
+            world.bodies()[0].cell == Cell::new(1, 0)
+        })
+        .count();
+    assert!((60..140).contains(&together), "{together}");
+}
+
+#[test]
+fn the_check_finds_what_the_bookkeeping_hides() {
+    let mut world = world(
+        Terrain::flat(3, 1),
+        MoveRules::default(),
+        &[(0, 0), (1, 0), (2, 0)],
+    );
+    assert_eq!(world.count_collisions(0), 0);
+    world.bodies[0].cell = Cell::new(1, 0);
+    assert_eq!(world.count_collisions(1), 1);
+    world.terrain.set(Cell::new(2, 0), BLOCKED);
+    assert_eq!(world.count_collisions(2), 2);
+    world.bodies[2].cell = Cell::new(-1, 0);
+    assert_eq!(world.count_collisions(3), 2);
+}
+
+#[test]
+fn window_is_clipped_at_the_edges_and_borrowed_when_as_wide_as_the_map() {
+    let mut terrain = Terrain::flat(5, 4);
+    terrain.set(Cell::new(1, 1), 9);
+    let world = world(terrain, MoveRules::default(), &[]);
+    let mut buffer = Vec::new();
+    let corner = world
+        .window(Cell::new(0, 0), 1, &mut buffer)
+        .expect("on the map");
+    assert_eq!((corner.width(), corner.height()), (2, 2));
+    assert_eq!(corner.cells(), [1, 1, 1, 9]);
+    let all = world
+        .window(Cell::new(2, 2), 2, &mut buffer)
+        .expect("on the map");
+    assert_eq!(
+        (all.origin(), all.width(), all.height()),
+        (Cell::new(0, 0), 5, 4)
+    );
+    assert_eq!(all.cells().as_ptr(), world.terrain().cells().as_ptr());
+    for outside in [(-2, 0), (6, 0), (0, 5), (i16::MIN, i16::MAX)] {
+        let cell = Cell::new(outside.0, outside.1);
+        assert!(world.window(cell, 1, &mut buffer).is_none(), "{outside:?}");
+    }
+    assert!(
+        world
+            .window(Cell::new(0, 0), u16::MAX, &mut buffer)
+            .is_some()
+    );
+}
+
+fn any_command() -> impl Strategy<Value = Command> {
+    prop_oneof![
+        1 => Just(Command::Hold),
+        6 => prop::collection::vec(0_u8..=8, 0..=8)
+            .prop_map(|dirs| Command::Move(dirs.into_iter().map(Dir::from_index).collect())),
+    ]
+}
+
+proptest! {
+    #[test]
+    fn no_command_ever_brings_two_robots_into_one_cell(
+        cells in prop::collection::vec(0_u8..4, 36),
+        corner_cutting: bool,
+        seed: u64,
+        rounds in prop::collection::vec(prop::collection::vec(any_command(), 36), 1..20),
+    ) {
+        let mut terrain = Terrain::flat(6, 6);
+        let all = (0..36).map(|i| Cell::new(i % 6, i / 6));
+        for (cell, &u) in all.clone().zip(&cells) {
+            terrain.set(cell, u);
+        }
+        let starts: Vec<_> = (1..).map(RobotId)
+            .zip(all.filter(|&c| terrain.is_passable(c)).step_by(2))
+            .collect();
+        let rules = MoveRules { norm: Norm::Euclidean, corner_cutting };
+        let mut world = World::new(terrain, rules, seed, starts).expect("starts are free");
+        for (tick, commands) in (0..).zip(&rounds) {
+            let before = world.bodies().to_vec();
+            world.advance(tick, commands);
+            prop_assert_eq!(world.count_collisions(tick), 0);
+            for (old, new) in before.iter().zip(world.bodies()) {
+                prop_assert!(old.cell.chebyshev(new.cell) <= 1);
+                prop_assert!(old.cell == new.cell || old.free_at <= u64::from(tick) * u64::from(UNIT));
+            }
+        }
+    }
+
+    #[test]
+    fn the_order_of_robots_in_memory_does_not_matter(
+        seed: u64,
+        rounds in prop::collection::vec(prop::collection::vec(any_command(), 12), 1..10),
+    ) {
+        let starts: Vec<_> = (0..12).map(|i| (RobotId(i + 1), Cell::new(i as i16 % 4, i as i16 / 4))).collect();
+        let terrain = Terrain::flat(5, 4);
+        let build = |starts: Vec<_>| World::new(terrain.clone(), MoveRules::default(), seed, starts).expect("free");
+        let mut forward = build(starts.clone());
+        let mut backward = build(starts.into_iter().rev().collect());
+        for (tick, commands) in (0..).zip(rounds) {
+            forward.advance(tick, &commands);
+            let reversed: Vec<_> = commands.into_iter().rev().collect();
+            backward.advance(tick, &reversed);
+        }
+        let mut mirrored = backward.bodies().to_vec();
+        mirrored.reverse();
+        prop_assert_eq!(forward.bodies(), mirrored);
+    }
+}
