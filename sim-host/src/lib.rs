@@ -7,6 +7,7 @@
 
 pub mod cli;
 pub mod plot;
+pub mod radio;
 pub mod record;
 pub mod terrain;
 pub mod world;

@@ -1,0 +1,250 @@
+//! The packets that are on the air in one tick, by the place they were sent from.
+
+use super::Counts;
+use super::params::RadioParams;
+use staya_controller::agent::OUTBOX;
+use staya_controller::rand::Rng;
+use staya_controller::wire::RobotId;
+
+/// Keeps the draws of this module apart from all others.
+const PACKET: u32 = 0x0052_0001;
+
+/// A packet on the air.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Packet {
+    pub(super) sender: RobotId,
+    /// Counts the sender's packets of this tick.
+    pub(super) number: u32,
+    /// The seed of its fates.
+    pub(super) key: u64,
+    from_m: [f64; 2],
+    start: u32,
+    end: u32,
+}
+
+/// What a robot may still send, in millionths of a byte.
+#[derive(Clone, Debug)]
+struct Buckets {
+    per_tick: u64,
+    capacity: u64,
+    tokens: Vec<u64>,
+}
+
+/// A tick's packets, sorted into square cells as wide as the radio reaches.
+#[derive(Clone, Debug)]
+pub(super) struct Air {
+    seed: u64,
+    range_m: f64,
+    buckets: Option<Buckets>,
+    bytes: Vec<u8>,
+    /// In order of sender and number, each with its cell.
+    queue: Vec<(u32, Packet)>,
+    /// In order of cell, then of sender and number.
+    packets: Vec<Packet>,
+    /// Where each cell's packets end in `packets`.
+    ends: Vec<u32>,
+    lattice: Lattice,
+}
+
+/// The square cells over the rectangle that holds all robots.
+#[derive(Clone, Copy, Debug, Default)]
+struct Lattice {
+    corner_m: [f64; 2],
+    side_m: f64,
+    columns: usize,
+    rows: usize,
+}
+
+impl Air {
+    pub(super) fn new(params: &RadioParams, seed: u64, tick_us: u32, robots: usize) -> Self {
+        let buckets = params.bandwidth_bytes_per_s.map(|bytes_per_s| {
+            let capacity = u64::from(bytes_per_s).max(OUTBOX as u64) * 1_000_000;
+            Buckets {
+                per_tick: u64::from(bytes_per_s) * u64::from(tick_us),
+                capacity,
+                tokens: vec![capacity; robots],
+            }
+        });
+        Self {
+            seed,
+            range_m: params.range_m,
+            buckets,
+            bytes: Vec::new(),
+            queue: Vec::new(),
+            packets: Vec::new(),
+            ends: Vec::new(),
+            lattice: Lattice::default(),
+        }
+    }
+
+    /// Replaces the packets with those that the robots send in `tick`.
+    pub(super) fn fill<'a>(
+        &mut self,
+        tick: u32,
+        ids: impl Iterator<Item = RobotId>,
+        positions_m: &[[f64; 2]],
+        outbox: impl Fn(usize) -> &'a [u8],
+    ) -> Counts {
+        let mut counts = Counts::default();
+        self.bytes.clear();
+        self.queue.clear();
+        self.lattice = Lattice::over(positions_m, self.range_m);
+        if let Some(buckets) = &mut self.buckets {
+            buckets.refill();
+        }
+        for (index, (sender, &from_m)) in ids.zip(positions_m).enumerate() {
+            let outbox = outbox(index);
+            if outbox.is_empty() {
+                continue;
+            }
+            let key = Rng::keyed(self.seed, PACKET, sender.0, tick).next_u64();
+            let cell = self.lattice.cell(from_m) as u32;
+            for (number, bytes) in (0..).zip(outbox.split_inclusive(|&byte| byte == 0)) {
+                if let Some(buckets) = &mut self.buckets
+                    && !buckets.take(index, bytes.len())
+                {
+                    counts.throttled += 1;
+                    continue;
+                }
+                counts.sent += 1;
+                let start = self.bytes.len() as u32;
+                self.bytes.extend_from_slice(bytes);
+                let end = self.bytes.len() as u32;
+                let packet = Packet {
+                    sender,
+                    number,
+                    key,
+                    from_m,
+                    start,
+                    end,
+                };
+                self.queue.push((cell, packet));
+            }
+        }
+        self.sort();
+        counts
+    }
+
+    /// Sorts the queue by cell; a counting sort keeps the order of senders within a cell.
+    fn sort(&mut self) {
+        let cells = self.lattice.columns * self.lattice.rows;
+        self.ends.clear();
+        self.ends.resize(cells + 1, 0);
+        for &(cell, _) in &self.queue {
+            self.ends[cell as usize + 1] += 1;
+        }
+        // Now counts; then begins, which placing turns into ends.
+        let mut begin = 0;
+        for end in &mut self.ends {
+            begin += *end;
+            *end = begin;
+        }
+        self.packets.clear();
+        if let Some(&(_, filler)) = self.queue.first() {
+            self.packets.resize(self.queue.len(), filler);
+        }
+        for &(cell, packet) in &self.queue {
+            let at = &mut self.ends[cell as usize];
+            self.packets[*at as usize] = packet;
+            *at += 1;
+        }
+    }
+
+    /// The packets that can be heard at a place, by sender and number; all but one's own.
+    pub(super) fn heard_at(&self, at_m: [f64; 2], own: RobotId, heard: &mut Vec<u32>) {
+        heard.clear();
+        let reach = self.range_m * self.range_m;
+        for cells in self.lattice.around(at_m) {
+            let begin = match cells.start {
+                0 => 0,
+                first => self.ends[first - 1],
+            };
+            let end = self.ends[cells.end - 1];
+            for at in begin..end {
+                let packet = &self.packets[at as usize];
+                let [dx, dy] = [packet.from_m[0] - at_m[0], packet.from_m[1] - at_m[1]];
+                if packet.sender != own && dx * dx + dy * dy <= reach {
+                    heard.push(at);
+                }
+            }
+        }
+        heard.sort_unstable_by_key(|&at| {
+            let packet = self.packet(at);
+            (packet.sender, packet.number)
+        });
+    }
+
+    pub(super) fn packet(&self, at: u32) -> &Packet {
+        &self.packets[at as usize]
+    }
+
+    pub(super) fn bytes(&self, packet: &Packet) -> &[u8] {
+        &self.bytes[packet.start as usize..packet.end as usize]
+    }
+}
+
+impl Lattice {
+    /// Cells at least as wide as the range, and not many more of them than robots.
+    fn over(positions_m: &[[f64; 2]], range_m: f64) -> Self {
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for position in positions_m {
+            for axis in 0..2 {
+                low[axis] = low[axis].min(position[axis]);
+                high[axis] = high[axis].max(position[axis]);
+            }
+        }
+        if positions_m.is_empty() {
+            return Self::default();
+        }
+        let extent = [high[0] - low[0], high[1] - low[1]];
+        let longest = extent[0].max(extent[1]);
+        let per_side = libm::sqrt(positions_m.len() as f64);
+        let side_m = range_m
+            .max(longest / (2.0 * per_side))
+            .max(f64::MIN_POSITIVE);
+        let count = |length: f64| (length / side_m) as usize + 1;
+        Self {
+            corner_m: low,
+            side_m,
+            columns: count(extent[0]),
+            rows: count(extent[1]),
+        }
+    }
+
+    fn column_and_row(&self, at_m: [f64; 2]) -> (usize, usize) {
+        let index = |axis: usize| ((at_m[axis] - self.corner_m[axis]) / self.side_m) as usize;
+        (index(0).min(self.columns - 1), index(1).min(self.rows - 1))
+    }
+
+    fn cell(&self, at_m: [f64; 2]) -> usize {
+        let (column, row) = self.column_and_row(at_m);
+        row * self.columns + column
+    }
+
+    /// The cells around a place, as up to three spans of cells that lie side by side.
+    fn around(&self, at_m: [f64; 2]) -> impl Iterator<Item = std::ops::Range<usize>> + use<> {
+        let (column, row) = self.column_and_row(at_m);
+        let columns = self.columns;
+        let last_row = (row + 1).min(self.rows - 1);
+        let (first, last) = (column.saturating_sub(1), (column + 1).min(columns - 1));
+        (row.saturating_sub(1)..=last_row)
+            .map(move |row| row * columns + first..row * columns + last + 1)
+    }
+}
+
+impl Buckets {
+    fn refill(&mut self) {
+        for tokens in &mut self.tokens {
+            *tokens = (*tokens + self.per_tick).min(self.capacity);
+        }
+    }
+
+    fn take(&mut self, index: usize, bytes: usize) -> bool {
+        let price = bytes as u64 * 1_000_000;
+        let enough = self.tokens[index] >= price;
+        if enough {
+            self.tokens[index] -= price;
+        }
+        enough
+    }
+}

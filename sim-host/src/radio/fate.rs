@@ -1,0 +1,177 @@
+//! What happens to a packet on its way to one receiver.
+
+use super::air::Packet;
+use super::params::{Burst, RadioParams};
+use staya_controller::rand::Rng;
+use staya_controller::wire::RobotId;
+
+/// Keep the draws of this module apart from all others.
+const LINK: u32 = 0x0052_0002;
+const CHANNEL: u32 = 0x0052_0003;
+
+/// Whether a packet reaches the receiver.
+pub(super) enum Verdict {
+    Lost,
+    Arrives { copies: u32 },
+}
+
+/// The channel of a link, sampled without memory.
+#[derive(Clone, Copy, Debug)]
+struct Channel {
+    /// Probability per tick that the state is drawn anew, Q0.32.
+    renewal: u32,
+    /// Probability that a newly drawn state is bad, Q0.32.
+    share: u32,
+    /// Probability of loss in the bad state, Q0.32.
+    loss: u32,
+}
+
+/// The parameters in the integers that the draws need.
+#[derive(Clone, Debug)]
+pub(super) struct Fates {
+    seed: u64,
+    tick_us: u64,
+    loss: u32,
+    channel: Option<Channel>,
+    delay_us: u64,
+    jitter_us: u32,
+    duplicate: u32,
+    reorder: u32,
+    reorder_us: u32,
+    /// ln(1 - bit error rate); 0: no errors.
+    ln_intact: f64,
+    /// Microseconds after the start.
+    blackouts: Vec<[f64; 2]>,
+}
+
+impl Fates {
+    pub(super) fn new(params: &RadioParams, seed: u64, tick_us: u32) -> Self {
+        let us = |ms: f64| (ms * 1000.0) as u32;
+        Self {
+            seed,
+            tick_us: u64::from(tick_us),
+            loss: q32(params.loss),
+            channel: params.burst.map(|burst| Channel::new(&burst, tick_us)),
+            delay_us: u64::from(us(params.delay_ms)),
+            jitter_us: us(params.jitter_ms),
+            duplicate: q32(params.duplicate),
+            reorder: q32(params.reorder),
+            reorder_us: us(params.reorder_ms),
+            ln_intact: libm::log1p(-params.bit_error_rate),
+            blackouts: params
+                .blackout_s
+                .iter()
+                .map(|span| span.map(|s| s * 1e6))
+                .collect(),
+        }
+    }
+
+    /// The generator of everything that happens to `packet` at `receiver`.
+    pub(super) fn draws(&self, packet: &Packet, receiver: RobotId, tick: u32) -> Rng {
+        Rng::keyed(packet.key, packet.number, receiver.0, tick)
+    }
+
+    pub(super) fn judge(
+        &self,
+        draws: &mut Rng,
+        packet: &Packet,
+        receiver: RobotId,
+        tick: u32,
+    ) -> Verdict {
+        let now_us = (u64::from(tick) * self.tick_us) as f64;
+        let silent = |span: &[f64; 2]| span[0] <= now_us && now_us < span[1];
+        let burst_loss = self.channel.as_ref().map_or(0, |channel| {
+            if channel.is_bad(self.seed, packet.sender, receiver, tick) {
+                channel.loss
+            } else {
+                0
+            }
+        });
+        if draws.chance_q32(self.loss)
+            || (burst_loss > 0 && draws.chance_q32(burst_loss))
+            || self.blackouts.iter().any(silent)
+        {
+            return Verdict::Lost;
+        }
+        let copies = 1 + u32::from(self.duplicate > 0 && draws.chance_q32(self.duplicate));
+        Verdict::Arrives { copies }
+    }
+
+    /// When a packet sent in `tick` arrives, microseconds after the start; `None` when no packet is
+    /// ever late for the next step.
+    pub(super) fn due_us(&self, draws: &mut Rng, tick: u32) -> Option<u64> {
+        let always_in_time = self.delay_us == 0 && self.jitter_us == 0 && self.reorder == 0;
+        if always_in_time {
+            return None;
+        }
+        let mut due_us = u64::from(tick) * self.tick_us + self.delay_us;
+        due_us += u64::from(draws.below(self.jitter_us));
+        if draws.chance_q32(self.reorder) {
+            due_us += u64::from(draws.below(self.reorder_us));
+        }
+        Some(due_us)
+    }
+
+    /// When the step after `tick` begins, microseconds after the start.
+    pub(super) fn next_step_us(&self, tick: u32) -> u64 {
+        (u64::from(tick) + 1) * self.tick_us
+    }
+
+    /// Flips bits of a received packet; returns whether any flipped. The radio itself keeps
+    /// packets apart, so the zero byte that ends one is never hit.
+    pub(super) fn damage(&self, draws: &mut Rng, packet: &mut [u8]) -> bool {
+        if self.ln_intact == 0.0 {
+            return false;
+        }
+        let bytes = match packet {
+            [bytes @ .., 0] => bytes,
+            bytes => bytes,
+        };
+        let bits = bytes.len() as f64 * 8.0;
+        let mut hit = false;
+        // The number of intact bits before the next flip is geometric.
+        let mut bit = 0.0;
+        loop {
+            let unit = ((draws.next_u64() >> 11) + 1) as f64 / (1_u64 << 53) as f64;
+            bit += libm::floor(libm::log(unit) / self.ln_intact);
+            if bit >= bits {
+                return hit;
+            }
+            bytes[bit as usize / 8] ^= 1 << (bit as usize % 8);
+            hit = true;
+            bit += 1.0;
+        }
+    }
+}
+
+impl Channel {
+    fn new(burst: &Burst, tick_us: u32) -> Self {
+        // Leaving the bad state per tick: q = renewal * (1 - share) = tick / mean.
+        let leave = f64::from(tick_us) / (burst.mean_ms * 1000.0);
+        Self {
+            renewal: q32(leave / (1.0 - burst.share)),
+            share: q32(burst.share),
+            loss: q32(burst.loss),
+        }
+    }
+
+    /// The state of the link's Markov chain at `tick`, found by walking back to the last tick at
+    /// which it was drawn anew: no memory per link, and still an exact Gilbert-Elliott channel.
+    /// Takes about mean * (1 - share) ticks of work.
+    fn is_bad(&self, seed: u64, sender: RobotId, receiver: RobotId, tick: u32) -> bool {
+        let link = Rng::keyed(seed, LINK, sender.0, receiver.0).next_u64();
+        (0..=tick)
+            .rev()
+            .map(|at| (at, Rng::keyed(link, CHANNEL, 0, at)))
+            .find_map(|(at, mut draws)| {
+                let renewed = draws.chance_q32(self.renewal) || at == 0;
+                renewed.then(|| draws.chance_q32(self.share))
+            })
+            .unwrap_or(false)
+    }
+}
+
+/// A probability as Q0.32; `u32::MAX` means always.
+fn q32(probability: f64) -> u32 {
+    (probability * 4_294_967_296.0) as u32
+}

@@ -1,0 +1,223 @@
+//! The radio: carries bytes between robots, and loses, delays, repeats and damages them.
+//!
+//! It knows nothing of messages. A packet is what a robot sends up to and including a zero byte (the
+//! end of a COBS frame). Everything random about a packet is a function of (seed, tick, sender,
+//! number within the tick, receiver), so that neither threads nor the order of robots matter.
+
+mod air;
+mod fate;
+mod params;
+
+pub use params::{Burst, RadioParams};
+
+use air::Air;
+use fate::{Fates, Verdict};
+use rayon::prelude::*;
+use serde::Serialize;
+use staya_controller::wire::RobotId;
+use std::ops::{Add, AddAssign};
+
+/// What became of packets. Each receiver in range counts on its own.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Counts {
+    /// Packets that robots put on the air.
+    pub sent: u64,
+    /// Packets that a robot wanted to send beyond its bandwidth; they were never on the air.
+    pub throttled: u64,
+    /// Receptions, repeated ones included.
+    pub delivered: u64,
+    /// Receptions that failed: loss, bursts, blackouts.
+    pub lost: u64,
+    /// Receptions with at least one flipped bit; they count as delivered too.
+    pub corrupted: u64,
+}
+
+impl Add for Counts {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self {
+            sent: self.sent + other.sent,
+            throttled: self.throttled + other.throttled,
+            delivered: self.delivered + other.delivered,
+            lost: self.lost + other.lost,
+            corrupted: self.corrupted + other.corrupted,
+        }
+    }
+}
+
+impl AddAssign for Counts {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+/// A packet on its way to one receiver. Arrivals are ordered by time, then by sender.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Held {
+    /// When it arrives, microseconds after the start.
+    due_us: u64,
+    sender: RobotId,
+    sent: u32,
+    number: u32,
+    copy: u32,
+    /// Where its bytes are in [`Receiver::bytes`].
+    start: u32,
+    length: u32,
+}
+
+/// One robot's end of the radio.
+#[derive(Clone, Debug, Default)]
+struct Receiver {
+    id: RobotId,
+    /// What arrived for the robot's next step.
+    inbox: Vec<u8>,
+    held: Vec<Held>,
+    bytes: Vec<u8>,
+    /// Takes the bytes of packets that stay held; swapped with `bytes`.
+    spare: Vec<u8>,
+}
+
+/// The radio of a swarm.
+#[derive(Clone, Debug)]
+pub struct Radio {
+    fates: Fates,
+    air: Air,
+    receivers: Vec<Receiver>,
+    /// Sum over all ticks.
+    total: Counts,
+}
+
+impl Radio {
+    /// The radio for these robots with ticks of `tick_us` microseconds.
+    #[must_use]
+    pub fn new(
+        params: &RadioParams,
+        seed: u64,
+        tick_us: u32,
+        robots: impl IntoIterator<Item = RobotId>,
+    ) -> Self {
+        let receivers: Vec<_> = robots
+            .into_iter()
+            .map(|id| Receiver {
+                id,
+                ..Receiver::default()
+            })
+            .collect();
+        Self {
+            fates: Fates::new(params, seed, tick_us),
+            air: Air::new(params, seed, tick_us, receivers.len()),
+            receivers,
+            total: Counts::default(),
+        }
+    }
+
+    /// What robot number `index` (in the order given to [`Radio::new`]) received for its next step.
+    #[must_use]
+    pub fn inbox(&self, index: usize) -> &[u8] {
+        &self.receivers[index].inbox
+    }
+
+    /// Everything that became of packets so far.
+    #[must_use]
+    pub fn total(&self) -> Counts {
+        self.total
+    }
+
+    /// Carries what the robots sent in `tick`: replaces all inboxes with what arrives before the
+    /// next tick. Returns what became of this tick's packets.
+    ///
+    /// `positions_m[i]` and `outbox(i)` belong to robot number `i`. O(n k) for k robots in range,
+    /// in parallel over receivers; no allocation once buffers have grown.
+    ///
+    /// # Panics
+    /// When there are fewer positions than robots.
+    pub fn carry<'a>(
+        &mut self,
+        tick: u32,
+        positions_m: &[[f64; 2]],
+        outbox: impl Fn(usize) -> &'a [u8],
+    ) -> Counts {
+        let ids = self.receivers.iter().map(|receiver| receiver.id);
+        let sent = self.air.fill(tick, ids, positions_m, outbox);
+        let (air, fates) = (&self.air, &self.fates);
+        let received = self
+            .receivers
+            .par_iter_mut()
+            .with_min_len(64)
+            .enumerate()
+            .map_init(Vec::new, |heard, (index, receiver)| {
+                air.heard_at(positions_m[index], receiver.id, heard);
+                receiver.receive(tick, air, heard, fates)
+            })
+            .reduce(Counts::default, Add::add);
+        let counts = sent + received;
+        self.total += counts;
+        counts
+    }
+}
+
+impl Receiver {
+    fn receive(&mut self, tick: u32, air: &Air, heard: &[u32], fates: &Fates) -> Counts {
+        let mut counts = Counts::default();
+        self.inbox.clear();
+        for &at in heard {
+            let packet = air.packet(at);
+            let mut draws = fates.draws(packet, self.id, tick);
+            let Verdict::Arrives { copies } = fates.judge(&mut draws, packet, self.id, tick) else {
+                counts.lost += 1;
+                continue;
+            };
+            for copy in 0..copies {
+                let due_us = fates.due_us(&mut draws, tick);
+                let buffer = match due_us {
+                    // Nothing is ever held back: no detour.
+                    None => &mut self.inbox,
+                    Some(_) => &mut self.bytes,
+                };
+                let start = buffer.len();
+                buffer.extend_from_slice(air.bytes(packet));
+                counts.delivered += 1;
+                counts.corrupted += u64::from(fates.damage(&mut draws, &mut buffer[start..]));
+                if let Some(due_us) = due_us {
+                    let length = (buffer.len() - start) as u32;
+                    self.held.push(Held {
+                        due_us,
+                        sender: packet.sender,
+                        sent: tick,
+                        number: packet.number,
+                        copy,
+                        start: start as u32,
+                        length,
+                    });
+                }
+            }
+        }
+        self.release(fates.next_step_us(tick));
+        counts
+    }
+
+    /// Moves what is due by `now_us` into the inbox, in order of arrival.
+    fn release(&mut self, now_us: u64) {
+        if self.held.is_empty() {
+            return;
+        }
+        self.held.sort_unstable();
+        let due = self.held.partition_point(|held| held.due_us <= now_us);
+        self.spare.clear();
+        for (index, held) in self.held.iter_mut().enumerate() {
+            let start = held.start as usize;
+            let bytes = &self.bytes[start..start + held.length as usize];
+            if index < due {
+                self.inbox.extend_from_slice(bytes);
+            } else {
+                held.start = self.spare.len() as u32;
+                self.spare.extend_from_slice(bytes);
+            }
+        }
+        self.held.drain(..due);
+        std::mem::swap(&mut self.bytes, &mut self.spare);
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,72 @@
+//! What a radio is like: the `[radio]` table of a scenario.
+
+use serde::Deserialize;
+
+/// Bursts of loss on a link (Gilbert and Elliott's two-state channel).
+///
+/// Each ordered pair of robots has a channel of its own that is either good or bad; its state
+/// changes between ticks only, like a Markov chain with the given share and mean length.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Burst {
+    /// Share of time for which the channel is bad, 0 to 1 (less than 1).
+    pub share: f64,
+    /// Mean time for which it stays bad, ms; at least a tick divided by (1 - share).
+    pub mean_ms: f64,
+    /// Probability that a packet is lost while the channel is bad. Default: 1.
+    #[serde(default = "certain")]
+    pub loss: f64,
+}
+
+const fn certain() -> f64 {
+    1.0
+}
+
+/// The radio of a scenario. All robots have the same one. Defaults: a perfect radio of 100 m.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields, default)]
+pub struct RadioParams {
+    /// Farthest distance at which a packet can be received, metres; `inf` for everywhere.
+    pub range_m: f64,
+    /// Probability that a packet is lost at a receiver, 0 to 1.
+    pub loss: f64,
+    /// Bursts of loss, on top of `loss`.
+    pub burst: Option<Burst>,
+    /// Time from sending to arrival, ms. A packet is read at the first step of the receiver after
+    /// it arrived, hence never in the tick in which it was sent.
+    pub delay_ms: f64,
+    /// Longest additional delay, ms; uniform, and each packet on its own.
+    pub jitter_ms: f64,
+    /// Probability that a packet arrives twice, 0 to 1.
+    pub duplicate: f64,
+    /// Probability that a packet is held back so that later ones overtake it, 0 to 1.
+    pub reorder: f64,
+    /// Longest time for which `reorder` holds a packet back, ms; uniform.
+    pub reorder_ms: f64,
+    /// Probability that a bit flips on the air, 0 to 1.
+    pub bit_error_rate: f64,
+    /// Bytes per second that a robot may send; what goes beyond is dropped and counted as throttled.
+    /// A robot that was silent may send what it saved in one second (at least 256 bytes) at once.
+    /// Default: no limit.
+    pub bandwidth_bytes_per_s: Option<u32>,
+    /// Spans `[from, to]` of seconds after the start during which every packet is lost.
+    pub blackout_s: Vec<[f64; 2]>,
+}
+
+impl Default for RadioParams {
+    fn default() -> Self {
+        Self {
+            range_m: 100.0,
+            loss: 0.0,
+            burst: None,
+            delay_ms: 0.0,
+            jitter_ms: 0.0,
+            duplicate: 0.0,
+            reorder: 0.0,
+            reorder_ms: 500.0,
+            bit_error_rate: 0.0,
+            bandwidth_bytes_per_s: None,
+            blackout_s: Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,327 @@
+use super::*;
+use proptest::prelude::*;
+
+const TICK_US: u32 = 100_000;
+const FRAME: [u8; 8] = [7, 7, 7, 7, 7, 7, 7, 0];
+
+fn radio(params: RadioParams, robots: u32) -> Radio {
+    Radio::new(&params, 11, TICK_US, (1..=robots).map(RobotId))
+}
+
+/// Robots on a line, one metre apart.
+fn line(robots: u32) -> Vec<[f64; 2]> {
+    (0..robots).map(|i| [f64::from(i), 0.0]).collect()
+}
+
+/// Two robots, of which the first sends a frame in each tick.
+fn one_way(params: RadioParams, ticks: u32) -> (Radio, Vec<Vec<u8>>) {
+    let mut radio = radio(params, 2);
+    let inboxes = (0..ticks)
+        .map(|tick| {
+            let frame = [tick as u8 | 1, (tick >> 8) as u8 | 1, 1, 0];
+            radio.carry(tick, &line(2), |i| if i == 0 { &frame[..] } else { &[] });
+            radio.inbox(1).to_vec()
+        })
+        .collect();
+    (radio, inboxes)
+}
+
+fn share(part: u64, whole: u64) -> f64 {
+    part as f64 / whole as f64
+}
+
+#[test]
+fn a_perfect_radio_delivers_in_order_of_sender_and_never_to_oneself() {
+    let mut radio = radio(RadioParams::default(), 3);
+    let frames: Vec<_> = (1..=3).map(|i| [i, 0, i, 0]).collect();
+    let counts = radio.carry(0, &line(3), |i| &frames[i]);
+    assert_eq!(radio.inbox(0), [2, 0, 2, 0, 3, 0, 3, 0]);
+    assert_eq!(radio.inbox(1), [1, 0, 1, 0, 3, 0, 3, 0]);
+    assert_eq!((counts.sent, counts.delivered, counts.lost), (6, 12, 0));
+    radio.carry(1, &line(3), |_| &[]);
+    assert!(
+        (0..3).all(|i| radio.inbox(i).is_empty()),
+        "inboxes hold one tick"
+    );
+}
+
+#[test]
+fn range_is_inclusive_and_may_be_infinite() {
+    for (range_m, reached) in [(0.0, 0), (1.0, 1), (2.999, 2), (3.0, 3), (f64::INFINITY, 5)] {
+        let params = RadioParams {
+            range_m,
+            ..RadioParams::default()
+        };
+        let mut radio = radio(params, 6);
+        let counts = radio.carry(0, &line(6), |i| if i == 0 { &FRAME } else { &[] });
+        assert_eq!(counts.delivered, reached, "range {range_m}");
+    }
+}
+
+#[test]
+fn robots_in_one_place_or_nowhere_are_no_problem() {
+    let params = RadioParams {
+        range_m: 0.0,
+        ..RadioParams::default()
+    };
+    let mut crowd = radio(params, 5);
+    let counts = crowd.carry(0, &[[2.0, 3.0]; 5], |_| &FRAME);
+    assert_eq!(counts.delivered, 20);
+    let mut nobody = radio(RadioParams::default(), 0);
+    assert_eq!(nobody.carry(0, &[], |_| &FRAME), Counts::default());
+}
+
+#[test]
+fn loss_has_its_probability_and_extremes_are_exact() {
+    for (loss, low, high) in [(0.0, 0.0, 0.0), (0.3, 0.28, 0.32), (1.0, 1.0, 1.0)] {
+        let params = RadioParams {
+            loss,
+            ..RadioParams::default()
+        };
+        let (radio, _) = one_way(params, 10_000);
+        let total = radio.total();
+        assert_eq!(total.delivered + total.lost, 10_000);
+        let lost = share(total.lost, 10_000);
+        assert!((low..=high).contains(&lost), "{loss}: {lost}");
+    }
+}
+
+#[test]
+fn bursts_have_their_share_and_mean_length() {
+    let burst = Some(Burst {
+        share: 0.2,
+        mean_ms: 1000.0,
+        loss: 1.0,
+    });
+    let params = RadioParams {
+        burst,
+        ..RadioParams::default()
+    };
+    let (radio, inboxes) = one_way(params, 100_000);
+    let lost = share(radio.total().lost, 100_000);
+    assert!((0.18..0.22).contains(&lost), "{lost}");
+    let bursts = inboxes
+        .windows(2)
+        .filter(|w| !w[0].is_empty() && w[1].is_empty())
+        .count();
+    let mean_ticks = share(radio.total().lost, bursts as u64);
+    assert!((9.0..11.0).contains(&mean_ticks), "{mean_ticks}");
+}
+
+#[test]
+fn bursts_of_different_links_are_independent() {
+    let burst = Some(Burst {
+        share: 0.5,
+        mean_ms: 500.0,
+        loss: 1.0,
+    });
+    let mut radio = radio(
+        RadioParams {
+            burst,
+            ..RadioParams::default()
+        },
+        3,
+    );
+    let mut both = 0;
+    for tick in 0..20_000 {
+        radio.carry(tick, &line(3), |i| if i == 0 { &FRAME } else { &[] });
+        both += u32::from(radio.inbox(1).is_empty() && radio.inbox(2).is_empty());
+    }
+    assert!((4_000..6_000).contains(&both), "{both}");
+}
+
+#[test]
+fn delay_is_rounded_up_to_the_next_step() {
+    for (delay_ms, steps) in [(0.0, 0), (100.0, 0), (100.5, 1), (350.0, 3)] {
+        let params = RadioParams {
+            delay_ms,
+            ..RadioParams::default()
+        };
+        let mut radio = radio(params, 2);
+        let arrived = (0..10).find(|&tick| {
+            radio.carry(tick, &line(2), |i| {
+                if i == 0 && tick == 0 { &FRAME } else { &[] }
+            });
+            !radio.inbox(1).is_empty()
+        });
+        assert_eq!(arrived, Some(steps), "{delay_ms} ms");
+        assert_eq!(radio.inbox(1), FRAME);
+    }
+}
+
+#[test]
+fn jitter_and_reorder_let_later_packets_overtake_and_lose_none() {
+    let jitter = RadioParams {
+        jitter_ms: 1000.0,
+        ..RadioParams::default()
+    };
+    let reorder = RadioParams {
+        reorder: 0.2,
+        reorder_ms: 1000.0,
+        ..RadioParams::default()
+    };
+    for params in [jitter, reorder] {
+        let mut radio = radio(params, 2);
+        let mut order: Vec<u8> = Vec::new();
+        for tick in 0..220 {
+            let frame = [1 + tick as u8, 0];
+            let sent = if tick < 200 { &frame[..] } else { &[] };
+            radio.carry(tick, &line(2), |i| if i == 0 { sent } else { &[] });
+            order.extend(radio.inbox(1).iter().filter(|byte| **byte != 0));
+        }
+        assert!(order.windows(2).any(|w| w[0] > w[1]), "some overtake");
+        order.sort_unstable();
+        assert_eq!(order, (1..=200).collect::<Vec<u8>>());
+    }
+}
+
+#[test]
+fn duplicates_have_their_probability() {
+    let params = RadioParams {
+        duplicate: 0.25,
+        ..RadioParams::default()
+    };
+    let (radio, inboxes) = one_way(params, 10_000);
+    let extra = share(radio.total().delivered - 10_000, 10_000);
+    assert!((0.23..0.27).contains(&extra), "{extra}");
+    assert!(
+        inboxes
+            .iter()
+            .all(|inbox| inbox.len() == 4 || inbox[..4] == inbox[4..])
+    );
+}
+
+#[test]
+fn bits_flip_at_their_rate_and_the_end_of_a_packet_never() {
+    let params = RadioParams {
+        bit_error_rate: 0.01,
+        ..RadioParams::default()
+    };
+    let (radio, inboxes) = one_way(params, 20_000);
+    let flipped: u32 = (0..)
+        .zip(&inboxes)
+        .map(|(tick, inbox)| {
+            let sent = [tick as u8 | 1, (tick >> 8) as u8 | 1, 1, 0];
+            assert_eq!(inbox.last(), Some(&0));
+            inbox
+                .iter()
+                .zip(sent)
+                .map(|(a, b): (&u8, u8)| (a ^ b).count_ones())
+                .sum::<u32>()
+        })
+        .sum();
+    // 20,000 packets of 24 bits that can be hit.
+    let rate = share(u64::from(flipped), 480_000);
+    assert!((0.0095..0.0105).contains(&rate), "{rate}");
+    let hit = share(radio.total().corrupted, 20_000);
+    assert!((hit - (1.0 - libm::pow(0.99, 24.0))).abs() < 0.01, "{hit}");
+    let all = RadioParams {
+        bit_error_rate: 1.0,
+        ..RadioParams::default()
+    };
+    assert_eq!(one_way(all, 1).1[0], [!1, !1, !1, 0]);
+}
+
+#[test]
+fn bandwidth_caps_the_mean_and_counts_what_it_drops() {
+    let params = RadioParams {
+        bandwidth_bytes_per_s: Some(20),
+        ..RadioParams::default()
+    };
+    // 8 bytes ten times a second; 20 B/s allow a quarter of it, and 256 bytes are saved at the start.
+    let mut radio = radio(params, 2);
+    for tick in 0..1000 {
+        radio.carry(tick, &line(2), |i| if i == 0 { &FRAME } else { &[] });
+    }
+    let total = radio.total();
+    assert_eq!(total.sent + total.throttled, 1000);
+    assert_eq!(total.sent, (999 * 2 + 256) / 8);
+}
+
+#[test]
+fn a_blackout_loses_everything_while_it_lasts() {
+    let params = RadioParams {
+        blackout_s: vec![[1.0, 2.0]],
+        ..RadioParams::default()
+    };
+    let (radio, inboxes) = one_way(params, 30);
+    for (tick, inbox) in inboxes.iter().enumerate() {
+        assert_eq!(inbox.is_empty(), (10..20).contains(&tick), "tick {tick}");
+    }
+    assert_eq!(radio.total().lost, 10);
+}
+
+fn harsh() -> RadioParams {
+    RadioParams {
+        range_m: 3.0,
+        loss: 0.1,
+        burst: Some(Burst {
+            share: 0.1,
+            mean_ms: 400.0,
+            loss: 0.9,
+        }),
+        delay_ms: 30.0,
+        jitter_ms: 200.0,
+        duplicate: 0.1,
+        reorder: 0.1,
+        bit_error_rate: 0.001,
+        bandwidth_bytes_per_s: Some(70),
+        ..RadioParams::default()
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    #[test]
+    fn fates_depend_neither_on_threads_nor_on_the_order_of_robots(seed: u64, places in prop::collection::vec((0.0..20.0, 0.0..20.0), 1..80)) {
+        let ids: Vec<_> = (1..).map(RobotId).take(places.len()).collect();
+        let positions: Vec<_> = places.iter().map(|&(x, y)| [x, y]).collect();
+        let frames: Vec<_> = ids.iter().map(|id| [id.0 as u8, 9, 0, 3, id.0 as u8, 0]).collect();
+        let run = |threads: usize, reversed: bool| {
+            let order = |list: Vec<usize>| -> Vec<usize> {
+                if reversed { list.into_iter().rev().collect() } else { list }
+            };
+            let order = order((0..ids.len()).collect());
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            pool.install(|| {
+                let mut radio = Radio::new(&harsh(), seed, TICK_US, order.iter().map(|&i| ids[i]));
+                let positions: Vec<_> = order.iter().map(|&i| positions[i]).collect();
+                let mut heard = vec![Vec::new(); ids.len()];
+                for tick in 0..12 {
+                    radio.carry(tick, &positions, |i| &frames[order[i]]);
+                    for (at, &i) in order.iter().enumerate() {
+                        heard[i].extend_from_slice(radio.inbox(at));
+                    }
+                }
+                (radio.total(), heard)
+            })
+        };
+        let once = run(1, false);
+        prop_assert_eq!(&run(2, false), &once);
+        prop_assert_eq!(&run(8, true), &once);
+    }
+
+    #[test]
+    fn everybody_in_range_and_nobody_else_is_heard(
+        range_m in 0.0..30.0_f64,
+        places in prop::collection::vec((-50.0..50.0, -5.0..5.0), 1..60),
+    ) {
+        let positions: Vec<_> = places.iter().map(|&(x, y)| [x, y]).collect();
+        let frames: Vec<_> = (1..=places.len()).map(|i| [i as u8, 0]).collect();
+        let params = RadioParams { range_m, ..RadioParams::default() };
+        let mut radio = Radio::new(&params, 0, TICK_US, (1..).map(RobotId).take(places.len()));
+        radio.carry(0, &positions, |i| &frames[i]);
+        for (i, a) in positions.iter().enumerate() {
+            let near = |b: &[f64; 2]| {
+                let [dx, dy] = [a[0] - b[0], a[1] - b[1]];
+                dx * dx + dy * dy <= range_m * range_m
+            };
+            let expected: Vec<u8> = (0..positions.len())
+                .filter(|&j| j != i && near(&positions[j]))
+                .flat_map(|j| frames[j])
+                .collect();
+            prop_assert_eq!(radio.inbox(i), expected);
+        }
+    }
+}
