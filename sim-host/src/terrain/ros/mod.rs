@@ -1,0 +1,261 @@
+//! Maps of the Robot Operating System: a `map_server` YAML file that names a PGM picture.
+//!
+//! A pixel of brightness x out of the picture's largest value M is occupied with probability
+//! p = 1 - x/M (x/M when `negate` is set). p > `occupied_thresh` is blocked, p < `free_thresh` is free (impassability 1). What lies
+//! between is unknown in mode `trinary`, and in mode `scale` slow: 1 + round((l - 1)(p - free)/(occupied - free)) with l classes.
+//! Pictures list rows from the north; [`super::rows`] turns them round.
+//!
+//! This is also the format in which Staya writes terrain ([`save`]): mode `scale` and the number of classes under the key
+//! `impassability_classes`, which ROS ignores. Every impassability reads back exactly, the picture shows the land (darker is slower), and
+//! ROS tools can open it.
+//!
+//! Source: ROS wiki, `map_server`, "Map format"; Netpbm, "PGM".
+
+mod pgm;
+mod yaml;
+
+use super::error::{Place, TerrainError, format_error, parameter_error, read, write};
+use super::rows::flip_rows;
+use super::{LoadOptions, Terrain};
+use pgm::Picture;
+use staya_controller::grid::BLOCKED;
+use std::path::{Path, PathBuf};
+
+pub use pgm::parse_pgm;
+pub use yaml::{Meta, Mode, parse_meta};
+
+/// Thresholds that keep 255 classes and a wall apart: 255 grey levels from p = 0 to 254/255, and black.
+const FREE_THRESH: f64 = 0.0;
+const OCCUPIED_THRESH: f64 = 0.997;
+
+/// The impassability of occupancy probability `p`.
+fn impassability(p: f64, meta: &Meta, options: &LoadOptions) -> u8 {
+    if p > meta.occupied_thresh {
+        return BLOCKED;
+    }
+    if p < meta.free_thresh {
+        return 1;
+    }
+    match meta.mode {
+        Mode::Trinary => options.unknown,
+        Mode::Scale => {
+            let classes = meta.classes.unwrap_or(options.classes);
+            let span = meta.occupied_thresh - meta.free_thresh;
+            let share = if span > 0.0 {
+                (p - meta.free_thresh) / span
+            } else {
+                0.0
+            };
+            1 + (f64::from(classes - 1) * share).round() as u8
+        }
+    }
+}
+
+/// The terrain that a picture means. O(size).
+///
+/// # Errors
+/// [`TerrainError::Size`] for a picture that is too large; [`TerrainError::Parameter`] for 0 classes.
+pub fn interpret(
+    picture: &Picture,
+    meta: &Meta,
+    options: &LoadOptions,
+) -> Result<Terrain, TerrainError> {
+    if options.classes == 0 {
+        return Err(parameter_error(
+            "classes is 0",
+            "give the number of classes, 1..=255",
+        ));
+    }
+    let largest = f64::from(picture.largest);
+    let mut cells: Vec<u8> = picture
+        .pixels
+        .iter()
+        .map(|pixel| {
+            let x = f64::from(if meta.negate {
+                *pixel
+            } else {
+                picture.largest - *pixel
+            });
+            impassability(x / largest, meta, options)
+        })
+        .collect();
+    flip_rows(&mut cells, picture.width);
+    let mut terrain = Terrain::from_cells(picture.width, picture.height, cells)?;
+    terrain.cell_m = meta.resolution_m;
+    terrain.origin_m = meta.origin_m;
+    Ok(terrain)
+}
+
+/// Reads a YAML file and the picture that it names (relative to the YAML file).
+///
+/// # Errors
+/// [`TerrainError::Io`] and [`TerrainError::Format`] for either file.
+pub fn load(path: &Path, options: &LoadOptions) -> Result<Terrain, TerrainError> {
+    let meta = parse_meta(&read(path)?, path)?;
+    let image = path.parent().unwrap_or(Path::new("")).join(&meta.image);
+    let is_pgm = image
+        .extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("pgm"));
+    if !is_pgm {
+        return Err(format_error(
+            path,
+            Place::File,
+            format!("image is {:?}", meta.image),
+            "only PGM pictures are read: convert it, for example with ImageMagick, and name the .pgm",
+        ));
+    }
+    interpret(&parse_pgm(&read(&image)?, &image)?, &meta, options)
+}
+
+/// Writes `path` (.yaml) and the picture of the same name with .pgm; [`Terrain::load`] of `path` gives back an equal terrain.
+///
+/// # Errors
+/// [`TerrainError::Io`]; [`TerrainError::Format`] when the file name has no place in a YAML line.
+pub fn save(terrain: &Terrain, path: &Path) -> Result<(), TerrainError> {
+    let image: PathBuf = path.with_extension("pgm");
+    let name = image
+        .file_name()
+        .and_then(|name| name.to_str())
+        .filter(|name| !name.contains(['"', '\\', '\n', '\r']));
+    let Some(name) = name else {
+        return Err(format_error(
+            path,
+            Place::File,
+            "the file name has a quote, a backslash, a line break or no UTF-8",
+            "choose a plainer name",
+        ));
+    };
+    let classes = terrain.cells().iter().copied().max().unwrap_or(1).max(1);
+    let [x, y] = terrain.origin_m;
+    let meta = format!(
+        "image: \"{name}\"\nmode: scale\nresolution: {:?}\norigin: [{x:?}, {y:?}, 0.0]\nnegate: 0\n\
+         occupied_thresh: {OCCUPIED_THRESH:?}\nfree_thresh: {FREE_THRESH:?}\nimpassability_classes: {classes}\n",
+        terrain.cell_m
+    );
+    let mut pixels: Vec<u8> = terrain
+        .cells()
+        .iter()
+        .map(|u| brightness(*u, classes))
+        .collect();
+    flip_rows(&mut pixels, terrain.width());
+    let mut picture = format!("P5\n{} {}\n255\n", terrain.width(), terrain.height()).into_bytes();
+    picture.extend_from_slice(&pixels);
+    write(&image, &picture)?;
+    write(path, meta.as_bytes())
+}
+
+/// The brightness of a class: white for 1, nearly black for the slowest, black for a wall.
+///
+/// The inverse of [`impassability`]: rounding to a grey level shifts the class by less than one half.
+fn brightness(impassability: u8, classes: u8) -> u8 {
+    if impassability == BLOCKED {
+        return 0;
+    }
+    let steps = f64::from(classes.max(2) - 1);
+    let share = f64::from(impassability - 1) / steps;
+    let darkness = (share * OCCUPIED_THRESH * 255.0).round();
+    255 - darkness as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use staya_controller::grid::Cell;
+
+    const META: &str = "image: a.pgm\nresolution: 0.05\norigin: [-1.5, 2, 0]\noccupied_thresh: 0.65\nfree_thresh: 0.196\nnegate: 0\n";
+
+    fn read(meta: &str, picture: &str, options: &LoadOptions) -> Terrain {
+        let meta = parse_meta(meta.as_bytes(), Path::new("a.yaml")).unwrap();
+        let picture = parse_pgm(picture.as_bytes(), Path::new("a.pgm")).unwrap();
+        interpret(&picture, &meta, options).unwrap()
+    }
+
+    /// Free, unknown, occupied in the north; occupied, free, free in the south.
+    const PICTURE: &str = "P2\n3 2\n255\n254 205 0\n0 255 254\n";
+
+    #[test]
+    fn trinary_maps_become_free_and_blocked_cells() {
+        let terrain = read(META, PICTURE, &LoadOptions::default());
+        assert_eq!(terrain.cells(), [BLOCKED, 1, 1, 1, BLOCKED, BLOCKED]);
+        assert_eq!((terrain.cell_m, terrain.origin_m), (0.05, [-1.5, 2.0]));
+        let brave = LoadOptions {
+            unknown: 7,
+            ..LoadOptions::default()
+        };
+        assert_eq!(read(META, PICTURE, &brave).get(Cell::new(1, 1)), 7);
+    }
+
+    #[test]
+    fn negated_maps_mean_the_opposite() {
+        let meta = META.replace("negate: 0", "negate: 1");
+        let terrain = read(&meta, PICTURE, &LoadOptions::default());
+        assert_eq!(terrain.cells(), [1, BLOCKED, BLOCKED, BLOCKED, BLOCKED, 1]);
+    }
+
+    #[test]
+    fn scale_maps_are_linear_between_the_thresholds() {
+        let meta = format!("{META}mode: scale\n")
+            .replace("0.65", "0.8")
+            .replace("0.196", "0.2");
+        // p = 0, 0.2, 0.5, 0.8, 1
+        let terrain = read(&meta, "P2 5 1 10 10 8 5 2 0", &LoadOptions::default());
+        assert_eq!(terrain.cells(), [1, 1, 5, 9, BLOCKED]);
+    }
+
+    #[test]
+    fn sixteen_bit_pictures_have_the_same_meaning() {
+        let meta = parse_meta(META.as_bytes(), Path::new("a.yaml")).unwrap();
+        let picture = parse_pgm(b"P5 2 1 65535\n\xFF\xFF\x00\x10", Path::new("a.pgm")).unwrap();
+        let terrain = interpret(&picture, &meta, &LoadOptions::default()).unwrap();
+        assert_eq!(terrain.cells(), [1, BLOCKED]);
+    }
+
+    #[test]
+    fn every_class_of_every_count_reads_back() {
+        let meta = Meta {
+            mode: Mode::Scale,
+            free_thresh: FREE_THRESH,
+            occupied_thresh: OCCUPIED_THRESH,
+            ..parse_meta(META.as_bytes(), Path::new("a.yaml")).unwrap()
+        };
+        for classes in 1..=255 {
+            let meta = Meta {
+                classes: Some(classes),
+                ..meta.clone()
+            };
+            for u in 0..=classes {
+                let p = f64::from(255 - brightness(u, classes)) / 255.0;
+                assert_eq!(
+                    impassability(p, &meta, &LoadOptions::default()),
+                    u,
+                    "of {classes}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_saved_terrain_loads_equal() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("land.yaml");
+        let mut terrain = Terrain::from_cells(3, 2, vec![1, 9, BLOCKED, 4, 2, 3]).unwrap();
+        terrain.cell_m = 1.0 / 3.0;
+        terrain.origin_m = [-1e9, 0.1];
+        save(&terrain, &path).unwrap();
+        assert_eq!(Terrain::load(&path).unwrap(), terrain);
+    }
+
+    #[test]
+    fn other_pictures_and_missing_files_are_named() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("a.yaml");
+        let message = |path: &Path| Terrain::load(path).unwrap_err().to_string();
+        assert!(message(&path).contains("a.yaml: "));
+        std::fs::write(&path, META).unwrap();
+        assert!(message(&path).contains("a.pgm: "));
+        std::fs::write(&path, META.replace("pgm", "png")).unwrap();
+        assert!(message(&path).contains("image is \"a.png\"; only PGM pictures are read"));
+        let odd = dir.path().join("a\"b.yaml");
+        assert!(save(&Terrain::flat(1, 1), &odd).is_err());
+    }
+}

@@ -1,0 +1,235 @@
+//! Grey pictures: PGM, plain (P2) and raw (P5), 8 or 16 bits.
+
+use super::super::error::{MAX_SIDE, Place, TerrainError, format_error};
+use std::path::Path;
+
+/// A grey picture, first row at the top.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Picture {
+    /// Pixels from left to right.
+    pub width: u16,
+    /// Pixels from top to bottom.
+    pub height: u16,
+    /// The brightness of white, 1..=65535; no pixel is brighter.
+    pub largest: u16,
+    /// Brightness, row by row.
+    pub pixels: Vec<u16>,
+}
+
+/// Reads a PGM picture. O(size).
+///
+/// # Errors
+/// [`TerrainError::Format`] with the byte, for everything that the format does not allow.
+pub fn parse_pgm(bytes: &[u8], path: &Path) -> Result<Picture, TerrainError> {
+    let mut words = Words { bytes, at: 0 };
+    let fail = |at: usize, what: String, remedy: &str| {
+        Err(format_error(path, Place::Byte(at), what, remedy))
+    };
+    let is_raw = match bytes.get(..2) {
+        Some(b"P2") => false,
+        Some(b"P5") => true,
+        _ => {
+            return fail(
+                0,
+                "the picture does not begin with P2 or P5".into(),
+                "give a grey PGM picture",
+            );
+        }
+    };
+    words.at = 2;
+    let mut header = [0; 3];
+    let fields = [
+        ("width", MAX_SIDE),
+        ("height", MAX_SIDE),
+        ("largest value", u16::MAX),
+    ];
+    for (value, (field, limit)) in header.iter_mut().zip(fields) {
+        *value = match words.number() {
+            Ok(number) if (1..=u32::from(limit)).contains(&number) => number as u16,
+            _ => {
+                return fail(
+                    words.at,
+                    format!("{field} is not 1..={limit}"),
+                    "correct the header",
+                );
+            }
+        };
+    }
+    let [width, height, largest] = header;
+    let wanted = usize::from(width) * usize::from(height);
+    let mut pixels = Vec::new();
+    let truncated = "it is truncated: fetch it again, or correct the header";
+    if is_raw {
+        // Exactly one blank separates the header from the pixels.
+        let body = bytes.get(words.at + 1..).unwrap_or_default();
+        let depth = if largest < 256 { 1 } else { 2 };
+        if body.len() < wanted * depth {
+            let what = format!(
+                "the file ends after {} of {wanted} pixels",
+                body.len() / depth
+            );
+            return fail(bytes.len(), what, truncated);
+        }
+        pixels.extend(body[..wanted * depth].chunks_exact(depth).map(|pixel| {
+            pixel
+                .iter()
+                .fold(0, |sum, byte| sum << 8 | u16::from(*byte))
+        }));
+    } else {
+        while pixels.len() < wanted {
+            match words.number() {
+                // Brighter than white is refused below.
+                Ok(number) => pixels.push(u16::try_from(number).unwrap_or(u16::MAX)),
+                Err(Trouble::End) => {
+                    let what = format!("the file ends after {} of {wanted} pixels", pixels.len());
+                    return fail(words.at, what, truncated);
+                }
+                Err(Trouble::NoNumber) => {
+                    return fail(
+                        words.at,
+                        "no number where a pixel should be".into(),
+                        "correct the picture",
+                    );
+                }
+            }
+        }
+    }
+    if let Some(at) = pixels.iter().position(|pixel| *pixel > largest) {
+        return Err(format_error(
+            path,
+            Place::File,
+            format!("pixel {at} has {} of at most {largest}", pixels[at]),
+            "correct the largest value in the header",
+        ));
+    }
+    Ok(Picture {
+        width,
+        height,
+        largest,
+        pixels,
+    })
+}
+
+/// Why there is no number.
+enum Trouble {
+    End,
+    NoNumber,
+}
+
+/// Reads decimal numbers between blanks and comments.
+struct Words<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl Words<'_> {
+    fn peek(&self) -> Option<u8> {
+        self.bytes.get(self.at).copied()
+    }
+
+    /// The next number, saturating; the position is then the byte behind it.
+    fn number(&mut self) -> Result<u32, Trouble> {
+        loop {
+            match self.peek() {
+                Some(b'#') => {
+                    while self.peek().is_some_and(|byte| byte != b'\n') {
+                        self.at += 1;
+                    }
+                }
+                Some(byte) if byte.is_ascii_whitespace() => self.at += 1,
+                Some(byte) if byte.is_ascii_digit() => break,
+                Some(_) => return Err(Trouble::NoNumber),
+                None => return Err(Trouble::End),
+            }
+        }
+        let mut number: u32 = 0;
+        while let Some(byte) = self.peek().filter(u8::is_ascii_digit) {
+            number = number
+                .saturating_mul(10)
+                .saturating_add(u32::from(byte - b'0'));
+            self.at += 1;
+        }
+        Ok(number)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn picture(bytes: &[u8]) -> Result<Picture, TerrainError> {
+        parse_pgm(bytes, Path::new("a.pgm"))
+    }
+
+    #[test]
+    fn plain_and_raw_pictures_are_equal() {
+        let plain = picture(b"P2 # grey\n# CREATOR: somebody\n3 2\n255\n1 2 3\n\n4 5 255").unwrap();
+        let raw = picture(b"P5\n# CREATOR: somebody\n3 2\n255\n\x01\x02\x03\x04\x05\xFF").unwrap();
+        assert_eq!(plain, raw);
+        assert_eq!(plain.pixels, [1, 2, 3, 4, 5, 255]);
+    }
+
+    #[test]
+    fn two_byte_pixels_have_the_high_byte_first() {
+        assert_eq!(picture(b"P5 1 1 256 \x01\x00").unwrap().pixels, [256]);
+    }
+
+    #[test]
+    fn a_pixel_that_looks_like_a_blank_or_a_comment_is_a_pixel() {
+        assert_eq!(picture(b"P5 2 1 255\n #").unwrap().pixels, [32, 35]);
+    }
+
+    #[test]
+    fn errors_name_file_byte_and_remedy() {
+        let cases: [(&[u8], &str); 9] = [
+            (
+                b"",
+                "a.pgm, byte 0: the picture does not begin with P2 or P5",
+            ),
+            (b"P6 1 1 255 abc", "a.pgm, byte 0: "),
+            (
+                b"P5 0 1 255 ",
+                "a.pgm, byte 4: width is not 1..=32767; correct the header",
+            ),
+            (b"P5 1 40000 255 ", "a.pgm, byte 10: height is not"),
+            (
+                b"P5 1 1 0 ",
+                "a.pgm, byte 8: largest value is not 1..=65535",
+            ),
+            (
+                b"P5 2 1 255 a",
+                "a.pgm, byte 12: the file ends after 1 of 2 pixels; it is truncated",
+            ),
+            (
+                b"P2 2 1 255 7",
+                "a.pgm, byte 12: the file ends after 1 of 2 pixels",
+            ),
+            (
+                b"P2 2 1 255 7 x",
+                "a.pgm, byte 13: no number where a pixel should be",
+            ),
+            (b"P2 2 1 9 7 10", "a.pgm: pixel 1 has 10 of at most 9"),
+        ];
+        for (bytes, expected) in cases {
+            let message = picture(bytes).unwrap_err().to_string();
+            assert!(message.starts_with(expected), "{message}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn any_bytes_are_a_picture_or_an_error(bytes: Vec<u8>, magic in "P[25]") {
+            let _ = picture(&bytes);
+            let _ = picture(&[magic.as_bytes(), &bytes].concat());
+        }
+
+        #[test]
+        fn any_numbers_are_a_picture_or_an_error(magic in "P[25]", body in "[0-9 #\n]{0,30}") {
+            if let Ok(picture) = picture(format!("{magic} {body}").as_bytes()) {
+                let wanted = usize::from(picture.width) * usize::from(picture.height);
+                prop_assert_eq!(picture.pixels.len(), wanted);
+            }
+        }
+    }
+}
