@@ -1,5 +1,10 @@
 //! The messages, in integers: millimetres, millimetres per second, microseconds, cells.
+//!
+//! The order and the types of the fields are the wire format (postcard): what is marked `fixed`
+//! takes its full width, everything else is a byte or a varint. A change here is a new
+//! [`VERSION`](super::VERSION).
 
+use super::fixed;
 use crate::grid::{Cell, Dir};
 use crate::time::Instant;
 use serde::{Deserialize, Serialize};
@@ -50,18 +55,24 @@ pub enum Mode {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Beacon {
     /// Sender's clock when it sampled its state.
+    #[serde(with = "fixed")]
     pub time: Instant,
     /// World position, mm.
+    #[serde(with = "fixed")]
     pub position_mm: [i32; 3],
     /// World velocity, mm/s.
+    #[serde(with = "fixed")]
     pub velocity_mmps: [i16; 3],
     /// Radius of the smallest disc (ball) around the body, mm.
+    #[serde(with = "fixed")]
     pub radius_mm: u16,
     /// Cell that the robot occupies.
+    #[serde(with = "fixed")]
     pub cell: Cell,
     /// The move it wants next.
     pub heading: Dir,
     /// Time until it is free to leave its cell, ms (saturating).
+    #[serde(with = "fixed")]
     pub busy_ms: u16,
     /// Its leader, or nobody.
     pub leader: RobotId,
@@ -70,6 +81,7 @@ pub struct Beacon {
     /// What it is doing.
     pub mode: Mode,
     /// Cell it is heading for.
+    #[serde(with = "fixed")]
     pub target: Cell,
 }
 
@@ -77,10 +89,13 @@ pub struct Beacon {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CompactBeacon {
     /// Sender's clock when it sampled its state, ms (wraps after 65 s).
+    #[serde(with = "fixed")]
     pub time_ms: u16,
     /// World position in the plane, mm.
+    #[serde(with = "fixed")]
     pub position_mm: [i32; 2],
     /// World velocity in the plane, mm/s.
+    #[serde(with = "fixed")]
     pub velocity_mmps: [i16; 2],
     /// Radius of the smallest disc around the body, cm.
     pub radius_cm: u8,
@@ -112,6 +127,7 @@ pub struct Request {
     /// What it asks.
     pub kind: RequestKind,
     /// How long the request stands after it was received, ms.
+    #[serde(with = "fixed")]
     pub valid_ms: u16,
 }
 
@@ -130,13 +146,14 @@ pub struct Ack {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TemplateEntry {
     /// Wanted cell difference, neighbour minus self.
+    #[serde(with = "fixed")]
     pub offset: Cell,
     /// Which robot should stand there; nobody = anyone.
     pub id: RobotId,
 }
 
-/// Entries in one [`TemplateAssignment`].
-pub const TEMPLATE_PART: usize = 4;
+/// Entries in one [`TemplateAssignment`]: as many as a frame of 60 bytes carries.
+pub const TEMPLATE_PART: usize = 3;
 
 /// A part of a formation template, from whoever commands the swarm to one robot.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -152,6 +169,7 @@ pub struct TemplateAssignment {
     /// The robot's place in the formation.
     pub slot: u8,
     /// Cell difference from the top leader's place to this robot's place.
+    #[serde(with = "fixed")]
     pub offset: Cell,
     /// The neighbours within the geodesic radius that this part lists.
     pub entries: heapless::Vec<TemplateEntry, TEMPLATE_PART>,
@@ -165,6 +183,7 @@ pub struct GoalAssignment {
     /// Counts assignments of this sender; an older one never replaces a newer one.
     pub version: u8,
     /// The goal of the formation's top leader (each robot adds its own offset).
+    #[serde(with = "fixed")]
     pub target: Cell,
 }
 

@@ -1,0 +1,132 @@
+//! Any message at all, for the properties of this module.
+
+use super::*;
+use crate::grid::{Cell, Dir};
+use crate::time::Instant;
+use proptest::collection::vec;
+use proptest::prelude::*;
+
+pub fn robot() -> impl Strategy<Value = RobotId> {
+    prop_oneof![0..300_u32, any::<u32>()].prop_map(RobotId)
+}
+
+pub fn somebody() -> impl Strategy<Value = RobotId> {
+    robot().prop_map(|id| RobotId(id.0.max(1)))
+}
+
+pub fn cell() -> impl Strategy<Value = Cell> {
+    any::<(i16, i16)>().prop_map(|(x, y)| Cell::new(x, y))
+}
+
+pub fn header() -> impl Strategy<Value = Header> {
+    (any::<u8>(), somebody(), any::<u16>()).prop_map(|(boot, sender, sequence)| Header {
+        boot,
+        sender,
+        sequence,
+    })
+}
+
+fn mode() -> impl Strategy<Value = Mode> {
+    prop_oneof![
+        Just(Mode::Idle),
+        Just(Mode::Forming),
+        Just(Mode::Cruise),
+        Just(Mode::Hold),
+        Just(Mode::Arrived),
+        Just(Mode::Fault),
+    ]
+}
+
+pub fn kind() -> impl Strategy<Value = RequestKind> {
+    prop_oneof![
+        Just(RequestKind::Stop),
+        Just(RequestKind::Resume),
+        Just(RequestKind::Redirect),
+    ]
+}
+
+fn beacon() -> impl Strategy<Value = Message> {
+    let motion = (any::<u32>(), any::<[i32; 3]>(), any::<[i16; 3]>());
+    let body = (any::<u16>(), cell(), 0..=8_u8, any::<u16>());
+    let task = (robot(), any::<u8>(), mode(), cell());
+    (motion, body, task).prop_map(|(motion, body, task)| {
+        let (time, position_mm, velocity_mmps) = motion;
+        let (radius_mm, cell, heading, busy_ms) = body;
+        let (leader, slot, mode, target) = task;
+        Message::Beacon(Beacon {
+            time: Instant::from_micros(time),
+            position_mm,
+            velocity_mmps,
+            radius_mm,
+            cell,
+            heading: Dir::from_index(heading),
+            busy_ms,
+            leader,
+            slot,
+            mode,
+            target,
+        })
+    })
+}
+
+fn compact() -> impl Strategy<Value = Message> {
+    let motion = (any::<u16>(), any::<[i32; 2]>(), any::<[i16; 2]>());
+    (motion, any::<u8>(), mode()).prop_map(|(motion, radius_cm, mode)| {
+        let (time_ms, position_mm, velocity_mmps) = motion;
+        Message::Compact(CompactBeacon {
+            time_ms,
+            position_mm,
+            velocity_mmps,
+            radius_cm,
+            mode,
+        })
+    })
+}
+
+pub fn entry() -> impl Strategy<Value = TemplateEntry> {
+    (cell(), robot()).prop_map(|(offset, id)| TemplateEntry { offset, id })
+}
+
+fn template() -> impl Strategy<Value = Message> {
+    let place = (robot(), any::<[u8; 4]>(), cell());
+    (place, vec(entry(), 0..=TEMPLATE_PART)).prop_map(|(place, entries)| {
+        let (to, [version, part, parts, slot], offset) = place;
+        Message::Template(TemplateAssignment {
+            to,
+            version,
+            part,
+            parts,
+            slot,
+            offset,
+            entries: entries.into_iter().collect(),
+        })
+    })
+}
+
+pub fn message() -> impl Strategy<Value = Message> {
+    let request = (robot(), robot(), any::<u8>(), kind(), any::<u16>());
+    let request = request.prop_map(|(to, origin, number, kind, valid_ms)| {
+        Message::Request(Request {
+            to,
+            origin,
+            number,
+            kind,
+            valid_ms,
+        })
+    });
+    let ack = (robot(), any::<u8>(), any::<bool>()).prop_map(|(to, number, accepted)| {
+        Message::Ack(Ack {
+            to,
+            number,
+            accepted,
+        })
+    });
+    let goal = (robot(), any::<u8>(), cell()).prop_map(|(to, version, target)| {
+        Message::Goal(GoalAssignment {
+            to,
+            version,
+            target,
+        })
+    });
+    prop_oneof![beacon(), compact(), request, ack, template(), goal]
+}

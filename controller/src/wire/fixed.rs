@@ -1,0 +1,79 @@
+//! Integers of fixed width on the wire, little-endian, for `#[serde(with = "fixed")]`.
+//!
+//! Postcard writes integers in 7-bit groups (varint): short for small numbers, up to half longer
+//! for large ones. Positions and times are large, and a fixed width keeps the greatest length of a
+//! frame near the usual one. The bytes are those of `postcard::fixint::le`, which knows plain
+//! integers only.
+
+use crate::grid::Cell;
+use crate::time::Instant;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+/// A value that always takes the same number of bytes.
+pub(super) trait Fixed: Copy {
+    /// Its bytes: an array, or an array of arrays.
+    type Bytes: Serialize + for<'de> Deserialize<'de>;
+    /// To bytes, least significant first.
+    fn to_bytes(self) -> Self::Bytes;
+    /// From bytes; every combination is a value.
+    fn from_bytes(bytes: Self::Bytes) -> Self;
+}
+
+macro_rules! integer {
+    ($($integer:ty),*) => {$(
+        impl Fixed for $integer {
+            type Bytes = [u8; size_of::<$integer>()];
+            fn to_bytes(self) -> Self::Bytes {
+                self.to_le_bytes()
+            }
+            fn from_bytes(bytes: Self::Bytes) -> Self {
+                Self::from_le_bytes(bytes)
+            }
+        }
+    )*};
+}
+integer!(u16, i16, u32, i32);
+
+macro_rules! array {
+    ($($len:literal),*) => {$(
+        impl<T: Fixed> Fixed for [T; $len] {
+            type Bytes = [T::Bytes; $len];
+            fn to_bytes(self) -> Self::Bytes {
+                self.map(T::to_bytes)
+            }
+            fn from_bytes(bytes: Self::Bytes) -> Self {
+                bytes.map(T::from_bytes)
+            }
+        }
+    )*};
+}
+array!(2, 3);
+
+impl Fixed for Cell {
+    type Bytes = <[i16; 2] as Fixed>::Bytes;
+    fn to_bytes(self) -> Self::Bytes {
+        [self.x, self.y].to_bytes()
+    }
+    fn from_bytes(bytes: Self::Bytes) -> Self {
+        let [x, y] = <[i16; 2]>::from_bytes(bytes);
+        Self::new(x, y)
+    }
+}
+
+impl Fixed for Instant {
+    type Bytes = <u32 as Fixed>::Bytes;
+    fn to_bytes(self) -> Self::Bytes {
+        self.as_micros().to_bytes()
+    }
+    fn from_bytes(bytes: Self::Bytes) -> Self {
+        Self::from_micros(u32::from_bytes(bytes))
+    }
+}
+
+pub(super) fn serialize<T: Fixed, S: Serializer>(value: &T, to: S) -> Result<S::Ok, S::Error> {
+    value.to_bytes().serialize(to)
+}
+
+pub(super) fn deserialize<'de, T: Fixed, D: Deserializer<'de>>(from: D) -> Result<T, D::Error> {
+    T::Bytes::deserialize(from).map(T::from_bytes)
+}

@@ -1,0 +1,420 @@
+#![allow(clippy::unwrap_used, clippy::indexing_slicing, clippy::panic)]
+
+use super::*;
+use crate::grid::{Cell, Dir};
+use crate::rand::Rng;
+use crate::time::Instant;
+use crate::wire::arbitrary::{header, message};
+use crate::wire::{Mode, RequestKind, TemplateEntry};
+use proptest::collection::vec;
+use proptest::prelude::*;
+use std::vec::Vec as StdVec;
+
+type Outbox = heapless::Vec<u8, 256>;
+
+const LAST: RobotId = RobotId(u32::MAX);
+const FAR: Cell = Cell::new(i16::MIN, i16::MAX);
+const HEADER: Header = Header {
+    boot: 7,
+    sender: RobotId(12),
+    sequence: 0x0102,
+};
+
+/// [`beacon`] under [`HEADER`], packed, summed and stuffed by hand from the format's description.
+const GOLDEN_BEACON: [u8; 48] = [
+    0x06, 0x01, 0x07, 0x0C, 0x02, 0x01, 0x04, 0x40, 0x42, 0x0F, 0x03, 0x39, 0x30, 0x01, 0x05, 0x5A,
+    0xFD, 0xFF, 0xFF, 0x01, 0x01, 0x01, 0x02, 0xFA, 0x01, 0x01, 0x04, 0xFF, 0xFF, 0x96, 0x02, 0x03,
+    0x0A, 0xFE, 0xFF, 0x03, 0x90, 0x01, 0x01, 0x04, 0x02, 0x62, 0x02, 0x62, 0x03, 0x1A, 0x96, 0x00,
+];
+
+fn beacon() -> Message {
+    Message::Beacon(Beacon {
+        time: Instant::from_micros(1_000_000),
+        position_mm: [12_345, -678, 0],
+        velocity_mmps: [250, 0, -1],
+        radius_mm: 150,
+        cell: Cell::new(3, -2),
+        heading: Dir::NorthWest,
+        busy_ms: 400,
+        leader: RobotId(1),
+        slot: 4,
+        mode: Mode::Cruise,
+        target: Cell::new(98, 98),
+    })
+}
+
+/// The longest message of each kind with its bound.
+fn longest() -> [(Message, usize); 6] {
+    let entry = TemplateEntry {
+        offset: FAR,
+        id: LAST,
+    };
+    [
+        (
+            Message::Beacon(Beacon {
+                leader: LAST,
+                ..Beacon::default()
+            }),
+            Beacon::MAX_FRAME_LEN,
+        ),
+        (
+            Message::Compact(CompactBeacon::default()),
+            CompactBeacon::MAX_FRAME_LEN,
+        ),
+        (
+            Message::Request(Request {
+                to: LAST,
+                origin: LAST,
+                number: 0,
+                kind: RequestKind::Stop,
+                valid_ms: 0,
+            }),
+            Request::MAX_FRAME_LEN,
+        ),
+        (
+            Message::Ack(Ack {
+                to: LAST,
+                number: 0,
+                accepted: true,
+            }),
+            Ack::MAX_FRAME_LEN,
+        ),
+        (
+            Message::Template(TemplateAssignment {
+                to: LAST,
+                version: 0,
+                part: 0,
+                parts: 0,
+                slot: 0,
+                offset: FAR,
+                entries: [entry; TEMPLATE_PART].into(),
+            }),
+            TemplateAssignment::MAX_FRAME_LEN,
+        ),
+        (
+            Message::Goal(GoalAssignment {
+                to: LAST,
+                version: 0,
+                target: FAR,
+            }),
+            GoalAssignment::MAX_FRAME_LEN,
+        ),
+    ]
+}
+
+fn bound(message: &Message) -> usize {
+    match message {
+        Message::Beacon(_) => Beacon::MAX_FRAME_LEN,
+        Message::Compact(_) => CompactBeacon::MAX_FRAME_LEN,
+        Message::Request(_) => Request::MAX_FRAME_LEN,
+        Message::Ack(_) => Ack::MAX_FRAME_LEN,
+        Message::Template(_) => TemplateAssignment::MAX_FRAME_LEN,
+        Message::Goal(_) => GoalAssignment::MAX_FRAME_LEN,
+    }
+}
+
+fn encoded(header: Header, message: &Message, tag: Option<[u8; TAG_LEN]>) -> StdVec<u8> {
+    let mut out = Outbox::new();
+    let len = match tag {
+        Some(tag) => encode_tagged(header, message, |_| tag, &mut out),
+        None => encode(header, message, &mut out),
+    };
+    assert_eq!(len, Ok(out.len()));
+    out.to_vec()
+}
+
+/// A sound frame, without delimiter, around any content.
+fn seal(content: &[u8]) -> StdVec<u8> {
+    let mut content = content.to_vec();
+    content.extend(CRC.checksum(&content).to_le_bytes());
+    let first = stuff(&mut content);
+    content.insert(0, first);
+    content
+}
+
+/// Version, header and message, without tag and CRC.
+fn content(version: u8, header: Header, message: &Message) -> StdVec<u8> {
+    let mut buffer = [0; MAX_FRAME_LEN];
+    postcard::to_slice(&(version, header, message), &mut buffer)
+        .unwrap()
+        .to_vec()
+}
+
+#[test]
+fn the_bytes_of_a_beacon_are_these() {
+    let frame = encoded(HEADER, &beacon(), None);
+    assert_eq!(frame, GOLDEN_BEACON);
+}
+
+#[test]
+fn the_crc_is_the_catalogue_s_x25() {
+    assert_eq!(CRC.checksum(b"123456789"), 0x906E);
+}
+
+#[test]
+fn the_longest_message_of_each_kind_reaches_its_bound() {
+    let header = Header {
+        sender: LAST,
+        ..HEADER
+    };
+    for (message, bound) in longest() {
+        assert_eq!(encoded(header, &message, Some([0; TAG_LEN])).len(), bound);
+        assert_eq!(encoded(header, &message, None).len(), bound - TAG_LEN);
+    }
+    let reached = longest().map(|(_, bound)| bound).into_iter().max();
+    assert_eq!(reached, Some(MAX_FRAME_LEN));
+}
+
+#[test]
+fn frames_fit_the_radios_they_are_made_for() {
+    assert_eq!(Beacon::MAX_FRAME_LEN, 60);
+    assert_eq!(CompactBeacon::MAX_FRAME_LEN - TAG_LEN, 30);
+    assert_eq!(Request::MAX_FRAME_LEN - TAG_LEN, 28);
+}
+
+#[test]
+fn an_outbox_without_room_stays_as_it_was() {
+    let frame = encoded(HEADER, &beacon(), None);
+    let mut out = heapless::Vec::<u8, 100>::new();
+    for used in 0..=100 {
+        out.clear();
+        out.resize(used, 0xEE).unwrap();
+        let fits = used + frame.len() <= 100;
+        let result = encode(HEADER, &beacon(), &mut out);
+        if fits {
+            assert_eq!(result, Ok(frame.len()));
+            assert_eq!(&out[used..], frame);
+        } else {
+            assert_eq!(result, Err(EncodeError::Full));
+            assert_eq!(out.len(), used);
+        }
+        assert!(out[..used].iter().all(|byte| *byte == 0xEE));
+    }
+}
+
+#[test]
+fn nobody_can_neither_send_nor_be_heard() {
+    let header = Header {
+        sender: RobotId::NOBODY,
+        ..HEADER
+    };
+    let mut out = Outbox::new();
+    let result = encode(header, &beacon(), &mut out);
+    assert_eq!(result, Err(EncodeError::NoSender));
+    assert!(out.is_empty());
+    let frame = seal(&content(VERSION, header, &beacon()));
+    assert_eq!(decode(&frame), Err(DecodeError::NoSender));
+}
+
+#[test]
+fn each_fault_has_its_answer() {
+    assert_eq!(decode(&[]), Err(DecodeError::Empty));
+    assert_eq!(decode(&[1; MAX_FRAME_LEN - 1]), Err(DecodeError::Crc));
+    assert_eq!(decode(&[1; MAX_FRAME_LEN]), Err(DecodeError::TooLong));
+    assert_eq!(decode(&[0]), Err(DecodeError::Cobs));
+    assert_eq!(decode(&[3, 9]), Err(DecodeError::Cobs));
+    assert_eq!(decode(&[3, 0, 9]), Err(DecodeError::Cobs));
+    assert_eq!(decode(&[255; 20]), Err(DecodeError::Cobs));
+    assert_eq!(decode(&[1]), Err(DecodeError::Crc));
+    assert_eq!(decode(&[2, 9]), Err(DecodeError::Crc));
+    assert_eq!(decode(&seal(&[])), Err(DecodeError::Body));
+    assert_eq!(decode(&seal(&[VERSION])), Err(DecodeError::Body));
+    assert_eq!(
+        decode(&seal(&[VERSION | TAGGED, 1, 2])),
+        Err(DecodeError::Body)
+    );
+    let mut sound = content(VERSION, HEADER, &beacon());
+    assert!(decode(&seal(&sound)).is_ok());
+    sound.push(0);
+    assert_eq!(decode(&seal(&sound)), Err(DecodeError::Trailing));
+}
+
+#[test]
+fn every_foreign_version_is_named() {
+    for version in (0..128).filter(|version| *version != VERSION) {
+        for flag in [0, TAGGED] {
+            let frame = seal(&content(version | flag, HEADER, &beacon()));
+            assert_eq!(decode(&frame), Err(DecodeError::Version(version)));
+        }
+    }
+}
+
+#[test]
+fn an_unknown_value_in_a_field_is_refused() {
+    let ack = Message::Ack(Ack {
+        to: RobotId(1),
+        number: 9,
+        accepted: true,
+    });
+    let sound = content(VERSION, HEADER, &ack);
+    let tail = sound.len() - 1;
+    assert_eq!(sound[tail - 3..], [3, 1, 9, 1]);
+    for (place, value) in [(tail, 2), (tail - 3, 6), (tail - 3, 255)] {
+        let mut strange = sound.clone();
+        strange[place] = value;
+        assert_eq!(decode(&seal(&strange)), Err(DecodeError::Body));
+    }
+}
+
+#[test]
+fn the_tag_covers_everything_before_it_and_is_handed_out() {
+    let tag = [0, 0, 7, 0];
+    let frame = encoded(HEADER, &beacon(), Some(tag));
+    let sealed = content(VERSION | TAGGED, HEADER, &beacon());
+    let frame = &frame[..frame.len() - 1];
+    let read = decode_verified(frame, |span, found| span == sealed && found == Some(tag));
+    assert_eq!(read.unwrap().tag, Some(tag));
+    assert_eq!(decode_verified(frame, |_, _| false), Err(DecodeError::Tag));
+    let bare = encoded(HEADER, &beacon(), None);
+    let bare = &bare[..bare.len() - 1];
+    assert_eq!(decode(bare).unwrap().tag, None);
+    assert_eq!(
+        decode_verified(bare, |_, found| found.is_some()),
+        Err(DecodeError::Tag)
+    );
+}
+
+#[test]
+fn a_stream_splits_at_zeros_and_keeps_the_last_piece() {
+    let pieces = |bytes| frames(bytes).collect::<StdVec<_>>();
+    assert!(pieces(&[]).is_empty());
+    assert!(pieces(&[0, 0, 0]).is_empty());
+    assert_eq!(pieces(&[1, 2, 0, 0, 3, 0]), [&[1_u8, 2][..], &[3]]);
+    assert_eq!(pieces(&[0, 1, 0, 2, 3]), [&[1_u8][..], &[2, 3]]);
+}
+
+#[test]
+fn a_cut_frame_is_refused_at_every_length_and_one_that_lost_its_delimiter_is_not() {
+    let frame = encoded(HEADER, &beacon(), Some([9; TAG_LEN]));
+    let whole = frame.len() - 1;
+    assert!(decode(&frame[..whole]).is_ok());
+    for len in 0..whole {
+        assert!(decode(&frame[..len]).is_err(), "{len} bytes");
+        assert!(decode(&frame[whole - len..whole]).is_err(), "last {len}");
+    }
+}
+
+/// The messages of a stream in which some bits are wrong, and how many frames were refused.
+fn received(stream: &[u8]) -> (StdVec<Frame>, usize) {
+    let mut refused = 0;
+    let read = frames(stream).filter_map(|frame| decode(frame).map_err(|_| refused += 1).ok());
+    (read.collect(), refused)
+}
+
+#[test]
+fn every_flip_of_one_or_two_bits_of_a_frame_is_found() {
+    let frame = encoded(HEADER, &beacon(), None);
+    let bits = frame.len() * 8;
+    for first in 0..bits {
+        for second in first..bits {
+            let mut damaged = frame.clone();
+            damaged[first / 8] ^= 1 << (first % 8);
+            if second != first {
+                damaged[second / 8] ^= 1 << (second % 8);
+            }
+            // A flip in the delimiter appends a byte; it must not be forgiven either.
+            let (accepted, _) = received(&damaged);
+            assert_eq!(accepted, [], "bits {first} and {second}");
+        }
+    }
+}
+
+#[test]
+fn of_noise_behind_the_crc_one_in_65536_passes_and_fewer_parse() {
+    // Damage that the polynomial promises nothing about: 8 to 23 bits anywhere. Expected to pass
+    // the CRC: 400,000 / 65,536 = 6.
+    let mut rng = Rng::new(1);
+    let mut accepted = 0;
+    let mut passed = 0;
+    for round in 0..400_000_u32 {
+        let header = Header {
+            sequence: round as u16,
+            ..HEADER
+        };
+        let mut out = Outbox::new();
+        encode(header, &beacon(), &mut out).unwrap();
+        let mut damaged = out.to_vec();
+        damaged.pop();
+        for _ in 0..8 + rng.below(16) {
+            let bit = rng.below(damaged.len() as u32 * 8) as usize;
+            damaged[bit / 8] ^= 1 << (bit % 8);
+        }
+        if damaged == out[..damaged.len()] {
+            continue;
+        }
+        match decode(&damaged) {
+            Ok(_) => accepted += 1,
+            Err(DecodeError::Cobs | DecodeError::Crc) => {}
+            Err(_) => passed += 1,
+        }
+    }
+    assert!(
+        accepted + passed <= 20,
+        "{accepted} accepted, {passed} passed"
+    );
+}
+
+proptest! {
+    #[test]
+    fn what_is_sent_is_received(
+        header in header(), message in message(), tag in any::<Option<[u8; TAG_LEN]>>()
+    ) {
+        let frame = encoded(header, &message, tag);
+        prop_assert_eq!(frame.iter().position(|byte| *byte == 0), Some(frame.len() - 1));
+        let read = decode(&frame[..frame.len() - 1]);
+        prop_assert_eq!(read, Ok(Frame { header, message, tag }));
+    }
+
+    #[test]
+    fn no_message_is_longer_than_its_bound(header in header(), message in message()) {
+        let frame = encoded(header, &message, Some([0; TAG_LEN]));
+        prop_assert!(frame.len() <= bound(&message));
+        prop_assert!(bound(&message) <= MAX_FRAME_LEN);
+    }
+
+    #[test]
+    fn a_stream_gives_its_messages_in_order_whatever_lies_between(
+        sent in vec((header(), message()), 0..5),
+        noise in vec(vec(any::<u8>(), 0..100), 5),
+    ) {
+        let mut stream = StdVec::new();
+        for ((header, message), noise) in sent.iter().zip(&noise) {
+            stream.extend(noise);
+            stream.push(0);
+            stream.extend(encoded(*header, message, None));
+        }
+        let (read, _) = received(&stream);
+        let read: StdVec<_> = read.into_iter().map(|f| (f.header, f.message)).collect();
+        prop_assert_eq!(read, sent);
+    }
+
+    #[test]
+    fn any_bytes_get_an_answer(bytes in vec(any::<u8>(), 0..200)) {
+        for piece in frames(&bytes).chain([&bytes[..]]) {
+            prop_assert!(decode(piece).is_err());
+        }
+    }
+
+    #[test]
+    fn any_sound_content_gets_an_answer(bytes in vec(any::<u8>(), 0..80), kind in 0..7_u8) {
+        let mut likely = StdVec::from([VERSION, 0, 1, 0, 0, kind]);
+        likely.extend(&bytes);
+        for content in [bytes, likely] {
+            if let Ok(frame) = decode(&seal(&content)) {
+                // What is believed can be said again.
+                let again = encoded(frame.header, &frame.message, frame.tag);
+                prop_assert_eq!(decode(&again[..again.len() - 1]), Ok(frame));
+            }
+        }
+    }
+
+    #[test]
+    fn stuffing_leaves_no_zero_and_is_undone(content in vec(0..3_u8, 0..=MAX_CONTENT)) {
+        let mut stuffed = content.clone();
+        let first = stuff(&mut stuffed);
+        prop_assert!(first != 0 && !stuffed.contains(&0));
+        let mut back = [9; MAX_CONTENT];
+        prop_assert_eq!(unstuff(first, &stuffed, &mut back), Some(()));
+        prop_assert_eq!(&back[..content.len()], content);
+    }
+}
