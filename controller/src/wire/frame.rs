@@ -26,7 +26,8 @@
 //! a bare UART with one wrong bit in 10^4 and 80 beacons per second, about one wrong beacon in 5
 //! hours, believed for one period. Who needs more uses the tag.
 //!
-//! The table costs 512 bytes of flash.
+//! The table takes 512 bytes of flash; [`encode`] and [`decode`] with all messages 7 KiB in all on a
+//! Cortex-M0 (`opt-level = "s"`, one link-time unit), and no panic is reachable from them.
 
 use super::message::{
     Ack, Beacon, CompactBeacon, GoalAssignment, Message, Request, RobotId, TEMPLATE_PART,
@@ -227,7 +228,11 @@ pub fn decode_verified(
     let content = buffer
         .get_mut(..stuffed.len())
         .ok_or(DecodeError::TooLong)?;
-    unstuff(first, stuffed, content).ok_or(DecodeError::Cobs)?;
+    if stuffed.contains(&0) {
+        return Err(DecodeError::Cobs);
+    }
+    content.copy_from_slice(stuffed);
+    unstuff(first, content).ok_or(DecodeError::Cobs)?;
     let (checked, crc) = content
         .split_last_chunk::<CRC_LEN>()
         .ok_or(DecodeError::Crc)?;
@@ -332,22 +337,17 @@ fn stuff(content: &mut [u8]) -> u8 {
     })
 }
 
-/// The inverse of [`stuff`]; `None` when the chain of distances misses the end or a byte is zero.
-fn unstuff(first: u8, stuffed: &[u8], content: &mut [u8]) -> Option<()> {
-    let mut distance = first;
-    let mut whole = first != 0;
-    for (from, to) in stuffed.iter().zip(content) {
-        // Selections instead of branches: where zeros lie cannot be predicted.
-        let is_zero = distance == 1;
-        *to = if is_zero { 0 } else { *from };
-        distance = if is_zero {
-            *from
-        } else {
-            distance.wrapping_sub(1)
-        };
-        whole &= *from != 0;
+/// The inverse of [`stuff`]; `None` when the chain of distances misses the end.
+fn unstuff(first: u8, content: &mut [u8]) -> Option<()> {
+    let mut next = usize::from(first).checked_sub(1)?;
+    while let Some(byte) = content.get_mut(next) {
+        let distance = core::mem::take(byte);
+        if distance == 0 {
+            return None;
+        }
+        next += usize::from(distance);
     }
-    (whole && distance == 1).then_some(())
+    (next == content.len()).then_some(())
 }
 
 #[cfg(test)]

@@ -1,4 +1,8 @@
-#![allow(clippy::unwrap_used, clippy::indexing_slicing, clippy::panic)]
+#![allow(
+    clippy::unwrap_used,
+    clippy::indexing_slicing,
+    clippy::std_instead_of_alloc
+)]
 
 use super::*;
 use crate::grid::{Cell, Dir};
@@ -301,22 +305,55 @@ fn received(stream: &[u8]) -> (StdVec<Frame>, usize) {
     (read.collect(), refused)
 }
 
+fn flip(bytes: &mut [u8], bit: usize) {
+    bytes[bit >> 3] ^= 1 << (bit & 7);
+}
+
+/// Where COBS' own bytes and the delimiter are.
+fn links(frame: &[u8]) -> StdVec<usize> {
+    let next = |at: &usize| {
+        Some(usize::from(frame[*at]))
+            .filter(|step| *step != 0)
+            .map(|step| at + step)
+    };
+    core::iter::successors(Some(0), next).collect()
+}
+
 #[test]
-fn every_flip_of_one_or_two_bits_of_a_frame_is_found() {
-    let frame = encoded(HEADER, &beacon(), None);
-    let bits = frame.len() * 8;
-    for first in 0..bits {
-        for second in first..bits {
-            let mut damaged = frame.clone();
-            damaged[first / 8] ^= 1 << (first % 8);
-            if second != first {
-                damaged[second / 8] ^= 1 << (second % 8);
+fn every_single_flipped_bit_of_every_kind_of_message_is_found() {
+    let messages = longest().map(|(message, _)| message);
+    for message in messages.into_iter().chain([beacon()]) {
+        for tag in [None, Some([0; TAG_LEN])] {
+            let frame = encoded(HEADER, &message, tag);
+            for bit in 0..frame.len() * 8 {
+                let mut damaged = frame.clone();
+                flip(&mut damaged, bit);
+                assert_eq!(received(&damaged).0, [], "bit {bit} of {message:?}");
             }
-            // A flip in the delimiter appends a byte; it must not be forgiven either.
-            let (accepted, _) = received(&damaged);
-            assert_eq!(accepted, [], "bits {first} and {second}");
         }
     }
+}
+
+#[test]
+fn every_pair_of_flipped_bits_is_found_unless_it_moves_a_zero() {
+    let frame = encoded(HEADER, &beacon(), None);
+    let links = links(&frame);
+    assert_eq!(links.len(), 17);
+    let bits = frame.len() * 8;
+    let mut accepted = 0;
+    for first in 0..bits {
+        for second in first + 1..bits {
+            let mut damaged = frame.clone();
+            flip(&mut damaged, first);
+            flip(&mut damaged, second);
+            if !received(&damaged).0.is_empty() {
+                accepted += 1;
+                assert!(links.contains(&(first >> 3)) || links.contains(&(second >> 3)));
+            }
+        }
+    }
+    // Of 73,536 pairs 58 % hit COBS' own bytes; 1 in 65,536 of those may pass.
+    assert!(accepted <= 2, "{accepted} pairs");
 }
 
 #[test]
@@ -337,7 +374,7 @@ fn of_noise_behind_the_crc_one_in_65536_passes_and_fewer_parse() {
         damaged.pop();
         for _ in 0..8 + rng.below(16) {
             let bit = rng.below(damaged.len() as u32 * 8) as usize;
-            damaged[bit / 8] ^= 1 << (bit % 8);
+            flip(&mut damaged, bit);
         }
         if damaged == out[..damaged.len()] {
             continue;
@@ -413,8 +450,7 @@ proptest! {
         let mut stuffed = content.clone();
         let first = stuff(&mut stuffed);
         prop_assert!(first != 0 && !stuffed.contains(&0));
-        let mut back = [9; MAX_CONTENT];
-        prop_assert_eq!(unstuff(first, &stuffed, &mut back), Some(()));
-        prop_assert_eq!(&back[..content.len()], content);
+        prop_assert_eq!(unstuff(first, &mut stuffed), Some(()));
+        prop_assert_eq!(stuffed, content);
     }
 }
