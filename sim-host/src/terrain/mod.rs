@@ -1,9 +1,12 @@
 //! The land: a grid of impassability, where it comes from, what describes it.
 //!
 //! Files: [`movingai`] (`.map`, `.scen`), [`esri`] heights (`.asc`) through [`slope`], [`ros`] (`.yaml` with `.pgm`; also
-//! the format that Staya writes). [`Terrain::load`] chooses by extension.
+//! the format that Staya writes). [`Terrain::load`] chooses by extension. [`generate`] makes land by chance, and
+//! [`metrics`] describes it.
 
 pub mod esri;
+pub mod generate;
+pub mod metrics;
 pub mod movingai;
 pub mod ros;
 pub mod rows;
@@ -256,6 +259,21 @@ mod tests {
         ] {
             let message = map.crop(x, y, width, height).unwrap_err().to_string();
             assert!(message.contains("leaves the map of 4 x 3"), "{message}");
+        }
+    }
+
+    #[test]
+    fn the_maps_that_come_with_staya_load() {
+        let maps = Path::new(env!("CARGO_MANIFEST_DIR")).join("../maps");
+        let sizes = [
+            ("jacksboro.asc", (324, 344)),
+            ("figure-5.map", (60, 30)),
+            ("arena-40.map", (40, 30)),
+            ("office.yaml", (48, 32)),
+        ];
+        for (name, size) in sizes {
+            let terrain = Terrain::load(&maps.join(name)).unwrap();
+            assert_eq!((terrain.width(), terrain.height()), size, "{name}");
         }
     }
 
