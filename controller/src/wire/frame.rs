@@ -128,7 +128,7 @@ pub struct Header {
     /// Who sends this frame; never nobody.
     pub sender: RobotId,
     /// Counts the sender's frames of every kind, wraps.
-    #[serde(with = "super::fixed")]
+    #[serde(with = "super::fixint")]
     pub sequence: u16,
 }
 

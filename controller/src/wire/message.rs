@@ -1,10 +1,10 @@
 //! The messages, in integers: millimetres, millimetres per second, microseconds, cells.
 //!
-//! The order and the types of the fields are the wire format (postcard): what is marked `fixed`
+//! The order and the types of the fields are the wire format (postcard): what is marked `fixint`
 //! takes its full width, everything else is a byte or a varint. A change here is a new
 //! [`VERSION`](super::VERSION).
 
-use super::fixed;
+use super::fixint;
 use crate::grid::{Cell, Dir};
 use crate::time::Instant;
 use serde::{Deserialize, Serialize};
@@ -55,24 +55,24 @@ pub enum Mode {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Beacon {
     /// Sender's clock when it sampled its state.
-    #[serde(with = "fixed")]
+    #[serde(with = "fixint")]
     pub time: Instant,
     /// World position, mm.
-    #[serde(with = "fixed")]
+    #[serde(with = "fixint")]
     pub position_mm: [i32; 3],
     /// World velocity, mm/s.
-    #[serde(with = "fixed")]
+    #[serde(with = "fixint")]
     pub velocity_mmps: [i16; 3],
     /// Radius of the smallest disc (ball) around the body, mm.
-    #[serde(with = "fixed")]
+    #[serde(with = "fixint")]
     pub radius_mm: u16,
     /// Cell that the robot occupies.
-    #[serde(with = "fixed")]
+    #[serde(with = "fixint")]
     pub cell: Cell,
     /// The move it wants next.
     pub heading: Dir,
     /// Time until it is free to leave its cell, ms (saturating).
-    #[serde(with = "fixed")]
+    #[serde(with = "fixint")]
     pub busy_ms: u16,
     /// Its leader, or nobody.
     pub leader: RobotId,
@@ -81,7 +81,7 @@ pub struct Beacon {
     /// What it is doing.
     pub mode: Mode,
     /// Cell it is heading for.
-    #[serde(with = "fixed")]
+    #[serde(with = "fixint")]
     pub target: Cell,
 }
 
@@ -89,13 +89,13 @@ pub struct Beacon {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CompactBeacon {
     /// Sender's clock when it sampled its state, ms (wraps after 65 s).
-    #[serde(with = "fixed")]
+    #[serde(with = "fixint")]
     pub time_ms: u16,
     /// World position in the plane, mm.
-    #[serde(with = "fixed")]
+    #[serde(with = "fixint")]
     pub position_mm: [i32; 2],
     /// World velocity in the plane, mm/s.
-    #[serde(with = "fixed")]
+    #[serde(with = "fixint")]
     pub velocity_mmps: [i16; 2],
     /// Radius of the smallest disc around the body, cm.
     pub radius_cm: u8,
@@ -127,7 +127,7 @@ pub struct Request {
     /// What it asks.
     pub kind: RequestKind,
     /// How long the request stands after it was received, ms.
-    #[serde(with = "fixed")]
+    #[serde(with = "fixint")]
     pub valid_ms: u16,
 }
 
@@ -146,7 +146,7 @@ pub struct Ack {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TemplateEntry {
     /// Wanted cell difference, neighbour minus self.
-    #[serde(with = "fixed")]
+    #[serde(with = "fixint")]
     pub offset: Cell,
     /// Which robot should stand there; nobody = anyone.
     pub id: RobotId,
@@ -169,7 +169,7 @@ pub struct TemplateAssignment {
     /// The robot's place in the formation.
     pub slot: u8,
     /// Cell difference from the top leader's place to this robot's place.
-    #[serde(with = "fixed")]
+    #[serde(with = "fixint")]
     pub offset: Cell,
     /// The neighbours within the geodesic radius that this part lists.
     pub entries: heapless::Vec<TemplateEntry, TEMPLATE_PART>,
@@ -183,7 +183,7 @@ pub struct GoalAssignment {
     /// Counts assignments of this sender; an older one never replaces a newer one.
     pub version: u8,
     /// The goal of the formation's top leader (each robot adds its own offset).
-    #[serde(with = "fixed")]
+    #[serde(with = "fixint")]
     pub target: Cell,
 }
 

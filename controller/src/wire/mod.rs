@@ -1,6 +1,6 @@
 //! What robots say to each other: messages, and the frames that carry them.
 
-mod fixed;
+mod fixint;
 mod frame;
 mod message;
 

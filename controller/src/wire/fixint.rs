@@ -1,4 +1,4 @@
-//! Integers of fixed width on the wire, little-endian, for `#[serde(with = "fixed")]`.
+//! Integers of fixed width on the wire, little-endian, for `#[serde(with = "fixint")]`.
 //!
 //! Postcard writes integers in 7-bit groups (varint): short for small numbers, up to half longer
 //! for large ones. Positions and times are large, and a fixed width keeps the greatest length of a
