@@ -9,6 +9,6 @@ pub mod cli;
 pub mod plot;
 pub mod radio;
 pub mod record;
-pub mod stats;
+pub mod scenario;
 pub mod terrain;
 pub mod world;

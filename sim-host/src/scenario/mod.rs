@@ -1,0 +1,123 @@
+//! Scenarios: what to simulate, read from TOML and checked before anything runs.
+//!
+//! [`ScenarioFile`] documents every field. A wrong one gives an error that names the file, the line,
+//! the field and the remedy.
+
+mod check;
+mod robots;
+mod schema;
+mod source;
+
+pub use robots::{Formation, Robot};
+pub use schema::{
+    Crop, EntropyTable, FaultTable, FormationEntry, GridTable, NaturalTable, RobotEntry,
+    RobotsTable, ScatteredEntry, ScenEntry, ScenarioFile, TerrainTable, UniformTable,
+};
+pub use source::ScenarioError;
+
+use crate::radio::RadioParams;
+use crate::terrain::Terrain;
+use crate::world::MoveRules;
+use source::Source;
+use staya_controller::wire::RobotId;
+use std::path::Path;
+
+/// What the command line may say instead of the file.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Overrides {
+    /// Instead of `seed`.
+    pub seed: Option<u64>,
+    /// Instead of `ticks`; at least 1.
+    pub ticks: Option<u32>,
+}
+
+/// A robot that goes down for a while.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// Which one.
+    pub robot: RobotId,
+    /// The first tick in which it stands and is silent.
+    pub from_tick: u32,
+    /// The tick in which it starts anew; not before `from_tick`.
+    pub to_tick: u32,
+}
+
+/// A checked scenario, ready to run.
+#[derive(Clone, Debug)]
+pub struct Scenario {
+    /// Its name.
+    pub name: String,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// Ticks after which the run ends.
+    pub ticks: u32,
+    /// Length of a tick, microseconds.
+    pub tick_us: u32,
+    /// The land.
+    pub terrain: Terrain,
+    /// How bodies move.
+    pub rules: MoveRules,
+    /// The radio.
+    pub radio: RadioParams,
+    /// Who takes part, by rising number; starts are free and no two are the same, nor are goals.
+    pub robots: Vec<Robot>,
+    /// The formation of robots 1, 2, ..., if they keep one.
+    pub formation: Option<Formation>,
+    /// Robots that go down.
+    pub faults: Vec<Fault>,
+}
+
+impl Scenario {
+    /// Reads and checks a scenario file and the files that it names.
+    ///
+    /// # Errors
+    /// [`ScenarioError`], naming file, line, field and remedy.
+    pub fn load(path: &Path, overrides: &Overrides) -> Result<Self, ScenarioError> {
+        let text = std::fs::read_to_string(path).map_err(|source| ScenarioError::Io {
+            path: path.to_owned(),
+            source,
+        })?;
+        Self::parse(&text, path, overrides)
+    }
+
+    /// As [`Scenario::load`], of a text that stands (or might stand) in the file `path`.
+    ///
+    /// # Errors
+    /// See [`Scenario::load`].
+    pub fn parse(text: &str, path: &Path, overrides: &Overrides) -> Result<Self, ScenarioError> {
+        let source = Source::new(path, text)?;
+        let mut file: ScenarioFile =
+            toml::from_str(source.text()).map_err(|error| source.serde_error(&error))?;
+        file.seed = overrides.seed.unwrap_or(file.seed);
+        file.ticks = overrides.ticks.unwrap_or(file.ticks);
+        check::general(&source, &file)?;
+        check::radio(&source, &file)?;
+        let terrain = check::terrain(&source, &file)?;
+        let (robots, formation) = robots::build(&source, &file, &terrain)?;
+        let faults = check::faults(&source, &file, &robots)?;
+        Ok(Self {
+            name: file.name,
+            seed: file.seed,
+            ticks: file.ticks,
+            tick_us: check::micros(file.tick_s),
+            terrain,
+            rules: MoveRules {
+                norm: file.grid.norm,
+                corner_cutting: file.grid.corner_cutting,
+            },
+            radio: file.radio,
+            robots,
+            formation,
+            faults,
+        })
+    }
+
+    /// Length of a tick, seconds.
+    #[must_use]
+    pub fn tick_s(&self) -> f64 {
+        f64::from(self.tick_us) / 1e6
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,396 @@
+//! Who takes part: from the `[robots]` table to robots with starts and goals.
+
+use super::schema::{FormationEntry, RobotEntry, ScatteredEntry, ScenEntry};
+use super::source::Source;
+use super::{ScenarioError, ScenarioFile};
+use crate::terrain::Terrain;
+use crate::terrain::movingai;
+use staya_controller::grid::Cell;
+use staya_controller::rand::Rng;
+use staya_controller::wire::RobotId;
+use std::collections::BTreeSet;
+
+/// Keep the draws of this module apart from all others.
+const PLACES: u32 = 0x0053_0001;
+const GOALS: u32 = 0x0053_0002;
+
+/// How often a goal is drawn before the scenario is refused as too crowded.
+const TRIES: u32 = 10_000;
+
+/// A robot of a scenario.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Robot {
+    /// Its number.
+    pub id: RobotId,
+    /// Where it starts.
+    pub start: Cell,
+    /// Where it should go.
+    pub goal: Cell,
+}
+
+/// The graph that a formation keeps (KUZ section 2: Phi). Robot i + 1 has place i.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Formation {
+    /// Where each robot should be, in cells relative to the first.
+    pub places: Vec<Cell>,
+    /// Pairs of places that are neighbours, each pair once, the smaller first.
+    pub edges: Vec<(usize, usize)>,
+}
+
+/// A robot and the field that put it there.
+struct Entry {
+    robot: Robot,
+    field: String,
+    /// The robot itself moves a goal in a wall to the nearest free cell (KUZ formation targets).
+    goal_moves: bool,
+}
+
+pub(super) fn build(
+    source: &Source<'_>,
+    file: &ScenarioFile,
+    terrain: &Terrain,
+) -> Result<(Vec<Robot>, Option<Formation>), ScenarioError> {
+    let table = &file.robots;
+    let mut formation = None;
+    let entries = match (&table.list, &table.formation, &table.scen, &table.scattered) {
+        (Some(list), None, None, None) => listed(list),
+        (None, Some(entry), None, None) => {
+            let graph = graph(source, entry)?;
+            let entries = placed(source, entry, &graph)?;
+            formation = Some(graph);
+            entries
+        }
+        (None, None, Some(entry), None) => from_scen(source, entry, terrain)?,
+        (None, None, None, Some(entry)) => scattered(source, entry, terrain, file.seed)?,
+        _ => {
+            return Err(source.error(
+                "robots",
+                "it is not clear who takes part",
+                "give exactly one of list, formation, scen, scattered",
+            ));
+        }
+    };
+    check(source, &entries, terrain)?;
+    let mut robots: Vec<_> = entries.into_iter().map(|entry| entry.robot).collect();
+    robots.sort_unstable_by_key(|robot| robot.id);
+    Ok((robots, formation))
+}
+
+fn cell([x, y]: [i16; 2]) -> Cell {
+    Cell::new(x, y)
+}
+
+fn listed(list: &[RobotEntry]) -> Vec<Entry> {
+    (1..)
+        .zip(list)
+        .map(|(number, entry)| Entry {
+            robot: Robot {
+                id: RobotId(entry.id.unwrap_or(number)),
+                start: cell(entry.start),
+                goal: cell(entry.goal),
+            },
+            field: format!("robots.list[{}]", number - 1),
+            goal_moves: false,
+        })
+        .collect()
+}
+
+fn graph(source: &Source<'_>, entry: &FormationEntry) -> Result<Formation, ScenarioError> {
+    match (entry.rows, entry.columns, &entry.places, &entry.edges) {
+        (Some(rows), Some(columns), None, None) => {
+            grid_graph(rows, columns, entry.spacing.unwrap_or([3, -3])).ok_or_else(|| {
+                source.error(
+                    "robots.formation",
+                    format!("{rows} rows of {columns} robots do not fit any map"),
+                    "give 1 or more of both, and fewer or a smaller spacing",
+                )
+            })
+        }
+        (None, None, Some(places), Some(edges)) => given_graph(source, places, edges),
+        _ => Err(source.error(
+            "robots.formation",
+            "its shape is not clear",
+            "give rows and columns (and spacing), or places and edges",
+        )),
+    }
+}
+
+fn grid_graph(rows: u16, columns: u16, [dx, dy]: [i16; 2]) -> Option<Formation> {
+    let (rows, columns) = (usize::from(rows), usize::from(columns));
+    let mut places = Vec::new();
+    let mut edges = Vec::new();
+    for row in 0..rows {
+        for column in 0..columns {
+            let x = dx.checked_mul(i16::try_from(column).ok()?)?;
+            let y = dy.checked_mul(i16::try_from(row).ok()?)?;
+            let place = places.len();
+            places.push(Cell::new(x, y));
+            if column + 1 < columns {
+                edges.push((place, place + 1));
+            }
+            if row + 1 < rows {
+                edges.push((place, place + columns));
+            }
+        }
+    }
+    (!places.is_empty()).then_some(Formation { places, edges })
+}
+
+fn given_graph(
+    source: &Source<'_>,
+    places: &[[i16; 2]],
+    edges: &[[u32; 2]],
+) -> Result<Formation, ScenarioError> {
+    if places.first() != Some(&[0, 0]) {
+        return Err(source.error(
+            "robots.formation.places",
+            "the first place is not [0, 0]",
+            "places are relative to robot 1, the top leader",
+        ));
+    }
+    let mut pairs = BTreeSet::new();
+    for (index, &[a, b]) in edges.iter().enumerate() {
+        let place = |id: u32| (id as usize).checked_sub(1).filter(|&at| at < places.len());
+        match (place(a), place(b)) {
+            (Some(a), Some(b)) if a != b => {
+                pairs.insert((a.min(b), a.max(b)));
+            }
+            _ => {
+                return Err(source.error(
+                    &format!("robots.formation.edges[{index}]"),
+                    format!("[{a}, {b}] joins no two robots of the formation"),
+                    format!("give two different numbers from 1 to {}", places.len()),
+                ));
+            }
+        }
+    }
+    Ok(Formation {
+        places: places.iter().copied().map(cell).collect(),
+        edges: pairs.into_iter().collect(),
+    })
+}
+
+fn placed(
+    source: &Source<'_>,
+    entry: &FormationEntry,
+    graph: &Formation,
+) -> Result<Vec<Entry>, ScenarioError> {
+    let shifted =
+        |[x, y]: [i16; 2], by: Cell| Some(Cell::new(x.checked_add(by.x)?, y.checked_add(by.y)?));
+    (1..)
+        .zip(&graph.places)
+        .map(
+            |(number, &place)| match (shifted(entry.start, place), shifted(entry.goal, place)) {
+                (Some(start), Some(goal)) => Ok(Entry {
+                    robot: Robot {
+                        id: RobotId(number),
+                        start,
+                        goal,
+                    },
+                    field: "robots.formation".to_owned(),
+                    goal_moves: number > 1,
+                }),
+                _ => Err(source.error(
+                    "robots.formation",
+                    format!("robot {number} would be outside of any map"),
+                    "give a smaller formation or another start and goal",
+                )),
+            },
+        )
+        .collect()
+}
+
+fn from_scen(
+    source: &Source<'_>,
+    entry: &ScenEntry,
+    terrain: &Terrain,
+) -> Result<Vec<Entry>, ScenarioError> {
+    let path = source.folder().join(&entry.file);
+    let queries = movingai::load_scen(&path).map_err(|error| {
+        source.error(
+            "robots.scen.file",
+            error.to_string(),
+            "file names are relative to the scenario file",
+        )
+    })?;
+    let count = entry.count as usize;
+    if count == 0 || count > queries.len() {
+        return Err(source.error(
+            "robots.scen.count",
+            format!("{count} robots are wanted, the file has {}", queries.len()),
+            format!("give 1 to {}", queries.len()),
+        ));
+    }
+    (1..)
+        .zip(&queries[..count])
+        .map(|(number, query)| {
+            if (query.width, query.height) != (terrain.width(), terrain.height()) {
+                return Err(source.error(
+                    "robots.scen.file",
+                    format!(
+                        "it is for a map of {} x {} cells, the terrain has {} x {}",
+                        query.width,
+                        query.height,
+                        terrain.width(),
+                        terrain.height()
+                    ),
+                    format!("use the map {} uncropped", query.map),
+                ));
+            }
+            Ok(Entry {
+                robot: Robot {
+                    id: RobotId(number),
+                    start: query.start,
+                    goal: query.goal,
+                },
+                field: "robots.scen".to_owned(),
+                goal_moves: false,
+            })
+        })
+        .collect()
+}
+
+/// Robots are numbered from south to north and, within a row, from west to east, so that neighbours
+/// on the land are neighbours in memory.
+fn scattered(
+    source: &Source<'_>,
+    entry: &ScatteredEntry,
+    terrain: &Terrain,
+    seed: u64,
+) -> Result<Vec<Entry>, ScenarioError> {
+    let (width, height) = (i32::from(terrain.width()), i32::from(terrain.height()));
+    let mut free: Vec<u32> = (0..)
+        .zip(terrain.cells())
+        .filter_map(|(at, &u)| (u != staya_controller::grid::BLOCKED).then_some(at))
+        .collect();
+    let count = entry.count as usize;
+    if count == 0 || count > free.len() {
+        return Err(source.error(
+            "robots.scattered.count",
+            format!("{count} robots on {} passable cells", free.len()),
+            format!("give 1 to {}", free.len()),
+        ));
+    }
+    let mut rng = Rng::keyed(seed, PLACES, 0, 0);
+    for at in 0..count {
+        let other = at + rng.below((free.len() - at) as u32) as usize;
+        free.swap(at, other);
+    }
+    free.truncate(count);
+    free.sort_unstable();
+    let cell_at = |at: u32| {
+        let at = at as i32;
+        (at % width, at / width)
+    };
+    let travel = entry.travel.map_or(i32::MAX, i32::from);
+    let mut taken = vec![false; terrain.cells().len()];
+    (1..)
+        .zip(free)
+        .map(|(number, at)| {
+            let (x, y) = cell_at(at);
+            let mut rng = Rng::keyed(seed, GOALS, number, 0);
+            let mut draw = |at: i32, length: i32| {
+                let low = at.saturating_sub(travel).max(0);
+                let high = at.saturating_add(travel).min(length - 1);
+                low + rng.below((high - low + 1) as u32) as i32
+            };
+            let goal = (0..TRIES)
+                .map(|_| Cell::new(draw(x, width) as i16, draw(y, height) as i16))
+                .find(|&goal| {
+                    let at = terrain.index(goal).filter(|_| terrain.is_passable(goal));
+                    at.is_some_and(|at| !std::mem::replace(&mut taken[at], true))
+                });
+            let Some(goal) = goal else {
+                return Err(source.error(
+                    "robots.scattered",
+                    format!("no free goal is left within reach of robot {number}"),
+                    "give fewer robots or a longer travel",
+                ));
+            };
+            Ok(Entry {
+                robot: Robot {
+                    id: RobotId(number),
+                    start: Cell::new(x as i16, y as i16),
+                    goal,
+                },
+                field: "robots.scattered".to_owned(),
+                goal_moves: false,
+            })
+        })
+        .collect()
+}
+
+/// Numbers are unique, starts and goals on passable land, and nobody has another's start or goal.
+fn check(source: &Source<'_>, entries: &[Entry], terrain: &Terrain) -> Result<(), ScenarioError> {
+    if entries.is_empty() {
+        return Err(source.error("robots", "nobody takes part", "give at least one robot"));
+    }
+    let mut ids = BTreeSet::new();
+    let mut starts = vec![0; terrain.cells().len()];
+    let mut goals = starts.clone();
+    for entry in entries {
+        let RobotId(id) = entry.robot.id;
+        if id == 0 || !ids.insert(id) {
+            return Err(source.error(
+                &format!("{}.id", entry.field),
+                format!("{id} is not free"),
+                "numbers are 1 or more, and each robot has its own",
+            ));
+        }
+        for (name, place, taken) in [
+            ("start", entry.robot.start, &mut starts),
+            ("goal", entry.robot.goal, &mut goals),
+        ] {
+            let field = format!("{}.{name}", entry.field);
+            let Some(at) = terrain.index(place) else {
+                return Err(source.error(
+                    &field,
+                    format!(
+                        "the {name} ({}, {}) of robot {id} is not on the map",
+                        place.x, place.y
+                    ),
+                    format!(
+                        "the map has columns 0 to {} and rows 0 to {}",
+                        terrain.width() - 1,
+                        terrain.height() - 1
+                    ),
+                ));
+            };
+            if !terrain.is_passable(place) && !(name == "goal" && entry.goal_moves) {
+                let what = format!(
+                    "the {name} ({}, {}) of robot {id} is in a wall",
+                    place.x, place.y
+                );
+                let remedy = match nearest_passable(terrain, place) {
+                    Some(near) => format!("the nearest free cell is [{}, {}]", near.x, near.y),
+                    None => "the map has no free cell at all".to_owned(),
+                };
+                return Err(source.error(&field, what, remedy));
+            }
+            let other = std::mem::replace(&mut taken[at], id);
+            if other != 0 {
+                return Err(source.error(
+                    &field,
+                    format!(
+                        "robots {other} and {id} have the same {name} ({}, {})",
+                        place.x, place.y
+                    ),
+                    "a cell holds one robot: move one of them",
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn nearest_passable(terrain: &Terrain, to: Cell) -> Option<Cell> {
+    let (width, height) = (terrain.width(), terrain.height());
+    let rows = (0..height).filter_map(|y| i16::try_from(y).ok());
+    rows.flat_map(|y| {
+        (0..width)
+            .filter_map(|x| i16::try_from(x).ok())
+            .map(move |x| Cell::new(x, y))
+    })
+    .filter(|&cell| terrain.is_passable(cell))
+    .min_by_key(|cell| (cell.distance_squared(to), cell.y, cell.x))
+}

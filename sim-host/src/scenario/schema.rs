@@ -1,0 +1,237 @@
+//! What a scenario file may say: the one place where every field is documented.
+//!
+//! Cells are `[x, y]` from the south-west corner of the (cropped) map, x east and y north. Times are
+//! simulated. File names are relative to the scenario file.
+
+use crate::radio::RadioParams;
+use crate::terrain::LoadOptions;
+use serde::Deserialize;
+use staya_controller::grid::Norm;
+use std::path::PathBuf;
+
+/// A whole file.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ScenarioFile {
+    /// Name of the scenario; the run's results go to `out/<name>`. Letters, digits, `-` and `_`.
+    pub name: String,
+    /// Seed of everything random. Default: 0. `--seed` replaces it.
+    #[serde(default)]
+    pub seed: u64,
+    /// Ticks after which the run ends, 1 or more; it ends earlier when all robots have arrived.
+    /// `--ticks` replaces it.
+    pub ticks: u32,
+    /// Length of a tick in seconds, 0.001 to 60: the time in which a robot crosses a cell of
+    /// impassability 1. Default: 1.
+    #[serde(default = "one")]
+    pub tick_s: f64,
+    /// The land.
+    pub terrain: TerrainTable,
+    /// Rules of the grid.
+    #[serde(default)]
+    pub grid: GridTable,
+    /// The radio. Without this table: perfect within 100 m.
+    #[serde(default)]
+    pub radio: RadioParams,
+    /// Who takes part.
+    pub robots: RobotsTable,
+    /// Robots that fail during the run.
+    #[serde(default)]
+    pub fault: Vec<FaultTable>,
+}
+
+const fn one() -> f64 {
+    1.0
+}
+
+/// `[terrain]`: exactly one of `file`, `uniform`, `natural`, `entropy`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TerrainTable {
+    /// A map: `.map` (Moving AI), `.asc` (ESRI heights), `.yaml` (ROS map_server).
+    pub file: Option<PathBuf>,
+    /// Each cell's impassability drawn on its own. With `classes = 1`: flat land.
+    pub uniform: Option<UniformTable>,
+    /// Hills of mud (KUZ section 5).
+    pub natural: Option<NaturalTable>,
+    /// Land with a wanted configuration entropy and total edge (KUZ section 4).
+    pub entropy: Option<EntropyTable>,
+    /// How the file becomes impassability: `{ swamp, downsample, unknown, classes, slope = { classes, max_slope } }`.
+    #[serde(default)]
+    pub load: LoadOptions,
+    /// The part of the map to use. Default: all of it.
+    pub crop: Option<Crop>,
+    /// Side of a cell in metres, more than 0. Default: what the map says, else 1.
+    pub cell_m: Option<f64>,
+}
+
+/// `terrain.uniform`.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct UniformTable {
+    /// Cells from west to east.
+    pub width: u16,
+    /// Cells from south to north.
+    pub height: u16,
+    /// Number of classes: a cell takes 1 to this many ticks. Default: 9.
+    #[serde(default = "nine")]
+    pub classes: u8,
+    /// Seed of the land. Default: the scenario's seed.
+    pub seed: Option<u64>,
+}
+
+/// `terrain.natural`.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NaturalTable {
+    /// Cells from west to east.
+    pub width: u16,
+    /// Cells from south to north.
+    pub height: u16,
+    /// Number of classes: a cell takes 1 to this many ticks. Default: 9.
+    #[serde(default = "nine")]
+    pub classes: u8,
+    /// Seed of the land. Default: the scenario's seed.
+    pub seed: Option<u64>,
+    /// Number of hilltops.
+    pub obstacles: u32,
+    /// Shape of a hill: `"euclidean"` (round; the default) or `"chebyshev"` (square).
+    #[serde(default)]
+    pub norm: Norm,
+}
+
+/// `terrain.entropy`.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct EntropyTable {
+    /// Cells from west to east.
+    pub width: u16,
+    /// Cells from south to north.
+    pub height: u16,
+    /// Number of classes: a cell takes 1 to this many ticks. Default: 9.
+    #[serde(default = "nine")]
+    pub classes: u8,
+    /// Seed of the land. Default: the scenario's seed.
+    pub seed: Option<u64>,
+    /// Wanted configuration entropy S, 0 to ln(classes).
+    pub entropy: f64,
+    /// How far S may be off. Default: 0.01.
+    #[serde(default = "hundredth")]
+    pub entropy_tolerance: f64,
+    /// Wanted total edge TE.
+    pub total_edge: u64,
+    /// How far TE may be off. Default: 0.
+    #[serde(default)]
+    pub edge_tolerance: u64,
+}
+
+const fn nine() -> u8 {
+    9
+}
+
+const fn hundredth() -> f64 {
+    0.01
+}
+
+/// A rectangle of cells: `{ x, y, width, height }`, x and y being its south-west corner.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[expect(missing_docs, reason = "said above")]
+pub struct Crop {
+    pub x: u16,
+    pub y: u16,
+    pub width: u16,
+    pub height: u16,
+}
+
+/// `[grid]`.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct GridTable {
+    /// `"euclidean"` (a diagonal move is sqrt 2 long; the default) or `"chebyshev"` (1).
+    pub norm: Norm,
+    /// Whether a diagonal move may pass a blocked orthogonal neighbour. Default: false.
+    pub corner_cutting: bool,
+}
+
+/// `[robots]`: exactly one of these.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RobotsTable {
+    /// Each robot by itself.
+    pub list: Option<Vec<RobotEntry>>,
+    /// A formation that travels together.
+    pub formation: Option<FormationEntry>,
+    /// The first robots of a Moving AI multi-agent scenario.
+    pub scen: Option<ScenEntry>,
+    /// Robots at random places.
+    pub scattered: Option<ScatteredEntry>,
+}
+
+/// One robot of `robots.list`.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RobotEntry {
+    /// Its number, 1 or more. Default: its place in the list, counted from 1.
+    pub id: Option<u32>,
+    /// The cell where it starts.
+    pub start: [i16; 2],
+    /// The cell where it should go.
+    pub goal: [i16; 2],
+}
+
+/// `robots.formation`: robots 1, 2, 3, ... in rows, or at given places.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FormationEntry {
+    /// Rows of a grid formation: robots are numbered row by row, neighbours in a row or column are
+    /// joined by an edge.
+    pub rows: Option<u16>,
+    /// Robots in a row.
+    pub columns: Option<u16>,
+    /// Cells from one column to the next (x) and from one row to the next (y), either may be
+    /// negative. Default: `[3, -3]`, which looks as on paper.
+    pub spacing: Option<[i16; 2]>,
+    /// Instead of rows and columns: where each robot should be, in cells relative to the first.
+    pub places: Option<Vec<[i16; 2]>>,
+    /// With `places`: pairs of robot numbers that are neighbours in the formation's graph.
+    pub edges: Option<Vec<[u32; 2]>>,
+    /// The cell where robot 1, the top leader, starts.
+    pub start: [i16; 2],
+    /// The cell where robot 1 should go; the others go to their places around it.
+    pub goal: [i16; 2],
+}
+
+/// `robots.scen`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ScenEntry {
+    /// The `.scen` file; its map must be the terrain, uncropped.
+    pub file: PathBuf,
+    /// How many robots to take from it, from the top.
+    pub count: u32,
+}
+
+/// `robots.scattered`.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ScatteredEntry {
+    /// How many robots, each in a cell of its own.
+    pub count: u32,
+    /// Farthest distance of a goal from its start in cells along each axis. Default: the whole map.
+    pub travel: Option<u16>,
+}
+
+/// `[[fault]]`: a robot whose computer goes down and comes up again, having forgotten everything
+/// but its number, its parameters and its task.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FaultTable {
+    /// The robot.
+    pub robot: u32,
+    /// When it goes down, seconds after the start.
+    pub at_s: f64,
+    /// How long it stands and is silent, seconds. Its clock starts from 0 again. Default: 0.
+    #[serde(default)]
+    pub down_s: f64,
+}

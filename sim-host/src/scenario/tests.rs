@@ -1,0 +1,339 @@
+use super::*;
+use proptest::prelude::*;
+use staya_controller::grid::Cell;
+use std::fs;
+
+const MAP: &str = "type octile\nheight 3\nwidth 4\nmap\n....\n.@..\n....\n";
+
+const HEAD: &str = "name = \"t\"\nticks = 5\n[terrain]\nfile = \"m.map\"\n";
+
+/// Parses a scenario whose folder holds the map `m.map`.
+fn parse(text: &str) -> Result<Scenario, ScenarioError> {
+    let dir = tempfile::tempdir().expect("temporary folder");
+    fs::write(dir.path().join("m.map"), MAP).expect("write");
+    let path = dir.path().join("s.toml");
+    fs::write(&path, text).expect("write");
+    Scenario::load(&path, &Overrides::default())
+}
+
+/// The error's text after the folder's name.
+fn refusal(text: &str) -> String {
+    let error = parse(text).expect_err("a refusal").to_string();
+    let at = error
+        .find("s.toml")
+        .unwrap_or_else(|| panic!("names no file: {error}"));
+    error[at..].to_owned()
+}
+
+fn with_robots(robots: &str) -> String {
+    format!("{HEAD}[robots]\n{robots}\n")
+}
+
+#[test]
+fn the_smallest_scenario_has_the_documented_defaults() {
+    let scenario = parse(&with_robots("list = [{ start = [0, 0], goal = [3, 2] }]")).expect("good");
+    assert_eq!(
+        (scenario.seed, scenario.ticks, scenario.tick_us),
+        (0, 5, 1_000_000)
+    );
+    assert_eq!(scenario.rules, MoveRules::default());
+    assert_eq!(scenario.radio, RadioParams::default());
+    let [robot] = scenario.robots[..] else {
+        panic!("one robot")
+    };
+    assert_eq!(
+        (robot.id, robot.start, robot.goal),
+        (RobotId(1), Cell::new(0, 0), Cell::new(3, 2))
+    );
+}
+
+#[test]
+fn the_command_line_overrides_the_file() {
+    let text = with_robots("list = [{ start = [0, 0], goal = [3, 2] }]");
+    let dir = tempfile::tempdir().expect("temporary folder");
+    fs::write(dir.path().join("m.map"), MAP).expect("write");
+    let overrides = Overrides {
+        seed: Some(77),
+        ticks: Some(9),
+    };
+    let scenario = Scenario::parse(&text, &dir.path().join("s.toml"), &overrides).expect("good");
+    assert_eq!((scenario.seed, scenario.ticks), (77, 9));
+}
+
+#[test]
+fn every_mistake_is_named_with_line_field_and_remedy() {
+    let robots = "[robots]\nlist = [{ start = [0, 0], goal = [3, 2] }]\n";
+    let cases = [
+        // Not TOML at all.
+        ("name = ", "s.toml:1: "),
+        // Unknown fields, wrong types, missing fields.
+        (
+            &format!("colour = 1\n{HEAD}{robots}"),
+            "s.toml:1: colour: unknown field `colour`",
+        ),
+        (
+            &format!("{HEAD}{robots}[radio]\nloss = \"much\"\n"),
+            "s.toml:8: radio.loss: invalid type",
+        ),
+        (
+            &format!("{HEAD}{robots}[radio]\nlosses = 0.5\n"),
+            "s.toml:8: radio.losses: unknown field `losses`, expected one of",
+        ),
+        (
+            &format!("{HEAD}{robots}[radio.burst]\nshare = 0.5\n"),
+            "s.toml:7: radio.burst: missing field `mean_ms`",
+        ),
+        ("ticks = 3\n", "s.toml:1: missing field `name`"),
+        (
+            "name = \"t\"\nticks = -3\n",
+            "s.toml:2: ticks: invalid value",
+        ),
+        // Values out of range, NaN, wrong units.
+        (
+            &format!("{HEAD}{robots}[radio]\nloss = 30\n"),
+            "s.toml:8: radio.loss: 30 is no probability; give a number from 0 to 1",
+        ),
+        (
+            &format!("{HEAD}{robots}[radio]\n\nbit_error_rate = nan\n"),
+            "s.toml:9: radio.bit_error_rate: NaN is no probability",
+        ),
+        (
+            &format!("{HEAD}{robots}[radio]\nrange_m = nan\n"),
+            "s.toml:8: radio.range_m: NaN is no distance",
+        ),
+        (
+            &format!("{HEAD}{robots}[radio]\ndelay_ms = -1\n"),
+            "s.toml:8: radio.delay_ms: -1 is out of range; give 0 to 600000 milliseconds",
+        ),
+        (
+            &format!("{HEAD}{robots}[radio]\nblackout_s = [[0, 1], [5, 4]]\n"),
+            "s.toml:8: radio.blackout_s[1]: [5, 4] is no span",
+        ),
+        (
+            &format!("{HEAD}{robots}[radio]\nburst = {{ share = 0.5, mean_ms = 100 }}\n"),
+            "s.toml:8: radio.burst.mean_ms: 100 is out of range; with this tick and share, give 2000.0",
+        ),
+        (
+            &format!("tick_s = inf\n{HEAD}{robots}"),
+            "s.toml:1: tick_s: inf is out of range; give 0.001 to 60 seconds",
+        ),
+        (
+            &format!("{HEAD}{robots}").replace("ticks = 5", "ticks = 0"),
+            "s.toml:2: ticks: 0 ticks",
+        ),
+        (
+            &format!("{HEAD}{robots}").replace("\"t\"", "\"../x\""),
+            "s.toml:1: name: \"../x\" cannot name a folder",
+        ),
+        // The land.
+        (
+            &format!("{HEAD}{robots}").replace("m.map", "no.map"),
+            "s.toml:4: terrain.file: ",
+        ),
+        (
+            &format!("{HEAD}crop = {{ x = 2, y = 0, width = 4, height = 1 }}\n{robots}"),
+            "s.toml:5: terrain.crop: ",
+        ),
+        (
+            &format!("{HEAD}cell_m = nan\n{robots}"),
+            "s.toml:5: terrain.cell_m: NaN is out of range",
+        ),
+        (
+            &format!("name = \"t\"\nticks = 5\n[terrain]\n{robots}"),
+            "s.toml:3: terrain: it is not clear what land is meant; give exactly one of",
+        ),
+        // Robots.
+        (
+            &with_robots(""),
+            "s.toml:5: robots: it is not clear who takes part; give exactly one of",
+        ),
+        (
+            &with_robots("list = []"),
+            "s.toml:5: robots: nobody takes part",
+        ),
+        (
+            &with_robots(
+                "list = [\n{ start = [0, 0], goal = [3, 2] },\n{ start = [0, 0], goal = [3, 1] }]",
+            ),
+            "s.toml:8: robots.list[1].start: robots 1 and 2 have the same start (0, 0); a cell holds one",
+        ),
+        (
+            &with_robots("list = [{ start = [0, 0], goal = [1, 1] }]"),
+            "s.toml:6: robots.list[0].goal: the goal (1, 1) of robot 1 is in a wall; the nearest free cell is [1, 0]",
+        ),
+        (
+            &with_robots("list = [{ start = [0, 3], goal = [1, 2] }]"),
+            "s.toml:6: robots.list[0].start: the start (0, 3) of robot 1 is not on the map; the map has columns 0 to 3 and rows 0 to 2",
+        ),
+        (
+            &with_robots("list = [{ id = 0, start = [0, 0], goal = [1, 2] }]"),
+            "s.toml:6: robots.list[0].id: 0 is not free",
+        ),
+        (
+            &with_robots("formation = { rows = 2, columns = 2, start = [0, 2], goal = [0, 2] }"),
+            "s.toml:6: robots.formation.start: the start (0, -1) of robot 3 is not on the map",
+        ),
+        (
+            &with_robots("formation = { rows = 2, start = [0, 2], goal = [0, 2] }"),
+            "s.toml:6: robots.formation: its shape is not clear",
+        ),
+        (
+            &with_robots(
+                "formation = { rows = 60000, columns = 60000, start = [0, 2], goal = [0, 2] }",
+            ),
+            "s.toml:6: robots.formation: 60000 rows of 60000 robots do not fit any map",
+        ),
+        (
+            &with_robots(
+                "formation = { places = [[0, 0], [1, 0]], edges = [[1, 3]], start = [0, 2], goal = [0, 2] }",
+            ),
+            "s.toml:6: robots.formation.edges[0]: [1, 3] joins no two robots",
+        ),
+        (
+            &with_robots("scen = { file = \"none.scen\", count = 2 }"),
+            "s.toml:6: robots.scen.file: ",
+        ),
+        (
+            &with_robots("scattered = { count = 12 }"),
+            "s.toml:6: robots.scattered.count: 12 robots on 11 passable cells",
+        ),
+        (
+            &format!(
+                "{}[[fault]]\nrobot = 2\nat_s = 1\n",
+                with_robots("list = [{ start = [0, 0], goal = [1, 2] }]")
+            ),
+            "s.toml:8: fault[0].robot: there is no robot 2",
+        ),
+        (
+            &format!(
+                "{}[[fault]]\nrobot = 1\nat_s = nan\n",
+                with_robots("list = [{ start = [0, 0], goal = [1, 2] }]")
+            ),
+            "s.toml:9: fault[0].at_s: NaN is out of range",
+        ),
+    ];
+    for (text, expected) in cases {
+        let refusal = refusal(text);
+        assert!(
+            refusal.starts_with(expected),
+            "expected {expected}\n     got {refusal}\nfor\n{text}"
+        );
+        assert!(refusal.contains("; "), "no remedy: {refusal}");
+    }
+}
+
+#[test]
+fn a_missing_file_is_named() {
+    let error = Scenario::load(Path::new("no/such.toml"), &Overrides::default()).expect_err("none");
+    assert!(error.to_string().starts_with("no/such.toml: "), "{error}");
+}
+
+#[test]
+fn the_order_of_a_list_does_not_matter_beyond_numbers() {
+    let one = parse(&with_robots(
+        "list = [{ id = 7, start = [0, 0], goal = [3, 2] }, { id = 3, start = [1, 0], goal = [2, 2] }]",
+    ));
+    let two = parse(&with_robots(
+        "list = [{ id = 3, start = [1, 0], goal = [2, 2] }, { id = 7, start = [0, 0], goal = [3, 2] }]",
+    ));
+    let (one, two) = (one.expect("good"), two.expect("good"));
+    assert_eq!(one.robots, two.robots);
+    assert_eq!(one.robots[0].id, RobotId(3));
+}
+
+#[test]
+fn grid_formation_is_numbered_row_by_row_with_edges_to_both_sides() {
+    let text = with_robots(
+        "formation = { rows = 2, columns = 2, spacing = [1, -1], start = [2, 2], goal = [2, 1] }",
+    );
+    let scenario = parse(&text).expect("good");
+    let starts = scenario
+        .robots
+        .iter()
+        .map(|r| (r.id.0, r.start.x, r.start.y));
+    assert!(starts.eq([(1, 2, 2), (2, 3, 2), (3, 2, 1), (4, 3, 1)]));
+    let edges = scenario.formation.expect("a formation").edges;
+    assert_eq!(edges, [(0, 1), (0, 2), (1, 3), (2, 3)]);
+}
+
+#[test]
+fn only_the_top_leader_of_a_formation_needs_a_free_goal() {
+    let at = |x| {
+        with_robots(&format!(
+            "formation = {{ places = [[0, 0], [-1, 0]], edges = [[2, 1], [1, 2]], start = [3, 2], goal = [{x}, 1] }}"
+        ))
+    };
+    let scenario = parse(&at(2)).expect("robot 2 moves its goal itself");
+    let formation = scenario.formation.expect("a formation");
+    assert_eq!(formation.edges, [(0, 1)]);
+    assert!(refusal(&at(1)).contains("the goal (1, 1) of robot 1 is in a wall"));
+}
+
+#[test]
+fn scattered_robots_fill_even_a_full_map_and_keep_within_travel() {
+    let scenario = parse(&with_robots("scattered = { count = 11 }")).expect("good");
+    assert_eq!(scenario.robots.len(), 11);
+    let scenario = parse(&with_robots("scattered = { count = 5, travel = 1 }"));
+    for robot in scenario.expect("good").robots {
+        assert!(robot.start.chebyshev(robot.goal) <= 1);
+    }
+}
+
+#[test]
+fn a_multi_agent_scenario_gives_starts_and_goals() {
+    let dir = tempfile::tempdir().expect("temporary folder");
+    fs::write(dir.path().join("m.map"), MAP).expect("write");
+    let scen = "version 1\n0\tm.map\t4\t3\t0\t0\t3\t2\t4.2\n0\tm.map\t4\t3\t1\t0\t2\t2\t3.0\n";
+    fs::write(dir.path().join("m.scen"), scen).expect("write");
+    let load = |count| {
+        let text = with_robots(&format!("scen = {{ file = \"m.scen\", count = {count} }}"));
+        Scenario::parse(&text, &dir.path().join("s.toml"), &Overrides::default())
+    };
+    let robots = load(2).expect("good").robots;
+    assert_eq!(
+        (robots[0].start, robots[0].goal),
+        (Cell::new(0, 2), Cell::new(3, 0))
+    );
+    for count in [0, 3] {
+        let error = load(count).expect_err("too few or too many").to_string();
+        assert!(error.contains("robots.scen.count"), "{error}");
+    }
+}
+
+#[test]
+fn faults_become_ticks() {
+    let text = format!(
+        "tick_s = 0.5\n{}[[fault]]\nrobot = 1\nat_s = 1.2\ndown_s = 1\n",
+        with_robots("list = [{ start = [0, 0], goal = [1, 2] }]")
+    );
+    let fault = Fault {
+        robot: RobotId(1),
+        from_tick: 3,
+        to_tick: 5,
+    };
+    assert_eq!(parse(&text).expect("good").faults, [fault]);
+}
+
+proptest! {
+    #[test]
+    fn arbitrary_text_never_panics(text in "\\PC{0,200}") {
+        let _ = Scenario::parse(&text, Path::new("x.toml"), &Overrides::default());
+    }
+
+    #[test]
+    fn arbitrary_changes_to_a_good_scenario_never_panic(
+        changes in prop::collection::vec((0..600_usize, "[-0-9a-z\\[\\]{}=., \\n\"]{0,3}"), 1..6),
+    ) {
+        let mut text: Vec<char> = format!(
+            "tick_s = 0.5\n{HEAD}crop = {{ x = 0, y = 0, width = 4, height = 3 }}\n[grid]\nnorm = \"chebyshev\"\n[radio]\nrange_m = 3\n\
+             loss = 0.5\nburst = {{ share = 0.1, mean_ms = 1000 }}\nblackout_s = [[1, 2]]\n[robots]\n\
+             formation = {{ rows = 1, columns = 2, spacing = [1, 1], start = [0, 0], goal = [2, 0] }}\n[[fault]]\nrobot = 1\nat_s = 3\n"
+        ).chars().collect();
+        for (at, change) in changes {
+            let at = at % text.len();
+            let end = (at + change.len()).min(text.len());
+            text.splice(at..end, change.chars());
+        }
+        let _ = parse(&text.into_iter().collect::<String>());
+    }
+}
