@@ -10,5 +10,6 @@ pub mod plot;
 pub mod radio;
 pub mod record;
 pub mod scenario;
+pub mod stats;
 pub mod terrain;
 pub mod world;

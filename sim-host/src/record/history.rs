@@ -8,12 +8,12 @@ use staya_controller::wire::Mode;
 const SERIES_POINTS: usize = 1 << 14;
 
 /// One robot in one frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
+    /// World position, metres.
+    pub position_m: [f64; 2],
     /// Its number.
     pub id: u32,
-    /// Where it stood.
-    pub cell: Cell,
     /// Where it headed.
     pub target: Cell,
     /// What it was doing.
@@ -24,7 +24,7 @@ impl From<RobotRow> for Sample {
     fn from(row: RobotRow) -> Self {
         Self {
             id: row.id,
-            cell: row.cell,
+            position_m: row.position_m,
             target: row.target,
             mode: row.mode,
         }
@@ -198,11 +198,14 @@ impl History {
             return;
         }
         self.frames.push(self.latest.clone());
-        while self.frames.len() > 1 && self.samples() > self.max_samples {
-            self.frame_every = self.frame_every.saturating_mul(2);
+        while self.frames.len() > 1
+            && self.samples() > self.max_samples
+            && self.frame_every <= u32::MAX / 2
+        {
+            self.frame_every *= 2;
             let mut frames = std::mem::take(&mut self.frames);
             let (first, every) = (frames[0].tick, self.frame_every);
-            frames.retain(|frame| frame.tick.wrapping_sub(first) % every == 0);
+            frames.retain(|frame| frame.tick.wrapping_sub(first).is_multiple_of(every));
             self.frames = frames;
         }
     }
@@ -217,7 +220,7 @@ impl History {
 
     fn is_due(&self, tick: u32) -> bool {
         let first = self.frames.first().map_or(tick, |frame| frame.tick);
-        tick.wrapping_sub(first) % self.frame_every == 0
+        tick.wrapping_sub(first).is_multiple_of(self.frame_every)
     }
 
     fn samples(&self) -> usize {

@@ -81,20 +81,20 @@ impl AddAssign for PacketCounts {
 /// How much to keep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// Ticks between two samples in `trace.csv`; 0 chooses: one per started thousand robots, so that
-    /// a tick costs at most about 1000 lines on average.
+    /// Ticks between two samples in `trace.csv`; 0: one per started thousand robots, so that a
+    /// tick adds at most about 1000 lines on average.
     pub trace_every: u32,
-    /// Robot samples that [`History`] may hold, 16 bytes each. When they run out, every second frame
+    /// Robot samples that [`History`] may hold, 32 bytes each. When they run out, every second frame
     /// goes and the interval doubles; the first and the last frame always stay.
     pub history_samples: usize,
 }
 
 impl Default for Options {
-    /// Chosen interval, 32 MB of history.
+    /// The interval by the number of robots, 32 MB of history.
     fn default() -> Self {
         Self {
             trace_every: 0,
-            history_samples: 1 << 21,
+            history_samples: 1 << 20,
         }
     }
 }
