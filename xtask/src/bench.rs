@@ -1,0 +1,176 @@
+//! `cargo xtask bench`: benchmarks beside peer crates, in one run on one machine.
+
+use crate::repo::Repo;
+use crate::report::{Counts, Report};
+use std::fs;
+use std::path::Path;
+use std::time::SystemTime;
+
+const PEERS: &str = "tests/peers";
+
+/// What a benchmark should reach.
+enum Goal {
+    /// At least this many times as fast as the other benchmark.
+    Faster(f64, &'static str),
+    /// A median below this many nanoseconds.
+    Under(f64),
+}
+
+/// Benchmarks with a goal; the others are listed without one.
+const GOALS: [(&str, Goal); 4] = [
+    (
+        "cost_field_16x16/staya",
+        Goal::Faster(5.0, "cost_field_16x16/pathfinding"),
+    ),
+    (
+        "cost_field_32x32/staya",
+        Goal::Faster(5.0, "cost_field_32x32/pathfinding"),
+    ),
+    ("agent_step/constant_velocity", Goal::Under(5_000.0)),
+    ("agent_step/reflexive", Goal::Under(25_000.0)),
+];
+
+/// Runs the benchmarks whose name contains `name` and judges their medians.
+pub fn run(repo: &Repo, report: &mut Report, name: Option<&str>) {
+    let home = repo.target_of(PEERS).join("criterion");
+    let mut bench = repo.cargo_in(PEERS, &["bench", "--locked"]);
+    bench.env("CRITERION_HOME", &home);
+    bench.args(name.map(|name| ["--", name]).into_iter().flatten());
+    let start = SystemTime::now();
+    if report.command("benchmarks", bench) {
+        report.part("goals", || judge(&medians(&home, start)));
+    }
+}
+
+/// Prints each median beside its goal and counts the goals.
+fn judge(medians: &[(String, f64)]) -> (Counts, String) {
+    let of = |name: &str| {
+        medians
+            .iter()
+            .find(|(known, _)| known == name)
+            .map(|&(_, ns)| ns)
+    };
+    let width = medians
+        .iter()
+        .map(|(name, _)| name.len())
+        .max()
+        .unwrap_or(0);
+    let mut counts = Counts::default();
+    println!("{:width$}  {:>10}  goal", "benchmark", "median");
+    for (name, median) in medians {
+        let goal = GOALS
+            .iter()
+            .find(|(known, _)| known == name)
+            .map(|(_, goal)| goal);
+        let (met, what) = match goal {
+            None => (None, String::new()),
+            Some(Goal::Under(limit)) => (Some(median < limit), format!("under {}", shown(*limit))),
+            Some(Goal::Faster(times, peer)) => match of(peer) {
+                None => (None, format!("{peer} did not run")),
+                Some(other) => {
+                    let ratio = other / median;
+                    let what = format!("{ratio:.1} times as fast as {peer}, at least {times}");
+                    (Some(ratio >= *times), what)
+                }
+            },
+        };
+        let verdict = match met {
+            None => "",
+            Some(true) => ": met",
+            Some(false) => ": MISSED",
+        };
+        println!("{name:width$}  {:>10}  {what}{verdict}", shown(*median));
+        counts.passed += u64::from(met == Some(true));
+        counts.failed += u64::from(met == Some(false));
+    }
+    let ran = counts.passed + counts.failed;
+    counts.skipped = (GOALS.len() as u64).saturating_sub(ran);
+    let note = if counts.skipped > 0 {
+        "skipped: goals of benchmarks that did not run"
+    } else {
+        ""
+    };
+    (counts, note.to_string())
+}
+
+/// The medians in nanoseconds that criterion wrote since `start`, by name.
+fn medians(home: &Path, start: SystemTime) -> Vec<(String, f64)> {
+    let mut found = Vec::new();
+    for group in folders(home) {
+        for function in folders(&home.join(&group)) {
+            let file = home.join(&group).join(&function).join("new/estimates.json");
+            let fresh = fs::metadata(&file).and_then(|meta| meta.modified());
+            if !fresh.is_ok_and(|time| time >= start) {
+                continue;
+            }
+            if let Some(ns) = fs::read_to_string(&file).ok().as_deref().and_then(median) {
+                found.push((format!("{group}/{function}"), ns));
+            }
+        }
+    }
+    found
+}
+
+/// Names of the folders in a folder, sorted; none if it cannot be read.
+fn folders(parent: &Path) -> Vec<String> {
+    let entries = fs::read_dir(parent).into_iter().flatten().flatten();
+    let mut names: Vec<String> = entries
+        .filter(|entry| entry.path().is_dir())
+        .map(|entry| entry.file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    names
+}
+
+/// The median's point estimate in criterion's estimates.json.
+fn median(json: &str) -> Option<f64> {
+    let (_, median) = json.split_once("\"median\"")?;
+    let (_, value) = median.split_once("\"point_estimate\":")?;
+    let end = value.find([',', '}'])?;
+    value.get(..end)?.trim().parse().ok()
+}
+
+/// Nanoseconds for people.
+fn shown(ns: f64) -> String {
+    match ns {
+        ns if ns < 1e3 => format!("{ns:.1} ns"),
+        ns if ns < 1e6 => format!("{:.2} us", ns / 1e3),
+        ns if ns < 1e9 => format!("{:.2} ms", ns / 1e6),
+        ns => format!("{:.2} s", ns / 1e9),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn median_is_read_from_estimates() {
+        let json = r#"{"mean":{"point_estimate":1.5},"median":{"confidence_interval":
+            {"confidence_level":0.95,"lower_bound":1.0},"point_estimate":42.25,"standard_error":0.1}}"#;
+        assert_eq!(median(json), Some(42.25));
+        assert_eq!(median("{}"), None);
+        assert_eq!(median(r#"{"median":{"point_estimate":"#), None);
+    }
+
+    #[test]
+    fn goals_are_met_missed_or_not_run() {
+        let of = |name: &str, ns: f64| (name.to_string(), ns);
+        let medians = [
+            of("agent_step/constant_velocity", 4_999.0),
+            of("agent_step/reflexive", 25_000.0),
+            of("cost_field_16x16/pathfinding", 500.0),
+            of("cost_field_16x16/staya", 100.0),
+            of("cost_field_32x32/staya", 100.0),
+        ];
+        let (counts, _) = judge(&medians);
+        assert_eq!(
+            counts,
+            Counts {
+                passed: 2,
+                failed: 1,
+                skipped: 1
+            }
+        );
+    }
+}

@@ -1,0 +1,130 @@
+//! Where things are, and how a child process is started.
+
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// Set by `bless` for tests that compare with golden files: write instead of compare.
+pub const BLESS: &str = "STAYA_BLESS";
+
+/// The repository that this program was built from.
+pub struct Repo {
+    /// Its top folder.
+    pub root: PathBuf,
+    /// Cargo's target folder; every other workspace builds in a folder inside it.
+    pub target: PathBuf,
+}
+
+impl Repo {
+    /// Finds the repository. Cargo names the folder of this crate when it runs it, so a copied or
+    /// moved repository is found as well.
+    pub fn find() -> Self {
+        let here = std::env::var_os("CARGO_MANIFEST_DIR")
+            .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")), PathBuf::from);
+        let root = here
+            .parent()
+            .map_or_else(|| here.clone(), Path::to_path_buf);
+        let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(
+            || root.join("target"),
+            // Cargo reads a relative one from where it was started, as does `absolute`.
+            |dir| std::path::absolute(&dir).unwrap_or_else(|_| PathBuf::from(dir)),
+        );
+        Self { root, target }
+    }
+
+    /// A program to run at the top of the repository, without standard input.
+    pub fn command(&self, program: impl AsRef<std::ffi::OsStr>) -> Command {
+        let mut command = Command::new(program);
+        command
+            .current_dir(&self.root)
+            .stdin(Stdio::null())
+            // Only `bless` may rewrite golden files, whatever the caller's environment says.
+            .env_remove(BLESS);
+        command
+    }
+
+    /// The cargo that runs this program, with these arguments.
+    pub fn cargo(&self, arguments: &[&str]) -> Command {
+        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+        let mut command = self.command(cargo);
+        command
+            .args(arguments)
+            .env("CARGO_TARGET_DIR", &self.target);
+        command
+    }
+
+    /// The same for a workspace of its own inside the repository, which builds apart.
+    pub fn cargo_in(&self, folder: &str, arguments: &[&str]) -> Command {
+        let mut command = self.cargo(arguments);
+        command
+            .current_dir(self.root.join(folder))
+            .env("CARGO_TARGET_DIR", self.target_of(folder));
+        command
+    }
+
+    /// Where a workspace of its own builds: `tests/peers` in `target/peers`.
+    pub fn target_of(&self, folder: &str) -> PathBuf {
+        self.target
+            .join(Path::new(folder).file_name().unwrap_or_default())
+    }
+}
+
+/// The command line as a person would type it, without folders in front of the program's name.
+pub fn shown(command: &Command) -> String {
+    let program = Path::new(command.get_program());
+    let mut line = program
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
+    for argument in command.get_args() {
+        line.push(' ');
+        line.push_str(&argument.to_string_lossy());
+    }
+    line
+}
+
+/// Runs a command with its output passed through. The error says why it did not succeed.
+pub fn run(command: &mut Command) -> Result<(), String> {
+    println!("$ {}", shown(command));
+    ended(command.status())
+}
+
+/// Runs a command, passes its standard output on line by line as it comes, and shows each line to
+/// `seen`. The error says why it did not succeed.
+pub fn run_reading(command: &mut Command, mut seen: impl FnMut(&str)) -> Result<(), String> {
+    println!("$ {}", shown(command));
+    let mut child = command
+        .stdout(Stdio::piped())
+        .spawn()
+        .map_err(|error| format!("cannot start: {error}"))?;
+    if let Some(output) = child.stdout.take() {
+        let mut output = BufReader::new(output);
+        let mut line = Vec::new();
+        // Bytes, not a string: a test may print anything.
+        while output.read_until(b'\n', &mut line).is_ok_and(|n| n > 0) {
+            let text = String::from_utf8_lossy(&line);
+            print!("{text}");
+            seen(text.trim_end());
+            line.clear();
+        }
+    }
+    ended(child.wait())
+}
+
+/// What a quiet command prints; `None` unless it succeeds.
+pub fn output_of(command: &mut Command) -> Option<String> {
+    let output = command.stderr(Stdio::null()).output().ok()?;
+    output
+        .status
+        .success()
+        .then(|| String::from_utf8_lossy(&output.stdout).trim().to_string())
+}
+
+fn ended(status: std::io::Result<std::process::ExitStatus>) -> Result<(), String> {
+    match status {
+        Ok(status) if status.success() => Ok(()),
+        Ok(status) => Err(status.to_string()),
+        Err(error) => Err(format!("cannot start: {error}")),
+    }
+}

@@ -1,0 +1,216 @@
+//! What passed, what failed, what was skipped and why.
+
+use std::process::{Command, ExitCode};
+use std::time::{Duration, Instant};
+
+/// Counts of tests or steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Ran and was right.
+    pub passed: u64,
+    /// Ran and was wrong, or could not run although it should have.
+    pub failed: u64,
+    /// Did not run.
+    pub skipped: u64,
+}
+
+impl std::ops::AddAssign for Counts {
+    fn add_assign(&mut self, other: Self) {
+        self.passed += other.passed;
+        self.failed += other.failed;
+        self.skipped += other.skipped;
+    }
+}
+
+impl std::fmt::Display for Counts {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self {
+            passed,
+            failed,
+            skipped,
+        } = self;
+        write!(out, "{passed} passed, {failed} failed, {skipped} skipped")
+    }
+}
+
+/// One row of the closing table.
+struct Part {
+    name: String,
+    counts: Counts,
+    took: Duration,
+    /// Why it failed or was skipped, or what was found.
+    note: String,
+}
+
+/// The rows so far.
+#[derive(Default)]
+pub struct Report {
+    parts: Vec<Part>,
+}
+
+impl Report {
+    /// Runs one part that counts by itself; announces it first. `work` returns its counts and a
+    /// note for the table.
+    pub fn part(&mut self, name: &str, work: impl FnOnce() -> (Counts, String)) -> Counts {
+        println!("\n== {name}");
+        let start = Instant::now();
+        let (counts, note) = work();
+        self.parts.push(Part {
+            name: name.to_string(),
+            counts,
+            took: start.elapsed(),
+            note,
+        });
+        counts
+    }
+
+    /// Runs one part that either succeeds or fails. Returns whether it succeeded.
+    pub fn step(&mut self, name: &str, work: impl FnOnce() -> Result<(), String>) -> bool {
+        let counts = self.part(name, || match work() {
+            Ok(()) => (
+                Counts {
+                    passed: 1,
+                    ..Counts::default()
+                },
+                String::new(),
+            ),
+            Err(reason) => {
+                println!("failed: {reason}");
+                (
+                    Counts {
+                        failed: 1,
+                        ..Counts::default()
+                    },
+                    reason,
+                )
+            }
+        });
+        counts.failed == 0
+    }
+
+    /// Runs one command as a part.
+    pub fn command(&mut self, name: &str, mut command: Command) -> bool {
+        self.step(name, || crate::repo::run(&mut command))
+    }
+
+    /// Records a part that could not run.
+    pub fn skip(&mut self, name: &str, reason: &str) {
+        self.part(name, || {
+            println!("skipped: {reason}");
+            (
+                Counts {
+                    skipped: 1,
+                    ..Counts::default()
+                },
+                reason.to_string(),
+            )
+        });
+    }
+
+    /// Prints the table and the closing line.
+    pub fn close(self) -> ExitCode {
+        let mut total = Counts::default();
+        let widest = self
+            .parts
+            .iter()
+            .map(|part| part.name.chars().count())
+            .max();
+        let width = widest.unwrap_or(0);
+        println!("\n{:width$}  passed  failed  skipped  seconds", "part");
+        for Part {
+            name,
+            counts,
+            took,
+            note,
+        } in &self.parts
+        {
+            let Counts {
+                passed,
+                failed,
+                skipped,
+            } = counts;
+            let seconds = took.as_secs_f64();
+            let row = format!(
+                "{name:width$}  {passed:>6}  {failed:>6}  {skipped:>7}  {seconds:>7.1}  {note}"
+            );
+            println!("{}", row.trim_end());
+            total += *counts;
+        }
+        println!("{total}");
+        ExitCode::from(u8::from(total.failed > 0))
+    }
+}
+
+/// The counts in one line of a test program's output, if it is its closing line. What the command
+/// line filtered out was skipped.
+pub fn parse_test_result(line: &str) -> Option<Counts> {
+    let rest = line.strip_prefix("test result: ")?;
+    let (_, counts) = rest.split_once(". ")?;
+    let mut sum = Counts::default();
+    for field in counts.split("; ") {
+        let (number, what) = field.split_once(' ')?;
+        let Ok(number) = number.parse::<u64>() else {
+            continue; // "finished in 0.01s"
+        };
+        match what {
+            "passed" => sum.passed += number,
+            "failed" => sum.failed += number,
+            "ignored" | "filtered out" => sum.skipped += number,
+            _ => {}
+        }
+    }
+    Some(sum)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn closing_line_of_a_test_program_is_counted() {
+        let line = "test result: FAILED. 12 passed; 3 failed; 1 ignored; 0 measured; \
+                    4 filtered out; finished in 0.02s";
+        let counts = parse_test_result(line).unwrap();
+        assert_eq!(
+            counts,
+            Counts {
+                passed: 12,
+                failed: 3,
+                skipped: 5
+            }
+        );
+    }
+
+    #[test]
+    fn other_lines_are_not_counted() {
+        for line in [
+            "",
+            "running 3 tests",
+            "test a::b ... ok",
+            "  test result: ok. 1 passed;",
+        ] {
+            assert_eq!(parse_test_result(line), None, "{line:?}");
+        }
+    }
+
+    #[test]
+    fn closing_line_is_plain() {
+        let counts = Counts {
+            passed: 7,
+            failed: 0,
+            skipped: 2,
+        };
+        assert_eq!(counts.to_string(), "7 passed, 0 failed, 2 skipped");
+    }
+
+    #[test]
+    fn exit_code_tells_a_failure_from_a_skip() {
+        let mut skipped = Report::default();
+        skipped.skip("a", "because");
+        assert_eq!(skipped.close(), ExitCode::SUCCESS);
+        let mut failed = Report::default();
+        assert!(failed.step("a", || Ok(())));
+        assert!(!failed.step("b", || Err("because".into())));
+        assert_eq!(failed.close(), ExitCode::FAILURE);
+    }
+}

@@ -1,0 +1,93 @@
+//! `cargo xtask test`: everything that runs.
+
+use crate::repo::{Repo, run_reading};
+use crate::report::{Counts, Report, parse_test_result};
+use std::process::Command;
+
+/// Tests in a module of this name read data beside the repository, which CI has.
+const NEEDS_SHARED: &str = "needs_shared::";
+
+/// Host tests, then what other workspaces and other targets can show.
+pub fn run(repo: &Repo, report: &mut Report) {
+    let mut tests = repo.cargo(&["test", "--locked", "--workspace", "--no-fail-fast"]);
+    let mut why_skipped = String::new();
+    if !repo.root.join("../shared").is_dir() {
+        tests.args(["--", "--skip", NEEDS_SHARED]);
+        why_skipped = format!("skipped: {NEEDS_SHARED}* need ../shared, which is not there");
+        println!("{why_skipped}");
+    }
+    report.part("tests on the host", || counted(&mut tests, &why_skipped));
+    report.command(
+        "tests/peers builds",
+        repo.cargo_in("tests/peers", &["check", "--locked", "--all-targets"]),
+    );
+    crate::device::run(repo, report);
+}
+
+/// Runs test programs and adds up their closing lines. A program that ends without one (it
+/// crashed, or did not compile) is one failure. `why_skipped` is the note if anything was.
+fn counted(tests: &mut Command, why_skipped: &str) -> (Counts, String) {
+    let mut sum = Counts::default();
+    let ended = run_reading(tests, |line| {
+        if let Some(counts) = parse_test_result(line) {
+            sum += counts;
+        }
+    });
+    let note = match ended {
+        Err(reason) if sum.failed == 0 => {
+            sum.failed = 1;
+            format!("cargo test: {reason}")
+        }
+        Err(_) => String::from("see above"),
+        Ok(()) if sum.skipped > 0 => why_skipped.to_string(),
+        Ok(()) => String::new(),
+    };
+    (sum, note)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shell(script: &str) -> Command {
+        let mut command = Command::new("sh");
+        command.args(["-c", script]);
+        command
+    }
+
+    #[test]
+    fn closing_lines_add_up() {
+        let line = "test result: ok. 2 passed; 0 failed; 1 ignored; 0 measured; 0 filtered out";
+        let (counts, note) = counted(&mut shell(&format!("echo '{line}'; echo '{line}'")), "why");
+        assert_eq!(
+            counts,
+            Counts {
+                passed: 4,
+                failed: 0,
+                skipped: 2
+            }
+        );
+        assert_eq!(note, "why");
+    }
+
+    #[test]
+    fn crash_without_a_closing_line_is_a_failure() {
+        let (counts, note) = counted(&mut shell("echo running 3 tests; exit 101"), "");
+        assert_eq!(counts.failed, 1);
+        assert!(note.contains("101"), "{note}");
+    }
+
+    #[test]
+    fn failure_is_counted_once() {
+        let line = "test result: FAILED. 2 passed; 1 failed; 0 ignored; 0 measured";
+        let (counts, _) = counted(&mut shell(&format!("echo '{line}'; exit 101")), "");
+        assert_eq!(
+            counts,
+            Counts {
+                passed: 2,
+                failed: 1,
+                skipped: 0
+            }
+        );
+    }
+}
