@@ -24,7 +24,7 @@ pub fn run(repo: &Repo, report: &mut Report) {
         report.command("clippy", clippy(&["--workspace", "--all-targets"]));
         report.command(
             "clippy with defmt",
-            clippy(&["--package", "staya-controller", "--features", "defmt"]),
+            clippy(&["--workspace", "--features", "staya-controller/defmt"]),
         );
         report.command(
             "clippy of tests/peers",
