@@ -202,3 +202,157 @@ impl<S: Scalar> Vec3<S> {
         Vec2::new(self.x, self.y)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scalar::{Fast32, Q16};
+    use proptest::prelude::*;
+
+    fn vec2<S: Scalar>(x: f64, y: f64) -> Option<Vec2<S>> {
+        Some(Vec2::new(S::from_f64(x)?, S::from_f64(y)?))
+    }
+
+    #[test]
+    fn zero_vector_has_no_direction() {
+        fn check<S: Scalar>() {
+            assert_eq!(Vec2::<S>::ZERO.normalized(), None);
+            assert_eq!(Vec3::<S>::ZERO.normalized(), None);
+            assert_eq!(Vec2::<S>::ZERO.norm(), S::ZERO);
+            assert_eq!(Vec2::<S>::ZERO.clamp_norm(S::ONE), Vec2::ZERO);
+        }
+        check::<f32>();
+        check::<f64>();
+        check::<Q16>();
+        check::<Fast32>();
+    }
+
+    #[test]
+    fn senseless_vectors_and_limits_clamp_to_zero() {
+        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            let v = Vec3::new(1.0, bad, 0.0);
+            assert!(!v.is_finite() && v.normalized().is_none());
+            assert_eq!(v.clamp_norm(1.0), Vec3::ZERO);
+        }
+        let v = Vec2::new(1.0f32, 0.0);
+        for limit in [0.0, -1.0, f32::NAN] {
+            assert_eq!(v.clamp_norm(limit), Vec2::ZERO);
+        }
+        assert_eq!(v.clamp_norm(f32::INFINITY), v);
+        // The square overflows: no direction, hence no motion.
+        assert_eq!(Vec2::new(1e30f32, 0.0).clamp_norm(1.0), Vec2::ZERO);
+    }
+
+    #[test]
+    fn fixed_point_lengths_survive_the_overflow_of_squares() {
+        let v = vec2::<Q16>(12_000.0, -16_000.0).map(Vec2::norm);
+        assert_eq!(v, Some(Q16::from_i32(20_000)));
+        let corner = Vec3::new(Q16::MAX, Q16::MAX, Q16::MAX);
+        assert_eq!(corner.norm(), Q16::MAX);
+        assert_eq!(corner.norm_squared(), Q16::MAX);
+        let third = 1.0 / 3f64.sqrt();
+        let error = |unit: Vec3<Q16>| (unit.x.to_f64() - third).abs();
+        assert!(corner.normalized().is_some_and(|unit| error(unit) < 8e-6));
+    }
+
+    #[test]
+    fn quarter_turns_go_counter_clockwise() {
+        let east = Vec2::new(1.0f32, 0.0);
+        let north = Vec2::new(0.0, 1.0);
+        assert_eq!(east.perp(), north);
+        assert_eq!(east.rotate(0.0, 1.0), north);
+        assert_eq!((east.det(north), north.det(east)), (1.0, -1.0));
+        let up = Vec3::new(0.0, 0.0, 1.0);
+        assert_eq!(east.extend(0.0).cross(north.extend(0.0)), up);
+        assert_eq!(up.xy(), Vec2::ZERO);
+    }
+
+    #[test]
+    fn operators_work_by_component() {
+        let (a, b) = (Vec3::new(1.0f64, 2.0, 3.0), Vec3::new(0.5, -4.0, 8.0));
+        assert_eq!(a + b, Vec3::new(1.5, -2.0, 11.0));
+        assert_eq!(a - b, Vec3::new(0.5, 6.0, -5.0));
+        assert_eq!(-a * 2.0, Vec3::new(-2.0, -4.0, -6.0));
+        assert_eq!(a.dot(b), 16.5);
+        let mut c = a;
+        c += b;
+        c -= a;
+        assert_eq!(c, b);
+    }
+
+    /// Compares vector functions of `S` with those of f64, all within `tolerance` of the length.
+    fn agrees<S: Scalar>(v: [f64; 2], w: [f64; 2], tolerance: f64) -> Result<(), TestCaseError> {
+        let [Some(p), Some(q)] = [v, w].map(|[x, y]| vec2::<S>(x, y)) else {
+            return Err(TestCaseError::reject("not a number"));
+        };
+        let [a, b] = [p, q].map(|v| Vec2::new(v.x.to_f64(), v.y.to_f64()));
+        let near = |got: S, exact: f64, scale: f64| {
+            let error = (got.to_f64() - exact).abs();
+            prop_assert!(
+                error <= tolerance * scale.max(1.0),
+                "{got:?} {exact} {error:e}"
+            );
+            Ok(())
+        };
+        let (long, wide) = (a.norm(), b.norm());
+        near(p.norm(), long, long)?;
+        near(p.dot(q), a.dot(b), long * wide)?;
+        near(p.det(q), a.det(b), long * wide)?;
+        near((p + q).norm(), (a + b).norm(), long + wide)?;
+        if let Some(unit) = p.normalized() {
+            near(unit.norm(), 1.0, 1.0)?;
+            near(unit.det(p), 0.0, long)?;
+        }
+        let limit = S::TWO;
+        let clamped = p.clamp_norm(limit);
+        near(clamped.norm(), long.min(2.0), 2.0)?;
+        near(clamped.det(p), 0.0, long)?;
+        // A rotation by the angle of q keeps lengths and angles.
+        let (sin, cos) = q.x.sin_cos();
+        let turned = p.rotate(cos, sin);
+        near(turned.norm(), long, long)?;
+        near(turned.dot(q.rotate(cos, sin)), a.dot(b), long * wide)?;
+        near(p.perp().dot(p), 0.0, long * long)?;
+        let (p3, q3) = (p.extend(S::ONE), q.extend(-S::ONE));
+        let cross = p3.cross(q3);
+        near(
+            cross.dot(p3),
+            0.0,
+            (long + 1.0) * (long + 1.0) * (wide + 1.0),
+        )
+    }
+
+    proptest! {
+        #[test]
+        fn f32_agrees_with_f64(v: [i16; 2], w: [i16; 2]) {
+            let [v, w] = [v, w].map(|v| v.map(|c| f64::from(c) / 7.0));
+            agrees::<f32>(v, w, 1e-6)?;
+        }
+
+        #[test]
+        fn f64_is_consistent(v: [i16; 2], w: [i16; 2]) {
+            let [v, w] = [v, w].map(|v| v.map(|c| f64::from(c) / 7.0));
+            agrees::<f64>(v, w, 1e-14)?;
+        }
+
+        #[test]
+        fn q16_agrees_with_f64(v: [i8; 2], w: [i8; 2]) {
+            // Products of three lengths stay in range; six steps of 2^-16 add up.
+            let [v, w] = [v, w].map(|v| v.map(|c| f64::from(c) / 14.0));
+            agrees::<Q16>(v, w, 1e-4)?;
+        }
+
+        #[test]
+        fn fast32_agrees_with_f64(v: [i16; 2], w: [i16; 2]) {
+            let [v, w] = [v, w].map(|v| v.map(|c| f64::from(c) / 7.0));
+            agrees::<Fast32>(v, w, 1e-2)?;
+        }
+
+        #[test]
+        fn clamped_vectors_are_finite_whatever_the_bits(bits: [u32; 3], limit: u32) {
+            let [x, y, z] = bits.map(f32::from_bits);
+            let clamped = Vec3::new(x, y, z).clamp_norm(f32::from_bits(limit));
+            prop_assert!(clamped.is_finite());
+        }
+    }
+}

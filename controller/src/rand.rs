@@ -7,6 +7,7 @@
 //! Source: SplitMix64 (Steele, Lea, Flood 2014, "Fast splittable pseudorandom number generators",
 //! with Stafford's variant 13 of the mixing function). Not for secrets.
 
+use crate::scalar::integer::log2_q32;
 use core::num::NonZeroU64;
 
 /// The odd integer nearest to 2^64 / golden ratio: steps of the state never fall into a pattern.
@@ -82,44 +83,19 @@ impl Rng {
     /// A sample of the exponential distribution with mean 1 in Q16.16: at least 2^-16 (so that
     /// dividing it by a weight keeps its meaning), at most 44.37; off by less than 3e-5 from the
     /// exact logarithm of the same draw.
-    pub const fn exponential_q16(&mut self) -> u32 {
+    pub fn exponential_q16(&mut self) -> u32 {
         // A draw of 0 counts as 1: the logarithm is always finite.
-        let draw = match NonZeroU64::new(self.next_u64()) {
-            Some(draw) => draw,
-            None => NonZeroU64::MIN,
-        };
-        let exact = negative_ln_q16(draw);
-        if exact == 0 { 1 } else { exact }
+        let draw = NonZeroU64::new(self.next_u64()).unwrap_or(NonZeroU64::MIN);
+        negative_ln_q16(draw).max(1)
     }
 }
 
 /// -ln(k / 2^64) in Q16.16, rounded to nearest.
-const fn negative_ln_q16(k: NonZeroU64) -> u32 {
+fn negative_ln_q16(k: NonZeroU64) -> u32 {
     const LN_2_Q24: u64 = 11_629_080;
-    // log2 never exceeds 64 (tested at both ends), and 64 * 2^32 * LN_2_Q24 < 2^62.
+    // log2 stays below 64 (tested at the end), and 64 * 2^32 * LN_2_Q24 < 2^62.
     let log2 = (64 << 32) - log2_q32(k);
     ((log2 * LN_2_Q24 + (1 << 39)) >> 40) as u32
-}
-
-/// log2(k) in Q6.32, off by less than 8e-6.
-///
-/// With k = 2^e (1 + x) it is e + x + x (1 - x) p(x), exact at the powers of two; p interpolates
-/// at the five Chebyshev nodes of [0, 1].
-const fn log2_q32(k: NonZeroU64) -> u64 {
-    const P_Q30: [i64; 4] = [-296_964_243, 197_676_760, -104_369_674, 27_585_783];
-    const P0_Q30: i64 = 475_296_191;
-
-    let zeros = k.leading_zeros();
-    // The bit below the leading one and 31 more: x in Q0.32.
-    let x = ((k.get() << zeros << 1) >> 32) as i64;
-    let [p1, p2, p3, p4] = P_Q30;
-    let p = p3 + ((p4 * x) >> 32);
-    let p = p2 + ((p * x) >> 32);
-    let p = p1 + ((p * x) >> 32);
-    let p = P0_Q30 + ((p * x) >> 32);
-    let hump = (x * ((1 << 32) - x)) >> 32;
-    let fraction = x + ((hump * p) >> 30);
-    (((63 - zeros) as u64) << 32) + fraction.cast_unsigned()
 }
 
 #[cfg(test)]
@@ -274,10 +250,6 @@ mod tests {
         assert_eq!(negative_ln_q16(NonZeroU64::MAX), 0);
         // 64 ln 2 = 44.361419
         assert_eq!(negative_ln_q16(NonZeroU64::MIN), 2_907_270);
-        for e in 0..64 {
-            let power = NonZeroU64::new(1 << e).unwrap();
-            assert_eq!(log2_q32(power), e << 32);
-        }
     }
 
     #[test]

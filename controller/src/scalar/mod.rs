@@ -1,13 +1,21 @@
 //! The one numeric trait, and the four numbers that implement it.
 //!
-//! `f32` ships, `f64` is the oracle, Q16 serves parts without an FPU and Fast32 trades
+//! `f32` ships, `f64` is the oracle, [`Q16`] serves parts without an FPU and [`Fast32`] trades
 //! accuracy for speed. Everything beyond + - * goes through [`Scalar`] and hence through the same
 //! software routines on every target: same bits everywhere.
 //!
 //! NaN fails closed: it passes through arithmetic, `min`, `max` and `clamp` unchanged, is the last
 //! in [`Scalar::order`], and conversions to integers answer `None`.
 
+mod fast;
+mod fixed;
 mod float;
+pub(crate) mod integer;
+#[cfg(test)]
+mod tests;
+
+pub use fast::Fast32;
+pub use fixed::Q16;
 
 use core::cmp::Ordering;
 use core::fmt::Debug;
