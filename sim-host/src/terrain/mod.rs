@@ -8,6 +8,7 @@ pub mod esri;
 pub mod generate;
 pub mod metrics;
 pub mod movingai;
+pub mod optimal;
 pub mod ros;
 pub mod rows;
 pub mod slope;
