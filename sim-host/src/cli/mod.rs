@@ -6,6 +6,7 @@
 //! then is kept).
 
 mod progress;
+mod terrain;
 
 pub use progress::{Progress, Stop};
 
@@ -40,7 +41,10 @@ pub struct Global {
 }
 
 #[derive(Debug, Subcommand)]
-enum Command {}
+enum Command {
+    /// Make, measure and draw terrain.
+    Terrain(terrain::TerrainArgs),
+}
 
 /// How a command that did not fail came to its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,7 +91,9 @@ fn run(cli: &Cli) -> Result<Ended> {
             .build_global()
             .with_context(|| format!("cannot start {threads} threads"))?;
     }
-    match cli.command {}
+    match &cli.command {
+        Command::Terrain(args) => args.run(&cli.global),
+    }
 }
 
 fn is_broken_pipe(error: &anyhow::Error) -> bool {

@@ -4,6 +4,7 @@
 //! the format that Staya writes). [`Terrain::load`] chooses by extension. [`generate`] makes land by chance, and
 //! [`metrics`] describes it.
 
+pub mod draw;
 pub mod esri;
 pub mod generate;
 pub mod metrics;
