@@ -1,11 +1,10 @@
 //! Pictures of land: the darker, the less passable (KUZ figure 7); walls are black.
 
-use super::error::parameter_error;
+use super::error::{parameter_error, write};
 use super::rows::flip_row;
 use super::{Terrain, TerrainError};
-use plotters::backend::{BitMapBackend, DrawingBackend, SVGBackend};
-use plotters::style::RGBColor;
 use staya_controller::grid::BLOCKED;
+use std::fmt::Write as _;
 use std::path::Path;
 
 /// Longest side of a picture in pixels.
@@ -37,32 +36,40 @@ pub fn scale_for(terrain: &Terrain, pixels: u32) -> u32 {
     (pixels / longest).max(1)
 }
 
-/// A picture with north up: its width and height in pixels, and three bytes (red, green, blue) per pixel, row by row from
-/// the top. Each cell is a square of `scale` pixels. O(pixels).
+/// A grey picture with north up: its width and height in pixels, and the brightness of each pixel, row by row from the top.
+///
+/// Each cell is a square of `scale` pixels. O(pixels).
 #[must_use]
 pub fn render(terrain: &Terrain, scale: u32) -> (u32, u32, Vec<u8>) {
     let (scale, classes) = (scale.max(1), classes(terrain));
-    let (width, height) = (terrain.width(), terrain.height());
     let repeat = scale as usize;
-    let mut pixels = Vec::with_capacity(terrain.cells().len() * repeat * repeat * 3);
-    for file_row in 0..height {
-        let start = usize::from(flip_row(file_row, height)) * usize::from(width);
-        let row = &terrain.cells()[start..start + usize::from(width)];
+    let mut pixels = Vec::with_capacity(terrain.cells().len() * repeat * repeat);
+    for (_, row) in file_rows(terrain) {
         let line: Vec<u8> = row
             .iter()
-            .flat_map(|u| std::iter::repeat_n(shade(*u, classes), 3 * repeat))
+            .flat_map(|u| std::iter::repeat_n(shade(*u, classes), repeat))
             .collect();
         for _ in 0..scale {
             pixels.extend_from_slice(&line);
         }
     }
-    (u32::from(width) * scale, u32::from(height) * scale, pixels)
+    let [width, height] = [terrain.width(), terrain.height()].map(|side| u32::from(side) * scale);
+    (width, height, pixels)
+}
+
+/// The rows of cells from the north, counted from 0.
+fn file_rows(terrain: &Terrain) -> impl Iterator<Item = (u16, &[u8])> {
+    let width = usize::from(terrain.width());
+    (0..terrain.height()).map(move |file_row| {
+        let row = usize::from(flip_row(file_row, terrain.height()));
+        (file_row, &terrain.cells()[row * width..(row + 1) * width])
+    })
 }
 
 /// Draws a terrain into a `.png` or `.svg` file, `scale` pixels per cell.
 ///
 /// # Errors
-/// [`TerrainError::Parameter`] for another extension, a picture beyond [`MAX_PIXELS`], or a file that cannot be written.
+/// [`TerrainError::Parameter`] for another extension or a picture beyond [`MAX_PIXELS`]; [`TerrainError::Io`] when the file cannot be written.
 pub fn draw(terrain: &Terrain, scale: u32, path: &Path) -> Result<(), TerrainError> {
     let longest = u64::from(terrain.width().max(terrain.height()));
     if scale == 0 || longest * u64::from(scale) > u64::from(MAX_PIXELS) {
@@ -73,59 +80,60 @@ pub fn draw(terrain: &Terrain, scale: u32, path: &Path) -> Result<(), TerrainErr
             ),
         ));
     }
-    let size = (
-        u32::from(terrain.width()) * scale,
-        u32::from(terrain.height()) * scale,
-    );
     let extension = path.extension().and_then(|extension| extension.to_str());
-    match extension.unwrap_or("").to_ascii_lowercase().as_str() {
-        "png" => bitmap(terrain, scale, BitMapBackend::new(path, size)),
-        "svg" => rectangles(terrain, scale, SVGBackend::new(path, size)),
+    let bytes = match extension.unwrap_or("").to_ascii_lowercase().as_str() {
+        "png" => png(terrain, scale)?,
+        "svg" => svg(terrain, scale).into_bytes(),
         _ => {
             return Err(parameter_error(
                 format!("{} is no picture", path.display()),
                 "choose a file name that ends in .png or .svg",
             ));
         }
-    }
-    .map_err(|error| {
-        parameter_error(
-            format!("{}: {error}", path.display()),
-            "choose a folder that exists and can be written to",
-        )
-    })
-}
-
-fn bitmap(terrain: &Terrain, scale: u32, mut picture: BitMapBackend<'_>) -> Result<(), String> {
-    let (width, height, pixels) = render(terrain, scale);
-    picture
-        .blit_bitmap((0, 0), (width, height), &pixels)
-        .and_then(|()| picture.present())
-        .map_err(|error| error.to_string())
-}
-
-/// Cells as filled rectangles, neighbours of equal shade in one.
-fn rectangles(terrain: &Terrain, scale: u32, mut picture: SVGBackend<'_>) -> Result<(), String> {
-    let (scale, classes) = (scale as i32, classes(terrain));
-    let height = terrain.height();
-    let mut fill = |columns: std::ops::Range<i32>, file_row: i32, u: u8| {
-        let grey = shade(u, classes);
-        let corner = (columns.start * scale, file_row * scale);
-        let opposite = (columns.end * scale, (file_row + 1) * scale);
-        picture
-            .draw_rect(corner, opposite, &RGBColor(grey, grey, grey), true)
-            .map_err(|error| error.to_string())
     };
-    for (y, row) in (0..height).zip(terrain.cells().chunks_exact(terrain.width().into())) {
-        let file_row = i32::from(flip_row(y, height));
+    write(path, &bytes)
+}
+
+fn png(terrain: &Terrain, scale: u32) -> Result<Vec<u8>, TerrainError> {
+    let (width, height, pixels) = render(terrain, scale);
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder
+        .write_header()
+        .and_then(|mut writer| writer.write_image_data(&pixels))
+        .map_err(|error| parameter_error(error.to_string(), "choose a smaller scale"))?;
+    Ok(bytes)
+}
+
+/// Cells as rectangles, neighbours of equal shade in one.
+fn svg(terrain: &Terrain, scale: u32) -> String {
+    let classes = classes(terrain);
+    let (columns, rows) = (terrain.width(), terrain.height());
+    let [width, height] = [columns, rows].map(|side| u32::from(side) * scale);
+    let mut text = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
+         viewBox=\"0 0 {columns} {rows}\" shape-rendering=\"crispEdges\">\n\
+         <rect width=\"{columns}\" height=\"{rows}\" fill=\"#fff\"/>\n"
+    );
+    for (y, row) in file_rows(terrain) {
         let mut x = 0;
         for run in row.chunk_by(|a, b| a == b) {
-            let end = x + run.len() as i32;
-            fill(x..end, file_row, run[0])?;
-            x = end;
+            let grey = shade(run[0], classes);
+            if grey < 255 {
+                // Writing to a string does not fail.
+                let _ = writeln!(
+                    text,
+                    "<rect x=\"{x}\" y=\"{y}\" width=\"{}\" height=\"1\" fill=\"#{grey:02x}{grey:02x}{grey:02x}\"/>",
+                    run.len()
+                );
+            }
+            x += run.len();
         }
     }
-    picture.present().map_err(|error| error.to_string())
+    text.push_str("</svg>\n");
+    text
 }
 
 #[cfg(test)]
@@ -149,13 +157,13 @@ mod tests {
     fn north_is_up_and_cells_are_squares() {
         let land = Terrain::from_cells(2, 2, vec![1, 9, BLOCKED, 1]).unwrap();
         let (width, height, pixels) = render(&land, 2);
-        assert_eq!((width, height, pixels.len()), (4, 4, 48));
-        let grey = |x: usize, y: usize| pixels[(y * 4 + x) * 3..][..3].to_vec();
-        assert_eq!(grey(0, 0), [0; 3]);
-        assert_eq!(grey(1, 1), [0; 3]);
-        assert_eq!(grey(2, 1), [255; 3]);
-        assert_eq!(grey(0, 3), [255; 3]);
-        assert_eq!(grey(3, 2), [DARKEST; 3]);
+        assert_eq!((width, height, pixels.len()), (4, 4, 16));
+        let grey = |x: usize, y: usize| pixels[y * 4 + x];
+        assert_eq!(grey(0, 0), 0);
+        assert_eq!(grey(1, 1), 0);
+        assert_eq!(grey(2, 1), 255);
+        assert_eq!(grey(0, 3), 255);
+        assert_eq!(grey(3, 2), DARKEST);
     }
 
     #[test]
@@ -175,8 +183,8 @@ mod tests {
                 .to_string()
         };
         assert!(message(4, "a.gif").contains(".png or .svg"));
-        assert!(message(4, "no/folder/a.png").contains("folder that exists"));
-        assert!(message(4, "no/folder/a.svg").contains("folder that exists"));
+        assert!(message(4, "no/folder/a.png").contains("a.png: "));
+        assert!(message(4, "no/folder/a.svg").contains("a.svg: "));
         assert!(message(0, "a.png").contains("choose a scale"));
         assert!(message(6000, "a.png").contains("choose a scale"));
     }
