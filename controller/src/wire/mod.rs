@@ -3,6 +3,7 @@
 mod fixint;
 mod frame;
 mod message;
+mod sequence;
 
 pub use frame::{
     DecodeError, EncodeError, Frame, Header, MAX_FRAME_LEN, TAG_LEN, VERSION, decode,
@@ -12,5 +13,7 @@ pub use message::{
     Ack, Beacon, CompactBeacon, GoalAssignment, Message, Mode, Request, RequestKind, RobotId,
     TEMPLATE_PART, TemplateAssignment, TemplateEntry,
 };
+pub use sequence::{Arrival, SEQUENCE_SPAN, SequenceWindow};
+
 #[cfg(test)]
 mod arbitrary;
