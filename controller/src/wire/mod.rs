@@ -3,6 +3,8 @@
 mod fixint;
 mod frame;
 mod message;
+mod orders;
+mod requests;
 mod sequence;
 
 pub use frame::{
@@ -13,6 +15,8 @@ pub use message::{
     Ack, Beacon, CompactBeacon, GoalAssignment, Message, Mode, Request, RequestKind, RobotId,
     TEMPLATE_PART, TemplateAssignment, TemplateEntry,
 };
+pub use orders::{Answer, Orders};
+pub use requests::{AskError, Due, Requests, Retry};
 pub use sequence::{Arrival, SEQUENCE_SPAN, SequenceWindow};
 
 #[cfg(test)]

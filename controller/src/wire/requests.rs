@@ -1,0 +1,240 @@
+//! Asking: requests that are resent until acknowledged, replaced or given up.
+//!
+//! The other side is [`Orders`](super::Orders). Source: KUZ section 7 (requests go up the leader
+//! chain); the papers' requests are never lost, ours are small datagrams over a lossy radio.
+
+use super::{Request, RequestKind, RobotId};
+use crate::rand::Rng;
+use crate::time::{Duration, Instant};
+use heapless::Vec;
+
+/// Keeps the jitter of resends apart from other uses of randomness.
+const PURPOSE: u32 = u32::from_be_bytes(*b"rsnd");
+
+impl RequestKind {
+    /// Whether it bears on standing: of `Stop` and `Resume` the newer one cancels the older one,
+    /// `Redirect` stands for itself.
+    #[must_use]
+    pub const fn is_standing(self) -> bool {
+        matches!(self, Self::Stop | Self::Resume)
+    }
+}
+
+/// How often and when a request is sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Retry {
+    /// Sends in all, the first included; 0 counts as 1. With a loss of p per packet, request or
+    /// acknowledgement fails in all of them with probability (1 - (1 - p)^2)^attempts: 4 % at
+    /// p = 0.3 and 5 attempts.
+    pub attempts: u8,
+    /// Time between two sends, lengthened at random by up to a quarter so that two robots do
+    /// not collide time and again. More than the way there and back, or each request is sent twice.
+    pub interval: Duration,
+}
+
+impl Default for Retry {
+    fn default() -> Self {
+        Self {
+            attempts: 5,
+            interval: Duration::from_millis(200),
+        }
+    }
+}
+
+/// Why a request was not taken on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum AskError {
+    /// As many requests as fit are on their way.
+    Full,
+    /// Nobody cannot acknowledge.
+    Nobody,
+}
+
+/// What [`Requests::poll`] wants done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[must_use = "a request that is not sent counts as one lost in the air"]
+pub enum Due {
+    /// Send this now. One that does not fit the outbox counts as lost in the air.
+    Send(Request),
+    /// No acknowledgement came in time; the request is forgotten.
+    Expired(Request),
+}
+
+/// A request on its way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Pending {
+    request: Request,
+    /// Sends so far.
+    sent: u8,
+    /// When to send again or to give up.
+    due: Instant,
+    /// When to give up in any case.
+    expiry: Instant,
+}
+
+/// The requests of one robot to others, at most `P` at a time; about 28 bytes each.
+///
+/// Time is compared by wrapped difference: [`Requests::poll`] must be called at least every half
+/// hour while requests are on their way.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Requests<const P: usize> {
+    pending: Vec<Pending, P>,
+    retry: Retry,
+    own: RobotId,
+    next: u8,
+}
+
+impl<const P: usize> Requests<P> {
+    /// Half of the numbers are always free to tell requests apart.
+    const FITS: () = assert!(P <= 128, "at most 128 requests at a time");
+
+    /// No requests yet.
+    ///
+    /// `own` and `boot` are what the robot's frames say. The numbers start at another place with
+    /// each boot, so that an acknowledgement for the previous one finds nothing to acknowledge.
+    #[must_use]
+    pub const fn new(own: RobotId, boot: u8, retry: Retry) -> Self {
+        let () = Self::FITS;
+        Self {
+            pending: Vec::new(),
+            retry,
+            own,
+            next: boot.wrapping_mul(97),
+        }
+    }
+
+    /// Takes on a request to `to` and returns its number; the next [`Requests::poll`] sends it.
+    ///
+    /// `origin` is who first asked: oneself, or the follower whose request one passes on. A
+    /// request of the same robot and origin that is still on its way stays when it asks the same
+    /// (its number is returned, and nothing changes), and is replaced when it asks the opposite.
+    /// It is given up `valid_ms` after now, or after the last send's interval, but never before its
+    /// first send.
+    ///
+    /// # Errors
+    /// [`AskError::Full`] when `P` other requests are on their way, [`AskError::Nobody`] when
+    /// `to` is nobody.
+    pub fn ask(
+        &mut self,
+        to: RobotId,
+        origin: RobotId,
+        kind: RequestKind,
+        valid_ms: u16,
+        now: Instant,
+    ) -> Result<u8, AskError> {
+        if !to.is_somebody() {
+            return Err(AskError::Nobody);
+        }
+        let number = self.free_number();
+        let new = Pending {
+            request: Request {
+                to,
+                origin,
+                number,
+                kind,
+                valid_ms,
+            },
+            sent: 0,
+            due: now,
+            expiry: now + Duration::from_millis(valid_ms.into()),
+        };
+        let same_matter = |p: &&mut Pending| {
+            let old = p.request;
+            old.to == to && old.origin == origin && old.kind.is_standing() == kind.is_standing()
+        };
+        match self.pending.iter_mut().find(same_matter) {
+            Some(old) if old.request.kind == kind => return Ok(old.request.number),
+            Some(old) => *old = new,
+            None => self.pending.push(new).map_err(|_| AskError::Full)?,
+        }
+        self.next = number.wrapping_add(1);
+        Ok(number)
+    }
+
+    /// The next thing to do at `now`; call until `None`, which comes after at most 2 `P` calls
+    /// (when [`Retry::interval`] is more than 0). O(`P`) each.
+    pub fn poll(&mut self, now: Instant) -> Option<Due> {
+        let pending = self
+            .pending
+            .iter_mut()
+            .find(|pending| !now.is_before(pending.due))?;
+        let request = pending.request;
+        let is_over = pending.sent >= self.retry.attempts || !now.is_before(pending.expiry);
+        if pending.sent > 0 && is_over {
+            self.remove(request.number);
+            return Some(Due::Expired(request));
+        }
+        pending.sent = pending.sent.saturating_add(1);
+        let again = now + self.retry.interval + jitter(self.retry, self.own, request, pending.sent);
+        pending.due = if again.is_before(pending.expiry) {
+            again
+        } else {
+            pending.expiry
+        };
+        Some(Due::Send(request))
+    }
+
+    /// When [`Requests::poll`] has something to do, seen from `now`; `None` when nothing is on its
+    /// way.
+    #[must_use]
+    pub fn poll_at(&self, now: Instant) -> Option<Instant> {
+        self.pending
+            .iter()
+            .map(|pending| pending.due)
+            .min_by_key(|due| due.since(now))
+    }
+
+    /// Takes note of an acknowledgement by `from` that is meant for this robot, and returns the
+    /// request it ends; `None` when there is none (it came twice, or too late).
+    pub fn acknowledged(&mut self, from: RobotId, number: u8) -> Option<Request> {
+        let request = self
+            .pending
+            .iter()
+            .map(|pending| pending.request)
+            .find(|request| request.to == from && request.number == number)?;
+        self.remove(number);
+        Some(request)
+    }
+
+    /// How many requests are on their way.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.pending.len()
+    }
+
+    /// Whether no request is on its way.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.pending.is_empty()
+    }
+
+    /// Numbers are unique among the requests on their way.
+    fn remove(&mut self, number: u8) {
+        self.pending.retain(|p| p.request.number != number);
+    }
+
+    /// The next number that no request on its way has.
+    fn free_number(&self) -> u8 {
+        let mut number = self.next;
+        // As many steps as there are requests always pass them all.
+        for _ in &self.pending {
+            if self.pending.iter().all(|p| p.request.number != number) {
+                break;
+            }
+            number = number.wrapping_add(1);
+        }
+        number
+    }
+}
+
+/// Between nothing and a quarter of the interval; a function of who asks what for which time.
+fn jitter(retry: Retry, own: RobotId, request: Request, sent: u8) -> Duration {
+    let quarter = (retry.interval.as_micros() >> 2).max(0);
+    let send = u32::from_be_bytes([0, 0, request.number, sent]);
+    let drawn = Rng::keyed(0, PURPOSE, own.0, send).below(quarter.cast_unsigned());
+    Duration::from_micros(drawn.cast_signed())
+}
+
+#[cfg(test)]
+mod tests;
