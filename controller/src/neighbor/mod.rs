@@ -336,7 +336,10 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
             }
         }
         out.clear();
-        out.extend(nearest.iter().map(|&(_, entry)| entry));
+        for (_, entry) in nearest {
+            // Same capacity: it cannot be full. (`extend` would leave a panic in the firmware.)
+            let _ = out.push(entry);
+        }
     }
 }
 

@@ -1,4 +1,4 @@
-//! Approximate `f32` through micromath, for parts where libm is too slow or too large.
+//! Approximate `f32` through micromath, for parts that have no flash for libm.
 
 use super::{Scalar, sealed};
 use core::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};

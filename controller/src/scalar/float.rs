@@ -20,7 +20,8 @@ macro_rules! impl_scalar {
             }
 
             fn from_ratio(numerator: i32, denominator: i32) -> Self {
-                (f64::from(numerator) / f64::from(denominator)) as $float
+                // Not through f64: that would link its software division into firmware.
+                numerator as $float / denominator as $float
             }
 
             fn from_milli(milli: i32) -> Self {

@@ -1,7 +1,7 @@
 //! The one numeric trait, and the four numbers that implement it.
 //!
 //! `f32` ships, `f64` is the oracle, [`Q16`] serves parts without an FPU and [`Fast32`] trades
-//! accuracy for speed. Everything beyond + - * goes through [`Scalar`] and hence through the same
+//! accuracy for code size. Everything beyond + - * goes through [`Scalar`] and hence through the same
 //! software routines on every target: same bits everywhere.
 //!
 //! NaN fails closed: it passes through arithmetic, `min`, `max` and `clamp` unchanged, is the last
@@ -68,7 +68,8 @@ pub trait Scalar:
 
     /// The fraction `numerator / denominator`, for constants and parameters.
     ///
-    /// Saturates; a zero denominator gives an infinity or NaN, in fixed point ±[`Scalar::MAX`].
+    /// Saturates; a zero denominator gives an infinity or NaN, in fixed point ±[`Scalar::MAX`]. In
+    /// f32, integers above 2^24 are rounded first.
     #[must_use]
     fn from_ratio(numerator: i32, denominator: i32) -> Self;
 
