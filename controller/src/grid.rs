@@ -297,6 +297,7 @@ impl<S: Scalar> GridFrame<S> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 

@@ -1,3 +1,5 @@
+#![allow(clippy::std_instead_of_alloc)]
+
 use super::*;
 use crate::grid::{BLOCKED, Cell, DIAGONAL, Window};
 use proptest::prelude::*;
