@@ -84,7 +84,7 @@ fn compact() -> impl Strategy<Value = Message> {
 }
 
 pub fn entry() -> impl Strategy<Value = TemplateEntry> {
-    (cell(), robot()).prop_map(|(offset, id)| TemplateEntry { offset, id })
+    (cell(), robot(), any::<u8>()).prop_map(|(offset, id, hops)| TemplateEntry { offset, id, hops })
 }
 
 fn template() -> impl Strategy<Value = Message> {

@@ -82,7 +82,7 @@ impl TemplateAssignment {
     /// Bytes of a frame that carries one, at most: tag and delimiter included, without tag
     /// [`TAG_LEN`] less.
     pub const MAX_FRAME_LEN: usize =
-        OVERHEAD + 1 + ID + 1 + 1 + 1 + 1 + CELL + 1 + TEMPLATE_PART * (CELL + ID);
+        OVERHEAD + 1 + ID + 1 + 1 + 1 + 1 + CELL + 1 + TEMPLATE_PART * (CELL + ID + 1);
 }
 
 impl GoalAssignment {

@@ -150,17 +150,23 @@ pub struct TemplateEntry {
     pub offset: Cell,
     /// Which robot should stand there; nobody = anyone.
     pub id: RobotId,
+    /// Geodesic distance from self in the formation's graph, 1..=rho.
+    pub hops: u8,
 }
 
 /// Entries in one [`TemplateAssignment`]: as many as a frame of 60 bytes carries.
-pub const TEMPLATE_PART: usize = 3;
+pub const TEMPLATE_PART: usize = 2;
 
 /// A part of a formation template, from whoever commands the swarm to one robot.
+///
+/// Every part but the last is full, so that a part's number says where its entries belong; only the
+/// single part of a template without neighbours is empty. See [`TemplateAssignment::split`] and
+/// [`TemplateAssembler`](super::TemplateAssembler).
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TemplateAssignment {
     /// Who it is for.
     pub to: RobotId,
-    /// Counts assignments; parts of different versions never mix.
+    /// Counts templates of this sender, wraps; parts of different versions never mix.
     pub version: u8,
     /// This part, 0..`parts`.
     pub part: u8,
@@ -180,7 +186,8 @@ pub struct TemplateAssignment {
 pub struct GoalAssignment {
     /// Who it is for; nobody = everybody.
     pub to: RobotId,
-    /// Counts assignments of this sender; an older one never replaces a newer one.
+    /// Counts goals of this sender, wraps; an older one never replaces a newer one
+    /// ([`Newest`](super::Newest)).
     pub version: u8,
     /// The goal of the formation's top leader (each robot adds its own offset).
     #[serde(with = "fixint")]

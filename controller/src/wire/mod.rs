@@ -1,12 +1,15 @@
 //! What robots say to each other: messages, and the frames that carry them.
 
+mod assembly;
 mod fixint;
 mod frame;
 mod message;
+mod newest;
 mod orders;
 mod requests;
 mod sequence;
 
+pub use assembly::{MAX_TEMPLATE, PartError, Template, TemplateAssembler};
 pub use frame::{
     DecodeError, EncodeError, Frame, Header, MAX_FRAME_LEN, TAG_LEN, VERSION, decode,
     decode_verified, encode, encode_tagged, frames,
@@ -15,6 +18,7 @@ pub use message::{
     Ack, Beacon, CompactBeacon, GoalAssignment, Message, Mode, Request, RequestKind, RobotId,
     TEMPLATE_PART, TemplateAssignment, TemplateEntry,
 };
+pub use newest::Newest;
 pub use orders::{Answer, Orders};
 pub use requests::{AskError, Due, Requests, Retry};
 pub use sequence::{Arrival, SEQUENCE_SPAN, SequenceWindow};

@@ -52,6 +52,7 @@ fn longest() -> [(Message, usize); 6] {
     let entry = TemplateEntry {
         offset: FAR,
         id: LAST,
+        hops: u8::MAX,
     };
     [
         (
@@ -174,6 +175,9 @@ fn frames_fit_the_radios_they_are_made_for() {
     assert_eq!(Beacon::MAX_FRAME_LEN, 60);
     assert_eq!(CompactBeacon::MAX_FRAME_LEN - TAG_LEN, 30);
     assert_eq!(Request::MAX_FRAME_LEN - TAG_LEN, 28);
+    // One more entry would not fit.
+    assert_eq!(TemplateAssignment::MAX_FRAME_LEN, 52);
+    const { assert!(TemplateAssignment::MAX_FRAME_LEN + CELL + ID + 1 > 60) };
 }
 
 #[test]

@@ -1,0 +1,238 @@
+//! A formation template in parts: splitting it for the air, and putting it together again from
+//! parts that come in any order, more than once, or not at all.
+
+use super::{Newest, RobotId, TEMPLATE_PART, TemplateAssignment, TemplateEntry};
+use crate::grid::Cell;
+use heapless::Vec;
+
+/// Parts that a [`TemplateAssembler`] can tell apart: one bit each.
+const MAX_PARTS: usize = u64::BITS as usize;
+
+/// Entries of the largest template that [`TemplateAssignment::split`] makes parts of.
+pub const MAX_TEMPLATE: usize = MAX_PARTS * TEMPLATE_PART;
+
+/// What stands in a place that no part has filled.
+const NO_ENTRY: TemplateEntry = TemplateEntry {
+    offset: Cell::new(0, 0),
+    id: RobotId::NOBODY,
+    hops: 0,
+};
+
+/// A robot's place in the formation and where its neighbours there should be (KUZ section 3), at
+/// most `F` of them.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Template<const F: usize> {
+    /// The robot's place in the formation.
+    pub slot: u8,
+    /// Cell difference from the top leader's place to this robot's place.
+    pub offset: Cell,
+    /// The neighbours within the geodesic radius, in the sender's order.
+    pub entries: Vec<TemplateEntry, F>,
+}
+
+/// Why a part was refused; what was collected before is as it was.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum PartError {
+    /// The part's number is not below the number of parts, or there are no parts.
+    Number,
+    /// A part before the last is not full, or the last of several is empty.
+    Length,
+    /// The whole template has more entries than fit.
+    TooLarge,
+    /// An entry is 0 hops away: the robot would be its own neighbour.
+    NoHops,
+    /// It says otherwise than an earlier part of the same version: another slot, offset or number
+    /// of parts, or other entries for the same part.
+    Contradiction,
+}
+
+impl TemplateAssignment {
+    /// The parts of a template, for one frame each; send them in any order.
+    ///
+    /// # Errors
+    /// [`PartError::TooLarge`] when there are more than [`MAX_TEMPLATE`] entries,
+    /// [`PartError::NoHops`] when one is 0 hops away.
+    pub fn split(
+        to: RobotId,
+        version: u8,
+        slot: u8,
+        offset: Cell,
+        entries: &[TemplateEntry],
+    ) -> Result<impl Iterator<Item = Self>, PartError> {
+        let parts = entries.chunks(TEMPLATE_PART).len().max(1);
+        if parts > MAX_PARTS {
+            return Err(PartError::TooLarge);
+        }
+        if entries.iter().any(|entry| entry.hops == 0) {
+            return Err(PartError::NoHops);
+        }
+        let parts = u8::try_from(parts).map_err(|_| PartError::TooLarge)?;
+        let mut chunks = entries.chunks(TEMPLATE_PART);
+        Ok((0..parts).map(move |part| Self {
+            to,
+            version,
+            part,
+            parts,
+            slot,
+            offset,
+            // A template without entries has one part without entries.
+            entries: chunks.next().unwrap_or_default().iter().copied().collect(),
+        }))
+    }
+
+    /// The place of this part's first entry in the template.
+    fn start(&self) -> usize {
+        usize::from(self.part) * TEMPLATE_PART
+    }
+
+    /// Whether no part follows.
+    fn is_last(&self) -> bool {
+        self.part.checked_add(1) == Some(self.parts)
+    }
+
+    /// Entries of the whole template: exact for the last part, otherwise the least possible.
+    fn total(&self) -> usize {
+        if self.is_last() {
+            self.start() + self.entries.len()
+        } else {
+            usize::from(self.parts).saturating_sub(1) * TEMPLATE_PART + 1
+        }
+    }
+
+    /// Whether this can be a part of a template of at most `capacity` entries.
+    fn check(&self, capacity: usize) -> Result<(), PartError> {
+        let len = self.entries.len();
+        let is_length_right = if self.is_last() {
+            len > 0 || self.parts == 1
+        } else {
+            len == TEMPLATE_PART
+        };
+        if self.part >= self.parts {
+            Err(PartError::Number)
+        } else if !is_length_right {
+            Err(PartError::Length)
+        } else if self.total() > capacity {
+            Err(PartError::TooLarge)
+        } else if self.entries.iter().any(|entry| entry.hops == 0) {
+            Err(PartError::NoHops)
+        } else {
+            Ok(())
+        }
+    }
+}
+
+/// Collects the parts of the newest template of one sender for one robot; about 12 `F` + 24 bytes.
+///
+/// The caller passes only parts that are addressed to the robot and come from whom it obeys. A
+/// newer version (see [`Newest`]) drops what was collected, finished or not, with its first part; a
+/// part of an older version is passed over. Versions that are lost in the air are no matter: the
+/// sender resends, or sends a newer one.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TemplateAssembler<const F: usize> {
+    entries: [TemplateEntry; F],
+    /// Bit p: part p is there.
+    there: u64,
+    /// Entries in all; known when the last part is there.
+    len: usize,
+    newest: Newest,
+    parts: u8,
+    slot: u8,
+    offset: Cell,
+}
+
+impl<const F: usize> Default for TemplateAssembler<F> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<const F: usize> TemplateAssembler<F> {
+    const FITS: () = assert!(F <= MAX_TEMPLATE, "more entries than parts can carry");
+
+    /// Nothing collected yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        let () = Self::FITS;
+        Self {
+            entries: [NO_ENTRY; F],
+            there: 0,
+            len: 0,
+            newest: Newest::new(),
+            parts: 0,
+            slot: 0,
+            offset: Cell::new(0, 0),
+        }
+    }
+
+    /// Takes a part in. Returns the template with the part that completes it and never again;
+    /// `None` while parts are missing, and for a part that came before or is out of date.
+    ///
+    /// # Errors
+    /// What is wrong with the part, see [`PartError`]. It changes nothing, even if its version is
+    /// newer.
+    ///
+    /// Bounded work: O(`F`).
+    pub fn put(&mut self, part: &TemplateAssignment) -> Result<Option<Template<F>>, PartError> {
+        part.check(F)?;
+        if self.newest.admit(part.version) {
+            *self = Self {
+                newest: self.newest,
+                parts: part.parts,
+                slot: part.slot,
+                offset: part.offset,
+                ..Self::new()
+            };
+        } else if self.newest.version() != Some(part.version) {
+            return Ok(None);
+        }
+        let same = (self.parts, self.slot, self.offset) == (part.parts, part.slot, part.offset);
+        if !same {
+            return Err(PartError::Contradiction);
+        }
+        let end = part.start() + part.entries.len();
+        // `check` has seen that both are in range.
+        let bit = 1_u64
+            .checked_shl(part.part.into())
+            .ok_or(PartError::TooLarge)?;
+        let place = self
+            .entries
+            .get_mut(part.start()..end)
+            .ok_or(PartError::TooLarge)?;
+        if self.there & bit != 0 {
+            let again = *place == *part.entries && (!part.is_last() || self.len == end);
+            return if again {
+                Ok(None)
+            } else {
+                Err(PartError::Contradiction)
+            };
+        }
+        place.copy_from_slice(&part.entries);
+        self.there |= bit;
+        if part.is_last() {
+            self.len = end;
+        }
+        Ok(self.complete())
+    }
+
+    /// Takes the next part as the first of all, whatever its version: for when the sender has
+    /// started anew, see [`Newest`].
+    pub fn forget(&mut self) {
+        *self = Self::new();
+    }
+
+    /// The template, if every part is there.
+    fn complete(&self) -> Option<Template<F>> {
+        if self.there.count_ones() != u32::from(self.parts) {
+            return None;
+        }
+        Some(Template {
+            slot: self.slot,
+            offset: self.offset,
+            entries: Vec::from_slice(self.entries.get(..self.len)?).ok()?,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;
