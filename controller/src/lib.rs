@@ -7,16 +7,30 @@
 //! code gives the same bits on a microcontroller, in a simulator and beside an autopilot.
 //!
 //! Layers point down only:
-//! numbers and geometry ([`scalar`], [`geom`], [`time`], [`rand`], [`grid`])
+//! numbers and geometry ([`scalar`], [`geom`], [`time`], [`rand`], [`grid`], [`cost`], [`shuffle`])
 //! < what is known of others ([`wire`], [`neighbor`])
 //! < behaviours ([`route`], [`formation`]; they never import each other)
 //! < composition ([`supervisor`], [`agent`]).
 #![no_std]
+// What may panic has no place on a robot (see Cargo.toml); tests may.
+#![cfg_attr(
+    test,
+    allow(
+        clippy::indexing_slicing,
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::integer_division_remainder_used,
+        clippy::std_instead_of_alloc,
+        clippy::std_instead_of_core
+    )
+)]
 
 #[cfg(test)]
 extern crate std;
 
 pub mod agent;
+pub mod cost;
 pub mod formation;
 pub mod geom;
 pub mod grid;
@@ -24,6 +38,7 @@ pub mod neighbor;
 pub mod rand;
 pub mod route;
 pub mod scalar;
+pub mod shuffle;
 pub mod supervisor;
 pub mod time;
 pub mod wire;

@@ -99,12 +99,6 @@ fn negative_ln_q16(k: NonZeroU64) -> u32 {
 }
 
 #[cfg(test)]
-#[allow(
-    clippy::unwrap_used,
-    clippy::indexing_slicing,
-    clippy::std_instead_of_alloc,
-    clippy::integer_division_remainder_used
-)]
 mod tests {
     use super::*;
     use std::vec::Vec;

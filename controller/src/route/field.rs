@@ -5,7 +5,8 @@
 //! than the cheapest move, so that (Denardo and Fox 1979) a cell leaves the queue only once. All
 //! arrays have one cell of blocked border around the window: neighbours are plain index offsets.
 
-use super::{Cost, EXCLUDED, ExitRule, RouteParams, VisitMemory, Weights};
+use super::{ExitRule, RouteParams, VisitMemory};
+use crate::cost::{Cost, EXCLUDED, Weights};
 use crate::grid::{BLOCKED, Cell, DIAGONAL, Dir, Norm, UNIT, Window};
 
 /// Buckets in the ring; a power of two.

@@ -1,7 +1,7 @@
 //! Windowed routing: the cheapest way out of what the robot sees, towards its target.
 //!
 //! Source: KUZ sections 3 and 5, algorithms 1 and 3, equations 7 to 10. Read section 3 first.
-//! Costs are integers in units of 1/[`TICK`] tick, so that host and device agree to the bit.
+//! Costs are integers, see [`crate::cost`], so that host and device agree to the bit.
 //!
 //! What differs from the paper: the direction of algorithm 3, line 7 is (target - cell), which the
 //! listing has the wrong way round; one reverse search from the exits serves all directions; beside
@@ -13,69 +13,14 @@ mod router;
 mod visits;
 
 #[cfg(test)]
-#[allow(
-    clippy::indexing_slicing,
-    clippy::unwrap_used,
-    clippy::integer_division_remainder_used
-)]
 mod tests;
 
 pub use field::{CostField, Unreachable};
 pub use router::{PLAN, Replan, Router};
 pub use visits::VisitMemory;
 
-use crate::grid::{Dir, Norm, UNIT};
-
-/// A cost in units of 1/[`TICK`] tick; [`EXCLUDED`] when there is no way.
-pub type Cost = u32;
-
-/// Cost of crossing one cell of impassability 1 by an axis move with gain 1.
-pub const TICK: Cost = UNIT << Gain::FRACTION_BITS;
-
-/// The cost of a direction that cannot be taken.
-pub const EXCLUDED: Cost = Cost::MAX;
-
-/// A non-negative coefficient with four fractional bits: 0, 1/16, ... 4095 15/16.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Gain(u16);
-
-impl Gain {
-    /// Bits behind the point.
-    pub const FRACTION_BITS: u32 = 4;
-    /// 0: the term has no effect.
-    pub const ZERO: Self = Self(0);
-    /// 1.
-    pub const ONE: Self = Self::from_int(1);
-
-    /// The whole number `value`, saturating at 4095.
-    #[must_use]
-    pub const fn from_int(value: u16) -> Self {
-        Self(if value > 4095 {
-            u16::MAX
-        } else {
-            value << Self::FRACTION_BITS
-        })
-    }
-
-    /// The number `sixteenths / 16`.
-    #[must_use]
-    pub const fn from_sixteenths(sixteenths: u16) -> Self {
-        Self(sixteenths)
-    }
-
-    /// The number in sixteenths.
-    #[must_use]
-    pub const fn sixteenths(self) -> u16 {
-        self.0
-    }
-
-    /// `self * length`, for a length in [`UNIT`]s: a cost in [`TICK`] units. Saturates.
-    #[must_use]
-    pub const fn of(self, length: u32) -> Cost {
-        length.saturating_mul(self.0 as u32)
-    }
-}
+use crate::cost::Gain;
+use crate::grid::Norm;
 
 /// Where a route leaves the window when the target lies outside.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -127,48 +72,5 @@ impl Default for RouteParams {
             a2: Gain::from_int(3),
             a3: Gain::from_int(3),
         }
-    }
-}
-
-/// What each of the eight moves costs at best: the least T over the routes that begin with it and
-/// do not return to the robot's cell (eq. 8).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Weights([Cost; 8]);
-
-impl Weights {
-    /// No move is open.
-    pub const CLOSED: Self = Self([EXCLUDED; 8]);
-
-    /// Weights from the costs of the moves in the order of [`Dir::MOVES`].
-    #[must_use]
-    pub const fn new(costs: [Cost; 8]) -> Self {
-        Self(costs)
-    }
-
-    /// The weight of a move; [`EXCLUDED`] for closed ones and for [`Dir::Stay`].
-    #[must_use]
-    pub fn get(&self, dir: Dir) -> Cost {
-        self.0.get(dir.index()).copied().unwrap_or(EXCLUDED)
-    }
-
-    /// Replaces the weight of a move; `Stay` has none.
-    pub fn set(&mut self, dir: Dir, cost: Cost) {
-        if let Some(slot) = self.0.get_mut(dir.index()) {
-            *slot = cost;
-        }
-    }
-
-    /// The cheapest move, the first of equals in the order of [`Dir::MOVES`]; `None` if all are closed.
-    #[must_use]
-    pub fn best(&self) -> Option<Dir> {
-        self.iter()
-            .filter(|&(_, cost)| cost != EXCLUDED)
-            .min_by_key(|&(_, cost)| cost)
-            .map(|(dir, _)| dir)
-    }
-
-    /// All moves with their weights.
-    pub fn iter(&self) -> impl Iterator<Item = (Dir, Cost)> + '_ {
-        Dir::MOVES.into_iter().zip(self.0)
     }
 }

@@ -1,6 +1,7 @@
 //! The route of one robot: what it remembers between steps.
 
-use super::{CostField, RouteParams, Unreachable, VisitMemory, Weights};
+use super::{CostField, RouteParams, Unreachable, VisitMemory};
+use crate::cost::Weights;
 use crate::grid::{Cell, Dir, Window};
 use heapless::Vec;
 

@@ -1,7 +1,8 @@
 #![allow(clippy::std_instead_of_alloc)]
 
 use super::*;
-use crate::grid::{BLOCKED, Cell, DIAGONAL, Window};
+use crate::cost::{Cost, EXCLUDED, TICK, Weights};
+use crate::grid::{BLOCKED, Cell, DIAGONAL, Dir, Window};
 use proptest::prelude::*;
 use std::vec::Vec;
 

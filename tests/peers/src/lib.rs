@@ -3,7 +3,8 @@
 
 use pathfinding::prelude::dijkstra_all;
 use staya_controller::grid::{BLOCKED, Cell, Dir, Window};
-use staya_controller::route::{Cost, CostField, Gain, RouteParams, VisitMemory};
+use staya_controller::cost::{Cost, Gain};
+use staya_controller::route::{CostField, RouteParams, VisitMemory};
 use std::collections::HashMap;
 
 /// A square window of land with a robot and its target in it.

@@ -1,0 +1,108 @@
+//! What moves cost: integers, so that host and device agree to the bit.
+//!
+//! A cost is time: the unit is 1/[`TICK`] of a tick, a tick being the time in which a robot
+//! crosses a cell of impassability 1. Behaviours give each of the eight moves a weight and add
+//! their weights up (KUZ section 7, "it is simplest to add them").
+
+use crate::grid::{Dir, UNIT};
+
+/// A cost in units of 1/[`TICK`] tick; [`EXCLUDED`] when there is no way.
+pub type Cost = u32;
+
+/// Cost of crossing one cell of impassability 1 by an axis move with gain 1.
+pub const TICK: Cost = UNIT << Gain::FRACTION_BITS;
+
+/// The cost of a direction that cannot be taken.
+pub const EXCLUDED: Cost = Cost::MAX;
+
+/// A non-negative coefficient with four fractional bits: 0, 1/16, ... 4095 15/16.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Gain(u16);
+
+impl Gain {
+    /// Bits behind the point.
+    pub const FRACTION_BITS: u32 = 4;
+    /// 0: the term has no effect.
+    pub const ZERO: Self = Self(0);
+    /// 1.
+    pub const ONE: Self = Self::from_int(1);
+
+    /// The whole number `value`, saturating at 4095.
+    #[must_use]
+    pub const fn from_int(value: u16) -> Self {
+        Self(if value > 4095 {
+            u16::MAX
+        } else {
+            value << Self::FRACTION_BITS
+        })
+    }
+
+    /// The number `sixteenths / 16`.
+    #[must_use]
+    pub const fn from_sixteenths(sixteenths: u16) -> Self {
+        Self(sixteenths)
+    }
+
+    /// The number in sixteenths.
+    #[must_use]
+    pub const fn sixteenths(self) -> u16 {
+        self.0
+    }
+
+    /// `self * length`, for a length in [`UNIT`]s: a cost in [`TICK`] units. Saturates.
+    #[must_use]
+    pub const fn of(self, length: u32) -> Cost {
+        length.saturating_mul(self.0 as u32)
+    }
+}
+
+/// What each of the eight moves costs at best: for a route, the least T over the routes that begin
+/// with it and do not return to the robot's cell (KUZ eq. 8).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Weights([Cost; 8]);
+
+impl Weights {
+    /// No move is open.
+    pub const CLOSED: Self = Self([EXCLUDED; 8]);
+
+    /// Weights from the costs of the moves in the order of [`Dir::MOVES`].
+    #[must_use]
+    pub const fn new(costs: [Cost; 8]) -> Self {
+        Self(costs)
+    }
+
+    /// The weight of a move; [`EXCLUDED`] for closed ones and for [`Dir::Stay`].
+    #[must_use]
+    pub fn get(&self, dir: Dir) -> Cost {
+        self.0.get(dir.index()).copied().unwrap_or(EXCLUDED)
+    }
+
+    /// Replaces the weight of a move; `Stay` has none.
+    pub fn set(&mut self, dir: Dir, cost: Cost) {
+        if let Some(slot) = self.0.get_mut(dir.index()) {
+            *slot = cost;
+        }
+    }
+
+    /// The cheapest move, the first of equals in the order of [`Dir::MOVES`]; `None` if all are closed.
+    #[must_use]
+    pub fn best(&self) -> Option<Dir> {
+        self.iter()
+            .filter(|&(_, cost)| cost != EXCLUDED)
+            .min_by_key(|&(_, cost)| cost)
+            .map(|(dir, _)| dir)
+    }
+
+    /// Closes a move.
+    #[must_use]
+    pub fn without(mut self, dir: Dir) -> Self {
+        self.set(dir, EXCLUDED);
+        self
+    }
+
+    /// All moves with their weights.
+    pub fn iter(&self) -> impl Iterator<Item = (Dir, Cost)> + '_ {
+        Dir::MOVES.into_iter().zip(self.0)
+    }
+}
