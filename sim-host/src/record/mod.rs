@@ -9,6 +9,7 @@ mod csv;
 mod file;
 mod history;
 
+pub(crate) use file::make_dir;
 pub use file::{Error, write_atomically, write_summary};
 pub use history::{Frame, History, Sample, SeriesPoint};
 

@@ -96,14 +96,22 @@ pub fn draw(terrain: &Terrain, scale: u32, path: &Path) -> Result<(), TerrainErr
 
 fn png(terrain: &Terrain, scale: u32) -> Result<Vec<u8>, TerrainError> {
     let (width, height, pixels) = render(terrain, scale);
+    encode_png(width, height, png::ColorType::Grayscale, &pixels)
+        .map_err(|error| parameter_error(error.to_string(), "choose a smaller scale"))
+}
+
+/// A PNG file of pixels with 8 bits per channel, row by row from the top.
+pub(crate) fn encode_png(
+    width: u32,
+    height: u32,
+    colour: png::ColorType,
+    pixels: &[u8],
+) -> Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
-    encoder.set_color(png::ColorType::Grayscale);
+    encoder.set_color(colour);
     encoder.set_depth(png::BitDepth::Eight);
-    encoder
-        .write_header()
-        .and_then(|mut writer| writer.write_image_data(&pixels))
-        .map_err(|error| parameter_error(error.to_string(), "choose a smaller scale"))?;
+    encoder.write_header()?.write_image_data(pixels)?;
     Ok(bytes)
 }
 

@@ -1,0 +1,68 @@
+//! Colours that people with any kind of colour vision can tell apart.
+
+/// A colour; `alpha` 255 is opaque.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Colour {
+    /// Red, green, blue.
+    pub rgb: [u8; 3],
+    /// Opacity.
+    pub alpha: u8,
+}
+
+impl Colour {
+    /// An opaque colour from `0xRRGGBB`.
+    #[must_use]
+    pub const fn hex(rgb: u32) -> Self {
+        let [_, red, green, blue] = rgb.to_be_bytes();
+        Self {
+            rgb: [red, green, blue],
+            alpha: 255,
+        }
+    }
+
+    /// The same colour with another opacity.
+    #[must_use]
+    pub const fn with_alpha(self, alpha: u8) -> Self {
+        Self { alpha, ..self }
+    }
+
+    /// The colour at `share` (0..=1) of the way from this one to another.
+    #[must_use]
+    pub fn towards(self, other: Self, share: f64) -> Self {
+        let mix = |a: u8, b: u8| {
+            let mixed = f64::from(a) + (f64::from(b) - f64::from(a)) * share.clamp(0.0, 1.0);
+            mixed.round() as u8
+        };
+        Self {
+            rgb: std::array::from_fn(|i| mix(self.rgb[i], other.rgb[i])),
+            alpha: mix(self.alpha, other.alpha),
+        }
+    }
+}
+
+/// Paper.
+pub const WHITE: Colour = Colour::hex(0xff_ff_ff);
+/// Titles and labels.
+pub const INK: Colour = Colour::hex(0x22_22_22);
+/// Numbers on axes and remarks.
+pub const MUTED: Colour = Colour::hex(0x5c_5c_5c);
+/// Grid lines.
+pub const GRID: Colour = Colour::hex(0xe6_e6_e6);
+
+/// The palette of Okabe and Ito ("Color universal design", 2008) without its yellow, which is too
+/// pale on white; in an order in which neighbours differ in brightness too.
+pub const PALETTE: [Colour; 7] = [
+    Colour::hex(0x00_72_b2),
+    Colour::hex(0xd5_5e_00),
+    Colour::hex(0x00_9e_73),
+    Colour::hex(0xcc_79_a7),
+    Colour::hex(0xe6_9f_00),
+    Colour::hex(0x56_b4_e9),
+    Colour::hex(0x00_00_00),
+];
+
+/// The colour of the `index`-th thing; after seven they come again.
+#[must_use]
+pub const fn nth(index: usize) -> Colour {
+    PALETTE[index % PALETTE.len()]
+}

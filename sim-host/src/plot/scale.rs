@@ -1,0 +1,213 @@
+//! Which range an axis shows, and where a value lies on it.
+
+use super::chart::{Chart, Data};
+use super::font;
+use super::series::Look;
+use super::ticks::{self, Tick};
+
+/// Font size by which marks are spaced.
+const NUMBER: f64 = 11.5;
+
+/// One axis.
+#[derive(Clone, Debug)]
+pub struct Axis {
+    range: [f64; 2],
+    logarithmic: bool,
+    /// Its marks.
+    pub ticks: Vec<Tick>,
+}
+
+impl Axis {
+    /// Where a value lies: 0 at the beginning, 1 at the end, beyond outside.
+    pub fn share(&self, value: f64) -> f64 {
+        let at = |value: f64| {
+            if self.logarithmic {
+                libm::log10(value)
+            } else {
+                value
+            }
+        };
+        let [low, high] = self.range.map(at);
+        (at(value) - low) / (high - low)
+    }
+
+    /// Width of the widest number.
+    pub fn widest_label(&self, size: f64) -> f64 {
+        self.ticks
+            .iter()
+            .map(|tick| font::width(&tick.label, size, false))
+            .fold(0.0, f64::max)
+    }
+
+    /// Whether all numbers fit beside each other on `length` units.
+    fn labels_fit(&self, length: f64) -> bool {
+        let span = |tick: &Tick| {
+            let half = font::width(&tick.label, NUMBER, false) / 2.0;
+            let at = length * self.share(tick.value);
+            [at - half, at + half]
+        };
+        let spans: Vec<[f64; 2]> = self.ticks.iter().map(span).collect();
+        spans.windows(2).all(|pair| pair[0][1] + 14.0 <= pair[1][0])
+    }
+}
+
+/// Both axes of a chart.
+#[derive(Clone, Debug)]
+pub struct Axes {
+    /// From left to right.
+    pub x: Axis,
+    /// From bottom to top.
+    pub y: Axis,
+    /// Nothing can be shown.
+    pub empty: bool,
+}
+
+impl Axes {
+    /// Axes for a plotting area of this width and height.
+    pub fn new(chart: &Chart, looks: &[Look<'_>], [width, height]: [f64; 2]) -> Self {
+        let extent = Extent::new(chart, looks);
+        let x_range = x_range(chart, &extent);
+        let logarithmic = chart.log_x;
+        let axis = |most: usize| Axis {
+            range: x_range,
+            logarithmic,
+            ticks: if logarithmic {
+                ticks::logarithmic(x_range[0], x_range[1], most)
+            } else {
+                ticks::linear(x_range[0], x_range[1], most)
+            },
+        };
+        let most = ((width / 50.0) as usize).clamp(2, 14);
+        let x = (2..=most)
+            .rev()
+            .map(axis)
+            .find(|axis| axis.labels_fit(width))
+            .unwrap_or_else(|| axis(2));
+        let most = ((height / 36.0) as usize).clamp(2, 10);
+        let y_range = y_range(chart, &extent, most);
+        let y = Axis {
+            range: y_range,
+            logarithmic: false,
+            ticks: ticks::linear(y_range[0], y_range[1], most),
+        };
+        let empty = extent.x.is_none();
+        Self { x, y, empty }
+    }
+}
+
+/// The least and the greatest finite values.
+struct Extent {
+    x: Option<[f64; 2]>,
+    y: Option<[f64; 2]>,
+    /// Some data are marks, which need room at the ends of the x axis.
+    marks: bool,
+    bars: bool,
+}
+
+impl Extent {
+    fn new(chart: &Chart, looks: &[Look<'_>]) -> Self {
+        let mut this = Self {
+            x: None,
+            y: None,
+            marks: false,
+            bars: false,
+        };
+        for look in looks {
+            match &look.series.data {
+                Data::Line(points) => points.iter().for_each(|[x, y]| this.add(chart, *x, *y)),
+                Data::Points(points) => {
+                    this.marks = true;
+                    points.iter().for_each(|[x, y]| this.add(chart, *x, *y));
+                }
+                Data::Intervals(points) => {
+                    this.marks = true;
+                    for [x, y, low, high] in points {
+                        [y, low, high]
+                            .iter()
+                            .for_each(|value| this.add(chart, *x, **value));
+                    }
+                }
+                Data::Bars(bars) => {
+                    this.bars = true;
+                    for [from, to, height] in bars {
+                        this.add(chart, *from, *height);
+                        this.add(chart, *to, 0.0);
+                    }
+                }
+            }
+        }
+        this
+    }
+
+    fn add(&mut self, chart: &Chart, x: f64, y: f64) {
+        if !x.is_finite() || !y.is_finite() || (chart.log_x && x <= 0.0) {
+            return;
+        }
+        let widen = |range: Option<[f64; 2]>, value: f64| match range {
+            Some([low, high]) => Some([low.min(value), high.max(value)]),
+            None => Some([value; 2]),
+        };
+        self.x = widen(self.x, x);
+        // What the chosen x range hides does not stretch y.
+        if chart
+            .x_range
+            .is_none_or(|[low, high]| (low..=high).contains(&x))
+        {
+            self.y = widen(self.y, y);
+        }
+    }
+}
+
+fn x_range(chart: &Chart, extent: &Extent) -> [f64; 2] {
+    let chosen = chart
+        .x_range
+        .filter(|[low, high]| low < high && low.is_finite() && high.is_finite());
+    let [low, high] = chosen.or(extent.x).unwrap_or([0.0, 1.0]);
+    if chart.log_x {
+        // A positive range, at least a factor of 2 wide around a single value.
+        let low = if low > 0.0 {
+            low
+        } else {
+            f64::MIN_POSITIVE.max(high / 1e3)
+        };
+        let (low, high) = (low.clamp(1e-150, 1e150), high.clamp(1e-150, 1e150));
+        let factor = if high / low < 1.0 + 1e-9 {
+            1.5
+        } else if chosen.is_none() && extent.marks {
+            libm::pow(high / low, 0.03)
+        } else {
+            1.0
+        };
+        return [low / factor, high * factor];
+    }
+    let [low, high] = ticks::sound(low, high);
+    let share = match (chosen, extent.marks, extent.bars) {
+        (None, true, _) => 0.03,
+        (None, false, true) => 0.01,
+        _ => 0.0,
+    };
+    [low - (high - low) * share, high + (high - low) * share]
+}
+
+fn y_range(chart: &Chart, extent: &Extent, most: usize) -> [f64; 2] {
+    let chosen = chart
+        .y_range
+        .filter(|[low, high]| low < high && low.is_finite() && high.is_finite());
+    if let Some([low, high]) = chosen {
+        return ticks::sound(low, high);
+    }
+    let [low, high] = extent.y.unwrap_or([0.0, 1.0]);
+    // Zero belongs to the axis where it takes no more than half of it.
+    let (low, high) = if low > 0.0 && low <= high / 2.0 {
+        (0.0, high)
+    } else if high < 0.0 && high >= low / 2.0 {
+        (low, 0.0)
+    } else {
+        (low, high)
+    };
+    // A constant 0 is a line on the ground, not in the middle.
+    if low == 0.0 && high == 0.0 {
+        return [0.0, 1.0];
+    }
+    ticks::enclosing(low, high, most)
+}

@@ -1,0 +1,163 @@
+//! Where an axis has its marks: whole multiples of 1, 2 or 5 times a power of ten.
+
+/// A mark on an axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tick {
+    /// Where.
+    pub value: f64,
+    /// What is written there.
+    pub label: String,
+}
+
+/// A range that an axis can have: finite, growing, wide enough to count in.
+#[must_use]
+pub fn sound(low: f64, high: f64) -> [f64; 2] {
+    // Beyond this, differences and steps would overflow.
+    const MOST: f64 = 1e150;
+    if low.is_nan() || high.is_nan() {
+        return [0.0, 1.0];
+    }
+    let (low, high) = (low.min(high).max(-MOST), high.max(low).min(MOST));
+    let largest = low.abs().max(high.abs());
+    if high - low > 1e-9 * largest && high - low > 1e-150 {
+        return [low, high];
+    }
+    // Nothing changes: show some room around the value.
+    let half = if largest == 0.0 { 0.5 } else { largest * 0.1 };
+    [low - half, high + half]
+}
+
+/// Step of an axis: mantissa (1, 2 or 5) and power of ten.
+#[derive(Clone, Copy)]
+struct Step {
+    mantissa: i64,
+    exponent: i32,
+}
+
+impl Step {
+    /// The smallest step that divides `span` into at most `most` parts.
+    fn new(span: f64, most: usize) -> Self {
+        let wanted = span / most.max(1) as f64 * (1.0 - 1e-12);
+        let exponent = libm::floor(libm::log10(wanted)) as i32;
+        for mantissa in [1, 2, 5] {
+            let step = Self { mantissa, exponent };
+            if step.times(1) >= wanted {
+                return step;
+            }
+        }
+        Self {
+            mantissa: 1,
+            exponent: exponent + 1,
+        }
+    }
+
+    /// The double next to `count` steps. Through decimals, so that 3 x 0.1 is 0.3.
+    fn times(self, count: i64) -> f64 {
+        let digits = count * self.mantissa;
+        format!("{digits}e{}", self.exponent)
+            .parse()
+            .unwrap_or(f64::NAN)
+    }
+
+    fn index(self, value: f64, round: fn(f64) -> f64) -> i64 {
+        let near = value / self.times(1);
+        // A value that is a multiple but for rounding counts as one.
+        let whole = libm::round(near);
+        let tolerance = 1e-9 * whole.abs().max(1.0);
+        (if (near - whole).abs() < tolerance {
+            whole
+        } else {
+            round(near)
+        }) as i64
+    }
+}
+
+/// The range widened to whole steps; the steps are at most `most` before widening.
+#[must_use]
+pub fn enclosing(low: f64, high: f64, most: usize) -> [f64; 2] {
+    let [low, high] = sound(low, high);
+    let step = Step::new(high - low, most);
+    [
+        step.times(step.index(low, libm::floor)).min(low),
+        step.times(step.index(high, libm::ceil)).max(high),
+    ]
+}
+
+/// Marks of an axis from `low` to `high`, both ends included, with at most `most` steps between.
+#[must_use]
+pub fn linear(low: f64, high: f64, most: usize) -> Vec<Tick> {
+    let [low, high] = sound(low, high);
+    let step = Step::new(high - low, most);
+    let (first, last) = (step.index(low, libm::ceil), step.index(high, libm::floor));
+    let largest = low.abs().max(high.abs());
+    (first..=last)
+        .map(|count| {
+            let value = step.times(count);
+            Tick {
+                value: value.clamp(low, high),
+                label: label(value, step, largest),
+            }
+        })
+        .collect()
+}
+
+/// As many decimals as the step has; k, M, G, T for thousands and more; else powers of ten.
+fn label(value: f64, step: Step, largest: f64) -> String {
+    if value == 0.0 {
+        return "0".into();
+    }
+    if largest >= 1e15 || step.exponent < -5 {
+        return format!("{value:e}");
+    }
+    // At most two decimals before a suffix: 19.95k, but 1000001.
+    let (suffix, power) = [("T", 12), ("G", 9), ("M", 6), ("k", 3)]
+        .into_iter()
+        .find(|(_, power)| largest >= ten_to(*power) && step.exponent > power - 3)
+        .filter(|_| largest >= 1e4)
+        .unwrap_or(("", 0));
+    let decimals = (power - step.exponent).max(0) as usize;
+    format!("{:.decimals$}{suffix}", value / ten_to(power))
+}
+
+fn ten_to(power: i32) -> f64 {
+    (0..power).fold(1.0, |product, _| product * 10.0)
+}
+
+/// Marks of a logarithmic axis, `low` above 0: powers of ten, and their 2- and 5-fold where there is room.
+#[must_use]
+pub fn logarithmic(low: f64, high: f64, most: usize) -> Vec<Tick> {
+    let most = most.max(2);
+    let exponents = libm::floor(libm::log10(low)) as i32..=libm::ceil(libm::log10(high)) as i32;
+    let marks = |mantissas: &[i64], every: usize| -> Vec<Tick> {
+        exponents
+            .clone()
+            .filter(|exponent| exponent.rem_euclid(every as i32) == 0)
+            .flat_map(|exponent| mantissas.iter().map(move |mantissa| (*mantissa, exponent)))
+            .map(|(mantissa, exponent)| {
+                let step = Step { mantissa, exponent };
+                let value = step.times(1);
+                let label = if (-4..6).contains(&exponent) {
+                    // Each label with its own decimals: 0.1, 1, 10.
+                    label(value, step, value)
+                } else {
+                    format!("{value:e}")
+                };
+                Tick { value, label }
+            })
+            .filter(|tick| tick.value >= low * (1.0 - 1e-12) && tick.value <= high * (1.0 + 1e-12))
+            .collect()
+    };
+    let fine = [marks(&[1, 2, 5], 1), marks(&[1], 1)];
+    if let Some(fits) = fine.into_iter().find(|ticks| ticks.len() <= most + 1) {
+        // Less than a decade may hold a single power of ten, or none.
+        return if fits.len() >= 2 {
+            fits
+        } else {
+            linear(low, high, most)
+        };
+    }
+    (2..)
+        .map(|every| marks(&[1], every))
+        .find(|ticks| ticks.len() <= most + 1)
+        .unwrap_or_default()
+}
