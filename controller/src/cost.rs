@@ -94,6 +94,16 @@ impl Weights {
             .map(|(dir, _)| dir)
     }
 
+    /// The sum of both for each move; a move that is closed in one of them stays closed.
+    #[must_use]
+    pub fn plus(mut self, other: &Self) -> Self {
+        for (dir, cost) in other.iter() {
+            let own = self.get(dir);
+            self.set(dir, own.saturating_add(cost));
+        }
+        self
+    }
+
     /// Closes a move.
     #[must_use]
     pub fn without(mut self, dir: Dir) -> Self {

@@ -97,6 +97,10 @@ pub enum Event {
 pub struct Outputs {
     /// What the body should do.
     pub command: Command,
+    /// Frames of the inbox that were heard: sound, not seen before, of somebody else.
+    pub received: u16,
+    /// Frames of the inbox that were refused: damaged, foreign, repeated or replayed.
+    pub rejected: u16,
     /// Bytes for the radio: COBS frames, each ended by a zero byte.
     pub outbox: Vec<u8, OUTBOX>,
     /// What happened; the oldest ones when more than [`EVENTS`].

@@ -1,5 +1,369 @@
-//! The one composer of behaviours: [`Agent::step`].
+//! The one composer of behaviours: [`Agent::step`]. Read that function first.
+//!
+//! A step hears ([`link`]), decides (a [`Guidance`], then the [`crate::supervisor`]) and speaks. The
+//! guidances compose the behaviours of the layer below: [`RouteGuidance`] routes, and
+//! [`FormationGuidance`] routes and keeps a formation.
 
+mod formation_guidance;
+mod guidance;
 mod io;
+mod link;
+mod route_guidance;
+mod travel;
 
+#[cfg(test)]
+mod tests;
+
+pub use formation_guidance::FormationGuidance;
+pub use guidance::{Ask, BadInput, Guidance, Guided, View};
 pub use io::{CellState, Command, EVENTS, Event, Inputs, OUTBOX, Outputs, Pose};
+pub use route_guidance::{GridWorkspace, RouteGuidance};
+
+use crate::grid::{Cell, Dir};
+use crate::neighbor::{Ages, Neighbor};
+use crate::rand::Rng;
+use crate::scalar::Scalar;
+use crate::supervisor::{Situation, moves, next_mode};
+use crate::time::{Duration, Instant};
+use crate::wire::{Beacon, Mode, Retry, RobotId};
+use link::{Link, Listener, News, report};
+
+/// Keeps the agent's draws apart from other uses of randomness.
+const PURPOSE: u32 = u32::from_be_bytes(*b"step");
+
+/// Cells of a search for windows of radius 5 (KUZ) with their border: (2 * 5 + 3)^2.
+pub const CELLS: usize = 169;
+/// Neighbours that an agent of default capacity knows.
+pub const NEIGHBORS: usize = 16;
+/// Cells whose visits an agent of default capacity remembers.
+pub const VISITS: usize = 64;
+/// Neighbours in a template of default capacity.
+pub const TEMPLATE: usize = 8;
+
+/// A robot for itself on the grid, with default capacities.
+pub type RouteAgent = Agent<f32, RouteGuidance<CELLS, VISITS>, NEIGHBORS>;
+/// A robot in formation on the grid, with default capacities.
+pub type FormationAgent = Agent<f32, FormationGuidance<CELLS, VISITS, TEMPLATE>, NEIGHBORS>;
+
+// What a firmware pays: one agent, and one workspace for all agents of a processor.
+const _: () = assert!(size_of::<RouteAgent>() <= 2304);
+const _: () = assert!(size_of::<FormationAgent>() <= 2560);
+const _: () = assert!(size_of::<GridWorkspace<CELLS>>() <= 3072);
+
+/// What does not change while the robot runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AgentConfig<S> {
+    /// Own number, 1 or more.
+    pub id: RobotId,
+    /// Seed of what the robot draws at random.
+    pub seed: u64,
+    /// Changes with each start; see [`crate::wire::SequenceWindow`].
+    pub boot: u8,
+    /// Time in which the robot crosses a cell of impassability 1; more than 0.
+    pub tick: Duration,
+    /// Time between two beacons. Longer saves the radio and makes everybody's news older.
+    pub beacon_period: Duration,
+    /// Radius of the ball around the body, metres.
+    pub radius_m: S,
+    /// How old news of others may be.
+    pub ages: Ages,
+    /// How requests are resent.
+    pub retry: Retry,
+    /// How long a stop stands that is not renewed: bounds what a lost "resume" costs.
+    pub stop_valid: Duration,
+}
+
+impl<S: Scalar> AgentConfig<S> {
+    /// A beacon each tick, news stale after 4 and forgotten after 30 ticks, requests resent every
+    /// 3 ticks, stops for 12 ticks, a radius of 0.
+    #[must_use]
+    pub fn new(id: RobotId, seed: u64, tick: Duration) -> Self {
+        Self {
+            id,
+            seed,
+            boot: 0,
+            tick,
+            beacon_period: tick,
+            radius_m: S::ZERO,
+            ages: Ages {
+                stale_after: tick.saturating_mul(4),
+                expire_after: tick.saturating_mul(30),
+            },
+            retry: Retry {
+                attempts: 5,
+                interval: tick.saturating_mul(3),
+            },
+            stop_valid: tick.saturating_mul(12),
+        }
+    }
+}
+
+/// The controller of one robot: guidance `G`, at most `N` known neighbours.
+///
+/// Bytes on a 64-bit host for the default capacities (pinned above): at most 2304 for
+/// [`RouteAgent`], 2560 for [`FormationAgent`], and 3072 of workspace that all agents of a
+/// processor share.
+#[derive(Clone, Debug)]
+pub struct Agent<S, G, const N: usize> {
+    config: AgentConfig<S>,
+    guidance: G,
+    link: Link<S, N>,
+    mode: Mode,
+    goal: Option<Cell>,
+    /// Decisions so far: each has random numbers of its own.
+    decisions: u32,
+    /// The last decision, as others and the next step need it.
+    last: Last,
+}
+
+/// What stays of a decision.
+#[derive(Clone, Copy, Debug, Default)]
+struct Last {
+    situation: Situation,
+    target: Cell,
+    leader: RobotId,
+    heading: Dir,
+    slot: u8,
+}
+
+impl<S: Scalar, G: Guidance<S>, const N: usize> Agent<S, G, N> {
+    /// A robot that has just started: idle, without a goal, knowing nobody.
+    #[must_use]
+    pub const fn new(config: &AgentConfig<S>, guidance: G) -> Self {
+        Self {
+            config: *config,
+            guidance,
+            link: Link::new(config.id, config.boot, config.ages, config.retry),
+            mode: Mode::Idle,
+            goal: None,
+            decisions: 0,
+            last: Last {
+                situation: Situation {
+                    has_fault: false,
+                    has_goal: false,
+                    is_at_goal: false,
+                    is_stopped: false,
+                    is_stuck: false,
+                    is_off_place: false,
+                },
+                target: Cell::new(0, 0),
+                leader: RobotId::NOBODY,
+                heading: Dir::Stay,
+                slot: 0,
+            },
+        }
+    }
+
+    /// Gives the robot a goal of its own.
+    pub const fn assign_goal(&mut self, goal: Cell) {
+        self.goal = Some(goal);
+        self.last.target = goal;
+    }
+
+    /// What the robot is doing.
+    #[must_use]
+    pub const fn mode(&self) -> Mode {
+        self.mode
+    }
+
+    /// Whom it follows.
+    #[must_use]
+    pub const fn leader(&self) -> RobotId {
+        self.last.leader
+    }
+
+    /// Where it is going; `None` without a goal.
+    #[must_use]
+    pub fn target(&self) -> Option<Cell> {
+        self.goal.map(|_| self.last.target)
+    }
+
+    /// Whom it knows, by rising number.
+    #[must_use]
+    pub fn neighbors(&self) -> &[Neighbor<S>] {
+        self.link.table.as_slice()
+    }
+
+    /// One step: hear, decide, speak. A pure function of the agent, `inputs` and `now`.
+    ///
+    /// Bounded work: O(frames of the inbox * N) to hear; the guidance's decision when the robot is
+    /// free to move (for the grid: one search of the window, O((2r + 1)^2), with
+    /// [`Prediction::Reflexive`](crate::formation::Prediction) one more per entry of the template);
+    /// at most [`OUTBOX`] bytes to send.
+    pub fn step(
+        &mut self,
+        inputs: &Inputs<'_, S>,
+        now: Instant,
+        workspace: &mut G::Workspace,
+    ) -> Outputs {
+        let mut out = Outputs::default();
+        self.hear(inputs, now, &mut out);
+        let guided = self.decide(inputs, now, workspace, &mut out);
+        self.supervise(guided.as_ref(), &mut out);
+        self.speak(inputs, now, &mut out);
+        out
+    }
+
+    fn hear(&mut self, inputs: &Inputs<'_, S>, now: Instant, out: &mut Outputs) {
+        let Self {
+            guidance,
+            link,
+            goal,
+            last,
+            ..
+        } = self;
+        let leader = last.leader;
+        // At most one of each kind can matter in one step, the newest goal being the last.
+        let mut redirected = false;
+        let mut new_goal = None;
+        let mut pass_on = heapless::Vec::<_, 4>::new();
+        let mut parts = heapless::Vec::<_, 4>::new();
+        let needs = |id| id == leader || guidance.needs(id);
+        let listener = Listener {
+            position_m: inputs.pose.position_m,
+            needs: &needs,
+        };
+        link.listen(inputs.inbox, now, &listener, out, |news| match news {
+            News::Redirect => redirected = true,
+            News::Goal(cell) => new_goal = Some(cell),
+            // What does not fit is sent again.
+            News::PassOn(request) => drop(pass_on.push(request)),
+            News::Template(part) => drop(parts.push(part)),
+        });
+        for part in &parts {
+            let _ = guidance.assign_template(part);
+        }
+        if redirected {
+            guidance.redirect();
+        }
+        if let Some(top_goal) = new_goal {
+            *goal = Some(top_goal + guidance.goal_offset());
+        }
+        for request in pass_on {
+            if leader.is_somebody() && leader != request.origin {
+                let valid = Duration::from_millis(request.valid_ms.into());
+                link.ask(leader, request.origin, request.kind, valid, now);
+            }
+        }
+    }
+
+    /// Asks the guidance when the robot is free to move; `None` otherwise.
+    fn decide(
+        &mut self,
+        inputs: &Inputs<'_, S>,
+        now: Instant,
+        workspace: &mut G::Workspace,
+        out: &mut Outputs,
+    ) -> Option<Guided> {
+        self.last.situation.has_goal = self.goal.is_some();
+        let goal = self.goal?;
+        if inputs.cell.is_some_and(|cell| cell.busy > Duration::ZERO) {
+            return None;
+        }
+        let view = View {
+            id: self.config.id,
+            now,
+            tick: self.config.tick,
+            pose: inputs.pose,
+            cell: inputs.cell,
+            window: inputs.window,
+            goal,
+            neighbors: self.link.table.as_slice(),
+            ages: self.config.ages,
+        };
+        let mut rng = Rng::keyed(self.config.seed, PURPOSE, self.config.id.0, self.decisions);
+        self.decisions = self.decisions.wrapping_add(1);
+        let guided = self.guidance.decide(&view, &mut rng, workspace);
+        let situation = &mut self.last.situation;
+        situation.has_fault = guided.is_err();
+        let guided = guided.ok()?;
+        for ask in &guided.asks {
+            let (valid, own) = (self.config.stop_valid, self.config.id);
+            self.link.ask(ask.to, own, ask.kind, valid, now);
+        }
+        if guided.target != goal && guided.target != self.last.target {
+            let (from, to) = (goal, guided.target);
+            report(out, Event::TargetMoved { from, to });
+        }
+        if guided.is_stuck && !situation.is_stuck {
+            report(out, Event::NoRoute);
+        }
+        let leads = !guided.leader.is_somebody();
+        situation.is_at_goal = guided.is_at_goal;
+        situation.is_stuck = guided.is_stuck;
+        situation.is_off_place = guided.is_off_place;
+        situation.is_stopped = guided.waits || (leads && self.link.is_stopped(now));
+        self.last.target = guided.target;
+        self.last.leader = guided.leader;
+        self.last.slot = guided.slot;
+        Some(guided)
+    }
+
+    /// The mode, and what it makes of the guidance's wishes.
+    fn supervise(&mut self, guided: Option<&Guided>, out: &mut Outputs) {
+        let to = next_mode(self.mode, self.last.situation);
+        if to != self.mode {
+            let from = core::mem::replace(&mut self.mode, to);
+            report(out, Event::ModeChanged { from, to });
+        }
+        if let Some(guided) = guided {
+            let goes = moves(to) || (guided.makes_way && to != Mode::Fault);
+            self.last.heading = Dir::Stay;
+            if goes && !guided.moves.is_empty() {
+                self.last.heading = guided.moves.first().copied().unwrap_or_default();
+                out.command = Command::Move(guided.moves.clone());
+            }
+        }
+    }
+
+    fn speak(&mut self, inputs: &Inputs<'_, S>, now: Instant, out: &mut Outputs) {
+        let Self { config, last, .. } = self;
+        let mode = self.mode;
+        let beacon = || beacon(config, last, mode, inputs, now);
+        self.link.speak(now, config.beacon_period, beacon, out);
+        // A robot that is free decides anew after a tick at the latest.
+        let busy = inputs.cell.map_or(Duration::ZERO, |cell| cell.busy);
+        let decision = now
+            + if busy > Duration::ZERO {
+                busy
+            } else {
+                config.tick
+            };
+        if decision.is_before(out.call_again) {
+            out.call_again = decision;
+        }
+    }
+}
+
+/// What the robot says of itself. Lengths saturate; what is not a number counts as 0.
+fn beacon<S: Scalar>(
+    config: &AgentConfig<S>,
+    last: &Last,
+    mode: Mode,
+    inputs: &Inputs<'_, S>,
+    now: Instant,
+) -> Beacon {
+    let milli = |value: S| value.to_milli().unwrap_or(0);
+    let narrow = |value: S| milli(value).clamp(i16::MIN.into(), i16::MAX.into()) as i16;
+    let Pose {
+        position_m: p,
+        velocity_mps: v,
+    } = inputs.pose;
+    let state = inputs.cell.unwrap_or_default();
+    let busy_ms = i64::from(state.busy.as_micros().max(0))
+        .checked_div(1000)
+        .unwrap_or(0);
+    Beacon {
+        time: now,
+        position_mm: [milli(p.x), milli(p.y), milli(p.z)],
+        velocity_mmps: [narrow(v.x), narrow(v.y), narrow(v.z)],
+        radius_mm: u16::try_from(milli(config.radius_m)).unwrap_or(u16::MAX),
+        cell: state.cell,
+        heading: last.heading,
+        busy_ms: u16::try_from(busy_ms).unwrap_or(u16::MAX),
+        leader: last.leader,
+        slot: last.slot,
+        mode,
+        target: last.target,
+    }
+}

@@ -1,1 +1,101 @@
-//! Under construction.
+//! Keeping a formation: who my neighbours should be, where they are, and what that makes each move
+//! cost.
+//!
+//! Source: KUZ section 7, algorithms 2 and 5 to 7; section 6 for the measures. Read section 7 first.
+//! Everything here is a pure function on slices; what a robot remembers is [`Pace`] and its
+//! [`Template`]. Lengths are integers in [`UNIT`]s per cell, costs those of [`crate::cost`].
+//!
+//! What differs from the paper, and why (figures: `staya experiment formation`):
+//! - In the paper each robot weighs the shortest way to its *own* target against its neighbours'
+//!   places. Six robots then take six different ways around a hill, pull at each other, and jam in
+//!   one run of eight. Here the top leader alone chooses the way, and prices land by what the whole
+//!   formation would cross ([`blended`]); the others head for their places beside it and ahead of
+//!   where it is ([`aim`]), weighing their own land against their neighbours' places (algorithm 7).
+//! - The leader waits when somebody has fallen behind by more than r0, rather than when anybody is
+//!   off his place in any direction ([`lag`]): who is ahead or aside loses nothing by going on.
+//! - The listing's misprints are resolved: `less` is counted once (algorithm 5), the leader is the
+//!   smallest number (algorithm 6), sums restart for each direction (algorithm 7).
+
+mod measure;
+mod neighbors;
+mod steering;
+mod template;
+
+#[cfg(test)]
+mod tests;
+
+pub use measure::{FormationError, GraphDistance, graph_distance};
+pub use neighbors::{Found, Member, Seen, find_leader, find_neighbors};
+pub use steering::{Anchor, Pace, aim, blended, def, deviation, distances, lag, should_stay};
+pub use template::{TemplateError, rotated};
+
+pub use crate::wire::Template;
+
+use crate::cost::Gain;
+use crate::grid::UNIT;
+
+/// How a robot foresees where another one will be when its own next move is over.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Prediction {
+    /// It goes on in the direction that it announced, as fast as the land allows: O(1).
+    #[default]
+    Constant,
+    /// What would I do in its place (KUZ section 7, item 1): one's own choice of a move from its
+    /// cell, for its target and place, on the land that one sees; never a prediction inside a
+    /// prediction. One more search of the window per neighbour. Falls back to `Constant` for a robot
+    /// whose surroundings are not in sight.
+    Reflexive,
+}
+
+/// What the top leader does while somebody is too far behind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Recovery {
+    /// It stands: nobody loses more time than the slowest needs.
+    #[default]
+    Wait,
+    /// It heads for `cell + def` (KUZ section 7), towards where the others are off to.
+    Def,
+}
+
+/// Parameters of formation keeping.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FormationParams {
+    /// How far from its place a neighbour may be and still counts as found, cells (eps of
+    /// algorithm 5). Small values lose sight of who strays, so that nobody waits for him.
+    pub eps: u8,
+    /// Price of being off one's place, ticks per cell (the coefficient of the scalarisation). 0:
+    /// everybody takes the shortest way; large values push robots straight over bad land.
+    pub gain: Gain,
+    /// How far somebody may fall behind before the top leader waits, [`UNIT`]s (r0). Smaller keeps
+    /// the formation tighter and costs time.
+    pub halt_lag: u16,
+    /// How near he must have come again before it goes on, [`UNIT`]s; at most `halt_lag`.
+    pub resume_lag: u16,
+    /// How far ahead of the top leader's cell the others aim, cells along its heading: makes up for
+    /// the time that its move and the news of it take.
+    pub lead: u8,
+    /// How much of a cell's price for the top leader is the land under the others' places when it
+    /// stands there, sixteenths: 0 only its own, 16 only theirs.
+    pub footprint: u8,
+    /// How others are foreseen.
+    pub prediction: Prediction,
+    /// What the top leader does while somebody is too far behind.
+    pub recovery: Recovery,
+}
+
+impl Default for FormationParams {
+    fn default() -> Self {
+        Self {
+            eps: 10,
+            gain: Gain::ONE,
+            halt_lag: 5 * UNIT as u16,
+            resume_lag: 5 * UNIT as u16,
+            lead: 2,
+            footprint: 8,
+            prediction: Prediction::Constant,
+            recovery: Recovery::Wait,
+        }
+    }
+}

@@ -302,6 +302,12 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
         self.entries.iter()
     }
 
+    /// Everybody, in the order of ids.
+    #[must_use]
+    pub fn as_slice(&self) -> &[Neighbor<S>] {
+        &self.entries
+    }
+
     /// How many are known.
     #[must_use]
     pub fn len(&self) -> usize {

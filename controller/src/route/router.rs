@@ -49,9 +49,11 @@ impl<const M: usize> Router<M> {
     }
 
     /// Tells where the robot is and where it is heading; to be called each step. A changed cell
-    /// counts as a visit, a target that moves by more than the window forgets the visits.
+    /// counts as a visit and as a move of the planned chain, a target that moves by more than the window forgets the visits.
     pub fn observe(&mut self, params: &RouteParams, cell: Cell, target: Cell) {
         if self.here != Some(cell) {
+            let made = self.here.and_then(|before| Dir::between(before, cell));
+            self.advance(made.unwrap_or_default());
             self.here = Some(cell);
             self.visits.enter(cell);
         }
@@ -84,7 +86,7 @@ impl<const M: usize> Router<M> {
     }
 
     /// The next move of the planned chain, planned anew when there is none or something on it
-    /// changed. The caller tells [`Router::advance`] when the move was made.
+    /// changed. [`Router::observe`] sees whether the robot makes it.
     ///
     /// # Errors
     /// [`Unreachable`] when no exit of the window can be reached.
@@ -105,7 +107,7 @@ impl<const M: usize> Router<M> {
     }
 
     /// Takes the first move off the plan, once the robot has made it; drops a plan that the robot left.
-    pub fn advance(&mut self, made: Dir) {
+    fn advance(&mut self, made: Dir) {
         if self.plan.pop().is_some_and(|(dir, _)| dir != made) {
             self.plan.clear();
         }

@@ -1,0 +1,409 @@
+//! Travelling in formation (KUZ algorithm 2): the top leader chooses the way for all, the others keep
+//! their places beside it. See [`crate::formation`] for what differs from the paper and why.
+
+use super::guidance::{Ask, BadInput, Guidance, Guided, View};
+use super::route_guidance::GridWorkspace;
+use super::travel::{Travel, reachable_goal};
+use crate::cost::{Gain, Weights};
+use crate::formation::{
+    Anchor, FormationParams, Found, Member, Pace, Prediction, Recovery, Seen, Template, aim,
+    blended, def, distances, find_leader, find_neighbors, lag, should_stay,
+};
+use crate::grid::{BLOCKED, Cell, Dir, Window};
+use crate::neighbor::Neighbor;
+use crate::rand::Rng;
+use crate::route::{CostField, RouteParams, Router};
+use crate::shuffle::Sharpness;
+use crate::time::Duration;
+use crate::wire::{Mode, RequestKind, RobotId, TemplateAssembler, TemplateAssignment};
+use core::iter::successors;
+use heapless::Vec;
+
+/// Moves that a robot of a formation tries: its best and the next best. One that is crowded out of
+/// both waits; trying all eight it would run away from its place.
+const ALTERNATIVES: usize = 2;
+/// Cells by which old news may be carried forward.
+const MAX_FORESIGHT: i16 = 3;
+
+/// Guidance in formation; remembers visits of `M` cells and a template of `F` neighbours.
+///
+/// Without a template the robot travels alone.
+#[derive(Clone, Debug)]
+pub struct FormationGuidance<const CELLS: usize, const M: usize, const F: usize> {
+    route: RouteParams,
+    formation: FormationParams,
+    sharpness: Sharpness,
+    template: Template<F>,
+    assembler: TemplateAssembler<F>,
+    router: Router<M>,
+    travel: Travel,
+    pace: Pace,
+    /// The robot has asked its leader to stop.
+    has_asked: bool,
+}
+
+/// What a follower steers by.
+struct Guide {
+    /// The top leader as an anchor.
+    anchor: Anchor,
+    /// Own deviation behind its place, [`UNIT`](crate::grid::UNIT)s.
+    lag: u32,
+    /// The top leader stands at its goal.
+    has_arrived: bool,
+}
+
+impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS, M, F> {
+    /// With these parameters and this place in the formation.
+    #[must_use]
+    pub const fn new(
+        route: RouteParams,
+        formation: FormationParams,
+        template: Template<F>,
+    ) -> Self {
+        Self {
+            route,
+            formation,
+            sharpness: Sharpness::Greedy,
+            template,
+            assembler: TemplateAssembler::new(),
+            router: Router::new(),
+            travel: Travel::new(),
+            pace: Pace::new(),
+            has_asked: false,
+        }
+    }
+
+    /// How strictly the order of moves follows their weights.
+    #[must_use]
+    pub const fn sharpness(mut self, sharpness: Sharpness) -> Self {
+        self.sharpness = sharpness;
+        self
+    }
+
+    /// The template that it keeps.
+    #[must_use]
+    pub const fn template(&self) -> &Template<F> {
+        &self.template
+    }
+
+    /// The others, each with the cell where it will be when one's own next move is over.
+    fn seen<S>(
+        &self,
+        view: &View<'_, S>,
+        window: &Window<'_>,
+        field: &mut CostField<CELLS>,
+    ) -> Vec<Seen, 32> {
+        let mut all: Vec<Seen, 32> = view
+            .neighbors
+            .iter()
+            .take(32)
+            .map(|neighbor| Seen {
+                id: neighbor.id,
+                cell: neighbor.cell,
+                predicted: self.foresee(view, window, neighbor),
+                heading: neighbor.heading,
+                leader: neighbor.leader,
+                mode: neighbor.mode,
+            })
+            .collect();
+        if self.formation.prediction == Prediction::Reflexive {
+            let top = self.top(view);
+            for index in 0..all.len() {
+                let own = (self.template.entries.iter())
+                    .find(|entry| all.get(index).is_some_and(|seen| seen.id == entry.id));
+                let Some(entry) = own else { continue };
+                let place = top.and_then(|top| {
+                    let leader = all.iter().find(|seen| seen.id == top)?;
+                    Some(leader.cell + self.template.offset + entry.offset)
+                });
+                if let Some(seen) = all.get(index).copied() {
+                    let choice = self.choice_of(view, window, field, &seen, place);
+                    if let (Some(choice), Some(seen)) = (choice, all.get_mut(index)) {
+                        seen.predicted = choice;
+                    }
+                }
+            }
+        }
+        all
+    }
+
+    /// Where a robot will be after the time of the next move if it goes on as it announced
+    /// (constant velocity on the land in sight). At most [`MAX_FORESIGHT`] cells.
+    fn foresee<S>(&self, view: &View<'_, S>, window: &Window<'_>, other: &Neighbor<S>) -> Cell {
+        let mut cell = other.cell;
+        if !matches!(other.mode, Mode::Cruise | Mode::Forming) || other.heading == Dir::Stay {
+            return cell;
+        }
+        let step = other.heading.offset();
+        let length = other.heading.length(self.route.norm).cast_signed();
+        let mut left = (view.now + view.tick).since(other.busy_until);
+        for _ in 0..MAX_FORESIGHT {
+            if left < Duration::ZERO {
+                break;
+            }
+            let next = cell + step;
+            let u = match window.get(next) {
+                Some(BLOCKED) => break,
+                Some(u) => u,
+                // Out of sight: as hard as where it was, or easy land.
+                None => window.get(cell).unwrap_or(1),
+            };
+            cell = next;
+            let ticks = i32::from(u).saturating_mul(length);
+            let micros = i64::from(view.tick.as_micros()) * i64::from(ticks);
+            let crossing = micros
+                .checked_div(i64::from(crate::grid::UNIT))
+                .unwrap_or(0);
+            let crossing = i32::try_from(crossing).unwrap_or(i32::MAX);
+            left = Duration::from_micros(left.as_micros().saturating_sub(crossing));
+        }
+        cell
+    }
+
+    /// What oneself would do in another robot's place (KUZ section 7, item 1); `None` where its
+    /// surroundings are not in sight or it is not free to move.
+    fn choice_of<S>(
+        &self,
+        view: &View<'_, S>,
+        window: &Window<'_>,
+        field: &mut CostField<CELLS>,
+        other: &Seen,
+        place: Option<Cell>,
+    ) -> Option<Cell> {
+        let neighbor = view.neighbor(other.id)?;
+        let is_free = (view.now + view.tick).since(neighbor.busy_until) >= Duration::ZERO;
+        let is_in_sight = Dir::MOVES
+            .iter()
+            .all(|dir| window.get(other.cell + dir.offset()).is_some());
+        if !is_free || !is_in_sight {
+            return None;
+        }
+        let target = place.unwrap_or(neighbor.target);
+        if target == other.cell {
+            return Some(other.cell);
+        }
+        let params = RouteParams {
+            a2: Gain::ZERO,
+            ..self.route
+        };
+        let nobody = core::iter::empty();
+        let weights = field
+            .weights::<0>(&params, window, other.cell, target, nobody, None)
+            .ok()?;
+        let price = distances(&self.formation, other.cell, place, &[]);
+        let dir = weights.plus(&price).best()?;
+        Some(other.cell + dir.offset())
+    }
+
+    /// The robot at the end of the leader chain, as far as it was heard of.
+    fn top<S>(&self, view: &View<'_, S>) -> Option<RobotId> {
+        let named = |entry: &&crate::wire::TemplateEntry| {
+            entry.hops == 1 && entry.id < view.id && view.neighbor(entry.id).is_some()
+        };
+        let first = self
+            .template
+            .entries
+            .iter()
+            .filter(named)
+            .map(|e| e.id)
+            .min()?;
+        // Numbers fall along the chain, so that it ends; a wrong beacon cannot make it a circle.
+        successors(Some(first), |&id| {
+            let next = view.neighbor(id)?.leader;
+            (next.is_somebody() && next < id && view.neighbor(next).is_some()).then_some(next)
+        })
+        .last()
+    }
+
+    /// The way of a robot that leads or is alone: for itself, on land priced for all.
+    fn lead<S>(
+        &mut self,
+        view: &View<'_, S>,
+        window: &Window<'_>,
+        (cell, target): (Cell, Cell),
+        found: &Found<F>,
+        workspace: &mut GridWorkspace<CELLS>,
+    ) -> Option<Weights> {
+        let GridWorkspace { field, land } = workspace;
+        let shown = if self.formation.footprint == 0 || found.members.is_empty() {
+            None
+        } else {
+            blended(
+                window,
+                &self.template.entries,
+                self.formation.footprint,
+                land,
+            )
+        };
+        let shown = shown.as_ref().unwrap_or(window);
+        let others = view.neighbors.iter().map(|neighbor| neighbor.cell);
+        self.router
+            .weights(&self.route, field, shown, cell, target, others)
+            .ok()
+    }
+
+    /// The way of a follower to its place.
+    fn follow<S>(
+        &self,
+        view: &View<'_, S>,
+        window: &Window<'_>,
+        (cell, target): (Cell, Cell),
+        guide: &Guide,
+        found: &Found<F>,
+        workspace: &mut GridWorkspace<CELLS>,
+    ) -> Option<Weights> {
+        let (place, members): (Cell, &[Member]) = if guide.has_arrived {
+            (target, &[])
+        } else {
+            (aim(&guide.anchor, self.formation.lead), &found.members)
+        };
+        let place = reachable_goal(window, place);
+        if place == cell {
+            return Some(distances(&self.formation, cell, Some(place), members));
+        }
+        let params = RouteParams {
+            a2: Gain::ZERO,
+            ..self.route
+        };
+        let others = view.neighbors.iter().map(|neighbor| neighbor.cell);
+        let weights = workspace
+            .field
+            .weights::<0>(&params, window, cell, place, others, None)
+            .ok()?;
+        Some(weights.plus(&distances(&self.formation, cell, Some(place), members)))
+    }
+
+    /// The top leader seen by a follower.
+    fn guide<S>(&self, view: &View<'_, S>, cell: Cell, seen: &[Seen]) -> Option<Guide> {
+        let top = self.top(view)?;
+        let seen = seen.iter().find(|seen| seen.id == top)?;
+        let offset = self.template.offset;
+        let off = cell - (seen.cell + offset);
+        Some(Guide {
+            anchor: Anchor {
+                predicted: seen.predicted,
+                offset,
+                heading: seen.heading,
+            },
+            lag: lag(off, seen.heading),
+            has_arrived: seen.mode == Mode::Arrived,
+        })
+    }
+
+    /// Asks the leader to stop when too far behind, and to resume when near again.
+    fn ask_pace(&mut self, leader: RobotId, lag: u32) -> Option<Ask> {
+        let has_fallen_behind = self.pace.update(&self.formation, lag);
+        let kind = match (has_fallen_behind, self.has_asked) {
+            (true, _) => RequestKind::Stop,
+            (false, true) => RequestKind::Resume,
+            (false, false) => return None,
+        };
+        self.has_asked = has_fallen_behind;
+        Some(Ask { to: leader, kind })
+    }
+}
+
+impl<S, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
+    for FormationGuidance<CELLS, M, F>
+{
+    type Workspace = GridWorkspace<CELLS>;
+
+    fn decide(
+        &mut self,
+        view: &View<'_, S>,
+        rng: &mut Rng,
+        workspace: &mut Self::Workspace,
+    ) -> Result<Guided, BadInput> {
+        let cell = view.cell.ok_or(BadInput)?.cell;
+        let window = view.window.ok_or(BadInput)?;
+        let target = reachable_goal(&window, view.goal);
+        self.router.observe(&self.route, cell, target);
+
+        let seen = self.seen(view, &window, &mut workspace.field);
+        let found = find_neighbors(
+            &self.template,
+            cell,
+            self.formation.eps,
+            seen.iter().copied(),
+        );
+        let leader = find_leader(view.id, &found.members);
+        let guide = if leader.is_somebody() {
+            self.guide(view, cell, &seen)
+        } else {
+            None
+        };
+        let mut guided = Guided {
+            target,
+            leader,
+            slot: self.template.slot,
+            is_at_goal: cell == target,
+            makes_way: self.travel.take_redirection(),
+            ..Guided::default()
+        };
+        let mut stays = false;
+        let weights = if let Some(guide) = &guide {
+            guided.asks.extend(self.ask_pace(leader, guide.lag));
+            guided.is_off_place = self.pace.waits();
+            // The goal counts when the formation is there.
+            guided.is_at_goal &= guide.has_arrived;
+            let weights = self.follow(view, &window, (cell, target), guide, &found, workspace);
+            if let (Some(first), false) = (weights.and_then(|w| w.best()), guide.has_arrived) {
+                stays = should_stay(cell, aim(&guide.anchor, self.formation.lead), first);
+            }
+            weights
+        } else {
+            let behind = found.members.iter().map(|member| {
+                let off = member.seen.cell - (cell + member.offset);
+                lag(off, self.travel.choice())
+            });
+            guided.waits = self.pace.update(&self.formation, behind.max().unwrap_or(0));
+            self.lead(view, &window, (cell, target), &found, workspace)
+        };
+        guided.is_stuck = weights.is_none() && !guided.is_at_goal;
+        let mut weights = weights.unwrap_or(Weights::CLOSED);
+        if guided.makes_way {
+            weights = self.travel.without_last(weights);
+            stays = false;
+        }
+        guided.moves = Travel::order(&weights, self.sharpness, ALTERNATIVES, rng);
+        if guided.waits && self.formation.recovery == Recovery::Def {
+            let towards = def(cell, &found.members);
+            guided.waits = towards == Dir::Stay;
+            guided.moves = core::iter::once(towards).collect();
+        }
+        if stays {
+            guided.moves.clear();
+        }
+        let choice = guided.moves.first().copied().unwrap_or_default();
+        let blocked = self.travel.note(view, cell, choice);
+        if !guided.waits && !guided.is_at_goal {
+            // One place is left: asks hold two.
+            guided.asks.extend(blocked);
+        }
+        Ok(guided)
+    }
+
+    fn redirect(&mut self) {
+        self.travel.redirect();
+    }
+
+    fn assign_template(&mut self, part: &TemplateAssignment) -> bool {
+        match self.assembler.put(part) {
+            Ok(Some(template)) => {
+                self.template = template;
+                self.pace = Pace::new();
+                true
+            }
+            Ok(None) => true,
+            Err(_) => false,
+        }
+    }
+
+    fn goal_offset(&self) -> Cell {
+        self.template.offset
+    }
+
+    fn needs(&self, id: RobotId) -> bool {
+        self.template.entries.iter().any(|entry| entry.id == id)
+    }
+}

@@ -1,0 +1,249 @@
+//! The agent's end of the radio: bytes to news, and what is to be said to bytes.
+
+use super::io::{Event, OUTBOX, Outputs};
+use crate::geom::Vec3;
+use crate::grid::Cell;
+use crate::neighbor::{Ages, Neighbor, NeighborTable, Put};
+use crate::scalar::Scalar;
+use crate::time::{Duration, Instant};
+use crate::wire::{
+    Ack, Arrival, Beacon, Due, Frame, Header, Message, Newest, Orders, Request, RequestKind,
+    Requests, Retry, RobotId, SequenceWindow, TemplateAssignment, decode, encode, frames,
+};
+use heapless::Vec;
+
+/// Requests to others on their way at a time.
+const PENDING: usize = 4;
+/// Matters of others that are remembered.
+const ORDERS: usize = 8;
+/// Bytes that acknowledgements and requests leave free for the beacon.
+const RESERVED: usize = Beacon::MAX_FRAME_LEN;
+
+/// News that is not kept here but acted on by the agent.
+pub(super) enum News {
+    /// Somebody asks to choose another direction.
+    Redirect,
+    /// Somebody's request to stand or go on is to be passed on up the chain.
+    PassOn(Request),
+    /// A part of a template for this robot.
+    Template(TemplateAssignment),
+    /// A goal for the top leader of this robot's formation.
+    Goal(Cell),
+}
+
+/// What the link keeps between steps.
+#[derive(Clone, Debug)]
+pub(super) struct Link<S, const N: usize> {
+    header: Header,
+    pub(super) table: NeighborTable<S, N>,
+    /// One window per entry of the table.
+    windows: Vec<(RobotId, SequenceWindow), N>,
+    requests: Requests<PENDING>,
+    orders: Orders<ORDERS>,
+    goal: Newest,
+    beacon_due: Instant,
+    has_sent: bool,
+}
+
+/// Own position and who must stay in a full table.
+pub(super) struct Listener<'a, S> {
+    pub(super) position_m: Vec3<S>,
+    pub(super) needs: &'a dyn Fn(RobotId) -> bool,
+}
+
+impl<S: Scalar, const N: usize> Link<S, N> {
+    pub(super) const fn new(id: RobotId, boot: u8, ages: Ages, retry: Retry) -> Self {
+        Self {
+            header: Header {
+                boot,
+                sender: id,
+                sequence: 0,
+            },
+            table: NeighborTable::new(ages),
+            windows: Vec::new(),
+            requests: Requests::new(id, boot, retry),
+            orders: Orders::new(ages.expire_after),
+            goal: Newest::new(),
+            beacon_due: Instant::from_micros(0),
+            has_sent: false,
+        }
+    }
+
+    /// Reads what arrived, frame by frame, and acknowledges requests; calls `act` for what
+    /// concerns others.
+    pub(super) fn listen(
+        &mut self,
+        inbox: &[u8],
+        now: Instant,
+        listener: &Listener<'_, S>,
+        out: &mut Outputs,
+        mut act: impl FnMut(News),
+    ) {
+        let windows = &mut self.windows;
+        self.table.expire(now, |lost| {
+            windows.retain(|(id, _)| *id != lost);
+            report(out, Event::NeighborLost(lost));
+        });
+        for bytes in frames(inbox) {
+            let heard =
+                decode(bytes).is_ok_and(|frame| self.hear(&frame, now, listener, out, &mut act));
+            let count = if heard {
+                &mut out.received
+            } else {
+                &mut out.rejected
+            };
+            *count = count.saturating_add(1);
+        }
+    }
+
+    /// Takes one sound frame in; whether it was of use.
+    fn hear(
+        &mut self,
+        frame: &Frame,
+        now: Instant,
+        listener: &Listener<'_, S>,
+        out: &mut Outputs,
+        act: &mut impl FnMut(News),
+    ) -> bool {
+        let Header { sender, .. } = frame.header;
+        if sender == self.header.sender {
+            return false;
+        }
+        let window = self.windows.iter_mut().find(|(id, _)| *id == sender);
+        let arrival = window.map_or(Arrival::New, |(_, window)| window.check(frame.header));
+        if !arrival.is_accepted() {
+            return false;
+        }
+        if arrival == Arrival::Rebooted {
+            self.orders.forget(sender);
+            report(out, Event::NeighborRebooted(sender));
+        }
+        let is_mine = |to: RobotId| to == self.header.sender;
+        match &frame.message {
+            Message::Beacon(beacon) if arrival.is_latest() => {
+                let neighbor = Neighbor::from_beacon(sender, beacon, now);
+                self.keep(neighbor, frame.header, now, listener, out);
+            }
+            Message::Compact(beacon) if arrival.is_latest() => {
+                // Without cells: kept for guidance and safety in the plane.
+                let neighbor = Neighbor::from_compact(sender, beacon, Cell::default(), now);
+                self.keep(neighbor, frame.header, now, listener, out);
+            }
+            Message::Request(request) if is_mine(request.to) => {
+                let answer = self.orders.receive(frame.header, request, now);
+                self.say(&Message::Ack(answer.ack), RESERVED, out);
+                match request.kind {
+                    RequestKind::Redirect if answer.is_new => act(News::Redirect),
+                    RequestKind::Stop | RequestKind::Resume if answer.is_new => {
+                        act(News::PassOn(*request));
+                    }
+                    _ => {}
+                }
+            }
+            Message::Ack(Ack { to, number, .. }) if is_mine(*to) => {
+                // A second acknowledgement of the same request is as good as none.
+                let _ = self.requests.acknowledged(sender, *number);
+            }
+            Message::Template(part) if is_mine(part.to) => act(News::Template(part.clone())),
+            Message::Goal(goal)
+                if (is_mine(goal.to) || !goal.to.is_somebody())
+                    && self.goal.admit(goal.version) =>
+            {
+                act(News::Goal(goal.target));
+            }
+            // An old beacon or goal, or for somebody else.
+            _ => {}
+        }
+        true
+    }
+
+    fn keep(
+        &mut self,
+        neighbor: Neighbor<S>,
+        header: Header,
+        now: Instant,
+        listener: &Listener<'_, S>,
+        out: &mut Outputs,
+    ) {
+        let put = self
+            .table
+            .put(neighbor, listener.position_m, now, listener.needs);
+        if let Put::Evicted(evicted) = put {
+            self.windows.retain(|(id, _)| *id != evicted);
+            report(out, Event::NeighborEvicted(evicted));
+        }
+        if matches!(put, Put::Inserted | Put::Evicted(_)) {
+            let mut window = SequenceWindow::new();
+            let _ = window.check(header);
+            // As many windows as entries.
+            let _ = self.windows.push((header.sender, window));
+            report(out, Event::NeighborFound(header.sender));
+        }
+    }
+
+    /// Takes on a request; one that finds no room is dropped, its reason will come again.
+    pub(super) fn ask(
+        &mut self,
+        to: RobotId,
+        origin: RobotId,
+        kind: RequestKind,
+        valid: Duration,
+        now: Instant,
+    ) {
+        let millis = i64::from(valid.as_micros()).checked_div(1000).unwrap_or(0);
+        let millis = u16::try_from(millis).unwrap_or(u16::MAX);
+        let _ = self.requests.ask(to, origin, kind, millis, now);
+    }
+
+    /// Whether somebody's stop stands.
+    pub(super) fn is_stopped(&mut self, now: Instant) -> bool {
+        self.orders.is_stopped(now)
+    }
+
+    /// Sends requests that are due, then the beacon if it is due.
+    pub(super) fn speak(
+        &mut self,
+        now: Instant,
+        period: Duration,
+        beacon: impl FnOnce() -> Beacon,
+        out: &mut Outputs,
+    ) {
+        // Twice as many polls as requests always empty the list.
+        for _ in 0..2 * PENDING {
+            match self.requests.poll(now) {
+                Some(Due::Send(request)) => self.say(&Message::Request(request), RESERVED, out),
+                Some(Due::Expired(Request { to, kind, .. })) => {
+                    report(out, Event::RequestExpired { to, kind });
+                }
+                None => break,
+            }
+        }
+        if !self.has_sent || !now.is_before(self.beacon_due) {
+            self.say(&Message::Beacon(beacon()), 0, out);
+            self.has_sent = true;
+            self.beacon_due = now + period;
+        }
+        out.call_again = match self.requests.poll_at(now) {
+            Some(request_due) if request_due.is_before(self.beacon_due) => request_due,
+            _ => self.beacon_due,
+        };
+    }
+
+    /// Appends a frame to the outbox if `reserved` bytes stay free behind it.
+    fn say(&mut self, message: &Message, reserved: usize, out: &mut Outputs) {
+        let before = out.outbox.len();
+        if encode(self.header, message, &mut out.outbox).is_err() {
+            return;
+        }
+        if out.outbox.len() + reserved > OUTBOX {
+            out.outbox.truncate(before);
+        } else {
+            self.header.sequence = self.header.sequence.wrapping_add(1);
+        }
+    }
+}
+
+/// Adds an event if there is room.
+pub(super) fn report(out: &mut Outputs, event: Event) {
+    let _ = out.events.push(event);
+}

@@ -1,0 +1,143 @@
+//! Every robot for itself, to its own goal (KUZ algorithm 1).
+
+use super::guidance::{BadInput, Guidance, Guided, View};
+use super::travel::{Travel, reachable_goal};
+use crate::grid::{Cell, Dir};
+use crate::rand::Rng;
+use crate::route::{CostField, Replan, RouteParams, Router};
+use crate::shuffle::Sharpness;
+use crate::wire::RobotId;
+use heapless::Vec;
+
+/// Scratch memory of the guidances on the grid; `CELLS` as for [`CostField`].
+#[derive(Clone, Debug)]
+pub struct GridWorkspace<const CELLS: usize> {
+    /// The search.
+    pub(super) field: CostField<CELLS>,
+    /// Land as a formation prices it.
+    pub(super) land: [u8; CELLS],
+}
+
+impl<const CELLS: usize> Default for GridWorkspace<CELLS> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<const CELLS: usize> GridWorkspace<CELLS> {
+    /// Ready for use.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            field: CostField::new(),
+            land: [0; CELLS],
+        }
+    }
+}
+
+/// Windowed routing to the own goal; remembers visits of `M` cells.
+#[derive(Clone, Debug)]
+pub struct RouteGuidance<const CELLS: usize, const M: usize> {
+    params: RouteParams,
+    replan: Replan,
+    sharpness: Sharpness,
+    router: Router<M>,
+    travel: Travel,
+}
+
+impl<const CELLS: usize, const M: usize> RouteGuidance<CELLS, M> {
+    /// With these parameters, searching anew in each cell and trying cheap moves first.
+    #[must_use]
+    pub const fn new(params: RouteParams) -> Self {
+        Self {
+            params,
+            replan: Replan::EachCell,
+            sharpness: Sharpness::Greedy,
+            router: Router::new(),
+            travel: Travel::new(),
+        }
+    }
+
+    /// When to search anew. [`Replan::UntilChanged`] offers one move at a time and does not shuffle.
+    #[must_use]
+    pub const fn replan(mut self, replan: Replan) -> Self {
+        self.replan = replan;
+        self
+    }
+
+    /// How strictly the order of moves follows their weights.
+    #[must_use]
+    pub const fn sharpness(mut self, sharpness: Sharpness) -> Self {
+        self.sharpness = sharpness;
+        self
+    }
+
+    /// The moves to try towards `target`; `None` when there is no way.
+    fn moves<S>(
+        &mut self,
+        view: &View<'_, S>,
+        (cell, target): (Cell, Cell),
+        is_redirected: bool,
+        rng: &mut Rng,
+        workspace: &mut GridWorkspace<CELLS>,
+    ) -> Option<Vec<Dir, 8>> {
+        let window = &view.window?;
+        let params = &self.params;
+        let field = &mut workspace.field;
+        let others = view.neighbors.iter().map(|neighbor| neighbor.cell);
+        if self.replan == Replan::UntilChanged && !is_redirected {
+            let dir = self
+                .router
+                .follow(params, field, window, cell, target, others)
+                .ok()?;
+            return Some(core::iter::once(dir).collect());
+        }
+        let weights = self
+            .router
+            .weights(params, field, window, cell, target, others);
+        let mut weights = weights.ok()?;
+        if is_redirected {
+            weights = self.travel.without_last(weights);
+        }
+        Some(Travel::order(&weights, self.sharpness, 8, rng))
+    }
+}
+
+impl<S, const CELLS: usize, const M: usize> Guidance<S> for RouteGuidance<CELLS, M> {
+    type Workspace = GridWorkspace<CELLS>;
+
+    fn decide(
+        &mut self,
+        view: &View<'_, S>,
+        rng: &mut Rng,
+        workspace: &mut Self::Workspace,
+    ) -> Result<Guided, BadInput> {
+        let state = view.cell.ok_or(BadInput)?;
+        let window = view.window.ok_or(BadInput)?;
+        let target = reachable_goal(&window, view.goal);
+        self.router.observe(&self.params, state.cell, target);
+        let makes_way = self.travel.take_redirection();
+        let is_at_goal = state.cell == target;
+        let mut guided = Guided {
+            target,
+            leader: RobotId::NOBODY,
+            is_at_goal,
+            makes_way,
+            ..Guided::default()
+        };
+        if !is_at_goal || makes_way {
+            let moves = self.moves(view, (state.cell, target), makes_way, rng, workspace);
+            guided.is_stuck = moves.is_none();
+            guided.moves = moves.unwrap_or_default();
+        }
+        let choice = guided.moves.first().copied().unwrap_or_default();
+        guided
+            .asks
+            .extend(self.travel.note(view, state.cell, choice));
+        Ok(guided)
+    }
+
+    fn redirect(&mut self) {
+        self.travel.redirect();
+    }
+}

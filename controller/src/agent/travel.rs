@@ -1,0 +1,113 @@
+//! What the guidances on the grid have in common: the last choice, who is in the way, walls at the
+//! goal.
+
+use super::guidance::{Ask, View};
+use crate::cost::Weights;
+use crate::grid::{BLOCKED, Cell, Dir, Window};
+use crate::rand::Rng;
+use crate::shuffle::{Sharpness, weighted_shuffle};
+use crate::wire::{RequestKind, RobotId};
+use heapless::Vec;
+
+/// Decisions in one cell after which whoever stands in the way is asked to choose another direction.
+const PATIENCE: u8 = 4;
+
+/// What a robot remembers of its last decisions.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Travel {
+    /// Where it decided last.
+    cell: Option<Cell>,
+    /// What it wanted most.
+    choice: Dir,
+    /// Decisions in this cell that wanted to leave it.
+    attempts: u8,
+    /// Somebody asked for another direction.
+    redirected: bool,
+}
+
+impl Travel {
+    pub(super) const fn new() -> Self {
+        Self {
+            cell: None,
+            choice: Dir::Stay,
+            attempts: 0,
+            redirected: false,
+        }
+    }
+
+    /// What it wanted most at its last decision.
+    pub(super) const fn choice(&self) -> Dir {
+        self.choice
+    }
+
+    /// The next choice must differ from the last one.
+    pub(super) fn redirect(&mut self) {
+        self.redirected = true;
+    }
+
+    /// Whether the next choice answers a redirection; asks once.
+    pub(super) fn take_redirection(&mut self) -> bool {
+        core::mem::take(&mut self.redirected)
+    }
+
+    /// The weights without the last choice.
+    pub(super) fn without_last(&self, weights: Weights) -> Weights {
+        weights.without(self.choice)
+    }
+
+    /// The moves in the order in which to try them, at most `alternatives` of them.
+    pub(super) fn order(
+        weights: &Weights,
+        sharpness: Sharpness,
+        alternatives: usize,
+        rng: &mut Rng,
+    ) -> Vec<Dir, 8> {
+        let mut moves = weighted_shuffle(weights, sharpness, rng);
+        moves.truncate(alternatives);
+        moves
+    }
+
+    /// Takes note of what was chosen in `cell`, and returns the request to whoever has stood in the
+    /// way for too long.
+    pub(super) fn note<S>(&mut self, view: &View<'_, S>, cell: Cell, choice: Dir) -> Option<Ask> {
+        let is_waiting = self.cell == Some(cell) && choice != Dir::Stay;
+        self.attempts = if is_waiting {
+            self.attempts.saturating_add(1)
+        } else {
+            0
+        };
+        self.cell = Some(cell);
+        self.choice = choice;
+        if self.attempts < PATIENCE {
+            return None;
+        }
+        let wanted = cell + choice.offset();
+        let to = occupant(view, wanted)?;
+        self.attempts = 0;
+        Some(Ask {
+            to,
+            kind: RequestKind::Redirect,
+        })
+    }
+}
+
+/// Who was last heard in a cell.
+fn occupant<S>(view: &View<'_, S>, cell: Cell) -> Option<RobotId> {
+    view.neighbors
+        .iter()
+        .find(|neighbor| neighbor.cell == cell)
+        .map(|neighbor| neighbor.id)
+}
+
+/// `goal`, or when it is in sight and impassable the nearest passable cell in sight (then the
+/// smallest); the goal itself when there is none. O(cells) for an impassable goal, else O(1).
+pub(super) fn reachable_goal(window: &Window<'_>, goal: Cell) -> Cell {
+    if window.get(goal) != Some(BLOCKED) {
+        return goal;
+    }
+    let rows = (0..window.height()).flat_map(|y| (0..window.width()).map(move |x| (x, y)));
+    rows.map(|(x, y)| window.origin() + Cell::new(x.cast_signed(), y.cast_signed()))
+        .filter(|&cell| window.is_passable(cell))
+        .min_by_key(|cell| (cell.distance_squared(goal), *cell))
+        .unwrap_or(goal)
+}

@@ -1,0 +1,72 @@
+//! How well a formation is kept (KUZ section 6): what a robot can say of its neighbours, and what
+//! an observer can say of all.
+
+use super::Found;
+use crate::grid::{Cell, Norm};
+
+/// The graph distance with its parts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct GraphDistance {
+    /// Wanted neighbours that are missing (m0).
+    pub less: u32,
+    /// Robots that stand where somebody else should (m1).
+    pub more: u32,
+    /// Sum over the common vertices of |actual - desired|, [`UNIT`](crate::grid::UNIT)s.
+    pub offsets: u32,
+}
+
+impl GraphDistance {
+    /// dist = m0 + m1 + kappa * offsets with kappa = 1 / diameter of the map, in
+    /// [`UNIT`](crate::grid::UNIT)ths; `diameter` in cells, 0 counts as 1. Rounded down.
+    #[must_use]
+    pub fn units(&self, diameter: u32) -> u32 {
+        let whole = self.less.saturating_add(self.more);
+        let offsets = self.offsets.checked_div(diameter.max(1)).unwrap_or(0);
+        whole
+            .saturating_mul(crate::grid::UNIT)
+            .saturating_add(offsets)
+    }
+}
+
+/// The graph distance between the template and what a robot in `cell` found.
+#[must_use]
+pub fn graph_distance<const F: usize>(cell: Cell, found: &Found<F>) -> GraphDistance {
+    let offsets = found.members.iter().fold(0_u32, |sum, member| {
+        let off = (cell + member.offset).distance(member.seen.cell, Norm::Euclidean);
+        sum.saturating_add(off)
+    });
+    GraphDistance {
+        less: found.less.into(),
+        more: found.more.into(),
+        offsets,
+    }
+}
+
+/// The formation error dPhi: a sum over ticks of distances between desired and actual cells.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FormationError {
+    sum: u64,
+    count: u32,
+}
+
+impl FormationError {
+    /// Nothing measured yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { sum: 0, count: 0 }
+    }
+
+    /// Adds one robot in one tick.
+    pub fn add(&mut self, desired: Cell, actual: Cell) {
+        self.sum += u64::from(desired.distance(actual, Norm::Euclidean));
+        self.count = self.count.saturating_add(1);
+    }
+
+    /// The mean so far, [`UNIT`](crate::grid::UNIT)s per robot and tick; 0 before the first.
+    #[must_use]
+    pub fn mean(&self) -> u32 {
+        let mean = self.sum.checked_div(self.count.into()).unwrap_or(0);
+        u32::try_from(mean).unwrap_or(u32::MAX)
+    }
+}

@@ -1,0 +1,104 @@
+//! Who of the template is there (KUZ algorithm 5), and whom to follow (algorithm 6).
+
+use crate::grid::{Cell, Dir};
+use crate::wire::{Mode, RobotId, Template};
+use heapless::Vec;
+
+/// Another robot as the formation sees it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Seen {
+    /// Who it is.
+    pub id: RobotId,
+    /// The cell where it was when last heard of.
+    pub cell: Cell,
+    /// The cell where it will be when one's own next move is over.
+    pub predicted: Cell,
+    /// The move that it wants next.
+    pub heading: Dir,
+    /// Whom it follows.
+    pub leader: RobotId,
+    /// What it is doing.
+    pub mode: Mode,
+}
+
+/// A neighbour of the template that was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Member {
+    /// The robot.
+    pub seen: Seen,
+    /// Where it should be, relative to oneself.
+    pub offset: Cell,
+    /// Geodesic distance in the formation's graph.
+    pub hops: u8,
+}
+
+/// What became of a template's entries.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Found<const F: usize> {
+    /// Who is there, in the order of the template.
+    pub members: Vec<Member, F>,
+    /// Entries for which nobody was found: m0 of the graph distance.
+    pub less: u8,
+    /// Robots at places where somebody else should be: m1 of the graph distance.
+    pub more: u8,
+}
+
+/// Looks for each neighbour of the template within `eps` cells (Chebyshev) of its place, seen from a
+/// robot in `cell` (KUZ algorithm 5): the wanted one, or for an entry without a number the nearest
+/// (then the smallest number) of those that the template does not name. A place that its robot
+/// misses and that another member of no entry stands on counts in `more`. O(F * robots).
+///
+/// `robots` is asked several times and must give the same robots in the order of their numbers.
+#[must_use]
+pub fn find_neighbors<const F: usize>(
+    template: &Template<F>,
+    cell: Cell,
+    eps: u8,
+    robots: impl Iterator<Item = Seen> + Clone,
+) -> Found<F> {
+    let mut found = Found::default();
+    let is_named = |id: RobotId| template.entries.iter().any(|entry| entry.id == id);
+    for entry in &template.entries {
+        let place = cell + entry.offset;
+        let near = |seen: &Seen| seen.cell.chebyshev(place) <= u32::from(eps);
+        let seen = if entry.id.is_somebody() {
+            robots.clone().find(|seen| seen.id == entry.id).filter(near)
+        } else {
+            let is_taken = |id| found.members.iter().any(|m: &Member| m.seen.id == id);
+            robots
+                .clone()
+                .filter(|seen| near(seen) && !is_named(seen.id) && !is_taken(seen.id))
+                .min_by_key(|seen| (seen.cell.distance_squared(place), seen.id))
+        };
+        match seen {
+            Some(seen) => {
+                // As many places as entries.
+                let _ = found.members.push(Member {
+                    seen,
+                    offset: entry.offset,
+                    hops: entry.hops,
+                });
+            }
+            None => {
+                found.less = found.less.saturating_add(1);
+                let is_foreign = |seen: &Seen| seen.cell == place && !is_named(seen.id);
+                if robots.clone().any(|seen| is_foreign(&seen)) {
+                    found.more = found.more.saturating_add(1);
+                }
+            }
+        }
+    }
+    found
+}
+
+/// The neighbour to follow (KUZ algorithm 6): the smallest number below one's own among the direct
+/// neighbours in the graph; nobody: the robot leads.
+#[must_use]
+pub fn find_leader(own: RobotId, members: &[Member]) -> RobotId {
+    members
+        .iter()
+        .filter(|member| member.hops == 1 && member.seen.id < own)
+        .map(|member| member.seen.id)
+        .min()
+        .unwrap_or(RobotId::NOBODY)
+}

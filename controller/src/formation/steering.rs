@@ -1,0 +1,195 @@
+//! What a move costs the formation, and when to wait (KUZ algorithms 2 and 7).
+
+use super::{FormationParams, Member};
+use crate::cost::{Cost, Weights};
+use crate::grid::{BLOCKED, Cell, DIAGONAL, Dir, Norm, UNIT, Window};
+use crate::wire::TemplateEntry;
+
+/// Somebody beside whom one has a place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Anchor {
+    /// Where that robot will be.
+    pub predicted: Cell,
+    /// Where oneself should be, relative to it.
+    pub offset: Cell,
+    /// The move that it wants next.
+    pub heading: Dir,
+}
+
+impl Anchor {
+    /// One's own place.
+    #[must_use]
+    pub fn place(&self) -> Cell {
+        self.predicted + self.offset
+    }
+}
+
+/// The place to head for: beside the anchor and `lead` cells further along its heading.
+#[must_use]
+pub fn aim(anchor: &Anchor, lead: u8) -> Cell {
+    let step = anchor.heading.offset();
+    let ahead = i16::from(lead);
+    anchor.place() + Cell::new(step.x * ahead, step.y * ahead)
+}
+
+/// How far a robot in `cell` is off its place beside a neighbour in `other`, both as last heard,
+/// [`UNIT`]s.
+#[must_use]
+pub fn deviation(cell: Cell, other: Cell, offset: Cell) -> u32 {
+    (cell + offset).distance(other, Norm::Euclidean)
+}
+
+/// What each move costs the formation (KUZ algorithm 7): gain times the distance that it would leave
+/// between oneself and one's place, half by the top leader and half by the direct neighbours found
+/// (all by one kind if the other is missing; nothing if both are).
+///
+/// The paper sums over all neighbours; the mean keeps the scale independent of their number.
+#[must_use]
+pub fn distances(
+    params: &FormationParams,
+    cell: Cell,
+    top: Option<Cell>,
+    members: &[Member],
+) -> Weights {
+    let direct = || members.iter().filter(|member| member.hops == 1);
+    let count = u32::try_from(direct().count()).unwrap_or(u32::MAX);
+    let price = |dir: Dir| -> Cost {
+        let there = cell + dir.offset();
+        let by_top = top.map(|place| there.distance(place, Norm::Euclidean));
+        let sum = direct().fold(0_u32, |sum, member| {
+            sum.saturating_add(deviation(there, member.seen.predicted, member.offset))
+        });
+        let length = match (by_top, sum.checked_div(count)) {
+            (Some(top), Some(mean)) => (top >> 1).saturating_add(mean >> 1),
+            (Some(only), None) | (None, Some(only)) => only,
+            (None, None) => 0,
+        };
+        params.gain.of(length)
+    };
+    Weights::new(Dir::MOVES.map(price))
+}
+
+/// Whether to stand rather than move: near enough to the place, and the move leads away from it.
+#[must_use]
+pub fn should_stay(cell: Cell, place: Cell, first: Dir) -> bool {
+    const NEAR: u32 = UNIT + (UNIT >> 1);
+    let now = cell.distance(place, Norm::Euclidean);
+    let then = (cell + first.offset()).distance(place, Norm::Euclidean);
+    now < NEAR && then > now
+}
+
+/// How far `off` (actual minus desired, cells) is behind for a formation that heads in direction
+/// `heading`, [`UNIT`]s: its component against the heading, though at least half of its length; all
+/// of its length when there is no heading.
+#[must_use]
+pub fn lag(off: Cell, heading: Dir) -> u32 {
+    let length = Cell::default().distance(off, Norm::Euclidean);
+    let ahead = heading.offset();
+    let dot = i32::from(off.x) * i32::from(ahead.x) + i32::from(off.y) * i32::from(ahead.y);
+    let behind = u32::try_from(-dot).unwrap_or(0);
+    match heading {
+        Dir::Stay => length,
+        // A diagonal of whole cells is DIAGONAL long, so the unit vector is half of it.
+        dir if dir.is_diagonal() => (behind.saturating_mul(DIAGONAL) >> 1).max(length >> 1),
+        _ => behind.saturating_mul(UNIT).max(length >> 1),
+    }
+}
+
+/// The direction in which the others are off (KUZ section 7, `def`): of the sum over the members
+/// of actual minus desired, rounded to one of the eight moves; `Stay` when it is 0.
+#[must_use]
+pub fn def(cell: Cell, members: &[Member]) -> Dir {
+    let (x, y) = members.iter().fold((0_i32, 0_i32), |(x, y), member| {
+        let off = member.seen.cell - (cell + member.offset);
+        (
+            x.saturating_add(off.x.into()),
+            y.saturating_add(off.y.into()),
+        )
+    });
+    // tan 22.5 degrees = sqrt 2 - 1 = 29/70.
+    const TAN: i64 = (DIAGONAL - UNIT) as i64;
+    let (ax, ay) = (i64::from(x).abs(), i64::from(y).abs());
+    let dx = if ax * (UNIT as i64) > ay * TAN {
+        x.signum()
+    } else {
+        0
+    };
+    let dy = if ay * (UNIT as i64) > ax * TAN {
+        y.signum()
+    } else {
+        0
+    };
+    let step = Cell::new(dx as i16, dy as i16);
+    Dir::between(Cell::default(), step).unwrap_or(Dir::Stay)
+}
+
+/// Whether the top leader waits: hysteresis around r0 (KUZ algorithm 2).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Pace {
+    waits: bool,
+}
+
+impl Pace {
+    /// Not waiting.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { waits: false }
+    }
+
+    /// Takes note of the largest lag, [`UNIT`]s, and tells whether to wait: from more than
+    /// `halt_lag` until at most `resume_lag`.
+    pub fn update(&mut self, params: &FormationParams, lag: u32) -> bool {
+        let limit = if self.waits {
+            params.resume_lag.min(params.halt_lag)
+        } else {
+            params.halt_lag
+        };
+        self.waits = lag > u32::from(limit);
+        self.waits
+    }
+
+    /// Whether it waits.
+    #[must_use]
+    pub const fn waits(&self) -> bool {
+        self.waits
+    }
+}
+
+/// Writes into `out` what the land costs the whole formation when its top leader stands in each cell
+/// of the window: the leader's own cell and, with `footprint` sixteenths, the mean over the cells
+/// of the others' places that the window shows and that are passable. Walls stay walls; where no
+/// place is in sight the own cell counts alone. O(cells * entries).
+///
+/// `out` is as long as the window's cells, or the land is left as it is: `None`.
+#[must_use]
+pub fn blended<'a>(
+    window: &Window<'_>,
+    entries: &[TemplateEntry],
+    footprint: u8,
+    out: &'a mut [u8],
+) -> Option<Window<'a>> {
+    let out = out.get_mut(..window.cells().len())?;
+    let mut cells = out.iter_mut();
+    let share = u32::from(footprint.min(16));
+    for y in 0..window.height() {
+        for x in 0..window.width() {
+            let cell = window.origin() + Cell::new(x.cast_signed(), y.cast_signed());
+            let own = window.get(cell).unwrap_or(BLOCKED);
+            let (sum, count) = entries.iter().fold((0_u32, 0_u32), |(sum, count), entry| {
+                match window.get(cell + entry.offset) {
+                    Some(u) if u != BLOCKED => (sum + u32::from(u), count + 1),
+                    _ => (sum, count),
+                }
+            });
+            let price = match (sum * share).checked_div(count) {
+                Some(others) if own != BLOCKED => {
+                    // Sixteenths, rounded to nearest; at least 1, as both parts are.
+                    ((u32::from(own) * (16 - share) + others + 8) >> 4).clamp(1, 255) as u8
+                }
+                _ => own,
+            };
+            *cells.next()? = price;
+        }
+    }
+    Window::new(out, window.origin(), window.width(), window.height())
+}

@@ -1,0 +1,129 @@
+//! From a graph to what one robot needs to know of it.
+
+use crate::grid::{Cell, DIAGONAL, Dir, UNIT};
+use crate::wire::{RobotId, Template, TemplateEntry};
+
+/// A graph that gives no template.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum TemplateError {
+    /// There is no such place, or the graph has more than 255.
+    NoSuchPlace,
+    /// An edge names a place that does not exist, or joins a place to itself.
+    BadEdge,
+    /// More neighbours within the geodesic radius than the template holds: a smaller radius or a
+    /// larger `F`.
+    TooMany,
+}
+
+impl<const F: usize> Template<F> {
+    /// The template of the robot at place `own` of a formation graph (KUZ section 2: Phi): everybody
+    /// within the geodesic radius `rho`, nearest first, then by place.
+    ///
+    /// `places` are cells in any common frame, the first one being the top leader's; `edges` are
+    /// pairs of indices into it. The robot at place i has the number i + 1. O(rho * edges * F).
+    ///
+    /// # Errors
+    /// See [`TemplateError`].
+    pub fn from_graph(
+        places: &[Cell],
+        edges: &[(u16, u16)],
+        own: usize,
+        rho: u8,
+    ) -> Result<Self, TemplateError> {
+        let place = |index: usize| places.get(index).copied();
+        let (top, here) = place(0).zip(place(own)).ok_or(TemplateError::NoSuchPlace)?;
+        let slot = u8::try_from(own).map_err(|_| TemplateError::NoSuchPlace)?;
+        let mut template = Self {
+            slot,
+            offset: here - top,
+            entries: heapless::Vec::new(),
+        };
+        for hops in 1..=rho {
+            let before = template.entries.len();
+            for &(a, b) in edges {
+                let (a, b) = (usize::from(a), usize::from(b));
+                if a == b || place(a).is_none() {
+                    return Err(TemplateError::BadEdge);
+                }
+                for (from, to) in [(a, b), (b, a)] {
+                    let there = place(to).ok_or(TemplateError::BadEdge)?;
+                    let is_reached = if hops == 1 {
+                        from == own
+                    } else {
+                        template.hops_to(from) == Some(hops - 1)
+                    };
+                    if !is_reached || to == own || template.hops_to(to).is_some() {
+                        continue;
+                    }
+                    let entry = TemplateEntry {
+                        offset: there - here,
+                        id: number(to),
+                        hops,
+                    };
+                    let full = template.entries.push(entry).is_err();
+                    if full {
+                        return Err(TemplateError::TooMany);
+                    }
+                }
+            }
+            if let Some(ring) = template.entries.get_mut(before..) {
+                ring.sort_unstable_by_key(|entry| entry.id);
+            }
+        }
+        Ok(template)
+    }
+
+    fn hops_to(&self, place: usize) -> Option<u8> {
+        let id = number(place);
+        self.entries
+            .iter()
+            .find(|entry| entry.id == id)
+            .map(|entry| entry.hops)
+    }
+
+    /// The same formation turned: what was ahead for a robot heading east lies in direction
+    /// `heading` (the template's frame is fixed by default, KUZ section 3). Turns by 45 degrees
+    /// round to whole cells, so that places less than two cells apart may fall together.
+    #[must_use]
+    pub fn turned(mut self, heading: Dir) -> Self {
+        self.offset = rotated(self.offset, heading);
+        for entry in &mut self.entries {
+            entry.offset = rotated(entry.offset, heading);
+        }
+        self
+    }
+}
+
+fn number(place: usize) -> RobotId {
+    RobotId(u32::try_from(place).unwrap_or(u32::MAX).saturating_add(1))
+}
+
+/// `offset`, given for a robot that heads east, for one that heads in direction `heading`: turned
+/// counter-clockwise by a multiple of 45 degrees and rounded to whole cells. `Stay` turns nothing.
+#[must_use]
+pub fn rotated(offset: Cell, heading: Dir) -> Cell {
+    let (x, y) = (i32::from(offset.x), i32::from(offset.y));
+    let (cos, sin) = {
+        let ahead = heading.offset();
+        (i32::from(ahead.x), i32::from(ahead.y))
+    };
+    if heading == Dir::Stay {
+        return offset;
+    }
+    let (turned_x, turned_y) = (x * cos - y * sin, x * sin + y * cos);
+    let scale = |value: i32| {
+        if heading.is_diagonal() {
+            // Divided by sqrt 2 = DIAGONAL / UNIT, rounded to nearest, away from 0 at one half.
+            let (unit, diagonal) = (UNIT.cast_signed(), DIAGONAL.cast_signed());
+            let half = if value < 0 { -diagonal } else { diagonal };
+            (2 * value * unit + half)
+                .checked_div(2 * diagonal)
+                .unwrap_or(0)
+        } else {
+            value
+        }
+    };
+    let narrow = |value: i32| value.clamp(i16::MIN.into(), i16::MAX.into()) as i16;
+    Cell::new(narrow(scale(turned_x)), narrow(scale(turned_y)))
+}
