@@ -1,0 +1,73 @@
+//! A full table of 16 neighbours: hearing from one of them, from a stranger, and asking for the
+//! nearest 8.
+
+use core::hint::black_box;
+use criterion::{Criterion, criterion_group, criterion_main};
+use heapless::Vec;
+use staya_controller::geom::Vec3;
+use staya_controller::neighbor::{Ages, Neighbor, NeighborTable, Put};
+use staya_controller::rand::Rng;
+use staya_controller::time::{Duration, Instant};
+use staya_controller::wire::{Beacon, RobotId};
+
+const ROBOTS: u32 = 16;
+const AGES: Ages = Ages {
+    stale_after: Duration::from_millis(500),
+    expire_after: Duration::from_millis(5_000),
+};
+
+type Table = NeighborTable<f32, { ROBOTS as usize }>;
+
+/// Robot `id` somewhere within `range_mm` of the origin on each axis, moving.
+fn neighbor(id: u32, range_mm: i32, rng: &mut Rng) -> Neighbor<f32> {
+    let mut within = |range: i32| rng.below(range.cast_unsigned() * 2).cast_signed() - range;
+    let beacon = Beacon {
+        position_mm: [within(range_mm), within(range_mm), 0],
+        velocity_mmps: [within(500) as i16, within(500) as i16, 0],
+        radius_mm: 150,
+        ..Beacon::default()
+    };
+    Neighbor::from_beacon(RobotId(id), &beacon, Instant::default())
+}
+
+fn neighbor_table(c: &mut Criterion) {
+    let here_m = Vec3::new(0.0, 0.0, 0.0);
+    let now = Instant::from_micros(200_000);
+    let mut rng = Rng::new(1);
+    let mut table = Table::new(AGES);
+    for id in 1..=ROBOTS {
+        let put = table.put(neighbor(id * 7, 10_000, &mut rng), here_m, now, |_| false);
+        assert_eq!(put, Put::Inserted);
+    }
+    let known = neighbor(8 * 7, 10_000, &mut rng);
+    // Two strangers at one place, nearer than everybody else, push each other out by turns.
+    let strangers = [neighbor(60, 1, &mut rng), neighbor(61, 1, &mut rng)];
+
+    let mut group = c.benchmark_group("neighbors_16");
+    group.bench_function("put_known", |bencher| {
+        bencher.iter(|| table.put(black_box(known), here_m, now, |_| false));
+    });
+    group.bench_function("put_evicting", |bencher| {
+        let mut full = table.clone();
+        let mut turn = strangers.iter().cycle();
+        // Everybody else is protected, so that one stranger always takes the other's place.
+        let others = |id: RobotId| !strangers.iter().any(|stranger| stranger.id == id);
+        let _ = full.put(strangers[0], here_m, now, |_| false);
+        turn.next();
+        bencher.iter(|| {
+            turn.next()
+                .map(|stranger| full.put(black_box(*stranger), here_m, now, others))
+        });
+    });
+    group.bench_function("k_nearest_8", |bencher| {
+        bencher.iter(|| {
+            let mut nearest = Vec::<_, 8>::new();
+            table.k_nearest(black_box(here_m), now, &mut nearest);
+            nearest.last().map(|last| last.id)
+        });
+    });
+    group.finish();
+}
+
+criterion_group!(benches, neighbor_table);
+criterion_main!(benches);

@@ -1,0 +1,120 @@
+//! Encoding and decoding one frame of each kind of message, longest form.
+#![allow(clippy::unwrap_used)]
+
+use core::hint::black_box;
+use criterion::{Criterion, criterion_group, criterion_main};
+use heapless::Vec;
+use staya_controller::grid::{Cell, Dir};
+use staya_controller::time::Instant;
+use staya_controller::wire::{
+    Ack, Beacon, CompactBeacon, GoalAssignment, Header, MAX_FRAME_LEN, Message, Mode, Request,
+    RequestKind, RobotId, TEMPLATE_PART, TemplateAssignment, TemplateEntry, decode, encode,
+};
+
+const TO: RobotId = RobotId(70_000);
+const CELL: Cell = Cell::new(98, -98);
+
+fn messages() -> [(&'static str, Message); 6] {
+    let entry = TemplateEntry {
+        offset: CELL,
+        id: TO,
+        hops: 1,
+    };
+    [
+        (
+            "beacon",
+            Message::Beacon(Beacon {
+                time: Instant::from_micros(123_456_789),
+                position_mm: [12_345, -678_901, 0],
+                velocity_mmps: [250, -3, 0],
+                radius_mm: 150,
+                cell: CELL,
+                heading: Dir::NorthWest,
+                busy_ms: 400,
+                leader: TO,
+                slot: 4,
+                mode: Mode::Cruise,
+                target: CELL,
+            }),
+        ),
+        (
+            "compact",
+            Message::Compact(CompactBeacon {
+                time_ms: 12_345,
+                position_mm: [12_345, -678_901],
+                velocity_mmps: [250, -3],
+                radius_cm: 15,
+                mode: Mode::Cruise,
+            }),
+        ),
+        (
+            "request",
+            Message::Request(Request {
+                to: TO,
+                origin: TO,
+                number: 9,
+                kind: RequestKind::Stop,
+                valid_ms: 2_000,
+            }),
+        ),
+        (
+            "ack",
+            Message::Ack(Ack {
+                to: TO,
+                number: 9,
+                accepted: true,
+            }),
+        ),
+        (
+            "template",
+            Message::Template(TemplateAssignment {
+                to: TO,
+                version: 1,
+                part: 0,
+                parts: 4,
+                slot: 3,
+                offset: CELL,
+                entries: [entry; TEMPLATE_PART].into(),
+            }),
+        ),
+        (
+            "goal",
+            Message::Goal(GoalAssignment {
+                to: RobotId::NOBODY,
+                version: 1,
+                target: CELL,
+            }),
+        ),
+    ]
+}
+
+fn wire(c: &mut Criterion) {
+    let header = Header {
+        boot: 1,
+        sender: TO,
+        sequence: 4_711,
+    };
+    let mut out = Vec::<u8, MAX_FRAME_LEN>::new();
+    let mut group = c.benchmark_group("encode");
+    for (name, message) in messages() {
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| {
+                out.clear();
+                encode(header, black_box(&message), &mut out)
+            });
+        });
+    }
+    group.finish();
+    let mut group = c.benchmark_group("decode");
+    for (name, message) in messages() {
+        out.clear();
+        encode(header, &message, &mut out).unwrap();
+        let (_delimiter, frame) = out.split_last().unwrap();
+        assert_eq!(decode(frame).unwrap().message, message);
+        group.bench_function(name, |bencher| bencher.iter(|| decode(black_box(frame))));
+    }
+    group.finish();
+}
+
+criterion_group!(benches, wire);
+criterion_main!(benches);
