@@ -61,6 +61,7 @@ fn messages() -> [(&'static str, Message); 6] {
             "ack",
             Message::Ack(Ack {
                 to: TO,
+                boot: 1,
                 number: 9,
                 accepted: true,
             }),

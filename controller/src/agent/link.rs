@@ -7,8 +7,8 @@ use crate::neighbor::{Ages, Neighbor, NeighborTable, Put};
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 use crate::wire::{
-    Ack, Arrival, Beacon, Due, Frame, Header, Message, Newest, Orders, Request, RequestKind,
-    Requests, Retry, RobotId, SequenceWindow, TemplateAssignment, decode, encode, frames,
+    Arrival, Beacon, Due, Frame, Header, Message, Newest, Orders, Request, RequestKind, Requests,
+    Retry, RobotId, SequenceWindow, TemplateAssignment, decode, encode, frames,
 };
 use heapless::Vec;
 
@@ -140,9 +140,9 @@ impl<S: Scalar, const N: usize> Link<S, N> {
                     _ => {}
                 }
             }
-            Message::Ack(Ack { to, number, .. }) if is_mine(*to) => {
+            Message::Ack(ack) if is_mine(ack.to) => {
                 // A second acknowledgement of the same request is as good as none.
-                let _ = self.requests.acknowledged(sender, *number);
+                let _ = self.requests.acknowledged(sender, ack);
             }
             Message::Template(part) if is_mine(part.to) => act(News::Template(part.clone())),
             Message::Goal(goal)

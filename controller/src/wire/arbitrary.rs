@@ -114,13 +114,15 @@ pub fn message() -> impl Strategy<Value = Message> {
             valid_ms,
         })
     });
-    let ack = (robot(), any::<u8>(), any::<bool>()).prop_map(|(to, number, accepted)| {
-        Message::Ack(Ack {
-            to,
-            number,
-            accepted,
-        })
-    });
+    let ack =
+        (robot(), any::<[u8; 2]>(), any::<bool>()).prop_map(|(to, [boot, number], accepted)| {
+            Message::Ack(Ack {
+                to,
+                boot,
+                number,
+                accepted,
+            })
+        });
     let goal = (robot(), any::<u8>(), cell()).prop_map(|(to, version, target)| {
         Message::Goal(GoalAssignment {
             to,

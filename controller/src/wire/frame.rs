@@ -75,7 +75,7 @@ impl Request {
 impl Ack {
     /// Bytes of a frame that carries one, at most: tag and delimiter included, without tag
     /// [`TAG_LEN`] less.
-    pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 1 + 1;
+    pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 1 + 1 + 1;
 }
 
 impl TemplateAssignment {

@@ -136,6 +136,8 @@ pub struct Request {
 pub struct Ack {
     /// The robot that asked.
     pub to: RobotId,
+    /// The boot in which it asked: its numbers start anew with each.
+    pub boot: u8,
     /// The number of its request.
     pub number: u8,
     /// Whether it will be followed.

@@ -95,6 +95,7 @@ impl<const S: usize> Orders<S> {
         let answer = |accepted, is_new| Answer {
             ack: Ack {
                 to: header.sender,
+                boot: header.boot,
                 number: request.number,
                 accepted,
             },

@@ -3,7 +3,7 @@
 //! The other side is [`Orders`](super::Orders). Source: KUZ section 7 (requests go up the leader
 //! chain); the papers' requests are never lost, ours are small datagrams over a lossy radio.
 
-use super::{Request, RequestKind, RobotId};
+use super::{Ack, Request, RequestKind, RobotId};
 use crate::rand::Rng;
 use crate::time::{Duration, Instant};
 use heapless::Vec;
@@ -82,6 +82,7 @@ pub struct Requests<const P: usize> {
     pending: Vec<Pending, P>,
     retry: Retry,
     own: RobotId,
+    boot: u8,
     next: u8,
 }
 
@@ -91,8 +92,7 @@ impl<const P: usize> Requests<P> {
 
     /// No requests yet.
     ///
-    /// `own` and `boot` are what the robot's frames say. The numbers start at another place with
-    /// each boot, so that an acknowledgement for the previous one finds nothing to acknowledge.
+    /// `own` and `boot` are what the robot's frames say.
     #[must_use]
     pub const fn new(own: RobotId, boot: u8, retry: Retry) -> Self {
         let () = Self::FITS;
@@ -100,7 +100,8 @@ impl<const P: usize> Requests<P> {
             pending: Vec::new(),
             retry,
             own,
-            next: boot.wrapping_mul(97),
+            boot,
+            next: 0,
         }
     }
 
@@ -185,9 +186,15 @@ impl<const P: usize> Requests<P> {
             .min_by_key(|due| due.since(now))
     }
 
-    /// Takes note of an acknowledgement by `from` that is meant for this robot, and returns the
-    /// request it ends; `None` when there is none (it came twice, or too late).
-    pub fn acknowledged(&mut self, from: RobotId, number: u8) -> Option<Request> {
+    /// Takes note of an acknowledgement by `from`, and returns the request it ends; `None` when
+    /// there is none: it is meant for another robot or boot, or came twice, or too late. O(`P`).
+    pub fn acknowledged(&mut self, from: RobotId, ack: &Ack) -> Option<Request> {
+        let &Ack {
+            to, boot, number, ..
+        } = ack;
+        if (to, boot) != (self.own, self.boot) {
+            return None;
+        }
         let request = self
             .pending
             .iter()

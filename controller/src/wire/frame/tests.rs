@@ -79,6 +79,7 @@ fn longest() -> [(Message, usize); 6] {
         (
             Message::Ack(Ack {
                 to: LAST,
+                boot: 0,
                 number: 0,
                 accepted: true,
             }),
@@ -251,13 +252,14 @@ fn every_foreign_version_is_named() {
 fn an_unknown_value_in_a_field_is_refused() {
     let ack = Message::Ack(Ack {
         to: RobotId(1),
+        boot: 4,
         number: 9,
         accepted: true,
     });
     let sound = content(VERSION, HEADER, &ack);
     let tail = sound.len() - 1;
-    assert_eq!(sound[tail - 3..], [3, 1, 9, 1]);
-    for (place, value) in [(tail, 2), (tail - 3, 6), (tail - 3, 255)] {
+    assert_eq!(sound[tail - 4..], [3, 1, 4, 9, 1]);
+    for (place, value) in [(tail, 2), (tail - 4, 6), (tail - 4, 255)] {
         let mut strange = sound.clone();
         strange[place] = value;
         assert_eq!(decode(&seal(&strange)), Err(DecodeError::Body));

@@ -50,7 +50,8 @@ fn receive<const S: usize>(
 ) -> (bool, bool) {
     let request = request(sender, number, kind, 1_000);
     let answer = orders.receive(frame(sender, 0), &request, now);
-    assert_eq!((answer.ack.to, answer.ack.number), (sender, number));
+    assert_eq!((answer.ack.to, answer.ack.boot), (sender, 0));
+    assert_eq!(answer.ack.number, number);
     (answer.ack.accepted, answer.is_new)
 }
 
@@ -291,7 +292,7 @@ fn converse(mut radio: Radio, start: Instant) -> u32 {
             radio.carry(answer.ack, millis, &mut to_a);
         }
         for ack in Radio::arrived(&mut to_a, millis) {
-            if requests.acknowledged(OWN, ack.number).is_some() {
+            if requests.acknowledged(OWN, &ack).is_some() {
                 let place = places[usize::from(ack.number)];
                 assert!(asked[place].delivered.is_some());
                 asked[place].ends += 1;

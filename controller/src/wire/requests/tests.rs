@@ -18,6 +18,16 @@ fn requests<const P: usize>() -> Requests<P> {
     Requests::new(OWN, 0, Retry::default())
 }
 
+/// An acknowledgement of request `number` of [`requests`].
+fn ack(number: u8) -> Ack {
+    Ack {
+        to: OWN,
+        boot: 0,
+        number,
+        accepted: true,
+    }
+}
+
 fn poll<const P: usize>(requests: &mut Requests<P>, now: Instant) -> StdVec<Due> {
     let all: StdVec<_> = core::iter::from_fn(|| requests.poll(now)).collect();
     assert!(all.len() <= 2 * P);
@@ -103,11 +113,11 @@ fn an_acknowledgement_ends_its_request_and_no_other() {
     let a = requests.ask(A, OWN, Stop, 1_000, START).unwrap();
     let b = requests.ask(B, OWN, Stop, 1_000, START).unwrap();
     assert_ne!(a, b);
-    assert_eq!(requests.acknowledged(A, b), None);
-    assert_eq!(requests.acknowledged(OWN, a), None);
+    assert_eq!(requests.acknowledged(A, &ack(b)), None);
+    assert_eq!(requests.acknowledged(OWN, &ack(a)), None);
     assert_eq!(requests.len(), 2);
-    assert_eq!(requests.acknowledged(A, a).map(|r| r.to), Some(A));
-    assert_eq!(requests.acknowledged(A, a), None);
+    assert_eq!(requests.acknowledged(A, &ack(a)).map(|r| r.to), Some(A));
+    assert_eq!(requests.acknowledged(A, &ack(a)), None);
     assert_eq!(sent(&poll(&mut requests, START)), [b]);
 }
 
@@ -122,7 +132,7 @@ fn asking_the_same_again_changes_nothing_and_the_opposite_replaces_it() {
     assert_ne!(resume, stop);
     assert_eq!(requests.len(), 1);
     assert_eq!(sent(&poll(&mut requests, after(60))), [resume]);
-    assert_eq!(requests.acknowledged(A, stop), None);
+    assert_eq!(requests.acknowledged(A, &ack(stop)), None);
     // Another matter, another robot and another origin are other requests.
     requests.ask(A, OWN, Redirect, 1_000, after(60)).unwrap();
     requests.ask(A, B, Stop, 1_000, after(60)).unwrap();
@@ -158,14 +168,24 @@ fn a_number_on_its_way_is_not_given_again_when_numbers_wrap() {
 }
 
 #[test]
-fn another_boot_starts_at_another_number() {
-    let first = |boot| {
+fn an_acknowledgement_for_another_boot_or_robot_ends_nothing() {
+    for boot in [1, 0, u8::MAX] {
         let mut requests = Requests::<1>::new(OWN, boot, Retry::default());
-        requests.ask(A, OWN, Stop, 1, START).unwrap()
-    };
-    for boot in 0..=u8::MAX {
-        let apart = first(boot).wrapping_sub(first(boot.wrapping_add(1)));
-        assert!(apart.min(apart.wrapping_neg()) > 64);
+        let number = requests.ask(A, OWN, Stop, 1, START).unwrap();
+        let right = Ack {
+            boot,
+            ..ack(number)
+        };
+        for wrong in [
+            Ack { to: B, ..right },
+            Ack {
+                boot: boot.wrapping_sub(1),
+                ..right
+            },
+        ] {
+            assert_eq!(requests.acknowledged(A, &wrong), None);
+        }
+        assert!(requests.acknowledged(A, &right).is_some());
     }
 }
 
