@@ -1,0 +1,46 @@
+//! What must hold for any bytes whatever.
+//!
+//! Each function takes bytes, does what they say and panics when something does not hold. A fuzzer
+//! looks for bytes that make it panic (`cargo xtask fuzz`); the tests here try random ones and those
+//! that once did.
+
+mod requests;
+mod templates;
+mod wire;
+
+pub use requests::requests_model;
+pub use templates::templates;
+pub use wire::wire_decode;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use staya_controller::rand::Rng;
+
+    /// Runs a model on random bytes: `rounds` inputs of up to `longest` bytes.
+    fn on_random_bytes(model: fn(&[u8]), rounds: u32, longest: u32) {
+        for round in 0..rounds {
+            let mut rng = Rng::keyed(0, u32::from_be_bytes(*b"fuzz"), round, 0);
+            let len = rng.below(longest + 1);
+            // Small bytes, so that choices repeat, in every other round.
+            let limit = if round % 2 == 0 { 256 } else { 8 };
+            let bytes: Vec<u8> = (0..len).map(|_| rng.below(limit) as u8).collect();
+            model(&bytes);
+        }
+    }
+
+    #[test]
+    fn wire_decode_holds_for_random_bytes() {
+        on_random_bytes(wire_decode, 20_000, 120);
+    }
+
+    #[test]
+    fn requests_model_holds_for_random_bytes() {
+        on_random_bytes(requests_model, 300, 1_000);
+    }
+
+    #[test]
+    fn templates_holds_for_random_bytes() {
+        on_random_bytes(templates, 2_000, 1_000);
+    }
+}

@@ -1,0 +1,159 @@
+//! Formation templates in parts, over a radio that does what it likes.
+
+use arbitrary::{Result, Unstructured};
+use heapless::Vec as Bounded;
+use staya_controller::grid::Cell;
+use staya_controller::wire::{
+    Header, MAX_FRAME_LEN, Message, RobotId, TEMPLATE_PART, Template, TemplateAssembler,
+    TemplateAssignment, TemplateEntry, decode, encode,
+};
+
+const F: usize = 7;
+const TO: RobotId = RobotId(3);
+const HEADER: Header = Header {
+    boot: 0,
+    sender: RobotId(1),
+    sequence: 0,
+};
+/// How many versions a late part may lie behind the newest; the assembler tells 127 apart.
+const LATE: usize = 60;
+
+/// Does what the bytes say: a commander sends one template after the other, their parts come in any
+/// order, more than once or never; or anybody sends any parts at all.
+pub fn templates(bytes: &[u8]) {
+    let mut choice = Unstructured::new(bytes);
+    // Running out of bytes ends the story.
+    let _ = match choice.arbitrary() {
+        Ok(true) => from_one_commander(&mut choice),
+        _ => from_anybody(&mut choice),
+    };
+}
+
+/// Only what was sent comes out, whole, once, and never an older one after a newer one.
+fn from_one_commander(choice: &mut Unstructured<'_>) -> Result<()> {
+    let mut version: u8 = choice.arbitrary()?;
+    let mut sent: Vec<(Template<F>, Vec<TemplateAssignment>)> = Vec::new();
+    let mut assembler = TemplateAssembler::<F>::new();
+    // The parts of the newest template that came, and which one that is.
+    let mut newest = None;
+    let mut there = Vec::new();
+    while !choice.is_empty() {
+        if sent.is_empty() || choice.ratio(1_u8, 6_u8)? {
+            let template = template(choice)?;
+            version = version.wrapping_add(1);
+            let Template {
+                slot,
+                offset,
+                entries,
+            } = &template;
+            let parts: Vec<_> = TemplateAssignment::split(TO, version, *slot, *offset, entries)
+                .expect("a small template")
+                .map(carried)
+                .collect();
+            assert_eq!(parts.len(), entries.len().div_ceil(TEMPLATE_PART).max(1));
+            sent.push((template, parts));
+        }
+        let last = sent.len() - 1;
+        let which = choice.int_in_range(last.saturating_sub(LATE)..=last)?;
+        let (template, parts) = &sent[which];
+        let part = choice.choose_index(parts.len())?;
+        let whole = assembler
+            .put(&parts[part])
+            .expect("a part as it was sent is sound");
+        if newest < Some(which) {
+            newest = Some(which);
+            there = vec![false; parts.len()];
+        }
+        let mut completes = false;
+        if newest == Some(which) {
+            completes = !there[part];
+            there[part] = true;
+            completes &= there.iter().all(|there| *there);
+        }
+        assert_eq!(whole.as_ref(), completes.then_some(template));
+    }
+    Ok(())
+}
+
+/// Any parts get an answer, a refused one changes nothing, and what comes out was brought by parts
+/// of one version.
+fn from_anybody(choice: &mut Unstructured<'_>) -> Result<()> {
+    let mut assembler = TemplateAssembler::<F>::new();
+    let mut seen: Vec<TemplateAssignment> = Vec::new();
+    while !choice.is_empty() {
+        let mut entries = Bounded::new();
+        for _ in 0..choice.int_in_range(0..=TEMPLATE_PART)? {
+            let _ = entries.push(entry(choice, 0)?);
+        }
+        let mut part = TemplateAssignment {
+            to: TO,
+            version: choice.arbitrary()?,
+            part: choice.arbitrary()?,
+            parts: choice.arbitrary()?,
+            slot: choice.int_in_range(0..=1)?,
+            offset: Cell::default(),
+            entries,
+        };
+        if choice.arbitrary()? {
+            // Numbers that have a chance to fit together.
+            part.version &= 3;
+            part.part &= 3;
+            part.parts &= 3;
+        }
+        let part = carried(part);
+        let before = assembler.clone();
+        let answer = assembler.put(&part);
+        if answer.is_err() {
+            assert_eq!(assembler, before);
+        }
+        let version = part.version;
+        seen.push(part);
+        let Ok(Some(whole)) = answer else { continue };
+        for (at, chunk) in whole.entries.chunks(TEMPLATE_PART).enumerate() {
+            let came = |part: &TemplateAssignment| {
+                part.version == version
+                    && part.slot == whole.slot
+                    && usize::from(part.part) == at
+                    && part.entries == *chunk
+            };
+            assert!(seen.iter().any(came));
+        }
+        // Nothing comes out twice.
+        for part in seen.iter().filter(|part| part.version == version) {
+            assert!(!matches!(assembler.put(part), Ok(Some(_))));
+        }
+    }
+    Ok(())
+}
+
+fn template(choice: &mut Unstructured<'_>) -> Result<Template<F>> {
+    let mut entries = Bounded::new();
+    for _ in 0..choice.int_in_range(0..=F)? {
+        let _ = entries.push(entry(choice, 1)?);
+    }
+    Ok(Template {
+        slot: choice.arbitrary()?,
+        offset: Cell::new(choice.arbitrary()?, choice.arbitrary()?),
+        entries,
+    })
+}
+
+fn entry(choice: &mut Unstructured<'_>, least_hops: u8) -> Result<TemplateEntry> {
+    Ok(TemplateEntry {
+        offset: Cell::new(choice.arbitrary::<i8>()?.into(), 0),
+        id: RobotId(choice.arbitrary::<u8>()?.into()),
+        hops: choice.int_in_range(least_hops..=3)?,
+    })
+}
+
+/// The part after its way through a frame.
+fn carried(part: TemplateAssignment) -> TemplateAssignment {
+    let mut out = Bounded::<u8, MAX_FRAME_LEN>::new();
+    let message = Message::Template(part);
+    encode(HEADER, &message, &mut out).expect("every message fits");
+    let frame = decode(&out[..out.len() - 1]).expect("what is sent is received");
+    match frame.message {
+        Message::Template(part) if message == Message::Template(part.clone()) => part,
+        other => panic!("sent {message:?}, received {other:?}"),
+    }
+}

@@ -1,0 +1,100 @@
+//! Bytes from the air.
+
+use crc::{CRC_16_IBM_SDLC, Crc};
+use heapless::Vec as Bounded;
+use staya_controller::wire::{
+    DecodeError, Frame, MAX_FRAME_LEN, TAG_LEN, decode, decode_verified, encode, encode_tagged,
+    frames,
+};
+
+/// The catalogue's own, to be checked against the controller's.
+const CRC: Crc<u16> = Crc::<u16>::new(&CRC_16_IBM_SDLC);
+
+/// Bytes as they come from a radio, and as the content of a sound frame, get an answer; what is
+/// believed is said again in at most the same bytes, and is believed again.
+pub fn wire_decode(bytes: &[u8]) {
+    for piece in frames(bytes) {
+        assert!(!piece.is_empty() && !piece.contains(&0));
+        judge(piece);
+    }
+    judge(bytes);
+    // A stream cut at any place gives the same frames but for the one that was cut.
+    if let Some(&at) = bytes.first() {
+        let (front, back) = bytes.split_at(usize::from(at).min(bytes.len()));
+        let whole = frames(bytes).count();
+        let cut = frames(front).count() + frames(back).count();
+        assert!(cut == whole || cut == whole + 1);
+    }
+    // Random bytes hardly ever have the right sum: give it to them.
+    let mut content = bytes.to_vec();
+    content.extend(CRC.checksum(bytes).to_le_bytes());
+    let frame = stuffed(&content);
+    assert!(!matches!(
+        decode(&frame),
+        Err(DecodeError::Cobs | DecodeError::Crc)
+    ));
+    assert_eq!(
+        decode(&frame) == Err(DecodeError::TooLong),
+        frame.len() >= MAX_FRAME_LEN
+    );
+    judge(&frame);
+}
+
+/// Decodes one frame and checks what is believed.
+fn judge(piece: &[u8]) {
+    let Ok(frame) = decode(piece) else {
+        assert!(decode_verified(piece, |_, _| true).is_err());
+        return;
+    };
+    assert!(piece.len() < MAX_FRAME_LEN);
+    assert!(frame.header.sender.is_somebody());
+    let refused = decode_verified(piece, |_, tag| {
+        assert_eq!(tag, frame.tag);
+        false
+    });
+    assert_eq!(refused, Err(DecodeError::Tag));
+    let again = encoded(&frame);
+    // Numbers may come in more bytes than they need.
+    assert!(again.len() <= piece.len() + 1);
+    let (delimiter, again) = again.split_last().expect("a frame has bytes");
+    assert_eq!(*delimiter, 0);
+    assert_eq!(decode(again), Ok(frame));
+}
+
+fn encoded(frame: &Frame) -> Bounded<u8, MAX_FRAME_LEN> {
+    let mut out = Bounded::new();
+    let len = match frame.tag {
+        None => encode(frame.header, &frame.message, &mut out),
+        Some(tag) => encode_tagged(
+            frame.header,
+            &frame.message,
+            |authenticated| {
+                assert!(authenticated.len() + TAG_LEN < MAX_FRAME_LEN);
+                tag
+            },
+            &mut out,
+        ),
+    };
+    assert_eq!(len, Ok(out.len()));
+    out
+}
+
+/// COBS as its paper describes it, block by block, for contents of any length; without delimiter.
+fn stuffed(content: &[u8]) -> Vec<u8> {
+    let mut out = Vec::new();
+    for block in content.split(|byte| *byte == 0) {
+        let mut chunks = block.chunks(254).peekable();
+        if chunks.peek().is_none() {
+            out.push(1);
+        }
+        while let Some(chunk) = chunks.next() {
+            out.push(chunk.len() as u8 + 1);
+            out.extend(chunk);
+            // A full chunk ends without a zero; one that ends the block needs an empty one after.
+            if chunk.len() == 254 && chunks.peek().is_none() {
+                out.push(1);
+            }
+        }
+    }
+    out
+}
