@@ -356,7 +356,7 @@ fn check(source: &Source<'_>, entries: &[Entry], terrain: &Terrain) -> Result<()
                     ),
                 ));
             };
-            if !terrain.is_passable(place) && !(name == "goal" && entry.goal_moves) {
+            if !(terrain.is_passable(place) || name == "goal" && entry.goal_moves) {
                 let what = format!(
                     "the {name} ({}, {}) of robot {id} is in a wall",
                     place.x, place.y
