@@ -1,4 +1,5 @@
-//! `cargo xtask bench`: benchmarks beside peer crates, in one run on one machine.
+//! `cargo xtask bench`: the project's benchmarks and those beside peer crates, in one run on one
+//! machine.
 
 use crate::repo::Repo;
 use crate::report::{Counts, Report};
@@ -32,14 +33,17 @@ const GOALS: [(&str, Goal); 4] = [
 
 /// Runs the benchmarks whose name contains `name` and judges their medians.
 pub fn run(repo: &Repo, report: &mut Report, name: Option<&str>) {
-    let home = repo.target_of(PEERS).join("criterion");
-    let mut bench = repo.cargo_in(PEERS, &["bench", "--locked"]);
-    bench.env("CRITERION_HOME", &home);
-    bench.args(name.map(|name| ["--", name]).into_iter().flatten());
+    let home = repo.target.join("criterion");
     let start = SystemTime::now();
-    if report.command("benchmarks", bench) {
-        report.part("goals", || judge(&medians(&home, start)));
+    // Only targets that are benchmarks: a library's own tests need no release build.
+    let own = repo.cargo(&["bench", "--locked", "--workspace", "--bench", "*"]);
+    let peers = repo.cargo_in(PEERS, &["bench", "--locked", "--bench", "*"]);
+    for (what, mut bench) in [("benchmarks", own), ("benchmarks beside peers", peers)] {
+        bench.env("CRITERION_HOME", &home);
+        bench.args(name.map(|name| ["--", name]).into_iter().flatten());
+        report.command(what, bench);
     }
+    report.part("goals", || judge(&medians(&home, start)));
 }
 
 /// Prints each median beside its goal and counts the goals.

@@ -3,36 +3,38 @@
 use crate::repo::{Repo, output_of};
 use crate::report::Report;
 
+/// Workspaces of their own, and how to leave out what needs more than a stable compiler.
+const OTHERS: [(&str, &[&str]); 2] = [
+    ("tests/peers", &[]),
+    ("tests/fuzz", &["--no-default-features"]),
+];
+
 /// Formatting, layers, lints, documentation; the quick ones first.
 pub fn run(repo: &Repo, report: &mut Report) {
-    let peers = repo.root.join("tests/peers/Cargo.toml");
-    let peers = peers.display().to_string();
     if has(repo, "fmt", "rustfmt", report) {
-        report.command("formatting", repo.cargo(&["fmt", "--all", "--check"]));
-        report.command(
-            "formatting of tests/peers",
-            repo.cargo(&["fmt", "--all", "--check", "--manifest-path", &peers]),
-        );
+        let check = ["fmt", "--all", "--check"];
+        report.command("formatting", repo.cargo(&check));
+        for (folder, _) in OTHERS {
+            let name = format!("formatting of {folder}");
+            report.command(&name, repo.cargo_in(folder, &check));
+        }
     }
     report.step("layers of the controller", || {
         crate::layers::check(&repo.root.join("controller/src"))
     });
     if has(repo, "clippy", "clippy", report) {
         let deny = ["--", "-D", "warnings"];
-        let clippy =
-            |arguments: &[&str]| repo.cargo(&[&["clippy", "--locked"], arguments, &deny].concat());
-        report.command("clippy", clippy(&["--workspace", "--all-targets"]));
-        report.command(
-            "clippy with defmt",
-            clippy(&["--workspace", "--features", "staya-controller/defmt"]),
-        );
-        report.command(
-            "clippy of tests/peers",
-            repo.cargo_in(
-                "tests/peers",
-                &[&["clippy", "--locked", "--all-targets"], deny.as_slice()].concat(),
-            ),
-        );
+        let arguments =
+            |arguments: &[&'static str]| [&["clippy", "--locked"], arguments, &deny].concat();
+        let own = ["--workspace", "--all-targets"];
+        report.command("clippy", repo.cargo(&arguments(&own)));
+        let defmt = ["--workspace", "--features", "staya-controller/defmt"];
+        report.command("clippy with defmt", repo.cargo(&arguments(&defmt)));
+        for (folder, features) in OTHERS {
+            let clippy = arguments(&[&["--all-targets"], features].concat());
+            let name = format!("clippy of {folder}");
+            report.command(&name, repo.cargo_in(folder, &clippy));
+        }
     }
     let mut doc = repo.cargo(&["doc", "--locked", "--workspace", "--no-deps"]);
     doc.env("RUSTDOCFLAGS", "-D warnings");

@@ -8,6 +8,7 @@ mod bless;
 mod check;
 mod debian;
 mod device;
+mod fuzz;
 mod layers;
 mod repo;
 mod report;
@@ -25,8 +26,10 @@ Usage: cargo xtask COMMAND
   check           formatting, layers, clippy and rustdoc, warnings denied
   test            every test, and the controller built for microcontrollers
   ci              check, then test
-  bench [NAME]    benchmarks beside peer crates (those whose name contains NAME): medians, ratios, goals
+  bench [NAME]    benchmarks, also beside peer crates (those whose name contains NAME): medians, ratios, goals
   bless [NAME]    rewrite golden files by running the tests whose name contains NAME (default: golden)
+  fuzz [--seconds N]
+                  each fuzz target for N seconds (default: 60), if nightly Rust and cargo-fuzz are there
   help            this text
 
 `test` builds for microcontrollers with rustup's targets if they are installed, otherwise with
@@ -57,6 +60,10 @@ fn main() -> ExitCode {
         ["bench", name] if !name.starts_with('-') => bench::run(&repo, &mut report, Some(name)),
         ["bless"] => bless::run(&repo, &mut report, "golden"),
         ["bless", name] if !name.starts_with('-') => bless::run(&repo, &mut report, name),
+        ["fuzz"] => fuzz::run(&repo, &mut report, fuzz::SECONDS),
+        ["fuzz", "--seconds", n] if n.parse().is_ok_and(|n: u32| n > 0) => {
+            fuzz::run(&repo, &mut report, n);
+        }
         [] => {
             eprint!("{HELP}");
             return ExitCode::from(2);

@@ -19,6 +19,9 @@ pub fn run(repo: &Repo, report: &mut Report) {
     report.part("tests on the host", || counted(&mut tests, &why_skipped));
     let mut peers = repo.cargo_in("tests/peers", &["test", "--locked"]);
     report.part("same results as peers", || counted(&mut peers, ""));
+    let fuzz = ["test", "--locked", "--no-default-features"];
+    let mut fuzz = repo.cargo_in("tests/fuzz", &fuzz);
+    report.part("fuzz targets on random bytes", || counted(&mut fuzz, ""));
     crate::device::run(repo, report);
 }
 
