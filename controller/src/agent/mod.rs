@@ -1,6 +1,6 @@
 //! The one composer of behaviours: [`Agent::step`]. Read that function first.
 //!
-//! A step hears ([`link`]), decides (a [`Guidance`], then the [`crate::supervisor`]) and speaks. The
+//! A step hears (`link`), decides (a [`Guidance`], then the [`crate::supervisor`]) and speaks. The
 //! guidances compose the behaviours of the layer below: [`RouteGuidance`] routes, and
 //! [`FormationGuidance`] routes and keeps a formation.
 

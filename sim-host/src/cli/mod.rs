@@ -1,7 +1,7 @@
 //! The command line: `staya run | terrain | experiment`.
 //!
 //! A new command is a module with a `clap::Args` struct and `run(&self, &Global) -> Result<Ended>`,
-//! and one line in [`Command`]. Results go to standard output, progress and errors to standard
+//! and one line in `Command`. Results go to standard output, progress and errors to standard
 //! error. Exit codes: 0 done, 1 failed, 2 wrong usage, 130 stopped by Ctrl-C (what was done until
 //! then is kept).
 

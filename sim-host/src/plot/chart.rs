@@ -1,4 +1,4 @@
-//! Charts: what to show. [`super::layout`] says where it goes.
+//! Charts: what to show. The module `layout` says where it goes.
 //!
 //! ```no_run
 //! use staya_sim::plot::{Chart, Panels, Series};

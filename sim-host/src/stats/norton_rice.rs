@@ -179,7 +179,7 @@ impl NortonRice {
 
     /// The law that makes the samples likeliest.
     ///
-    /// Nelder-Mead over [`Self::coordinates`] from the sample's moments and three shapes; the samples
+    /// Nelder-Mead over `Self::coordinates` from the sample's moments and three shapes; the samples
     /// are scaled to a mean square of 1 first. O(n), some hundred passes.
     ///
     /// For samples whose deviation is small against their mean the law is nearly normal and m hardly

@@ -2,8 +2,8 @@
 //! means something.
 
 use pathfinding::prelude::dijkstra_all;
-use staya_controller::grid::{BLOCKED, Cell, Dir, Window};
 use staya_controller::cost::{Cost, Gain};
+use staya_controller::grid::{BLOCKED, Cell, Dir, Window};
 use staya_controller::route::{CostField, RouteParams, VisitMemory};
 use std::collections::HashMap;
 
@@ -79,7 +79,6 @@ impl Task {
 
     /// The cost of travel to the target from every cell, by the `pathfinding` crate. Cells without
     /// a way are missing.
-    #[must_use]
     pub fn pathfinding(&self) -> impl Iterator<Item = (Cell, Cost)> + use<> {
         // No route uses the robot's own cell.
         let others = |(cell, _): &(Cell, Cost)| *cell != self.from;
