@@ -38,6 +38,7 @@ pub struct FormationGuidance<const CELLS: usize, const M: usize, const F: usize>
     router: Router<M>,
     travel: Travel,
     pace: Pace,
+    leader: RobotId,
     /// The robot has asked its leader to stop.
     has_asked: bool,
 }
@@ -69,6 +70,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
             router: Router::new(),
             travel: Travel::new(),
             pace: Pace::new(),
+            leader: RobotId::NOBODY,
             has_asked: false,
         }
     }
@@ -197,22 +199,22 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
 
     /// The robot at the end of the leader chain, as far as it was heard of.
     fn top<S>(&self, view: &View<'_, S>) -> Option<RobotId> {
-        let named = |entry: &&crate::wire::TemplateEntry| {
-            entry.hops == 1 && entry.id < view.id && view.neighbor(entry.id).is_some()
-        };
-        let first = self
-            .template
-            .entries
-            .iter()
-            .filter(named)
-            .map(|e| e.id)
-            .min()?;
+        let heard = |id: RobotId| view.neighbor(id);
+        let first = heard(self.leader)?;
         // Numbers fall along the chain, so that it ends; a wrong beacon cannot make it a circle.
-        successors(Some(first), |&id| {
-            let next = view.neighbor(id)?.leader;
-            (next.is_somebody() && next < id && view.neighbor(next).is_some()).then_some(next)
-        })
-        .last()
+        let chain = successors(Some(first), |robot| {
+            heard(robot.leader).filter(|next| next.id < robot.id)
+        });
+        chain.last().map(|robot| robot.id)
+    }
+
+    /// Whom to follow: once found, the leader stays while it is heard, however far it is (the paper
+    /// looks for it at t = 0 only).
+    fn choose_leader<S>(&mut self, view: &View<'_, S>, found: &Found<F>) {
+        let leader = find_leader(view.id, &found.members);
+        if leader.is_somebody() || view.neighbor(self.leader).is_none() {
+            self.leader = leader;
+        }
     }
 
     /// The way of a robot that leads or is alone: for itself, on land priced for all.
@@ -326,12 +328,9 @@ impl<S, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
             self.formation.eps,
             seen.iter().copied(),
         );
-        let leader = find_leader(view.id, &found.members);
-        let guide = if leader.is_somebody() {
-            self.guide(view, cell, &seen)
-        } else {
-            None
-        };
+        self.choose_leader(view, &found);
+        let leader = self.leader;
+        let guide = self.guide(view, cell, &seen);
         let mut guided = Guided {
             target,
             leader,
@@ -392,6 +391,7 @@ impl<S, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
             Ok(Some(template)) => {
                 self.template = template;
                 self.pace = Pace::new();
+                self.leader = RobotId::NOBODY;
                 true
             }
             Ok(None) => true,

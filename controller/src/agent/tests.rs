@@ -1,11 +1,485 @@
 use super::*;
+use crate::formation::{FormationParams, Template};
+use crate::grid::{BLOCKED, Window};
+use crate::route::RouteParams;
+use crate::wire::{
+    Frame, GoalAssignment, Header, Message, Request, RequestKind, TemplateAssignment, decode,
+    encode, frames,
+};
+use std::boxed::Box;
+use std::vec;
+use std::vec::Vec;
+
+const TICK: i32 = 1_000_000;
+const FLAT: [u8; 121] = [1; 121];
+
+fn tick(n: u32) -> Instant {
+    Instant::from_micros(n * TICK as u32)
+}
+
+fn config(id: u32) -> AgentConfig<f32> {
+    AgentConfig::new(RobotId(id), 1, Duration::from_micros(TICK))
+}
+
+fn route_agent(id: u32) -> RouteAgent {
+    RouteAgent::new(&config(id), RouteGuidance::new(RouteParams::default()))
+}
+
+/// A member of a column of robots three cells apart, robot 1 in front.
+fn formation_agent(id: u32) -> FormationAgent {
+    let places: Vec<Cell> = (0..3).map(|i| Cell::new(-3 * i, 0)).collect();
+    let template = Template::from_graph(&places, &[(0, 1), (1, 2)], id as usize - 1, 2).unwrap();
+    let guidance =
+        FormationGuidance::new(RouteParams::default(), FormationParams::default(), template);
+    FormationAgent::new(&config(id), guidance)
+}
+
+/// Flat land around `at`, and what the radio delivered.
+fn inputs<'a>(cells: &'a [u8], at: Cell, inbox: &'a [u8]) -> Inputs<'a, f32> {
+    let origin = at - Cell::new(5, 5);
+    Inputs {
+        pose: Pose::default(),
+        cell: Some(CellState {
+            cell: at,
+            busy: Duration::ZERO,
+        }),
+        window: Window::new(cells, origin, 11, 11),
+        inbox,
+    }
+}
+
+fn workspace() -> Box<GridWorkspace<CELLS>> {
+    Box::new(GridWorkspace::new())
+}
+
+fn bytes(sender: u32, boot: u8, sequence: u16, messages: &[Message]) -> Vec<u8> {
+    let mut out = heapless::Vec::<u8, 1024>::new();
+    for (message, sequence) in messages.iter().zip(sequence..) {
+        let header = Header {
+            boot,
+            sender: RobotId(sender),
+            sequence,
+        };
+        encode(header, message, &mut out).unwrap();
+    }
+    out.to_vec()
+}
+
+fn sent(outputs: &Outputs) -> Vec<Frame> {
+    frames(&outputs.outbox)
+        .map(|f| decode(f).unwrap())
+        .collect()
+}
+
+fn beacon_at(x: i16, y: i16) -> Beacon {
+    Beacon {
+        cell: Cell::new(x, y),
+        mode: Mode::Cruise,
+        ..Beacon::default()
+    }
+}
 
 #[test]
 fn sizes_are_as_documented() {
-    std::println!(
-        "route {} formation {} workspace {}",
+    let sizes = [
         size_of::<RouteAgent>(),
         size_of::<FormationAgent>(),
-        size_of::<GridWorkspace<CELLS>>()
+        size_of::<GridWorkspace<CELLS>>(),
+    ];
+    // On a 64-bit host; a change here is news for everybody's memory map.
+    assert_eq!(sizes, [2016, 2264, 2712]);
+}
+
+#[test]
+fn without_a_goal_it_is_idle_and_still_says_so() {
+    let out = route_agent(1).step(
+        &inputs(&FLAT, Cell::new(5, 5), &[]),
+        tick(0),
+        &mut workspace(),
     );
+    assert_eq!(out.command, Command::Hold);
+    let [frame] = &sent(&out)[..] else {
+        panic!("one frame")
+    };
+    assert!(
+        matches!(&frame.message, Message::Beacon(b) if b.mode == Mode::Idle && b.cell == Cell::new(5, 5))
+    );
+}
+
+#[test]
+fn it_walks_to_its_goal_and_arrives() {
+    let (mut agent, mut ws) = (route_agent(1), workspace());
+    let (mut at, goal) = (Cell::new(5, 5), Cell::new(12, 7));
+    agent.assign_goal(goal);
+    let mut walked = 0;
+    for n in 0..20 {
+        let out = agent.step(&inputs(&FLAT, at, &[]), tick(n), &mut ws);
+        if let Command::Move(moves) = out.command {
+            at = at + moves[0].offset();
+            walked += 1;
+        }
+    }
+    assert_eq!((at, walked, agent.mode()), (goal, 7, Mode::Arrived));
+}
+
+#[test]
+fn while_it_crosses_a_cell_it_neither_decides_nor_changes_its_mode() {
+    let (mut agent, mut ws) = (route_agent(1), workspace());
+    agent.assign_goal(Cell::new(9, 5));
+    let mut busy = inputs(&FLAT, Cell::new(9, 5), &[]);
+    busy.cell = Some(CellState {
+        cell: Cell::new(9, 5),
+        busy: Duration::from_micros(1),
+    });
+    let out = agent.step(&busy, tick(0), &mut ws);
+    assert_eq!((out.command, agent.mode()), (Command::Hold, Mode::Cruise));
+    assert_eq!(out.call_again, tick(0) + Duration::from_micros(1));
+    let _ = agent.step(&inputs(&FLAT, Cell::new(9, 5), &[]), tick(1), &mut ws);
+    assert_eq!(agent.mode(), Mode::Arrived);
+}
+
+#[test]
+fn missing_terrain_is_a_fault_and_heals() {
+    let (mut agent, mut ws) = (route_agent(1), workspace());
+    agent.assign_goal(Cell::new(9, 5));
+    let mut modes = Vec::new();
+    for (n, has_window) in [true, false, false, true, true].into_iter().enumerate() {
+        let mut inputs = inputs(&FLAT, Cell::new(5, 5), &[]);
+        inputs.window = inputs.window.filter(|_| has_window);
+        let out = agent.step(&inputs, tick(n as u32), &mut ws);
+        assert_eq!(out.command == Command::Hold, agent.mode() != Mode::Cruise);
+        modes.push(agent.mode());
+    }
+    let expected = [
+        Mode::Cruise,
+        Mode::Fault,
+        Mode::Fault,
+        Mode::Idle,
+        Mode::Cruise,
+    ];
+    assert_eq!(modes, expected);
+}
+
+#[test]
+fn walled_in_it_holds_and_reports_once() {
+    let (mut agent, mut ws) = (route_agent(1), workspace());
+    agent.assign_goal(Cell::new(50, 5));
+    let mut cells = [BLOCKED; 121];
+    cells[60] = 1;
+    let events: Vec<Event> = (0..3)
+        .flat_map(|n| {
+            agent
+                .step(&inputs(&cells, Cell::new(5, 5), &[]), tick(n), &mut ws)
+                .events
+        })
+        .collect();
+    assert_eq!(agent.mode(), Mode::Hold);
+    assert_eq!(events.iter().filter(|e| **e == Event::NoRoute).count(), 1);
+}
+
+#[test]
+fn a_goal_in_a_wall_moves_to_the_nearest_free_cell() {
+    let (mut agent, mut ws) = (route_agent(1), workspace());
+    let goal = Cell::new(8, 5);
+    agent.assign_goal(goal);
+    let mut cells = FLAT;
+    cells[5 * 11 + 8] = BLOCKED;
+    let out = agent.step(&inputs(&cells, Cell::new(5, 5), &[]), tick(0), &mut ws);
+    let to = agent.target().unwrap();
+    assert_eq!(goal.chebyshev(to), 1);
+    assert!(out.events.contains(&Event::TargetMoved { from: goal, to }));
+}
+
+#[test]
+fn any_bytes_are_survived_and_counted() {
+    let (mut agent, mut ws) = (route_agent(1), workspace());
+    let mut rng = Rng::new(3);
+    for n in 0..200 {
+        let noise: Vec<u8> = (0..rng.below(400)).map(|_| rng.next_u32() as u8).collect();
+        let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &noise), tick(n), &mut ws);
+        assert_eq!(out.received, 0);
+        let parts = frames(&noise).count();
+        assert_eq!(usize::from(out.rejected), parts);
+    }
+    assert!(agent.neighbors().is_empty());
+}
+
+#[test]
+fn repeated_replayed_and_own_frames_are_refused() {
+    let (mut agent, mut ws) = (route_agent(1), workspace());
+    let mut hear = |inbox: &[u8], n| {
+        let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), inbox), tick(n), &mut ws);
+        (out.received, out.rejected)
+    };
+    let beacon = |x| Message::Beacon(beacon_at(x, 3));
+    assert_eq!(hear(&bytes(2, 0, 7, &[beacon(1)]), 0), (1, 0));
+    assert_eq!(
+        hear(&bytes(2, 0, 7, &[beacon(2)]), 1),
+        (0, 1),
+        "a duplicate"
+    );
+    assert_eq!(hear(&bytes(2, 0, 9, &[beacon(3)]), 2), (1, 0));
+    assert_eq!(
+        hear(&bytes(2, 0, 8, &[beacon(4)]), 3),
+        (1, 0),
+        "late, but not seen yet"
+    );
+    assert_eq!(hear(&bytes(1, 0, 1, &[beacon(5)]), 4), (0, 1), "its own");
+    assert_eq!(
+        hear(&bytes(2, 1, 0, &[beacon(6)]), 5),
+        (1, 0),
+        "it started anew"
+    );
+    assert_eq!(
+        hear(&bytes(2, 0, 10, &[beacon(7)]), 6),
+        (0, 1),
+        "from before its start"
+    );
+    // A late beacon does not replace a newer one.
+    assert_eq!(agent.neighbors()[0].cell, Cell::new(6, 3));
+}
+
+#[test]
+fn neighbours_come_go_and_are_pushed_out() {
+    let (mut agent, mut ws) = (route_agent(1), workspace());
+    for id in 2..19 {
+        let mut beacon = beacon_at(0, 0);
+        beacon.position_mm = [1000 * id as i32, 0, 0];
+        let inbox = bytes(id, 0, 0, &[Message::Beacon(beacon)]);
+        let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(0), &mut ws);
+        let expected = (id < 18).then_some(Event::NeighborFound(RobotId(id)));
+        assert_eq!(
+            out.events.first(),
+            expected.as_ref(),
+            "the farthest finds no room"
+        );
+    }
+    let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &[]), tick(31), &mut ws);
+    assert_eq!(out.events[0], Event::NeighborLost(RobotId(2)));
+    assert!(agent.neighbors().is_empty());
+}
+
+#[test]
+fn goals_are_assigned_by_packet_and_older_ones_ignored() {
+    let (mut agent, mut ws) = (formation_agent(2), workspace());
+    let goal = |to, version, x| {
+        Message::Goal(GoalAssignment {
+            to: RobotId(to),
+            version,
+            target: Cell::new(x, 0),
+        })
+    };
+    let orders = [
+        goal(0, 5, 40),
+        goal(2, 4, 50),
+        goal(3, 6, 60),
+        goal(2, 7, 70),
+        goal(2, 7, 80),
+    ];
+    let inbox = bytes(99, 0, 0, &orders);
+    let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(0), &mut ws);
+    // Robot 2's place is three cells behind the top leader's.
+    assert_eq!(agent.target(), Some(Cell::new(67, 0)));
+}
+
+#[test]
+fn templates_are_assigned_by_packet() {
+    let (mut agent, mut ws) = (formation_agent(1), workspace());
+    let entries = formation_agent(3).guidance.template().entries.clone();
+    let parts: Vec<Message> =
+        TemplateAssignment::split(RobotId(1), 1, 2, Cell::new(-6, 0), &entries)
+            .unwrap()
+            .map(Message::Template)
+            .collect();
+    let inbox = bytes(99, 0, 0, &parts);
+    let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(0), &mut ws);
+    assert_eq!(
+        agent.guidance.template(),
+        formation_agent(3).guidance.template()
+    );
+}
+
+fn stop(from: u32, to: u32, number: u8, kind: RequestKind) -> Message {
+    Message::Request(Request {
+        to: RobotId(to),
+        origin: RobotId(from),
+        number,
+        kind,
+        valid_ms: 12_000,
+    })
+}
+
+#[test]
+fn a_stop_stands_until_it_is_lifted_or_expires() {
+    let (mut agent, mut ws) = (route_agent(1), workspace());
+    agent.assign_goal(Cell::new(60, 5));
+    let mut mode_after = |inbox: &[u8], n| {
+        let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), inbox), tick(n), &mut ws);
+        let acks = sent(&out)
+            .iter()
+            .filter(|f| matches!(f.message, Message::Ack(_)))
+            .count();
+        assert_eq!(
+            acks,
+            usize::from(!inbox.is_empty()),
+            "every request is acknowledged"
+        );
+        agent.mode()
+    };
+    let ask = |sequence, number, kind| bytes(2, 0, sequence, &[stop(2, 1, number, kind)]);
+    assert_eq!(mode_after(&[], 0), Mode::Cruise);
+    assert_eq!(mode_after(&ask(0, 0, RequestKind::Stop), 1), Mode::Hold);
+    assert_eq!(mode_after(&ask(1, 1, RequestKind::Resume), 2), Mode::Cruise);
+    assert_eq!(mode_after(&ask(2, 2, RequestKind::Stop), 3), Mode::Hold);
+    assert_eq!(mode_after(&[], 14), Mode::Hold);
+    assert_eq!(
+        mode_after(&[], 16),
+        Mode::Cruise,
+        "the lost resume costs 12 ticks"
+    );
+}
+
+#[test]
+fn stops_go_up_the_leader_chain_hop_by_hop() {
+    let (mut agent, mut ws) = (formation_agent(2), workspace());
+    agent.assign_goal(Cell::new(60, 5));
+    let leader = bytes(1, 0, 0, &[Message::Beacon(beacon_at(8, 5))]);
+    let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &leader), tick(0), &mut ws);
+    assert_eq!(agent.leader(), RobotId(1));
+    let inbox = bytes(3, 0, 0, &[stop(3, 2, 9, RequestKind::Stop)]);
+    let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(1), &mut ws);
+    let passed_on = sent(&out).into_iter().find_map(|f| match f.message {
+        Message::Request(request) => Some(request),
+        _ => None,
+    });
+    let request = passed_on.expect("a request to the leader");
+    assert_eq!(
+        (request.to, request.origin, request.kind),
+        (RobotId(1), RobotId(3), RequestKind::Stop)
+    );
+    assert_ne!(agent.mode(), Mode::Hold, "who follows goes on following");
+}
+
+#[test]
+fn who_falls_behind_asks_to_stop_and_later_to_resume() {
+    let (mut agent, mut ws) = (formation_agent(2), workspace());
+    agent.assign_goal(Cell::new(60, 5));
+    let mut asked = Vec::new();
+    // The leader runs away to the east, then waits while the follower comes near.
+    for (n, (leader_x, own_x)) in [(8, 5), (20, 5), (20, 16)].into_iter().enumerate() {
+        let mut beacon = beacon_at(leader_x, 5);
+        beacon.heading = Dir::East;
+        let inbox = bytes(1, 0, n as u16, &[Message::Beacon(beacon)]);
+        // Far enough apart in time for the first request to be acknowledged or given up.
+        let out = agent.step(
+            &inputs(&FLAT, Cell::new(own_x, 5), &inbox),
+            tick(20 * n as u32),
+            &mut ws,
+        );
+        asked.extend(sent(&out).into_iter().filter_map(|f| match f.message {
+            Message::Request(request) => Some(request.kind),
+            _ => None,
+        }));
+    }
+    assert_eq!(asked, [RequestKind::Stop, RequestKind::Resume]);
+}
+
+#[test]
+fn who_is_asked_to_redirect_chooses_another_direction_even_when_arrived() {
+    let (mut agent, mut ws) = (route_agent(1), workspace());
+    agent.assign_goal(Cell::new(9, 5));
+    let first = |out: &Outputs| match &out.command {
+        Command::Move(moves) => Some(moves[0]),
+        Command::Hold => None,
+    };
+    let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &[]), tick(0), &mut ws);
+    assert_eq!(first(&out), Some(Dir::East));
+    let inbox = bytes(2, 0, 0, &[stop(2, 1, 0, RequestKind::Redirect)]);
+    let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(1), &mut ws);
+    assert!(first(&out).is_some_and(|dir| dir != Dir::East), "{out:?}");
+    let inbox = bytes(2, 0, 1, &[stop(2, 1, 1, RequestKind::Redirect)]);
+    let out = agent.step(&inputs(&FLAT, Cell::new(9, 5), &inbox), tick(2), &mut ws);
+    assert_eq!(agent.mode(), Mode::Arrived);
+    assert!(first(&out).is_some());
+    let out = agent.step(&inputs(&FLAT, Cell::new(9, 5), &[]), tick(3), &mut ws);
+    assert_eq!(first(&out), None, "once is enough");
+}
+
+#[test]
+fn who_is_blocked_for_long_asks_whoever_stands_there() {
+    let (mut agent, mut ws) = (route_agent(1), workspace());
+    agent.assign_goal(Cell::new(60, 5));
+    // A corridor one cell wide, and somebody in it.
+    let mut cells = [BLOCKED; 121];
+    cells[55..66].fill(1);
+    let mut asked = None;
+    for n in 0..8 {
+        let inbox = bytes(2, 0, n, &[Message::Beacon(beacon_at(6, 5))]);
+        let out = agent.step(
+            &inputs(&cells, Cell::new(5, 5), &inbox),
+            tick(n.into()),
+            &mut ws,
+        );
+        asked = asked.or(sent(&out).into_iter().find_map(|f| match f.message {
+            Message::Request(request) => Some((n, request.to, request.kind)),
+            _ => None,
+        }));
+    }
+    assert_eq!(asked, Some((4, RobotId(2), RequestKind::Redirect)));
+}
+
+#[test]
+fn outboxes_hold_whole_frames_and_the_beacon_whatever_comes() {
+    let (mut agent, mut ws) = (formation_agent(1), workspace());
+    agent.assign_goal(Cell::new(60, 5));
+    for n in 0..40_u16 {
+        let crowd: Vec<u8> = (2..60)
+            .flat_map(|id| bytes(id, 0, n, &[stop(id, 1, n as u8, RequestKind::Stop)]))
+            .collect();
+        let out = agent.step(
+            &inputs(&FLAT, Cell::new(5, 5), &crowd),
+            tick(n.into()),
+            &mut ws,
+        );
+        let frames = sent(&out);
+        assert!(frames.len() > 1);
+        assert!(matches!(frames.last().unwrap().message, Message::Beacon(_)));
+    }
+}
+
+#[test]
+fn equal_agents_give_equal_bytes() {
+    let run = || {
+        let (mut agent, mut ws) = (formation_agent(1), workspace());
+        agent.assign_goal(Cell::new(40, 9));
+        let mut at = Cell::new(5, 5);
+        let mut said = vec![];
+        for n in 0..30 {
+            let inbox = bytes(2, 0, n, &[Message::Beacon(beacon_at(at.x - 3, at.y))]);
+            let out = agent.step(&inputs(&FLAT, at, &inbox), tick(n.into()), &mut ws);
+            if let Command::Move(moves) = &out.command {
+                at = at + moves[0].offset();
+            }
+            said.extend_from_slice(&out.outbox);
+        }
+        (at, said)
+    };
+    assert_eq!(run(), run());
+}
+
+#[test]
+fn time_may_wrap() {
+    let (mut agent, mut ws) = (route_agent(1), workspace());
+    agent.assign_goal(Cell::new(60, 5));
+    let start = Instant::from_micros(u32::MAX - 2_500_000);
+    let mut beacons = 0;
+    for n in 0..6 {
+        let now = start + Duration::from_micros(n * TICK);
+        let inbox = bytes(2, 0, n as u16, &[Message::Beacon(beacon_at(6, 9))]);
+        let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), now, &mut ws);
+        beacons += sent(&out).len();
+        assert_eq!(agent.neighbors().len(), 1);
+        assert!(now.is_before(out.call_again));
+    }
+    assert_eq!(beacons, 6);
 }

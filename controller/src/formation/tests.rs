@@ -40,7 +40,10 @@ fn in_place(top: Cell) -> Vec<Seen> {
 }
 
 fn found(robot: usize, rho: u8, eps: u8, robots: &[Seen]) -> Found<8> {
-    let own = robots.iter().find(|r| r.id == RobotId(robot as u32)).unwrap();
+    let own = robots
+        .iter()
+        .find(|r| r.id == RobotId(robot as u32))
+        .unwrap();
     let others = robots.iter().copied().filter(|r| r.id != own.id);
     find_neighbors(&template(robot, rho), own.cell, eps, others)
 }
@@ -53,7 +56,10 @@ fn leaders_of_figure_5_are_those_of_the_paper() {
         .collect();
     assert_eq!(leaders, [0, 1, 2, 1, 2, 3]);
     // Farther neighbours of a larger radius do not become leaders.
-    assert_eq!(find_leader(RobotId(6), &found(6, 3, 2, &robots).members).0, 3);
+    assert_eq!(
+        find_leader(RobotId(6), &found(6, 3, 2, &robots).members).0,
+        3
+    );
 }
 
 #[test]
@@ -104,7 +110,9 @@ fn a_place_for_anyone_takes_the_nearest_that_nobody_named() {
     let anyone = Template::<3> {
         slot: 0,
         offset: Cell::default(),
-        entries: [entry(2, 7), entry(2, 0), entry(3, 0)].into_iter().collect(),
+        entries: [entry(2, 7), entry(2, 0), entry(3, 0)]
+            .into_iter()
+            .collect(),
     };
     let robots = [seen(5, 4, 0), seen(7, 2, 0), seen(8, 3, 0)];
     let found = find_neighbors(&anyone, Cell::default(), 3, robots.into_iter());
@@ -182,7 +190,12 @@ fn land_is_priced_for_all_who_would_cross_it() {
         hops: 1,
     };
     let mut out = [0; 4];
-    let mut price = |share| blended(&window, &[entry], share, &mut out).unwrap().cells().to_vec();
+    let mut price = |share| {
+        blended(&window, &[entry], share, &mut out)
+            .unwrap()
+            .cells()
+            .to_vec()
+    };
     assert_eq!(price(0), cells);
     // West cell: half of 1 and 9. Second: the wall behind counts not. Walls stay.
     assert_eq!(price(8), [5, 1, 9, BLOCKED]);
@@ -195,7 +208,10 @@ fn a_robot_near_its_place_stands_rather_than_leave_it() {
     let place = Cell::new(3, 3);
     assert!(should_stay(Cell::new(3, 3), place, Dir::East));
     assert!(!should_stay(Cell::new(2, 3), place, Dir::East));
-    assert!(!should_stay(Cell::new(1, 3), place, Dir::West), "too far off to rest");
+    assert!(
+        !should_stay(Cell::new(1, 3), place, Dir::West),
+        "too far off to rest"
+    );
 }
 
 #[test]
