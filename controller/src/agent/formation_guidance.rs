@@ -263,14 +263,14 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
         if place == cell {
             return Some(distances(&self.formation, cell, Some(place), members));
         }
-        let params = RouteParams {
-            a2: Gain::ZERO,
-            ..self.route
-        };
+        // Beyond the window it can circle before a hill, hence remembers; near its place it comes by
+        // the same cells for good reasons.
+        let is_in_sight = window.get(place).is_some();
+        let visits = (!is_in_sight).then_some(self.router.visits());
         let others = view.neighbors.iter().map(|neighbor| neighbor.cell);
         let weights = workspace
             .field
-            .weights::<0>(&params, window, cell, place, others, None)
+            .weights(&self.route, window, cell, place, others, visits)
             .ok()?;
         Some(weights.plus(&distances(&self.formation, cell, Some(place), members)))
     }

@@ -3,7 +3,7 @@
 //!
 //! Source: KUZ section 7, algorithms 2 and 5 to 7; section 6 for the measures. Read section 7 first.
 //! Everything here is a pure function on slices; what a robot remembers is [`Pace`] and its
-//! [`Template`]. Lengths are integers in [`UNIT`]s per cell, costs those of [`crate::cost`].
+//! [`Template`]. Lengths are integers in [`UNIT`](crate::grid::UNIT)s per cell, costs those of [`crate::cost`].
 //!
 //! What differs from the paper, and why (figures: `staya experiment formation`):
 //! - In the paper each robot weighs the shortest way to its *own* target against its neighbours'
@@ -32,7 +32,6 @@ pub use template::{TemplateError, rotated};
 pub use crate::wire::Template;
 
 use crate::cost::Gain;
-use crate::grid::UNIT;
 
 /// How a robot foresees where another one will be when its own next move is over.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -68,10 +67,10 @@ pub struct FormationParams {
     /// Price of being off one's place, ticks per cell (the coefficient of the scalarisation). 0:
     /// everybody takes the shortest way; large values push robots straight over bad land.
     pub gain: Gain,
-    /// How far somebody may fall behind before the top leader waits, [`UNIT`]s (r0). Smaller keeps
+    /// How far somebody may fall behind before the top leader waits, [`UNIT`](crate::grid::UNIT)s (r0). Smaller keeps
     /// the formation tighter and costs time.
     pub halt_lag: u16,
-    /// How near he must have come again before it goes on, [`UNIT`]s; at most `halt_lag`.
+    /// How near he must have come again before it goes on, [`UNIT`](crate::grid::UNIT)s; at most `halt_lag`.
     pub resume_lag: u16,
     /// How far ahead of the top leader's cell the others aim, cells along its heading: makes up for
     /// the time that its move and the news of it take.
@@ -86,14 +85,17 @@ pub struct FormationParams {
 }
 
 impl Default for FormationParams {
+    /// What reaches the figures of `staya experiment formation`: eps 10 cells, gain 1, r0 300 units
+    /// (4.3 cells) without hysteresis, one cell ahead, three quarters of the price by the others'
+    /// land, constant velocity (as good as reflexive there, at a quarter of the work), waiting.
     fn default() -> Self {
         Self {
             eps: 10,
             gain: Gain::ONE,
-            halt_lag: 5 * UNIT as u16,
-            resume_lag: 5 * UNIT as u16,
-            lead: 2,
-            footprint: 8,
+            halt_lag: 300,
+            resume_lag: 300,
+            lead: 1,
+            footprint: 12,
             prediction: Prediction::Constant,
             recovery: Recovery::Wait,
         }
