@@ -208,33 +208,53 @@ fn the_check_finds_what_the_bookkeeping_hides() {
 }
 
 #[test]
-fn window_is_clipped_at_the_edges_and_borrowed_when_as_wide_as_the_map() {
+fn window_is_always_square_and_walled_beyond_the_map() {
     let mut terrain = Terrain::flat(5, 4);
     terrain.set(Cell::new(1, 1), 9);
     let world = world(terrain, MoveRules::default(), &[]);
-    let mut buffer = Vec::new();
+    let mut buffer = vec![7; 1000];
     let corner = world
         .window(Cell::new(0, 0), 1, &mut buffer)
         .expect("on the map");
-    assert_eq!((corner.width(), corner.height()), (2, 2));
-    assert_eq!(corner.cells(), [1, 1, 1, 9]);
-    let all = world
-        .window(Cell::new(2, 2), 2, &mut buffer)
-        .expect("on the map");
     assert_eq!(
-        (all.origin(), all.width(), all.height()),
-        (Cell::new(0, 0), 5, 4)
+        (corner.origin(), corner.width(), corner.height()),
+        (Cell::new(-1, -1), 3, 3)
     );
-    assert_eq!(all.cells().as_ptr(), world.terrain().cells().as_ptr());
-    for outside in [(-2, 0), (6, 0), (0, 5), (i16::MIN, i16::MAX)] {
+    assert_eq!(corner.cells(), [0, 0, 0, 0, 1, 1, 0, 1, 9]);
+    let other = world
+        .window(Cell::new(4, 3), 1, &mut buffer)
+        .expect("on the map");
+    assert_eq!(other.cells(), [1, 1, 0, 1, 1, 0, 0, 0, 0]);
+    let own = world
+        .window(Cell::new(1, 1), 0, &mut buffer)
+        .expect("on the map");
+    assert_eq!(own.cells(), [9]);
+    for outside in [(-1, 0), (5, 0), (0, 4), (i16::MIN, i16::MAX)] {
         let cell = Cell::new(outside.0, outside.1);
         assert!(world.window(cell, 1, &mut buffer).is_none(), "{outside:?}");
     }
-    assert!(
-        world
-            .window(Cell::new(0, 0), u16::MAX, &mut buffer)
-            .is_some()
-    );
+}
+
+#[test]
+fn every_cell_of_a_window_is_that_of_the_map() {
+    let cells = (0..20).map(|i| i % 4).collect();
+    let terrain = Terrain::from_cells(5, 4, cells).expect("fits");
+    let world = world(terrain, MoveRules::default(), &[]);
+    let mut buffer = Vec::new();
+    for radius in [1, 2, 6, u8::MAX] {
+        let window = world
+            .window(Cell::new(3, 1), radius, &mut buffer)
+            .expect("on the map");
+        assert_eq!(window.width(), 2 * u16::from(radius) + 1);
+        for (x, y) in (-8..14).flat_map(|x| (-8..14).map(move |y| (x, y))) {
+            let cell = Cell::new(x, y);
+            if let Some(seen) = window.get(cell) {
+                assert_eq!(seen, world.terrain().get(cell), "{cell:?}");
+            } else {
+                assert!(cell.chebyshev(Cell::new(3, 1)) > u32::from(radius));
+            }
+        }
+    }
 }
 
 fn any_command() -> impl Strategy<Value = Command> {

@@ -1,44 +1,53 @@
 //! What a robot sees of the terrain.
 
 use super::World;
-use staya_controller::grid::{Cell, Window};
+use staya_controller::grid::{BLOCKED, Cell, Window};
 
 impl World {
-    /// The square of `radius` cells around `cell`, clipped to the map; `None` when nothing of it
-    /// lies on the map.
-    ///
-    /// Rows are copied into `buffer`, except when the square is as wide as the map: then its rows
-    /// already lie side by side and are borrowed.
+    /// The square of `2 * radius + 1` cells a side around `cell`, written into `buffer`. Cells
+    /// outside the map are walls, so that every window has the same size. `None` when `cell` itself
+    /// is not on the map. O(radius^2).
     #[must_use]
     pub fn window<'a>(
-        &'a self,
+        &self,
         cell: Cell,
-        radius: u16,
+        radius: u8,
         buffer: &'a mut Vec<u8>,
     ) -> Option<Window<'a>> {
-        let (x0, width) = clip(cell.x, radius, self.terrain.width())?;
-        let (y0, height) = clip(cell.y, radius, self.terrain.height())?;
+        self.terrain.index(cell)?;
+        let reach = i16::from(radius);
+        let side = 2 * u16::from(radius) + 1;
+        let origin = cell - Cell::new(reach, reach);
         let row_length = usize::from(self.terrain.width());
-        let first = usize::from(y0) * row_length;
-        let rows = &self.terrain.cells()[first..first + usize::from(height) * row_length];
-        let origin = Cell::new(i16::try_from(x0).ok()?, i16::try_from(y0).ok()?);
-        if width == self.terrain.width() {
-            return Window::new(rows, origin, width, height);
-        }
+        let (before, columns, after) = span(cell.x, reach, self.terrain.width());
         buffer.clear();
-        let columns = usize::from(x0)..usize::from(x0) + usize::from(width);
-        for row in rows.chunks_exact(row_length) {
+        for y in i32::from(origin.y)..i32::from(origin.y) + i32::from(side) {
+            let row = usize::try_from(y)
+                .ok()
+                .filter(|&row| row < usize::from(self.terrain.height()));
+            let Some(row) = row else {
+                buffer.resize(buffer.len() + usize::from(side), BLOCKED);
+                continue;
+            };
+            let row = &self.terrain.cells()[row * row_length..][..row_length];
+            buffer.resize(buffer.len() + before, BLOCKED);
             buffer.extend_from_slice(&row[columns.clone()]);
+            buffer.resize(buffer.len() + after, BLOCKED);
         }
-        Window::new(buffer, origin, width, height)
+        Window::new(buffer, origin, side, side)
     }
 }
 
-/// The part of `at - radius ..= at + radius` inside `0..length`: its first index and its length.
-fn clip(at: i16, radius: u16, length: u16) -> Option<(u16, u16)> {
-    let (at, radius) = (i32::from(at), i32::from(radius));
-    let low = (at - radius).max(0);
-    let high = (at + radius + 1).min(i32::from(length));
-    let (low, high) = (u16::try_from(low).ok()?, u16::try_from(high).ok()?);
-    (low < high).then(|| (low, high - low))
+/// The part of `at - reach ..= at + reach` inside `0..length`, and how much of it lies before and after.
+fn span(at: i16, reach: i16, length: u16) -> (usize, std::ops::Range<usize>, usize) {
+    let (first, end) = (
+        i32::from(at) - i32::from(reach),
+        i32::from(at) + i32::from(reach) + 1,
+    );
+    let (low, high) = (first.max(0), end.min(i32::from(length)));
+    (
+        (low - first) as usize,
+        low as usize..high as usize,
+        (end - high) as usize,
+    )
 }
