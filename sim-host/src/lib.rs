@@ -6,6 +6,7 @@
 //! reproduces papers, [`cli`] is the command `staya`.
 
 pub mod cli;
+pub mod engine;
 pub mod metrics;
 pub mod plot;
 pub mod radio;

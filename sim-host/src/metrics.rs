@@ -223,6 +223,7 @@ mod tests {
         let formation = Formation {
             places: places.iter().map(|&(x, y)| Cell::new(x, y)).collect(),
             edges: Vec::new(),
+            templates: Vec::new(),
         };
         // Diagonal: 5 cells.
         FormationMeter::new(&formation, eps, &Terrain::flat(5, 4))

@@ -6,6 +6,7 @@
 //! then is kept).
 
 mod progress;
+mod run;
 mod terrain;
 
 pub use progress::{Progress, Stop};
@@ -42,6 +43,8 @@ pub struct Global {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Run a scenario.
+    Run(run::RunArgs),
     /// Make, measure and draw terrain.
     Terrain(terrain::TerrainArgs),
 }
@@ -92,6 +95,7 @@ fn run(cli: &Cli) -> Result<Ended> {
             .with_context(|| format!("cannot start {threads} threads"))?;
     }
     match &cli.command {
+        Command::Run(args) => args.run(&cli.global),
         Command::Terrain(args) => args.run(&cli.global),
     }
 }

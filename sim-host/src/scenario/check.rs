@@ -101,7 +101,11 @@ pub(super) fn within(
         return Ok(());
     }
     let what = format!("{value} is out of range");
-    Err(source.error(field, what, format!("give {low} to {high} {unit}")))
+    Err(source.error(
+        field,
+        what,
+        format!("give {low} to {high} {unit}").trim_end(),
+    ))
 }
 
 pub(super) fn terrain(source: &Source<'_>, file: &ScenarioFile) -> Result<Terrain, ScenarioError> {

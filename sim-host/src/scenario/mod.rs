@@ -4,10 +4,14 @@
 //! the field and the remedy.
 
 mod check;
+mod params;
 mod robots;
 mod schema;
 mod source;
 
+pub use params::{
+    ExitName, FormationTable, PredictionName, RecoveryName, ReplanName, RouteTable, Routing,
+};
 pub use robots::{Formation, Robot};
 pub use schema::{
     Crop, EntropyTable, FaultTable, FormationEntry, GridTable, NaturalTable, RobotEntry,
@@ -19,6 +23,7 @@ use crate::radio::RadioParams;
 use crate::terrain::Terrain;
 use crate::world::MoveRules;
 use source::Source;
+use staya_controller::formation::FormationParams;
 use staya_controller::wire::RobotId;
 use std::path::Path;
 
@@ -63,6 +68,10 @@ pub struct Scenario {
     pub robots: Vec<Robot>,
     /// The formation of robots 1, 2, ..., if they keep one.
     pub formation: Option<Formation>,
+    /// How robots find their ways.
+    pub route: Routing,
+    /// How robots keep a formation, if they do.
+    pub formation_params: FormationParams,
     /// Robots that go down.
     pub faults: Vec<Fault>,
 }
@@ -95,6 +104,8 @@ impl Scenario {
         let terrain = check::terrain(&source, &file)?;
         let (robots, formation) = robots::build(&source, &file, &terrain)?;
         let faults = check::faults(&source, &file, &robots)?;
+        let route = params::routing(&source, &file.route, &file.grid)?;
+        let formation_params = params::formation(&source, &file.formation)?;
         Ok(Self {
             name: file.name,
             seed: file.seed,
@@ -108,6 +119,8 @@ impl Scenario {
             radio: file.radio,
             robots,
             formation,
+            route,
+            formation_params,
             faults,
         })
     }

@@ -5,6 +5,8 @@ use super::source::Source;
 use super::{ScenarioError, ScenarioFile};
 use crate::terrain::Terrain;
 use crate::terrain::movingai;
+use staya_controller::agent::TEMPLATE;
+use staya_controller::formation::{Template, TemplateError};
 use staya_controller::grid::Cell;
 use staya_controller::rand::Rng;
 use staya_controller::wire::RobotId;
@@ -16,6 +18,9 @@ const GOALS: u32 = 0x0053_0002;
 
 /// How often a goal is drawn before the scenario is refused as too crowded.
 const TRIES: u32 = 10_000;
+
+/// Places of the largest formation: a place is a byte on the wire.
+const MAX_PLACES: u16 = 255;
 
 /// A robot of a scenario.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,7 +39,9 @@ pub struct Formation {
     /// Where each robot should be, in cells relative to the first.
     pub places: Vec<Cell>,
     /// Pairs of places that are neighbours, each pair once, the smaller first.
-    pub edges: Vec<(usize, usize)>,
+    pub edges: Vec<(u16, u16)>,
+    /// What the robot of each place knows of it.
+    pub templates: Vec<Template<TEMPLATE>>,
 }
 
 /// A robot and the field that put it there.
@@ -55,7 +62,8 @@ pub(super) fn build(
     let entries = match (&table.list, &table.formation, &table.scen, &table.scattered) {
         (Some(list), None, None, None) => listed(list),
         (None, Some(entry), None, None) => {
-            let graph = graph(source, entry)?;
+            let rho = file.formation.rho.unwrap_or(1);
+            let graph = graph(source, entry, rho)?;
             let entries = placed(source, entry, &graph)?;
             formation = Some(graph);
             entries
@@ -95,14 +103,18 @@ fn listed(list: &[RobotEntry]) -> Vec<Entry> {
         .collect()
 }
 
-fn graph(source: &Source<'_>, entry: &FormationEntry) -> Result<Formation, ScenarioError> {
-    match (entry.rows, entry.columns, &entry.places, &entry.edges) {
+type Graph = (Vec<Cell>, Vec<(u16, u16)>);
+
+fn graph(source: &Source<'_>, entry: &FormationEntry, rho: u8) -> Result<Formation, ScenarioError> {
+    let (places, edges) = match (entry.rows, entry.columns, &entry.places, &entry.edges) {
         (Some(rows), Some(columns), None, None) => {
             grid_graph(rows, columns, entry.spacing.unwrap_or([3, -3])).ok_or_else(|| {
                 source.error(
                     "robots.formation",
-                    format!("{rows} rows of {columns} robots do not fit any map"),
-                    "give 1 or more of both, and fewer or a smaller spacing",
+                    format!("{rows} rows of {columns} robots do not fit any map or any memory"),
+                    format!(
+                        "give 1 or more of both, at most {MAX_PLACES} robots, and a smaller spacing"
+                    ),
                 )
             })
         }
@@ -112,35 +124,60 @@ fn graph(source: &Source<'_>, entry: &FormationEntry) -> Result<Formation, Scena
             "its shape is not clear",
             "give rows and columns (and spacing), or places and edges",
         )),
+    }?;
+    let templates = (0..places.len())
+        .map(|own| Template::from_graph(&places, &edges, own, rho))
+        .collect::<Result<_, _>>()
+        .map_err(|error| template_error(source, error))?;
+    Ok(Formation {
+        places,
+        edges,
+        templates,
+    })
+}
+
+fn template_error(source: &Source<'_>, error: TemplateError) -> ScenarioError {
+    match error {
+        TemplateError::TooMany => source.error(
+            "formation.rho",
+            format!("a robot would have more than {TEMPLATE} neighbours in the formation"),
+            "give a smaller rho, or fewer edges per robot",
+        ),
+        TemplateError::NoSuchPlace | TemplateError::BadEdge => source.error(
+            "robots.formation",
+            format!("the formation has more than {MAX_PLACES} places"),
+            format!("give at most {MAX_PLACES} robots"),
+        ),
     }
 }
 
-fn grid_graph(rows: u16, columns: u16, [dx, dy]: [i16; 2]) -> Option<Formation> {
-    let (rows, columns) = (usize::from(rows), usize::from(columns));
+fn grid_graph(rows: u16, columns: u16, [dx, dy]: [i16; 2]) -> Option<Graph> {
+    let count = rows.checked_mul(columns)?;
+    if count == 0 || count > MAX_PLACES {
+        return None;
+    }
     let mut places = Vec::new();
     let mut edges = Vec::new();
-    for row in 0..rows {
-        for column in 0..columns {
-            let x = dx.checked_mul(i16::try_from(column).ok()?)?;
-            let y = dy.checked_mul(i16::try_from(row).ok()?)?;
-            let place = places.len();
-            places.push(Cell::new(x, y));
-            if column + 1 < columns {
-                edges.push((place, place + 1));
-            }
-            if row + 1 < rows {
-                edges.push((place, place + columns));
-            }
+    for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
+        let x = dx.checked_mul(i16::try_from(column).ok()?)?;
+        let y = dy.checked_mul(i16::try_from(row).ok()?)?;
+        let place = row * columns + column;
+        places.push(Cell::new(x, y));
+        if column + 1 < columns {
+            edges.push((place, place + 1));
+        }
+        if row + 1 < rows {
+            edges.push((place, place + columns));
         }
     }
-    (!places.is_empty()).then_some(Formation { places, edges })
+    Some((places, edges))
 }
 
 fn given_graph(
     source: &Source<'_>,
     places: &[[i16; 2]],
     edges: &[[u32; 2]],
-) -> Result<Formation, ScenarioError> {
+) -> Result<Graph, ScenarioError> {
     if places.first() != Some(&[0, 0]) {
         return Err(source.error(
             "robots.formation.places",
@@ -148,9 +185,19 @@ fn given_graph(
             "places are relative to robot 1, the top leader",
         ));
     }
+    if places.len() > usize::from(MAX_PLACES) {
+        return Err(source.error(
+            "robots.formation.places",
+            format!("{} robots are more than a formation holds", places.len()),
+            format!("give at most {MAX_PLACES}"),
+        ));
+    }
     let mut pairs = BTreeSet::new();
     for (index, &[a, b]) in edges.iter().enumerate() {
-        let place = |id: u32| (id as usize).checked_sub(1).filter(|&at| at < places.len());
+        let place = |id: u32| {
+            let place = u16::try_from(id.checked_sub(1)?).ok()?;
+            (usize::from(place) < places.len()).then_some(place)
+        };
         match (place(a), place(b)) {
             (Some(a), Some(b)) if a != b => {
                 pairs.insert((a.min(b), a.max(b)));
@@ -164,10 +211,8 @@ fn given_graph(
             }
         }
     }
-    Ok(Formation {
-        places: places.iter().copied().map(cell).collect(),
-        edges: pairs.into_iter().collect(),
-    })
+    let places = places.iter().copied().map(cell).collect();
+    Ok((places, pairs.into_iter().collect()))
 }
 
 fn placed(

@@ -3,6 +3,7 @@
 //! Cells are `[x, y]` from the south-west corner of the (cropped) map, x east and y north. Times are
 //! simulated. File names are relative to the scenario file.
 
+use super::params::{FormationTable, RouteTable};
 use crate::radio::RadioParams;
 use crate::terrain::LoadOptions;
 use serde::Deserialize;
@@ -35,6 +36,12 @@ pub struct ScenarioFile {
     pub radio: RadioParams,
     /// Who takes part.
     pub robots: RobotsTable,
+    /// How robots find their ways.
+    #[serde(default)]
+    pub route: RouteTable,
+    /// How robots keep a formation.
+    #[serde(default)]
+    pub formation: FormationTable,
     /// Robots that fail during the run.
     #[serde(default)]
     pub fault: Vec<FaultTable>,

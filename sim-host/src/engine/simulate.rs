@@ -1,0 +1,112 @@
+//! A whole scenario with the guidance that it asks for.
+
+use super::Engine;
+use crate::metrics::Keeping;
+use crate::record::{PacketCounts, RobotRow, TickRow};
+use crate::scenario::Scenario;
+use crate::world::Misplaced;
+use staya_controller::agent::{
+    CELLS, FormationGuidance, Guidance, RouteGuidance, TEMPLATE, VISITS,
+};
+use std::ops::ControlFlow;
+
+/// Cells of a search for windows up to radius 16 with their border: (2 * 16 + 3)^2.
+const WIDE: usize = 1225;
+/// The largest radius for which [`CELLS`] suffices.
+const NARROW_RADIUS: u8 = 5;
+
+/// The swarm after a tick, or (tick 0) before the first one.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment<'a> {
+    /// The swarm's line of the record.
+    pub row: &'a TickRow,
+    /// Robots that stand at their targets and know it.
+    pub arrived: usize,
+}
+
+/// What came of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// Ticks done.
+    pub ticks: u32,
+    /// Simulated time, seconds.
+    pub seconds: f64,
+    /// Robots that stand at their targets and know it.
+    pub arrived: usize,
+    /// When each robot's last move was over, [`UNIT`](staya_controller::grid::UNIT)ths of a tick
+    /// after the start; `None`: not at its target.
+    pub arrival_times: Vec<Option<u64>>,
+    /// Robots in a wall or in another one's cell, summed over ticks. The world allows none.
+    pub collisions: u64,
+    /// Packets of the whole run.
+    pub packets: PacketCounts,
+    /// Packets beyond a robot's bandwidth, never on the air.
+    pub throttled: u64,
+    /// Means over the run; `None` without a formation.
+    pub formation: Option<Keeping>,
+    /// The same for equal traces, on any machine and any number of threads.
+    pub trace_hash: u64,
+}
+
+/// Runs a scenario until all robots have arrived, its ticks are used up or `watch` breaks. `watch`
+/// sees the start as tick 0, then each tick, with the robots' lines by rising number.
+///
+/// # Errors
+/// See [`Engine::new`].
+pub fn simulate(
+    scenario: &Scenario,
+    watch: impl FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>) -> ControlFlow<()>,
+) -> Result<Outcome, Misplaced> {
+    let is_narrow = scenario.route.params.radius <= NARROW_RADIUS;
+    match (&scenario.formation, is_narrow) {
+        (None, true) => drive(scenario, route::<CELLS>(scenario), watch),
+        (None, false) => drive(scenario, route::<WIDE>(scenario), watch),
+        (Some(_), true) => drive(scenario, formation::<CELLS>(scenario), watch),
+        (Some(_), false) => drive(scenario, formation::<WIDE>(scenario), watch),
+    }
+}
+
+fn route<const C: usize>(
+    scenario: &Scenario,
+) -> impl Fn(usize) -> RouteGuidance<C, VISITS> + use<C> {
+    let route = scenario.route;
+    move |_| {
+        RouteGuidance::new(route.params)
+            .replan(route.replan)
+            .sharpness(route.sharpness)
+    }
+}
+
+fn formation<const C: usize>(
+    scenario: &Scenario,
+) -> impl Fn(usize) -> FormationGuidance<C, VISITS, TEMPLATE> + use<C> {
+    let (route, params) = (scenario.route, scenario.formation_params);
+    let templates = match &scenario.formation {
+        Some(formation) => formation.templates.clone(),
+        None => Vec::new(),
+    };
+    move |index| {
+        let template = templates.get(index).cloned().unwrap_or_default();
+        FormationGuidance::new(route.params, params, template).sharpness(route.sharpness)
+    }
+}
+
+fn drive<G: Guidance<f32, Workspace: Default> + Send>(
+    scenario: &Scenario,
+    guidance: impl Fn(usize) -> G + Send + Sync + 'static,
+    mut watch: impl FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>) -> ControlFlow<()>,
+) -> Result<Outcome, Misplaced> {
+    let mut engine = Engine::new(scenario, guidance)?;
+    let mut row = engine.row(None, PacketCounts::default());
+    loop {
+        let moment = Moment {
+            row: &row,
+            arrived: engine.arrivals.count(),
+        };
+        let flow = watch(&moment, &mut engine.rows());
+        if flow.is_break() || engine.is_over() || engine.ticks() >= scenario.ticks {
+            return Ok(engine.outcome());
+        }
+        row = engine.step();
+    }
+}

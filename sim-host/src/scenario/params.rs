@@ -1,0 +1,207 @@
+//! `[route]` and `[formation]`: how the robots choose their ways. All fields are optional; their
+//! defaults are the controller's.
+
+use super::ScenarioError;
+use super::check::within;
+use super::schema::GridTable;
+use super::source::Source;
+use serde::Deserialize;
+use staya_controller::cost::Gain;
+use staya_controller::formation::{FormationParams, Prediction, Recovery};
+use staya_controller::grid::UNIT;
+use staya_controller::route::{ExitRule, Replan, RouteParams};
+use staya_controller::shuffle::Sharpness;
+
+/// The largest window radius that the simulator has memory for.
+const MAX_RADIUS: u8 = 16;
+
+/// `[route]`: windowed routing (KUZ sections 3 and 5). Coefficients are rounded to sixteenths.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct RouteTable {
+    /// How far a robot sees, cells in each direction, 1 to 16. Default: 5.
+    pub radius: Option<u8>,
+    /// Which border cells of the window end a route: `"best"` (eq. 10; the default) or `"ray"` (alg. 3).
+    pub exit: Option<ExitName>,
+    /// When to search: `"each_cell"` (the default) or `"until_changed"` (follow the chain; robots without
+    /// formation only).
+    pub replan: Option<ReplanName>,
+    /// Weight of travel time, 0 to 4095. Default: 1.
+    pub a0: Option<f64>,
+    /// Ticks that a cell with another robot costs extra, 0 to 4095. Default: 2.
+    pub a1: Option<f64>,
+    /// Ticks per earlier visit of a cell, 0 to 4095. Default: 3.
+    pub a2: Option<f64>,
+    /// Ticks per cell of distance from the exit to the target, 0 to 4095. Default: 3.
+    pub a3: Option<f64>,
+    /// Weighted shuffle: a move that costs so many ticks more than another is half as likely to be
+    /// tried first, 0 to 4095. Default: 0, cheapest first without chance.
+    pub halved_per_ticks: Option<f64>,
+}
+
+/// `[formation]`: keeping a formation (KUZ section 7); for `robots.formation` only.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct FormationTable {
+    /// Steps along edges of the formation's graph within which robots are each other's neighbours, 1 or
+    /// more; nobody may have more than 8. Default: 1.
+    pub rho: Option<u8>,
+    /// How far from its place a neighbour may be and still counts as found, cells. Default: 10.
+    pub eps: Option<u8>,
+    /// Price of being off one's place, ticks per cell, 0 to 4095; rounded to sixteenths. Default: 1.
+    pub gain: Option<f64>,
+    /// How far somebody may fall behind before the top leader waits (r0), 0 to 900 cells. Default: 4.29.
+    pub halt_cells: Option<f64>,
+    /// How near he must have come again before it goes on, cells; at most `halt_cells`. Default: the
+    /// smaller of 4.29 and `halt_cells`.
+    pub resume_cells: Option<f64>,
+    /// How far ahead of the top leader's cell the others aim, cells. Default: 1.
+    pub lead: Option<u8>,
+    /// Share of the land under the others' places in what a cell costs the top leader, 0 to 1; rounded
+    /// to sixteenths. Default: 0.75.
+    pub footprint: Option<f64>,
+    /// How others are foreseen: `"constant"` (they go on as announced; the default) or `"reflexive"`
+    /// ("what would I do in its place").
+    pub prediction: Option<PredictionName>,
+    /// What the top leader does meanwhile: `"wait"` (the default) or `"def"` (heads for where the others
+    /// are off to).
+    pub recovery: Option<RecoveryName>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[expect(missing_docs, reason = "see RouteTable::exit")]
+pub enum ExitName {
+    Best,
+    Ray,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[expect(missing_docs, reason = "see RouteTable::replan")]
+pub enum ReplanName {
+    EachCell,
+    UntilChanged,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[expect(missing_docs, reason = "see FormationTable::prediction")]
+pub enum PredictionName {
+    Constant,
+    Reflexive,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[expect(missing_docs, reason = "see FormationTable::recovery")]
+pub enum RecoveryName {
+    Wait,
+    Def,
+}
+
+/// How robots find their ways.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Routing {
+    /// What routes cost, and how far robots see.
+    pub params: RouteParams,
+    /// When they search anew.
+    pub replan: Replan,
+    /// How strictly the order of moves follows their costs.
+    pub sharpness: Sharpness,
+}
+
+pub(super) fn routing(
+    source: &Source<'_>,
+    table: &RouteTable,
+    grid: &GridTable,
+) -> Result<Routing, ScenarioError> {
+    let usual = RouteParams::default();
+    let gain = |name: &str, value: Option<f64>, usual: Gain| match value {
+        None => Ok(usual),
+        Some(value) => gain(source, &format!("route.{name}"), value),
+    };
+    let radius = table.radius.unwrap_or(usual.radius);
+    if !(1..=MAX_RADIUS).contains(&radius) {
+        return Err(source.error(
+            "route.radius",
+            format!("a window of radius {radius} is out of range"),
+            format!("give 1 to {MAX_RADIUS} cells"),
+        ));
+    }
+    let params = RouteParams {
+        radius,
+        exit: match table.exit {
+            None => usual.exit,
+            Some(ExitName::Best) => ExitRule::Best,
+            Some(ExitName::Ray) => ExitRule::Ray,
+        },
+        norm: grid.norm,
+        corner_cutting: grid.corner_cutting,
+        a0: gain("a0", table.a0, usual.a0)?,
+        a1: gain("a1", table.a1, usual.a1)?,
+        a2: gain("a2", table.a2, usual.a2)?,
+        a3: gain("a3", table.a3, usual.a3)?,
+    };
+    let replan = match table.replan {
+        None => Replan::default(),
+        Some(ReplanName::EachCell) => Replan::EachCell,
+        Some(ReplanName::UntilChanged) => Replan::UntilChanged,
+    };
+    let halving = gain("halved_per_ticks", table.halved_per_ticks, Gain::ZERO)?;
+    let sharpness = match halving {
+        Gain::ZERO => Sharpness::Greedy,
+        halving => Sharpness::HalvedPer(halving),
+    };
+    Ok(Routing {
+        params,
+        replan,
+        sharpness,
+    })
+}
+
+pub(super) fn formation(
+    source: &Source<'_>,
+    table: &FormationTable,
+) -> Result<FormationParams, ScenarioError> {
+    let mut params = FormationParams::default();
+    params.eps = table.eps.unwrap_or(params.eps);
+    params.lead = table.lead.unwrap_or(params.lead);
+    if let Some(value) = table.gain {
+        params.gain = gain(source, "formation.gain", value)?;
+    }
+    if let Some(cells) = table.halt_cells {
+        within(source, "formation.halt_cells", cells, 0.0, 900.0, "cells")?;
+        params.halt_lag = units(cells);
+        params.resume_lag = params.resume_lag.min(params.halt_lag);
+    }
+    if let Some(cells) = table.resume_cells {
+        let most = f64::from(params.halt_lag) / f64::from(UNIT);
+        within(source, "formation.resume_cells", cells, 0.0, most, "cells")?;
+        params.resume_lag = units(cells);
+    }
+    if let Some(share) = table.footprint {
+        within(source, "formation.footprint", share, 0.0, 1.0, "(a share)")?;
+        params.footprint = libm::round(share * 16.0) as u8;
+    }
+    match table.prediction {
+        None => {}
+        Some(PredictionName::Constant) => params.prediction = Prediction::Constant,
+        Some(PredictionName::Reflexive) => params.prediction = Prediction::Reflexive,
+    }
+    match table.recovery {
+        None => {}
+        Some(RecoveryName::Wait) => params.recovery = Recovery::Wait,
+        Some(RecoveryName::Def) => params.recovery = Recovery::Def,
+    }
+    Ok(params)
+}
+
+fn gain(source: &Source<'_>, field: &str, value: f64) -> Result<Gain, ScenarioError> {
+    within(source, field, value, 0.0, 4095.0, "")?;
+    Ok(Gain::from_sixteenths(libm::round(value * 16.0) as u16))
+}
+
+fn units(cells: f64) -> u16 {
+    libm::round(cells * f64::from(UNIT)) as u16
+}
