@@ -18,7 +18,7 @@ const ROW: f64 = 19.0;
 /// Width of the sample of line or mark in the legend.
 const SAMPLE: f64 = 24.0;
 /// Readers' sans-serif fonts are up to this much wider than the one measured here.
-const OTHER_FONTS: f64 = 1.15;
+pub const OTHER_FONTS: f64 = 1.15;
 
 /// Height that the headline over several charts takes.
 pub fn headline_height(title: &str) -> f64 {

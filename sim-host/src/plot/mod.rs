@@ -8,29 +8,20 @@
 pub mod canvas;
 pub mod chart;
 pub mod colour;
+mod crowd;
 mod font;
 mod layout;
+mod map;
 mod raster;
+mod run;
 mod scale;
 mod series;
 mod svg;
 pub mod ticks;
+mod trajectories;
 
 pub use chart::{Chart, Panels, Series};
+pub use run::run_pictures;
 
-use crate::record::{Error, History};
-use crate::terrain::Terrain;
-use std::path::{Path, PathBuf};
-
-/// Draws the pictures of one run into `out_dir`, each as SVG and PNG, and names the files.
-///
-/// # Errors
-/// A file cannot be written.
-pub fn run_pictures(
-    _terrain: &Terrain,
-    _history: &History,
-    _edges: &[(u32, u32)],
-    _out_dir: &Path,
-) -> Result<Vec<PathBuf>, Error> {
-    Ok(Vec::new())
-}
+#[cfg(test)]
+mod tests;

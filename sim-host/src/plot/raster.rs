@@ -53,6 +53,27 @@ pub fn encode_rgba(pixels: &Pixels) -> io::Result<Vec<u8>> {
     Ok(encode_png(pixels.width, pixels.height, colour, &bytes)?)
 }
 
+/// Draws a picture alone, without ground, as pixels for another picture; `scale` pixels per unit.
+///
+/// # Errors
+/// The picture has no pixels or too many.
+pub fn layer(canvas: &Canvas, scale: f64) -> io::Result<Pixels> {
+    let pixmap = draw(canvas, scale, None)?;
+    let rgba = pixmap
+        .pixels()
+        .iter()
+        .map(|pixel| {
+            let plain = pixel.demultiply();
+            [plain.red(), plain.green(), plain.blue(), plain.alpha()]
+        })
+        .collect();
+    Ok(Pixels {
+        width: pixmap.width(),
+        height: pixmap.height(),
+        rgba,
+    })
+}
+
 fn draw(canvas: &Canvas, scale: f64, ground: Option<Colour>) -> io::Result<Pixmap> {
     let [width, height] = [canvas.width, canvas.height].map(|side| libm::ceil(side * scale) as u32);
     let mut pixmap = Pixmap::new(width, height).ok_or_else(|| {

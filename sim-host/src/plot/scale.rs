@@ -149,20 +149,20 @@ impl Extent {
         };
         self.x = widen(self.x, x);
         // What the chosen x range hides does not stretch y.
-        if chart
-            .x_range
-            .is_none_or(|[low, high]| (low..=high).contains(&x))
-        {
+        if chosen(chart.x_range).is_none_or(|[low, high]| (low..=high).contains(&x)) {
             self.y = widen(self.y, y);
         }
     }
 }
 
+/// The range that the caller chose, if it is one.
+fn chosen(range: Option<[f64; 2]>) -> Option<[f64; 2]> {
+    range.filter(|[low, high]| low < high && low.is_finite() && high.is_finite())
+}
+
 fn x_range(chart: &Chart, extent: &Extent) -> [f64; 2] {
-    let chosen = chart
-        .x_range
-        .filter(|[low, high]| low < high && low.is_finite() && high.is_finite());
-    let [low, high] = chosen.or(extent.x).unwrap_or([0.0, 1.0]);
+    let wanted = chosen(chart.x_range);
+    let [low, high] = wanted.or(extent.x).unwrap_or([0.0, 1.0]);
     if chart.log_x {
         // A positive range, at least a factor of 2 wide around a single value.
         let low = if low > 0.0 {
@@ -173,7 +173,7 @@ fn x_range(chart: &Chart, extent: &Extent) -> [f64; 2] {
         let (low, high) = (low.clamp(1e-150, 1e150), high.clamp(1e-150, 1e150));
         let factor = if high / low < 1.0 + 1e-9 {
             1.5
-        } else if chosen.is_none() && extent.marks {
+        } else if wanted.is_none() && extent.marks {
             libm::pow(high / low, 0.03)
         } else {
             1.0
@@ -181,7 +181,7 @@ fn x_range(chart: &Chart, extent: &Extent) -> [f64; 2] {
         return [low / factor, high * factor];
     }
     let [low, high] = ticks::sound(low, high);
-    let share = match (chosen, extent.marks, extent.bars) {
+    let share = match (wanted, extent.marks, extent.bars) {
         (None, true, _) => 0.03,
         (None, false, true) => 0.01,
         _ => 0.0,
@@ -190,10 +190,7 @@ fn x_range(chart: &Chart, extent: &Extent) -> [f64; 2] {
 }
 
 fn y_range(chart: &Chart, extent: &Extent, most: usize) -> [f64; 2] {
-    let chosen = chart
-        .y_range
-        .filter(|[low, high]| low < high && low.is_finite() && high.is_finite());
-    if let Some([low, high]) = chosen {
+    if let Some([low, high]) = chosen(chart.y_range) {
         return ticks::sound(low, high);
     }
     let [low, high] = extent.y.unwrap_or([0.0, 1.0]);

@@ -63,7 +63,7 @@ impl Step {
         let near = value / self.times(1);
         // A value that is a multiple but for rounding counts as one.
         let whole = libm::round(near);
-        let tolerance = 1e-9 * whole.abs().max(1.0);
+        let tolerance = 1e-9 + 4.0 * f64::EPSILON * whole.abs();
         (if (near - whole).abs() < tolerance {
             whole
         } else {
@@ -81,6 +81,25 @@ pub fn enclosing(low: f64, high: f64, most: usize) -> [f64; 2] {
         step.times(step.index(low, libm::floor)).min(low),
         step.times(step.index(high, libm::ceil)).max(high),
     ]
+}
+
+/// The greatest 1, 2 or 5 x 10^k that is no more than `value`; 1 if `value` is no positive number.
+#[must_use]
+pub fn round_down(value: f64) -> f64 {
+    if !value.is_finite() || value <= 0.0 {
+        return 1.0;
+    }
+    let exponent = libm::floor(libm::log10(value)) as i32;
+    [
+        (5, exponent),
+        (2, exponent),
+        (1, exponent),
+        (5, exponent - 1),
+    ]
+    .into_iter()
+    .map(|(mantissa, exponent)| Step { mantissa, exponent }.times(1))
+    .find(|step| *step <= value)
+    .unwrap_or(value)
 }
 
 /// Marks of an axis from `low` to `high`, both ends included, with at most `most` steps between.
@@ -160,4 +179,18 @@ pub fn logarithmic(low: f64, high: f64, most: usize) -> Vec<Tick> {
         .map(|every| marks(&[1], every))
         .find(|ticks| ticks.len() <= most + 1)
         .unwrap_or_default()
+}
+
+/// A whole number with commas between thousands.
+#[must_use]
+pub fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::with_capacity(digits.len() * 4 / 3);
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
 }
