@@ -353,3 +353,6 @@ fn busy(free_at: u64, now_units: u64, tick_us: u32) -> Duration {
     let micros = (left * u64::from(tick_us)).div_ceil(u64::from(UNIT));
     Duration::from_micros(i32::try_from(micros).unwrap_or(i32::MAX))
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,6 +1,10 @@
 use super::*;
 use proptest::prelude::*;
+use staya_controller::cost::Gain;
+use staya_controller::formation::FormationParams;
 use staya_controller::grid::Cell;
+use staya_controller::route::ExitRule;
+use staya_controller::shuffle::Sharpness;
 use std::fs;
 
 const MAP: &str = "type octile\nheight 3\nwidth 4\nmap\n....\n.@..\n....\n";
@@ -314,6 +318,145 @@ fn faults_become_ticks() {
     assert_eq!(parse(&text).expect("good").faults, [fault]);
 }
 
+#[test]
+fn parameters_of_routes_and_formations_are_checked() {
+    let with = |rest: &str| {
+        let robots = "formation = { rows = 1, columns = 2, spacing = [1, 1], start = [0, 0], goal = [2, 0] }";
+        format!("{}{rest}", with_robots(robots))
+    };
+    let scenario = parse(&with("")).expect("good");
+    assert_eq!(scenario.route, Routing::default());
+    assert_eq!(scenario.formation_params, FormationParams::default());
+    let scenario = parse(&with(
+        "[grid]\ncorner_cutting = true\n[route]\nradius = 16\nexit = \"ray\"\nreplan = \"until_changed\"\n\
+         a2 = 0.5\nhalved_per_ticks = 2\n[formation]\nhalt_cells = 2\ngain = 4095\nfootprint = 1\n\
+         prediction = \"reflexive\"\nrecovery = \"def\"\n",
+    ));
+    let Scenario {
+        route,
+        formation_params: formation,
+        ..
+    } = scenario.expect("good");
+    assert_eq!(
+        (route.params.radius, route.params.exit),
+        (16, ExitRule::Ray)
+    );
+    assert_eq!(route.params.a2, Gain::from_sixteenths(8));
+    assert!(route.params.corner_cutting);
+    assert_eq!(route.sharpness, Sharpness::HalvedPer(Gain::from_int(2)));
+    assert_eq!((formation.halt_lag, formation.resume_lag), (140, 140));
+    assert_eq!(
+        (formation.gain, formation.footprint),
+        (Gain::from_int(4095), 16)
+    );
+    for (rest, expected) in [
+        (
+            "[route]\nradius = 0\n",
+            "route.radius: a window of radius 0 is out of range; give 1 to 16",
+        ),
+        (
+            "[route]\nradius = 17\n",
+            "route.radius: a window of radius 17",
+        ),
+        (
+            "[route]\na3 = -1\n",
+            "route.a3: -1 is out of range; give 0 to 4095",
+        ),
+        ("[route]\na0 = nan\n", "route.a0: NaN is out of range"),
+        (
+            "[route]\nexit = \"door\"\n",
+            "route.exit: unknown variant `door`",
+        ),
+        (
+            "[formation]\ngain = 4096\n",
+            "formation.gain: 4096 is out of range",
+        ),
+        (
+            "[formation]\nresume_cells = 5\n",
+            "formation.resume_cells: 5 is out of range; give 0 to 4.2857",
+        ),
+        (
+            "[formation]\nfootprint = 1.1\n",
+            "formation.footprint: 1.1 is out of range",
+        ),
+    ] {
+        let refusal = refusal(&with(rest));
+        assert!(
+            refusal.starts_with(&format!("s.toml:8: {expected}")),
+            "{refusal}"
+        );
+    }
+}
+
+#[test]
+fn a_formation_that_no_controller_holds_is_refused() {
+    let star = |leaves: usize| {
+        let places: Vec<_> = (0..=leaves)
+            .map(|i| format!("[{}, {}]", i % 3, i / 3))
+            .collect();
+        let edges: Vec<_> = (2..=leaves + 1).map(|i| format!("[1, {i}]")).collect();
+        let (places, edges) = (places.join(", "), edges.join(", "));
+        with_robots(&format!(
+            "formation = {{ places = [{places}], edges = [{edges}], start = [0, 0], goal = [0, 0] }}"
+        ))
+    };
+    let refused = |text: &str, expected: &str| {
+        let refusal = refusal(text);
+        assert!(refusal.contains(expected), "{refusal}");
+    };
+    let too_many = "formation.rho: a robot would have more than 8 neighbours in the formation; give a smaller rho";
+    refused(&star(9), too_many);
+    // With 8 it is the map that is too small.
+    refused(&star(8), "is in a wall");
+    refused(
+        &star(255),
+        "256 robots are more than a formation holds; give at most 255",
+    );
+    let wide = "formation = { rows = 16, columns = 16, start = [0, 0], goal = [0, 0] }";
+    refused(
+        &with_robots(wide),
+        "16 rows of 16 robots do not fit any map or any memory",
+    );
+    let rho = format!(
+        "{}[formation]\nrho = 5\n",
+        with_robots(
+            "formation = { rows = 3, columns = 4, spacing = [1, 1], start = [0, 0], goal = [0, 0] }",
+        )
+    );
+    refused(&rho, "s.toml:8: formation.rho");
+}
+
+#[test]
+fn every_field_is_in_the_table_of_the_readme() {
+    let readme = include_str!("../../../scenarios/README.md");
+    let sources = [
+        include_str!("schema.rs"),
+        include_str!("params.rs"),
+        include_str!("../radio/params.rs"),
+    ];
+    let mut fields = 0;
+    for source in sources {
+        let declared = source
+            .lines()
+            .filter_map(|line| line.strip_prefix("    pub "));
+        for (name, _) in declared.filter_map(|field| field.split_once(": ")) {
+            let in_code = format!("`{name}`");
+            let is_table = format!("`[{name}]`");
+            let is_list = format!("`[[{name}]]`");
+            let said = [in_code, is_table, is_list]
+                .iter()
+                .any(|word| readme.contains(word));
+            // Those of a Routing are not from the file.
+            assert!(
+                said || ["params", "sharpness"].contains(&name),
+                "{name} is missing"
+            );
+            fields += 1;
+        }
+    }
+    assert!(fields > 60, "only {fields} were found");
+}
+
 proptest! {
     #[test]
     fn arbitrary_text_never_panics(text in "\\PC{0,200}") {
@@ -327,7 +470,7 @@ proptest! {
         let mut text: Vec<char> = format!(
             "tick_s = 0.5\n{HEAD}crop = {{ x = 0, y = 0, width = 4, height = 3 }}\n[grid]\nnorm = \"chebyshev\"\n[radio]\nrange_m = 3\n\
              loss = 0.5\nburst = {{ share = 0.1, mean_ms = 1000 }}\nblackout_s = [[1, 2]]\n[robots]\n\
-             formation = {{ rows = 1, columns = 2, spacing = [1, 1], start = [0, 0], goal = [2, 0] }}\n[[fault]]\nrobot = 1\nat_s = 3\n"
+             formation = {{ rows = 1, columns = 2, spacing = [1, 1], start = [0, 0], goal = [2, 0] }}\n[route]\na1 = 2\n[formation]\nrho = 2\n[[fault]]\nrobot = 1\nat_s = 3\n"
         ).chars().collect();
         for (at, change) in changes {
             let at = at % text.len();
