@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use core::hint::black_box;
+use core::time::Duration;
 use criterion::{Criterion, criterion_group, criterion_main};
 use heapless::Vec;
 use staya_controller::grid::{Cell, Dir};
@@ -117,5 +118,12 @@ fn wire(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, wire);
+/// Twelve benchmarks of tens of nanoseconds need no five seconds each.
+fn short() -> Criterion {
+    Criterion::default()
+        .warm_up_time(Duration::from_millis(500))
+        .measurement_time(Duration::from_secs(2))
+}
+
+criterion_group!(name = benches; config = short(); targets = wire);
 criterion_main!(benches);

@@ -34,16 +34,19 @@ fn counted(tests: &mut Command, why_skipped: &str) -> (Counts, String) {
             sum += counts;
         }
     });
-    let note = match ended {
+    let mut notes = Vec::new();
+    match ended {
         Err(reason) if sum.failed == 0 => {
             sum.failed = 1;
-            format!("cargo test: {reason}")
+            notes.push(format!("cargo test: {reason}"));
         }
-        Err(_) => String::from("see above"),
-        Ok(()) if sum.skipped > 0 => why_skipped.to_string(),
-        Ok(()) => String::new(),
-    };
-    (sum, note)
+        Err(_) => notes.push(String::from("see above")),
+        Ok(()) => {}
+    }
+    if sum.skipped > 0 && !why_skipped.is_empty() {
+        notes.push(why_skipped.to_string());
+    }
+    (sum, notes.join("; "))
 }
 
 #[cfg(test)]
@@ -76,6 +79,14 @@ mod tests {
         let (counts, note) = counted(&mut shell("echo running 3 tests; exit 101"), "");
         assert_eq!(counts.failed, 1);
         assert!(note.contains("101"), "{note}");
+    }
+
+    #[test]
+    fn failure_does_not_hide_why_something_was_skipped() {
+        let line = "test result: FAILED. 2 passed; 1 failed; 0 ignored; 0 measured; 3 filtered out";
+        let (counts, note) = counted(&mut shell(&format!("echo '{line}'; exit 101")), "why");
+        assert_eq!((counts.failed, counts.skipped), (1, 3));
+        assert_eq!(note, "see above; why");
     }
 
     #[test]
