@@ -321,20 +321,23 @@ impl<const CELLS: usize> CostField<CELLS> {
             Norm::Chebyshev => axis,
             Norm::Euclidean => beyond.saturating_add(params.a0.of(DIAGONAL * u)),
         };
-        let s = self.stride;
+        let stride = self.stride;
         let (east, west) = (cell + 1, cell.wrapping_sub(1));
-        let (north, south) = (cell + s, cell.wrapping_sub(s));
+        let (north, south) = (cell + stride, cell.wrapping_sub(stride));
         for beside in [east, west, north, south] {
             self.relax(beside, axis, at);
         }
+        // Each side is looked at once, though two corners need it.
+        let open = |side| params.corner_cutting || self.is_passable(side);
+        let [e, w, n, s] = [east, west, north, south].map(open);
         let corners = [
-            (north + 1, north, east),
-            (north.wrapping_sub(1), north, west),
-            (south + 1, south, east),
-            (south.wrapping_sub(1), south, west),
+            (north + 1, n && e),
+            (north.wrapping_sub(1), n && w),
+            (south + 1, s && e),
+            (south.wrapping_sub(1), s && w),
         ];
-        for (corner, one, other) in corners {
-            if params.corner_cutting || (self.is_passable(one) && self.is_passable(other)) {
+        for (corner, is_open) in corners {
+            if is_open {
                 self.relax(corner, diagonal, at);
             }
         }
