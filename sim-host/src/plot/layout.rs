@@ -144,8 +144,15 @@ fn frame(
     }));
     canvas.lines(marks.collect(), axis);
     for tick in ticks_x {
-        let at = [at_x(&axes.x, tick.value), bottom + 7.0 + SMALL];
-        canvas.text(number(at, Anchor::Middle, &tick.label));
+        // Where even the fewest numbers are too wide, those at the ends move inwards.
+        let half = font::width(&tick.label, SMALL, false) / 2.0;
+        let ends = [y_label_x + half, right + PAD + 10.0 - half];
+        let x = at_x(&axes.x, tick.value).max(ends[0]).min(ends[1]);
+        canvas.text(number(
+            [x, bottom + 7.0 + SMALL],
+            Anchor::Middle,
+            &tick.label,
+        ));
     }
     for tick in ticks_y {
         let at = [left - 8.0, at_y(&axes.y, tick.value)];

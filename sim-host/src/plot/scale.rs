@@ -8,6 +8,9 @@ use super::ticks::{self, Tick};
 /// Font size by which marks are spaced.
 const NUMBER: f64 = 11.5;
 
+/// How far numbers may reach beyond the ends of the x axis; less than the margins there.
+const OVERHANG: f64 = 24.0;
+
 /// One axis.
 #[derive(Clone, Debug)]
 pub struct Axis {
@@ -47,7 +50,10 @@ impl Axis {
             [at - half, at + half]
         };
         let spans: Vec<[f64; 2]> = self.ticks.iter().map(span).collect();
-        spans.windows(2).all(|pair| pair[0][1] + 14.0 <= pair[1][0])
+        let inside = spans
+            .iter()
+            .all(|[from, to]| *from >= -OVERHANG && *to <= length + OVERHANG);
+        inside && spans.windows(2).all(|pair| pair[0][1] + 14.0 <= pair[1][0])
     }
 }
 

@@ -17,7 +17,8 @@ pub fn sound(low: f64, high: f64) -> [f64; 2] {
     if low.is_nan() || high.is_nan() {
         return [0.0, 1.0];
     }
-    let (low, high) = (low.min(high).max(-MOST), high.max(low).min(MOST));
+    let within = |value: f64| value.clamp(-MOST, MOST);
+    let (low, high) = (within(low.min(high)), within(high.max(low)));
     let largest = low.abs().max(high.abs());
     if high - low > 1e-9 * largest && high - low > 1e-150 {
         return [low, high];
@@ -125,7 +126,7 @@ fn label(value: f64, step: Step, largest: f64) -> String {
     if value == 0.0 {
         return "0".into();
     }
-    if largest >= 1e15 || step.exponent < -5 {
+    if largest >= 1e15 || (step.exponent < -5 && largest < 1e-3) {
         return format!("{value:e}");
     }
     // At most two decimals before a suffix: 19.95k, but 1000001.

@@ -293,6 +293,16 @@ fn strange_text_keeps_the_file_well_formed() {
 }
 
 #[test]
+fn long_numbers_at_the_ends_of_the_axis_stay_in_the_picture() {
+    let low = -213.928_431;
+    for width in [300.0, 657.7, 720.0] {
+        let line = Series::line("A", [[low, -1.0], [low + 1e-6, 1.0]]);
+        let chart = Chart::new("t", "x", "y").size(width, 420.0).with(line);
+        assert_texts_apart(&chart.draw());
+    }
+}
+
+#[test]
 fn sizes_stay_within_bounds() {
     for (width, height) in [(0.0, -5.0), (f64::NAN, f64::NAN), (1e9, f64::INFINITY)] {
         let canvas = full().size(width, height).draw();

@@ -37,6 +37,8 @@ fn nonsense_ranges_become_sound_ones() {
         (0.0, 0.0),
         (5.0, -5.0),
         (-1e308, 1e308),
+        (-1e220, -1e170),
+        (1e170, f64::INFINITY),
         (f64::MIN_POSITIVE, 2.0 * f64::MIN_POSITIVE),
         (1.0, 1.0 + f64::EPSILON),
     ] {
