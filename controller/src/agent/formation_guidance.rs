@@ -114,9 +114,9 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
                 let own = (self.template.entries.iter())
                     .find(|entry| all.get(index).is_some_and(|seen| seen.id == entry.id));
                 let Some(entry) = own else { continue };
-                let place = top.and_then(|top| {
+                let place = top.and_then(|(top, offset)| {
                     let leader = all.iter().find(|seen| seen.id == top)?;
-                    Some(leader.cell + self.template.offset + entry.offset)
+                    Some(leader.cell + offset + entry.offset)
                 });
                 if let Some(seen) = all.get(index).copied() {
                     let choice = self.choice_of(view, window, field, &seen, place);
@@ -197,15 +197,25 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
         Some(other.cell + dir.offset())
     }
 
-    /// The robot at the end of the leader chain, as far as it was heard of.
-    fn top<S>(&self, view: &View<'_, S>) -> Option<RobotId> {
+    /// The robot farthest up the leader chain whose place is known, and one's own place relative to its
+    /// place: the top leader if it was heard, else a leader that the template names.
+    fn top<S>(&self, view: &View<'_, S>) -> Option<(RobotId, Cell)> {
         let heard = |id: RobotId| view.neighbor(id);
         let first = heard(self.leader)?;
         // Numbers fall along the chain, so that it ends; a wrong beacon cannot make it a circle.
         let chain = successors(Some(first), |robot| {
             heard(robot.leader).filter(|next| next.id < robot.id)
         });
-        chain.last().map(|robot| robot.id)
+        let placed = chain.filter_map(|robot| {
+            let named = self.template.entries.iter().find(|e| e.id == robot.id);
+            let offset = match named {
+                Some(entry) => Cell::default() - entry.offset,
+                None if !robot.leader.is_somebody() => self.template.offset,
+                None => return None,
+            };
+            Some((robot.id, offset))
+        });
+        placed.last()
     }
 
     /// Whom to follow: once found, the leader stays while it is heard, however far it is (the paper
@@ -277,9 +287,8 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
 
     /// The top leader seen by a follower.
     fn guide<S>(&self, view: &View<'_, S>, cell: Cell, seen: &[Seen]) -> Option<Guide> {
-        let top = self.top(view)?;
+        let (top, offset) = self.top(view)?;
         let seen = seen.iter().find(|seen| seen.id == top)?;
-        let offset = self.template.offset;
         let off = cell - (seen.cell + offset);
         Some(Guide {
             anchor: Anchor {

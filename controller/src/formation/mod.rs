@@ -86,7 +86,7 @@ pub struct FormationParams {
 
 impl Default for FormationParams {
     /// What reaches the figures of `staya experiment formation`: eps 10 cells, gain 1, r0 300 units
-    /// (4.3 cells) without hysteresis, one cell ahead, three quarters of the price by the others'
+    /// (4.3 cells) without hysteresis, one cell ahead, half of the price by the others'
     /// land, constant velocity (as good as reflexive there, at a quarter of the work), waiting.
     fn default() -> Self {
         Self {
@@ -95,7 +95,7 @@ impl Default for FormationParams {
             halt_lag: 300,
             resume_lag: 300,
             lead: 1,
-            footprint: 12,
+            footprint: 8,
             prediction: Prediction::Constant,
             recovery: Recovery::Wait,
         }

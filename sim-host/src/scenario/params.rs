@@ -44,7 +44,7 @@ pub struct RouteTable {
 #[serde(deny_unknown_fields, default)]
 pub struct FormationTable {
     /// Steps along edges of the formation's graph within which robots are each other's neighbours, 1 or
-    /// more; nobody may have more than 8. Default: 1.
+    /// more; nobody may have more than 8. Default: the largest of 3, 2, 1 that fits.
     pub rho: Option<u8>,
     /// How far from its place a neighbour may be and still counts as found, cells. Default: 10.
     pub eps: Option<u8>,

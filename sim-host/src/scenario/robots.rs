@@ -62,8 +62,7 @@ pub(super) fn build(
     let entries = match (&table.list, &table.formation, &table.scen, &table.scattered) {
         (Some(list), None, None, None) => listed(list),
         (None, Some(entry), None, None) => {
-            let rho = file.formation.rho.unwrap_or(1);
-            let graph = graph(source, entry, rho)?;
+            let graph = graph(source, entry, file.formation.rho)?;
             let entries = placed(source, entry, &graph)?;
             formation = Some(graph);
             entries
@@ -105,7 +104,11 @@ fn listed(list: &[RobotEntry]) -> Vec<Entry> {
 
 type Graph = (Vec<Cell>, Vec<(u16, u16)>);
 
-fn graph(source: &Source<'_>, entry: &FormationEntry, rho: u8) -> Result<Formation, ScenarioError> {
+fn graph(
+    source: &Source<'_>,
+    entry: &FormationEntry,
+    rho: Option<u8>,
+) -> Result<Formation, ScenarioError> {
     let (places, edges) = match (entry.rows, entry.columns, &entry.places, &entry.edges) {
         (Some(rows), Some(columns), None, None) => {
             grid_graph(rows, columns, entry.spacing.unwrap_or([3, -3])).ok_or_else(|| {
@@ -125,10 +128,19 @@ fn graph(source: &Source<'_>, entry: &FormationEntry, rho: u8) -> Result<Formati
             "give rows and columns (and spacing), or places and edges",
         )),
     }?;
-    let templates = (0..places.len())
-        .map(|own| Template::from_graph(&places, &edges, own, rho))
-        .collect::<Result<_, _>>()
-        .map_err(|error| template_error(source, error))?;
+    let templates = |rho| {
+        (0..places.len())
+            .map(|own| Template::from_graph(&places, &edges, own, rho))
+            .collect::<Result<_, _>>()
+    };
+    // Who knows more of the formation keeps it better: the largest usual radius that fits.
+    let templates = match rho {
+        Some(rho) => templates(rho),
+        None => templates(3)
+            .or_else(|_| templates(2))
+            .or_else(|_| templates(1)),
+    }
+    .map_err(|error| template_error(source, error))?;
     Ok(Formation {
         places,
         edges,
