@@ -199,6 +199,21 @@ fn unknown_distance_is_the_largest() {
 }
 
 #[test]
+fn nearest_of_more_or_fewer_than_there_are() {
+    let table = full::<3>(at(0));
+    let mut none = heapless::Vec::<_, 0>::new();
+    table.k_nearest(Vec3::ZERO, at(0), &mut none);
+    assert!(none.is_empty());
+    let mut all = heapless::Vec::<_, 5>::new();
+    // What was in it before is replaced.
+    for own in [0.0, 10.0] {
+        table.k_nearest(Vec3::new(own, 0.0, 0.0), at(0), &mut all);
+    }
+    let found: StdVec<u32> = all.iter().map(|n| n.id.0).collect();
+    assert_eq!(found, [3, 2, 1]);
+}
+
+#[test]
 fn knowledge_ages_from_fresh_to_stale_to_unknown() {
     let mut table = NeighborTable::<f32, 4>::new(AGES);
     let heard = at(u32::MAX - 500_000); // The clock wraps before the first limit.

@@ -35,6 +35,8 @@ struct Order {
     until: Instant,
 }
 
+const _: () = assert!(size_of::<Order>() == 20);
+
 impl Order {
     fn is_stop_at(&self, now: Instant) -> bool {
         self.kind == RequestKind::Stop && now.is_before(self.until)
@@ -47,7 +49,7 @@ impl Order {
     }
 }
 
-/// The requests that a robot received, at most `S` matters at a time; about 24 bytes each.
+/// The requests that a robot received, at most `S` matters at a time; 20 bytes each.
 ///
 /// Each matter (sender, origin, standing or direction) is a line of its own, so that two
 /// followers, or two robots whose requests one follower passes on, stop and resume independently. In

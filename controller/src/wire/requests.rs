@@ -73,7 +73,9 @@ struct Pending {
     expiry: Instant,
 }
 
-/// The requests of one robot to others, at most `P` at a time; about 28 bytes each.
+const _: () = assert!(size_of::<Pending>() == 24);
+
+/// The requests of one robot to others, at most `P` at a time; 24 bytes each.
 ///
 /// Time is compared by wrapped difference: [`Requests::poll`] must be called at least every half
 /// hour while requests are on their way.

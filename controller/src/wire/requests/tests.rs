@@ -190,6 +190,19 @@ fn an_acknowledgement_for_another_boot_or_robot_ends_nothing() {
 }
 
 #[test]
+fn as_many_requests_as_there_can_be_have_different_numbers() {
+    let mut requests = requests::<128>();
+    let mut numbers: StdVec<u8> = (1..=128)
+        .map(|to| requests.ask(RobotId(to), OWN, Stop, 1_000, START).unwrap())
+        .collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    assert_eq!(numbers.len(), 128);
+    let one_more = requests.ask(RobotId(200), OWN, Stop, 1_000, START);
+    assert_eq!(one_more, Err(AskError::Full));
+}
+
+#[test]
 fn a_careless_retry_policy_still_ends() {
     for interval in [Duration::ZERO, Duration::from_micros(-5), Duration::MAX] {
         let retry = Retry {
