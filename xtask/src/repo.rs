@@ -115,10 +115,11 @@ pub fn run_reading(command: &mut Command, mut seen: impl FnMut(&str)) -> Result<
 /// What a quiet command prints; `None` unless it succeeds.
 pub fn output_of(command: &mut Command) -> Option<String> {
     let output = command.stderr(Stdio::null()).output().ok()?;
-    output
-        .status
-        .success()
-        .then(|| String::from_utf8_lossy(&output.stdout).trim().to_string())
+    output.status.success().then(|| {
+        String::from_utf8_lossy(&output.stdout)
+            .trim_end()
+            .to_string()
+    })
 }
 
 fn ended(status: std::io::Result<std::process::ExitStatus>) -> Result<(), String> {
