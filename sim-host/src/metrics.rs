@@ -71,11 +71,23 @@ impl FormationMeter {
         }
     }
 
-    /// Takes one tick; `bodies[i]` is the robot of place i. O(n), and O(m^2) for m lost robots.
+    /// Takes one tick into the means; see [`FormationMeter::look`].
     ///
     /// # Panics
     /// When there are no bodies, or more of them than places.
     pub fn measure(&mut self, bodies: &[Body]) -> Keeping {
+        let now = self.look(bodies);
+        self.sum += now;
+        self.ticks += 1;
+        now
+    }
+
+    /// How the formation is kept right now; `bodies[i]` is the robot of place i. O(n), and O(m^2) for
+    /// m lost robots.
+    ///
+    /// # Panics
+    /// When there are no bodies, or more of them than places.
+    pub fn look(&mut self, bodies: &[Body]) -> Keeping {
         let top = offset(bodies[0].cell, self.places[0]);
         self.errors.clear();
         self.missing.clear();
@@ -102,14 +114,11 @@ impl FormationMeter {
                 length([f64::from(x) - mean[0], f64::from(y) - mean[1]])
             })
             .sum();
-        let now = Keeping {
+        Keeping {
             error_per_agent: self.errors.iter().sum::<f64>() / count,
             best_fit_error_per_agent: fit / count,
             graph_distance: graph + (self.missing.len() + self.taken(bodies, top)) as f64,
-        };
-        self.sum += now;
-        self.ticks += 1;
-        now
+        }
     }
 
     /// How many of the missed places have another lost robot near them.
@@ -124,7 +133,7 @@ impl FormationMeter {
             .count()
     }
 
-    /// Distance of each robot from its place in the tick measured last, cells, graph on the top leader.
+    /// Distance of each robot from its place when it was looked at last, cells, graph on the top leader.
     #[must_use]
     pub fn errors(&self) -> &[f64] {
         &self.errors
@@ -257,6 +266,7 @@ mod tests {
         );
         assert_eq!(now.graph_distance, 1.0);
         meter.measure(&bodies(&[(10, 10), (7, 10)]));
+        meter.look(&bodies(&[(10, 10), (90, 90)]));
         let mean = meter.mean().expect("two ticks");
         assert_eq!((mean.error_per_agent, mean.graph_distance), (1.25, 0.5));
     }

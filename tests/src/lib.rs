@@ -1,1 +1,71 @@
 //! Helpers shared by the cross-crate tests.
+
+use staya_sim::engine::{Outcome, simulate};
+use staya_sim::record::{RobotRow, TickRow};
+use staya_sim::scenario::{Overrides, Scenario};
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+/// The variable that makes golden tests write instead of compare.
+const BLESS: &str = "STAYA_BLESS";
+
+/// The repository's root.
+#[must_use]
+pub fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// A scenario of `scenarios/` by its name, with at most `ticks` ticks.
+///
+/// # Panics
+/// When it cannot be read.
+#[must_use]
+pub fn scenario(name: &str, ticks: Option<u32>) -> Scenario {
+    let path = root().join("scenarios").join(format!("{name}.toml"));
+    let overrides = Overrides { seed: None, ticks };
+    Scenario::load(&path, &overrides).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A run from start to end: after each tick (and before the first) the swarm and its robots.
+///
+/// # Panics
+/// When the scenario's robots cannot be placed.
+#[must_use]
+pub fn run(scenario: &Scenario) -> (Outcome, Vec<(TickRow, Vec<RobotRow>)>) {
+    let mut rows = Vec::new();
+    let outcome = simulate(scenario, |moment, robots| {
+        rows.push((*moment.row, robots.collect()));
+        ControlFlow::Continue(())
+    });
+    let outcome = outcome.unwrap_or_else(|error| panic!("{}: {error}", scenario.name));
+    (outcome, rows)
+}
+
+/// Compares `actual` with the file `tests/golden/<name>.txt`, or writes it for `cargo xtask bless`.
+///
+/// # Panics
+/// When they differ, or the file cannot be read or written.
+pub fn golden(name: &str, actual: &str) {
+    let path = root().join("tests/golden").join(format!("{name}.txt"));
+    if std::env::var_os(BLESS).is_some() {
+        fs::write(&path, actual).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        return;
+    }
+    let wanted = fs::read_to_string(&path).unwrap_or_else(|error| {
+        panic!("{}: {error}; `cargo xtask bless` writes it", path.display())
+    });
+    let first = wanted
+        .lines()
+        .zip(actual.lines())
+        .position(|(wanted, actual)| wanted != actual);
+    let at = first.unwrap_or(wanted.lines().count().min(actual.lines().count()));
+    assert!(
+        wanted == actual,
+        "{name} differs from {} in line {}\nwanted: {}\n   got: {}\nif the change is meant: cargo xtask bless golden",
+        path.display(),
+        at + 1,
+        wanted.lines().nth(at).unwrap_or("(end)"),
+        actual.lines().nth(at).unwrap_or("(end)"),
+    );
+}

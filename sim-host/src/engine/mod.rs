@@ -177,10 +177,8 @@ where
         self.world.advance(self.tick, &self.commands);
         self.collisions += self.world.count_collisions(self.tick);
         self.observe();
-        let keeping = self
-            .meter
-            .as_mut()
-            .map(|meter| meter.measure(self.world.bodies()));
+        let meter = self.meter.as_mut();
+        let keeping = meter.map(|meter| meter.measure(self.world.bodies()));
         self.tick += 1;
         self.row(keeping, packets)
     }
@@ -272,6 +270,13 @@ where
             let is_there = status.mode == Mode::Arrived && body.cell == status.target;
             self.arrivals.note(index, is_there, body.free_at);
         }
+    }
+
+    /// The swarm's line of the record before the first tick.
+    fn first_row(&mut self) -> TickRow {
+        let meter = self.meter.as_mut();
+        let keeping = meter.map(|meter| meter.look(self.world.bodies()));
+        self.row(keeping, PacketCounts::default())
     }
 
     /// The swarm's line of the record, with `packets` of the tick that is over.

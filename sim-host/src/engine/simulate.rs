@@ -97,7 +97,7 @@ fn drive<G: Guidance<f32, Workspace: Default> + Send>(
     mut watch: impl FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>) -> ControlFlow<()>,
 ) -> Result<Outcome, Misplaced> {
     let mut engine = Engine::new(scenario, guidance)?;
-    let mut row = engine.row(None, PacketCounts::default());
+    let mut row = engine.first_row();
     loop {
         let moment = Moment {
             row: &row,

@@ -1,5 +1,5 @@
 //! `[route]` and `[formation]`: how the robots choose their ways. All fields are optional; their
-//! defaults are the controller's.
+//! defaults are the controller's, as listed in scenarios/README.md (which a test compares).
 
 use super::ScenarioError;
 use super::check::within;
@@ -19,23 +19,23 @@ const MAX_RADIUS: u8 = 16;
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RouteTable {
-    /// How far a robot sees, cells in each direction, 1 to 16. Default: 5.
+    /// How far a robot sees, cells in each direction, 1 to 16.
     pub radius: Option<u8>,
-    /// Which border cells of the window end a route: `"best"` (eq. 10; the default) or `"ray"` (alg. 3).
+    /// Which border cells of the window end a route: `"best"` (eq. 10) or `"ray"` (alg. 3).
     pub exit: Option<ExitName>,
-    /// When to search: `"each_cell"` (the default) or `"until_changed"` (follow the chain; robots without
+    /// When to search: `"each_cell"` or `"until_changed"` (follow the chain; robots without
     /// formation only).
     pub replan: Option<ReplanName>,
-    /// Weight of travel time, 0 to 4095. Default: 1.
+    /// Weight of travel time, 0 to 4095.
     pub a0: Option<f64>,
-    /// Ticks that a cell with another robot costs extra, 0 to 4095. Default: 2.
+    /// Ticks that a cell with another robot costs extra, 0 to 4095.
     pub a1: Option<f64>,
-    /// Ticks per earlier visit of a cell, 0 to 4095. Default: 3.
+    /// Ticks per earlier visit of a cell, 0 to 4095.
     pub a2: Option<f64>,
-    /// Ticks per cell of distance from the exit to the target, 0 to 4095. Default: 3.
+    /// Ticks per cell of distance from the exit to the target, 0 to 4095.
     pub a3: Option<f64>,
     /// Weighted shuffle: a move that costs so many ticks more than another is half as likely to be
-    /// tried first, 0 to 4095. Default: 0, cheapest first without chance.
+    /// tried first, 0 to 4095; 0: cheapest first, without chance.
     pub halved_per_ticks: Option<f64>,
 }
 
@@ -46,24 +46,23 @@ pub struct FormationTable {
     /// Steps along edges of the formation's graph within which robots are each other's neighbours, 1 or
     /// more; nobody may have more than 8. Default: the largest of 3, 2, 1 that fits.
     pub rho: Option<u8>,
-    /// How far from its place a neighbour may be and still counts as found, cells. Default: 10.
+    /// How far from its place a neighbour may be and still counts as found, cells.
     pub eps: Option<u8>,
-    /// Price of being off one's place, ticks per cell, 0 to 4095; rounded to sixteenths. Default: 1.
+    /// Price of being off one's place, ticks per cell, 0 to 4095; rounded to sixteenths.
     pub gain: Option<f64>,
-    /// How far somebody may fall behind before the top leader waits (r0), 0 to 900 cells. Default: 4.29.
+    /// How far somebody may fall behind before the top leader waits (r0), 0 to 900 cells.
     pub halt_cells: Option<f64>,
-    /// How near he must have come again before it goes on, cells; at most `halt_cells`. Default: the
-    /// smaller of 4.29 and `halt_cells`.
+    /// How near he must have come again before it goes on, cells; at most `halt_cells`.
     pub resume_cells: Option<f64>,
-    /// How far ahead of the top leader's cell the others aim, cells. Default: 1.
+    /// How far ahead of the top leader's cell the others aim, cells.
     pub lead: Option<u8>,
     /// Share of the land under the others' places in what a cell costs the top leader, 0 to 1; rounded
-    /// to sixteenths. Default: 0.75.
+    /// to sixteenths.
     pub footprint: Option<f64>,
-    /// How others are foreseen: `"constant"` (they go on as announced; the default) or `"reflexive"`
+    /// How others are foreseen: `"constant"` (they go on as announced) or `"reflexive"`
     /// ("what would I do in its place").
     pub prediction: Option<PredictionName>,
-    /// What the top leader does meanwhile: `"wait"` (the default) or `"def"` (heads for where the others
+    /// What the top leader does meanwhile: `"wait"` or `"def"` (heads for where the others
     /// are off to).
     pub recovery: Option<RecoveryName>,
 }

@@ -1,9 +1,9 @@
 use super::*;
 use proptest::prelude::*;
 use staya_controller::cost::Gain;
-use staya_controller::formation::FormationParams;
-use staya_controller::grid::Cell;
-use staya_controller::route::ExitRule;
+use staya_controller::formation::{FormationParams, Prediction, Recovery};
+use staya_controller::grid::{Cell, UNIT};
+use staya_controller::route::{ExitRule, Replan};
 use staya_controller::shuffle::Sharpness;
 use std::fs;
 
@@ -455,6 +455,63 @@ fn every_field_is_in_the_table_of_the_readme() {
         }
     }
     assert!(fields > 60, "only {fields} were found");
+}
+
+#[test]
+fn the_defaults_in_the_readme_are_the_controllers() {
+    let readme = include_str!("../../../scenarios/README.md");
+    let last_column = |field: &str| {
+        let row = readme
+            .lines()
+            .find(|line| line.starts_with(&format!("| `{field}`")));
+        let row = row.unwrap_or_else(|| panic!("no row of {field}"));
+        let column = row.trim_end_matches(" |").rsplit(" | ").next();
+        column.expect("a column").replace('`', "")
+    };
+    let number = |gain: Gain| f64::from(gain.sixteenths()) / 16.0;
+    let cells = |units: u16| format!("{:.2}", f64::from(units) / f64::from(UNIT));
+    let (route, formation) = (Routing::default(), FormationParams::default());
+    let gains = [
+        route.params.a0,
+        route.params.a1,
+        route.params.a2,
+        route.params.a3,
+    ];
+    assert_eq!(
+        last_column("a0"),
+        gains.map(|gain| number(gain).to_string()).join(", ")
+    );
+    assert_eq!(last_column("radius"), route.params.radius.to_string());
+    assert_eq!(
+        (route.params.exit, route.replan),
+        (ExitRule::Best, Replan::EachCell)
+    );
+    assert_eq!(
+        (last_column("exit"), last_column("replan")),
+        ("\"best\"".into(), "\"each_cell\"".into())
+    );
+    assert_eq!(
+        (last_column("halved_per_ticks"), route.sharpness),
+        ("0".into(), Sharpness::Greedy)
+    );
+    assert_eq!(last_column("eps"), formation.eps.to_string());
+    assert_eq!(last_column("gain"), number(formation.gain).to_string());
+    assert_eq!(
+        last_column("halt_cells"),
+        format!("{}, halt_cells", cells(formation.halt_lag))
+    );
+    assert_eq!(formation.resume_lag, formation.halt_lag);
+    assert_eq!(last_column("lead"), formation.lead.to_string());
+    let footprint = f64::from(formation.footprint) / 16.0;
+    assert_eq!(last_column("footprint"), footprint.to_string());
+    assert_eq!(
+        (formation.prediction, formation.recovery),
+        (Prediction::Constant, Recovery::Wait)
+    );
+    assert_eq!(
+        (last_column("prediction"), last_column("recovery")),
+        ("\"constant\"".into(), "\"wait\"".into())
+    );
 }
 
 proptest! {

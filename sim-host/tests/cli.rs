@@ -1,0 +1,296 @@
+//! The command `staya` as a user or a script meets it: exit codes, standard output, files, errors.
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+use std::{fs, thread};
+
+fn staya(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_staya"));
+    command.args(arguments).stdin(Stdio::null());
+    command
+}
+
+fn scenario(name: &str) -> String {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
+    folder
+        .join(name)
+        .to_str()
+        .expect("a path in UTF-8")
+        .to_owned()
+}
+
+fn folder() -> (tempfile::TempDir, String) {
+    let dir = tempfile::tempdir().expect("temporary folder");
+    let path = dir.path().join("out").to_str().expect("UTF-8").to_owned();
+    (dir, path)
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// Standard error of a run that must fail with one line.
+fn refusal(arguments: &[&str]) -> String {
+    let Output {
+        status,
+        stdout,
+        stderr,
+    } = staya(arguments).output().expect("staya starts");
+    let stderr = text(&stderr);
+    assert_eq!(status.code(), Some(1), "{stderr}");
+    assert!(stdout.is_empty(), "{}", text(&stdout));
+    assert_eq!(stderr.lines().count(), 1, "{stderr}");
+    stderr
+}
+
+#[test]
+fn json_is_one_object_with_every_promised_key() {
+    let (_dir, out) = folder();
+    let arguments = [
+        "run",
+        &scenario("figure-5.toml"),
+        "--json",
+        "--quiet",
+        "--out",
+        &out,
+    ];
+    let Output {
+        status,
+        stdout,
+        stderr,
+    } = staya(&arguments).output().expect("staya starts");
+    assert!(status.success(), "{}", text(&stderr));
+    assert!(stderr.is_empty(), "{}", text(&stderr));
+    let json: Value = serde_json::from_slice(&stdout).expect("one JSON object");
+    assert_eq!(json["scenario"], "figure-5");
+    assert_eq!((&json["seed"], &json["robots"]), (&1.into(), &6.into()));
+    assert_eq!(
+        (&json["arrived"], &json["collisions"]),
+        (&6.into(), &0.into())
+    );
+    for key in [
+        "ticks",
+        "sim_seconds",
+        "wall_seconds",
+        "formation_error_per_agent",
+        "graph_distance_mean",
+    ] {
+        assert!(
+            json[key].as_f64().is_some_and(|value| value > 0.0),
+            "{key}: {}",
+            json[key]
+        );
+    }
+    for key in ["sent", "delivered", "lost", "corrupted", "rejected"] {
+        assert!(json["packets"][key].is_u64(), "packets.{key}");
+    }
+    let hash = json["trace_hash"].as_str().expect("a string");
+    assert!(
+        hash.len() == 16 && hash.chars().all(|c| c.is_ascii_hexdigit()),
+        "{hash}"
+    );
+
+    let written: Value = serde_json::from_str(
+        &fs::read_to_string(Path::new(&out).join("summary.json")).expect("summary.json"),
+    )
+    .expect("JSON");
+    assert_eq!(written, json);
+    let files = json["files"].as_array().expect("a list");
+    for file in files {
+        let path = PathBuf::from(file.as_str().expect("a name"));
+        assert!(
+            fs::metadata(&path).is_ok_and(|m| m.len() > 0),
+            "{}",
+            path.display()
+        );
+    }
+    for name in [
+        "summary.json",
+        "trace.csv",
+        "series.csv",
+        "trace.schema.json",
+    ] {
+        assert!(
+            files
+                .iter()
+                .any(|f| f.as_str().is_some_and(|f| f.ends_with(name))),
+            "{name}"
+        );
+    }
+    assert!(
+        files
+            .iter()
+            .any(|f| f.as_str().is_some_and(|f| f.ends_with(".png")))
+    );
+}
+
+#[test]
+fn a_formationless_run_says_null_and_the_command_line_overrides_the_file() {
+    let (_dir, out) = folder();
+    let path = scenario("moving-ai-20.toml");
+    let base = [
+        "run", &path, "--json", "--quiet", "--out", &out, "--ticks", "7",
+    ];
+    let run = |more: &[&str]| -> Value {
+        let Output { stdout, .. } = staya(&[&base, more].concat())
+            .output()
+            .expect("staya starts");
+        serde_json::from_slice(&stdout).expect("one JSON object")
+    };
+    let first = run(&["--seed", "5"]);
+    assert_eq!((&first["ticks"], &first["seed"]), (&7.into(), &5.into()));
+    assert!(first["formation_error_per_agent"].is_null());
+    assert!(first["graph_distance_mean"].is_null());
+    let again = run(&["--seed", "5", "--threads", "3"]);
+    assert_eq!(again["trace_hash"], first["trace_hash"]);
+    assert_ne!(run(&["--seed", "6"])["packets"], first["packets"]);
+}
+
+#[test]
+fn the_table_names_what_was_written() {
+    let (_dir, out) = folder();
+    let arguments = ["run", &scenario("figure-5.toml"), "--quiet", "--out", &out];
+    let Output { status, stdout, .. } = staya(&arguments).output().expect("staya starts");
+    assert!(status.success());
+    let table = text(&stdout);
+    for part in [
+        "6 of 6 robots",
+        "collisions",
+        "trace hash",
+        "written to",
+        "trace.csv",
+        ".svg",
+    ] {
+        assert!(table.contains(part), "{part} is missing in\n{table}");
+    }
+}
+
+#[test]
+fn results_go_to_a_folder_of_the_scenarios_name() {
+    let (dir, _) = folder();
+    let arguments = ["run", &scenario("figure-5.toml"), "--quiet", "--ticks", "2"];
+    let ended = staya(&arguments)
+        .current_dir(dir.path())
+        .output()
+        .expect("staya starts");
+    assert!(ended.status.success());
+    assert!(dir.path().join("out/figure-5/summary.json").is_file());
+}
+
+#[test]
+fn errors_are_one_line_with_the_place_and_the_remedy() {
+    let (dir, out) = folder();
+    let missing = refusal(&["run", "no/such.toml", "--out", &out]);
+    assert!(missing.starts_with("staya: no/such.toml: "), "{missing}");
+
+    let wrong = dir.path().join("wrong.toml");
+    let good = fs::read_to_string(scenario("figure-6.toml")).expect("readable");
+    fs::write(
+        &wrong,
+        good.replace("range_m = 150", "range_m = 150\nloss = 60"),
+    )
+    .expect("write");
+    let wrong = refusal(&["run", wrong.to_str().expect("UTF-8"), "--out", &out]);
+    let line = good
+        .lines()
+        .position(|l| l == "range_m = 150")
+        .expect("the line")
+        + 2;
+    let place =
+        format!("wrong.toml:{line}: radio.loss: 60 is no probability; give a number from 0 to 1");
+    assert!(wrong.contains(&place), "{wrong}");
+    assert!(!Path::new(&out).exists(), "nothing was begun");
+
+    let in_the_way = dir.path().join("file");
+    fs::write(&in_the_way, "mine").expect("write");
+    let way = in_the_way.to_str().expect("UTF-8");
+    let unwritable = refusal(&["run", &scenario("figure-5.toml"), "--quiet", "--out", way]);
+    assert!(
+        unwritable.contains(way) && unwritable.contains("choose another output directory"),
+        "{unwritable}"
+    );
+    assert_eq!(
+        fs::read_to_string(&in_the_way).expect("still there"),
+        "mine"
+    );
+}
+
+#[test]
+fn wrong_usage_is_told_from_failure() {
+    for arguments in [&["run"][..], &["run", "a.toml", "--ticks", "0"], &["walk"]] {
+        let ended = staya(arguments).output().expect("staya starts");
+        assert_eq!(ended.status.code(), Some(2), "{arguments:?}");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_ends_the_run_with_the_files_name() {
+    let (_dir, out) = folder();
+    fs::create_dir(&out).expect("folder");
+    std::os::unix::fs::symlink("/dev/full", Path::new(&out).join("trace.csv")).expect("link");
+    let full = refusal(&[
+        "run",
+        &scenario("scale-small.toml"),
+        "--quiet",
+        "--out",
+        &out,
+    ]);
+    assert!(
+        full.contains("trace.csv") && full.contains("free some space"),
+        "{full}"
+    );
+}
+
+/// One robot that never gets out of its room, for as long as it takes.
+const PRISON: &str = "name = \"prison\"\nticks = 4000000000\n[terrain]\nfile = \"prison.map\"\n\
+                      [robots]\nlist = [{ start = [0, 0], goal = [4, 0] }]\n";
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_ends_a_run_cleanly_and_keeps_what_it_has() {
+    let (dir, out) = folder();
+    let path = dir.path().join("prison.toml");
+    fs::write(&path, PRISON).expect("write");
+    let map = "type octile\nheight 1\nwidth 5\nmap\n..@..\n";
+    fs::write(dir.path().join("prison.map"), map).expect("write");
+    let mut child = staya(&[
+        "run",
+        path.to_str().expect("UTF-8"),
+        "--json",
+        "--out",
+        &out,
+    ])
+    .stdout(Stdio::piped())
+    .stderr(Stdio::null())
+    .spawn()
+    .expect("staya starts");
+    let series = Path::new(&out).join("series.csv");
+    let patience = Instant::now() + Duration::from_secs(120);
+    while fs::metadata(&series).map_or(0, |m| m.len()) < 10_000 {
+        assert!(Instant::now() < patience, "nothing is written");
+        assert!(
+            child.try_wait().expect("a child").is_none(),
+            "it ended by itself"
+        );
+        thread::sleep(Duration::from_millis(10));
+    }
+    let sent = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(sent.expect("kill starts").success());
+    let Output { status, stdout, .. } = child.wait_with_output().expect("it ends");
+    assert_eq!(status.code(), Some(130));
+    let json: Value = serde_json::from_slice(&stdout).expect("one JSON object");
+    assert_eq!(
+        (&json["interrupted"], &json["arrived"]),
+        (&true.into(), &0.into())
+    );
+    let ticks = json["ticks"].as_u64().expect("a number");
+    let series = fs::read_to_string(series).expect("readable");
+    let last = series.lines().last().expect("a line");
+    assert!(last.starts_with(&format!("{ticks},")), "{last}");
+    assert!(Path::new(&out).join("summary.json").is_file());
+}

@@ -1,0 +1,105 @@
+//! What happens in each scenario, as a table that a person can read and any change of behaviour
+//! breaks. `cargo xtask bless golden` rewrites them.
+
+use staya_sim::engine::Outcome;
+use staya_sim::record::{RobotRow, TickRow};
+use staya_sim::scenario::Scenario;
+use staya_tests::{golden, run, scenario};
+use std::fmt::Write as _;
+
+/// Robots whose cells fit into a line.
+const SHOWN: usize = 6;
+
+fn table(
+    scenario: &Scenario,
+    outcome: &Outcome,
+    rows: &[(TickRow, Vec<RobotRow>)],
+) -> Result<String, std::fmt::Error> {
+    let mut text = String::new();
+    let packets = outcome.packets;
+    writeln!(text, "scenario   {}, seed {}", scenario.name, scenario.seed)?;
+    writeln!(text, "ticks      {} of {}", outcome.ticks, scenario.ticks)?;
+    let robots = scenario.robots.len();
+    writeln!(text, "arrived    {} of {robots}", outcome.arrived)?;
+    writeln!(text, "collisions {}", outcome.collisions)?;
+    writeln!(
+        text,
+        "packets    sent {}, delivered {}, lost {}, corrupted {}, rejected {}",
+        packets.sent, packets.delivered, packets.lost, packets.corrupted, packets.rejected
+    )?;
+    if let Some(keeping) = outcome.formation {
+        writeln!(
+            text,
+            "formation  error {:.4} cells per robot, {:.4} by best fit, graph distance {:.4}",
+            keeping.error_per_agent, keeping.best_fit_error_per_agent, keeping.graph_distance
+        )?;
+    }
+    writeln!(text, "hash       {:016x}\n", outcome.trace_hash)?;
+
+    writeln!(
+        text,
+        " tick arrived  delivered  error  graph  first robots: cell, mode"
+    )?;
+    let every = (outcome.ticks / 24).max(1);
+    let last = rows.len() - 1;
+    for (index, (row, robots)) in rows.iter().enumerate() {
+        if !row.tick.is_multiple_of(every) && index != last {
+            continue;
+        }
+        let there = robots.iter().filter(|r| r.cell == r.target).count();
+        write!(
+            text,
+            "{:5} {there:7} {:10} {:6.2} {:6.2} ",
+            row.tick, row.packets.delivered, row.formation_error_per_agent, row.graph_distance
+        )?;
+        for robot in &robots[..robots.len().min(SHOWN)] {
+            let mode = format!("{:?}", robot.mode).to_lowercase();
+            write!(text, " {:3},{:<3} {mode:<7}", robot.cell.x, robot.cell.y)?;
+        }
+        text.truncate(text.trim_end().len());
+        text.push('\n');
+    }
+    Ok(text)
+}
+
+fn check(name: &str, ticks: Option<u32>) {
+    let scenario = scenario(name, ticks);
+    let (outcome, rows) = run(&scenario);
+    let table = table(&scenario, &outcome, &rows).expect("memory takes every line");
+    golden(name, &table);
+}
+
+#[test]
+fn golden_six_robots() {
+    check("six-robots", None);
+}
+
+#[test]
+fn golden_figure_5() {
+    check("figure-5", None);
+}
+
+#[test]
+fn golden_figure_6() {
+    check("figure-6", None);
+}
+
+#[test]
+fn golden_moving_ai_20() {
+    check("moving-ai-20", None);
+}
+
+#[test]
+fn golden_blackout() {
+    check("blackout", None);
+}
+
+#[test]
+fn golden_scale_small() {
+    check("scale-small", None);
+}
+
+#[test]
+fn golden_scale_in_its_first_ticks() {
+    check("scale", Some(3));
+}

@@ -1,0 +1,45 @@
+//! No result depends on the number of threads (for the engine alone, see its own tests).
+
+use staya_sim::engine::Outcome;
+use staya_tests::{run, scenario};
+
+fn on_threads(name: &str, ticks: Option<u32>, threads: usize) -> (Outcome, String) {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.expect("threads").install(|| {
+        let (outcome, rows) = run(&scenario(name, ticks));
+        // As text, in which NaN equals NaN.
+        (outcome, format!("{rows:?}"))
+    })
+}
+
+fn same_on_any_number(name: &str, ticks: Option<u32>) {
+    let one = on_threads(name, ticks, 1);
+    for threads in [2, 8] {
+        let other = on_threads(name, ticks, threads);
+        assert_eq!(other.0, one.0, "{name} on {threads} threads");
+        assert!(
+            other.1 == one.1,
+            "{name} on {threads} threads: traces differ"
+        );
+    }
+}
+
+#[test]
+fn six_robots_over_a_bad_radio_are_the_same_on_any_number_of_threads() {
+    same_on_any_number("six-robots", None);
+}
+
+#[test]
+fn faults_are_the_same_on_any_number_of_threads() {
+    same_on_any_number("blackout", None);
+}
+
+#[test]
+fn robots_among_walls_are_the_same_on_any_number_of_threads() {
+    same_on_any_number("moving-ai-20", None);
+}
+
+#[test]
+fn a_thousand_robots_are_the_same_on_any_number_of_threads() {
+    same_on_any_number("scale-small", Some(30));
+}
