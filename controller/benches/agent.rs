@@ -1,0 +1,122 @@
+//! One whole step of a robot of figure 5's formation: it hears five beacons, searches its window of
+//! radius 5 and says its own beacon. It is free to move in every step, so that every step decides.
+#![allow(clippy::unwrap_used)]
+
+use core::hint::black_box;
+use criterion::{Criterion, criterion_group, criterion_main};
+use staya_controller::agent::{
+    AgentConfig, CELLS, CellState, FormationAgent, FormationGuidance, GridWorkspace, Inputs, Pose,
+    RouteAgent, RouteGuidance,
+};
+use staya_controller::formation::{FormationParams, Prediction, Template};
+use staya_controller::grid::{Cell, Dir, Window};
+use staya_controller::rand::Rng;
+use staya_controller::route::RouteParams;
+use staya_controller::time::{Duration, Instant};
+use staya_controller::wire::{Beacon, Header, Message, Mode, RobotId, encode};
+
+const PLACES: [Cell; 6] = [
+    Cell::new(0, 0),
+    Cell::new(-3, 0),
+    Cell::new(-6, 0),
+    Cell::new(0, -3),
+    Cell::new(-3, -3),
+    Cell::new(-6, -3),
+];
+const EDGES: [(u16, u16); 7] = [(0, 1), (1, 2), (3, 4), (4, 5), (0, 3), (1, 4), (2, 5)];
+/// Robot 5: neighbours on three sides, and a leader that has one.
+const OWN: usize = 4;
+const TICK: Duration = Duration::from_millis(100);
+/// Different windows in turn, so that no branch predictor learns one by heart.
+const LANDSCAPES: usize = 32;
+const TOP: Cell = Cell::new(50, 50);
+
+/// What the robot hears in each of as many steps as sequence numbers exist: they may go round.
+fn inboxes() -> Vec<Vec<u8>> {
+    let beacon = |robot: usize| Beacon {
+        // Everybody is in place but robot 2, which strays.
+        cell: TOP + PLACES[robot] + Cell::new(i16::from(robot == 1), 0),
+        heading: Dir::NorthEast,
+        leader: RobotId([0, 1, 2, 1, 2, 3][robot]),
+        slot: robot as u8,
+        mode: Mode::Cruise,
+        target: Cell::new(98, 98) + PLACES[robot],
+        ..Beacon::default()
+    };
+    (0..=u16::MAX)
+        .map(|sequence| {
+            let mut bytes = heapless::Vec::<u8, 512>::new();
+            for robot in (0..6).filter(|&robot| robot != OWN) {
+                let header = Header {
+                    boot: 0,
+                    sender: RobotId(robot as u32 + 1),
+                    sequence,
+                };
+                encode(header, &Message::Beacon(beacon(robot)), &mut bytes).unwrap();
+            }
+            bytes.to_vec()
+        })
+        .collect()
+}
+
+fn agent_step(c: &mut Criterion) {
+    let mut rng = Rng::new(1);
+    let landscapes: Vec<Vec<u8>> = (0..LANDSCAPES)
+        .map(|_| (0..121).map(|_| 1 + rng.below(9) as u8).collect())
+        .collect();
+    let inboxes = inboxes();
+    let config = AgentConfig::new(RobotId(OWN as u32 + 1), 1, TICK);
+    let goal = Cell::new(98, 98) + PLACES[OWN];
+    let cell = TOP + PLACES[OWN];
+    let inputs = |step: usize| Inputs {
+        pose: Pose::default(),
+        cell: Some(CellState {
+            cell,
+            busy: Duration::ZERO,
+        }),
+        window: Window::new(
+            &landscapes[step % LANDSCAPES],
+            cell - Cell::new(5, 5),
+            11,
+            11,
+        ),
+        inbox: &inboxes[step % inboxes.len()],
+    };
+    let now = |step: usize| Instant::from_micros(step as u32 * TICK.as_micros().cast_unsigned());
+    let mut workspace = GridWorkspace::<CELLS>::new();
+    let mut group = c.benchmark_group("agent_step");
+    for (name, prediction) in [
+        ("constant_velocity", Prediction::Constant),
+        ("reflexive", Prediction::Reflexive),
+    ] {
+        let formation = FormationParams {
+            prediction,
+            ..FormationParams::default()
+        };
+        let template = Template::from_graph(&PLACES, &EDGES, OWN, 3).unwrap();
+        let guidance = FormationGuidance::new(RouteParams::default(), formation, template);
+        let mut agent = FormationAgent::new(&config, guidance);
+        agent.assign_goal(goal);
+        let mut step = 0;
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| {
+                step += 1;
+                black_box(agent.step(black_box(&inputs(step)), now(step), &mut workspace))
+            });
+        });
+        assert_eq!(agent.neighbors().len(), 5);
+    }
+    let mut alone = RouteAgent::new(&config, RouteGuidance::new(RouteParams::default()));
+    alone.assign_goal(goal);
+    let mut step = 0;
+    group.bench_function("route_only", |bencher| {
+        bencher.iter(|| {
+            step += 1;
+            black_box(alone.step(black_box(&inputs(step)), now(step), &mut workspace))
+        });
+    });
+    group.finish();
+}
+
+criterion_group!(benches, agent_step);
+criterion_main!(benches);
