@@ -1,6 +1,8 @@
-//! One whole step of a robot of figure 5's formation: it hears five beacons, searches its window of
-//! radius 5 and says its own beacon. It is free to move in every step, so that every step decides.
-#![allow(clippy::unwrap_used)]
+//! One whole step of the robot in the middle of a formation of nine: it hears eight beacons, searches
+//! its window of radius 5 (once; with reflexive prediction once more per neighbour in sight) and says its
+//! own beacon. It is free to move in every step, so that every step decides.
+#![allow(clippy::unwrap_used, clippy::indexing_slicing)]
+#![allow(clippy::integer_division_remainder_used)]
 
 use core::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -15,16 +17,34 @@ use staya_controller::route::RouteParams;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{Beacon, Header, Message, Mode, RobotId, encode};
 
-const PLACES: [Cell; 6] = [
+/// Rows 1 2 3, 4 5 6, 7 8 9, robot 1 in front.
+const PLACES: [Cell; 9] = [
     Cell::new(0, 0),
     Cell::new(-3, 0),
     Cell::new(-6, 0),
     Cell::new(0, -3),
     Cell::new(-3, -3),
     Cell::new(-6, -3),
+    Cell::new(0, -6),
+    Cell::new(-3, -6),
+    Cell::new(-6, -6),
 ];
-const EDGES: [(u16, u16); 7] = [(0, 1), (1, 2), (3, 4), (4, 5), (0, 3), (1, 4), (2, 5)];
-/// Robot 5: neighbours on three sides, and a leader that has one.
+const EDGES: [(u16, u16); 12] = [
+    (0, 1),
+    (1, 2),
+    (3, 4),
+    (4, 5),
+    (6, 7),
+    (7, 8),
+    (0, 3),
+    (1, 4),
+    (2, 5),
+    (3, 6),
+    (4, 7),
+    (5, 8),
+];
+const LEADERS: [u32; 9] = [0, 1, 2, 1, 2, 3, 4, 5, 6];
+/// Robot 5, in the middle: eight neighbours within two steps of the graph.
 const OWN: usize = 4;
 const TICK: Duration = Duration::from_millis(100);
 /// Different windows in turn, so that no branch predictor learns one by heart.
@@ -34,10 +54,10 @@ const TOP: Cell = Cell::new(50, 50);
 /// What the robot hears in each of as many steps as sequence numbers exist: they may go round.
 fn inboxes() -> Vec<Vec<u8>> {
     let beacon = |robot: usize| Beacon {
-        // Everybody is in place but robot 2, which strays.
-        cell: TOP + PLACES[robot] + Cell::new(i16::from(robot == 1), 0),
+        // Nobody is quite in place: whoever foresees them has to search their ways.
+        cell: TOP + PLACES[robot] + Cell::new(i16::from(robot != 0), 0),
         heading: Dir::NorthEast,
-        leader: RobotId([0, 1, 2, 1, 2, 3][robot]),
+        leader: RobotId(LEADERS[robot]),
         slot: robot as u8,
         mode: Mode::Cruise,
         target: Cell::new(98, 98) + PLACES[robot],
@@ -46,7 +66,7 @@ fn inboxes() -> Vec<Vec<u8>> {
     (0..=u16::MAX)
         .map(|sequence| {
             let mut bytes = heapless::Vec::<u8, 512>::new();
-            for robot in (0..6).filter(|&robot| robot != OWN) {
+            for robot in (0..PLACES.len()).filter(|&robot| robot != OWN) {
                 let header = Header {
                     boot: 0,
                     sender: RobotId(robot as u32 + 1),
@@ -93,7 +113,7 @@ fn agent_step(c: &mut Criterion) {
             prediction,
             ..FormationParams::default()
         };
-        let template = Template::from_graph(&PLACES, &EDGES, OWN, 3).unwrap();
+        let template = Template::from_graph(&PLACES, &EDGES, OWN, 2).unwrap();
         let guidance = FormationGuidance::new(RouteParams::default(), formation, template);
         let mut agent = FormationAgent::new(&config, guidance);
         agent.assign_goal(goal);
@@ -104,7 +124,7 @@ fn agent_step(c: &mut Criterion) {
                 black_box(agent.step(black_box(&inputs(step)), now(step), &mut workspace))
             });
         });
-        assert_eq!(agent.neighbors().len(), 5);
+        assert_eq!(agent.neighbors().len(), 8);
     }
     let mut alone = RouteAgent::new(&config, RouteGuidance::new(RouteParams::default()));
     alone.assign_goal(goal);

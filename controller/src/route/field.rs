@@ -46,6 +46,8 @@ pub struct CostField<const CELLS: usize> {
     shift: u32,
     /// The robot's own cell, which no route may use.
     closed: usize,
+    /// The bucket to look at next, as if the ring were endless: costs below it are final.
+    at: u32,
 }
 
 impl<const CELLS: usize> Default for CostField<CELLS> {
@@ -83,6 +85,7 @@ impl<const CELLS: usize> CostField<CELLS> {
             occupied: 0,
             shift: 0,
             closed: 0,
+            at: 0,
         }
     }
 
@@ -143,15 +146,23 @@ impl<const CELLS: usize> CostField<CELLS> {
         weights.best().map(|_| weights).ok_or(Unreachable)
     }
 
-    /// Cost to the exit of the last query from `cell`; `None` if it has none. The robot's own cell
-    /// counts as blocked.
+    /// Goes on with the search of the last query, which ends when the robot's next moves have their
+    /// prices, until every cell of the window has its cost. Work: O(w h).
+    pub fn complete(&mut self, params: &RouteParams) {
+        self.advance(params, |_| false);
+    }
+
+    /// Cost to the exit of the last query from `cell`; `None` if it has none, or one so high that it
+    /// was of no use ([`CostField::complete`] finds those too). The robot's own cell counts as
+    /// blocked.
     #[must_use]
     pub fn cost(&self, cell: Cell) -> Option<Cost> {
         let cost = *self.cost.get(self.index(cell)?)?;
         let open = self
             .index(cell)
             .is_some_and(|at| self.is_passable(at) && at != self.closed);
-        (open && cost != EXCLUDED).then_some(cost)
+        let is_final = self.occupied == 0 || cost >> self.shift < self.at;
+        (open && is_final && cost != EXCLUDED).then_some(cost)
     }
 
     /// The first move of the cheapest route from `cell` under the last query; `None` at an exit
@@ -280,10 +291,16 @@ impl<const CELLS: usize> CostField<CELLS> {
         offer(self);
 
         // Costs of the exits may lie far from 0: start the ring at the least of them.
-        let mut at = self.lowest_offer();
-        while self.occupied != 0 {
-            let gap = self.occupied.rotate_right(at & (RING - 1)).trailing_zeros();
-            at = at.saturating_add(gap);
+        self.at = self.lowest_offer();
+        self.advance(query.params, |field| field.has_settled_around(query.from));
+    }
+
+    /// Empties bucket after bucket until nothing is left or `is_enough`.
+    fn advance(&mut self, params: &RouteParams, is_enough: impl Fn(&Self) -> bool) {
+        while self.occupied != 0 && !is_enough(self) {
+            let slot = self.at & (RING - 1);
+            let gap = self.occupied.rotate_right(slot).trailing_zeros();
+            let at = self.at.saturating_add(gap);
             while let Some(cell) = self.pop(at & (RING - 1)) {
                 let cost = self.cost.get(cell).copied().unwrap_or(0);
                 let due = cost >> self.shift;
@@ -291,10 +308,21 @@ impl<const CELLS: usize> CostField<CELLS> {
                     // Was farther away than the ring is long.
                     self.link(cell, due.min(at.saturating_add(RING - 1)));
                 } else {
-                    self.settle(query.params, cell, cost, at);
+                    self.settle(params, cell, cost, at);
                 }
             }
+            self.at = at.saturating_add(1);
         }
+    }
+
+    /// Whether the costs of all cells around `at` are final: they lie in buckets that are empty now.
+    fn has_settled_around(&self, at: usize) -> bool {
+        let s = self.stride;
+        let rows = [at.wrapping_sub(s + 1), at.wrapping_sub(1), at + s - 1];
+        rows.iter().all(|&start| {
+            let row = self.cost.get(start..start + 3).unwrap_or_default();
+            row.iter().all(|&cost| cost >> self.shift < self.at)
+        })
     }
 
     /// Number of the first bucket in use, as if the ring were endless.
@@ -411,6 +439,7 @@ impl<const CELLS: usize> CostField<CELLS> {
                 }
             }
         });
+        self.complete(query.params);
         let reached = self.border().filter(|&cell| self.cost(cell).is_some());
         let reached = reached.filter(|&cell| cell != query.from_cell);
         let nearest = reached.min_by_key(|&cell| (cell.distance_squared(exit), cell))?;

@@ -74,6 +74,7 @@ impl Task {
         if let Some(window) = window {
             // A robot that is walled in has a cost field too: nothing in it is reached.
             let _ = field.weights(&self.params(), &window, from, target, [], none);
+            field.complete(&self.params());
         }
     }
 
