@@ -60,7 +60,7 @@ fn ten_dead_seconds_of_radio_change_little() {
 #[test]
 fn any_robot_may_reboot_in_the_middle() {
     for robot in 1..=6 {
-        for down in [0, 10] {
+        for down in [0, 15, 40] {
             let mut scenario = scenario("figure-6", None);
             scenario.faults = vec![Fault {
                 robot: RobotId(robot),
