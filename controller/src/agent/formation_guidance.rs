@@ -395,7 +395,10 @@ impl<S, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
         self.travel.redirect();
     }
 
-    fn assign_template(&mut self, part: &TemplateAssignment) -> bool {
+    fn assign_template(&mut self, part: &TemplateAssignment, is_anew: bool) -> bool {
+        if is_anew {
+            self.assembler.forget();
+        }
         match self.assembler.put(part) {
             Ok(Some(template)) => {
                 self.template = template;

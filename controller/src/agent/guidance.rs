@@ -99,8 +99,9 @@ pub trait Guidance<S> {
     /// "Choose another direction" (KUZ section 7): excludes the last choice from the next one.
     fn redirect(&mut self) {}
 
-    /// Takes a part of a formation template in; whether the part was of use.
-    fn assign_template(&mut self, _part: &TemplateAssignment) -> bool {
+    /// Takes a part of a formation template in; whether the part was of use. `is_anew`: its sender is
+    /// another one than before, or has started anew.
+    fn assign_template(&mut self, _part: &TemplateAssignment, _is_anew: bool) -> bool {
         false
     }
 

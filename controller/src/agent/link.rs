@@ -25,8 +25,12 @@ pub(super) enum News {
     Redirect,
     /// Somebody's request to stand or go on is to be passed on up the chain.
     PassOn(Request),
-    /// A part of a template for this robot.
-    Template(TemplateAssignment),
+    /// A part of a template for this robot; `is_anew` when its sender is another one than before or
+    /// has started anew, so that versions count from anywhere.
+    Template {
+        part: TemplateAssignment,
+        is_anew: bool,
+    },
     /// A goal for the top leader of this robot's formation.
     Goal(Cell),
 }
@@ -41,6 +45,8 @@ pub(super) struct Link<S, const N: usize> {
     requests: Requests<PENDING>,
     orders: Orders<ORDERS>,
     goal: Newest,
+    /// Who gave the last goal, and who the last template, each with its boot.
+    commanders: [Option<(RobotId, u8)>; 2],
     beacon_due: Instant,
     has_sent: bool,
 }
@@ -64,6 +70,7 @@ impl<S: Scalar, const N: usize> Link<S, N> {
             requests: Requests::new(id, boot, retry),
             orders: Orders::new(ages.expire_after),
             goal: Newest::new(),
+            commanders: [None; 2],
             beacon_due: Instant::from_micros(0),
             has_sent: false,
         }
@@ -144,14 +151,22 @@ impl<S: Scalar, const N: usize> Link<S, N> {
                 // A second acknowledgement of the same request is as good as none.
                 let _ = self.requests.acknowledged(sender, ack);
             }
-            Message::Template(part) if is_mine(part.to) => act(News::Template(part.clone())),
-            Message::Goal(goal)
-                if (is_mine(goal.to) || !goal.to.is_somebody())
-                    && self.goal.admit(goal.version) =>
-            {
-                act(News::Goal(goal.target));
+            Message::Template(part) if is_mine(part.to) => {
+                let [_, commander] = &mut self.commanders;
+                let is_anew = is_another(commander, frame.header);
+                let part = part.clone();
+                act(News::Template { part, is_anew });
             }
-            // An old beacon or goal, or for somebody else.
+            Message::Goal(goal) if is_mine(goal.to) || !goal.to.is_somebody() => {
+                let [commander, _] = &mut self.commanders;
+                if is_another(commander, frame.header) {
+                    self.goal.forget();
+                }
+                if self.goal.admit(goal.version) {
+                    act(News::Goal(goal.target));
+                }
+            }
+            // An old beacon, or for somebody else.
             _ => {}
         }
         true
@@ -241,6 +256,13 @@ impl<S: Scalar, const N: usize> Link<S, N> {
             self.header.sequence = self.header.sequence.wrapping_add(1);
         }
     }
+}
+
+/// Whether a frame comes from somebody else than the last one, or from another of its lives;
+/// remembers whom it comes from.
+fn is_another(last: &mut Option<(RobotId, u8)>, header: Header) -> bool {
+    let now = Some((header.sender, header.boot));
+    core::mem::replace(last, now) != now
 }
 
 /// Adds an event if there is room.

