@@ -11,9 +11,14 @@ const NEEDS_SHARED: &str = "needs_shared::";
 pub fn run(repo: &Repo, report: &mut Report) {
     let mut tests = repo.cargo(&["test", "--locked", "--workspace", "--no-fail-fast"]);
     let mut why_skipped = String::new();
-    if !repo.root.join("../shared").is_dir() {
+    let shared = std::env::var_os("STAYA_SHARED")
+        .map_or_else(|| repo.root.join("../shared"), std::path::PathBuf::from);
+    if !shared.is_dir() {
         tests.args(["--", "--skip", NEEDS_SHARED]);
-        why_skipped = format!("skipped: {NEEDS_SHARED}* need ../shared, which is not there");
+        why_skipped = format!(
+            "skipped: {NEEDS_SHARED}* need {}, which is not there",
+            shared.display()
+        );
         println!("{why_skipped}");
     }
     report.part("tests on the host", || counted(&mut tests, &why_skipped));

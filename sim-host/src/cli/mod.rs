@@ -5,6 +5,7 @@
 //! error. Exit codes: 0 done, 1 failed, 2 wrong usage, 130 stopped by Ctrl-C (what was done until
 //! then is kept).
 
+mod experiment;
 mod progress;
 mod run;
 mod terrain;
@@ -47,6 +48,8 @@ enum Command {
     Run(run::RunArgs),
     /// Make, measure and draw terrain.
     Terrain(terrain::TerrainArgs),
+    /// Run the experiments of papers and benchmarks again.
+    Experiment(experiment::ExperimentArgs),
 }
 
 /// How a command that did not fail came to its end.
@@ -97,6 +100,7 @@ fn run(cli: &Cli) -> Result<Ended> {
     match &cli.command {
         Command::Run(args) => args.run(&cli.global),
         Command::Terrain(args) => args.run(&cli.global),
+        Command::Experiment(args) => args.run(&cli.global),
     }
 }
 

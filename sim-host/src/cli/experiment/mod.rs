@@ -1,0 +1,40 @@
+//! `staya experiment route | movingai`: papers and benchmarks, run again.
+//!
+//! A further experiment is a module with a `clap::Args` struct and `run(&self, &Global) -> Result<Ended>`, and one
+//! line each in [`Experiment`] and [`ExperimentArgs::run`].
+
+mod movingai;
+mod params;
+mod route;
+
+use super::{Ended, Global};
+use anyhow::Result;
+use clap::{Args, Subcommand};
+
+/// Run the experiments of papers and benchmarks again.
+#[derive(Args, Clone, Debug)]
+pub struct ExperimentArgs {
+    #[command(subcommand)]
+    experiment: Experiment,
+}
+
+#[derive(Clone, Debug, Subcommand)]
+enum Experiment {
+    /// Windowed routing against the global optimum on random land (KUZ section 5, figures 2 to 4).
+    Route(Box<route::RouteArgs>),
+    /// The queries of a Moving AI benchmark: how many robots arrive, and at what loss.
+    Movingai(movingai::MovingAiArgs),
+}
+
+impl ExperimentArgs {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// A parameter out of range, a file that cannot be read or written.
+    pub fn run(&self, global: &Global) -> Result<Ended> {
+        match &self.experiment {
+            Experiment::Route(args) => args.run(global),
+            Experiment::Movingai(args) => args.run(global),
+        }
+    }
+}

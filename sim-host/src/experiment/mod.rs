@@ -1,0 +1,63 @@
+//! Experiments: papers and benchmarks, run again.
+//!
+//! [`route`]: KUZ section 5, windowed routing against the global optimum on random land. [`movingai`]: the queries
+//! of the Moving AI benchmark. An experiment is a plan with a check, a function that runs it (in parallel, with the
+//! same result on any number of threads; stopped early, it keeps whole runs) and a report that can be serialised.
+
+pub mod movingai;
+pub mod route;
+pub mod walk;
+
+use rayon::prelude::*;
+
+/// Jobs between two looks at the stop request: some tenths of a second of work.
+const BATCH: usize = 128;
+/// Jobs that at least share one scratch memory.
+const SHARE: usize = 8;
+
+/// Does the jobs `0..count` in parallel, each with a scratch memory that earlier jobs have used, and returns
+/// their results in order.
+///
+/// `progress` is told how many are done; when it answers `false`, what is done so far is returned, which
+/// is always a beginning of the whole. A job must not depend on what its scratch memory holds.
+///
+/// # Errors
+/// That of the first job that fails.
+pub(crate) fn in_parallel<S: Default + Send, T: Send, E: Send>(
+    count: usize,
+    mut progress: impl FnMut(usize) -> bool,
+    job: impl Fn(&mut S, usize) -> Result<T, E> + Sync,
+) -> Result<Vec<T>, E> {
+    let mut done = Vec::with_capacity(count);
+    while done.len() < count && progress(done.len()) {
+        let batch = done.len()..(done.len() + BATCH).min(count);
+        let results = batch
+            .into_par_iter()
+            .with_min_len(SHARE)
+            .map_init(S::default, &job);
+        done.extend(results.collect::<Result<Vec<T>, E>>()?);
+    }
+    Ok(done)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn jobs_come_back_in_order_and_stop_between_batches() {
+        let double = |(): &mut (), job| Ok::<_, ()>(2 * job);
+        let all = in_parallel(1000, |_| true, double).unwrap();
+        assert_eq!(all, (0..1000).map(|job| 2 * job).collect::<Vec<_>>());
+        let some = in_parallel(1000, |done| done < 200, double).unwrap();
+        assert_eq!(some, all[..2 * BATCH]);
+        let none = in_parallel(1000, |_| false, double).unwrap();
+        assert!(none.is_empty());
+    }
+
+    #[test]
+    fn failure_of_a_job_is_the_result() {
+        let job = |(): &mut (), job| if job == 300 { Err(job) } else { Ok(()) };
+        assert_eq!(in_parallel(1000, |_| true, job), Err(300));
+    }
+}

@@ -1,0 +1,99 @@
+//! With the whole map in its window the router must find the optimal lengths of the Moving AI benchmark; with the
+//! paper's window the numbers of robots that arrive are pinned.
+
+use staya_controller::cost::Gain;
+use staya_sim::experiment::movingai::{Answer, Benchmark, Memory, Report, Robots, Sight};
+use std::path::{Path, PathBuf};
+
+/// Largest deviation from an optimal length, percent. sqrt 2 as 99/70 is off by 0.005 %.
+const TOLERANCE_PERCENT: f64 = 0.1;
+
+fn answers(scen: &Path, robots: &Robots) -> (Report, Vec<Answer>) {
+    let benchmark = Benchmark::load(scen, None).unwrap();
+    let answers = benchmark.answer(robots, |_| true).unwrap();
+    (Report::of(&benchmark, robots, &answers), answers)
+}
+
+/// Every query is priced and walked at the optimal length.
+fn assert_optimal(scen: &Path, queries: usize) {
+    let (_, answers) = answers(scen, &Robots::new(Sight::Map));
+    assert_eq!(answers.len(), queries);
+    for (query, answer) in answers.iter().enumerate() {
+        let price = answer.price_error_percent().map(f64::abs);
+        let is_priced = price.is_some_and(|error| error <= TOLERANCE_PERCENT);
+        let is_walked = answer.arrived && answer.loss_percent().abs() <= TOLERANCE_PERCENT;
+        assert!(is_priced && is_walked, "query {}: {answer:?}", query + 1);
+    }
+}
+
+#[test]
+fn pocket_is_left_by_the_shortest_ways() {
+    // The lengths in the file were counted by hand: along walls, over swamp, around corners, out of a dead end.
+    let scen = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pocket.map.scen");
+    assert_optimal(&scen, 6);
+}
+
+#[test]
+fn pocket_is_left_by_a_robot_that_sees_two_cells() {
+    let scen = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pocket.map.scen");
+    let (report, answers) = answers(&scen, &Robots::new(Sight::Radius(2)));
+    assert_eq!(report.arrived, 6);
+    assert!(
+        answers
+            .iter()
+            .all(|answer| answer.loss_percent() > -TOLERANCE_PERCENT)
+    );
+    assert!(report.loss_percent.unwrap().max > 10.0, "{report:?}");
+}
+
+mod needs_shared {
+    use super::*;
+
+    /// The benchmark's files beside the repository, or where `STAYA_SHARED` says. Without them, says so and answers `None`.
+    fn shared(name: &str) -> Option<PathBuf> {
+        let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared");
+        let folder = std::env::var_os("STAYA_SHARED").map_or_else(beside, PathBuf::from);
+        let scen = folder.join("data/movingai").join(name);
+        if scen.is_file() {
+            return Some(scen);
+        }
+        println!(
+            "skipped: {} is not there; STAYA_SHARED names another folder",
+            scen.display()
+        );
+        None
+    }
+
+    #[test]
+    fn arena_is_crossed_at_the_optimal_lengths() {
+        if let Some(scen) = shared("arena.map.scen") {
+            assert_optimal(&scen, 160);
+        }
+    }
+
+    #[test]
+    fn den312d_is_crossed_at_the_optimal_lengths() {
+        if let Some(scen) = shared("den312d.map.scen") {
+            assert_optimal(&scen, 320);
+        }
+    }
+
+    #[test]
+    fn robots_that_see_five_cells_arrive_as_pinned() {
+        // The wings of den312d are larger than the window: out of them robots get by what they remember, at a price.
+        let (usual, more) = ((Memory::Cells64, 3), (Memory::Cells256, 30));
+        for (name, (memory, a2), arrived) in [
+            ("arena.map.scen", usual, 160),
+            ("den312d.map.scen", usual, 206),
+            ("den312d.map.scen", more, 320),
+        ] {
+            if let Some(scen) = shared(name) {
+                let mut robots = Robots::new(Sight::Radius(5));
+                robots.memory = memory;
+                robots.params.a2 = Gain::from_int(a2);
+                let (report, _) = answers(&scen, &robots);
+                assert_eq!(report.arrived, arrived, "{name}, {memory:?}");
+            }
+        }
+    }
+}
