@@ -1,9 +1,11 @@
 //! Experiments: papers and benchmarks, run again.
 //!
-//! [`route`]: KUZ section 5, windowed routing against the global optimum on random land. [`movingai`]: the queries
+//! [`route`]: KUZ section 5, windowed routing against the global optimum on random land. [`formation`]: KUZ section 8, six
+//! robots in formation. [`movingai`]: the queries
 //! of the Moving AI benchmark. An experiment is a plan with a check, a function that runs it (in parallel, with the
 //! same result on any number of threads; stopped early, it keeps whole runs) and a report that can be serialised.
 
+pub mod formation;
 pub mod movingai;
 pub mod route;
 pub mod walk;

@@ -1,8 +1,9 @@
-//! `staya experiment route | movingai`: papers and benchmarks, run again.
+//! `staya experiment route | formation | movingai`: papers and benchmarks, run again.
 //!
 //! A further experiment is a module with a `clap::Args` struct and `run(&self, &Global) -> Result<Ended>`, and one
 //! line each in [`Experiment`] and [`ExperimentArgs::run`].
 
+mod formation;
 mod movingai;
 mod params;
 mod route;
@@ -22,6 +23,8 @@ pub struct ExperimentArgs {
 enum Experiment {
     /// Windowed routing against the global optimum on random land (KUZ section 5, figures 2 to 4).
     Route(Box<route::RouteArgs>),
+    /// Six robots in formation on natural land: error, arrivals, travel time (KUZ section 8, figure 6).
+    Formation(Box<formation::FormationArgs>),
     /// The queries of a Moving AI benchmark: how many robots arrive, and at what loss.
     Movingai(movingai::MovingAiArgs),
 }
@@ -34,6 +37,7 @@ impl ExperimentArgs {
     pub fn run(&self, global: &Global) -> Result<Ended> {
         match &self.experiment {
             Experiment::Route(args) => args.run(global),
+            Experiment::Formation(args) => args.run(global),
             Experiment::Movingai(args) => args.run(global),
         }
     }

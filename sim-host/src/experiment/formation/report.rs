@@ -1,0 +1,204 @@
+//! The numbers of the formation experiment, ready to be printed or plotted.
+
+use super::{Crossing, ROBOTS, Results, Way};
+use crate::stats::{LogFit, Summary, mean};
+use serde::Serialize;
+use staya_controller::grid::UNIT;
+
+/// The six on all landscapes of a point, one way to cross them.
+#[derive(Clone, Debug, Serialize)]
+pub struct Journey {
+    /// eps, cells.
+    pub eps: u8,
+    /// Loss of packets, 0 to 1.
+    pub loss: f64,
+    /// Landscapes that all robots crossed.
+    pub arrived: usize,
+    /// dPhi per robot, cells: graph on the top leader; over all landscapes.
+    pub error_per_agent: Summary,
+    /// The 95 % interval of its mean.
+    pub error_interval95: [f64; 2],
+    /// Mean dPhi per robot with the graph placed by the best-fitting translation, cells.
+    pub best_fit_error_per_agent: f64,
+    /// Mean graph distance.
+    pub graph_distance: f64,
+    /// The largest error per robot of any tick of any landscape, cells.
+    pub worst_error: f64,
+    /// Mean time until the last robot arrived, ticks, over landscapes that all crossed in both ways.
+    pub time_ticks: Option<f64>,
+    /// That time over the same of the robots without formation.
+    pub time_ratio: Option<f64>,
+    /// Robots in walls or in each other, summed.
+    pub collisions: u64,
+}
+
+/// One point of the figure.
+#[derive(Clone, Debug, Serialize)]
+pub struct Point {
+    /// Number of obstacles N.
+    pub obstacles: u32,
+    /// Landscapes.
+    pub runs: usize,
+    /// Landscapes that all robots crossed without formation.
+    pub alone_arrived: usize,
+    /// Mean time until the last of them arrived, ticks.
+    pub alone_time_ticks: Option<f64>,
+    /// In formation as planned.
+    pub formation: Journey,
+    /// dPhi / 6 by the paper's curve.
+    pub paper_error_per_agent: f64,
+    /// Ours over the paper's; `null` where the curve is not positive (N = 0, 1).
+    pub error_over_paper: Option<f64>,
+    /// With other values of eps.
+    pub other_eps: Vec<Journey>,
+    /// With other losses.
+    pub other_losses: Vec<Journey>,
+}
+
+/// Which variants a table or a plot is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Variants {
+    /// Other values of eps.
+    Eps,
+    /// Other losses.
+    Loss,
+}
+
+impl Point {
+    /// The journeys of a kind of variants, the planned one among them, by rising value.
+    #[must_use]
+    pub fn variants(&self, kind: Variants) -> Vec<&Journey> {
+        let others = match kind {
+            Variants::Eps => &self.other_eps,
+            Variants::Loss => &self.other_losses,
+        };
+        let key = |journey: &Journey| match kind {
+            Variants::Eps => f64::from(journey.eps),
+            Variants::Loss => journey.loss,
+        };
+        let mut all: Vec<&Journey> = others.iter().chain([&self.formation]).collect();
+        all.sort_by(|a, b| key(a).total_cmp(&key(b)));
+        all.dedup_by(|a, b| key(a) == key(b));
+        all
+    }
+}
+
+/// Everything.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Seed of everything.
+    pub seed: u64,
+    /// Landscapes per point that were wanted.
+    pub runs: u32,
+    /// Cells along each side.
+    pub size: u16,
+    /// Classes of impassability.
+    pub classes: u8,
+    /// Cells from one robot to the next.
+    pub spacing: u8,
+    /// Geodesic radius of the templates.
+    pub rho: u8,
+    /// Radius of the window.
+    pub radius: u8,
+    /// Lag at which the top leader waits, cells.
+    pub halt_cells: f64,
+    /// dPhi / 6 = a ln(N + 1) + b over the points, least squares.
+    pub fit: Option<LogFit>,
+    /// The paper's.
+    pub paper: LogFit,
+    /// The points by rising number of obstacles.
+    pub points: Vec<Point>,
+}
+
+impl Results {
+    /// The numbers. Points without a landscape are left out.
+    #[must_use]
+    pub fn report(&self) -> Report {
+        let plan = &self.plan;
+        let mut points: Vec<Point> = (0..plan.obstacles.len())
+            .filter_map(|index| self.point(index))
+            .collect();
+        points.sort_by_key(|point| point.obstacles);
+        let fitted: Vec<[f64; 2]> = points
+            .iter()
+            .map(|p| [f64::from(p.obstacles), p.formation.error_per_agent.mean])
+            .collect();
+        Report {
+            seed: plan.seed,
+            runs: plan.runs,
+            size: plan.size,
+            classes: plan.classes,
+            spacing: plan.spacing,
+            rho: plan.rho,
+            radius: plan.route.radius,
+            halt_cells: f64::from(plan.formation.halt_lag) / f64::from(UNIT),
+            fit: LogFit::of(&fitted),
+            paper: LogFit::PAPER,
+            points,
+        }
+    }
+
+    fn point(&self, index: usize) -> Option<Point> {
+        let plan = &self.plan;
+        let obstacles = plan.obstacles[index];
+        let runs: Vec<&[Crossing]> = (self.runs.iter().skip(index))
+            .step_by(plan.obstacles.len())
+            .map(Vec::as_slice)
+            .collect();
+        let alone: Vec<Option<f64>> = runs.iter().map(|run| run[0].time_ticks).collect();
+        let alone_times: Vec<f64> = alone.iter().copied().flatten().collect();
+        let mut journeys = plan
+            .ways()
+            .enumerate()
+            .filter_map(|(way, kind)| match kind {
+                Way::Alone => None,
+                Way::Together { eps, loss } => {
+                    let crossings: Vec<Crossing> = runs.iter().map(|run| run[way]).collect();
+                    Journey::of(eps, loss, &crossings, &alone)
+                }
+            });
+        let formation = journeys.next()?;
+        let other_eps: Vec<Journey> = journeys.by_ref().take(plan.other_eps.len()).collect();
+        let other_losses = journeys.collect();
+        let paper = LogFit::PAPER.at(f64::from(obstacles));
+        Some(Point {
+            obstacles,
+            runs: runs.len(),
+            alone_arrived: alone_times.len(),
+            alone_time_ticks: mean(&alone_times),
+            paper_error_per_agent: paper,
+            error_over_paper: (paper > 0.0).then(|| formation.error_per_agent.mean / paper),
+            formation,
+            other_eps,
+            other_losses,
+        })
+    }
+}
+
+impl Journey {
+    fn of(eps: u8, loss: f64, crossings: &[Crossing], alone: &[Option<f64>]) -> Option<Self> {
+        let column =
+            |value: fn(&Crossing) -> f64| -> Vec<f64> { crossings.iter().map(value).collect() };
+        let error = Summary::of(&column(|c| c.error))?;
+        let both: Vec<[f64; 2]> = crossings
+            .iter()
+            .zip(alone)
+            .filter_map(|(crossing, alone)| Some([crossing.time_ticks?, (*alone)?]))
+            .collect();
+        let time = mean(&both.iter().map(|times| times[0]).collect::<Vec<_>>());
+        let base = mean(&both.iter().map(|times| times[1]).collect::<Vec<_>>());
+        Some(Self {
+            eps,
+            loss,
+            arrived: crossings.iter().filter(|c| c.arrived == ROBOTS).count(),
+            error_per_agent: error,
+            error_interval95: error.mean_interval95(),
+            best_fit_error_per_agent: mean(&column(|c| c.best_fit_error))?,
+            graph_distance: mean(&column(|c| c.graph_distance))?,
+            worst_error: column(|c| c.worst_error).into_iter().fold(0.0, f64::max),
+            time_ticks: time,
+            time_ratio: time.zip(base).map(|(time, base)| time / base),
+            collisions: crossings.iter().map(|c| c.collisions).sum(),
+        })
+    }
+}

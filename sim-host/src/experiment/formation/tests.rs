@@ -1,0 +1,115 @@
+use super::*;
+use staya_controller::cost::Gain;
+
+/// Small enough for a test, large enough to show something.
+fn small() -> Plan {
+    Plan {
+        obstacles: vec![0, 10],
+        runs: 4,
+        size: 40,
+        other_eps: vec![2],
+        other_losses: vec![0.6],
+        ..Plan::default()
+    }
+}
+
+fn report(plan: &Plan) -> Report {
+    plan.carry_out(|_| true).unwrap().report()
+}
+
+#[test]
+fn formation_is_kept_and_everybody_arrives() {
+    let report = report(&small());
+    assert_eq!(report.points.len(), 2);
+    for point in &report.points {
+        let journey = &point.formation;
+        assert_eq!(
+            (point.runs, point.alone_arrived, journey.arrived),
+            (4, 4, 4)
+        );
+        assert_eq!(journey.collisions, 0);
+        assert!(journey.error_per_agent.mean < 1.5, "{journey:?}");
+        assert!(journey.worst_error < 8.0, "{journey:?}");
+        let ratio = journey.time_ratio.unwrap();
+        assert!((0.9..2.0).contains(&ratio), "{ratio}");
+        // The best fit cannot be worse in squares; in distances it is near.
+        assert!(journey.best_fit_error_per_agent < journey.error_per_agent.mean * 1.5);
+        assert_eq!((point.other_eps.len(), point.other_losses.len()), (1, 1));
+        assert_eq!(point.other_losses[0].arrived, 4, "also at 60 % loss");
+    }
+    let fit = report.fit.unwrap();
+    assert!((fit.at(0.0) - report.points[0].formation.error_per_agent.mean).abs() < 1e-9);
+}
+
+#[test]
+fn keeping_a_formation_is_what_makes_the_difference() {
+    // Without gain, waiting and common pricing the robots still follow; with them they are nearer.
+    let loose = Plan {
+        formation: FormationParams {
+            halt_lag: u16::MAX,
+            gain: Gain::ZERO,
+            ..FormationParams::default()
+        },
+        ..small()
+    };
+    let error = |plan: &Plan| report(plan).points[1].formation.error_per_agent.mean;
+    assert!(error(&small()) < error(&loose));
+}
+
+#[test]
+fn threads_and_early_ends_change_nothing() {
+    let plan = small();
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| plan.carry_out(|_| true).unwrap().runs)
+    };
+    let all = on(1);
+    assert_eq!(all, on(4));
+    assert_eq!(all.len(), 8);
+    assert!(
+        plan.carry_out(|_| false)
+            .unwrap()
+            .report()
+            .points
+            .is_empty()
+    );
+}
+
+#[test]
+fn plans_that_cannot_be_carried_out_say_why() {
+    let refused = |change: fn(&mut Plan)| {
+        let mut plan = small();
+        change(&mut plan);
+        plan.check().unwrap_err().to_string()
+    };
+    assert!(refused(|p| p.runs = 0).contains("1 or more"));
+    assert!(refused(|p| p.obstacles.clear()).contains("give one number"));
+    assert!(refused(|p| p.ticks = 0).contains("time to arrive"));
+    assert!(refused(|p| p.size = 9).contains("10..=2000"));
+    assert!(refused(|p| p.spacing = 0).contains("1..=10"));
+    assert!(refused(|p| p.other_losses = vec![1.5]).contains("between 0 and 1"));
+    assert!(refused(|p| p.loss = f64::NAN).contains("between 0 and 1"));
+    assert!(refused(|p| p.route.radius = 17).contains("1..=16"));
+    assert!(refused(|p| p.obstacles = vec![2000]).contains("2000"));
+    let least = Plan {
+        size: small().least_size(),
+        obstacles: vec![0],
+        ..small()
+    };
+    assert_eq!(report(&least).points[0].formation.arrived, 4);
+}
+
+#[test]
+fn pictures_are_written() {
+    let dir = tempfile::tempdir().unwrap();
+    let files = report(&small()).draw(dir.path()).unwrap();
+    assert_eq!(files.len(), 6);
+    assert!(
+        files
+            .iter()
+            .all(|file| file.metadata().unwrap().len() > 1000)
+    );
+}
