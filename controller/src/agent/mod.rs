@@ -3,6 +3,38 @@
 //! A step hears (`link`), decides (a [`Guidance`], then the [`crate::supervisor`]) and speaks. The
 //! guidances compose the behaviours of the layer below: [`RouteGuidance`] routes, and
 //! [`FormationGuidance`] routes and keeps a formation.
+//!
+//! ```
+//! use staya_controller::agent::*;
+//! use staya_controller::grid::{Cell, Window};
+//! use staya_controller::route::RouteParams;
+//! use staya_controller::time::{Duration, Instant};
+//! use staya_controller::wire::RobotId;
+//!
+//! let tick = Duration::from_millis(100);
+//! let config = AgentConfig::new(RobotId(3), 1, tick);
+//! let mut agent = RouteAgent::new(&config, RouteGuidance::new(RouteParams::default()));
+//! let mut workspace = GridWorkspace::new();
+//! agent.assign_goal(Cell::new(9, 5));
+//!
+//! // What a robot's own sensors and radio would say: flat land, nobody heard.
+//! let (land, mut cell, mut now) = ([1; 121], Cell::new(5, 5), Instant::from_micros(0));
+//! for _ in 0..4 {
+//!     let inputs = Inputs {
+//!         pose: Pose::default(),
+//!         cell: Some(CellState { cell, busy: Duration::ZERO }),
+//!         window: Window::new(&land, cell - Cell::new(5, 5), 11, 11),
+//!         inbox: &[],
+//!     };
+//!     let out = agent.step(&inputs, now, &mut workspace);
+//!     assert!(!out.outbox.is_empty(), "it says where it is");
+//!     if let Command::Move(moves) = out.command {
+//!         cell = cell + moves[0].offset();
+//!     }
+//!     now = now + tick;
+//! }
+//! assert_eq!(cell, Cell::new(9, 5));
+//! ```
 
 mod formation_guidance;
 mod guidance;
