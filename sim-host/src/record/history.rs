@@ -100,6 +100,8 @@ pub struct History {
     series: Vec<SeriesPoint>,
     totals: PacketCounts,
     ticks: u32,
+    /// Samples of all frames together: counting them anew would make long runs quadratic.
+    samples: usize,
     /// The newest frame: it stays even when its tick is not due.
     latest: Frame,
     max_samples: usize,
@@ -150,6 +152,7 @@ impl History {
                 rejected: 0,
             },
             ticks: 0,
+            samples: 0,
             latest: Frame {
                 tick: 0,
                 time_s: 0.0,
@@ -197,15 +200,17 @@ impl History {
         if !self.is_due(self.latest.tick) {
             return;
         }
+        self.samples += self.latest.samples.len();
         self.frames.push(self.latest.clone());
         while self.frames.len() > 1
-            && self.samples() > self.max_samples
+            && self.samples > self.max_samples
             && self.frame_every <= u32::MAX / 2
         {
             self.frame_every *= 2;
             let mut frames = std::mem::take(&mut self.frames);
             let (first, every) = (frames[0].tick, self.frame_every);
             frames.retain(|frame| frame.tick.wrapping_sub(first).is_multiple_of(every));
+            self.samples = frames.iter().map(|frame| frame.samples.len()).sum();
             self.frames = frames;
         }
     }
@@ -214,6 +219,7 @@ impl History {
     pub(super) fn close(&mut self) {
         let last = self.frames.last().map(|frame| frame.tick);
         if self.ticks > 0 && last != Some(self.latest.tick) {
+            self.samples += self.latest.samples.len();
             self.frames.push(std::mem::take(&mut self.latest));
         }
     }
@@ -221,9 +227,5 @@ impl History {
     fn is_due(&self, tick: u32) -> bool {
         let first = self.frames.first().map_or(tick, |frame| frame.tick);
         tick.wrapping_sub(first).is_multiple_of(self.frame_every)
-    }
-
-    fn samples(&self) -> usize {
-        self.frames.iter().map(|frame| frame.samples.len()).sum()
     }
 }
