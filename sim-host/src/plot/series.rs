@@ -29,7 +29,8 @@ pub struct Look<'a> {
 /// The looks of a chart's series: colours and marks in turn, unless chosen.
 pub fn looks(chart: &Chart) -> Vec<Look<'_>> {
     let is_interval = |series: &Series| matches!(series.data, Data::Intervals(_));
-    let intervals = chart.series.iter().filter(|s| is_interval(s)).count();
+    let is_own = |series: &Series| is_interval(series) && !series.like_previous;
+    let own = chart.series.iter().filter(|s| is_own(s)).count();
     let (mut used, mut shown) = (0, 0);
     let mut looks: Vec<Look<'_>> = Vec::with_capacity(chart.series.len());
     for series in &chart.series {
@@ -44,8 +45,9 @@ pub fn looks(chart: &Chart) -> Vec<Look<'_>> {
         };
         let mut shift = 0.0;
         if is_interval(series) {
-            shift = (shown as f64 - (intervals - 1) as f64 / 2.0) * DODGE;
-            shown += 1;
+            // One that looks like the series before it stands where that one stands.
+            shown += usize::from(is_own(series));
+            shift = (shown as f64 - (own + 1) as f64 / 2.0) * DODGE;
         }
         looks.push(Look {
             series,
@@ -259,4 +261,31 @@ fn thin(line: Vec<Point>, most: usize) -> Vec<Point> {
             keep.into_iter().map(|index| points[index])
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Where the marks of series stand beside their true place; `true`: like the previous one.
+    fn shifts(series: &[bool]) -> Vec<f64> {
+        let chart = series.iter().fold(Chart::new("", "", ""), |chart, &like| {
+            let one = Series::intervals("", [[1.0, 2.0, 1.0, 3.0]]);
+            chart.with(if like { one.like_previous() } else { one })
+        });
+        looks(&chart).iter().map(|look| look.shift).collect()
+    }
+
+    #[test]
+    fn error_bars_stand_side_by_side_around_their_place() {
+        let half = DODGE / 2.0;
+        assert_eq!(shifts(&[false]), [0.0]);
+        assert_eq!(shifts(&[false, false]), [-half, half]);
+        assert_eq!(shifts(&[false, true]), [0.0, 0.0]);
+        assert_eq!(
+            shifts(&[false, true, false, true]),
+            [-half, -half, half, half]
+        );
+        assert_eq!(shifts(&[false, false, false]), [-DODGE, 0.0, DODGE]);
+    }
 }

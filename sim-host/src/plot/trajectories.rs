@@ -332,7 +332,8 @@ fn draw_ends(canvas: &mut Canvas, map: &Map<'_>, ways: &BTreeMap<u32, Way>) {
 }
 
 fn ring(canvas: &mut Canvas, at: Point, radius: f64, colour: Colour) {
-    canvas.circle(at, radius, None, Some(Stroke::new(WHITE, radius * 0.8)));
+    // Filled, so that the way seems to begin at the ring.
+    canvas.circle(at, radius * 1.4, Some(WHITE), None);
     canvas.circle(at, radius, None, Some(Stroke::new(colour, radius * 0.4)));
 }
 
