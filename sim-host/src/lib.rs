@@ -8,6 +8,7 @@
 pub mod cli;
 pub mod engine;
 pub mod experiment;
+mod file;
 pub mod metrics;
 pub mod plot;
 pub mod radio;

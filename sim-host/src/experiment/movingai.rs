@@ -8,7 +8,7 @@ use super::in_parallel;
 use super::walk::{Task, Walker, holds};
 use crate::stats::Summary;
 use crate::terrain::movingai::{Query, parse_map, parse_scen};
-use crate::terrain::{Terrain, TerrainError};
+use crate::terrain::{Terrain, TerrainError, read};
 use serde::Serialize;
 use staya_controller::grid::UNIT;
 use staya_controller::route::{Replan, RouteParams};
@@ -155,12 +155,6 @@ impl Benchmark {
     /// # Errors
     /// [`BenchmarkError`], naming file and remedy.
     pub fn load(scen: &Path, map: Option<&Path>) -> Result<Self, BenchmarkError> {
-        let read = |path: &Path| {
-            std::fs::read(path).map_err(|source| TerrainError::Io {
-                path: path.to_owned(),
-                source,
-            })
-        };
         let queries = parse_scen(&read(scen)?, scen)?;
         let first = queries
             .first()

@@ -1,13 +1,14 @@
 //! Files that are whole or not there at all, and errors that say which one and what to do.
 
+use crate::file::write_remedy;
 use serde::Serialize;
 use std::fs::File;
-use std::io::{self, ErrorKind, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// A file or directory that could not be written.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot {action} {}: {source}; {}", path.display(), remedy(source))]
+#[error("cannot {action} {}: {source}; {}", path.display(), write_remedy(source))]
 pub struct Error {
     action: &'static str,
     path: PathBuf,
@@ -31,24 +32,23 @@ impl Error {
     }
 }
 
-fn remedy(source: &io::Error) -> &'static str {
-    match source.kind() {
-        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
-            "choose an output directory that you may write to"
-        }
-        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
-            "free some space or choose an output directory on another disk"
-        }
-        ErrorKind::NotADirectory | ErrorKind::AlreadyExists | ErrorKind::IsADirectory => {
-            "a file or directory of that name is in the way: remove it or choose another output directory"
-        }
-        _ => "choose another output directory",
-    }
-}
-
 /// Makes a directory and its parents; one that exists is fine.
 pub fn make_dir(dir: &Path) -> Result<(), Error> {
     std::fs::create_dir_all(dir).map_err(Error::new("make directory", dir))
+}
+
+/// Makes the directory of results before the work for them begins, and finds out whether files can be
+/// written to it.
+///
+/// # Errors
+/// The directory cannot be made, or no file in it.
+pub fn prepare_dir(dir: &Path) -> Result<(), Error> {
+    make_dir(dir)?;
+    let probe = dir.join(format!(".{}.tmp", std::process::id()));
+    let written = std::fs::write(&probe, "?").map_err(Error::new("write to", dir));
+    // It may not have come into being.
+    let _ = std::fs::remove_file(&probe);
+    written
 }
 
 /// Writes a file so that readers see the old one or the whole new one, never a part: a temporary

@@ -10,7 +10,7 @@ mod file;
 mod history;
 
 pub(crate) use file::make_dir;
-pub use file::{Error, write_atomically, write_summary};
+pub use file::{Error, prepare_dir, write_atomically, write_summary};
 pub use history::{Frame, History, Sample, SeriesPoint};
 
 use file::LineFile;

@@ -1,5 +1,6 @@
 //! The checks that need more than the type of a field.
 
+use super::params::ReplanName;
 use super::source::Source;
 use super::{Fault, Robot, ScenarioError, ScenarioFile};
 use crate::terrain::generate::{self, Plan};
@@ -164,10 +165,33 @@ pub(super) fn terrain(source: &Source<'_>, file: &ScenarioFile) -> Result<Terrai
 
 fn terrain_error(source: &Source<'_>, field: &str, error: &TerrainError) -> ScenarioError {
     let remedy = match error {
-        TerrainError::Io { .. } => "file names are relative to the scenario file",
+        TerrainError::Read { .. } => "file names are relative to the scenario file",
         _ => "see maps/README.md",
     };
     source.error(field, error.to_string(), remedy)
+}
+
+/// What would be ignored is refused: a table for robots in formation without one, a choice that they do not have.
+pub(super) fn formation_only(
+    source: &Source<'_>,
+    file: &ScenarioFile,
+) -> Result<(), ScenarioError> {
+    let in_formation = file.robots.formation.is_some();
+    if !in_formation && source.has("formation") {
+        return Err(source.error(
+            "formation",
+            "these robots keep no formation",
+            "give robots.formation, or leave this table out",
+        ));
+    }
+    if in_formation && matches!(file.route.replan, Some(ReplanName::UntilChanged)) {
+        return Err(source.error(
+            "route.replan",
+            "robots in formation search in each cell",
+            "give \"each_cell\", or leave it out",
+        ));
+    }
+    Ok(())
 }
 
 pub(super) fn faults(

@@ -104,6 +104,7 @@ impl Scenario {
         let terrain = check::terrain(&source, &file)?;
         let (robots, formation) = robots::build(&source, &file, &terrain)?;
         let faults = check::faults(&source, &file, &robots)?;
+        check::formation_only(&source, &file)?;
         let route = params::routing(&source, &file.route, &file.grid)?;
         let formation_params = params::formation(&source, &file.formation)?;
         Ok(Self {

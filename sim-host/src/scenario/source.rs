@@ -1,5 +1,6 @@
 //! A scenario's text, and errors that point into it.
 
+use crate::file::read_remedy;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -10,7 +11,7 @@ use toml::de::{DeTable, DeValue};
 #[derive(Debug, Error)]
 pub enum ScenarioError {
     /// The file cannot be read.
-    #[error("{}: {source}", .path.display())]
+    #[error("{}: {source}; {}", .path.display(), read_remedy(.source))]
     Io {
         /// The file.
         path: PathBuf,
@@ -100,9 +101,14 @@ impl<'a> Source<'a> {
             path: self.path.to_owned(),
             line: line_of(self.text, error.span()),
             field,
-            what: first_line(error.message()),
+            what: in_words(&first_line(error.message())),
             remedy: "scenarios/README.md lists all fields with their units".to_owned(),
         }
+    }
+
+    /// Whether the file has this field or table at its top level.
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.root.get_ref().get(name).is_some()
     }
 
     /// Where a field stands, or as much of the way to it as there is.
@@ -194,4 +200,21 @@ fn line_of(text: &str, span: Option<Range<usize>>) -> usize {
 
 fn first_line(message: &str) -> String {
     message.lines().next().unwrap_or_default().to_owned()
+}
+
+/// Rust's names of types at the end of a message, as a person would say them.
+fn in_words(message: &str) -> String {
+    let Some((start, name)) = message.rsplit_once(", expected ") else {
+        return message.to_owned();
+    };
+    let name = match name {
+        "f64" => "a number",
+        "u8" => "a whole number from 0 to 255",
+        "u16" => "a whole number from 0 to 65535",
+        "u32" => "a whole number from 0 to 4294967295",
+        "u64" => "a whole number, 0 or more",
+        "i16" => "a whole number from -32768 to 32767",
+        other => other,
+    };
+    format!("{start}, expected {name}")
 }

@@ -328,7 +328,7 @@ fn parameters_of_routes_and_formations_are_checked() {
     assert_eq!(scenario.route, Routing::default());
     assert_eq!(scenario.formation_params, FormationParams::default());
     let scenario = parse(&with(
-        "[grid]\ncorner_cutting = true\n[route]\nradius = 16\nexit = \"ray\"\nreplan = \"until_changed\"\n\
+        "[grid]\ncorner_cutting = true\n[route]\nradius = 16\nexit = \"ray\"\n\
          a2 = 0.5\nhalved_per_ticks = 2\n[formation]\nhalt_cells = 2\ngain = 4095\nfootprint = 1\n\
          prediction = \"reflexive\"\nrecovery = \"def\"\n",
     ));
@@ -368,6 +368,14 @@ fn parameters_of_routes_and_formations_are_checked() {
             "route.exit: unknown variant `door`",
         ),
         (
+            "[route]\nreplan = \"until_changed\"\n",
+            "route.replan: robots in formation search in each cell",
+        ),
+        (
+            "[formation]\neps = 1.5\n",
+            "formation.eps: invalid type: floating point `1.5`, expected a whole number from 0 to 255; scenarios/README.md",
+        ),
+        (
             "[formation]\ngain = 4096\n",
             "formation.gain: 4096 is out of range",
         ),
@@ -386,6 +394,17 @@ fn parameters_of_routes_and_formations_are_checked() {
             "{refusal}"
         );
     }
+}
+
+#[test]
+fn what_only_formations_use_is_refused_without_one() {
+    let list = with_robots("list = [{ start = [0, 0], goal = [2, 0] }]");
+    let until_changed = format!("{list}[route]\nreplan = \"until_changed\"\n");
+    let scenario = parse(&until_changed).expect("good");
+    assert_eq!(scenario.route.replan, Replan::UntilChanged);
+    let refusal = refusal(&format!("{list}[formation]\neps = 2\n"));
+    let expected = "s.toml:7: formation: these robots keep no formation; give robots.formation";
+    assert!(refusal.starts_with(expected), "{refusal}");
 }
 
 #[test]

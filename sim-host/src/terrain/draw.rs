@@ -69,7 +69,7 @@ fn file_rows(terrain: &Terrain) -> impl Iterator<Item = (u16, &[u8])> {
 /// Draws a terrain into a `.png` or `.svg` file, `scale` pixels per cell.
 ///
 /// # Errors
-/// [`TerrainError::Parameter`] for another extension or a picture beyond [`MAX_PIXELS`]; [`TerrainError::Io`] when the file cannot be written.
+/// [`TerrainError::Parameter`] for another extension or a picture beyond [`MAX_PIXELS`]; [`TerrainError::Write`] when the file cannot be written.
 pub fn draw(terrain: &Terrain, scale: u32, path: &Path) -> Result<(), TerrainError> {
     let longest = u64::from(terrain.width().max(terrain.height()));
     if scale == 0 || longest * u64::from(scale) > u64::from(MAX_PIXELS) {

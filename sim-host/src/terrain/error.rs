@@ -1,5 +1,6 @@
 //! What can be wrong with terrain, said so that a person can put it right.
 
+use crate::file::{read_remedy, write_remedy};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -27,9 +28,17 @@ impl fmt::Display for Place {
 /// Why there is no terrain.
 #[derive(Debug, thiserror::Error)]
 pub enum TerrainError {
-    /// The file cannot be read or written.
-    #[error("{}: {source}", .path.display())]
-    Io {
+    /// The file cannot be read.
+    #[error("{}: {source}; {}", .path.display(), read_remedy(.source))]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// The file cannot be written.
+    #[error("cannot write {}: {source}; {}", .path.display(), write_remedy(.source))]
+    Write {
         /// The file.
         path: PathBuf,
         /// What the system says.
@@ -117,8 +126,8 @@ pub(super) fn parameter_error(what: impl Into<String>, remedy: impl Into<String>
 }
 
 /// The bytes of a file.
-pub(super) fn read(path: &Path) -> Result<Vec<u8>, TerrainError> {
-    std::fs::read(path).map_err(|source| TerrainError::Io {
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>, TerrainError> {
+    std::fs::read(path).map_err(|source| TerrainError::Read {
         path: path.to_owned(),
         source,
     })
@@ -126,7 +135,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>, TerrainError> {
 
 /// Writes a file.
 pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), TerrainError> {
-    std::fs::write(path, bytes).map_err(|source| TerrainError::Io {
+    std::fs::write(path, bytes).map_err(|source| TerrainError::Write {
         path: path.to_owned(),
         source,
     })

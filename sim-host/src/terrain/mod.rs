@@ -20,7 +20,8 @@ mod text;
 pub use error::{MAX_SIDE, Place, TerrainError};
 pub use slope::SlopeRule;
 
-use error::{format_error, parameter_error, read};
+pub(crate) use error::read;
+use error::{format_error, parameter_error};
 use serde::{Deserialize, Serialize};
 use staya_controller::grid::{BLOCKED, Cell};
 use std::path::Path;

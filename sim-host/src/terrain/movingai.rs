@@ -156,7 +156,7 @@ pub fn parse_scen(bytes: &[u8], path: &Path) -> Result<Vec<Query>, TerrainError>
 /// Reads a `.scen` file; see [`parse_scen`].
 ///
 /// # Errors
-/// [`TerrainError::Io`], or those of [`parse_scen`].
+/// [`TerrainError::Read`], or those of [`parse_scen`].
 pub fn load_scen(path: &Path) -> Result<Vec<Query>, TerrainError> {
     parse_scen(&read(path)?, path)
 }

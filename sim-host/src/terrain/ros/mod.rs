@@ -89,7 +89,7 @@ pub fn interpret(
 /// Reads a YAML file and the picture that it names (relative to the YAML file).
 ///
 /// # Errors
-/// [`TerrainError::Io`] and [`TerrainError::Format`] for either file.
+/// [`TerrainError::Read`] and [`TerrainError::Format`] for either file.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Terrain, TerrainError> {
     let meta = parse_meta(&read(path)?, path)?;
     let image = path.parent().unwrap_or(Path::new("")).join(&meta.image);
@@ -110,7 +110,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Terrain, TerrainError>
 /// Writes `path` (.yaml) and the picture of the same name with .pgm; [`Terrain::load`] of `path` gives back an equal terrain.
 ///
 /// # Errors
-/// [`TerrainError::Io`]; [`TerrainError::Format`] when the file name has no place in a YAML line.
+/// [`TerrainError::Write`]; [`TerrainError::Format`] when the file name has no place in a YAML line.
 pub fn save(terrain: &Terrain, path: &Path) -> Result<(), TerrainError> {
     let image: PathBuf = path.with_extension("pgm");
     let name = image
