@@ -21,6 +21,9 @@ fn scenario(name: &str) -> String {
         .to_owned()
 }
 
+/// The maps that come with Staya.
+const MAPS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../maps/");
+
 fn folder() -> (tempfile::TempDir, String) {
     let dir = tempfile::tempdir().expect("temporary folder");
     let path = dir.path().join("out").to_str().expect("UTF-8").to_owned();
@@ -219,9 +222,141 @@ fn errors_are_one_line_with_the_place_and_the_remedy() {
 
 #[test]
 fn wrong_usage_is_told_from_failure() {
-    for arguments in [&["run"][..], &["run", "a.toml", "--ticks", "0"], &["walk"]] {
+    for arguments in [
+        &["run"][..],
+        &["run", "a.toml", "--ticks", "0"],
+        &["run", "a.toml", "--ticks", "-1"],
+        &["run", "a.toml", "--threads", "0"],
+        &["walk"],
+        &["terrain", "metrics"],
+        &["terrain", "metrics", "a.map", "--crop", "-1,0,2,2"],
+        &["terrain", "draw", "a.map"],
+        &["terrain", "generate"],
+        &["experiment"],
+        &["experiment", "route", "--radius", "0"],
+        &["experiment", "formation", "--footprint", "17"],
+        &["experiment", "movingai"],
+    ] {
         let ended = staya(arguments).output().expect("staya starts");
         assert_eq!(ended.status.code(), Some(2), "{arguments:?}");
+        assert!(ended.stdout.is_empty(), "{arguments:?}");
+        // A negative number is a wrong value, not an unknown option.
+        let stderr = text(&ended.stderr);
+        assert!(!stderr.contains("unexpected argument"), "{stderr}");
+    }
+}
+
+#[test]
+fn numbers_out_of_range_end_with_what_to_give() {
+    for (arguments, expected) in [
+        (&["route", "--runs", "0"][..], "make 1 or more"),
+        (
+            &["route", "--runs", "4294967295"],
+            "4294967295 runs; make at most",
+        ),
+        (&["formation", "--runs", "4294967295"], "make at most"),
+        (
+            &["route", "--obstacles", "99999999"],
+            "give fewer obstacles",
+        ),
+        (&["route", "--size", "65535"], "its side must be 4..=2000"),
+        (&["formation", "--loss", "-1"], "a loss of -1; it must be"),
+        (&["formation", "--loss", "nan"], "a loss of NaN; it must be"),
+        (&["formation", "--halt", "-1"], "--halt -1; give 0 to"),
+    ] {
+        let refused = refusal(&[&["experiment"], arguments].concat());
+        assert!(refused.contains(expected), "{refused}");
+    }
+}
+
+#[test]
+fn a_file_that_cannot_be_read_is_named_once_with_the_remedy() {
+    let (dir, _) = folder();
+    let path = |name: &str| dir.path().join(name).to_str().expect("UTF-8").to_owned();
+    let kinds: [(&[&str], &str); 5] = [
+        (&["run"], "toml"),
+        (&["terrain", "metrics"], "map"),
+        (&["terrain", "metrics"], "asc"),
+        (&["terrain", "metrics"], "yaml"),
+        (&["experiment", "movingai"], "scen"),
+    ];
+    for (command, extension) in kinds {
+        let refused = |name: &str| {
+            let file = path(&format!("{name}.{extension}"));
+            let refused = refusal(&[command, &[&file]].concat());
+            assert!(refused.starts_with(&format!("staya: {file}")), "{refused}");
+            assert!(refused.matches("os error").count() <= 1, "{refused}");
+            refused
+        };
+        assert!(refused("missing").ends_with("; check the name\n"));
+        fs::create_dir(path(&format!("folder.{extension}"))).expect("folder");
+        assert!(refused("folder").ends_with("; name a file, not a directory\n"));
+        fs::write(path(&format!("empty.{extension}")), "").expect("write");
+        assert!(refused("empty").contains(';'));
+        let bytes: Vec<u8> = (0..4096_u32).map(|i| (i * i % 251) as u8 | 0x80).collect();
+        fs::write(path(&format!("garbage.{extension}")), bytes).expect("write");
+        let garbage = refused("garbage");
+        assert!(garbage.contains("is it another kind of file"), "{garbage}");
+    }
+}
+
+#[test]
+fn experiments_find_out_before_the_work_that_results_cannot_be_kept() {
+    let (dir, _) = folder();
+    let in_the_way = dir.path().join("file");
+    fs::write(&in_the_way, "mine").expect("write");
+    let way = in_the_way.to_str().expect("UTF-8");
+    for experiment in ["route", "formation"] {
+        // With so many runs, hours would pass first.
+        let most = ["experiment", experiment, "--runs", "1000000", "--out", way];
+        let refused = refusal(&most);
+        assert!(
+            refused.contains(way) && refused.contains("choose another output directory"),
+            "{refused}"
+        );
+        assert_eq!(refused.matches("os error").count(), 1, "{refused}");
+    }
+    let land = format!("{way}/land.yaml");
+    let refused = refusal(&["terrain", "generate", "--out", &land]);
+    assert!(refused.contains("cannot write"), "{refused}");
+    assert!(refused.contains("is in the way"), "{refused}");
+}
+
+#[test]
+fn every_command_that_offers_json_prints_one_object_and_leaves_no_probe() {
+    let (dir, out) = folder();
+    let path = |name: &str| dir.path().join(name).to_str().expect("UTF-8").to_owned();
+    let (land, picture) = (path("land.yaml"), path("land.png"));
+    let scen = format!("{MAPS}random-32-32-20-random-1.scen");
+    let small = [
+        "--runs",
+        "2",
+        "--obstacles",
+        "5",
+        "--size",
+        "30",
+        "--out",
+        &out,
+    ];
+    let commands: [Vec<&str>; 6] = [
+        vec!["terrain", "generate", "--out", &land],
+        vec!["terrain", "metrics", &land],
+        vec!["terrain", "draw", &land, "--out", &picture],
+        [&["experiment", "route"], &small[..]].concat(),
+        [&["experiment", "formation", "--only"], &small[..]].concat(),
+        vec!["experiment", "movingai", &scen],
+    ];
+    for command in commands {
+        let ended = staya(&[&command[..], &["--json"]].concat()).output();
+        let ended = ended.expect("staya starts");
+        assert!(ended.status.success(), "{}", text(&ended.stderr));
+        let json: Value = serde_json::from_slice(&ended.stdout).expect("JSON alone");
+        assert!(json.is_object(), "{command:?}");
+    }
+    for file in fs::read_dir(&out).expect("the folder of the experiments") {
+        let name = file.expect("an entry").file_name();
+        let name = name.to_str().expect("UTF-8");
+        assert!(name.ends_with(".png") || name.ends_with(".svg"), "{name}");
     }
 }
 

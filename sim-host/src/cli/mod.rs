@@ -32,13 +32,13 @@ struct Cli {
 #[derive(Args, Clone, Copy, Debug, Default)]
 pub struct Global {
     /// Print one JSON object on standard output instead of tables.
-    #[arg(long, global = true)]
+    #[arg(long, global = true, help_heading = "Options of every command")]
     pub json: bool,
     /// Threads to use; results never depend on it. Default: one per processor.
-    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, global = true, help_heading = "Options of every command", value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     /// Show no progress.
-    #[arg(long, short, global = true)]
+    #[arg(long, short, global = true, help_heading = "Options of every command")]
     pub quiet: bool,
 }
 
@@ -84,7 +84,7 @@ pub fn main() -> ExitCode {
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
             // Standard error may be closed as well; the exit code still tells.
-            let _ = writeln!(io::stderr(), "staya: {error:#}");
+            let _ = writeln!(io::stderr(), "staya: {}", in_one_line(&error));
             ExitCode::FAILURE
         }
     }
@@ -102,6 +102,18 @@ fn run(cli: &Cli) -> Result<Ended> {
         Command::Terrain(args) => args.run(&cli.global),
         Command::Experiment(args) => args.run(&cli.global),
     }
+}
+
+/// An error and its causes; a cause that the message before it quotes is not said again.
+fn in_one_line(error: &anyhow::Error) -> String {
+    let mut text = error.to_string();
+    for cause in error.chain().skip(1).map(ToString::to_string) {
+        if !text.contains(&cause) {
+            text.push_str(": ");
+            text.push_str(&cause);
+        }
+    }
+    text
 }
 
 fn is_broken_pipe(error: &anyhow::Error) -> bool {

@@ -63,7 +63,7 @@ impl Progress {
             ProgressDrawTarget::hidden()
         };
         let bar = ProgressBar::with_draw_target(Some(total), target);
-        let style = "{prefix} [{bar:30}] {pos}/{len} {msg} ({elapsed} gone, {eta} to go)";
+        let style = "{prefix} [{bar:30}] {pos}/{len}{msg} ({elapsed} gone, {eta} to go)";
         if let Ok(style) = ProgressStyle::with_template(style) {
             bar.set_style(style.progress_chars("=> "));
         }
@@ -78,7 +78,7 @@ impl Progress {
     pub fn set(&mut self, done: u64, message: impl FnOnce() -> String) {
         self.bar.set_position(done);
         if !self.bar.is_hidden() {
-            self.bar.set_message(message());
+            self.bar.set_message(spaced(&message()));
         } else if self.lines.is_some_and(|at| at.elapsed() >= LINE_EVERY) {
             self.lines = Some(Instant::now());
             let (label, total) = (self.bar.prefix(), self.bar.length().unwrap_or(0));
@@ -86,8 +86,8 @@ impl Progress {
             // A closed standard error must not stop the work.
             let _ = writeln!(
                 io::stderr(),
-                "{label}: {done}/{total} {}, about {left} s to go",
-                message()
+                "{label}: {done}/{total}{}, about {left} s to go",
+                spaced(&message())
             );
         }
     }
@@ -95,5 +95,24 @@ impl Progress {
     /// Removes the bar.
     pub fn finish(&self) {
         self.bar.finish_and_clear();
+    }
+}
+
+/// A message behind a number.
+fn spaced(message: &str) -> String {
+    match message {
+        "" => String::new(),
+        _ => format!(" {message}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_message_is_spaced_only_if_there_is_one() {
+        assert_eq!(spaced(""), "");
+        assert_eq!(spaced("ticks"), " ticks");
     }
 }

@@ -16,6 +16,7 @@ use std::time::Instant;
 
 /// Run a scenario.
 #[derive(Args, Clone, Debug)]
+#[command(allow_negative_numbers = true)]
 pub struct RunArgs {
     /// The scenario, a .toml file; scenarios/README.md lists those that come with Staya and all fields.
     scenario: PathBuf,

@@ -68,6 +68,7 @@ impl From<NormArg> for Norm {
 }
 
 #[derive(Args, Clone, Debug)]
+#[command(allow_negative_numbers = true)]
 struct Generate {
     /// How the landscape is made.
     #[arg(long, value_enum, default_value = "natural")]
@@ -109,11 +110,18 @@ struct Generate {
 
 /// A terrain file, and how to read it.
 #[derive(Args, Clone, Debug)]
+#[command(allow_negative_numbers = true)]
 struct Source {
     /// .map (Moving AI), .asc (ESRI heights) or .yaml (ROS map with a .pgm).
     file: PathBuf,
     /// Only a piece of the map: column and row of its south-west cell, width, height.
-    #[arg(long, value_name = "X,Y,W,H", value_delimiter = ',', num_args = 1)]
+    #[arg(
+        long,
+        value_name = "X,Y,W,H",
+        value_delimiter = ',',
+        num_args = 1,
+        allow_hyphen_values = true
+    )]
     crop: Option<Vec<u16>>,
     /// .asc: the steepest passable slope, rise over run.
     #[arg(long, value_name = "SLOPE", default_value_t = SlopeRule::default().max_slope)]

@@ -252,7 +252,7 @@ impl Benchmark {
                 priced_cells: priced.map(cells),
             })
         };
-        in_parallel(self.queries.len(), progress, job)
+        in_parallel(self.queries.len(), 64, progress, job)
     }
 }
 

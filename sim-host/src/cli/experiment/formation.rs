@@ -1,11 +1,12 @@
 //! `staya experiment formation`.
 
+use super::results::{Course, number};
 use crate::cli::terrain::NormArg;
-use crate::cli::{Ended, Global, Progress, Stop, print, print_json};
+use crate::cli::{Ended, Global, Progress, Stop};
 use crate::experiment::formation::{Journey, Plan, Report, Variants};
+use crate::record::prepare_dir;
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
-use serde::Serialize;
 use staya_controller::formation::{FormationParams, Prediction, Recovery};
 use staya_controller::grid::UNIT;
 use staya_controller::route::RouteParams;
@@ -33,6 +34,7 @@ enum RecoveryArg {
 
 /// Six robots in formation on natural land: error, arrivals, travel time (KUZ section 8, figure 6).
 #[derive(Args, Clone, Debug)]
+#[command(allow_negative_numbers = true)]
 pub struct FormationArgs {
     /// Numbers of obstacles, one point of the figure each.
     #[arg(
@@ -114,19 +116,6 @@ pub struct FormationArgs {
     out: PathBuf,
 }
 
-/// What `--json` prints.
-#[derive(Debug, Serialize)]
-struct Output<'a> {
-    #[serde(flatten)]
-    report: &'a Report,
-    /// Whether Ctrl-C ended it early.
-    interrupted: bool,
-    /// Wall time of everything but the pictures, seconds.
-    wall_seconds: f64,
-    /// Files written.
-    pictures: Vec<PathBuf>,
-}
-
 impl FormationArgs {
     fn plan(&self) -> Result<Plan> {
         let mut formation = FormationParams {
@@ -196,6 +185,7 @@ impl FormationArgs {
         plan.check()?;
         let stop = Stop::on_ctrl_c()?;
         let begun = Instant::now();
+        prepare_dir(&self.out)?;
         let mut progress = Progress::new("landscapes", plan.total() as u64, global);
         let results = plan.carry_out(|done| {
             progress.set(done as u64, String::new);
@@ -207,38 +197,21 @@ impl FormationArgs {
         }
         let report = results.report();
         let wall_seconds = begun.elapsed().as_secs_f64();
-        let pictures = report.draw(&self.out)?;
-        if global.json {
-            print_json(&Output {
-                report: &report,
-                interrupted: stop.is_requested(),
-                wall_seconds,
-                pictures,
-            })?;
-        } else {
-            let mut text = table(&report)?;
-            text.push_str(&variants(&report, Variants::Eps)?);
-            text.push_str(&variants(&report, Variants::Loss)?);
-            writeln!(
-                text,
-                "\n{} landscapes in {wall_seconds:.1} s",
-                results.done()
-            )?;
-            writeln!(
-                text,
-                "{} pictures in {}",
-                pictures.len(),
-                self.out.display()
-            )?;
-            print(&text)?;
-        }
+        let course = Course {
+            done: results.done(),
+            total: plan.total(),
+            interrupted: stop.is_requested(),
+            wall_seconds,
+            out: &self.out,
+            pictures: report.draw(&self.out)?,
+        };
+        let tables = |report: &Report| {
+            let variants = variants(report, Variants::Eps)? + &variants(report, Variants::Loss)?;
+            Ok(table(report)? + &variants)
+        };
+        course.tell(&report, tables, global)?;
         Ok(Ended::by(&stop))
     }
-}
-
-/// `-` for a missing value.
-fn number(value: Option<f64>, decimals: usize) -> String {
-    value.map_or_else(|| String::from("-"), |x| format!("{x:.decimals$}"))
 }
 
 fn table(report: &Report) -> Result<String, std::fmt::Error> {

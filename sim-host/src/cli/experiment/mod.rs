@@ -6,6 +6,7 @@
 mod formation;
 mod movingai;
 mod params;
+mod results;
 mod route;
 
 use super::{Ended, Global};

@@ -34,6 +34,7 @@ impl From<MemoryArg> for Memory {
 
 /// The queries of a Moving AI benchmark: how many robots arrive, and at what loss.
 #[derive(Args, Clone, Debug)]
+#[command(allow_negative_numbers = true)]
 pub struct MovingAiArgs {
     /// The scenario (.scen); its map is looked for beside it.
     scen: PathBuf,

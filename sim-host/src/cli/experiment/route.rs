@@ -1,14 +1,15 @@
 //! `staya experiment route`.
 
 use super::params::{RouteOptions, gain};
+use super::results::{Course, number};
 use crate::cli::terrain::NormArg;
-use crate::cli::{Ended, Global, Progress, Stop, print, print_json};
+use crate::cli::{Ended, Global, Progress, Stop};
 use crate::experiment::route::{
     Coefficient, Land, Loss, MAX_RADIUS, Means, Plan, Point, Report, decimal,
 };
+use crate::record::prepare_dir;
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
-use serde::Serialize;
 use staya_controller::cost::Gain;
 use staya_controller::route::RouteParams;
 use std::fmt::Write as _;
@@ -55,6 +56,7 @@ impl CoefficientArg {
 
 /// Windowed routing against the global optimum on random land (KUZ section 5, figures 2 to 4).
 #[derive(Args, Clone, Debug)]
+#[command(allow_negative_numbers = true)]
 pub struct RouteArgs {
     /// The kind of landscapes.
     #[arg(long, value_enum, default_value = "natural")]
@@ -105,19 +107,6 @@ pub struct RouteArgs {
     /// Folder for the pictures.
     #[arg(long, value_name = "DIR", default_value = "out/experiment-route")]
     out: PathBuf,
-}
-
-/// What `--json` prints.
-#[derive(Debug, Serialize)]
-struct Output<'a> {
-    #[serde(flatten)]
-    report: &'a Report,
-    /// Whether Ctrl-C ended it early.
-    interrupted: bool,
-    /// Wall time of everything but the pictures, seconds.
-    wall_seconds: f64,
-    /// Files written.
-    pictures: Vec<PathBuf>,
 }
 
 impl RouteArgs {
@@ -174,6 +163,7 @@ impl RouteArgs {
 
     fn carry_out(&self, plan: &Plan, global: &Global, stop: &Stop) -> Result<Ended> {
         let begun = Instant::now();
+        prepare_dir(&self.out)?;
         let mut progress = Progress::new("landscapes", plan.total() as u64, global);
         let results = plan.carry_out(|done| {
             progress.set(done as u64, String::new);
@@ -185,33 +175,18 @@ impl RouteArgs {
         }
         let report = results.report();
         let wall_seconds = begun.elapsed().as_secs_f64();
-        let pictures = report.draw(&results.example()?, &self.out)?;
-        if global.json {
-            print_json(&Output {
-                report: &report,
-                interrupted: stop.is_requested(),
-                wall_seconds,
-                pictures,
-            })?;
-        } else {
-            let mut text = table(&report)?;
-            text.push_str(&sweep_tables(&report, &plan.params)?);
-            let (done, total) = (results.done(), plan.total());
-            if done < total {
-                write!(text, "stopped early, after {done} of {total}: ")?;
-            }
-            writeln!(text, "{done} landscapes in {wall_seconds:.1} s")?;
-            let (count, out) = (pictures.len(), self.out.display());
-            writeln!(text, "{count} pictures in {out}")?;
-            print(&text)?;
-        }
+        let course = Course {
+            done: results.done(),
+            total: plan.total(),
+            interrupted: stop.is_requested(),
+            wall_seconds,
+            out: &self.out,
+            pictures: report.draw(&results.example()?, &self.out)?,
+        };
+        let tables = |report: &Report| Ok(table(report)? + &sweep_tables(report, &plan.params)?);
+        course.tell(&report, tables, global)?;
         Ok(Ended::by(stop))
     }
-}
-
-/// `-` for a missing value.
-fn number(value: Option<f64>, decimals: usize) -> String {
-    value.map_or_else(|| String::from("-"), |x| format!("{x:.decimals$}"))
 }
 
 fn table(report: &Report) -> Result<String, std::fmt::Error> {

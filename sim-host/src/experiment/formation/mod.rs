@@ -9,7 +9,7 @@ mod report;
 
 pub use report::{Journey, Point, Report, Variants};
 
-use super::in_parallel;
+use super::{MAX_RUNS, in_parallel};
 use crate::engine::simulate;
 use crate::radio::RadioParams;
 use crate::scenario::{Formation, Robot, Routing, Scenario};
@@ -101,6 +101,9 @@ pub enum PlanError {
     /// Nothing to average.
     #[error("0 runs; make 1 or more landscapes per point")]
     NoRuns,
+    /// Their results would not fit the memory.
+    #[error("{0} runs; make at most {MAX_RUNS} landscapes per point")]
+    Runs(u32),
     /// Nothing to run on.
     #[error("no landscapes; give one number of obstacles or more")]
     NoLands,
@@ -212,6 +215,9 @@ impl Plan {
     pub fn check(&self) -> Result<(), PlanError> {
         if self.runs == 0 {
             return Err(PlanError::NoRuns);
+        }
+        if self.runs > MAX_RUNS {
+            return Err(PlanError::Runs(self.runs));
         }
         if self.obstacles.is_empty() {
             return Err(PlanError::NoLands);
@@ -348,7 +354,7 @@ impl Plan {
         let graph = self.graph()?;
         let points = self.obstacles.len();
         // All points advance together, so that an early end leaves something of each.
-        let runs = in_parallel(self.total(), progress, |(): &mut (), job| {
+        let runs = in_parallel(self.total(), 8, progress, |(): &mut (), job| {
             self.run(&graph, self.obstacles[job % points], (job / points) as u32)
         })?;
         Ok(Results {

@@ -19,8 +19,8 @@ mod report;
 
 pub use report::{Arrivals, Loss, Means, Point, Report, Response, decimal};
 
-use super::in_parallel;
 use super::walk::{Task, Walk, Walker};
+use super::{MAX_RUNS, in_parallel};
 use crate::terrain::generate::{self, natural, uniform};
 use crate::terrain::metrics::Metrics;
 use crate::terrain::optimal::Planner;
@@ -187,6 +187,9 @@ pub enum PlanError {
     /// Nothing to average.
     #[error("0 runs; make 1 or more landscapes per point")]
     NoRuns,
+    /// Their results would not fit the memory.
+    #[error("{0} runs; make at most {MAX_RUNS} landscapes per point")]
+    Runs(u32),
     /// Nothing to run on.
     #[error("no landscapes; give one number of obstacles or more")]
     NoLands,
@@ -261,6 +264,9 @@ impl Plan {
     pub fn check(&self) -> Result<(), PlanError> {
         if self.runs == 0 {
             return Err(PlanError::NoRuns);
+        }
+        if self.runs > MAX_RUNS {
+            return Err(PlanError::Runs(self.runs));
         }
         if self.lands.is_empty() {
             return Err(PlanError::NoLands);
@@ -406,7 +412,7 @@ impl Plan {
     pub fn carry_out(&self, progress: impl FnMut(usize) -> bool) -> Result<Results, PlanError> {
         self.check()?;
         let points = self.lands.len();
-        let runs = in_parallel(self.total(), progress, |scratch: &mut Scratch, job| {
+        let runs = in_parallel(self.total(), 64, progress, |scratch: &mut Scratch, job| {
             self.run_one(scratch, self.lands[job % points], (job / points) as u32)
         })?;
         let mut by_land = vec![Vec::new(); points];
