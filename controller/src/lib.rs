@@ -35,6 +35,7 @@ pub mod formation;
 pub mod geom;
 pub mod grid;
 pub mod neighbor;
+pub mod orca;
 pub mod rand;
 pub mod route;
 pub mod scalar;

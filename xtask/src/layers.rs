@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 const LAYERS: [&[&str]; 4] = [
     &["scalar", "geom", "time", "rand", "grid", "cost", "shuffle"],
     &["wire", "neighbor"],
-    &["route", "formation"],
+    &["route", "formation", "orca"],
     &["supervisor", "agent"],
 ];
 /// The layer of the behaviours.

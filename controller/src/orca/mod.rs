@@ -1,0 +1,20 @@
+//! Optimal reciprocal collision avoidance in the plane: the velocity nearest the preferred one that
+//! no neighbour forbids.
+//!
+//! Source: J. van den Berg, S. Guy, M. Lin, D. Manocha 2011, "Reciprocal n-body collision avoidance"
+//! (ORCA), sections 4 and 5; the geometry as in Tolok et al. (FVM). Read [`half_plane`] for what one
+//! neighbour forbids, then [`solve`] for what is left.
+//!
+//! All positions and velocities are relative to the robot, so that 1000 km from the origin nothing
+//! changes. What differs from the reference implementation (RVO2): two robots in the same place
+//! still have a half-plane, values that are not finite give none (and never spread), nothing is
+//! allocated, also when there is no solution.
+
+mod half_plane;
+mod solve;
+
+#[cfg(test)]
+mod tests;
+
+pub use half_plane::{HalfPlane, Neighbor, Params, half_plane};
+pub use solve::{Solution, solve};

@@ -1,0 +1,254 @@
+use super::*;
+use crate::geom::Vec2;
+use crate::scalar::{Q16, Scalar};
+use proptest::prelude::*;
+use std::vec::Vec;
+
+type V = Vec2<f64>;
+
+fn v(x: f64, y: f64) -> V {
+    V::new(x, y)
+}
+
+fn params(horizon_s: f64, share: f64) -> Params<f64> {
+    Params {
+        horizon_s,
+        separation_s: 0.05,
+        share,
+    }
+}
+
+fn neighbor(offset: V, velocity: V, radii_m: f64) -> Neighbor<f64> {
+    Neighbor {
+        offset_m: offset,
+        velocity_mps: velocity,
+        radii_m,
+        tie: V::ZERO,
+    }
+}
+
+/// FVM's worked example: the relative velocity lies before the cut-off disc.
+#[test]
+fn worked_example_of_the_paper_to_1e_6() {
+    let own = v(1.5, 1.0);
+    let other = neighbor(v(-4.0, 6.0), v(3.0, -1.5), 2.0);
+    for (share, x, y) in [(1.0, 1.707107, 0.792893), (0.5, 1.603553, 0.896447)] {
+        let plane = half_plane(own, &other, &params(2.0, share)).unwrap();
+        assert!((plane.point - v(x, y)).norm() < 1e-6, "{plane:?}");
+        assert!((plane.normal - v(1.0, -1.0) * core::f64::consts::FRAC_1_SQRT_2).norm() < 1e-6);
+    }
+}
+
+#[test]
+fn head_on_robots_are_sent_to_opposite_sides() {
+    // Ahead 10 m, closing at 2 m/s, a little to the left: pass on the right.
+    let plane = |offset: V, own: V| {
+        half_plane(own, &neighbor(offset, -own, 1.0), &params(20.0, 0.5)).unwrap()
+    };
+    let ours = plane(v(10.0, 0.1), v(1.0, 0.0));
+    let theirs = plane(v(-10.0, -0.1), v(-1.0, 0.0));
+    assert!(ours.normal.y < -0.9, "project on right leg {ours:?}");
+    assert!((ours.normal + theirs.normal).norm() < 1e-12, "reciprocal");
+    let mirrored = plane(v(10.0, -0.1), v(1.0, 0.0));
+    assert!(mirrored.normal.y > 0.9, "project on left leg");
+}
+
+#[test]
+fn overlapping_and_coincident_robots_are_sent_apart() {
+    let p = params(2.0, 0.5);
+    let overlapping = half_plane(V::ZERO, &neighbor(v(0.5, 0.0), V::ZERO, 1.0), &p).unwrap();
+    assert_eq!(overlapping.normal, v(-1.0, 0.0));
+    // 0.5 m of overlap in 0.05 s, half of it ours.
+    assert!((overlapping.point.x + 5.0).abs() < 1e-9);
+    let tied = |tie: V| {
+        let other = Neighbor {
+            tie,
+            ..neighbor(V::ZERO, V::ZERO, 1.0)
+        };
+        half_plane(V::ZERO, &other, &p).unwrap().normal
+    };
+    assert_eq!(tied(v(0.0, 3.0)), -tied(v(0.0, -3.0)));
+    assert_eq!(tied(V::ZERO), v(1.0, 0.0));
+    // Touching exactly: no speed towards each other.
+    let touching = half_plane(V::ZERO, &neighbor(v(1.0, 0.0), V::ZERO, 1.0), &p).unwrap();
+    assert!(touching.penetration(V::ZERO).abs() < 1e-9);
+    assert!(touching.penetration(v(0.1, 0.0)) > 0.0);
+}
+
+#[test]
+fn what_is_not_finite_gives_no_half_plane() {
+    let p = params(2.0, 0.5);
+    for bad in [f64::NAN, f64::INFINITY] {
+        assert!(half_plane(v(bad, 0.0), &neighbor(v(3.0, 0.0), V::ZERO, 1.0), &p).is_none());
+        assert!(half_plane(V::ZERO, &neighbor(v(3.0, bad), V::ZERO, 1.0), &p).is_none());
+        assert!(half_plane(V::ZERO, &neighbor(v(3.0, 0.0), v(bad, bad), 1.0), &p).is_none());
+    }
+    assert!(half_plane(V::ZERO, &neighbor(v(3.0, 0.0), V::ZERO, f64::NAN), &p).is_none());
+    assert!(
+        half_plane(
+            V::ZERO,
+            &neighbor(v(3.0, 0.0), V::ZERO, 1.0),
+            &params(0.0, 0.5)
+        )
+        .is_none()
+    );
+    let solution = solve::<f64, 4>(&[], 0, v(f64::NAN, 1.0), 1.0);
+    assert_eq!(solution.velocity_mps, V::ZERO);
+}
+
+#[test]
+fn speed_limit_and_preference_alone() {
+    assert_eq!(
+        solve::<f64, 4>(&[], 0, v(0.3, 0.4), 1.0).velocity_mps,
+        v(0.3, 0.4)
+    );
+    let fast = solve::<f64, 4>(&[], 0, v(3.0, 4.0), 1.0).velocity_mps;
+    assert!((fast - v(0.6, 0.8)).norm() < 1e-12);
+}
+
+#[test]
+fn opposite_walls_are_met_halfway_and_hard_ones_not_at_all() {
+    let plane = |x: f64, nx: f64| HalfPlane {
+        point: v(x, 0.0),
+        normal: v(nx, 0.0),
+    };
+    // x >= 0.5 and x <= -0.3 contradict each other.
+    let planes = [plane(0.5, 1.0), plane(-0.3, -1.0)];
+    let soft = solve::<f64, 4>(&planes, 0, V::ZERO, 1.0);
+    assert!((soft.velocity_mps.x - 0.1).abs() < 1e-9, "{soft:?}");
+    assert!((soft.penetration_mps - 0.4).abs() < 1e-9);
+    let hard = solve::<f64, 4>(&planes, 1, V::ZERO, 1.0);
+    assert!((hard.velocity_mps.x - 0.5).abs() < 1e-9, "{hard:?}");
+}
+
+/// Half-planes of neighbours around a robot, as they occur.
+fn crowd() -> impl Strategy<Value = (Vec<HalfPlane<f64>>, V, V)> {
+    let pair = || (-2.0_f64..2.0, -2.0_f64..2.0).prop_map(|(x, y)| v(x, y));
+    let others = proptest::collection::vec((pair(), pair(), 0.1_f64..1.0), 0..10);
+    (others, pair(), pair()).prop_map(|(others, own, preferred)| {
+        let planes = others
+            .iter()
+            .filter_map(|&(offset, velocity, radii)| {
+                half_plane(
+                    own,
+                    &neighbor(offset * 2.0, velocity, radii),
+                    &params(2.0, 0.5),
+                )
+            })
+            .collect();
+        (planes, own, preferred)
+    })
+}
+
+/// The best of many velocities in the disc: least penetration first, then nearest.
+fn oracle(planes: &[HalfPlane<f64>], preferred: V, speed: f64) -> (f64, f64) {
+    let steps = 120;
+    let mut best = (f64::MAX, f64::MAX);
+    for i in -steps..=steps {
+        for j in -steps..=steps {
+            let at = v(f64::from(i), f64::from(j)) * (speed / f64::from(steps));
+            if at.norm() > speed {
+                continue;
+            }
+            let worst = planes.iter().map(|p| p.penetration(at)).fold(0.0, f64::max);
+            let found = (worst, (at - preferred).norm());
+            if found.0 < best.0 - 1e-12 || (found.0 <= best.0 + 1e-12 && found.1 < best.1) {
+                best = found;
+            }
+        }
+    }
+    best
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// No velocity of a fine grid is clearly better than the answer.
+    #[test]
+    fn answer_is_the_best_within_the_disc((planes, _, preferred) in crowd()) {
+        let speed = 1.5;
+        let answer = solve::<f64, 10>(&planes, 0, preferred, speed);
+        prop_assert!(answer.velocity_mps.norm() <= speed + 1e-9);
+        let (worst, distance) = oracle(&planes, preferred, speed);
+        let grid = 0.02;
+        prop_assert!(answer.penetration_mps <= worst + 1e-9, "{} > {worst}", answer.penetration_mps);
+        if answer.penetration_mps < 1e-9 {
+            let own = (answer.velocity_mps - preferred).norm();
+            prop_assert!(worst > 1e-9 || own <= distance + grid, "{own} > {distance}");
+        }
+    }
+
+    #[test]
+    fn turned_and_mirrored_crowds_give_turned_and_mirrored_answers(
+        (planes, _, preferred) in crowd(),
+        angle in -3.0_f64..3.0,
+    ) {
+        let (sin, cos) = (libm::sin(angle), libm::cos(angle));
+        let turn = |at: V| at.rotate(cos, sin);
+        let flip = |at: V| v(at.x, -at.y);
+        let plain = solve::<f64, 10>(&planes, 0, preferred, 1.5).velocity_mps;
+        for map in [&turn as &dyn Fn(V) -> V, &flip] {
+            let moved: Vec<_> = planes
+                .iter()
+                .map(|p| HalfPlane { point: map(p.point), normal: map(p.normal) })
+                .collect();
+            let answer = solve::<f64, 10>(&moved, 0, map(preferred), 1.5).velocity_mps;
+            prop_assert!((answer - map(plain)).norm() < 1e-6, "{answer:?} {plain:?}");
+        }
+    }
+
+    #[test]
+    fn order_of_neighbours_does_not_matter((planes, _, preferred) in crowd()) {
+        let answer = solve::<f64, 10>(&planes, 0, preferred, 1.5);
+        let reversed: Vec<_> = planes.iter().rev().copied().collect();
+        let other = solve::<f64, 10>(&reversed, 0, preferred, 1.5);
+        prop_assert!((answer.penetration_mps - other.penetration_mps).abs() < 1e-6);
+        if answer.penetration_mps < 1e-9 {
+            prop_assert!((answer.velocity_mps - other.velocity_mps).norm() < 1e-6);
+        }
+    }
+
+    /// If both do their share of the change, they do not meet within the horizon.
+    #[test]
+    fn pair_that_obeys_does_not_meet_within_the_horizon(
+        x in 1.1_f64..6.0,
+        own in (-1.5_f64..1.5, -1.5_f64..1.5),
+        other in (-1.5_f64..1.5, -1.5_f64..1.5),
+    ) {
+        let (a, b) = (v(own.0, own.1), v(other.0, other.1));
+        let p = params(2.0, 0.5);
+        let ours = half_plane(a, &neighbor(v(x, 0.0), b, 1.0), &p).unwrap();
+        let theirs = half_plane(b, &neighbor(v(-x, 0.0), a, 1.0), &p).unwrap();
+        let a = solve::<f64, 1>(&[ours], 0, a, 10.0).velocity_mps;
+        let b = solve::<f64, 1>(&[theirs], 0, b, 10.0).velocity_mps;
+        let least = (0..=200)
+            .map(|k| (v(x, 0.0) + (b - a) * (2.0 * f64::from(k) / 200.0)).norm())
+            .fold(f64::MAX, f64::min);
+        prop_assert!(least > 1.0 - 1e-6, "{least}");
+    }
+
+    #[test]
+    fn f32_and_q16_agree_with_f64(
+        x in -6.0_f64..6.0, y in 1.2_f64..6.0,
+        vx in -1.5_f64..1.5, vy in -1.5_f64..1.5,
+    ) {
+        let exact = half_plane(v(0.5, 0.5), &neighbor(v(x, y), v(vx, vy), 1.0), &params(2.0, 0.5)).unwrap();
+        fn near<S: Scalar>(exact: &HalfPlane<f64>, x: f64, y: f64, vx: f64, vy: f64) -> f64 {
+            let s = |value: f64| S::from_f64(value).unwrap();
+            let other = Neighbor {
+                offset_m: Vec2::new(s(x), s(y)),
+                velocity_mps: Vec2::new(s(vx), s(vy)),
+                radii_m: S::ONE,
+                tie: Vec2::ZERO,
+            };
+            let params = Params { horizon_s: S::TWO, separation_s: s(0.05), share: S::HALF };
+            let plane = half_plane(Vec2::new(S::HALF, S::HALF), &other, &params).unwrap();
+            // The border may jump from leg to leg for a velocity on the axis of the cone; the change
+            // that is asked for does not: compare how far the own velocity is from the border.
+            let own = plane.penetration(Vec2::new(S::HALF, S::HALF)).to_f64();
+            (own - exact.penetration(v(0.5, 0.5))).abs()
+        }
+        prop_assert!(near::<f32>(&exact, x, y, vx, vy) < 1e-5);
+        prop_assert!(near::<Q16>(&exact, x, y, vx, vy) < 2e-3);
+    }
+}
