@@ -3,7 +3,7 @@
 //!
 //! Source: J. van den Berg, S. Guy, M. Lin, D. Manocha 2011, "Reciprocal n-body collision avoidance"
 //! (ORCA), sections 4 and 5; the geometry as in Tolok et al. (FVM). Read [`half_plane`] for what one
-//! neighbour forbids, then [`solve`] for what is left.
+//! neighbour forbids, [`wall`] for what the world forbids, then [`solve`] for what is left.
 //!
 //! All positions and velocities are relative to the robot, so that 1000 km from the origin nothing
 //! changes. What differs from the reference implementation (RVO2): two robots in the same place
@@ -12,9 +12,11 @@
 
 mod half_plane;
 mod solve;
+mod wall;
 
 #[cfg(test)]
 mod tests;
 
 pub use half_plane::{HalfPlane, Neighbor, Params, half_plane};
 pub use solve::{Solution, solve};
+pub use wall::wall;

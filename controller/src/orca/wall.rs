@@ -1,0 +1,146 @@
+//! What a static obstacle forbids (ORCA section 5.4): a wall is a segment; polygons are several.
+
+use super::HalfPlane;
+use crate::geom::Vec2;
+use crate::scalar::Scalar;
+
+/// The nearest point of a piece of the velocity obstacle's border, and its distance.
+struct Nearest<S> {
+    distance: S,
+    plane: HalfPlane<S>,
+}
+
+/// The velocities that keep a robot of `radius_m` off the wall from `ends_m[0]` to `ends_m[1]` (relative to
+/// the robot's centre, metres) for `horizon_s` seconds. A wall does nothing to avoid, so the whole
+/// correction is the robot's.
+///
+/// The wall widened by the robot is a capsule C; the velocities that meet it within the horizon are K = {c / t : c in C,
+/// 0 < t <= horizon}, a convex set bounded by two tangents from the origin and the near side of C / horizon. The
+/// half-plane touches K where it is nearest to the own velocity, hence forbids all of K. A robot
+/// that touches or overlaps the wall may not come nearer.
+///
+/// What differs from RVO2: segments are taken one by one and not as chains of vertices. At a convex
+/// corner both segments forbid what the corner does; concave corners need no special case.
+///
+/// `None` when an input is not finite, or radius or horizon is not above 0. Constant work.
+#[must_use]
+pub fn wall<S: Scalar>(
+    own_velocity_mps: Vec2<S>,
+    ends_m: [Vec2<S>; 2],
+    radius_m: S,
+    horizon_s: S,
+) -> Option<HalfPlane<S>> {
+    let [a, b] = ends_m;
+    let v = own_velocity_mps;
+    let is_sound = a.is_finite() && b.is_finite() && v.is_finite();
+    if !(is_sound && radius_m > S::ZERO && horizon_s > S::ZERO) {
+        return None;
+    }
+    let foot = nearest_on_segment(Vec2::ZERO, a, b);
+    if foot.norm() <= radius_m {
+        // Touching. In the wall's middle line: across it, to its left.
+        let normal = (-foot).normalized().or_else(|| (b - a).perp().normalized());
+        let normal = normal.unwrap_or(Vec2::new(S::ONE, S::ZERO));
+        return Some(HalfPlane {
+            point: Vec2::ZERO,
+            normal,
+        });
+    }
+    // Seen from the robot, `left` is the end on the left.
+    let (left, right) = if a.det(b) > S::ZERO { (b, a) } else { (a, b) };
+    let rate = S::ONE.checked_div(horizon_s)?;
+    let (near_left, near_right) = (left * rate, right * rate);
+    let reach = radius_m * rate;
+    let pieces = [
+        leg(v, [left, right], radius_m, rate, true),
+        leg(v, [left, right], radius_m, rate, false),
+        cap(v, near_left, near_right, reach),
+        cap(v, near_right, near_left, reach),
+        side(v, near_left, near_right, reach),
+    ];
+    pieces
+        .into_iter()
+        .flatten()
+        .min_by(|one, other| one.distance.order(other.distance))
+        .map(|nearest| nearest.plane)
+}
+
+/// The point of a segment nearest to `at`.
+fn nearest_on_segment<S: Scalar>(at: Vec2<S>, a: Vec2<S>, b: Vec2<S>) -> Vec2<S> {
+    let along = b - a;
+    let length = along.norm();
+    match along.normalized() {
+        Some(unit) => a + unit * (at - a).dot(unit).clamp(S::ZERO, length),
+        None => a,
+    }
+}
+
+/// A point of the capsule's border with its outward normal; `None` when it is not on the near side, where
+/// the normal points back towards the origin.
+fn near_side<S: Scalar>(v: Vec2<S>, point: Vec2<S>, normal: Vec2<S>) -> Option<Nearest<S>> {
+    let is_near = normal.dot(point) <= S::ZERO;
+    is_near.then(|| Nearest {
+        distance: (v - point).norm(),
+        plane: HalfPlane { point, normal },
+    })
+}
+
+/// The half-circle around `end` of the segment from `other` to `end`.
+fn cap<S: Scalar>(v: Vec2<S>, end: Vec2<S>, other: Vec2<S>, reach: S) -> Option<Nearest<S>> {
+    // In the very end: out on the robot's side.
+    let normal = (v - end).normalized().or_else(|| (-end).normalized())?;
+    // Both caps may claim what rounding leaves between cap and side.
+    let is_beyond = normal.dot(end - other) >= -(S::EPSILON * reach);
+    is_beyond
+        .then(|| near_side(v, end + normal * reach, normal))
+        .flatten()
+}
+
+/// The straight side that faces the robot.
+fn side<S: Scalar>(v: Vec2<S>, left: Vec2<S>, right: Vec2<S>, reach: S) -> Option<Nearest<S>> {
+    let along = (left - right).normalized()?;
+    let across = along.perp();
+    let normal = if across.dot(left) > S::ZERO {
+        -across
+    } else {
+        across
+    };
+    let t = (v - right).dot(along);
+    let is_beside = t >= S::ZERO && t <= (left - right).norm();
+    is_beside
+        .then(|| near_side(v, right + along * t + normal * reach, normal))
+        .flatten()
+}
+
+/// One of the two tangents from the origin to the capsule, beyond where it leaves the capsule's near side.
+fn leg<S: Scalar>(
+    v: Vec2<S>,
+    [left, right]: [Vec2<S>; 2],
+    radius: S,
+    rate: S,
+    is_left: bool,
+) -> Option<Nearest<S>> {
+    // The outermost tangent of the two end discs: seen from outside, one disc may hide the other.
+    let tangent = |end: Vec2<S>| {
+        let sin = radius.checked_div(end.norm())?;
+        let cos = (S::ONE - sin * sin).sqrt();
+        let ahead = end.normalized()?;
+        let direction = ahead.rotate(cos, if is_left { sin } else { -sin });
+        // The tangent point at the horizon.
+        Some((direction, end.norm() * cos * rate))
+    };
+    let (one, other) = (tangent(left)?, tangent(right)?);
+    let is_outside = one.0.det(other.0) > S::ZERO;
+    let (direction, start) = if is_outside == is_left { other } else { one };
+    let along = v.dot(direction).max(start);
+    let point = direction * along;
+    let normal = if is_left {
+        direction.perp()
+    } else {
+        -direction.perp()
+    };
+    Some(Nearest {
+        distance: (v - point).norm(),
+        plane: HalfPlane { point, normal },
+    })
+}
