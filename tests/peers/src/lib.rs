@@ -1,6 +1,8 @@
 //! The same task for Staya and for a peer, so that their results can be compared and their speed
 //! means something.
 
+pub mod crowd;
+
 use pathfinding::prelude::dijkstra_all;
 use staya_controller::cost::{Cost, Gain};
 use staya_controller::grid::{BLOCKED, Cell, Dir, Window};
