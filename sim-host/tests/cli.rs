@@ -262,6 +262,7 @@ fn numbers_out_of_range_end_with_what_to_give() {
         (&["route", "--size", "65535"], "its side must be 4..=2000"),
         (&["formation", "--loss", "-1"], "a loss of -1; it must be"),
         (&["formation", "--loss", "nan"], "a loss of NaN; it must be"),
+        (&["formation", "--rho", "0"], "rho of 0; give 1, 2 or 3"),
         (&["formation", "--halt", "-1"], "--halt -1; give 0 to"),
     ] {
         let refused = refusal(&[&["experiment"], arguments].concat());

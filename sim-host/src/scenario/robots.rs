@@ -128,6 +128,13 @@ fn graph(
             "give rows and columns (and spacing), or places and edges",
         )),
     }?;
+    if rho == Some(0) {
+        return Err(source.error(
+            "formation.rho",
+            "with 0 nobody would know of anybody",
+            "give 1 or more",
+        ));
+    }
     let templates = |rho| {
         (0..places.len())
             .map(|own| Template::from_graph(&places, &edges, own, rho))
@@ -223,8 +230,30 @@ fn given_graph(
             }
         }
     }
+    if let Some(lost) = unreached(places.len(), &pairs) {
+        return Err(source.error(
+            "robots.formation.edges",
+            format!("no edges lead from robot 1 to robot {}", lost + 1),
+            "join every robot to the formation",
+        ));
+    }
     let places = places.iter().copied().map(cell).collect();
     Ok((places, pairs.into_iter().collect()))
+}
+
+/// The first place that no edges join to the first one. O(places * edges).
+fn unreached(count: usize, edges: &BTreeSet<(u16, u16)>) -> Option<usize> {
+    let mut reached = vec![false; count];
+    *reached.first_mut()? = true;
+    // A way along edges has fewer steps than there are places.
+    for _ in 1..count {
+        for &(a, b) in edges {
+            let (a, b) = (usize::from(a), usize::from(b));
+            let either = reached[a] || reached[b];
+            (reached[a], reached[b]) = (either, either);
+        }
+    }
+    reached.iter().position(|is_reached| !is_reached)
 }
 
 fn placed(

@@ -443,6 +443,21 @@ fn a_formation_that_no_controller_holds_is_refused() {
         )
     );
     refused(&rho, "s.toml:8: formation.rho");
+    refused(
+        &rho.replace("rho = 5", "rho = 0"),
+        "s.toml:8: formation.rho: with 0 nobody would know of anybody; give 1 or more",
+    );
+    let chain = |edges: &str| {
+        with_robots(&format!(
+            "formation = {{ places = [[0, 0], [1, 0], [2, 0], [3, 0]], edges = [{edges}], start = [0, 0], goal = [0, 2] }}"
+        ))
+    };
+    parse(&chain("[3, 4], [2, 3], [1, 2]")).expect("all are joined");
+    refused(
+        &chain("[1, 2], [3, 4]"),
+        "robots.formation.edges: no edges lead from robot 1 to robot 3; join every robot",
+    );
+    refused(&chain(""), "no edges lead from robot 1 to robot 2");
 }
 
 #[test]

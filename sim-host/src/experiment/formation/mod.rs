@@ -127,6 +127,9 @@ pub enum PlanError {
     /// The window would not fit the scratch memory.
     #[error("a window of radius {0}; it must be 1..=16")]
     Radius(u8),
+    /// Nobody would know of anybody.
+    #[error("a geodesic radius rho of 0; give 1, 2 or 3")]
+    NoRho,
     /// The radius rho gives no template.
     #[error("templates of geodesic radius {rho}: {error:?}; give 1, 2 or 3")]
     Template {
@@ -238,6 +241,9 @@ impl Plan {
         let losses = std::iter::once(&self.loss).chain(&self.other_losses);
         if let Some(&loss) = losses.into_iter().find(|loss| !(0.0..=1.0).contains(*loss)) {
             return Err(PlanError::Loss(loss));
+        }
+        if self.rho == 0 {
+            return Err(PlanError::NoRho);
         }
         self.graph()?;
         for &obstacles in &self.obstacles {
