@@ -42,6 +42,16 @@ impl Instant {
     pub const fn is_before(self, other: Self) -> bool {
         self.since(other).0 < 0
     }
+
+    /// Whether `due`, a moment that was at most `longest` ahead when it was set, has come.
+    ///
+    /// Unlike `!self.is_before(due)` this also holds after a pause of more than half the clock's range,
+    /// when a moment long past seems to lie ahead: nothing that is due waits for another half hour.
+    #[must_use]
+    pub const fn has_reached(self, due: Self, longest: Duration) -> bool {
+        let left = due.since(self).0;
+        left <= 0 || left > longest.0
+    }
 }
 
 impl Duration {
@@ -102,6 +112,21 @@ mod tests {
         assert!(!after.is_before(before));
         assert_eq!(after.since(before), Duration::from_micros(20));
         assert_eq!(after - Duration::from_micros(20), before);
+    }
+
+    #[test]
+    fn what_is_due_stays_due_however_long_nobody_asks() {
+        let longest = Duration::from_millis(10);
+        for start in [0, u32::MAX - 5_000] {
+            let due = Instant::from_micros(start) + longest;
+            let reached = |later: u32| {
+                let now = Instant::from_micros(start.wrapping_add(later));
+                now.has_reached(due, longest)
+            };
+            assert!(!reached(0) && !reached(9_999));
+            assert!(reached(10_000) && reached(1 << 31) && reached((1 << 31) + 20_000));
+            assert!(reached(u32::MAX), "up to a whole turn of the clock");
+        }
     }
 
     #[test]

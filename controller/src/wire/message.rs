@@ -183,7 +183,8 @@ pub struct TemplateAssignment {
     pub entries: heapless::Vec<TemplateEntry, TEMPLATE_PART>,
 }
 
-/// A new goal for one robot, or for all.
+/// A new goal for one robot, or for all. Nobody acknowledges it: its sender says it again, with the same
+/// version, for as long as somebody may have missed it. The same holds for [`TemplateAssignment`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct GoalAssignment {
     /// Who it is for; nobody = everybody.

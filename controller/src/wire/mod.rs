@@ -24,4 +24,4 @@ pub use requests::{AskError, Due, Requests, Retry};
 pub use sequence::{Arrival, SEQUENCE_SPAN, SequenceWindow};
 
 #[cfg(test)]
-mod arbitrary;
+pub(crate) mod arbitrary;

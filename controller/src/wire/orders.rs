@@ -39,7 +39,8 @@ const _: () = assert!(size_of::<Order>() == 20);
 
 impl Order {
     fn is_stop_at(&self, now: Instant) -> bool {
-        self.kind == RequestKind::Stop && now.is_before(self.until)
+        let longest = Duration::from_millis(i32::from(u16::MAX));
+        self.kind == RequestKind::Stop && !now.has_reached(self.until, longest)
     }
 
     fn is_about(&self, header: Header, request: &Request) -> bool {
@@ -60,8 +61,8 @@ impl Order {
 /// all hold stops, a further stop or redirection is refused. A stop is never dropped before its
 /// time.
 ///
-/// Time is compared by wrapped difference: [`Orders::is_stopped`] must be called at least every half
-/// hour.
+/// Time is compared by wrapped difference: [`Orders::is_stopped`] should be called at least every half
+/// hour. After a longer pause no stop stands, but a repeat may be taken for a new request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Orders<const S: usize> {
     lines: Vec<Order, S>,

@@ -75,10 +75,18 @@ struct Pending {
 
 const _: () = assert!(size_of::<Pending>() == 24);
 
+impl Pending {
+    fn is_due(&self, retry: Retry, now: Instant) -> bool {
+        let interval = retry.interval.as_micros();
+        let longest = interval.saturating_add(interval >> 2);
+        now.has_reached(self.due, Duration::from_micros(longest))
+    }
+}
+
 /// The requests of one robot to others, at most `P` at a time; 24 bytes each.
 ///
-/// Time is compared by wrapped difference: [`Requests::poll`] must be called at least every half
-/// hour while requests are on their way.
+/// After a pause of any length [`Requests::poll`] goes on with what was on its way: see
+/// [`Instant::has_reached`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Requests<const P: usize> {
     pending: Vec<Pending, P>,
@@ -158,18 +166,20 @@ impl<const P: usize> Requests<P> {
     /// The next thing to do at `now`; call until `None`, which comes after at most 2 `P` calls
     /// (when [`Retry::interval`] is more than 0). O(`P`) each.
     pub fn poll(&mut self, now: Instant) -> Option<Due> {
+        let retry = self.retry;
         let pending = self
             .pending
             .iter_mut()
-            .find(|pending| !now.is_before(pending.due))?;
+            .find(|pending| pending.is_due(retry, now))?;
         let request = pending.request;
-        let is_over = pending.sent >= self.retry.attempts || !now.is_before(pending.expiry);
+        let valid = Duration::from_millis(request.valid_ms.into());
+        let is_over = pending.sent >= retry.attempts || now.has_reached(pending.expiry, valid);
         if pending.sent > 0 && is_over {
             self.remove(request.number);
             return Some(Due::Expired(request));
         }
         pending.sent = pending.sent.saturating_add(1);
-        let again = now + self.retry.interval + jitter(self.retry, self.own, request, pending.sent);
+        let again = now + retry.interval + jitter(retry, self.own, request, pending.sent);
         pending.due = if again.is_before(pending.expiry) {
             again
         } else {
@@ -184,7 +194,11 @@ impl<const P: usize> Requests<P> {
     pub fn poll_at(&self, now: Instant) -> Option<Instant> {
         self.pending
             .iter()
-            .map(|pending| pending.due)
+            .map(|pending| {
+                // What only seems to lie ahead after a long pause is to be done now.
+                let has_come = pending.is_due(self.retry, now) && now.is_before(pending.due);
+                if has_come { now } else { pending.due }
+            })
             .min_by_key(|due| due.since(now))
     }
 

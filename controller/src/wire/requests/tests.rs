@@ -100,7 +100,7 @@ fn a_request_expires_with_its_validity_but_not_before_its_first_send() {
     requests.ask(A, OWN, Stop, 300, START).unwrap();
     assert_eq!(poll(&mut requests, START).len(), 1);
     assert_eq!(sent(&poll(&mut requests, after(250))).len(), 1);
-    assert_eq!(requests.poll_at(START), Some(after(300)));
+    assert_eq!(requests.poll_at(after(250)), Some(after(300)));
     assert!(matches!(
         poll(&mut requests, after(300)).as_slice(),
         [Due::Expired(_)]
