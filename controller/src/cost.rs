@@ -99,7 +99,11 @@ impl Weights {
     pub fn plus(mut self, other: &Self) -> Self {
         for (dir, cost) in other.iter() {
             let own = self.get(dir);
-            self.set(dir, own.saturating_add(cost));
+            if own != EXCLUDED && cost != EXCLUDED {
+                self.set(dir, own.saturating_add(cost).min(EXCLUDED - 1));
+            } else {
+                self.set(dir, EXCLUDED);
+            }
         }
         self
     }
@@ -114,5 +118,25 @@ impl Weights {
     /// All moves with their weights.
     pub fn iter(&self) -> impl Iterator<Item = (Dir, Cost)> + '_ {
         Dir::MOVES.into_iter().zip(self.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_close_no_move_that_both_leave_open() {
+        let costs = |first, second| {
+            let mut weights = Weights::new([1; 8]);
+            weights.set(Dir::East, first);
+            weights.set(Dir::North, second);
+            weights
+        };
+        let sum = costs(EXCLUDED - 1, EXCLUDED).plus(&costs(EXCLUDED - 1, 0));
+        assert_eq!(sum.get(Dir::East), EXCLUDED - 1);
+        assert_eq!(sum.get(Dir::North), EXCLUDED);
+        assert_eq!(sum.get(Dir::South), 2);
+        assert_eq!(sum.get(Dir::Stay), EXCLUDED);
     }
 }

@@ -250,6 +250,22 @@ impl<'a> Window<'a> {
         inside.then(|| usize::from(dy) * usize::from(self.width) + usize::from(dx))
     }
 
+    /// The part of the window within `radius` cells (Chebyshev) of `center`: its south-west cell, width
+    /// and height; width or height is 0 when there is none.
+    #[must_use]
+    pub fn cut(&self, center: Cell, radius: u8) -> (Cell, u16, u16) {
+        let radius = i32::from(radius);
+        let span = |center: i16, origin: i16, size: u16| {
+            let low = (i32::from(center) - radius).max(i32::from(origin));
+            let high = (i32::from(center) + radius).min(i32::from(origin) + i32::from(size) - 1);
+            // Between two i16 values: the origin's and the centre's, or no farther west.
+            (low as i16, u16::try_from(high - low + 1).unwrap_or(0))
+        };
+        let (west, width) = span(center.x, self.origin.x, self.width);
+        let (south, height) = span(center.y, self.origin.y, self.height);
+        (Cell::new(west, south), width, height)
+    }
+
     /// Impassability of `cell`: `None` when outside the window, `Some(BLOCKED)` for a wall.
     #[must_use]
     pub fn get(&self, cell: Cell) -> Option<u8> {

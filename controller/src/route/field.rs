@@ -99,7 +99,8 @@ impl<const CELLS: usize> CostField<CELLS> {
     /// # Errors
     /// [`Unreachable`] when no exit can be reached, or `from` is not in the window.
     ///
-    /// Work: O(w h) for costs of bounded ratio; at most three searches.
+    /// Work: at most three searches, each O(w h) while costs lie within 64 times the cheapest move of
+    /// each other, as they do with sensible gains, and never more than O((w h)^2).
     pub fn weights<const M: usize>(
         &mut self,
         params: &RouteParams,
@@ -203,16 +204,8 @@ impl<const CELLS: usize> CostField<CELLS> {
         others: impl IntoIterator<Item = Cell>,
         visits: Option<&VisitMemory<M>>,
     ) {
-        let radius = i32::from(params.radius);
-        let span = |center: i16, origin: i16, size: u16| {
-            let low = (i32::from(center) - radius).max(i32::from(origin));
-            let high = (i32::from(center) + radius).min(i32::from(origin) + i32::from(size) - 1);
-            (low, u16::try_from(high - low + 1).unwrap_or(0))
-        };
-        let (west, width) = span(from.x, window.origin().x, window.width());
-        let (south, height) = span(from.y, window.origin().y, window.height());
-        // Both lie between two i16 values, or the window is empty.
-        self.origin = Cell::new(west as i16, south as i16);
+        let (origin, width, height) = window.cut(from, params.radius);
+        self.origin = origin;
         self.stride = usize::from(width) + 2;
         let rows = CELLS
             .checked_div(self.stride)
@@ -297,10 +290,12 @@ impl<const CELLS: usize> CostField<CELLS> {
 
     /// Empties bucket after bucket until nothing is left or `is_enough`.
     fn advance(&mut self, params: &RouteParams, is_enough: impl Fn(&Self) -> bool) {
+        let mut idle = 0;
         while self.occupied != 0 && !is_enough(self) {
             let slot = self.at & (RING - 1);
             let gap = self.occupied.rotate_right(slot).trailing_zeros();
             let at = self.at.saturating_add(gap);
+            idle += 1;
             while let Some(cell) = self.pop(at & (RING - 1)) {
                 let cost = self.cost.get(cell).copied().unwrap_or(0);
                 let due = cost >> self.shift;
@@ -309,9 +304,36 @@ impl<const CELLS: usize> CostField<CELLS> {
                     self.link(cell, due.min(at.saturating_add(RING - 1)));
                 } else {
                     self.settle(params, cell, cost, at);
+                    idle = 0;
                 }
             }
             self.at = at.saturating_add(1);
+            if idle > RING {
+                self.skip();
+                idle = 0;
+            }
+        }
+    }
+
+    /// Goes to the next cell at once when a whole turn of the ring settled none: extreme gains set costs so
+    /// far apart that turning on would take for ever. O(w h), and then a cell is settled.
+    fn skip(&mut self) {
+        self.at = self.lowest_offer();
+        // Beyond the window lies what a search of a larger one left.
+        let used = (usize::from(self.height) + 2) * self.stride;
+        for cell in 0..used {
+            if self
+                .bucket
+                .get(cell)
+                .is_some_and(|&of| u32::from(of) != RING)
+            {
+                let cost = self.cost.get(cell).copied().unwrap_or(0);
+                self.unlink(cell);
+                self.link(
+                    cell,
+                    (cost >> self.shift).min(self.at.saturating_add(RING - 1)),
+                );
+            }
         }
     }
 
@@ -400,13 +422,19 @@ impl<const CELLS: usize> CostField<CELLS> {
 
     /// Makes every border cell an exit, priced by its distance to the target (eq. 10).
     fn offer_border(&mut self, query: &Query<'_>) {
+        let Query { params, target, .. } = *query;
+        let distance = |cell: Cell| cell.distance(target, params.norm);
+        // Where prices would leave the range of costs, all are less by the least of them.
+        let size = u32::from(self.width) + u32::from(self.height);
+        let farthest = (query.from_cell.chebyshev(target) + size) * DIAGONAL;
+        let base = if params.a3.of(farthest) < EXCLUDED >> 1 {
+            0
+        } else {
+            self.border().map(distance).min().unwrap_or(0)
+        };
         for cell in self.border() {
-            let price = query
-                .params
-                .a3
-                .of(cell.distance(query.target, query.params.norm));
             if let Some(at) = self.index(cell) {
-                self.offer(at, price);
+                self.offer(at, params.a3.of(distance(cell) - base));
             }
         }
     }
