@@ -5,6 +5,13 @@
 //! priority w'; here w' = 2^(-(w - least) / h): the priority halves with every h of extra cost, so
 //! that only differences between moves matter and h says what difference is noticed. Keys are
 //! compared by their logarithm, log2 Exp(1) + (w - least) / h, in integers.
+//!
+//! What the paper asks of the shuffle holds: equal moves come first equally often, and "the probability
+//! of a direction that breaks the formation is close to zero" (item 4), since a move that is k halvings
+//! worse comes before the best one in 1 of 2^k + 1 draws. A w' like 1 / w would not do: on a long way all
+//! w are large and nearly equal, and the robot would walk at random. Small h gives the greedy order
+//! with ties drawn; the larger h, the oftener robots leave the best way, and the sooner two that block
+//! each other part.
 
 use crate::cost::{Cost, EXCLUDED, Gain, Weights};
 use crate::grid::{Dir, UNIT};

@@ -3,11 +3,12 @@
 
 use super::guidance::{Ask, BadInput, Guidance, Guided, View};
 use super::route_guidance::GridWorkspace;
-use super::travel::{Travel, reachable_goal};
+use super::travel::{PATIENCE, Travel, on_grid, reachable_goal};
 use crate::cost::{Gain, Weights};
 use crate::formation::{
-    Anchor, FormationParams, Found, Member, Pace, Prediction, Recovery, Seen, Template, aim,
-    blended, def, distances, find_leader, find_neighbors, lag, should_stay,
+    Anchor, FormationParams, Found, GraphDistance, Member, Pace, Prediction, Recovery, Seen,
+    Template, aim, blended, def, distances, find_leader, find_neighbors, graph_distance, lag,
+    should_stay,
 };
 use crate::grid::{BLOCKED, Cell, Dir, Window};
 use crate::neighbor::Neighbor;
@@ -39,6 +40,10 @@ pub struct FormationGuidance<const CELLS: usize, const M: usize, const F: usize>
     travel: Travel,
     pace: Pace,
     leader: RobotId,
+    /// From the leader's place to one's own.
+    leader_offset: Cell,
+    /// Decisions in which somebody stood in a neighbour's place.
+    crowded: u8,
     /// The robot has asked its leader to stop.
     has_asked: bool,
 }
@@ -71,6 +76,8 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
             travel: Travel::new(),
             pace: Pace::new(),
             leader: RobotId::NOBODY,
+            leader_offset: Cell::new(0, 0),
+            crowded: 0,
             has_asked: false,
         }
     }
@@ -88,28 +95,41 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
         &self.template
     }
 
-    /// The others, each with the cell where it will be when one's own next move is over.
+    /// How far the neighbours are from what the template wants, for a robot in `cell` that knows
+    /// `neighbors`: see [`Agent::neighbors`](super::Agent::neighbors). O(F N).
+    #[must_use]
+    pub fn graph_distance<S>(&self, cell: Cell, neighbors: &[Neighbor<S>]) -> GraphDistance {
+        let robots = neighbors.iter().map(|other| seen_at(other, other.cell));
+        let found = find_neighbors(&self.template, cell, self.formation.eps, robots);
+        graph_distance(cell, &found)
+    }
+
+    /// Whether its template or its leader chain is about this robot.
+    fn concerns(&self, id: RobotId) -> bool {
+        id == self.leader || self.template.entries.iter().any(|entry| entry.id == id)
+    }
+
+    /// The others, each with the cell where it will be when one's own next move is over; of more than
+    /// 32 those of the template and the leader, then the smallest numbers.
     fn seen<S>(
         &self,
         view: &View<'_, S>,
         window: &Window<'_>,
         field: &mut CostField<CELLS>,
     ) -> Vec<Seen, 32> {
-        let mut all: Vec<Seen, 32> = view
-            .neighbors
-            .iter()
-            .take(32)
-            .map(|neighbor| Seen {
-                id: neighbor.id,
-                cell: neighbor.cell,
-                predicted: self.foresee(view, window, neighbor),
-                heading: neighbor.heading,
-                leader: neighbor.leader,
-                mode: neighbor.mode,
-            })
-            .collect();
+        let top = self.top(view);
+        let mut all: Vec<Seen, 32> = Vec::new();
+        for wanted in [true, false] {
+            let others = view.neighbors.iter().filter(|other| {
+                let is_top = top.is_some_and(|(top, _)| top == other.id);
+                (is_top || self.concerns(other.id)) == wanted
+            });
+            for other in others {
+                // The rest has no room.
+                let _ = all.push(seen_at(other, self.foresee(view, window, other)));
+            }
+        }
         if self.formation.prediction == Prediction::Reflexive {
-            let top = self.top(view);
             for index in 0..all.len() {
                 let own = (self.template.entries.iter())
                     .find(|entry| all.get(index).is_some_and(|seen| seen.id == entry.id));
@@ -211,6 +231,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
             let offset = match named {
                 Some(entry) => Cell::default() - entry.offset,
                 None if !robot.leader.is_somebody() => self.template.offset,
+                None if robot.id == self.leader => self.leader_offset,
                 None => return None,
             };
             Some((robot.id, offset))
@@ -224,6 +245,11 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
         let leader = find_leader(view.id, &found.members);
         if leader.is_somebody() || view.neighbor(self.leader).is_none() {
             self.leader = leader;
+        }
+        // In a place for anyone the template does not tell whose place it is.
+        let member = found.members.iter().find(|m| m.seen.id == self.leader);
+        if let Some(member) = member {
+            self.leader_offset = Cell::default() - member.offset;
         }
     }
 
@@ -240,12 +266,8 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
         let shown = if self.formation.footprint == 0 || found.members.is_empty() {
             None
         } else {
-            blended(
-                window,
-                &self.template.entries,
-                self.formation.footprint,
-                land,
-            )
+            let (around, share) = ((cell, self.route.radius), self.formation.footprint);
+            blended(window, around, &self.template.entries, share, land)
         };
         let shown = shown.as_ref().unwrap_or(window);
         let others = view.neighbors.iter().map(|neighbor| neighbor.cell);
@@ -270,8 +292,9 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
             (aim(&guide.anchor, self.formation.lead), &found.members)
         };
         let place = reachable_goal(window, place);
+        let price = distances(&self.formation, cell, Some(place), members);
         if place == cell {
-            return Some(distances(&self.formation, cell, Some(place), members));
+            return Some(price);
         }
         // Beyond the window it can circle before a hill, hence remembers; near its place it comes by
         // the same cells for good reasons.
@@ -282,7 +305,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
             .field
             .weights(&self.route, window, cell, place, others, visits)
             .ok()?;
-        Some(weights.plus(&distances(&self.formation, cell, Some(place), members)))
+        Some(weights.plus(&price))
     }
 
     /// The top leader seen by a follower.
@@ -301,6 +324,24 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
         })
     }
 
+    /// Asks a stranger who has stood in a neighbour's place for long to choose another direction (KUZ
+    /// section 7, item 6).
+    fn ask_surplus(&mut self, found: &Found<F>) -> Option<Ask> {
+        if found.more == 0 {
+            self.crowded = 0;
+            return None;
+        }
+        self.crowded = self.crowded.saturating_add(1);
+        if self.crowded < PATIENCE {
+            return None;
+        }
+        self.crowded = 0;
+        Some(Ask {
+            to: found.surplus,
+            kind: RequestKind::Redirect,
+        })
+    }
+
     /// Asks the leader to stop when too far behind, and to resume when near again.
     fn ask_pace(&mut self, leader: RobotId, lag: u32) -> Option<Ask> {
         let has_fallen_behind = self.pace.update(&self.formation, lag);
@@ -311,6 +352,18 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
         };
         self.has_asked = has_fallen_behind;
         Some(Ask { to: leader, kind })
+    }
+}
+
+/// A neighbour as the formation sees it.
+fn seen_at<S>(other: &Neighbor<S>, predicted: Cell) -> Seen {
+    Seen {
+        id: other.id,
+        cell: other.cell,
+        predicted,
+        heading: other.heading,
+        leader: other.leader,
+        mode: other.mode,
     }
 }
 
@@ -325,8 +378,7 @@ impl<S, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
         rng: &mut Rng,
         workspace: &mut Self::Workspace,
     ) -> Result<Guided, BadInput> {
-        let cell = view.cell.ok_or(BadInput)?.cell;
-        let window = view.window.ok_or(BadInput)?;
+        let (cell, window) = on_grid(view)?;
         let target = reachable_goal(&window, view.goal);
         self.router.observe(&self.route, cell, target);
 
@@ -356,6 +408,7 @@ impl<S, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
             guided.is_at_goal &= guide.has_arrived;
             let weights = self.follow(view, &window, (cell, target), guide, &found, workspace);
             if let (Some(first), false) = (weights.and_then(|w| w.best()), guide.has_arrived) {
+                // By the place that it should have, be it in a wall.
                 stays = should_stay(cell, aim(&guide.anchor, self.formation.lead), first);
             }
             weights
@@ -376,8 +429,12 @@ impl<S, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
         guided.moves = Travel::order(&weights, self.sharpness, ALTERNATIVES, rng);
         if guided.waits && self.formation.recovery == Recovery::Def {
             let towards = def(cell, &found.members);
-            guided.waits = towards == Dir::Stay;
-            guided.moves = core::iter::once(towards).collect();
+            guided.recovers = towards != Dir::Stay;
+            guided.waits = !guided.recovers;
+            guided.moves = Some(towards)
+                .filter(|_| guided.recovers)
+                .into_iter()
+                .collect();
         }
         if stays {
             guided.moves.clear();
@@ -385,8 +442,9 @@ impl<S, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
         let choice = guided.moves.first().copied().unwrap_or_default();
         let blocked = self.travel.note(view, cell, choice);
         if !guided.waits && !guided.is_at_goal {
-            // One place is left: asks hold two.
+            // Asks hold three: for the pace, and these two.
             guided.asks.extend(blocked);
+            guided.asks.extend(self.ask_surplus(&found));
         }
         Ok(guided)
     }

@@ -67,12 +67,14 @@ pub struct Guided {
     pub waits: bool,
     /// No exit of the window can be reached.
     pub is_stuck: bool,
+    /// It heads for where its followers are off to, and so goes on though they ask it to stop.
+    pub recovers: bool,
     /// It is too far from its place in the formation.
     pub is_off_place: bool,
     /// It was asked to make way: it moves even if it has arrived or waits.
     pub makes_way: bool,
     /// What it asks of others.
-    pub asks: Vec<Ask, 2>,
+    pub asks: Vec<Ask, 3>,
 }
 
 /// An input without which the guidance cannot decide is missing, or contradicts another one.

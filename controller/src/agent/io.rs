@@ -36,7 +36,9 @@ pub struct Inputs<'a, S> {
     pub pose: Pose<S>,
     /// Own state on the grid; `None` for robots that do not move cell by cell.
     pub cell: Option<CellState>,
-    /// The terrain that the robot can see; `None`: none this time.
+    /// The terrain that the robot can see, its own cell included (without it, or with `None`, a robot on
+    /// the grid is in [`Mode::Fault`] and stands). Of any size: routes are searched within the
+    /// radius of [`RouteParams`](crate::route::RouteParams) in it.
     pub window: Option<Window<'a>>,
     /// What the radio delivered since the last step: COBS frames, each ended by a zero byte, in
     /// order of arrival. Damaged, foreign and partial frames are recognised and counted.

@@ -8,7 +8,7 @@ use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 use crate::wire::{
     Arrival, Beacon, Due, Frame, Header, Message, Newest, Orders, Request, RequestKind, Requests,
-    Retry, RobotId, SequenceWindow, TemplateAssignment, decode, encode, frames,
+    Retry, RobotId, SequenceWindow, TemplateAssignment, decode, encode,
 };
 use heapless::Vec;
 
@@ -18,6 +18,9 @@ const PENDING: usize = 4;
 const ORDERS: usize = 8;
 /// Bytes that acknowledgements and requests leave free for the beacon.
 const RESERVED: usize = Beacon::MAX_FRAME_LEN;
+
+/// Where a robot stands whose cell nobody told: in the corner of all maps, in nobody's way.
+const NO_CELL: Cell = Cell::new(i16::MIN, i16::MIN);
 
 /// News that is not kept here but acted on by the agent.
 pub(super) enum News {
@@ -76,86 +79,98 @@ impl<S: Scalar, const N: usize> Link<S, N> {
         }
     }
 
-    /// Reads what arrived, frame by frame, and acknowledges requests; calls `act` for what
-    /// concerns others.
-    pub(super) fn listen(
-        &mut self,
-        inbox: &[u8],
-        now: Instant,
-        listener: &Listener<'_, S>,
-        out: &mut Outputs,
-        mut act: impl FnMut(News),
-    ) {
+    /// Forgets who was silent for too long. The first thing in each step.
+    pub(super) fn expire(&mut self, now: Instant, out: &mut Outputs) {
         let windows = &mut self.windows;
         self.table.expire(now, |lost| {
             windows.retain(|(id, _)| *id != lost);
             report(out, Event::NeighborLost(lost));
         });
-        for bytes in frames(inbox) {
-            let heard =
-                decode(bytes).is_ok_and(|frame| self.hear(&frame, now, listener, out, &mut act));
-            let count = if heard {
-                &mut out.received
-            } else {
-                &mut out.rejected
-            };
-            *count = count.saturating_add(1);
-        }
     }
 
-    /// Takes one sound frame in; whether it was of use.
-    fn hear(
+    /// Takes one frame in, acknowledges a request, and returns what the agent must act on.
+    pub(super) fn hear(
         &mut self,
-        frame: &Frame,
+        bytes: &[u8],
         now: Instant,
         listener: &Listener<'_, S>,
         out: &mut Outputs,
-        act: &mut impl FnMut(News),
-    ) -> bool {
-        let Header { sender, .. } = frame.header;
+    ) -> Option<News> {
+        let frame = decode(bytes).ok().and_then(|frame| {
+            let arrival = self.arrival(frame.header, out)?;
+            Some((frame, arrival))
+        });
+        let count = if frame.is_some() {
+            &mut out.received
+        } else {
+            &mut out.rejected
+        };
+        *count = count.saturating_add(1);
+        let (frame, arrival) = frame?;
+        self.take(frame, arrival, now, listener, out)
+    }
+
+    /// How a frame stands to those before it; `None` for one to refuse.
+    fn arrival(&mut self, header: Header, out: &mut Outputs) -> Option<Arrival> {
+        let Header { sender, .. } = header;
         if sender == self.header.sender {
-            return false;
+            return None;
         }
         let window = self.windows.iter_mut().find(|(id, _)| *id == sender);
-        let arrival = window.map_or(Arrival::New, |(_, window)| window.check(frame.header));
-        if !arrival.is_accepted() {
-            return false;
-        }
+        let arrival = window.map_or(Arrival::New, |(_, window)| window.check(header));
         if arrival == Arrival::Rebooted {
             self.orders.forget(sender);
             report(out, Event::NeighborRebooted(sender));
         }
+        arrival.is_accepted().then_some(arrival)
+    }
+
+    fn take(
+        &mut self,
+        frame: Frame,
+        arrival: Arrival,
+        now: Instant,
+        listener: &Listener<'_, S>,
+        out: &mut Outputs,
+    ) -> Option<News> {
+        let Header { sender, .. } = frame.header;
         let is_mine = |to: RobotId| to == self.header.sender;
-        match &frame.message {
+        match frame.message {
             Message::Beacon(beacon) if arrival.is_latest() => {
-                let neighbor = Neighbor::from_beacon(sender, beacon, now);
+                let neighbor = Neighbor::from_beacon(sender, &beacon, now);
                 self.keep(neighbor, frame.header, now, listener, out);
             }
             Message::Compact(beacon) if arrival.is_latest() => {
-                // Without cells: kept for guidance and safety in the plane.
-                let neighbor = Neighbor::from_compact(sender, beacon, Cell::default(), now);
+                let heard = Neighbor::from_compact(sender, &beacon, NO_CELL, now);
+                // What it does not say is as it was said last.
+                let known = self.table.get(sender, now).known();
+                let neighbor = known.map_or(heard, |known| Neighbor {
+                    heard: now,
+                    position_m: heard.position_m,
+                    velocity_mps: heard.velocity_mps,
+                    radius_m: heard.radius_m,
+                    mode: heard.mode,
+                    ..*known
+                });
                 self.keep(neighbor, frame.header, now, listener, out);
             }
             Message::Request(request) if is_mine(request.to) => {
-                let answer = self.orders.receive(frame.header, request, now);
+                let answer = self.orders.receive(frame.header, &request, now);
                 self.say(&Message::Ack(answer.ack), RESERVED, out);
                 match request.kind {
-                    RequestKind::Redirect if answer.is_new => act(News::Redirect),
-                    RequestKind::Stop | RequestKind::Resume if answer.is_new => {
-                        act(News::PassOn(*request));
-                    }
-                    _ => {}
+                    _ if !answer.is_new => {}
+                    RequestKind::Redirect => return Some(News::Redirect),
+                    RequestKind::Stop | RequestKind::Resume => return Some(News::PassOn(request)),
                 }
             }
             Message::Ack(ack) if is_mine(ack.to) => {
                 // A second acknowledgement of the same request is as good as none.
-                let _ = self.requests.acknowledged(sender, ack);
+                let _ = self.requests.acknowledged(sender, &ack);
             }
             Message::Template(part) if is_mine(part.to) => {
                 let [_, commander] = &mut self.commanders;
                 let is_anew = is_another(commander, frame.header);
-                let part = part.clone();
-                act(News::Template { part, is_anew });
+                return Some(News::Template { part, is_anew });
             }
             Message::Goal(goal) if is_mine(goal.to) || !goal.to.is_somebody() => {
                 let [commander, _] = &mut self.commanders;
@@ -163,13 +178,13 @@ impl<S: Scalar, const N: usize> Link<S, N> {
                     self.goal.forget();
                 }
                 if self.goal.admit(goal.version) {
-                    act(News::Goal(goal.target));
+                    return Some(News::Goal(goal.target));
                 }
             }
             // An old beacon, or for somebody else.
             _ => {}
         }
-        true
+        None
     }
 
     fn keep(
@@ -205,9 +220,15 @@ impl<S: Scalar, const N: usize> Link<S, N> {
         valid: Duration,
         now: Instant,
     ) {
-        let millis = i64::from(valid.as_micros()).checked_div(1000).unwrap_or(0);
+        let millis = valid.as_micros().max(0).checked_div(1000).unwrap_or(0);
         let millis = u16::try_from(millis).unwrap_or(u16::MAX);
         let _ = self.requests.ask(to, origin, kind, millis, now);
+    }
+
+    /// Whether no request is on its way.
+    #[cfg(test)]
+    pub(super) fn is_quiet(&self) -> bool {
+        self.requests.is_empty()
     }
 
     /// Whether somebody's stop stands.
@@ -233,7 +254,7 @@ impl<S: Scalar, const N: usize> Link<S, N> {
                 None => break,
             }
         }
-        if !self.has_sent || !now.is_before(self.beacon_due) {
+        if !self.has_sent || now.has_reached(self.beacon_due, period) {
             self.say(&Message::Beacon(beacon()), 0, out);
             self.has_sent = true;
             self.beacon_due = now + period;

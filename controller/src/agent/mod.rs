@@ -52,12 +52,12 @@ pub use io::{CellState, Command, EVENTS, Event, Inputs, OUTBOX, Outputs, Pose};
 pub use route_guidance::{GridWorkspace, RouteGuidance};
 
 use crate::grid::{Cell, Dir};
-use crate::neighbor::{Ages, Neighbor};
+use crate::neighbor::{Ages, Knowledge, Neighbor};
 use crate::rand::Rng;
 use crate::scalar::Scalar;
 use crate::supervisor::{Situation, moves, next_mode};
 use crate::time::{Duration, Instant};
-use crate::wire::{Beacon, Mode, Retry, RobotId};
+use crate::wire::{Beacon, Mode, Retry, RobotId, frames};
 use link::{Link, Listener, News, report};
 
 /// Keeps the agent's draws apart from other uses of randomness.
@@ -85,9 +85,9 @@ const BYTES: [usize; 3] = [
     size_of::<GridWorkspace<CELLS>>(),
 ];
 #[cfg(target_pointer_width = "32")]
-const _: () = assert!(matches!(BYTES, [2000, 2248, 2704]));
+const _: () = assert!(matches!(BYTES, [2000, 2256, 2704]));
 #[cfg(target_pointer_width = "64")]
-const _: () = assert!(matches!(BYTES, [2040, 2288, 2712]));
+const _: () = assert!(matches!(BYTES, [2040, 2296, 2712]));
 
 /// What does not change while the robot runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -139,20 +139,29 @@ impl<S: Scalar> AgentConfig<S> {
 
 /// The controller of one robot: guidance `G`, at most `N` known neighbours.
 ///
-/// Bytes for the default capacities on a 32-bit part: 2000 for [`RouteAgent`], 2248 for
+/// Bytes for the default capacities on a 32-bit part: 2000 for [`RouteAgent`], 2256 for
 /// [`FormationAgent`], and 2704 of workspace that all agents of a processor share; on a 64-bit host
-/// 2040, 2288 and 2712. The build fails when one of them changes unnoticed.
+/// 2040, 2296 and 2712. The build fails when one of them changes unnoticed.
 #[derive(Clone, Debug)]
 pub struct Agent<S, G, const N: usize> {
     config: AgentConfig<S>,
     guidance: G,
     link: Link<S, N>,
     mode: Mode,
-    goal: Option<Cell>,
+    goal: Option<Goal>,
     /// Decisions so far: each has random numbers of its own.
     decisions: u32,
     /// The last decision, as others and the next step need it.
     last: Last,
+}
+
+/// Where to go.
+#[derive(Clone, Copy, Debug)]
+enum Goal {
+    /// This robot, wherever its place in a formation is.
+    Own(Cell),
+    /// The top leader of its formation, and this robot beside it, wherever its place will be then.
+    Formation(Cell),
 }
 
 /// What stays of a decision.
@@ -193,9 +202,10 @@ impl<S: Scalar, G: Guidance<S>, const N: usize> Agent<S, G, N> {
         }
     }
 
-    /// Gives the robot a goal of its own.
+    /// Gives the robot a goal of its own, which a new place in the formation does not move (one that
+    /// comes as a [`GoalAssignment`](crate::wire::GoalAssignment) is the formation's and moves).
     pub const fn assign_goal(&mut self, goal: Cell) {
-        self.goal = Some(goal);
+        self.goal = Some(Goal::Own(goal));
         self.last.target = goal;
     }
 
@@ -221,6 +231,18 @@ impl<S: Scalar, G: Guidance<S>, const N: usize> Agent<S, G, N> {
     #[must_use]
     pub fn neighbors(&self) -> &[Neighbor<S>] {
         self.link.table.as_slice()
+    }
+
+    /// What is known of robot `id` at `now`, and whether it can still be trusted. O(log N).
+    #[must_use]
+    pub fn neighbor(&self, id: RobotId, now: Instant) -> Knowledge<'_, S> {
+        self.link.table.get(id, now)
+    }
+
+    /// The guidance, for what it can tell of itself.
+    #[must_use]
+    pub const fn guidance(&self) -> &G {
+        &self.guidance
     }
 
     /// One step: hear, decide, speak. A pure function of the agent, `inputs` and `now`.
@@ -252,38 +274,43 @@ impl<S: Scalar, G: Guidance<S>, const N: usize> Agent<S, G, N> {
             ..
         } = self;
         let leader = last.leader;
-        // At most one of each kind can matter in one step, the newest goal being the last.
-        let mut redirected = false;
-        let mut new_goal = None;
         let mut pass_on = heapless::Vec::<_, 4>::new();
-        let mut parts = heapless::Vec::<_, 4>::new();
-        let needs = |id| id == leader || guidance.needs(id);
-        let listener = Listener {
-            position_m: inputs.pose.position_m,
-            needs: &needs,
-        };
-        link.listen(inputs.inbox, now, &listener, out, |news| match news {
-            News::Redirect => redirected = true,
-            News::Goal(cell) => new_goal = Some(cell),
-            // What does not fit is sent again.
-            News::PassOn(request) => drop(pass_on.push(request)),
-            News::Template { part, is_anew } => drop(parts.push((part, is_anew))),
-        });
-        for (part, is_anew) in &parts {
-            let _ = guidance.assign_template(part, *is_anew);
+        link.expire(now, out);
+        for bytes in frames(inputs.inbox) {
+            let listener = Listener {
+                position_m: inputs.pose.position_m,
+                needs: &|id| id == leader || guidance.needs(id),
+            };
+            match link.hear(bytes, now, &listener, out) {
+                None => {}
+                Some(News::Redirect) => guidance.redirect(),
+                Some(News::Goal(top)) => {
+                    *goal = Some(Goal::Formation(top));
+                    last.target = top + guidance.goal_offset();
+                }
+                // One that is refused is of no use, and its sender will not hear of it.
+                Some(News::Template { part, is_anew }) => {
+                    let _ = guidance.assign_template(&part, is_anew);
+                }
+                // One without room is lost: a stop is asked for again, an old one expires.
+                Some(News::PassOn(request)) => drop(pass_on.push(request)),
+            }
         }
-        if redirected {
-            guidance.redirect();
-        }
-        if let Some(top_goal) = new_goal {
-            *goal = Some(top_goal + guidance.goal_offset());
-        }
+        // At the end, so that what was acknowledged in this step has made room.
         for request in pass_on {
             if leader.is_somebody() && leader != request.origin {
                 let valid = Duration::from_millis(request.valid_ms.into());
                 link.ask(leader, request.origin, request.kind, valid, now);
             }
         }
+    }
+
+    /// The own goal in the world.
+    fn goal_cell(&self) -> Option<Cell> {
+        Some(match self.goal? {
+            Goal::Own(cell) => cell,
+            Goal::Formation(top) => top + self.guidance.goal_offset(),
+        })
     }
 
     /// Asks the guidance when the robot is free to move; `None` otherwise.
@@ -294,8 +321,11 @@ impl<S: Scalar, G: Guidance<S>, const N: usize> Agent<S, G, N> {
         workspace: &mut G::Workspace,
         out: &mut Outputs,
     ) -> Option<Guided> {
-        self.last.situation.has_goal = self.goal.is_some();
-        let goal = self.goal?;
+        // Asked in each step, so that its clock never goes half round unnoticed.
+        let is_stopped = self.link.is_stopped(now);
+        let goal = self.goal_cell();
+        self.last.situation.has_goal = goal.is_some();
+        let goal = goal?;
         if inputs.cell.is_some_and(|cell| cell.busy > Duration::ZERO) {
             return None;
         }
@@ -331,7 +361,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize> Agent<S, G, N> {
         situation.is_at_goal = guided.is_at_goal;
         situation.is_stuck = guided.is_stuck;
         situation.is_off_place = guided.is_off_place;
-        situation.is_stopped = guided.waits || (leads && self.link.is_stopped(now));
+        situation.is_stopped = guided.waits || (leads && is_stopped && !guided.recovers);
         self.last.target = guided.target;
         self.last.leader = guided.leader;
         self.last.slot = guided.slot;

@@ -1,7 +1,7 @@
 //! Every robot for itself, to its own goal (KUZ algorithm 1).
 
 use super::guidance::{BadInput, Guidance, Guided, View};
-use super::travel::{Travel, reachable_goal};
+use super::travel::{Travel, on_grid, reachable_goal};
 use crate::grid::{Cell, Dir};
 use crate::rand::Rng;
 use crate::route::{CostField, Replan, RouteParams, Router};
@@ -112,12 +112,11 @@ impl<S, const CELLS: usize, const M: usize> Guidance<S> for RouteGuidance<CELLS,
         rng: &mut Rng,
         workspace: &mut Self::Workspace,
     ) -> Result<Guided, BadInput> {
-        let state = view.cell.ok_or(BadInput)?;
-        let window = view.window.ok_or(BadInput)?;
+        let (cell, window) = on_grid(view)?;
         let target = reachable_goal(&window, view.goal);
-        self.router.observe(&self.params, state.cell, target);
+        self.router.observe(&self.params, cell, target);
         let makes_way = self.travel.take_redirection();
-        let is_at_goal = state.cell == target;
+        let is_at_goal = cell == target;
         let mut guided = Guided {
             target,
             leader: RobotId::NOBODY,
@@ -126,14 +125,12 @@ impl<S, const CELLS: usize, const M: usize> Guidance<S> for RouteGuidance<CELLS,
             ..Guided::default()
         };
         if !is_at_goal || makes_way {
-            let moves = self.moves(view, (state.cell, target), makes_way, rng, workspace);
+            let moves = self.moves(view, (cell, target), makes_way, rng, workspace);
             guided.is_stuck = moves.is_none();
             guided.moves = moves.unwrap_or_default();
         }
         let choice = guided.moves.first().copied().unwrap_or_default();
-        guided
-            .asks
-            .extend(self.travel.note(view, state.cell, choice));
+        guided.asks.extend(self.travel.note(view, cell, choice));
         Ok(guided)
     }
 

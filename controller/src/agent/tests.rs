@@ -491,3 +491,6 @@ fn time_may_wrap() {
     }
     assert_eq!(beacons, 6);
 }
+
+mod faults;
+mod nonsense;

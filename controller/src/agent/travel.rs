@@ -1,7 +1,7 @@
 //! What the guidances on the grid have in common: the last choice, who is in the way, walls at the
 //! goal.
 
-use super::guidance::{Ask, View};
+use super::guidance::{Ask, BadInput, View};
 use crate::cost::Weights;
 use crate::grid::{BLOCKED, Cell, Dir, Window};
 use crate::rand::Rng;
@@ -9,8 +9,8 @@ use crate::shuffle::{Sharpness, weighted_shuffle};
 use crate::wire::{RequestKind, RobotId};
 use heapless::Vec;
 
-/// Decisions in one cell after which whoever stands in the way is asked to choose another direction.
-const PATIENCE: u8 = 4;
+/// Decisions after which whoever stands in the way is asked to choose another direction.
+pub(super) const PATIENCE: u8 = 4;
 
 /// What a robot remembers of its last decisions.
 #[derive(Clone, Debug, Default)]
@@ -97,6 +97,17 @@ fn occupant<S>(view: &View<'_, S>, cell: Cell) -> Option<RobotId> {
         .iter()
         .find(|neighbor| neighbor.cell == cell)
         .map(|neighbor| neighbor.id)
+}
+
+/// The cell of a robot on the grid, and the land that it sees.
+///
+/// # Errors
+/// [`BadInput`] when one is missing, or the window does not show the cell.
+pub(super) fn on_grid<'a, S>(view: &View<'a, S>) -> Result<(Cell, Window<'a>), BadInput> {
+    let cell = view.cell.ok_or(BadInput)?.cell;
+    let window = view.window.ok_or(BadInput)?;
+    let is_in_sight = window.get(cell).is_some();
+    is_in_sight.then_some((cell, window)).ok_or(BadInput)
 }
 
 /// `goal`, or when it is in sight and impassable the nearest passable cell in sight (then the

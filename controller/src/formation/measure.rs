@@ -44,6 +44,9 @@ pub fn graph_distance<const F: usize>(cell: Cell, found: &Found<F>) -> GraphDist
 }
 
 /// The formation error dPhi: a sum over ticks of distances between desired and actual cells.
+///
+/// For whoever knows every cell, such as a ground station that hears all beacons: no robot can say of
+/// itself where the whole formation should be. In integers, so that every observer says the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FormationError {
     sum: u64,
@@ -59,7 +62,8 @@ impl FormationError {
 
     /// Adds one robot in one tick.
     pub fn add(&mut self, desired: Cell, actual: Cell) {
-        self.sum += u64::from(desired.distance(actual, Norm::Euclidean));
+        let off = u64::from(desired.distance(actual, Norm::Euclidean));
+        self.sum = self.sum.saturating_add(off);
         self.count = self.count.saturating_add(1);
     }
 

@@ -13,6 +13,16 @@
 //!   where it is ([`aim`]), weighing their own land against their neighbours' places (algorithm 7).
 //! - The leader waits when somebody has fallen behind by more than r0, rather than when anybody is
 //!   off his place in any direction ([`lag`]): who is ahead or aside loses nothing by going on.
+//! - The paper adds the distances of all neighbours found to the weights. Here it is a gain times half the
+//!   distance to the place by the top leader and half the mean by the direct neighbours
+//!   ([`distances`]): a sum would outweigh the land the more, the more neighbours there are.
+//! - A stop by request makes the top leader stand ([`Recovery::Wait`]); the paper's leader heads for
+//!   `def` instead, which is [`Recovery::Def`].
+//! - When neighbours are missing or strangers stand in their places (item 6), the paper shuffles anew or
+//!   asks the strangers to choose another direction. Here the strangers are asked
+//!   ([`Found::surplus`]); there is nothing to shuffle anew, as each decision is a new draw.
+//! - A leader is chosen anew when the old one falls silent or a smaller number is found (algorithm 2
+//!   chooses at t = 0 only), so that a formation outlives any robot.
 //! - The listing's misprints are resolved: `less` is counted once (algorithm 5), the leader is the
 //!   smallest number (algorithm 6), sums restart for each direction (algorithm 7).
 

@@ -41,6 +41,8 @@ pub struct Found<const F: usize> {
     pub less: u8,
     /// Robots at places where somebody else should be: m1 of the graph distance.
     pub more: u8,
+    /// The first robot that `more` counts; nobody when it is 0.
+    pub surplus: RobotId,
 }
 
 /// Looks for each neighbour of the template within `eps` cells (Chebyshev) of its place, seen from a
@@ -82,7 +84,10 @@ pub fn find_neighbors<const F: usize>(
             None => {
                 found.less = found.less.saturating_add(1);
                 let is_foreign = |seen: &Seen| seen.cell == place && !is_named(seen.id);
-                if robots.clone().any(|seen| is_foreign(&seen)) {
+                if let Some(stranger) = robots.clone().find(is_foreign) {
+                    if found.more == 0 {
+                        found.surplus = stranger.id;
+                    }
                     found.more = found.more.saturating_add(1);
                 }
             }

@@ -1,7 +1,7 @@
 //! What a move costs the formation, and when to wait (KUZ algorithms 2 and 7).
 
 use super::{FormationParams, Member};
-use crate::cost::{Cost, Weights};
+use crate::cost::{Cost, EXCLUDED, Weights};
 use crate::grid::{BLOCKED, Cell, DIAGONAL, Dir, Norm, UNIT, Window};
 use crate::wire::TemplateEntry;
 
@@ -64,7 +64,8 @@ pub fn distances(
             (Some(only), None) | (None, Some(only)) => only,
             (None, None) => 0,
         };
-        params.gain.of(length)
+        // A long way off is no wall.
+        params.gain.of(length).min(EXCLUDED - 1)
     };
     Weights::new(Dir::MOVES.map(price))
 }
@@ -155,41 +156,41 @@ impl Pace {
     }
 }
 
-/// Writes into `out` what the land costs the whole formation when its top leader stands in each cell
-/// of the window: the leader's own cell and, with `footprint` sixteenths, the mean over the cells
-/// of the others' places that the window shows and that are passable. Walls stay walls; where no
+/// Writes into `out` what the land within `radius` cells of `center` costs the whole formation when its
+/// top leader stands there: the leader's own cell and, with `footprint` sixteenths, the mean over the
+/// cells of the others' places that the window shows and that are passable. Walls stay walls; where no
 /// place is in sight the own cell counts alone. O(cells * entries).
 ///
-/// `out` is as long as the window's cells, or the land is left as it is: `None`.
+/// `None`: `out` is too short for (2 radius + 1)^2 cells, or for as many of them as the window shows.
 #[must_use]
 pub fn blended<'a>(
     window: &Window<'_>,
+    (center, radius): (Cell, u8),
     entries: &[TemplateEntry],
     footprint: u8,
     out: &'a mut [u8],
 ) -> Option<Window<'a>> {
-    let out = out.get_mut(..window.cells().len())?;
-    let mut cells = out.iter_mut();
+    let (origin, width, height) = window.cut(center, radius);
+    let out = out.get_mut(..usize::from(width) * usize::from(height))?;
     let share = u32::from(footprint.min(16));
-    for y in 0..window.height() {
-        for x in 0..window.width() {
-            let cell = window.origin() + Cell::new(x.cast_signed(), y.cast_signed());
-            let own = window.get(cell).unwrap_or(BLOCKED);
-            let (sum, count) = entries.iter().fold((0_u32, 0_u32), |(sum, count), entry| {
+    let rows = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    for (price, (x, y)) in out.iter_mut().zip(rows) {
+        let cell = origin + Cell::new(x.cast_signed(), y.cast_signed());
+        let own = window.get(cell).unwrap_or(BLOCKED);
+        let (sum, count) =
+            entries.iter().fold((0_u32, 0_u32), |(sum, count), entry| {
                 match window.get(cell + entry.offset) {
                     Some(u) if u != BLOCKED => (sum + u32::from(u), count + 1),
                     _ => (sum, count),
                 }
             });
-            let price = match (sum * share).checked_div(count) {
-                Some(others) if own != BLOCKED => {
-                    // Sixteenths, rounded to nearest; at least 1, as both parts are.
-                    ((u32::from(own) * (16 - share) + others + 8) >> 4).clamp(1, 255) as u8
-                }
-                _ => own,
-            };
-            *cells.next()? = price;
-        }
+        *price = match (sum * share).checked_div(count) {
+            Some(others) if own != BLOCKED => {
+                // Sixteenths, rounded to nearest; at least 1, as both parts are.
+                ((u32::from(own) * (16 - share) + others + 8) >> 4).clamp(1, 255) as u8
+            }
+            _ => own,
+        };
     }
-    Window::new(out, window.origin(), window.width(), window.height())
+    Window::new(out, origin, width, height)
 }

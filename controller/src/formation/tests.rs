@@ -97,7 +97,8 @@ fn straying_beyond_eps_counts_as_missing_and_a_stranger_in_the_place_as_surplus(
     let strict = found(1, 1, 2, &robots);
     assert_eq!((strict.members.len(), strict.less, strict.more), (1, 1, 0));
     robots.push(seen(9, 7, 10));
-    assert_eq!(found(1, 1, 2, &robots).more, 1);
+    let crowded = found(1, 1, 2, &robots);
+    assert_eq!((crowded.more, crowded.surplus), (1, RobotId(9)));
 }
 
 #[test]
@@ -136,6 +137,20 @@ fn costs_restart_for_each_direction_and_point_to_the_place() {
     assert_eq!(by_top.get(Dir::East), crate::cost::TICK);
     let nobody = distances(&params, Cell::new(5, 10), None, &[]);
     assert_eq!(nobody, crate::cost::Weights::new([0; 8]));
+}
+
+#[test]
+fn places_out_of_reach_close_no_move() {
+    let params = FormationParams {
+        gain: crate::cost::Gain::from_sixteenths(u16::MAX),
+        ..FormationParams::default()
+    };
+    let far = Cell::new(i16::MAX, i16::MIN);
+    assert!(
+        distances(&params, Cell::default(), Some(far), &[])
+            .best()
+            .is_some()
+    );
 }
 
 #[test]
@@ -191,7 +206,7 @@ fn land_is_priced_for_all_who_would_cross_it() {
     };
     let mut out = [0; 4];
     let mut price = |share| {
-        blended(&window, &[entry], share, &mut out)
+        blended(&window, (Cell::new(20, 5), 3), &[entry], share, &mut out)
             .unwrap()
             .cells()
             .to_vec()
@@ -200,7 +215,15 @@ fn land_is_priced_for_all_who_would_cross_it() {
     // West cell: half of 1 and 9. Second: the wall behind counts not. Walls stay.
     assert_eq!(price(8), [5, 1, 9, BLOCKED]);
     assert_eq!(price(16), [9, 1, 9, BLOCKED]);
-    assert!(blended(&window, &[entry], 8, &mut [0; 3]).is_none());
+    let around = (Cell::new(20, 5), 1);
+    assert!(blended(&window, around, &[entry], 8, &mut [0; 1]).is_none());
+    // A larger window than the search needs: only its part is priced, all of it is looked at.
+    let mut near = [0; 2];
+    let near = blended(&window, around, &[entry], 16, &mut near).unwrap();
+    assert_eq!(
+        (near.origin(), near.cells()),
+        (Cell::new(20, 5), &[9, 1][..])
+    );
 }
 
 #[test]

@@ -1,0 +1,432 @@
+//! The chain of requests, leaders that come and go, orders in the middle of a run.
+
+use super::*;
+use crate::formation::Recovery;
+use crate::wire::{Ack, TemplateEntry};
+
+fn goal(version: u8, x: i16) -> Message {
+    Message::Goal(GoalAssignment {
+        to: RobotId::NOBODY,
+        version,
+        target: Cell::new(x, 5),
+    })
+}
+
+/// The parts of a template whose robot stands `behind` cells west of the top leader, robot 1, and
+/// has `others` more neighbours than the leader.
+fn parts(to: u32, version: u8, behind: i16, others: u32) -> Vec<Message> {
+    let neighbors = std::iter::once((1, behind)).chain((20..20 + others).map(|id| (id, 9)));
+    let entries: Vec<TemplateEntry> = neighbors
+        .map(|(id, x)| TemplateEntry {
+            offset: Cell::new(x, 0),
+            id: RobotId(id),
+            hops: 1,
+        })
+        .collect();
+    let offset = Cell::new(-behind, 0);
+    TemplateAssignment::split(RobotId(to), version, 1, offset, &entries)
+        .unwrap()
+        .map(Message::Template)
+        .collect()
+}
+
+fn requests(out: &Outputs) -> Vec<Request> {
+    let requests = sent(out)
+        .into_iter()
+        .filter_map(|frame| match frame.message {
+            Message::Request(request) => Some(request),
+            _ => None,
+        });
+    requests.collect()
+}
+
+/// A template is complete however many copies of its parts one step hears.
+#[test]
+fn a_template_arrives_whole_although_the_radio_repeats_its_parts() {
+    let (mut agent, mut ws) = (formation_agent(2), workspace());
+    let repeated: Vec<Message> = parts(2, 1, 6, 7)
+        .into_iter()
+        .flat_map(|part| [part.clone(), part])
+        .collect();
+    assert_eq!(repeated.len(), 8);
+    let inbox = bytes(99, 0, 0, &repeated);
+    let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(0), &mut ws);
+    assert_eq!(agent.guidance.template().entries.len(), 8);
+}
+
+/// Goals are those of the formation: whoever gets another place in it gets another goal.
+#[test]
+fn a_new_template_moves_the_goal_that_was_given_to_the_formation() {
+    let target_after = |orders: &[&[Message]]| {
+        let (mut agent, mut ws) = (formation_agent(2), workspace());
+        for (n, order) in (0..).zip(orders) {
+            let inbox = bytes(99, 0, 10 * n, order);
+            let _ = agent.step(
+                &inputs(&FLAT, Cell::new(5, 5), &inbox),
+                tick(n.into()),
+                &mut ws,
+            );
+        }
+        agent.target()
+    };
+    let (goal, parts) = ([goal(1, 60)], parts(2, 1, 6, 0));
+    assert_eq!(target_after(&[&goal]), Some(Cell::new(57, 5)));
+    assert_eq!(target_after(&[&goal, &parts]), Some(Cell::new(54, 5)));
+    assert_eq!(target_after(&[&parts, &goal]), Some(Cell::new(54, 5)));
+    // A goal of its own is where its owner wants the robot, whatever its place.
+    let (mut agent, mut ws) = (formation_agent(2), workspace());
+    agent.assign_goal(Cell::new(40, 5));
+    let inbox = bytes(99, 0, 0, &parts);
+    let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(0), &mut ws);
+    assert_eq!(agent.target(), Some(Cell::new(40, 5)));
+}
+
+/// The whole column is sent elsewhere by one packet to everybody, in the middle of its way.
+#[test]
+fn one_goal_for_everybody_turns_the_whole_formation() {
+    let mut agents = [1, 2, 3].map(formation_agent);
+    let mut cells = [11, 8, 5].map(|x| Cell::new(x, 5));
+    let mut ws = workspace();
+    let mut air: Vec<u8> = vec![];
+    for n in 0..120_u32 {
+        let mut inbox = core::mem::take(&mut air);
+        match n {
+            0 => inbox.extend(bytes(99, 0, 0, &[goal(1, 40)])),
+            12 => inbox.extend(bytes(99, 0, 1, &[goal(2, -30)])),
+            _ => {}
+        }
+        for (agent, cell) in agents.iter_mut().zip(&mut cells) {
+            let out = agent.step(&inputs(&FLAT, *cell, &inbox), tick(n), &mut ws);
+            air.extend_from_slice(&out.outbox);
+            if let Command::Move(moves) = out.command {
+                *cell = *cell + moves[0].offset();
+            }
+        }
+        if n == 12 {
+            assert!(cells[0].x > 15, "on its way east: {cells:?}");
+        }
+    }
+    assert_eq!(cells, [-30, -33, -36].map(|x| Cell::new(x, 5)));
+    assert!(agents.iter().all(|agent| agent.mode() == Mode::Arrived));
+}
+
+/// A column in which everything that robot 2 says between ticks 20 and 60 is lost.
+#[test]
+fn a_lost_leader_is_forgotten_and_followed_again_when_it_is_back() {
+    let (mut agent, mut ws) = (formation_agent(3), workspace());
+    agent.assign_goal(Cell::new(60, 5));
+    let mut leaders = vec![];
+    for n in 0..100_u32 {
+        let silent = (20..60).contains(&n);
+        let beacon = Message::Beacon(beacon_at(8, 5));
+        let inbox = if silent {
+            vec![]
+        } else {
+            bytes(2, 0, n as u16, &[beacon])
+        };
+        let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(n), &mut ws);
+        if leaders.last() != Some(&(agent.leader().0)) {
+            leaders.push(agent.leader().0);
+        }
+        assert!(requests(&out).is_empty());
+        assert_ne!(agent.mode(), Mode::Hold);
+    }
+    assert_eq!(leaders, [2, 0, 2]);
+}
+
+/// Beacons that make circles of leaders, follow themselves, or follow whom they lead.
+#[test]
+fn leader_chains_that_lie_end() {
+    for [second, first] in [[1, 2], [2, 1], [3, 3], [7, 7], [0, 0]] {
+        let (mut agent, mut ws) = (formation_agent(3), workspace());
+        agent.assign_goal(Cell::new(60, 5));
+        for n in 0..3 {
+            let beacon = |x, leader| {
+                let leader = RobotId(leader);
+                Message::Beacon(Beacon {
+                    leader,
+                    ..beacon_at(x, 5)
+                })
+            };
+            let mut inbox = bytes(2, 0, n, &[beacon(10, second)]);
+            inbox.extend(bytes(1, 0, n, &[beacon(13, first)]));
+            let out = agent.step(
+                &inputs(&FLAT, Cell::new(5, 5), &inbox),
+                tick(n.into()),
+                &mut ws,
+            );
+            assert!(matches!(out.command, Command::Move(_)));
+            assert_eq!(agent.leader(), RobotId(2));
+        }
+    }
+}
+
+/// Robots 3, 2 and 1: the request of 3 reaches 1 although every second packet is lost, stands once,
+/// and goes when 3 falls silent for ever.
+#[test]
+fn a_stop_reaches_the_top_over_a_lossy_radio_and_dies_with_its_origin() {
+    let mut agents = [1, 2, 3].map(formation_agent);
+    let mut ws = workspace();
+    let mut air = [const { vec![] }; 3];
+    let mut held = vec![];
+    for n in 0..130_u32 {
+        let heard = core::mem::take(&mut air);
+        // Robot 3 sticks in the mud while the others go on.
+        let ahead = if n < 6 { 0 } else { 6 };
+        let cells = [16 + ahead, 13 + ahead, 10].map(|x| Cell::new(x, 5));
+        for (i, agent) in agents.iter_mut().enumerate() {
+            agent.assign_goal(Cell::new(100, 5));
+            let inbox: Vec<u8> = (0..3_usize)
+                .filter(|&from| Rng::keyed(5, from as u32, i as u32, n).below(2) == 0)
+                .filter(|&from| from != 2 || n < 60)
+                // Robots 1 and 3 do not hear each other.
+                .filter(|&from| from.abs_diff(i) == 1)
+                .flat_map(|from| heard[from].clone())
+                .collect();
+            let out = agent.step(&inputs(&FLAT, cells[i], &inbox), tick(n), &mut ws);
+            air[i].extend_from_slice(&out.outbox);
+            if n > 20 && i == 0 && agent.mode() == Mode::Hold {
+                held.push(n);
+            }
+        }
+    }
+    let (first, last) = (held[0], *held.last().unwrap());
+    assert!(first < 45, "{held:?}");
+    // Robot 3 falls silent at 60; what it asked last stands for 12 ticks and a few retries.
+    assert!((50..105).contains(&last), "{held:?}");
+}
+
+#[test]
+fn a_stop_of_a_robot_that_started_anew_is_lifted() {
+    let (mut agent, mut ws) = (route_agent(1), workspace());
+    agent.assign_goal(Cell::new(60, 5));
+    let beacon = || Message::Beacon(beacon_at(2, 5));
+    let inbox = bytes(2, 0, 0, &[beacon(), stop(2, 1, 7, RequestKind::Stop)]);
+    let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(0), &mut ws);
+    assert_eq!(agent.mode(), Mode::Hold);
+    let inbox = bytes(2, 1, 0, &[beacon()]);
+    let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(1), &mut ws);
+    assert_eq!(agent.mode(), Mode::Cruise);
+    // Its numbers start anew as well.
+    let inbox = bytes(2, 1, 1, &[stop(2, 1, 0, RequestKind::Stop)]);
+    let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(2), &mut ws);
+    assert_eq!(agent.mode(), Mode::Hold);
+}
+
+#[test]
+fn a_redirection_is_followed_once_however_often_it_comes() {
+    let (mut agent, mut ws) = (route_agent(1), workspace());
+    agent.assign_goal(Cell::new(5, 5));
+    let mut moved = vec![];
+    for n in 0..4 {
+        let inbox = bytes(2, 0, n, &[stop(2, 1, 0, RequestKind::Redirect)]);
+        let out = agent.step(
+            &inputs(&FLAT, Cell::new(5, 5), &inbox),
+            tick(n.into()),
+            &mut ws,
+        );
+        moved.push(out.command != Command::Hold);
+        let ack = |frame: &Frame| matches!(frame.message, Message::Ack(Ack { accepted: true, .. }));
+        assert!(
+            sent(&out).iter().any(ack),
+            "a repeat says that the answer was lost"
+        );
+    }
+    assert_eq!(moved, [true, false, false, false]);
+}
+
+/// A robot that slept for longer than half the clock's range.
+#[test]
+fn after_a_long_sleep_it_speaks_and_no_stop_stands() {
+    for sleep in [60_u32, 36 * 60, 50 * 60, 70 * 60] {
+        let (mut agent, mut ws) = (formation_agent(2), workspace());
+        agent.assign_goal(Cell::new(60, 5));
+        let leader = Message::Beacon(beacon_at(13, 5));
+        let inbox = [
+            bytes(1, 0, 0, &[leader]),
+            bytes(3, 0, 0, &[stop(3, 2, 0, RequestKind::Stop)]),
+        ];
+        let out = agent.step(
+            &inputs(&FLAT, Cell::new(5, 5), &inbox.concat()),
+            tick(0),
+            &mut ws,
+        );
+        assert!(!requests(&out).is_empty());
+        let woken = tick(sleep);
+        let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &[]), woken, &mut ws);
+        let is_beacon = |frame: &Frame| matches!(frame.message, Message::Beacon(_));
+        assert!(sent(&out).iter().any(is_beacon), "after {sleep} s");
+        assert!(out.call_again.since(woken) <= Duration::from_micros(TICK));
+        assert_eq!(agent.mode(), Mode::Cruise, "after {sleep} s");
+        // The old requests do not keep their places for another half hour.
+        let mut late = vec![];
+        for n in 1..10 {
+            let now = woken + Duration::from_micros(n * TICK);
+            let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &[]), now, &mut ws);
+            late.extend(requests(&out));
+        }
+        assert!(agent.link.is_quiet(), "after {sleep} s");
+    }
+}
+
+/// A window that does not show the robot's own cell contradicts the cell.
+#[test]
+fn windows_without_the_robot_are_a_fault_and_tiny_ones_a_dead_end() {
+    let one = |width, height, origin| {
+        let cells = [1_u8; 1];
+        let count = usize::from(width * height);
+        let (mut agent, mut ws) = (formation_agent(1), workspace());
+        agent.assign_goal(Cell::new(60, 5));
+        let mut inputs = inputs(&FLAT, Cell::new(5, 5), &[]);
+        inputs.window = Window::new(&cells[..count], origin, width, height);
+        let out = agent.step(&inputs, tick(0), &mut ws);
+        assert_eq!(out.command, Command::Hold);
+        agent.mode()
+    };
+    assert_eq!(one(0, 0, Cell::new(5, 5)), Mode::Fault);
+    assert_eq!(one(1, 1, Cell::new(6, 5)), Mode::Fault);
+    assert_eq!(one(1, 1, Cell::new(i16::MIN, i16::MAX)), Mode::Fault);
+    assert_eq!(one(1, 1, Cell::new(5, 5)), Mode::Hold);
+}
+
+/// Compact beacons know no cells: their sender stands in nobody's way.
+#[test]
+fn who_is_heard_without_a_cell_occupies_none() {
+    let (mut agent, mut ws) = (route_agent(1), workspace());
+    agent.assign_goal(Cell::new(0, 0));
+    let mut cells = [BLOCKED; 121];
+    cells[55..66].fill(1);
+    for n in 0..8 {
+        let compact = Message::Compact(crate::wire::CompactBeacon::default());
+        let inbox = bytes(2, 0, n, &[compact]);
+        let at = Cell::new(1, 0);
+        let out = agent.step(&inputs(&cells, at, &inbox), tick(n.into()), &mut ws);
+        assert_eq!(agent.neighbors().len(), 1);
+        assert!(requests(&out).is_empty(), "nobody is in the way");
+    }
+}
+
+/// With `Recovery::Def` the top leader turns to who is off instead of standing, also when asked to.
+#[test]
+fn a_leader_that_recovers_heads_for_who_is_off() {
+    let go = |recovery| {
+        let mut agent = formation_agent(1);
+        let template = agent.guidance.template().clone();
+        let formation = FormationParams {
+            recovery,
+            ..FormationParams::default()
+        };
+        agent.guidance = FormationGuidance::new(RouteParams::default(), formation, template);
+        let mut ws = workspace();
+        agent.assign_goal(Cell::new(60, 5));
+        let inbox = bytes(
+            2,
+            0,
+            0,
+            &[
+                Message::Beacon(beacon_at(-5, 5)),
+                stop(2, 1, 0, RequestKind::Stop),
+            ],
+        );
+        let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(0), &mut ws);
+        out.command
+    };
+    assert_eq!(go(Recovery::Wait), Command::Hold);
+    let west = Command::Move([Dir::West].into_iter().collect());
+    assert_eq!(go(Recovery::Def), west);
+}
+
+/// KUZ section 7, item 6: who stands where a missing neighbour should be is asked to go.
+#[test]
+fn strangers_in_a_neighbour_s_place_are_asked_to_choose_another_direction() {
+    let (mut agent, mut ws) = (formation_agent(1), workspace());
+    agent.assign_goal(Cell::new(60, 5));
+    let mut asked = vec![];
+    for n in 0..5 {
+        // Robot 9 stands where robot 2 should be.
+        let inbox = bytes(9, 0, n, &[Message::Beacon(beacon_at(2, 5))]);
+        let at = Cell::new(5, 5);
+        let out = agent.step(&inputs(&FLAT, at, &inbox), tick(n.into()), &mut ws);
+        asked.extend(requests(&out).iter().map(|ask| (n, ask.to, ask.kind)));
+        let distance = agent.guidance().graph_distance(at, agent.neighbors());
+        assert_eq!((distance.less, distance.more), (2, 1));
+    }
+    assert_eq!(asked, [(3, RobotId(9), RequestKind::Redirect)]);
+}
+
+/// A template that names nobody: the leader itself follows a robot that is out of hearing.
+#[test]
+fn anyone_may_lead_although_its_own_leader_is_not_heard() {
+    let (mut agent, mut ws) = (formation_agent(3), workspace());
+    let anyone = [TemplateEntry {
+        offset: Cell::new(3, 0),
+        id: RobotId::NOBODY,
+        hops: 1,
+    }];
+    let order = TemplateAssignment::split(RobotId(3), 1, 2, Cell::new(-6, 0), &anyone);
+    let order: Vec<Message> = order.unwrap().map(Message::Template).collect();
+    agent.assign_goal(Cell::new(5, 60));
+    let mut at = Cell::new(5, 5);
+    for n in 0..6_i16 {
+        let mut inbox = if n == 0 {
+            bytes(99, 0, 0, &order)
+        } else {
+            vec![]
+        };
+        let beacon = Beacon {
+            leader: RobotId(1),
+            heading: Dir::East,
+            ..beacon_at(9 + n, 5)
+        };
+        inbox.extend(bytes(2, 0, n as u16, &[Message::Beacon(beacon)]));
+        let out = agent.step(&inputs(&FLAT, at, &inbox), tick(n as u32), &mut ws);
+        assert_eq!(agent.leader(), RobotId(2));
+        let Command::Move(moves) = out.command else {
+            panic!("it follows")
+        };
+        at = at + moves[0].offset();
+    }
+    assert_eq!(
+        at.y, 5,
+        "beside its leader, not to its own goal in the north"
+    );
+}
+
+/// A window larger than the search: the land is still priced for everybody.
+#[test]
+fn the_whole_formation_s_land_counts_in_windows_of_any_size() {
+    let first = |radius: i16| {
+        let side = 2 * radius + 1;
+        let at = Cell::new(0, 0);
+        // Mud from y = -2 down to -4 under robot 2's place, three cells south of the leader's.
+        let cells: Vec<u8> = (-radius..=radius)
+            .flat_map(|y| (-radius..=radius).map(move |x| (x, y)))
+            .map(|(x, y)| {
+                if x > 0 && (-4..=-2).contains(&y) {
+                    60
+                } else {
+                    1
+                }
+            })
+            .collect();
+        let template = Template::from_graph(&[at, Cell::new(0, -3)], &[(0, 1)], 0, 1).unwrap();
+        let formation = FormationParams {
+            footprint: 16,
+            ..FormationParams::default()
+        };
+        let guidance = FormationGuidance::new(RouteParams::default(), formation, template);
+        let mut agent = FormationAgent::new(&config(1), guidance);
+        agent.assign_goal(Cell::new(40, 0));
+        let mut inputs = inputs(&FLAT, at, &[]);
+        let inbox = bytes(2, 0, 0, &[Message::Beacon(beacon_at(0, -3))]);
+        inputs.inbox = &inbox;
+        let (corner, side) = (at - Cell::new(radius, radius), side as u16);
+        inputs.window = Window::new(&cells, corner, side, side);
+        match agent.step(&inputs, tick(0), &mut workspace()).command {
+            Command::Move(moves) => moves[0],
+            Command::Hold => Dir::Stay,
+        }
+    };
+    assert_ne!(first(5), Dir::East, "round the mud");
+    assert_eq!(first(9), first(5));
+}

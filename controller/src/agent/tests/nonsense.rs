@@ -1,0 +1,300 @@
+//! Whatever a robot hears and sees, and whenever: it answers, briefly, and goes on.
+
+use super::*;
+use crate::cost::Gain;
+use crate::formation::{Prediction, Recovery};
+use crate::grid::Norm;
+use crate::route::{ExitRule, Replan};
+use crate::shuffle::Sharpness;
+use crate::wire::{TemplateEntry, arbitrary};
+use proptest::collection::vec;
+use proptest::prelude::*;
+
+const OWN: RobotId = RobotId(3);
+
+/// Cells near the origin, at the ends of the coordinates, and anywhere.
+fn cell() -> impl Strategy<Value = Cell> {
+    let coordinate = || {
+        prop_oneof![
+            4 => -9_i16..9,
+            1 => Just(i16::MIN),
+            1 => Just(i16::MAX),
+            1 => any::<i16>(),
+        ]
+    };
+    (coordinate(), coordinate()).prop_map(|(x, y)| Cell::new(x, y))
+}
+
+/// Any sound frame; most come from a few robots, concern this one, and name each other.
+fn frame() -> impl Strategy<Value = (Header, Message)> {
+    let few = || prop_oneof![4 => (0..7_u32).prop_map(RobotId), 1 => arbitrary::robot()];
+    let sender = few().prop_filter("somebody sends it", |id| id.is_somebody());
+    let header = (0..3_u8, sender, 0..40_u16);
+    let subject = (few(), few(), cell(), cell());
+    (header, arbitrary::message(), subject).prop_map(|(header, mut message, subject)| {
+        let (boot, sender, sequence) = header;
+        let (to, who, here, there) = subject;
+        match &mut message {
+            Message::Beacon(beacon) => {
+                (beacon.cell, beacon.target, beacon.leader) = (here, there, who);
+            }
+            Message::Request(request) => (request.to, request.origin) = (OWN, who),
+            Message::Ack(ack) => (ack.to, ack.boot) = (OWN, 0),
+            Message::Goal(goal) => (goal.to, goal.target) = (to, there),
+            Message::Template(part) => {
+                (part.to, part.offset) = (OWN, here);
+                for entry in &mut part.entries {
+                    (entry.offset, entry.id) = (there, who);
+                }
+            }
+            Message::Compact(_) => {}
+        }
+        let header = Header {
+            boot,
+            sender,
+            sequence,
+        };
+        (header, message)
+    })
+}
+
+/// One step's inputs.
+#[derive(Clone, Debug)]
+struct Step {
+    now: Instant,
+    frames: Vec<(Header, Message)>,
+    noise: Vec<u8>,
+    own: Option<CellState>,
+    /// South-west corner, size and content of the window.
+    window: Option<(Cell, u16, u16, Vec<u8>)>,
+    pose: [u32; 6],
+}
+
+impl Step {
+    /// Whether the robot can decide with this.
+    fn makes_sense(&self) -> bool {
+        let land = self.land();
+        self.own
+            .zip(land)
+            .is_some_and(|(own, land)| land.get(own.cell).is_some())
+    }
+
+    fn land(&self) -> Option<Window<'_>> {
+        let (origin, width, height, cells) = self.window.as_ref()?;
+        Window::new(cells, *origin, *width, *height)
+    }
+
+    fn inbox(&self) -> Vec<u8> {
+        let mut inbox = heapless::Vec::<u8, 1024>::new();
+        for (header, message) in &self.frames {
+            encode(*header, message, &mut inbox).unwrap();
+        }
+        [&inbox[..], &self.noise].concat()
+    }
+}
+
+fn window() -> impl Strategy<Value = Option<(Cell, u16, u16, Vec<u8>)>> {
+    let size = prop_oneof![
+        3 => Just((11_u16, 11_u16)),
+        1 => Just((1, 1)),
+        1 => (0..24_u16, 0..24_u16),
+        1 => (0..2_u16, 0..300_u16),
+        1 => Just((13, 40_000)),
+    ];
+    let origin = prop_oneof![3 => Just(Cell::new(-5, -5)), 1 => cell()];
+    let land = (
+        origin,
+        size,
+        vec(prop_oneof![Just(0), Just(1), any::<u8>()], 1..140),
+    );
+    let land = land.prop_map(|(origin, (width, height), pattern)| {
+        let count = usize::from(width) * usize::from(height);
+        let cells = pattern.iter().copied().cycle().take(count).collect();
+        (origin, width, height, cells)
+    });
+    prop_oneof![1 => Just(None), 9 => land.prop_map(Some)]
+}
+
+fn own() -> impl Strategy<Value = Option<CellState>> {
+    let busy = prop_oneof![4 => Just(0), 1 => 0..3 * TICK, 1 => any::<i32>()];
+    let state = (cell(), busy).prop_map(|(cell, busy)| CellState {
+        cell,
+        busy: Duration::from_micros(busy),
+    });
+    prop_oneof![1 => Just(None), 9 => state.prop_map(Some)]
+}
+
+/// Steps that follow each other by a tick, or by anything.
+fn steps() -> impl Strategy<Value = Vec<Step>> {
+    let later = prop_oneof![6 => Just(TICK as u32), 1 => any::<u32>()];
+    let heard = (vec(frame(), 0..8), vec(any::<u8>(), 0..30));
+    let step = (later, heard, own(), window(), any::<[u32; 6]>());
+    (any::<u32>(), vec(step, 1..40)).prop_map(|(mut now, steps)| {
+        let steps = steps
+            .into_iter()
+            .map(|(later, (frames, noise), own, window, pose)| {
+                now = now.wrapping_add(later);
+                Step {
+                    now: Instant::from_micros(now),
+                    frames,
+                    noise,
+                    own,
+                    window,
+                    pose,
+                }
+            });
+        steps.collect()
+    })
+}
+
+fn gain() -> impl Strategy<Value = Gain> {
+    prop_oneof![
+        3 => (0..100_u16).prop_map(Gain::from_sixteenths),
+        1 => any::<u16>().prop_map(Gain::from_sixteenths),
+    ]
+}
+
+fn route() -> impl Strategy<Value = RouteParams> {
+    let shape = (0..12_u8, any::<[bool; 3]>());
+    let gains = (gain(), gain(), gain(), gain());
+    (shape, gains).prop_map(
+        |((radius, [ray, chebyshev, corner_cutting]), (a0, a1, a2, a3))| RouteParams {
+            radius,
+            exit: if ray { ExitRule::Ray } else { ExitRule::Best },
+            norm: if chebyshev {
+                Norm::Chebyshev
+            } else {
+                Norm::Euclidean
+            },
+            corner_cutting,
+            a0,
+            a1,
+            a2,
+            a3,
+        },
+    )
+}
+
+fn sharpness() -> impl Strategy<Value = Sharpness> {
+    prop_oneof![
+        Just(Sharpness::Greedy),
+        gain().prop_map(Sharpness::HalvedPer)
+    ]
+}
+
+fn formation() -> impl Strategy<Value = FormationParams> {
+    let numbers = any::<(u8, u16, u16, u8, u8)>();
+    (numbers, gain(), any::<[bool; 2]>()).prop_map(|(numbers, gain, [reflexive, def])| {
+        let (eps, halt_lag, resume_lag, lead, footprint) = numbers;
+        FormationParams {
+            eps,
+            gain,
+            halt_lag,
+            resume_lag,
+            lead,
+            footprint,
+            prediction: if reflexive {
+                Prediction::Reflexive
+            } else {
+                Prediction::Constant
+            },
+            recovery: if def { Recovery::Def } else { Recovery::Wait },
+        }
+    })
+}
+
+fn template() -> impl Strategy<Value = Template<TEMPLATE>> {
+    let id = prop_oneof![4 => (0..7_u32).prop_map(RobotId), 1 => arbitrary::robot()];
+    let entry = (cell(), id, 1..4_u8);
+    let entry = entry.prop_map(|(offset, id, hops)| TemplateEntry { offset, id, hops });
+    (any::<u8>(), cell(), vec(entry, 0..=TEMPLATE)).prop_map(|(slot, offset, entries)| Template {
+        slot,
+        offset,
+        entries: entries.into_iter().collect(),
+    })
+}
+
+/// What holds after each step, whatever went in.
+fn survives<G: Guidance<f32, Workspace = GridWorkspace<CELLS>>>(
+    guidance: G,
+    goal: Option<Cell>,
+    steps: &[Step],
+) -> Result<(), TestCaseError> {
+    let config = config(OWN.0);
+    let mut agent = Agent::<f32, G, NEIGHBORS>::new(&config, guidance);
+    let mut ws = workspace();
+    if let Some(goal) = goal {
+        agent.assign_goal(goal);
+    }
+    for step in steps {
+        let inbox = step.inbox();
+        let [x, y, z, vx, vy, vz] = step.pose.map(f32::from_bits);
+        let inputs = Inputs {
+            pose: Pose {
+                position_m: crate::geom::Vec3::new(x, y, z),
+                velocity_mps: crate::geom::Vec3::new(vx, vy, vz),
+            },
+            cell: step.own,
+            window: step.land(),
+            inbox: &inbox,
+        };
+        let out = agent.step(&inputs, step.now, &mut ws);
+
+        for frame in frames(&out.outbox) {
+            let frame = decode(frame);
+            prop_assert!(
+                frame.is_ok_and(|frame| frame.header.sender == OWN),
+                "whole frames"
+            );
+        }
+        prop_assert!(out.outbox.last().is_none_or(|&last| last == 0));
+        let count = usize::from(out.received) + usize::from(out.rejected);
+        prop_assert_eq!(count, frames(&inbox).count());
+        // Neither now, which would keep the caller from sleeping, nor later than the next beacon.
+        let pause = out.call_again.since(step.now);
+        prop_assert!(
+            Duration::ZERO < pause && pause <= config.beacon_period,
+            "{:?}",
+            pause
+        );
+
+        let is_free = step.own.is_none_or(|own| own.busy <= Duration::ZERO);
+        if is_free && agent.target().is_some() {
+            prop_assert_eq!(agent.mode() == Mode::Fault, !step.makes_sense());
+        }
+        if let Command::Move(moves) = &out.command {
+            prop_assert!(is_free && step.makes_sense());
+            prop_assert!(!moves.is_empty() && !moves.contains(&Dir::Stay));
+            let mut different: Vec<usize> = moves.iter().map(|dir| dir.index()).collect();
+            different.sort_unstable();
+            different.dedup();
+            prop_assert_eq!(different.len(), moves.len());
+        }
+        prop_assert!(agent.leader() < OWN, "numbers fall along the leader chain");
+        for neighbor in agent.neighbors() {
+            prop_assert!(neighbor.id.is_somebody() && neighbor.id != OWN);
+        }
+    }
+    Ok(())
+}
+
+proptest! {
+    #[test]
+    fn a_robot_alone_survives_any_input(
+        route in route(), sharpness in sharpness(), follows: bool,
+        goal in proptest::option::of(cell()), steps in steps(),
+    ) {
+        let replan = if follows { Replan::UntilChanged } else { Replan::EachCell };
+        let guidance = RouteGuidance::<CELLS, VISITS>::new(route).replan(replan).sharpness(sharpness);
+        survives(guidance, goal, &steps)?;
+    }
+
+    #[test]
+    fn a_robot_in_formation_survives_any_input(
+        route in route(), formation in formation(), sharpness in sharpness(), template in template(),
+        goal in proptest::option::of(cell()), steps in steps(),
+    ) {
+        let guidance = FormationGuidance::<CELLS, VISITS, TEMPLATE>::new(route, formation, template);
+        survives(guidance.sharpness(sharpness), goal, &steps)?;
+    }
+}
