@@ -413,7 +413,10 @@ impl<S, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
             }
             weights
         } else {
-            let behind = found.members.iter().map(|member| {
+            // Who says that he cannot go on is not waited for.
+            let able = found.members.iter();
+            let able = able.filter(|member| member.seen.mode != Mode::Fault);
+            let behind = able.map(|member| {
                 let off = member.seen.cell - (cell + member.offset);
                 lag(off, self.travel.choice())
             });

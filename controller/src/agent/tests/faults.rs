@@ -40,6 +40,25 @@ fn requests(out: &Outputs) -> Vec<Request> {
     requests.collect()
 }
 
+/// A leader waits for who falls behind, but not for who has failed.
+#[test]
+fn who_has_failed_is_not_waited_for() {
+    for (mode, expected) in [(Mode::Cruise, Mode::Hold), (Mode::Fault, Mode::Cruise)] {
+        let (mut agent, mut ws) = (formation_agent(1), workspace());
+        agent.assign_goal(Cell::new(60, 5));
+        let behind = Beacon {
+            mode,
+            ..beacon_at(-5, 5)
+        };
+        for n in 0..2 {
+            let inbox = bytes(2, 0, n, &[Message::Beacon(behind)]);
+            let inputs = inputs(&FLAT, Cell::new(5, 5), &inbox);
+            let _ = agent.step(&inputs, tick(n.into()), &mut ws);
+        }
+        assert_eq!(agent.mode(), expected, "follower's mode {mode:?}");
+    }
+}
+
 /// A template is complete however many copies of its parts one step hears.
 #[test]
 fn a_template_arrives_whole_although_the_radio_repeats_its_parts() {
