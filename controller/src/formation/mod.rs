@@ -97,7 +97,7 @@ pub struct FormationParams {
 impl Default for FormationParams {
     /// What reaches the figures of `staya experiment formation`: eps 10 cells, gain 1, r0 300 units
     /// (4.3 cells) without hysteresis, one cell ahead, half of the price by the others'
-    /// land, constant velocity (as good as reflexive there, at a quarter of the work), waiting.
+    /// land, constant velocity (no worse than reflexive there, for less work), waiting.
     fn default() -> Self {
         Self {
             eps: 10,
