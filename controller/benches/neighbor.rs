@@ -3,9 +3,8 @@
 
 use core::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
-use heapless::Vec;
-use staya_controller::geom::Vec3;
-use staya_controller::neighbor::{Ages, Neighbor, NeighborTable, Put};
+use staya_controller::geom::Position;
+use staya_controller::neighbor::{Ages, Doubt, Neighbor, NeighborTable, Put, nearest};
 use staya_controller::rand::Rng;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{Beacon, RobotId};
@@ -31,12 +30,12 @@ fn neighbor(id: u32, range_mm: i32, rng: &mut Rng) -> Neighbor<f32> {
 }
 
 fn neighbor_table(c: &mut Criterion) {
-    let here_m = Vec3::new(0.0, 0.0, 0.0);
+    let here = Position::ORIGIN;
     let now = Instant::from_micros(200_000);
     let mut rng = Rng::new(1);
     let mut table = Table::new(AGES);
     for id in 1..=ROBOTS {
-        let put = table.put(neighbor(id * 7, 10_000, &mut rng), here_m, now, |_| false);
+        let put = table.put(neighbor(id * 7, 10_000, &mut rng), here, now, |_| false);
         assert_eq!(put, Put::Inserted);
     }
     let known = neighbor(8 * 7, 10_000, &mut rng);
@@ -45,25 +44,28 @@ fn neighbor_table(c: &mut Criterion) {
 
     let mut group = c.benchmark_group("neighbors_16");
     group.bench_function("put_known", |bencher| {
-        bencher.iter(|| table.put(black_box(known), here_m, now, |_| false));
+        bencher.iter(|| table.put(black_box(known), here, now, |_| false));
     });
     group.bench_function("put_evicting", |bencher| {
         let mut full = table.clone();
         let mut turn = strangers.iter().cycle();
         // Everybody else is protected, so that one stranger always takes the other's place.
         let others = |id: RobotId| !strangers.iter().any(|stranger| stranger.id == id);
-        let _ = full.put(strangers[0], here_m, now, |_| false);
+        let _ = full.put(strangers[0], here, now, |_| false);
         turn.next();
         bencher.iter(|| {
             turn.next()
-                .map(|stranger| full.put(black_box(*stranger), here_m, now, others))
+                .map(|stranger| full.put(black_box(*stranger), here, now, others))
         });
     });
-    group.bench_function("k_nearest_8", |bencher| {
+    group.bench_function("nearest_8", |bencher| {
+        let doubt = Doubt {
+            growth_mps: 0.5,
+            most_m: 1.0,
+        };
         bencher.iter(|| {
-            let mut nearest = Vec::<_, 8>::new();
-            table.k_nearest(black_box(here_m), now, &mut nearest);
-            nearest.last().map(|last| last.id)
+            let known = table.as_slice();
+            nearest::<f32, 8>(known, black_box(here), 0.15, now, &AGES, &doubt)
         });
     });
     group.finish();

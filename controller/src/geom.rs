@@ -203,6 +203,55 @@ impl<S: Scalar> Vec3<S> {
     }
 }
 
+/// A place in the world in whole millimetres, within 2147 km of the shared origin along each axis.
+///
+/// Integers, because a float of 32 bits knows a place 1000 km from the origin to 6 cm only, and fixed
+/// point ends at 32 km. Everything else is computed from differences, which are small.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Position {
+    /// East, north, up; millimetres.
+    pub mm: [i32; 3],
+}
+
+impl Position {
+    /// The shared origin.
+    pub const ORIGIN: Self = Self::from_mm([0; 3]);
+
+    /// The place with these coordinates in millimetres.
+    #[must_use]
+    pub const fn from_mm(mm: [i32; 3]) -> Self {
+        Self { mm }
+    }
+
+    /// The place at these coordinates in metres, rounded to millimetres, saturating; `None` when one of them is
+    /// not a number. For hosts and start-up (see [`Scalar::from_f64`]).
+    #[must_use]
+    pub fn from_metres([x, y, z]: [f64; 3]) -> Option<Self> {
+        Self::ORIGIN.moved(Vec3::new(x, y, z))
+    }
+
+    /// The way from `other` to here, metres. Exact up to the scalar's own precision; saturates.
+    #[must_use]
+    pub fn since<S: Scalar>(self, other: Self) -> Vec3<S> {
+        let [a, b, c] = self.mm;
+        let [x, y, z] = other.mm;
+        let way = |to: i32, from: i32| S::from_milli(to.saturating_sub(from));
+        Vec3::new(way(a, x), way(b, y), way(c, z))
+    }
+
+    /// The place so far from here, metres; saturates, `None` when `way_m` is not a number.
+    #[must_use]
+    pub fn moved<S: Scalar>(self, way_m: Vec3<S>) -> Option<Self> {
+        let [x, y, z] = self.mm;
+        let go = |from: i32, way: S| way.to_milli().map(|mm| from.saturating_add(mm));
+        Some(Self::from_mm([
+            go(x, way_m.x)?,
+            go(y, way_m.y)?,
+            go(z, way_m.z)?,
+        ]))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -265,6 +314,26 @@ mod tests {
         let up = Vec3::new(0.0, 0.0, 1.0);
         assert_eq!(east.extend(0.0).cross(north.extend(0.0)), up);
         assert_eq!(up.xy(), Vec2::ZERO);
+    }
+
+    #[test]
+    fn places_far_from_the_origin_differ_by_exact_millimetres() {
+        fn check<S: Scalar>() {
+            let here = Position::from_mm([1_000_000_000, -1_000_000_000, 7]);
+            let there = Position::from_mm([1_000_000_001, -1_000_002_000, 7]);
+            let way = there.since::<S>(here);
+            assert_eq!(
+                [way.x, way.y, way.z].map(S::to_milli),
+                [Some(1), Some(-2000), Some(0)]
+            );
+            assert_eq!(here.moved(way), Some(there));
+        }
+        check::<f32>();
+        check::<f64>();
+        check::<Q16>();
+        assert_eq!(Position::ORIGIN.moved(Vec3::new(f32::NAN, 0.0, 0.0)), None);
+        let edge = Position::from_metres([1e9, -1e9, 0.001]);
+        assert_eq!(edge, Some(Position::from_mm([i32::MAX, i32::MIN, 1])));
     }
 
     #[test]

@@ -7,7 +7,8 @@
 //! code gives the same bits on a microcontroller, in a simulator and beside an autopilot.
 //!
 //! Layers point down only:
-//! numbers and geometry ([`scalar`], [`geom`], [`time`], [`rand`], [`grid`], [`cost`], [`shuffle`])
+//! numbers and geometry ([`scalar`], [`geom`], [`time`], [`rand`], [`grid`], [`cost`], [`shuffle`],
+//! [`obstacle`])
 //! < what is known of others ([`wire`], [`neighbor`])
 //! < behaviours ([`route`], [`formation`]; they never import each other)
 //! < composition ([`supervisor`], [`agent`]).
@@ -35,6 +36,7 @@ pub mod formation;
 pub mod geom;
 pub mod grid;
 pub mod neighbor;
+pub mod obstacle;
 pub mod orca;
 pub mod rand;
 pub mod route;

@@ -7,7 +7,9 @@ use std::path::{Path, PathBuf};
 /// The layers from the lowest up. Modules of one layer may use each other, except where
 /// [`APART`] says not.
 const LAYERS: [&[&str]; 4] = [
-    &["scalar", "geom", "time", "rand", "grid", "cost", "shuffle"],
+    &[
+        "scalar", "geom", "time", "rand", "grid", "cost", "shuffle", "obstacle",
+    ],
     &["wire", "neighbor"],
     &["route", "formation", "orca"],
     &["supervisor", "agent"],

@@ -1,6 +1,6 @@
 //! What goes into a step and what comes out of it.
 
-use crate::geom::Vec3;
+use crate::geom::{Position, Vec3};
 use crate::grid::{Cell, Dir, Window};
 use crate::time::{Duration, Instant};
 use crate::wire::{Mode, RequestKind, RobotId};
@@ -14,8 +14,8 @@ pub const EVENTS: usize = 8;
 /// The robot's own state, from its sensors or its autopilot.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pose<S> {
-    /// World position, metres.
-    pub position_m: Vec3<S>,
+    /// World position.
+    pub position: Position,
     /// World velocity, metres per second.
     pub velocity_mps: Vec3<S>,
 }

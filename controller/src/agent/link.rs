@@ -1,7 +1,7 @@
 //! The agent's end of the radio: bytes to news, and what is to be said to bytes.
 
 use super::io::{Event, OUTBOX, Outputs};
-use crate::geom::Vec3;
+use crate::geom::Position;
 use crate::grid::Cell;
 use crate::neighbor::{Ages, Neighbor, NeighborTable, Put};
 use crate::scalar::Scalar;
@@ -55,8 +55,8 @@ pub(super) struct Link<S, const N: usize> {
 }
 
 /// Own position and who must stay in a full table.
-pub(super) struct Listener<'a, S> {
-    pub(super) position_m: Vec3<S>,
+pub(super) struct Listener<'a> {
+    pub(super) position: Position,
     pub(super) needs: &'a dyn Fn(RobotId) -> bool,
 }
 
@@ -93,7 +93,7 @@ impl<S: Scalar, const N: usize> Link<S, N> {
         &mut self,
         bytes: &[u8],
         now: Instant,
-        listener: &Listener<'_, S>,
+        listener: &Listener<'_>,
         out: &mut Outputs,
     ) -> Option<News> {
         let frame = decode(bytes).ok().and_then(|frame| {
@@ -130,7 +130,7 @@ impl<S: Scalar, const N: usize> Link<S, N> {
         frame: Frame,
         arrival: Arrival,
         now: Instant,
-        listener: &Listener<'_, S>,
+        listener: &Listener<'_>,
         out: &mut Outputs,
     ) -> Option<News> {
         let Header { sender, .. } = frame.header;
@@ -146,7 +146,7 @@ impl<S: Scalar, const N: usize> Link<S, N> {
                 let known = self.table.get(sender, now).known();
                 let neighbor = known.map_or(heard, |known| Neighbor {
                     heard: now,
-                    position_m: heard.position_m,
+                    position: heard.position,
                     velocity_mps: heard.velocity_mps,
                     radius_m: heard.radius_m,
                     mode: heard.mode,
@@ -192,12 +192,12 @@ impl<S: Scalar, const N: usize> Link<S, N> {
         neighbor: Neighbor<S>,
         header: Header,
         now: Instant,
-        listener: &Listener<'_, S>,
+        listener: &Listener<'_>,
         out: &mut Outputs,
     ) {
         let put = self
             .table
-            .put(neighbor, listener.position_m, now, listener.needs);
+            .put(neighbor, listener.position, now, listener.needs);
         if let Put::Evicted(evicted) = put {
             self.windows.retain(|(id, _)| *id != evicted);
             report(out, Event::NeighborEvicted(evicted));

@@ -278,7 +278,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize> Agent<S, G, N> {
         link.expire(now, out);
         for bytes in frames(inputs.inbox) {
             let listener = Listener {
-                position_m: inputs.pose.position_m,
+                position: inputs.pose.position,
                 needs: &|id| id == leader || guidance.needs(id),
             };
             match link.hear(bytes, now, &listener, out) {
@@ -415,7 +415,7 @@ fn beacon<S: Scalar>(
     let milli = |value: S| value.to_milli().unwrap_or(0);
     let narrow = |value: S| milli(value).clamp(i16::MIN.into(), i16::MAX.into()) as i16;
     let Pose {
-        position_m: p,
+        position,
         velocity_mps: v,
     } = inputs.pose;
     let state = inputs.cell.unwrap_or_default();
@@ -424,7 +424,7 @@ fn beacon<S: Scalar>(
         .unwrap_or(0);
     Beacon {
         time: now,
-        position_mm: [milli(p.x), milli(p.y), milli(p.z)],
+        position_mm: position.mm,
         velocity_mmps: [narrow(v.x), narrow(v.y), narrow(v.z)],
         radius_mm: u16::try_from(milli(config.radius_m)).unwrap_or(u16::MAX),
         cell: state.cell,

@@ -5,15 +5,18 @@
 //! 32-bit clock cannot tell a neighbour that has been silent for 71.6 minutes from a fresh one, and
 //! a table that is swept more often than that never holds one.
 
-use crate::geom::Vec3;
+use crate::geom::{Position, Vec3};
 use crate::grid::{Cell, Dir};
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 use crate::wire::{Beacon, CompactBeacon, Mode, RobotId};
 use heapless::Vec;
 
+mod nearby;
 #[cfg(test)]
 mod tests;
+
+pub use nearby::{Doubt, Nearby, nearest};
 
 /// One robot as last heard.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,8 +27,8 @@ pub struct Neighbor<S> {
     pub heard: Instant,
     /// When it is free to leave its cell, own clock (KUZ eq. 6).
     pub busy_until: Instant,
-    /// World position when heard, metres.
-    pub position_m: Vec3<S>,
+    /// World position when heard.
+    pub position: Position,
     /// World velocity when heard, metres per second.
     pub velocity_mps: Vec3<S>,
     /// Radius of the ball around its body, metres.
@@ -52,7 +55,7 @@ impl<S: Scalar> Neighbor<S> {
             id,
             heard: now,
             busy_until: now + Duration::from_millis(i32::from(beacon.busy_ms)),
-            position_m: vec3_from_milli(beacon.position_mm),
+            position: Position::from_mm(beacon.position_mm),
             velocity_mps: vec3_from_milli(beacon.velocity_mmps.map(i32::from)),
             radius_m: S::from_milli(i32::from(beacon.radius_mm)),
             cell: beacon.cell,
@@ -74,7 +77,7 @@ impl<S: Scalar> Neighbor<S> {
             id,
             heard: now,
             busy_until: now,
-            position_m: vec3_from_milli([x, y, 0]),
+            position: Position::from_mm([x, y, 0]),
             velocity_mps: vec3_from_milli([vx, vy, 0]),
             radius_m: S::from_milli(i32::from(beacon.radius_cm) * 10),
             cell,
@@ -94,12 +97,12 @@ impl<S: Scalar> Neighbor<S> {
     }
 
     /// Where it is at `now` if it kept its velocity for at most `longest` since it was heard and
-    /// then stood; metres. Bounding the age bounds the error: a robot that fell silent does not
-    /// run off the map. [`Ages::stale_after`] is a good bound.
+    /// then stood, seen from `from`; metres. Bounding the age bounds the error: a robot that fell
+    /// silent does not run off the map. [`Ages::stale_after`] is a good bound.
     #[must_use]
-    pub fn position_at(&self, now: Instant, longest: Duration) -> Vec3<S> {
+    pub fn offset_at(&self, from: Position, now: Instant, longest: Duration) -> Vec3<S> {
         let span = self.age(now).map_or(longest, |age| age.min(longest));
-        self.position_m + self.velocity_mps * S::from_micro(span.as_micros())
+        self.position.since(from) + self.velocity_mps * S::from_micro(span.as_micros())
     }
 }
 
@@ -194,7 +197,7 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
     /// When the table is full, somebody has to go, though never a robot that `protect` names (the
     /// leader, members of the formation's template):
     /// 1. the stalest of those older than [`Ages::expire_after`];
-    /// 2. else the one farthest from `own_position_m`, if the newcomer is nearer or protected;
+    /// 2. else the one farthest from `own`, if the newcomer is nearer or protected;
     /// 3. else the newcomer is refused.
     ///
     /// Ties go to the smaller id. Distances are taken at the extrapolated positions; an unknown
@@ -203,7 +206,7 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
     pub fn put(
         &mut self,
         newcomer: Neighbor<S>,
-        own_position_m: Vec3<S>,
+        own: Position,
         now: Instant,
         protect: impl Fn(RobotId) -> bool,
     ) -> Put {
@@ -217,7 +220,7 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
         }
         let mut answer = Put::Inserted;
         if self.entries.is_full() {
-            let Some(victim) = self.victim(&newcomer, own_position_m, now, protect) else {
+            let Some(victim) = self.victim(&newcomer, own, now, protect) else {
                 return Put::Refused;
             };
             self.entries.retain(|entry| entry.id != victim);
@@ -234,7 +237,7 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
     fn victim(
         &self,
         newcomer: &Neighbor<S>,
-        own_position_m: Vec3<S>,
+        own: Position,
         now: Instant,
         protect: impl Fn(RobotId) -> bool,
     ) -> Option<RobotId> {
@@ -248,8 +251,8 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
             return Some(stalest.id);
         }
         let distance = |entry: &Neighbor<S>| {
-            let position_m = entry.position_at(now, self.ages.stale_after);
-            ((position_m - own_position_m).length_key(), entry.id)
+            let offset_m = entry.offset_at(own, now, self.ages.stale_after);
+            (offset_m.length_key(), entry.id)
         };
         let farthest = candidates().map(distance).max()?;
         let comes_in = protect(newcomer.id) || distance(newcomer) < farthest;
@@ -318,34 +321,6 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
-    }
-
-    /// Fills `out` with the `K` neighbours nearest to `position_m` at `now` (all when fewer), nearest
-    /// first, ties by id; positions are extrapolated for at most [`Ages::stale_after`], and an
-    /// unknown distance (NaN) comes last. O(N K); 16 K bytes of stack.
-    pub fn k_nearest<'a, const K: usize>(
-        &'a self,
-        position_m: Vec3<S>,
-        now: Instant,
-        out: &mut Vec<&'a Neighbor<S>, K>,
-    ) {
-        let mut nearest = Vec::<(u64, &Neighbor<S>), K>::new();
-        for entry in &self.entries {
-            let there_m = entry.position_at(now, self.ages.stale_after);
-            let key = (there_m - position_m).length_key();
-            // Entries come in the order of ids, so that the later of two equal keys stays behind.
-            if nearest.is_full() && nearest.last().is_some_and(|(farthest, _)| *farthest > key) {
-                nearest.pop();
-            }
-            if nearest.push((key, entry)).is_ok() {
-                sink_last(&mut nearest, |before, after| before.0 > after.0);
-            }
-        }
-        out.clear();
-        for (_, entry) in nearest {
-            // Same capacity: it cannot be full. (`extend` would leave a panic in the firmware.)
-            let _ = out.push(entry);
-        }
     }
 }
 

@@ -17,16 +17,37 @@ fn at(micros: u32) -> Instant {
     Instant::from_micros(micros)
 }
 
-/// A robot that stands `x` metres east of the origin.
+/// A robot that stands `x` metres east of the origin; nobody knows where it goes when `x` is not a number.
 fn standing(id: u32, x: f32, heard: Instant) -> Neighbor<f32> {
     let beacon = Beacon::default();
     let mut neighbor = Neighbor::from_beacon(RobotId(id), &beacon, heard);
-    neighbor.position_m.x = x;
+    match place(x, 0.0) {
+        Some(place) => neighbor.position = place,
+        None => neighbor.velocity_mps.x = x,
+    }
     neighbor
 }
 
+fn place(x: f32, y: f32) -> Option<Position> {
+    Position::ORIGIN.moved(Vec3::new(x, y, 0.0))
+}
+
+/// Who is near by, nearest first.
+fn nearest_ids<const N: usize, const K: usize>(
+    table: &NeighborTable<f32, N>,
+    own: Position,
+) -> StdVec<u32> {
+    let nearest = nearest::<f32, K>(table.as_slice(), own, 0.0, at(0), &AGES, &DOUBT);
+    nearest.iter().map(|near| near.id.0).collect()
+}
+
+const DOUBT: Doubt<f32> = Doubt {
+    growth_mps: 0.5,
+    most_m: 1.0,
+};
+
 fn put<const N: usize>(table: &mut NeighborTable<f32, N>, n: Neighbor<f32>, now: Instant) -> Put {
-    table.put(n, Vec3::ZERO, now, |_| false)
+    table.put(n, Position::ORIGIN, now, |_| false)
 }
 
 fn ids<const N: usize>(table: &NeighborTable<f32, N>) -> StdVec<u32> {
@@ -58,9 +79,7 @@ fn table_without_room_refuses() {
         put(&mut table, standing(1, 0.0, at(0)), at(0)),
         Put::Refused
     );
-    let mut out = heapless::Vec::<_, 4>::new();
-    table.k_nearest(Vec3::ZERO, at(0), &mut out);
-    assert!(table.is_empty() && out.is_empty());
+    assert!(table.is_empty() && nearest_ids::<0, 4>(&table, Position::ORIGIN).is_empty());
 }
 
 #[test]
@@ -96,7 +115,7 @@ fn known_robot_is_updated_in_a_full_table() {
     );
     assert_eq!(table.len(), 4);
     let known = table.get(RobotId(3), at(7)).fresh().unwrap();
-    assert_eq!((known.position_m.x, known.heard), (99.0, at(7)));
+    assert_eq!((known.position.mm[0], known.heard), (99_000, at(7)));
 }
 
 #[test]
@@ -143,7 +162,7 @@ fn full_table_evicts_the_farthest_for_a_nearer_one_only() {
 #[test]
 fn distance_counts_from_the_own_position() {
     let mut table = full::<4>(at(0));
-    let own = Vec3::new(5.0, 0.0, 0.0);
+    let own = Position::from_mm([5_000, 0, 0]);
     assert_eq!(
         table.put(standing(9, 6.0, at(0)), own, at(0), |_| false),
         Put::Evicted(RobotId(1))
@@ -158,14 +177,17 @@ fn protected_robots_stay_and_come_in() {
     let protect = |id: RobotId| id.0 >= 3;
     // All are expired, yet the protected 3 stays; then nobody may go.
     assert_eq!(
-        table.put(far(4), Vec3::ZERO, old, protect),
+        table.put(far(4), Position::ORIGIN, old, protect),
         Put::Evicted(RobotId(2))
     );
     assert_eq!(
-        table.put(far(5), Vec3::ZERO, old, protect),
+        table.put(far(5), Position::ORIGIN, old, protect),
         Put::Evicted(RobotId(1))
     );
-    assert_eq!(table.put(far(6), Vec3::ZERO, old, protect), Put::Refused);
+    assert_eq!(
+        table.put(far(6), Position::ORIGIN, old, protect),
+        Put::Refused
+    );
     assert_eq!(ids(&table), [3, 4, 5]);
 }
 
@@ -174,7 +196,7 @@ fn protected_newcomer_displaces_a_nearer_one() {
     let mut table = full::<2>(at(0));
     let far = standing(9, 1000.0, at(0));
     assert_eq!(
-        table.put(far, Vec3::ZERO, at(0), |id| id.0 == 9),
+        table.put(far, Position::ORIGIN, at(0), |id| id.0 == 9),
         Put::Evicted(RobotId(2))
     );
 }
@@ -193,24 +215,45 @@ fn unknown_distance_is_the_largest() {
     );
 
     let _ = put(&mut table, standing(2, f32::NAN, at(0)), at(0));
-    let mut out = heapless::Vec::<_, 2>::new();
-    table.k_nearest(Vec3::ZERO, at(0), &mut out);
-    assert_eq!([out[0].id.0, out[1].id.0], [3, 2]);
+    assert_eq!(nearest_ids::<2, 2>(&table, Position::ORIGIN), [3, 2]);
 }
 
 #[test]
 fn nearest_of_more_or_fewer_than_there_are() {
     let table = full::<3>(at(0));
-    let mut none = heapless::Vec::<_, 0>::new();
-    table.k_nearest(Vec3::ZERO, at(0), &mut none);
-    assert!(none.is_empty());
-    let mut all = heapless::Vec::<_, 5>::new();
-    // What was in it before is replaced.
-    for own in [0.0, 10.0] {
-        table.k_nearest(Vec3::new(own, 0.0, 0.0), at(0), &mut all);
-    }
-    let found: StdVec<u32> = all.iter().map(|n| n.id.0).collect();
-    assert_eq!(found, [3, 2, 1]);
+    assert!(nearest_ids::<3, 0>(&table, Position::ORIGIN).is_empty());
+    let far_east = place(10.0, 0.0).unwrap();
+    assert_eq!(nearest_ids::<3, 5>(&table, far_east), [3, 2, 1]);
+}
+
+#[test]
+fn a_silent_neighbour_widens_then_expires() {
+    let mut robot = standing(1, 10.0, at(0));
+    robot.velocity_mps.x = -2.0;
+    robot.radius_m = 0.25;
+    let look = |millis: i32, own_radius_m: f32| {
+        let now = at(0) + Duration::from_millis(millis);
+        let seen = nearest::<_, 1>(&[robot], Position::ORIGIN, own_radius_m, now, &AGES, &DOUBT);
+        seen.first()
+            .map(|n| (n.offset_m.x, n.velocity_mps.x, n.radius_m, n.gives_way))
+    };
+    assert_eq!(look(0, 0.5), Some((10.0, -2.0, 0.25, true)));
+    assert_eq!(look(1_000, 0.5), Some((8.0, -2.0, 0.25, true)));
+    // Half a metre per second, but at most a metre, ...
+    assert_eq!(look(2_000, 0.5), Some((8.0, 0.0, 0.75, false)));
+    assert_eq!(look(5_000, 0.5), Some((8.0, 0.0, 1.25, false)));
+    // ... and never over the own ball, even where they overlap already.
+    assert_eq!(look(5_000, 7.5), Some((8.0, 0.0, 0.5, false)));
+    assert_eq!(look(5_000, 9.0), Some((8.0, 0.0, 0.25, false)));
+    assert_eq!(look(5_001, 0.5), None);
+}
+
+#[test]
+fn who_is_in_fault_does_not_give_way() {
+    let mut robot = standing(1, 1.0, at(0));
+    robot.mode = Mode::Fault;
+    let seen = nearest::<_, 1>(&[robot], Position::ORIGIN, 0.0, at(0), &AGES, &DOUBT);
+    assert!(!seen[0].gives_way);
 }
 
 #[test]
@@ -253,8 +296,10 @@ fn position_runs_on_for_a_bounded_time() {
     let mut neighbor = standing(1, 10.0, at(u32::MAX));
     neighbor.velocity_mps = Vec3::new(2.0, -1.0, 0.5);
     let longest = Duration::from_millis(1_500);
-    let after =
-        |micros: i32| neighbor.position_at(neighbor.heard + Duration::from_micros(micros), longest);
+    let after = |micros: i32| {
+        let now = neighbor.heard + Duration::from_micros(micros);
+        neighbor.offset_at(Position::ORIGIN, now, longest)
+    };
     assert_eq!(after(0), Vec3::new(10.0, 0.0, 0.0));
     assert_eq!(after(500_000), Vec3::new(11.0, -0.5, 0.25));
     assert_eq!(after(1_500_000), Vec3::new(13.0, -1.5, 0.75));
@@ -278,7 +323,7 @@ fn beacon_becomes_metres_and_own_time() {
         target: Cell::new(9, 9),
     };
     let n = Neighbor::<f64>::from_beacon(RobotId(5), &beacon, at(u32::MAX));
-    assert_eq!(n.position_m, Vec3::new(1.5, -2.25, 2_147_483.647));
+    assert_eq!(n.position, Position::from_mm([1_500, -2_250, i32::MAX]));
     assert_eq!(n.velocity_mps, Vec3::new(0.5, -32.768, 0.0));
     assert_eq!((n.radius_m, n.id, n.leader), (0.15, RobotId(5), RobotId(7)));
     assert_eq!((n.heard, n.busy_until), (at(u32::MAX), at(65_534_999)));
@@ -296,7 +341,7 @@ fn compact_beacon_becomes_a_neighbour_in_the_plane() {
         mode: Mode::Hold,
     };
     let n = Neighbor::<f64>::from_compact(RobotId(5), &beacon, Cell::new(4, 2), at(10));
-    assert_eq!(n.position_m, Vec3::new(-2_147_483.648, 0.25, 0.0));
+    assert_eq!(n.position, Position::from_mm([i32::MIN, 250, 0]));
     assert_eq!(n.velocity_mps, Vec3::new(-0.25, 0.125, 0.0));
     assert_eq!((n.radius_m, n.mode), (2.55, Mode::Hold));
     assert_eq!(
@@ -315,8 +360,8 @@ fn fill(robots: &[(u32, i8, i8)], protect: impl Fn(RobotId) -> bool) -> Neighbor
     let mut table = NeighborTable::new(AGES);
     for &(id, x, y) in robots {
         let mut robot = standing(id, x.into(), at(0));
-        robot.position_m.y = y.into();
-        let _ = table.put(robot, Vec3::ZERO, at(0), &protect);
+        robot.position = place(x.into(), y.into()).unwrap();
+        let _ = table.put(robot, Position::ORIGIN, at(0), &protect);
     }
     table
 }
@@ -344,15 +389,12 @@ proptest! {
     }
 
     #[test]
-    fn k_nearest_is_the_head_of_a_full_sort(robots in robots()) {
+    fn nearest_are_the_head_of_a_full_sort(robots in robots()) {
         let table = fill(&robots, |_| false);
         for entry in &table {
             prop_assert!(table.get(entry.id, at(0)).fresh() == Some(entry));
         }
-        let mut out = heapless::Vec::<_, 5>::new();
-        table.k_nearest(Vec3::ZERO, at(0), &mut out);
-        let got: StdVec<u32> = out.iter().map(|n| n.id.0).collect();
-        prop_assert_eq!(got, expected(&robots, |_| false, 5));
+        prop_assert_eq!(nearest_ids::<8, 5>(&table, Position::ORIGIN), expected(&robots, |_| false, 5));
     }
 
     #[test]
@@ -384,5 +426,6 @@ fn put_from(
     own: f32,
     now: Instant,
 ) -> Put {
-    table.put(newcomer, Vec3::new(own, 0.0, 0.0), now, |id| id.0 < 1 << 30)
+    let own = place(own, 0.0).unwrap_or_default();
+    table.put(newcomer, own, now, |id| id.0 < 1 << 30)
 }

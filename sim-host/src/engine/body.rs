@@ -3,7 +3,7 @@
 use crate::terrain::Terrain;
 use crate::world::{Body, World};
 use staya_controller::agent;
-use staya_controller::geom::{Vec2, Vec3};
+use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Dir, GridFrame, UNIT};
 
 /// What turns cells and [`UNIT`]ths of ticks into metres and seconds.
@@ -22,10 +22,12 @@ pub(super) struct Pose {
 
 impl From<Pose> for agent::Pose<f32> {
     fn from(pose: Pose) -> Self {
-        let flat = |[x, y]: [f64; 2]| Vec3::new(x as f32, y as f32, 0.0);
+        let [x, y] = pose.position_m;
+        let [vx, vy] = pose.velocity_mps;
         Self {
-            position_m: flat(pose.position_m),
-            velocity_mps: flat(pose.velocity_mps),
+            // The world's numbers are finite.
+            position: Position::from_metres([x, y, 0.0]).unwrap_or_default(),
+            velocity_mps: Vec3::new(vx as f32, vy as f32, 0.0),
         }
     }
 }

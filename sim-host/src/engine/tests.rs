@@ -28,7 +28,7 @@ struct Known {
     id: u32,
     now_us: u32,
     cell: Cell,
-    position_m: [f32; 2],
+    position_mm: [i32; 3],
     window: (Cell, u16, u16),
     others: Vec<(u32, Cell)>,
 }
@@ -47,12 +47,12 @@ impl Guidance<f32> for Scout {
     ) -> Result<Guided, BadInput> {
         let cell = view.cell.ok_or(BadInput)?.cell;
         let window = view.window.ok_or(BadInput)?;
-        let position = view.pose.position_m;
+        let position = view.pose.position;
         self.0.lock().expect("no test panics").push(Known {
             id: view.id.0,
             now_us: view.now.as_micros(),
             cell,
-            position_m: [position.x, position.y],
+            position_mm: position.mm,
             window: (window.origin(), window.width(), window.height()),
             others: view.neighbors.iter().map(|n| (n.id.0, n.cell)).collect(),
         });
@@ -111,7 +111,7 @@ fn a_robot_gets_its_pose_in_metres_and_a_full_window() {
     let (mut engine, known) = scouts(&scenario);
     engine.step();
     let known = known.lock().expect("no test panics");
-    assert_eq!(known[0].position_m, [1.0, 39.0]);
+    assert_eq!(known[0].position_mm, [1_000, 39_000, 0]);
     assert_eq!(known[0].window, (Cell::new(-3, 16), 7, 7));
 }
 

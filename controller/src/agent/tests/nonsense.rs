@@ -228,10 +228,11 @@ fn survives<G: Guidance<f32, Workspace = GridWorkspace<CELLS>>>(
     }
     for step in steps {
         let inbox = step.inbox();
-        let [x, y, z, vx, vy, vz] = step.pose.map(f32::from_bits);
+        let [x, y, z] = [step.pose[0], step.pose[1], step.pose[2]].map(u32::cast_signed);
+        let [vx, vy, vz] = [step.pose[3], step.pose[4], step.pose[5]].map(f32::from_bits);
         let inputs = Inputs {
             pose: Pose {
-                position_m: crate::geom::Vec3::new(x, y, z),
+                position: crate::geom::Position::from_mm([x, y, z]),
                 velocity_mps: crate::geom::Vec3::new(vx, vy, vz),
             },
             cell: step.own,

@@ -1,0 +1,100 @@
+//! Who is near by right now, seen from oneself: what guidance and collision avoidance in the plane and in space work with.
+
+use super::{Ages, Neighbor, sink_last};
+use crate::geom::{Position, Vec3};
+use crate::scalar::Scalar;
+use crate::time::{Duration, Instant};
+use crate::wire::{Mode, RobotId};
+use heapless::Vec;
+
+/// A robot near by, as it should be right now.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearby<S> {
+    /// Who it is.
+    pub id: RobotId,
+    /// Its place minus the own one, metres.
+    pub offset_m: Vec3<S>,
+    /// Its velocity in the world, metres per second.
+    pub velocity_mps: Vec3<S>,
+    /// Radius of the ball that it is in, metres.
+    pub radius_m: S,
+    /// Whether it gives way too: fresh, and not in [`Mode::Fault`].
+    pub gives_way: bool,
+}
+
+/// How doubt about a silent robot grows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Doubt<S> {
+    /// Speed at which a stale neighbour's ball grows, m/s: how fast it might have gone since. 0: never.
+    pub growth_mps: S,
+    /// How much the ball grows at most, metres.
+    pub most_m: S,
+}
+
+/// The `K` robots nearest to `own` at `now` (all when fewer), nearest first, ties by number; an
+/// unknown distance (NaN) comes last.
+///
+/// A fresh one is where its velocity has taken it since it was heard. A stale one (older than
+/// [`Ages::stale_after`], not yet forgotten) stands where that ended; its ball grows as `doubt` says, but
+/// never over the own ball of `own_radius_m`, since doubt alone is no collision; and it does not give
+/// way. One older than [`Ages::expire_after`] is not there any more.
+///
+/// O(N K); 40 K bytes of stack (`f32`).
+#[must_use]
+pub fn nearest<S: Scalar, const K: usize>(
+    known: &[Neighbor<S>],
+    own: Position,
+    own_radius_m: S,
+    now: Instant,
+    ages: &Ages,
+    doubt: &Doubt<S>,
+) -> Vec<Nearby<S>, K> {
+    let mut nearest = Vec::<(u64, &Neighbor<S>), K>::new();
+    for entry in known {
+        if entry.age(now).is_none_or(|age| age > ages.expire_after) {
+            continue;
+        }
+        let key = entry.offset_at(own, now, ages.stale_after).length_key();
+        // Entries come in the order of ids, so that the later of two equal keys stays behind.
+        if nearest.is_full() && nearest.last().is_some_and(|(farthest, _)| *farthest > key) {
+            nearest.pop();
+        }
+        if nearest.push((key, entry)).is_ok() {
+            sink_last(&mut nearest, |before, after| before.0 > after.0);
+        }
+    }
+    let mut out = Vec::new();
+    for (_, entry) in nearest {
+        // Same capacity: it cannot be full. (`extend` would leave a panic in the firmware.)
+        let _ = out.push(seen(entry, own, own_radius_m, now, ages, doubt));
+    }
+    out
+}
+
+fn seen<S: Scalar>(
+    entry: &Neighbor<S>,
+    own: Position,
+    own_radius_m: S,
+    now: Instant,
+    ages: &Ages,
+    doubt: &Doubt<S>,
+) -> Nearby<S> {
+    let offset_m = entry.offset_at(own, now, ages.stale_after);
+    let age = entry.age(now).unwrap_or(Duration::MAX);
+    let is_fresh = age <= ages.stale_after;
+    let mut nearby = Nearby {
+        id: entry.id,
+        offset_m,
+        velocity_mps: entry.velocity_mps,
+        radius_m: entry.radius_m,
+        gives_way: is_fresh && entry.mode != Mode::Fault,
+    };
+    if !is_fresh {
+        nearby.velocity_mps = Vec3::ZERO;
+        let silent = age.as_micros().saturating_sub(ages.stale_after.as_micros());
+        let growth = (doubt.growth_mps * S::from_micro(silent)).min(doubt.most_m);
+        let room = offset_m.norm() - own_radius_m - entry.radius_m;
+        nearby.radius_m += growth.min(room).max(S::ZERO);
+    }
+    nearby
+}
