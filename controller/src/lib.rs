@@ -9,7 +9,7 @@
 //! Layers point down only:
 //! numbers and geometry ([`scalar`], [`geom`], [`time`], [`rand`], [`grid`], [`cost`], [`shuffle`],
 //! [`obstacle`])
-//! < what is known of others ([`wire`], [`neighbor`])
+//! < what is known of others and of oneself ([`wire`], [`neighbor`], [`body`])
 //! < behaviours ([`route`], [`formation`]; they never import each other)
 //! < composition ([`supervisor`], [`agent`]).
 #![no_std]
@@ -31,6 +31,7 @@
 extern crate std;
 
 pub mod agent;
+pub mod body;
 pub mod cost;
 pub mod formation;
 pub mod geom;

@@ -10,7 +10,7 @@ const LAYERS: [&[&str]; 4] = [
     &[
         "scalar", "geom", "time", "rand", "grid", "cost", "shuffle", "obstacle",
     ],
-    &["wire", "neighbor"],
+    &["wire", "neighbor", "body"],
     &["route", "formation", "orca"],
     &["supervisor", "agent"],
 ];

@@ -1,0 +1,104 @@
+//! What a robot knows of its own body: all that guidance and collision avoidance need of it.
+
+use crate::geom::Vec3;
+use crate::scalar::Scalar;
+use crate::wire::RobotId;
+
+/// The own body right now.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Body<S> {
+    /// Own number.
+    pub id: RobotId,
+    /// Own velocity in the world, m/s.
+    pub velocity_mps: Vec3<S>,
+    /// Radius of the ball around it, metres.
+    pub radius_m: S,
+    /// How fast it can go where it is, m/s.
+    pub max_speed_mps: S,
+    /// How fast it can change its velocity, m/s^2; [`Scalar::MAX`] when that plays no part.
+    pub max_acceleration_mps2: S,
+    /// Time from one decision to the next, seconds; more than 0.
+    pub step_s: S,
+}
+
+impl<S: Scalar> Body<S> {
+    /// The velocity nearest to `wish_mps` that the body can have after one step: within its
+    /// acceleration and its speed. What is not a number counts as zero.
+    ///
+    /// A body that is faster than it should be (it came upon rough land) slows down first.
+    #[must_use]
+    pub fn reach(&self, wish_mps: Vec3<S>) -> Vec3<S> {
+        let wish = wish_mps.clamp_norm(self.max_speed_mps);
+        let most = self.max_acceleration_mps2 * self.step_s;
+        if !most.is_finite() || !self.velocity_mps.is_finite() {
+            return wish;
+        }
+        let change = (wish - self.velocity_mps).clamp_norm(most);
+        self.velocity_mps + change
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scalar::Q16;
+    use proptest::prelude::*;
+
+    fn body(velocity: [f32; 2], speed: f32, acceleration: f32) -> Body<f32> {
+        Body {
+            id: RobotId(1),
+            velocity_mps: Vec3::new(velocity[0], velocity[1], 0.0),
+            radius_m: 0.1,
+            max_speed_mps: speed,
+            max_acceleration_mps2: acceleration,
+            step_s: 0.5,
+        }
+    }
+
+    #[test]
+    fn a_body_without_inertia_does_what_it_wishes_within_its_speed() {
+        let body = body([1.0, 0.0], 2.0, f32::MAX);
+        let wish = Vec3::new(-1.0, 0.5, 0.0);
+        assert_eq!(body.reach(wish), wish);
+        assert_eq!(body.reach(wish * 1e3).norm(), 2.0);
+        assert_eq!(body.reach(Vec3::new(f32::NAN, 0.0, 0.0)), Vec3::ZERO);
+        let fixed = Body::<Q16> {
+            id: RobotId(1),
+            velocity_mps: Vec3::ZERO,
+            radius_m: Q16::ONE,
+            max_speed_mps: Q16::ONE,
+            max_acceleration_mps2: Q16::MAX,
+            step_s: Q16::TWO,
+        };
+        let east = Vec3::new(Q16::ONE, Q16::ZERO, Q16::ZERO);
+        assert_eq!(fixed.reach(east), east);
+    }
+
+    #[test]
+    fn a_body_with_inertia_gets_there_in_steps() {
+        let body = body([1.0, 0.0], 2.0, 1.0);
+        assert_eq!(body.reach(Vec3::new(-2.0, 0.0, 0.0)).x, 0.5);
+        assert_eq!(body.reach(Vec3::new(1.25, 0.0, 0.0)).x, 1.25);
+        // Too fast for where it is now.
+        assert_eq!(
+            Body {
+                max_speed_mps: 0.25,
+                ..body
+            }
+            .reach(Vec3::ZERO)
+            .x,
+            0.5
+        );
+    }
+
+    proptest! {
+        #[test]
+        fn the_change_is_bounded_and_finite(v in any::<[i8; 2]>(), wish: [u32; 2], most in 0.1f32..9.0) {
+            let v = v.map(f32::from);
+            let wish = wish.map(f32::from_bits);
+            let body = body(v, 3.0, most);
+            let got = body.reach(Vec3::new(wish[0], wish[1], 0.0));
+            prop_assert!((got - body.velocity_mps).norm() <= most * 0.5 * 1.001 && got.is_finite());
+        }
+    }
+}
