@@ -100,6 +100,7 @@ fn agent_step(c: &mut Criterion) {
             11,
             11,
         ),
+        surroundings: None,
         inbox: &inboxes[step % inboxes.len()],
     };
     let now = |step: usize| Instant::from_micros(step as u32 * TICK.as_micros().cast_unsigned());

@@ -14,6 +14,7 @@ use crate::grid::{BLOCKED, Cell, Dir, Window};
 use crate::neighbor::Neighbor;
 use crate::rand::Rng;
 use crate::route::{CostField, RouteParams, Router};
+use crate::scalar::Scalar;
 use crate::shuffle::Sharpness;
 use crate::time::Duration;
 use crate::wire::{Mode, RequestKind, RobotId, TemplateAssembler, TemplateAssignment};
@@ -367,7 +368,7 @@ fn seen_at<S>(other: &Neighbor<S>, predicted: Cell) -> Seen {
     }
 }
 
-impl<S, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
+impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
     for FormationGuidance<CELLS, M, F>
 {
     type Workspace = GridWorkspace<CELLS>;
@@ -377,7 +378,7 @@ impl<S, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
         view: &View<'_, S>,
         rng: &mut Rng,
         workspace: &mut Self::Workspace,
-    ) -> Result<Guided, BadInput> {
+    ) -> Result<Guided<S>, BadInput> {
         let (cell, window) = on_grid(view)?;
         let target = reachable_goal(&window, view.goal);
         self.router.observe(&self.route, cell, target);

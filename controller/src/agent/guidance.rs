@@ -1,9 +1,13 @@
 //! What the agent asks of a guidance.
 
-use super::{CellState, Pose};
+use super::{CellState, InCell, Pose};
+use crate::body::Body;
+use crate::geom::{Position, Vec3};
 use crate::grid::{Cell, Dir, Window};
-use crate::neighbor::{Ages, Neighbor};
+use crate::neighbor::{Ages, Nearby, Neighbor};
+use crate::obstacle::Obstacle;
 use crate::rand::Rng;
+use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 use crate::wire::{RequestKind, RobotId, TemplateAssignment};
 use heapless::Vec;
@@ -23,8 +27,16 @@ pub struct View<'a, S> {
     pub cell: Option<CellState>,
     /// The terrain in sight, if there is any.
     pub window: Option<Window<'a>>,
-    /// The cell to go to.
+    /// The cell to go to; for a guidance that has a goal of its own any cell.
     pub goal: Cell,
+    /// Own body.
+    pub body: Body<S>,
+    /// Who is near by, nearest first; nobody for robots that move cell by cell.
+    pub nearby: &'a [Nearby<S>],
+    /// What it sees that does not move.
+    pub obstacles: &'a [Obstacle<S>],
+    /// Where in its cell it is.
+    pub in_cell: Option<InCell<S>>,
     /// Who was heard, by rising number; nobody older than [`Ages::expire_after`].
     pub neighbors: &'a [Neighbor<S>],
     /// How old news may be.
@@ -40,6 +52,46 @@ impl<'a, S> View<'a, S> {
     }
 }
 
+/// Span after which a moving place is taken note of.
+const LONG: Duration = Duration::from_millis(600_000);
+
+/// A place to go to, which may move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place<S> {
+    /// Where it was.
+    pub position: Position,
+    /// Its velocity since, m/s.
+    pub velocity_mps: Vec3<S>,
+    /// When it was there, own clock.
+    pub at: Instant,
+}
+
+impl<S: Scalar> Place<S> {
+    /// A place that stays where it is.
+    #[must_use]
+    pub const fn fixed(position: Position) -> Self {
+        Self {
+            position,
+            velocity_mps: Vec3::ZERO,
+            at: Instant::from_micros(0),
+        }
+    }
+
+    /// The way there from `from` at `now`, metres. Call it at least every half hour: what moves is taken note of
+    /// on the way, lest the clock run round (each time rounds to a millimetre).
+    #[must_use]
+    pub fn way(&mut self, from: Position, now: Instant) -> Vec3<S> {
+        let span = now.since(self.at);
+        let moved = self.velocity_mps * S::from_micro(span.as_micros());
+        if span < Duration::ZERO || span > LONG {
+            self.position = self.position.moved(moved).unwrap_or(self.position);
+            self.at = now;
+            return self.position.since(from);
+        }
+        self.position.since(from) + moved
+    }
+}
+
 /// A request that the guidance wants made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ask {
@@ -52,9 +104,14 @@ pub struct Ask {
 /// What a guidance decided.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[must_use]
-pub struct Guided {
+pub struct Guided<S> {
     /// The moves to try, best first; what the robot does with them is the supervisor's matter.
     pub moves: Vec<Dir, 8>,
+    /// The velocity that it would have with nobody in the way, m/s, for robots that do not move cell by
+    /// cell; what becomes of it is the supervisor's and the safety layer's matter.
+    pub velocity_mps: Vec3<S>,
+    /// Where it goes, relative to its own place, metres; `None` when it only roams.
+    pub way_m: Option<Vec3<S>>,
     /// The cell that it really heads for: the goal, or near it if the goal is a wall.
     pub target: Cell,
     /// Whom the robot follows.
@@ -96,7 +153,7 @@ pub trait Guidance<S> {
         view: &View<'_, S>,
         rng: &mut Rng,
         workspace: &mut Self::Workspace,
-    ) -> Result<Guided, BadInput>;
+    ) -> Result<Guided<S>, BadInput>;
 
     /// "Choose another direction" (KUZ section 7): excludes the last choice from the next one.
     fn redirect(&mut self) {}
@@ -104,6 +161,16 @@ pub trait Guidance<S> {
     /// Takes a part of a formation template in; whether the part was of use. `is_anew`: its sender is
     /// another one than before, or has started anew.
     fn assign_template(&mut self, _part: &TemplateAssignment, _is_anew: bool) -> bool {
+        false
+    }
+
+    /// Takes a place to go to, number `index` of those that the robot has; whether it was of use.
+    fn assign_place(&mut self, _index: u8, _place: &Place<S>) -> bool {
+        false
+    }
+
+    /// Whether it knows where to go without a cell as its goal.
+    fn has_own_goal(&self) -> bool {
         false
     }
 

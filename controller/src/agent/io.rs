@@ -1,7 +1,8 @@
 //! What goes into a step and what comes out of it.
 
-use crate::geom::{Position, Vec3};
+use crate::geom::{Position, Vec2, Vec3};
 use crate::grid::{Cell, Dir, Window};
+use crate::obstacle::Obstacle;
 use crate::time::{Duration, Instant};
 use crate::wire::{Mode, RequestKind, RobotId};
 use heapless::Vec;
@@ -29,6 +30,27 @@ pub struct CellState {
     pub busy: Duration,
 }
 
+/// The robot's surroundings in the plane or in space, for guidance that moves by velocities.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surroundings<'a, S> {
+    /// How fast the body can go where it is, m/s: rough land slows it down. More than 0.
+    pub max_speed_mps: S,
+    /// What it sees that does not move. Walls of a terrain window come from
+    /// [`grid_walls`](crate::obstacle::grid_walls).
+    pub obstacles: &'a [Obstacle<S>],
+    /// Where in its cell of the window the robot is; `None` without a window.
+    pub in_cell: Option<InCell<S>>,
+}
+
+/// A place within a cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InCell<S> {
+    /// The place minus the cell's centre, metres.
+    pub offset_m: Vec2<S>,
+    /// Side of a cell, metres; more than 0.
+    pub cell_m: S,
+}
+
 /// What one step gets.
 #[derive(Clone, Copy, Debug)]
 pub struct Inputs<'a, S> {
@@ -40,6 +62,8 @@ pub struct Inputs<'a, S> {
     /// the grid is in [`Mode::Fault`] and stands). Of any size: routes are searched within the
     /// radius of [`RouteParams`](crate::route::RouteParams) in it.
     pub window: Option<Window<'a>>,
+    /// The robot's surroundings in the plane or in space; `None` for robots that move cell by cell.
+    pub surroundings: Option<Surroundings<'a, S>>,
     /// What the radio delivered since the last step: COBS frames, each ended by a zero byte, in
     /// order of arrival. Damaged, foreign and partial frames are recognised and counted.
     pub inbox: &'a [u8],
@@ -47,13 +71,15 @@ pub struct Inputs<'a, S> {
 
 /// What the body should do until the next step.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub enum Command {
+pub enum Command<S> {
     /// Stand.
     #[default]
     Hold,
     /// Take the first of these moves whose cell is free and passable; none free: stand
     /// (KUZ algorithm 4).
     Move(Vec<Dir, 8>),
+    /// Go with this world velocity, m/s: within the speed that the body can have.
+    Velocity(Vec3<S>),
 }
 
 /// Something that the robot's owner may want to know.
@@ -96,9 +122,9 @@ pub enum Event {
 /// What one step gives.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[must_use = "a step only decides; the caller moves the body and sends the bytes"]
-pub struct Outputs {
+pub struct Outputs<S> {
     /// What the body should do.
-    pub command: Command,
+    pub command: Command<S>,
     /// Frames of the inbox that were heard: sound, not seen before, of somebody else.
     pub received: u16,
     /// Frames of the inbox that were refused: damaged, foreign, repeated or replayed.

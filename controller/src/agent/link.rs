@@ -1,9 +1,10 @@
 //! The agent's end of the radio: bytes to news, and what is to be said to bytes.
 
+use super::guidance::Place;
 use super::io::{Event, OUTBOX, Outputs};
 use crate::geom::Position;
 use crate::grid::Cell;
-use crate::neighbor::{Ages, Neighbor, NeighborTable, Put};
+use crate::neighbor::{Ages, Neighbor, NeighborTable, Put, vec3_from_milli};
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 use crate::wire::{
@@ -14,6 +15,8 @@ use heapless::Vec;
 
 /// Requests to others on their way at a time.
 const PENDING: usize = 4;
+/// Places to go to that a robot can be given.
+const PLACES: usize = 4;
 /// Matters of others that are remembered.
 const ORDERS: usize = 8;
 /// Bytes that acknowledgements and requests leave free for the beacon.
@@ -23,7 +26,7 @@ const RESERVED: usize = Beacon::MAX_FRAME_LEN;
 const NO_CELL: Cell = Cell::new(i16::MIN, i16::MIN);
 
 /// News that is not kept here but acted on by the agent.
-pub(super) enum News {
+pub(super) enum News<S> {
     /// Somebody asks to choose another direction.
     Redirect,
     /// Somebody's request to stand or go on is to be passed on up the chain.
@@ -36,6 +39,8 @@ pub(super) enum News {
     },
     /// A goal for the top leader of this robot's formation.
     Goal(Cell),
+    /// A place to go to, number `index` of several.
+    Place { index: u8, place: Place<S> },
 }
 
 /// What the link keeps between steps.
@@ -48,15 +53,17 @@ pub(super) struct Link<S, const N: usize> {
     requests: Requests<PENDING>,
     orders: Orders<ORDERS>,
     goal: Newest,
-    /// Who gave the last goal, and who the last template, each with its boot.
-    commanders: [Option<(RobotId, u8)>; 2],
+    places: [Newest; PLACES],
+    /// Who gave the last goal, the last template and the last place, each with its boot.
+    commanders: [Option<(RobotId, u8)>; 3],
     beacon_due: Instant,
     has_sent: bool,
 }
 
-/// Own position and who must stay in a full table.
+/// Own position, when what arrives was said, and who must stay in a full table.
 pub(super) struct Listener<'a> {
     pub(super) position: Position,
+    pub(super) heard_at: Instant,
     pub(super) needs: &'a dyn Fn(RobotId) -> bool,
 }
 
@@ -73,14 +80,15 @@ impl<S: Scalar, const N: usize> Link<S, N> {
             requests: Requests::new(id, boot, retry),
             orders: Orders::new(ages.expire_after),
             goal: Newest::new(),
-            commanders: [None; 2],
+            places: [Newest::new(); PLACES],
+            commanders: [None; 3],
             beacon_due: Instant::from_micros(0),
             has_sent: false,
         }
     }
 
     /// Forgets who was silent for too long. The first thing in each step.
-    pub(super) fn expire(&mut self, now: Instant, out: &mut Outputs) {
+    pub(super) fn expire(&mut self, now: Instant, out: &mut Outputs<S>) {
         let windows = &mut self.windows;
         self.table.expire(now, |lost| {
             windows.retain(|(id, _)| *id != lost);
@@ -94,8 +102,8 @@ impl<S: Scalar, const N: usize> Link<S, N> {
         bytes: &[u8],
         now: Instant,
         listener: &Listener<'_>,
-        out: &mut Outputs,
-    ) -> Option<News> {
+        out: &mut Outputs<S>,
+    ) -> Option<News<S>> {
         let frame = decode(bytes).ok().and_then(|frame| {
             let arrival = self.arrival(frame.header, out)?;
             Some((frame, arrival))
@@ -111,7 +119,7 @@ impl<S: Scalar, const N: usize> Link<S, N> {
     }
 
     /// How a frame stands to those before it; `None` for one to refuse.
-    fn arrival(&mut self, header: Header, out: &mut Outputs) -> Option<Arrival> {
+    fn arrival(&mut self, header: Header, out: &mut Outputs<S>) -> Option<Arrival> {
         let Header { sender, .. } = header;
         if sender == self.header.sender {
             return None;
@@ -131,21 +139,21 @@ impl<S: Scalar, const N: usize> Link<S, N> {
         arrival: Arrival,
         now: Instant,
         listener: &Listener<'_>,
-        out: &mut Outputs,
-    ) -> Option<News> {
+        out: &mut Outputs<S>,
+    ) -> Option<News<S>> {
         let Header { sender, .. } = frame.header;
         let is_mine = |to: RobotId| to == self.header.sender;
         match frame.message {
             Message::Beacon(beacon) if arrival.is_latest() => {
-                let neighbor = Neighbor::from_beacon(sender, &beacon, now);
+                let neighbor = Neighbor::from_beacon(sender, &beacon, listener.heard_at);
                 self.keep(neighbor, frame.header, now, listener, out);
             }
             Message::Compact(beacon) if arrival.is_latest() => {
-                let heard = Neighbor::from_compact(sender, &beacon, NO_CELL, now);
+                let heard = Neighbor::from_compact(sender, &beacon, NO_CELL, listener.heard_at);
                 // What it does not say is as it was said last.
                 let known = self.table.get(sender, now).known();
                 let neighbor = known.map_or(heard, |known| Neighbor {
-                    heard: now,
+                    heard: heard.heard,
                     position: heard.position,
                     velocity_mps: heard.velocity_mps,
                     radius_m: heard.radius_m,
@@ -168,17 +176,34 @@ impl<S: Scalar, const N: usize> Link<S, N> {
                 let _ = self.requests.acknowledged(sender, &ack);
             }
             Message::Template(part) if is_mine(part.to) => {
-                let [_, commander] = &mut self.commanders;
+                let [_, commander, _] = &mut self.commanders;
                 let is_anew = is_another(commander, frame.header);
                 return Some(News::Template { part, is_anew });
             }
             Message::Goal(goal) if is_mine(goal.to) || !goal.to.is_somebody() => {
-                let [commander, _] = &mut self.commanders;
+                let [commander, _, _] = &mut self.commanders;
                 if is_another(commander, frame.header) {
                     self.goal.forget();
                 }
                 if self.goal.admit(goal.version) {
                     return Some(News::Goal(goal.target));
+                }
+            }
+            Message::Place(place) if is_mine(place.to) || !place.to.is_somebody() => {
+                let [_, _, commander] = &mut self.commanders;
+                if is_another(commander, frame.header) {
+                    self.places = [Newest::new(); PLACES];
+                }
+                let newest = self.places.get_mut(usize::from(place.index))?;
+                if newest.admit(place.version) {
+                    return Some(News::Place {
+                        index: place.index,
+                        place: Place {
+                            position: Position::from_mm(place.position_mm),
+                            velocity_mps: vec3_from_milli(place.velocity_mmps.map(i32::from)),
+                            at: listener.heard_at,
+                        },
+                    });
                 }
             }
             // An old beacon, or for somebody else.
@@ -193,7 +218,7 @@ impl<S: Scalar, const N: usize> Link<S, N> {
         header: Header,
         now: Instant,
         listener: &Listener<'_>,
-        out: &mut Outputs,
+        out: &mut Outputs<S>,
     ) {
         let put = self
             .table
@@ -242,7 +267,7 @@ impl<S: Scalar, const N: usize> Link<S, N> {
         now: Instant,
         period: Duration,
         beacon: impl FnOnce() -> Beacon,
-        out: &mut Outputs,
+        out: &mut Outputs<S>,
     ) {
         // Twice as many polls as requests always empty the list.
         for _ in 0..2 * PENDING {
@@ -266,7 +291,7 @@ impl<S: Scalar, const N: usize> Link<S, N> {
     }
 
     /// Appends a frame to the outbox if `reserved` bytes stay free behind it.
-    fn say(&mut self, message: &Message, reserved: usize, out: &mut Outputs) {
+    fn say(&mut self, message: &Message, reserved: usize, out: &mut Outputs<S>) {
         let before = out.outbox.len();
         if encode(self.header, message, &mut out.outbox).is_err() {
             return;
@@ -287,6 +312,6 @@ fn is_another(last: &mut Option<(RobotId, u8)>, header: Header) -> bool {
 }
 
 /// Adds an event if there is room.
-pub(super) fn report(out: &mut Outputs, event: Event) {
+pub(super) fn report<S>(out: &mut Outputs<S>, event: Event) {
     let _ = out.events.push(event);
 }

@@ -24,6 +24,7 @@
 //!         pose: Pose::default(),
 //!         cell: Some(CellState { cell, busy: Duration::ZERO }),
 //!         window: Window::new(&land, cell - Cell::new(5, 5), 11, 11),
+//!         surroundings: None,
 //!         inbox: &[],
 //!     };
 //!     let out = agent.step(&inputs, now, &mut workspace);
@@ -41,23 +42,32 @@ mod guidance;
 mod io;
 mod link;
 mod route_guidance;
+mod safety;
 mod travel;
+mod waypoint_guidance;
 
 #[cfg(test)]
 mod tests;
 
 pub use formation_guidance::FormationGuidance;
-pub use guidance::{Ask, BadInput, Guidance, Guided, View};
-pub use io::{CellState, Command, EVENTS, Event, Inputs, OUTBOX, Outputs, Pose};
+pub use guidance::{Ask, BadInput, Guidance, Guided, Place, View};
+pub use io::{
+    CellState, Command, EVENTS, Event, InCell, Inputs, OUTBOX, Outputs, Pose, Surroundings,
+};
 pub use route_guidance::{GridWorkspace, RouteGuidance};
+pub use safety::{Safety, Sight, Unguarded};
+pub use waypoint_guidance::WaypointGuidance;
 
+use crate::body::Body;
+use crate::geom::Vec3;
 use crate::grid::{Cell, Dir};
-use crate::neighbor::{Ages, Knowledge, Neighbor};
+use crate::neighbor::{Ages, Knowledge, Nearby, Neighbor, nearest};
 use crate::rand::Rng;
 use crate::scalar::Scalar;
 use crate::supervisor::{Situation, moves, next_mode};
 use crate::time::{Duration, Instant};
 use crate::wire::{Beacon, Mode, Retry, RobotId, frames};
+use heapless::Vec;
 use link::{Link, Listener, News, report};
 
 /// Keeps the agent's draws apart from other uses of randomness.
@@ -85,9 +95,9 @@ const BYTES: [usize; 3] = [
     size_of::<GridWorkspace<CELLS>>(),
 ];
 #[cfg(target_pointer_width = "32")]
-const _: () = assert!(matches!(BYTES, [2000, 2256, 2704]));
+const _: () = assert!(matches!(BYTES, [2024, 2280, 2704]));
 #[cfg(target_pointer_width = "64")]
-const _: () = assert!(matches!(BYTES, [2040, 2296, 2712]));
+const _: () = assert!(matches!(BYTES, [2064, 2320, 2712]));
 
 /// What does not change while the robot runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,6 +114,11 @@ pub struct AgentConfig<S> {
     pub beacon_period: Duration,
     /// Radius of the ball around the body, metres.
     pub radius_m: S,
+    /// How fast the body can change its velocity, m/s^2; [`Scalar::MAX`]: at once. For robots that do not
+    /// move cell by cell.
+    pub max_acceleration_mps2: S,
+    /// How old news is when it arrives: neighbours are taken to have gone on for so long. At least 0.
+    pub latency: Duration,
     /// How old news of others may be.
     pub ages: Ages,
     /// How requests are resent.
@@ -114,7 +129,7 @@ pub struct AgentConfig<S> {
 
 impl<S: Scalar> AgentConfig<S> {
     /// A beacon each tick, news stale after 4 and forgotten after 30 ticks, requests resent every
-    /// 3 ticks, stops for 12 ticks, a radius of 0.
+    /// 3 ticks, stops for 12 ticks, a radius of 0, no inertia, no latency.
     #[must_use]
     pub fn new(id: RobotId, seed: u64, tick: Duration) -> Self {
         Self {
@@ -124,6 +139,8 @@ impl<S: Scalar> AgentConfig<S> {
             tick,
             beacon_period: tick,
             radius_m: S::ZERO,
+            max_acceleration_mps2: S::MAX,
+            latency: Duration::ZERO,
             ages: Ages {
                 stale_after: tick.saturating_mul(4),
                 expire_after: tick.saturating_mul(30),
@@ -137,15 +154,16 @@ impl<S: Scalar> AgentConfig<S> {
     }
 }
 
-/// The controller of one robot: guidance `G`, at most `N` known neighbours.
+/// The controller of one robot: guidance `G`, at most `N` known neighbours, safety layer `A`.
 ///
-/// Bytes for the default capacities on a 32-bit part: 2000 for [`RouteAgent`], 2256 for
+/// Bytes for the default capacities on a 32-bit part: 2024 for [`RouteAgent`], 2280 for
 /// [`FormationAgent`], and 2704 of workspace that all agents of a processor share; on a 64-bit host
-/// 2040, 2296 and 2712. The build fails when one of them changes unnoticed.
+/// 2064, 2320 and 2712. The build fails when one of them changes unnoticed.
 #[derive(Clone, Debug)]
-pub struct Agent<S, G, const N: usize> {
+pub struct Agent<S, G, const N: usize, A = Unguarded> {
     config: AgentConfig<S>,
     guidance: G,
+    safety: A,
     link: Link<S, N>,
     mode: Mode,
     goal: Option<Goal>,
@@ -175,12 +193,21 @@ struct Last {
 }
 
 impl<S: Scalar, G: Guidance<S>, const N: usize> Agent<S, G, N> {
-    /// A robot that has just started: idle, without a goal, knowing nobody.
+    /// A robot that has just started: idle, without a goal, knowing nobody, and without a safety layer.
     #[must_use]
     pub const fn new(config: &AgentConfig<S>, guidance: G) -> Self {
+        Self::guarded(config, guidance, Unguarded)
+    }
+}
+
+impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>> Agent<S, G, N, A> {
+    /// A robot that has just started: idle, without a goal, knowing nobody.
+    #[must_use]
+    pub const fn guarded(config: &AgentConfig<S>, guidance: G, safety: A) -> Self {
         Self {
             config: *config,
             guidance,
+            safety,
             link: Link::new(config.id, config.boot, config.ages, config.retry),
             mode: Mode::Idle,
             goal: None,
@@ -207,6 +234,12 @@ impl<S: Scalar, G: Guidance<S>, const N: usize> Agent<S, G, N> {
     pub const fn assign_goal(&mut self, goal: Cell) {
         self.goal = Some(Goal::Own(goal));
         self.last.target = goal;
+    }
+
+    /// Gives the robot a place to go to, number `index` of those that its guidance has room for; whether
+    /// it has.
+    pub fn assign_place(&mut self, index: u8, place: &Place<S>) -> bool {
+        self.guidance.assign_place(index, place)
     }
 
     /// What the robot is doing.
@@ -249,24 +282,57 @@ impl<S: Scalar, G: Guidance<S>, const N: usize> Agent<S, G, N> {
     ///
     /// Bounded work: O(frames of the inbox * N) to hear; the guidance's decision when the robot is
     /// free to move (for the grid: one search of the window, O((2r + 1)^2), with
-    /// [`Prediction::Reflexive`](crate::formation::Prediction) one more per entry of the template);
+    /// [`Prediction::Reflexive`](crate::formation::Prediction) one more per entry of the template;
+    /// in the plane O(N) and the obstacles in sight) and its safety layer's (see there);
     /// at most [`OUTBOX`] bytes to send.
     pub fn step(
         &mut self,
         inputs: &Inputs<'_, S>,
         now: Instant,
         workspace: &mut G::Workspace,
-    ) -> Outputs {
+    ) -> Outputs<S> {
         let mut out = Outputs::default();
         self.hear(inputs, now, &mut out);
-        let guided = self.decide(inputs, now, workspace, &mut out);
-        self.supervise(guided.as_ref(), &mut out);
+        let nearby = self.look(inputs, now);
+        let mut rng = Rng::keyed(self.config.seed, PURPOSE, self.config.id.0, self.decisions);
+        let guided = self.decide(inputs, &nearby, now, &mut rng, workspace, &mut out);
+        self.supervise(inputs, guided.as_ref(), &mut out);
+        self.keep_clear(inputs, guided.as_ref(), &nearby, &mut rng, &mut out);
         self.speak(inputs, now, &mut out);
         out
     }
 
-    fn hear(&mut self, inputs: &Inputs<'_, S>, now: Instant, out: &mut Outputs) {
+    /// Who is near by, for robots that do not move cell by cell.
+    fn look(&self, inputs: &Inputs<'_, S>, now: Instant) -> Vec<Nearby<S>, N> {
+        if inputs.surroundings.is_none() {
+            return Vec::new();
+        }
+        let (config, doubt) = (&self.config, self.safety.doubt());
+        nearest(
+            self.link.table.as_slice(),
+            inputs.pose.position,
+            config.radius_m,
+            now,
+            &config.ages,
+            &doubt,
+        )
+    }
+
+    fn body(&self, inputs: &Inputs<'_, S>) -> Body<S> {
+        let max_speed_mps = inputs.surroundings.map_or(S::ZERO, |s| s.max_speed_mps);
+        Body {
+            id: self.config.id,
+            velocity_mps: inputs.pose.velocity_mps,
+            radius_m: self.config.radius_m,
+            max_speed_mps,
+            max_acceleration_mps2: self.config.max_acceleration_mps2,
+            step_s: S::from_micro(self.config.tick.as_micros()),
+        }
+    }
+
+    fn hear(&mut self, inputs: &Inputs<'_, S>, now: Instant, out: &mut Outputs<S>) {
         let Self {
+            config,
             guidance,
             link,
             goal,
@@ -274,11 +340,13 @@ impl<S: Scalar, G: Guidance<S>, const N: usize> Agent<S, G, N> {
             ..
         } = self;
         let leader = last.leader;
-        let mut pass_on = heapless::Vec::<_, 4>::new();
+        let mut pass_on = Vec::<_, 4>::new();
+        let heard_at = now - config.latency;
         link.expire(now, out);
         for bytes in frames(inputs.inbox) {
             let listener = Listener {
                 position: inputs.pose.position,
+                heard_at,
                 needs: &|id| id == leader || guidance.needs(id),
             };
             match link.hear(bytes, now, &listener, out) {
@@ -291,6 +359,9 @@ impl<S: Scalar, G: Guidance<S>, const N: usize> Agent<S, G, N> {
                 // One that is refused is of no use, and its sender will not hear of it.
                 Some(News::Template { part, is_anew }) => {
                     let _ = guidance.assign_template(&part, is_anew);
+                }
+                Some(News::Place { index, place }) => {
+                    let _ = guidance.assign_place(index, &place);
                 }
                 // One without room is lost: a stop is asked for again, an old one expires.
                 Some(News::PassOn(request)) => drop(pass_on.push(request)),
@@ -317,13 +388,16 @@ impl<S: Scalar, G: Guidance<S>, const N: usize> Agent<S, G, N> {
     fn decide(
         &mut self,
         inputs: &Inputs<'_, S>,
+        nearby: &[Nearby<S>],
         now: Instant,
+        rng: &mut Rng,
         workspace: &mut G::Workspace,
-        out: &mut Outputs,
-    ) -> Option<Guided> {
+        out: &mut Outputs<S>,
+    ) -> Option<Guided<S>> {
         // Asked in each step, so that its clock never goes half round unnoticed.
         let is_stopped = self.link.is_stopped(now);
-        let goal = self.goal_cell();
+        let own_goal = self.guidance.has_own_goal();
+        let goal = self.goal_cell().or(own_goal.then_some(Cell::default()));
         self.last.situation.has_goal = goal.is_some();
         let goal = goal?;
         if inputs.cell.is_some_and(|cell| cell.busy > Duration::ZERO) {
@@ -337,12 +411,15 @@ impl<S: Scalar, G: Guidance<S>, const N: usize> Agent<S, G, N> {
             cell: inputs.cell,
             window: inputs.window,
             goal,
+            body: self.body(inputs),
+            nearby,
+            obstacles: inputs.surroundings.map_or(&[], |s| s.obstacles),
+            in_cell: inputs.surroundings.and_then(|s| s.in_cell),
             neighbors: self.link.table.as_slice(),
             ages: self.config.ages,
         };
-        let mut rng = Rng::keyed(self.config.seed, PURPOSE, self.config.id.0, self.decisions);
         self.decisions = self.decisions.wrapping_add(1);
-        let guided = self.guidance.decide(&view, &mut rng, workspace);
+        let guided = self.guidance.decide(&view, rng, workspace);
         let situation = &mut self.last.situation;
         situation.has_fault = guided.is_err();
         let guided = guided.ok()?;
@@ -350,7 +427,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize> Agent<S, G, N> {
             let (valid, own) = (self.config.stop_valid, self.config.id);
             self.link.ask(ask.to, own, ask.kind, valid, now);
         }
-        if guided.target != goal && guided.target != self.last.target {
+        if !own_goal && guided.target != goal && guided.target != self.last.target {
             let (from, to) = (goal, guided.target);
             report(out, Event::TargetMoved { from, to });
         }
@@ -369,26 +446,70 @@ impl<S: Scalar, G: Guidance<S>, const N: usize> Agent<S, G, N> {
     }
 
     /// The mode, and what it makes of the guidance's wishes.
-    fn supervise(&mut self, guided: Option<&Guided>, out: &mut Outputs) {
+    fn supervise(
+        &mut self,
+        inputs: &Inputs<'_, S>,
+        guided: Option<&Guided<S>>,
+        out: &mut Outputs<S>,
+    ) {
         let to = next_mode(self.mode, self.last.situation);
         if to != self.mode {
             let from = core::mem::replace(&mut self.mode, to);
             report(out, Event::ModeChanged { from, to });
         }
-        if let Some(guided) = guided {
-            let goes = moves(to) || (guided.makes_way && to != Mode::Fault);
-            self.last.heading = Dir::Stay;
-            if goes && !guided.moves.is_empty() {
-                self.last.heading = guided.moves.first().copied().unwrap_or_default();
-                out.command = Command::Move(guided.moves.clone());
-            }
+        let Some(guided) = guided else { return };
+        let goes = moves(to) || (guided.makes_way && to != Mode::Fault);
+        self.last.heading = Dir::Stay;
+        if goes && inputs.surroundings.is_some() {
+            out.command = Command::Velocity(guided.velocity_mps);
+        } else if goes && !guided.moves.is_empty() {
+            self.last.heading = guided.moves.first().copied().unwrap_or_default();
+            out.command = Command::Move(guided.moves.clone());
         }
     }
 
-    fn speak(&mut self, inputs: &Inputs<'_, S>, now: Instant, out: &mut Outputs) {
+    /// What the safety layer makes of the wished velocity. Who stands gives way too; only a robot in
+    /// [`Mode::Fault`] does nothing.
+    fn keep_clear(
+        &mut self,
+        inputs: &Inputs<'_, S>,
+        guided: Option<&Guided<S>>,
+        nearby: &[Nearby<S>],
+        rng: &mut Rng,
+        out: &mut Outputs<S>,
+    ) {
+        let Some(surroundings) = inputs.surroundings else {
+            return;
+        };
+        if self.mode == Mode::Fault {
+            out.command = Command::Hold;
+            return;
+        }
+        let wish = match out.command {
+            Command::Velocity(wish) if wish.is_finite() => Some(wish),
+            _ => None,
+        };
+        let body = self.body(inputs);
+        let sight = Sight {
+            body,
+            wish_mps: wish.unwrap_or_default(),
+            way_m: guided.and_then(|g| g.way_m).filter(|_| wish.is_some()),
+            nearby,
+            obstacles: surroundings.obstacles,
+        };
+        let safe = self.safety.keep_clear(&sight, rng);
+        out.command = Command::Velocity(body.reach(safe));
+    }
+
+    fn speak(&mut self, inputs: &Inputs<'_, S>, now: Instant, out: &mut Outputs<S>) {
         let Self { config, last, .. } = self;
         let mode = self.mode;
-        let beacon = || beacon(config, last, mode, inputs, now);
+        // What it does from now on is of more use to others than what it did.
+        let velocity_mps = match out.command {
+            Command::Velocity(velocity_mps) => velocity_mps,
+            Command::Hold | Command::Move(_) => inputs.pose.velocity_mps,
+        };
+        let beacon = || beacon(config, last, mode, inputs, velocity_mps, now);
         self.link.speak(now, config.beacon_period, beacon, out);
         // A robot that is free decides anew after a tick at the latest.
         let busy = inputs.cell.map_or(Duration::ZERO, |cell| cell.busy);
@@ -410,14 +531,12 @@ fn beacon<S: Scalar>(
     last: &Last,
     mode: Mode,
     inputs: &Inputs<'_, S>,
+    v: Vec3<S>,
     now: Instant,
 ) -> Beacon {
     let milli = |value: S| value.to_milli().unwrap_or(0);
     let narrow = |value: S| milli(value).clamp(i16::MIN.into(), i16::MAX.into()) as i16;
-    let Pose {
-        position,
-        velocity_mps: v,
-    } = inputs.pose;
+    let position = inputs.pose.position;
     let state = inputs.cell.unwrap_or_default();
     let busy_ms = i64::from(state.busy.as_micros().max(0))
         .checked_div(1000)

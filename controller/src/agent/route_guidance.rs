@@ -5,6 +5,7 @@ use super::travel::{Travel, on_grid, reachable_goal};
 use crate::grid::{Cell, Dir};
 use crate::rand::Rng;
 use crate::route::{CostField, Replan, RouteParams, Router};
+use crate::scalar::Scalar;
 use crate::shuffle::Sharpness;
 use crate::wire::RobotId;
 use heapless::Vec;
@@ -103,7 +104,7 @@ impl<const CELLS: usize, const M: usize> RouteGuidance<CELLS, M> {
     }
 }
 
-impl<S, const CELLS: usize, const M: usize> Guidance<S> for RouteGuidance<CELLS, M> {
+impl<S: Scalar, const CELLS: usize, const M: usize> Guidance<S> for RouteGuidance<CELLS, M> {
     type Workspace = GridWorkspace<CELLS>;
 
     fn decide(
@@ -111,7 +112,7 @@ impl<S, const CELLS: usize, const M: usize> Guidance<S> for RouteGuidance<CELLS,
         view: &View<'_, S>,
         rng: &mut Rng,
         workspace: &mut Self::Workspace,
-    ) -> Result<Guided, BadInput> {
+    ) -> Result<Guided<S>, BadInput> {
         let (cell, window) = on_grid(view)?;
         let target = reachable_goal(&window, view.goal);
         self.router.observe(&self.params, cell, target);

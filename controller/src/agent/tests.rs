@@ -44,6 +44,7 @@ fn inputs<'a>(cells: &'a [u8], at: Cell, inbox: &'a [u8]) -> Inputs<'a, f32> {
             busy: Duration::ZERO,
         }),
         window: Window::new(cells, origin, 11, 11),
+        surroundings: None,
         inbox,
     }
 }
@@ -65,7 +66,7 @@ fn bytes(sender: u32, boot: u8, sequence: u16, messages: &[Message]) -> Vec<u8> 
     out.to_vec()
 }
 
-fn sent(outputs: &Outputs) -> Vec<Frame> {
+fn sent(outputs: &Outputs<f32>) -> Vec<Frame> {
     frames(&outputs.outbox)
         .map(|f| decode(f).unwrap())
         .collect()
@@ -396,9 +397,9 @@ fn who_falls_behind_asks_to_stop_and_later_to_resume() {
 fn who_is_asked_to_redirect_chooses_another_direction_even_when_arrived() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
     agent.assign_goal(Cell::new(9, 5));
-    let first = |out: &Outputs| match &out.command {
+    let first = |out: &Outputs<f32>| match &out.command {
         Command::Move(moves) => Some(moves[0]),
-        Command::Hold => None,
+        Command::Hold | Command::Velocity(_) => None,
     };
     let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &[]), tick(0), &mut ws);
     assert_eq!(first(&out), Some(Dir::East));

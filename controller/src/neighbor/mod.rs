@@ -106,7 +106,8 @@ impl<S: Scalar> Neighbor<S> {
     }
 }
 
-fn vec3_from_milli<S: Scalar>(milli: [i32; 3]) -> Vec3<S> {
+/// A vector from thousandths.
+pub(crate) fn vec3_from_milli<S: Scalar>(milli: [i32; 3]) -> Vec3<S> {
     let [x, y, z] = milli.map(S::from_milli);
     Vec3::new(x, y, z)
 }

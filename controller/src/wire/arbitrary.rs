@@ -130,5 +130,15 @@ pub fn message() -> impl Strategy<Value = Message> {
             target,
         })
     });
-    prop_oneof![beacon(), compact(), request, ack, template(), goal]
+    let place = (robot(), any::<[u8; 2]>(), any::<([i32; 3], [i16; 3])>());
+    let place = place.prop_map(|(to, [version, index], (position_mm, velocity_mmps))| {
+        Message::Place(PlaceAssignment {
+            to,
+            version,
+            index,
+            position_mm,
+            velocity_mmps,
+        })
+    });
+    prop_oneof![beacon(), compact(), request, ack, template(), goal, place]
 }

@@ -30,8 +30,8 @@
 //! Cortex-M0 (`opt-level = "s"`, one link-time unit), and no panic is reachable from them.
 
 use super::message::{
-    Ack, Beacon, CompactBeacon, GoalAssignment, Message, Request, RobotId, TEMPLATE_PART,
-    TemplateAssignment,
+    Ack, Beacon, CompactBeacon, GoalAssignment, Message, PlaceAssignment, Request, RobotId,
+    TEMPLATE_PART, TemplateAssignment,
 };
 use crc::{CRC_16_IBM_SDLC, Crc, Table};
 use heapless::Vec;
@@ -91,6 +91,12 @@ impl GoalAssignment {
     pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 1 + CELL;
 }
 
+impl PlaceAssignment {
+    /// Bytes of a frame that carries one, at most: tag and delimiter included, without tag
+    /// [`TAG_LEN`] less.
+    pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 1 + 1 + 3 * 4 + 3 * 2;
+}
+
 /// Bytes of any frame, at most: tag and delimiter included.
 pub const MAX_FRAME_LEN: usize = {
     let lens = [
@@ -100,6 +106,7 @@ pub const MAX_FRAME_LEN: usize = {
         Ack::MAX_FRAME_LEN,
         TemplateAssignment::MAX_FRAME_LEN,
         GoalAssignment::MAX_FRAME_LEN,
+        PlaceAssignment::MAX_FRAME_LEN,
     ];
     let mut max = 0;
     let mut rest = lens.as_slice();

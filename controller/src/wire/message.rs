@@ -197,6 +197,24 @@ pub struct GoalAssignment {
     pub target: Cell,
 }
 
+/// A place to go to for one robot, or for all, in the plane or in space; it may move. Nobody acknowledges it: see
+/// [`GoalAssignment`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PlaceAssignment {
+    /// Who it is for; nobody = everybody.
+    pub to: RobotId,
+    /// Counts places of this sender and index, wraps.
+    pub version: u8,
+    /// Which of several places, from 0.
+    pub index: u8,
+    /// World position when sent, mm.
+    #[serde(with = "fixint")]
+    pub position_mm: [i32; 3],
+    /// World velocity, mm/s.
+    #[serde(with = "fixint")]
+    pub velocity_mmps: [i16; 3],
+}
+
 /// Everything that a frame can carry.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Message {
@@ -212,4 +230,6 @@ pub enum Message {
     Template(TemplateAssignment),
     /// A goal.
     Goal(GoalAssignment),
+    /// A place.
+    Place(PlaceAssignment),
 }

@@ -15,8 +15,8 @@ pub use frame::{
     decode_verified, encode, encode_tagged, frames,
 };
 pub use message::{
-    Ack, Beacon, CompactBeacon, GoalAssignment, Message, Mode, Request, RequestKind, RobotId,
-    TEMPLATE_PART, TemplateAssignment, TemplateEntry,
+    Ack, Beacon, CompactBeacon, GoalAssignment, Message, Mode, PlaceAssignment, Request,
+    RequestKind, RobotId, TEMPLATE_PART, TemplateAssignment, TemplateEntry,
 };
 pub use newest::Newest;
 pub use orders::{Answer, Orders};

@@ -66,7 +66,7 @@ pub struct Engine<G> {
     radio: Radio,
     kinematics: Kinematics,
     computers: Vec<Computer<G>>,
-    commands: Vec<Command>,
+    commands: Vec<Command<f32>>,
     statuses: Vec<Status>,
     chains: Vec<Chain>,
     positions_m: Vec<[f64; 2]>,
@@ -241,6 +241,7 @@ where
                             busy: busy(body.free_at, now_units, tick_us),
                         }),
                         window: world.window(body.cell, radius, cells),
+                        surroundings: None,
                         inbox: if has_just_restarted {
                             &[]
                         } else {

@@ -44,7 +44,7 @@ impl Guidance<f32> for Scout {
         view: &View<'_, f32>,
         _: &mut Rng,
         (): &mut (),
-    ) -> Result<Guided, BadInput> {
+    ) -> Result<Guided<f32>, BadInput> {
         let cell = view.cell.ok_or(BadInput)?.cell;
         let window = view.window.ok_or(BadInput)?;
         let position = view.pose.position;

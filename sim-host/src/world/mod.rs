@@ -166,7 +166,7 @@ impl World {
     ///
     /// # Panics
     /// When there are fewer commands than bodies.
-    pub fn advance(&mut self, tick: u32, commands: &[Command]) {
+    pub fn advance(&mut self, tick: u32, commands: &[Command<f32>]) {
         let now = u64::from(tick) * u64::from(UNIT);
         let mut movers = std::mem::take(&mut self.movers);
         movers.clear();

@@ -1,7 +1,7 @@
 use super::*;
 use proptest::prelude::*;
 
-fn moves(dirs: &[Dir]) -> Command {
+fn moves(dirs: &[Dir]) -> Command<f32> {
     Command::Move(dirs.iter().copied().collect())
 }
 
@@ -257,7 +257,7 @@ fn every_cell_of_a_window_is_that_of_the_map() {
     }
 }
 
-fn any_command() -> impl Strategy<Value = Command> {
+fn any_command() -> impl Strategy<Value = Command<f32>> {
     prop_oneof![
         1 => Just(Command::Hold),
         6 => prop::collection::vec(0_u8..=8, 0..=8)

@@ -30,7 +30,7 @@ fn parts(to: u32, version: u8, behind: i16, others: u32) -> Vec<Message> {
         .collect()
 }
 
-fn requests(out: &Outputs) -> Vec<Request> {
+fn requests(out: &Outputs<f32>) -> Vec<Request> {
     let requests = sent(out)
         .into_iter()
         .filter_map(|frame| match frame.message {
@@ -443,7 +443,7 @@ fn the_whole_formation_s_land_counts_in_windows_of_any_size() {
         inputs.window = Window::new(&cells, corner, side, side);
         match agent.step(&inputs, tick(0), &mut workspace()).command {
             Command::Move(moves) => moves[0],
-            Command::Hold => Dir::Stay,
+            Command::Hold | Command::Velocity(_) => Dir::Stay,
         }
     };
     assert_ne!(first(5), Dir::East, "round the mud");

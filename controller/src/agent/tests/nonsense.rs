@@ -47,6 +47,7 @@ fn frame() -> impl Strategy<Value = (Header, Message)> {
                     (entry.offset, entry.id) = (there, who);
                 }
             }
+            Message::Place(place) => place.to = to,
             Message::Compact(_) => {}
         }
         let header = Header {
@@ -237,6 +238,7 @@ fn survives<G: Guidance<f32, Workspace = GridWorkspace<CELLS>>>(
             },
             cell: step.own,
             window: step.land(),
+            surroundings: None,
             inbox: &inbox,
         };
         let out = agent.step(&inputs, step.now, &mut ws);

@@ -48,7 +48,7 @@ fn beacon() -> Message {
 }
 
 /// The longest message of each kind with its bound.
-fn longest() -> [(Message, usize); 6] {
+fn longest() -> [(Message, usize); 7] {
     let entry = TemplateEntry {
         offset: FAR,
         id: LAST,
@@ -105,6 +105,16 @@ fn longest() -> [(Message, usize); 6] {
             }),
             GoalAssignment::MAX_FRAME_LEN,
         ),
+        (
+            Message::Place(PlaceAssignment {
+                to: LAST,
+                version: 0,
+                index: 0,
+                position_mm: [i32::MIN; 3],
+                velocity_mmps: [i16::MIN; 3],
+            }),
+            PlaceAssignment::MAX_FRAME_LEN,
+        ),
     ]
 }
 
@@ -116,6 +126,7 @@ fn bound(message: &Message) -> usize {
         Message::Ack(_) => Ack::MAX_FRAME_LEN,
         Message::Template(_) => TemplateAssignment::MAX_FRAME_LEN,
         Message::Goal(_) => GoalAssignment::MAX_FRAME_LEN,
+        Message::Place(_) => PlaceAssignment::MAX_FRAME_LEN,
     }
 }
 

@@ -1,0 +1,48 @@
+//! The last layer before the body: from the velocity that the guidance wishes to one that is safe.
+
+use crate::body::Body;
+use crate::geom::Vec3;
+use crate::neighbor::{Doubt, Nearby};
+use crate::obstacle::Obstacle;
+use crate::rand::Rng;
+use crate::scalar::Scalar;
+
+/// What a safety layer may know.
+#[derive(Clone, Copy, Debug)]
+pub struct Sight<'a, S> {
+    /// Own body.
+    pub body: Body<S>,
+    /// The velocity that the guidance wishes, m/s: finite, and zero when the robot should stand.
+    pub wish_mps: Vec3<S>,
+    /// Where the robot goes, relative to its own place, metres; `None` when it only roams or should stand.
+    pub way_m: Option<Vec3<S>>,
+    /// Who is near by, nearest first.
+    pub nearby: &'a [Nearby<S>],
+    /// What it sees that does not move.
+    pub obstacles: &'a [Obstacle<S>],
+}
+
+/// Keeps the robot clear of others and of obstacles. It also runs while the robot stands, because others count on
+/// its giving way.
+pub trait Safety<S: Scalar> {
+    /// A safe velocity near the wished one, m/s. The agent sees to it that the body can have it ([`Body::reach`]).
+    fn keep_clear(&mut self, sight: &Sight<'_, S>, rng: &mut Rng) -> Vec3<S>;
+
+    /// How neighbours that have fallen silent are to be seen.
+    fn doubt(&self) -> Doubt<S> {
+        Doubt {
+            growth_mps: S::ZERO,
+            most_m: S::ZERO,
+        }
+    }
+}
+
+/// No safety layer: the wish is the command. For robots that move cell by cell, and to see what a layer is worth.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Unguarded;
+
+impl<S: Scalar> Safety<S> for Unguarded {
+    fn keep_clear(&mut self, sight: &Sight<'_, S>, _: &mut Rng) -> Vec3<S> {
+        sight.wish_mps
+    }
+}
