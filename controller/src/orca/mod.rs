@@ -10,6 +10,8 @@
 //! still have a half-plane, values that are not finite give none (and never spread), nothing is
 //! allocated, also when there is no solution.
 
+mod avoid;
+mod escape;
 mod half_plane;
 mod solve;
 mod wall;
@@ -17,6 +19,8 @@ mod wall;
 #[cfg(test)]
 mod tests;
 
+pub use avoid::{Analytic, AvoidParams, Avoider, HalfPlanes};
+pub use escape::EscapeParams;
 pub use half_plane::{HalfPlane, Neighbor, Params, half_plane};
 pub use solve::{Solution, solve};
 pub use wall::wall;

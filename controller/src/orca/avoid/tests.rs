@@ -1,0 +1,241 @@
+use super::*;
+use crate::geom::Vec3;
+use crate::rand::Rng;
+use crate::scalar::Q16;
+use crate::wire::RobotId;
+use proptest::prelude::*;
+
+fn body(id: u32, velocity: [f32; 2]) -> Body<f32> {
+    Body {
+        id: RobotId(id),
+        velocity_mps: Vec3::new(velocity[0], velocity[1], 0.0),
+        radius_m: 0.15,
+        max_speed_mps: 0.5,
+        max_acceleration_mps2: f32::MAX,
+        step_s: 0.05,
+    }
+}
+
+fn nearby(id: u32, offset: [f32; 2], velocity: [f32; 2]) -> Nearby<f32> {
+    Nearby {
+        id: RobotId(id),
+        offset_m: Vec3::new(offset[0], offset[1], 0.0),
+        velocity_mps: Vec3::new(velocity[0], velocity[1], 0.0),
+        radius_m: 0.15,
+        gives_way: true,
+    }
+}
+
+fn avoider() -> Avoider<f32, 16> {
+    Avoider::new(AvoidParams::default())
+}
+
+fn rng() -> Rng {
+    Rng::new(1)
+}
+
+#[test]
+fn whoever_is_alone_does_as_it_wishes() {
+    let body = body(1, [0.1, 0.0]);
+    let wish = Vec2::new(0.3, -0.2);
+    let solution = avoider().velocity(&body, wish, None, &[], &[], &mut rng());
+    assert_eq!(solution.velocity_mps, wish);
+    assert_eq!(solution.penetration_mps, 0.0);
+    let far = [nearby(2, [2.9, 0.0], [0.0, 0.0])];
+    let solution = avoider().velocity(&body, wish, None, &far, &[], &mut rng());
+    assert_eq!(solution.velocity_mps, wish);
+}
+
+#[test]
+fn robots_in_the_same_place_part_in_opposite_directions() {
+    let go = |own: u32, other: u32| {
+        avoider()
+            .velocity(
+                &body(own, [0.0, 0.0]),
+                Vec2::ZERO,
+                None,
+                &[nearby(other, [0.0, 0.0], [0.0, 0.0])],
+                &[],
+                &mut rng(),
+            )
+            .velocity_mps
+    };
+    let (one, other) = (go(3, 7), go(7, 3));
+    assert!(one.norm() > 0.4, "{one:?}");
+    assert_eq!(one, -other);
+}
+
+#[test]
+fn who_does_not_give_way_is_given_all_the_way() {
+    // Head-on: with share 1 the own half-plane lies twice as far off.
+    let own = body(1, [0.5, 0.0]);
+    let swerve = |gives_way| {
+        let other = Nearby {
+            gives_way,
+            ..nearby(2, [1.2, -0.01], [-0.5, 0.0])
+        };
+        let mut params = AvoidParams::default();
+        params.escape.lean_rad = 0.0;
+        let mut avoider = Avoider::<f32, 16>::new(params);
+        let wish = Vec2::new(0.5, 0.0);
+        avoider
+            .velocity(&own, wish, None, &[other], &[], &mut rng())
+            .velocity_mps
+            .y
+    };
+    let (half, all) = (swerve(true), swerve(false));
+    assert!(half > 0.01 && all > 1.5 * half, "{half} {all}");
+}
+
+#[test]
+fn walls_balls_and_planes_stop_a_robot_in_time() {
+    let obstacles = [
+        Obstacle::Wall([Vec2::new(0.4, -1.0), Vec2::new(0.4, 1.0)]),
+        Obstacle::Ball {
+            center_m: Vec3::new(1.4, 0.0, 0.0),
+            radius_m: 1.0,
+        },
+        Obstacle::Plane {
+            normal: Vec3::new(-1.0, 0.0, 0.0),
+            distance_m: 0.4,
+        },
+    ];
+    for obstacle in obstacles {
+        let solution = avoider().velocity(
+            &body(1, [0.5, 0.0]),
+            Vec2::new(0.5, 0.0),
+            None,
+            &[],
+            &[obstacle],
+            &mut rng(),
+        );
+        // 0.25 m in one second.
+        let ahead = solution.velocity_mps.x;
+        assert!((0.2..0.2501).contains(&ahead), "{obstacle:?} {ahead}");
+    }
+    let floor = Obstacle::Plane {
+        normal: Vec3::new(0.0, 0.0, 1.0),
+        distance_m: 0.0,
+    };
+    let wish = Vec2::new(0.5, 0.0);
+    let solution = avoider().velocity(&body(1, [0.5, 0.0]), wish, None, &[], &[floor], &mut rng());
+    assert_eq!(solution.velocity_mps, wish);
+}
+
+#[test]
+fn a_body_with_inertia_gets_what_it_can_reach() {
+    let own = Body {
+        max_acceleration_mps2: 1.0,
+        ..body(1, [0.5, 0.0])
+    };
+    let wall = Obstacle::Wall([Vec2::new(0.25, -1.0), Vec2::new(0.25, 1.0)]);
+    let wish = Vec2::new(0.5, 0.0);
+    let solution = avoider().velocity(&own, wish, None, &[], &[wall], &mut rng());
+    // 0.1 m/s are permitted, 0.45 are the least that it can have after 0.05 s.
+    assert!(
+        (solution.velocity_mps.x - 0.45).abs() < 1e-3,
+        "{solution:?}"
+    );
+    assert!(
+        (solution.penetration_mps - 0.35).abs() < 1e-3,
+        "{solution:?}"
+    );
+}
+
+#[test]
+fn a_full_avoider_keeps_the_nearest_and_no_room_is_no_crash() {
+    let others: [Nearby<f32>; 30] =
+        core::array::from_fn(|k| nearby(k as u32 + 2, [0.4 + 0.1 * k as f32, 0.0], [-0.5, 0.0]));
+    let walls = [Obstacle::Wall([Vec2::new(-0.3, -1.0), Vec2::new(-0.3, 1.0)]); 30];
+    let wish = Vec2::new(0.5, 0.0);
+    let own = body(1, [0.5, 0.0]);
+    let mut few = Avoider::<f32, 4>::new(AvoidParams::default());
+    let solution = few.velocity(&own, wish, None, &others, &walls, &mut rng());
+    assert!(solution.velocity_mps.x < 0.3 && solution.velocity_mps.x > -0.16);
+    let (planes, hard) = few.planes(&own, &others, &walls);
+    assert_eq!((planes.len(), hard), (4, 2));
+    let mut none = Avoider::<f32, 0>::new(AvoidParams::default());
+    let solution = none.velocity(&own, wish, None, &others, &walls, &mut rng());
+    assert!(solution.velocity_mps.is_finite());
+}
+
+#[test]
+fn fixed_point_robots_avoid_too() {
+    let q = |x: f64| Q16::from_f64(x).unwrap();
+    let own = Body::<Q16> {
+        id: RobotId(1),
+        velocity_mps: Vec3::new(q(0.5), Q16::ZERO, Q16::ZERO),
+        radius_m: q(0.15),
+        max_speed_mps: Q16::HALF,
+        max_acceleration_mps2: Q16::MAX,
+        step_s: q(0.05),
+    };
+    let other = Nearby {
+        id: RobotId(2),
+        offset_m: Vec3::new(q(1.0), Q16::ZERO, Q16::ZERO),
+        velocity_mps: Vec3::new(q(-0.5), Q16::ZERO, Q16::ZERO),
+        radius_m: q(0.15),
+        gives_way: true,
+    };
+    let mut avoider = Avoider::<Q16, 8>::new(AvoidParams::default());
+    let wish = Vec2::new(Q16::HALF, Q16::ZERO);
+    let solution = avoider.velocity(&own, wish, None, &[other], &[], &mut rng());
+    assert!(solution.penetration_mps < q(1e-3), "{solution:?}");
+    assert!(solution.velocity_mps.y < q(-0.05), "to the right");
+}
+
+proptest! {
+    #[test]
+    fn whatever_the_bits_the_answer_is_finite_and_within_speed(
+        bits: [u32; 12],
+        own_bits: [u32; 3],
+    ) {
+        let f = bits.map(f32::from_bits);
+        let own = Body {
+            velocity_mps: Vec3::new(f32::from_bits(own_bits[0]), f32::from_bits(own_bits[1]), 0.0),
+            ..body(1, [0.0, 0.0])
+        };
+        let others = [
+            nearby(2, [f[0], f[1]], [f[2], f[3]]),
+            Nearby { radius_m: f[4], ..nearby(3, [0.5, 0.1], [f[5], 0.1]) },
+            nearby(4, [0.5, -0.4], [0.0, 0.0]),
+        ];
+        let obstacles = [
+            Obstacle::Wall([Vec2::new(f[6], f[7]), Vec2::new(1.0, f[8])]),
+            Obstacle::Ball { center_m: Vec3::new(f[9], 1.0, 0.0), radius_m: f[10] },
+            Obstacle::Plane { normal: Vec3::new(f[11], f[6], f[7]), distance_m: f[8] },
+        ];
+        let goal = Some(Vec2::new(f[10], f[11]));
+        for acceleration in [f32::MAX, 2.0] {
+            let own = Body { max_acceleration_mps2: acceleration, ..own };
+            let mut avoider = avoider();
+            for wish in [Vec2::new(f[0], f[5]), Vec2::new(0.3, 0.1)] {
+                let got = avoider.velocity(&own, wish, goal, &others, &obstacles, &mut rng());
+                prop_assert!(got.velocity_mps.is_finite() && got.penetration_mps.is_finite(), "{got:?}");
+                // A body that is too fast slows down first.
+                let is_bounded = got.velocity_mps.norm() < 0.501 || acceleration < 10.0;
+                prop_assert!(is_bounded, "{got:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_answer_is_permitted_if_anything_is(
+        places in proptest::collection::vec((-2.0_f32..2.0, -2.0_f32..2.0), 1..10),
+        wish in (-0.5_f32..0.5, -0.5_f32..0.5),
+    ) {
+        let others: std::vec::Vec<_> = places
+            .iter()
+            .enumerate()
+            .filter(|(_, (x, y))| x * x + y * y > 0.1)
+            .map(|(k, (x, y))| nearby(k as u32 + 2, [*x, *y], [-0.2 * x, -0.2 * y]))
+            .collect();
+        let own = body(1, [0.2, 0.1]);
+        let mut avoider = avoider();
+        let (planes, hard) = avoider.planes(&own, &others, &[]);
+        let best = solve::<f32, 16>(&planes, hard, Vec2::ZERO, 0.5);
+        let got = avoider.velocity(&own, Vec2::new(wish.0, wish.1), None, &others, &[], &mut rng());
+        // The rule of escape bends the wish and nothing else.
+        prop_assert!((got.penetration_mps - best.penetration_mps).abs() < 1e-3, "{got:?} {best:?}");
+    }
+}

@@ -1,0 +1,81 @@
+//! The way out of symmetry and jams: which wish to give to ORCA so that nobody waits for ever.
+
+use crate::body::Body;
+use crate::geom::Vec2;
+use crate::neighbor::Nearby;
+use crate::obstacle::Obstacle;
+use crate::rand::Rng;
+use crate::scalar::Scalar;
+
+/// Parameters of the rule of escape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EscapeParams<S> {
+    /// How far to the right of the wish to lean while a robot is ahead, radians; 0: never. More resolves dense crossings
+    /// sooner and makes every way longer; 0.2 to 0.8.
+    pub lean_rad: S,
+    /// A robot is ahead when its border is nearer than this, metres. About what two robots cover in the horizon.
+    pub lean_within_m: S,
+    /// Nobody leans nearer to its goal than this, metres: there it would circle.
+    pub straight_within_m: S,
+}
+
+impl<S: Scalar> Default for EscapeParams<S> {
+    fn default() -> Self {
+        Self {
+            lean_rad: S::from_milli(436),
+            lean_within_m: S::from_milli(1200),
+            straight_within_m: S::from_milli(600),
+        }
+    }
+}
+
+/// What the rule sees.
+pub(super) struct Scene<'a, S> {
+    pub(super) body: &'a Body<S>,
+    /// Finite, within the speed limit.
+    pub(super) wish: Vec2<S>,
+    pub(super) goal: Option<Vec2<S>>,
+    pub(super) nearby: &'a [Nearby<S>],
+    pub(super) obstacles: &'a [Obstacle<S>],
+}
+
+/// State of the rule.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Escape<S> {
+    stuck_s: Option<S>,
+}
+
+impl<S: Scalar> Escape<S> {
+    pub(super) const fn new() -> Self {
+        Self { stuck_s: None }
+    }
+
+    /// The wish for the solver.
+    pub(super) fn wish(
+        &mut self,
+        params: &EscapeParams<S>,
+        scene: &Scene<'_, S>,
+        _rng: &mut Rng,
+    ) -> Vec2<S> {
+        let _ = (self.stuck_s, scene.obstacles);
+        lean(params, scene)
+    }
+}
+
+/// To the right of a robot ahead.
+fn lean<S: Scalar>(params: &EscapeParams<S>, scene: &Scene<'_, S>) -> Vec2<S> {
+    let wish = scene.wish;
+    let near_goal = scene
+        .goal
+        .is_some_and(|goal| goal.norm() < params.straight_within_m);
+    let is_ahead = |other: &Nearby<S>| {
+        let offset = other.offset_m.xy();
+        let gap = offset.norm() - scene.body.radius_m - other.radius_m;
+        gap < params.lean_within_m && offset.dot(wish) > S::ZERO
+    };
+    if near_goal || !scene.nearby.iter().any(is_ahead) {
+        return wish;
+    }
+    let (sin, cos) = params.lean_rad.sin_cos();
+    wish.rotate(cos, -sin)
+}
