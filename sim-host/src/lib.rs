@@ -10,6 +10,7 @@ pub mod engine;
 pub mod experiment;
 mod file;
 pub mod metrics;
+pub mod nearby;
 pub mod plot;
 pub mod radio;
 pub mod record;

@@ -1,0 +1,252 @@
+//! Lattice cells: points sorted into the squares of a uniform grid.
+
+use super::nearest::Nearest;
+use super::tree::margin;
+use super::{Found, Query, Real, Search, Space, numbered};
+
+/// Squares (in space, cubes) of at least a given side, each with its points beside each other in memory.
+///
+/// Built by counting: O(n + cells), no hash maps, no allocation once its buffers have grown. A query costs O(points in
+/// the cells that its ball may touch). There are never more than about two cells per point (or 4096 in all),
+/// however far the points are from each other: then cells are larger than wanted and queries slower. Bytes: 8 per cell, 4 + 4 + the point per point.
+#[derive(Clone, Debug)]
+pub struct Cells<R, const D: usize> {
+    space: Space<R, D>,
+    /// Side that was asked for.
+    side: R,
+    /// Where the first cell begins.
+    origin: [R; D],
+    /// Cells along each axis, 1 or more.
+    counts: [u32; D],
+    /// Cells per unit of length along each axis.
+    scale: [R; D],
+    /// Where the points of each cell begin in `order`, and the end of the last.
+    starts: Vec<u32>,
+    /// Indices of the points by cell, ascending in each.
+    order: Vec<u32>,
+    /// The points in that order, folded.
+    points: Vec<[R; D]>,
+    /// Scratch: the cell of each point.
+    cell_of: Vec<u32>,
+}
+
+impl<R: Real, const D: usize> Cells<R, D> {
+    /// A search over no points yet, in cells of about this side: best the radius of the queries, or half of
+    /// it where points are dense. Any side gives the same answers; one that is not above 0 means one cell.
+    #[must_use]
+    pub fn new(space: Space<R, D>, side: R) -> Self {
+        Self {
+            space,
+            side,
+            origin: [R::ZERO; D],
+            counts: [1; D],
+            scale: [R::ZERO; D],
+            starts: vec![0, 0],
+            order: Vec::new(),
+            points: Vec::new(),
+            cell_of: Vec::new(),
+        }
+    }
+
+    /// Indices of the points by cell. Queries in this order find what they need in the cache.
+    #[must_use]
+    pub fn order(&self) -> &[u32] {
+        &self.order
+    }
+
+    /// How many cells there are.
+    #[must_use]
+    pub const fn cells(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// Lays the grid over the points.
+    fn lay(&mut self, points: &[[R; D]]) {
+        let (low, length) = match self.space.period() {
+            Some(period) => ([R::ZERO; D], period),
+            None => extent(points),
+        };
+        self.origin = low;
+        let most = (2 * points.len() as u64).max(4096);
+        // Doubling the side ends: at last every axis has one cell.
+        let mut side = if self.side > R::ZERO {
+            self.side
+        } else {
+            R::MAX
+        };
+        loop {
+            self.counts = length.map(|length| length.over(side).cell(u32::MAX).max(1));
+            let all = self
+                .counts
+                .iter()
+                .fold(1_u64, |all, &n| all.saturating_mul(n.into()));
+            if all <= most {
+                break;
+            }
+            side *= R::TWO;
+        }
+        self.scale = std::array::from_fn(|axis| {
+            let scale = R::from_f64(self.counts[axis].into())
+                .unwrap_or(R::ZERO)
+                .over(length[axis]);
+            if scale.is_finite() { scale } else { R::ZERO }
+        });
+    }
+
+    /// The cell's place along an axis.
+    #[inline]
+    fn along(&self, axis: usize, coordinate: R) -> u32 {
+        let steps = (coordinate - self.origin[axis]) * self.scale[axis];
+        steps.cell(self.counts[axis])
+    }
+
+    /// The cell's number; cells along the first axis follow each other.
+    #[inline]
+    fn cell(&self, point: &[R; D]) -> u32 {
+        let mut cell = 0;
+        for axis in (0..D).rev() {
+            cell = cell * self.counts[axis] + self.along(axis, point[axis]);
+        }
+        cell
+    }
+
+    /// The cells along an axis that the ball may touch, as one or two ranges of places.
+    fn span(&self, axis: usize, at: R, radius: R) -> [(u32, u32); 2] {
+        const NONE: (u32, u32) = (0, 0);
+        let count = self.counts[axis];
+        // Both places by the same monotonous function as a point's own: no rounding can put a point that is within the
+        // radius outside. What a sum of rounding may lose is less than this margin.
+        let around = self.space.period().map(|period| period[axis]);
+        let margin = margin(at, radius + around.unwrap_or(R::ZERO));
+        let reach = radius + margin;
+        let Some(period) = around else {
+            return [
+                (
+                    self.along(axis, at - reach),
+                    self.along(axis, at + reach) + 1,
+                ),
+                NONE,
+            ];
+        };
+        let (low, high) = (at - reach, at + reach);
+        // All around: every cell once.
+        if reach + reach >= period {
+            return [(0, count), NONE];
+        }
+        if low < R::ZERO {
+            let from = self.along(axis, low + period - margin);
+            let to = self.along(axis, high) + 1;
+            if from < to {
+                return [(0, count), NONE];
+            }
+            [(0, to), (from, count)]
+        } else if high >= period {
+            let to = self.along(axis, high - period + margin) + 1;
+            let from = self.along(axis, low);
+            if from < to {
+                return [(0, count), NONE];
+            }
+            [(0, to), (from, count)]
+        } else {
+            [(self.along(axis, low), self.along(axis, high) + 1), NONE]
+        }
+    }
+
+    /// Offers every point of a row of cells.
+    #[inline]
+    fn scan(&self, at: [R; D], row: usize, columns: (u32, u32), nearest: &mut Nearest<'_, R, D>) {
+        let row = row * self.counts[0] as usize;
+        let from = self.starts[row + columns.0 as usize] as usize;
+        let to = self.starts[row + columns.1 as usize] as usize;
+        for (&index, &point) in self.order[from..to].iter().zip(&self.points[from..to]) {
+            nearest.offer(index, self.space.offset(at, point));
+        }
+    }
+
+    /// Goes through the axes from the last to the first.
+    fn descend(
+        &self,
+        at: [R; D],
+        axis: usize,
+        row: usize,
+        spans: &[[(u32, u32); 2]; D],
+        nearest: &mut Nearest<'_, R, D>,
+    ) {
+        for &(from, to) in spans[axis].iter().filter(|(from, to)| from < to) {
+            if axis == 0 {
+                self.scan(at, row, (from, to), nearest);
+                continue;
+            }
+            for place in from..to {
+                let row = row * self.counts[axis] as usize + place as usize;
+                self.descend(at, axis - 1, row, spans, nearest);
+            }
+        }
+    }
+}
+
+impl<R: Real, const D: usize> Search<R, D> for Cells<R, D> {
+    fn rebuild(&mut self, points: &[[R; D]]) {
+        let count = numbered(points);
+        self.lay(points);
+        let cells: usize = self.counts.iter().map(|&n| n as usize).product();
+        self.starts.clear();
+        self.starts.resize(cells + 1, 0);
+        self.cell_of.clear();
+        for &point in points {
+            let cell = self.cell(&self.space.fold(point));
+            self.cell_of.push(cell);
+            self.starts[cell as usize] += 1;
+        }
+        let mut end = 0;
+        for start in &mut self.starts {
+            end += *start;
+            *start = end;
+        }
+        // Filled from the back, so that what were ends become beginnings and indices ascend.
+        self.order.resize(points.len(), 0);
+        self.points.resize(points.len(), [R::ZERO; D]);
+        for index in (0..count).rev() {
+            let place = &mut self.starts[self.cell_of[index as usize] as usize];
+            *place -= 1;
+            self.order[*place as usize] = index;
+            self.points[*place as usize] = self.space.fold(points[index as usize]);
+        }
+    }
+
+    fn within(&self, query: &Query<R, D>, found: &mut Vec<Found<R, D>>) {
+        let mut nearest = Nearest::new(query, found);
+        let at = self.space.fold(query.at);
+        let is_sound = at.iter().all(|&c| c.is_finite());
+        if is_sound && query.radius >= R::ZERO {
+            let spans = std::array::from_fn(|axis| self.span(axis, at[axis], query.radius));
+            self.descend(at, D - 1, 0, &spans, &mut nearest);
+        }
+        nearest.finish();
+    }
+}
+
+/// Least corner and sides of the box around all points that are finite.
+fn extent<R: Real, const D: usize>(points: &[[R; D]]) -> ([R; D], [R; D]) {
+    let (mut low, mut high) = ([R::MAX; D], [-R::MAX; D]);
+    for point in points {
+        for axis in 0..D {
+            if point[axis].is_finite() {
+                if point[axis] < low[axis] {
+                    low[axis] = point[axis];
+                }
+                if point[axis] > high[axis] {
+                    high[axis] = point[axis];
+                }
+            }
+        }
+    }
+    let length = std::array::from_fn(|axis| {
+        if high[axis] > low[axis] {
+            high[axis] - low[axis]
+        } else {
+            R::ZERO
+        }
+    });
+    (low, length)
+}
