@@ -3,7 +3,8 @@
 //!
 //! Source: J. van den Berg, S. Guy, M. Lin, D. Manocha 2011, "Reciprocal n-body collision avoidance"
 //! (ORCA), sections 4 and 5; the geometry as in Tolok et al. (FVM). Read [`half_plane`] for what one
-//! neighbour forbids, [`wall`] for what the world forbids, then [`solve`] for what is left.
+//! neighbour forbids, [`wall`] for what the world forbids, then [`solve`] for what is left. [`space`] does the same for
+//! robots that fly.
 //!
 //! All positions and velocities are relative to the robot, so that 1000 km from the origin nothing
 //! changes. What differs from the reference implementation (RVO2): two robots in the same place
@@ -14,6 +15,7 @@ mod avoid;
 mod escape;
 mod half_plane;
 mod solve;
+pub mod space;
 mod wall;
 
 #[cfg(test)]

@@ -1,5 +1,9 @@
 //! What stands in the way and does not move, as a robot sees it: relative to its own place.
 
+mod grid_walls;
+
+pub use grid_walls::grid_walls;
+
 use crate::geom::{Vec2, Vec3};
 use crate::scalar::Scalar;
 

@@ -1,0 +1,350 @@
+//! The grid's blocked cells as walls.
+
+use super::Obstacle;
+use crate::geom::Vec2;
+use crate::grid::{BLOCKED, Cell, GridFrame, Window};
+use crate::scalar::Scalar;
+use heapless::Vec;
+
+/// A side between a blocked and a passable cell, or several in one line.
+#[derive(Clone, Copy)]
+struct Wall<S> {
+    /// Grows with the distance to the robot ([`Vec2::length_key`]).
+    key: u64,
+    ends_m: [Vec2<S>; 2],
+}
+
+/// The sides of blocked cells that face passable ones, as walls relative to the robot at `place_m` (in the world), the
+/// nearest first (of two at one distance the one that runs north, then the one farther west or south). Sides in one
+/// line are one wall. Walls beyond `reach_m` are left out, and those that lead there may end there; when there are more
+/// than `K`, the farthest are left out too.
+///
+/// Beyond the window nothing is assumed: what is not known is no wall. Choose a reach of at least the own radius
+/// plus the way of one horizon at full speed, and a window that holds it.
+///
+/// A capacity too small for all walls in reach costs foresight, not safety, as long as the walls that can be touched in
+/// one step of control are among the `K` nearest: eight are enough for a body and a step smaller than a cell.
+///
+/// Empty when an input is not finite or the robot is off the grid. Bounded work: two looks at each cell of the window
+/// within reach (at most 255 cells each way), and for each wall found one insertion into a list of `K`.
+#[must_use]
+pub fn grid_walls<S: Scalar, const K: usize>(
+    window: &Window<'_>,
+    frame: &GridFrame<S>,
+    place_m: Vec2<S>,
+    reach_m: S,
+) -> Vec<Obstacle<S>, K> {
+    let walls = Walls::<S, K>::around(window, frame, place_m, reach_m);
+    let walls = walls.map(|walls| walls.nearest).unwrap_or_default();
+    walls
+        .into_iter()
+        .map(|wall| Obstacle::Wall(wall.ends_m))
+        .collect()
+}
+
+/// The nearest walls found so far.
+struct Walls<S, const K: usize> {
+    /// South-west corner of the robot's own cell relative to the robot, metres.
+    corner_m: Vec2<S>,
+    own: Cell,
+    cell_m: S,
+    reach_m: S,
+    nearest: Vec<Wall<S>, K>,
+}
+
+impl<S: Scalar, const K: usize> Walls<S, K> {
+    fn around(
+        window: &Window<'_>,
+        frame: &GridFrame<S>,
+        place_m: Vec2<S>,
+        reach_m: S,
+    ) -> Option<Self> {
+        let own = frame.cell(place_m)?;
+        let half = frame.cell_m * S::HALF;
+        let mut walls = Self {
+            corner_m: frame.center(own) - Vec2::new(half, half) - place_m,
+            own,
+            cell_m: frame.cell_m,
+            reach_m,
+            nearest: Vec::new(),
+        };
+        let cells = reach_m.checked_div(frame.cell_m)?.floor_to_i32()?;
+        let radius = u8::try_from(cells.saturating_add(1).clamp(0, 255)).ok()?;
+        let (first, width, height) = window.cut(own, radius);
+        let last = Cell::new(
+            first.x.saturating_add_unsigned(width.saturating_sub(1)),
+            first.y.saturating_add_unsigned(height.saturating_sub(1)),
+        );
+        if width == 0 || height == 0 {
+            return Some(walls);
+        }
+        // West sides of cells from south to north, then south sides from west to east.
+        for x in first.x.saturating_add(1)..=last.x {
+            let is_side = |y| is_side(window, Cell::new(x, y), Cell::new(-1, 0));
+            walls.join((first.y, last.y), is_side, |y| Cell::new(x, y));
+        }
+        for y in first.y.saturating_add(1)..=last.y {
+            let is_side = |x| is_side(window, Cell::new(x, y), Cell::new(0, -1));
+            walls.join((first.x, last.x), is_side, |x| Cell::new(x, y));
+        }
+        Some(walls)
+    }
+
+    /// Adds what is one wall along a line of the grid; `corner` is the corner before a side.
+    fn join(
+        &mut self,
+        (first, last): (i16, i16),
+        is_side: impl Fn(i16) -> bool,
+        corner: impl Fn(i16) -> Cell,
+    ) {
+        let mut begin = None;
+        for at in first..=last {
+            match (is_side(at), begin) {
+                (true, None) => begin = Some(at),
+                (false, Some(from)) => {
+                    self.add(corner(from), corner(at));
+                    begin = None;
+                }
+                _ => {}
+            }
+        }
+        if let Some(from) = begin {
+            self.add(corner(from), corner(last.saturating_add(1)));
+        }
+    }
+
+    /// Adds the wall between two corners of the grid if it is near enough.
+    fn add(&mut self, from: Cell, to: Cell) {
+        let ends_m = [from, to].map(|corner| {
+            let steps = |to: i16, from: i16| S::from_i32(i32::from(to) - i32::from(from));
+            let way = Vec2::new(steps(corner.x, self.own.x), steps(corner.y, self.own.y));
+            self.corner_m + way * self.cell_m
+        });
+        let [a, b] = ends_m;
+        // Along an axis: the nearest point needs no projection.
+        let foot = Vec2::new(S::ZERO.clamp(a.x, b.x), S::ZERO.clamp(a.y, b.y));
+        let is_near = foot.norm() <= self.reach_m;
+        if !(foot.is_finite() && is_near) {
+            return;
+        }
+        let key = foot.length_key();
+        let place = self.nearest.partition_point(|wall| wall.key <= key);
+        let mut wall = Wall { key, ends_m };
+        for farther in self.nearest.iter_mut().skip(place) {
+            core::mem::swap(farther, &mut wall);
+        }
+        // In a full list the farthest has no place.
+        let _ = self.nearest.push(wall);
+    }
+}
+
+/// Whether the side of `cell` towards its neighbour parts what is blocked from what is passable.
+fn is_side(window: &Window<'_>, cell: Cell, neighbor: Cell) -> bool {
+    let known = (window.get(cell), window.get(cell + neighbor));
+    matches!(known, (Some(a), Some(b)) if (a == BLOCKED) != (b == BLOCKED))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::orca::{solve, wall};
+    use crate::rand::Rng;
+    use crate::scalar::Q16;
+    use proptest::prelude::*;
+    use std::vec::Vec as List;
+
+    const FRAME: GridFrame<f64> = GridFrame {
+        origin_m: Vec2::new(100.0, -50.0),
+        cell_m: 2.0,
+    };
+
+    /// A window from rows of `#` and `.`, the northernmost first, with its south-west cell at (10, 20).
+    fn cells(rows: &[&str]) -> List<u8> {
+        let rows = rows.iter().rev();
+        rows.flat_map(|row| row.bytes().map(|b| if b == b'#' { BLOCKED } else { 1 }))
+            .collect()
+    }
+
+    fn window<'a>(cells: &'a [u8], rows: &[&str]) -> Window<'a> {
+        let (width, height) = (rows[0].len() as u16, rows.len() as u16);
+        Window::new(cells, Cell::new(10, 20), width, height).unwrap()
+    }
+
+    /// Walls in units of cells from the window's south-west corner, for a robot at such a place.
+    fn seen<const K: usize>(rows: &[&str], at: (f64, f64), reach: f64) -> List<[f64; 4]> {
+        let bytes = cells(rows);
+        let corner = FRAME.origin_m + Vec2::new(10.0, 20.0) * FRAME.cell_m;
+        let place = corner + Vec2::new(at.0, at.1) * FRAME.cell_m;
+        let found = grid_walls::<_, K>(&window(&bytes, rows), &FRAME, place, reach * FRAME.cell_m);
+        let in_cells = |obstacle: &Obstacle<f64>| match obstacle {
+            Obstacle::Wall(ends) => {
+                let [a, b] = ends.map(|end| (end + place - corner) * 0.5);
+                [a.x, a.y, b.x, b.y].map(|c| libm::round(c * 1e6) / 1e6)
+            }
+            other => panic!("no wall: {other:?}"),
+        };
+        found.iter().map(in_cells).collect()
+    }
+
+    #[test]
+    fn a_corner_is_two_walls_and_the_nearer_one_comes_first() {
+        let rows = ["....", ".##.", ".##.", "...."];
+        let west = [1.0, 1.0, 1.0, 3.0];
+        let south = [1.0, 1.0, 3.0, 1.0];
+        let (east, north) = ([3.0, 1.0, 3.0, 3.0], [1.0, 3.0, 3.0, 3.0]);
+        assert_eq!(seen::<8>(&rows, (0.75, 1.5), 1.0), [west, south]);
+        assert_eq!(seen::<8>(&rows, (1.5, 0.5), 1.0), [south, west]);
+        // In front of the corner both are equally far: the one that runs north first.
+        assert_eq!(seen::<8>(&rows, (0.5, 0.5), 1.0), [west, south]);
+        assert_eq!(
+            seen::<8>(&rows, (0.75, 1.5), 9.0),
+            [west, south, north, east]
+        );
+    }
+
+    #[test]
+    fn a_corridor_of_one_cell_is_two_long_walls() {
+        let rows = ["######", "......", "######"];
+        let walls = [[0.0, 1.0, 6.0, 1.0], [0.0, 2.0, 6.0, 2.0]];
+        assert_eq!(seen::<8>(&rows, (2.5, 1.25), 9.0), walls);
+        assert_eq!(seen::<8>(&rows, (2.5, 1.75), 9.0), [walls[1], walls[0]]);
+        // In reach of neither, and of one only.
+        assert!(seen::<8>(&rows, (2.5, 1.25), 0.2).is_empty());
+        assert_eq!(
+            seen::<8>(&rows, (2.5, 1.25), 0.3),
+            [walls[0]].map(|[_, y, _, w]| [1.0, y, 4.0, w])
+        );
+    }
+
+    #[test]
+    fn beyond_the_window_nothing_is_assumed() {
+        assert!(seen::<8>(&["...", "...", "..."], (1.5, 1.5), 9.0).is_empty());
+        assert!(seen::<8>(&["###", "###", "###"], (1.5, 1.5), 9.0).is_empty());
+        // Far outside the window, and off the grid.
+        assert!(seen::<8>(&[".#", "#."], (400.0, 1.0), 9.0).is_empty());
+        assert!(seen::<8>(&[".#", "#."], (1e9, 1.0), 9.0).is_empty());
+        let empty = Window::new(&[], Cell::new(10, 20), 0, 0).unwrap();
+        let place = Vec2::new(121.0, -9.0);
+        assert!(grid_walls::<f64, 4>(&empty, &FRAME, place, 5.0).is_empty());
+    }
+
+    #[test]
+    fn in_full_capacity_the_farthest_are_left_out() {
+        let rows = [".#.#.", "#.#.#", ".#.#.", "#.#.#", ".#.#."];
+        let all = seen::<64>(&rows, (2.4, 2.45), 9.0);
+        // Each of four lines each way is one wall: across a corner of the board blocked and passable change sides.
+        assert_eq!(all.len(), 8);
+        assert_eq!(seen::<5>(&rows, (2.4, 2.45), 9.0), all[..5]);
+        assert_eq!(seen::<8>(&rows, (2.4, 2.45), 9.0), all);
+        assert_eq!(seen::<1>(&rows, (2.4, 2.45), 9.0), all[..1]);
+        assert!(seen::<0>(&rows, (2.4, 2.45), 9.0).is_empty());
+    }
+
+    #[test]
+    fn nonsense_gives_no_walls() {
+        let rows = [".#", "#."];
+        let bytes = cells(&rows);
+        let window = window(&bytes, &rows);
+        let place = Vec2::new(121.0, -9.0);
+        let walls = |frame: GridFrame<f64>, place, reach| {
+            grid_walls::<_, 4>(&window, &frame, place, reach).len()
+        };
+        assert_eq!(walls(FRAME, place, 5.0), 2);
+        for bad in [f64::NAN, f64::INFINITY, -1.0] {
+            assert_eq!(walls(FRAME, place, bad), 0, "{bad}");
+        }
+        assert_eq!(walls(FRAME, Vec2::new(f64::NAN, 0.0), 5.0), 0);
+        let flat = GridFrame {
+            cell_m: 0.0,
+            ..FRAME
+        };
+        assert_eq!(walls(flat, place, 5.0), 0);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        /// On any land a robot that takes of its wish what the walls permit stays off every blocked cell.
+        #[test]
+        fn whoever_obeys_the_walls_never_enters_a_blocked_cell(seed: u64, share in 0_u32..60) {
+            let mut rng = Rng::new(seed);
+            let side = 12_u16;
+            let edge = [0, side - 1];
+            let mut bytes: List<u8> = (0..side * side)
+                .map(|at| {
+                    let is_edge = edge.contains(&(at % side)) || edge.contains(&(at / side));
+                    if is_edge || rng.below(100) < share { BLOCKED } else { 1 }
+                })
+                .collect();
+            // It starts in the middle, on free land.
+            bytes[usize::from(6 * side + 6)] = 1;
+            let frame = GridFrame { origin_m: Vec2::ZERO, cell_m: 1.0 };
+            let window = Window::new(&bytes, Cell::new(0, 0), side, side).unwrap();
+            let (radius, speed, dt, horizon) = (0.3, 1.5, 0.1, 1.0);
+            let mut place = Vec2::new(6.5, 6.5);
+            let mut velocity = Vec2::ZERO;
+            let mut wish = Vec2::ZERO;
+            for step in 0..200 {
+                if step % 10 == 0 {
+                    let angle = f64::from(rng.below(6283)) / 1000.0;
+                    let (sin, cos) = Scalar::sin_cos(angle);
+                    wish = Vec2::new(cos, sin) * speed;
+                }
+                let reach = radius + speed * horizon;
+                let planes: List<_> = grid_walls::<_, 16>(&window, &frame, place, reach)
+                    .iter()
+                    .filter_map(|obstacle| match *obstacle {
+                        Obstacle::Wall(ends) => wall(velocity, ends, radius, horizon),
+                        _ => None,
+                    })
+                    .collect();
+                velocity = solve::<_, 16>(&planes, planes.len(), wish, speed).velocity_mps;
+                place += velocity * dt;
+                for x in 0..side as i16 {
+                    for y in 0..side as i16 {
+                        if window.get(Cell::new(x, y)) != Some(BLOCKED) {
+                            continue;
+                        }
+                        let near = Vec2::new(
+                            place.x.clamp(f64::from(x), f64::from(x) + 1.0),
+                            place.y.clamp(f64::from(y), f64::from(y) + 1.0),
+                        );
+                        let clearance = (near - place).norm() - radius;
+                        prop_assert!(clearance > -1e-6, "{clearance} at {place:?}, step {step}");
+                    }
+                }
+            }
+        }
+
+        /// In other scalars the walls are the same.
+        #[test]
+        fn f32_and_q16_see_the_same_walls(x in 2.0_f64..10.0, y in 2.0_f64..10.0, seed: u64) {
+            let mut rng = Rng::new(seed);
+            let bytes: List<u8> = (0..144).map(|_| (rng.below(3) > 0).into()).collect();
+            let window = Window::new(&bytes, Cell::new(0, 0), 12, 12).unwrap();
+            fn walls<S: Scalar>(window: &Window<'_>, x: f64, y: f64) -> List<[f64; 4]> {
+                let s = |value: f64| S::from_f64(value).unwrap();
+                let frame = GridFrame { origin_m: Vec2::ZERO, cell_m: S::ONE };
+                let found = grid_walls::<S, 128>(window, &frame, Vec2::new(s(x), s(y)), s(20.0));
+                found
+                    .iter()
+                    .map(|obstacle| match obstacle {
+                        Obstacle::Wall([a, b]) => [a.x, a.y, b.x, b.y].map(S::to_f64),
+                        other => panic!("no wall: {other:?}"),
+                    })
+                    .collect()
+            }
+            let exact = walls::<f64>(&window, x, y);
+            for others in [walls::<f32>(&window, x, y), walls::<Q16>(&window, x, y)] {
+                prop_assert_eq!(exact.len(), others.len());
+                for wall in &exact {
+                    // Two that are nearly equally far may change places.
+                    let is_same = |other: &[f64; 4]| {
+                        wall.iter().zip(other).all(|(a, b)| (a - b).abs() < 1e-3)
+                    };
+                    prop_assert!(others.iter().any(is_same), "{wall:?}");
+                }
+            }
+        }
+    }
+}

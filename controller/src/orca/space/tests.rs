@@ -1,0 +1,447 @@
+use super::*;
+use crate::geom::Vec2;
+use crate::orca;
+use crate::scalar::{Q16, Scalar};
+use proptest::prelude::*;
+use std::vec::Vec;
+
+type V = Vec3<f64>;
+
+fn v(x: f64, y: f64, z: f64) -> V {
+    V::new(x, y, z)
+}
+
+fn params(horizon_s: f64, share: f64) -> Params<f64> {
+    Params {
+        horizon_s,
+        separation_s: 0.05,
+        share,
+    }
+}
+
+fn neighbor(offset: V, velocity: V, radii_m: f64) -> Neighbor<f64> {
+    Neighbor {
+        offset_m: offset,
+        velocity_mps: velocity,
+        radii_m,
+        tie: V::ZERO,
+    }
+}
+
+/// The rotation about `axis` by `angle` (Rodrigues).
+fn turn(at: V, axis: V, angle: f64) -> V {
+    let axis = axis.normalized().unwrap();
+    let (sin, cos) = (libm::sin(angle), libm::cos(angle));
+    at * cos + axis.cross(at) * sin + axis * (axis.dot(at) * (1.0 - cos))
+}
+
+#[test]
+fn worked_example_of_the_paper_holds_in_any_plane() {
+    for (axis, angle) in [(v(0.0, 0.0, 1.0), 0.0), (v(1.0, 2.0, -0.5), 2.0)] {
+        let map = |x: f64, y: f64| turn(v(x, y, 0.0), axis, angle);
+        let other = neighbor(map(-4.0, 6.0), map(3.0, -1.5), 2.0);
+        for (share, x, y) in [(1.0, 1.707107, 0.792893), (0.5, 1.603553, 0.896447)] {
+            let space = half_space(map(1.5, 1.0), &other, &params(2.0, share)).unwrap();
+            assert!((space.point - map(x, y)).norm() < 1e-6, "{space:?}");
+        }
+    }
+}
+
+#[test]
+fn robots_that_fly_exactly_at_each_other_turn_to_opposite_sides() {
+    // Far within the cone, on its axis: level to the right, one above the other to either side.
+    for (offset, side) in [
+        (v(10.0, 0.0, 0.0), v(0.0, -1.0, 0.0)),
+        (v(0.0, 0.0, 10.0), v(1.0, 0.0, 0.0)),
+        (v(0.0, 0.0, -10.0), v(-1.0, 0.0, 0.0)),
+    ] {
+        let own = offset * 0.1;
+        let space = |offset: V, own: V| {
+            half_space(own, &neighbor(offset, -own, 1.0), &params(20.0, 0.5)).unwrap()
+        };
+        let (ours, theirs) = (space(offset, own), space(-offset, -own));
+        assert!(ours.normal.dot(side) > 0.9, "{ours:?}");
+        assert!((ours.normal + theirs.normal).norm() < 1e-12, "reciprocal");
+    }
+}
+
+#[test]
+fn overlapping_and_coincident_robots_are_sent_apart() {
+    let p = params(2.0, 0.5);
+    let overlapping = half_space(V::ZERO, &neighbor(v(0.0, 0.0, 0.5), V::ZERO, 1.0), &p).unwrap();
+    assert_eq!(overlapping.normal, v(0.0, 0.0, -1.0));
+    // 0.5 m of overlap in 0.05 s, half of it ours.
+    assert!((overlapping.point.z + 5.0).abs() < 1e-9);
+    let tied = |tie: V| {
+        let other = Neighbor {
+            tie,
+            ..neighbor(V::ZERO, V::ZERO, 1.0)
+        };
+        half_space(V::ZERO, &other, &p).unwrap().normal
+    };
+    assert_eq!(tied(v(0.0, 0.0, 3.0)), -tied(v(0.0, 0.0, -3.0)));
+    assert_eq!(tied(V::ZERO), v(1.0, 0.0, 0.0));
+}
+
+#[test]
+fn what_is_not_finite_gives_nothing_and_never_spreads() {
+    let p = params(2.0, 0.5);
+    for bad in [f64::NAN, f64::INFINITY] {
+        let spoilt = v(1.0, bad, 0.0);
+        assert!(half_space(spoilt, &neighbor(v(3.0, 0.0, 0.0), V::ZERO, 1.0), &p).is_none());
+        assert!(half_space(V::ZERO, &neighbor(spoilt, V::ZERO, 1.0), &p).is_none());
+        assert!(half_space(V::ZERO, &neighbor(v(3.0, 0.0, 0.0), spoilt, 1.0), &p).is_none());
+        let ball = |center_m, radius_m| Obstacle::Ball { center_m, radius_m };
+        let ahead = v(3.0, 0.0, 0.0);
+        let floor = |normal, distance_m| Obstacle::Plane { normal, distance_m };
+        for nonsense in [
+            ball(spoilt, 1.0),
+            ball(ahead, bad),
+            floor(spoilt, 1.0),
+            floor(ahead, bad),
+            Obstacle::Wall([Vec2::new(bad, 0.0), Vec2::new(1.0, 1.0)]),
+        ] {
+            assert_eq!(obstacle(V::ZERO, &nonsense, 0.5, 2.0), None, "{nonsense:?}");
+        }
+        let sound = ball(ahead, 1.0);
+        assert_eq!(obstacle(spoilt, &sound, 0.5, 2.0), None);
+        let solution = solve::<f64, 4>(&[], 0, spoilt, 1.0);
+        assert_eq!(solution.velocity_mps, V::ZERO);
+    }
+    let ahead = neighbor(v(3.0, 0.0, 0.0), V::ZERO, 1.0);
+    let unsound = [params(0.0, 0.5), params(-1.0, 0.5), params(f64::NAN, 0.5)];
+    for unsound in unsound {
+        assert_eq!(half_space(V::ZERO, &ahead, &unsound), None);
+    }
+    let thin = neighbor(v(3.0, 0.0, 0.0), V::ZERO, f64::NAN);
+    assert_eq!(half_space(V::ZERO, &thin, &p), None);
+    // A speed that is none stops.
+    for speed in [0.0, -1.0, f64::NAN] {
+        let stopped = solve::<f64, 4>(&[], 0, v(1.0, 1.0, 1.0), speed);
+        assert_eq!(stopped.velocity_mps, V::ZERO);
+    }
+}
+
+#[test]
+fn floors_balls_and_walls_limit_the_speed_towards_them() {
+    let floor = |distance_m| Obstacle::Plane {
+        normal: v(0.0, 0.0, 1.0),
+        distance_m,
+    };
+    let down = v(0.0, 0.0, -3.0);
+    // 2 m up with a radius of 0.5 m: at most 0.75 m/s down for 2 s.
+    let above = obstacle(down, &floor(2.0), 0.5, 2.0).unwrap();
+    assert_eq!(
+        (above.point, above.normal),
+        (v(0.0, 0.0, -0.75), v(0.0, 0.0, 1.0))
+    );
+    // On the floor or in it: no lower.
+    for distance in [0.5, 0.1, -3.0] {
+        let on = obstacle(down, &floor(distance), 0.5, 2.0).unwrap();
+        assert_eq!(on.penetration(V::ZERO), 0.0);
+        assert!(on.penetration(v(5.0, 5.0, -0.1)) > 0.0);
+    }
+    let ball = |x: f64| Obstacle::Ball {
+        center_m: v(x, 0.0, 0.0),
+        radius_m: 1.0,
+    };
+    let ahead = obstacle(v(1.0, 0.0, 0.0), &ball(4.0), 0.5, 2.0).unwrap();
+    assert!((ahead.point - v(1.25, 0.0, 0.0)).norm() < 1e-12);
+    let touching = obstacle(v(1.0, 0.0, 0.0), &ball(1.5), 0.5, 2.0).unwrap();
+    assert_eq!(
+        (touching.point, touching.normal),
+        (V::ZERO, v(-1.0, 0.0, 0.0))
+    );
+    let inside = obstacle(V::ZERO, &ball(0.0), 0.5, 2.0).unwrap();
+    assert_eq!(inside.normal, v(0.0, 0.0, 1.0));
+    // However fast a robot climbs, a wall is there.
+    let wall = Obstacle::Wall([Vec2::new(2.0, -5.0), Vec2::new(2.0, 5.0)]);
+    let space = obstacle(v(3.0, 0.0, 9.0), &wall, 0.5, 1.0).unwrap();
+    assert!((space.point.dot(space.normal) + 1.5).abs() < 1e-9 && space.normal.z == 0.0);
+}
+
+#[test]
+fn opposite_half_spaces_are_met_halfway_and_hard_ones_not_at_all() {
+    let space = |z: f64, nz: f64| HalfSpace {
+        point: v(0.3, -0.7, z),
+        normal: v(0.0, 0.0, nz),
+    };
+    let spaces = [space(0.5, 1.0), space(-0.3, -1.0)];
+    let soft = solve::<f64, 4>(&spaces, 0, V::ZERO, 1.0);
+    assert!((soft.velocity_mps.z - 0.1).abs() < 1e-9, "{soft:?}");
+    assert!((soft.penetration_mps - 0.4).abs() < 1e-9);
+    let hard = solve::<f64, 4>(&spaces, 1, V::ZERO, 1.0);
+    assert!((hard.velocity_mps.z - 0.5).abs() < 1e-9, "{hard:?}");
+    // Contradictions among the hard ones are shared as well.
+    let torn = solve::<f64, 4>(&spaces, 2, V::ZERO, 1.0);
+    assert!((torn.penetration_mps - 0.4).abs() < 1e-9, "{torn:?}");
+    // Beyond the capacity: not there.
+    let one = solve::<f64, 1>(&spaces, 0, V::ZERO, 1.0);
+    assert_eq!(one.velocity_mps, v(0.0, 0.0, 0.5));
+}
+
+fn vector(most: f64) -> impl Strategy<Value = V> {
+    (-most..most, -most..most, -most..most).prop_map(|(x, y, z)| v(x, y, z))
+}
+
+/// Half-spaces of neighbours around a robot, as they occur.
+fn crowd() -> impl Strategy<Value = (Vec<HalfSpace<f64>>, V)> {
+    let others = proptest::collection::vec((vector(1.0), vector(2.0), 0.1..1.0_f64), 0..10);
+    // In about one of five nothing is permitted.
+    let spread = 0.5..4.0_f64;
+    (others, spread, vector(2.0), vector(2.0)).prop_map(|(others, spread, own, preferred)| {
+        let spaces = others
+            .iter()
+            .filter_map(|&(offset, velocity, radii)| {
+                let other = neighbor(offset * spread, velocity, radii);
+                half_space(own, &other, &params(2.0, 0.5))
+            })
+            .collect();
+        (spaces, preferred)
+    })
+}
+
+fn worst(spaces: &[HalfSpace<f64>], at: V) -> f64 {
+    spaces.iter().map(|s| s.penetration(at)).fold(0.0, f64::max)
+}
+
+/// The nearest permitted velocity: the best of all points where the distance to `preferred` can have its
+/// minimum, on zero to three of the borders and on the ball. `None` when nothing is permitted.
+fn nearest_permitted(spaces: &[HalfSpace<f64>], preferred: V, speed: f64) -> Option<f64> {
+    let mut candidates = Vec::from([preferred, preferred.clamp_norm(speed)]);
+    let onto_ball = |foot: V, flat: V| {
+        let half = speed * speed - foot.norm_squared();
+        let unit = flat.normalized();
+        unit.filter(|_| half >= 0.0)
+            .map(|unit| foot + unit * half.sqrt())
+    };
+    for (i, one) in spaces.iter().enumerate() {
+        let flat = |at: V| at - one.normal * one.normal.dot(at);
+        candidates.push(one.foot() + flat(preferred - one.foot()));
+        candidates.extend(onto_ball(one.foot(), flat(preferred - one.foot())));
+        for (j, two) in spaces.iter().enumerate().take(i) {
+            let Some(line) = intersection(one, two) else {
+                continue;
+            };
+            let along = line.direction * (preferred - line.foot).dot(line.direction);
+            candidates.push(line.foot + along);
+            candidates.extend(onto_ball(line.foot, line.direction));
+            candidates.extend(onto_ball(line.foot, -line.direction));
+            for three in spaces.iter().take(j) {
+                let slope = line.direction.dot(three.normal);
+                if slope.abs() > 1e-9 {
+                    let t = three.penetration(line.foot) / slope;
+                    candidates.push(line.foot + line.direction * t);
+                }
+            }
+        }
+    }
+    let permitted = candidates
+        .into_iter()
+        .filter(|at| at.norm() <= speed + 1e-9 && worst(spaces, *at) < 1e-9);
+    permitted
+        .map(|at| (at - preferred).norm())
+        .min_by(f64::total_cmp)
+}
+
+/// The least penetration over a grid of velocities in the ball.
+fn least_penetration(spaces: &[HalfSpace<f64>], speed: f64) -> f64 {
+    let steps = 16;
+    let axis = || (-steps..=steps).map(|i| speed * f64::from(i) / f64::from(steps));
+    let mut least = f64::MAX;
+    for x in axis() {
+        for y in axis() {
+            for z in axis().filter(|z| v(x, y, *z).norm() <= speed) {
+                least = least.min(worst(spaces, v(x, y, z)));
+            }
+        }
+    }
+    least
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(256))]
+
+    #[test]
+    fn answer_is_the_nearest_permitted_velocity_or_of_least_penetration(
+        (spaces, preferred) in crowd(),
+    ) {
+        let speed = 1.5;
+        let answer = solve::<f64, 10>(&spaces, 0, preferred, speed);
+        prop_assert!(answer.velocity_mps.norm() <= speed + 1e-9);
+        prop_assert_eq!(answer.penetration_mps, worst(&spaces, answer.velocity_mps));
+        match nearest_permitted(&spaces, preferred, speed) {
+            Some(distance) => {
+                prop_assert!(answer.penetration_mps < 1e-9, "{}", answer.penetration_mps);
+                let own = (answer.velocity_mps - preferred).norm();
+                prop_assert!((own - distance).abs() < 1e-6, "{own} {distance}");
+            }
+            None => {
+                let least = least_penetration(&spaces, speed);
+                prop_assert!(answer.penetration_mps <= least + 1e-9, "{answer:?} {least}");
+            }
+        }
+    }
+
+    #[test]
+    fn hard_half_spaces_are_kept_where_the_others_contradict_them(
+        (spaces, preferred) in crowd(),
+        hard in 0_usize..3,
+    ) {
+        let answer = solve::<f64, 10>(&spaces, hard, preferred, 1.0);
+        let hard = &spaces[..hard.min(spaces.len())];
+        if nearest_permitted(hard, preferred, 1.0).is_some() {
+            let broken = worst(hard, answer.velocity_mps);
+            prop_assert!(broken < 1e-7, "{broken}");
+        }
+    }
+
+    #[test]
+    fn turned_crowds_give_turned_answers(
+        (spaces, preferred) in crowd(),
+        axis in vector(1.0),
+        angle in -3.0_f64..3.0,
+    ) {
+        prop_assume!(axis.norm() > 0.1);
+        let map = |at: V| turn(at, axis, angle);
+        let turned: Vec<_> = spaces
+            .iter()
+            .map(|s| HalfSpace { point: map(s.point), normal: map(s.normal) })
+            .collect();
+        let plain = solve::<f64, 10>(&spaces, 0, preferred, 1.5);
+        let answer = solve::<f64, 10>(&turned, 0, map(preferred), 1.5);
+        prop_assert!((plain.penetration_mps - answer.penetration_mps).abs() < 1e-6);
+        if plain.penetration_mps < 1e-9 {
+            prop_assert!((answer.velocity_mps - map(plain.velocity_mps)).norm() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn order_of_neighbours_does_not_matter((spaces, preferred) in crowd()) {
+        let answer = solve::<f64, 10>(&spaces, 0, preferred, 1.5);
+        let reversed: Vec<_> = spaces.iter().rev().copied().collect();
+        let other = solve::<f64, 10>(&reversed, 0, preferred, 1.5);
+        prop_assert!((answer.penetration_mps - other.penetration_mps).abs() < 1e-6);
+        if answer.penetration_mps < 1e-9 {
+            prop_assert!((answer.velocity_mps - other.velocity_mps).norm() < 1e-6);
+        }
+    }
+
+    /// If both do their share of the change, they do not meet within the horizon.
+    #[test]
+    fn pair_that_obeys_does_not_meet_within_the_horizon(
+        offset in vector(4.0),
+        a in vector(1.5),
+        b in vector(1.5),
+    ) {
+        prop_assume!(offset.norm() > 1.1);
+        let p = params(2.0, 0.5);
+        let ours = half_space(a, &neighbor(offset, b, 1.0), &p).unwrap();
+        let theirs = half_space(b, &neighbor(-offset, a, 1.0), &p).unwrap();
+        prop_assert!((ours.normal + theirs.normal).norm() < 1e-9);
+        let a = solve::<f64, 1>(&[ours], 0, a, 10.0).velocity_mps;
+        let b = solve::<f64, 1>(&[theirs], 0, b, 10.0).velocity_mps;
+        let least = (0..=200)
+            .map(|k| (offset + (b - a) * (2.0 * f64::from(k) / 200.0)).norm())
+            .fold(f64::MAX, f64::min);
+        prop_assert!(least > 1.0 - 1e-6, "{least}");
+    }
+
+    /// In one horizontal plane: the same half-planes, and where there is a velocity, the same one.
+    #[test]
+    fn in_one_plane_it_is_what_the_plane_says(
+        others in proptest::collection::vec((vector(4.0), vector(2.0), 0.1_f64..1.0), 0..10),
+        own in vector(2.0),
+        preferred in vector(2.0),
+    ) {
+        let flat = |at: V| at.xy().extend(0.0);
+        let p = params(2.0, 0.5);
+        let mut planes = Vec::new();
+        let mut spaces = Vec::new();
+        for (offset, velocity, radii_m) in others {
+            let plane = orca::half_plane(
+                own.xy(),
+                &orca::Neighbor {
+                    offset_m: offset.xy(),
+                    velocity_mps: velocity.xy(),
+                    radii_m,
+                    tie: Vec2::ZERO,
+                },
+                &p,
+            ).unwrap();
+            let other = neighbor(flat(offset), flat(velocity), radii_m);
+            let space = half_space(flat(own), &other, &p).unwrap();
+            prop_assert!((space.normal - plane.normal.extend(0.0)).norm() < 1e-9);
+            prop_assert!((space.point - plane.point.extend(0.0)).norm() < 1e-9);
+            planes.push(plane);
+            spaces.push(space);
+        }
+        let plane = orca::solve::<f64, 10>(&planes, 0, preferred.xy(), 1.5);
+        let space = solve::<f64, 10>(&spaces, 0, flat(preferred), 1.5);
+        prop_assert!((plane.penetration_mps - space.penetration_mps).abs() < 1e-6);
+        if plane.penetration_mps < 1e-9 {
+            let apart = space.velocity_mps - plane.velocity_mps.extend(0.0);
+            prop_assert!(apart.norm() < 1e-6, "{apart:?}");
+        }
+    }
+
+    /// Whoever obeys a ball's half-space does not touch it within the horizon.
+    #[test]
+    fn whoever_obeys_a_ball_does_not_touch_it(center in vector(4.0), own in vector(3.0)) {
+        prop_assume!(center.norm() > 1.6);
+        let ball = Obstacle::Ball { center_m: center, radius_m: 1.0 };
+        let space = obstacle(own, &ball, 0.5, 2.0).unwrap();
+        let obeys = solve::<f64, 1>(&[space], 0, own, 20.0).velocity_mps;
+        let least = (0..=400)
+            .map(|k| (obeys * (2.0 * f64::from(k) / 400.0) - center).norm())
+            .fold(f64::MAX, f64::min);
+        prop_assert!(least > 1.5 - 1e-6, "{least}");
+    }
+
+    #[test]
+    fn f32_and_q16_agree_with_f64((spaces, preferred) in crowd()) {
+        fn answer<S: Scalar>(spaces: &[HalfSpace<f64>], preferred: V) -> (V, f64) {
+            let s = |value: f64| S::from_f64(value).unwrap();
+            let near = |at: V| Vec3::new(s(at.x), s(at.y), s(at.z));
+            let spaces: Vec<_> = spaces
+                .iter()
+                .map(|space| HalfSpace { point: near(space.point), normal: near(space.normal) })
+                .collect();
+            let found = solve::<S, 10>(&spaces, 0, near(preferred), s(1.5));
+            let [x, y, z] = [found.velocity_mps.x, found.velocity_mps.y, found.velocity_mps.z];
+            (v(x.to_f64(), y.to_f64(), z.to_f64()), found.penetration_mps.to_f64())
+        }
+        let exact = solve::<f64, 10>(&spaces, 0, preferred, 1.5);
+        // Borders that are nearly parallel move a corner far; what it violates, they do not.
+        let (at, told) = answer::<f32>(&spaces, preferred);
+        prop_assert!(worst(&spaces, at) <= exact.penetration_mps + 1e-3, "f32 {}", worst(&spaces, at));
+        prop_assert!((worst(&spaces, at) - told).abs() < 1e-4 && at.norm() < 1.5 + 1e-3);
+        let (at, told) = answer::<Q16>(&spaces, preferred);
+        prop_assert!(worst(&spaces, at) <= exact.penetration_mps + 2e-2, "Q16 {}", worst(&spaces, at));
+        prop_assert!((worst(&spaces, at) - told).abs() < 2e-3 && at.norm() < 1.5 + 1e-2);
+    }
+
+    #[test]
+    fn half_spaces_of_f32_and_q16_agree_with_those_of_f64(
+        offset in vector(6.0),
+        velocity in vector(1.5),
+    ) {
+        prop_assume!(offset.norm() > 1.2);
+        fn asked<S: Scalar>(offset: V, velocity: V) -> f64 {
+            let s = |value: f64| S::from_f64(value).unwrap();
+            let near = |at: V| Vec3::new(s(at.x), s(at.y), s(at.z));
+            let other = Neighbor {
+                offset_m: near(offset),
+                velocity_mps: near(velocity),
+                radii_m: S::ONE,
+                tie: Vec3::ZERO,
+            };
+            let params = Params { horizon_s: S::TWO, separation_s: s(0.05), share: S::HALF };
+            let own = Vec3::new(S::HALF, S::HALF, S::HALF);
+            half_space(own, &other, &params).unwrap().penetration(own).to_f64()
+        }
+        let exact = asked::<f64>(offset, velocity);
+        prop_assert!((asked::<f32>(offset, velocity) - exact).abs() < 1e-5);
+        prop_assert!((asked::<Q16>(offset, velocity) - exact).abs() < 2e-3);
+    }
+}
