@@ -10,7 +10,7 @@
 //! numbers and geometry ([`scalar`], [`geom`], [`time`], [`rand`], [`grid`], [`cost`], [`shuffle`],
 //! [`obstacle`])
 //! < what is known of others and of oneself ([`wire`], [`neighbor`], [`body`])
-//! < behaviours ([`route`], [`formation`]; they never import each other)
+//! < behaviours ([`route`], [`formation`], [`orca`], [`flock`]; they never import each other)
 //! < composition ([`supervisor`], [`agent`]).
 #![no_std]
 // What may panic has no place on a robot (see Cargo.toml); tests may.
@@ -33,6 +33,7 @@ extern crate std;
 pub mod agent;
 pub mod body;
 pub mod cost;
+pub mod flock;
 pub mod formation;
 pub mod geom;
 pub mod grid;

@@ -11,7 +11,7 @@ const LAYERS: [&[&str]; 4] = [
         "scalar", "geom", "time", "rand", "grid", "cost", "shuffle", "obstacle",
     ],
     &["wire", "neighbor", "body"],
-    &["route", "formation", "orca"],
+    &["route", "formation", "orca", "flock", "push_out"],
     &["supervisor", "agent"],
 ];
 /// The layer of the behaviours.

@@ -15,8 +15,10 @@ use heapless::Vec;
 mod nearby;
 #[cfg(test)]
 mod tests;
+mod tie;
 
 pub use nearby::{Doubt, Nearby, nearest};
+pub use tie::tie;
 
 /// One robot as last heard.
 #[derive(Clone, Copy, Debug, PartialEq)]

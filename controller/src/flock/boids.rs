@@ -1,0 +1,285 @@
+//! Boids on a torus: constant speed, only the heading changes.
+//!
+//! Source: E. N. Starovoitova 2018, section 2 and the listing of class `Boid`. Per step a boid that has a neighbour nearer
+//! than `crowded` turns away from that neighbour's heading; otherwise it turns to the mean heading of its neighbours and then
+//! to their middle. Read [`BoidsParams::steer`].
+//!
+//! **Defects of the listing, put right here:**
+//! - The mean heading summed angles, so that the mean of +179 and -179 degrees was 0; it also summed the own heading without
+//!   counting it. Here it is the direction of the sum of the neighbours' velocities, which is the mean on
+//!   the circle since all have one speed.
+//! - `cohere` turned away from the middle (own place minus middle). Here it turns to it.
+//! - Distances and the middle ignored the torus. Here offsets are the shortest ones, [`Torus::shortest`].
+//! - Two boids with the very same heading both turned left and stayed as near as they were. Here each turns away from the
+//!   side that the other is on, or, in one place, from the way that [`tie`] says.
+//!
+//! **Cost.** Headings are unit vectors: no sine, cosine or arc tangent in a step, two roots a boid, none a neighbour.
+
+use crate::geom::{Position, Vec2};
+use crate::neighbor::{Nearby, tie};
+use crate::scalar::Scalar;
+use crate::wire::RobotId;
+
+/// A largest turn, as what rotates by it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Turn<S> {
+    cos: S,
+    sin: S,
+    /// More than a quarter turn.
+    is_wide: bool,
+}
+
+impl<S: Scalar> Turn<S> {
+    /// Nonsense turns nothing; half a turn reaches everywhere.
+    fn new(angle: S) -> Self {
+        let angle = if angle > S::ZERO {
+            angle.min(S::PI)
+        } else {
+            S::ZERO
+        };
+        let (sin, cos) = angle.sin_cos();
+        Self {
+            cos,
+            sin: sin.max(S::ZERO),
+            is_wide: angle > S::PI * S::HALF,
+        }
+    }
+
+    fn left(&self, heading: Vec2<S>) -> Vec2<S> {
+        heading.rotate(self.cos, self.sin)
+    }
+
+    fn right(&self, heading: Vec2<S>) -> Vec2<S> {
+        heading.rotate(self.cos, -self.sin)
+    }
+
+    /// `heading` turned to `target`, by this angle at most. Straight back: to the left, as in the listing.
+    fn towards(&self, heading: Vec2<S>, target: Vec2<S>) -> Vec2<S> {
+        let (det, dot) = (heading.det(target), heading.dot(target));
+        // Small angles are told by the sine, which is precise where the cosine is flat.
+        let is_near = if self.is_wide {
+            dot >= self.cos
+        } else {
+            dot > S::ZERO && det.abs() <= self.sin
+        };
+        if is_near {
+            target
+        } else if det >= S::ZERO {
+            self.left(heading)
+        } else {
+            self.right(heading)
+        }
+    }
+}
+
+/// Parameters of boids, made by [`BoidsParams::new`], which computes what a step would compute again and again.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoidsParams<S> {
+    crowded: u64,
+    closest: u64,
+    turn: Turn<S>,
+    turn_away: Turn<S>,
+}
+
+impl<S: Scalar> BoidsParams<S> {
+    /// - `crowded_m`: nearer than this, a boid turns away from its nearest neighbour; the paper's value is 30. The
+    ///   larger, the looser the flock; above `closest_m` nobody aligns any more.
+    /// - `closest_m`: up to this distance a neighbour counts (150).
+    /// - `max_turn`: largest turn to the mean heading and again to the middle in a step, radians (0.05): a step turns by twice
+    ///   as much at most. The larger, the quicker and the more nervous.
+    /// - `max_turn_away`: turn away from a neighbour that is too near, radians (0.02).
+    ///
+    /// Distances that are not above 0 count nobody, angles that are not above 0 turn nothing, and those above half a turn are half a turn.
+    #[must_use]
+    pub fn new(crowded_m: S, closest_m: S, max_turn: S, max_turn_away: S) -> Self {
+        let key = |distance: S| {
+            let is_sound = distance > S::ZERO;
+            is_sound.then(|| S::length_key([distance, S::ZERO, S::ZERO]))
+        };
+        Self {
+            crowded: key(crowded_m).unwrap_or(0),
+            closest: key(closest_m).unwrap_or(0),
+            turn: Turn::new(max_turn),
+            turn_away: Turn::new(max_turn_away),
+        }
+    }
+
+    /// The paper's values, at a scale of `unit_m` metres: 30, 150, 0.05, 0.02.
+    #[must_use]
+    pub fn paper(unit_m: S) -> Self {
+        Self::new(
+            S::from_i32(30) * unit_m,
+            S::from_i32(150) * unit_m,
+            S::from_ratio(1, 20),
+            S::from_ratio(1, 50),
+        )
+    }
+
+    /// The heading of boid `own` one step later; headings are unit vectors.
+    ///
+    /// `nearby` holds offsets that are shortest on the torus, in any order; heights and radii play no part. A neighbour that stands
+    /// has no heading but counts for the middle. One whose place or velocity is not a number does not count. The
+    /// answer is a unit vector (to rounding; errors do not add up over steps), whatever comes in. O(nearby).
+    #[must_use]
+    pub fn steer(&self, own: RobotId, heading: Vec2<S>, nearby: &[Nearby<S>]) -> Vec2<S> {
+        let heading = sound_heading(heading);
+        let (mut velocities, mut offsets) = (Vec2::ZERO, Vec2::ZERO);
+        let mut nearest: Option<(u64, &Nearby<S>)> = None;
+        for other in nearby {
+            let (offset, velocity) = (other.offset_m.xy(), other.velocity_mps.xy());
+            let key = offset.length_key();
+            if key > self.closest || !velocity.is_finite() || other.id == own {
+                continue;
+            }
+            velocities += velocity;
+            offsets += offset;
+            if nearest.is_none_or(|(least, other_id)| (key, other.id) < (least, other_id.id)) {
+                nearest = Some((key, other));
+            }
+        }
+        let next = match nearest {
+            None => heading,
+            Some((key, other)) if key < self.crowded => self.separate(own, heading, other),
+            Some(_) => {
+                let aligned = self.towards(heading, velocities);
+                self.towards(aligned, offsets)
+            }
+        };
+        // One step of Newton's method towards length 1.
+        let three_halves = S::ONE + S::HALF;
+        next * (three_halves - S::HALF * next.norm_squared())
+    }
+
+    /// [`Self::steer`] with the heading as an angle on (-pi, pi], radians.
+    #[must_use]
+    pub fn turn(&self, own: RobotId, heading: S, nearby: &[Nearby<S>]) -> S {
+        let (sin, cos) = if heading.is_finite() {
+            heading.sin_cos()
+        } else {
+            (S::ZERO, S::ONE)
+        };
+        let next = self.steer(own, Vec2::new(cos, sin), nearby);
+        let angle = next.y.atan2(next.x);
+        if angle <= -S::PI { S::PI } else { angle }
+    }
+
+    fn towards(&self, heading: Vec2<S>, target: Vec2<S>) -> Vec2<S> {
+        // Opposite neighbours cancel: there is nothing to turn to.
+        target
+            .normalized()
+            .map_or(heading, |target| self.turn.towards(heading, target))
+    }
+
+    /// Away from the heading of `other`: to the right when it flies to the left of the own heading.
+    fn separate(&self, own: RobotId, heading: Vec2<S>, other: &Nearby<S>) -> Vec2<S> {
+        let flies = other.velocity_mps.xy();
+        let is_parallel = heading.det(flies) == S::ZERO;
+        let is_left = if !is_parallel {
+            heading.det(flies) > S::ZERO
+        } else if heading.dot(flies) < S::ZERO {
+            // Head on: a difference of +pi, so both turn right and pass.
+            true
+        } else {
+            let place = other.offset_m.xy();
+            let place = if place == Vec2::ZERO {
+                tie(other.id, own)
+            } else {
+                place
+            };
+            // Straight ahead and straight behind turn opposite ways too.
+            let side = heading.det(place);
+            side > S::ZERO || (side == S::ZERO && heading.dot(place) > S::ZERO)
+        };
+        if is_left {
+            self.turn_away.right(heading)
+        } else {
+            self.turn_away.left(heading)
+        }
+    }
+}
+
+/// East for what cannot be a heading; else a vector of length about 1.
+fn sound_heading<S: Scalar>(heading: Vec2<S>) -> Vec2<S> {
+    let off = heading.norm_squared() - S::ONE;
+    if off.abs() < S::HALF * S::HALF {
+        return heading;
+    }
+    heading.normalized().unwrap_or(Vec2::new(S::ONE, S::ZERO))
+}
+
+/// A plane without edges: who leaves on one side comes in on the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Torus<S> {
+    /// Size along x and y, metres. What is not above 0 does not wrap.
+    pub size_m: [S; 2],
+}
+
+impl<S: Scalar> Torus<S> {
+    /// The place on [0, size) along both axes, metres; 0 for what is not a number or 2^31 turns away.
+    #[must_use]
+    pub fn wrap(&self, place_m: Vec2<S>) -> Vec2<S> {
+        let [width, height] = self.size_m;
+        Vec2::new(wrap(place_m.x, width), wrap(place_m.y, height))
+    }
+
+    /// The shortest of all ways that differ from `offset_m` by whole turns around the torus: each component on
+    /// [-size/2, size/2]. An exact half keeps its sign, so that two robots see each other in opposite directions.
+    #[must_use]
+    pub fn shortest(&self, offset_m: Vec2<S>) -> Vec2<S> {
+        let [width, height] = self.size_m;
+        Vec2::new(shortest(offset_m.x, width), shortest(offset_m.y, height))
+    }
+
+    /// The world place on [0, size), in whole millimetres; heights stay.
+    #[must_use]
+    pub fn wrap_position(&self, place: Position) -> Position {
+        let [x, y, z] = place.mm;
+        let [width, height] = self.size_m;
+        let wrap = |mm: i32, size: S| {
+            let size_mm = size.to_milli().filter(|size_mm| *size_mm > 0);
+            size_mm
+                .and_then(|size_mm| mm.checked_rem_euclid(size_mm))
+                .unwrap_or(mm)
+        };
+        Position::from_mm([wrap(x, width), wrap(y, height), z])
+    }
+}
+
+fn wrap<S: Scalar>(x: S, size: S) -> S {
+    let wraps = size > S::ZERO;
+    if !wraps || (x >= S::ZERO && x < size) {
+        return x;
+    }
+    let wrapped = x - size * turns(x, size);
+    // Rounding may put what lies just below 0 onto the far edge.
+    if wrapped >= S::ZERO && wrapped < size {
+        wrapped
+    } else {
+        S::ZERO
+    }
+}
+
+fn shortest<S: Scalar>(x: S, size: S) -> S {
+    let half = size * S::HALF;
+    let wraps = size > S::ZERO;
+    if !wraps || x.abs() <= half {
+        return x;
+    }
+    // Once around is the rule: both places are on the torus.
+    let near = if x > S::ZERO { x - size } else { x + size };
+    if near.abs() <= half {
+        return near;
+    }
+    let from_edge = wrap(x, size);
+    if from_edge > half {
+        from_edge - size
+    } else {
+        from_edge
+    }
+}
+
+/// Whole turns in `x`, rounded down; 0 when they cannot be counted.
+fn turns<S: Scalar>(x: S, size: S) -> S {
+    let turns = x.checked_div(size).and_then(S::floor_to_i32);
+    turns.map_or(S::ZERO, S::from_i32)
+}

@@ -1,0 +1,263 @@
+//! The goal flock: robots go to goals together, each drawn to the middle of its neighbours and kept off the nearest.
+//!
+//! Source: V. E. Pavlovsky, V. V. Pavlovsky, "Mathematical model of a two-dimensional homogeneous flock of robots",
+//! section 2 (the first stage of a motion). Read [`wish`]: r1 to the goal, r2 to the middle of the neighbours, r3 away
+//! from those too near. The second stage, collisions, is a safety layer of its own.
+//!
+//! **What differs from the paper:**
+//! - Nearer than half the least distance the paper has no repulsion. Here it is that of half the least distance; robots in one
+//!   place go apart by [`tie`].
+//! - On its last step to the goal a robot does not go past it, or it would swing around it for ever.
+//! - All is in space; in the plane z stays 0.
+
+use crate::body::Body;
+use crate::geom::{Position, Vec3};
+use crate::neighbor::{Nearby, tie};
+use crate::rand::Rng;
+use crate::scalar::Scalar;
+use crate::wire::RobotId;
+use heapless::Vec;
+
+/// Parameters of the goal flock. Only the ratios of the three gains matter once their sum is longer than 1. Any
+/// of them may be 0, or negative: away from the goal, away from the neighbours, towards the nearest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GoalParams<S> {
+    /// Pull of the goal (K1). Far above [`Self::center_gain`]: each for itself, the group is lost.
+    pub goal_gain: S,
+    /// Pull of the middle of the neighbours (K2). Far above [`Self::goal_gain`]: nobody arrives.
+    pub center_gain: S,
+    /// Push of each neighbour that is too near (K3), from 0 at twice the least distance to 2.25 of it at half. Too small:
+    /// robots touch and block each other.
+    pub repulsion_gain: S,
+    /// How far neighbours are seen (R_nbh), metres; at least twice [`Self::min_distance_m`].
+    pub neighborhood_m: S,
+    /// Least distance of two robots' centres (R_MinDist), metres; more than 0 and at least two radii.
+    pub min_distance_m: S,
+    /// Speed (V_Max), m/s; more than 0. The body's own limit holds too.
+    pub speed_mps: S,
+}
+
+impl<S: Scalar> GoalParams<S> {
+    /// The paper's ratio R_nbh = 4 R_MinDist, and gains of 1, 1/2 and 1.
+    #[must_use]
+    pub fn new(min_distance_m: S, speed_mps: S) -> Self {
+        Self {
+            goal_gain: S::ONE,
+            center_gain: S::HALF,
+            repulsion_gain: S::ONE,
+            neighborhood_m: S::from_i32(4) * min_distance_m,
+            min_distance_m,
+            speed_mps,
+        }
+    }
+
+    /// Whether all parameters are in the ranges stated; if not, [`wish`] is zero.
+    #[must_use]
+    pub fn is_sound(&self) -> bool {
+        let gains = [self.goal_gain, self.center_gain, self.repulsion_gain];
+        gains.iter().all(|gain| gain.is_finite())
+            && self.min_distance_m > S::ZERO
+            && self.neighborhood_m >= S::TWO * self.min_distance_m
+            && self.neighborhood_m.is_finite()
+            && self.speed_mps > S::ZERO
+            && self.speed_mps.is_finite()
+    }
+}
+
+/// The velocity that the robot at `own` wishes for, m/s: V_Max times r1 + r2 + r3 cut to length 1.
+///
+/// Without a goal r1 is zero. `nearby` need not be in order. A neighbour whose place is not a
+/// number does not count; the answer is finite and at most as long as V_Max whatever comes in. O(nearby): each costs a
+/// root.
+#[must_use]
+pub fn wish<S: Scalar>(
+    params: &GoalParams<S>,
+    body: &Body<S>,
+    own: Position,
+    goal: Option<Position>,
+    nearby: &[Nearby<S>],
+) -> Vec3<S> {
+    if !params.is_sound() {
+        return Vec3::ZERO;
+    }
+    let speed = params.speed_mps.min(body.max_speed_mps);
+    let can_move = speed > S::ZERO;
+    if !can_move {
+        return Vec3::ZERO;
+    }
+    let way = goal.map_or(Vec3::ZERO, |goal| goal.since(own));
+    let r1 = to_goal(params.goal_gain, way, speed * body.step_s);
+    let (r2, r3) = among_neighbors(params, body.id, nearby);
+    (r1 + r2 + r3).clamp_norm(S::ONE) * speed
+}
+
+/// r1 = K1 unit(goal - x), eq. 2; on the last step no longer than what is left.
+fn to_goal<S: Scalar>(gain: S, way_m: Vec3<S>, step_m: S) -> Vec3<S> {
+    let distance = way_m.norm();
+    let left = if distance < step_m {
+        distance.checked_div(step_m).unwrap_or(S::ONE)
+    } else {
+        S::MAX
+    };
+    way_m
+        .normalized()
+        .map_or(Vec3::ZERO, |unit| unit * gain.min(left))
+}
+
+/// r2 = K2 unit(mean of the neighbours - x), eq. 5, and r3, eq. 8.
+fn among_neighbors<S: Scalar>(
+    params: &GoalParams<S>,
+    own: RobotId,
+    nearby: &[Nearby<S>],
+) -> (Vec3<S>, Vec3<S>) {
+    let (mut sum, mut r3) = (Vec3::ZERO, Vec3::ZERO);
+    for other in nearby {
+        let distance = other.offset_m.norm();
+        // False for NaN.
+        let is_seen = distance <= params.neighborhood_m;
+        if !is_seen || other.id == own {
+            continue;
+        }
+        // The direction of the mean is that of the sum.
+        sum += other.offset_m;
+        let force = repulsion(params, distance);
+        let apart = || tie(other.id, own).extend(S::ZERO);
+        let towards = other.offset_m.normalized().unwrap_or_else(apart);
+        r3 -= towards * force;
+    }
+    let r2 = sum
+        .normalized()
+        .map_or(Vec3::ZERO, |unit| unit * params.center_gain);
+    (r2, r3)
+}
+
+/// f = K3 (2 - d / R_MinDist)^2 for R_MinDist / 2 <= d <= 2 R_MinDist (eqs. 6 and 7); 0 beyond, constant
+/// below.
+fn repulsion<S: Scalar>(params: &GoalParams<S>, distance_m: S) -> S {
+    let ratio = distance_m.checked_div(params.min_distance_m);
+    let lack = S::TWO - ratio.unwrap_or(S::TWO).clamp(S::HALF, S::TWO);
+    params.repulsion_gain * lack * lack
+}
+
+/// Where a robot with goals is on its way.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Stage {
+    /// To the middle of all goals.
+    #[default]
+    Gather,
+    /// To the goal with this index.
+    Goal(usize),
+}
+
+/// Answer of [`Goals::push`]: all places are taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Full;
+
+/// Up to `N` goals of a robot: first it goes to the middle of all; there it draws one of them (eq. 3).
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Goals<const N: usize> {
+    places: Vec<Position, N>,
+    stage: Stage,
+    /// How often it has started anew: each time it draws anew.
+    round: u32,
+}
+
+impl<const N: usize> Goals<N> {
+    const PURPOSE: u32 = 0x676F_616C; // "goal"
+
+    /// No goals yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            places: Vec::new(),
+            stage: Stage::Gather,
+            round: 0,
+        }
+    }
+
+    /// One more goal. [`Full`] when there are `N`; nothing changes then.
+    pub fn push(&mut self, goal: Position) -> Result<(), Full> {
+        self.places.push(goal).map_err(|_| Full)
+    }
+
+    /// Moves a goal, also during a run: the middle moves along, and who has drawn it goes to the new place. Whether there is such a
+    /// goal.
+    #[must_use]
+    pub fn set_goal(&mut self, index: usize, goal: Position) -> bool {
+        self.places
+            .get_mut(index)
+            .map(|place| *place = goal)
+            .is_some()
+    }
+
+    /// All goals.
+    #[must_use]
+    pub fn as_slice(&self) -> &[Position] {
+        &self.places
+    }
+
+    /// Where the robot is on its way.
+    #[must_use]
+    pub const fn stage(&self) -> Stage {
+        self.stage
+    }
+
+    /// Back to the middle first; the next draw is another one.
+    pub const fn restart(&mut self) {
+        self.stage = Stage::Gather;
+        self.round = self.round.wrapping_add(1);
+    }
+
+    /// The middle of all goals, rounded to millimetres; `None` without goals. O(N).
+    #[must_use]
+    pub fn centroid(&self) -> Option<Position> {
+        let count = i64::try_from(self.places.len()).ok()?;
+        let mut sum = [0_i64; 3];
+        for place in &self.places {
+            for (total, mm) in sum.iter_mut().zip(place.mm) {
+                *total += i64::from(mm);
+            }
+        }
+        // To nearest: (2 s + n) / 2 n. A mean of i32 fits one.
+        let mean = |total: i64| (2 * total + count).checked_div_euclid(2 * count);
+        let [x, y, z] = sum.map(|total| mean(total).and_then(|mm| i32::try_from(mm).ok()));
+        Some(Position::from_mm([x?, y?, z?]))
+    }
+
+    /// Where to go now; `None` without goals.
+    #[must_use]
+    pub fn current(&self) -> Option<Position> {
+        match self.stage {
+            Stage::Gather => self.centroid(),
+            Stage::Goal(index) => self.places.get(index).copied(),
+        }
+    }
+
+    /// Whether the robot at `own` is within `arrival_m` of where it is to go. A crowd needs room: choose about
+    /// the neighbourhood, or only the first ones ever reach the middle.
+    #[must_use]
+    pub fn has_arrived<S: Scalar>(&self, own: Position, arrival_m: S) -> bool {
+        self.current()
+            .is_some_and(|goal| goal.since::<S>(own).norm() <= arrival_m)
+    }
+
+    /// Draws a goal if the robot at `own` has come within `arrival_m` of the middle: uniform over the goals, a function of
+    /// seed, robot and round. The index drawn, if one was.
+    pub fn update<S: Scalar>(
+        &mut self,
+        own: Position,
+        arrival_m: S,
+        seed: u64,
+        robot: RobotId,
+    ) -> Option<usize> {
+        if self.stage != Stage::Gather || !self.has_arrived(own, arrival_m) {
+            return None;
+        }
+        let count = u32::try_from(self.places.len()).ok()?;
+        let drawn = Rng::keyed(seed, Self::PURPOSE, robot.0, self.round).below(count);
+        let index = usize::try_from(drawn).ok()?;
+        self.stage = Stage::Goal(index);
+        Some(index)
+    }
+}

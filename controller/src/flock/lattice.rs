@@ -1,0 +1,318 @@
+//! The alpha flock: robots that settle at equal distances, follow a reference and go round obstacles.
+//!
+//! Source: R. Olfati-Saber 2006, "Flocking for multi-agent dynamic systems: algorithms and theory", IEEE TAC 51(3),
+//! algorithms 1 to 3. Read section VII there beside [`acceleration`]; the functions are in [`super::action`], the
+//! beta-agents in [`super::beta`].
+//!
+//! **Any size.** The law is not scale-free: its constants (e, sigma_1) are made for a spacing of 7. So it is computed
+//! in units of d / 7 metres and its acceleration scaled back. Time is not scaled: a gain c1 is a stiffness in
+//! 1/s^2, so at any size a flock takes as many seconds to settle and needs as short a step, which the electronics of a robot
+//! decide and not its length. Speeds and accelerations hence scale with d: at d = 0.5 m a robot closes up at
+//! 1/14 of the paper's speed, and what the paper does at 5 units/s is 0.36 m/s.
+//!
+//! **What differs from the paper:**
+//! - n_ij vanishes where two robots are in one place, so they would stay together. Here they go apart by
+//!   [`tie`], as hard as if they were one unit (d / 7) apart.
+//! - Inside an obstacle the paper's force points inwards: who is in stays in. Here who is inside, or
+//!   exactly on the border, is pushed out along the normal, as hard as one unit in front of the
+//!   border, however deep. A wall has no inside: who has crossed it is pushed on.
+//! - What is not a number contributes nothing.
+//!
+//! **What it does not promise.** Repulsion is bounded and vanishes at contact: robots that close at more than about 2 d per
+//! second go through each other. It knows points, not bodies: choose d well above two radii, 0.6 d above one, and
+//! put a safety layer behind it.
+
+use super::action::{PhiAlpha, PhiBeta, SPACING, SigmaNorm, sigma_1, sigma_norm, sigmoid_shift};
+use super::beta::beta_agent;
+use crate::body::Body;
+use crate::geom::Vec3;
+use crate::neighbor::{Nearby, tie};
+use crate::obstacle::Obstacle;
+use crate::scalar::Scalar;
+
+/// Which terms act.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Algorithm {
+    /// Only the others: the group breaks up unless it starts as one.
+    One,
+    /// And the reference, with a pull that grows with distance without bound.
+    Two,
+    /// And obstacles; the pull of the reference is bounded.
+    #[default]
+    Three,
+}
+
+/// The two gains of one kind of agent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gain<S> {
+    /// On positions (c1), 1/s^2 in the paper's units; at least 0.
+    pub position: S,
+    /// On velocities (c2), 1/s; at least 0.
+    pub velocity: S,
+}
+
+impl<S: Scalar> Gain<S> {
+    /// 1 and 1: algorithm 1 as it stands in the paper.
+    #[must_use]
+    pub fn one() -> Self {
+        Self {
+            position: S::ONE,
+            velocity: S::ONE,
+        }
+    }
+
+    /// c2 = 2 sqrt(c1): critical damping, as in the paper's simulations.
+    #[must_use]
+    pub fn critical(position: S) -> Self {
+        Self {
+            position,
+            velocity: S::TWO * position.sqrt(),
+        }
+    }
+
+    fn is_sound(&self) -> bool {
+        let fits = |gain: S| gain >= S::ZERO && gain.is_finite();
+        fits(self.position) && fits(self.velocity)
+    }
+}
+
+/// Parameters of the alpha flock.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LatticeParams<S> {
+    /// Which terms act.
+    pub algorithm: Algorithm,
+    /// Distance of neighbours in the lattice (d), metres; from 0.01 to 100. More than two radii plus what
+    /// a robot goes in half a second.
+    pub spacing_m: S,
+    /// Range of interaction over spacing (r / d); above 1, at most 4. The larger, the easier a group forms and
+    /// the more the lattice is squeezed by its second neighbours, which are at sqrt 3: stay below.
+    pub range_ratio: S,
+    /// Distance kept from obstacles over spacing (d' / d); above 0, at most 4. The larger, the wider the
+    /// passage that robots still take.
+    pub obstacle_ratio: S,
+    /// Attraction (a of phi), and repulsion (b of phi): 0 < a <= b. The bounds of phi_alpha.
+    pub attraction: S,
+    /// See [`Self::attraction`].
+    pub repulsion: S,
+    /// Robots among each other (c_alpha). Higher: a stiffer lattice, and a shorter step is needed:
+    /// 10 holds up to 0.05 s, and at 0.2 s it flies apart.
+    pub alpha: Gain<S>,
+    /// Obstacles (c_beta). Must be well above the others, or those behind push those in front into obstacles: (5, 50, 2)
+    /// already fails for 150 robots in a narrow passage.
+    pub beta: Gain<S>,
+    /// The reference (c_gamma). Higher: quicker to gather and follow; above c_alpha the flock is crushed.
+    pub gamma: Gain<S>,
+}
+
+impl<S: Scalar> LatticeParams<S> {
+    /// Algorithm 3 with the paper's ratios and gains of 10, 200 and 2 on positions, with critical damping: with these, 150
+    /// robots pass the paper's two obstacle courses unharmed.
+    #[must_use]
+    pub fn new(spacing_m: S) -> Self {
+        Self {
+            algorithm: Algorithm::Three,
+            spacing_m,
+            range_ratio: S::from_ratio(6, 5),
+            obstacle_ratio: S::from_ratio(3, 5),
+            attraction: S::from_i32(5),
+            repulsion: S::from_i32(5),
+            alpha: Gain::critical(S::from_i32(10)),
+            beta: Gain::critical(S::from_i32(200)),
+            gamma: Gain::critical(S::TWO),
+        }
+    }
+
+    /// Whether all parameters are in the ranges stated; if not, [`acceleration`] is zero.
+    #[must_use]
+    pub fn is_sound(&self) -> bool {
+        Law::new(self).is_some()
+    }
+
+    /// Range of interaction r, metres: neighbours farther away count nothing.
+    #[must_use]
+    pub fn range_m(&self) -> S {
+        self.spacing_m * self.range_ratio
+    }
+}
+
+/// Where the flock should be (the gamma-agent), as a robot sees it.
+///
+/// A static one has the same place and velocity for ever, and its velocity need not be zero: the paper's obstacle
+/// courses pull the flock past a fixed point. A moving one is where its velocity has taken it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reference<S> {
+    /// Its place minus the own one (q_r - q), metres.
+    pub offset_m: Vec3<S>,
+    /// Its velocity (p_r), m/s.
+    pub velocity_mps: Vec3<S>,
+}
+
+/// What robot `body` should do to its velocity, m/s^2 (u of the paper): u_alpha + u_beta + u_gamma.
+///
+/// In the plane (all z zero) the answer has z = 0. `nearby` need not be in order, and radii play no part. The answer is
+/// finite whatever comes in, and not bounded by what the body can do: see [`Body::reach`]. Zero for
+/// parameters that are not sound.
+///
+/// O(nearby + obstacles): each costs two roots and a cosine.
+#[must_use]
+pub fn acceleration<S: Scalar>(
+    params: &LatticeParams<S>,
+    body: &Body<S>,
+    nearby: &[Nearby<S>],
+    obstacles: &[Obstacle<S>],
+    reference: Option<&Reference<S>>,
+) -> Vec3<S> {
+    let Some(law) = Law::new(params) else {
+        return Vec3::ZERO;
+    };
+    let mut sum = Vec3::ZERO;
+    let mut add = |term: Vec3<S>| {
+        let next = sum + term;
+        if next.is_finite() {
+            sum = next;
+        }
+    };
+    for other in nearby {
+        add(law.alpha(body, other));
+    }
+    if params.algorithm == Algorithm::Three {
+        for obstacle in obstacles {
+            add(law.beta(body, obstacle));
+        }
+    }
+    if params.algorithm != Algorithm::One
+        && let Some(reference) = reference
+    {
+        add(law.gamma(body, reference));
+    }
+    sum
+}
+
+/// The parameters in the paper's units.
+struct Law<'a, S> {
+    params: &'a LatticeParams<S>,
+    /// Units per metre, 7 / d, and metres per unit.
+    units: S,
+    metres: S,
+    /// r^2.
+    range_squared: S,
+    /// d'.
+    obstacle_distance: S,
+    phi_alpha: PhiAlpha<S>,
+    phi_beta: PhiBeta<S>,
+}
+
+impl<'a, S: Scalar> Law<'a, S> {
+    fn new(params: &'a LatticeParams<S>) -> Option<Self> {
+        let spacing = S::from_i32(SPACING);
+        let metres = params.spacing_m.checked_div(spacing)?;
+        let (range_ratio, obstacle_ratio) = (params.range_ratio, params.obstacle_ratio);
+        let is_sound = params.spacing_m >= S::from_ratio(1, 100)
+            && params.spacing_m <= S::from_i32(100)
+            && range_ratio > S::ONE
+            && range_ratio <= S::from_i32(4)
+            && obstacle_ratio > S::ZERO
+            && obstacle_ratio <= S::from_i32(4)
+            && [params.alpha, params.beta, params.gamma]
+                .iter()
+                .all(Gain::is_sound);
+        let (a, b) = (params.attraction, params.repulsion);
+        let c = sigmoid_shift(a, b).filter(|_| is_sound)?;
+        let range = spacing * range_ratio;
+        let range_squared = range * range;
+        let obstacle_distance = spacing * obstacle_ratio;
+        Some(Self {
+            params,
+            units: spacing.checked_div(params.spacing_m)?,
+            metres,
+            range_squared,
+            obstacle_distance,
+            phi_alpha: PhiAlpha {
+                r_alpha: sigma_norm(range_squared).sigma,
+                d_alpha: sigma_norm(spacing * spacing).sigma,
+                a,
+                b,
+                c,
+            },
+            phi_beta: PhiBeta {
+                d_beta: sigma_norm(obstacle_distance * obstacle_distance).sigma,
+            },
+        })
+    }
+
+    /// c1 phi_alpha(||q_j - q_i||_sigma) n_ij + c2 a_ij (p_j - p_i) of one neighbour j, m/s^2.
+    fn alpha(&self, body: &Body<S>, other: &Nearby<S>) -> Vec3<S> {
+        let offset = other.offset_m * self.units;
+        let squared = offset.norm_squared();
+        // False for NaN; fixed point saturates beyond the range.
+        let is_near = squared < self.range_squared;
+        if !is_near || other.id == body.id {
+            return Vec3::ZERO;
+        }
+        let SigmaNorm { sigma, slope } = sigma_norm(squared);
+        let adjacency = self.phi_alpha.adjacency(sigma);
+        let n_ij = if other.offset_m == Vec3::ZERO {
+            // The other one, a unit away: it goes the other way.
+            tie(other.id, body.id).extend(S::ZERO) * sigma_norm(S::ONE).slope
+        } else {
+            offset * slope
+        };
+        let pull = self.params.alpha.position * self.phi_alpha.at(sigma, adjacency);
+        let gain = self.params.alpha.velocity * adjacency;
+        n_ij * (pull * self.metres) + drag(gain, other.velocity_mps - body.velocity_mps)
+    }
+
+    /// c1 phi_beta(||q^ - q||_sigma) n^ + c2 b (p^ - p) of one obstacle, m/s^2.
+    fn beta(&self, body: &Body<S>, obstacle: &Obstacle<S>) -> Vec3<S> {
+        let own_velocity = body.velocity_mps;
+        let known_velocity = if own_velocity.is_finite() {
+            own_velocity
+        } else {
+            Vec3::ZERO
+        };
+        let Some(agent) = beta_agent(obstacle, known_velocity) else {
+            return Vec3::ZERO;
+        };
+        let distance = agent.distance_m * self.units;
+        let is_near = distance < self.obstacle_distance;
+        if !is_near {
+            return Vec3::ZERO;
+        }
+        let is_inside = agent.distance_m <= S::ZERO;
+        let outside = if is_inside { S::ZERO } else { distance };
+        let SigmaNorm { sigma, slope } = sigma_norm(outside * outside);
+        let adjacency = self.phi_beta.adjacency(sigma);
+        // The length of n^; inside as one unit in front of the border.
+        let length = if is_inside {
+            sigma_norm(S::ONE).slope
+        } else {
+            outside * slope
+        };
+        // phi_beta is negative, and n^ is against the normal.
+        let push = -(self.params.beta.position * self.phi_beta.at(sigma, adjacency)) * length;
+        let gain = self.params.beta.velocity * adjacency;
+        agent.normal * (push * self.metres) + drag(gain, agent.velocity_mps - known_velocity)
+    }
+
+    /// -c1 sigma_1(q - q_r) - c2 (p - p_r), in algorithm 2 without sigma_1; m/s^2.
+    fn gamma(&self, body: &Body<S>, reference: &Reference<S>) -> Vec3<S> {
+        let Gain { position, velocity } = self.params.gamma;
+        let way = reference.offset_m;
+        let pull = if self.params.algorithm == Algorithm::Two {
+            way * position
+        } else {
+            // sigma_1 of a vector is along it, not of each component.
+            let distance = way.norm() * self.units;
+            let direction = way.normalized().unwrap_or(Vec3::ZERO);
+            direction * (position * sigma_1(distance) * self.metres)
+        };
+        let pull = if pull.is_finite() { pull } else { Vec3::ZERO };
+        pull + drag(velocity, reference.velocity_mps - body.velocity_mps)
+    }
+}
+
+/// A velocity term; zero when a velocity is not known.
+fn drag<S: Scalar>(gain: S, relative_mps: Vec3<S>) -> Vec3<S> {
+    let term = relative_mps * gain;
+    if term.is_finite() { term } else { Vec3::ZERO }
+}

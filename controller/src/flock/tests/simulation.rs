@@ -1,0 +1,244 @@
+//! The paper's simulations with perfect information: 150 robots, f64, d = 7.
+
+use super::super::lattice::{Algorithm, Gain, LatticeParams, Reference, acceleration};
+use super::{body, vec3};
+use crate::body::Body;
+use crate::geom::Vec3;
+use crate::neighbor::Nearby;
+use crate::obstacle::Obstacle;
+use crate::rand::Rng;
+use crate::wire::RobotId;
+use std::vec::Vec;
+
+type V = Vec3<f64>;
+
+struct Ball {
+    center: V,
+    radius: f64,
+}
+
+struct Flock {
+    params: LatticeParams<f64>,
+    places: Vec<V>,
+    velocities: Vec<V>,
+    reference: (V, V),
+    reference_moves: bool,
+    balls: Vec<Ball>,
+    /// Least distance of two robots and least clearance of an obstacle so far.
+    least_pair: f64,
+    least_clearance: f64,
+}
+
+fn uniform(rng: &mut Rng, low: f64, high: f64) -> f64 {
+    low + (high - low) * f64::from(rng.unit_q32()) / 4_294_967_296.0
+}
+
+/// A sample of the normal distribution by twelve uniform ones.
+fn normal(rng: &mut Rng, deviation: f64) -> f64 {
+    ((0..12).map(|_| uniform(rng, 0.0, 1.0)).sum::<f64>() - 6.0) * deviation
+}
+
+fn places(count: usize, mut draw: impl FnMut() -> f64) -> Vec<V> {
+    (0..count).map(|_| V::new(draw(), draw(), 0.0)).collect()
+}
+
+fn balls(matrix: &[[f64; 3]]) -> Vec<Ball> {
+    let ball = |&[x, y, radius]: &[f64; 3]| Ball {
+        center: V::new(x, y, 0.0),
+        radius,
+    };
+    matrix.iter().map(ball).collect()
+}
+
+impl Flock {
+    fn new(params: LatticeParams<f64>, places: Vec<V>, reference: (V, V)) -> Self {
+        Self {
+            params,
+            velocities: std::vec![V::ZERO; places.len()],
+            places,
+            reference,
+            reference_moves: false,
+            balls: Vec::new(),
+            least_pair: f64::MAX,
+            least_clearance: f64::MAX,
+        }
+    }
+
+    fn nearby(&mut self, i: usize) -> Vec<Nearby<f64>> {
+        let (range, own) = (self.params.range_m(), self.places[i]);
+        let mut nearby = Vec::new();
+        for (j, place) in self.places.iter().enumerate() {
+            let offset_m = *place - own;
+            let squared = offset_m.norm_squared();
+            if j != i && squared < range * range {
+                self.least_pair = self.least_pair.min(squared.sqrt());
+                nearby.push(Nearby {
+                    id: RobotId(j as u32 + 1),
+                    offset_m,
+                    velocity_mps: self.velocities[j],
+                    radius_m: 0.0,
+                    gives_way: true,
+                });
+            }
+        }
+        nearby
+    }
+
+    fn step(&mut self, step_s: f64) {
+        let mut forces = Vec::new();
+        for i in 0..self.places.len() {
+            let own = self.places[i];
+            let nearby = self.nearby(i);
+            let mut obstacles = Vec::new();
+            for ball in &self.balls {
+                let clearance = (ball.center - own).norm() - ball.radius;
+                self.least_clearance = self.least_clearance.min(clearance);
+                obstacles.push(Obstacle::Ball {
+                    center_m: ball.center - own,
+                    radius_m: ball.radius,
+                });
+            }
+            let reference = Reference {
+                offset_m: self.reference.0 - own,
+                velocity_mps: self.reference.1,
+            };
+            let body = Body {
+                id: RobotId(i as u32 + 1),
+                velocity_mps: self.velocities[i],
+                step_s,
+                ..body([0.0; 3])
+            };
+            forces.push(acceleration(
+                &self.params,
+                &body,
+                &nearby,
+                &obstacles,
+                Some(&reference),
+            ));
+        }
+        for (i, force) in forces.into_iter().enumerate() {
+            self.velocities[i] += force * step_s;
+            self.places[i] += self.velocities[i] * step_s;
+        }
+        if self.reference_moves {
+            self.reference.0 += self.reference.1 * step_s;
+        }
+    }
+
+    /// Groups of robots joined by distances below `range`.
+    fn components(&self, range: f64) -> usize {
+        let mut group: Vec<usize> = (0..self.places.len()).collect();
+        for i in 0..group.len() {
+            for j in 0..i {
+                if (self.places[i] - self.places[j]).norm() < range && group[i] != group[j] {
+                    let (from, to) = (group[i], group[j]);
+                    group
+                        .iter_mut()
+                        .filter(|g| **g == from)
+                        .for_each(|g| *g = to);
+                }
+            }
+        }
+        group.sort_unstable();
+        group.dedup();
+        group.len()
+    }
+
+    /// E~: mean squared deviation of the edges' lengths over d^2 (E counts each edge twice).
+    fn deviation(&self, range: f64) -> f64 {
+        let spacing = self.params.spacing_m;
+        let (mut sum, mut edges) = (0.0, 0.0);
+        for (i, a) in self.places.iter().enumerate() {
+            for b in &self.places[..i] {
+                let distance = (*a - *b).norm();
+                if distance < range {
+                    edges += 1.0;
+                    sum += 2.0 * (distance - spacing) * (distance - spacing);
+                }
+            }
+        }
+        sum / (edges + 1.0) / (spacing * spacing)
+    }
+
+    /// K~: half the mean squared velocity in the moving frame.
+    fn mismatch(&self) -> f64 {
+        let count = self.places.len() as f64;
+        let mut mean = V::ZERO;
+        self.velocities.iter().for_each(|v| mean += *v);
+        mean = mean * (1.0 / count);
+        let squares = self.velocities.iter().map(|v| (*v - mean).norm_squared());
+        0.5 * squares.sum::<f64>() / count
+    }
+}
+
+const SPLIT: [[f64; 3]; 6] = [
+    [100.0, 20.0, 10.0],
+    [110.0, 60.0, 4.0],
+    [120.0, 40.0, 2.0],
+    [130.0, -20.0, 5.0],
+    [150.0, 40.0, 5.0],
+    [160.0, 0.0, 3.0],
+];
+const SQUEEZE: [[f64; 3]; 2] = [[150.0, 30.0, 25.0], [150.0, 100.0, 25.0]];
+
+/// 150 robots from the square [low, high]^2, at rest, through balls to beyond x = 230; the reference is static, as in
+/// the paper, and its velocity draws them on.
+fn course(seed: u64, square: [f64; 2], goal: [f64; 3], speed: f64, matrix: &[[f64; 3]]) {
+    const STEP_S: f64 = 0.02;
+    let mut rng = Rng::new(seed);
+    let start = places(150, || uniform(&mut rng, square[0], square[1]));
+    let reference = (vec3(goal), V::new(speed, 0.0, 0.0));
+    let mut flock = Flock::new(LatticeParams::new(7.0), start, reference);
+    flock.balls = balls(matrix);
+    let mut steps = 0;
+    while flock.places.iter().any(|place| place.x < 230.0) {
+        flock.step(STEP_S);
+        steps += 1;
+        assert!(steps < 5000, "not all through after 100 s");
+        if steps == 100 {
+            // The random start has robots almost in one place.
+            flock.least_pair = f64::MAX;
+        }
+    }
+    let (pair, clearance) = (flock.least_pair / 7.0, flock.least_clearance / 7.0);
+    assert!(clearance > 0.5, "clearance {clearance} d");
+    assert!(pair > 0.5, "pair distance {pair} d after {steps} steps");
+    assert!(flock.places.iter().all(|place| place.z == 0.0));
+}
+
+#[test]
+fn all_150_robots_split_and_get_through_the_obstacles_unharmed() {
+    for seed in 0..2 {
+        course(seed, [-40.0, 80.0], [200.0, 30.0, 0.0], 5.0, &SPLIT);
+    }
+}
+
+#[test]
+fn all_150_robots_squeeze_through_the_passage_unharmed() {
+    for seed in 0..2 {
+        course(seed, [0.0, 120.0], [230.0, 60.0, 0.0], 6.0, &SQUEEZE);
+    }
+}
+
+/// The paper's free flock: algorithm 2, normal places, a moving reference. Its gains are not told; these
+/// fulfil its e1 and e2.
+#[test]
+fn free_flock_of_150_becomes_one_group_with_the_lattices_energy() {
+    let mut rng = Rng::new(1);
+    let start = places(150, || normal(&mut rng, 50.0));
+    let params = LatticeParams {
+        algorithm: Algorithm::Two,
+        gamma: Gain::critical(0.2),
+        ..LatticeParams::new(7.0)
+    };
+    let mut flock = Flock::new(params, start, (V::ZERO, V::new(-1.5, -1.5, 0.0)));
+    flock.reference_moves = true;
+    flock.velocities = places(150, || uniform(&mut rng, -2.0, -1.0));
+    assert!(flock.components(8.4) > 1 && flock.deviation(8.4) > 0.05);
+    for _ in 0..500 {
+        flock.step(0.03);
+    }
+    assert_eq!(flock.components(8.4), 1);
+    assert!(flock.deviation(8.4) < 0.005, "E~ {}", flock.deviation(8.4));
+    assert!(flock.mismatch() < 0.001, "K~ {}", flock.mismatch());
+}
