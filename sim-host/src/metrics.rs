@@ -3,6 +3,8 @@
 //! Source: KUZ section 6. All sums run over robots in the order of their numbers, on one thread, so
 //! that every figure is the same on any machine. Distances are Euclidean, between cells.
 
+pub mod flock;
+
 use crate::scenario::Formation;
 use crate::terrain::Terrain;
 use crate::world::Body;

@@ -1,6 +1,7 @@
 //! Pictures as SVG and PNG, on machines without fonts or displays.
 //!
-//! [`Chart`] and [`Panels`] draw data; [`run_pictures`] draws what happened in a run. Both make a
+//! [`Chart`] and [`Panels`] draw data; [`run_pictures`] draws what happened in a run; [`flock`] draws robots in the plane at
+//! some moments. All make a
 //! [`canvas::Canvas`], a list of shapes, which is written once as SVG and once, through
 //! `tiny-skia` and letters that are compiled in, as PNG. Drawing asks for no clock and no
 //! randomness: the same data give the same bytes.
@@ -9,6 +10,7 @@ pub mod canvas;
 pub mod chart;
 pub mod colour;
 mod crowd;
+pub mod flock;
 mod font;
 mod layout;
 mod map;

@@ -1,6 +1,7 @@
 //! Charts, pictures of runs, and files as their readers see them.
 
 mod charts;
+mod flocks;
 mod runs;
 mod ticks;
 

@@ -1,0 +1,282 @@
+//! How much of a flock a crowd is, whatever made it: connected, in one place, evenly spaced, of one
+//! velocity; and whether anybody touched anybody.
+//!
+//! Source: OLF (R. Olfati-Saber 2006) sections II.B and IX, in the plane or in space. Polarisation is that of PAV's
+//! and STA's field. All sums run in the order of the robots, on one thread: the same figures on any machine.
+//!
+//! [`FlockMeter::look`] measures a moment, [`alpha_flocking`] judges a trace of such moments, [`Gaps`] tells
+//! overlaps.
+
+mod gaps;
+#[cfg(test)]
+mod tests;
+
+pub use gaps::{Gaps, Obstacle, gaps};
+
+use crate::nearby::{Cells, Found, Query, Search as _, Space};
+use serde::Serialize;
+
+/// A crowd at one moment.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct FlockMeasure {
+    /// Robots.
+    pub robots: usize,
+    /// Pairs within range of each other.
+    pub edges: usize,
+    /// Connected parts of the proximity graph.
+    pub components: usize,
+    /// Robots in the largest of them.
+    pub largest_component: usize,
+    /// C, relative connectivity: rank of the graph's Laplacian over n - 1, which is (n - components) / (n - 1). 1 for a single robot.
+    pub connectivity: f64,
+    /// R, largest distance from the centroid, metres.
+    pub radius_m: f64,
+    /// E / d^2, how far edges are from the wanted length: E = sum over ordered pairs of (length - d)^2, over their
+    /// number plus 1.
+    pub deviation_energy: f64,
+    /// K / n, (m/s)^2: half the squared velocities relative to their mean, per robot.
+    pub velocity_mismatch: f64,
+    /// Group order: length of the mean of the velocities' directions, 0 to 1. Robots that stand have none and do not count; 0 when all stand.
+    pub polarisation: f64,
+}
+
+/// Measures crowds; keeps its buffers between moments.
+#[derive(Clone, Debug)]
+pub struct FlockMeter<const D: usize> {
+    spacing_m: f64,
+    range_m: f64,
+    cells: Cells<f64, D>,
+    found: Vec<Found<f64, D>>,
+    edges: Vec<(u32, u32)>,
+    parents: Vec<u32>,
+}
+
+impl<const D: usize> FlockMeter<D> {
+    /// A meter for flocks of spacing d whose robots are neighbours up to `range_m` (r, for OLF (1 + e0) d).
+    /// Distances in `space`; on a torus, R and the centroid have no meaning and are those of the folded places.
+    #[must_use]
+    pub fn new(spacing_m: f64, range_m: f64, space: Space<f64, D>) -> Self {
+        Self {
+            spacing_m,
+            range_m,
+            cells: Cells::new(space, range_m),
+            found: Vec::new(),
+            edges: Vec::new(),
+            parents: Vec::new(),
+        }
+    }
+
+    /// Measures robots at these places, metres, with these velocities, m/s. `None` when there are none or
+    /// something is not finite. O(n + edges) where robots are not much denser than the range.
+    ///
+    /// # Panics
+    /// When there are not as many velocities as places.
+    pub fn look(
+        &mut self,
+        places_m: &[[f64; D]],
+        velocities_mps: &[[f64; D]],
+    ) -> Option<FlockMeasure> {
+        assert_eq!(places_m.len(), velocities_mps.len(), "one velocity a robot");
+        let is_sound = |vectors: &[[f64; D]]| vectors.iter().flatten().all(|c| c.is_finite());
+        if places_m.is_empty() || !is_sound(places_m) || !is_sound(velocities_mps) {
+            return None;
+        }
+        let robots = places_m.len();
+        let energy = self.link(places_m);
+        let (components, largest_component) = self.components(robots);
+        let edges = self.edges.len();
+        let centre = mean(places_m);
+        let radius_m = places_m
+            .iter()
+            .map(|&place| length(minus(place, centre)))
+            .fold(0.0, f64::max);
+        let drift = mean(velocities_mps);
+        let kinetic: f64 = velocities_mps
+            .iter()
+            .map(|&velocity| squared(minus(velocity, drift)) / 2.0)
+            .sum();
+        Some(FlockMeasure {
+            robots,
+            edges,
+            components,
+            largest_component,
+            connectivity: if robots > 1 {
+                (robots - components) as f64 / (robots - 1) as f64
+            } else {
+                1.0
+            },
+            radius_m,
+            // Each pair is two ordered ones.
+            deviation_energy: 2.0 * energy
+                / (2 * edges + 1) as f64
+                / (self.spacing_m * self.spacing_m),
+            velocity_mismatch: kinetic / robots as f64,
+            polarisation: polarisation(velocities_mps),
+        })
+    }
+
+    /// Pairs of robots (by place in the slice, the smaller first) that were neighbours when they were looked at last,
+    /// in ascending order of their first.
+    #[must_use]
+    pub fn edges(&self) -> &[(u32, u32)] {
+        &self.edges
+    }
+
+    /// Finds the edges and joins their ends; the sum of (length - d)^2 over them.
+    fn link(&mut self, places_m: &[[f64; D]]) -> f64 {
+        self.cells.rebuild(places_m);
+        self.edges.clear();
+        self.parents.clear();
+        self.parents.extend(0..places_m.len() as u32);
+        let mut energy = 0.0;
+        for (robot, &at) in (0..).zip(places_m) {
+            let query = Query {
+                at,
+                radius: self.range_m,
+                most: usize::MAX,
+                except: Some(robot),
+            };
+            self.cells.within(&query, &mut self.found);
+            for other in self.found.iter().filter(|other| other.index > robot) {
+                let off = other.distance_squared.sqrt() - self.spacing_m;
+                energy += off * off;
+                self.edges.push((robot, other.index));
+                let (a, b) = (
+                    root(&mut self.parents, robot),
+                    root(&mut self.parents, other.index),
+                );
+                self.parents[a.max(b) as usize] = a.min(b);
+            }
+        }
+        energy
+    }
+
+    /// How many components there are, and the size of the largest.
+    fn components(&mut self, robots: usize) -> (usize, usize) {
+        let mut sizes = vec![0_usize; robots];
+        for robot in 0..robots as u32 {
+            sizes[root(&mut self.parents, robot) as usize] += 1;
+        }
+        let components = sizes.iter().filter(|size| **size > 0).count();
+        (components, sizes.into_iter().max().unwrap_or(0))
+    }
+}
+
+/// The least robot of the component, halving the way there.
+fn root(parents: &mut [u32], mut robot: u32) -> u32 {
+    while parents[robot as usize] != robot {
+        parents[robot as usize] = parents[parents[robot as usize] as usize];
+        robot = parents[robot as usize];
+    }
+    robot
+}
+
+/// Length of the mean of the velocities' directions, 0 to 1; those of length 0 do not count, 0 when all are.
+#[must_use]
+pub fn polarisation<const D: usize>(velocities_mps: &[[f64; D]]) -> f64 {
+    let directions: Vec<[f64; D]> = velocities_mps
+        .iter()
+        .map(|&velocity| (velocity, length(velocity)))
+        .filter(|(_, length)| *length > 0.0)
+        .map(|(velocity, length)| velocity.map(|c| c / length))
+        .collect();
+    if directions.is_empty() {
+        0.0
+    } else {
+        length(mean(&directions))
+    }
+}
+
+/// What alpha-flocking asks for (OLF definition 4), and how far "few" and "bounded" go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AlphaLimits {
+    /// Largest E / d^2 (e1).
+    pub deviation_energy: f64,
+    /// Largest K / n (e2).
+    pub velocity_mismatch: f64,
+    /// Share of the robots that the largest component of a quasi-flock holds at least. The paper
+    /// says "highly populated".
+    pub quasi_flock_share: f64,
+    /// Largest R of a cohesive group, metres. The paper asks that there is one, which every trace that ends has.
+    pub cohesion_radius_m: f64,
+}
+
+impl AlphaLimits {
+    /// e1 = 0.005 and e2 = 0.001 (OLF figure 12), nine tenths in one component, all within `cohesion_radius_m`.
+    #[must_use]
+    pub const fn paper(cohesion_radius_m: f64) -> Self {
+        Self {
+            deviation_energy: 0.005,
+            velocity_mismatch: 0.001,
+            quasi_flock_share: 0.9,
+            cohesion_radius_m,
+        }
+    }
+}
+
+/// From which moment of a trace on each condition holds until its end; `None`: it does not hold at the end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct AlphaVerdict {
+    /// The largest component is large enough.
+    pub quasi_flock: Option<usize>,
+    /// All robots are near their centroid.
+    pub cohesive: Option<usize>,
+    /// E is small.
+    pub evenly_spaced: Option<usize>,
+    /// K is small.
+    pub of_one_velocity: Option<usize>,
+    /// All four: alpha-flocking.
+    pub alpha_flocking: Option<usize>,
+    /// The graph is connected, E and K are small: strict alpha-flocking.
+    pub strict: Option<usize>,
+}
+
+/// Judges a trace. The graphs must have been measured with r = (1 + e0) d. A moment without a measure meets no condition.
+#[must_use]
+pub fn alpha_flocking(trace: &[Option<FlockMeasure>], limits: &AlphaLimits) -> AlphaVerdict {
+    let from = |holds: &dyn Fn(&FlockMeasure) -> bool| {
+        let is_broken = |moment: &Option<FlockMeasure>| !moment.as_ref().is_some_and(holds);
+        let first = trace.iter().rposition(is_broken).map_or(0, |last| last + 1);
+        (first < trace.len()).then_some(first)
+    };
+    let is_quasi =
+        |m: &FlockMeasure| m.largest_component as f64 >= limits.quasi_flock_share * m.robots as f64;
+    let is_cohesive = |m: &FlockMeasure| m.radius_m <= limits.cohesion_radius_m;
+    let is_even = |m: &FlockMeasure| m.deviation_energy <= limits.deviation_energy;
+    let is_still = |m: &FlockMeasure| m.velocity_mismatch <= limits.velocity_mismatch;
+    AlphaVerdict {
+        quasi_flock: from(&is_quasi),
+        cohesive: from(&is_cohesive),
+        evenly_spaced: from(&is_even),
+        of_one_velocity: from(&is_still),
+        alpha_flocking: from(&|m| is_quasi(m) && is_cohesive(m) && is_even(m) && is_still(m)),
+        strict: from(&|m| m.components == 1 && is_even(m) && is_still(m)),
+    }
+}
+
+fn minus<const D: usize>(a: [f64; D], b: [f64; D]) -> [f64; D] {
+    std::array::from_fn(|axis| a[axis] - b[axis])
+}
+
+fn dot<const D: usize>(a: [f64; D], b: [f64; D]) -> f64 {
+    (0..D).map(|axis| a[axis] * b[axis]).sum()
+}
+
+fn squared<const D: usize>(a: [f64; D]) -> f64 {
+    dot(a, a)
+}
+
+fn length<const D: usize>(a: [f64; D]) -> f64 {
+    squared(a).sqrt()
+}
+
+/// The mean of one vector or more.
+fn mean<const D: usize>(vectors: &[[f64; D]]) -> [f64; D] {
+    let mut sum = [0.0; D];
+    for vector in vectors {
+        for axis in 0..D {
+            sum[axis] += vector[axis];
+        }
+    }
+    sum.map(|c| c / vectors.len() as f64)
+}
