@@ -10,7 +10,7 @@
 //! numbers and geometry ([`scalar`], [`geom`], [`time`], [`rand`], [`grid`], [`cost`], [`shuffle`],
 //! [`obstacle`])
 //! < what is known of others and of oneself ([`wire`], [`neighbor`], [`body`])
-//! < behaviours ([`route`], [`formation`], [`orca`], [`flock`]; they never import each other)
+//! < behaviours ([`route`], [`formation`], [`orca`], [`flock`], [`push_out`]; they never import each other)
 //! < composition ([`supervisor`], [`agent`]).
 #![no_std]
 // What may panic has no place on a robot (see Cargo.toml); tests may.
@@ -40,6 +40,7 @@ pub mod grid;
 pub mod neighbor;
 pub mod obstacle;
 pub mod orca;
+pub mod push_out;
 pub mod rand;
 pub mod route;
 pub mod scalar;

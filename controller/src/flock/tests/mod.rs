@@ -1,6 +1,7 @@
 mod boids;
 mod goal;
 mod lattice;
+mod lattice_properties;
 mod simulation;
 
 use crate::body::Body;

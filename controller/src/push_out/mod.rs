@@ -1,0 +1,236 @@
+//! Push-out: a step that would end too near to something is pushed out, or turned aside.
+//!
+//! Source: V. E. Pavlovsky, V. V. Pavlovsky, "Mathematical model of a two-dimensional homogeneous flock of robots",
+//! section 3 (the second stage of a motion). Read [`push_out`], then [`zone`] for what one obstacle does.
+//!
+//! It is quick and simple, and a robot that is alone with obstacles never comes too near. Among robots it promises
+//! less than reciprocal avoidance: each sees where the others are and not where they are going, so two that
+//! close in may come as near as one step of the other below the least distance, and crowds may block each other.
+//!
+//! **What differs from the paper:**
+//! - Robots and obstacles have bodies: the least distance is at least the sum of two radii, from an obstacle the own radius.
+//! - The whole step counts and not only its end, so that no fast robot jumps through a small obstacle. Model 1 pushes out
+//!   the deepest point of the step, but not to where the border is hidden behind itself.
+//! - The paper steps sideways when position, new position and centre are on one line; here also when they
+//!   nearly are, since a push back along the line leaves nothing of the step there either.
+//! - Robots that are too near already are pushed out no faster than they can go. Those in one place go apart by
+//!   [`tie`](crate::neighbor::tie).
+//! - How several are evaded at once is lost with the paper's figure 8; see [`Evasion::Multiple`].
+//! - Walls and half-spaces, and all in space; in the plane z stays 0.
+
+pub mod zone;
+
+#[cfg(test)]
+mod tests;
+
+use crate::body::Body;
+use crate::geom::Vec3;
+use crate::neighbor::Nearby;
+use crate::obstacle::Obstacle;
+use crate::scalar::Scalar;
+use zone::{Side, Zone};
+
+/// What becomes of a step that leads too near.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Model {
+    /// Model 1: it ends where the radius through it leaves the zone; straight at the centre: sideways, as
+    /// long. It slides along and slows down there.
+    #[default]
+    Radial,
+    /// Model 2: it keeps its length and is turned by the smaller angle to the border of the zone. It keeps
+    /// its speed.
+    Tangential,
+}
+
+/// How many robots are evaded at once. Obstacles all are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Evasion {
+    /// The nearest of those in the way only: the evading step may lead too near to another one.
+    Single,
+    /// All. Of the evading steps around each, to either side, it is the one nearest to the wish that is clear
+    /// of all. If there is none the robot stands.
+    #[default]
+    Multiple,
+}
+
+/// Parameters of push-out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PushOutParams<S> {
+    /// What becomes of a step that leads too near.
+    pub model: Model,
+    /// How many robots are evaded at once.
+    pub evasion: Evasion,
+    /// Least distance (R_MinDist) of two robots' centres, and of a centre from an obstacle's border, metres; more
+    /// than 0. Never less than bodies need. A step's length more keeps robots apart that both
+    /// move.
+    pub min_distance_m: S,
+}
+
+impl<S: Scalar> PushOutParams<S> {
+    /// Model 1 for all who are in the way.
+    #[must_use]
+    pub fn new(min_distance_m: S) -> Self {
+        Self {
+            model: Model::Radial,
+            evasion: Evasion::Multiple,
+            min_distance_m,
+        }
+    }
+}
+
+/// How deep a step may lead into a zone without being in the way, millimetres: places are not known better.
+const TOLERANCE_MM: i32 = 1;
+
+/// The velocity nearest to `wish_mps` by the rules of the model, m/s, for the next [`Body::step_s`].
+///
+/// A step that is in nobody's way is the wish, cut to the body's speed. If all evading steps lead too near to
+/// something the robot stands; if it is too near already, it takes the one that is least so.
+///
+/// `nearby` need not be in order. What is not a number counts as absent (wish: as zero); the answer is finite
+/// and not faster than the body. Zero when the time step or the least distance is not above 0. Does not look at the
+/// body's acceleration.
+///
+/// O(n) when nothing is in the way, else O(n^2), with model 1 of those in the way times all; n = `nearby` + `obstacles`.
+#[must_use]
+pub fn push_out<S: Scalar>(
+    params: &PushOutParams<S>,
+    body: &Body<S>,
+    wish_mps: Vec3<S>,
+    nearby: &[Nearby<S>],
+    obstacles: &[Obstacle<S>],
+) -> Vec3<S> {
+    let is_sound = params.min_distance_m > S::ZERO
+        && params.min_distance_m.is_finite()
+        && body.step_s > S::ZERO;
+    let wish = wish_mps.clamp_norm(body.max_speed_mps);
+    let step = wish * body.step_s;
+    if !is_sound || !step.is_finite() {
+        return Vec3::ZERO;
+    }
+    let mut scene = Scene {
+        params,
+        body,
+        nearby,
+        obstacles,
+    };
+    if scene.depth(step) <= S::ZERO {
+        return wish;
+    }
+    if params.evasion == Evasion::Single {
+        scene.nearby = scene.nearest_in_the_way(step);
+    }
+    let evading = scene.evade(step);
+    let rate = |metres: S| metres.checked_div(body.step_s).unwrap_or(S::ZERO);
+    Vec3::new(rate(evading.x), rate(evading.y), rate(evading.z)).clamp_norm(body.max_speed_mps)
+}
+
+/// All that a step may lead too near to.
+struct Scene<'a, S> {
+    params: &'a PushOutParams<S>,
+    body: &'a Body<S>,
+    nearby: &'a [Nearby<S>],
+    obstacles: &'a [Obstacle<S>],
+}
+
+impl<'a, S: Scalar> Scene<'a, S> {
+    fn zones(&self, step: Vec3<S>) -> impl Iterator<Item = Zone<S>> + use<'a, S> {
+        let (body, least) = (self.body, self.params.min_distance_m);
+        let obstacles = self.obstacles.iter();
+        let obstacles = obstacles.filter_map(move |o| Zone::of_obstacle(o, body, least, step));
+        let robots = self.nearby.iter();
+        obstacles.chain(robots.filter_map(move |other| Zone::of_robot(other, body, least)))
+    }
+
+    /// How deep the step leads into a zone, beyond the tolerance; 0 if it does not.
+    fn depth(&self, step: Vec3<S>) -> S {
+        let depths = self.zones(step).map(|zone| zone.depth(step));
+        let deepest = depths.fold(S::ZERO, S::max);
+        if deepest > S::from_milli(TOLERANCE_MM) {
+            deepest
+        } else {
+            S::ZERO
+        }
+    }
+
+    /// The nearest robot that the step leads too near to, alone; nobody if there is none. Ties by number.
+    fn nearest_in_the_way(&self, step: Vec3<S>) -> &'a [Nearby<S>] {
+        let tolerance = S::from_milli(TOLERANCE_MM);
+        let in_the_way = self.nearby.chunks(1).filter(|one| {
+            let zone = one
+                .first()
+                .and_then(|other| Zone::of_robot(other, self.body, self.params.min_distance_m));
+            zone.is_some_and(|zone| zone.depth(step) > tolerance)
+        });
+        let key = |one: &&[Nearby<S>]| {
+            one.first()
+                .map(|other| (other.offset_m.length_key(), other.id))
+        };
+        in_the_way.min_by_key(key).unwrap_or(&[])
+    }
+
+    /// The evading step.
+    fn evade(&self, step: Vec3<S>) -> Vec3<S> {
+        let model = self.params.model;
+        let longest = self.body.max_speed_mps * self.body.step_s;
+        let mut best = Best {
+            // Standing, for want of anything better.
+            depth: self.depth(Vec3::ZERO),
+            change: u64::MAX,
+            step: Vec3::ZERO,
+        };
+        for zone in self.zones(step) {
+            // Model 1 pushes out of what the step leads into; model 2 may pass between two, along the border of
+            // one that is not in the way.
+            let matters = match model {
+                Model::Radial => zone.depth(step) > S::ZERO,
+                Model::Tangential => zone.depth(Vec3::ZERO) > -longest,
+            };
+            if !matters {
+                continue;
+            }
+            for side in zone::SIDES {
+                let Some(evading) = zone.evade(step, model, side) else {
+                    continue;
+                };
+                let evading = evading.clamp_norm(longest);
+                best.consider(evading, self.depth(evading), step);
+                if model == Model::Radial
+                    && let Some(other) = self.deepest_zone(evading)
+                    && let Some(again) = other.evade(evading, model, Side::Rule)
+                {
+                    // Pushed out of one and into another one: out of that too.
+                    let again = again.clamp_norm(longest);
+                    best.consider(again, self.depth(again), step);
+                }
+            }
+        }
+        best.step
+    }
+
+    /// What the step leads into deepest, if into anything.
+    fn deepest_zone(&self, step: Vec3<S>) -> Option<Zone<S>> {
+        let depths = self.zones(step).map(|zone| (zone.depth(step), zone));
+        let (depth, zone) = depths.max_by(|one, other| one.0.order(other.0))?;
+        (depth > S::from_milli(TOLERANCE_MM)).then_some(zone)
+    }
+}
+
+/// The best evading step so far: the least deep one, then the one nearest to the wish, then the first.
+struct Best<S> {
+    depth: S,
+    change: u64,
+    step: Vec3<S>,
+}
+
+impl<S: Scalar> Best<S> {
+    fn consider(&mut self, evading: Vec3<S>, depth: S, wish: Vec3<S>) {
+        let change = (evading - wish).length_key();
+        if depth < self.depth || (depth == self.depth && change < self.change) {
+            *self = Self {
+                depth,
+                change,
+                step: evading,
+            };
+        }
+    }
+}

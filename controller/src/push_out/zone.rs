@@ -1,0 +1,306 @@
+//! What one robot or obstacle keeps free around itself, and the steps around it.
+
+use super::{Model, TOLERANCE_MM};
+use crate::body::Body;
+use crate::geom::{Vec2, Vec3};
+use crate::neighbor::{Nearby, tie};
+use crate::obstacle::Obstacle;
+use crate::scalar::Scalar;
+
+/// Which way around.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// By the rule of the model: where the step goes already.
+    Rule,
+    /// The other way around: the larger angle, or sideways to the left.
+    Left,
+    /// Sideways to the right; model 1 only.
+    Right,
+}
+
+/// In the order in which they are tried.
+pub const SIDES: [Side; 3] = [Side::Rule, Side::Left, Side::Right];
+
+/// Shape of a zone, relative to the robot's centre, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Shape<S> {
+    /// Around a robot, a ball or the end of a wall.
+    Ball {
+        center: Vec3<S>,
+        radius: S,
+        /// Unit vector: the way out of the very centre.
+        otherwise: Vec3<S>,
+    },
+    /// Behind a plane: a half-space or the side of a wall.
+    Half {
+        normal: Vec3<S>,
+        /// How far the robot is in front of it.
+        room: S,
+    },
+}
+
+/// A place that a robot's centre should not come into.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Zone<S> {
+    shape: Shape<S>,
+    /// Of all heights, as walls are: only the horizontal part of a step matters.
+    is_upright: bool,
+}
+
+impl<S: Scalar> Zone<S> {
+    /// Around another robot: `min_distance_m`, at least both radii. `None` for oneself and when its place is not known.
+    #[must_use]
+    pub fn of_robot(other: &Nearby<S>, body: &Body<S>, min_distance_m: S) -> Option<Self> {
+        let radii = body.radius_m + other.radius_m;
+        let is_sound = other.offset_m.is_finite() && other.id != body.id;
+        is_sound.then(|| Self {
+            shape: Shape::Ball {
+                center: other.offset_m,
+                radius: at_least(min_distance_m, radii),
+                otherwise: tie(body.id, other.id).extend(S::ZERO),
+            },
+            is_upright: false,
+        })
+    }
+
+    /// Around what is nearest of an obstacle to `step`: `min_distance_m` from its border, at least the own radius.
+    /// `None` when it is not finite.
+    #[must_use]
+    pub fn of_obstacle(
+        obstacle: &Obstacle<S>,
+        body: &Body<S>,
+        min_distance_m: S,
+        step: Vec3<S>,
+    ) -> Option<Self> {
+        let margin = at_least(min_distance_m, body.radius_m);
+        let east = Vec3::new(S::ONE, S::ZERO, S::ZERO);
+        let (shape, is_upright) = match *obstacle {
+            Obstacle::Ball { center_m, radius_m } => {
+                let is_sound = center_m.is_finite() && radius_m >= S::ZERO && radius_m.is_finite();
+                let shape = Shape::Ball {
+                    center: center_m,
+                    radius: radius_m + margin,
+                    // Back where it came from.
+                    otherwise: (-body.velocity_mps).normalized().unwrap_or(east),
+                };
+                (is_sound.then_some(shape)?, false)
+            }
+            Obstacle::Plane { normal, distance_m } => {
+                let shape = Shape::Half {
+                    normal: normal.normalized()?,
+                    room: distance_m - margin,
+                };
+                (distance_m.is_finite().then_some(shape)?, false)
+            }
+            Obstacle::Wall(ends) => (wall(ends, margin, step.xy())?, true),
+        };
+        Some(Self { shape, is_upright })
+    }
+
+    /// How deep `step` leads into the zone, metres; not above 0 when it does not.
+    ///
+    /// Where the robot is too near already, what counts is the end of a step that leads out, and the deepest
+    /// point of one that leads in.
+    #[must_use]
+    pub fn depth(&self, step: Vec3<S>) -> S {
+        let step = self.part(step);
+        match self.shape {
+            Shape::Half { normal, room } => -(room + step.dot(normal)),
+            Shape::Ball { center, radius, .. } => {
+                radius - (center - deepest(center, radius, step)).norm()
+            }
+        }
+    }
+
+    /// The step around the zone; `None` when the model has none on that side.
+    #[must_use]
+    pub fn evade(&self, step: Vec3<S>, model: Model, side: Side) -> Option<Vec3<S>> {
+        let part = self.part(step);
+        let evading = match (model, self.shape) {
+            (Model::Radial, _) if side == Side::Left => Some(sideways(part)),
+            (Model::Radial, _) if side == Side::Right => Some(-sideways(part)),
+            (Model::Radial, shape) => Some(push_radially(shape, part)),
+            (Model::Tangential, _) if side == Side::Right => None,
+            (Model::Tangential, shape) => turn(shape, part, side == Side::Rule),
+        };
+        evading.map(|evading| evading + (step - part))
+    }
+
+    /// The part of a step that matters.
+    fn part(&self, step: Vec3<S>) -> Vec3<S> {
+        if self.is_upright {
+            step.xy().extend(S::ZERO)
+        } else {
+            step
+        }
+    }
+}
+
+/// `distance`, or what bodies need if that is more and known.
+fn at_least<S: Scalar>(distance: S, bodies: S) -> S {
+    if bodies > distance && bodies.is_finite() {
+        bodies
+    } else {
+        distance
+    }
+}
+
+/// A wall is a half-space beside it and a post at its ends: whichever the step comes nearest to.
+fn wall<S: Scalar>([a, b]: [Vec2<S>; 2], margin: S, step: Vec2<S>) -> Option<Shape<S>> {
+    let is_sound = a.is_finite() && b.is_finite();
+    if !is_sound {
+        return None;
+    }
+    let east = Vec2::new(S::ONE, S::ZERO);
+    let along = (b - a).normalized().unwrap_or(east);
+    // Out of the wall on the robot's side; from on the wall to its left.
+    let left = along.perp();
+    let normal = if a.dot(left) > S::ZERO { -left } else { left };
+    let room = (-a).dot(normal);
+    let after = room + step.dot(normal);
+    // Where the step ends, or where it crosses the wall's line.
+    let part = if after < S::ZERO {
+        room.checked_div(room - after).unwrap_or(S::ZERO)
+    } else {
+        S::ONE
+    };
+    let at = (step * part - a).dot(along);
+    if at >= S::ZERO && at <= (b - a).norm() {
+        return Some(Shape::Half {
+            normal: normal.extend(S::ZERO),
+            room: room - margin,
+        });
+    }
+    let end = if at < S::ZERO { a } else { b };
+    Some(Shape::Ball {
+        center: end.extend(S::ZERO),
+        radius: margin,
+        otherwise: normal.extend(S::ZERO),
+    })
+}
+
+/// The point of the step that counts for a ball: the nearest to the centre, or the end when the robot is inside already and
+/// does not go deeper.
+fn deepest<S: Scalar>(center: Vec3<S>, radius: S, step: Vec3<S>) -> Vec3<S> {
+    let Some(direction) = step.normalized() else {
+        return Vec3::ZERO;
+    };
+    let along = center.dot(direction).clamp(S::ZERO, step.norm());
+    let goes_deeper = along > S::ZERO;
+    if !goes_deeper && center.norm() < radius {
+        step
+    } else {
+        direction * along
+    }
+}
+
+/// A step of the same length to the left in the plane; east for one that goes straight up or down.
+fn sideways<S: Scalar>(step: Vec3<S>) -> Vec3<S> {
+    let left = step.xy().perp().normalized();
+    let left = left.unwrap_or(Vec2::new(S::ONE, S::ZERO));
+    left.extend(S::ZERO) * step.norm()
+}
+
+/// Whether a step with this part across is straight, within half a degree.
+fn is_straight<S: Scalar>(across: Vec3<S>, step: Vec3<S>) -> bool {
+    across.norm() <= step.norm() * S::from_ratio(1, 100)
+}
+
+/// Model 1.
+fn push_radially<S: Scalar>(shape: Shape<S>, step: Vec3<S>) -> Vec3<S> {
+    // On the border counts as outside.
+    let inside = -S::from_milli(TOLERANCE_MM);
+    match shape {
+        Shape::Half { normal, room } => {
+            let inwards = step.dot(normal);
+            let is_straight = is_straight(step - normal * inwards, step);
+            if inwards < S::ZERO && is_straight && room >= inside {
+                return sideways(step);
+            }
+            step - normal * (room + inwards)
+        }
+        Shape::Ball {
+            center,
+            radius,
+            otherwise,
+        } => {
+            let Some(ahead) = center.normalized() else {
+                return otherwise * radius;
+            };
+            let distance = center.norm();
+            let inwards = step.dot(ahead);
+            if distance - radius < inside {
+                // Already inside: no detour.
+                let point = if inwards > S::ZERO { Vec3::ZERO } else { step };
+                let away = (point - center).normalized().unwrap_or(-ahead);
+                return center + away * radius;
+            }
+            if inwards > S::ZERO && is_straight(step - ahead * inwards, step) {
+                return sideways(step);
+            }
+            let point = deepest(center, radius, step) - center;
+            let away = point.normalized().unwrap_or(-ahead);
+            // The border beyond the tangent point is not reached in a straight line: not farther than that.
+            let horizon = radius.checked_div(distance).unwrap_or(S::ONE);
+            if -away.dot(ahead) < horizon {
+                let reach = ((distance - radius) * (distance + radius)).sqrt();
+                let direction = step.normalized().unwrap_or(ahead);
+                if let Some(tangent) = turn(shape, direction * reach, true) {
+                    return tangent;
+                }
+            }
+            center + away * radius
+        }
+    }
+}
+
+/// Model 2: to the border at the same length, by the smaller angle or on the other side; `None` for no step.
+fn turn<S: Scalar>(shape: Shape<S>, step: Vec3<S>, is_smaller: bool) -> Option<Vec3<S>> {
+    let direction = step.normalized()?;
+    let length = step.norm();
+    // The part of the new step along `axis`, and the axis.
+    let (axis, along) = match shape {
+        Shape::Half { normal, room } => (normal, (-room).clamp(-length, length)),
+        Shape::Ball {
+            center,
+            radius,
+            otherwise,
+        } => {
+            let axis = center.normalized().unwrap_or(-otherwise);
+            (axis, length * cosine(center.norm(), radius, length))
+        }
+    };
+    let across = direction - axis * direction.dot(axis);
+    let across = if is_straight(across, direction) {
+        // Straight at it: to the left.
+        sideways(direction)
+    } else {
+        across.normalized()?
+    };
+    // What the rounding of a nearly straight step leaves along the axis would lead in.
+    let across = (across - axis * across.dot(axis)).normalized()?;
+    let width = ((length - along) * (length + along)).sqrt();
+    let width = if is_smaller { width } else { -width };
+    Some(axis * along + across * width)
+}
+
+/// Cosine of the angle between the centre of a ball at `distance` and a step of `length` that ends on its border, or
+/// touches it on its way.
+fn cosine<S: Scalar>(distance: S, radius: S, length: S) -> S {
+    let gap = distance - radius;
+    let sum = distance + radius;
+    let over = |x: S| x.checked_div(distance);
+    if gap >= S::ZERO && length * length >= gap * sum {
+        // The border is nearer than the end: the tangent.
+        let squared = over(gap).zip(over(sum)).map(|(a, b)| a * b);
+        return squared.unwrap_or(S::ZERO).sqrt();
+    }
+    // (s^2 + D^2 - R^2) / (2 s D), in factors that do not overflow.
+    let terms = || {
+        let near = over(length)? * S::HALF;
+        let far = gap.checked_div(length)? * over(sum)? * S::HALF;
+        Some(near + far)
+    };
+    // Far inside: straight out.
+    terms().map_or(-S::ONE, |cos| cos.clamp(-S::ONE, S::ONE))
+}
