@@ -301,6 +301,54 @@ fn robots_draw_equal_shares_and_draw_anew_after_a_restart() {
     assert!((1870..2130).contains(&changed), "{changed}");
 }
 
+#[test]
+fn a_flock_gathers_in_the_middle_and_parts_to_its_three_goals() {
+    const STEP_S: f64 = 0.1;
+    let params = GoalParams::<f64>::new(1.0, 1.0);
+    let mut all = Goals::<3>::new();
+    for mm in [[60_000, 0, 0], [60_000, 40_000, 0], [0, 40_000, 0]] {
+        all.push(Position::from_mm(mm)).unwrap();
+    }
+    let start = |i: i32| Position::from_mm([1_300 * (i % 7), 1_300 * (i / 7), 0]);
+    let mut robots: Vec<_> = (0..45).map(|i| (start(i), all.clone())).collect();
+    let mut nearest = f64::MAX;
+    for _ in 0..1500 {
+        let before = robots.clone();
+        for (i, (place, goals)) in robots.iter_mut().enumerate() {
+            let robot = RobotId(i as u32 + 1);
+            goals.update(*place, params.neighborhood_m, 1, robot);
+            let own = Body {
+                id: robot,
+                step_s: STEP_S,
+                ..body([0.0; 3])
+            };
+            let others = before.iter().zip(1..).filter(|(_, id)| *id != robot.0);
+            let nearby: Vec<_> = others
+                .map(|((other, _), id)| {
+                    let offset: V = other.since(*place);
+                    nearest = nearest.min(offset.norm());
+                    near(id, [offset.x, offset.y, 0.0], [0.0; 3])
+                })
+                .collect();
+            let wished = wish(&params, &own, *place, goals.current(), &nearby);
+            *place = place.moved(wished * STEP_S).unwrap();
+        }
+    }
+    let mut shares = [0; 3];
+    for (place, goals) in &robots {
+        let Stage::Goal(index) = goals.stage() else {
+            panic!("{place:?} never came to the middle");
+        };
+        shares[index] += 1;
+        assert!(
+            goals.has_arrived(*place, params.neighborhood_m),
+            "{place:?}"
+        );
+    }
+    assert!(shares.iter().all(|share| *share > 5), "{shares:?}");
+    assert!(nearest > 0.2, "least distance {nearest}");
+}
+
 fn seen() -> impl Strategy<Value = Vec<[f64; 2]>> {
     proptest::collection::vec([-45.0..45.0_f64, -45.0..45.0_f64], 0..10)
 }
