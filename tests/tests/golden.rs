@@ -46,7 +46,7 @@ fn table(
         if !row.tick.is_multiple_of(every) && index != last {
             continue;
         }
-        let there = robots.iter().filter(|r| r.cell == r.target).count();
+        let there = robots.iter().filter(|r| r.motion.cell == r.target).count();
         write!(
             text,
             "{:5} {there:7} {:10} {:6.2} {:6.2} ",
@@ -54,7 +54,11 @@ fn table(
         )?;
         for robot in &robots[..robots.len().min(SHOWN)] {
             let mode = format!("{:?}", robot.mode).to_lowercase();
-            write!(text, " {:3},{:<3} {mode:<7}", robot.cell.x, robot.cell.y)?;
+            write!(
+                text,
+                " {:3},{:<3} {mode:<7}",
+                robot.motion.cell.x, robot.motion.cell.y
+            )?;
         }
         text.truncate(text.trim_end().len());
         text.push('\n');

@@ -7,7 +7,7 @@ use staya_controller::wire::{Mode, RobotId};
 /// Keeps these words apart from other uses of the generator.
 const START: u32 = 0x0048_0001;
 
-/// One robot's hash of everything it did: a chain of (tick, cell, free time, mode).
+/// One robot's hash of everything it did: a chain of its states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Chain(u64);
 
@@ -16,16 +16,22 @@ impl Chain {
         Self(Rng::keyed(0, START, robot.0, 0).next_u64())
     }
 
-    pub(super) const fn extend(&mut self, tick: u32, body: &Body, mode: Mode) {
-        let column = body.cell.x.cast_unsigned() as u64;
-        let row = body.cell.y.cast_unsigned() as u64;
-        let place = ((tick as u64) << 32) | (column << 16) | row;
-        // A run of 2^32 ticks ends below 2^39 units, so the mode has bits of its own.
-        let state = body.free_at ^ ((mode as u64) << 56);
-        // The generator's step is a bijection that mixes all bits.
-        self.0 = Rng::new(self.0 ^ place).next_u64();
-        self.0 = Rng::new(self.0 ^ state).next_u64();
+    pub(super) fn extend(&mut self, words: &[u64]) {
+        for word in words {
+            // The generator's step is a bijection that mixes all bits.
+            self.0 = Rng::new(self.0 ^ word).next_u64();
+        }
     }
+}
+
+/// The words of a body on the grid.
+pub(super) fn grid_words(tick: u32, body: &Body, mode: Mode) -> [u64; 2] {
+    let column = u64::from(body.cell.x.cast_unsigned());
+    let row = u64::from(body.cell.y.cast_unsigned());
+    let place = (u64::from(tick) << 32) | (column << 16) | row;
+    // A run of 2^32 ticks ends below 2^39 units, so the mode has bits of its own.
+    let state = body.free_at ^ ((mode as u64) << 56);
+    [place, state]
 }
 
 /// The hash of a swarm: a sum, so that the order of robots plays no part.
@@ -50,7 +56,7 @@ mod tests {
     fn chain(steps: &[(u32, Body, Mode)]) -> Chain {
         let mut chain = Chain::new(RobotId(1));
         for (tick, body, mode) in steps {
-            chain.extend(*tick, body, *mode);
+            chain.extend(&grid_words(*tick, body, *mode));
         }
         chain
     }

@@ -9,23 +9,25 @@
 //! [`simulate`] runs a whole scenario with the guidance that it asks for.
 
 mod body;
+mod grid;
+mod ground;
 mod hash;
 mod simulate;
 
+pub use grid::Grid;
+pub use ground::{Ground, Words};
 pub use simulate::{Moment, Outcome, simulate};
 
-use crate::metrics::{Arrivals, FormationMeter, Keeping};
+use crate::metrics::{Arrivals, Keeping};
 use crate::radio::Radio;
 use crate::record::{PacketCounts, RobotRow, TickRow};
 use crate::scenario::{Fault, Robot, Scenario};
-use crate::world::{Misplaced, World};
-use body::Kinematics;
 use hash::Chain;
 use rayon::prelude::*;
 use staya_controller::agent::{
-    Agent, AgentConfig, CellState, Command, Guidance, Inputs, NEIGHBORS, OUTBOX,
+    Agent, AgentConfig, Command, Guidance, Inputs, NEIGHBORS, OUTBOX, Safety,
 };
-use staya_controller::grid::{Cell, UNIT};
+use staya_controller::grid::Cell;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{Mode, RobotId};
 
@@ -34,8 +36,8 @@ const BATCH: usize = 64;
 
 /// A robot's computer.
 #[derive(Debug)]
-struct Computer<G> {
-    agent: Agent<f32, G, NEIGHBORS>,
+struct Computer<G, A> {
+    agent: Agent<f32, G, NEIGHBORS, A>,
     outbox: heapless::Vec<u8, OUTBOX>,
     /// Counts its starts.
     boot: u8,
@@ -47,82 +49,71 @@ struct Computer<G> {
 
 /// What the rest of the engine needs to know of a robot after its decision.
 #[derive(Clone, Copy, Debug)]
-struct Status {
-    mode: Mode,
-    leader: RobotId,
-    target: Cell,
+pub struct Status {
+    /// What it is doing.
+    pub mode: Mode,
+    /// Whom it follows.
+    pub leader: RobotId,
+    /// The cell that it heads for.
+    pub target: Cell,
 }
 
-/// A scenario in motion. `G` is the guidance of all its robots.
-pub struct Engine<G> {
+/// Makes the guidance and the safety layer of a robot by its number in [`Scenario::robots`].
+type Brains<G, A> = Box<dyn Fn(usize) -> (G, A) + Send + Sync>;
+
+/// A scenario in motion on ground `W`. `G` is the guidance of all its robots, `A` their safety layer.
+pub struct Engine<W, G, A> {
     seed: u64,
     tick_us: u32,
-    radius: u8,
     tick: u32,
     robots: Vec<Robot>,
     faults: Vec<Fault>,
-    guidance: Box<dyn Fn(usize) -> G + Send + Sync>,
-    world: World,
+    brains: Brains<G, A>,
+    ground: W,
     radio: Radio,
-    kinematics: Kinematics,
-    computers: Vec<Computer<G>>,
+    computers: Vec<Computer<G, A>>,
     commands: Vec<Command<f32>>,
     statuses: Vec<Status>,
     chains: Vec<Chain>,
     positions_m: Vec<[f64; 2]>,
-    meter: Option<FormationMeter>,
     arrivals: Arrivals,
     collisions: u64,
     packets: PacketCounts,
     throttled: u64,
 }
 
-impl<G> Engine<G>
+impl<W, G, A> Engine<W, G, A>
 where
+    W: Ground,
     G: Guidance<f32, Workspace: Default> + Send,
+    A: Safety<f32> + Send,
 {
-    /// The scenario before its first tick. `guidance(i)` makes the guidance of robot number `i` in
+    /// The scenario before its first tick, on `ground`. `brains(i)` makes guidance and safety layer of robot number `i` in
     /// [`Scenario::robots`], at its first start and at each restart.
-    ///
-    /// # Errors
-    /// When two robots start in one cell or one starts in a wall; a scenario that was read from a
-    /// file is known to have neither.
     pub fn new(
         scenario: &Scenario,
-        guidance: impl Fn(usize) -> G + Send + Sync + 'static,
-    ) -> Result<Self, Misplaced> {
+        ground: W,
+        brains: impl Fn(usize) -> (G, A) + Send + Sync + 'static,
+    ) -> Self {
         let robots = scenario.robots.clone();
-        let starts = robots.iter().map(|robot| (robot.id, robot.start));
-        let world = World::new(
-            scenario.terrain.clone(),
-            scenario.rules,
-            scenario.seed,
-            starts,
-        )?;
         let ids = robots.iter().map(|robot| robot.id);
-        let meter = scenario.formation.as_ref().map(|graph| {
-            FormationMeter::new(graph, scenario.formation_params.eps, world.terrain())
-        });
         let mut engine = Self {
             seed: scenario.seed,
             tick_us: scenario.tick_us,
-            radius: scenario.route.params.radius,
             tick: 0,
             faults: scenario.faults.clone(),
-            guidance: Box::new(guidance),
+            brains: Box::new(brains),
             radio: Radio::new(&scenario.radio, scenario.seed, scenario.tick_us, ids),
-            kinematics: Kinematics::new(world.terrain(), scenario.tick_s()),
+            ground,
             computers: Vec::new(),
             commands: vec![Command::Hold; robots.len()],
             statuses: Vec::new(),
             chains: robots.iter().map(|robot| Chain::new(robot.id)).collect(),
             positions_m: vec![[0.0; 2]; robots.len()],
-            meter,
             arrivals: Arrivals::new(robots.len()),
             collisions: 0,
             packets: PacketCounts::default(),
             throttled: 0,
-            world,
             robots,
         };
         engine.computers = (0..engine.robots.len())
@@ -134,19 +125,20 @@ where
             target: robot.goal,
         };
         engine.statuses = engine.robots.iter().map(waiting).collect();
-        Ok(engine)
+        engine
     }
 
     /// Computer number `index`, started now.
-    fn start(&self, index: usize, boot: u8) -> Computer<G> {
-        let robot = &self.robots[index];
+    fn start(&self, index: usize, boot: u8) -> Computer<G, A> {
         let tick = Duration::from_micros(i32::try_from(self.tick_us).unwrap_or(i32::MAX));
-        let config = AgentConfig {
+        let mut config = AgentConfig {
             boot,
-            ..AgentConfig::new(robot.id, self.seed, tick)
+            ..AgentConfig::new(self.robots[index].id, self.seed, tick)
         };
-        let mut agent = Agent::new(&config, (self.guidance)(index));
-        agent.assign_goal(robot.goal);
+        self.ground.configure(&mut config);
+        let (guidance, safety) = (self.brains)(index);
+        let mut agent = Agent::guarded(&config, guidance, safety);
+        self.ground.assign(index, self.tick, &mut agent);
         Computer {
             agent,
             outbox: heapless::Vec::new(),
@@ -174,11 +166,10 @@ where
         self.packets += packets;
         self.throttled += carried.throttled;
 
-        self.world.advance(self.tick, &self.commands);
-        self.collisions += self.world.count_collisions(self.tick);
+        self.ground.advance(self.tick, &self.commands);
+        self.collisions += self.ground.count_collisions(self.tick);
         self.observe();
-        let meter = self.meter.as_mut();
-        let keeping = meter.map(|meter| meter.measure(self.world.bodies()));
+        let keeping = self.ground.keeping(true);
         self.tick += 1;
         self.row(keeping, packets)
     }
@@ -206,10 +197,10 @@ where
 
     /// Phase one: everybody decides. Returns how many frames were refused.
     fn decide(&mut self) -> u64 {
-        let (tick, tick_us, radius) = (self.tick, self.tick_us, self.radius);
-        let (world, radio, kinematics) = (&self.world, &self.radio, &self.kinematics);
-        let now_units = u64::from(tick) * u64::from(UNIT);
-        let scratch = || (G::Workspace::default(), Vec::new());
+        let (tick, tick_us) = (self.tick, self.tick_us);
+        let (ground, radio) = (&self.ground, &self.radio);
+        let orders = ground.orders(tick);
+        let scratch = || (G::Workspace::default(), W::Scratch::default(), Vec::new());
         let work = (
             &mut self.computers,
             &mut self.commands,
@@ -221,10 +212,9 @@ where
             .with_min_len(BATCH)
             .map_init(
                 scratch,
-                |(workspace, cells), (index, (computer, command, status, position_m))| {
-                    let body = &world.bodies()[index];
-                    let pose = kinematics.pose(world, body, now_units);
-                    *position_m = pose.position_m;
+                |(workspace, senses, heard), (index, (computer, command, status, position_m))| {
+                    let [x, y, _] = ground.motion(index, tick).position_m;
+                    *position_m = [x, y];
                     computer.outbox.clear();
                     *command = Command::Hold;
                     if tick < computer.down_until {
@@ -234,19 +224,22 @@ where
                     let clock = tick.wrapping_sub(computer.epoch).wrapping_mul(tick_us);
                     // What arrived while it was down, it never heard.
                     let has_just_restarted = computer.boot > 0 && computer.epoch == tick;
+                    let delivered = match has_just_restarted {
+                        true => &[],
+                        false => radio.inbox(index),
+                    };
+                    let inbox = match orders {
+                        None => delivered,
+                        Some(orders) => {
+                            heard.clear();
+                            heard.extend_from_slice(delivered);
+                            heard.extend_from_slice(orders);
+                            heard
+                        }
+                    };
                     let inputs = Inputs {
-                        pose: pose.into(),
-                        cell: Some(CellState {
-                            cell: body.cell,
-                            busy: busy(body.free_at, now_units, tick_us),
-                        }),
-                        window: world.window(body.cell, radius, cells),
-                        surroundings: None,
-                        inbox: if has_just_restarted {
-                            &[]
-                        } else {
-                            radio.inbox(index)
-                        },
+                        inbox,
+                        ..ground.sense(index, tick, senses)
                     };
                     let agent = &mut computer.agent;
                     let out = agent.step(&inputs, Instant::from_micros(clock), workspace);
@@ -265,18 +258,18 @@ where
 
     /// Takes note of where everybody is after phase two.
     fn observe(&mut self) {
-        let bodies = self.world.bodies().iter().zip(&self.statuses);
-        for (index, (body, status)) in bodies.enumerate() {
-            self.chains[index].extend(self.tick, body, status.mode);
-            let is_there = status.mode == Mode::Arrived && body.cell == status.target;
-            self.arrivals.note(index, is_there, body.free_at);
+        let (ground, tick) = (&self.ground, self.tick);
+        for (index, status) in self.statuses.iter().enumerate() {
+            self.chains[index].extend(&ground.words(index, tick, status));
+            let arrival = ground.arrival(index, tick, status);
+            self.arrivals
+                .note(index, arrival.is_some(), arrival.unwrap_or(0));
         }
     }
 
     /// The swarm's line of the record before the first tick.
     fn first_row(&mut self) -> TickRow {
-        let meter = self.meter.as_mut();
-        let keeping = meter.map(|meter| meter.look(self.world.bodies()));
+        let keeping = self.ground.keeping(false);
         self.row(keeping, PacketCounts::default())
     }
 
@@ -293,22 +286,17 @@ where
 
     /// The robots' lines of the record, by rising number, as of now.
     pub fn rows(&self) -> impl Iterator<Item = RobotRow> {
-        let now_units = u64::from(self.tick) * u64::from(UNIT);
-        let errors = self.meter.as_ref().map_or(&[][..], FormationMeter::errors);
-        let bodies = self.world.bodies().iter().zip(&self.statuses);
-        bodies.enumerate().map(move |(index, (body, status))| {
-            let pose = self.kinematics.pose(&self.world, body, now_units);
-            let error = errors.get(index).copied().unwrap_or(f64::NAN);
-            RobotRow {
-                id: body.id.0,
-                cell: body.cell,
-                position_m: pose.position_m,
+        self.statuses
+            .iter()
+            .enumerate()
+            .map(|(index, status)| RobotRow {
+                id: self.robots[index].id.0,
+                motion: self.ground.motion(index, self.tick),
                 mode: status.mode,
                 leader: status.leader.0,
                 target: status.target,
-                formation_error_cells: error as f32,
-            }
-        })
+                formation_error_cells: self.ground.formation_error(index) as f32,
+            })
     }
 
     /// Ticks done.
@@ -329,10 +317,10 @@ where
         self.arrivals.is_complete()
     }
 
-    /// The world.
+    /// The ground with its bodies.
     #[must_use]
-    pub const fn world(&self) -> &World {
-        &self.world
+    pub const fn ground(&self) -> &W {
+        &self.ground
     }
 
     /// What came of it so far.
@@ -346,18 +334,10 @@ where
             collisions: self.collisions,
             packets: self.packets,
             throttled: self.throttled,
-            formation: self.meter.as_ref().and_then(FormationMeter::mean),
+            formation: self.ground.mean_keeping(),
             trace_hash: hash::sum(&self.chains),
         }
     }
-}
-
-/// Time until a body that is free at `free_at` may leave, at `now_units`; rounded up, so that it is
-/// never 0 too early.
-fn busy(free_at: u64, now_units: u64, tick_us: u32) -> Duration {
-    let left = free_at.saturating_sub(now_units);
-    let micros = (left * u64::from(tick_us)).div_ceil(u64::from(UNIT));
-    Duration::from_micros(i32::try_from(micros).unwrap_or(i32::MAX))
 }
 
 #[cfg(test)]

@@ -1,12 +1,12 @@
 //! A whole scenario with the guidance that it asks for.
 
-use super::Engine;
+use super::{Engine, Grid, Ground};
 use crate::metrics::Keeping;
 use crate::record::{PacketCounts, RobotRow, TickRow};
 use crate::scenario::Scenario;
 use crate::world::Misplaced;
 use staya_controller::agent::{
-    CELLS, FormationGuidance, Guidance, RouteGuidance, TEMPLATE, VISITS,
+    CELLS, FormationGuidance, Guidance, RouteGuidance, Safety, TEMPLATE, Unguarded, VISITS,
 };
 use std::ops::ControlFlow;
 
@@ -94,9 +94,24 @@ fn formation<const C: usize>(
 fn drive<G: Guidance<f32, Workspace: Default> + Send>(
     scenario: &Scenario,
     guidance: impl Fn(usize) -> G + Send + Sync + 'static,
-    mut watch: impl FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>) -> ControlFlow<()>,
+    watch: impl FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>) -> ControlFlow<()>,
 ) -> Result<Outcome, Misplaced> {
-    let mut engine = Engine::new(scenario, guidance)?;
+    let ground = Grid::new(scenario)?;
+    let engine = Engine::new(scenario, ground, move |index| (guidance(index), Unguarded));
+    Ok(go(scenario, engine, watch))
+}
+
+/// Ticks until the end.
+fn go<W, G, A>(
+    scenario: &Scenario,
+    mut engine: Engine<W, G, A>,
+    mut watch: impl FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>) -> ControlFlow<()>,
+) -> Outcome
+where
+    W: Ground,
+    G: Guidance<f32, Workspace: Default> + Send,
+    A: Safety<f32> + Send,
+{
     let mut row = engine.first_row();
     loop {
         let moment = Moment {
@@ -105,7 +120,7 @@ fn drive<G: Guidance<f32, Workspace: Default> + Send>(
         };
         let flow = watch(&moment, &mut engine.rows());
         if flow.is_break() || engine.is_over() || engine.ticks() >= scenario.ticks {
-            return Ok(engine.outcome());
+            return engine.outcome();
         }
         row = engine.step();
     }

@@ -1,7 +1,7 @@
 use super::*;
 use crate::scenario::Overrides;
 use proptest::prelude::*;
-use staya_controller::agent::{BadInput, Guided, View};
+use staya_controller::agent::{BadInput, Guided, Unguarded, View};
 use staya_controller::grid::Dir;
 use staya_controller::rand::Rng;
 use std::ops::ControlFlow;
@@ -65,10 +65,13 @@ impl Guidance<f32> for Scout {
     }
 }
 
-fn scouts(scenario: &Scenario) -> (Engine<Scout>, Arc<Mutex<Vec<Known>>>) {
+fn scouts(scenario: &Scenario) -> (Engine<Grid, Scout, Unguarded>, Arc<Mutex<Vec<Known>>>) {
     let known = Arc::new(Mutex::new(Vec::new()));
     let shared = known.clone();
-    let engine = Engine::new(scenario, move |_| Scout(shared.clone())).expect("free starts");
+    let ground = Grid::new(scenario).expect("free starts");
+    let engine = Engine::new(scenario, ground, move |_| {
+        (Scout(shared.clone()), Unguarded)
+    });
     (engine, known)
 }
 
@@ -156,7 +159,7 @@ fn a_robot_that_is_down_counts_as_faulty_and_keeps_its_target() {
     engine.step();
     engine.step();
     let row = engine.rows().nth(1).expect("robot 2");
-    assert_eq!((row.mode, row.cell), (Mode::Cruise, Cell::new(6, 3)));
+    assert_eq!((row.mode, row.motion.cell), (Mode::Cruise, Cell::new(6, 3)));
 }
 
 #[test]
@@ -227,7 +230,7 @@ fn starts_that_no_file_would_have_are_refused() {
 
 #[test]
 fn busy_time_is_never_rounded_down_and_never_wraps() {
-    let us = |free_at, now, tick_us| busy(free_at, now, tick_us).as_micros();
+    let us = |free_at, now, tick_us| grid::busy(free_at, now, tick_us).as_micros();
     assert_eq!(us(70, 70, 1_000_000), 0);
     assert_eq!(us(0, 70, 1_000_000), 0);
     assert_eq!(us(71, 70, 1_000_000), 14_286);
@@ -279,7 +282,7 @@ fn neither_a_run_nor_its_hash_depends_on_the_number_of_threads() {
         // NaN is not equal to itself.
         let cells = |rows: &[RobotRow]| {
             rows.iter()
-                .map(|r| (r.id, r.cell, r.mode, r.target))
+                .map(|r| (r.id, r.motion.cell, r.mode, r.target))
                 .collect::<Vec<_>>()
         };
         assert_eq!(cells(&other_rows), cells(&rows));

@@ -9,7 +9,7 @@ use std::path::Path;
 type Column = (&'static str, &'static str, &'static str, &'static str);
 
 /// `trace.csv`: one line per robot and sampled tick.
-pub const TRACE: [Column; 12] = [
+pub const TRACE: [Column; 16] = [
     ("tick", "integer", "1", "number of the tick"),
     ("time_s", "number", "s", "simulated time"),
     ("robot", "integer", "1", "the robot's number"),
@@ -27,6 +27,10 @@ pub const TRACE: [Column; 12] = [
     ),
     ("x_m", "number", "m", "world position, east"),
     ("y_m", "number", "m", "world position, north"),
+    ("z_m", "number", "m", "world position, up"),
+    ("vx_mps", "number", "m/s", "world velocity, east"),
+    ("vy_mps", "number", "m/s", "world velocity, north"),
+    ("vz_mps", "number", "m/s", "world velocity, up"),
     (
         "mode",
         "string",
@@ -135,17 +139,22 @@ pub fn trace_line(out: &mut Vec<u8>, tick: &TickRow, robot: &RobotRow) {
         Mode::Arrived => "arrived",
         Mode::Fault => "fault",
     };
+    let ([x, y, z], [vx, vy, vz]) = (robot.motion.position_m, robot.motion.velocity_mps);
     append(
         out,
         format_args!(
-            "{},{},{},{},{},{},{},{mode},{},{},{},{}\n",
+            "{},{},{},{},{},{},{},{},{},{},{},{mode},{},{},{},{}\n",
             tick.tick,
             Number(tick.time_s),
             robot.id,
-            robot.cell.x,
-            robot.cell.y,
-            Number(robot.position_m[0]),
-            Number(robot.position_m[1]),
+            robot.motion.cell.x,
+            robot.motion.cell.y,
+            Number(x),
+            Number(y),
+            Number(z),
+            Number(vx),
+            Number(vy),
+            Number(vz),
             robot.leader,
             robot.target.x,
             robot.target.y,

@@ -22,9 +22,10 @@ pub struct Sample {
 
 impl From<RobotRow> for Sample {
     fn from(row: RobotRow) -> Self {
+        let [x, y, _] = row.motion.position_m;
         Self {
             id: row.id,
-            position_m: row.position_m,
+            position_m: [x, y],
             target: row.target,
             mode: row.mode,
         }

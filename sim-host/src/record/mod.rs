@@ -20,15 +20,24 @@ use staya_controller::wire::Mode;
 use std::ops::AddAssign;
 use std::path::Path;
 
+/// Where a body is and how it moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion {
+    /// The cell it stands in.
+    pub cell: Cell,
+    /// World position, metres (x east, y north, z up).
+    pub position_m: [f64; 3],
+    /// World velocity, metres per second.
+    pub velocity_mps: [f64; 3],
+}
+
 /// One robot after one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RobotRow {
     /// Its number.
     pub id: u32,
-    /// The cell it stands in.
-    pub cell: Cell,
-    /// World position, metres (x east, y north).
-    pub position_m: [f64; 2],
+    /// Where its body is and how it moves.
+    pub motion: Motion,
     /// What it is doing.
     pub mode: Mode,
     /// Its leader, 0 = none.

@@ -20,8 +20,11 @@ fn tick(tick: u32) -> TickRow {
 fn robot(id: u32, x: i16) -> RobotRow {
     RobotRow {
         id,
-        cell: Cell::new(x, -1),
-        position_m: [f64::from(x) + 0.5, -0.5],
+        motion: Motion {
+            cell: Cell::new(x, -1),
+            position_m: [f64::from(x) + 0.5, -0.5, 0.0],
+            velocity_mps: [1.0, 0.0, 0.0],
+        },
         mode: Mode::Cruise,
         leader: id - 1,
         target: Cell::new(9, 9),

@@ -1,7 +1,7 @@
 use super::{assert_readable, assert_texts_apart, decode};
 use crate::plot::colour::PALETTE;
 use crate::plot::{run, run_pictures, trajectories};
-use crate::record::{History, Options, PacketCounts, Recorder, RobotRow, TickRow};
+use crate::record::{History, Motion, Options, PacketCounts, Recorder, RobotRow, TickRow};
 use crate::terrain::Terrain;
 use crate::terrain::generate::{Plan, uniform};
 use staya_controller::grid::{BLOCKED, Cell};
@@ -12,8 +12,11 @@ use std::path::Path;
 fn row(id: u32, position_m: [f64; 2], target: Cell) -> RobotRow {
     RobotRow {
         id,
-        cell: Cell { x: 0, y: 0 },
-        position_m,
+        motion: Motion {
+            cell: Cell { x: 0, y: 0 },
+            position_m: [position_m[0], position_m[1], 0.0],
+            velocity_mps: [0.0; 3],
+        },
         mode: Mode::Cruise,
         leader: 0,
         target,

@@ -1,0 +1,155 @@
+//! The world of cells as ground of the engine.
+
+use super::Status;
+use super::body::Kinematics;
+use super::ground::{Ground, Words};
+use super::hash::grid_words;
+use crate::metrics::{FormationMeter, Keeping};
+use crate::record::Motion;
+use crate::scenario::{Robot, Scenario};
+use crate::world::{Misplaced, World};
+use staya_controller::agent::{
+    Agent, AgentConfig, CellState, Command, Guidance, Inputs, NEIGHBORS, Safety,
+};
+use staya_controller::grid::UNIT;
+use staya_controller::time::Duration;
+use staya_controller::wire::Mode;
+
+/// Bodies that hold a cell each.
+pub struct Grid {
+    world: World,
+    kinematics: Kinematics,
+    robots: Vec<Robot>,
+    meter: Option<FormationMeter>,
+    radius: u8,
+    tick_us: u32,
+}
+
+impl Grid {
+    /// The scenario's land with its robots at their starts.
+    ///
+    /// # Errors
+    /// When two robots start in one cell or one starts in a wall.
+    pub fn new(scenario: &Scenario) -> Result<Self, Misplaced> {
+        let starts = scenario.robots.iter().map(|robot| (robot.id, robot.start));
+        let world = World::new(
+            scenario.terrain.clone(),
+            scenario.rules,
+            scenario.seed,
+            starts,
+        )?;
+        let meter = scenario.formation.as_ref().map(|graph| {
+            FormationMeter::new(graph, scenario.formation_params.eps, world.terrain())
+        });
+        Ok(Self {
+            kinematics: Kinematics::new(world.terrain(), scenario.tick_s()),
+            robots: scenario.robots.clone(),
+            meter,
+            radius: scenario.route.params.radius,
+            tick_us: scenario.tick_us,
+            world,
+        })
+    }
+
+    /// The world.
+    #[must_use]
+    pub const fn world(&self) -> &World {
+        &self.world
+    }
+}
+
+/// The moment at which `tick` begins.
+fn units(tick: u32) -> u64 {
+    u64::from(tick) * u64::from(UNIT)
+}
+
+/// Time until a body that is free at `free_at` may leave, at `now_units`; rounded up, so that it is
+/// never 0 too early.
+pub(super) fn busy(free_at: u64, now_units: u64, tick_us: u32) -> Duration {
+    let left = free_at.saturating_sub(now_units);
+    let micros = (left * u64::from(tick_us)).div_ceil(u64::from(UNIT));
+    Duration::from_micros(i32::try_from(micros).unwrap_or(i32::MAX))
+}
+
+impl Ground for Grid {
+    type Scratch = Vec<u8>;
+
+    fn sense<'a>(
+        &'a self,
+        index: usize,
+        tick: u32,
+        cells: &'a mut Self::Scratch,
+    ) -> Inputs<'a, f32> {
+        let body = &self.world.bodies()[index];
+        Inputs {
+            pose: self.kinematics.pose(&self.world, body, units(tick)).into(),
+            cell: Some(CellState {
+                cell: body.cell,
+                busy: busy(body.free_at, units(tick), self.tick_us),
+            }),
+            window: self.world.window(body.cell, self.radius, cells),
+            surroundings: None,
+            inbox: &[],
+        }
+    }
+
+    fn motion(&self, index: usize, tick: u32) -> Motion {
+        let body = &self.world.bodies()[index];
+        let pose = self.kinematics.pose(&self.world, body, units(tick));
+        let [x, y] = pose.position_m;
+        let [vx, vy] = pose.velocity_mps;
+        Motion {
+            cell: body.cell,
+            position_m: [x, y, 0.0],
+            velocity_mps: [vx, vy, 0.0],
+        }
+    }
+
+    fn advance(&mut self, tick: u32, commands: &[Command<f32>]) {
+        self.world.advance(tick, commands);
+    }
+
+    fn count_collisions(&mut self, tick: u32) -> u64 {
+        self.world.count_collisions(tick)
+    }
+
+    fn words(&self, index: usize, tick: u32, status: &Status) -> Words {
+        let words = grid_words(tick, &self.world.bodies()[index], status.mode);
+        words.into_iter().collect()
+    }
+
+    fn arrival(&self, index: usize, _: u32, status: &Status) -> Option<u64> {
+        let body = &self.world.bodies()[index];
+        let is_there = status.mode == Mode::Arrived && body.cell == status.target;
+        is_there.then_some(body.free_at)
+    }
+
+    fn configure(&self, _: &mut AgentConfig<f32>) {}
+
+    fn assign<G: Guidance<f32>, A: Safety<f32>>(
+        &self,
+        index: usize,
+        _: u32,
+        agent: &mut Agent<f32, G, NEIGHBORS, A>,
+    ) {
+        agent.assign_goal(self.robots[index].goal);
+    }
+
+    fn keeping(&mut self, counts: bool) -> Option<Keeping> {
+        let (meter, bodies) = (self.meter.as_mut()?, self.world.bodies());
+        Some(if counts {
+            meter.measure(bodies)
+        } else {
+            meter.look(bodies)
+        })
+    }
+
+    fn mean_keeping(&self) -> Option<Keeping> {
+        self.meter.as_ref().and_then(FormationMeter::mean)
+    }
+
+    fn formation_error(&self, index: usize) -> f64 {
+        let errors = self.meter.as_ref().map_or(&[][..], FormationMeter::errors);
+        errors.get(index).copied().unwrap_or(f64::NAN)
+    }
+}

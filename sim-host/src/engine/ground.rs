@@ -1,0 +1,71 @@
+//! What the engine asks of a world: what a robot senses there, and what its command does to its body.
+
+use super::Status;
+use crate::metrics::Keeping;
+use crate::record::Motion;
+use staya_controller::agent::{Agent, AgentConfig, Command, Guidance, Inputs, NEIGHBORS, Safety};
+
+/// A world with bodies, as the engine needs it. Bodies are numbered as the robots of the scenario.
+pub trait Ground: Send + Sync {
+    /// Scratch memory of a thread for [`Ground::sense`].
+    type Scratch: Default + Send;
+
+    /// What the robot of body `index` senses at the start of `tick`; the inbox is empty.
+    fn sense<'a>(
+        &'a self,
+        index: usize,
+        tick: u32,
+        scratch: &'a mut Self::Scratch,
+    ) -> Inputs<'a, f32>;
+
+    /// How the body moves at the start of `tick`.
+    fn motion(&self, index: usize, tick: u32) -> Motion;
+
+    /// Moves the bodies as their robots command.
+    fn advance(&mut self, tick: u32, commands: &[Command<f32>]);
+
+    /// How many collisions there are after `tick`; looks at the bodies alone.
+    fn count_collisions(&mut self, tick: u32) -> u64;
+
+    /// The state of a body after `tick`, for the fingerprint.
+    fn words(&self, index: usize, tick: u32, status: &Status) -> Words;
+
+    /// When the body's journey was over, [`UNIT`](staya_controller::grid::UNIT)ths of a tick after the start;
+    /// `None` when its robot is not where it should be.
+    fn arrival(&self, index: usize, tick: u32, status: &Status) -> Option<u64>;
+
+    /// What the robot of body `index` must know of its body.
+    fn configure(&self, config: &mut AgentConfig<f32>);
+
+    /// Gives a robot that starts at `tick` its task.
+    fn assign<G: Guidance<f32>, A: Safety<f32>>(
+        &self,
+        index: usize,
+        tick: u32,
+        agent: &mut Agent<f32, G, NEIGHBORS, A>,
+    );
+
+    /// How well a formation is kept now, if there is one; `counts`: a tick is over.
+    fn keeping(&mut self, _counts: bool) -> Option<Keeping> {
+        None
+    }
+
+    /// The mean of what [`Ground::keeping`] counted.
+    fn mean_keeping(&self) -> Option<Keeping> {
+        None
+    }
+
+    /// How far a robot was from its place in the formation when [`Ground::keeping`] last looked, cells; NaN when it
+    /// has none.
+    fn formation_error(&self, _index: usize) -> f64 {
+        f64::NAN
+    }
+
+    /// An order of the operator to everybody that is due at `tick`: frames.
+    fn orders(&self, _tick: u32) -> Option<&[u8]> {
+        None
+    }
+}
+
+/// A state in words of 64 bits.
+pub type Words = heapless::Vec<u64, 8>;
