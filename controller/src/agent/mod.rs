@@ -37,10 +37,13 @@
 //! assert_eq!(cell, Cell::new(9, 5));
 //! ```
 
+mod any;
 mod formation_guidance;
 mod guidance;
+mod in_plane;
 mod io;
 mod link;
+mod orca_safety;
 mod route_guidance;
 mod safety;
 mod travel;
@@ -49,11 +52,14 @@ mod waypoint_guidance;
 #[cfg(test)]
 mod tests;
 
+pub use any::{AnyGuidance, AnySafety};
 pub use formation_guidance::FormationGuidance;
 pub use guidance::{Ask, BadInput, Guidance, Guided, Place, View};
+pub use in_plane::InPlane;
 pub use io::{
     CellState, Command, EVENTS, Event, InCell, Inputs, OUTBOX, Outputs, Pose, Surroundings,
 };
+pub use orca_safety::OrcaSafety;
 pub use route_guidance::{GridWorkspace, RouteGuidance};
 pub use safety::{Safety, Sight, Unguarded};
 pub use waypoint_guidance::WaypointGuidance;

@@ -63,7 +63,7 @@ fn csv_reads_back_with_the_columns_of_its_schema() {
     assert_eq!(lines.len(), 6);
     assert_eq!(
         lines[3].join(","),
-        "1,0.1,2,1,-1,1.5,-0.5,cruise,1,9,9,",
+        "1,0.1,2,1,-1,1.5,-0.5,0,1,0,0,cruise,1,9,9,",
         "an unknown value is empty"
     );
     let (series_header, series) = read(&out.join("series.csv"));

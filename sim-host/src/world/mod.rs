@@ -4,6 +4,7 @@
 //! moves first; here the order of a tick is drawn anew each tick from (seed, tick, robot), so
 //! that no robot has precedence for good and the order of robots in memory plays no part.
 
+pub mod plane;
 mod window;
 
 use crate::terrain::Terrain;

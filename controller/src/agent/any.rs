@@ -1,0 +1,107 @@
+//! Guidance and safety layer chosen at run time: for the simulator and for firmware that is told by its host. A firmware that
+//! knows what it wants names the types and pays for nothing else.
+
+use super::formation_guidance::FormationGuidance;
+use super::guidance::{BadInput, Guidance, Guided, Place, View};
+use super::in_plane::InPlane;
+use super::orca_safety::OrcaSafety;
+use super::route_guidance::{GridWorkspace, RouteGuidance};
+use super::safety::{Safety, Sight, Unguarded};
+use super::waypoint_guidance::WaypointGuidance;
+use crate::geom::Vec3;
+use crate::grid::Cell;
+use crate::neighbor::Doubt;
+use crate::rand::Rng;
+use crate::scalar::Scalar;
+use crate::wire::{RobotId, TemplateAssignment};
+
+/// Any guidance for robots in the plane or in space.
+#[derive(Clone, Debug)]
+#[expect(missing_docs, reason = "each variant's type says it")]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there is no heap to put the large ones on, and a robot has one"
+)]
+pub enum AnyGuidance<S, const CELLS: usize, const M: usize, const F: usize> {
+    Waypoint(WaypointGuidance<S>),
+    Route(InPlane<S, RouteGuidance<CELLS, M>>),
+    Formation(InPlane<S, FormationGuidance<CELLS, M, F>>),
+}
+
+/// Does the same with whatever is inside.
+macro_rules! each {
+    ($any:expr, $inside:ident => $action:expr) => {
+        match $any {
+            AnyGuidance::Waypoint($inside) => $action,
+            AnyGuidance::Route($inside) => $action,
+            AnyGuidance::Formation($inside) => $action,
+        }
+    };
+}
+
+impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
+    for AnyGuidance<S, CELLS, M, F>
+{
+    type Workspace = GridWorkspace<CELLS>;
+
+    fn decide(
+        &mut self,
+        view: &View<'_, S>,
+        rng: &mut Rng,
+        workspace: &mut Self::Workspace,
+    ) -> Result<Guided<S>, BadInput> {
+        match self {
+            Self::Waypoint(guidance) => guidance.decide(view, rng, &mut ()),
+            Self::Route(guidance) => guidance.decide(view, rng, workspace),
+            Self::Formation(guidance) => guidance.decide(view, rng, workspace),
+        }
+    }
+
+    fn redirect(&mut self) {
+        each!(self, guidance => Guidance::<S>::redirect(guidance));
+    }
+
+    fn assign_template(&mut self, part: &TemplateAssignment, is_anew: bool) -> bool {
+        each!(self, guidance => Guidance::<S>::assign_template(guidance, part, is_anew))
+    }
+
+    fn assign_place(&mut self, index: u8, place: &Place<S>) -> bool {
+        each!(self, guidance => guidance.assign_place(index, place))
+    }
+
+    fn has_own_goal(&self) -> bool {
+        each!(self, guidance => Guidance::<S>::has_own_goal(guidance))
+    }
+
+    fn goal_offset(&self) -> Cell {
+        each!(self, guidance => Guidance::<S>::goal_offset(guidance))
+    }
+
+    fn needs(&self, id: RobotId) -> bool {
+        each!(self, guidance => Guidance::<S>::needs(guidance, id))
+    }
+}
+
+/// Any safety layer; at most `K` half-planes count.
+#[derive(Clone, Debug)]
+#[expect(missing_docs, reason = "each variant's type says it")]
+pub enum AnySafety<S, const K: usize> {
+    Unguarded(Unguarded),
+    Orca(OrcaSafety<S, K>),
+}
+
+impl<S: Scalar, const K: usize> Safety<S> for AnySafety<S, K> {
+    fn keep_clear(&mut self, sight: &Sight<'_, S>, rng: &mut Rng) -> Vec3<S> {
+        match self {
+            Self::Unguarded(safety) => safety.keep_clear(sight, rng),
+            Self::Orca(safety) => safety.keep_clear(sight, rng),
+        }
+    }
+
+    fn doubt(&self) -> Doubt<S> {
+        match self {
+            Self::Unguarded(safety) => safety.doubt(),
+            Self::Orca(safety) => safety.doubt(),
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! Optimal reciprocal collision avoidance as a safety layer.
+
+use super::safety::{Safety, Sight};
+use crate::geom::Vec3;
+use crate::neighbor::Doubt;
+use crate::orca::{AvoidParams, Avoider, HalfPlanes};
+use crate::rand::Rng;
+use crate::scalar::Scalar;
+
+/// [`Avoider`] in the plane; heights are left alone.
+#[derive(Clone, Debug)]
+pub struct OrcaSafety<S, const K: usize, P = crate::orca::Analytic> {
+    avoider: Avoider<S, K, P>,
+    doubt: Doubt<S>,
+}
+
+impl<S: Scalar, const K: usize> OrcaSafety<S, K> {
+    /// With exact half-planes. `doubt`: how the balls of silent neighbours grow.
+    #[must_use]
+    pub const fn new(params: AvoidParams<S>, doubt: Doubt<S>) -> Self {
+        Self {
+            avoider: Avoider::new(params),
+            doubt,
+        }
+    }
+}
+
+impl<S: Scalar, const K: usize, P> OrcaSafety<S, K, P> {
+    /// With half-planes from `source`.
+    #[must_use]
+    pub const fn with_source(params: AvoidParams<S>, doubt: Doubt<S>, source: P) -> Self {
+        Self {
+            avoider: Avoider::with_source(params, source),
+            doubt,
+        }
+    }
+}
+
+impl<S: Scalar, const K: usize, P: HalfPlanes<S>> Safety<S> for OrcaSafety<S, K, P> {
+    fn keep_clear(&mut self, sight: &Sight<'_, S>, rng: &mut Rng) -> Vec3<S> {
+        let solution = self.avoider.velocity(
+            &sight.body,
+            sight.wish_mps.xy(),
+            sight.way_m.map(Vec3::xy),
+            sight.nearby,
+            sight.obstacles,
+            rng,
+        );
+        solution.velocity_mps.extend(sight.wish_mps.z)
+    }
+
+    fn doubt(&self) -> Doubt<S> {
+        self.doubt
+    }
+}
