@@ -12,10 +12,12 @@ mod body;
 mod grid;
 mod ground;
 mod hash;
+mod plane;
 mod simulate;
 
 pub use grid::Grid;
 pub use ground::{Ground, Words};
+pub use plane::PlaneGround;
 pub use simulate::{Moment, Outcome, simulate};
 
 use crate::metrics::{Arrivals, Keeping};

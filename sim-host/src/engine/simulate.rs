@@ -1,13 +1,11 @@
 //! A whole scenario with the guidance that it asks for.
 
-use super::{Engine, Grid, Ground};
+use super::{Engine, Grid, Ground, PlaneGround};
 use crate::metrics::Keeping;
 use crate::record::{PacketCounts, RobotRow, TickRow};
-use crate::scenario::Scenario;
+use crate::scenario::{GuidanceName, PlaneSetup, SafetyName, Scenario};
 use crate::world::Misplaced;
-use staya_controller::agent::{
-    CELLS, FormationGuidance, Guidance, RouteGuidance, Safety, TEMPLATE, Unguarded, VISITS,
-};
+use staya_controller::agent::{AnyGuidance, AnySafety, CELLS, FormationGuidance, Guidance, InPlane, NEIGHBORS, OrcaSafety, RouteGuidance, Safety, TEMPLATE, Unguarded, VISITS, WaypointGuidance};
 use std::ops::ControlFlow;
 
 /// Cells of a search for windows up to radius 16 with their border: (2 * 16 + 3)^2.
@@ -57,12 +55,52 @@ pub fn simulate(
     scenario: &Scenario,
     watch: impl FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>) -> ControlFlow<()>,
 ) -> Result<Outcome, Misplaced> {
+    if let Some(setup) = &scenario.plane {
+        let ground = PlaneGround::new(scenario, setup);
+        let engine = Engine::new(scenario, ground, brains(scenario, setup));
+        return Ok(go(scenario, engine, watch));
+    }
     let is_narrow = scenario.route.params.radius <= NARROW_RADIUS;
     match (&scenario.formation, is_narrow) {
         (None, true) => drive(scenario, route::<CELLS>(scenario), watch),
         (None, false) => drive(scenario, route::<WIDE>(scenario), watch),
         (Some(_), true) => drive(scenario, formation::<CELLS>(scenario), watch),
         (Some(_), false) => drive(scenario, formation::<WIDE>(scenario), watch),
+    }
+}
+
+/// Half-planes that a robot in the plane reckons with: those of its neighbours and as many obstacles.
+const HALF_PLANES: usize = 2 * NEIGHBORS;
+
+type Brain = (
+    AnyGuidance<f32, WIDE, VISITS, TEMPLATE>,
+    AnySafety<f32, HALF_PLANES>,
+);
+
+/// Guidance and safety layer of each robot in the plane.
+fn brains(
+    scenario: &Scenario,
+    setup: &PlaneSetup,
+) -> impl Fn(usize) -> Brain + Send + Sync + 'static + use<> {
+    let (cruise_mps, tolerance_m) = (setup.cruise_mps as f32, setup.tolerance_m as f32);
+    let (route, formation) = (route::<WIDE>(scenario), formation::<WIDE>(scenario));
+    let (guidance, safety) = (setup.guidance, setup.safety);
+    let (orca, doubt) = (setup.orca, setup.doubt);
+    move |index| {
+        let guidance = match guidance {
+            GuidanceName::Waypoint => {
+                AnyGuidance::Waypoint(WaypointGuidance::new(cruise_mps, tolerance_m))
+            }
+            GuidanceName::Route => AnyGuidance::Route(InPlane::new(route(index), cruise_mps)),
+            GuidanceName::Formation => {
+                AnyGuidance::Formation(InPlane::new(formation(index), cruise_mps))
+            }
+        };
+        let safety = match safety {
+            SafetyName::None => AnySafety::Unguarded(Unguarded),
+            SafetyName::Orca => AnySafety::Orca(OrcaSafety::new(orca, doubt)),
+        };
+        (guidance, safety)
     }
 }
 

@@ -110,7 +110,9 @@ pub(super) fn within(
 }
 
 pub(super) fn terrain(source: &Source<'_>, file: &ScenarioFile) -> Result<Terrain, ScenarioError> {
-    let table = &file.terrain;
+    let Some(table) = &file.terrain else {
+        return Err(source.error("terrain", "it is missing", "say what land is meant"));
+    };
     let plan = |width, height, classes, seed: Option<u64>| Plan {
         width,
         height,
@@ -176,7 +178,7 @@ pub(super) fn formation_only(
     source: &Source<'_>,
     file: &ScenarioFile,
 ) -> Result<(), ScenarioError> {
-    let in_formation = file.robots.formation.is_some();
+    let in_formation = file.in_formation();
     if !in_formation && source.has("formation") {
         return Err(source.error(
             "formation",

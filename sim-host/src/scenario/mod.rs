@@ -5,12 +5,18 @@
 
 mod check;
 mod params;
+mod plane;
 mod robots;
 mod schema;
 mod source;
 
 pub use params::{
     ExitName, FormationTable, PredictionName, RecoveryName, ReplanName, RouteTable, Routing,
+};
+pub use plane::{
+    BallEntry, CircleEntry, CloudEntry, GuidanceName, HalfSpaceEntry, OrcaTable, Order, OrderEntry,
+    Place, PlaneRobotEntry, PlaneRobots, PlaneSetup, PlaneTable, SafetyName, Start, Target,
+    WallEntry, circle_starts,
 };
 pub use robots::{Formation, Robot};
 pub use schema::{
@@ -58,7 +64,7 @@ pub struct Scenario {
     pub ticks: u32,
     /// Length of a tick, microseconds.
     pub tick_us: u32,
-    /// The land.
+    /// The land; one flat cell when bodies in the plane have none.
     pub terrain: Terrain,
     /// How bodies move.
     pub rules: MoveRules,
@@ -68,6 +74,8 @@ pub struct Scenario {
     pub robots: Vec<Robot>,
     /// The formation of robots 1, 2, ..., if they keep one.
     pub formation: Option<Formation>,
+    /// Bodies in the plane or in space, if they do not move from cell to cell.
+    pub plane: Option<PlaneSetup>,
     /// How robots find their ways.
     pub route: Routing,
     /// How robots keep a formation, if they do.
@@ -101,8 +109,32 @@ impl Scenario {
         file.ticks = overrides.ticks.unwrap_or(file.ticks);
         check::general(&source, &file)?;
         check::radio(&source, &file)?;
-        let terrain = check::terrain(&source, &file)?;
-        let (robots, formation) = robots::build(&source, &file, &terrain)?;
+        let (terrain, robots, formation, plane) = match &file.plane {
+            None => {
+                let terrain = check::terrain(&source, &file)?;
+                let (robots, formation) = robots::build(&source, &file, &terrain)?;
+                (terrain, robots, formation, None)
+            }
+            Some(table) => {
+                let land = match &file.terrain {
+                    Some(_) => Some(check::terrain(&source, &file)?),
+                    None => None,
+                };
+                let cells = match (&file.robots, &land) {
+                    (Some(_), Some(land)) => Some(robots::build(&source, &file, land)?),
+                    (Some(_), None) => {
+                        let remedy = "give [terrain], or plane.robots in metres";
+                        return Err(source.error("robots", "there are no cells", remedy));
+                    }
+                    (None, _) => None,
+                };
+                let (robots, formation) = cells.unzip();
+                let robots = robots.as_deref();
+                let (plane, robots) = plane::build(&source, &file, table, land.as_ref(), robots)?;
+                let land = land.unwrap_or_else(|| Terrain::flat(1, 1));
+                (land, robots, formation.flatten(), Some(plane))
+            }
+        };
         let faults = check::faults(&source, &file, &robots)?;
         check::formation_only(&source, &file)?;
         let route = params::routing(&source, &file.route, &file.grid)?;
@@ -120,6 +152,7 @@ impl Scenario {
             radio: file.radio,
             robots,
             formation,
+            plane,
             route,
             formation_params,
             faults,

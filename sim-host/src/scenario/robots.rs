@@ -57,7 +57,9 @@ pub(super) fn build(
     file: &ScenarioFile,
     terrain: &Terrain,
 ) -> Result<(Vec<Robot>, Option<Formation>), ScenarioError> {
-    let table = &file.robots;
+    let Some(table) = &file.robots else {
+        return Err(source.error("robots", "it is missing", "say who takes part"));
+    };
     let mut formation = None;
     let entries = match (&table.list, &table.formation, &table.scen, &table.scattered) {
         (Some(list), None, None, None) => listed(list),

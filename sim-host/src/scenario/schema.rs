@@ -4,6 +4,7 @@
 //! simulated. File names are relative to the scenario file.
 
 use super::params::{FormationTable, RouteTable};
+use super::plane::PlaneTable;
 use crate::radio::RadioParams;
 use crate::terrain::LoadOptions;
 use serde::Deserialize;
@@ -26,16 +27,18 @@ pub struct ScenarioFile {
     /// impassability 1. Default: 1.
     #[serde(default = "one")]
     pub tick_s: f64,
-    /// The land.
-    pub terrain: TerrainTable,
+    /// The land; may be left out with `[plane]`.
+    pub terrain: Option<TerrainTable>,
     /// Rules of the grid.
     #[serde(default)]
     pub grid: GridTable,
     /// The radio. Without this table: perfect within 100 m.
     #[serde(default)]
     pub radio: RadioParams,
-    /// Who takes part.
-    pub robots: RobotsTable,
+    /// Who takes part, in cells; with `[plane]`, `plane.robots` may say it in metres instead.
+    pub robots: Option<RobotsTable>,
+    /// Bodies that move in the plane or in space instead of from cell to cell.
+    pub plane: Option<PlaneTable>,
     /// How robots find their ways.
     #[serde(default)]
     pub route: RouteTable,
@@ -45,6 +48,14 @@ pub struct ScenarioFile {
     /// Robots that fail during the run.
     #[serde(default)]
     pub fault: Vec<FaultTable>,
+}
+
+impl ScenarioFile {
+    /// Whether the robots keep a formation.
+    #[must_use]
+    pub fn in_formation(&self) -> bool {
+        self.robots.as_ref().is_some_and(|robots| robots.formation.is_some())
+    }
 }
 
 const fn one() -> f64 {

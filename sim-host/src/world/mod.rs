@@ -7,6 +7,8 @@
 pub mod plane;
 mod window;
 
+pub use window::window;
+
 use crate::terrain::Terrain;
 use staya_controller::agent::Command;
 use staya_controller::grid::{BLOCKED, Cell, Dir, Norm, UNIT};

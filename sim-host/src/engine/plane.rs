@@ -1,0 +1,241 @@
+//! The plane (or space) as ground of the engine.
+
+use super::Status;
+use super::ground::{Ground, Words};
+use crate::record::Motion;
+use crate::scenario::{Order, PlaneSetup, Robot, Scenario, Target};
+use crate::world::plane::{Disc, Plane, narrow};
+use crate::world::window;
+use staya_controller::agent::{
+    Agent, AgentConfig, CellState, Command, Guidance, InCell, Inputs, NEIGHBORS, Place, Pose, Safety,
+    Surroundings,
+};
+use staya_controller::geom::{Position, Vec2, Vec3};
+use staya_controller::grid::{Cell, GridFrame, UNIT};
+use staya_controller::obstacle::Obstacle;
+use staya_controller::time::{Duration, Instant};
+use staya_controller::wire::{Header, Message, Mode, PlaceAssignment, RobotId, encode};
+
+/// Walls of the land that a robot sees at a time.
+const WALLS: usize = 16;
+/// The operator's number: no robot's.
+const OPERATOR: RobotId = RobotId(u32::MAX);
+
+/// Bodies that move in the plane or in space.
+pub struct PlaneGround {
+    plane: Plane,
+    setup: PlaneSetup,
+    robots: Vec<Robot>,
+    radius: u8,
+    tick_us: u32,
+    delay_us: u32,
+    /// Frames to everybody, by rising tick.
+    orders: Vec<(u32, Vec<u8>)>,
+}
+
+impl PlaneGround {
+    /// The scenario's bodies at their starts.
+    #[must_use]
+    pub fn new(scenario: &Scenario, setup: &PlaneSetup) -> Self {
+        let discs = scenario.robots.iter().zip(&setup.starts);
+        let discs = discs.map(|(robot, start)| Disc {
+            id: robot.id,
+            radius_m: setup.radius_m,
+            position_m: start.position_m,
+            velocity_mps: start.velocity_mps,
+        });
+        let land = setup.has_terrain.then(|| scenario.terrain.clone());
+        let plane = Plane::new(setup.abilities, land, setup.solids.clone(), discs.collect());
+        Self {
+            plane,
+            robots: scenario.robots.clone(),
+            radius: scenario.route.params.radius,
+            tick_us: scenario.tick_us,
+            delay_us: libm::round(scenario.radio.delay_ms * 1000.0) as u32,
+            orders: frames(&setup.orders),
+            setup: setup.clone(),
+        }
+    }
+
+    /// The bodies and what is around them.
+    #[must_use]
+    pub const fn plane(&self) -> &Plane {
+        &self.plane
+    }
+
+    /// Where in its cell of the land a body is.
+    fn in_cell(&self, position_m: [f64; 3]) -> Option<(Cell, [f64; 2], f64)> {
+        let cell = self.plane.cell(position_m)?;
+        let land = self.plane.terrain()?;
+        let off = |cells: i16, axis: usize| {
+            let center = land.origin_m[axis] + (f64::from(cells) + 0.5) * land.cell_m;
+            position_m[axis] - center
+        };
+        Some((cell, [off(cell.x, 0), off(cell.y, 1)], land.cell_m))
+    }
+}
+
+/// The operator's orders as frames; those of one tick together.
+fn frames(orders: &[Order]) -> Vec<(u32, Vec<u8>)> {
+    let mut frames = Vec::<(u32, Vec<u8>)>::new();
+    for (number, order) in (0..).zip(orders) {
+        let milli = |x: f64| libm::round(x * 1000.0);
+        let place = PlaceAssignment {
+            to: RobotId::NOBODY,
+            // Each index counts by itself, so that any rising number will do.
+            version: number as u8,
+            index: order.index,
+            position_mm: order.target.position_m.map(|x| milli(x) as i32),
+            velocity_mmps: order.target.velocity_mps.map(|x| milli(x) as i16),
+        };
+        let header = Header {
+            boot: 0,
+            sender: OPERATOR,
+            sequence: number,
+        };
+        let mut bytes = heapless::Vec::<u8, 64>::new();
+        encode(header, &Message::Place(place), &mut bytes).expect("a frame has at most 60 bytes");
+        match frames.last_mut() {
+            Some((tick, frame)) if *tick == order.tick => frame.extend_from_slice(&bytes),
+            _ => frames.push((order.tick, bytes.to_vec())),
+        }
+    }
+    frames
+}
+
+/// What a robot sees.
+#[derive(Default)]
+pub struct Senses {
+    cells: Vec<u8>,
+    obstacles: Vec<Obstacle<f32>>,
+}
+
+impl Ground for PlaneGround {
+    type Scratch = Senses;
+
+    fn sense<'a>(&'a self, index: usize, _: u32, senses: &'a mut Senses) -> Inputs<'a, f32> {
+        let disc = &self.plane.discs()[index];
+        let Senses { cells, obstacles } = senses;
+        let sight_m = self.setup.sight_m + disc.radius_m;
+        obstacles.clear();
+        let near = self.plane.solids().iter().filter(|solid| solid.distance_m(disc.position_m) <= sight_m);
+        obstacles.extend(near.map(|solid| narrow(&solid.seen_from(disc.position_m))));
+        let place = self.in_cell(disc.position_m);
+        let window = place.zip(self.plane.terrain()).and_then(|((cell, _, _), land)| {
+            window(land, cell, self.radius, cells)
+        });
+        if let (Some((cell, off, cell_m)), Some(window)) = (place, &window) {
+            // The frame as seen from the robot.
+            let origin = |cells: i16, axis: usize| -off[axis] - (f64::from(cells) + 0.5) * cell_m;
+            let frame = GridFrame {
+                origin_m: Vec2::new(origin(cell.x, 0) as f32, origin(cell.y, 1) as f32),
+                cell_m: cell_m as f32,
+            };
+            let walls = grid_walls::<f32, WALLS>(window, &frame, Vec2::ZERO, sight_m as f32);
+            obstacles.extend(walls);
+        }
+        let [vx, vy, vz] = disc.velocity_mps.map(|v| v as f32);
+        Inputs {
+            pose: Pose {
+                // The world's numbers are finite.
+                position: Position::from_metres(disc.position_m).unwrap_or_default(),
+                velocity_mps: Vec3::new(vx, vy, vz),
+            },
+            cell: place.map(|(cell, _, _)| CellState {
+                cell,
+                busy: Duration::ZERO,
+            }),
+            window,
+            surroundings: Some(Surroundings {
+                max_speed_mps: self.plane.max_speed_mps(disc.position_m) as f32,
+                obstacles,
+                in_cell: place.map(|(_, off, cell_m)| InCell {
+                    offset_m: Vec2::new(off[0] as f32, off[1] as f32),
+                    cell_m: cell_m as f32,
+                }),
+            }),
+            inbox: &[],
+        }
+    }
+
+    fn motion(&self, index: usize, _: u32) -> Motion {
+        let disc = &self.plane.discs()[index];
+        Motion {
+            cell: self.plane.cell(disc.position_m).unwrap_or_default(),
+            position_m: disc.position_m,
+            velocity_mps: disc.velocity_mps,
+        }
+    }
+
+    fn advance(&mut self, _: u32, commands: &[Command<f32>]) {
+        self.plane.advance(commands);
+    }
+
+    fn count_collisions(&mut self, _: u32) -> u64 {
+        let clearance = self.plane.clearance();
+        clearance.overlaps + clearance.intrusions
+    }
+
+    fn words(&self, index: usize, tick: u32, status: &Status) -> Words {
+        let disc = &self.plane.discs()[index];
+        let head = (u64::from(tick) << 8) | status.mode as u64;
+        let numbers = disc.position_m.into_iter().chain(disc.velocity_mps);
+        // Zero has two signs that nobody can tell apart.
+        core::iter::once(head)
+            .chain(numbers.map(|x| (x + 0.0).to_bits()))
+            .collect()
+    }
+
+    fn arrival(&self, index: usize, tick: u32, status: &Status) -> Option<u64> {
+        let disc = &self.plane.discs()[index];
+        let has_places = !self.setup.starts[index].places.is_empty();
+        let stands = disc.velocity_mps.iter().all(|v| v.abs() < 1e-3);
+        let is_there = status.mode == Mode::Arrived && (has_places || stands);
+        is_there.then(|| (u64::from(tick) + 1) * u64::from(UNIT))
+    }
+
+    fn configure(&self, config: &mut AgentConfig<f32>) {
+        config.radius_m = self.setup.radius_m as f32;
+        config.max_acceleration_mps2 = self.setup.abilities.max_acceleration_mps2 as f32;
+        // What is sent in a tick is heard in the next one that begins after the delay.
+        let ticks = 1 + self.delay_us / self.tick_us.max(1);
+        let micros = i32::try_from(ticks * self.tick_us).unwrap_or(i32::MAX);
+        config.latency = Duration::from_micros(micros);
+    }
+
+    fn assign<G: Guidance<f32>, A: Safety<f32>>(
+        &self,
+        index: usize,
+        tick: u32,
+        agent: &mut Agent<f32, G, NEIGHBORS, A>,
+    ) {
+        if self.setup.guidance.is_on_grid() {
+            agent.assign_goal(self.robots[index].goal);
+            return;
+        }
+        let age_s = f64::from(tick) * f64::from(self.tick_us) / 1e6;
+        for (number, target) in (0..).zip(&self.setup.starts[index].places) {
+            // A guidance that has no use for it says so; the scenario was checked for that.
+            let _ = agent.assign_place(number, &place(target, age_s));
+        }
+    }
+
+    fn orders(&self, tick: u32) -> Option<&[u8]> {
+        let at = self.orders.binary_search_by_key(&tick, |(tick, _)| *tick).ok()?;
+        Some(&self.orders[at].1)
+    }
+}
+
+/// A target as it is `age_s` after it was set, at the start of a robot's clock.
+fn place(target: &Target, age_s: f64) -> Place<f32> {
+    let mut at = target.position_m;
+    for (at, v) in at.iter_mut().zip(target.velocity_mps) {
+        *at += v * age_s;
+    }
+    let [vx, vy, vz] = target.velocity_mps.map(|v| v as f32);
+    Place {
+        position: Position::from_metres(at).unwrap_or_default(),
+        velocity_mps: Vec3::new(vx, vy, vz),
+        at: Instant::from_micros(0),
+    }
+}
