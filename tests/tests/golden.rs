@@ -1,6 +1,7 @@
 //! What happens in each scenario, as a table that a person can read and any change of behaviour
 //! breaks. `cargo xtask bless golden` rewrites them.
 
+use staya_controller::wire::Mode;
 use staya_sim::engine::Outcome;
 use staya_sim::record::{RobotRow, TickRow};
 use staya_sim::scenario::Scenario;
@@ -38,7 +39,12 @@ fn table(
 
     writeln!(
         text,
-        " tick arrived  delivered  error  graph  first robots: cell, mode"
+        " tick arrived  delivered  error  graph  first robots: {}, mode",
+        if scenario.plane.is_some() {
+            "place (m)"
+        } else {
+            "cell"
+        }
     )?;
     let every = (outcome.ticks / 24).max(1);
     let last = rows.len() - 1;
@@ -46,7 +52,11 @@ fn table(
         if !row.tick.is_multiple_of(every) && index != last {
             continue;
         }
-        let there = robots.iter().filter(|r| r.motion.cell == r.target).count();
+        let is_there = |r: &&RobotRow| {
+            let is_in_plane = scenario.plane.is_some();
+            r.mode == Mode::Arrived && (is_in_plane || r.motion.cell == r.target)
+        };
+        let there = robots.iter().filter(is_there).count();
         write!(
             text,
             "{:5} {there:7} {:10} {:6.2} {:6.2} ",
@@ -54,6 +64,11 @@ fn table(
         )?;
         for robot in &robots[..robots.len().min(SHOWN)] {
             let mode = format!("{:?}", robot.mode).to_lowercase();
+            let [x, y, _] = robot.motion.position_m;
+            if scenario.plane.is_some() {
+                write!(text, " {x:8.3},{y:<8.3} {mode:<7}")?;
+                continue;
+            }
             write!(
                 text,
                 " {:3},{:<3} {mode:<7}",

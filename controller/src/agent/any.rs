@@ -1,6 +1,7 @@
 //! Guidance and safety layer chosen at run time: for the simulator and for firmware that is told by its host. A firmware that
 //! knows what it wants names the types and pays for nothing else.
 
+use super::flock_guidance::{BoidsGuidance, GoalFlockGuidance, LatticeGuidance};
 use super::formation_guidance::FormationGuidance;
 use super::guidance::{BadInput, Guidance, Guided, Place, View};
 use super::in_plane::InPlane;
@@ -18,12 +19,11 @@ use crate::wire::{RobotId, TemplateAssignment};
 /// Any guidance for robots in the plane or in space.
 #[derive(Clone, Debug)]
 #[expect(missing_docs, reason = "each variant's type says it")]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "there is no heap to put the large ones on, and a robot has one"
-)]
 pub enum AnyGuidance<S, const CELLS: usize, const M: usize, const F: usize> {
     Waypoint(WaypointGuidance<S>),
+    Lattice(LatticeGuidance<S>),
+    GoalFlock(GoalFlockGuidance<S>),
+    Boids(BoidsGuidance<S>),
     Route(InPlane<S, RouteGuidance<CELLS, M>>),
     Formation(InPlane<S, FormationGuidance<CELLS, M, F>>),
 }
@@ -33,6 +33,9 @@ macro_rules! each {
     ($any:expr, $inside:ident => $action:expr) => {
         match $any {
             AnyGuidance::Waypoint($inside) => $action,
+            AnyGuidance::Lattice($inside) => $action,
+            AnyGuidance::GoalFlock($inside) => $action,
+            AnyGuidance::Boids($inside) => $action,
             AnyGuidance::Route($inside) => $action,
             AnyGuidance::Formation($inside) => $action,
         }
@@ -52,6 +55,9 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
     ) -> Result<Guided<S>, BadInput> {
         match self {
             Self::Waypoint(guidance) => guidance.decide(view, rng, &mut ()),
+            Self::Lattice(guidance) => guidance.decide(view, rng, &mut ()),
+            Self::GoalFlock(guidance) => guidance.decide(view, rng, &mut ()),
+            Self::Boids(guidance) => guidance.decide(view, rng, &mut ()),
             Self::Route(guidance) => guidance.decide(view, rng, workspace),
             Self::Formation(guidance) => guidance.decide(view, rng, workspace),
         }

@@ -38,6 +38,7 @@
 //! ```
 
 mod any;
+mod flock_guidance;
 mod formation_guidance;
 mod guidance;
 mod in_plane;
@@ -53,6 +54,7 @@ mod waypoint_guidance;
 mod tests;
 
 pub use any::{AnyGuidance, AnySafety};
+pub use flock_guidance::{BoidsGuidance, GOALS, GoalFlockGuidance, LatticeGuidance};
 pub use formation_guidance::FormationGuidance;
 pub use guidance::{Ask, BadInput, Guidance, Guided, Place, View};
 pub use in_plane::InPlane;

@@ -7,12 +7,12 @@ use crate::scenario::{Order, PlaneSetup, Robot, Scenario, Target};
 use crate::world::plane::{Disc, Plane, narrow};
 use crate::world::window;
 use staya_controller::agent::{
-    Agent, AgentConfig, CellState, Command, Guidance, InCell, Inputs, NEIGHBORS, Place, Pose, Safety,
-    Surroundings,
+    Agent, AgentConfig, CellState, Command, Guidance, InCell, Inputs, NEIGHBORS, Place, Pose,
+    Safety, Surroundings,
 };
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Cell, GridFrame, UNIT};
-use staya_controller::obstacle::Obstacle;
+use staya_controller::obstacle::{Obstacle, grid_walls};
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{Header, Message, Mode, PlaceAssignment, RobotId, encode};
 
@@ -118,12 +118,16 @@ impl Ground for PlaneGround {
         let Senses { cells, obstacles } = senses;
         let sight_m = self.setup.sight_m + disc.radius_m;
         obstacles.clear();
-        let near = self.plane.solids().iter().filter(|solid| solid.distance_m(disc.position_m) <= sight_m);
+        let near = self
+            .plane
+            .solids()
+            .iter()
+            .filter(|solid| solid.distance_m(disc.position_m) <= sight_m);
         obstacles.extend(near.map(|solid| narrow(&solid.seen_from(disc.position_m))));
         let place = self.in_cell(disc.position_m);
-        let window = place.zip(self.plane.terrain()).and_then(|((cell, _, _), land)| {
-            window(land, cell, self.radius, cells)
-        });
+        let window = place
+            .zip(self.plane.terrain())
+            .and_then(|((cell, _, _), land)| window(land, cell, self.radius, cells));
         if let (Some((cell, off, cell_m)), Some(window)) = (place, &window) {
             // The frame as seen from the robot.
             let origin = |cells: i16, axis: usize| -off[axis] - (f64::from(cells) + 0.5) * cell_m;
@@ -221,7 +225,10 @@ impl Ground for PlaneGround {
     }
 
     fn orders(&self, tick: u32) -> Option<&[u8]> {
-        let at = self.orders.binary_search_by_key(&tick, |(tick, _)| *tick).ok()?;
+        let at = self
+            .orders
+            .binary_search_by_key(&tick, |(tick, _)| *tick)
+            .ok()?;
         Some(&self.orders[at].1)
     }
 }

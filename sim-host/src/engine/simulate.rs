@@ -5,7 +5,11 @@ use crate::metrics::Keeping;
 use crate::record::{PacketCounts, RobotRow, TickRow};
 use crate::scenario::{GuidanceName, PlaneSetup, SafetyName, Scenario};
 use crate::world::Misplaced;
-use staya_controller::agent::{AnyGuidance, AnySafety, CELLS, FormationGuidance, Guidance, InPlane, NEIGHBORS, OrcaSafety, RouteGuidance, Safety, TEMPLATE, Unguarded, VISITS, WaypointGuidance};
+use staya_controller::agent::{
+    AnyGuidance, AnySafety, BoidsGuidance, CELLS, FormationGuidance, GoalFlockGuidance, Guidance,
+    InPlane, LatticeGuidance, NEIGHBORS, OrcaSafety, RouteGuidance, Safety, TEMPLATE, Unguarded,
+    VISITS, WaypointGuidance,
+};
 use std::ops::ControlFlow;
 
 /// Cells of a search for windows up to radius 16 with their border: (2 * 16 + 3)^2.
@@ -86,11 +90,20 @@ fn brains(
     let (route, formation) = (route::<WIDE>(scenario), formation::<WIDE>(scenario));
     let (guidance, safety) = (setup.guidance, setup.safety);
     let (orca, doubt) = (setup.orca, setup.doubt);
+    let (lattice, goal_flock, boids) = (setup.lattice, setup.goal_flock, setup.boids);
+    let seed = scenario.seed;
     move |index| {
         let guidance = match guidance {
             GuidanceName::Waypoint => {
                 AnyGuidance::Waypoint(WaypointGuidance::new(cruise_mps, tolerance_m))
             }
+            GuidanceName::Lattice => {
+                AnyGuidance::Lattice(LatticeGuidance::new(lattice.0, lattice.1))
+            }
+            GuidanceName::GoalFlock => {
+                AnyGuidance::GoalFlock(GoalFlockGuidance::new(goal_flock.0, goal_flock.1, seed))
+            }
+            GuidanceName::Boids => AnyGuidance::Boids(BoidsGuidance::new(boids, cruise_mps)),
             GuidanceName::Route => AnyGuidance::Route(InPlane::new(route(index), cruise_mps)),
             GuidanceName::Formation => {
                 AnyGuidance::Formation(InPlane::new(formation(index), cruise_mps))

@@ -14,9 +14,9 @@ pub use params::{
     ExitName, FormationTable, PredictionName, RecoveryName, ReplanName, RouteTable, Routing,
 };
 pub use plane::{
-    BallEntry, CircleEntry, CloudEntry, GuidanceName, HalfSpaceEntry, OrcaTable, Order, OrderEntry,
-    Place, PlaneRobotEntry, PlaneRobots, PlaneSetup, PlaneTable, SafetyName, Start, Target,
-    WallEntry, circle_starts,
+    BallEntry, BoidsTable, CircleEntry, CloudEntry, GoalFlockTable, GuidanceName, HalfSpaceEntry,
+    LatticeTable, OrcaTable, Order, OrderEntry, Place, PlaneRobotEntry, PlaneRobots, PlaneSetup,
+    PlaneTable, SafetyName, Start, Target, WallEntry, circle_starts,
 };
 pub use robots::{Formation, Robot};
 pub use schema::{

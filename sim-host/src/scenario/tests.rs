@@ -466,6 +466,7 @@ fn every_field_is_in_the_table_of_the_readme() {
     let sources = [
         include_str!("schema.rs"),
         include_str!("params.rs"),
+        include_str!("plane/table.rs"),
         include_str!("../radio/params.rs"),
     ];
     let mut fields = 0;
@@ -477,8 +478,10 @@ fn every_field_is_in_the_table_of_the_readme() {
             let in_code = format!("`{name}`");
             let is_table = format!("`[{name}]`");
             let is_list = format!("`[[{name}]]`");
+            let in_plane = [format!("`[plane.{name}]`"), format!("`[[plane.{name}]]`")];
             let said = [in_code, is_table, is_list]
                 .iter()
+                .chain(&in_plane)
                 .any(|word| readme.contains(word));
             // Those of a Routing are not from the file.
             assert!(

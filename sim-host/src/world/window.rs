@@ -27,27 +27,27 @@ pub fn window<'a>(
     radius: u8,
     buffer: &'a mut Vec<u8>,
 ) -> Option<Window<'a>> {
-        terrain.index(cell)?;
-        let reach = i16::from(radius);
-        let side = 2 * u16::from(radius) + 1;
-        let origin = cell - Cell::new(reach, reach);
-        let row_length = usize::from(terrain.width());
-        let (before, columns, after) = span(cell.x, reach, terrain.width());
-        buffer.clear();
-        for y in i32::from(origin.y)..i32::from(origin.y) + i32::from(side) {
-            let row = usize::try_from(y)
-                .ok()
-                .filter(|&row| row < usize::from(terrain.height()));
-            let Some(row) = row else {
-                buffer.resize(buffer.len() + usize::from(side), BLOCKED);
-                continue;
-            };
-            let row = &terrain.cells()[row * row_length..][..row_length];
-            buffer.resize(buffer.len() + before, BLOCKED);
-            buffer.extend_from_slice(&row[columns.clone()]);
-            buffer.resize(buffer.len() + after, BLOCKED);
-        }
-        Window::new(buffer, origin, side, side)
+    terrain.index(cell)?;
+    let reach = i16::from(radius);
+    let side = 2 * u16::from(radius) + 1;
+    let origin = cell - Cell::new(reach, reach);
+    let row_length = usize::from(terrain.width());
+    let (before, columns, after) = span(cell.x, reach, terrain.width());
+    buffer.clear();
+    for y in i32::from(origin.y)..i32::from(origin.y) + i32::from(side) {
+        let row = usize::try_from(y)
+            .ok()
+            .filter(|&row| row < usize::from(terrain.height()));
+        let Some(row) = row else {
+            buffer.resize(buffer.len() + usize::from(side), BLOCKED);
+            continue;
+        };
+        let row = &terrain.cells()[row * row_length..][..row_length];
+        buffer.resize(buffer.len() + before, BLOCKED);
+        buffer.extend_from_slice(&row[columns.clone()]);
+        buffer.resize(buffer.len() + after, BLOCKED);
+    }
+    Window::new(buffer, origin, side, side)
 }
 
 /// The part of `at - reach ..= at + reach` inside `0..length`, and how much of it lies before and after.

@@ -319,6 +319,7 @@ impl Plan {
                 ..RadioParams::default()
             },
             robots: robots.collect(),
+            plane: None,
             formation: graph,
             route: Routing {
                 params: self.route,

@@ -1,0 +1,183 @@
+//! The tables of the flocks.
+
+use super::super::ScenarioError;
+use super::super::source::Source;
+use super::table::{GuidanceName, PlaneTable};
+use super::within;
+use staya_controller::flock::boids::BoidsParams;
+use staya_controller::flock::goal::GoalParams;
+use staya_controller::flock::lattice::{Algorithm, Gain, LatticeParams};
+
+/// An error when a flock's guidance is chosen without its table, or the table is there without it.
+fn goes_with<T: Copy>(
+    source: &Source<'_>,
+    table: &PlaneTable,
+    guidance: GuidanceName,
+    name: &str,
+    given: Option<T>,
+) -> Result<Option<T>, ScenarioError> {
+    let field = format!("plane.{name}");
+    match (table.guidance == guidance, given.is_some()) {
+        (true, false) => {
+            let what = "this guidance needs distances to go by";
+            let remedy = "scenarios/README.md lists the fields of its table";
+            Err(source.error(&field, what, remedy))
+        }
+        (false, true) => {
+            let remedy = format!("give plane.guidance = \"{name}\", or leave this table out");
+            Err(source.error(&field, "these robots have another guidance", remedy))
+        }
+        _ => Ok(given),
+    }
+}
+
+pub(super) fn lattice(
+    source: &Source<'_>,
+    table: &PlaneTable,
+) -> Result<(LatticeParams<f32>, bool), ScenarioError> {
+    let given = goes_with(
+        source,
+        table,
+        GuidanceName::Lattice,
+        "lattice",
+        table.lattice,
+    )?;
+    let Some(given) = given else {
+        return Ok((LatticeParams::new(1.0), true));
+    };
+    within(
+        source,
+        "plane.lattice.spacing_m",
+        given.spacing_m,
+        0.01,
+        100.0,
+        "metres",
+    )?;
+    let mut params = LatticeParams::new(given.spacing_m as f32);
+    params.algorithm = match given.algorithm {
+        Some(1) => Algorithm::One,
+        Some(2) => Algorithm::Two,
+        None | Some(3) => Algorithm::Three,
+        Some(other) => {
+            let what = format!("there is no algorithm {other}");
+            return Err(source.error("plane.lattice.algorithm", what, "give 1, 2 or 3"));
+        }
+    };
+    for (field, gain, param) in [
+        ("c_alpha", given.c_alpha, &mut params.alpha),
+        ("c_beta", given.c_beta, &mut params.beta),
+        ("c_gamma", given.c_gamma, &mut params.gamma),
+    ] {
+        if let Some(gain) = gain {
+            within(
+                source,
+                &format!("plane.lattice.{field}"),
+                gain,
+                0.0,
+                1e6,
+                "1/s^2",
+            )?;
+            *param = Gain::critical(gain as f32);
+        }
+    }
+    Ok((params, given.goal_moves.unwrap_or(true)))
+}
+
+pub(super) fn goal_flock(
+    source: &Source<'_>,
+    table: &PlaneTable,
+    cruise_mps: f64,
+) -> Result<(GoalParams<f32>, f32), ScenarioError> {
+    let wanted = GuidanceName::GoalFlock;
+    let Some(given) = goes_with(source, table, wanted, "goal_flock", table.goal_flock)? else {
+        return Ok((GoalParams::new(1.0, 1.0), 1.0));
+    };
+    let least = given.min_distance_m;
+    within(
+        source,
+        "plane.goal_flock.min_distance_m",
+        least,
+        0.001,
+        10_000.0,
+        "metres",
+    )?;
+    let seen = given.neighborhood_m.unwrap_or(4.0 * least);
+    let field = "plane.goal_flock.neighborhood_m";
+    within(source, field, seen, 2.0 * least, 100_000.0, "metres")?;
+    let arrival_m = given.arrival_m.unwrap_or(seen);
+    within(
+        source,
+        "plane.goal_flock.arrival_m",
+        arrival_m,
+        0.001,
+        1e6,
+        "metres",
+    )?;
+    let mut params = GoalParams::new(least as f32, cruise_mps as f32);
+    params.neighborhood_m = seen as f32;
+    for (field, gain, param) in [
+        ("k1", given.k1, &mut params.goal_gain),
+        ("k2", given.k2, &mut params.center_gain),
+        ("k3", given.k3, &mut params.repulsion_gain),
+    ] {
+        if let Some(gain) = gain {
+            within(
+                source,
+                &format!("plane.goal_flock.{field}"),
+                gain,
+                -1e6,
+                1e6,
+                "",
+            )?;
+            *param = gain as f32;
+        }
+    }
+    Ok((params, arrival_m as f32))
+}
+
+pub(super) fn boids(
+    source: &Source<'_>,
+    table: &PlaneTable,
+) -> Result<BoidsParams<f32>, ScenarioError> {
+    let given = goes_with(source, table, GuidanceName::Boids, "boids", table.boids)?;
+    let Some(given) = given else {
+        return Ok(BoidsParams::paper(1.0));
+    };
+    within(
+        source,
+        "plane.boids.crowded_m",
+        given.crowded_m,
+        0.0,
+        1e5,
+        "metres",
+    )?;
+    within(
+        source,
+        "plane.boids.closest_m",
+        given.closest_m,
+        0.0,
+        1e5,
+        "metres",
+    )?;
+    let max_turn = given.max_turn.unwrap_or(0.05);
+    let max_turn_away = given.max_turn_away.unwrap_or(0.02);
+    within(
+        source,
+        "plane.boids.max_turn",
+        max_turn,
+        0.0,
+        3.15,
+        "radians",
+    )?;
+    within(
+        source,
+        "plane.boids.max_turn_away",
+        max_turn_away,
+        0.0,
+        3.15,
+        "radians",
+    )?;
+    let [crowded, closest, turn, away] =
+        [given.crowded_m, given.closest_m, max_turn, max_turn_away].map(|x| x as f32);
+    Ok(BoidsParams::new(crowded, closest, turn, away))
+}

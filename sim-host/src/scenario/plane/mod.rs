@@ -1,0 +1,330 @@
+//! `[plane]`: robots that move in the plane or in space, and how they choose their velocities.
+
+mod flocks;
+mod starts;
+mod table;
+
+pub use starts::{Start, Target, circle_starts};
+pub use table::*;
+
+use super::check::within;
+use super::source::Source;
+use super::{Robot, ScenarioError, ScenarioFile};
+use crate::terrain::Terrain;
+use crate::world::plane::{Abilities, Solid};
+use staya_controller::flock::boids::BoidsParams;
+use staya_controller::flock::goal::GoalParams;
+use staya_controller::flock::lattice::LatticeParams;
+use staya_controller::grid::Cell;
+use staya_controller::neighbor::Doubt;
+use staya_controller::orca::AvoidParams;
+use staya_controller::wire::RobotId;
+
+/// Robots that a plane can hold.
+const MAX_ROBOTS: u32 = 1_000_000;
+
+/// An operator's order to all robots.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Order {
+    /// The tick in which it arrives.
+    pub tick: u32,
+    /// Which of the goals.
+    pub index: u8,
+    /// The goal.
+    pub target: Target,
+}
+
+/// A checked `[plane]`.
+#[derive(Clone, Debug)]
+pub struct PlaneSetup {
+    /// What bodies can do.
+    pub abilities: Abilities,
+    /// Radius of each body, metres.
+    pub radius_m: f64,
+    /// Speed that robots like to go, m/s.
+    pub cruise_mps: f64,
+    /// How near to a goal counts as being there, metres.
+    pub tolerance_m: f64,
+    /// How far robots see obstacles, metres.
+    pub sight_m: f64,
+    /// Whether there is land under the bodies.
+    pub has_terrain: bool,
+    /// What does not move.
+    pub solids: Vec<Solid>,
+    /// By robot.
+    pub starts: Vec<Start>,
+    /// Where they want to go.
+    pub guidance: GuidanceName,
+    /// What keeps them apart.
+    pub safety: SafetyName,
+    /// Parameters of ORCA.
+    pub orca: AvoidParams<f32>,
+    /// How silent robots are seen.
+    pub doubt: Doubt<f32>,
+    /// Parameters of the alpha flock, and whether its reference moves.
+    pub lattice: (LatticeParams<f32>, bool),
+    /// Parameters of the goal flock, and how near counts as being at a goal, metres.
+    pub goal_flock: (GoalParams<f32>, f32),
+    /// Parameters of boids.
+    pub boids: BoidsParams<f32>,
+    /// By rising tick.
+    pub orders: Vec<Order>,
+}
+
+/// Checks the table and places the robots; `cells` are those that the top-level `robots` gives.
+pub(super) fn build(
+    source: &Source<'_>,
+    file: &ScenarioFile,
+    table: &PlaneTable,
+    terrain: Option<&Terrain>,
+    cells: Option<&[Robot]>,
+) -> Result<(PlaneSetup, Vec<Robot>), ScenarioError> {
+    let far = 2_000_000.0;
+    for (field, value, low, high, unit) in [
+        ("plane.radius_m", table.radius_m, 0.001, 65.0, "metres"),
+        (
+            "plane.max_speed_mps",
+            table.max_speed_mps,
+            0.001,
+            32.0,
+            "m/s",
+        ),
+        ("plane.sight_m", table.sight_m, 0.0, far, "metres"),
+    ] {
+        within(source, field, value, low, high, unit)?;
+    }
+    if table.max_acceleration_mps2.is_nan() || table.max_acceleration_mps2 <= 0.0 {
+        let what = format!("{} is no acceleration", table.max_acceleration_mps2);
+        let remedy = "give more than 0, in m/s^2, or inf";
+        return Err(source.error("plane.max_acceleration_mps2", what, remedy));
+    }
+    let cruise_mps = table.cruise_mps.unwrap_or(table.max_speed_mps);
+    within(
+        source,
+        "plane.cruise_mps",
+        cruise_mps,
+        0.0,
+        table.max_speed_mps,
+        "m/s",
+    )?;
+    let tolerance_m = table.tolerance_m.unwrap_or(table.radius_m / 10.0);
+    within(
+        source,
+        "plane.tolerance_m",
+        tolerance_m,
+        0.001,
+        far,
+        "metres",
+    )?;
+    if table.guidance.is_on_grid() && (terrain.is_none() || cells.is_none()) {
+        return Err(source.error(
+            "plane.guidance",
+            "this guidance goes from cell to cell",
+            "give [terrain] and the top-level [robots], or another guidance",
+        ));
+    }
+    if (table.guidance == GuidanceName::Formation) != file.in_formation() {
+        return Err(source.error(
+            "plane.guidance",
+            "robots.formation and guidance \"formation\" go together",
+            "give both or none of them",
+        ));
+    }
+    let starts = match (cells, &table.robots) {
+        (Some(robots), None) => {
+            let terrain = terrain.expect("cells have been checked against the land");
+            starts::on_land(robots, terrain)
+        }
+        (None, Some(robots)) => starts::placed(source, file.seed, table, robots)?,
+        _ => {
+            return Err(source.error(
+                "plane.robots",
+                "it is not clear who takes part",
+                "give either plane.robots in metres or the top-level robots in cells",
+            ));
+        }
+    };
+    for (index, start) in starts.iter().enumerate() {
+        let places = start.places.iter().map(|target| target.position_m);
+        for place in places.chain([start.position_m]) {
+            if !place.iter().all(|x| x.abs() <= far) {
+                let what = format!("robot {} starts or goes too far away", index + 1);
+                let remedy = "stay within 2000 km of the origin";
+                return Err(source.error("plane.robots", what, remedy));
+            }
+        }
+    }
+    let robots = match cells {
+        Some(robots) => robots.to_vec(),
+        None => (1..=starts.len() as u32)
+            .map(|id| Robot {
+                id: RobotId(id),
+                start: Cell::default(),
+                goal: Cell::default(),
+            })
+            .collect(),
+    };
+    let setup = PlaneSetup {
+        abilities: Abilities {
+            max_speed_mps: table.max_speed_mps,
+            max_acceleration_mps2: table.max_acceleration_mps2,
+            step_s: f64::from(super::check::micros(file.tick_s)) / 1e6,
+        },
+        radius_m: table.radius_m,
+        cruise_mps,
+        tolerance_m,
+        sight_m: table.sight_m,
+        has_terrain: terrain.is_some(),
+        solids: solids(source, table)?,
+        starts,
+        guidance: table.guidance,
+        safety: table.safety,
+        orca: orca(source, &table.orca)?,
+        doubt: doubt(source, table)?,
+        lattice: flocks::lattice(source, table)?,
+        goal_flock: flocks::goal_flock(source, table, cruise_mps)?,
+        boids: flocks::boids(source, table)?,
+        orders: orders(source, file, table)?,
+    };
+    Ok((setup, robots))
+}
+
+fn solids(source: &Source<'_>, table: &PlaneTable) -> Result<Vec<Solid>, ScenarioError> {
+    let mut solids = Vec::new();
+    for (index, wall) in table.wall.iter().enumerate() {
+        let is_sound = wall.points_m.iter().flatten().all(|x| x.is_finite());
+        if wall.points_m.len() < 2 || !is_sound {
+            let field = format!("plane.wall[{index}].points_m");
+            return Err(source.error(
+                &field,
+                "this is no wall",
+                "give two or more points in metres",
+            ));
+        }
+        let pairs = wall.points_m.windows(2).map(|pair| [pair[0], pair[1]]);
+        solids.extend(pairs.map(Solid::Wall));
+        if wall.closed {
+            let ends = [wall.points_m[wall.points_m.len() - 1], wall.points_m[0]];
+            solids.push(Solid::Wall(ends));
+        }
+    }
+    for (index, ball) in table.ball.iter().enumerate() {
+        let field = format!("plane.ball[{index}].radius_m");
+        within(source, &field, ball.radius_m, 0.001, 1e6, "metres")?;
+        solids.push(Solid::Ball {
+            center_m: ball.center_m.0,
+            radius_m: ball.radius_m,
+        });
+    }
+    for (index, entry) in table.half_space.iter().enumerate() {
+        let length = entry.normal.0.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if !(length > 0.0 && length.is_finite()) {
+            let field = format!("plane.half_space[{index}].normal");
+            return Err(source.error(
+                &field,
+                "this is no direction",
+                "give a vector that is not zero",
+            ));
+        }
+        solids.push(Solid::Plane {
+            point_m: entry.point_m.0,
+            normal: entry.normal.0.map(|x| x / length),
+        });
+    }
+    Ok(solids)
+}
+
+fn orca(source: &Source<'_>, table: &OrcaTable) -> Result<AvoidParams<f32>, ScenarioError> {
+    let mut params = AvoidParams::<f32>::default();
+    for (field, value, low, high, unit, param) in [
+        (
+            "horizon_s",
+            table.horizon_s,
+            0.01,
+            60.0,
+            "seconds",
+            &mut params.horizon_s,
+        ),
+        (
+            "wall_horizon_s",
+            table.wall_horizon_s,
+            0.01,
+            60.0,
+            "seconds",
+            &mut params.wall_horizon_s,
+        ),
+        ("share", table.share, 0.0, 1.0, "", &mut params.share),
+        (
+            "margin_m",
+            table.margin_m,
+            0.0,
+            10.0,
+            "metres",
+            &mut params.margin_m,
+        ),
+    ] {
+        if let Some(value) = value {
+            within(
+                source,
+                &format!("plane.orca.{field}"),
+                value,
+                low,
+                high,
+                unit,
+            )?;
+            *param = value as f32;
+        }
+    }
+    Ok(params)
+}
+
+fn doubt(source: &Source<'_>, table: &PlaneTable) -> Result<Doubt<f32>, ScenarioError> {
+    let growth_mps = table.orca.doubt_mps.unwrap_or(table.max_speed_mps / 2.0);
+    let most_m = table.orca.doubt_m.unwrap_or(table.radius_m);
+    within(
+        source,
+        "plane.orca.doubt_mps",
+        growth_mps,
+        0.0,
+        1000.0,
+        "m/s",
+    )?;
+    within(source, "plane.orca.doubt_m", most_m, 0.0, 1000.0, "metres")?;
+    Ok(Doubt {
+        growth_mps: growth_mps as f32,
+        most_m: most_m as f32,
+    })
+}
+
+fn orders(
+    source: &Source<'_>,
+    file: &ScenarioFile,
+    table: &PlaneTable,
+) -> Result<Vec<Order>, ScenarioError> {
+    let mut orders = Vec::new();
+    for (index, order) in table.order.iter().enumerate() {
+        let field = format!("plane.order[{index}].at_s");
+        within(source, &field, order.at_s, 0.0, 1e9, "seconds")?;
+        if order.goal > 3 {
+            let field = format!("plane.order[{index}].goal");
+            return Err(source.error(&field, "robots have goals 0 to 3", "give one of them"));
+        }
+        orders.push(Order {
+            tick: libm::ceil(order.at_s / file.tick_s) as u32,
+            index: order.goal,
+            target: Target {
+                position_m: order.place_m.0,
+                velocity_mps: order.velocity_mps.0,
+            },
+        });
+    }
+    orders.sort_by_key(|order| order.tick);
+    Ok(orders)
+}
+fn check_count(source: &Source<'_>, field: &str, count: u32) -> Result<(), ScenarioError> {
+    if (1..=MAX_ROBOTS).contains(&count) {
+        return Ok(());
+    }
+    let remedy = format!("give 1 to {MAX_ROBOTS}");
+    Err(source.error(field, format!("{count} robots are no swarm"), remedy))
+}

@@ -1,0 +1,182 @@
+//! Where robots in the plane start, and what they are told.
+
+use super::super::source::Source;
+use super::super::{Robot, ScenarioError};
+use super::check_count as count;
+use super::table::{CloudEntry, Place, PlaneRobots, PlaneTable};
+use super::within;
+use crate::terrain::Terrain;
+use staya_controller::grid::Cell;
+use staya_controller::rand::Rng;
+use std::collections::HashMap;
+
+/// Keep the draws of this module apart from all others.
+const STARTS: u32 = 0x0053_0003;
+
+/// Where a robot starts and what it is told.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Start {
+    /// World position, metres.
+    pub position_m: [f64; 3],
+    /// World velocity, m/s.
+    pub velocity_mps: [f64; 3],
+    /// The places it is told to go to.
+    pub places: Vec<Target>,
+}
+
+/// A place to go to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Target {
+    /// Where it is at the start of the run, or of an order, metres.
+    pub position_m: [f64; 3],
+    /// How it moves, m/s.
+    pub velocity_mps: [f64; 3],
+}
+
+/// Robots of the grid, in the middles of their cells.
+pub(super) fn on_land(robots: &[Robot], terrain: &Terrain) -> Vec<Start> {
+    let center = |cell: Cell| {
+        let at = |cells: i16, axis: usize| {
+            terrain.origin_m[axis] + (f64::from(cells) + 0.5) * terrain.cell_m
+        };
+        [at(cell.x, 0), at(cell.y, 1), 0.0]
+    };
+    let start = |robot: &Robot| Start {
+        position_m: center(robot.start),
+        velocity_mps: [0.0; 3],
+        places: vec![Target {
+            position_m: center(robot.goal),
+            velocity_mps: [0.0; 3],
+        }],
+    };
+    robots.iter().map(start).collect()
+}
+
+pub(super) fn placed(
+    source: &Source<'_>,
+    seed: u64,
+    table: &PlaneTable,
+    robots: &PlaneRobots,
+) -> Result<Vec<Start>, ScenarioError> {
+    let fixed = |place: Place| Target {
+        position_m: place.0,
+        velocity_mps: [0.0; 3],
+    };
+    let starts = match (&robots.list, &robots.circle, &robots.cloud) {
+        (Some(list), None, None) => list
+            .iter()
+            .map(|entry| Start {
+                position_m: entry.start_m.0,
+                velocity_mps: entry.velocity_mps.0,
+                places: entry.goal_m.into_iter().map(fixed).collect(),
+            })
+            .collect(),
+        (None, Some(circle), None) => {
+            count(source, "plane.robots.circle.count", circle.count)?;
+            let field = "plane.robots.circle.radius_m";
+            within(source, field, circle.radius_m, 0.001, 1e6, "metres")?;
+            let field = "plane.robots.circle.noise_m";
+            within(source, field, circle.noise_m, 0.0, 1e6, "metres")?;
+            circle_starts(circle.count, circle.radius_m, circle.noise_m, seed)
+        }
+        (None, None, Some(cloud)) => {
+            count(source, "plane.robots.cloud.count", cloud.count)?;
+            cloud_starts(cloud, table.radius_m, seed).ok_or_else(|| {
+                source.error(
+                    "plane.robots.cloud",
+                    "the robots find no room between the corners",
+                    "give fewer robots or corners farther apart",
+                )
+            })?
+        }
+        _ => {
+            return Err(source.error(
+                "plane.robots",
+                "it is not clear who takes part",
+                "give exactly one of list, circle, cloud",
+            ));
+        }
+    };
+    Ok(starts)
+}
+
+/// Evenly on the circle from the east on, each with its goal on the opposite side of its own start; `noise_m` moves the starts, and
+/// the goals stay exact.
+#[must_use]
+pub fn circle_starts(count: u32, radius_m: f64, noise_m: f64, seed: u64) -> Vec<Start> {
+    (0..count)
+        .map(|index| {
+            let angle = 2.0 * std::f64::consts::PI * f64::from(index) / f64::from(count);
+            let [x, y] = [libm::cos(angle) * radius_m, libm::sin(angle) * radius_m];
+            let mut rng = Rng::keyed(seed, STARTS, index, 0);
+            let mut noise = || (2.0 * unit(&mut rng) - 1.0) * noise_m;
+            Start {
+                position_m: [x + noise(), y + noise(), 0.0],
+                velocity_mps: [0.0; 3],
+                places: vec![Target {
+                    position_m: [-x, -y, 0.0],
+                    velocity_mps: [0.0; 3],
+                }],
+            }
+        })
+        .collect()
+}
+
+/// Evenly on [0, 1).
+fn unit(rng: &mut Rng) -> f64 {
+    (rng.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+/// Draws of a place before the cloud is refused as too crowded.
+const TRIES: u32 = 1000;
+
+/// Evenly between the corners without overlaps; `None` when there is no room.
+fn cloud_starts(cloud: &CloudEntry, radius_m: f64, seed: u64) -> Option<Vec<Start>> {
+    let between = |rng: &mut Rng, from: Place, to: Place| {
+        let mut place = [0.0; 3];
+        for (axis, place) in place.iter_mut().enumerate() {
+            *place = from.0[axis] + (to.0[axis] - from.0[axis]) * unit(rng);
+        }
+        place
+    };
+    let places: Vec<_> = cloud
+        .goals_m
+        .iter()
+        .map(|goal| Target {
+            position_m: goal.0,
+            velocity_mps: cloud.goal_velocity_mps.0,
+        })
+        .collect();
+    let mut taken = HashMap::<[i64; 3], Vec<[f64; 3]>>::new();
+    let bucket = |place: [f64; 3]| place.map(|x| libm::floor(x / (2.0 * radius_m)) as i64);
+    let is_free = |taken: &HashMap<[i64; 3], Vec<[f64; 3]>>, place: [f64; 3]| {
+        let [x, y, z] = bucket(place);
+        let around = (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| (dx, dy)));
+        let around = around.flat_map(|(dx, dy)| (-1..=1).map(move |dz| [x + dx, y + dy, z + dz]));
+        let mut near = around.filter_map(|at| taken.get(&at)).flatten();
+        !near.any(|other| {
+            let squared: f64 = (0..3)
+                .map(|i| (place[i] - other[i]) * (place[i] - other[i]))
+                .sum();
+            squared < 4.0 * radius_m * radius_m
+        })
+    };
+    (0..cloud.count)
+        .map(|index| {
+            let mut rng = Rng::keyed(seed, STARTS, index, 1);
+            let position_m = (0..TRIES)
+                .map(|_| between(&mut rng, cloud.from_m, cloud.to_m))
+                .find(|&place| is_free(&taken, place))?;
+            taken
+                .entry(bucket(position_m))
+                .or_default()
+                .push(position_m);
+            let (from, to) = (cloud.velocity_from_mps, cloud.velocity_to_mps);
+            Some(Start {
+                position_m,
+                velocity_mps: between(&mut rng, from, to),
+                places: places.clone(),
+            })
+        })
+        .collect()
+}

@@ -1,0 +1,296 @@
+//! `[plane]` as it stands in the file: every field is documented here.
+
+use serde::Deserialize;
+
+/// `[plane]`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlaneTable {
+    /// Radius of each body, metres.
+    pub radius_m: f64,
+    /// Highest speed on easy land, m/s.
+    pub max_speed_mps: f64,
+    /// Highest acceleration, m/s^2. Default: no limit.
+    #[serde(default = "infinite")]
+    pub max_acceleration_mps2: f64,
+    /// Speed that robots like to go, m/s. Default: the highest.
+    pub cruise_mps: Option<f64>,
+    /// How near to a goal counts as being there, metres. Default: a tenth of the radius.
+    pub tolerance_m: Option<f64>,
+    /// How far robots see obstacles, metres. Default: 10.
+    #[serde(default = "ten")]
+    pub sight_m: f64,
+    /// Where they want to go.
+    #[serde(default)]
+    pub guidance: GuidanceName,
+    /// What keeps them apart.
+    #[serde(default)]
+    pub safety: SafetyName,
+    /// Who takes part, unless the top-level `robots` says it in cells.
+    pub robots: Option<PlaneRobots>,
+    /// Walls: chains of points.
+    #[serde(default)]
+    pub wall: Vec<WallEntry>,
+    /// Balls (in the plane: discs).
+    #[serde(default)]
+    pub ball: Vec<BallEntry>,
+    /// Half-spaces.
+    #[serde(default)]
+    pub half_space: Vec<HalfSpaceEntry>,
+    /// Parameters of ORCA.
+    #[serde(default)]
+    pub orca: OrcaTable,
+    /// Parameters of the alpha flock; required for it.
+    pub lattice: Option<LatticeTable>,
+    /// Parameters of the goal flock; required for it.
+    pub goal_flock: Option<GoalFlockTable>,
+    /// Parameters of boids; required for them.
+    pub boids: Option<BoidsTable>,
+    /// What moves during the run: goals that an operator sends.
+    #[serde(default)]
+    pub order: Vec<OrderEntry>,
+}
+
+const fn infinite() -> f64 {
+    f64::INFINITY
+}
+
+const fn ten() -> f64 {
+    10.0
+}
+
+/// `plane.guidance`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GuidanceName {
+    /// Straight to the goal.
+    #[default]
+    Waypoint,
+    /// The alpha flock (OLF): equal distances, with the first goal as its reference.
+    Lattice,
+    /// The goal flock (PAV): to the middle of the goals together, then each to one of them.
+    GoalFlock,
+    /// Boids (STA).
+    Boids,
+    /// By the grid's windowed routing (KUZ), from cell to cell; needs `[terrain]`.
+    Route,
+    /// As `route`, keeping a formation; needs `robots.formation`.
+    Formation,
+}
+
+impl GuidanceName {
+    /// Whether it goes from cell to cell.
+    #[must_use]
+    pub const fn is_on_grid(self) -> bool {
+        matches!(self, Self::Route | Self::Formation)
+    }
+}
+
+/// `plane.safety`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SafetyName {
+    /// Nothing.
+    None,
+    /// ORCA with exact half-planes.
+    #[default]
+    Orca,
+}
+
+/// `[plane.robots]`: exactly one of these.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlaneRobots {
+    /// Each robot by itself.
+    pub list: Option<Vec<PlaneRobotEntry>>,
+    /// Robots evenly on a circle, each with its goal on the opposite side.
+    pub circle: Option<CircleEntry>,
+    /// Robots at random places, all with the same goals.
+    pub cloud: Option<CloudEntry>,
+}
+
+/// One robot of `plane.robots.list`.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlaneRobotEntry {
+    /// Where it starts: x, y, z in metres.
+    pub start_m: Place,
+    /// Where it should go. Without it, it stays where guidance leaves it.
+    pub goal_m: Option<Place>,
+    /// How fast it is at the start. Default: at rest.
+    #[serde(default)]
+    pub velocity_mps: Place,
+}
+
+/// `[x, y]` or `[x, y, z]`.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(from = "PlaceEntry")]
+pub struct Place(pub [f64; 3]);
+
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "expected [x, y] or [x, y, z]")]
+enum PlaceEntry {
+    Flat([f64; 2]),
+    Full([f64; 3]),
+}
+
+impl From<PlaceEntry> for Place {
+    fn from(entry: PlaceEntry) -> Self {
+        match entry {
+            PlaceEntry::Flat([x, y]) => Self([x, y, 0.0]),
+            PlaceEntry::Full(place) => Self(place),
+        }
+    }
+}
+
+/// `plane.robots.circle`.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CircleEntry {
+    /// How many.
+    pub count: u32,
+    /// Radius of the circle around the origin, metres.
+    pub radius_m: f64,
+    /// Each start is off by up to this along both axes, metres. Default: 0, the exact circle.
+    #[serde(default)]
+    pub noise_m: f64,
+}
+
+/// `plane.robots.cloud`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CloudEntry {
+    /// How many.
+    pub count: u32,
+    /// Starts are drawn evenly between these corners, metres, and again while they overlap others.
+    pub from_m: Place,
+    /// See `from_m`.
+    pub to_m: Place,
+    /// Velocities at the start are drawn evenly between these corners, m/s. Default: at rest.
+    #[serde(default)]
+    pub velocity_from_mps: Place,
+    /// See `velocity_from_mps`.
+    #[serde(default)]
+    pub velocity_to_mps: Place,
+    /// Goals of all.
+    #[serde(default)]
+    pub goals_m: Vec<Place>,
+    /// Velocity of the goals, m/s. Default: they stay.
+    #[serde(default)]
+    pub goal_velocity_mps: Place,
+}
+
+/// `[[plane.wall]]`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WallEntry {
+    /// Two or more points, each joined to the next.
+    pub points_m: Vec<[f64; 2]>,
+    /// Whether the last is joined to the first: a polygon. Default: false.
+    #[serde(default)]
+    pub closed: bool,
+}
+
+/// `[[plane.ball]]`.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BallEntry {
+    /// Its centre.
+    pub center_m: Place,
+    /// Its radius, metres.
+    pub radius_m: f64,
+}
+
+/// `[[plane.half_space]]`.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HalfSpaceEntry {
+    /// A point of its border.
+    pub point_m: Place,
+    /// A vector out of it, of any length.
+    pub normal: Place,
+}
+
+/// `[[plane.order]]`: a goal that moves.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OrderEntry {
+    /// When, seconds after the start.
+    pub at_s: f64,
+    /// Which of the goals, from 0. Default: 0.
+    #[serde(default)]
+    pub goal: u8,
+    /// Where to.
+    pub place_m: Place,
+    /// And on from there, m/s. Default: it stays.
+    #[serde(default)]
+    pub velocity_mps: Place,
+}
+
+/// `[plane.orca]`. All fields are optional; the defaults are the controller's.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct OrcaTable {
+    /// Time ahead in which robots must not meet, seconds.
+    pub horizon_s: Option<f64>,
+    /// Time ahead in which a robot must not meet an obstacle, seconds.
+    pub wall_horizon_s: Option<f64>,
+    /// Own share of a correction.
+    pub share: Option<f64>,
+    /// Distance kept on top of the radii, metres.
+    pub margin_m: Option<f64>,
+    /// How fast the ball around a silent robot grows, m/s. Default: half the highest speed.
+    pub doubt_mps: Option<f64>,
+    /// How much it grows at most, metres. Default: the radius.
+    pub doubt_m: Option<f64>,
+}
+
+/// `[plane.lattice]` (OLF).
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LatticeTable {
+    /// Distance of neighbours (d), metres.
+    pub spacing_m: f64,
+    /// 1: only the others; 2: and the goal; 3: and obstacles. Default: 3.
+    pub algorithm: Option<u8>,
+    /// Gain on positions of robots among each other (c1 of the alpha-agents), 1/s^2.
+    pub c_alpha: Option<f64>,
+    /// The same of obstacles.
+    pub c_beta: Option<f64>,
+    /// The same of the goal.
+    pub c_gamma: Option<f64>,
+    /// Whether the goal moves with its velocity (a dynamic gamma-agent) or stays although it has one. Default: true.
+    pub goal_moves: Option<bool>,
+}
+
+/// `[plane.goal_flock]` (PAV).
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GoalFlockTable {
+    /// Least distance of two robots' centres (R_MinDist), metres.
+    pub min_distance_m: f64,
+    /// How far neighbours are seen (R_nbh), metres. Default: four times that.
+    pub neighborhood_m: Option<f64>,
+    /// Pull of the goal.
+    pub k1: Option<f64>,
+    /// Pull of the middle of the neighbours.
+    pub k2: Option<f64>,
+    /// Push of neighbours that are too near.
+    pub k3: Option<f64>,
+    /// How near a goal counts as being there, metres. Default: `neighborhood_m`.
+    pub arrival_m: Option<f64>,
+}
+
+/// `[plane.boids]` (STA).
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BoidsTable {
+    /// Nearer than this, a boid turns away, metres.
+    pub crowded_m: f64,
+    /// Up to this a neighbour counts, metres.
+    pub closest_m: f64,
+    /// Largest turn in a tick towards the others, radians. Default: 0.05.
+    pub max_turn: Option<f64>,
+    /// Largest turn in a tick away from one that is too near, radians. Default: 0.02.
+    pub max_turn_away: Option<f64>,
+}
