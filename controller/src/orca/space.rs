@@ -2,7 +2,7 @@
 //! left is found by one more step of linear programming.
 //!
 //! Source: van den Berg et al. 2011 (ORCA), sections 4 and 5, whose geometry holds in any dimension; the steps
-//! [`solve`] takes as in RVO2-3D: [`lp1`] on a line, [`lp2`] in a plane, [`lp3`] in space, [`lp4`] for the
+//! [`solve`] takes as in RVO2-3D: `lp1` on a line, `lp2` in a plane, `lp3` in space, `lp4` for the
 //! least penetration.
 //!
 //! Everything is relative to the robot. Where all robots, velocities and the preference lie in one

@@ -4,6 +4,8 @@ use crate::scalar::{Q16, Scalar};
 use proptest::prelude::*;
 use std::vec::Vec;
 
+mod land;
+
 type V = Vec2<f64>;
 
 fn v(x: f64, y: f64) -> V {

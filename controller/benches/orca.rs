@@ -1,0 +1,133 @@
+//! Half-planes by formula and by template, in floats and in fixed point, and what is left of ten of them.
+#![allow(clippy::unwrap_used, clippy::indexing_slicing)]
+#![allow(clippy::integer_division_remainder_used)]
+
+use core::hint::black_box;
+use criterion::{Criterion, criterion_group, criterion_main};
+use staya_controller::geom::{Vec2, Vec3};
+use staya_controller::orca::space::{self, half_space};
+use staya_controller::orca::{
+    Analytic, HalfPlane, HalfPlanes, Neighbor, Params, Template2k, Template8k, Template16k,
+    Template64k, solve,
+};
+use staya_controller::rand::Rng;
+use staya_controller::scalar::{Q16, Scalar};
+
+/// Scenes in turn, so that no branch predictor learns one by heart.
+const SCENES: usize = 256;
+const NEIGHBORS: usize = 10;
+
+/// A number from -`most` to `most`.
+fn within<S: Scalar>(rng: &mut Rng, most: f64) -> S {
+    let share = f64::from(rng.below(1 << 16)) / f64::from(1 << 15) - 1.0;
+    S::from_f64(share * most).unwrap()
+}
+
+fn vector<S: Scalar>(rng: &mut Rng, most: f64) -> Vec2<S> {
+    Vec2::new(within(rng, most), within(rng, most))
+}
+
+fn params<S: Scalar>() -> Params<S> {
+    Params {
+        horizon_s: S::TWO,
+        separation_s: S::from_milli(50),
+        share: S::HALF,
+    }
+}
+
+/// Own velocity and a robot of the same radius 0.3 m within 5 m that does not overlap.
+fn pair<S: Scalar>(rng: &mut Rng) -> (Vec2<S>, Neighbor<S>) {
+    let radii_m = S::from_milli(600);
+    let mut offset_m = Vec2::ZERO;
+    while offset_m.norm() <= radii_m {
+        offset_m = vector(rng, 5.0);
+    }
+    let other = Neighbor {
+        offset_m,
+        velocity_mps: vector(rng, 1.5),
+        radii_m,
+        tie: Vec2::ZERO,
+    };
+    (vector(rng, 1.5), other)
+}
+
+/// Where a half-plane comes from.
+type Source<'a, S> = &'a dyn Fn(Vec2<S>, &Neighbor<S>) -> Option<HalfPlane<S>>;
+
+fn half_planes<S: Scalar>(c: &mut Criterion, scalar: &str) {
+    let mut rng = Rng::new(1);
+    let pairs: Vec<(Vec2<S>, Neighbor<S>)> = (0..SCENES).map(|_| pair(&mut rng)).collect();
+    let mut group = c.benchmark_group(format!("half_plane_{scalar}"));
+    let mut run = |name: &str, source: Source<'_, S>| {
+        let mut turn = 0;
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| {
+                turn = (turn + 1) % SCENES;
+                let (own, other) = &pairs[turn];
+                source(black_box(*own), black_box(other))
+            });
+        });
+    };
+    fn by<S: Scalar, P: HalfPlanes<S>>(
+        source: P,
+    ) -> impl Fn(Vec2<S>, &Neighbor<S>) -> Option<HalfPlane<S>> {
+        move |own, other| source.half_plane(own, other, &params())
+    }
+    run("analytic", &by(Analytic));
+    run("template_2k", &by(Template2k));
+    run("template_8k", &by(Template8k));
+    run("template_16k", &by(Template16k));
+    run("template_64k", &by(Template64k));
+}
+
+fn what_is_left(c: &mut Criterion) {
+    let mut rng = Rng::new(2);
+    let mut planes = Vec::new();
+    let mut spaces = Vec::new();
+    for _ in 0..SCENES {
+        let own: Vec2<f32> = vector(&mut rng, 1.0);
+        let others: Vec<Neighbor<f32>> = (0..NEIGHBORS).map(|_| pair(&mut rng).1).collect();
+        let in_plane = others
+            .iter()
+            .filter_map(|other| Analytic.half_plane(own, other, &params()));
+        planes.push((in_plane.collect::<Vec<_>>(), vector::<f32>(&mut rng, 1.0)));
+        let up = |rng: &mut Rng| within::<f32>(rng, 1.0);
+        let own = own.extend(up(&mut rng));
+        let in_space = others.iter().filter_map(|other| {
+            let other = space::Neighbor {
+                offset_m: other.offset_m.extend(up(&mut rng)),
+                velocity_mps: other.velocity_mps.extend(up(&mut rng)),
+                radii_m: other.radii_m,
+                tie: Vec3::ZERO,
+            };
+            half_space(own, &other, &params())
+        });
+        let in_space: Vec<_> = in_space.collect();
+        spaces.push((in_space, vector::<f32>(&mut rng, 1.0).extend(up(&mut rng))));
+    }
+    let mut group = c.benchmark_group("orca_solve_10");
+    let mut turn = 0;
+    group.bench_function("plane", |bencher| {
+        bencher.iter(|| {
+            turn = (turn + 1) % SCENES;
+            let (planes, wish) = &planes[turn];
+            solve::<f32, NEIGHBORS>(black_box(planes), 0, black_box(*wish), 1.0)
+        });
+    });
+    group.bench_function("space", |bencher| {
+        bencher.iter(|| {
+            turn = (turn + 1) % SCENES;
+            let (spaces, wish) = &spaces[turn];
+            space::solve::<f32, NEIGHBORS>(black_box(spaces), 0, black_box(*wish), 1.0)
+        });
+    });
+}
+
+fn orca(c: &mut Criterion) {
+    half_planes::<f32>(c, "f32");
+    half_planes::<Q16>(c, "q16");
+    what_is_left(c);
+}
+
+criterion_group!(benches, orca);
+criterion_main!(benches);

@@ -1,0 +1,153 @@
+//! The tables, made at compile time.
+
+/// Length of a stored normal, and what sines of levels count in: powers of two that every scalar can tell apart.
+pub(super) const ONE: i32 = 1 << 14;
+
+/// The local geometry of the velocity obstacle: for some sines of its half angle, in some directions from its disc's centre.
+#[derive(Clone, Copy, Debug)]
+pub struct Table {
+    /// Sines of the half angle, ascending from 0 to 1, in 1 / 2^14.
+    pub(super) sines: &'static [u16],
+    /// Directions in each level: equal steps of x / (x + y) from square to the axis to straight back.
+    pub(super) directions: usize,
+    /// The outward normal at the border nearest to the points in a direction, in 1 / 2^14; by level, then by direction.
+    /// Components along the axis, turned round to be positive, and across it.
+    pub(super) normals: &'static [[i16; 2]],
+}
+
+impl Table {
+    /// Bytes of the table.
+    #[must_use]
+    pub const fn bytes(&self) -> usize {
+        size_of_val(self.sines) + size_of_val(self.normals)
+    }
+
+    /// Nodes: levels and directions.
+    #[must_use]
+    pub const fn shape(&self) -> [usize; 2] {
+        [self.sines.len(), self.directions]
+    }
+}
+
+/// A choice of a [`Table`], as a type, so that firmware links the one that it uses.
+pub trait Template {
+    /// The table.
+    const TABLE: Table;
+}
+
+macro_rules! template {
+    ($(#[$doc:meta])* $name:ident: $levels:literal x $directions:literal) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        pub struct $name;
+
+        impl Template for $name {
+            const TABLE: Table = {
+                const LEGS: [[i16; 2]; $levels] = legs();
+                static SINES: [u16; $levels] = sines(&LEGS);
+                static NORMALS: [[i16; 2]; $levels * $directions] = normals(&LEGS, $directions);
+                Table {
+                    sines: &SINES,
+                    directions: $directions,
+                    normals: &NORMALS,
+                }
+            };
+        }
+    };
+}
+
+template!(
+    /// At most 2 KiB.
+    Template2k: 20 x 25
+);
+template!(
+    /// At most 8 KiB.
+    Template8k: 40 x 50
+);
+template!(
+    /// At most 16 KiB.
+    Template16k: 56 x 72
+);
+template!(
+    /// At most 64 KiB.
+    Template64k: 110 x 148
+);
+
+/// The normal of the left leg in each level, from square to the axis (far away) to straight back (touching).
+///
+/// The half angles are twice the arc tangents of equal steps, which lie denser towards a right angle. A level's sine is
+/// that of the rounded normal.
+#[expect(clippy::indexing_slicing, reason = "runs at compile time")]
+const fn legs<const L: usize>() -> [[i16; 2]; L] {
+    let mut legs = [[0; 2]; L];
+    let mut level = 0;
+    while level < L {
+        let t = level as f64 / (L - 1) as f64;
+        let scale = ONE as f64 / (1.0 + t * t);
+        legs[level] = [rounded(2.0 * t * scale), rounded((1.0 - t * t) * scale)];
+        level += 1;
+    }
+    legs
+}
+
+/// The sine of each level, rounded down: of cones that are no wider than the stored normals are for.
+#[expect(clippy::indexing_slicing, reason = "runs at compile time")]
+const fn sines<const L: usize>(legs: &[[i16; 2]; L]) -> [u16; L] {
+    let mut sines = [0; L];
+    let mut level = 0;
+    while level < L {
+        let (x, y) = (legs[level][0] as f64, legs[level][1] as f64);
+        sines[level] = (x / root(x * x + y * y) * ONE as f64) as u16;
+        level += 1;
+    }
+    sines
+}
+
+/// The outward normal at the border nearest to the points in each direction.
+#[expect(
+    clippy::indexing_slicing,
+    clippy::integer_division_remainder_used,
+    reason = "runs at compile time"
+)]
+const fn normals<const L: usize, const N: usize>(
+    legs: &[[i16; 2]; L],
+    directions: usize,
+) -> [[i16; 2]; N] {
+    let mut normals = [[0; 2]; N];
+    let mut at = 0;
+    while at < N {
+        let (level, direction) = (at / directions, at % directions);
+        let x = direction as f64 / (directions - 1) as f64;
+        normals[at] = normal(legs[level], x, 1.0 - x);
+        at += 1;
+    }
+    normals
+}
+
+/// The normal at the border nearest to the point x before and y beside the centre.
+const fn normal(leg: [i16; 2], x: f64, y: f64) -> [i16; 2] {
+    let scale = ONE as f64 / root(x * x + y * y);
+    let found = [rounded(x * scale), rounded(y * scale)];
+    // The disc is nearest before the leg's own normal; rounding must not turn one past the other.
+    if found[0] as i32 * leg[1] as i32 > found[1] as i32 * leg[0] as i32 {
+        found
+    } else {
+        leg
+    }
+}
+
+const fn rounded(x: f64) -> i16 {
+    (x + 0.5) as i16
+}
+
+/// The square root by Newton's method: std's is not for compile time.
+const fn root(x: f64) -> f64 {
+    let mut root = 0.5 * (x + 1.0);
+    let mut step = 0;
+    // Enough for 0.1 to 10^10, where a step more changes nothing.
+    while step < 24 {
+        root = 0.5 * (root + x / root);
+        step += 1;
+    }
+    root
+}

@@ -1,0 +1,305 @@
+use super::*;
+use crate::orca::VelocityObstacle;
+use crate::rand::Rng;
+use crate::scalar::Q16;
+use proptest::prelude::*;
+use std::vec::Vec;
+
+type V = Vec2<f64>;
+
+fn v(x: f64, y: f64) -> V {
+    V::new(x, y)
+}
+
+const PARAMS: Params<f64> = Params {
+    horizon_s: 2.0,
+    separation_s: 0.05,
+    share: 1.0,
+};
+
+fn neighbor(offset: V, velocity: V, radii_m: f64) -> Neighbor<f64> {
+    Neighbor {
+        offset_m: offset,
+        velocity_mps: velocity,
+        radii_m,
+        tie: V::ZERO,
+    }
+}
+
+/// Robots of 0.1 to 0.5 m within 5 m, at up to 1.5 m/s.
+fn sample(rng: &mut Rng) -> (V, Neighbor<f64>) {
+    let mut unit = || f64::from(rng.below(1 << 20)) / f64::from(1 << 20);
+    let radii = 0.2 + 0.8 * unit();
+    let mut within = |least: f64, most: f64| {
+        let length = (least * least + (most * most - least * least) * unit()).sqrt();
+        let (sin, cos) = Scalar::sin_cos(std::f64::consts::TAU * unit());
+        v(cos, sin) * length
+    };
+    let (offset, own, other) = (within(radii, 5.0), within(0.0, 1.5), within(0.0, 1.5));
+    (own, neighbor(offset, other, radii))
+}
+
+/// Errors against the analytic form: angles in degrees and demanded changes in (R_A + R_B) / tau.
+struct Errors {
+    angles: Vec<f64>,
+    changes: Vec<f64>,
+}
+
+impl Errors {
+    fn of(lookup: impl Fn(V, &Neighbor<f64>) -> HalfPlane<f64>) -> Self {
+        let mut rng = Rng::new(1);
+        let (mut angles, mut changes) = (Vec::new(), Vec::new());
+        for _ in 0..20_000 {
+            let (own, other) = sample(&mut rng);
+            let exact = half_plane(own, &other, &PARAMS).unwrap();
+            let found = lookup(own, &other);
+            let angle = libm::atan2(
+                exact.normal.det(found.normal),
+                exact.normal.dot(found.normal),
+            );
+            angles.push(angle.to_degrees().abs());
+            let unit = other.radii_m / PARAMS.horizon_s;
+            changes.push((found.penetration(own) - exact.penetration(own)).abs() / unit);
+        }
+        for values in [&mut angles, &mut changes] {
+            values.sort_by(f64::total_cmp);
+        }
+        Self { angles, changes }
+    }
+
+    fn mean_p99_max(values: &[f64]) -> [f64; 3] {
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        [
+            mean,
+            values[values.len() * 99 / 100],
+            values[values.len() - 1],
+        ]
+    }
+}
+
+fn looked_up<T: Template>(own: V, other: &Neighbor<f64>) -> HalfPlane<f64> {
+    half_plane_from_template::<f64, T>(own, other, &PARAMS).unwrap()
+}
+
+/// As [`half_plane_from_template`] with the nearest direction of the level below.
+fn single_node<T: Template>(own: V, other: &Neighbor<f64>) -> HalfPlane<f64> {
+    let table = T::TABLE;
+    let (ahead, distance) = (other.offset_m.normalized().unwrap(), other.offset_m.norm());
+    let w = own - other.velocity_mps - other.offset_m * 0.5;
+    let across = ahead.det(w);
+    let (level, _) = table.level(other.radii_m / distance).unwrap();
+    let (direction, on) = table.direction(v(w.dot(ahead), across.abs())).unwrap();
+    let nearest = direction + usize::from(on > 0.5);
+    let [x, y] = table.normals[level * table.directions + nearest];
+    let normal = v(-f64::from(x), y.into()).normalized().unwrap();
+    let side = if across > 0.0 { normal.y } else { -normal.y };
+    let normal = ahead.rotate(normal.x, side);
+    HalfPlane {
+        point: own + normal * (other.radii_m * 0.5 - w.dot(normal)),
+        normal,
+    }
+}
+
+/// Angle (degrees) and change ((R_A + R_B) / tau): mean, 99 of 100, greatest.
+fn check<T: Template>(bytes: usize, angle: [f64; 3], change: [f64; 3]) {
+    assert!(T::TABLE.bytes() <= bytes, "{}", T::TABLE.bytes());
+    let errors = Errors::of(looked_up::<T>);
+    let single = Errors::of(single_node::<T>);
+    let of = Errors::mean_p99_max;
+    let found = (of(&errors.angles), of(&errors.changes));
+    for (found, most) in found.0.iter().zip(angle).chain(found.1.iter().zip(change)) {
+        assert!(*found <= most, "{found} > {most}");
+    }
+    assert!(of(&single.angles)[0] > 40.0 * found.0[0]);
+}
+
+#[test]
+fn errors_against_the_analytic_form_are_bounded_in_2_kib() {
+    check::<Template2k>(2048, [0.03, 0.5, 1.6], [0.00013, 0.0028, 0.05]);
+}
+
+#[test]
+fn errors_against_the_analytic_form_are_bounded_in_8_kib() {
+    check::<Template8k>(8192, [0.0075, 0.06, 0.8], [0.000035, 0.0007, 0.025]);
+}
+
+#[test]
+fn errors_against_the_analytic_form_are_bounded_in_16_kib() {
+    check::<Template16k>(16384, [0.004, 0.015, 0.55], [0.000025, 0.0005, 0.004]);
+}
+
+#[test]
+fn errors_against_the_analytic_form_are_bounded_in_64_kib() {
+    check::<Template64k>(65536, [0.0015, 0.006, 0.25], [0.000014, 0.0003, 0.003]);
+}
+
+/// FVM's worked example in each size.
+#[test]
+fn worked_example_of_the_paper_within_the_tables_error() {
+    fn check<T: Template>(most: f64) {
+        let other = neighbor(v(-4.0, 6.0), v(3.0, -1.5), 2.0);
+        let plane = looked_up::<T>(v(1.5, 1.0), &other);
+        let apart = (plane.point - v(1.707107, 0.792893)).norm();
+        assert!(apart < most, "{apart}");
+        // At least the correction that the paper demands.
+        assert!(plane.penetration(v(1.5, 1.0)) >= 0.292893 - 1e-6);
+    }
+    check::<Template2k>(5e-4);
+    check::<Template8k>(2e-4);
+    check::<Template16k>(1e-4);
+    check::<Template64k>(5e-5);
+}
+
+#[test]
+fn overlap_nonsense_and_the_discs_centre_are_as_in_the_analytic_form() {
+    let both = |own: V, other: &Neighbor<f64>, params: &Params<f64>| {
+        (
+            half_plane_from_template::<f64, Template2k>(own, other, params),
+            half_plane(own, other, params),
+        )
+    };
+    for other in [
+        neighbor(v(0.5, 0.0), v(0.1, 0.0), 1.0),
+        neighbor(v(1.0, 0.0), V::ZERO, 1.0),
+        neighbor(V::ZERO, V::ZERO, 1.0),
+        neighbor(v(3.0, f64::NAN), V::ZERO, 1.0),
+        neighbor(v(3.0, 0.0), v(f64::INFINITY, 0.0), 1.0),
+        neighbor(v(3.0, 0.0), V::ZERO, f64::NAN),
+        neighbor(v(3.0, 0.0), V::ZERO, -1.0),
+    ] {
+        let (found, exact) = both(v(0.2, 0.1), &other, &PARAMS);
+        assert_eq!(found, exact, "{other:?}");
+    }
+    let stopped = Params {
+        horizon_s: 0.0,
+        ..PARAMS
+    };
+    let other = neighbor(v(3.0, 0.0), V::ZERO, 1.0);
+    assert_eq!(both(V::ZERO, &other, &stopped), (None, None));
+    // Straight to the disc's centre.
+    let (found, exact) = both(v(1.5, 0.0), &other, &PARAMS);
+    let (found, exact) = (found.unwrap(), exact.unwrap());
+    assert!((found.normal - exact.normal).norm() < 0.03 && found.normal.y < 0.0);
+    assert!((found.point - exact.point).norm() < 0.02);
+}
+
+#[test]
+fn stored_normals_lie_between_backwards_and_the_leg() {
+    fn check<T: Template>() {
+        let Table {
+            sines,
+            directions,
+            normals,
+        } = T::TABLE;
+        assert_eq!(normals.len(), sines.len() * directions);
+        assert!(sines.is_sorted_by(|a, b| a < b));
+        assert_eq!((sines[0], i32::from(sines[sines.len() - 1])), (0, ONE));
+        for (level, nodes) in normals.chunks(directions).enumerate() {
+            for &[x, y] in nodes {
+                let length = v(x.into(), y.into()).norm();
+                assert!(
+                    (length - f64::from(ONE)).abs() < 1.0 && x >= 0 && y >= 0,
+                    "{x} {y}"
+                );
+                let sine = f64::from(sines[level]) / f64::from(ONE);
+                assert!(f64::from(x) / length >= sine);
+            }
+            assert_eq!(nodes[directions - 1], [ONE as i16, 0]);
+        }
+    }
+    check::<Template2k>();
+    check::<Template8k>();
+    check::<Template16k>();
+    check::<Template64k>();
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(256))]
+
+    /// Nothing of the velocity obstacle is permitted, and both robots of a pair get opposite half-planes.
+    #[test]
+    fn every_half_plane_forbids_the_whole_obstacle(seed: u64) {
+        fn check<T: Template>(own: V, other: &Neighbor<f64>) -> Result<(), TestCaseError> {
+            let plane = looked_up::<T>(own, other);
+            prop_assert!((plane.normal.norm() - 1.0).abs() < 1e-6, "{plane:?}");
+            let obstacle = VelocityObstacle::new(other.offset_m, other.radii_m, 2.0).unwrap();
+            let (tip, radius) = obstacle.disc();
+            // In the space of relative velocities: touches the disc, and both legs lead away from it.
+            let point = plane.point - other.velocity_mps;
+            let gap = (point - tip).dot(plane.normal) - radius;
+            prop_assert!(gap.abs() < 1e-6, "{gap}");
+            for leg in obstacle.legs() {
+                prop_assert!(leg.dot(plane.normal) < 1e-9, "{}", leg.dot(plane.normal));
+            }
+            let theirs = neighbor(-other.offset_m, own, other.radii_m);
+            let theirs = looked_up::<T>(other.velocity_mps, &theirs);
+            prop_assert!((plane.normal + theirs.normal).norm() < 1e-9);
+            Ok(())
+        }
+        let (own, other) = sample(&mut Rng::new(seed));
+        check::<Template2k>(own, &other)?;
+        check::<Template8k>(own, &other)?;
+        check::<Template16k>(own, &other)?;
+        check::<Template64k>(own, &other)?;
+    }
+
+    /// The demanded change is never less than the least one.
+    #[test]
+    fn never_demands_less_than_the_analytic_form(seed: u64) {
+        let (own, other) = sample(&mut Rng::new(seed));
+        let exact = half_plane(own, &other, &PARAMS).unwrap().penetration(own);
+        let found = looked_up::<Template2k>(own, &other).penetration(own);
+        prop_assert!(found >= exact - 1e-6, "{found} < {exact}");
+    }
+
+    /// Inside of the obstacle the R-function is positive and a change is demanded; outside neither.
+    #[test]
+    fn signs_agree_with_the_r_function(seed: u64) {
+        let (own, other) = sample(&mut Rng::new(seed));
+        let obstacle = VelocityObstacle::new(other.offset_m, other.radii_m, 2.0).unwrap();
+        let value = obstacle.value(own - other.velocity_mps);
+        let exact = half_plane(own, &other, &PARAMS).unwrap().penetration(own);
+        prop_assert!((value > 0.0) == (exact > 0.0) || value.abs() < 1e-9, "{value} {exact}");
+        let change = looked_up::<Template64k>(own, &other).penetration(own);
+        prop_assert!(value < 1e-6 || change > 0.0, "{value} {change}");
+        prop_assert!(value > -0.005 || change < 0.0, "{value} {change}");
+    }
+
+    #[test]
+    fn turned_and_mirrored_pairs_get_turned_and_mirrored_half_planes(
+        seed: u64,
+        angle in -3.0_f64..3.0,
+    ) {
+        let (sin, cos) = Scalar::sin_cos(angle);
+        let (own, other) = sample(&mut Rng::new(seed));
+        let plain = looked_up::<Template8k>(own, &other);
+        for map in [&(|at: V| at.rotate(cos, sin)) as &dyn Fn(V) -> V, &|at: V| v(at.x, -at.y)] {
+            let moved = neighbor(map(other.offset_m), map(other.velocity_mps), other.radii_m);
+            let found = looked_up::<Template8k>(map(own), &moved);
+            prop_assert!((found.normal - map(plain.normal)).norm() < 1e-6);
+            prop_assert!((found.point - map(plain.point)).norm() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn f32_and_q16_agree_with_f64(seed: u64) {
+        fn asked<S: Scalar>(own: V, other: &Neighbor<f64>) -> f64 {
+            let near = |at: V| Vec2::new(S::from_f64(at.x).unwrap(), S::from_f64(at.y).unwrap());
+            let other = Neighbor {
+                offset_m: near(other.offset_m),
+                velocity_mps: near(other.velocity_mps),
+                radii_m: S::from_f64(other.radii_m).unwrap(),
+                tie: Vec2::ZERO,
+            };
+            let params = Params { horizon_s: S::TWO, separation_s: S::ONE, share: S::ONE };
+            let own = near(own);
+            let found = half_plane_from_template::<S, Template16k>(own, &other, &params);
+            found.unwrap().penetration(own).to_f64()
+        }
+        let (own, other) = sample(&mut Rng::new(seed));
+        let exact = asked::<f64>(own, &other);
+        prop_assert!((asked::<f32>(own, &other) - exact).abs() < 1e-5);
+        let fixed = asked::<Q16>(own, &other);
+        prop_assert!((fixed - exact).abs() < 4e-3, "{fixed} {exact}");
+    }
+}
