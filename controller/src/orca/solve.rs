@@ -43,10 +43,13 @@ pub fn solve<S: Scalar, const N: usize>(
         Vec2::ZERO
     };
     let (velocity, failed) = lp2(planes, max_speed_mps, Aim::Near(goal));
-    let velocity = match failed {
-        None => velocity,
-        Some(at) => lp3::<S, N>(planes, hard, at, velocity, max_speed_mps),
+    let Some(at) = failed else {
+        return Solution {
+            velocity_mps: velocity,
+            penetration_mps: S::ZERO,
+        };
     };
+    let velocity = lp3::<S, N>(planes, hard, at, velocity, max_speed_mps);
     let worst = planes
         .iter()
         .map(|plane| plane.penetration(velocity))
@@ -66,31 +69,37 @@ fn lp1<S: Scalar>(
 ) -> Option<Vec2<S>> {
     let direction = plane.direction();
     // The border's point nearest to the origin, and half of the chord that the disc cuts out.
-    let foot = plane.normal * plane.point.dot(plane.normal);
-    let distance = foot.norm();
-    if distance > speed {
+    let distance = plane.point.dot(plane.normal);
+    let foot = plane.normal * distance;
+    if distance.abs() > speed {
         return None;
     }
     let half_chord = ((speed - distance) * (speed + distance)).sqrt();
     let (mut low, mut high) = (-half_chord, half_chord);
+    // Choices instead of branches: which side a plane cuts off, no predictor can know.
+    let mut is_shut = false;
     for other in before {
         let slope = direction.dot(other.normal);
         let gap = other.penetration(foot);
-        match gap.checked_div(slope) {
-            Some(t) if slope.abs() > S::EPSILON => {
-                if slope > S::ZERO {
-                    low = low.max(t);
-                } else {
-                    high = high.min(t);
-                }
-            }
-            // Parallel: all of the border is permitted, or nothing.
-            _ if gap > S::ZERO => return None,
-            _ => {}
-        }
-        if low > high {
-            return None;
-        }
+        let crossing = gap.checked_div(slope);
+        let t = crossing.unwrap_or(S::ZERO);
+        let is_crossed = crossing.is_some() & (slope.abs() > S::EPSILON);
+        // Parallel: all of the border is permitted, or nothing.
+        is_shut |= !is_crossed & (gap > S::ZERO);
+        let rises = slope > S::ZERO;
+        low = if is_crossed & rises & (t > low) {
+            t
+        } else {
+            low
+        };
+        high = if is_crossed & !rises & (t < high) {
+            t
+        } else {
+            high
+        };
+    }
+    if is_shut || low > high {
+        return None;
     }
     let t = match aim {
         Aim::Near(goal) => (goal - foot).dot(direction).clamp(low, high),

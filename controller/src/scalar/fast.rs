@@ -76,6 +76,7 @@ impl Scalar for Fast32 {
     const PI: Self = Self(core::f32::consts::PI);
     const EPSILON: Self = Self(f32::EPSILON);
     const MAX: Self = Self(f32::MAX);
+    const IS_FLOATING: bool = true;
 
     fn from_i32(value: i32) -> Self {
         Self(Scalar::from_i32(value))

@@ -108,6 +108,7 @@ impl Scalar for Q16 {
     const PI: Self = Self::from_bits(205_887);
     const EPSILON: Self = Self::from_bits(1);
     const MAX: Self = Self::from_bits(i32::MAX);
+    const IS_FLOATING: bool = false;
 
     fn from_i32(value: i32) -> Self {
         Self::saturating(i64::from(value) << 16)

@@ -14,6 +14,7 @@ macro_rules! impl_scalar {
             const PI: Self = core::$float::consts::PI;
             const EPSILON: Self = $float::EPSILON;
             const MAX: Self = $float::MAX;
+            const IS_FLOATING: bool = true;
 
             fn from_i32(value: i32) -> Self {
                 value as $float
