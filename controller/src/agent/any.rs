@@ -6,6 +6,7 @@ use super::formation_guidance::FormationGuidance;
 use super::guidance::{BadInput, Guidance, Guided, Place, View};
 use super::in_plane::InPlane;
 use super::orca_safety::OrcaSafety;
+use super::other_safety::{FlySafety, PushOutSafety};
 use super::route_guidance::{GridWorkspace, RouteGuidance};
 use super::safety::{Safety, Sight, Unguarded};
 use super::waypoint_guidance::WaypointGuidance;
@@ -94,6 +95,8 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
 pub enum AnySafety<S, const K: usize> {
     Unguarded(Unguarded),
     Orca(OrcaSafety<S, K>),
+    Fly(FlySafety<S, K>),
+    PushOut(PushOutSafety<S>),
 }
 
 impl<S: Scalar, const K: usize> Safety<S> for AnySafety<S, K> {
@@ -101,6 +104,8 @@ impl<S: Scalar, const K: usize> Safety<S> for AnySafety<S, K> {
         match self {
             Self::Unguarded(safety) => safety.keep_clear(sight, rng),
             Self::Orca(safety) => safety.keep_clear(sight, rng),
+            Self::Fly(safety) => safety.keep_clear(sight, rng),
+            Self::PushOut(safety) => safety.keep_clear(sight, rng),
         }
     }
 
@@ -108,6 +113,8 @@ impl<S: Scalar, const K: usize> Safety<S> for AnySafety<S, K> {
         match self {
             Self::Unguarded(safety) => safety.doubt(),
             Self::Orca(safety) => safety.doubt(),
+            Self::Fly(safety) => safety.doubt(),
+            Self::PushOut(safety) => safety.doubt(),
         }
     }
 }

@@ -45,6 +45,7 @@ mod in_plane;
 mod io;
 mod link;
 mod orca_safety;
+mod other_safety;
 mod route_guidance;
 mod safety;
 mod travel;
@@ -62,6 +63,7 @@ pub use io::{
     CellState, Command, EVENTS, Event, InCell, Inputs, OUTBOX, Outputs, Pose, Surroundings,
 };
 pub use orca_safety::OrcaSafety;
+pub use other_safety::{FlySafety, PushOutSafety};
 pub use route_guidance::{GridWorkspace, RouteGuidance};
 pub use safety::{Safety, Sight, Unguarded};
 pub use waypoint_guidance::WaypointGuidance;

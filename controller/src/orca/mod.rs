@@ -13,6 +13,7 @@
 
 mod avoid;
 mod escape;
+mod fly;
 mod half_plane;
 mod solve;
 pub mod space;
@@ -25,6 +26,7 @@ mod tests;
 
 pub use avoid::{Analytic, AvoidParams, Avoider, HalfPlanes};
 pub use escape::EscapeParams;
+pub use fly::{FlyParams, fly};
 pub use half_plane::{HalfPlane, Neighbor, Params, half_plane};
 pub use solve::{Solution, solve};
 pub use template::{

@@ -6,10 +6,11 @@ use crate::record::{PacketCounts, RobotRow, TickRow};
 use crate::scenario::{GuidanceName, PlaneSetup, SafetyName, Scenario};
 use crate::world::Misplaced;
 use staya_controller::agent::{
-    AnyGuidance, AnySafety, BoidsGuidance, CELLS, FormationGuidance, GoalFlockGuidance, Guidance,
-    InPlane, LatticeGuidance, NEIGHBORS, OrcaSafety, RouteGuidance, Safety, TEMPLATE, Unguarded,
-    VISITS, WaypointGuidance,
+    AnyGuidance, AnySafety, BoidsGuidance, CELLS, FlySafety, FormationGuidance, GoalFlockGuidance,
+    Guidance, InPlane, LatticeGuidance, NEIGHBORS, OrcaSafety, PushOutSafety, RouteGuidance,
+    Safety, TEMPLATE, Unguarded, VISITS, WaypointGuidance,
 };
+use staya_controller::orca::FlyParams;
 use std::ops::ControlFlow;
 
 /// Cells of a search for windows up to radius 16 with their border: (2 * 16 + 3)^2.
@@ -91,7 +92,13 @@ fn brains(
     let (guidance, safety) = (setup.guidance, setup.safety);
     let (orca, doubt) = (setup.orca, setup.doubt);
     let (lattice, goal_flock, boids) = (setup.lattice, setup.goal_flock, setup.boids);
-    let seed = scenario.seed;
+    let (seed, push_out) = (scenario.seed, setup.push_out);
+    let fly = FlyParams {
+        horizon_s: orca.horizon_s,
+        obstacle_horizon_s: orca.wall_horizon_s,
+        share: orca.share,
+        margin_m: orca.margin_m,
+    };
     move |index| {
         let guidance = match guidance {
             GuidanceName::Waypoint => {
@@ -112,6 +119,8 @@ fn brains(
         let safety = match safety {
             SafetyName::None => AnySafety::Unguarded(Unguarded),
             SafetyName::Orca => AnySafety::Orca(OrcaSafety::new(orca, doubt)),
+            SafetyName::Fly => AnySafety::Fly(FlySafety::new(fly, doubt)),
+            SafetyName::PushOut => AnySafety::PushOut(PushOutSafety::new(push_out)),
         };
         (guidance, safety)
     }

@@ -15,8 +15,8 @@ pub use params::{
 };
 pub use plane::{
     BallEntry, BoidsTable, CircleEntry, CloudEntry, GoalFlockTable, GuidanceName, HalfSpaceEntry,
-    LatticeTable, OrcaTable, Order, OrderEntry, Place, PlaneRobotEntry, PlaneRobots, PlaneSetup,
-    PlaneTable, SafetyName, Start, Target, WallEntry, circle_starts,
+    LatticeTable, ModelName, OrcaTable, Order, OrderEntry, Place, PlaneRobotEntry, PlaneRobots,
+    PlaneSetup, PlaneTable, PushOutTable, SafetyName, Start, Target, WallEntry, circle_starts,
 };
 pub use robots::{Formation, Robot};
 pub use schema::{

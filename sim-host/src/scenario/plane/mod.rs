@@ -18,6 +18,7 @@ use staya_controller::flock::lattice::LatticeParams;
 use staya_controller::grid::Cell;
 use staya_controller::neighbor::Doubt;
 use staya_controller::orca::AvoidParams;
+use staya_controller::push_out::{Evasion, Model, PushOutParams};
 use staya_controller::wire::RobotId;
 
 /// Robots that a plane can hold.
@@ -61,6 +62,8 @@ pub struct PlaneSetup {
     pub orca: AvoidParams<f32>,
     /// How silent robots are seen.
     pub doubt: Doubt<f32>,
+    /// Parameters of push-out.
+    pub push_out: PushOutParams<f32>,
     /// Parameters of the alpha flock, and whether its reference moves.
     pub lattice: (LatticeParams<f32>, bool),
     /// Parameters of the goal flock, and how near counts as being at a goal, metres.
@@ -181,6 +184,7 @@ pub(super) fn build(
         safety: table.safety,
         orca: orca(source, &table.orca)?,
         doubt: doubt(source, table)?,
+        push_out: push_out(source, table)?,
         lattice: flocks::lattice(source, table)?,
         goal_flock: flocks::goal_flock(source, table, cruise_mps)?,
         boids: flocks::boids(source, table)?,
@@ -276,6 +280,31 @@ fn orca(source: &Source<'_>, table: &OrcaTable) -> Result<AvoidParams<f32>, Scen
         }
     }
     Ok(params)
+}
+
+fn push_out(source: &Source<'_>, table: &PlaneTable) -> Result<PushOutParams<f32>, ScenarioError> {
+    let given = match (table.safety == SafetyName::PushOut, table.push_out) {
+        (false, None) => return Ok(PushOutParams::new(1.0)),
+        (true, Some(given)) => given,
+        _ => {
+            let what = "safety \"push_out\" and its table go together";
+            return Err(source.error("plane.push_out", what, "give both or none of them"));
+        }
+    };
+    let field = "plane.push_out.min_distance_m";
+    within(source, field, given.min_distance_m, 0.001, 1e5, "metres")?;
+    Ok(PushOutParams {
+        model: match given.model {
+            ModelName::Radial => Model::Radial,
+            ModelName::Tangential => Model::Tangential,
+        },
+        evasion: if given.single {
+            Evasion::Single
+        } else {
+            Evasion::Multiple
+        },
+        min_distance_m: given.min_distance_m as f32,
+    })
 }
 
 fn doubt(source: &Source<'_>, table: &PlaneTable) -> Result<Doubt<f32>, ScenarioError> {

@@ -40,6 +40,8 @@ pub struct PlaneTable {
     /// Parameters of ORCA.
     #[serde(default)]
     pub orca: OrcaTable,
+    /// Parameters of push-out; required for it.
+    pub push_out: Option<PushOutTable>,
     /// Parameters of the alpha flock; required for it.
     pub lattice: Option<LatticeTable>,
     /// Parameters of the goal flock; required for it.
@@ -95,6 +97,10 @@ pub enum SafetyName {
     /// ORCA with exact half-planes.
     #[default]
     Orca,
+    /// ORCA in space, for robots that fly.
+    Fly,
+    /// Push-out (PAV): needs `[plane.push_out]`.
+    PushOut,
 }
 
 /// `[plane.robots]`: exactly one of these.
@@ -243,6 +249,31 @@ pub struct OrcaTable {
     pub doubt_mps: Option<f64>,
     /// How much it grows at most, metres. Default: the radius.
     pub doubt_m: Option<f64>,
+}
+
+/// `[plane.push_out]` (PAV).
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PushOutTable {
+    /// Least distance of two robots' centres, and of a centre from an obstacle (R_MinDist), metres.
+    pub min_distance_m: f64,
+    /// `"radial"` (model 1: along the radius; the default) or `"tangential"` (model 2: along the border).
+    #[serde(default)]
+    pub model: ModelName,
+    /// Whether only the nearest robot in the way is evaded. Default: false, all are.
+    #[serde(default)]
+    pub single: bool,
+}
+
+/// `plane.push_out.model`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ModelName {
+    /// Model 1.
+    #[default]
+    Radial,
+    /// Model 2.
+    Tangential,
 }
 
 /// `[plane.lattice]` (OLF).

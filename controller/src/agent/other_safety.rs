@@ -1,0 +1,67 @@
+//! Collision avoidance in space, and push-out, as safety layers.
+
+use super::safety::{Safety, Sight};
+use crate::geom::Vec3;
+use crate::neighbor::Doubt;
+use crate::orca::{FlyParams, fly};
+use crate::push_out::{PushOutParams, push_out};
+use crate::rand::Rng;
+use crate::scalar::Scalar;
+
+/// ORCA in space: [`fly`] with at most `K` half-spaces.
+#[derive(Clone, Copy, Debug)]
+pub struct FlySafety<S, const K: usize> {
+    params: FlyParams<S>,
+    doubt: Doubt<S>,
+}
+
+impl<S: Scalar, const K: usize> FlySafety<S, K> {
+    /// `doubt`: how the balls of silent neighbours grow.
+    #[must_use]
+    pub const fn new(params: FlyParams<S>, doubt: Doubt<S>) -> Self {
+        Self { params, doubt }
+    }
+}
+
+impl<S: Scalar, const K: usize> Safety<S> for FlySafety<S, K> {
+    fn keep_clear(&mut self, sight: &Sight<'_, S>, _: &mut Rng) -> Vec3<S> {
+        let Sight {
+            body,
+            wish_mps,
+            way_m,
+            nearby,
+            obstacles,
+        } = *sight;
+        fly::<S, K>(&self.params, &body, wish_mps, way_m, nearby, obstacles).velocity_mps
+    }
+
+    fn doubt(&self) -> Doubt<S> {
+        self.doubt
+    }
+}
+
+/// Push-out (PAV): steps that lead too near are put right, but only against where others are now.
+#[derive(Clone, Copy, Debug)]
+pub struct PushOutSafety<S> {
+    params: PushOutParams<S>,
+}
+
+impl<S: Scalar> PushOutSafety<S> {
+    /// With these parameters.
+    #[must_use]
+    pub const fn new(params: PushOutParams<S>) -> Self {
+        Self { params }
+    }
+}
+
+impl<S: Scalar> Safety<S> for PushOutSafety<S> {
+    fn keep_clear(&mut self, sight: &Sight<'_, S>, _: &mut Rng) -> Vec3<S> {
+        push_out(
+            &self.params,
+            &sight.body,
+            sight.wish_mps,
+            sight.nearby,
+            sight.obstacles,
+        )
+    }
+}
