@@ -71,7 +71,7 @@ impl<S: Scalar> Default for AvoidParams<S> {
             horizon_s: S::TWO,
             wall_horizon_s: S::ONE,
             share: S::HALF,
-            margin_m: S::from_milli(3),
+            margin_m: S::from_milli(4),
             escape: EscapeParams::default(),
         }
     }
@@ -222,12 +222,14 @@ impl<S: Scalar, const K: usize, P: HalfPlanes<S>> Avoider<S, K, P> {
     ) -> Option<HalfPlane<S>> {
         let horizon_s = self.params.wall_horizon_s;
         match *obstacle {
-            Obstacle::Wall(ends_m) => wall(own, ends_m, body.radius_m, horizon_s),
+            Obstacle::Wall(ends_m) => {
+                wall(own, ends_m, body.radius_m + self.params.margin_m, horizon_s)
+            }
             Obstacle::Ball { center_m, radius_m } => {
                 let ball = Neighbor {
                     offset_m: center_m.xy(),
                     velocity_mps: Vec2::ZERO,
-                    radii_m: body.radius_m + radius_m,
+                    radii_m: body.radius_m + radius_m + self.params.margin_m,
                     tie: Vec2::ZERO,
                 };
                 let rules = self.rules(body, horizon_s, S::ONE);
@@ -236,7 +238,9 @@ impl<S: Scalar, const K: usize, P: HalfPlanes<S>> Avoider<S, K, P> {
             Obstacle::Plane { normal, distance_m } => {
                 // What the plane cuts out of the robot's height; a floor cuts out nothing.
                 let upright = normal.xy().normalized()?;
-                let away = distance_m.checked_div(normal.xy().norm())? - body.radius_m;
+                let away = distance_m.checked_div(normal.xy().norm())?
+                    - body.radius_m
+                    - self.params.margin_m;
                 let closing = away.max(S::ZERO).checked_div(horizon_s)?;
                 let point = -upright * closing;
                 point.is_finite().then_some(HalfPlane {
@@ -291,7 +295,8 @@ fn reachable<S: Scalar, const K: usize>(
 ) -> Solution<S> {
     let own = body.velocity_mps.xy();
     let change = body.max_acceleration_mps2 * body.step_s;
-    if !(change < body.max_speed_mps + body.max_speed_mps) || !own.is_finite() {
+    let is_held = change < body.max_speed_mps + body.max_speed_mps;
+    if !is_held || !own.is_finite() {
         return solve::<S, K>(planes, hard, wish, body.max_speed_mps);
     }
     let mut moved = Vec::<_, K>::new();

@@ -1,5 +1,6 @@
 //! The way out of symmetry and jams: which wish to give to ORCA so that nobody waits for ever.
 
+use super::turn::Turn;
 use crate::body::Body;
 use crate::geom::Vec2;
 use crate::neighbor::Nearby;
@@ -17,14 +18,19 @@ pub struct EscapeParams<S> {
     pub lean_within_m: S,
     /// Nobody leans nearer to its goal than this, metres: there it would circle.
     pub straight_within_m: S,
+    /// For how long (to twice as long) a robot leaves an empty gap to those whose turn it is, seconds. Less than others
+    /// need to come from where they wait (two or three radii) lets turns be skipped; more costs time when somebody
+    /// merely stands near a gap. 2 to 10.
+    pub patience_s: S,
 }
 
 impl<S: Scalar> Default for EscapeParams<S> {
     fn default() -> Self {
         Self {
-            lean_rad: S::from_milli(436),
-            lean_within_m: S::from_milli(1200),
-            straight_within_m: S::from_milli(600),
+            lean_rad: S::from_milli(480),
+            lean_within_m: S::from_milli(800),
+            straight_within_m: S::ONE,
+            patience_s: S::from_i32(3),
         }
     }
 }
@@ -42,12 +48,12 @@ pub(super) struct Scene<'a, S> {
 /// State of the rule.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Escape<S> {
-    stuck_s: Option<S>,
+    turn: Turn<S>,
 }
 
 impl<S: Scalar> Escape<S> {
     pub(super) const fn new() -> Self {
-        Self { stuck_s: None }
+        Self { turn: Turn::new() }
     }
 
     /// The wish for the solver.
@@ -55,10 +61,12 @@ impl<S: Scalar> Escape<S> {
         &mut self,
         params: &EscapeParams<S>,
         scene: &Scene<'_, S>,
-        _rng: &mut Rng,
+        rng: &mut Rng,
     ) -> Vec2<S> {
-        let _ = (self.stuck_s, scene.obstacles);
-        lean(params, scene)
+        match self.turn.wish(scene, params.patience_s, rng) {
+            Some(wish) => wish,
+            None => lean(params, scene),
+        }
     }
 }
 
@@ -68,12 +76,13 @@ fn lean<S: Scalar>(params: &EscapeParams<S>, scene: &Scene<'_, S>) -> Vec2<S> {
     let near_goal = scene
         .goal
         .is_some_and(|goal| goal.norm() < params.straight_within_m);
-    let is_ahead = |other: &Nearby<S>| {
+    let is_in_the_way = |other: &Nearby<S>| {
         let offset = other.offset_m.xy();
         let gap = offset.norm() - scene.body.radius_m - other.radius_m;
-        gap < params.lean_within_m && offset.dot(wish) > S::ZERO
+        let closing = wish - other.velocity_mps.xy();
+        gap < params.lean_within_m && offset.dot(wish) > S::ZERO && closing.dot(offset) > S::ZERO
     };
-    if near_goal || !scene.nearby.iter().any(is_ahead) {
+    if near_goal || !scene.nearby.iter().any(is_in_the_way) {
         return wish;
     }
     let (sin, cos) = params.lean_rad.sin_cos();

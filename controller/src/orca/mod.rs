@@ -14,10 +14,12 @@
 mod avoid;
 mod escape;
 mod fly;
+mod gap;
 mod half_plane;
 mod solve;
 pub mod space;
 mod template;
+mod turn;
 mod velocity_obstacle;
 mod wall;
 

@@ -83,9 +83,10 @@ fn lp1<S: Scalar>(
         let gap = other.penetration(foot);
         let crossing = gap.checked_div(slope);
         let t = crossing.unwrap_or(S::ZERO);
-        let is_crossed = crossing.is_some() & (slope.abs() > S::EPSILON);
-        // Parallel: all of the border is permitted, or nothing.
-        is_shut |= !is_crossed & (gap > S::ZERO);
+        let is_crossed = crossing.is_some() & (slope.abs() > S::EPSILON * S::from_i32(64));
+        // Parallel: all of the border is permitted, or nothing. What rounding leaves between two copies of one
+        // half-plane (walls that share a corner) is not nothing.
+        is_shut |= !is_crossed & (gap > rounding(speed, other));
         let rises = slope > S::ZERO;
         low = if is_crossed & rises & (t > low) {
             t
@@ -107,6 +108,12 @@ fn lp1<S: Scalar>(
         Aim::Along(_) => low,
     };
     Some(foot + direction * t)
+}
+
+/// How far off a penetration may be by rounding.
+fn rounding<S: Scalar>(speed: S, plane: &HalfPlane<S>) -> S {
+    let scale = speed + plane.point.x.abs() + plane.point.y.abs();
+    S::EPSILON * S::from_i32(16) * scale.max(S::ONE)
 }
 
 /// The best velocity that all planes and the speed disc permit, or the best for those before the first

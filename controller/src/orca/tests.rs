@@ -108,6 +108,27 @@ fn speed_limit_and_preference_alone() {
     assert!((fast - v(0.6, 0.8)).norm() < 1e-12);
 }
 
+/// Walls that share a corner give the same half-plane twice; rounding between the two is no contradiction.
+#[test]
+fn copies_of_a_half_plane_change_nothing() {
+    let mut differing = 0;
+    for k in 0..2000_i32 {
+        let (sin, cos) = Scalar::sin_cos(<f32 as Scalar>::from_ratio(k, 300));
+        let normal = Vec2::new(cos, sin);
+        let twin = normal.rotate(1.0, 1e-8).normalized().unwrap();
+        let plane = |normal: Vec2<f32>| HalfPlane {
+            point: normal * 0.08,
+            normal,
+        };
+        let planes = [plane(normal), plane(twin), plane(normal)];
+        let wish = Vec2::new(0.5, 0.01);
+        let one = solve::<f32, 4>(&planes[..1], 3, wish, 0.5);
+        let all = solve::<f32, 4>(&planes, 3, wish, 0.5);
+        differing += u32::from((one.velocity_mps - all.velocity_mps).norm() > 1e-5);
+    }
+    assert_eq!(differing, 0);
+}
+
 #[test]
 fn opposite_walls_are_met_halfway_and_hard_ones_not_at_all() {
     let plane = |x: f64, nx: f64| HalfPlane {

@@ -131,13 +131,13 @@ fn a_body_with_inertia_gets_what_it_can_reach() {
     let wall = Obstacle::Wall([Vec2::new(0.25, -1.0), Vec2::new(0.25, 1.0)]);
     let wish = Vec2::new(0.5, 0.0);
     let solution = avoider().velocity(&own, wish, None, &[], &[wall], &mut rng());
-    // 0.1 m/s are permitted, 0.45 are the least that it can have after 0.05 s.
+    // 0.096 m/s are permitted (the margin is 4 mm), 0.45 are the least that it can have after 0.05 s.
     assert!(
         (solution.velocity_mps.x - 0.45).abs() < 1e-3,
         "{solution:?}"
     );
     assert!(
-        (solution.penetration_mps - 0.35).abs() < 1e-3,
+        (solution.penetration_mps - 0.354).abs() < 1e-3,
         "{solution:?}"
     );
 }

@@ -1,0 +1,176 @@
+//! Narrow places between walls, which robots must share.
+
+use crate::geom::Vec2;
+use crate::obstacle::Obstacle;
+use crate::scalar::Scalar;
+
+/// A gap that the way to the goal leads through, relative to the robot: a door, or a short passage with a door's width.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Gap<S> {
+    /// Its middle, metres.
+    pub(super) middle: Vec2<S>,
+    /// Unit vector through it, towards the goal.
+    pub(super) ahead: Vec2<S>,
+    /// Half its width, metres.
+    pub(super) half: S,
+    /// Half its depth, metres: 0 between walls without thickness.
+    pub(super) depth: S,
+}
+
+/// Which gaps count.
+pub(super) struct Wanted<S> {
+    /// Least width, metres.
+    pub(super) least_m: S,
+    /// Most width, metres.
+    pub(super) most_m: S,
+    /// Longest passage, metres.
+    pub(super) deepest_m: S,
+    /// How far behind a gap it still counts, metres.
+    pub(super) past_m: S,
+}
+
+impl<S: Scalar> Gap<S> {
+    /// A place relative to the robot as seen from the gap: x is how far behind it (negative: before it, 0:
+    /// in it, as if it had no depth), y how far to the right of its axis.
+    pub(super) fn place(&self, offset: Vec2<S>) -> Vec2<S> {
+        let Vec2 { x, y } = self.turn(offset - self.middle);
+        let beyond = (x.abs() - self.depth).max(S::ZERO);
+        Vec2::new(if x < S::ZERO { -beyond } else { beyond }, y)
+    }
+
+    /// A vector by its components ahead and to the right.
+    pub(super) fn turn(&self, vector: Vec2<S>) -> Vec2<S> {
+        Vec2::new(vector.dot(self.ahead), -self.ahead.det(vector))
+    }
+
+    /// The way from the robot to a place as [`Gap::place`] gives it; one in the gap counts as before it.
+    pub(super) fn way(&self, place: Vec2<S>) -> Vec2<S> {
+        let depth = if place.x > S::ZERO {
+            self.depth
+        } else {
+            -self.depth
+        };
+        self.middle + self.ahead * (place.x + depth) - self.ahead.perp() * place.y
+    }
+
+    /// The gap between two ends of walls, towards `target`.
+    fn between(a: Vec2<S>, b: Vec2<S>, target: Vec2<S>) -> Option<Self> {
+        let across = (b - a).perp().normalized()?;
+        let middle = (a + b) * S::HALF;
+        let distance = (target - middle).dot(across);
+        let gap = Self {
+            middle,
+            ahead: if distance < S::ZERO { -across } else { across },
+            half: (b - a).norm() * S::HALF,
+            depth: S::ZERO,
+        };
+        (distance != S::ZERO).then_some(gap)
+    }
+
+    /// Whether nothing stands in it: nothing is nearer to its middle than its sides are.
+    fn is_clear(&self, obstacles: &[Obstacle<S>]) -> bool {
+        let room = self.half - self.half * S::from_milli(1);
+        obstacles
+            .iter()
+            .filter_map(|obstacle| distance(obstacle, self.middle))
+            .all(|distance| distance >= room)
+    }
+
+    /// Joined with the other end of the same passage.
+    fn joined(self, other: &Self, deepest_m: S) -> Self {
+        let Vec2 { x, y } = self.turn(other.middle - self.middle);
+        let is_same_way = self.ahead.dot(other.ahead) > S::from_milli(990);
+        if !is_same_way || y.abs() > self.half * S::HALF || x.abs() > deepest_m {
+            return self;
+        }
+        let (low, high) = ((-self.depth).min(x), self.depth.max(x));
+        Self {
+            middle: self.middle + self.ahead * ((low + high) * S::HALF),
+            depth: (high - low) * S::HALF,
+            ..self
+        }
+    }
+}
+
+/// The gap on the shortest way to `target`, when a wall bars the straight way or it leads through a gap; also
+/// for a robot that is in it or just behind it.
+///
+/// The sides of a gap are ends of two walls with nothing else as near to their middle; gaps in line are the ends of one
+/// passage. O(walls^2), and O(obstacles) more for each pair of ends with the right distance.
+pub(super) fn gap_on_way<S: Scalar>(
+    obstacles: &[Obstacle<S>],
+    target: Vec2<S>,
+    wanted: &Wanted<S>,
+) -> Option<Gap<S>> {
+    let mut best: Option<(S, Gap<S>)> = None;
+    for_each_gap(obstacles, target, wanted, |gap| {
+        let detour = gap.middle.norm() + (target - gap.middle).norm();
+        if best.is_none_or(|(least, _)| detour < least) {
+            best = Some((detour, gap));
+        }
+    });
+    let (_, mut gap) = best?;
+    for_each_gap(obstacles, target, wanted, |other| {
+        gap = gap.joined(&other, wanted.deepest_m);
+    });
+    let own = gap.place(Vec2::ZERO);
+    if own.x > wanted.past_m || own.x > S::ZERO && own.y.abs() > gap.half {
+        return None;
+    }
+    let side = gap.ahead.perp() * gap.half;
+    let is_on_way = own.x >= S::ZERO
+        || crosses(target, [gap.middle - side, gap.middle + side])
+        || walls(obstacles).any(|ends| crosses(target, ends));
+    is_on_way.then_some(gap)
+}
+
+fn walls<S: Scalar>(obstacles: &[Obstacle<S>]) -> impl Iterator<Item = [Vec2<S>; 2]> {
+    obstacles.iter().filter_map(|obstacle| match obstacle {
+        Obstacle::Wall(ends) => Some(*ends),
+        _ => None,
+    })
+}
+
+fn for_each_gap<S: Scalar>(
+    obstacles: &[Obstacle<S>],
+    target: Vec2<S>,
+    wanted: &Wanted<S>,
+    mut visit: impl FnMut(Gap<S>),
+) {
+    for (index, one) in walls(obstacles).enumerate() {
+        for other in walls(obstacles).skip(index + 1) {
+            for (a, b) in one.into_iter().flat_map(|a| other.map(|b| (a, b))) {
+                let width = (b - a).norm();
+                if !(width >= wanted.least_m && width <= wanted.most_m) {
+                    continue;
+                }
+                if let Some(gap) = Gap::between(a, b, target)
+                    && gap.is_clear(obstacles)
+                {
+                    visit(gap);
+                }
+            }
+        }
+    }
+}
+
+/// Whether the way from the robot to `target` meets the segment.
+fn crosses<S: Scalar>(target: Vec2<S>, [a, b]: [Vec2<S>; 2]) -> bool {
+    let along = b - a;
+    let sides = (along.det(-a) > S::ZERO) != (along.det(target - a) > S::ZERO);
+    let ends = (target.det(a) > S::ZERO) != (target.det(b) > S::ZERO);
+    sides && ends
+}
+
+/// How far `from` is from an obstacle; `None` for planes, which have no end.
+fn distance<S: Scalar>(obstacle: &Obstacle<S>, from: Vec2<S>) -> Option<S> {
+    let moved = match *obstacle {
+        Obstacle::Wall([a, b]) => Obstacle::Wall([a - from, b - from]),
+        Obstacle::Ball { center_m, radius_m } => Obstacle::Ball {
+            center_m: (center_m.xy() - from).extend(S::ZERO),
+            radius_m,
+        },
+        Obstacle::Plane { .. } => return None,
+    };
+    moved.nearest_point().map(|(_, distance)| distance)
+}

@@ -1,0 +1,276 @@
+//! Who goes through a gap, and who waits where.
+//!
+//! ORCA alone jams in a door: everybody pushes, nobody can leave. This is the rule of robots whose way leads through the
+//! same gap (a door or a passage not longer than [`DEEPEST`]), found by each for itself from the walls that it sees and
+//! the places and velocities of others. Lengths are in own radii.
+//!
+//! - Of the robots on one side the nearest to the gap is first, equal ones by number; only the first goes. The others
+//!   stand at a distance that grows with their rank, beside the lane that leads out of the gap, so that who comes out
+//!   gets away and nobody pushes.
+//! - Where two robots fit side by side, each direction keeps to its right half of the gap, and both flow.
+//! - Where only one fits, directions take turns, one robot each: after one has come out of the gap, it is the
+//!   turn of the first on that side. At the beginning the nearer one goes, of equal ones the smaller number. With
+//!   nobody waiting opposite, robots follow each other.
+//! - Who is in the gap goes on. If two meet in it, the one nearer to its middle goes on, and the other goes back
+//!   beside the lane.
+//! - Robots that merely stand near a gap look like waiting ones, and views may differ: when nobody has been in the
+//!   gap for a while (drawn by each robot for itself, longer for later ranks), whose turn it is no longer counts.
+//!
+//! So nobody waits for ever: a turn that is not taken passes on, and two that are taken at once are told apart in
+//! the gap by distance.
+
+use super::escape::Scene;
+use super::gap::{Gap, Wanted, gap_on_way};
+use crate::geom::Vec2;
+use crate::rand::Rng;
+use crate::scalar::Scalar;
+
+/// Longest passage that is shared by turns, thousandths of the own radius.
+const DEEPEST: i32 = 8_000;
+/// Widest gap in which the rule holds; wider ones are open land.
+const WIDEST: i32 = 10_000;
+/// How far behind a gap one still goes straight on.
+const PAST: i32 = 2_000;
+/// Play that two robots need to pass each other in a gap, beyond their diameters.
+const PLAY: i32 = 150;
+/// How far from the gap one waits or comes out.
+const YARD: i32 = 5_000;
+/// Distances that differ by less are equal: the rounding of what robots know is the same for both but for this, micrometres.
+const TIE_UM: i32 = 100;
+
+/// What a robot remembers of the gap before it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Turn<S> {
+    /// Which way the last robot seen in the gap went: whether as this one wants to.
+    last_went_ahead: Option<bool>,
+    /// For how long nobody has been seen in it, seconds, and for how long this is not remarkable.
+    idle_s: Option<(S, S)>,
+    /// Whether it was allowed to go in the last step.
+    goes: bool,
+}
+
+/// The gap, the robot and the others, seen from the gap.
+struct View<'a, S> {
+    gap: Gap<S>,
+    scene: &'a Scene<'a, S>,
+    /// The own place: see [`Gap::place`].
+    own: Vec2<S>,
+}
+
+/// What others do at the gap.
+struct Traffic<S> {
+    /// How many on this side are nearer to the gap.
+    rank: i32,
+    /// Somebody in the gap goes ahead.
+    ahead: bool,
+    /// Somebody in the gap comes against, or stands there with more right to it.
+    against: bool,
+    /// Somebody is on the way out of the gap, on this side.
+    comes_out: bool,
+    /// Somebody may be waiting opposite.
+    opposite: bool,
+    /// One of those comes first by distance or number.
+    opposite_is_nearer: bool,
+    /// Radius of the largest robot.
+    largest: S,
+}
+
+impl<S: Scalar> Turn<S> {
+    pub(super) const fn new() -> Self {
+        Self {
+            last_went_ahead: None,
+            idle_s: None,
+            goes: false,
+        }
+    }
+
+    /// The wish of a robot whose way leads through a gap, with others near by; `None` when it does not. An empty
+    /// gap is left to others for `patience_s` to twice as long.
+    pub(super) fn wish(
+        &mut self,
+        scene: &Scene<'_, S>,
+        patience_s: S,
+        rng: &mut Rng,
+    ) -> Option<Vec2<S>> {
+        let Some(view) = View::new(scene) else {
+            *self = Self::new();
+            return None;
+        };
+        let traffic = view.traffic();
+        if traffic.ahead || traffic.against {
+            self.last_went_ahead = Some(traffic.ahead);
+            self.idle_s = None;
+        }
+        let (idle_s, enough_s) = self.idle_s.unwrap_or_else(|| {
+            let more = S::from_ratio(rng.below(1000).cast_signed(), 1000);
+            (S::ZERO, patience_s + patience_s * more)
+        });
+        self.idle_s = Some((idle_s + scene.body.step_s, enough_s));
+        let is_impatient = idle_s > enough_s + S::from_i32(traffic.rank);
+        let has_lanes = view.has_lanes(traffic.largest);
+        self.goes = self.may_go(&view, &traffic, has_lanes, is_impatient);
+        let aim = if self.goes {
+            Some(view.way_through(has_lanes))
+        } else {
+            view.place_to_wait(traffic.rank, has_lanes)
+        };
+        let way = aim.map_or(Vec2::ZERO, |place| view.gap.way(place));
+        let most = way.norm().checked_div(scene.body.step_s);
+        let speed = scene.wish.norm();
+        let pace = most.map_or(speed, |most| most.min(speed));
+        Some(way.normalized().map_or(Vec2::ZERO, |unit| unit * pace))
+    }
+
+    fn may_go(
+        &self,
+        view: &View<'_, S>,
+        traffic: &Traffic<S>,
+        has_lanes: bool,
+        is_impatient: bool,
+    ) -> bool {
+        let is_inside = view.own.x > -view.radii(1_200) && view.own.y.abs() < view.gap.half;
+        if has_lanes {
+            return traffic.rank == 0 || is_inside || is_impatient && !traffic.ahead;
+        }
+        if is_inside {
+            return !traffic.against;
+        }
+        if traffic.against || traffic.comes_out {
+            return false;
+        }
+        if traffic.rank > 0 {
+            return is_impatient && !traffic.ahead;
+        }
+        if is_impatient || !traffic.opposite {
+            return true;
+        }
+        match self.last_went_ahead {
+            // The turn is theirs, unless it was given to this robot before it saw that.
+            Some(true) => self.goes && !traffic.ahead,
+            Some(false) => !traffic.ahead,
+            None => !traffic.opposite_is_nearer,
+        }
+    }
+}
+
+impl<'a, S: Scalar> View<'a, S> {
+    fn new(scene: &'a Scene<'a, S>) -> Option<Self> {
+        let radius = scene.body.radius_m;
+        let radii = |thousandths: i32| radius * S::from_milli(thousandths);
+        let ahead = scene.wish.normalized()?;
+        if scene.nearby.is_empty() {
+            return None;
+        }
+        let target = scene.goal.unwrap_or(ahead * radii(20_000));
+        let wanted = Wanted {
+            least_m: radii(2_020),
+            most_m: radii(WIDEST),
+            deepest_m: radii(DEEPEST),
+            past_m: radii(PAST),
+        };
+        let gap = gap_on_way(scene.obstacles, target, &wanted)?;
+        let own = gap.place(Vec2::ZERO);
+        Some(Self { gap, scene, own })
+    }
+
+    /// A length in thousandths of the own radius.
+    fn radii(&self, thousandths: i32) -> S {
+        self.scene.body.radius_m * S::from_milli(thousandths)
+    }
+
+    /// Whether robots can pass each other in the gap.
+    fn has_lanes(&self, largest: S) -> bool {
+        let two = self.scene.body.radius_m + largest;
+        self.gap.half + self.gap.half >= two + two + self.radii(PLAY)
+    }
+
+    /// How far to the right of the gap's axis to go through it.
+    fn lane(&self, has_lanes: bool) -> S {
+        if has_lanes {
+            self.gap.half * S::HALF
+        } else {
+            S::ZERO
+        }
+    }
+
+    fn traffic(&self) -> Traffic<S> {
+        let mut traffic = Traffic {
+            rank: 0,
+            ahead: false,
+            against: false,
+            comes_out: false,
+            opposite: false,
+            opposite_is_nearer: false,
+            largest: self.scene.body.radius_m,
+        };
+        // Slower than this is standing.
+        let slow = self.scene.body.max_speed_mps * S::from_milli(100);
+        let tie = S::from_micro(TIE_UM);
+        let own_distance = self.own.norm();
+        for other in self.scene.nearby {
+            let place = self.gap.place(other.offset_m.xy());
+            let speed_ahead = self.gap.turn(other.velocity_mps.xy()).x;
+            let distance = place.norm();
+            let is_nearer = distance < own_distance - tie
+                || distance <= own_distance + tie && other.id < self.scene.body.id;
+            let is_beside_axis = place.y.abs();
+            let reach = self.scene.body.radius_m + other.radius_m;
+            traffic.largest = traffic.largest.max(other.radius_m);
+            if place.x.abs() < other.radius_m + self.radii(500) && is_beside_axis < self.gap.half {
+                traffic.ahead |= speed_ahead > slow;
+                let stands_there = speed_ahead <= slow && place.x > S::ZERO && is_nearer;
+                traffic.against |= speed_ahead < -slow || stands_there;
+            }
+            if place.x < S::ZERO {
+                traffic.rank += i32::from(is_nearer && speed_ahead > -slow);
+                traffic.comes_out |= speed_ahead < -slow
+                    && place.x > -self.radii(YARD)
+                    && is_beside_axis < self.gap.half.max(reach);
+            } else if place.x > S::ZERO && distance < self.radii(YARD) && speed_ahead < slow {
+                traffic.opposite = true;
+                traffic.opposite_is_nearer |= is_nearer;
+            }
+        }
+        traffic
+    }
+
+    /// Where to go next on the way through.
+    fn way_through(&self, has_lanes: bool) -> Vec2<S> {
+        let lane = self.lane(has_lanes);
+        let play = self.gap.half - self.scene.body.radius_m;
+        if self.own.x > S::ZERO {
+            // Out, and to the right.
+            Vec2::new(self.radii(4_000), lane + self.radii(300))
+        } else if (self.own.y - lane).abs() > play.max(self.radii(300)) {
+            // Into the lane first.
+            Vec2::new(-self.radii(800), lane)
+        } else {
+            Vec2::new(self.radii(2_000), lane)
+        }
+    }
+
+    /// Where to wait; `None`: here.
+    fn place_to_wait(&self, rank: i32, has_lanes: bool) -> Option<Vec2<S>> {
+        let radius = self.scene.body.radius_m;
+        let own = self.own;
+        let side = if has_lanes || own.y >= S::ZERO {
+            S::ONE
+        } else {
+            -S::ONE
+        };
+        let edge = self.gap.half.max(radius);
+        let spot = Vec2::new(-self.radii(1_500), (edge + self.radii(1_200)) * side);
+        let is_in_lane = own.y.abs() < edge + radius && own.x > -self.radii(YARD);
+        if is_in_lane && !has_lanes {
+            return Some(if own.x > -self.radii(1_300) {
+                // Back out of the gap.
+                Vec2::new(-self.radii(2_500), spot.y)
+            } else {
+                Vec2::new(own.x, spot.y + radius * S::HALF * side)
+            });
+        }
+        // As many robots as the rank says find room in a quarter of this disc.
+        let room = radius * (S::from_milli(6_500) * S::from_i32(rank)).sqrt();
+        ((spot - own).norm() >= room).then_some(spot)
+    }
+}
