@@ -57,9 +57,10 @@ pub struct AvoidParams<S> {
     /// Own share of the correction towards robots that give way too, 1/2 when all use the same. Below 1/2 both together do not
     /// avoid; above, they give way more than needed. Towards robots that do not give way it is 1.
     pub share: S,
-    /// Added to the sum of the radii of two robots, metres: the error of what is known of the other one. Positions rounded to
-    /// a millimetre on both sides call for 0.002 or more; robots may come nearer to each other than they think by
-    /// what is missing here. Much more than needed closes narrow places.
+    /// Added to the sum of the radii of two robots, and to the own radius towards obstacles, metres: the error of what is known of
+    /// places. Millimetres on both sides call for 0.002 or more, lost updates for about (speed x their age x a
+    /// tenth). Robots may come nearer to each other than they think by what is missing here; much more than needed closes
+    /// narrow places and slows crowds.
     pub margin_m: S,
     /// The way out of symmetry and jams.
     pub escape: EscapeParams<S>,

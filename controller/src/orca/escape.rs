@@ -1,4 +1,11 @@
 //! The way out of symmetry and jams: which wish to give to ORCA so that nobody waits for ever.
+//!
+//! - In the open robots pass each other on the right: while somebody is ahead, near, and coming nearer, the wish turns to the
+//!   right by a fixed angle. Without it equal robots on a circle stop for ever in the middle; with it they go round each other as in a
+//!   roundabout. Who merely goes the same way is no reason to turn.
+//! - In narrow places they take turns: see [`turn`](super::turn).
+//!
+//! Neither costs anything where nobody is near.
 
 use super::turn::Turn;
 use crate::body::Body;
@@ -11,10 +18,10 @@ use crate::scalar::Scalar;
 /// Parameters of the rule of escape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EscapeParams<S> {
-    /// How far to the right of the wish to lean while a robot is ahead, radians; 0: never. More resolves dense crossings
-    /// sooner and makes every way longer; 0.2 to 0.8.
+    /// How far to the right of the wish to lean while a robot is in the way, radians; 0: never. More makes every way longer; less
+    /// leaves robots on a circle in each other's way for longer (below 0.25 for ever). 0.4 to 0.6. No danger: the half-planes stay.
     pub lean_rad: S,
-    /// A robot is ahead when its border is nearer than this, metres. About what two robots cover in the horizon.
+    /// A robot is in the way when its border is nearer than this, metres: about as far as the robot goes within its horizon.
     pub lean_within_m: S,
     /// Nobody leans nearer to its goal than this, metres: there it would circle.
     pub straight_within_m: S,
