@@ -151,7 +151,8 @@ fn a_full_avoider_keeps_the_nearest_and_no_room_is_no_crash() {
     let own = body(1, [0.5, 0.0]);
     let mut few = Avoider::<f32, 4>::new(AvoidParams::default());
     let solution = few.velocity(&own, wish, None, &others, &walls, &mut rng());
-    assert!(solution.velocity_mps.x < 0.3 && solution.velocity_mps.x > -0.16);
+    let got = solution.velocity_mps;
+    assert!(got.x > -0.15 && (got - wish).norm() > 0.1, "{got:?}");
     let (planes, hard) = few.planes(&own, &others, &walls);
     assert_eq!((planes.len(), hard), (4, 2));
     let mut none = Avoider::<f32, 0>::new(AvoidParams::default());
