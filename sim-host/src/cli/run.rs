@@ -2,7 +2,7 @@
 
 use super::{Ended, Global, Progress, Stop, print, print_json};
 use crate::engine::{Moment, Outcome, simulate};
-use crate::plot::run_pictures;
+use crate::plot::{motion_pictures, run_pictures};
 use crate::record::{self, History, Options, PacketCounts, Recorder, RobotRow, write_summary};
 use crate::scenario::{Overrides, Scenario};
 use anyhow::{Context as _, Result};
@@ -49,7 +49,7 @@ struct Summary {
     /// Mean and last of their travel times, simulated seconds; null: nobody arrived.
     arrival_mean_seconds: Option<f64>,
     arrival_last_seconds: Option<f64>,
-    /// Robots in a wall or in another one's cell, summed over ticks.
+    /// Robots in a wall, in another one's cell, or overlapping another one or an obstacle, summed over ticks.
     collisions: u64,
     packets: PacketCounts,
     /// Packets beyond a robot's bandwidth, never on the air.
@@ -59,6 +59,10 @@ struct Summary {
     /// The same, graph placed by the best-fitting translation.
     formation_error_per_agent_best_fit: Option<f64>,
     graph_distance_mean: Option<f64>,
+    /// Least distance between the surfaces of two bodies, metres; null: on the grid, or nobody came near.
+    least_gap_m: Option<f64>,
+    /// Least distance between a body and an obstacle, metres.
+    least_obstacle_gap_m: Option<f64>,
     /// 16 hex digits; equal for equal traces.
     trace_hash: String,
     /// What was written.
@@ -113,7 +117,10 @@ fn run(scenario: &Scenario, out: &Path, stop: &Stop, global: &Global) -> Result<
         "trace.schema.json",
     ];
     let mut files: Vec<_> = names.iter().map(|name| out.join(name)).collect();
-    files.extend(run_pictures(&scenario.terrain, &history, &edges, out)?);
+    files.extend(match &scenario.plane {
+        None => run_pictures(&scenario.terrain, &history, &edges, out)?,
+        Some(setup) => motion_pictures(setup, &history, out)?,
+    });
     let mut summary = Summary::new(scenario, &outcome, files);
     summary.wall_seconds = wall_seconds;
     summary.interrupted = stop.is_requested();
@@ -152,6 +159,11 @@ fn simulate_recorded(
     }
 }
 
+/// What JSON has a form for.
+fn finite(value: Option<f64>) -> Option<f64> {
+    value.filter(|value| value.is_finite())
+}
+
 impl Summary {
     fn new(scenario: &Scenario, outcome: &Outcome, files: Vec<PathBuf>) -> Self {
         let units: Vec<u64> = outcome.arrival_times.iter().flatten().copied().collect();
@@ -175,6 +187,8 @@ impl Summary {
             formation_error_per_agent: formation.map(|f| f.error_per_agent),
             formation_error_per_agent_best_fit: formation.map(|f| f.best_fit_error_per_agent),
             graph_distance_mean: formation.map(|f| f.graph_distance),
+            least_gap_m: finite(outcome.clearance.map(|c| c.bodies_m)),
+            least_obstacle_gap_m: finite(outcome.clearance.map(|c| c.solids_m)),
             trace_hash: format!("{:016x}", outcome.trace_hash),
             files,
         }
@@ -208,6 +222,12 @@ impl Summary {
         }
         line("arrived", arrived)?;
         line("collisions", self.collisions.to_string())?;
+        if let Some(gap) = self.least_gap_m {
+            line("least gap", format!("{gap:.4} m between two robots"))?;
+        }
+        if let Some(gap) = self.least_obstacle_gap_m {
+            line("", format!("{gap:.4} m to an obstacle"))?;
+        }
         if let (Some(error), Some(best_fit), Some(distance)) = (
             self.formation_error_per_agent,
             self.formation_error_per_agent_best_fit,

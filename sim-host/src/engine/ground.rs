@@ -3,6 +3,7 @@
 use super::Status;
 use crate::metrics::Keeping;
 use crate::record::Motion;
+use crate::world::plane::Clearance;
 use staya_controller::agent::{Agent, AgentConfig, Command, Guidance, Inputs, NEIGHBORS, Safety};
 
 /// A world with bodies, as the engine needs it. Bodies are numbered as the robots of the scenario.
@@ -59,6 +60,12 @@ pub trait Ground: Send + Sync {
     /// has none.
     fn formation_error(&self, _index: usize) -> f64 {
         f64::NAN
+    }
+
+    /// How near bodies have come to each other and to obstacles in the whole run, and how often they overlapped, summed over
+    /// ticks; `None` where bodies have no size.
+    fn clearance(&self) -> Option<Clearance> {
+        None
     }
 
     /// An order of the operator to everybody that is due at `tick`: frames.

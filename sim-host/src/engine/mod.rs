@@ -337,6 +337,7 @@ where
             packets: self.packets,
             throttled: self.throttled,
             formation: self.ground.mean_keeping(),
+            clearance: self.ground.clearance(),
             trace_hash: hash::sum(&self.chains),
         }
     }

@@ -4,7 +4,7 @@ use super::Status;
 use super::ground::{Ground, Words};
 use crate::record::Motion;
 use crate::scenario::{Order, PlaneSetup, Robot, Scenario, Target};
-use crate::world::plane::{Disc, Plane, narrow};
+use crate::world::plane::{Clearance, Disc, Plane, narrow};
 use crate::world::window;
 use staya_controller::agent::{
     Agent, AgentConfig, CellState, Command, Guidance, InCell, Inputs, NEIGHBORS, Place, Pose,
@@ -25,6 +25,7 @@ const OPERATOR: RobotId = RobotId(u32::MAX);
 pub struct PlaneGround {
     plane: Plane,
     setup: PlaneSetup,
+    clearance: Clearance,
     robots: Vec<Robot>,
     radius: u8,
     tick_us: u32,
@@ -47,6 +48,7 @@ impl PlaneGround {
         let land = setup.has_terrain.then(|| scenario.terrain.clone());
         let plane = Plane::new(setup.abilities, land, setup.solids.clone(), discs.collect());
         Self {
+            clearance: Clearance::FREE,
             plane,
             robots: scenario.robots.clone(),
             radius: scenario.route.params.radius,
@@ -176,8 +178,17 @@ impl Ground for PlaneGround {
     }
 
     fn count_collisions(&mut self, _: u32) -> u64 {
-        let clearance = self.plane.clearance();
-        clearance.overlaps + clearance.intrusions
+        let now = self.plane.clearance();
+        let all = &mut self.clearance;
+        all.bodies_m = all.bodies_m.min(now.bodies_m);
+        all.solids_m = all.solids_m.min(now.solids_m);
+        all.overlaps += now.overlaps;
+        all.intrusions += now.intrusions;
+        now.overlaps + now.intrusions
+    }
+
+    fn clearance(&self) -> Option<Clearance> {
+        Some(self.clearance)
     }
 
     fn words(&self, index: usize, tick: u32, status: &Status) -> Words {

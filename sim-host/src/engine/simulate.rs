@@ -5,6 +5,7 @@ use crate::metrics::Keeping;
 use crate::record::{PacketCounts, RobotRow, TickRow};
 use crate::scenario::{GuidanceName, PlaneSetup, SafetyName, Scenario};
 use crate::world::Misplaced;
+use crate::world::plane::Clearance;
 use staya_controller::agent::{
     AnyGuidance, AnySafety, BoidsGuidance, CELLS, FlySafety, FormationGuidance, GoalFlockGuidance,
     Guidance, InPlane, LatticeGuidance, NEIGHBORS, OrcaSafety, PushOutSafety, RouteGuidance,
@@ -47,6 +48,8 @@ pub struct Outcome {
     pub throttled: u64,
     /// Means over the run; `None` without a formation.
     pub formation: Option<Keeping>,
+    /// How near bodies came to each other and to obstacles; `None` on the grid, where bodies have no size.
+    pub clearance: Option<Clearance>,
     /// The same for equal traces, on any machine and any number of threads.
     pub trace_hash: u64,
 }

@@ -14,6 +14,7 @@ pub mod flock;
 mod font;
 mod layout;
 mod map;
+mod motion;
 mod raster;
 mod run;
 mod scale;
@@ -23,6 +24,7 @@ pub mod ticks;
 mod trajectories;
 
 pub use chart::{Chart, Panels, Series};
+pub use motion::motion_pictures;
 pub use run::run_pictures;
 
 #[cfg(test)]

@@ -9,12 +9,15 @@ pub use table::*;
 
 use super::check::within;
 use super::source::Source;
-use super::{Robot, ScenarioError, ScenarioFile};
+use super::{Robot, Routing, Scenario, ScenarioError, ScenarioFile};
+use crate::radio::RadioParams;
 use crate::terrain::Terrain;
+use crate::world::MoveRules;
 use crate::world::plane::{Abilities, Solid};
 use staya_controller::flock::boids::BoidsParams;
 use staya_controller::flock::goal::GoalParams;
 use staya_controller::flock::lattice::LatticeParams;
+use staya_controller::formation::FormationParams;
 use staya_controller::grid::Cell;
 use staya_controller::neighbor::Doubt;
 use staya_controller::orca::AvoidParams;
@@ -72,6 +75,76 @@ pub struct PlaneSetup {
     pub boids: BoidsParams<f32>,
     /// By rising tick.
     pub orders: Vec<Order>,
+}
+
+impl PlaneSetup {
+    /// Robots of `radius_m` at their starts, without land and obstacles, that go straight to their first places behind ORCA:
+    /// what a `[plane]` with nothing but the required fields says.
+    #[must_use]
+    pub fn new(abilities: Abilities, radius_m: f64, starts: Vec<Start>) -> Self {
+        Self {
+            abilities,
+            radius_m,
+            cruise_mps: abilities.max_speed_mps,
+            tolerance_m: radius_m / 10.0,
+            sight_m: ten(),
+            has_terrain: false,
+            solids: Vec::new(),
+            starts,
+            guidance: GuidanceName::Waypoint,
+            safety: SafetyName::Orca,
+            orca: AvoidParams::default(),
+            doubt: Doubt {
+                growth_mps: abilities.max_speed_mps as f32 / 2.0,
+                most_m: radius_m as f32,
+            },
+            push_out: PushOutParams::new(1.0),
+            lattice: (LatticeParams::new(1.0), true),
+            goal_flock: (GoalParams::new(1.0, 1.0), 1.0),
+            boids: BoidsParams::paper(1.0),
+            orders: Vec::new(),
+        }
+    }
+
+    /// Numbers for the robots: 1, 2, 3, ... in the order of their starts; their cells mean nothing.
+    fn robots(&self) -> Vec<Robot> {
+        let ids = 1..=self.starts.len() as u32;
+        let robot = |id| Robot {
+            id: RobotId(id),
+            start: Cell::default(),
+            goal: Cell::default(),
+        };
+        ids.map(robot).collect()
+    }
+}
+
+impl Scenario {
+    /// A scenario in the plane that no file says: `ticks` of `setup.abilities.step_s`, with a radio. Robots are numbered
+    /// from 1 in the order of their starts.
+    #[must_use]
+    pub fn in_plane(
+        name: &str,
+        seed: u64,
+        ticks: u32,
+        radio: RadioParams,
+        setup: PlaneSetup,
+    ) -> Self {
+        Self {
+            name: name.to_owned(),
+            seed,
+            ticks,
+            tick_us: super::check::micros(setup.abilities.step_s),
+            terrain: Terrain::flat(1, 1),
+            rules: MoveRules::default(),
+            radio,
+            robots: setup.robots(),
+            formation: None,
+            plane: Some(setup),
+            route: Routing::default(),
+            formation_params: FormationParams::default(),
+            faults: Vec::new(),
+        }
+    }
 }
 
 /// Checks the table and places the robots; `cells` are those that the top-level `robots` gives.
@@ -157,16 +230,6 @@ pub(super) fn build(
             }
         }
     }
-    let robots = match cells {
-        Some(robots) => robots.to_vec(),
-        None => (1..=starts.len() as u32)
-            .map(|id| Robot {
-                id: RobotId(id),
-                start: Cell::default(),
-                goal: Cell::default(),
-            })
-            .collect(),
-    };
     let setup = PlaneSetup {
         abilities: Abilities {
             max_speed_mps: table.max_speed_mps,
@@ -190,6 +253,7 @@ pub(super) fn build(
         boids: flocks::boids(source, table)?,
         orders: orders(source, file, table)?,
     };
+    let robots = cells.map_or_else(|| setup.robots(), <[Robot]>::to_vec);
     Ok((setup, robots))
 }
 

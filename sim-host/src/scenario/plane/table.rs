@@ -57,7 +57,8 @@ const fn infinite() -> f64 {
     f64::INFINITY
 }
 
-const fn ten() -> f64 {
+/// How far robots see, metres.
+pub(super) const fn ten() -> f64 {
     10.0
 }
 

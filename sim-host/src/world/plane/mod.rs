@@ -68,6 +68,16 @@ pub struct Clearance {
     pub intrusions: u64,
 }
 
+impl Clearance {
+    /// Nothing is near.
+    pub const FREE: Self = Self {
+        bodies_m: f64::INFINITY,
+        solids_m: f64::INFINITY,
+        overlaps: 0,
+        intrusions: 0,
+    };
+}
+
 /// Less overlap than this is rounding, metres.
 const ROUNDING_M: f64 = 1e-9;
 
@@ -171,12 +181,7 @@ impl Plane {
         self.centers
             .extend(self.discs.iter().map(|disc| disc.position_m));
         self.index.rebuild(&self.centers);
-        let mut clearance = Clearance {
-            bodies_m: f64::INFINITY,
-            solids_m: f64::INFINITY,
-            overlaps: 0,
-            intrusions: 0,
-        };
+        let mut clearance = Clearance::FREE;
         let mut found = Vec::new();
         for (number, disc) in (0..).zip(&self.discs) {
             let query = Query {
