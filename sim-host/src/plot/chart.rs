@@ -133,6 +133,7 @@ pub struct Chart {
     pub(super) x_range: Option<[f64; 2]>,
     pub(super) y_range: Option<[f64; 2]>,
     pub(super) log_x: bool,
+    pub(super) log_y: bool,
     pub(super) size: [f64; 2],
     pub(super) series: Vec<Series>,
 }
@@ -153,6 +154,7 @@ impl Chart {
             x_range: None,
             y_range: None,
             log_x: false,
+            log_y: false,
             size: [720.0, 420.0],
             series: Vec::new(),
         }
@@ -197,6 +199,15 @@ impl Chart {
     pub fn log_x(self) -> Self {
         Self {
             log_x: true,
+            ..self
+        }
+    }
+
+    /// Makes the y axis logarithmic; values of 0 and less are left out, and so are bars.
+    #[must_use]
+    pub fn log_y(self) -> Self {
+        Self {
+            log_y: true,
             ..self
         }
     }

@@ -93,8 +93,12 @@ impl Axes {
         let y_range = y_range(chart, &extent, most);
         let y = Axis {
             range: y_range,
-            logarithmic: false,
-            ticks: ticks::linear(y_range[0], y_range[1], most),
+            logarithmic: chart.log_y,
+            ticks: if chart.log_y {
+                ticks::logarithmic(y_range[0], y_range[1], most)
+            } else {
+                ticks::linear(y_range[0], y_range[1], most)
+            },
         };
         let empty = extent.x.is_none();
         Self { x, y, empty }
@@ -146,7 +150,8 @@ impl Extent {
     }
 
     fn add(&mut self, chart: &Chart, x: f64, y: f64) {
-        if !x.is_finite() || !y.is_finite() || (chart.log_x && x <= 0.0) {
+        let is_shown = |value: f64, log: bool| value.is_finite() && (value > 0.0 || !log);
+        if !is_shown(x, chart.log_x) || !is_shown(y, chart.log_y) {
             return;
         }
         let widen = |range: Option<[f64; 2]>, value: f64| match range {
@@ -170,21 +175,7 @@ fn x_range(chart: &Chart, extent: &Extent) -> [f64; 2] {
     let wanted = chosen(chart.x_range);
     let [low, high] = wanted.or(extent.x).unwrap_or([0.0, 1.0]);
     if chart.log_x {
-        // A positive range, at least a factor of 2 wide around a single value.
-        let low = if low > 0.0 {
-            low
-        } else {
-            f64::MIN_POSITIVE.max(high / 1e3)
-        };
-        let (low, high) = (low.clamp(1e-150, 1e150), high.clamp(1e-150, 1e150));
-        let factor = if high / low < 1.0 + 1e-9 {
-            1.5
-        } else if wanted.is_none() && extent.marks {
-            libm::pow(high / low, 0.03)
-        } else {
-            1.0
-        };
-        return [low / factor, high * factor];
+        return log_range([low, high], wanted.is_none() && extent.marks);
     }
     let [low, high] = ticks::sound(low, high);
     let share = match (wanted, extent.marks, extent.bars) {
@@ -195,7 +186,30 @@ fn x_range(chart: &Chart, extent: &Extent) -> [f64; 2] {
     [low - (high - low) * share, high + (high - low) * share]
 }
 
+/// A positive range, at least a factor of 2 wide around a single value; with some room at its ends.
+fn log_range([low, high]: [f64; 2], room: bool) -> [f64; 2] {
+    let low = if low > 0.0 {
+        low
+    } else {
+        f64::MIN_POSITIVE.max(high / 1e3)
+    };
+    let (low, high) = (low.clamp(1e-150, 1e150), high.clamp(1e-150, 1e150));
+    let factor = if high / low < 1.0 + 1e-9 {
+        1.5
+    } else if room {
+        libm::pow(high / low, 0.03)
+    } else {
+        1.0
+    };
+    [low / factor, high * factor]
+}
+
 fn y_range(chart: &Chart, extent: &Extent, most: usize) -> [f64; 2] {
+    if chart.log_y {
+        let wanted = chosen(chart.y_range);
+        let range = wanted.or(extent.y).unwrap_or([1.0, 10.0]);
+        return log_range(range, wanted.is_none());
+    }
     if let Some([low, high]) = chosen(chart.y_range) {
         return ticks::sound(low, high);
     }

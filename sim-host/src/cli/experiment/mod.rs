@@ -1,8 +1,9 @@
-//! `staya experiment route | formation | movingai`: papers and benchmarks, run again.
+//! `staya experiment route | formation | movingai | boids`: papers and benchmarks, run again.
 //!
 //! A further experiment is a module with a `clap::Args` struct and `run(&self, &Global) -> Result<Ended>`, and one
 //! line each in [`Experiment`] and [`ExperimentArgs::run`].
 
+mod boids;
 mod formation;
 mod movingai;
 mod params;
@@ -28,6 +29,8 @@ enum Experiment {
     Formation(Box<formation::FormationArgs>),
     /// The queries of a Moving AI benchmark: how many robots arrive, and at what loss.
     Movingai(movingai::MovingAiArgs),
+    /// Boids on a torus: three ways to find neighbours, equal flights, and what they cost (STA section 3).
+    Boids(boids::BoidsArgs),
 }
 
 impl ExperimentArgs {
@@ -40,6 +43,7 @@ impl ExperimentArgs {
             Experiment::Route(args) => args.run(global),
             Experiment::Formation(args) => args.run(global),
             Experiment::Movingai(args) => args.run(global),
+            Experiment::Boids(args) => args.run(global),
         }
     }
 }

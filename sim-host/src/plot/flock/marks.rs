@@ -8,7 +8,7 @@ use crate::plot::colour::{self, Colour, INK, WHITE};
 
 const STONE: Colour = Colour::hex(0xc9_c4_bb);
 const STONE_EDGE: Colour = Colour::hex(0x6f_68_5c);
-const EDGE: Colour = Colour::hex(0xb4_bf_c9);
+const EDGE: Colour = Colour::hex(0x9a_a8_b5);
 const GOAL: Colour = Colour::hex(0xd5_5e_00);
 /// Discs of a smaller radius, in units, are darts.
 const LEAST_RADIUS: f64 = 2.6;

@@ -115,11 +115,35 @@ fn charts_without_data_say_so() {
         Chart::new("t", "x", "y")
             .log_x()
             .with(Series::points("a", [[0.0, 1.0], [-3.0, 1.0]])),
+        Chart::new("t", "x", "y")
+            .log_y()
+            .with(Series::points("a", [[1.0, 0.0], [1.0, -3.0]])),
     ] {
         assert!(svg_of(&chart).contains(">no data<"));
         assert_texts_apart(&chart.draw());
     }
     assert!(!svg_of(&full()).contains("no data"));
+}
+
+#[test]
+fn decades_are_equally_long_on_a_logarithmic_axis() {
+    let decades = [[1.0, 0.1], [10.0, 10.0], [100.0, 1000.0], [1000.0, 0.0]];
+    let chart = Chart::new("t", "x", "y").with(Series::line("a", decades));
+    let both = chart.clone().log_x().log_y();
+    let line = |chart: &Chart| -> Vec<[f64; 2]> {
+        let shapes = chart.draw().shapes;
+        let line = shapes.iter().rev().find_map(|shape| match shape {
+            Shape::Path { lines, .. } => lines.iter().find(|line| line.len() > 2).cloned(),
+            _ => None,
+        });
+        line.expect("a line")
+    };
+    let [a, b, c] = line(&both)[..] else {
+        panic!("what is not above 0 is left out");
+    };
+    assert!((b[0] - a[0] - (c[0] - b[0])).abs() < 1e-9);
+    assert!((b[1] - a[1] - (c[1] - b[1])).abs() < 1e-9);
+    assert_eq!(line(&chart).len(), 4);
 }
 
 #[test]
@@ -355,7 +379,7 @@ proptest! {
         height in -9.0_f64..9.0,
         width in 300.0_f64..1200.0,
         names in proptest::collection::vec("[a-zA-Z ,.%]{1,40}", 1..7),
-        log in any::<bool>(),
+        log in any::<[bool; 2]>(),
     ) {
         let span = libm::pow(10.0, exponent.into());
         let tall = libm::pow(10.0, height);
@@ -364,8 +388,11 @@ proptest! {
         for name in names {
             chart = chart.with(Series::line(name, [[low, -tall], [low + span, tall]]));
         }
-        if log {
+        if log[0] {
             chart = chart.log_x();
+        }
+        if log[1] {
+            chart = chart.log_y();
         }
         let canvas = chart.draw();
         assert_texts_apart(&canvas);
@@ -378,15 +405,18 @@ proptest! {
     #[test]
     fn any_numbers_make_a_picture(
         points in proptest::collection::vec(any::<[f64; 4]>(), 0..20),
-        log in any::<bool>(),
+        log in any::<[bool; 2]>(),
     ) {
         let mut chart = Chart::new("any", "x", "y")
             .size(240.0, 180.0)
             .with(Series::line("line", points.iter().map(|p| [p[0], p[1]])))
             .with(Series::intervals("intervals", points.clone()).joined())
             .with(Series::bars("bars", points.iter().map(|p| [p[0], p[1], p[2]])));
-        if log {
+        if log[0] {
             chart = chart.log_x();
+        }
+        if log[1] {
+            chart = chart.log_y();
         }
         assert_well_formed(&svg_of(&chart));
         prop_assert!(crate::plot::raster::png(&chart.draw()).is_ok());

@@ -1,0 +1,122 @@
+use super::*;
+
+fn small() -> Plan {
+    Plan {
+        boids: vec![1, 2, 60],
+        steps: 12,
+        most_by_all_pairs: 60,
+        picture_steps: 40,
+        picture_boids: 30,
+        ..Plan::default()
+    }
+}
+
+#[test]
+fn three_searches_and_all_threads_give_the_same_trajectories() {
+    let plan = small();
+    let report = plan.carry_out(|_| true).expect("a plan");
+    assert_eq!(report.rows.len(), 3);
+    assert!(report.is_equal());
+    assert!(report.rows.iter().all(|row| row.timings.len() == 3));
+    let hash = &report.rows[2].timings[0].hash;
+    let mut flock = plan.flock(60);
+    assert_ne!(&format!("{:016x}", flock.hash()), hash);
+    let mut cells = Cells::new(flock.space, 33.0);
+    for _ in 0..plan.steps {
+        flock.step_in_parallel(&mut cells);
+    }
+    assert_eq!(&format!("{:016x}", flock.hash()), hash);
+    assert!(report.rows[2].mean_neighbours > 1.0);
+}
+
+#[test]
+fn flocks_are_pinned() {
+    let mut flock = small().flock(60);
+    let mut cells = Cells::new(flock.space, 150.0);
+    (0..100).for_each(|_| flock.step(&mut cells));
+    assert_eq!(format!("{:016x}", flock.hash()), "80d38a757c170a18");
+}
+
+#[test]
+fn boids_fly_more_alike_than_they_started_and_stay_on_the_torus() {
+    let plan = Plan {
+        picture_steps: 600,
+        ..small()
+    };
+    let report = plan.carry_out(|_| true).expect("a plan");
+    let steps: Vec<u32> = report.moments.iter().map(|moment| moment.step).collect();
+    assert_eq!(steps, [0, 60, 600]);
+    let order = |index: usize| report.moments[index].polarisation;
+    assert!(
+        order(0) < 0.4 && order(2) > 0.6,
+        "{} {}",
+        order(0),
+        order(2)
+    );
+    let (_, last) = &report.flocks[2];
+    let [width, height] = last.sides();
+    let is_inside = |&[x, y]: &[f32; 2]| (0.0..width).contains(&x) && (0.0..height).contains(&y);
+    assert!(last.places().iter().all(is_inside));
+    assert!((width / height - 4.0 / 3.0).abs() < 1e-5);
+}
+
+#[test]
+fn all_pairs_are_left_out_above_their_limit_and_an_early_end_keeps_whole_rows() {
+    let plan = Plan {
+        most_by_all_pairs: 2,
+        ..small()
+    };
+    assert_eq!(plan.total(), 10);
+    let report = plan.carry_out(|done| done < 8).expect("a plan");
+    assert_eq!((report.rows.len(), report.moments.len()), (2, 0));
+    let report = plan.carry_out(|_| true).expect("a plan");
+    let searches = |row: usize| report.rows[row].timings.len();
+    assert_eq!([searches(0), searches(1), searches(2)], [3, 3, 2]);
+    assert_eq!(report.rows[2].us_per_boid("all pairs"), None);
+    assert!(report.is_equal());
+}
+
+#[test]
+fn plans_that_make_no_sense_are_refused() {
+    let refused = |plan: Plan| plan.check().expect_err("refused").to_string();
+    let none = Plan {
+        boids: Vec::new(),
+        ..small()
+    };
+    assert!(refused(none).contains("one or more"));
+    let zero = Plan {
+        boids: vec![3, 0],
+        ..small()
+    };
+    assert!(refused(zero).contains("0 boids"));
+    assert!(
+        refused(Plan {
+            steps: 0,
+            ..small()
+        })
+        .contains("0 steps")
+    );
+    for value in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+        assert!(
+            refused(Plan {
+                closest: value,
+                ..small()
+            })
+            .contains("closest")
+        );
+    }
+    assert_eq!(Plan::default().check(), Ok(()));
+}
+
+#[test]
+fn pictures_and_table_are_left() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let report = small().carry_out(|_| true).expect("a plan");
+    let files = report.draw(dir.path()).expect("drawn");
+    assert_eq!(files.len(), 4);
+    assert!(files.iter().all(|file| file.is_file()));
+    let csv =
+        std::fs::read_to_string(report.write_csv(dir.path()).expect("written")).expect("read");
+    assert_eq!(csv.lines().count(), 1 + 9);
+    assert!(csv.lines().all(|line| line.matches(',').count() == 6));
+}
