@@ -16,6 +16,8 @@ use crate::scalar::Scalar;
 use heapless::Vec;
 
 #[cfg(test)]
+mod simulation;
+#[cfg(test)]
 mod tests;
 
 /// Where the half-plane of a moving neighbour comes from.

@@ -30,6 +30,11 @@ fn avoider() -> Avoider<f32, 16> {
     Avoider::new(AvoidParams::default())
 }
 
+/// The generator of a robot in a step.
+pub(super) fn rng_of(robot: u32, tick: u32) -> Rng {
+    Rng::keyed(1, 5, robot, tick)
+}
+
 fn rng() -> Rng {
     Rng::new(1)
 }
@@ -183,6 +188,49 @@ fn fixed_point_robots_avoid_too() {
     let solution = avoider.velocity(&own, wish, None, &[other], &[], &mut rng());
     assert!(solution.penetration_mps < q(1e-3), "{solution:?}");
     assert!(solution.velocity_mps.y < q(-0.05), "to the right");
+}
+
+#[test]
+fn who_goes_the_same_way_or_away_is_no_reason_to_lean() {
+    let own = body(1, [0.4, 0.0]);
+    let wish = Vec2::new(0.4, 0.0);
+    let others = [
+        nearby(2, [0.8, 0.0], [0.4, 0.0]),
+        nearby(3, [0.5, 0.7], [0.5, 0.1]),
+        nearby(4, [-0.6, 0.0], [0.4, 0.0]),
+    ];
+    let got = avoider().velocity(&own, wish, None, &others, &[], &mut rng());
+    assert_eq!(got.velocity_mps, wish);
+}
+
+#[test]
+fn a_robot_opposite_gets_its_turn_at_a_door() {
+    let walls = [
+        Obstacle::Wall([Vec2::new(0.6, 0.2), Vec2::new(0.6, 4.0)]),
+        Obstacle::Wall([Vec2::new(0.6, -0.2), Vec2::new(0.6, -4.0)]),
+    ];
+    let own = body(5, [0.0, 0.0]);
+    let wish = Vec2::new(0.5, 0.0);
+    let goal = Some(Vec2::new(4.0, 0.0));
+    let goes = |avoider: &mut Avoider<f32, 16>, other: Nearby<f32>| {
+        avoider
+            .velocity(&own, wish, goal, &[other], &walls, &mut rng())
+            .velocity_mps
+            .x
+            > 0.05
+    };
+    // Equally far: the smaller number. Nearer: whatever the number.
+    assert!(!goes(&mut avoider(), nearby(4, [1.2, 0.0], [0.0, 0.0])));
+    assert!(goes(&mut avoider(), nearby(6, [1.2, 0.0], [0.0, 0.0])));
+    assert!(!goes(&mut avoider(), nearby(6, [1.1, 0.3], [0.0, 0.0])));
+    assert!(goes(&mut avoider(), nearby(4, [1.3, 0.2], [0.0, 0.0])));
+    // A turn that nobody takes passes on.
+    let mut waiting = avoider();
+    let first = (0..200).find(|_| goes(&mut waiting, nearby(4, [1.2, 0.0], [0.0, 0.0])));
+    assert!(
+        first.is_some_and(|tick| (59..=121).contains(&tick)),
+        "{first:?}"
+    );
 }
 
 proptest! {
