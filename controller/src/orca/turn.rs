@@ -29,6 +29,9 @@ use crate::scalar::Scalar;
 const DEEPEST: i32 = 8_000;
 /// Widest gap in which the rule holds; wider ones are open land.
 const WIDEST: i32 = 10_000;
+/// Gaps farther off do not matter yet: as far as robots wait. Walls must be seen at least as far, since where sight ends, two
+/// walls of a corridor look like a gap.
+const WITHIN: i32 = 14_000;
 /// How far behind a gap one still goes straight on.
 const PAST: i32 = 2_000;
 /// Play that two robots need to pass each other in a gap, beyond their diameters.
@@ -170,6 +173,9 @@ impl<'a, S: Scalar> View<'a, S> {
         };
         let gap = gap_on_way(scene.obstacles, target, &wanted)?;
         let own = gap.place(Vec2::ZERO);
+        if own.norm() > radii(WITHIN) {
+            return None;
+        }
         Some(Self { gap, scene, own })
     }
 
