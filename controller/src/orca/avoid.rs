@@ -273,15 +273,12 @@ fn insert_nearest<S: Scalar, T, const K: usize>(
         return;
     }
     let mut at = nearest.len().saturating_sub(1);
-    while let Some(before) = at.checked_sub(1) {
-        let in_order = match (nearest.get(before), nearest.get(at)) {
-            (Some(one), Some(other)) => one.0 <= other.0,
-            _ => true,
-        };
-        if in_order {
-            return;
-        }
-        nearest.swap(before, at);
+    // By pattern: `swap` would leave a panic in the firmware.
+    while let Some(before) = at.checked_sub(1)
+        && let Some([one, other]) = nearest.get_mut(before..=at)
+        && other.0 < one.0
+    {
+        core::mem::swap(one, other);
         at = before;
     }
 }
