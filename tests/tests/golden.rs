@@ -3,6 +3,7 @@
 
 use staya_controller::wire::Mode;
 use staya_sim::engine::Outcome;
+use staya_sim::experiment::orca::Sample;
 use staya_sim::record::{RobotRow, TickRow};
 use staya_sim::scenario::Scenario;
 use staya_tests::{golden, run, scenario};
@@ -121,4 +122,14 @@ fn golden_scale_small() {
 #[test]
 fn golden_scale_in_its_first_ticks() {
     check("scale", Some(3));
+}
+
+/// What `staya orca table` prints for fewer pairs: how far half-planes from the templates are off the exact ones.
+#[test]
+fn golden_orca_table() {
+    let sample = Sample {
+        pairs: 20_000,
+        seed: 1,
+    };
+    golden("orca-table", &sample.report().to_string());
 }

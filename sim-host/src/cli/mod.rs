@@ -1,4 +1,4 @@
-//! The command line: `staya run | terrain | experiment`.
+//! The command line: `staya run | terrain | orca | experiment`.
 //!
 //! A new command is a module with a `clap::Args` struct and `run(&self, &Global) -> Result<Ended>`,
 //! and one line in `Command`. Results go to standard output, progress and errors to standard
@@ -6,6 +6,7 @@
 //! then is kept).
 
 mod experiment;
+mod orca;
 mod progress;
 mod run;
 mod terrain;
@@ -48,6 +49,8 @@ enum Command {
     Run(run::RunArgs),
     /// Make, measure and draw terrain.
     Terrain(terrain::TerrainArgs),
+    /// Draw what ORCA forbids, and measure the template that looks it up.
+    Orca(orca::OrcaArgs),
     /// Run the experiments of papers and benchmarks again.
     Experiment(experiment::ExperimentArgs),
 }
@@ -100,6 +103,7 @@ fn run(cli: &Cli) -> Result<Ended> {
     match &cli.command {
         Command::Run(args) => args.run(&cli.global),
         Command::Terrain(args) => args.run(&cli.global),
+        Command::Orca(args) => args.run(&cli.global),
         Command::Experiment(args) => args.run(&cli.global),
     }
 }

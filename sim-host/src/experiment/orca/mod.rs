@@ -1,0 +1,230 @@
+//! The velocity obstacle of two robots (FVM): how far half-planes from voxel templates are off the exact ones, and
+//! [`pictures`] of what the paper draws.
+
+pub mod pictures;
+mod view;
+
+use crate::stats::{mean, quantile};
+use serde::Serialize;
+use staya_controller::geom::Vec2;
+use staya_controller::orca::{
+    Analytic, HalfPlanes, Neighbor, Params, Table, Template, Template2k, Template8k, Template16k,
+    Template64k,
+};
+use staya_controller::rand::Rng;
+use std::f64::consts::TAU;
+use std::fmt;
+
+/// Pairs of robots to compare on, from a seed: radii of 0.1 to 0.5 m, centres within 5 m and not overlapping, speeds
+/// up to 1.5 m/s (all uniform, places and velocities in discs), a horizon of 2 s, the whole correction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sample {
+    /// Number of pairs.
+    pub pairs: u32,
+    /// Equal seeds give equal pairs.
+    pub seed: u64,
+}
+
+/// Errors of one kind.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Errors {
+    /// Over all pairs.
+    pub mean: f64,
+    /// What 99 of 100 pairs do not exceed.
+    pub p99: f64,
+    /// The greatest.
+    pub max: f64,
+}
+
+/// One size of the template against the analytic form.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Size {
+    /// The type's name.
+    pub name: &'static str,
+    /// Bytes in flash.
+    pub bytes: usize,
+    /// Nodes: sines of the half angle, and directions.
+    pub nodes: [usize; 2],
+    /// Angles between normals, degrees.
+    pub angle_deg: Errors,
+    /// Differences of the demanded changes of velocity, in (R_A + R_B) / tau.
+    pub distance: Errors,
+}
+
+/// How far templates are off.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// Pairs compared.
+    pub pairs: u32,
+    /// Their seed.
+    pub seed: u64,
+    /// The smallest template first.
+    pub sizes: Vec<Size>,
+}
+
+/// A vector in the plane.
+type V = Vec2<f64>;
+
+/// Purpose of random numbers.
+const PAIRS: u32 = 0x0045_0201;
+
+const PARAMS: Params<f64> = Params {
+    horizon_s: 2.0,
+    separation_s: 0.05,
+    share: 1.0,
+};
+
+impl Sample {
+    /// The pairs: own velocity and neighbour.
+    fn draw(&self) -> Vec<(Vec2<f64>, Neighbor<f64>)> {
+        (0..self.pairs)
+            .map(|pair| {
+                let mut rng = Rng::keyed(self.seed, PAIRS, pair, 0);
+                let mut unit = || f64::from(rng.next_u32()) / (f64::from(u32::MAX) + 1.0);
+                let radii_m = 0.2 + 0.8 * unit();
+                let mut within = |least: f64, most: f64| {
+                    let squared = least * least + (most * most - least * least) * unit();
+                    let (sin, cos) = libm::sincos(TAU * unit());
+                    Vec2::new(cos, sin) * libm::sqrt(squared)
+                };
+                let own = within(0.0, 1.5);
+                let other = Neighbor {
+                    offset_m: within(radii_m, 5.0),
+                    velocity_mps: within(0.0, 1.5),
+                    radii_m,
+                    tie: Vec2::ZERO,
+                };
+                (own, other)
+            })
+            .collect()
+    }
+
+    /// Compares each size with the analytic form.
+    #[must_use]
+    pub fn report(&self) -> Report {
+        let pairs = self.draw();
+        Report {
+            pairs: self.pairs,
+            seed: self.seed,
+            sizes: vec![
+                size::<Template2k>("Template2k", &pairs, Template2k),
+                size::<Template8k>("Template8k", &pairs, Template8k),
+                size::<Template16k>("Template16k", &pairs, Template16k),
+                size::<Template64k>("Template64k", &pairs, Template64k),
+            ],
+        }
+    }
+}
+
+fn size<T: Template>(
+    name: &'static str,
+    pairs: &[(Vec2<f64>, Neighbor<f64>)],
+    template: impl HalfPlanes<f64>,
+) -> Size {
+    let table: Table = T::TABLE;
+    let compared = pairs.iter().filter_map(|(own, other)| {
+        let exact = Analytic.half_plane(*own, other, &PARAMS)?;
+        let found = template.half_plane(*own, other, &PARAMS)?;
+        let (sin, cos) = (
+            exact.normal.det(found.normal),
+            exact.normal.dot(found.normal),
+        );
+        let change = found.penetration(*own) - exact.penetration(*own);
+        Some((
+            libm::atan2(sin, cos).abs().to_degrees(),
+            change.abs() * PARAMS.horizon_s / other.radii_m,
+        ))
+    });
+    let (angles, distances): (Vec<f64>, Vec<f64>) = compared.unzip();
+    Size {
+        name,
+        bytes: table.bytes(),
+        nodes: table.shape(),
+        angle_deg: Errors::of(&angles),
+        distance: Errors::of(&distances),
+    }
+}
+
+impl Errors {
+    /// All zero without values.
+    fn of(values: &[f64]) -> Self {
+        Self {
+            mean: mean(values).unwrap_or(0.0),
+            p99: quantile(values, 0.99).unwrap_or(0.0),
+            max: values.iter().copied().fold(0.0, f64::max),
+        }
+    }
+}
+
+/// The table for people.
+impl fmt::Display for Report {
+    fn fmt(&self, text: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            text,
+            "half-planes from voxel templates against the exact ones, {} pairs, seed {}",
+            self.pairs, self.seed
+        )?;
+        writeln!(
+            text,
+            "{:36}{:>26}{:>36}",
+            "", "angle of normals, deg", "change of velocity, (R_A+R_B)/tau"
+        )?;
+        writeln!(
+            text,
+            "{:<14}{:>8}{:>14}{:>10}{:>8}{:>8}{:>16}{:>10}{:>10}",
+            "template", "bytes", "nodes", "mean", "p99", "max", "mean", "p99", "max"
+        )?;
+        for size in &self.sizes {
+            let [levels, directions] = size.nodes;
+            let nodes = format!("{levels} x {directions}");
+            let Errors { mean, p99, max } = size.angle_deg;
+            write!(
+                text,
+                "{:<14}{:>8}{nodes:>14}{mean:>10.4}{p99:>8.3}{max:>8.3}",
+                size.name, size.bytes
+            )?;
+            let Errors { mean, p99, max } = size.distance;
+            writeln!(text, "{mean:>16.6}{p99:>10.5}{max:>10.5}")?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn larger_templates_err_less_on_average_and_equal_seeds_say_the_same() {
+        let sample = Sample {
+            pairs: 2000,
+            seed: 1,
+        };
+        let report = sample.report();
+        assert_eq!(report, sample.report());
+        for pair in report.sizes.windows(2) {
+            assert!(pair[0].bytes < pair[1].bytes);
+            assert!(pair[0].angle_deg.mean > pair[1].angle_deg.mean);
+        }
+        for size in &report.sizes {
+            assert!(size.angle_deg.mean > 0.0 && size.angle_deg.p99 <= size.angle_deg.max);
+        }
+        assert_ne!(Sample { seed: 2, ..sample }.report().sizes, report.sizes);
+    }
+
+    #[test]
+    fn the_table_has_a_row_for_each_size() {
+        let sample = Sample {
+            pairs: 100,
+            seed: 3,
+        };
+        let text = sample.report().to_string();
+        assert_eq!(text.lines().count(), 3 + 4);
+        assert!(text.contains("Template64k"));
+        let width = text.lines().last().unwrap().len();
+        assert!(
+            text.lines().skip(1).all(|line| line.len() == width),
+            "{text}"
+        );
+    }
+}
