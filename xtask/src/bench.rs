@@ -18,7 +18,7 @@ enum Goal {
 }
 
 /// Benchmarks with a goal; the others are listed without one.
-const GOALS: [(&str, Goal); 5] = [
+const GOALS: [(&str, Goal); 7] = [
     (
         "cost_field_16x16/staya",
         Goal::Faster(5.0, "cost_field_16x16/pathfinding"),
@@ -28,6 +28,9 @@ const GOALS: [(&str, Goal); 5] = [
         Goal::Faster(5.0, "cost_field_32x32/pathfinding"),
     ),
     ("orca_10/staya", Goal::Faster(1.0, "orca_10/dodgy_2d")),
+    // 0.75 microseconds a robot.
+    ("orca_step_1000/staya", Goal::Under(750_000.0)),
+    ("flock_100k/staya", Goal::Faster(2.0, "flock_100k/krabmaga")),
     ("agent_step/constant_velocity", Goal::Under(5_000.0)),
     ("agent_step/reflexive", Goal::Under(25_000.0)),
 ];

@@ -3,6 +3,7 @@
 use super::nearest::Nearest;
 use super::tree::margin;
 use super::{Found, Query, Real, Search, Space, numbered};
+use std::ops::Range;
 
 /// Squares (in space, cubes) of at least a given side, each with its points beside each other in memory.
 ///
@@ -20,6 +21,8 @@ pub struct Cells<R, const D: usize> {
     counts: [u32; D],
     /// Cells per unit of length along each axis.
     scale: [R; D],
+    /// Side of a cell along each axis.
+    width: [R; D],
     /// Where the points of each cell begin in `order`, and the end of the last.
     starts: Vec<u32>,
     /// Indices of the points by cell, ascending in each.
@@ -41,6 +44,7 @@ impl<R: Real, const D: usize> Cells<R, D> {
             origin: [R::ZERO; D],
             counts: [1; D],
             scale: [R::ZERO; D],
+            width: [R::ZERO; D],
             starts: vec![0, 0],
             order: Vec::new(),
             points: Vec::new(),
@@ -85,10 +89,10 @@ impl<R: Real, const D: usize> Cells<R, D> {
             }
             side *= R::TWO;
         }
+        let count = |axis: usize| R::from_f64(self.counts[axis].into()).unwrap_or(R::ONE);
+        self.width = std::array::from_fn(|axis| length[axis].over(count(axis)));
         self.scale = std::array::from_fn(|axis| {
-            let scale = R::from_f64(self.counts[axis].into())
-                .unwrap_or(R::ZERO)
-                .over(length[axis]);
+            let scale = count(axis).over(length[axis]);
             if scale.is_finite() { scale } else { R::ZERO }
         });
     }
@@ -110,78 +114,125 @@ impl<R: Real, const D: usize> Cells<R, D> {
         cell
     }
 
-    /// The cells along an axis that the ball may touch, as one or two ranges of places.
-    fn span(&self, axis: usize, at: R, radius: R) -> [(u32, u32); 2] {
-        const NONE: (u32, u32) = (0, 0);
+    /// The cells along an axis that the ball may touch.
+    fn span(&self, axis: usize, at: R, radius: R) -> Span {
         let count = self.counts[axis];
         // Both places by the same monotonous function as a point's own: no rounding can put a point that is within the
         // radius outside. What a sum of rounding may lose is less than this margin.
         let around = self.space.period().map(|period| period[axis]);
         let margin = margin(at, radius + around.unwrap_or(R::ZERO));
         let reach = radius + margin;
-        let Some(period) = around else {
-            return [
-                (
-                    self.along(axis, at - reach),
-                    self.along(axis, at + reach) + 1,
-                ),
-                NONE,
-            ];
-        };
         let (low, high) = (at - reach, at + reach);
+        let straight = || Span::Straight(self.along(axis, low), self.along(axis, high) + 1);
+        let Some(period) = around else {
+            return straight();
+        };
         // All around: every cell once.
         if reach + reach >= period {
-            return [(0, count), NONE];
+            return Span::Around(0, count);
         }
-        if low < R::ZERO {
+        let (from, to) = if low < R::ZERO {
             let from = self.along(axis, low + period - margin);
-            let to = self.along(axis, high) + 1;
-            if from < to {
-                return [(0, count), NONE];
-            }
-            [(0, to), (from, count)]
+            (from, self.along(axis, high) + 1)
         } else if high >= period {
             let to = self.along(axis, high - period + margin) + 1;
-            let from = self.along(axis, low);
-            if from < to {
-                return [(0, count), NONE];
-            }
-            [(0, to), (from, count)]
+            (self.along(axis, low), to)
         } else {
-            [(self.along(axis, low), self.along(axis, high) + 1), NONE]
+            return straight();
+        };
+        if from < to {
+            Span::Around(0, count)
+        } else {
+            Span::Around(from, to)
         }
+    }
+
+    /// Whether all of the cells at this place along the axis are farther away than what still counts.
+    fn is_beyond(&self, axis: usize, place: u32, at: R, nearest: &Nearest<'_, R, D>) -> bool {
+        let place = R::from_f64(place.into()).unwrap_or(R::ZERO);
+        let low = self.origin[axis] + place * self.width[axis];
+        let high = low + self.width[axis];
+        let gap = (low - at).max(at - high);
+        let safe = gap - margin(at, high.abs() + self.origin[axis].abs());
+        safe > R::ZERO && nearest.is_beyond(safe)
     }
 
     /// Offers every point of a row of cells.
     #[inline]
-    fn scan(&self, at: [R; D], row: usize, columns: (u32, u32), nearest: &mut Nearest<'_, R, D>) {
-        let row = row * self.counts[0] as usize;
-        let from = self.starts[row + columns.0 as usize] as usize;
-        let to = self.starts[row + columns.1 as usize] as usize;
+    fn scan(&self, at: [R; D], row: usize, columns: Range<u32>, nearest: &mut Nearest<'_, R, D>) {
+        let from = self.starts[row + columns.start as usize] as usize;
+        let to = self.starts[row + columns.end as usize] as usize;
         for (&index, &point) in self.order[from..to].iter().zip(&self.points[from..to]) {
             nearest.offer(index, self.space.offset(at, point));
         }
     }
 
-    /// Goes through the axes from the last to the first.
+    /// Goes through the axes from the last to the first, on each from the middle to the outside: when the nearest are
+    /// found early, the outer rows need no look.
     fn descend(
         &self,
         at: [R; D],
         axis: usize,
         row: usize,
-        spans: &[[(u32, u32); 2]; D],
+        spans: &[Span; D],
         nearest: &mut Nearest<'_, R, D>,
     ) {
-        for &(from, to) in spans[axis].iter().filter(|(from, to)| from < to) {
-            if axis == 0 {
-                self.scan(at, row, (from, to), nearest);
-                continue;
+        let row = row * self.counts[axis] as usize;
+        let inner = |place: u32, nearest: &mut Nearest<'_, R, D>| {
+            self.descend(at, axis - 1, row + place as usize, spans, nearest);
+        };
+        match spans[axis] {
+            Span::Straight(from, to) if axis == 0 => self.scan(at, row, from..to, nearest),
+            Span::Around(from, to) if axis == 0 => {
+                for part in around(from, to, self.counts[axis]) {
+                    self.scan(at, row, part, nearest);
+                }
             }
-            for place in from..to {
-                let row = row * self.counts[axis] as usize + place as usize;
-                self.descend(at, axis - 1, row, spans, nearest);
+            Span::Around(from, to) => {
+                let parts = around(from, to, self.counts[axis]);
+                parts
+                    .into_iter()
+                    .flatten()
+                    .for_each(|place| inner(place, nearest));
+            }
+            Span::Straight(from, to) => {
+                let middle = self.along(axis, at[axis]).max(from).min(to - 1);
+                let (mut below, mut above) = (middle, middle);
+                while from < below || above < to {
+                    if above < to && !self.is_beyond(axis, above, at[axis], nearest) {
+                        inner(above, nearest);
+                        above += 1;
+                    } else {
+                        above = to;
+                    }
+                    if from < below && !self.is_beyond(axis, below - 1, at[axis], nearest) {
+                        below -= 1;
+                        inner(below, nearest);
+                    } else {
+                        below = from;
+                    }
+                }
             }
         }
+    }
+}
+
+/// Cells along an axis.
+#[derive(Clone, Copy, Debug)]
+enum Span {
+    /// From one place to before another one, and distances along them are plain differences.
+    Straight(u32, u32),
+    /// From the first place up to the end and from the beginning to before the second one; all when the first is the
+    /// smaller one. Distances may be shorter the other way around.
+    Around(u32, u32),
+}
+
+/// The parts of a [`Span::Around`] on an axis with so many cells.
+fn around(from: u32, to: u32, count: u32) -> [Range<u32>; 2] {
+    if from < to {
+        [from..to, 0..0]
+    } else {
+        [0..to, from..count]
     }
 }
 

@@ -75,6 +75,12 @@ impl<'a, R: Real, const D: usize> Nearest<'a, R, D> {
         }
     }
 
+    /// Whether nothing counts any more that is at least so far away (more than 0).
+    #[inline]
+    pub fn is_beyond(&self, distance: R) -> bool {
+        distance * distance > self.limit
+    }
+
     #[inline]
     fn keep(&mut self, new: Found<R, D>) {
         if self.most > FEW {

@@ -1,8 +1,10 @@
-//! ORCA among ten neighbours: half-planes and solution, beside `dodgy_2d`.
+//! ORCA among ten neighbours: half-planes and solution, beside `dodgy_2d`; and a whole step of 1000 robots with the
+//! search for their neighbours.
 
 use core::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use staya_peers::crowd::Crowd;
+use staya_peers::swarm::Swarm;
 
 fn orca(c: &mut Criterion) {
     // Different crowds in turn, so that no branch predictor learns one by heart.
@@ -19,5 +21,15 @@ fn orca(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, orca);
+/// Times are for all 1000 robots: a microsecond here is a nanosecond a robot.
+fn step(c: &mut Criterion) {
+    let mut swarm = Swarm::new(1000, 1);
+    let mut group = c.benchmark_group("orca_step_1000");
+    group.bench_function("staya", |bencher| bencher.iter(|| swarm.staya()));
+    group.bench_function("dodgy_2d", |bencher| bencher.iter(|| swarm.dodgy()));
+    group.bench_function("search_alone", |bencher| bencher.iter(|| swarm.search()));
+    group.finish();
+}
+
+criterion_group!(benches, orca, step);
 criterion_main!(benches);

@@ -8,10 +8,10 @@ use std::borrow::Cow;
 
 /// Neighbours of the robot.
 pub const NEIGHBORS: usize = 10;
-const RADIUS_M: f32 = 0.3;
-const SPEED_MPS: f32 = 1.5;
-const STEP_S: f32 = 0.05;
-const HORIZON_S: f32 = 2.0;
+pub(crate) const RADIUS_M: f32 = 0.3;
+pub(crate) const SPEED_MPS: f32 = 1.5;
+pub(crate) const STEP_S: f32 = 0.05;
+pub(crate) const HORIZON_S: f32 = 2.0;
 
 /// A robot in the origin among [`NEIGHBORS`] others, in the terms of both crates.
 #[derive(Clone, Debug)]

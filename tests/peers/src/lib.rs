@@ -2,6 +2,8 @@
 //! means something.
 
 pub mod crowd;
+pub mod flockers;
+pub mod swarm;
 
 use pathfinding::prelude::dijkstra_all;
 use staya_controller::cost::{Cost, Gain};

@@ -1,0 +1,224 @@
+//! The same flock in Staya's simulator and in `krabmaga`: one law, one torus, one start; each finds neighbours and moves
+//! agents in its own way.
+
+use krabmaga::engine::agent::Agent;
+use krabmaga::engine::fields::field::Field;
+use krabmaga::engine::fields::field_2d::{Field2D, Location2D};
+use krabmaga::engine::location::Real2D;
+use krabmaga::engine::schedule::Schedule;
+use krabmaga::engine::state::State;
+use staya_controller::flock::boids::{BoidsParams, Torus};
+use staya_controller::geom::{Vec2, Vec3};
+use staya_controller::neighbor::Nearby;
+use staya_controller::wire::RobotId;
+use staya_sim::experiment::boids::{Flock, Plan};
+use std::any::Any;
+use std::cell::RefCell;
+use std::fmt;
+use std::hash::{Hash, Hasher};
+
+/// The paper's flock; crowded enough that boids align and turn away.
+#[must_use]
+pub fn plan() -> Plan {
+    Plan::default()
+}
+
+/// About `boids` boids at the paper's density. The torus has whole cells of the visible distance on
+/// both sides, because `krabmaga`'s grid closes around it only then.
+#[must_use]
+pub fn flock(boids: u32) -> Flock {
+    let plan = plan();
+    let side = (boids as f32 * plan.area_per_boid).sqrt();
+    let whole = (side / plan.closest).floor().max(3.0) * plan.closest;
+    plan.flock_on(boids, [whole; 2])
+}
+
+/// A boid as `krabmaga` wants it: an agent that is also what the field holds.
+#[derive(Clone, Copy, Debug)]
+struct Boid {
+    id: u32,
+    place: Real2D,
+    heading: Vec2<f32>,
+}
+
+impl PartialEq for Boid {
+    fn eq(&self, other: &Self) -> bool {
+        self.id == other.id
+    }
+}
+
+impl Eq for Boid {}
+
+impl Hash for Boid {
+    fn hash<H: Hasher>(&self, hasher: &mut H) {
+        self.id.hash(hasher);
+    }
+}
+
+impl fmt::Display for Boid {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "{}", self.id)
+    }
+}
+
+impl Location2D<Real2D> for Boid {
+    fn get_location(self) -> Real2D {
+        self.place
+    }
+
+    fn set_location(&mut self, place: Real2D) {
+        self.place = place;
+    }
+}
+
+/// What all boids share.
+struct World {
+    field: Field2D<Boid>,
+    torus: Torus<f32>,
+    params: BoidsParams<f32>,
+    closest: f32,
+    speed: f32,
+    start: Vec<Boid>,
+}
+
+impl State for World {
+    fn init(&mut self, schedule: &mut Schedule) {
+        for boid in &self.start {
+            self.field.set_object_location(*boid, boid.place);
+            schedule.schedule_repeating(Box::new(*boid), 0.0, 0);
+        }
+    }
+
+    fn as_any_mut(&mut self) -> &mut dyn Any {
+        self
+    }
+
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
+
+    fn as_state_mut(&mut self) -> &mut dyn State {
+        self
+    }
+
+    fn as_state(&self) -> &dyn State {
+        self
+    }
+
+    fn reset(&mut self) {}
+
+    fn update(&mut self, _step: u64) {
+        self.field.lazy_update();
+    }
+}
+
+impl Agent for Boid {
+    fn step(&mut self, state: &mut dyn State) {
+        let Some(world) = state.as_any().downcast_ref::<World>() else {
+            return;
+        };
+        // Everybody in the nine cells around; who is too far is left out by the law, the boid itself too.
+        let others = world
+            .field
+            .get_neighbors_within_relax_distance(self.place, world.closest);
+        let seen = others.iter().map(|other| {
+            let offset = Vec2::new(other.place.x - self.place.x, other.place.y - self.place.y);
+            let Vec2 { x, y } = world.torus.shortest(offset);
+            Nearby {
+                id: RobotId(other.id + 1),
+                offset_m: Vec3::new(x, y, 0.0),
+                velocity_mps: other.heading.extend(0.0),
+                radius_m: 0.0,
+                gives_way: true,
+            }
+        });
+        let seen: Vec<Nearby<f32>> = seen.collect();
+        self.heading = world
+            .params
+            .steer(RobotId(self.id + 1), self.heading, &seen);
+        let moved = Vec2::new(self.place.x, self.place.y) + self.heading * world.speed;
+        let Vec2 { x, y } = world.torus.wrap(moved);
+        self.place = Real2D { x, y };
+        world.field.set_object_location(*self, self.place);
+    }
+}
+
+/// A flock in `krabmaga`.
+pub struct Peer {
+    schedule: Schedule,
+    world: World,
+}
+
+impl Peer {
+    /// The same start.
+    #[must_use]
+    pub fn new(flock: &Flock) -> Self {
+        let plan = plan();
+        let [width, height] = flock.sides();
+        let boids = flock.places().iter().zip(flock.headings());
+        let start = (0..).zip(boids).map(|(id, (&[x, y], &heading))| Boid {
+            id,
+            place: Real2D { x, y },
+            heading,
+        });
+        let mut world = World {
+            // Not "toroidal": then the field's own search stops at the borders (version 0.6.2), while
+            // otherwise it goes on at the other side.
+            field: Field2D::new(width, height, plan.closest, false),
+            torus: Torus {
+                size_m: [width, height],
+            },
+            params: BoidsParams::new(
+                plan.crowded,
+                plan.closest,
+                plan.max_turn,
+                plan.max_turn_away,
+            ),
+            closest: plan.closest,
+            speed: plan.speed,
+            start: start.collect(),
+        };
+        let mut schedule = Schedule::new();
+        world.init(&mut schedule);
+        Self { schedule, world }
+    }
+
+    /// All boids turn and move.
+    pub fn step(&mut self) {
+        self.schedule.step(&mut self.world);
+    }
+
+    /// Headings by number of the boid.
+    #[must_use]
+    pub fn headings(&self) -> Vec<Vec2<f32>> {
+        let all = RefCell::new(vec![Vec2::ZERO; self.world.start.len()]);
+        self.world.field.iter_objects(|_, boid| {
+            all.borrow_mut()[boid.id as usize] = boid.heading;
+        });
+        all.into_inner()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use staya_sim::nearby::{Cells, Space};
+
+    #[test]
+    fn both_fly_the_same_way() {
+        let mut flock = flock(2000);
+        let mut peer = Peer::new(&flock);
+        let space = Space::torus(flock.sides()).expect("a torus");
+        let mut cells = Cells::new(space, plan().closest);
+        for _ in 0..3 {
+            flock.step_by_cells(&mut cells);
+            peer.step();
+        }
+        let same = flock.headings().iter().zip(peer.headings());
+        // Sums of neighbours run in another order; a boid between two choices may take the other one.
+        let alike = same
+            .filter(|(one, other)| (**one - *other).norm() < 1e-4)
+            .count();
+        assert!(alike >= 1990, "{alike} of 2000");
+    }
+}
