@@ -27,8 +27,8 @@ const STARTS: u32 = 0x0045_0301;
 /// Boids that are steered in one piece of parallel work.
 const PIECE: usize = 256;
 
-/// The most boids that are searched by looking at all pairs, unless a plan says otherwise: 10,000 already take a
-/// tenth of a second a step, 100,000 would take ten seconds.
+/// The most boids that are searched by looking at all pairs, unless a plan says otherwise: 10,000 already take about
+/// a second a step, 100,000 would take a hundred.
 pub const MOST_BY_ALL_PAIRS: u32 = 10_000;
 
 /// Which search finds the neighbours.
