@@ -24,7 +24,7 @@ pub mod ticks;
 mod trajectories;
 
 pub use chart::{Chart, Panels, Series};
-pub use motion::motion_pictures;
+pub use motion::{motion_pictures, motion_sheet};
 pub use run::run_pictures;
 
 #[cfg(test)]

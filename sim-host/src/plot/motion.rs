@@ -32,15 +32,16 @@ pub fn motion_pictures(
     out_dir: &Path,
 ) -> Result<Vec<PathBuf>, Error> {
     record::make_dir(out_dir)?;
-    let mut files = motion(setup, history)
+    let mut files = motion_sheet(setup, history)
         .draw()
         .write(&out_dir.join("motion"))?;
     files.extend(packets(history).write(&out_dir.join("packets"))?);
     Ok(files)
 }
 
-/// Four moments beside each other.
-pub(crate) fn motion(setup: &PlaneSetup, history: &History) -> Sheet {
+/// Four moments of a run beside each other.
+#[must_use]
+pub fn motion_sheet(setup: &PlaneSetup, history: &History) -> Sheet {
     let frames = history.frames();
     let obstacles: Vec<_> = setup.solids.iter().filter_map(drawn).collect();
     let goals: Vec<[f64; 2]> = setup

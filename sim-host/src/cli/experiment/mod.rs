@@ -1,9 +1,10 @@
-//! `staya experiment route | formation | movingai | boids`: papers and benchmarks, run again.
+//! `staya experiment route | formation | movingai | swap | doorway | boids`: papers and benchmarks, run again.
 //!
 //! A further experiment is a module with a `clap::Args` struct and `run(&self, &Global) -> Result<Ended>`, and one
 //! line each in [`Experiment`] and [`ExperimentArgs::run`].
 
 mod boids;
+mod crossing;
 mod formation;
 mod movingai;
 mod params;
@@ -27,6 +28,10 @@ enum Experiment {
     Route(Box<route::RouteArgs>),
     /// Six robots in formation on natural land: error, arrivals, travel time (KUZ section 8, figure 6).
     Formation(Box<formation::FormationArgs>),
+    /// Robots on a circle, each bound for the opposite side: who arrives, how late, how near they come.
+    Swap(crossing::SwapArgs),
+    /// Two crowds in opposite directions through one gap.
+    Doorway(crossing::DoorwayArgs),
     /// The queries of a Moving AI benchmark: how many robots arrive, and at what loss.
     Movingai(movingai::MovingAiArgs),
     /// Boids on a torus: three ways to find neighbours, equal flights, and what they cost (STA section 3).
@@ -42,6 +47,8 @@ impl ExperimentArgs {
         match &self.experiment {
             Experiment::Route(args) => args.run(global),
             Experiment::Formation(args) => args.run(global),
+            Experiment::Swap(args) => args.run(global),
+            Experiment::Doorway(args) => args.run(global),
             Experiment::Movingai(args) => args.run(global),
             Experiment::Boids(args) => args.run(global),
         }

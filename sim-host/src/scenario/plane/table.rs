@@ -1,6 +1,6 @@
 //! `[plane]` as it stands in the file: every field is documented here.
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// `[plane]`.
 #[derive(Clone, Debug, Deserialize)]
@@ -90,7 +90,7 @@ impl GuidanceName {
 }
 
 /// `plane.safety`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SafetyName {
     /// Nothing.

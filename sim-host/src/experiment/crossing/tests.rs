@@ -1,0 +1,81 @@
+use super::*;
+
+fn go() -> bool {
+    true
+}
+
+#[test]
+fn a_few_robots_swap_without_a_touch_and_are_measured() {
+    let plan = swap::Plan {
+        robots: vec![2, 5, 12],
+        ..swap::Plan::default()
+    };
+    let report = plan.run(&|_| go());
+    assert_eq!(report.rows.len(), 3);
+    for row in &report.rows {
+        assert_eq!((row.runs, row.clean, row.overlaps), (1, 1, 0), "{row:?}");
+        assert_eq!(row.arrived, row.robots as usize);
+        let ratio = row.worst_time_ratio.expect("all arrived");
+        assert!((1.0..=1.5).contains(&ratio), "{row:?}");
+        // Two pass each other at a distance.
+        let came_near = row.least_gap_m.is_some();
+        assert_eq!(came_near, row.robots > 2, "{row:?}");
+        assert!(row.least_gap_m.is_none_or(|gap| gap >= 0.0), "{row:?}");
+    }
+}
+
+#[test]
+fn without_a_safety_layer_they_go_through_each_other() {
+    let plan = swap::Plan {
+        robots: vec![4],
+        conditions: Conditions {
+            safety: SafetyName::None,
+            ..Conditions::default()
+        },
+        ..swap::Plan::default()
+    };
+    let report = plan.run(&|_| go());
+    assert!(report.rows[0].overlaps > 0 && report.rows[0].clean == 0);
+    assert!(report.rows[0].least_gap_m.is_some_and(|gap| gap < -0.2));
+}
+
+#[test]
+fn a_run_that_is_stopped_is_left_out() {
+    let report = swap::Plan::default().run(&|_| false);
+    assert!(report.runs.is_empty() && report.rows.is_empty());
+    let report = doorway::Plan::default().run(&|_| false);
+    assert!(report.runs.is_empty());
+}
+
+#[test]
+fn patience_ends() {
+    let plan = swap::Plan {
+        robots: vec![2],
+        patience: 0.5,
+        ..swap::Plan::default()
+    };
+    let report = plan.run(&|_| go());
+    assert_eq!(
+        (report.runs[0].arrived, report.runs[0].time_ratio),
+        (0, None)
+    );
+    assert_eq!(report.rows[0].worst_time_ratio, None);
+}
+
+#[test]
+fn two_crowds_pass_a_door_that_two_robots_do_not_fit_through() {
+    let plan = doorway::Plan {
+        widths_m: vec![0.8],
+        robots: 4,
+        ..doorway::Plan::default()
+    };
+    let run = &plan.run(&|_| go()).runs[0];
+    assert_eq!(
+        (run.arrived, run.robots, run.overlaps),
+        (8, 8, 0),
+        "{run:?}"
+    );
+    assert_eq!(run.through, [4, 4]);
+    assert!(run.turns >= 1 && run.last_s.is_some(), "{run:?}");
+    assert!(run.least_wall_gap_m.is_some_and(|gap| gap > 0.0), "{run:?}");
+}
