@@ -106,7 +106,7 @@ fn view(frames: &[Frame], radius_m: f64) -> Option<[[f64; 2]; 2]> {
     let widest = (high[0] - low[0]).max(high[1] - low[1]);
     let margin = 2.0 * radius_m + 0.05 * widest;
     let is_sound = widest.is_finite();
-    is_sound.then(|| [low.map(|x| x - margin), high.map(|x| x + margin)])
+    is_sound.then(|| [0, 1].map(|axis| [low[axis] - margin, high[axis] + margin]))
 }
 
 /// Velocities by the difference to a neighbouring frame.

@@ -207,9 +207,15 @@ impl SwapArgs {
             conditions: self.common.conditions(3.0)?,
         };
         if !(0.1..=1000.0).contains(&self.patience) {
-            bail!("--patience {} is out of range: give 0.1 to 1000", self.patience);
+            bail!(
+                "--patience {} is out of range: give 0.1 to 1000",
+                self.patience
+            );
         }
-        if self.circle.is_some_and(|circle| !(0.01..=1e5).contains(&circle)) {
+        if self
+            .circle
+            .is_some_and(|circle| !(0.01..=1e5).contains(&circle))
+        {
             bail!("--circle is out of range: give 0.01 to 100000 metres");
         }
         let out = self.common.out("swap");
@@ -223,7 +229,12 @@ impl SwapArgs {
             pictures.extend(report.chart().write(&out.join("times"))?);
         }
         // Of all that can be told apart in a picture, the largest.
-        let drawn = report.rows.iter().rev().map(|row| row.robots).find(|&n| n <= 100);
+        let drawn = report
+            .rows
+            .iter()
+            .rev()
+            .map(|row| row.robots)
+            .find(|&n| n <= 100);
         if let Some(robots) = drawn.filter(|_| !stop.is_requested()) {
             pictures.extend(write(&plan.picture(robots), &out.join("swap"))?);
         }
@@ -236,7 +247,14 @@ impl SwapArgs {
             })?;
         } else {
             let mut text = swap_table(&report)?;
-            last_word(&mut text, report.runs.len(), plan.total(), wall_seconds, &pictures, &out)?;
+            last_word(
+                &mut text,
+                report.runs.len(),
+                plan.total(),
+                wall_seconds,
+                &pictures,
+                &out,
+            )?;
             print(&text)?;
         }
         Ok(Ended::by(&stop))
@@ -255,7 +273,10 @@ impl DoorwayArgs {
             }
         }
         if !(0.1..=1e6).contains(&self.longest) {
-            bail!("--longest {} is out of range: give 0.1 to 1000000 seconds", self.longest);
+            bail!(
+                "--longest {} is out of range: give 0.1 to 1000000 seconds",
+                self.longest
+            );
         }
         let plan = doorway::Plan {
             widths_m: self.widths.clone(),
@@ -285,14 +306,26 @@ impl DoorwayArgs {
             })?;
         } else {
             let mut text = doorway_table(&report)?;
-            last_word(&mut text, report.runs.len(), plan.total(), wall_seconds, &pictures, &out)?;
+            last_word(
+                &mut text,
+                report.runs.len(),
+                plan.total(),
+                wall_seconds,
+                &pictures,
+                &out,
+            )?;
             print(&text)?;
         }
         Ok(Ended::by(&stop))
     }
 }
 
-fn headline(text: &mut String, what: &str, conditions: &Conditions, noise_m: f64) -> std::fmt::Result {
+fn headline(
+    text: &mut String,
+    what: &str,
+    conditions: &Conditions,
+    noise_m: f64,
+) -> std::fmt::Result {
     let Conditions {
         step_s,
         speed_mps,
@@ -309,8 +342,16 @@ fn headline(text: &mut String, what: &str, conditions: &Conditions, noise_m: f64
 
 fn swap_table(report: &swap::Report) -> Result<String, std::fmt::Error> {
     let mut text = String::new();
-    headline(&mut text, "swap over a circle", &report.conditions, report.noise_m)?;
-    writeln!(text, "robots  circle (m)  clean runs   arrived  worst time / free  least gap (mm)  overlaps")?;
+    headline(
+        &mut text,
+        "swap over a circle",
+        &report.conditions,
+        report.noise_m,
+    )?;
+    writeln!(
+        text,
+        "robots  circle (m)  clean runs   arrived  worst time / free  least gap (mm)  overlaps"
+    )?;
     for row in &report.rows {
         let swap::Row {
             robots,
@@ -337,7 +378,10 @@ fn swap_table(report: &swap::Report) -> Result<String, std::fmt::Error> {
 fn doorway_table(report: &doorway::Report) -> Result<String, std::fmt::Error> {
     let mut text = String::new();
     headline(&mut text, "doorway", &report.conditions, report.noise_m)?;
-    writeln!(text, "width (m)  seed  arrived  through (W+E)  last (s)  time / free  turns  least gap (mm)  to wall (mm)  overlaps")?;
+    writeln!(
+        text,
+        "width (m)  seed  arrived  through (W+E)  last (s)  time / free  turns  least gap (mm)  to wall (mm)  overlaps"
+    )?;
     for run in &report.runs {
         let milli = |gap: Option<f64>| number(gap.map(|gap| gap * 1000.0), 1);
         let [west, east] = run.through;

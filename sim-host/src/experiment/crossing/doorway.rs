@@ -11,12 +11,13 @@ use staya_controller::rand::Rng;
 
 /// Radius of a robot, metres.
 pub const RADIUS_M: f64 = 0.3;
-/// Distance of the robots of a crowd from each other at the start, metres.
-const SPACING_M: f64 = 0.9;
-/// Distance of the first column from the wall, metres.
-const FRONT_M: f64 = 2.0;
-/// Robots in a column.
-const COLUMN: u32 = 5;
+/// Distance of the robots of a crowd from each other at the start and at their goals, along and across, metres: between those
+/// who are there another one finds through.
+const SPACING_M: [f64; 2] = [1.2, 1.6];
+/// Distance of the first column from the wall, metres: who is at its goal does not stand in the way of the door.
+const FRONT_M: f64 = 2.5;
+/// Robots in a row.
+const ROW: u32 = 4;
 /// Half the wall's length, metres: nobody goes round it.
 const WALL_M: f64 = 50.0;
 
@@ -109,16 +110,23 @@ impl Plan {
     pub fn scenario(&self, width_m: f64, seed: u64) -> Scenario {
         let starts = (0..2 * self.robots)
             .map(|index| {
-                let (place, side) = (index >> 1, if index & 1 == 0 { -1.0 } else { 1.0 });
-                let x = FRONT_M + f64::from(place / COLUMN) * SPACING_M;
-                let y = (f64::from(place % COLUMN) - 2.0) * SPACING_M;
+                let (number, side) = (index >> 1, if index & 1 == 0 { -1.0 } else { 1.0 });
+                let rows = self.robots.div_ceil(ROW);
+                let place = |number: u32| {
+                    let x = FRONT_M + f64::from(number % ROW) * SPACING_M[0];
+                    let row = f64::from(number / ROW) - f64::from(rows - 1) / 2.0;
+                    [x, row * SPACING_M[1]]
+                };
+                let [x, y] = place(number);
+                // Who starts in front goes to the back, so that nobody stands in the way of those behind.
+                let [goal_x, goal_y] = place(self.robots - 1 - number);
                 let mut rng = Rng::keyed(seed, NOISE, index, 0);
                 let mut noise = || (f64::from(rng.below(20_001)) / 1e4 - 1.0) * self.noise_m;
                 Start {
                     position_m: [side * x + noise(), y + noise(), 0.0],
                     velocity_mps: [0.0; 3],
                     places: vec![Target {
-                        position_m: [-side * x, y, 0.0],
+                        position_m: [-side * goal_x, goal_y, 0.0],
                         velocity_mps: [0.0; 3],
                     }],
                 }
@@ -175,7 +183,11 @@ impl Plan {
         let times = self.conditions.arrivals_s(&outcome);
         let arrived = times.iter().flatten().count();
         let last = times.iter().flatten().copied().fold(0.0, f64::max);
-        let way = |start: &Start| 2.0 * start.position_m[0].abs();
+        let way = |start: &Start| {
+            let [from, to] = [start.position_m, start.places[0].position_m];
+            let [x, y] = [from[0] - to[0], from[1] - to[1]];
+            (x * x + y * y).sqrt()
+        };
         let free_m = setup.starts.iter().map(way).fold(0.0, f64::max);
         let is_complete = arrived == times.len();
         Some(Passage {
