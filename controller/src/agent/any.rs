@@ -10,9 +10,10 @@ use super::other_safety::{FlySafety, PushOutSafety};
 use super::route_guidance::{GridWorkspace, RouteGuidance};
 use super::safety::{Safety, Sight, Unguarded};
 use super::waypoint_guidance::WaypointGuidance;
-use crate::geom::Vec3;
+use crate::geom::{Vec2, Vec3};
 use crate::grid::Cell;
 use crate::neighbor::Doubt;
+use crate::orca::{self, HalfPlane, HalfPlanes};
 use crate::rand::Rng;
 use crate::scalar::Scalar;
 use crate::wire::{RobotId, TemplateAssignment};
@@ -89,12 +90,42 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
     }
 }
 
+/// Any source of half-planes: the formula, or a template of some size.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[expect(missing_docs, reason = "each variant's type says it")]
+pub enum AnyHalfPlanes {
+    #[default]
+    Analytic,
+    Template2k,
+    Template8k,
+    Template16k,
+    Template64k,
+}
+
+impl<S: Scalar> HalfPlanes<S> for AnyHalfPlanes {
+    fn half_plane(
+        &self,
+        own_velocity_mps: Vec2<S>,
+        neighbor: &orca::Neighbor<S>,
+        params: &orca::Params<S>,
+    ) -> Option<HalfPlane<S>> {
+        let own = own_velocity_mps;
+        match self {
+            Self::Analytic => orca::half_plane(own, neighbor, params),
+            Self::Template2k => orca::Template2k.half_plane(own, neighbor, params),
+            Self::Template8k => orca::Template8k.half_plane(own, neighbor, params),
+            Self::Template16k => orca::Template16k.half_plane(own, neighbor, params),
+            Self::Template64k => orca::Template64k.half_plane(own, neighbor, params),
+        }
+    }
+}
+
 /// Any safety layer; at most `K` half-planes count.
 #[derive(Clone, Debug)]
 #[expect(missing_docs, reason = "each variant's type says it")]
 pub enum AnySafety<S, const K: usize> {
     Unguarded(Unguarded),
-    Orca(OrcaSafety<S, K>),
+    Orca(OrcaSafety<S, K, AnyHalfPlanes>),
     Fly(FlySafety<S, K>),
     PushOut(PushOutSafety<S>),
 }

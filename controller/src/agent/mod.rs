@@ -54,7 +54,7 @@ mod waypoint_guidance;
 #[cfg(test)]
 mod tests;
 
-pub use any::{AnyGuidance, AnySafety};
+pub use any::{AnyGuidance, AnyHalfPlanes, AnySafety};
 pub use flock_guidance::{BoidsGuidance, GOALS, GoalFlockGuidance, LatticeGuidance};
 pub use formation_guidance::FormationGuidance;
 pub use guidance::{Ask, BadInput, Guidance, Guided, Place, View};

@@ -7,9 +7,9 @@ use crate::scenario::{GuidanceName, PlaneSetup, SafetyName, Scenario};
 use crate::world::Misplaced;
 use crate::world::plane::Clearance;
 use staya_controller::agent::{
-    AnyGuidance, AnySafety, BoidsGuidance, CELLS, FlySafety, FormationGuidance, GoalFlockGuidance,
-    Guidance, InPlane, LatticeGuidance, NEIGHBORS, OrcaSafety, PushOutSafety, RouteGuidance,
-    Safety, TEMPLATE, Unguarded, VISITS, WaypointGuidance,
+    AnyGuidance, AnyHalfPlanes, AnySafety, BoidsGuidance, CELLS, FlySafety, FormationGuidance,
+    GoalFlockGuidance, Guidance, InPlane, LatticeGuidance, NEIGHBORS, OrcaSafety, PushOutSafety,
+    RouteGuidance, Safety, TEMPLATE, Unguarded, VISITS, WaypointGuidance,
 };
 use staya_controller::orca::FlyParams;
 use std::ops::ControlFlow;
@@ -119,9 +119,14 @@ fn brains(
                 AnyGuidance::Formation(InPlane::new(formation(index), cruise_mps))
             }
         };
+        let from = |source| AnySafety::Orca(OrcaSafety::with_source(orca, doubt, source));
         let safety = match safety {
             SafetyName::None => AnySafety::Unguarded(Unguarded),
-            SafetyName::Orca => AnySafety::Orca(OrcaSafety::new(orca, doubt)),
+            SafetyName::Orca => from(AnyHalfPlanes::Analytic),
+            SafetyName::Template2k => from(AnyHalfPlanes::Template2k),
+            SafetyName::Template8k => from(AnyHalfPlanes::Template8k),
+            SafetyName::Template16k => from(AnyHalfPlanes::Template16k),
+            SafetyName::Template64k => from(AnyHalfPlanes::Template64k),
             SafetyName::Fly => AnySafety::Fly(FlySafety::new(fly, doubt)),
             SafetyName::PushOut => AnySafety::PushOut(PushOutSafety::new(push_out)),
         };

@@ -18,6 +18,14 @@ use std::time::Instant;
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum SafetyArg {
     Orca,
+    #[value(name = "template_2k")]
+    Template2k,
+    #[value(name = "template_8k")]
+    Template8k,
+    #[value(name = "template_16k")]
+    Template16k,
+    #[value(name = "template_64k")]
+    Template64k,
     None,
 }
 
@@ -25,6 +33,10 @@ impl From<SafetyArg> for SafetyName {
     fn from(safety: SafetyArg) -> Self {
         match safety {
             SafetyArg::Orca => Self::Orca,
+            SafetyArg::Template2k => Self::Template2k,
+            SafetyArg::Template8k => Self::Template8k,
+            SafetyArg::Template16k => Self::Template16k,
+            SafetyArg::Template64k => Self::Template64k,
             SafetyArg::None => Self::None,
         }
     }

@@ -98,6 +98,18 @@ pub enum SafetyName {
     /// ORCA with exact half-planes.
     #[default]
     Orca,
+    /// ORCA with half-planes from the voxel template (FVM) of 2 KiB.
+    #[serde(rename = "template_2k")]
+    Template2k,
+    /// The same of 8 KiB.
+    #[serde(rename = "template_8k")]
+    Template8k,
+    /// The same of 16 KiB.
+    #[serde(rename = "template_16k")]
+    Template16k,
+    /// The same of 64 KiB.
+    #[serde(rename = "template_64k")]
+    Template64k,
     /// ORCA in space, for robots that fly.
     Fly,
     /// Push-out (PAV): needs `[plane.push_out]`.

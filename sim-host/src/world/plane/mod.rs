@@ -151,8 +151,9 @@ impl Plane {
     /// # Panics
     /// When there are fewer commands than bodies.
     pub fn advance(&mut self, commands: &[Command<f32>]) {
-        for index in 0..self.discs.len() {
-            let wish = match commands[index] {
+        assert!(commands.len() >= self.discs.len(), "a command for each body");
+        for (index, command) in commands.iter().enumerate().take(self.discs.len()) {
+            let wish = match *command {
                 Command::Velocity(v) => Vec3::new(v.x.into(), v.y.into(), v.z.into()),
                 Command::Hold | Command::Move(_) => Vec3::ZERO,
             };
