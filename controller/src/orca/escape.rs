@@ -34,9 +34,9 @@ pub struct EscapeParams<S> {
 impl<S: Scalar> Default for EscapeParams<S> {
     fn default() -> Self {
         Self {
-            lean_rad: S::from_milli(480),
+            lean_rad: S::from_milli(460),
             lean_within_m: S::from_milli(800),
-            straight_within_m: S::ONE,
+            straight_within_m: S::from_milli(800),
             patience_s: S::from_i32(3),
         }
     }

@@ -9,6 +9,8 @@ use serde::Serialize;
 
 /// Radius of a robot, metres.
 pub const RADIUS_M: f64 = 0.15;
+/// How near to its goal a robot has arrived, metres.
+pub const TOLERANCE_M: f64 = 0.05;
 
 /// Which swaps to run.
 #[derive(Clone, Debug, PartialEq)]
@@ -117,8 +119,7 @@ impl Plan {
         let circle = self.circle_m.unwrap_or_else(|| circle_m(robots));
         let starts = circle_starts(robots, circle, self.noise_m, seed);
         let mut setup = PlaneSetup::new(self.conditions.abilities(), RADIUS_M, starts);
-        // A tenth of the radius, and never less than places are rounded by.
-        setup.tolerance_m = 0.015;
+        setup.tolerance_m = TOLERANCE_M;
         let longest_s = self.patience * 2.0 * circle / self.conditions.speed_mps;
         self.conditions.scenario("swap", seed, longest_s, setup)
     }

@@ -151,7 +151,10 @@ impl Plane {
     /// # Panics
     /// When there are fewer commands than bodies.
     pub fn advance(&mut self, commands: &[Command<f32>]) {
-        assert!(commands.len() >= self.discs.len(), "a command for each body");
+        assert!(
+            commands.len() >= self.discs.len(),
+            "a command for each body"
+        );
         for (index, command) in commands.iter().enumerate().take(self.discs.len()) {
             let wish = match *command {
                 Command::Velocity(v) => Vec3::new(v.x.into(), v.y.into(), v.z.into()),
