@@ -81,7 +81,8 @@ impl<S: Scalar> Guidance<S> for LatticeGuidance<S> {
     }
 }
 
-/// The goal flock (PAV): to the middle of the goals together, there each robot draws one of them.
+/// The goal flock (PAV): to the middle of the goals together, there each robot draws one of them. Goals stay where they are until
+/// they are given anew: the velocity of a [`Place`] counts for nothing here.
 #[derive(Clone, Debug)]
 pub struct GoalFlockGuidance<S> {
     params: GoalParams<S>,

@@ -128,7 +128,7 @@ pub struct Guided<S> {
     pub recovers: bool,
     /// It is too far from its place in the formation.
     pub is_off_place: bool,
-    /// It was asked to make way: it moves even if it has arrived or waits.
+    /// It was asked to make way, or its place moves: it moves even if it has arrived or waits.
     pub makes_way: bool,
     /// What it asks of others.
     pub asks: Vec<Ask, 3>,

@@ -37,6 +37,12 @@ impl<S: Scalar, G> InPlane<S, G> {
             last: None,
         }
     }
+
+    /// The guidance on the grid, for what it can tell of itself.
+    #[must_use]
+    pub const fn inside(&self) -> &G {
+        &self.guidance
+    }
 }
 
 impl<S: Scalar, G: Guidance<S>> Guidance<S> for InPlane<S, G> {
@@ -50,7 +56,8 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for InPlane<S, G> {
     ) -> Result<Guided<S>, BadInput> {
         let (state, place) = view.cell.zip(view.in_cell).ok_or(BadInput)?;
         let speed = self.speed_mps.min(view.body.max_speed_mps);
-        let crossing_s = place.cell_m.checked_div(speed).ok_or(BadInput)?;
+        let crossing_s = place.cell_m.checked_div(speed);
+        let crossing_s = crossing_s.filter(|span| *span > S::ZERO).ok_or(BadInput)?;
         let is_due = |last: &Decision<S>| {
             let age_s = S::from_micro(view.now.since(last.at).as_micros());
             last.cell != state.cell || age_s < S::ZERO || age_s >= crossing_s

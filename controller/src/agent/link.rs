@@ -39,8 +39,12 @@ pub(super) enum News<S> {
     },
     /// A goal for the top leader of this robot's formation.
     Goal(Cell),
-    /// A place to go to, number `index` of several.
-    Place { index: u8, place: Place<S> },
+    /// A place to go to, number `index` of several; once it is taken, [`Link::placed`] wants to know.
+    Place {
+        index: u8,
+        version: u8,
+        place: Place<S>,
+    },
 }
 
 /// What the link keeps between steps.
@@ -194,10 +198,11 @@ impl<S: Scalar, const N: usize> Link<S, N> {
                 if is_another(commander, frame.header) {
                     self.places = [Newest::new(); PLACES];
                 }
-                let newest = self.places.get_mut(usize::from(place.index))?;
-                if newest.admit(place.version) {
+                let newest = self.places.get(usize::from(place.index))?;
+                if newest.is_news(place.version) {
                     return Some(News::Place {
                         index: place.index,
+                        version: place.version,
                         place: Place {
                             position: Position::from_mm(place.position_mm),
                             velocity_mps: vec3_from_milli(place.velocity_mmps.map(i32::from)),
@@ -233,6 +238,13 @@ impl<S: Scalar, const N: usize> Link<S, N> {
             // As many windows as entries.
             let _ = self.windows.push((header.sender, window));
             report(out, Event::NeighborFound(header.sender));
+        }
+    }
+
+    /// Takes note that a place was of use. One that was not is news when it comes again: what it needed may be there then.
+    pub(super) fn placed(&mut self, index: u8, version: u8) {
+        if let Some(newest) = self.places.get_mut(usize::from(index)) {
+            let _ = newest.admit(version);
         }
     }
 

@@ -370,8 +370,15 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>> Agent<S, G, N, A> 
                 Some(News::Template { part, is_anew }) => {
                     let _ = guidance.assign_template(&part, is_anew);
                 }
-                Some(News::Place { index, place }) => {
-                    let _ = guidance.assign_place(index, &place);
+                Some(News::Place {
+                    index,
+                    version,
+                    place,
+                }) => {
+                    let is_of_use = guidance.assign_place(index, &place);
+                    if is_of_use {
+                        link.placed(index, version);
+                    }
                 }
                 // One without room is lost: a stop is asked for again, an old one expires.
                 Some(News::PassOn(request)) => drop(pass_on.push(request)),
@@ -555,7 +562,7 @@ fn beacon<S: Scalar>(
         time: now,
         position_mm: position.mm,
         velocity_mmps: [narrow(v.x), narrow(v.y), narrow(v.z)],
-        radius_mm: u16::try_from(milli(config.radius_m)).unwrap_or(u16::MAX),
+        radius_mm: u16::try_from(milli(config.radius_m).max(0)).unwrap_or(u16::MAX),
         cell: state.cell,
         heading: last.heading,
         busy_ms: u16::try_from(busy_ms).unwrap_or(u16::MAX),

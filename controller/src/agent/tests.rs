@@ -494,4 +494,8 @@ fn time_may_wrap() {
 }
 
 mod faults;
+mod flocks;
+mod in_plane;
 mod nonsense;
+mod nonsense_in_plane;
+mod plane;

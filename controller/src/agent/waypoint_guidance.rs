@@ -1,10 +1,11 @@
 //! Straight to a place.
 
 use super::guidance::{BadInput, Guidance, Guided, Place, View};
+use crate::geom::Vec3;
 use crate::rand::Rng;
 use crate::scalar::Scalar;
 
-/// Straight to a place, which may move; there it stays.
+/// Straight to a place, which may move; there it stays, and goes along with one that moves.
 #[derive(Clone, Copy, Debug)]
 pub struct WaypointGuidance<S> {
     place: Option<Place<S>>,
@@ -43,10 +44,13 @@ impl<S: Scalar> Guidance<S> for WaypointGuidance<S> {
         // On the last step no farther than the place.
         let needed = distance.checked_div(view.body.step_s).unwrap_or(speed);
         let ahead = way.normalized().unwrap_or_default();
+        let is_at_goal = distance <= self.tolerance_m;
         Ok(Guided {
             velocity_mps: place.velocity_mps + ahead * needed.min(speed),
             way_m: Some(way),
-            is_at_goal: distance <= self.tolerance_m,
+            is_at_goal,
+            // Who stood when it is there would lose a place that moves.
+            makes_way: is_at_goal && place.velocity_mps != Vec3::ZERO,
             ..Guided::default()
         })
     }

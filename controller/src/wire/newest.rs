@@ -24,13 +24,18 @@ impl Newest {
     /// that comes again or late is not. Constant work.
     #[must_use = "an assignment that is not newer must not be followed"]
     pub fn admit(&mut self, version: u8) -> bool {
-        let is_newer = self
-            .version
-            .is_none_or(|newest| version.wrapping_sub(newest).cast_signed() > 0);
+        let is_newer = self.is_news(version);
         if is_newer {
             self.version = Some(version);
         }
         is_newer
+    }
+
+    /// Whether [`Newest::admit`] would admit `version`; remembers nothing. For what may prove to be of no use. Constant work.
+    #[must_use]
+    pub fn is_news(self, version: u8) -> bool {
+        self.version
+            .is_none_or(|newest| version.wrapping_sub(newest).cast_signed() > 0)
     }
 
     /// The newest version so far; `None` before the first.
@@ -72,6 +77,8 @@ mod tests {
                 let version = newest.wrapping_add(ahead);
                 let mut filter = after(newest);
                 let is_newer = (1..=127).contains(&ahead);
+                assert_eq!(filter.is_news(version), is_newer, "{newest} + {ahead}");
+                assert_eq!(filter.version(), Some(newest), "asking changes nothing");
                 assert_eq!(filter.admit(version), is_newer, "{newest} + {ahead}");
                 let kept = if is_newer { version } else { newest };
                 assert_eq!(filter.version(), Some(kept));

@@ -26,7 +26,7 @@ fn cell() -> impl Strategy<Value = Cell> {
 }
 
 /// Any sound frame; most come from a few robots, concern this one, and name each other.
-fn frame() -> impl Strategy<Value = (Header, Message)> {
+pub(super) fn frame() -> impl Strategy<Value = (Header, Message)> {
     let few = || prop_oneof![4 => (0..7_u32).prop_map(RobotId), 1 => arbitrary::robot()];
     let sender = few().prop_filter("somebody sends it", |id| id.is_somebody());
     let header = (0..3_u8, sender, 0..40_u16);
@@ -86,12 +86,17 @@ impl Step {
     }
 
     fn inbox(&self) -> Vec<u8> {
-        let mut inbox = heapless::Vec::<u8, 1024>::new();
-        for (header, message) in &self.frames {
-            encode(*header, message, &mut inbox).unwrap();
-        }
-        [&inbox[..], &self.noise].concat()
+        noise_and_frames(&self.frames, &self.noise)
     }
+}
+
+/// An inbox: frames, then noise.
+pub(super) fn noise_and_frames(frames: &[(Header, Message)], noise: &[u8]) -> Vec<u8> {
+    let mut inbox = heapless::Vec::<u8, 1024>::new();
+    for (header, message) in frames {
+        encode(*header, message, &mut inbox).unwrap();
+    }
+    [&inbox[..], noise].concat()
 }
 
 fn window() -> impl Strategy<Value = Option<(Cell, u16, u16, Vec<u8>)>> {

@@ -90,7 +90,7 @@ fn ways_that_all_cross_in_one_point_are_flown_without_a_touch() {
     stars.push(corners.collect());
     let ring = (0..12).map(|i| {
         let angle = f64::from(i) * std::f64::consts::PI / 6.0;
-        let (sin, cos) = angle.sin_cos();
+        let (sin, cos) = Scalar::sin_cos(angle);
         Vec3::new(2.0 * cos, 2.0 * sin, 0.0)
     });
     stars.push(ring.collect());

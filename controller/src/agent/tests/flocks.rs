@@ -1,0 +1,150 @@
+//! The flocks, each robot with its own agent, knowing of the others what packets say.
+
+use super::plane::{Robot, length, one_step_late, place, step_number};
+use super::*;
+use crate::flock::boids::BoidsParams;
+use crate::flock::goal::{GoalParams, Stage};
+use crate::flock::lattice::{Gain, LatticeParams};
+use core::ops::Range;
+
+/// Robots that all hear each other.
+fn run<G: Guidance<f32, Workspace = ()>>(
+    robots: &mut [Robot<f32, G, Unguarded>],
+    steps: Range<i32>,
+) {
+    let mut said: Vec<Vec<u8>> = vec![Vec::new(); robots.len()];
+    for n in steps {
+        let mut next = Vec::new();
+        for (index, robot) in robots.iter_mut().enumerate() {
+            let others = said.iter().enumerate().filter(|(from, _)| *from != index);
+            let inbox: Vec<u8> = others.flat_map(|(_, bytes)| bytes.clone()).collect();
+            next.push(robot.step(step_number(n), &inbox).outbox.to_vec());
+        }
+        said = next;
+    }
+}
+
+fn distance([x, y]: [f64; 2], [other_x, other_y]: [f64; 2]) -> f64 {
+    length([x - other_x, y - other_y])
+}
+
+#[test]
+fn an_alpha_flock_takes_its_distance_and_follows_its_reference() {
+    let new = |id, at_m| {
+        // Gentle enough for ten decisions a second on news that is a tenth of a second old.
+        let params = LatticeParams {
+            alpha: Gain::critical(1.0),
+            gamma: Gain::critical(0.5),
+            ..LatticeParams::new(1.0)
+        };
+        let guidance = LatticeGuidance::new(params, true);
+        let mut robot = Robot::new(&one_step_late(id), guidance, Unguarded, at_m);
+        let reference = Place {
+            velocity_mps: crate::geom::Vec3::new(0.25, 0.0, 0.0),
+            ..place(1000, 0)
+        };
+        assert!(robot.agent.assign_place(0, &reference));
+        assert!(!robot.agent.assign_place(1, &reference), "there is one");
+        robot
+    };
+    let mut robots = [new(1, [0.0, 0.0]), new(2, [0.0, 0.6]), new(3, [0.5, 0.3])];
+    run(&mut robots, 0..800);
+    let reference = [1.0 + 0.25 * 80.0, 0.0];
+    for (index, robot) in robots.iter().enumerate() {
+        assert_eq!(robot.agent.mode(), Mode::Cruise);
+        assert!(distance(robot.at_m, reference) < 1.5, "{:?}", robot.at_m);
+        let off = distance(robot.velocity_mps, [0.25, 0.0]);
+        assert!(off < 0.05, "{:?}", robot.velocity_mps);
+        for other in &robots[..index] {
+            let apart = distance(robot.at_m, other.at_m);
+            assert!((0.8..1.2).contains(&apart), "{apart}");
+        }
+    }
+}
+
+#[test]
+fn an_alpha_flock_at_a_senseless_speed_stays_within_its_own() {
+    let guidance = LatticeGuidance::new(LatticeParams::<f32>::new(1.0), true);
+    let mut robot = Robot::new(&one_step_late(1), guidance, Unguarded, [0.0; 2]);
+    robot.velocity_mps = [f64::MAX, 0.0];
+    let _ = robot.agent.assign_place(0, &place(1000, 0));
+    let out = robot.step(step_number(0), &[]);
+    let is_sane = match out.command {
+        Command::Velocity(v) => v.norm() <= 1.001,
+        Command::Hold | Command::Move(_) => true,
+    };
+    assert!(is_sane, "{:?}", out.command);
+}
+
+#[test]
+fn a_goal_flock_goes_to_the_middle_and_then_to_goals_of_its_own() {
+    let new = |id, at_m| {
+        let params = GoalParams::new(0.5, 1.0);
+        let guidance = GoalFlockGuidance::new(params, 1.0, 7);
+        let mut robot = Robot::new(&one_step_late(id), guidance, Unguarded, at_m);
+        assert!(
+            !robot.agent.assign_place(1, &place(0, 0)),
+            "not before number 0"
+        );
+        assert!(robot.agent.assign_place(0, &place(20_000, 8_000)));
+        assert!(robot.agent.assign_place(1, &place(20_000, -8_000)));
+        robot
+    };
+    let mut robots = [new(1, [0.0, 0.0]), new(2, [0.0, 1.0]), new(3, [1.0, 0.5])];
+    run(&mut robots, 0..50);
+    for robot in &robots {
+        assert_eq!(robot.agent.guidance().stage(), Stage::Gather);
+        assert_eq!(robot.agent.mode(), Mode::Cruise);
+    }
+    run(&mut robots, 50..650);
+    for robot in &robots {
+        let Stage::Goal(goal) = robot.agent.guidance().stage() else {
+            panic!("{:?} at {:?}", robot.agent.guidance().stage(), robot.at_m)
+        };
+        let goal = [[20.0, 8.0], [20.0, -8.0]][goal];
+        assert!(distance(robot.at_m, goal) <= 1.0);
+        assert_eq!(robot.agent.mode(), Mode::Arrived);
+    }
+}
+
+#[test]
+fn boids_keep_their_speed_and_take_on_one_heading() {
+    let new = |id, at_m, velocity_mps| {
+        let params = BoidsParams::new(0.3, 30.0, 0.05, 0.02);
+        let guidance = BoidsGuidance::new(params, 0.5);
+        let mut robot = Robot::new(&one_step_late(id), guidance, Unguarded, at_m);
+        robot.velocity_mps = velocity_mps;
+        robot
+    };
+    let mut robots = [
+        new(1, [0.0, 0.0], [0.5, 0.0]),
+        new(2, [2.0, 0.0], [0.4, 0.3]),
+        new(3, [0.0, 2.0], [0.3, -0.4]),
+    ];
+    run(&mut robots, 0..600);
+    for robot in &robots {
+        let speed = distance(robot.velocity_mps, [0.0; 2]);
+        assert!((speed - 0.5).abs() < 1e-3, "{speed}");
+        let off = distance(robot.velocity_mps, robots[0].velocity_mps);
+        // Up to 127 degrees apart at first; they go on to sway about their common heading.
+        assert!(off < 0.2, "{:?}", robot.velocity_mps);
+    }
+}
+
+#[test]
+fn a_boid_that_stands_sets_out_in_a_direction_of_its_own() {
+    let heading = |id, seed| {
+        let params = BoidsParams::new(0.3, 30.0, 0.05, 0.02);
+        let config = AgentConfig {
+            seed,
+            ..one_step_late(id)
+        };
+        let guidance = BoidsGuidance::<f32>::new(params, 0.5);
+        let mut robots = [Robot::new(&config, guidance, Unguarded, [0.0; 2])];
+        run(&mut robots, 0..1);
+        robots[0].velocity_mps
+    };
+    assert_eq!(heading(1, 1), heading(1, 1));
+    assert_ne!(heading(1, 1), heading(2, 1));
+    assert_ne!(heading(1, 1), heading(1, 2));
+}

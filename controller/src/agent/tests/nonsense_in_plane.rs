@@ -1,0 +1,221 @@
+//! Whatever a robot in the plane hears and sees: its command is finite and within what its body can do.
+
+use super::nonsense::{frame, noise_and_frames};
+use super::*;
+use crate::flock::boids::BoidsParams;
+use crate::flock::goal::GoalParams;
+use crate::flock::lattice::LatticeParams;
+use crate::geom::{Position, Vec2, Vec3};
+use crate::neighbor::Doubt;
+use crate::obstacle::Obstacle;
+use crate::orca::{AvoidParams, FlyParams};
+use crate::push_out::PushOutParams;
+use crate::wire::PlaceAssignment;
+use proptest::collection::vec;
+use proptest::prelude::*;
+
+type Any = Agent<f32, AnyGuidance<f32, CELLS, VISITS, TEMPLATE>, NEIGHBORS, AnySafety<f32, 16>>;
+
+/// Numbers that sensors give, and all others.
+fn number() -> impl Strategy<Value = f32> + Clone {
+    prop_oneof![
+        6 => -5.0..5.0_f32,
+        1 => Just(0.0),
+        1 => prop_oneof![
+            Just(f32::NAN), Just(f32::INFINITY), Just(f32::NEG_INFINITY), Just(f32::MAX), Just(f32::MIN),
+            Just(f32::MIN_POSITIVE), Just(1e-30), Just(1e30),
+        ],
+        1 => any::<u32>().prop_map(f32::from_bits),
+    ]
+}
+
+fn vector() -> impl Strategy<Value = Vec3<f32>> + Clone {
+    [number(), number(), number()].prop_map(|[x, y, z]| Vec3::new(x, y, z))
+}
+
+fn millimetres() -> impl Strategy<Value = i32> + Clone {
+    prop_oneof![4 => -5000..5000_i32, 1 => Just(i32::MIN), 1 => Just(i32::MAX), 1 => any::<i32>()]
+}
+
+fn obstacle() -> impl Strategy<Value = Obstacle<f32>> {
+    prop_oneof![
+        [number(), number(), number(), number()]
+            .prop_map(|[a, b, c, d]| Obstacle::Wall([Vec2::new(a, b), Vec2::new(c, d)])),
+        (vector(), number()).prop_map(|(center_m, radius_m)| Obstacle::Ball { center_m, radius_m }),
+        (vector(), number())
+            .prop_map(|(normal, distance_m)| Obstacle::Plane { normal, distance_m }),
+    ]
+}
+
+/// Robots near by and wherever, and places to go to.
+fn near() -> impl Strategy<Value = (Header, Message)> {
+    let header = (0..2_u8, 1..7_u32, 0..40_u16).prop_map(|(boot, sender, sequence)| Header {
+        boot,
+        sender: RobotId(sender),
+        sequence,
+    });
+    let numbers = (
+        [millimetres(), millimetres(), millimetres()],
+        any::<[i16; 3]>(),
+        any::<(u16, bool, u8)>(),
+    );
+    let message = numbers.prop_map(|(position_mm, velocity, (radius, is_place, index))| {
+        if is_place {
+            Message::Place(PlaceAssignment {
+                to: RobotId::NOBODY,
+                version: radius as u8,
+                index: index % 6,
+                position_mm,
+                velocity_mmps: velocity,
+            })
+        } else {
+            Message::Beacon(Beacon {
+                position_mm,
+                velocity_mmps: velocity.map(|v| v / 8),
+                radius_mm: radius / 64,
+                mode: if index > 200 {
+                    Mode::Fault
+                } else {
+                    Mode::Cruise
+                },
+                cell: Cell::new(i16::from(index % 9), 2),
+                ..Beacon::default()
+            })
+        }
+    });
+    (header, message)
+}
+
+#[derive(Clone, Debug)]
+struct Step {
+    now: Instant,
+    inbox: Vec<u8>,
+    at_mm: [i32; 3],
+    velocity_mps: Vec3<f32>,
+    max_speed_mps: f32,
+    obstacles: Vec<Obstacle<f32>>,
+    in_cell: Option<(f32, f32, f32)>,
+    has_land: bool,
+}
+
+fn steps() -> impl Strategy<Value = Vec<Step>> {
+    let later = prop_oneof![6 => Just(100_000), 1 => Just(0), 1 => any::<u32>()];
+    let frames = vec(prop_oneof![4 => near(), 1 => frame()], 0..8);
+    let heard = (frames, vec(any::<u8>(), 0..20));
+    let at = (
+        [millimetres(), millimetres(), millimetres()],
+        vector(),
+        prop_oneof![4 => 0.01..3.0_f32, 1 => number()],
+    );
+    let cell = proptest::option::of((number(), number(), number()));
+    let step = (later, heard, at, vec(obstacle(), 0..6), cell, any::<bool>());
+    (any::<u32>(), vec(step, 1..20)).prop_map(|(mut now, steps)| {
+        let mut all = Vec::new();
+        for (later, heard, at, obstacles, in_cell, has_land) in steps {
+            now = now.wrapping_add(later);
+            let (at_mm, velocity_mps, max_speed_mps) = at;
+            all.push(Step {
+                now: Instant::from_micros(now),
+                inbox: noise_and_frames(&heard.0, &heard.1),
+                at_mm,
+                velocity_mps,
+                max_speed_mps,
+                obstacles,
+                in_cell,
+                has_land,
+            });
+        }
+        all
+    })
+}
+
+fn guidance(which: u8, speed: f32, length: f32) -> AnyGuidance<f32, CELLS, VISITS, TEMPLATE> {
+    match which % 6 {
+        0 => AnyGuidance::Waypoint(WaypointGuidance::new(speed, length)),
+        1 => AnyGuidance::Lattice(LatticeGuidance::new(
+            LatticeParams::new(length),
+            which < 128,
+        )),
+        2 => {
+            let params = GoalParams::new(length, speed);
+            AnyGuidance::GoalFlock(GoalFlockGuidance::new(params, length, 5))
+        }
+        3 => {
+            let params = BoidsParams::new(length, 3.0 * length, 0.05, 0.02);
+            AnyGuidance::Boids(BoidsGuidance::new(params, speed))
+        }
+        4 => {
+            let inside = RouteGuidance::new(RouteParams::default());
+            AnyGuidance::Route(InPlane::new(inside, speed))
+        }
+        _ => {
+            let template =
+                Template::from_graph(&[Cell::new(0, 0), Cell::new(-3, 0)], &[(0, 1)], 1, 2);
+            let (route, keeping) = (RouteParams::default(), FormationParams::default());
+            let inside = FormationGuidance::new(route, keeping, template.unwrap());
+            AnyGuidance::Formation(InPlane::new(inside, speed))
+        }
+    }
+}
+
+fn safety(which: u8, length: f32, growth_mps: f32) -> AnySafety<f32, 16> {
+    let doubt = Doubt {
+        growth_mps,
+        most_m: length,
+    };
+    match which % 4 {
+        0 => AnySafety::Unguarded(Unguarded),
+        1 => AnySafety::Orca(OrcaSafety::new(AvoidParams::default(), doubt)),
+        2 => AnySafety::Fly(FlySafety::new(FlyParams::default(), doubt)),
+        _ => AnySafety::PushOut(PushOutSafety::new(PushOutParams::new(length))),
+    }
+}
+
+proptest! {
+    #[test]
+    fn a_robot_in_the_plane_survives_any_input(
+        which: (u8, u8), size in prop_oneof![3 => (0.1..2.0_f32, 0.1..2.0_f32), 1 => (number(), number())],
+        body in prop_oneof![3 => (0.0..0.5_f32, 0.1..9.0_f32), 1 => (number(), number())],
+        tick_us in prop_oneof![4 => Just(100_000), 1 => Just(1), 1 => Just(i32::MAX / 32)],
+        steps in steps(),
+    ) {
+        let (radius_m, max_acceleration_mps2) = body;
+        let tick = Duration::from_micros(tick_us);
+        let config = AgentConfig { radius_m, max_acceleration_mps2, ..AgentConfig::new(RobotId(9), 1, tick) };
+        let (speed, length) = size;
+        let mut agent = Any::guarded(&config, guidance(which.0, speed, length), safety(which.1, length, speed));
+        agent.assign_goal(Cell::new(7, 7));
+        let mut ws = workspace();
+        for step in &steps {
+            let inputs = Inputs {
+                pose: Pose {
+                    position: Position::from_mm(step.at_mm),
+                    velocity_mps: step.velocity_mps,
+                },
+                surroundings: Some(Surroundings {
+                    max_speed_mps: step.max_speed_mps,
+                    obstacles: &step.obstacles,
+                    in_cell: step.in_cell.map(|(x, y, cell_m)| InCell { offset_m: Vec2::new(x, y), cell_m }),
+                }),
+                window: inputs(&FLAT, Cell::new(5, 5), &[]).window.filter(|_| step.has_land),
+                ..inputs(&FLAT, Cell::new(5, 5), &step.inbox)
+            };
+            let out = agent.step(&inputs, step.now, &mut ws);
+            let Command::Velocity(v) = out.command else {
+                prop_assert!(out.command == Command::Hold && agent.mode() == Mode::Fault);
+                continue;
+            };
+            prop_assert!(v.is_finite(), "{v:?}");
+            // A body with inertia that is too fast for its land slows down as well as it can.
+            let fast = step.velocity_mps;
+            let has_inertia = max_acceleration_mps2 < f32::MAX && (max_acceleration_mps2 * body_step_s(tick)).is_finite() && fast.is_finite();
+            let limit = step.max_speed_mps.max(0.0);
+            let most = if has_inertia { limit.max(fast.norm()) } else { limit };
+            prop_assert!(f64::from(v.norm()) <= f64::from(most) * 1.0001, "{v:?} is faster than {most}");
+        }
+    }
+}
+
+fn body_step_s(tick: Duration) -> f32 {
+    tick.as_micros() as f32 / 1e6
+}

@@ -1,0 +1,513 @@
+//! Agents that move in the plane: places, standing, what they know of each other, numbers of other kinds.
+
+use super::*;
+use crate::geom::{Position, Vec2, Vec3};
+use crate::neighbor::Doubt;
+use crate::orca::AvoidParams;
+use crate::scalar::Q16;
+use crate::wire::PlaceAssignment;
+
+pub(super) const STEP: Duration = Duration::from_millis(100);
+pub(super) const RADIUS_MM: i32 = 200;
+
+pub(super) fn step_number(n: i32) -> Instant {
+    Instant::from_micros(0) + STEP.saturating_mul(n)
+}
+
+pub(super) fn in_plane<S: Scalar>(id: u32) -> AgentConfig<S> {
+    AgentConfig {
+        radius_m: S::from_milli(RADIUS_MM),
+        ..AgentConfig::new(RobotId(id), 1, STEP)
+    }
+}
+
+/// One who knows that what others say was said a step ago.
+pub(super) fn one_step_late<S: Scalar>(id: u32) -> AgentConfig<S> {
+    AgentConfig {
+        latency: STEP,
+        ..in_plane(id)
+    }
+}
+
+pub(super) fn orca<S: Scalar>() -> OrcaSafety<S, 16> {
+    let doubt = Doubt {
+        growth_mps: S::HALF,
+        most_m: S::from_milli(300),
+    };
+    OrcaSafety::new(AvoidParams::default(), doubt)
+}
+
+pub(super) fn waypoint<S: Scalar>() -> WaypointGuidance<S> {
+    WaypointGuidance::new(S::ONE, S::from_milli(10))
+}
+
+pub(super) fn place<S: Scalar>(x_mm: i32, y_mm: i32) -> Place<S> {
+    Place::fixed(Position::from_mm([x_mm, y_mm, 0]))
+}
+
+pub(super) fn length([x, y]: [f64; 2]) -> f64 {
+    Vec2::new(x, y).norm()
+}
+
+/// An agent with a body that does at once what it is told.
+pub(super) struct Robot<S: Scalar, G, A> {
+    pub(super) agent: Agent<S, G, 8, A>,
+    pub(super) at_m: [f64; 2],
+    pub(super) velocity_mps: [f64; 2],
+}
+
+impl<S: Scalar, G: Guidance<S, Workspace = ()>, A: Safety<S>> Robot<S, G, A> {
+    pub(super) fn new(config: &AgentConfig<S>, guidance: G, safety: A, at_m: [f64; 2]) -> Self {
+        Self {
+            agent: Agent::guarded(config, guidance, safety),
+            at_m,
+            velocity_mps: [0.0; 2],
+        }
+    }
+
+    /// One step at 1 m/s at most.
+    pub(super) fn step(&mut self, now: Instant, inbox: &[u8]) -> Outputs<S> {
+        let number = |x: f64| S::from_f64(x).unwrap();
+        let [vx, vy] = self.velocity_mps.map(number);
+        let [x, y] = self.at_m;
+        let inputs = Inputs {
+            pose: Pose {
+                position: Position::from_metres([x, y, 0.0]).unwrap(),
+                velocity_mps: Vec3::new(vx, vy, S::ZERO),
+            },
+            cell: None,
+            window: None,
+            surroundings: Some(Surroundings {
+                max_speed_mps: S::ONE,
+                obstacles: &[],
+                in_cell: None,
+            }),
+            inbox,
+        };
+        let out = self.agent.step(&inputs, now, &mut ());
+        self.velocity_mps = match &out.command {
+            Command::Velocity(v) => [v.x.to_f64(), v.y.to_f64()],
+            Command::Hold => [0.0; 2],
+            Command::Move(_) => panic!("there are no cells"),
+        };
+        for (at, v) in self.at_m.iter_mut().zip(self.velocity_mps) {
+            *at += v * 0.1;
+        }
+        out
+    }
+
+    fn speed(&self) -> f64 {
+        length(self.velocity_mps)
+    }
+}
+
+/// Looks around, and goes nowhere.
+#[derive(Default)]
+struct Onlooker {
+    seen: Vec<Nearby<f32>>,
+    is_broken: bool,
+}
+
+impl Guidance<f32> for Onlooker {
+    type Workspace = ();
+
+    fn decide(
+        &mut self,
+        view: &View<'_, f32>,
+        _: &mut Rng,
+        (): &mut (),
+    ) -> Result<Guided<f32>, BadInput> {
+        self.seen = view.nearby.to_vec();
+        if self.is_broken {
+            return Err(BadInput);
+        }
+        Ok(Guided::default())
+    }
+
+    fn has_own_goal(&self) -> bool {
+        true
+    }
+}
+
+/// The beacon of a body of the same size.
+pub(super) fn body_at(position_mm: [i32; 2], velocity_mmps: [i16; 2], mode: Mode) -> Message {
+    let ([x, y], [vx, vy]) = (position_mm, velocity_mmps);
+    Message::Beacon(Beacon {
+        position_mm: [x, y, 0],
+        velocity_mmps: [vx, vy, 0],
+        radius_mm: RADIUS_MM as u16,
+        mode,
+        ..Beacon::default()
+    })
+}
+
+fn said<S: Scalar>(outputs: &Outputs<S>) -> Beacon {
+    let mut beacons = frames(&outputs.outbox).filter_map(|f| match decode(f).unwrap().message {
+        Message::Beacon(beacon) => Some(beacon),
+        _ => None,
+    });
+    beacons.next().expect("a beacon in each step")
+}
+
+#[test]
+fn without_a_place_it_is_idle_and_says_where_it_is() {
+    let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), [3.25, -1.5]);
+    let beacon = said(&robot.step(step_number(0), &[]));
+    assert_eq!((beacon.mode, robot.agent.mode()), (Mode::Idle, Mode::Idle));
+    assert_eq!(beacon.position_mm, [3250, -1500, 0]);
+    assert_eq!(beacon.radius_mm, 200);
+    assert_eq!(robot.velocity_mps, [0.0; 2]);
+}
+
+#[test]
+fn it_goes_straight_to_its_place_and_stands_there() {
+    let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), [0.0; 2]);
+    assert!(robot.agent.assign_place(0, &place(3000, 4000)));
+    for n in 0..50 {
+        let _ = robot.step(step_number(n), &[]);
+        assert!((robot.speed() - 1.0).abs() < 1e-5, "step {n}");
+        assert_eq!(robot.agent.mode(), Mode::Cruise);
+        let [x, y] = robot.at_m;
+        assert!((x * 4.0 - y * 3.0).abs() < 1e-2);
+    }
+    for n in 50..60 {
+        let _ = robot.step(step_number(n), &[]);
+    }
+    assert_eq!(robot.agent.mode(), Mode::Arrived);
+    assert_eq!(robot.velocity_mps, [0.0; 2]);
+    let [x, y] = robot.at_m;
+    assert!(length([x - 3.0, y - 4.0]) < 0.002, "{x} {y}");
+}
+
+#[test]
+fn with_a_place_that_moves_it_goes_on_without_losing_it() {
+    let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), [1.0, 0.0]);
+    let _ = robot.agent.assign_place(
+        0,
+        &Place {
+            velocity_mps: Vec3::new(0.3, 0.1, 0.0),
+            ..place(1000, 0)
+        },
+    );
+    for n in 0..100 {
+        let _ = robot.step(step_number(n), &[]);
+        let age_s = f64::from(n + 1) * 0.1;
+        let [x, y] = robot.at_m;
+        let off = length([x - 1.0 - 0.3 * age_s, y - 0.1 * age_s]);
+        assert!(off < 0.01, "step {n}: {off} m behind");
+        assert_eq!(robot.agent.mode(), Mode::Arrived);
+    }
+}
+
+#[test]
+fn beacons_carry_what_it_does_from_now_on() {
+    let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), [0.0; 2]);
+    let _ = robot.agent.assign_place(0, &place(-6000, 8000));
+    let beacon = said(&robot.step(step_number(0), &[]));
+    assert_eq!(beacon.velocity_mmps, [-600, 800, 0]);
+}
+
+#[test]
+fn a_body_of_no_sensible_size_is_told_as_one_without_size() {
+    for radius_m in [-1.0, f32::NAN, f32::NEG_INFINITY] {
+        let config = AgentConfig {
+            radius_m,
+            ..in_plane(1)
+        };
+        let mut robot = Robot::new(&config, waypoint::<f32>(), orca(), [0.0; 2]);
+        assert_eq!(said(&robot.step(step_number(0), &[])).radius_mm, 0);
+    }
+}
+
+/// Whether a robot that stands in `mode` gets out of the way of one that comes.
+fn evades(mode: Mode) -> bool {
+    let guidance = Onlooker {
+        is_broken: mode == Mode::Fault,
+        ..Onlooker::default()
+    };
+    let coming = body_at([1000, 50], [-1000, 0], Mode::Cruise);
+    let (now, own) = (step_number(0), [0.0; 2]);
+    let inbox = bytes(2, 0, 0, core::slice::from_ref(&coming));
+    if mode == Mode::Fault {
+        let mut robot = Robot::new(&in_plane(1), guidance, orca(), own);
+        let out = robot.step(now, &inbox);
+        assert_eq!((robot.agent.mode(), &out.command), (mode, &Command::Hold));
+        return robot.speed() > 0.0;
+    }
+    let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), own);
+    let mut inbox = inbox;
+    match mode {
+        Mode::Arrived => drop(robot.agent.assign_place(0, &place(0, 0))),
+        Mode::Hold => {
+            let _ = robot.agent.assign_place(0, &place(0, 9000));
+            inbox = bytes(2, 0, 0, &[coming, stop(2, 1, 0, RequestKind::Stop)]);
+        }
+        _ => {}
+    }
+    let _ = robot.step(now, &inbox);
+    assert_eq!(robot.agent.mode(), mode);
+    robot.speed() > 0.01
+}
+
+#[test]
+fn who_stands_gives_way_and_who_has_a_fault_does_nothing() {
+    let standing = [Mode::Idle, Mode::Arrived, Mode::Hold, Mode::Fault];
+    assert_eq!(standing.map(evades), [true, true, true, false]);
+}
+
+#[test]
+fn a_neighbour_with_a_fault_gets_the_whole_correction() {
+    let correction = |mode| {
+        let mut robot = Robot::new(&in_plane(1), Onlooker::default(), orca(), [0.0; 2]);
+        let inbox = bytes(2, 0, 0, &[body_at([900, 100], [-600, 0], mode)]);
+        let _ = robot.step(step_number(0), &inbox);
+        let gives_way = robot.agent.guidance().seen[0].gives_way;
+        assert_eq!(gives_way, mode != Mode::Fault);
+        robot.speed()
+    };
+    let (half, whole) = (correction(Mode::Cruise), correction(Mode::Fault));
+    assert!(half > 0.01);
+    assert!((whole / half - 2.0).abs() < 0.02, "{half} {whole}");
+}
+
+#[test]
+fn neighbours_are_where_they_are_now_though_news_takes_time() {
+    for (latency, x_m) in [(0, 5.0), (1, 4.9), (3, 4.7)] {
+        let config = AgentConfig {
+            latency: STEP.saturating_mul(latency),
+            ..in_plane(1)
+        };
+        let mut robot = Robot::new(&config, Onlooker::default(), orca(), [0.0; 2]);
+        let inbox = bytes(2, 0, 0, &[body_at([5000, 0], [-1000, 0], Mode::Cruise)]);
+        let _ = robot.step(step_number(0), &inbox);
+        let seen = &robot.agent.guidance().seen;
+        assert!((seen[0].offset_m.x - x_m).abs() < 1e-5, "{seen:?}");
+    }
+}
+
+#[test]
+fn a_silent_neighbour_goes_on_then_stands_and_widens_then_is_forgotten() {
+    let mut robot = Robot::new(&in_plane(1), Onlooker::default(), orca(), [0.0; 2]);
+    let inbox = bytes(2, 0, 0, &[body_at([5000, 0], [-1000, 0], Mode::Cruise)]);
+    let mut sights = Vec::new();
+    for n in 0..32 {
+        let inbox = if n == 0 { &inbox[..] } else { &[] };
+        let _ = robot.step(step_number(n), inbox);
+        sights.push(robot.agent.guidance().seen.first().copied());
+    }
+    // Stale after 4 steps, forgotten after 30; the ball grows by 0.05 m a step, at most by 0.3 m.
+    for (n, x_m, radius_m, is_fresh) in [
+        (0, 5.0, 0.2, true),
+        (4, 4.6, 0.2, true),
+        (5, 4.6, 0.25, false),
+        (8, 4.6, 0.4, false),
+        (12, 4.6, 0.5, false),
+        (30, 4.6, 0.5, false),
+    ] {
+        let seen = sights[n].expect("not forgotten yet");
+        assert!((seen.offset_m.x - x_m).abs() < 1e-5, "{n}: {seen:?}");
+        assert!((seen.radius_m - radius_m).abs() < 1e-5, "{n}: {seen:?}");
+        assert_eq!(
+            (seen.gives_way, seen.velocity_mps == Vec3::ZERO),
+            (is_fresh, !is_fresh)
+        );
+    }
+    assert_eq!(sights[31], None);
+}
+
+/// "Go to `x_mm`", with nothing but a version to tell it from others.
+fn order(to: u32, version: u8, index: u8, x_mm: i32) -> Message {
+    Message::Place(PlaceAssignment {
+        to: RobotId(to),
+        version,
+        index,
+        position_mm: [x_mm, 0, 0],
+        velocity_mmps: [0; 3],
+    })
+}
+
+#[test]
+fn places_come_by_packet_and_older_ones_are_ignored() {
+    let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), [0.0; 2]);
+    let (east, west) = (50_000, -50_000);
+    let mut n = 0;
+    let mut goes_east_after = |sender, boot, message| {
+        n += 1;
+        let _ = robot.step(step_number(n), &bytes(sender, boot, n as u16, &[message]));
+        (robot.speed() > 0.9).then_some(robot.velocity_mps[0] > 0.0)
+    };
+    assert_eq!(
+        goes_east_after(99, 0, order(2, 9, 0, east)),
+        None,
+        "another's"
+    );
+    assert_eq!(
+        goes_east_after(99, 0, order(1, 0, 1, east)),
+        None,
+        "no room"
+    );
+    assert_eq!(
+        goes_east_after(99, 0, order(1, 0, 255, east)),
+        None,
+        "no such place"
+    );
+    assert_eq!(goes_east_after(99, 0, order(1, 5, 0, east)), Some(true));
+    assert_eq!(
+        goes_east_after(99, 0, order(1, 4, 0, west)),
+        Some(true),
+        "older"
+    );
+    assert_eq!(
+        goes_east_after(99, 0, order(1, 5, 0, west)),
+        Some(true),
+        "again"
+    );
+    assert_eq!(
+        goes_east_after(99, 0, order(0, 6, 0, west)),
+        Some(false),
+        "to all"
+    );
+    assert_eq!(
+        goes_east_after(99, 1, order(1, 0, 0, east)),
+        Some(true),
+        "anew"
+    );
+    assert_eq!(
+        goes_east_after(98, 0, order(1, 0, 0, west)),
+        Some(false),
+        "another one"
+    );
+}
+
+#[test]
+fn a_place_that_found_no_room_is_taken_when_it_comes_again() {
+    let guidance = || {
+        let params = crate::flock::goal::GoalParams::new(0.6, 1.0);
+        GoalFlockGuidance::<f32>::new(params, 1.0, 1)
+    };
+    let goal = |index, position_mm| {
+        Message::Place(PlaceAssignment {
+            to: RobotId(1),
+            version: index,
+            index,
+            position_mm,
+            velocity_mmps: [0; 3],
+        })
+    };
+    let (first, second) = (goal(0, [40_000, 0, 0]), goal(1, [0, 40_000, 0]));
+    // The radio lost the first goal at first.
+    let mut robot = Robot::new(&in_plane(1), guidance(), Unguarded, [0.0; 2]);
+    for (n, message) in [second.clone(), first, second].into_iter().enumerate() {
+        let _ = robot.step(step_number(n as i32), &bytes(99, 0, n as u16, &[message]));
+    }
+    let [vx, vy] = robot.velocity_mps;
+    assert!(
+        vx > 0.1 && (vx - vy).abs() < 0.05,
+        "to the middle: {vx} {vy}"
+    );
+}
+
+#[test]
+fn a_place_moves_on_however_often_the_clock_runs_round() {
+    fn check<S: Scalar>(tolerance: f64) {
+        let velocity_mps = Vec3::new(S::from_milli(-50), S::from_milli(125), S::ZERO);
+        let mut place = Place {
+            velocity_mps,
+            ..place::<S>(1000, 2000)
+        };
+        // Four hours: the clock runs round three times, through half its range six times.
+        for minute in 0..240 {
+            let now =
+                (0..minute).fold(step_number(0), |now, _| now + Duration::from_millis(60_000));
+            let way = place.way(Position::from_mm([1000, 0, 0]), now);
+            let age_s = f64::from(minute) * 60.0;
+            let off = [
+                way.x.to_f64() + 0.05 * age_s,
+                way.y.to_f64() - 2.0 - 0.125 * age_s,
+            ];
+            assert!(length(off) < tolerance, "after {minute} min: {off:?} m");
+        }
+    }
+    check::<f32>(0.02);
+    check::<f64>(0.02);
+    // 1/8 is exact in Q16, 0.05 is off by up to 8e-6.
+    check::<Q16>(0.15);
+}
+
+#[test]
+fn a_place_that_will_be_there_in_a_moment_is_on_its_way() {
+    let mut place = Place {
+        velocity_mps: Vec3::new(1.0, 0.0, 0.0),
+        at: step_number(10),
+        ..place::<f32>(0, 0)
+    };
+    for n in 0..20 {
+        let way = place.way(Position::ORIGIN, step_number(n));
+        assert!(
+            (way.x - (n as f32 - 10.0) * 0.1).abs() < 2e-3,
+            "{n}: {way:?}"
+        );
+    }
+}
+
+/// Two robots that swap their places head on; where they are after each step.
+fn swap<S: Scalar>() -> Vec<[[f64; 2]; 2]> {
+    let mut one = Robot::new(&one_step_late(1), waypoint::<S>(), orca(), [-2.0, 0.0]);
+    let mut two = Robot::new(&one_step_late(2), waypoint::<S>(), orca(), [2.0, 0.0]);
+    let _ = one.agent.assign_place(0, &place(2000, 0));
+    let _ = two.agent.assign_place(0, &place(-2000, 0));
+    let mut heard = [Vec::new(), Vec::new()];
+    let mut track = Vec::new();
+    for n in 0..80 {
+        let now = step_number(n);
+        let [to_one, to_two] = &heard;
+        let said = [two.step(now, to_two).outbox, one.step(now, to_one).outbox];
+        heard = said.map(|bytes| bytes.to_vec());
+        track.push([one.at_m, two.at_m]);
+    }
+    assert_eq!([one.agent.mode(), two.agent.mode()], [Mode::Arrived; 2]);
+    track
+}
+
+#[test]
+fn head_on_they_swap_places_alike_in_all_kinds_of_numbers() {
+    let gap = |[one, two]: &[[f64; 2]; 2]| length([one[0] - two[0], one[1] - two[1]]) - 0.4;
+    let (track, fine, fixed) = (swap::<f32>(), swap::<f64>(), swap::<Q16>());
+    for (name, other, tolerance) in [("f64", &fine, 0.02), ("Q16", &fixed, 0.1)] {
+        for (n, (a, b)) in track.iter().zip(other).enumerate() {
+            let off = (0..2).map(|i| length([a[i][0] - b[i][0], a[i][1] - b[i][1]]));
+            let off = off.fold(0.0, f64::max);
+            assert!(off < tolerance, "{name}, step {n}: {off} m apart");
+        }
+    }
+    for track in [track, fine, fixed] {
+        let least = track.iter().map(gap).fold(f64::INFINITY, f64::min);
+        assert!(least > 0.0 && least < 0.4, "{least} m between them");
+    }
+}
+
+#[test]
+fn a_wish_that_is_no_number_is_no_wish() {
+    struct Mad;
+    impl Guidance<f32> for Mad {
+        type Workspace = ();
+        fn decide(
+            &mut self,
+            _: &View<'_, f32>,
+            _: &mut Rng,
+            (): &mut (),
+        ) -> Result<Guided<f32>, BadInput> {
+            Ok(Guided {
+                velocity_mps: Vec2::new(f32::NAN, 1.0).extend(0.0),
+                way_m: Some(Vec3::new(f32::NAN, 1.0, 0.0)),
+                ..Guided::default()
+            })
+        }
+        fn has_own_goal(&self) -> bool {
+            true
+        }
+    }
+    let mut robot = Robot::new(&in_plane(1), Mad, orca(), [0.0; 2]);
+    let out = robot.step(step_number(0), &[]);
+    assert_eq!(out.command, Command::Velocity(Vec3::ZERO));
+}
