@@ -1,6 +1,5 @@
 //! `staya experiment swap` and `staya experiment doorway`.
 
-use super::results::number;
 use crate::cli::{Ended, Global, Progress, Stop, print, print_json};
 use crate::experiment::crossing::{Conditions, doorway, swap};
 use crate::plot::flock::Sheet;
@@ -258,7 +257,7 @@ impl SwapArgs {
                 pictures: &pictures,
             })?;
         } else {
-            let mut text = swap_table(&report)?;
+            let mut text = report.to_string();
             last_word(
                 &mut text,
                 report.runs.len(),
@@ -317,7 +316,7 @@ impl DoorwayArgs {
                 pictures: &pictures,
             })?;
         } else {
-            let mut text = doorway_table(&report)?;
+            let mut text = report.to_string();
             last_word(
                 &mut text,
                 report.runs.len(),
@@ -330,89 +329,6 @@ impl DoorwayArgs {
         }
         Ok(Ended::by(&stop))
     }
-}
-
-fn headline(
-    text: &mut String,
-    what: &str,
-    conditions: &Conditions,
-    noise_m: f64,
-) -> std::fmt::Result {
-    let Conditions {
-        step_s,
-        speed_mps,
-        range_m,
-        loss,
-        safety,
-    } = conditions;
-    writeln!(
-        text,
-        "{what}: dt {step_s} s, {speed_mps} m/s, starts off by up to {noise_m} m, radio {range_m} m with {:.0} % lost, safety {safety:?}",
-        loss * 100.0
-    )
-}
-
-fn swap_table(report: &swap::Report) -> Result<String, std::fmt::Error> {
-    let mut text = String::new();
-    headline(
-        &mut text,
-        "swap over a circle",
-        &report.conditions,
-        report.noise_m,
-    )?;
-    writeln!(
-        text,
-        "robots  circle (m)  clean runs   arrived  worst time / free  least gap (mm)  overlaps"
-    )?;
-    for row in &report.rows {
-        let swap::Row {
-            robots,
-            circle_m,
-            runs,
-            clean,
-            arrived,
-            overlaps,
-            ..
-        } = row;
-        let all = *robots as usize * runs;
-        writeln!(
-            text,
-            "{robots:6}  {circle_m:10.1}  {:>10}  {:>8}  {:>17}  {:>14}  {overlaps:8}",
-            format!("{clean}/{runs}"),
-            format!("{arrived}/{all}"),
-            number(row.worst_time_ratio, 3),
-            number(row.least_gap_m.map(|gap| gap * 1000.0), 1),
-        )?;
-    }
-    Ok(text)
-}
-
-fn doorway_table(report: &doorway::Report) -> Result<String, std::fmt::Error> {
-    let mut text = String::new();
-    headline(&mut text, "doorway", &report.conditions, report.noise_m)?;
-    writeln!(
-        text,
-        "width (m)  seed  arrived  through (W+E)  last (s)  time / free  turns  least gap (mm)  to wall (mm)  overlaps"
-    )?;
-    for run in &report.runs {
-        let milli = |gap: Option<f64>| number(gap.map(|gap| gap * 1000.0), 1);
-        let [west, east] = run.through;
-        writeln!(
-            text,
-            "{:9.2}  {:4}  {:>7}  {:>13}  {:>8}  {:>11}  {:5}  {:>14}  {:>12}  {:8}",
-            run.width_m,
-            run.seed,
-            format!("{}/{}", run.arrived, run.robots),
-            format!("{west}+{east}"),
-            number(run.last_s, 1),
-            number(run.time_ratio, 2),
-            run.turns,
-            milli(run.least_gap_m),
-            milli(run.least_wall_gap_m),
-            run.overlaps,
-        )?;
-    }
-    Ok(text)
 }
 
 fn last_word(

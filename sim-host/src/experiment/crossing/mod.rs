@@ -4,6 +4,7 @@
 //! millimetre, one tick old. Plain ORCA jams in all of these.
 
 pub mod doorway;
+mod report;
 pub mod swap;
 
 use crate::engine::{Outcome, simulate};
