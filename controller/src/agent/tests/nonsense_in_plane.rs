@@ -163,11 +163,22 @@ fn safety(which: u8, length: f32, growth_mps: f32) -> AnySafety<f32, 16> {
         growth_mps,
         most_m: length,
     };
-    match which % 4 {
+    let orca = |source| {
+        AnySafety::Orca(OrcaSafety::with_source(
+            AvoidParams::default(),
+            doubt,
+            source,
+        ))
+    };
+    match which % 8 {
         0 => AnySafety::Unguarded(Unguarded),
-        1 => AnySafety::Orca(OrcaSafety::new(AvoidParams::default(), doubt)),
-        2 => AnySafety::Fly(FlySafety::new(FlyParams::default(), doubt)),
-        _ => AnySafety::PushOut(PushOutSafety::new(PushOutParams::new(length))),
+        1 => AnySafety::Fly(FlySafety::new(FlyParams::default(), doubt)),
+        2 => AnySafety::PushOut(PushOutSafety::new(PushOutParams::new(length))),
+        3 => orca(AnyHalfPlanes::Template2k),
+        4 => orca(AnyHalfPlanes::Template8k),
+        5 => orca(AnyHalfPlanes::Template16k),
+        6 => orca(AnyHalfPlanes::Template64k),
+        _ => orca(AnyHalfPlanes::Analytic),
     }
 }
 
