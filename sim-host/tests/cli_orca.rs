@@ -27,7 +27,8 @@ fn draw_leaves_four_pictures_of_the_papers_example() {
         |value: &Value, wanted: f64| (value.as_f64().expect("a number") - wanted).abs() < 1e-6;
     assert!(near(&drawn["change_mps"], 0.292893));
     assert!(near(&drawn["point_mps"][0], 1.707107) && near(&drawn["point_mps"][1], 0.792893));
-    assert!(near(&drawn["normal"][0], 0.707107) && near(&drawn["normal"][1], -0.707107));
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    assert!(near(&drawn["normal"][0], half) && near(&drawn["normal"][1], -half));
     assert_eq!(drawn["pictures"].as_array().expect("names").len(), 8);
     for name in ["velocity-obstacle", "r-function", "m-images", "template"] {
         let png = fs::read(out.join(format!("{name}.png"))).expect("a picture");

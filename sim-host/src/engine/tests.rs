@@ -65,7 +65,10 @@ impl Guidance<f32> for Scout {
     }
 }
 
-fn scouts(scenario: &Scenario) -> (Engine<Grid, Scout, Unguarded>, Arc<Mutex<Vec<Known>>>) {
+/// What all scouts wrote down.
+type Notes = Arc<Mutex<Vec<Known>>>;
+
+fn scouts(scenario: &Scenario) -> (Engine<Grid, Scout, Unguarded>, Notes) {
     let known = Arc::new(Mutex::new(Vec::new()));
     let shared = known.clone();
     let ground = Grid::new(scenario).expect("free starts");
