@@ -430,3 +430,35 @@ fn ctrl_c_ends_a_run_cleanly_and_keeps_what_it_has() {
     assert!(last.starts_with(&format!("{ticks},")), "{last}");
     assert!(Path::new(&out).join("summary.json").is_file());
 }
+
+#[test]
+fn robots_in_the_plane_swap_places_from_end_to_end() {
+    let (_dir, out) = folder();
+    let circle = scenario("swap-circle.toml");
+    let arguments = ["run", &circle, "--json", "--quiet", "--out", &out];
+    let Output { status, stderr, .. } = staya(&arguments).output().expect("staya starts");
+    assert!(status.success(), "{}", text(&stderr));
+    let summary = fs::read(Path::new(&out).join("summary.json")).expect("summary.json");
+    let json: Value = serde_json::from_slice(&summary).expect("JSON");
+    assert_eq!(json["scenario"], "swap-circle");
+    assert_eq!(
+        (&json["arrived"], &json["collisions"]),
+        (&16.into(), &0.into())
+    );
+    let gap_m = json["least_gap_m"].as_f64().expect("a number");
+    assert!(gap_m > 0.0 && gap_m < 0.1, "{gap_m}");
+    let files = json["files"].as_array().expect("a list");
+    let of_kind = |kind: &str| {
+        let names = files.iter().filter_map(|file| file.as_str());
+        names.filter(|name| name.ends_with(kind)).count()
+    };
+    assert!(
+        of_kind(".png") > 0 && of_kind(".png") == of_kind(".svg"),
+        "{files:?}"
+    );
+    for file in files {
+        let path = PathBuf::from(file.as_str().expect("a name"));
+        let length = fs::metadata(&path).map(|m| m.len());
+        assert!(length.is_ok_and(|length| length > 0), "{}", path.display());
+    }
+}

@@ -133,3 +133,33 @@ fn golden_orca_table() {
     };
     golden("orca-table", &sample.report().to_string());
 }
+
+#[test]
+fn golden_swap_circle() {
+    check("swap-circle", None);
+}
+
+#[test]
+fn golden_doorway_in_its_first_ticks() {
+    check("doorway", Some(1500));
+}
+
+#[test]
+fn golden_flock_squeeze_in_its_first_ticks() {
+    check("flock-squeeze", Some(600));
+}
+
+#[test]
+fn golden_goal_flock_in_its_first_ticks() {
+    check("goal-flock", Some(1400));
+}
+
+#[test]
+fn golden_boids_in_its_first_ticks() {
+    check("boids", Some(300));
+}
+
+#[test]
+fn golden_six_discs_in_its_first_ticks() {
+    check("six-discs", Some(1500));
+}

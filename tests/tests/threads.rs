@@ -43,3 +43,9 @@ fn robots_among_walls_are_the_same_on_any_number_of_threads() {
 fn a_thousand_robots_are_the_same_on_any_number_of_threads() {
     same_on_any_number("scale-small", Some(30));
 }
+
+#[test]
+fn a_flock_in_the_plane_is_the_same_on_any_number_of_threads() {
+    same_on_any_number("boids", Some(60));
+    same_on_any_number("goal-flock", Some(60));
+}

@@ -78,14 +78,18 @@ impl PlaneGround {
 }
 
 /// The operator's orders as frames; those of one tick together.
-fn frames(orders: &[Order]) -> Vec<(u32, Vec<u8>)> {
+pub(super) fn frames(orders: &[Order]) -> Vec<(u32, Vec<u8>)> {
     let mut frames = Vec::<(u32, Vec<u8>)>::new();
-    for (number, order) in (0..).zip(orders) {
+    // Each index counts by itself: what is newer may be at most half of all versions ahead.
+    let mut versions = [0_u8; 256];
+    let mut sequence = 0_u16;
+    for order in orders {
+        let version = &mut versions[usize::from(order.index)];
+        *version = version.wrapping_add(1);
         let milli = |x: f64| libm::round(x * 1000.0);
         let place = PlaceAssignment {
             to: RobotId::NOBODY,
-            // Each index counts by itself, so that any rising number will do.
-            version: number as u8,
+            version: *version,
             index: order.index,
             position_mm: order.target.position_m.map(|x| milli(x) as i32),
             velocity_mmps: order.target.velocity_mps.map(|x| milli(x) as i16),
@@ -93,8 +97,9 @@ fn frames(orders: &[Order]) -> Vec<(u32, Vec<u8>)> {
         let header = Header {
             boot: 0,
             sender: OPERATOR,
-            sequence: number,
+            sequence,
         };
+        sequence = sequence.wrapping_add(1);
         let mut bytes = heapless::Vec::<u8, 64>::new();
         encode(header, &Message::Place(place), &mut bytes).expect("a frame has at most 60 bytes");
         match frames.last_mut() {
@@ -212,8 +217,8 @@ impl Ground for PlaneGround {
     fn configure(&self, config: &mut AgentConfig<f32>) {
         config.radius_m = self.setup.radius_m as f32;
         config.max_acceleration_mps2 = self.setup.abilities.max_acceleration_mps2 as f32;
-        // What is sent in a tick is heard in the next one that begins after the delay.
-        let ticks = 1 + self.delay_us / self.tick_us.max(1);
+        // What is sent in a tick is heard in the next one, or in the first one that does not begin before the delay is over.
+        let ticks = self.delay_us.div_ceil(self.tick_us.max(1)).max(1);
         let micros = i32::try_from(ticks * self.tick_us).unwrap_or(i32::MAX);
         config.latency = Duration::from_micros(micros);
     }
@@ -228,8 +233,14 @@ impl Ground for PlaneGround {
             agent.assign_goal(self.robots[index].goal);
             return;
         }
-        let age_s = f64::from(tick) * f64::from(self.tick_us) / 1e6;
-        for (number, target) in (0..).zip(&self.setup.starts[index].places) {
+        // One that starts anew is told what has been ordered in the meantime; what is ordered in this tick, it hears.
+        let first = (0..).zip(&self.setup.starts[index].places);
+        let first = first.map(|(number, target)| (number, 0, target));
+        let orders = self.setup.orders.iter();
+        let orders = orders.take_while(|order| order.tick < tick);
+        let later = orders.map(|order| (order.index, order.tick, &order.target));
+        for (number, since, target) in first.chain(later) {
+            let age_s = f64::from(tick - since) * f64::from(self.tick_us) / 1e6;
             // A guidance that has no use for it says so; the scenario was checked for that.
             let _ = agent.assign_place(number, &place(target, age_s));
         }

@@ -347,3 +347,5 @@ proptest! {
         prop_assert_eq!(outcome.formation.is_some(), formation);
     }
 }
+
+mod plane;

@@ -495,6 +495,28 @@ fn every_field_is_in_the_table_of_the_readme() {
 }
 
 #[test]
+fn every_scenario_is_in_the_list_of_the_readme() {
+    let readme = include_str!("../../../scenarios/README.md");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
+    let mut scenarios = 0;
+    for file in fs::read_dir(folder).expect("the scenarios") {
+        let path = file.expect("a file").path();
+        if path.extension().is_some_and(|e| e == "toml") {
+            let name = path.file_stem().and_then(|name| name.to_str());
+            let in_list = format!("`{}`", name.expect("a name in UTF-8"));
+            let mut rows = readme.lines().filter(|line| line.starts_with("| `"));
+            assert!(
+                rows.any(|row| row.contains(&in_list)),
+                "{in_list} is missing"
+            );
+            Scenario::load(&path, &Overrides::default()).unwrap_or_else(|error| panic!("{error}"));
+            scenarios += 1;
+        }
+    }
+    assert!(scenarios > 12, "only {scenarios} were found");
+}
+
+#[test]
 fn the_defaults_in_the_readme_are_the_controllers() {
     let readme = include_str!("../../../scenarios/README.md");
     let last_column = |field: &str| {

@@ -1,8 +1,12 @@
 //! `[plane]`: robots that move in the plane or in space, and how they choose their velocities.
 
+mod checks;
 mod flocks;
 mod starts;
 mod table;
+
+#[cfg(test)]
+mod tests;
 
 pub use starts::{Start, Target, circle_starts};
 pub use table::*;
@@ -155,7 +159,7 @@ pub(super) fn build(
     terrain: Option<&Terrain>,
     cells: Option<&[Robot]>,
 ) -> Result<(PlaneSetup, Vec<Robot>), ScenarioError> {
-    let far = 2_000_000.0;
+    let far = checks::FAR_M;
     for (field, value, low, high, unit) in [
         ("plane.radius_m", table.radius_m, 0.001, 65.0, "metres"),
         (
@@ -179,7 +183,7 @@ pub(super) fn build(
         source,
         "plane.cruise_mps",
         cruise_mps,
-        0.0,
+        0.001_f64.min(table.max_speed_mps),
         table.max_speed_mps,
         "m/s",
     )?;
@@ -220,16 +224,7 @@ pub(super) fn build(
             ));
         }
     };
-    for (index, start) in starts.iter().enumerate() {
-        let places = start.places.iter().map(|target| target.position_m);
-        for place in places.chain([start.position_m]) {
-            if !place.iter().all(|x| x.abs() <= far) {
-                let what = format!("robot {} starts or goes too far away", index + 1);
-                let remedy = "stay within 2000 km of the origin";
-                return Err(source.error("plane.robots", what, remedy));
-            }
-        }
-    }
+    checks::starts(source, &starts, table.radius_m)?;
     let setup = PlaneSetup {
         abilities: Abilities {
             max_speed_mps: table.max_speed_mps,
@@ -253,6 +248,8 @@ pub(super) fn build(
         boids: flocks::boids(source, table)?,
         orders: orders(source, file, table)?,
     };
+    checks::outside(source, &setup)?;
+    checks::safety_tables(source, table)?;
     let robots = cells.map_or_else(|| setup.robots(), <[Robot]>::to_vec);
     Ok((setup, robots))
 }
@@ -260,7 +257,11 @@ pub(super) fn build(
 fn solids(source: &Source<'_>, table: &PlaneTable) -> Result<Vec<Solid>, ScenarioError> {
     let mut solids = Vec::new();
     for (index, wall) in table.wall.iter().enumerate() {
-        let is_sound = wall.points_m.iter().flatten().all(|x| x.is_finite());
+        let is_sound = wall
+            .points_m
+            .iter()
+            .flatten()
+            .all(|x| x.abs() <= checks::FAR_M);
         if wall.points_m.len() < 2 || !is_sound {
             let field = format!("plane.wall[{index}].points_m");
             return Err(source.error(
@@ -277,6 +278,8 @@ fn solids(source: &Source<'_>, table: &PlaneTable) -> Result<Vec<Solid>, Scenari
         }
     }
     for (index, ball) in table.ball.iter().enumerate() {
+        let field = format!("plane.ball[{index}].center_m");
+        checks::place(source, &field, ball.center_m)?;
         let field = format!("plane.ball[{index}].radius_m");
         within(source, &field, ball.radius_m, 0.001, 1e6, "metres")?;
         solids.push(Solid::Ball {
@@ -285,6 +288,8 @@ fn solids(source: &Source<'_>, table: &PlaneTable) -> Result<Vec<Solid>, Scenari
         });
     }
     for (index, entry) in table.half_space.iter().enumerate() {
+        let field = format!("plane.half_space[{index}].point_m");
+        checks::place(source, &field, entry.point_m)?;
         let length = entry.normal.0.iter().map(|x| x * x).sum::<f64>().sqrt();
         if !(length > 0.0 && length.is_finite()) {
             let field = format!("plane.half_space[{index}].normal");
@@ -398,10 +403,23 @@ fn orders(
     for (index, order) in table.order.iter().enumerate() {
         let field = format!("plane.order[{index}].at_s");
         within(source, &field, order.at_s, 0.0, 1e9, "seconds")?;
-        if order.goal > 3 {
+        if order.goal >= checks::goals(table.guidance) {
             let field = format!("plane.order[{index}].goal");
-            return Err(source.error(&field, "robots have goals 0 to 3", "give one of them"));
+            let name = table.guidance.name();
+            let what = format!(
+                "robots with guidance \"{name}\" have no goal {}",
+                order.goal
+            );
+            let remedy = "give one that they have, from 0, or another guidance";
+            return Err(source.error(&field, what, remedy));
         }
+        checks::place(
+            source,
+            &format!("plane.order[{index}].place_m"),
+            order.place_m,
+        )?;
+        let field = format!("plane.order[{index}].velocity_mps");
+        checks::goal_velocity(source, &field, table.guidance, order.velocity_mps)?;
         orders.push(Order {
             tick: libm::ceil(order.at_s / file.tick_s) as u32,
             index: order.goal,
@@ -414,6 +432,7 @@ fn orders(
     orders.sort_by_key(|order| order.tick);
     Ok(orders)
 }
+
 fn check_count(source: &Source<'_>, field: &str, count: u32) -> Result<(), ScenarioError> {
     if (1..=MAX_ROBOTS).contains(&count) {
         return Ok(());

@@ -4,7 +4,7 @@ use super::super::source::Source;
 use super::super::{Robot, ScenarioError};
 use super::check_count as count;
 use super::table::{CloudEntry, Place, PlaneRobots, PlaneTable};
-use super::within;
+use super::{checks, within};
 use crate::terrain::Terrain;
 use staya_controller::grid::Cell;
 use staya_controller::rand::Rng;
@@ -63,14 +63,16 @@ pub(super) fn placed(
         velocity_mps: [0.0; 3],
     };
     let starts = match (&robots.list, &robots.circle, &robots.cloud) {
-        (Some(list), None, None) => list
-            .iter()
-            .map(|entry| Start {
-                position_m: entry.start_m.0,
-                velocity_mps: entry.velocity_mps.0,
-                places: entry.goal_m.into_iter().map(fixed).collect(),
-            })
-            .collect(),
+        (Some(list), None, None) => {
+            checks::list(source, table.guidance, list)?;
+            list.iter()
+                .map(|entry| Start {
+                    position_m: entry.start_m.0,
+                    velocity_mps: entry.velocity_mps.0,
+                    places: entry.goal_m.into_iter().map(fixed).collect(),
+                })
+                .collect()
+        }
         (None, Some(circle), None) => {
             count(source, "plane.robots.circle.count", circle.count)?;
             let field = "plane.robots.circle.radius_m";
@@ -81,6 +83,7 @@ pub(super) fn placed(
         }
         (None, None, Some(cloud)) => {
             count(source, "plane.robots.cloud.count", cloud.count)?;
+            checks::cloud(source, table.guidance, cloud)?;
             cloud_starts(cloud, table.radius_m, seed).ok_or_else(|| {
                 source.error(
                     "plane.robots.cloud",

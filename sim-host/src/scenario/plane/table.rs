@@ -82,6 +82,19 @@ pub enum GuidanceName {
 }
 
 impl GuidanceName {
+    /// As it stands in the file.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Waypoint => "waypoint",
+            Self::Lattice => "lattice",
+            Self::GoalFlock => "goal_flock",
+            Self::Boids => "boids",
+            Self::Route => "route",
+            Self::Formation => "formation",
+        }
+    }
+
     /// Whether it goes from cell to cell.
     #[must_use]
     pub const fn is_on_grid(self) -> bool {
@@ -262,6 +275,30 @@ pub struct OrcaTable {
     pub doubt_mps: Option<f64>,
     /// How much it grows at most, metres. Default: the radius.
     pub doubt_m: Option<f64>,
+}
+
+impl OrcaTable {
+    /// Whether it says nothing.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        let Self {
+            horizon_s,
+            wall_horizon_s,
+            share,
+            margin_m,
+            doubt_mps,
+            doubt_m,
+        } = self;
+        let fields = [
+            horizon_s,
+            wall_horizon_s,
+            share,
+            margin_m,
+            doubt_mps,
+            doubt_m,
+        ];
+        fields.iter().all(|field| field.is_none())
+    }
 }
 
 /// `[plane.push_out]` (PAV).

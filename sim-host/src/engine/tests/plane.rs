@@ -1,0 +1,160 @@
+//! Runs in the plane.
+
+use super::*;
+use crate::scenario::{Order, Target};
+use staya_controller::agent::AgentConfig;
+use staya_controller::wire::{Message, decode, frames};
+
+/// Robots of 0.2 m that go 1 m/s and decide ten times a second.
+fn in_plane(plane: &str, rest: &str) -> Scenario {
+    let text = format!(
+        "name = \"t\"\nticks = 300\ntick_s = 0.1\n{rest}\n[plane]\nradius_m = 0.2\nmax_speed_mps = 1\n{plane}\n"
+    );
+    let scenario = Scenario::parse(&text, Path::new("t.toml"), &Overrides::default());
+    scenario.unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+/// What came of it, and where each robot was after each tick.
+fn tracks(scenario: &Scenario) -> (Outcome, Vec<Vec<RobotRow>>) {
+    let mut rows = Vec::new();
+    let outcome = simulate(scenario, |_, robots| {
+        rows.push(robots.collect());
+        ControlFlow::Continue(())
+    });
+    (outcome.expect("robots in the plane are placed"), rows)
+}
+
+#[test]
+fn neither_a_run_in_the_plane_nor_its_hash_depends_on_the_number_of_threads() {
+    let robots = "[plane.robots.cloud]\ncount = 200\nfrom_m = [0, 0]\nto_m = [20, 20]\ngoals_m = [[10, 10]]\n";
+    let mut scenario = in_plane(robots, LOSSY);
+    scenario.ticks = 30;
+    let (one, rows) = trace(&scenario, 1);
+    assert!(one.packets.rejected > 0 && one.packets.lost > 0);
+    for threads in [2, 8] {
+        let (other, other_rows) = trace(&scenario, threads);
+        assert_eq!(other, one, "{threads} threads");
+        let places =
+            |rows: &[RobotRow]| rows.iter().map(|r| r.motion.position_m).collect::<Vec<_>>();
+        assert_eq!(places(&other_rows), places(&rows));
+    }
+    scenario.seed += 1;
+    assert_ne!(trace(&scenario, 1).0.trace_hash, one.trace_hash);
+}
+
+#[test]
+fn a_robot_that_is_down_stands_and_others_go_around_it() {
+    let robots = "[plane.robots]\nlist = [{ start_m = [-2, 0], goal_m = [3, 0] }, { start_m = [0, 0.05], goal_m = [0, 0.05] }]\n\
+                  [[fault]]\nrobot = 2\nat_s = 1\ndown_s = 99\n";
+    let (outcome, rows) = tracks(&in_plane(robots, ""));
+    let clearance = outcome.clearance.expect("bodies have sizes");
+    assert!(clearance.bodies_m > 0.0, "{clearance:?}");
+    assert_eq!((outcome.collisions, outcome.arrived), (0, 1));
+    let down = &rows[11..];
+    for robots in down {
+        assert_eq!(robots[1].mode, Mode::Fault);
+        assert_eq!(robots[1].motion.position_m, down[0][1].motion.position_m);
+    }
+    let last = rows.last().expect("rows")[0].motion.position_m;
+    assert!((last[0] - 3.0).abs() < 0.03, "{last:?}");
+}
+
+#[test]
+fn a_restarted_robot_finds_its_moving_place_where_it_is_by_now() {
+    let robots = "[plane.robots.cloud]\ncount = 1\nfrom_m = [0, 0]\nto_m = [0, 0]\ngoals_m = [[1, 0]]\n\
+                  goal_velocity_mps = [0.2, 0]\n[[fault]]\nrobot = 1\nat_s = 1\ndown_s = 6\n";
+    let mut scenario = in_plane(robots, "");
+    scenario.ticks = 200;
+    // It arrives, and the run ends: then it is where the place is then.
+    let (outcome, rows) = tracks(&scenario);
+    let last = rows.last().expect("rows")[0].motion.position_m;
+    let wanted = 1.0 + 0.2 * f64::from(outcome.ticks) * 0.1;
+    assert!(outcome.ticks > 70, "it was down until then");
+    assert!((last[0] - wanted).abs() < 0.03, "{last:?} {wanted}");
+}
+
+#[test]
+fn orders_arrive_and_who_was_down_is_told_of_them() {
+    for fault in ["", "[[fault]]\nrobot = 1\nat_s = 1\ndown_s = 3\n"] {
+        let robots = format!(
+            "[plane.robots]\nlist = [{{ start_m = [0, 0], goal_m = [9, 0] }}]\n\
+             [[plane.order]]\nat_s = 2\nplace_m = [1, -3]\n{fault}"
+        );
+        let (outcome, rows) = tracks(&in_plane(&robots, ""));
+        assert_eq!(outcome.arrived, 1);
+        let [x, y, _] = rows.last().expect("rows")[0].motion.position_m;
+        assert!((x - 1.0).abs() < 0.03 && (y + 3.0).abs() < 0.03, "{x} {y}");
+        if fault.is_empty() {
+            let before = rows[20][0].motion.position_m;
+            assert!((before[0] - 2.0).abs() < 1e-3, "{before:?}");
+        }
+    }
+}
+
+#[test]
+fn versions_of_orders_count_up_for_each_goal_by_itself() {
+    let order = |number: u32| Order {
+        tick: number / 2,
+        index: u8::from(number % 150 == 0),
+        target: Target {
+            position_m: [f64::from(number), 0.0, 0.0],
+            velocity_mps: [0.0; 3],
+        },
+    };
+    let orders: Vec<_> = (0..70_000).map(order).collect();
+    let sent = crate::engine::plane::frames(&orders);
+    assert_eq!(sent.len(), 35_000);
+    let mut last = [0_u8; 2];
+    for (_, bytes) in &sent {
+        assert_eq!(frames(bytes).count(), 2);
+        for frame in frames(bytes) {
+            let Message::Place(place) = decode(frame).expect("a sound frame").message else {
+                panic!("a place")
+            };
+            let version = &mut last[usize::from(place.index)];
+            *version = version.wrapping_add(1);
+            assert_eq!(place.version, *version);
+        }
+    }
+}
+
+#[test]
+fn robots_know_how_old_news_is() {
+    let robots = "[plane.robots]\nlist = [{ start_m = [0, 0] }]\n";
+    // Sent in a tick, heard in the first one that does not begin before the delay is over.
+    for (delay_ms, ticks) in [
+        (0.0, 1),
+        (99.9, 1),
+        (100.0, 1),
+        (100.1, 2),
+        (200.0, 2),
+        (250.0, 3),
+    ] {
+        let scenario = in_plane(robots, &format!("[radio]\ndelay_ms = {delay_ms}"));
+        let setup = scenario.plane.as_ref().expect("robots in the plane");
+        let ground = PlaneGround::new(&scenario, setup);
+        let mut config = AgentConfig::new(RobotId(1), 0, Duration::from_millis(100));
+        ground.configure(&mut config);
+        assert_eq!(
+            config.latency,
+            Duration::from_millis(100 * ticks),
+            "{delay_ms} ms"
+        );
+    }
+}
+
+#[test]
+fn rough_land_takes_longer() {
+    let ticks = |classes: u8| {
+        let robots = "sight_m = 0\nsafety = \"none\"\n[plane.robots]\nlist = [{ start_m = [1, 1], goal_m = [9, 9] }]\n";
+        let land = format!(
+            "[terrain]\ncell_m = 2\nuniform = {{ width = 6, height = 6, classes = {classes} }}\n"
+        );
+        let (outcome, _) = tracks(&in_plane(robots, &land));
+        assert_eq!(outcome.arrived, 1, "{classes} classes");
+        outcome.ticks
+    };
+    // 11.3 m at 1 m/s.
+    assert!((113..=116).contains(&ticks(1)), "{}", ticks(1));
+    assert!(ticks(3) > 150, "{}", ticks(3));
+}
