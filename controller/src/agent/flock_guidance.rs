@@ -4,7 +4,7 @@ use super::guidance::{BadInput, Guidance, Guided, Place, View};
 use crate::flock::boids::BoidsParams;
 use crate::flock::goal::{GoalParams, Goals, Stage, wish};
 use crate::flock::lattice::{LatticeParams, Reference, acceleration};
-use crate::geom::{Vec2, Vec3};
+use crate::geom::{Position, Vec2, Vec3};
 use crate::rand::Rng;
 use crate::scalar::Scalar;
 
@@ -108,6 +108,16 @@ impl<S: Scalar> GoalFlockGuidance<S> {
     pub const fn stage(&self) -> Stage {
         self.goals.stage()
     }
+
+    /// Whether it may stand: near its own goal, and kept by the others from going nearer. Who stood as soon as it was near
+    /// would be a wall around the goal to all who come later.
+    fn is_there(&self, own: Position, way_m: Option<Vec3<S>>, wish_mps: Vec3<S>) -> bool {
+        let is_drawn = matches!(self.goals.stage(), Stage::Goal(_));
+        let is_near = is_drawn && self.goals.has_arrived(own, self.arrival_m);
+        let way_m = way_m.unwrap_or_default();
+        let is_kept_off = way_m.dot(wish_mps) <= S::ZERO;
+        is_near && (is_kept_off || way_m.norm() <= self.params.min_distance_m)
+    }
 }
 
 impl<S: Scalar> Guidance<S> for GoalFlockGuidance<S> {
@@ -122,11 +132,12 @@ impl<S: Scalar> Guidance<S> for GoalFlockGuidance<S> {
         let own = view.pose.position;
         let _ = self.goals.update(own, self.arrival_m, self.seed, view.id);
         let goal = self.goals.current();
-        let is_drawn = matches!(self.goals.stage(), Stage::Goal(_));
+        let velocity_mps = wish(&self.params, &view.body, own, goal, view.nearby);
+        let way_m = goal.map(|goal| goal.since(own));
         Ok(Guided {
-            velocity_mps: wish(&self.params, &view.body, own, goal, view.nearby),
-            way_m: goal.map(|goal| goal.since(own)),
-            is_at_goal: is_drawn && self.goals.has_arrived(own, self.arrival_m),
+            velocity_mps,
+            way_m,
+            is_at_goal: self.is_there(own, way_m, velocity_mps),
             ..Guided::default()
         })
     }
