@@ -462,3 +462,46 @@ fn robots_in_the_plane_swap_places_from_end_to_end() {
         assert!(length.is_ok_and(|length| length > 0), "{}", path.display());
     }
 }
+
+#[test]
+fn experiments_with_flocks_tell_tables_json_and_leave_pictures() {
+    let (dir, out) = folder();
+    let json = |arguments: &[&str]| -> Value {
+        let output = staya(arguments).output().expect("staya starts");
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        serde_json::from_slice(&output.stdout).expect("one JSON object")
+    };
+    let small = ["--seeds", "1", "--json", "--quiet", "--out", &out];
+    let flock = "experiment flock --case free,squeeze --robots 10 --seconds 3 --safety orca";
+    let report = json(&[flock.split(' ').collect::<Vec<_>>(), small.to_vec()].concat());
+    assert_eq!(report["cases"][0]["case"], "free");
+    assert_eq!(report["cases"][1]["each"][0]["inside"], 0);
+    assert_eq!(report["pictures"].as_array().map(Vec::len), Some(10));
+    assert!(dir.path().join("out/squeeze-measures.csv").exists());
+
+    let closing = "experiment flock --closing --speeds 8";
+    let report = json(&[closing.split(' ').collect::<Vec<_>>(), small.to_vec()].concat());
+    assert_eq!(report["lines"].as_array().map(Vec::len), Some(6));
+
+    let goals = "experiment goals --k1 50 --neighborhood 40 --robots 10 --seconds 3";
+    let report = json(&[goals.split(' ').collect::<Vec<_>>(), small.to_vec()].concat());
+    assert_eq!(report["points"][0]["k1_over_k2"], 1.0);
+    assert!(dir.path().join("out/order.png").exists());
+
+    let table = staya(&[
+        "experiment",
+        "goals",
+        "--k1",
+        "5",
+        "--robots",
+        "5",
+        "--seconds",
+        "1",
+    ])
+    .args(["--out", &out, "--quiet"])
+    .output()
+    .expect("staya starts");
+    assert!(text(&table.stdout).contains("R_nbh     K1   K1/K2"));
+    let refused = refusal(&["experiment", "flock", "--spacing", "0"]);
+    assert!(refused.contains("0.1 to 50"), "{refused}");
+}

@@ -3,14 +3,18 @@
 //! [`route`]: KUZ section 5, windowed routing against the global optimum on random land. [`formation`]: KUZ section 8, six
 //! robots in formation. [`movingai`]: the queries of the Moving AI benchmark. [`crossing`]: swaps over a circle and
 //! doorways. [`boids`]: STA section 3, boids on a torus and what finding neighbours costs. [`orca`]: FVM, the template of the
-//! velocity obstacle against the exact one.
+//! velocity obstacle against the exact one. [`flock`]: OLF section VIII, the five simulations. [`goals`]: PAV, a group on
+//! its way to three goals.
 //!
 //! An experiment is a plan with a check, a function that runs it (in parallel, with the same result on any number of
 //! threads; stopped early, it keeps whole runs) and a report that can be serialised.
 
+mod arena;
 pub mod boids;
 pub mod crossing;
+pub mod flock;
 pub mod formation;
+pub mod goals;
 pub mod movingai;
 pub mod orca;
 pub mod route;

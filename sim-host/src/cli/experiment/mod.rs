@@ -1,11 +1,13 @@
-//! `staya experiment route | formation | movingai | swap | doorway | boids`: papers and benchmarks, run again.
+//! `staya experiment route | formation | movingai | swap | doorway | boids | flock | goals`: papers and benchmarks, run again.
 //!
 //! A further experiment is a module with a `clap::Args` struct and `run(&self, &Global) -> Result<Ended>`, and one
 //! line each in [`Experiment`] and [`ExperimentArgs::run`].
 
 mod boids;
 mod crossing;
+mod flock;
 mod formation;
+mod goals;
 mod movingai;
 mod params;
 mod results;
@@ -36,6 +38,10 @@ enum Experiment {
     Movingai(movingai::MovingAiArgs),
     /// Boids on a torus: three ways to find neighbours, equal flights, and what they cost (STA section 3).
     Boids(boids::BoidsArgs),
+    /// The five flocking simulations of Olfati-Saber 2006, and flocks driven at each other.
+    Flock(Box<flock::FlockArgs>),
+    /// 225 robots that go to three goals as a group, more or less (Pavlovsky and Pavlovsky).
+    Goals(Box<goals::GoalsArgs>),
 }
 
 impl ExperimentArgs {
@@ -51,6 +57,8 @@ impl ExperimentArgs {
             Experiment::Doorway(args) => args.run(global),
             Experiment::Movingai(args) => args.run(global),
             Experiment::Boids(args) => args.run(global),
+            Experiment::Flock(args) => args.run(global),
+            Experiment::Goals(args) => args.run(global),
         }
     }
 }

@@ -1,8 +1,33 @@
-//! Route parameters as options of the command line.
+//! Parameters that several experiments have, as options of the command line.
 
+use crate::scenario::SafetyName;
 use clap::{Args, ValueEnum};
 use staya_controller::cost::Gain;
 use staya_controller::route::{ExitRule, Replan, RouteParams};
+
+/// The safety layer of robots in the plane or in space, as a word.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum SafetyArg {
+    /// ORCA in the plane.
+    Orca,
+    /// ORCA in space.
+    Fly,
+    /// Push-out; for the goal flock.
+    PushOut,
+    /// Nothing.
+    None,
+}
+
+impl From<SafetyArg> for SafetyName {
+    fn from(word: SafetyArg) -> Self {
+        match word {
+            SafetyArg::Orca => Self::Orca,
+            SafetyArg::Fly => Self::Fly,
+            SafetyArg::PushOut => Self::PushOut,
+            SafetyArg::None => Self::None,
+        }
+    }
+}
 
 /// The exit rule as a word.
 #[derive(Clone, Copy, Debug, ValueEnum)]

@@ -6,12 +6,14 @@ use serde::Serialize;
 use std::fmt::{self, Write as _};
 use std::path::{Path, PathBuf};
 
-/// How an experiment on landscapes went.
+/// How an experiment went.
 #[derive(Clone, Debug)]
 pub struct Course<'a> {
-    /// Landscapes done.
+    /// What was done so many times: landscapes, runs.
+    pub unit: &'static str,
+    /// How many of them.
     pub done: usize,
-    /// Landscapes planned.
+    /// How many were planned.
     pub total: usize,
     /// Whether Ctrl-C ended it early.
     pub interrupted: bool,
@@ -63,9 +65,12 @@ impl Course<'_> {
         if done < total {
             write!(text, "stopped early, after {done} of {total}: ")?;
         }
-        writeln!(text, "{done} landscapes in {:.1} s", self.wall_seconds)?;
+        writeln!(text, "{done} {} in {:.1} s", self.unit, self.wall_seconds)?;
         let (count, out) = (self.pictures.len(), self.out.display());
-        writeln!(text, "{count} pictures in {out}")
+        if count == 0 {
+            return Ok(());
+        }
+        writeln!(text, "{count} files in {out}")
     }
 }
 
@@ -81,6 +86,7 @@ mod tests {
     #[test]
     fn an_early_end_is_told() {
         let mut course = Course {
+            unit: "landscapes",
             done: 7,
             total: 9,
             interrupted: true,
@@ -93,7 +99,7 @@ mod tests {
             course.last_word(&mut text).unwrap();
             text
         };
-        let early = "\nstopped early, after 7 of 9: 7 landscapes in 1.2 s\n1 pictures in out/x\n";
+        let early = "\nstopped early, after 7 of 9: 7 landscapes in 1.2 s\n1 files in out/x\n";
         assert_eq!(word(&course), early);
         course.done = 9;
         assert!(word(&course).starts_with("\n9 landscapes"));

@@ -176,6 +176,7 @@ impl RouteArgs {
         let report = results.report();
         let wall_seconds = begun.elapsed().as_secs_f64();
         let course = Course {
+            unit: "landscapes",
             done: results.done(),
             total: plan.total(),
             interrupted: stop.is_requested(),

@@ -1,0 +1,110 @@
+//! What the experiments with flocks give, small, as tables that any change of behaviour breaks. `cargo xtask bless golden`
+//! rewrites them.
+
+use staya_sim::experiment::flock::closing::Closing;
+use staya_sim::experiment::flock::{Case, Plan};
+use staya_sim::experiment::goals;
+use staya_sim::scenario::SafetyName;
+use staya_tests::golden;
+use std::fmt::Write as _;
+
+#[test]
+fn golden_experiment_flock() {
+    let mut text = String::new();
+    for safety in [SafetyName::None, SafetyName::Orca] {
+        let plan = Plan {
+            cases: Case::ALL.to_vec(),
+            runs: 1,
+            robots: Some(24),
+            seconds: Some(15.0),
+            safety,
+            ..Plan::default()
+        };
+        let results = plan.carry_out(|_| true).expect("a sound plan");
+        let report = results.report();
+        writeln!(text, "safety {}", report.safety).expect("memory");
+        for case in &report.cases {
+            let run = &case.each[0];
+            let end = run.end.expect("robots are somewhere");
+            let pair = run.least_pair_over_d.unwrap_or(f64::INFINITY);
+            let clear = run.least_clearance_over_d.unwrap_or(f64::INFINITY);
+            writeln!(
+                text,
+                "{:<13} alpha from {:<10} parts {:>2}  R {:8.3} m  E~ {:.5}  K~ {:.5}  pair {pair:.4} d  clear {clear:.4} d  hash {}",
+                case.case.name(),
+                format!("{:?}", run.alpha.alpha_flocking),
+                end.components,
+                end.radius_m,
+                end.deviation_energy,
+                end.velocity_mismatch,
+                run.trace_hash
+            )
+            .expect("memory");
+        }
+    }
+    golden("experiment-flock", &text);
+}
+
+#[test]
+fn golden_experiment_closing() {
+    let plan = Closing {
+        speeds: vec![2.0, 8.0],
+        runs: 2,
+        ..Closing::default()
+    };
+    let (report, _) = plan.carry_out(|_| true).expect("a sound plan");
+    let mut text = String::new();
+    for line in &report.lines {
+        writeln!(
+            text,
+            "{:<6} {:<7} {} d/s  bare {:>3} overlaps, pair {:.4} d  ORCA {:>3} overlaps, pair {:.4} d",
+            format!("{:?}", line.flock),
+            format!("{:?}", line.sides),
+            line.speed_over_d,
+            line.bare.overlaps,
+            line.bare.least_pair_over_d,
+            line.orca.overlaps,
+            line.orca.least_pair_over_d
+        )
+        .expect("memory");
+    }
+    golden("experiment-closing", &text);
+}
+
+#[test]
+fn golden_experiment_goals() {
+    let mut text = String::new();
+    for safety in [SafetyName::None, SafetyName::Orca, SafetyName::PushOut] {
+        let plan = goals::Plan {
+            k1: vec![0.0, 50.0, 150.0],
+            neighborhoods_m: vec![40.0],
+            robots: 30,
+            seconds: 150.0,
+            step_s: 0.2,
+            safety,
+            moves_goal: true,
+            ..goals::Plan::default()
+        };
+        let results = plan.carry_out(|_| true).expect("a sound plan");
+        let report = results.report();
+        writeln!(text, "safety {}", report.safety).expect("memory");
+        for point in &report.points {
+            let of = |value: Option<f64>| value.unwrap_or(f64::NAN);
+            writeln!(
+                text,
+                "K1 {:>3}  order {:.4}  together {:.4}  spread {:.4}  gathered {:.3}  arrived {:.3}  pair {:.4}  overlaps {:>4}  hash {}",
+                point.k1,
+                of(point.polarisation),
+                of(point.together),
+                of(point.spread),
+                point.gathered,
+                point.arrived,
+                of(point.least_pair_over_min_distance),
+                point.overlaps,
+                point.trace_hash
+            )
+            .expect("memory");
+        }
+    }
+    golden("experiment-goals", &text);
+}
