@@ -92,22 +92,28 @@ pub const VISITS: usize = 64;
 /// Neighbours in a template of default capacity.
 pub const TEMPLATE: usize = 8;
 
+/// Half-planes that a safety layer of default capacity reckons with: one per neighbour, and as many of obstacles.
+pub const HALF_PLANES: usize = 2 * NEIGHBORS;
+
 /// A robot for itself on the grid, with default capacities.
 pub type RouteAgent = Agent<f32, RouteGuidance<CELLS, VISITS>, NEIGHBORS>;
 /// A robot in formation on the grid, with default capacities.
 pub type FormationAgent = Agent<f32, FormationGuidance<CELLS, VISITS, TEMPLATE>, NEIGHBORS>;
+/// A robot for itself in the plane behind ORCA, with default capacities.
+pub type OrcaAgent = Agent<f32, WaypointGuidance<f32>, NEIGHBORS, OrcaSafety<f32, HALF_PLANES>>;
 
 // What a firmware pays: one agent, and one workspace for all agents of a processor. A change here is
 // news for everybody's memory map.
-const BYTES: [usize; 3] = [
+const BYTES: [usize; 4] = [
     size_of::<RouteAgent>(),
     size_of::<FormationAgent>(),
+    size_of::<OrcaAgent>(),
     size_of::<GridWorkspace<CELLS>>(),
 ];
 #[cfg(target_pointer_width = "32")]
-const _: () = assert!(matches!(BYTES, [2024, 2280, 2704]));
+const _: () = assert!(matches!(BYTES, [2032, 2288, 1632, 2704]));
 #[cfg(target_pointer_width = "64")]
-const _: () = assert!(matches!(BYTES, [2064, 2320, 2712]));
+const _: () = assert!(matches!(BYTES, [2064, 2320, 1648, 2712]));
 
 /// What does not change while the robot runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -166,9 +172,9 @@ impl<S: Scalar> AgentConfig<S> {
 
 /// The controller of one robot: guidance `G`, at most `N` known neighbours, safety layer `A`.
 ///
-/// Bytes for the default capacities on a 32-bit part: 2024 for [`RouteAgent`], 2280 for
-/// [`FormationAgent`], and 2704 of workspace that all agents of a processor share; on a 64-bit host
-/// 2064, 2320 and 2712. The build fails when one of them changes unnoticed.
+/// Bytes for the default capacities on a 32-bit part: 2032 for [`RouteAgent`], 2288 for [`FormationAgent`], 1632 for
+/// [`OrcaAgent`], and 2704 of workspace that all agents on the grid of a processor share; on a 64-bit host
+/// 2064, 2320, 1648 and 2712. The build fails when one of them changes unnoticed.
 #[derive(Clone, Debug)]
 pub struct Agent<S, G, const N: usize, A = Unguarded> {
     config: AgentConfig<S>,

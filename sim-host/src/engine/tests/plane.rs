@@ -95,7 +95,7 @@ fn orders_arrive_and_who_was_down_is_told_of_them() {
 fn versions_of_orders_count_up_for_each_goal_by_itself() {
     let order = |number: u32| Order {
         tick: number / 2,
-        index: u8::from(number % 150 == 0),
+        index: u8::from(number.is_multiple_of(150)),
         target: Target {
             position_m: [f64::from(number), 0.0, 0.0],
             velocity_mps: [0.0; 3],
