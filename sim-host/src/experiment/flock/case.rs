@@ -120,12 +120,12 @@ impl Case {
             },
             Self::Squeeze => Setting {
                 robots: 150,
-                seconds: 300.0,
+                seconds: 420.0,
                 algorithm: Algorithm::Three,
                 gains: [10.0, 200.0, 2.0],
                 moving: Some(flat(60.0, 60.0, 3.0, 0.0)),
                 fixed: Some(flat(230.0, 60.0, 6.0, 0.0)),
-                moments: [0.0, 0.08, 0.16, 0.24, 0.4, 1.0],
+                moments: [0.0, 0.06, 0.115, 0.17, 0.285, 1.0],
             },
         }
     }
