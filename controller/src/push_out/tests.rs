@@ -488,7 +488,11 @@ proptest! {
         for model in MODELS {
             let plain = answer::<f64>(model, wish, &places);
             let got = answer::<f64>(model, turn(wish), &turned);
-            prop_assert!((got - turn(plain)).norm() < 1e-6, "{:?} {:?}", model, got);
+            // Of two ways that are equally far from the wish, rounding chooses.
+            let way = |got: V, wish: V| (got - wish).norm();
+            let is_as_good = (way(got, turn(wish)) - way(plain, wish)).abs() < 1e-6;
+            let is_same = (got - turn(plain)).norm() < 1e-6;
+            prop_assert!(is_same || is_as_good, "{:?} {:?}", model, got);
             let robots: Vec<_> = (2..).zip(&places).map(|(id, place)| robot(id, *place)).collect();
             let reversed: Vec<_> = robots.iter().rev().copied().collect();
             let own = Body { max_speed_mps: 5.0, ..body() };
