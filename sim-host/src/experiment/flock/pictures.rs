@@ -105,7 +105,8 @@ impl Report {
         let unit_m = self.spacing_m / 7.0;
         let still = libm::log10(0.001 * unit_m * unit_m);
         let ends = |level: f64| [[0.0, level], [case.ticks as f64, level]];
-        let log = |value: f64| libm::log10(value.max(1e-12));
+        // Of 0 there is none, and the chart leaves it out.
+        let log = |value: f64| libm::log10(value);
         let chart = |title: &str, label: &str, value: &dyn Fn(&FlockMeasure) -> f64| {
             let mut chart = Chart::new(title, format!("iteration ({} s)", self.step_s), label)
                 .size(560.0, 300.0);

@@ -9,6 +9,9 @@
 //! **Group order as numbers**, all over the way to the middle (until half of the robots were there): polarisation (length of the
 //! mean direction), the share of robots in the largest group (linked within two R_MinDist), and the crowd's radius (root mean
 //! square) over that of its start. A robot has gathered once it was within [`Plan::arrival_m`] of the middle.
+//!
+//! **What they show.** Order falls where K2 outweighs K1 and a small R_nbh lets the crowd break up. That the group is lost
+//! where K1 is far above K2, as the paper says, they hardly show: who has one goal in common goes one way.
 
 mod pictures;
 mod report;
