@@ -5,6 +5,7 @@
 //! their weights up (KUZ section 7, "it is simplest to add them").
 
 use crate::grid::{Dir, UNIT};
+use serde::{Deserialize, Serialize};
 
 /// A cost in units of 1/[`TICK`] tick; [`EXCLUDED`] when there is no way.
 pub type Cost = u32;
@@ -16,7 +17,7 @@ pub const TICK: Cost = UNIT << Gain::FRACTION_BITS;
 pub const EXCLUDED: Cost = Cost::MAX;
 
 /// A non-negative coefficient with four fractional bits: 0, 1/16, ... 4095 15/16.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Gain(u16);
 

@@ -1,10 +1,11 @@
 //! Vectors in the plane and in space. Degenerate geometry is a value, never a NaN in disguise.
 
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, cast};
 use core::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
+use serde::{Deserialize, Serialize};
 
 /// A vector in the plane.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Vec2<S> {
     /// East.
     pub x: S,
@@ -13,7 +14,7 @@ pub struct Vec2<S> {
 }
 
 /// A vector in space.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Vec3<S> {
     /// East.
     pub x: S,
@@ -160,6 +161,15 @@ impl<S: Scalar> From<Vec3<S>> for Vec2<S> {
 }
 
 impl<S: Scalar> Vec2<S> {
+    /// The same in another kind of number.
+    #[must_use]
+    pub fn cast<T: Scalar>(&self) -> Vec2<T> {
+        Vec2 {
+            x: cast(self.x),
+            y: cast(self.y),
+        }
+    }
+
     /// Determinant of the columns `self`, `other`: positive when `other` points to the left.
     #[must_use]
     pub fn det(self, other: Self) -> S {
@@ -186,6 +196,16 @@ impl<S: Scalar> Vec2<S> {
 }
 
 impl<S: Scalar> Vec3<S> {
+    /// The same in another kind of number.
+    #[must_use]
+    pub fn cast<T: Scalar>(&self) -> Vec3<T> {
+        Vec3 {
+            x: cast(self.x),
+            y: cast(self.y),
+            z: cast(self.z),
+        }
+    }
+
     /// Vector product.
     #[must_use]
     pub fn cross(self, other: Self) -> Self {
@@ -207,7 +227,7 @@ impl<S: Scalar> Vec3<S> {
 ///
 /// Integers, because a float of 32 bits knows a place 1000 km from the origin to 6 cm only, and fixed
 /// point ends at 32 km. Everything else is computed from differences, which are small.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Position {
     /// East, north, up; millimetres.
     pub mm: [i32; 3],

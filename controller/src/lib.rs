@@ -33,6 +33,7 @@ extern crate std;
 pub mod agent;
 pub mod body;
 pub mod cost;
+pub mod digest;
 pub mod flock;
 pub mod formation;
 pub mod geom;

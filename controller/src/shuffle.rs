@@ -19,9 +19,10 @@ use crate::rand::Rng;
 use crate::scalar::integer::log2_q32;
 use core::num::NonZeroU64;
 use heapless::Vec;
+use serde::{Deserialize, Serialize};
 
 /// How strictly the order follows the weights.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Sharpness {
     /// Cheapest first, equals in the order of [`Dir::MOVES`]: no randomness. Two robots in each

@@ -1,9 +1,10 @@
 //! The mode of a robot as one pure function of its mode and its situation. Read [`next_mode`] first.
 
 use crate::wire::Mode;
+use serde::Serialize;
 
 /// What the next mode depends on.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Situation {
     /// An input that the guidance needs is missing or wrong.
     pub has_fault: bool,

@@ -17,9 +17,10 @@ use crate::orca::{self, HalfPlane, HalfPlanes};
 use crate::rand::Rng;
 use crate::scalar::Scalar;
 use crate::wire::{RobotId, TemplateAssignment};
+use serde::{Deserialize, Serialize};
 
-/// Any guidance for robots in the plane or in space.
-#[derive(Clone, Debug)]
+/// Any guidance, on the grid, in the plane or in space.
+#[derive(Clone, Debug, Serialize)]
 #[expect(missing_docs, reason = "each variant's type says it")]
 pub enum AnyGuidance<S, const CELLS: usize, const M: usize, const F: usize> {
     Waypoint(WaypointGuidance<S>),
@@ -28,6 +29,8 @@ pub enum AnyGuidance<S, const CELLS: usize, const M: usize, const F: usize> {
     Boids(BoidsGuidance<S>),
     Route(InPlane<S, RouteGuidance<CELLS, M>>),
     Formation(InPlane<S, FormationGuidance<CELLS, M, F>>),
+    RouteOnGrid(RouteGuidance<CELLS, M>),
+    FormationOnGrid(FormationGuidance<CELLS, M, F>),
 }
 
 /// Does the same with whatever is inside.
@@ -40,6 +43,8 @@ macro_rules! each {
             AnyGuidance::Boids($inside) => $action,
             AnyGuidance::Route($inside) => $action,
             AnyGuidance::Formation($inside) => $action,
+            AnyGuidance::RouteOnGrid($inside) => $action,
+            AnyGuidance::FormationOnGrid($inside) => $action,
         }
     };
 }
@@ -62,6 +67,8 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
             Self::Boids(guidance) => guidance.decide(view, rng, &mut ()),
             Self::Route(guidance) => guidance.decide(view, rng, workspace),
             Self::Formation(guidance) => guidance.decide(view, rng, workspace),
+            Self::RouteOnGrid(guidance) => guidance.decide(view, rng, workspace),
+            Self::FormationOnGrid(guidance) => guidance.decide(view, rng, workspace),
         }
     }
 
@@ -91,7 +98,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
 }
 
 /// Any source of half-planes: the formula, or a template of some size.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "each variant's type says it")]
 pub enum AnyHalfPlanes {
     #[default]
@@ -121,7 +128,7 @@ impl<S: Scalar> HalfPlanes<S> for AnyHalfPlanes {
 }
 
 /// Any safety layer; at most `K` half-planes count.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 #[expect(missing_docs, reason = "each variant's type says it")]
 pub enum AnySafety<S, const K: usize> {
     Unguarded(Unguarded),

@@ -7,12 +7,13 @@ use crate::flock::lattice::{LatticeParams, Reference, acceleration};
 use crate::geom::{Position, Vec2, Vec3};
 use crate::rand::Rng;
 use crate::scalar::Scalar;
+use serde::Serialize;
 
 /// Goals that a robot of a goal flock has room for.
 pub const GOALS: usize = 4;
 
 /// The alpha flock (OLF): robots at equal distances that follow a reference, if they are given one as place 0.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct LatticeGuidance<S> {
     params: LatticeParams<S>,
     place: Option<Place<S>>,
@@ -83,7 +84,7 @@ impl<S: Scalar> Guidance<S> for LatticeGuidance<S> {
 
 /// The goal flock (PAV): to the middle of the goals together, there each robot draws one of them. Goals stay where they are until
 /// they are given anew: the velocity of a [`Place`] counts for nothing here.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct GoalFlockGuidance<S> {
     params: GoalParams<S>,
     arrival_m: S,
@@ -155,7 +156,7 @@ impl<S: Scalar> Guidance<S> for GoalFlockGuidance<S> {
 
 /// Boids (STA): even speed, headings that follow the neighbours'. In the open plane; what the torus of the paper
 /// adds is the world's matter.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct BoidsGuidance<S> {
     params: BoidsParams<S>,
     speed_mps: S,

@@ -20,6 +20,7 @@ use crate::time::Duration;
 use crate::wire::{Mode, RequestKind, RobotId, TemplateAssembler, TemplateAssignment};
 use core::iter::successors;
 use heapless::Vec;
+use serde::Serialize;
 
 /// Moves that a robot of a formation tries: its best and the next best. One that is crowded out of
 /// both waits; trying all eight it would run away from its place.
@@ -30,7 +31,7 @@ const MAX_FORESIGHT: i16 = 3;
 /// Guidance in formation; remembers visits of `M` cells and a template of `F` neighbours.
 ///
 /// Without a template the robot travels alone.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct FormationGuidance<const CELLS: usize, const M: usize, const F: usize> {
     route: RouteParams,
     formation: FormationParams,

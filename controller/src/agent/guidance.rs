@@ -11,6 +11,7 @@ use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 use crate::wire::{RequestKind, RobotId, TemplateAssignment};
 use heapless::Vec;
+use serde::{Deserialize, Serialize};
 
 /// What a guidance may know at a decision.
 #[derive(Clone, Copy, Debug)]
@@ -56,7 +57,7 @@ impl<'a, S> View<'a, S> {
 const LONG: Duration = Duration::from_millis(600_000);
 
 /// A place to go to, which may move.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Place<S> {
     /// Where it was.
     pub position: Position,
@@ -67,6 +68,16 @@ pub struct Place<S> {
 }
 
 impl<S: Scalar> Place<S> {
+    /// The same in another kind of number.
+    #[must_use]
+    pub fn cast<T: Scalar>(&self) -> Place<T> {
+        Place {
+            position: self.position,
+            velocity_mps: self.velocity_mps.cast(),
+            at: self.at,
+        }
+    }
+
     /// A place that stays where it is.
     #[must_use]
     pub const fn fixed(position: Position) -> Self {
@@ -93,7 +104,7 @@ impl<S: Scalar> Place<S> {
 }
 
 /// A request that the guidance wants made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Ask {
     /// To whom.
     pub to: RobotId,
@@ -102,7 +113,7 @@ pub struct Ask {
 }
 
 /// What a guidance decided.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[must_use]
 pub struct Guided<S> {
     /// The moves to try, best first; what the robot does with them is the supervisor's matter.

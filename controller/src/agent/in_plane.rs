@@ -7,20 +7,21 @@ use crate::rand::Rng;
 use crate::scalar::Scalar;
 use crate::time::Instant;
 use crate::wire::TemplateAssignment;
+use serde::Serialize;
 
 /// Goes towards the centre of the cell that a guidance on the grid would move to.
 ///
 /// The guidance decides anew when the robot has come into another cell, and otherwise as often as it would on the grid:
 /// once in the time that the robot needs to cross a cell of its land at cruising speed. It sees other robots by their
 /// cells as ever; that they may share a cell now is the safety layer's business.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct InPlane<S, G> {
     guidance: G,
     speed_mps: S,
     last: Option<Decision<S>>,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 struct Decision<S> {
     cell: Cell,
     at: Instant,

@@ -12,6 +12,7 @@ use crate::wire::{
     Retry, RobotId, SequenceWindow, TemplateAssignment, decode, encode,
 };
 use heapless::Vec;
+use serde::Serialize;
 
 /// Requests to others on their way at a time.
 const PENDING: usize = 4;
@@ -48,7 +49,7 @@ pub(super) enum News<S> {
 }
 
 /// What the link keeps between steps.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub(super) struct Link<S, const N: usize> {
     header: Header,
     pub(super) table: NeighborTable<S, N>,

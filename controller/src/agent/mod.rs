@@ -48,6 +48,7 @@ mod orca_safety;
 mod other_safety;
 mod route_guidance;
 mod safety;
+mod setup;
 mod travel;
 mod waypoint_guidance;
 
@@ -66,19 +67,24 @@ pub use orca_safety::OrcaSafety;
 pub use other_safety::{FlySafety, PushOutSafety};
 pub use route_guidance::{GridWorkspace, RouteGuidance};
 pub use safety::{Safety, Sight, Unguarded};
+pub use setup::{
+    AnyAgent, BoidsSetup, GuidanceSetup, PLACES, RouteSetup, SafetySetup, Setup, Task,
+};
 pub use waypoint_guidance::WaypointGuidance;
 
 use crate::body::Body;
+use crate::digest::digest;
 use crate::geom::Vec3;
 use crate::grid::{Cell, Dir};
 use crate::neighbor::{Ages, Knowledge, Nearby, Neighbor, nearest};
 use crate::rand::Rng;
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, cast};
 use crate::supervisor::{Situation, moves, next_mode};
 use crate::time::{Duration, Instant};
 use crate::wire::{Beacon, Mode, Retry, RobotId, frames};
 use heapless::Vec;
 use link::{Link, Listener, News, report};
+use serde::{Deserialize, Serialize};
 
 /// Keeps the agent's draws apart from other uses of randomness.
 const PURPOSE: u32 = u32::from_be_bytes(*b"step");
@@ -116,7 +122,7 @@ const _: () = assert!(matches!(BYTES, [2032, 2288, 1632, 2704]));
 const _: () = assert!(matches!(BYTES, [2064, 2320, 1648, 2712]));
 
 /// What does not change while the robot runs.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AgentConfig<S> {
     /// Own number, 1 or more.
     pub id: RobotId,
@@ -144,6 +150,24 @@ pub struct AgentConfig<S> {
 }
 
 impl<S: Scalar> AgentConfig<S> {
+    /// The same in another kind of number.
+    #[must_use]
+    pub fn cast<T: Scalar>(&self) -> AgentConfig<T> {
+        AgentConfig {
+            id: self.id,
+            seed: self.seed,
+            boot: self.boot,
+            tick: self.tick,
+            beacon_period: self.beacon_period,
+            radius_m: cast(self.radius_m),
+            max_acceleration_mps2: cast(self.max_acceleration_mps2),
+            latency: self.latency,
+            ages: self.ages,
+            retry: self.retry,
+            stop_valid: self.stop_valid,
+        }
+    }
+
     /// A beacon each tick, news stale after 4 and forgotten after 30 ticks, requests resent every
     /// 3 ticks, stops for 12 ticks, a radius of 0, no inertia, no latency.
     #[must_use]
@@ -175,7 +199,7 @@ impl<S: Scalar> AgentConfig<S> {
 /// Bytes for the default capacities on a 32-bit part: 2032 for [`RouteAgent`], 2288 for [`FormationAgent`], 1632 for
 /// [`OrcaAgent`], and 2704 of workspace that all agents on the grid of a processor share; on a 64-bit host
 /// 2064, 2320, 1648 and 2712. The build fails when one of them changes unnoticed.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Agent<S, G, const N: usize, A = Unguarded> {
     config: AgentConfig<S>,
     guidance: G,
@@ -190,7 +214,7 @@ pub struct Agent<S, G, const N: usize, A = Unguarded> {
 }
 
 /// Where to go.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize)]
 enum Goal {
     /// This robot, wherever its place in a formation is.
     Own(Cell),
@@ -199,7 +223,7 @@ enum Goal {
 }
 
 /// What stays of a decision.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize)]
 struct Last {
     situation: Situation,
     target: Cell,
@@ -256,6 +280,32 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>> Agent<S, G, N, A> 
     /// it has.
     pub fn assign_place(&mut self, index: u8, place: &Place<S>) -> bool {
         self.guidance.assign_place(index, place)
+    }
+
+    /// Gives the robot what it has to do; whether its guidance has a use for all of it.
+    pub fn assign(&mut self, task: &Task) -> bool {
+        match task {
+            Task::Cell(goal) => {
+                self.assign_goal(*goal);
+                true
+            }
+            Task::Places(places) => {
+                let assigned = |(index, place): &(u8, Place<f32>)| -> bool {
+                    self.assign_place(*index, &place.cast())
+                };
+                places.iter().map(assigned).fold(true, |all, one| all & one)
+            }
+        }
+    }
+
+    /// A fingerprint of the whole state: two agents with equal ones have the same future. The same on every target and in
+    /// every build for the same history. O(bytes of the state).
+    #[must_use]
+    pub fn digest(&self) -> u64
+    where
+        Self: Serialize,
+    {
+        digest(self)
     }
 
     /// What the robot is doing.

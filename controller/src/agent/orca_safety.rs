@@ -6,9 +6,10 @@ use crate::neighbor::Doubt;
 use crate::orca::{AvoidParams, Avoider, HalfPlanes};
 use crate::rand::Rng;
 use crate::scalar::Scalar;
+use serde::Serialize;
 
 /// [`Avoider`] in the plane; heights are left alone.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct OrcaSafety<S, const K: usize, P = crate::orca::Analytic> {
     avoider: Avoider<S, K, P>,
     doubt: Doubt<S>,

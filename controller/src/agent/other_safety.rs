@@ -7,9 +7,10 @@ use crate::orca::{FlyParams, fly};
 use crate::push_out::{PushOutParams, push_out};
 use crate::rand::Rng;
 use crate::scalar::Scalar;
+use serde::Serialize;
 
 /// ORCA in space: [`fly`] with at most `K` half-spaces.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct FlySafety<S, const K: usize> {
     params: FlyParams<S>,
     doubt: Doubt<S>,
@@ -41,7 +42,7 @@ impl<S: Scalar, const K: usize> Safety<S> for FlySafety<S, K> {
 }
 
 /// Push-out (PAV): steps that lead too near are put right, but only against where others are now.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct PushOutSafety<S> {
     params: PushOutParams<S>,
 }

@@ -9,6 +9,7 @@ use crate::scalar::Scalar;
 use crate::shuffle::Sharpness;
 use crate::wire::RobotId;
 use heapless::Vec;
+use serde::Serialize;
 
 /// Scratch memory of the guidances on the grid; `CELLS` as for [`CostField`].
 #[derive(Clone, Debug)]
@@ -37,7 +38,7 @@ impl<const CELLS: usize> GridWorkspace<CELLS> {
 }
 
 /// Windowed routing to the own goal; remembers visits of `M` cells.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct RouteGuidance<const CELLS: usize, const M: usize> {
     params: RouteParams,
     replan: Replan,

@@ -6,6 +6,7 @@ use crate::neighbor::{Doubt, Nearby};
 use crate::obstacle::Obstacle;
 use crate::rand::Rng;
 use crate::scalar::Scalar;
+use serde::Serialize;
 
 /// What a safety layer may know.
 #[derive(Clone, Copy, Debug)]
@@ -38,7 +39,7 @@ pub trait Safety<S: Scalar> {
 }
 
 /// No safety layer: the wish is the command. For robots that move cell by cell, and to see what a layer is worth.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Unguarded;
 
 impl<S: Scalar> Safety<S> for Unguarded {

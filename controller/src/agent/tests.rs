@@ -499,3 +499,4 @@ mod in_plane;
 mod nonsense;
 mod nonsense_in_plane;
 mod plane;
+mod setup;

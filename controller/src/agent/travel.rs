@@ -8,12 +8,13 @@ use crate::rand::Rng;
 use crate::shuffle::{Sharpness, weighted_shuffle};
 use crate::wire::{RequestKind, RobotId};
 use heapless::Vec;
+use serde::Serialize;
 
 /// Decisions after which whoever stands in the way is asked to choose another direction.
 pub(super) const PATIENCE: u8 = 4;
 
 /// What a robot remembers of its last decisions.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub(super) struct Travel {
     /// Where it decided last.
     cell: Option<Cell>,

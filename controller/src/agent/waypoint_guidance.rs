@@ -4,9 +4,10 @@ use super::guidance::{BadInput, Guidance, Guided, Place, View};
 use crate::geom::Vec3;
 use crate::rand::Rng;
 use crate::scalar::Scalar;
+use serde::Serialize;
 
 /// Straight to a place, which may move; there it stays, and goes along with one that moves.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct WaypointGuidance<S> {
     place: Option<Place<S>>,
     /// How near is there, metres.

@@ -19,9 +19,10 @@ use crate::geom::{Position, Vec2};
 use crate::neighbor::{Nearby, tie};
 use crate::scalar::Scalar;
 use crate::wire::RobotId;
+use serde::Serialize;
 
 /// A largest turn, as what rotates by it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 struct Turn<S> {
     cos: S,
     sin: S,
@@ -73,7 +74,7 @@ impl<S: Scalar> Turn<S> {
 }
 
 /// Parameters of boids, made by [`BoidsParams::new`], which computes what a step would compute again and again.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct BoidsParams<S> {
     crowded: u64,
     closest: u64,

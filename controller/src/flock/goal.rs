@@ -14,13 +14,14 @@ use crate::body::Body;
 use crate::geom::{Position, Vec3};
 use crate::neighbor::{Nearby, tie};
 use crate::rand::Rng;
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, cast};
 use crate::wire::RobotId;
 use heapless::Vec;
+use serde::{Deserialize, Serialize};
 
 /// Parameters of the goal flock. Only the ratios of the three gains matter once their sum is longer than 1. Any
 /// of them may be 0, or negative: away from the goal, away from the neighbours, towards the nearest.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GoalParams<S> {
     /// Pull of the goal (K1). Far above [`Self::center_gain`]: each for itself, the group is lost.
     pub goal_gain: S,
@@ -38,6 +39,19 @@ pub struct GoalParams<S> {
 }
 
 impl<S: Scalar> GoalParams<S> {
+    /// The same in another kind of number.
+    #[must_use]
+    pub fn cast<T: Scalar>(&self) -> GoalParams<T> {
+        GoalParams {
+            goal_gain: cast(self.goal_gain),
+            center_gain: cast(self.center_gain),
+            repulsion_gain: cast(self.repulsion_gain),
+            neighborhood_m: cast(self.neighborhood_m),
+            min_distance_m: cast(self.min_distance_m),
+            speed_mps: cast(self.speed_mps),
+        }
+    }
+
     /// The paper's ratio R_nbh = 4 R_MinDist, and gains of 1, 1/2 and 1.
     #[must_use]
     pub fn new(min_distance_m: S, speed_mps: S) -> Self {
@@ -140,7 +154,7 @@ fn repulsion<S: Scalar>(params: &GoalParams<S>, distance_m: S) -> S {
 }
 
 /// Where a robot with goals is on its way.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub enum Stage {
     /// To the middle of all goals.
     #[default]
@@ -155,7 +169,7 @@ pub enum Stage {
 pub struct Full;
 
 /// Up to `N` goals of a robot: first it goes to the middle of all; there it draws one of them (eq. 3).
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Goals<const N: usize> {
     places: Vec<Position, N>,
     stage: Stage,

@@ -28,10 +28,11 @@ use crate::body::Body;
 use crate::geom::Vec3;
 use crate::neighbor::{Nearby, tie};
 use crate::obstacle::Obstacle;
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, cast};
+use serde::{Deserialize, Serialize};
 
 /// Which terms act.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Algorithm {
     /// Only the others: the group breaks up unless it starts as one.
     One,
@@ -43,7 +44,7 @@ pub enum Algorithm {
 }
 
 /// The two gains of one kind of agent.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Gain<S> {
     /// On positions (c1), 1/s^2 in the paper's units; at least 0.
     pub position: S,
@@ -52,6 +53,15 @@ pub struct Gain<S> {
 }
 
 impl<S: Scalar> Gain<S> {
+    /// The same in another kind of number.
+    #[must_use]
+    pub fn cast<T: Scalar>(&self) -> Gain<T> {
+        Gain {
+            position: cast(self.position),
+            velocity: cast(self.velocity),
+        }
+    }
+
     /// 1 and 1: algorithm 1 as it stands in the paper.
     #[must_use]
     pub fn one() -> Self {
@@ -77,7 +87,7 @@ impl<S: Scalar> Gain<S> {
 }
 
 /// Parameters of the alpha flock.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LatticeParams<S> {
     /// Which terms act.
     pub algorithm: Algorithm,
@@ -107,6 +117,22 @@ pub struct LatticeParams<S> {
 }
 
 impl<S: Scalar> LatticeParams<S> {
+    /// The same in another kind of number.
+    #[must_use]
+    pub fn cast<T: Scalar>(&self) -> LatticeParams<T> {
+        LatticeParams {
+            algorithm: self.algorithm,
+            spacing_m: cast(self.spacing_m),
+            range_ratio: cast(self.range_ratio),
+            obstacle_ratio: cast(self.obstacle_ratio),
+            attraction: cast(self.attraction),
+            repulsion: cast(self.repulsion),
+            alpha: self.alpha.cast(),
+            beta: self.beta.cast(),
+            gamma: self.gamma.cast(),
+        }
+    }
+
     /// Algorithm 3 with the paper's ratios and gains of 10, 200 and 2 on positions, with critical damping: with these, 150
     /// robots pass the paper's two obstacle courses unharmed.
     #[must_use]

@@ -42,9 +42,10 @@ pub use template::{TemplateError, rotated};
 pub use crate::wire::Template;
 
 use crate::cost::Gain;
+use serde::{Deserialize, Serialize};
 
 /// How a robot foresees where another one will be when its own next move is over.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Prediction {
     /// It goes on in the direction that it announced, as fast as the land allows: O(1).
@@ -58,7 +59,7 @@ pub enum Prediction {
 }
 
 /// What the top leader does while somebody is too far behind.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Recovery {
     /// It stands: nobody loses more time than the slowest needs.
@@ -69,7 +70,7 @@ pub enum Recovery {
 }
 
 /// Parameters of formation keeping.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FormationParams {
     /// How far from its place a neighbour may be and still counts as found, cells (eps of
     /// algorithm 5). Small values lose sight of who strays, so that nobody waits for him.

@@ -4,6 +4,7 @@ use super::{FormationParams, Member};
 use crate::cost::{Cost, EXCLUDED, Weights};
 use crate::grid::{BLOCKED, Cell, DIAGONAL, Dir, Norm, UNIT, Window};
 use crate::wire::TemplateEntry;
+use serde::Serialize;
 
 /// Somebody beside whom one has a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -125,7 +126,7 @@ pub fn def(cell: Cell, members: &[Member]) -> Dir {
 }
 
 /// Whether the top leader waits: hysteresis around r0 (KUZ algorithm 2).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Pace {
     waits: bool,
 }

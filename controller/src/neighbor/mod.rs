@@ -11,6 +11,7 @@ use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 use crate::wire::{Beacon, CompactBeacon, Mode, RobotId};
 use heapless::Vec;
+use serde::{Deserialize, Serialize};
 
 mod nearby;
 #[cfg(test)]
@@ -21,7 +22,7 @@ pub use nearby::{Doubt, Nearby, nearest};
 pub use tie::tie;
 
 /// One robot as last heard.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Neighbor<S> {
     /// Who it is.
     pub id: RobotId,
@@ -115,7 +116,7 @@ pub(crate) fn vec3_from_milli<S: Scalar>(milli: [i32; 3]) -> Vec3<S> {
 }
 
 /// How old news may be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Ages {
     /// Older than this is [`Knowledge::Stale`]: a few beacon periods. Too short: a lossy radio makes
     /// everybody stale; too long: robots trust positions that are no longer true.
@@ -173,7 +174,7 @@ pub enum Put {
 /// The known robots, at most `N`, sorted by id.
 ///
 /// Bytes: `N` times those of [`Neighbor`] (56 for `f32` and fixed point) and 12 more.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct NeighborTable<S, const N: usize> {
     entries: Vec<Neighbor<S>, N, u16>,
     ages: Ages,

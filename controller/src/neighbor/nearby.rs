@@ -2,10 +2,11 @@
 
 use super::{Ages, Neighbor, sink_last};
 use crate::geom::{Position, Vec3};
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, cast};
 use crate::time::{Duration, Instant};
 use crate::wire::{Mode, RobotId};
 use heapless::Vec;
+use serde::{Deserialize, Serialize};
 
 /// A robot near by, as it should be right now.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,12 +24,23 @@ pub struct Nearby<S> {
 }
 
 /// How doubt about a silent robot grows.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Doubt<S> {
     /// Speed at which a stale neighbour's ball grows, m/s: how fast it might have gone since. 0: never.
     pub growth_mps: S,
     /// How much the ball grows at most, metres.
     pub most_m: S,
+}
+
+impl<S: Scalar> Doubt<S> {
+    /// The same in another kind of number.
+    #[must_use]
+    pub fn cast<T: Scalar>(&self) -> Doubt<T> {
+        Doubt {
+            growth_mps: cast(self.growth_mps),
+            most_m: cast(self.most_m),
+        }
+    }
 }
 
 /// The `K` robots nearest to `own` at `now` (all when fewer), nearest first, ties by number; an

@@ -12,8 +12,9 @@ use crate::geom::Vec2;
 use crate::neighbor::Nearby;
 use crate::obstacle::Obstacle;
 use crate::rand::Rng;
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, cast};
 use heapless::Vec;
+use serde::{Deserialize, Serialize};
 
 #[cfg(test)]
 mod simulation;
@@ -32,7 +33,7 @@ pub trait HalfPlanes<S: Scalar> {
 }
 
 /// Half-planes by [`half_plane`], exact.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Analytic;
 
 impl<S: Scalar> HalfPlanes<S> for Analytic {
@@ -47,7 +48,7 @@ impl<S: Scalar> HalfPlanes<S> for Analytic {
 }
 
 /// Parameters of an [`Avoider`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AvoidParams<S> {
     /// Time ahead for which no collision with a robot may happen, seconds; more than 0, usually 1 to 5. Longer gives
     /// way earlier and slows everybody in a crowd. Shorter than the time that the body needs to
@@ -80,11 +81,25 @@ impl<S: Scalar> Default for AvoidParams<S> {
     }
 }
 
+impl<S: Scalar> AvoidParams<S> {
+    /// The same in another kind of number.
+    #[must_use]
+    pub fn cast<T: Scalar>(&self) -> AvoidParams<T> {
+        AvoidParams {
+            horizon_s: cast(self.horizon_s),
+            wall_horizon_s: cast(self.wall_horizon_s),
+            share: cast(self.share),
+            margin_m: cast(self.margin_m),
+            escape: self.escape.cast(),
+        }
+    }
+}
+
 /// Collision avoidance of one robot; at most `K` half-planes count.
 ///
 /// Bytes: those of [`AvoidParams`] and the few of the rule of escape; 16 K bytes of stack (`f32`), three times that when no
 /// velocity is permitted.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Avoider<S, const K: usize, P = Analytic> {
     params: AvoidParams<S>,
     source: P,

@@ -13,10 +13,11 @@ use crate::geom::Vec2;
 use crate::neighbor::Nearby;
 use crate::obstacle::Obstacle;
 use crate::rand::Rng;
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, cast};
+use serde::{Deserialize, Serialize};
 
 /// Parameters of the rule of escape.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EscapeParams<S> {
     /// How far to the right of the wish to lean while a robot is in the way, radians; 0: never. More makes every way longer; less
     /// leaves robots on a circle in each other's way for longer (below 0.25 for ever). 0.4 to 0.6. No danger: the half-planes stay.
@@ -42,6 +43,19 @@ impl<S: Scalar> Default for EscapeParams<S> {
     }
 }
 
+impl<S: Scalar> EscapeParams<S> {
+    /// The same in another kind of number.
+    #[must_use]
+    pub fn cast<T: Scalar>(&self) -> EscapeParams<T> {
+        EscapeParams {
+            lean_rad: cast(self.lean_rad),
+            lean_within_m: cast(self.lean_within_m),
+            straight_within_m: cast(self.straight_within_m),
+            patience_s: cast(self.patience_s),
+        }
+    }
+}
+
 /// What the rule sees.
 pub(super) struct Scene<'a, S> {
     pub(super) body: &'a Body<S>,
@@ -53,7 +67,7 @@ pub(super) struct Scene<'a, S> {
 }
 
 /// State of the rule.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub(super) struct Escape<S> {
     turn: Turn<S>,
 }

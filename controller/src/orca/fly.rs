@@ -7,15 +7,16 @@ use crate::body::Body;
 use crate::geom::Vec3;
 use crate::neighbor::{Nearby, tie};
 use crate::obstacle::Obstacle;
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, cast};
 use crate::wire::RobotId;
 use heapless::Vec;
+use serde::{Deserialize, Serialize};
 
 #[cfg(test)]
 mod tests;
 
 /// Parameters of [`fly`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FlyParams<S> {
     /// Time ahead for which no collision with a robot may happen, seconds; more than 0, and more than speed / acceleration.
     pub horizon_s: S,
@@ -35,6 +36,19 @@ impl<S: Scalar> Default for FlyParams<S> {
             obstacle_horizon_s: S::ONE,
             share: S::HALF,
             margin_m: S::from_milli(3),
+        }
+    }
+}
+
+impl<S: Scalar> FlyParams<S> {
+    /// The same in another kind of number.
+    #[must_use]
+    pub fn cast<T: Scalar>(&self) -> FlyParams<T> {
+        FlyParams {
+            horizon_s: cast(self.horizon_s),
+            obstacle_horizon_s: cast(self.obstacle_horizon_s),
+            share: cast(self.share),
+            margin_m: cast(self.margin_m),
         }
     }
 }

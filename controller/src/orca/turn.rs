@@ -24,6 +24,7 @@ use super::gap::{Gap, Wanted, gap_on_way};
 use crate::geom::Vec2;
 use crate::rand::Rng;
 use crate::scalar::Scalar;
+use serde::Serialize;
 
 /// Longest passage that is shared by turns, thousandths of the own radius.
 const DEEPEST: i32 = 8_000;
@@ -42,7 +43,7 @@ const YARD: i32 = 5_000;
 const TIE_UM: i32 = 100;
 
 /// What a robot remembers of the gap before it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub(super) struct Turn<S> {
     /// Which way the last robot seen in the gap went: whether as this one wants to.
     last_went_ahead: Option<bool>,

@@ -27,11 +27,12 @@ use crate::body::Body;
 use crate::geom::Vec3;
 use crate::neighbor::Nearby;
 use crate::obstacle::Obstacle;
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, cast};
+use serde::{Deserialize, Serialize};
 use zone::{Side, Zone};
 
 /// What becomes of a step that leads too near.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Model {
     /// Model 1: it ends where the radius through it leaves the zone; straight at the centre: sideways, as
     /// long. It slides along and slows down there.
@@ -43,7 +44,7 @@ pub enum Model {
 }
 
 /// How many robots are evaded at once. Obstacles all are.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Evasion {
     /// The nearest of those in the way only: the evading step may lead too near to another one.
     Single,
@@ -54,7 +55,7 @@ pub enum Evasion {
 }
 
 /// Parameters of push-out.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PushOutParams<S> {
     /// What becomes of a step that leads too near.
     pub model: Model,
@@ -67,6 +68,16 @@ pub struct PushOutParams<S> {
 }
 
 impl<S: Scalar> PushOutParams<S> {
+    /// The same in another kind of number.
+    #[must_use]
+    pub fn cast<T: Scalar>(&self) -> PushOutParams<T> {
+        PushOutParams {
+            model: self.model,
+            evasion: self.evasion,
+            min_distance_m: cast(self.min_distance_m),
+        }
+    }
+
     /// Model 1 for all who are in the way.
     #[must_use]
     pub fn new(min_distance_m: S) -> Self {

@@ -21,9 +21,10 @@ pub use visits::VisitMemory;
 
 use crate::cost::Gain;
 use crate::grid::Norm;
+use serde::{Deserialize, Serialize};
 
 /// Where a route leaves the window when the target lies outside.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ExitRule {
     /// The border cell with the least path cost + a3 * distance to the target (eq. 10).
@@ -35,7 +36,7 @@ pub enum ExitRule {
 }
 
 /// Parameters of the route cost T(r) = a0 sum |d| u + a1 #occupied + a2 sum visits + a3 |exit - target|.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RouteParams {
     /// Radius r of the window in cells (KUZ: 5). A larger one sees dead ends earlier and costs
     /// O(r^2) time and memory; 1 is plain greedy descent.

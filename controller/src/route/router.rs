@@ -4,12 +4,13 @@ use super::{CostField, RouteParams, Unreachable, VisitMemory};
 use crate::cost::Weights;
 use crate::grid::{Cell, Dir, Window};
 use heapless::Vec;
+use serde::{Deserialize, Serialize};
 
 /// Moves that a plan holds; a longer route is planned again after so many.
 pub const PLAN: usize = 32;
 
 /// When a route is searched anew.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Replan {
     /// Whenever the robot is free to leave its cell (alg. 1): O((2r + 1)^2) a cell.
@@ -21,7 +22,7 @@ pub enum Replan {
 }
 
 /// What one robot's routing keeps between steps: visits (`M` cells) and the planned chain.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Router<const M: usize> {
     visits: VisitMemory<M>,
     here: Option<Cell>,

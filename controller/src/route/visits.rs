@@ -2,11 +2,12 @@
 
 use crate::grid::Cell;
 use heapless::Vec;
+use serde::Serialize;
 
 /// How often the robot entered each of the last `M` different cells.
 ///
 /// When full, the cell that was entered longest ago is forgotten. Memory: 6 bytes a cell.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct VisitMemory<const M: usize> {
     /// In order of the last entry, oldest first.
     visits: Vec<(Cell, u8), M>,

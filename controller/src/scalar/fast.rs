@@ -3,6 +3,7 @@
 use super::{Scalar, sealed};
 use core::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 use micromath::F32Ext;
+use serde::{Deserialize, Serialize};
 
 /// An `f32` whose functions are approximations: same bits on every target, fewer of them right.
 ///
@@ -11,7 +12,8 @@ use micromath::F32Ext;
 /// (0 below -87, infinite above 88); 1e-4 and 1e-6 of the value for `ln`.
 ///
 /// `atan2` of components beyond 1e18 is NaN, and of vectors shorter than 1e-18 it is 0.
-#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd, Serialize, Deserialize)]
+#[serde(transparent)]
 pub struct Fast32(pub f32);
 
 /// 1 / sqrt(x) for normal positive x: micromath's estimate (off by 3.5 %) and a Newton step.
@@ -104,6 +106,14 @@ impl Scalar for Fast32 {
 
     fn to_f64(self) -> f64 {
         self.0.into()
+    }
+
+    fn from_f32(value: f32) -> Option<Self> {
+        Scalar::from_f32(value).map(Self)
+    }
+
+    fn to_f32(self) -> f32 {
+        self.0
     }
 
     fn to_bits(self) -> u64 {

@@ -5,6 +5,7 @@ use super::{Scalar, sealed};
 use core::num::NonZeroU64;
 use core::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 use fixed::types::I16F16;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// A number from -32768 to 32767.99998 in steps of 2^-16 (0.000015), saturating everywhere.
 ///
@@ -36,6 +37,19 @@ impl Q16 {
 
     fn wide(self) -> i64 {
         self.bits().into()
+    }
+}
+
+/// As its bits.
+impl Serialize for Q16 {
+    fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
+        serializer.serialize_i32(self.bits())
+    }
+}
+
+impl<'de> Deserialize<'de> for Q16 {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        i32::deserialize(deserializer).map(Self::from_bits)
     }
 }
 
@@ -146,6 +160,15 @@ impl Scalar for Q16 {
 
     fn to_f64(self) -> f64 {
         f64::from(self.bits()) / 65_536.0
+    }
+
+    fn from_f32(value: f32) -> Option<Self> {
+        // The product is exact, and the cast saturates.
+        (!value.is_nan()).then(|| Self::from_bits(libm::roundf(value * 65_536.0) as i32))
+    }
+
+    fn to_f32(self) -> f32 {
+        self.bits() as f32 / 65_536.0
     }
 
     fn to_bits(self) -> u64 {

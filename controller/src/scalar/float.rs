@@ -47,6 +47,15 @@ macro_rules! impl_scalar {
                 self.into()
             }
 
+            fn from_f32(value: f32) -> Option<Self> {
+                let nearest = $float::from(value);
+                (!value.is_nan()).then(|| nearest.clamp(-$float::MAX, $float::MAX))
+            }
+
+            fn to_f32(self) -> f32 {
+                self as f32
+            }
+
             fn to_bits(self) -> u64 {
                 // The sign and payload of a computed NaN differ between processors.
                 if self.is_nan() {

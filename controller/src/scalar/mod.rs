@@ -20,6 +20,8 @@ pub use fixed::Q16;
 use core::cmp::Ordering;
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 mod sealed {
     pub trait Sealed {}
@@ -43,6 +45,8 @@ pub trait Scalar:
     + AddAssign
     + SubAssign
     + MulAssign
+    + Serialize
+    + DeserializeOwned
     + Send
     + Sync
     + 'static
@@ -95,6 +99,15 @@ pub trait Scalar:
     /// The exact value, for hosts.
     #[must_use]
     fn to_f64(self) -> f64;
+
+    /// The nearest number, saturating; NaN gives `None`. What comes from elsewhere (a host, a file, another robot's link) comes
+    /// as `f32`; by integers and single precision only.
+    #[must_use]
+    fn from_f32(value: f32) -> Option<Self>;
+
+    /// The nearest `f32`.
+    #[must_use]
+    fn to_f32(self) -> f32;
 
     /// The bits, for hashes: equal for equal states on every target (there is one NaN).
     #[must_use]
@@ -188,6 +201,12 @@ pub trait Scalar:
         self.partial_cmp(&other)
             .unwrap_or_else(|| is_nan(self).cmp(&is_nan(other)))
     }
+}
+
+/// The nearest number of another kind, by way of `f32`; no number becomes 0.
+#[must_use]
+pub fn cast<S: Scalar, T: Scalar>(x: S) -> T {
+    T::from_f32(x.to_f32()).unwrap_or(T::ZERO)
 }
 
 /// Whether `x` is no number at all.

@@ -4,6 +4,7 @@
 use super::{Newest, RobotId, TEMPLATE_PART, TemplateAssignment, TemplateEntry};
 use crate::grid::Cell;
 use heapless::Vec;
+use serde::{Deserialize, Serialize, Serializer};
 
 /// Parts that a [`TemplateAssembler`] can tell apart: one bit each.
 const MAX_PARTS: usize = u64::BITS as usize;
@@ -20,7 +21,7 @@ const NO_ENTRY: TemplateEntry = TemplateEntry {
 
 /// A robot's place in the formation and where its neighbours there should be (KUZ section 3), at
 /// most `F` of them.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Template<const F: usize> {
     /// The robot's place in the formation.
     pub slot: u8,
@@ -128,8 +129,9 @@ impl TemplateAssignment {
 /// newer version (see [`Newest`]) drops what was collected, finished or not, with its first part; a
 /// part of an older version is passed over. Versions that are lost in the air are no matter: the
 /// sender resends, or sends a newer one.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct TemplateAssembler<const F: usize> {
+    #[serde(serialize_with = "as_slice")]
     entries: [TemplateEntry; F],
     /// Bit p: part p is there.
     there: u64,
@@ -139,6 +141,14 @@ pub struct TemplateAssembler<const F: usize> {
     parts: u8,
     slot: u8,
     offset: Cell,
+}
+
+/// Arrays of any length are not serde's.
+fn as_slice<const F: usize, Z: Serializer>(
+    entries: &[TemplateEntry; F],
+    serializer: Z,
+) -> Result<Z::Ok, Z::Error> {
+    entries.as_slice().serialize(serializer)
 }
 
 impl<const F: usize> Default for TemplateAssembler<F> {

@@ -6,6 +6,7 @@
 use super::{Ack, Header, Request, RequestKind, RobotId};
 use crate::time::{Duration, Instant};
 use heapless::Vec;
+use serde::Serialize;
 
 /// A request that lies this far behind a newer one on the same matter, or less, is an old one that
 /// came late; one that seems to lie farther behind is a new one whose number wrapped.
@@ -23,7 +24,7 @@ pub struct Answer {
 }
 
 /// The latest request on one matter (to stand or not; the direction) of one origin by one sender.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 struct Order {
     sender: RobotId,
     origin: RobotId,
@@ -63,7 +64,7 @@ impl Order {
 ///
 /// Time is compared by wrapped difference: [`Orders::is_stopped`] should be called at least every half
 /// hour. After a longer pause no stop stands, but a repeat may be taken for a new request.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Orders<const S: usize> {
     lines: Vec<Order, S>,
     memory: Duration,

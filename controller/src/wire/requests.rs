@@ -7,6 +7,7 @@ use super::{Ack, Request, RequestKind, RobotId};
 use crate::rand::Rng;
 use crate::time::{Duration, Instant};
 use heapless::Vec;
+use serde::{Deserialize, Serialize};
 
 /// Keeps the jitter of resends apart from other uses of randomness.
 const PURPOSE: u32 = u32::from_be_bytes(*b"rsnd");
@@ -21,7 +22,7 @@ impl RequestKind {
 }
 
 /// How often and when a request is sent.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Retry {
     /// Sends in all, the first included; 0 counts as 1. With a loss of p per packet, request or
     /// acknowledgement fails in all of them with probability (1 - (1 - p)^2)^attempts: 4 % at
@@ -62,7 +63,7 @@ pub enum Due {
 }
 
 /// A request on its way.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 struct Pending {
     request: Request,
     /// Sends so far.
@@ -87,7 +88,7 @@ impl Pending {
 ///
 /// After a pause of any length [`Requests::poll`] goes on with what was on its way: see
 /// [`Instant::has_reached`].
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Requests<const P: usize> {
     pending: Vec<Pending, P>,
     retry: Retry,

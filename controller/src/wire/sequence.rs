@@ -4,6 +4,7 @@
 //! a boot number that says that the sequence started anew.
 
 use super::Header;
+use serde::Serialize;
 
 /// How many sequence numbers a [`SequenceWindow`] remembers, the newest included.
 pub const SEQUENCE_SPAN: u16 = u32::BITS as u16;
@@ -52,7 +53,7 @@ impl Arrival {
 /// [`Arrival::PreviousBoot`]; frames of still earlier boots look like another start. Boot numbers
 /// are best counted in lasting memory; one drawn at random equals the previous one (and makes
 /// the robot wait until it is forgotten) once in 256 starts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct SequenceWindow {
     /// Bit k: the frame `newest - k` was seen. 0: none was, ever.
     seen: u32,

@@ -38,7 +38,7 @@ pub trait Template {
 macro_rules! template {
     ($(#[$doc:meta])* $name:ident: $levels:literal x $directions:literal) => {
         $(#[$doc])*
-        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
         pub struct $name;
 
         impl Template for $name {

@@ -1,0 +1,259 @@
+//! What a robot is to be, as data: for hosts that tell firmware over a link, and for scenarios.
+//!
+//! Numbers are `f32` here whatever the robot computes with, so that host and robot need not agree on a kind of number.
+
+use super::any::{AnyGuidance, AnyHalfPlanes, AnySafety};
+use super::flock_guidance::{BoidsGuidance, GOALS, GoalFlockGuidance, LatticeGuidance};
+use super::formation_guidance::FormationGuidance;
+use super::guidance::Place;
+use super::in_plane::InPlane;
+use super::orca_safety::OrcaSafety;
+use super::other_safety::{FlySafety, PushOutSafety};
+use super::route_guidance::RouteGuidance;
+use super::safety::Unguarded;
+use super::waypoint_guidance::WaypointGuidance;
+use super::{Agent, AgentConfig, TEMPLATE};
+use crate::flock::boids::BoidsParams;
+use crate::flock::goal::GoalParams;
+use crate::flock::lattice::LatticeParams;
+use crate::formation::{FormationParams, Template};
+use crate::grid::Cell;
+use crate::neighbor::Doubt;
+use crate::orca::{AvoidParams, FlyParams};
+use crate::push_out::PushOutParams;
+use crate::route::{Replan, RouteParams};
+use crate::scalar::{Scalar, cast};
+use crate::shuffle::Sharpness;
+use heapless::Vec;
+use serde::{Deserialize, Serialize};
+
+/// Places that a [`Task`] has room for.
+pub const PLACES: usize = GOALS;
+
+/// An agent that can be anything: `CELLS` of a search, `M` remembered visits, `N` neighbours, `K` half-planes.
+pub type AnyAgent<S, const CELLS: usize, const M: usize, const N: usize, const K: usize> =
+    Agent<S, AnyGuidance<S, CELLS, M, TEMPLATE>, N, AnySafety<S, K>>;
+
+/// All that makes a robot what it is before it has sensed anything.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Setup {
+    /// Number, seed, timing and body.
+    pub agent: AgentConfig<f32>,
+    /// How it goes.
+    pub guidance: GuidanceSetup,
+    /// What keeps it clear.
+    pub safety: SafetySetup,
+}
+
+/// Routing over a window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RouteSetup {
+    /// What a route costs.
+    pub params: RouteParams,
+    /// When to search anew.
+    pub replan: Replan,
+    /// How strictly the order of moves follows their weights.
+    pub sharpness: Sharpness,
+}
+
+/// Boids, as [`BoidsParams::new`] takes them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BoidsSetup {
+    /// Nearer than this is crowded, metres.
+    pub crowded_m: f32,
+    /// Farther than this does not count, metres.
+    pub closest_m: f32,
+    /// Largest turn to the mean heading and to the middle, radians a step.
+    pub max_turn: f32,
+    /// Largest turn away, radians a step.
+    pub max_turn_away: f32,
+}
+
+impl BoidsSetup {
+    /// The parameters in a kind of number.
+    #[must_use]
+    pub fn params<S: Scalar>(&self) -> BoidsParams<S> {
+        BoidsParams::new(
+            cast(self.crowded_m),
+            cast(self.closest_m),
+            cast(self.max_turn),
+            cast(self.max_turn_away),
+        )
+    }
+}
+
+/// A guidance with its parameters. Speeds in m/s, lengths in metres.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[expect(
+    missing_docs,
+    reason = "the constructors of the guidances document them"
+)]
+pub enum GuidanceSetup {
+    Waypoint {
+        speed_mps: f32,
+        tolerance_m: f32,
+    },
+    Lattice {
+        params: LatticeParams<f32>,
+        moves: bool,
+    },
+    GoalFlock {
+        params: GoalParams<f32>,
+        arrival_m: f32,
+        seed: u64,
+    },
+    Boids {
+        params: BoidsSetup,
+        speed_mps: f32,
+    },
+    /// In the plane with a speed, cell by cell without one.
+    Route {
+        route: RouteSetup,
+        speed_mps: Option<f32>,
+    },
+    /// In the plane with a speed, cell by cell without one; it searches anew in each cell.
+    Formation {
+        route: RouteSetup,
+        formation: FormationParams,
+        template: Template<TEMPLATE>,
+        speed_mps: Option<f32>,
+    },
+}
+
+/// A safety layer with its parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the safety layers document them")]
+pub enum SafetySetup {
+    None,
+    Orca {
+        params: AvoidParams<f32>,
+        doubt: Doubt<f32>,
+        source: AnyHalfPlanes,
+    },
+    Fly {
+        params: FlyParams<f32>,
+        doubt: Doubt<f32>,
+    },
+    PushOut {
+        params: PushOutParams<f32>,
+    },
+}
+
+/// What a robot has to do.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Task {
+    /// Go to this cell, or keep the formation whose top leader does.
+    Cell(Cell),
+    /// Go to these places, by their numbers.
+    Places(Vec<(u8, Place<f32>), PLACES>),
+}
+
+impl Setup {
+    /// The robot, just started.
+    #[must_use]
+    pub fn agent<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usize>(
+        &self,
+    ) -> AnyAgent<S, CELLS, M, N, K> {
+        Agent::guarded(
+            &self.agent.cast(),
+            self.guidance.guidance(),
+            self.safety.safety(),
+        )
+    }
+
+    /// The largest search that the robot makes, in cells of a [`CostField`](crate::route::CostField): what `CELLS` must be at
+    /// least. 0 when it makes none.
+    #[must_use]
+    pub fn cells(&self) -> usize {
+        match &self.guidance {
+            GuidanceSetup::Route { route, .. } | GuidanceSetup::Formation { route, .. } => {
+                let side = 2 * usize::from(route.params.radius) + 3;
+                side * side
+            }
+            _ => 0,
+        }
+    }
+}
+
+impl GuidanceSetup {
+    /// The guidance, just started.
+    #[must_use]
+    pub fn guidance<S: Scalar, const CELLS: usize, const M: usize>(
+        &self,
+    ) -> AnyGuidance<S, CELLS, M, TEMPLATE> {
+        match self {
+            Self::Waypoint {
+                speed_mps,
+                tolerance_m,
+            } => AnyGuidance::Waypoint(WaypointGuidance::new(cast(*speed_mps), cast(*tolerance_m))),
+            Self::Lattice { params, moves } => {
+                AnyGuidance::Lattice(LatticeGuidance::new(params.cast(), *moves))
+            }
+            Self::GoalFlock {
+                params,
+                arrival_m,
+                seed,
+            } => AnyGuidance::GoalFlock(GoalFlockGuidance::new(
+                params.cast(),
+                cast(*arrival_m),
+                *seed,
+            )),
+            Self::Boids { params, speed_mps } => {
+                AnyGuidance::Boids(BoidsGuidance::new(params.params(), cast(*speed_mps)))
+            }
+            Self::Route { route, speed_mps } => {
+                let guidance = route.guidance();
+                match speed_mps {
+                    Some(speed) => AnyGuidance::Route(InPlane::new(guidance, cast(*speed))),
+                    None => AnyGuidance::RouteOnGrid(guidance),
+                }
+            }
+            Self::Formation {
+                route,
+                formation,
+                template,
+                speed_mps,
+            } => {
+                let guidance = FormationGuidance::new(route.params, *formation, template.clone())
+                    .sharpness(route.sharpness);
+                match speed_mps {
+                    Some(speed) => AnyGuidance::Formation(InPlane::new(guidance, cast(*speed))),
+                    None => AnyGuidance::FormationOnGrid(guidance),
+                }
+            }
+        }
+    }
+}
+
+impl RouteSetup {
+    /// The guidance on the grid, just started.
+    #[must_use]
+    pub const fn guidance<const CELLS: usize, const M: usize>(&self) -> RouteGuidance<CELLS, M> {
+        RouteGuidance::new(self.params)
+            .replan(self.replan)
+            .sharpness(self.sharpness)
+    }
+}
+
+impl SafetySetup {
+    /// The safety layer, just started.
+    #[must_use]
+    pub fn safety<S: Scalar, const K: usize>(&self) -> AnySafety<S, K> {
+        match self {
+            Self::None => AnySafety::Unguarded(Unguarded),
+            Self::Orca {
+                params,
+                doubt,
+                source,
+            } => AnySafety::Orca(OrcaSafety::with_source(
+                params.cast(),
+                doubt.cast(),
+                *source,
+            )),
+            Self::Fly { params, doubt } => {
+                AnySafety::Fly(FlySafety::new(params.cast(), doubt.cast()))
+            }
+            Self::PushOut { params } => AnySafety::PushOut(PushOutSafety::new(params.cast())),
+        }
+    }
+}

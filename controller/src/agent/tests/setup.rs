@@ -1,0 +1,205 @@
+//! Agents from data are those that a program makes.
+
+use super::super::*;
+use crate::flock::goal::GoalParams;
+use crate::flock::lattice::LatticeParams;
+use crate::formation::FormationParams;
+use crate::geom::Position;
+use crate::neighbor::Doubt;
+use crate::orca::{AvoidParams, FlyParams};
+use crate::push_out::PushOutParams;
+use crate::route::{Replan, RouteParams};
+use crate::scalar::{Q16, Scalar};
+use crate::shuffle::Sharpness;
+use crate::wire::Header;
+use crate::wire::Message;
+use crate::wire::encode;
+
+const TICK: Duration = Duration::from_millis(50);
+
+fn guidances() -> [GuidanceSetup; 6] {
+    let route = RouteSetup {
+        params: RouteParams::default(),
+        replan: Replan::EachCell,
+        sharpness: Sharpness::Greedy,
+    };
+    [
+        GuidanceSetup::Waypoint {
+            speed_mps: 0.5,
+            tolerance_m: 0.01,
+        },
+        GuidanceSetup::Lattice {
+            params: LatticeParams::new(1.0),
+            moves: true,
+        },
+        GuidanceSetup::GoalFlock {
+            params: GoalParams::new(0.5, 0.5),
+            arrival_m: 0.3,
+            seed: 9,
+        },
+        GuidanceSetup::Boids {
+            params: BoidsSetup {
+                crowded_m: 0.3,
+                closest_m: 1.5,
+                max_turn: 0.05,
+                max_turn_away: 0.02,
+            },
+            speed_mps: 0.5,
+        },
+        GuidanceSetup::Route {
+            route,
+            speed_mps: None,
+        },
+        GuidanceSetup::Formation {
+            route,
+            formation: FormationParams::default(),
+            template: crate::formation::Template::default(),
+            speed_mps: Some(0.4),
+        },
+    ]
+}
+
+fn safeties() -> [SafetySetup; 4] {
+    let doubt = Doubt {
+        growth_mps: 0.25,
+        most_m: 0.3,
+    };
+    [
+        SafetySetup::None,
+        SafetySetup::Orca {
+            params: AvoidParams::default(),
+            doubt,
+            source: AnyHalfPlanes::Template2k,
+        },
+        SafetySetup::Fly {
+            params: FlyParams::default(),
+            doubt,
+        },
+        SafetySetup::PushOut {
+            params: PushOutParams::new(0.4),
+        },
+    ]
+}
+
+fn setups() -> impl Iterator<Item = Setup> {
+    guidances().into_iter().flat_map(|guidance| {
+        safeties().into_iter().map(move |safety| Setup {
+            agent: AgentConfig::new(RobotId(3), 7, TICK),
+            guidance: guidance.clone(),
+            safety,
+        })
+    })
+}
+
+/// Digests of an agent that hears one neighbour, step by step.
+fn lived<S: Scalar>(setup: &Setup, steps: u32) -> std::vec::Vec<u64> {
+    let mut agent = setup.agent::<S, CELLS, VISITS, NEIGHBORS, HALF_PLANES>();
+    let place = Place::fixed(Position::from_mm([4000, 1000, 0]));
+    let task = match setup.guidance {
+        GuidanceSetup::Route { .. } | GuidanceSetup::Formation { .. } => {
+            Task::Cell(Cell::new(9, 5))
+        }
+        GuidanceSetup::Boids { .. } => Task::Places(Vec::new()),
+        _ => Task::Places(Vec::from_array([(0, place)])),
+    };
+    assert!(agent.assign(&task));
+    let land = [1; 121];
+    let mut workspace = GridWorkspace::new();
+    let mut digests = std::vec![agent.digest()];
+    for step in 0..steps {
+        let now = Instant::from_micros(step * 50_000);
+        let beacon = Beacon {
+            time: now,
+            position_mm: [900 - 20 * step as i32, 30, 0],
+            velocity_mmps: [-400, 0, 0],
+            radius_mm: 150,
+            ..Beacon::default()
+        };
+        let header = Header {
+            boot: 0,
+            sender: RobotId(4),
+            sequence: step as u16,
+        };
+        let mut inbox = Vec::<u8, 64>::new();
+        encode(header, &Message::Beacon(beacon), &mut inbox).unwrap();
+        let inputs = Inputs {
+            pose: Pose {
+                position: Position::from_mm([step as i32 * 10, 0, 0]),
+                velocity_mps: Vec3::new(S::from_ratio(1, 5), S::ZERO, S::ZERO),
+            },
+            cell: Some(CellState {
+                cell: Cell::new(5, 5),
+                busy: Duration::ZERO,
+            }),
+            window: crate::grid::Window::new(&land, Cell::new(0, 0), 11, 11),
+            surroundings: Some(Surroundings {
+                max_speed_mps: S::ONE,
+                obstacles: &[],
+                in_cell: Some(InCell {
+                    offset_m: crate::geom::Vec2::ZERO,
+                    cell_m: S::ONE,
+                }),
+            }),
+            inbox: &inbox,
+        };
+        let _ = agent.step(&inputs, now, &mut workspace);
+        digests.push(agent.digest());
+    }
+    digests
+}
+
+#[test]
+fn what_went_over_a_link_makes_the_same_robot() {
+    for setup in setups() {
+        let bytes = {
+            let mut buffer = [0; 512];
+            postcard::to_slice(&setup, &mut buffer).map(|used| used.to_vec())
+        }
+        .expect("fits a frame");
+        let copy: Setup = postcard::from_bytes(&bytes).unwrap();
+        assert_eq!(copy, setup);
+        assert_eq!(lived::<f32>(&copy, 4), lived::<f32>(&setup, 4));
+    }
+}
+
+#[test]
+fn each_step_leaves_a_state_of_its_own() {
+    for setup in setups() {
+        for digests in [lived::<f32>(&setup, 5), lived::<Q16>(&setup, 5)] {
+            for (step, digest) in digests.iter().enumerate() {
+                assert!(!digests[..step].contains(digest), "{setup:?} at {step}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_whole_state_counts() {
+    let base = setups().next().unwrap();
+    let other = |change: &dyn Fn(&mut Setup)| {
+        let mut setup = base.clone();
+        change(&mut setup);
+        lived::<f32>(&setup, 0)[0]
+    };
+    let same = other(&|_| ());
+    assert_eq!(same, lived::<f32>(&base, 0)[0]);
+    assert_ne!(same, other(&|setup| setup.agent.id = RobotId(4)));
+    assert_ne!(same, other(&|setup| setup.agent.seed = 8));
+    assert_ne!(same, other(&|setup| setup.agent.boot = 1));
+    assert_ne!(same, other(&|setup| setup.agent.radius_m = 0.1));
+    assert_ne!(same, other(&|setup| setup.safety = safeties()[3]));
+}
+
+#[test]
+fn searches_need_the_room_that_they_say() {
+    let cells = |guidance: &GuidanceSetup| {
+        let setup = Setup {
+            guidance: guidance.clone(),
+            ..setups().next().unwrap()
+        };
+        setup.cells()
+    };
+    let [waypoint, _, _, _, route, formation] = guidances();
+    assert_eq!(cells(&waypoint), 0);
+    assert_eq!((cells(&route), cells(&formation)), (CELLS, CELLS));
+}

@@ -1,0 +1,340 @@
+//! A fingerprint of any state: equal states, equal digests, on every target.
+//!
+//! [`digest`] walks a value with serde and mixes its numbers in order. Widths of `usize`, the order of fields in memory and
+//! padding play no part; the sign and payload of NaN, which differ between processors, neither. It tells states
+//! apart that differ by accident; it is no protection against somebody who wants them to collide.
+
+use core::fmt::{self, Display};
+use serde::ser::{self, Impossible, Serialize};
+
+/// The fingerprint of a state. O(its numbers): a multiplication of 64 bits each.
+///
+/// Values made of numbers, booleans, options, enums, tuples, structs and sequences; what else serde knows
+/// (text, maps, bytes) counts as nothing.
+#[must_use]
+pub fn digest<T: Serialize + ?Sized>(value: &T) -> u64 {
+    let mut state = Digest(0xCBF2_9CE4_8422_2325);
+    // What cannot be walked is the same on all targets too.
+    let _ = value.serialize(&mut state);
+    state.0
+}
+
+/// Two digests in order as one.
+#[must_use]
+pub const fn chained(before: u64, next: u64) -> u64 {
+    let mut state = Digest(before);
+    state.mix(next as u32);
+    state.mix((next >> 32) as u32);
+    state.0
+}
+
+struct Digest(u64);
+
+impl Digest {
+    /// A bijection of the state for each word, so that no difference is lost.
+    const fn mix(&mut self, word: u32) {
+        let mixed = (self.0 ^ word as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        self.0 = mixed ^ (mixed >> 29);
+    }
+
+    const fn mix_wide(&mut self, word: u64) {
+        self.mix(word as u32);
+        self.mix((word >> 32) as u32);
+    }
+}
+
+/// Something that is not walked.
+#[derive(Debug)]
+struct NotWalked;
+
+impl Display for NotWalked {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("not walked")
+    }
+}
+
+impl core::error::Error for NotWalked {}
+
+impl ser::Error for NotWalked {
+    fn custom<T: Display>(_: T) -> Self {
+        Self
+    }
+}
+
+/// Numbers of up to 32 bits.
+macro_rules! words {
+    ($($name:ident: $number:ty),*) => {
+        $(fn $name(self, value: $number) -> Result<(), NotWalked> {
+            self.mix(value as u32);
+            Ok(())
+        })*
+    };
+}
+
+impl ser::Serializer for &mut Digest {
+    type Ok = ();
+    type Error = NotWalked;
+    type SerializeSeq = Self;
+    type SerializeTuple = Self;
+    type SerializeTupleStruct = Self;
+    type SerializeTupleVariant = Self;
+    type SerializeMap = Impossible<(), NotWalked>;
+    type SerializeStruct = Self;
+    type SerializeStructVariant = Self;
+
+    words!(
+        serialize_bool: bool, serialize_i8: i8, serialize_i16: i16, serialize_i32: i32,
+        serialize_u8: u8, serialize_u16: u16, serialize_u32: u32, serialize_char: char
+    );
+
+    fn serialize_i64(self, value: i64) -> Result<(), NotWalked> {
+        self.mix_wide(value.cast_unsigned());
+        Ok(())
+    }
+
+    fn serialize_u64(self, value: u64) -> Result<(), NotWalked> {
+        self.mix_wide(value);
+        Ok(())
+    }
+
+    fn serialize_f32(self, value: f32) -> Result<(), NotWalked> {
+        self.mix(if value.is_nan() {
+            0x7FC0_0000
+        } else {
+            value.to_bits()
+        });
+        Ok(())
+    }
+
+    fn serialize_f64(self, value: f64) -> Result<(), NotWalked> {
+        self.mix_wide(if value.is_nan() {
+            0x7FF8_0000_0000_0000
+        } else {
+            value.to_bits()
+        });
+        Ok(())
+    }
+
+    fn serialize_str(self, _: &str) -> Result<(), NotWalked> {
+        Err(NotWalked)
+    }
+
+    fn serialize_bytes(self, _: &[u8]) -> Result<(), NotWalked> {
+        Err(NotWalked)
+    }
+
+    fn serialize_none(self) -> Result<(), NotWalked> {
+        self.mix(0);
+        Ok(())
+    }
+
+    fn serialize_some<T: Serialize + ?Sized>(self, value: &T) -> Result<(), NotWalked> {
+        self.mix(1);
+        value.serialize(self)
+    }
+
+    fn serialize_unit(self) -> Result<(), NotWalked> {
+        Ok(())
+    }
+
+    fn serialize_unit_struct(self, _: &'static str) -> Result<(), NotWalked> {
+        Ok(())
+    }
+
+    fn serialize_unit_variant(
+        self,
+        _: &'static str,
+        variant: u32,
+        _: &'static str,
+    ) -> Result<(), NotWalked> {
+        self.mix(variant);
+        Ok(())
+    }
+
+    fn serialize_newtype_struct<T: Serialize + ?Sized>(
+        self,
+        _: &'static str,
+        value: &T,
+    ) -> Result<(), NotWalked> {
+        value.serialize(self)
+    }
+
+    fn serialize_newtype_variant<T: Serialize + ?Sized>(
+        self,
+        _: &'static str,
+        variant: u32,
+        _: &'static str,
+        value: &T,
+    ) -> Result<(), NotWalked> {
+        self.mix(variant);
+        value.serialize(self)
+    }
+
+    fn serialize_seq(self, len: Option<usize>) -> Result<Self, NotWalked> {
+        // A sequence and what follows it must not be taken for another one.
+        self.mix(len.map_or(u32::MAX, |len| len as u32));
+        Ok(self)
+    }
+
+    fn serialize_tuple(self, _: usize) -> Result<Self, NotWalked> {
+        Ok(self)
+    }
+
+    fn serialize_tuple_struct(self, _: &'static str, _: usize) -> Result<Self, NotWalked> {
+        Ok(self)
+    }
+
+    fn serialize_tuple_variant(
+        self,
+        _: &'static str,
+        variant: u32,
+        _: &'static str,
+        _: usize,
+    ) -> Result<Self, NotWalked> {
+        self.mix(variant);
+        Ok(self)
+    }
+
+    fn serialize_map(self, _: Option<usize>) -> Result<Self::SerializeMap, NotWalked> {
+        Err(NotWalked)
+    }
+
+    fn serialize_struct(self, _: &'static str, _: usize) -> Result<Self, NotWalked> {
+        Ok(self)
+    }
+
+    fn serialize_struct_variant(
+        self,
+        _: &'static str,
+        variant: u32,
+        _: &'static str,
+        _: usize,
+    ) -> Result<Self, NotWalked> {
+        self.mix(variant);
+        Ok(self)
+    }
+
+    fn collect_str<T: Display + ?Sized>(self, _: &T) -> Result<(), NotWalked> {
+        Err(NotWalked)
+    }
+
+    fn is_human_readable(&self) -> bool {
+        false
+    }
+}
+
+/// What has parts: one after the other.
+macro_rules! parts {
+    ($($name:ident::$part:ident),*) => {
+        $(impl ser::$name for &mut Digest {
+            type Ok = ();
+            type Error = NotWalked;
+
+            fn $part<T: Serialize + ?Sized>(&mut self, value: &T) -> Result<(), NotWalked> {
+                value.serialize(&mut **self)
+            }
+
+            fn end(self) -> Result<(), NotWalked> {
+                Ok(())
+            }
+        })*
+    };
+}
+
+parts!(
+    SerializeSeq::serialize_element,
+    SerializeTuple::serialize_element,
+    SerializeTupleStruct::serialize_field,
+    SerializeTupleVariant::serialize_field
+);
+
+/// What has parts with names: the names play no part.
+macro_rules! named_parts {
+    ($($name:ident),*) => {
+        $(impl ser::$name for &mut Digest {
+            type Ok = ();
+            type Error = NotWalked;
+
+            fn serialize_field<T: Serialize + ?Sized>(
+                &mut self,
+                _: &'static str,
+                value: &T,
+            ) -> Result<(), NotWalked> {
+                value.serialize(&mut **self)
+            }
+
+            fn end(self) -> Result<(), NotWalked> {
+                Ok(())
+            }
+        })*
+    };
+}
+
+named_parts!(SerializeStruct, SerializeStructVariant);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scalar::{Q16, Scalar};
+    use heapless::Vec;
+    use serde::Serialize;
+
+    #[derive(Serialize)]
+    enum Sample<S> {
+        Empty,
+        One(S),
+        Pair { x: S, y: Option<u16> },
+        List(Vec<u8, 4>, bool),
+    }
+
+    fn list(items: &[u8], flag: bool) -> u64 {
+        digest(&Sample::<f32>::List(items.iter().copied().collect(), flag))
+    }
+
+    #[test]
+    fn every_part_counts() {
+        let samples = [
+            digest(&Sample::<f32>::Empty),
+            digest(&Sample::One(0.0_f32)),
+            digest(&Sample::One(-0.0_f32)),
+            digest(&Sample::One(1.0_f32)),
+            digest(&Sample::Pair {
+                x: 1.0_f32,
+                y: None,
+            }),
+            digest(&Sample::Pair {
+                x: 1.0_f32,
+                y: Some(0),
+            }),
+            list(&[], true),
+            list(&[], false),
+            list(&[0], false),
+            list(&[0, 0], false),
+            list(&[1, 2], false),
+            list(&[2, 1], false),
+        ];
+        for (index, sample) in samples.iter().enumerate() {
+            assert!(!samples[..index].contains(sample), "{index}");
+        }
+    }
+
+    #[test]
+    fn digests_are_pinned() {
+        // What firmware in the field and a host of another version compare.
+        assert_eq!(digest(&7_u8), 0x1E15_259D_950C_7521);
+        assert_eq!(digest(&Q16::from_i32(-2)), digest(&-131_072_i32));
+    }
+
+    #[test]
+    fn all_nans_are_one() {
+        let nan = f32::from_bits(0xFFC0_0001);
+        assert!(nan.is_nan());
+        assert_eq!(digest(&nan), digest(&f32::NAN));
+        assert_eq!(digest(&-f64::NAN), digest(&f64::NAN));
+    }
+
+    #[test]
+    fn order_counts_in_a_chain() {
+        assert_ne!(chained(chained(0, 1), 2), chained(chained(0, 2), 1));
+    }
+}
