@@ -2,14 +2,15 @@
 //! targets are out of reach.
 
 use crate::repo::{Repo, output_of, run};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 const PACKAGES: [&str; 4] = ["rustc-web", "cargo-web", "rust-web-src", "lld"];
 const RUSTC: &str = "/usr/bin/rustc";
 const CARGO: &str = "/usr/bin/cargo";
 /// What a person without these packages should run; either line is enough.
-const REMEDY: &str = "run `rustup target add thumbv7em-none-eabihf thumbv6m-none-eabi` \
+const REMEDY: &str = "run `rustup target add thumbv7em-none-eabihf thumbv6m-none-eabi \
+    riscv32imac-unknown-none-elf` \
     or, on Debian, as root `apt-get update && apt-get install rustc-web cargo-web rust-web-src lld`";
 
 /// Makes sure that the packages are there: installs them as root on Debian. The error says why
@@ -19,17 +20,10 @@ pub fn prepare(repo: &Repo) -> Result<(), String> {
         return Ok(());
     }
     println!("\nNo installed toolchain has the targets, and Debian's packages are not complete.");
-    if !is_debian() || output_of(repo.command("id").arg("-u")).as_deref() != Some("0") {
+    if !can_install(repo) {
         return Err(format!("no toolchain for microcontrollers; {REMEDY}"));
     }
-    println!("Installing {}:", PACKAGES.join(", "));
-    run(&mut apt_get(repo, &["update"]))
-        // Nothing that is installed may have to go for it.
-        .and_then(|()| {
-            let install = ["install", "--yes", "--no-install-recommends", "--no-remove"];
-            run(apt_get(repo, &install).args(PACKAGES))
-        })
-        .map_err(|reason| format!("apt-get failed ({reason}); {REMEDY}"))?;
+    install(repo, &PACKAGES).map_err(|reason| format!("apt-get failed ({reason}); {REMEDY}"))?;
     if is_complete(repo) {
         Ok(())
     } else {
@@ -38,6 +32,20 @@ pub fn prepare(repo: &Repo) -> Result<(), String> {
             "Debian's Rust ({version}) lacks the sources of core; {REMEDY}"
         ))
     }
+}
+
+/// Whether packages can be installed: as root on Debian.
+pub fn can_install(repo: &Repo) -> bool {
+    is_debian() && output_of(repo.command("id").arg("-u")).as_deref() == Some("0")
+}
+
+/// Installs packages. The error says why not.
+pub fn install(repo: &Repo, packages: &[&str]) -> Result<(), String> {
+    println!("Installing {}:", packages.join(", "));
+    run(&mut apt_get(repo, &["update"]))?;
+    // Nothing that is installed may have to go for it.
+    let install = ["install", "--yes", "--no-install-recommends", "--no-remove"];
+    run(apt_get(repo, &install).args(packages))
 }
 
 /// Debian's cargo with these arguments, with Debian's rustc, allowed to build `core`, in a target
@@ -54,8 +62,13 @@ pub fn cargo(repo: &Repo, arguments: &[&str]) -> Command {
         .args(arguments)
         .env("RUSTC", RUSTC)
         .env("RUSTC_BOOTSTRAP", "1")
-        .env("CARGO_TARGET_DIR", repo.target.join("debian"));
+        .env("CARGO_TARGET_DIR", target_folder(repo));
     command
+}
+
+/// Where Debian's cargo builds.
+pub fn target_folder(repo: &Repo) -> PathBuf {
+    repo.target.join("debian")
 }
 
 /// Whether an environment variable chooses a compiler, its flags or its libraries.

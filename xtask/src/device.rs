@@ -1,41 +1,41 @@
 //! The controller built for microcontrollers, with whatever toolchain there is.
 
 use crate::debian;
+use crate::firmware::PARTS;
 use crate::repo::{Repo, output_of};
 use crate::report::Report;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Cortex-M4F and Cortex-M0: with and without an FPU, with and without compare-and-swap.
-const TARGETS: [&str; 2] = ["thumbv7em-none-eabihf", "thumbv6m-none-eabi"];
-
 /// Where `core` for a microcontroller comes from.
-enum Toolchain {
+pub enum Toolchain {
     /// The toolchain that runs this program has the target.
     Own,
     /// Debian's packages build it from source.
     Debian,
 }
 
-/// Builds the controller for each target, plain and with every feature.
+/// Finds toolchains; looks for Debian's packages (and installs them) once, and only if a target
+/// needs them.
+#[derive(Default)]
+pub struct Toolchains {
+    debian: Option<Result<(), String>>,
+}
+
+/// Builds the controller for each target, plain and with every feature: Cortex-M4F and Cortex-M0,
+/// with and without an FPU, with and without compare-and-swap, and RISC-V.
 pub fn run(repo: &Repo, report: &mut Report) {
-    // Debian's packages are looked for (and installed) once, and only if a target needs them.
-    let mut debian = None;
-    for target in TARGETS {
-        let toolchain = if has_target(repo, target) {
-            Ok(Toolchain::Own)
-        } else {
-            let ready = debian.get_or_insert_with(|| debian::prepare(repo));
-            ready.clone().map(|()| Toolchain::Debian)
-        };
+    let mut toolchains = Toolchains::default();
+    for part in &PARTS {
+        let toolchain = toolchains.find(repo, part.target);
         for features in ["", "defmt"] {
-            let mut name = format!("controller for {target}");
+            let mut name = format!("controller for {}", part.target);
             if !features.is_empty() {
                 name = format!("{name}, {features}");
             }
             match &toolchain {
                 Ok(toolchain) => {
-                    report.command(&name, toolchain.build(repo, target, features));
+                    report.command(&name, toolchain.controller(repo, part.target, features));
                 }
                 Err(reason) => report.skip(&name, reason),
             }
@@ -43,16 +43,48 @@ pub fn run(repo: &Repo, report: &mut Report) {
     }
 }
 
+impl Toolchains {
+    /// The toolchain for a target. The error says why there is none, and what to do.
+    pub fn find(&mut self, repo: &Repo, target: &str) -> Result<Toolchain, String> {
+        if has_target(repo, target) {
+            return Ok(Toolchain::Own);
+        }
+        let ready = self.debian.get_or_insert_with(|| debian::prepare(repo));
+        ready.clone().map(|()| Toolchain::Debian)
+    }
+}
+
 impl Toolchain {
+    /// Cargo's subcommand for a target.
+    pub fn cargo(&self, repo: &Repo, target: &str, subcommand: &str) -> Command {
+        let mut command = match self {
+            Self::Own => repo.cargo(&[subcommand]),
+            Self::Debian => {
+                let mut command = debian::cargo(repo, &[subcommand, "-Zbuild-std=core"]);
+                // The targets ask for Rust's own copy of the linker, which Debian does not have.
+                let target = target.to_uppercase().replace('-', "_");
+                command.env(format!("CARGO_TARGET_{target}_LINKER"), "ld.lld");
+                command
+            }
+        };
+        command.args(["--target", target]);
+        command
+    }
+
+    /// Where it builds.
+    pub fn target_folder(&self, repo: &Repo) -> PathBuf {
+        match self {
+            Self::Own => repo.target.clone(),
+            Self::Debian => debian::target_folder(repo),
+        }
+    }
+
     /// A release build of the controller: code for generic functions and constants is only made
     /// (and can only fail) in a build, not in a check.
-    fn build(&self, repo: &Repo, target: &str, features: &str) -> Command {
-        let mut command = match self {
-            Self::Own => repo.cargo(&["build"]),
-            Self::Debian => debian::cargo(repo, &["build", "-Zbuild-std=core"]),
-        };
+    fn controller(&self, repo: &Repo, target: &str, features: &str) -> Command {
+        let mut command = self.cargo(repo, target, "build");
         command.args(["--locked", "--release", "--package", "staya-controller"]);
-        command.args(["--target", target, "--features", features]);
+        command.args(["--features", features]);
         command
     }
 }

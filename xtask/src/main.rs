@@ -8,12 +8,15 @@ mod bless;
 mod check;
 mod debian;
 mod device;
+mod firmware;
 mod fuzz;
 mod layers;
+mod qemu;
 mod repo;
 mod report;
 mod test;
 
+use firmware::{Part, Profile};
 use repo::Repo;
 use report::Report;
 use std::process::ExitCode;
@@ -30,6 +33,9 @@ Usage: cargo xtask COMMAND
   bless [NAME]    rewrite golden files by running the tests whose name contains NAME (default: golden)
   fuzz [--seconds N]
                   each fuzz target for N seconds (default: 60), if nightly Rust and cargo-fuzz are there
+  firmware [--debug] [PART...]
+                  the programs of hil/firmware for stm32f405, nrf51, riscv32 (default: all): target/firmware/PART/BIN
+  qemu            the emulators of the parts; installs them as root on Debian
   help            this text
 
 `test` builds for microcontrollers with rustup's targets if they are installed, otherwise with
@@ -64,6 +70,14 @@ fn main() -> ExitCode {
         ["fuzz", "--seconds", n] if n.parse().is_ok_and(|n: u32| n > 0) => {
             fuzz::run(&repo, &mut report, n);
         }
+        ["firmware", arguments @ ..] => match firmware_arguments(arguments) {
+            Some((parts, profile)) => firmware::run_command(&repo, &mut report, &parts, profile),
+            None => {
+                eprint!("xtask: no such part or option\n\n{HELP}");
+                return ExitCode::from(2);
+            }
+        },
+        ["qemu"] => qemu::run(&repo, &mut report),
         [] => {
             eprint!("{HELP}");
             return ExitCode::from(2);
@@ -77,4 +91,20 @@ fn main() -> ExitCode {
         }
     }
     report.close()
+}
+
+/// The parts and the profile that the command line names; all parts if it names none.
+fn firmware_arguments(arguments: &[&str]) -> Option<(Vec<&'static Part>, Profile)> {
+    let mut parts = Vec::new();
+    let mut profile = Profile::Firmware;
+    for &argument in arguments {
+        match argument {
+            "--debug" => profile = Profile::Debug,
+            name => parts.push(firmware::part(name)?),
+        }
+    }
+    if parts.is_empty() {
+        parts.extend(&firmware::PARTS);
+    }
+    Some((parts, profile))
 }

@@ -1,0 +1,58 @@
+//! Names the part that a target triple stands for, and gives its linker script to the linker.
+
+use std::env;
+use std::path::Path;
+
+/// Bits per second on the wire, unless `STAYA_BAUD` says otherwise.
+const BAUD: u32 = 115_200;
+/// The crystal of an STM32F405 board, unless `STAYA_HSE_HZ` says otherwise.
+const HSE_HZ: u32 = 8_000_000;
+
+fn main() {
+    println!("cargo:rerun-if-changed=build.rs");
+    println!("cargo:rustc-check-cfg=cfg(part, values(\"stm32f405\", \"nrf51\", \"riscv32\"))");
+    number("STAYA_BAUD", BAUD, 1200..=2_000_000);
+    // The PLL divides the crystal down to 1 MHz, so whole megahertz only.
+    let hse_hz = number("STAYA_HSE_HZ", HSE_HZ, 4_000_000..=26_000_000);
+    assert!(
+        hse_hz.is_multiple_of(1_000_000),
+        "STAYA_HSE_HZ is not in whole megahertz"
+    );
+
+    let target = env::var("TARGET").unwrap_or_default();
+    let (part, scripts): (&str, &[&str]) = match target.as_str() {
+        // cortex-m-rt's link.x includes memory.x, and the linker takes the one of its working
+        // directory first: the workspace's, which is the map of the STM32F405.
+        "thumbv7em-none-eabihf" => ("stm32f405", &["link.x"]),
+        // Hence a whole script of another name for the other Cortex-M.
+        "thumbv6m-none-eabi" => ("nrf51", &["nrf51.x"]),
+        "riscv32imac-unknown-none-elf" => ("riscv32", &["riscv32.x", "link.x"]),
+        _ => return,
+    };
+    println!("cargo:rustc-cfg=part=\"{part}\"");
+    let here = env::var("CARGO_MANIFEST_DIR").unwrap_or_default();
+    let here = Path::new(&here);
+    for script in ["nrf51.x", "riscv32.x", "../../memory.x"] {
+        println!("cargo:rerun-if-changed={}", here.join(script).display());
+    }
+    println!("cargo:rustc-link-search={}", here.display());
+    for script in scripts.iter().chain(&["defmt.x"]) {
+        println!("cargo:rustc-link-arg-bins=-T{script}");
+    }
+    // Sections stay as small as they are: without it the linker fills up to 64 KiB pages.
+    println!("cargo:rustc-link-arg-bins=--nmagic");
+}
+
+/// A number from the environment or the default, handed on to the crate as an environment variable.
+fn number(name: &str, default: u32, range: std::ops::RangeInclusive<u32>) -> u32 {
+    println!("cargo:rerun-if-env-changed={name}");
+    let value = match env::var(name) {
+        Ok(text) => text
+            .parse()
+            .unwrap_or_else(|_| panic!("{name} is not a number: {text}")),
+        Err(_) => default,
+    };
+    assert!(range.contains(&value), "{name} is outside {range:?}");
+    println!("cargo:rustc-env={name}={value}");
+    value
+}

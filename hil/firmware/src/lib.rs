@@ -1,0 +1,63 @@
+//! What the firmware's programs share: start-up, clock ticks, the UART, the stack's depth, logs, faults.
+//!
+//! One library for three parts, chosen by the target triple:
+//!
+//! | part | triple | emulated by QEMU as |
+//! | --- | --- | --- |
+//! | STM32F405 (Cortex-M4F) | `thumbv7em-none-eabihf` | `netduinoplus2` |
+//! | nRF51 of the micro:bit (Cortex-M0) | `thumbv6m-none-eabi` | `microbit` |
+//! | RISC-V without an FPU | `riscv32imac-unknown-none-elf` | `virt` |
+//!
+//! `cargo xtask firmware` builds them. Built for the host, each program only says so.
+#![cfg_attr(not(test), no_std)]
+
+pub mod ring;
+
+#[cfg(target_os = "none")]
+mod boots;
+#[cfg(target_os = "none")]
+mod log;
+#[cfg(target_os = "none")]
+mod part;
+#[cfg(target_os = "none")]
+pub mod runtime;
+#[cfg(target_os = "none")]
+pub mod stack;
+
+/// Makes `$run`, a `fn() -> !`, what the part runs after reset. On the host the program gets a
+/// `main` that says how it is built for a part, and `$run` need not be there.
+#[macro_export]
+macro_rules! entry {
+    ($run:path) => {
+        // SAFETY: `main` is the one symbol that cortex-m-rt and riscv-rt call after they have set
+        // up the stack and the statics; no other function of the program has this name.
+        #[cfg(target_os = "none")]
+        #[unsafe(export_name = "main")]
+        extern "C" fn start_of_program() -> ! {
+            $run()
+        }
+
+        #[cfg(not(target_os = "none"))]
+        fn main() {
+            eprintln!(concat!(
+                env!("CARGO_BIN_NAME"),
+                " is firmware: `cargo xtask firmware` builds it for the parts."
+            ));
+            std::process::exit(2);
+        }
+    };
+}
+
+/// A panic handler that prints what happened and ends the emulator with exit code 101. For programs
+/// that print; on a board it prints over RTT and stops.
+#[macro_export]
+macro_rules! panic_prints {
+    () => {
+        #[cfg(target_os = "none")]
+        #[panic_handler]
+        fn panic(info: &core::panic::PanicInfo) -> ! {
+            $crate::runtime::print(format_args!("{info}\n"));
+            $crate::runtime::exit(101)
+        }
+    };
+}

@@ -1,0 +1,163 @@
+//! nRF51822 of the micro:bit (version 1): UART0 on P0.24 (TX) and P0.25 (RX), which its debug chip passes on over USB.
+//!
+//! 16 MHz from the crystal, or from the internal oscillator if that does not start. The part has no SysTick; TIMER0
+//! counts. Sections: Nordic's nRF51 Series Reference Manual 3.0.
+
+use super::{BAUD, Clocks};
+use crate::ring::Ring;
+use cortex_m::peripheral::{NVIC, SCB};
+use nrf_pac::{CLOCK, FICR, GPIO, Interrupt, TIMER0, UART0, WDT, gpio, timer, uart, wdt};
+
+pub const NAME: &str = "nrf51";
+/// Bytes between interrupt and main loop: 22 ms at 115200 baud.
+pub static RECEIVED: Ring<256> = Ring::new();
+
+const HZ: u32 = 16_000_000;
+const TX_PIN: usize = 24;
+const RX_PIN: usize = 25;
+/// How often a flag that tells of an oscillator is read before it counts as missing: tens of milliseconds.
+const PATIENCE: u32 = 50_000;
+/// How often the transmitter is asked for room: more than one byte's time at 9600 baud.
+const SEND_PATIENCE: u32 = 20_000;
+/// Capture and compare channels of TIMER0: what [`ticks`] reads, and what wakes the main loop.
+const NOW: usize = 0;
+const WAKE: usize = 1;
+/// How many ticks apart the main loop is woken: 0.26 s.
+const WAKE_EVERY: u32 = 1 << 22;
+/// Bytes that the receiver holds (section 29.4): at most so many are taken in one interrupt.
+const FIFO: usize = 6;
+
+pub fn start() -> Clocks {
+    // The internal oscillator is good to 1 % at best; a UART wants the crystal.
+    CLOCK.tasks_hfclkstart().write_value(1);
+    let _ = (0..PATIENCE).any(|_| CLOCK.events_hfclkstarted().read() != 0);
+    timer0();
+    uart0();
+    Clocks {
+        clock_hz: HZ,
+        tick_hz: HZ,
+    }
+}
+
+/// QEMU has one constant device number, and one word further up than Nordic, whose numbers are random.
+pub fn is_emulated() -> bool {
+    FICR.deviceid(0).read() == 3 && FICR.deviceid(1).read() == 0x1234_5678
+}
+
+fn timer0() {
+    TIMER0
+        .mode()
+        .write(|mode| mode.set_mode(timer::vals::Mode::Timer));
+    TIMER0
+        .bitmode()
+        .write(|mode| mode.set_bitmode(timer::vals::Bitmode::_32bit));
+    TIMER0.prescaler().write(|by| by.set_prescaler(0));
+    TIMER0.tasks_clear().write_value(1);
+    TIMER0.cc(WAKE).write_value(WAKE_EVERY);
+    TIMER0.intenset().write(|int| int.set_compare(WAKE, true));
+    TIMER0.tasks_start().write_value(1);
+    // SAFETY: its handler is below and shares no memory.
+    unsafe { NVIC::unmask(Interrupt::TIMER0) };
+}
+
+/// Wakes the main loop and sets the next time.
+// SAFETY: the name that nrf-pac's interrupt table has for it; a handler without arguments.
+#[unsafe(export_name = "TIMER0")]
+extern "C" fn on_timer() {
+    TIMER0.events_compare(WAKE).write_value(0);
+    let next = TIMER0.cc(WAKE).read().wrapping_add(WAKE_EVERY);
+    TIMER0.cc(WAKE).write_value(next);
+}
+
+pub fn ticks() -> u32 {
+    TIMER0.tasks_capture(NOW).write_value(1);
+    TIMER0.cc(NOW).read()
+}
+
+/// 8 bits, no parity, one stop bit, no flow control.
+fn uart0() {
+    // The line idles high, also before the UART takes the pin.
+    GPIO.outset().write(|pins| pins.set_pin(TX_PIN, true));
+    GPIO.pin_cnf(TX_PIN)
+        .write(|pin| pin.set_dir(gpio::vals::Dir::Output));
+    // An open input would read noise.
+    GPIO.pin_cnf(RX_PIN)
+        .write(|pin| pin.set_pull(gpio::vals::Pull::Pullup));
+    UART0.pseltxd().write_value(TX_PIN as u32);
+    UART0.pselrxd().write_value(RX_PIN as u32);
+    UART0.baudrate().write(|baud| {
+        // Steps of 2^12 of a fraction of 2^32 of 16 MHz: gives the values of the manual's table.
+        let fraction = (((BAUD as u64) << 32) / HZ as u64) as u32;
+        let rounded = fraction.wrapping_add(0x800) & 0xFFFF_F000;
+        baud.set_baudrate(uart::vals::Baudrate::from_bits(rounded));
+    });
+    UART0
+        .enable()
+        .write(|enable| enable.set_enable(uart::vals::Enable::Enabled));
+    UART0.events_rxdrdy().write_value(0);
+    UART0.events_txdrdy().write_value(0);
+    UART0.intenset().write(|int| {
+        int.set_rxdrdy(true);
+        int.set_error(true);
+    });
+    UART0.tasks_starttx().write_value(1);
+    UART0.tasks_startrx().write_value(1);
+    // SAFETY: its handler is below and shares only the ring.
+    unsafe { NVIC::unmask(Interrupt::UART0) };
+}
+
+/// Takes what the receiver's FIFO holds. The event goes first: a byte that comes meanwhile sets it again.
+// SAFETY: the name that nrf-pac's interrupt table has for it; a handler without arguments.
+#[unsafe(export_name = "UART0")]
+extern "C" fn on_uart() {
+    for _ in 0..FIFO {
+        if UART0.events_rxdrdy().read() == 0 {
+            break;
+        }
+        UART0.events_rxdrdy().write_value(0);
+        RECEIVED.push(UART0.rxd().read().rxd());
+    }
+    if UART0.events_error().read() != 0 {
+        UART0.events_error().write_value(0);
+        let source = UART0.errorsrc().read();
+        UART0.errorsrc().write_value(source); // ones clear
+        if source.overrun() {
+            RECEIVED.lose();
+        }
+    }
+}
+
+/// Waits for the byte's end: the event says that one has left, not that there is room.
+pub fn send(byte: u8) -> bool {
+    UART0.events_txdrdy().write_value(0);
+    UART0.txd().write(|txd| txd.set_txd(byte));
+    (0..SEND_PATIENCE).any(|_| UART0.events_txdrdy().read() != 0)
+}
+
+/// With interrupts masked, an interrupt that comes after the question still ends the wait.
+pub fn sleep_unless(is_due: impl FnOnce() -> bool) {
+    cortex_m::interrupt::free(|_| {
+        if !is_due() {
+            cortex_m::asm::wfi();
+        }
+    });
+}
+
+/// Four seconds of the 32 kHz clock, which the watchdog starts itself; it stops while a debugger holds the core.
+pub fn start_watchdog() {
+    WDT.config().write(|config| {
+        config.set_sleep(wdt::vals::Sleep::Run);
+        config.set_halt(wdt::vals::Halt::Pause);
+    });
+    WDT.crv().write_value(4 * 32_768 - 1);
+    WDT.rren().write(|enable| enable.set_rr(0, true));
+    WDT.tasks_start().write_value(1);
+}
+
+pub fn feed_watchdog() {
+    WDT.rr(0).write(|rr| rr.set_rr(wdt::vals::Rr::Reload));
+}
+
+pub fn reset() -> ! {
+    SCB::sys_reset()
+}

@@ -1,0 +1,207 @@
+//! STM32F405: USART1 on PA9 (TX) and PA10 (RX), 168 MHz from the crystal or from the internal oscillator.
+//!
+//! USART1 on these pins is also what the part's own boot loader listens to, and the first serial port of QEMU's
+//! `netduinoplus2`. Sections and tables: ST's reference manual RM0090.
+
+use super::{BAUD, Clocks, number};
+use crate::ring::Ring;
+use core::sync::atomic::{AtomicU32, Ordering};
+use cortex_m::peripheral::{NVIC, SCB, SYST, syst::SystClkSource};
+use stm32_metapac::{DBGMCU, FLASH, GPIOA, IWDG, Interrupt, RCC, USART1, flash, gpio, iwdg, rcc};
+
+pub const NAME: &str = "stm32f405";
+/// Bytes between interrupt and main loop: 90 ms at 115200 baud.
+pub static RECEIVED: Ring<1024> = Ring::new();
+
+/// The internal oscillator, which runs after reset.
+const HSI_HZ: u32 = 16_000_000;
+const HSE_HZ: u32 = number(env!("STAYA_HSE_HZ"));
+const PLL_HZ: u32 = 168_000_000;
+/// How often a bit that tells of an oscillator is read before it counts as missing: tens of
+/// milliseconds at 16 MHz; crystals need a few, the PLL 0.3.
+const PATIENCE: u32 = 50_000;
+/// How often the transmitter is asked for room: more than one byte's time at 9600 baud.
+const SEND_PATIENCE: u32 = 200_000;
+/// SysTick counts down from here, 24 bits.
+const SYSTICK_TOP: u32 = 0x00FF_FFFF;
+/// How often SysTick began again.
+static WRAPS: AtomicU32 = AtomicU32::new(0);
+
+pub fn start() -> Clocks {
+    let clock_hz = clocks();
+    usart(if clock_hz == PLL_HZ {
+        PLL_HZ / 2
+    } else {
+        HSI_HZ
+    });
+    // SAFETY: the only place that takes the core's peripherals, once, at the start.
+    let mut core = unsafe { cortex_m::Peripherals::steal() };
+    core.SYST.set_clock_source(SystClkSource::Core);
+    core.SYST.set_reload(SYSTICK_TOP);
+    core.SYST.clear_current();
+    core.SYST.enable_counter();
+    core.SYST.enable_interrupt();
+    Clocks {
+        clock_hz,
+        // The emulator's SysTick runs at 168 MHz whatever the clock tree says.
+        tick_hz: if is_emulated() { PLL_HZ } else { clock_hz },
+    }
+}
+
+/// The debug unit's device code is 0x413 on every STM32F405; QEMU has no debug unit and reads 0.
+pub fn is_emulated() -> bool {
+    DBGMCU.idcode().read().0 == 0
+}
+
+/// Brings the processor to 168 MHz by the crystal, else by the internal oscillator, else leaves it
+/// at 16 MHz. Returns what it is.
+fn clocks() -> u32 {
+    RCC.cr().modify(|cr| cr.set_hseon(true));
+    let crystal = comes(|| RCC.cr().read().hserdy());
+    let (source, source_hz) = if crystal {
+        (rcc::vals::Pllsrc::HSE, HSE_HZ)
+    } else {
+        RCC.cr().modify(|cr| cr.set_hseon(false));
+        (rcc::vals::Pllsrc::HSI, HSI_HZ)
+    };
+    RCC.pllcfgr().write(|pll| {
+        pll.set_pllsrc(source);
+        // 1 MHz in, 336 MHz inside, 168 MHz out; 48 MHz for USB (section 7.3.2).
+        pll.set_pllm(rcc::vals::Pllm::from_bits((source_hz / 1_000_000) as u8));
+        pll.set_plln(rcc::vals::Plln::from_bits(336));
+        pll.set_pllp(rcc::vals::Pllp::DIV2);
+        pll.set_pllq(rcc::vals::Pllq::DIV7);
+    });
+    RCC.cr().modify(|cr| cr.set_pllon(true));
+    if !comes(|| RCC.cr().read().pllrdy()) {
+        RCC.cr().modify(|cr| cr.set_pllon(false));
+        return HSI_HZ;
+    }
+    // Flash is slower than that: five wait states at 3.3 V (table 10), before the switch.
+    FLASH.acr().modify(|acr| {
+        acr.set_latency(flash::vals::Latency::WS5);
+        acr.set_prften(true);
+        acr.set_icen(true);
+        acr.set_dcen(true);
+    });
+    RCC.cfgr().modify(|cfgr| {
+        cfgr.set_hpre(rcc::vals::Hpre::DIV1);
+        cfgr.set_ppre1(rcc::vals::Ppre::DIV4); // 42 MHz at most
+        cfgr.set_ppre2(rcc::vals::Ppre::DIV2); // 84 MHz at most
+        cfgr.set_sw(rcc::vals::Sw::PLL1_P);
+    });
+    if comes(|| RCC.cfgr().read().sws() == rcc::vals::Sw::PLL1_P) {
+        PLL_HZ
+    } else {
+        HSI_HZ
+    }
+}
+
+/// Asks until it is so, a bounded number of times.
+fn comes(mut is_so: impl FnMut() -> bool) -> bool {
+    (0..PATIENCE).any(|_| is_so())
+}
+
+/// USART1, 8 bits, no parity, one stop bit, an interrupt per byte received.
+fn usart(bus_hz: u32) {
+    RCC.ahb1enr().modify(|enable| enable.set_gpioaen(true));
+    RCC.apb2enr().modify(|enable| enable.set_usart1en(true));
+    // A clock that was just turned on needs two cycles (section 7.3.14): reading back takes them.
+    let _ = RCC.apb2enr().read();
+    for pin in [9, 10] {
+        GPIOA.afr(1).modify(|afr| afr.set_afr(pin - 8, 7)); // AF7: USART1
+        GPIOA
+            .moder()
+            .modify(|moder| moder.set_moder(pin, gpio::vals::Moder::ALTERNATE));
+    }
+    // An open input would read noise.
+    GPIOA
+        .pupdr()
+        .modify(|pupdr| pupdr.set_pupdr(10, gpio::vals::Pupdr::PULL_UP));
+    // Sixteen samples per bit: the register holds the ratio in sixteenths, so bus / baud.
+    USART1.brr().write(|brr| brr.0 = (bus_hz + BAUD / 2) / BAUD);
+    USART1.cr1().write(|cr1| {
+        cr1.set_ue(true);
+        cr1.set_te(true);
+        cr1.set_re(true);
+        cr1.set_rxneie(true);
+    });
+    // SAFETY: its handler is below and shares only the ring.
+    unsafe { NVIC::unmask(Interrupt::USART1) };
+}
+
+/// One interrupt per byte; reading SR, then DR, clears every flag that can have caused it.
+// SAFETY: the name that the PAC's interrupt table has for it; a handler without arguments.
+#[unsafe(export_name = "USART1")]
+extern "C" fn on_usart() {
+    let status = USART1.sr().read();
+    if status.ore() {
+        RECEIVED.lose();
+    }
+    if status.rxne() || status.ore() {
+        let byte = USART1.dr().read().0 as u8;
+        if status.rxne() {
+            RECEIVED.push(byte);
+        }
+    }
+}
+
+#[cortex_m_rt::exception]
+fn SysTick() {
+    // One writer: a load and a store are enough.
+    WRAPS.store(
+        WRAPS.load(Ordering::Relaxed).wrapping_add(1),
+        Ordering::Relaxed,
+    );
+}
+
+pub fn ticks() -> u32 {
+    loop {
+        let wraps = WRAPS.load(Ordering::Relaxed);
+        let left = SYST::get_current();
+        // It may have begun again without its interrupt having been served yet.
+        let pending = SCB::is_pendst_pending() && left > SYSTICK_TOP / 2;
+        if wraps == WRAPS.load(Ordering::Relaxed) {
+            let wraps = wraps.wrapping_add(u32::from(pending));
+            return (wraps << 24).wrapping_add(SYSTICK_TOP.wrapping_sub(left));
+        }
+    }
+}
+
+pub fn send(byte: u8) -> bool {
+    let has_room = (0..SEND_PATIENCE).any(|_| USART1.sr().read().txe());
+    if has_room {
+        USART1.dr().write(|dr| dr.0 = u32::from(byte));
+    }
+    has_room
+}
+
+/// With interrupts masked, an interrupt that comes after the question still ends the wait.
+pub fn sleep_unless(is_due: impl FnOnce() -> bool) {
+    cortex_m::interrupt::free(|_| {
+        if !is_due() {
+            cortex_m::asm::wfi();
+        }
+    });
+}
+
+/// The independent watchdog: its own oscillator of 32 kHz (17 to 47), divided by 64, 2048 steps: four
+/// seconds (section 21.3). It stops while a debugger holds the core.
+pub fn start_watchdog() {
+    DBGMCU.apb1fzr().modify(|freeze| freeze.set_iwdg(true));
+    // Its oscillator has to run before it takes the two values.
+    IWDG.kr().write(|kr| kr.set_key(iwdg::vals::Key::START));
+    IWDG.kr().write(|kr| kr.set_key(iwdg::vals::Key::ENABLE));
+    IWDG.pr().write(|pr| pr.set_pr(iwdg::vals::Pr::DIVIDE_BY64));
+    IWDG.rlr().write(|rlr| rlr.set_rl(2047));
+    let _ = comes(|| !IWDG.sr().read().pvu() && !IWDG.sr().read().rvu());
+    feed_watchdog();
+}
+
+pub fn feed_watchdog() {
+    IWDG.kr().write(|kr| kr.set_key(iwdg::vals::Key::RESET));
+}
+
+pub fn reset() -> ! {
+    SCB::sys_reset()
+}

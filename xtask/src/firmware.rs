@@ -1,0 +1,236 @@
+//! `cargo xtask firmware`: the ELF files of the parts, with whatever toolchain there is.
+
+use crate::device::{Toolchain, Toolchains};
+use crate::repo::{Repo, run};
+use crate::report::Report;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// A microcontroller that there is firmware for.
+pub struct Part {
+    /// As in `hil/firmware` and on the command line.
+    pub name: &'static str,
+    /// What its code is compiled for.
+    pub target: &'static str,
+    /// The emulator that runs it.
+    pub emulator: &'static str,
+}
+
+/// Every part.
+pub const PARTS: [Part; 3] = [
+    Part {
+        name: "stm32f405",
+        target: "thumbv7em-none-eabihf",
+        emulator: "qemu-system-arm",
+    },
+    Part {
+        name: "nrf51",
+        target: "thumbv6m-none-eabi",
+        emulator: "qemu-system-arm",
+    },
+    Part {
+        name: "riscv32",
+        target: "riscv32imac-unknown-none-elf",
+        emulator: "qemu-system-riscv32",
+    },
+];
+
+/// The part of this name.
+pub fn part(name: &str) -> Option<&'static Part> {
+    PARTS.iter().find(|part| part.name == name)
+}
+
+/// Cargo's profile for what goes on a part, and the one to debug with.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Profile {
+    Firmware,
+    Debug,
+}
+
+impl Profile {
+    /// As cargo is told, and the folder that it builds in.
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Firmware => ("firmware", "firmware"),
+            Self::Debug => ("dev", "debug"),
+        }
+    }
+
+    /// Where the ELF file of a program is put: `target/firmware/PART/BIN`, or
+    /// `target/firmware/PART/debug/BIN`.
+    pub fn elf(self, repo: &Repo, part: &Part, bin: &str) -> PathBuf {
+        let folder = repo.target.join("firmware").join(part.name);
+        match self {
+            Self::Firmware => folder.join(bin),
+            Self::Debug => folder.join("debug").join(bin),
+        }
+    }
+}
+
+/// Links only when the optimiser has thrown out every panic.
+const ONLY_OPTIMISED: &str = "nopanic";
+
+/// The command: one step per part.
+pub fn run_command(repo: &Repo, report: &mut Report, parts: &[&Part], profile: Profile) {
+    let mut toolchains = Toolchains::default();
+    for part in parts {
+        build_step(repo, report, &mut toolchains, part, profile);
+    }
+}
+
+/// Builds every program for a part as one step. Returns whether the ELF files are there.
+pub fn build_step(
+    repo: &Repo,
+    report: &mut Report,
+    toolchains: &mut Toolchains,
+    part: &Part,
+    profile: Profile,
+) -> bool {
+    let name = match profile {
+        Profile::Firmware => format!("firmware for {}", part.name),
+        Profile::Debug => format!("firmware for {}, debug", part.name),
+    };
+    match toolchains.find(repo, part.target) {
+        Ok(toolchain) => report.step(&name, || build(repo, &toolchain, part, profile)),
+        Err(reason) => {
+            report.skip(&name, &reason);
+            false
+        }
+    }
+}
+
+/// Builds every program for a part and copies the ELF files to where they are looked for.
+fn build(repo: &Repo, toolchain: &Toolchain, part: &Part, profile: Profile) -> Result<(), String> {
+    let (profile_name, folder) = profile.names();
+    let mut cargo = toolchain.cargo(repo, part.target, "build");
+    cargo.args(["--locked", "--profile", profile_name]);
+    cargo.args(["--package", "staya-firmware"]);
+    let bins = bins(repo, profile)?;
+    for bin in &bins {
+        cargo.args(["--bin", bin]);
+    }
+    if std::env::var_os("DEFMT_LOG").is_none() {
+        cargo.env("DEFMT_LOG", "info");
+    }
+    run(&mut cargo)?;
+    let built = toolchain.target_folder(repo).join(part.target).join(folder);
+    println!("{:>8} {:>8}  file", "flash", "RAM");
+    for bin in &bins {
+        let to = profile.elf(repo, part, bin);
+        let parent = to.parent().unwrap_or(&repo.target);
+        fs::create_dir_all(parent).map_err(|error| format!("{}: {error}", parent.display()))?;
+        let from = built.join(bin);
+        fs::copy(&from, &to).map_err(|error| format!("{}: {error}", from.display()))?;
+        let (flash, ram) = footprint(&to)?;
+        println!("{flash:>8} {ram:>8}  {}", to.display());
+    }
+    Ok(())
+}
+
+/// The names of the programs: each file in `src/bin` is one.
+fn bins(repo: &Repo, profile: Profile) -> Result<Vec<String>, String> {
+    let folder = repo.root.join("hil/firmware/src/bin");
+    let entries =
+        fs::read_dir(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let mut bins: Vec<String> = entries
+        .filter_map(|entry| Some(entry.ok()?.path().file_stem()?.to_str()?.to_string()))
+        .filter(|bin| profile == Profile::Firmware || bin != ONLY_OPTIMISED)
+        .collect();
+    bins.sort();
+    Ok(bins)
+}
+
+/// Bytes of flash and of static RAM that an ELF file of 32 bits takes.
+fn footprint(file: &Path) -> Result<(u64, u64), String> {
+    let bytes = fs::read(file).map_err(|error| format!("{}: {error}", file.display()))?;
+    sizes(&bytes).ok_or_else(|| format!("{}: no ELF file of 32 bits", file.display()))
+}
+
+/// The same from the file's section headers: what is loaded and has contents is flash, what is
+/// writable is RAM. What riscv-rt calls a section and is only the rest of RAM does not count.
+fn sizes(elf: &[u8]) -> Option<(u64, u64)> {
+    const EMPTY: u32 = 8;
+    const WRITABLE: u32 = 1;
+    const LOADED: u32 = 2;
+    if elf.get(..6)? != b"\x7fELF\x01\x01" {
+        return None;
+    }
+    let half = |at: usize| {
+        let bytes = elf.get(at..at.checked_add(2)?)?.try_into().ok()?;
+        Some(usize::from(u16::from_le_bytes(bytes)))
+    };
+    let word = |at: usize| {
+        let bytes = elf.get(at..at.checked_add(4)?)?.try_into().ok()?;
+        Some(u32::from_le_bytes(bytes))
+    };
+    let offset = |at: usize| usize::try_from(word(at)?).ok();
+    let (table, size, count, names) = (offset(32)?, half(46)?, half(48)?, half(50)?);
+    let names = offset(table + names * size + 16)?;
+    let (mut flash, mut ram) = (0, 0);
+    for header in (0..count).map(|n| table + n * size) {
+        let (kind, flags) = (word(header + 4)?, word(header + 8)?);
+        let bytes = u64::from(word(header + 20)?);
+        let name = elf.get(names + offset(header)?..)?;
+        let is_rest = name.starts_with(b".stack\0") || name.starts_with(b".heap\0");
+        if flags & LOADED == 0 || is_rest {
+            continue;
+        }
+        if kind != EMPTY {
+            flash += bytes;
+        }
+        if flags & WRITABLE != 0 {
+            ram += bytes;
+        }
+    }
+    Some((flash, ram))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contents_are_flash_and_writable_sections_are_ram() {
+        // Header, names, five sections: text, data, bss, stack, and one that is not loaded.
+        let names = b"\0.text\0.data\0.bss\0.stack\0.debug\0";
+        let sections = [
+            (1, 1, 6, 100),
+            (7, 1, 3, 8),
+            (13, 8, 3, 200),
+            (18, 8, 3, 4000),
+            (25, 1, 0, 50),
+        ];
+        let mut elf = vec![0u8; 52];
+        elf[..6].copy_from_slice(b"\x7fELF\x01\x01");
+        elf.extend(names);
+        let table = elf.len() as u32;
+        elf[32..36].copy_from_slice(&table.to_le_bytes());
+        elf[46] = 40; // bytes of a section header
+        elf[48] = 6; // how many
+        elf[50] = 5; // the one that says where the names are
+        let mut section = |name: u32, kind: u32, flags: u32, at: u32, bytes: u32| {
+            for word in [name, kind, flags, 0, at, bytes, 0, 0, 0, 0] {
+                elf.extend(word.to_le_bytes());
+            }
+        };
+        for (name, kind, flags, bytes) in sections {
+            section(name, kind, flags, 0, bytes);
+        }
+        section(0, 3, 0, 52, names.len() as u32);
+        assert_eq!(sizes(&elf), Some((108, 208)));
+        assert_eq!(sizes(&elf[..elf.len() - 200]), None);
+        elf[4] = 2; // 64 bits
+        assert_eq!(sizes(&elf), None);
+    }
+
+    #[test]
+    fn every_part_is_found_by_its_name() {
+        for wanted in &PARTS {
+            assert_eq!(
+                part(wanted.name).map(|found| found.target),
+                Some(wanted.target)
+            );
+        }
+        assert!(part("stm32").is_none());
+    }
+}
