@@ -6,6 +6,7 @@ use crate::obstacle::Obstacle;
 use crate::time::{Duration, Instant};
 use crate::wire::{Mode, RequestKind, RobotId};
 use heapless::Vec;
+use serde::{Deserialize, Serialize};
 
 /// Bytes that one step can send: a beacon and a few requests and acknowledgements.
 pub const OUTBOX: usize = 256;
@@ -13,7 +14,7 @@ pub const OUTBOX: usize = 256;
 pub const EVENTS: usize = 8;
 
 /// The robot's own state, from its sensors or its autopilot.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Pose<S> {
     /// World position.
     pub position: Position,
@@ -22,7 +23,7 @@ pub struct Pose<S> {
 }
 
 /// The robot's state on the grid, for guidance that moves cell by cell.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CellState {
     /// The cell it occupies.
     pub cell: Cell,
@@ -43,7 +44,7 @@ pub struct Surroundings<'a, S> {
 }
 
 /// A place within a cell.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct InCell<S> {
     /// The place minus the cell's centre, metres.
     pub offset_m: Vec2<S>,
@@ -70,7 +71,7 @@ pub struct Inputs<'a, S> {
 }
 
 /// What the body should do until the next step.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum Command<S> {
     /// Stand.
     #[default]
@@ -83,7 +84,7 @@ pub enum Command<S> {
 }
 
 /// Something that the robot's owner may want to know.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Event {
     /// The supervisor changed its mode.
@@ -120,7 +121,7 @@ pub enum Event {
 }
 
 /// What one step gives.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[must_use = "a step only decides; the caller moves the body and sends the bytes"]
 pub struct Outputs<S> {
     /// What the body should do.

@@ -1,0 +1,235 @@
+//! What a session asks of a robot's brain, and the one brain that can be anything.
+
+use crate::capacities::Capacities;
+use crate::message::{NumberFormat, Report, StepInputs};
+use core::fmt;
+use heapless::Vec;
+use staya_controller::agent::InCell;
+use staya_controller::agent::{
+    AnyAgent, CELLS, Command, GridWorkspace, HALF_PLANES, Inputs, NEIGHBORS, Outputs, Pose, Setup,
+    Surroundings, Task, VISITS,
+};
+use staya_controller::obstacle::Obstacle;
+use staya_controller::scalar::{Q16, Scalar, cast};
+use staya_controller::wire::RobotId;
+
+/// The robot that an STM32F405 has room for.
+pub type Large = Robot<f32, CELLS, VISITS, NEIGHBORS, HALF_PLANES, 32>;
+/// The robot that the micro:bit's nRF51 has room for.
+pub type Small = Robot<Q16, CELLS, VISITS, 8, 16, 16>;
+/// Bytes of the inbox beside a [`Large`].
+pub const LARGE_INBOX: usize = 8192;
+/// Bytes of the inbox beside a [`Small`].
+pub const SMALL_INBOX: usize = 1024;
+
+/// Why a brain refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refusal {
+    /// It was not told what to be.
+    NotConfigured,
+    /// The setup is for nobody.
+    Nobody,
+    /// The guidance has no use for the task.
+    Task,
+    /// A search of so many cells.
+    Search {
+        /// Cells.
+        needs: usize,
+        /// Cells that fit.
+        room: usize,
+    },
+    /// More obstacles than this.
+    Obstacles {
+        /// Obstacles that fit.
+        room: usize,
+    },
+    /// A window whose cells are not as many as its sides say, or an obstacle of no known shape.
+    Nonsense,
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotConfigured => f.write_str("not configured"),
+            Self::Nobody => f.write_str("a setup for nobody: numbers begin at 1"),
+            Self::Task => f.write_str("the guidance has no use for the task"),
+            Self::Search { needs, room } => {
+                write!(f, "a search of {needs} cells, and room for {room}")
+            }
+            Self::Obstacles { room } => write!(f, "more than {room} obstacles"),
+            Self::Nonsense => f.write_str("terrain or obstacles that make no sense"),
+        }
+    }
+}
+
+/// The part of a device that decides. Object-safe, so that a host can hold the shadows of different parts.
+pub trait Brain {
+    /// What it computes with.
+    fn number(&self) -> NumberFormat;
+
+    /// What it has room for; the inbox is up to who owns the buffer.
+    fn capacities(&self) -> Capacities;
+
+    /// Becomes this robot, just started; the digest of its state.
+    ///
+    /// # Errors
+    /// What does not fit, see [`Refusal`]; then it is no robot at all.
+    fn configure(&mut self, setup: &Setup, task: Option<&Task>) -> Result<u64, Refusal>;
+
+    /// One step of the robot.
+    ///
+    /// # Errors
+    /// [`Refusal::NotConfigured`], or inputs that do not fit or make no sense; the robot is as it was.
+    fn step(&mut self, inputs: &StepInputs<'_>) -> Result<Report, Refusal>;
+
+    /// Is no robot any more.
+    fn forget(&mut self);
+}
+
+/// A robot that is told what to be. `CELLS` of a search, `M` remembered visits, `N` neighbours, `K` half-planes, `O` obstacles.
+#[derive(Clone, Debug)]
+pub struct Robot<
+    S,
+    const CELLS: usize,
+    const M: usize,
+    const N: usize,
+    const K: usize,
+    const O: usize,
+> {
+    agent: Option<AnyAgent<S, CELLS, M, N, K>>,
+    workspace: GridWorkspace<CELLS>,
+    obstacles: Vec<Obstacle<S>, O>,
+}
+
+impl<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usize, const O: usize>
+    Robot<S, CELLS, M, N, K, O>
+{
+    /// Nobody yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            agent: None,
+            workspace: GridWorkspace::new(),
+            obstacles: Vec::new(),
+        }
+    }
+
+    /// The robot, once it was told what to be.
+    #[must_use]
+    pub const fn agent(&self) -> Option<&AnyAgent<S, CELLS, M, N, K>> {
+        self.agent.as_ref()
+    }
+}
+
+impl<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usize, const O: usize>
+    Default for Robot<S, CELLS, M, N, K, O>
+{
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usize, const O: usize>
+    Brain for Robot<S, CELLS, M, N, K, O>
+{
+    fn number(&self) -> NumberFormat {
+        if S::IS_FLOATING {
+            NumberFormat::F32
+        } else {
+            NumberFormat::Q16
+        }
+    }
+
+    fn capacities(&self) -> Capacities {
+        let count = |n: usize| u16::try_from(n).unwrap_or(u16::MAX);
+        Capacities {
+            neighbors: count(N),
+            search_cells: count(CELLS),
+            visits: count(M),
+            half_planes: count(K),
+            obstacles: count(O),
+            inbox_bytes: 0,
+        }
+    }
+
+    fn configure(&mut self, setup: &Setup, task: Option<&Task>) -> Result<u64, Refusal> {
+        self.agent = None;
+        if setup.agent.id == RobotId::NOBODY {
+            return Err(Refusal::Nobody);
+        }
+        let (needs, room) = (setup.cells(), CELLS);
+        if needs > room {
+            return Err(Refusal::Search { needs, room });
+        }
+        let agent = self.agent.insert(setup.agent());
+        if task.is_none_or(|task| agent.assign(task)) {
+            return Ok(agent.digest());
+        }
+        self.agent = None;
+        Err(Refusal::Task)
+    }
+
+    fn step(&mut self, inputs: &StepInputs<'_>) -> Result<Report, Refusal> {
+        let agent = self.agent.as_mut().ok_or(Refusal::NotConfigured)?;
+        let window = match &inputs.land {
+            Some(land) => Some(land.window().ok_or(Refusal::Nonsense)?),
+            None => None,
+        };
+        self.obstacles.clear();
+        if let Some(around) = &inputs.around {
+            for obstacle in around.obstacles() {
+                let obstacle = obstacle.ok_or(Refusal::Nonsense)?;
+                let kept = self.obstacles.push(obstacle);
+                kept.map_err(|_| Refusal::Obstacles { room: O })?;
+            }
+        }
+        if inputs.around.is_some_and(|around| !around.is_whole()) {
+            return Err(Refusal::Nonsense);
+        }
+        let surroundings = inputs.around.map(|around| Surroundings {
+            max_speed_mps: cast(around.max_speed_mps),
+            obstacles: self.obstacles.as_slice(),
+            in_cell: around.in_cell.map(|place| InCell {
+                offset_m: place.offset_m.cast(),
+                cell_m: cast(place.cell_m),
+            }),
+        });
+        let own = Inputs {
+            pose: Pose {
+                position: inputs.pose.position,
+                velocity_mps: inputs.pose.velocity_mps.cast(),
+            },
+            cell: inputs.cell,
+            window,
+            surroundings,
+            inbox: inputs.inbox,
+        };
+        let outputs = agent.step(&own, inputs.now, &mut self.workspace);
+        Ok(Report {
+            outputs: in_f32(outputs),
+            mode: agent.mode(),
+            leader: agent.leader(),
+            target: agent.target(),
+            digest: agent.digest(),
+        })
+    }
+
+    fn forget(&mut self) {
+        self.agent = None;
+    }
+}
+
+fn in_f32<S: Scalar>(outputs: Outputs<S>) -> Outputs<f32> {
+    Outputs {
+        command: match outputs.command {
+            Command::Hold => Command::Hold,
+            Command::Move(moves) => Command::Move(moves),
+            Command::Velocity(velocity_mps) => Command::Velocity(velocity_mps.cast()),
+        },
+        received: outputs.received,
+        rejected: outputs.rejected,
+        outbox: outputs.outbox,
+        events: outputs.events,
+        call_again: outputs.call_again,
+    }
+}

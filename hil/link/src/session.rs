@@ -1,0 +1,425 @@
+//! The device's end of the link: bytes in, answers out. Read [`Session::receive`] first.
+//!
+//! ```
+//! use staya_link::robot::{SMALL_INBOX, Small};
+//! use staya_link::session::{About, Reaction, Session, content_bytes};
+//!
+//! const CONTENT: usize = content_bytes(169, 16, SMALL_INBOX);
+//! let about = About { part: "nrf51", firmware: "lockstep", boot: 0, ticks_per_second: 16_000_000 };
+//! let mut session = Session::<Small, CONTENT>::new(Small::new(), about);
+//! let mut meter = ();
+//! // Said once after each start; then each byte of the line.
+//! assert!(!session.hello().is_empty());
+//! for byte in [0, 1, 2, 0] {
+//!     match session.receive(byte, &mut meter) {
+//!         Reaction::None => {}
+//!         Reaction::Answer(frame) => drop(frame), // to the line
+//!         Reaction::Restart => {}                 // by the reset register
+//!     }
+//! }
+//! assert_eq!(session.counts().damaged, 1);
+//! ```
+
+use crate::capacities::{self, Capacities};
+use crate::frame::{Deframer, Frame, FrameError, VERSION};
+use crate::message::{
+    Configured, Cost, Fault, FaultKind, Greeting, Hello, MAX_ANSWER, MAX_CONFIGURE, Restart,
+    StepInputs, Token, kind,
+};
+use crate::robot::{Brain, Refusal};
+use core::fmt::{Display, Write};
+use heapless::String;
+use postcard::take_from_bytes;
+
+/// Bytes of a frame that is no decision, at most (a test fills one).
+const MAX_NOTE: usize = 128;
+
+/// `CONTENT` of a [`Session`] whose brain searches so many cells and sees so many obstacles, for an inbox of so many bytes.
+#[must_use]
+pub const fn content_bytes(search_cells: usize, obstacles: usize, inbox_bytes: usize) -> usize {
+    let step = capacities::step_bytes(search_cells, obstacles, inbox_bytes);
+    if step > MAX_CONFIGURE {
+        step
+    } else {
+        MAX_CONFIGURE
+    }
+}
+
+/// Measures what a step costs.
+pub trait Meter {
+    /// Right before the step: paints the free stack and reads the clock.
+    fn start(&mut self);
+
+    /// Right after the step: reads the clock and looks how far the paint is gone.
+    fn finish(&mut self) -> Cost;
+}
+
+/// Measures nothing.
+impl Meter for () {
+    fn start(&mut self) {}
+
+    fn finish(&mut self) -> Cost {
+        Cost::default()
+    }
+}
+
+/// What a device says of itself besides its brain's capacities.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct About {
+    /// Which part it is; 24 bytes.
+    pub part: &'static str,
+    /// Which firmware it runs, with its version; 32 bytes.
+    pub firmware: &'static str,
+    /// Another one after each start, if the part's memory allows.
+    pub boot: u32,
+    /// Rate of the meter's clock, per second.
+    pub ticks_per_second: u32,
+}
+
+/// What the device has to do after a byte.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[must_use]
+pub enum Reaction<'a> {
+    /// Nothing.
+    None,
+    /// Send this frame; it stays as it is until the next byte.
+    Answer(&'a [u8]),
+    /// Start anew, as if by the reset button.
+    Restart,
+}
+
+/// Frames that were of no use; the counts wrap.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Steps taken.
+    pub steps: u32,
+    /// Requests answered a second time.
+    pub repeated: u32,
+    /// Requests from before the last one.
+    pub stale: u32,
+    /// Frames damaged or too long.
+    pub damaged: u32,
+}
+
+/// The device's end: brain `B`, frames of at most `CONTENT` bytes of content, see [`content_bytes`].
+#[derive(Clone, Debug)]
+pub struct Session<B, const CONTENT: usize> {
+    deframer: Deframer<CONTENT>,
+    core: Core<B, CONTENT>,
+}
+
+#[derive(Clone, Debug)]
+struct Core<B, const CONTENT: usize> {
+    brain: B,
+    about: About,
+    token: Option<Token>,
+    /// The request that `answer` answers; `None`: no robot yet.
+    last: Option<u16>,
+    answer: Frame<MAX_ANSWER>,
+    /// What is said besides: the answer must stay for a repeated request.
+    note: Frame<MAX_NOTE>,
+    counts: Counts,
+}
+
+/// How a request stands to the last one.
+enum Place {
+    Repeated,
+    Stale,
+    Next,
+    Ahead,
+    /// There is no last one.
+    First,
+}
+
+impl<B: Brain, const CONTENT: usize> Session<B, CONTENT> {
+    /// Nobody yet.
+    #[must_use]
+    pub const fn new(brain: B, about: About) -> Self {
+        const { assert!(CONTENT >= MAX_CONFIGURE, "no room for a setup") };
+        Self {
+            deframer: Deframer::new(),
+            core: Core {
+                brain,
+                about,
+                token: None,
+                last: None,
+                answer: Frame::new(),
+                note: Frame::new(),
+                counts: Counts::default_const(),
+            },
+        }
+    }
+
+    /// What the device says by itself after each start.
+    pub fn hello(&mut self) -> &[u8] {
+        self.core.say_hello();
+        self.core.note.bytes()
+    }
+
+    /// What it is that decides.
+    pub const fn brain(&self) -> &B {
+        &self.core.brain
+    }
+
+    /// What has come over the line.
+    #[must_use]
+    pub const fn counts(&self) -> Counts {
+        self.core.counts
+    }
+
+    /// Takes a byte of the line. Bounded work: O(1), at the end of a frame O(its bytes), and a step of the robot if it asks for one.
+    pub fn receive(&mut self, byte: u8, meter: &mut impl Meter) -> Reaction<'_> {
+        match self.deframer.push(byte) {
+            None => Reaction::None,
+            Some(Ok((kind, body))) => self.core.handle(kind, body, meter),
+            Some(Err(error)) => self.core.refuse(error),
+        }
+    }
+}
+
+impl Counts {
+    const fn default_const() -> Self {
+        Self {
+            steps: 0,
+            repeated: 0,
+            stale: 0,
+            damaged: 0,
+        }
+    }
+}
+
+impl<B: Brain, const CONTENT: usize> Core<B, CONTENT> {
+    fn refuse(&mut self, error: FrameError) -> Reaction<'_> {
+        match error {
+            FrameError::Version(theirs) => self.fault(
+                0,
+                FaultKind::Version,
+                format_args!("the device speaks version {VERSION} of the link, not {theirs}"),
+            ),
+            FrameError::TooLong | FrameError::Cobs | FrameError::Crc => {
+                self.counts.damaged = self.counts.damaged.wrapping_add(1);
+                Reaction::None
+            }
+        }
+    }
+
+    fn handle(&mut self, kind: u8, body: &[u8], meter: &mut impl Meter) -> Reaction<'_> {
+        match kind {
+            kind::GREETING => match take_from_bytes::<Greeting>(body) {
+                Ok((greeting, _)) => self.greet(greeting.token),
+                Err(_) => self.malformed(0),
+            },
+            kind::RESTART => match take_from_bytes::<Restart>(body) {
+                Ok((restart, _)) if self.token == Some(restart.token) => Reaction::Restart,
+                Ok(_) => {
+                    self.say_hello();
+                    Reaction::Answer(self.note.bytes())
+                }
+                Err(_) => self.malformed(0),
+            },
+            kind::CONFIGURE | kind::STEP => {
+                // The number comes first in both: what was answered or is stale is not read any further.
+                let Ok((seq, rest)) = take_from_bytes::<u16>(body) else {
+                    return self.malformed(0);
+                };
+                self.request(kind, seq, rest, meter)
+            }
+            _ => self.fault(
+                0,
+                FaultKind::Malformed,
+                format_args!("no message has the number {kind}"),
+            ),
+        }
+    }
+
+    fn greet(&mut self, token: Token) -> Reaction<'_> {
+        let is_new = self.token.is_none_or(|own| {
+            let ahead = token.number.wrapping_sub(own.number).cast_signed();
+            own.run != token.run || ahead > 0
+        });
+        if is_new {
+            self.token = Some(token);
+            self.last = None;
+            self.brain.forget();
+        }
+        self.say_hello();
+        Reaction::Answer(self.note.bytes())
+    }
+
+    fn request(&mut self, kind: u8, seq: u16, body: &[u8], meter: &mut impl Meter) -> Reaction<'_> {
+        match (self.place(seq), kind) {
+            (Place::Repeated, _) => {
+                self.counts.repeated = self.counts.repeated.wrapping_add(1);
+                Reaction::Answer(self.answer.bytes())
+            }
+            (Place::Stale, _) => {
+                self.counts.stale = self.counts.stale.wrapping_add(1);
+                Reaction::None
+            }
+            (Place::First | Place::Next | Place::Ahead, kind::CONFIGURE) => {
+                self.configure(seq, body)
+            }
+            (Place::First, _) => self.fault(
+                seq,
+                FaultKind::NotConfigured,
+                format_args!("a step, but no setup"),
+            ),
+            (Place::Ahead, _) => {
+                let last = self.last.unwrap_or_default();
+                self.fault(
+                    seq,
+                    FaultKind::Gap,
+                    format_args!("request {seq} after {last}"),
+                )
+            }
+            (Place::Next, _) => self.step(seq, body, meter),
+        }
+    }
+
+    fn place(&self, seq: u16) -> Place {
+        let Some(last) = self.last else {
+            return Place::First;
+        };
+        match seq.wrapping_sub(last).cast_signed() {
+            0 => Place::Repeated,
+            1 => Place::Next,
+            2.. => Place::Ahead,
+            _ => Place::Stale,
+        }
+    }
+
+    /// Not inlined: its setup must not take stack away from a step.
+    #[inline(never)]
+    fn configure(&mut self, seq: u16, body: &[u8]) -> Reaction<'_> {
+        self.last = None;
+        let Ok((Setting { setup, task }, [])) = take_from_bytes(body) else {
+            self.brain.forget();
+            return self.malformed(seq);
+        };
+        match self.brain.configure(&setup, task.as_ref()) {
+            Ok(digest) => {
+                // An answer has room for it.
+                let _ = self
+                    .answer
+                    .fill(kind::CONFIGURED, &Configured { seq, digest });
+                self.last = Some(seq);
+                Reaction::Answer(self.answer.bytes())
+            }
+            Err(refusal) => self.refused(seq, refusal),
+        }
+    }
+
+    fn step(&mut self, seq: u16, body: &[u8], meter: &mut impl Meter) -> Reaction<'_> {
+        let Ok((inputs, [])) = take_from_bytes::<StepInputs<'_>>(body) else {
+            return self.malformed(seq);
+        };
+        meter.start();
+        let report = self.brain.step(&inputs);
+        let cost = meter.finish();
+        let report = match report {
+            Ok(report) => report,
+            Err(refusal) => return self.refused(seq, refusal),
+        };
+        if self
+            .answer
+            .fill(kind::STEPPED, &(seq, &report, cost))
+            .is_err()
+        {
+            let text = format_args!("an answer of more than {MAX_ANSWER} bytes");
+            return self.fault(seq, FaultKind::Capacity, text);
+        }
+        self.last = Some(seq);
+        self.counts.steps = self.counts.steps.wrapping_add(1);
+        Reaction::Answer(self.answer.bytes())
+    }
+
+    fn refused(&mut self, seq: u16, refusal: Refusal) -> Reaction<'_> {
+        let kind = match refusal {
+            Refusal::NotConfigured => FaultKind::NotConfigured,
+            Refusal::Nobody | Refusal::Task => FaultKind::Setup,
+            Refusal::Search { .. } | Refusal::Obstacles { .. } => FaultKind::Capacity,
+            Refusal::Nonsense => FaultKind::Malformed,
+        };
+        self.fault(seq, kind, refusal)
+    }
+
+    fn malformed(&mut self, seq: u16) -> Reaction<'_> {
+        let text = "a sound frame that cannot be read";
+        self.fault(seq, FaultKind::Malformed, text)
+    }
+
+    fn fault(&mut self, seq: u16, kind: FaultKind, text: impl Display) -> Reaction<'_> {
+        fill_fault(&mut self.note, seq, kind, text);
+        Reaction::Answer(self.note.bytes())
+    }
+
+    fn say_hello(&mut self) {
+        let Self { about, brain, .. } = self;
+        let hello = Hello {
+            token: self.token,
+            boot: about.boot,
+            ticks_per_second: about.ticks_per_second,
+            number: brain.number(),
+            capacities: Self::capacities(brain),
+            part: text(about.part),
+            firmware: text(about.firmware),
+        };
+        // A note has room for it.
+        let _ = self.note.fill(kind::HELLO, &hello);
+    }
+
+    /// What the buffer has room for besides the rest is the inbox.
+    fn capacities(brain: &B) -> Capacities {
+        let capacities = brain.capacities();
+        let (cells, obstacles) = (capacities.search_cells, capacities.obstacles);
+        let rest = capacities::step_bytes(cells.into(), obstacles.into(), 0);
+        let inbox = CONTENT.saturating_sub(rest);
+        Capacities {
+            inbox_bytes: u16::try_from(inbox).unwrap_or(u16::MAX),
+            ..capacities
+        }
+    }
+}
+
+/// [`Configure`](crate::message::Configure) without its number.
+#[derive(serde::Deserialize)]
+struct Setting {
+    setup: staya_controller::agent::Setup,
+    task: Option<staya_controller::agent::Task>,
+}
+
+/// The frame of a fault, for a panic handler that has no session. Text beyond 80 bytes is cut.
+#[must_use]
+pub fn fault_frame(kind: FaultKind, text: impl Display) -> Frame<MAX_NOTE> {
+    let mut frame = Frame::new();
+    fill_fault(&mut frame, 0, kind, text);
+    frame
+}
+
+fn fill_fault(frame: &mut Frame<MAX_NOTE>, seq: u16, kind: FaultKind, text: impl Display) {
+    let mut cut = Cut(String::new());
+    // What does not fit is cut.
+    let _ = write!(cut, "{text}");
+    let text = cut.0;
+    // A note has room for it.
+    let _ = frame.fill(kind::FAULT, &Fault { seq, kind, text });
+}
+
+/// Keeps as much text as fits.
+struct Cut<const N: usize>(String<N>);
+
+impl<const N: usize> Write for Cut<N> {
+    fn write_str(&mut self, text: &str) -> core::fmt::Result {
+        for letter in text.chars() {
+            self.0.push(letter).map_err(|_| core::fmt::Error)?;
+        }
+        Ok(())
+    }
+}
+
+fn text<const N: usize>(text: &str) -> String<N> {
+    let mut cut = Cut(String::new());
+    // What does not fit is cut.
+    let _ = cut.write_str(text);
+    cut.0
+}

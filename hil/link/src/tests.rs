@@ -1,0 +1,128 @@
+//! Tests of the whole link; what they share.
+
+mod channel;
+mod fit;
+mod frames;
+mod messages;
+mod sessions;
+
+use crate::message::{Hello, Stepped, kind};
+use crate::robot::{Large, Small};
+use crate::session::{About, Reaction, Session, content_bytes};
+use staya_controller::agent::{
+    AgentConfig, AnyHalfPlanes, CELLS, GuidanceSetup, RouteSetup, SafetySetup, Setup, Task,
+};
+use staya_controller::grid::Cell;
+use staya_controller::neighbor::Doubt;
+use staya_controller::orca::AvoidParams;
+use staya_controller::route::{Replan, RouteParams};
+use staya_controller::shuffle::Sharpness;
+use staya_controller::time::Duration;
+use staya_controller::wire::RobotId;
+use std::vec::Vec;
+
+pub const LARGE: usize = content_bytes(CELLS, 32, crate::robot::LARGE_INBOX);
+pub const SMALL: usize = content_bytes(CELLS, 16, crate::robot::SMALL_INBOX);
+pub const ABOUT: About = About {
+    part: "stm32f405",
+    firmware: "lockstep 0.1.0",
+    boot: 1,
+    ticks_per_second: 168_000_000,
+};
+
+pub fn large() -> Session<Large, LARGE> {
+    Session::new(Large::new(), ABOUT)
+}
+
+pub fn small() -> Session<Small, SMALL> {
+    let part = "nrf51";
+    Session::new(Small::new(), About { part, ..ABOUT })
+}
+
+/// A robot in the plane behind ORCA that goes to a place.
+pub fn in_plane() -> Setup {
+    Setup {
+        agent: AgentConfig {
+            radius_m: 0.25,
+            max_acceleration_mps2: 2.0,
+            ..AgentConfig::new(RobotId(1), 7, Duration::from_millis(100))
+        },
+        guidance: GuidanceSetup::Waypoint {
+            speed_mps: 1.0,
+            tolerance_m: 0.05,
+        },
+        safety: SafetySetup::Orca {
+            params: AvoidParams::default(),
+            doubt: Doubt {
+                growth_mps: 0.5,
+                most_m: 0.25,
+            },
+            source: AnyHalfPlanes::Analytic,
+        },
+    }
+}
+
+/// A robot that goes cell by cell, searching so far.
+pub fn on_grid(radius: u8) -> (Setup, Task) {
+    let params = RouteParams {
+        radius,
+        ..RouteParams::default()
+    };
+    let setup = Setup {
+        agent: AgentConfig::new(RobotId(1), 7, Duration::from_millis(100)),
+        guidance: GuidanceSetup::Route {
+            route: RouteSetup {
+                params,
+                replan: Replan::EachCell,
+                sharpness: Sharpness::Greedy,
+            },
+            speed_mps: None,
+        },
+        safety: SafetySetup::None,
+    };
+    (setup, Task::Cell(Cell::new(40, 17)))
+}
+
+/// The frame of a message.
+pub fn frame<T: serde::Serialize>(kind: u8, body: &T) -> Vec<u8> {
+    let mut frame = crate::frame::Frame::<16384>::new();
+    frame.fill(kind, body).expect("it fits");
+    frame.bytes().to_vec()
+}
+
+/// All that comes out of a session for these bytes.
+pub fn answers<B: crate::robot::Brain, const N: usize>(
+    session: &mut Session<B, N>,
+    bytes: &[u8],
+) -> Vec<Vec<u8>> {
+    let mut answers = Vec::new();
+    for byte in bytes {
+        match session.receive(*byte, &mut ()) {
+            Reaction::None => {}
+            Reaction::Answer(frame) => answers.push(frame.to_vec()),
+            Reaction::Restart => panic!("nobody asked for it"),
+        }
+    }
+    answers
+}
+
+/// What a frame says, which must be of this kind.
+pub fn read<T: serde::de::DeserializeOwned>(expected: u8, frame: &[u8]) -> T {
+    let mut deframer = crate::frame::Deframer::<16384>::new();
+    for byte in frame {
+        if let Some(found) = deframer.push(*byte) {
+            let (kind, body) = found.expect("sound");
+            assert_eq!(kind, expected);
+            return postcard::from_bytes(body).expect("readable");
+        }
+    }
+    panic!("no frame");
+}
+
+pub fn stepped(frame: &[u8]) -> Stepped {
+    read(kind::STEPPED, frame)
+}
+
+pub fn hello(frame: &[u8]) -> Hello {
+    read(kind::HELLO, frame)
+}

@@ -1,0 +1,147 @@
+//! What is cut when inputs are more than a device has room for.
+
+use crate::capacities::{Capacities, Cut, LandTooLarge, window_cells};
+use crate::message::OBSTACLE;
+use crate::robot::{Brain, Small};
+use proptest::collection::vec;
+use proptest::prelude::*;
+use staya_controller::agent::{Inputs, Pose, Surroundings};
+use staya_controller::geom::{Vec2, Vec3};
+use staya_controller::grid::{Cell, Window};
+use staya_controller::obstacle::Obstacle;
+use staya_controller::time::Instant;
+use std::vec::Vec;
+
+const NOW: Instant = Instant::from_micros(5);
+
+fn room(obstacles: u16, inbox_bytes: u16) -> Capacities {
+    Capacities {
+        obstacles,
+        inbox_bytes,
+        ..Small::new().capacities()
+    }
+}
+
+fn inputs<'a>(inbox: &'a [u8], obstacles: &'a [Obstacle<f32>]) -> Inputs<'a, f32> {
+    Inputs {
+        pose: Pose::default(),
+        cell: None,
+        window: None,
+        surroundings: Some(Surroundings {
+            max_speed_mps: 1.0,
+            obstacles,
+            in_cell: None,
+        }),
+        inbox,
+    }
+}
+
+fn ball(x: f32) -> Obstacle<f32> {
+    Obstacle::Ball {
+        center_m: Vec3::new(x, 0.0, 0.0),
+        radius_m: 0.5,
+    }
+}
+
+#[test]
+fn inbox_keeps_its_newest_whole_frames() {
+    let inbox = [1, 1, 0, 2, 0, 3, 3, 3, 0];
+    let kept = |bytes: u16| {
+        let (step, cut) = room(0, bytes)
+            .fit(1, NOW, &inputs(&inbox, &[]), &mut [])
+            .expect("no land");
+        assert_eq!(cut.inbox_bytes, inbox.len() - step.inbox.len());
+        step.inbox.to_vec()
+    };
+    assert_eq!(kept(9), inbox);
+    assert_eq!(kept(8), [2, 0, 3, 3, 3, 0]);
+    assert_eq!(kept(6), [2, 0, 3, 3, 3, 0]);
+    assert_eq!(kept(5), [3, 3, 3, 0]);
+    assert_eq!(kept(4), [3, 3, 3, 0]);
+    assert!(kept(3).is_empty() && kept(0).is_empty());
+}
+
+#[test]
+fn nearest_obstacles_stay_in_their_order() {
+    let far_first = [ball(9.0), ball(3.0), ball(-3.0), ball(1.0)];
+    let kept = |count: u16| {
+        let mut packed = [0; 4 * OBSTACLE];
+        let (step, cut) = room(count, 0)
+            .fit(1, NOW, &inputs(&[], &far_first), &mut packed)
+            .expect("no land");
+        let around = step.around.expect("given");
+        let kept: Vec<Obstacle<f32>> = around.obstacles().map(|o| o.expect("known")).collect();
+        assert_eq!(cut.obstacles, 4 - kept.len());
+        kept
+    };
+    assert_eq!(kept(4), far_first);
+    assert_eq!(kept(3), far_first[1..]);
+    // Of two equally near ones that which comes first.
+    assert_eq!(kept(2), [ball(3.0), ball(1.0)]);
+    assert_eq!(kept(1), [ball(1.0)]);
+    assert!(kept(0).is_empty());
+}
+
+#[test]
+fn an_obstacle_that_is_nowhere_goes_first() {
+    let nowhere = Obstacle::Wall([Vec2::new(f32::NAN, 0.0); 2]);
+    let obstacles = [nowhere, ball(4.0), ball(2.0)];
+    let mut packed = [0; 3 * OBSTACLE];
+    let (step, _) = room(2, 0)
+        .fit(1, NOW, &inputs(&[], &obstacles), &mut packed)
+        .expect("no land");
+    let kept = step
+        .around
+        .map(|around| around.obstacles().flatten().collect::<Vec<_>>());
+    assert_eq!(kept, Some(std::vec![ball(4.0), ball(2.0)]));
+}
+
+#[test]
+fn land_is_never_cut() {
+    assert_eq!(window_cells(169), 121);
+    assert_eq!(
+        (window_cells(0), window_cells(8), window_cells(9)),
+        (0, 0, 1)
+    );
+    let cells = [1; 144];
+    for (side, fits) in [(11, true), (12, false)] {
+        let land = &cells[..side * side];
+        let window = Window::new(land, Cell::default(), side as u16, side as u16);
+        let inputs = Inputs {
+            window,
+            ..inputs(&[], &[])
+        };
+        let fitted = room(0, 0).fit(1, NOW, &inputs, &mut []).map(|(step, cut)| {
+            let same = step.land.and_then(|land| land.window());
+            assert_eq!(same.map(|w| w.cells()), Some(land));
+            cut
+        });
+        let too_large = LandTooLarge {
+            cells: 144,
+            room: 121,
+        };
+        let expected = if fits {
+            Ok(Cut::default())
+        } else {
+            Err(too_large)
+        };
+        assert_eq!(fitted, expected);
+    }
+}
+
+proptest! {
+    /// What stays is a tail of the inbox that begins with a frame, fits, and leaves no room for one frame more.
+    #[test]
+    fn any_inbox_is_cut_at_a_frame(inbox in vec(0_u8..4, 0..60), bytes in 0_u16..70) {
+        let (step, _) = room(0, bytes).fit(1, NOW, &inputs(&inbox, &[]), &mut []).expect("no land");
+        let kept = step.inbox;
+        prop_assert!(kept.len() <= usize::from(bytes) && inbox.ends_with(kept));
+        let cut = &inbox[..inbox.len() - kept.len()];
+        // A lone tail without a delimiter may go as well.
+        prop_assert!(kept.is_empty() || cut.last().is_none_or(|byte| *byte == 0));
+        if !cut.is_empty() {
+            let frame = cut.len() - cut[..cut.len() - 1].iter().rposition(|b| *b == 0).map_or(0, |at| at + 1);
+            prop_assert!(kept.len() + frame > usize::from(bytes));
+        }
+    }
+}
