@@ -70,6 +70,14 @@ pub struct BoidsSetup {
 }
 
 impl BoidsSetup {
+    /// The paper's values at a scale of one metre: 30, 150, 0.05, 0.02.
+    pub const PAPER: Self = Self {
+        crowded_m: 30.0,
+        closest_m: 150.0,
+        max_turn: 0.05,
+        max_turn_away: 0.02,
+    };
+
     /// The parameters in a kind of number.
     #[must_use]
     pub fn params<S: Scalar>(&self) -> BoidsParams<S> {

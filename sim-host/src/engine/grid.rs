@@ -8,9 +8,7 @@ use crate::metrics::{FormationMeter, Keeping};
 use crate::record::Motion;
 use crate::scenario::{Robot, Scenario};
 use crate::world::{Misplaced, World};
-use staya_controller::agent::{
-    Agent, AgentConfig, CellState, Command, Guidance, Inputs, NEIGHBORS, Safety,
-};
+use staya_controller::agent::{AgentConfig, CellState, Command, Inputs, Task};
 use staya_controller::grid::UNIT;
 use staya_controller::time::Duration;
 use staya_controller::wire::Mode;
@@ -126,13 +124,8 @@ impl Ground for Grid {
 
     fn configure(&self, _: &mut AgentConfig<f32>) {}
 
-    fn assign<G: Guidance<f32>, A: Safety<f32>>(
-        &self,
-        index: usize,
-        _: u32,
-        agent: &mut Agent<f32, G, NEIGHBORS, A>,
-    ) {
-        agent.assign_goal(self.robots[index].goal);
+    fn task(&self, index: usize, _: u32) -> Task {
+        Task::Cell(self.robots[index].goal)
     }
 
     fn keeping(&mut self, counts: bool) -> Option<Keeping> {

@@ -4,7 +4,7 @@ use super::Status;
 use crate::metrics::Keeping;
 use crate::record::Motion;
 use crate::world::plane::Clearance;
-use staya_controller::agent::{Agent, AgentConfig, Command, Guidance, Inputs, NEIGHBORS, Safety};
+use staya_controller::agent::{AgentConfig, Command, Inputs, Task};
 
 /// A world with bodies, as the engine needs it. Bodies are numbered as the robots of the scenario.
 pub trait Ground: Send + Sync {
@@ -38,13 +38,8 @@ pub trait Ground: Send + Sync {
     /// What the robot of body `index` must know of its body.
     fn configure(&self, config: &mut AgentConfig<f32>);
 
-    /// Gives a robot that starts at `tick` its task.
-    fn assign<G: Guidance<f32>, A: Safety<f32>>(
-        &self,
-        index: usize,
-        tick: u32,
-        agent: &mut Agent<f32, G, NEIGHBORS, A>,
-    );
+    /// What the robot of body `index` has to do if it starts at `tick`.
+    fn task(&self, index: usize, tick: u32) -> Task;
 
     /// How well a formation is kept now, if there is one; `counts`: a tick is over.
     fn keeping(&mut self, _counts: bool) -> Option<Keeping> {

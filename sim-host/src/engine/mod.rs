@@ -9,16 +9,18 @@
 //! [`simulate`] runs a whole scenario with the guidance that it asks for.
 
 mod body;
+mod elsewhere;
 mod grid;
 mod ground;
 mod hash;
 mod plane;
 mod simulate;
 
+pub use elsewhere::{Decision, Elsewhere};
 pub use grid::Grid;
 pub use ground::{Ground, Words};
 pub use plane::PlaneGround;
-pub use simulate::{Moment, Outcome, simulate};
+pub use simulate::{Moment, Outcome, simulate, simulate_with};
 
 use crate::metrics::{Arrivals, Keeping};
 use crate::radio::Radio;
@@ -27,7 +29,8 @@ use crate::scenario::{Fault, Robot, Scenario};
 use hash::Chain;
 use rayon::prelude::*;
 use staya_controller::agent::{
-    Agent, AgentConfig, Command, Guidance, Inputs, NEIGHBORS, OUTBOX, Safety,
+    Agent, AgentConfig, Command, Guidance, GuidanceSetup, Inputs, NEIGHBORS, OUTBOX, Safety,
+    SafetySetup, Setup,
 };
 use staya_controller::grid::Cell;
 use staya_controller::time::{Duration, Instant};
@@ -39,7 +42,8 @@ const BATCH: usize = 64;
 /// A robot's computer.
 #[derive(Debug)]
 struct Computer<G, A> {
-    agent: Agent<f32, G, NEIGHBORS, A>,
+    /// `None`: elsewhere.
+    agent: Option<Agent<f32, G, NEIGHBORS, A>>,
     outbox: heapless::Vec<u8, OUTBOX>,
     /// Counts its starts.
     boot: u8,
@@ -50,7 +54,7 @@ struct Computer<G, A> {
 }
 
 /// What the rest of the engine needs to know of a robot after its decision.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Status {
     /// What it is doing.
     pub mode: Mode,
@@ -60,8 +64,67 @@ pub struct Status {
     pub target: Cell,
 }
 
+impl Status {
+    /// Its computer is down.
+    const fn fall_silent(&mut self) {
+        (self.mode, self.leader) = (Mode::Fault, RobotId::NOBODY);
+    }
+}
+
+impl<G, A> Computer<G, A> {
+    /// Its own clock.
+    const fn now(&self, tick: u32, tick_us: u32) -> Instant {
+        Instant::from_micros(tick.wrapping_sub(self.epoch).wrapping_mul(tick_us))
+    }
+}
+
+/// The beginning of a tick, as robots see it.
+struct Tick<'a, W> {
+    tick: u32,
+    ground: &'a W,
+    radio: &'a Radio,
+}
+
+impl<W: Ground> Tick<'_, W> {
+    /// What robot `index` senses and hears.
+    fn inputs<'b, G, A>(
+        &'b self,
+        index: usize,
+        computer: &Computer<G, A>,
+        senses: &'b mut W::Scratch,
+        heard: &'b mut Vec<u8>,
+    ) -> Inputs<'b, f32> {
+        // What arrived while it was down, it never heard.
+        let has_just_restarted = computer.boot > 0 && computer.epoch == self.tick;
+        let delivered = match has_just_restarted {
+            true => &[],
+            false => self.radio.inbox(index),
+        };
+        let inbox = match self.ground.orders(self.tick) {
+            None => delivered,
+            Some(orders) => {
+                heard.clear();
+                heard.extend_from_slice(delivered);
+                heard.extend_from_slice(orders);
+                heard
+            }
+        };
+        Inputs {
+            inbox,
+            ..self.ground.sense(index, self.tick, senses)
+        }
+    }
+}
+
 /// Makes the guidance and the safety layer of a robot by its number in [`Scenario::robots`].
 type Brains<G, A> = Box<dyn Fn(usize) -> (G, A) + Send + Sync>;
+
+/// The controllers that run elsewhere, and what they are made of.
+struct Outside {
+    controllers: Box<dyn Elsewhere>,
+    /// By number, rising.
+    robots: Vec<(usize, GuidanceSetup, SafetySetup)>,
+}
 
 /// A scenario in motion on ground `W`. `G` is the guidance of all its robots, `A` their safety layer.
 pub struct Engine<W, G, A> {
@@ -78,6 +141,7 @@ pub struct Engine<W, G, A> {
     statuses: Vec<Status>,
     chains: Vec<Chain>,
     positions_m: Vec<[f64; 2]>,
+    outside: Option<Outside>,
     arrivals: Arrivals,
     collisions: u64,
     packets: PacketCounts,
@@ -112,6 +176,7 @@ where
             statuses: Vec::new(),
             chains: robots.iter().map(|robot| Chain::new(robot.id)).collect(),
             positions_m: vec![[0.0; 2]; robots.len()],
+            outside: None,
             arrivals: Arrivals::new(robots.len()),
             collisions: 0,
             packets: PacketCounts::default(),
@@ -130,17 +195,45 @@ where
         engine
     }
 
-    /// Computer number `index`, started now.
-    fn start(&self, index: usize, boot: u8) -> Computer<G, A> {
+    /// The same with some of its robots' controllers elsewhere; before the first tick.
+    #[must_use]
+    pub fn with_elsewhere(mut self, scenario: &Scenario, controllers: Box<dyn Elsewhere>) -> Self {
+        let robots = controllers.robots().into_iter();
+        let robots = robots.filter(|&index| index < self.robots.len());
+        let robots = robots.map(|index| (index, scenario.guidance(index), scenario.safety()));
+        let robots: Vec<_> = robots.collect();
+        let indices: Vec<_> = robots.iter().map(|&(index, ..)| index).collect();
+        self.outside = Some(Outside {
+            controllers,
+            robots,
+        });
+        for index in indices {
+            self.restart(index, 0);
+        }
+        self
+    }
+
+    /// What the computer of robot `index` must know at its start number `boot`.
+    fn config(&self, index: usize, boot: u8) -> AgentConfig<f32> {
         let tick = Duration::from_micros(i32::try_from(self.tick_us).unwrap_or(i32::MAX));
         let mut config = AgentConfig {
             boot,
             ..AgentConfig::new(self.robots[index].id, self.seed, tick)
         };
         self.ground.configure(&mut config);
+        config
+    }
+
+    /// Computer number `index` with its own agent, started now.
+    fn start(&self, index: usize, boot: u8) -> Computer<G, A> {
         let (guidance, safety) = (self.brains)(index);
-        let mut agent = Agent::guarded(&config, guidance, safety);
-        self.ground.assign(index, self.tick, &mut agent);
+        let mut agent = Agent::guarded(&self.config(index, boot), guidance, safety);
+        // A guidance that has no use for its task says so; the scenario was checked for that.
+        let _ = agent.assign(&self.ground.task(index, self.tick));
+        self.computer(Some(agent), boot)
+    }
+
+    fn computer(&self, agent: Option<Agent<f32, G, NEIGHBORS, A>>, boot: u8) -> Computer<G, A> {
         Computer {
             agent,
             outbox: heapless::Vec::new(),
@@ -148,6 +241,26 @@ where
             epoch: self.tick,
             down_until: self.tick,
         }
+    }
+
+    /// Starts computer number `index` anew, here or elsewhere.
+    fn restart(&mut self, index: usize, boot: u8) {
+        let (config, task) = (self.config(index, boot), self.ground.task(index, self.tick));
+        let robots = self.outside.as_mut().and_then(|outside| {
+            let found = outside.robots.iter().find(|(robot, ..)| *robot == index);
+            let (_, guidance, safety) = found?;
+            let setup = Setup {
+                agent: config,
+                guidance: guidance.clone(),
+                safety: *safety,
+            };
+            outside.controllers.start(index, setup, task);
+            Some(())
+        });
+        self.computers[index] = match robots {
+            Some(()) => self.computer(None, boot),
+            None => self.start(index, boot),
+        };
     }
 
     /// One tick. Returns what the swarm as a whole looks like after it.
@@ -192,16 +305,93 @@ where
             let ends = fault.to_tick == self.tick;
             if ends && self.computers[index].down_until == self.tick {
                 let boot = self.computers[index].boot.wrapping_add(1);
-                self.computers[index] = self.start(index, boot);
+                self.restart(index, boot);
+            }
+        }
+        self.revive();
+    }
+
+    /// Starts those anew whose controllers elsewhere have lost their state.
+    fn revive(&mut self) {
+        let Some(outside) = &mut self.outside else {
+            return;
+        };
+        let controllers = &mut outside.controllers;
+        let robots = outside.robots.iter().map(|&(index, ..)| index);
+        let lost: Vec<_> = robots
+            .filter(|&index| controllers.has_restarted(index))
+            .collect();
+        for index in lost {
+            let computer = &self.computers[index];
+            // One that is down anyway starts when that is over.
+            if computer.down_until <= self.tick {
+                let boot = computer.boot.wrapping_add(1);
+                self.restart(index, boot);
             }
         }
     }
 
     /// Phase one: everybody decides. Returns how many frames were refused.
     fn decide(&mut self) -> u64 {
+        self.send_out();
+        let rejected = self.decide_here();
+        rejected + self.collect()
+    }
+
+    /// Lets those begin whose controllers are elsewhere.
+    fn send_out(&mut self) {
+        let Some(outside) = &mut self.outside else {
+            return;
+        };
+        let (tick, mut senses, mut heard) = (self.tick, W::Scratch::default(), Vec::new());
+        for &(index, ..) in &outside.robots {
+            let computer = &self.computers[index];
+            if tick < computer.down_until {
+                continue;
+            }
+            let moment = Tick {
+                tick,
+                ground: &self.ground,
+                radio: &self.radio,
+            };
+            let inputs = moment.inputs(index, computer, &mut senses, &mut heard);
+            let now = computer.now(tick, self.tick_us);
+            outside.controllers.send(index, tick, now, &inputs);
+        }
+    }
+
+    /// Takes in what those decided. Returns how many frames they refused.
+    fn collect(&mut self) -> u64 {
+        let Some(outside) = &mut self.outside else {
+            return 0;
+        };
+        let mut rejected = 0;
+        for &(index, ..) in &outside.robots {
+            let computer = &mut self.computers[index];
+            if self.tick < computer.down_until {
+                continue;
+            }
+            match outside.controllers.collect(index) {
+                Some(decision) => {
+                    computer.outbox = decision.outbox;
+                    self.commands[index] = decision.command;
+                    self.statuses[index] = decision.status;
+                    rejected += u64::from(decision.rejected);
+                }
+                None => self.statuses[index].fall_silent(),
+            }
+        }
+        rejected
+    }
+
+    /// Steps the robots whose agents are here, in parallel.
+    fn decide_here(&mut self) -> u64 {
         let (tick, tick_us) = (self.tick, self.tick_us);
-        let (ground, radio) = (&self.ground, &self.radio);
-        let orders = ground.orders(tick);
+        let moment = Tick {
+            tick,
+            ground: &self.ground,
+            radio: &self.radio,
+        };
         let scratch = || (G::Workspace::default(), W::Scratch::default(), Vec::new());
         let work = (
             &mut self.computers,
@@ -215,36 +405,23 @@ where
             .map_init(
                 scratch,
                 |(workspace, senses, heard), (index, (computer, command, status, position_m))| {
-                    let [x, y, _] = ground.motion(index, tick).position_m;
+                    let [x, y, _] = moment.ground.motion(index, tick).position_m;
                     *position_m = [x, y];
                     computer.outbox.clear();
                     *command = Command::Hold;
                     if tick < computer.down_until {
-                        (status.mode, status.leader) = (Mode::Fault, RobotId::NOBODY);
+                        status.fall_silent();
                         return 0;
                     }
-                    let clock = tick.wrapping_sub(computer.epoch).wrapping_mul(tick_us);
-                    // What arrived while it was down, it never heard.
-                    let has_just_restarted = computer.boot > 0 && computer.epoch == tick;
-                    let delivered = match has_just_restarted {
-                        true => &[],
-                        false => radio.inbox(index),
+                    if computer.agent.is_none() {
+                        return 0;
+                    }
+                    let now = computer.now(tick, tick_us);
+                    let inputs = moment.inputs(index, computer, senses, heard);
+                    let Some(agent) = &mut computer.agent else {
+                        return 0;
                     };
-                    let inbox = match orders {
-                        None => delivered,
-                        Some(orders) => {
-                            heard.clear();
-                            heard.extend_from_slice(delivered);
-                            heard.extend_from_slice(orders);
-                            heard
-                        }
-                    };
-                    let inputs = Inputs {
-                        inbox,
-                        ..ground.sense(index, tick, senses)
-                    };
-                    let agent = &mut computer.agent;
-                    let out = agent.step(&inputs, Instant::from_micros(clock), workspace);
+                    let out = agent.step(&inputs, now, workspace);
                     computer.outbox = out.outbox;
                     *command = out.command;
                     *status = Status {

@@ -7,8 +7,7 @@ use crate::scenario::{Order, PlaneSetup, Robot, Scenario, Target};
 use crate::world::plane::{Clearance, Disc, Plane, narrow};
 use crate::world::window;
 use staya_controller::agent::{
-    Agent, AgentConfig, CellState, Command, Guidance, InCell, Inputs, NEIGHBORS, Place, Pose,
-    Safety, Surroundings,
+    AgentConfig, CellState, Command, InCell, Inputs, PLACES, Place, Pose, Surroundings, Task,
 };
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Cell, GridFrame, UNIT};
@@ -223,15 +222,9 @@ impl Ground for PlaneGround {
         config.latency = Duration::from_micros(micros);
     }
 
-    fn assign<G: Guidance<f32>, A: Safety<f32>>(
-        &self,
-        index: usize,
-        tick: u32,
-        agent: &mut Agent<f32, G, NEIGHBORS, A>,
-    ) {
+    fn task(&self, index: usize, tick: u32) -> Task {
         if self.setup.guidance.is_on_grid() {
-            agent.assign_goal(self.robots[index].goal);
-            return;
+            return Task::Cell(self.robots[index].goal);
         }
         // One that starts anew is told what has been ordered in the meantime; what is ordered in this tick, it hears.
         let first = (0..).zip(&self.setup.starts[index].places);
@@ -239,11 +232,17 @@ impl Ground for PlaneGround {
         let orders = self.setup.orders.iter();
         let orders = orders.take_while(|order| order.tick < tick);
         let later = orders.map(|order| (order.index, order.tick, &order.target));
+        let mut places = heapless::Vec::<(u8, Place<f32>), PLACES>::new();
         for (number, since, target) in first.chain(later) {
             let age_s = f64::from(tick - since) * f64::from(self.tick_us) / 1e6;
-            // A guidance that has no use for it says so; the scenario was checked for that.
-            let _ = agent.assign_place(number, &place(target, age_s));
+            let place = place(target, age_s);
+            match places.iter_mut().find(|(known, _)| *known == number) {
+                Some((_, known)) => *known = place,
+                // The scenario was checked for having no more.
+                None => drop(places.push((number, place))),
+            }
         }
+        Task::Places(places)
     }
 
     fn orders(&self, tick: u32) -> Option<&[u8]> {

@@ -1,17 +1,15 @@
 //! A whole scenario with the guidance that it asks for.
 
-use super::{Engine, Grid, Ground, PlaneGround};
+use super::{Elsewhere, Engine, Grid, Ground, PlaneGround};
 use crate::metrics::Keeping;
 use crate::record::{PacketCounts, RobotRow, TickRow};
-use crate::scenario::{GuidanceName, PlaneSetup, SafetyName, Scenario};
+use crate::scenario::Scenario;
 use crate::world::Misplaced;
 use crate::world::plane::Clearance;
 use staya_controller::agent::{
-    AnyGuidance, AnyHalfPlanes, AnySafety, BoidsGuidance, CELLS, FlySafety, FormationGuidance,
-    GoalFlockGuidance, Guidance, InPlane, LatticeGuidance, NEIGHBORS, OrcaSafety, PushOutSafety,
-    RouteGuidance, Safety, TEMPLATE, Unguarded, VISITS, WaypointGuidance,
+    AnyGuidance, AnySafety, CELLS, FormationGuidance, Guidance, HALF_PLANES, RouteGuidance, Safety,
+    TEMPLATE, Unguarded, VISITS,
 };
-use staya_controller::orca::FlyParams;
 use std::ops::ControlFlow;
 
 /// Cells of a search for windows up to radius 16 with their border: (2 * 16 + 3)^2.
@@ -63,22 +61,31 @@ pub fn simulate(
     scenario: &Scenario,
     watch: impl FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>) -> ControlFlow<()>,
 ) -> Result<Outcome, Misplaced> {
+    simulate_with(scenario, None, watch)
+}
+
+/// The same with some of the robots' controllers elsewhere.
+///
+/// # Errors
+/// See [`Engine::new`].
+pub fn simulate_with(
+    scenario: &Scenario,
+    elsewhere: Option<Box<dyn Elsewhere>>,
+    watch: impl FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>) -> ControlFlow<()>,
+) -> Result<Outcome, Misplaced> {
     if let Some(setup) = &scenario.plane {
         let ground = PlaneGround::new(scenario, setup);
-        let engine = Engine::new(scenario, ground, brains(scenario, setup));
-        return Ok(go(scenario, engine, watch));
+        let engine = Engine::new(scenario, ground, brains(scenario));
+        return Ok(go(scenario, engine, elsewhere, watch));
     }
     let is_narrow = scenario.route.params.radius <= NARROW_RADIUS;
     match (&scenario.formation, is_narrow) {
-        (None, true) => drive(scenario, route::<CELLS>(scenario), watch),
-        (None, false) => drive(scenario, route::<WIDE>(scenario), watch),
-        (Some(_), true) => drive(scenario, formation::<CELLS>(scenario), watch),
-        (Some(_), false) => drive(scenario, formation::<WIDE>(scenario), watch),
+        (None, true) => drive(scenario, route::<CELLS>(scenario), elsewhere, watch),
+        (None, false) => drive(scenario, route::<WIDE>(scenario), elsewhere, watch),
+        (Some(_), true) => drive(scenario, formation::<CELLS>(scenario), elsewhere, watch),
+        (Some(_), false) => drive(scenario, formation::<WIDE>(scenario), elsewhere, watch),
     }
 }
-
-/// Half-planes that a robot in the plane reckons with: those of its neighbours and as many obstacles.
-const HALF_PLANES: usize = 2 * NEIGHBORS;
 
 type Brain = (
     AnyGuidance<f32, WIDE, VISITS, TEMPLATE>,
@@ -86,52 +93,15 @@ type Brain = (
 );
 
 /// Guidance and safety layer of each robot in the plane.
-fn brains(
-    scenario: &Scenario,
-    setup: &PlaneSetup,
-) -> impl Fn(usize) -> Brain + Send + Sync + 'static + use<> {
-    let (cruise_mps, tolerance_m) = (setup.cruise_mps as f32, setup.tolerance_m as f32);
-    let (route, formation) = (route::<WIDE>(scenario), formation::<WIDE>(scenario));
-    let (guidance, safety) = (setup.guidance, setup.safety);
-    let (orca, doubt) = (setup.orca, setup.doubt);
-    let (lattice, goal_flock, boids) = (setup.lattice, setup.goal_flock, setup.boids);
-    let (seed, push_out) = (scenario.seed, setup.push_out);
-    let fly = FlyParams {
-        horizon_s: orca.horizon_s,
-        obstacle_horizon_s: orca.wall_horizon_s,
-        share: orca.share,
-        margin_m: orca.margin_m,
+fn brains(scenario: &Scenario) -> impl Fn(usize) -> Brain + Send + Sync + 'static + use<> {
+    // Only places in a formation differ from robot to robot.
+    let kinds = match scenario.formation {
+        Some(_) => scenario.robots.len(),
+        None => 1,
     };
-    move |index| {
-        let guidance = match guidance {
-            GuidanceName::Waypoint => {
-                AnyGuidance::Waypoint(WaypointGuidance::new(cruise_mps, tolerance_m))
-            }
-            GuidanceName::Lattice => {
-                AnyGuidance::Lattice(LatticeGuidance::new(lattice.0, lattice.1))
-            }
-            GuidanceName::GoalFlock => {
-                AnyGuidance::GoalFlock(GoalFlockGuidance::new(goal_flock.0, goal_flock.1, seed))
-            }
-            GuidanceName::Boids => AnyGuidance::Boids(BoidsGuidance::new(boids, cruise_mps)),
-            GuidanceName::Route => AnyGuidance::Route(InPlane::new(route(index), cruise_mps)),
-            GuidanceName::Formation => {
-                AnyGuidance::Formation(InPlane::new(formation(index), cruise_mps))
-            }
-        };
-        let from = |source| AnySafety::Orca(OrcaSafety::with_source(orca, doubt, source));
-        let safety = match safety {
-            SafetyName::None => AnySafety::Unguarded(Unguarded),
-            SafetyName::Orca => from(AnyHalfPlanes::Analytic),
-            SafetyName::Template2k => from(AnyHalfPlanes::Template2k),
-            SafetyName::Template8k => from(AnyHalfPlanes::Template8k),
-            SafetyName::Template16k => from(AnyHalfPlanes::Template16k),
-            SafetyName::Template64k => from(AnyHalfPlanes::Template64k),
-            SafetyName::Fly => AnySafety::Fly(FlySafety::new(fly, doubt)),
-            SafetyName::PushOut => AnySafety::PushOut(PushOutSafety::new(push_out)),
-        };
-        (guidance, safety)
-    }
+    let guidances: Vec<_> = (0..kinds).map(|index| scenario.guidance(index)).collect();
+    let safety = scenario.safety();
+    move |index| (guidances[index % kinds].guidance(), safety.safety())
 }
 
 fn route<const C: usize>(
@@ -162,17 +132,19 @@ fn formation<const C: usize>(
 fn drive<G: Guidance<f32, Workspace: Default> + Send>(
     scenario: &Scenario,
     guidance: impl Fn(usize) -> G + Send + Sync + 'static,
+    elsewhere: Option<Box<dyn Elsewhere>>,
     watch: impl FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>) -> ControlFlow<()>,
 ) -> Result<Outcome, Misplaced> {
     let ground = Grid::new(scenario)?;
     let engine = Engine::new(scenario, ground, move |index| (guidance(index), Unguarded));
-    Ok(go(scenario, engine, watch))
+    Ok(go(scenario, engine, elsewhere, watch))
 }
 
 /// Ticks until the end.
 fn go<W, G, A>(
     scenario: &Scenario,
     mut engine: Engine<W, G, A>,
+    elsewhere: Option<Box<dyn Elsewhere>>,
     mut watch: impl FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>) -> ControlFlow<()>,
 ) -> Outcome
 where
@@ -180,6 +152,9 @@ where
     G: Guidance<f32, Workspace: Default> + Send,
     A: Safety<f32> + Send,
 {
+    if let Some(controllers) = elsewhere {
+        engine = engine.with_elsewhere(scenario, controllers);
+    }
     let mut row = engine.first_row();
     loop {
         let moment = Moment {

@@ -348,4 +348,5 @@ proptest! {
     }
 }
 
+mod elsewhere;
 mod plane;

@@ -8,6 +8,7 @@ mod params;
 mod plane;
 mod robots;
 mod schema;
+mod setup;
 mod source;
 
 pub use params::{

@@ -12,7 +12,7 @@ use crate::metrics::flock::gaps;
 use crate::nearby::Space;
 use crate::scenario::{GuidanceName, SafetyName, Scenario, Start, Target};
 use serde::Serialize;
-use staya_controller::flock::boids::BoidsParams;
+use staya_controller::agent::BoidsSetup;
 use staya_controller::flock::goal::GoalParams;
 use staya_controller::flock::lattice::LatticeParams;
 use staya_controller::rand::Rng;
@@ -253,7 +253,11 @@ impl Closing {
         setup.lattice = (LatticeParams::new(d as f32), true);
         setup.goal_flock = (GoalParams::new((d / 2.0) as f32, side_mps as f32), d as f32);
         // Crowded below d, seen up to 4 d.
-        setup.boids = BoidsParams::new(d as f32, (4.0 * d) as f32, 0.05, 0.02);
+        setup.boids = BoidsSetup {
+            crowded_m: d as f32,
+            closest_m: (4.0 * d) as f32,
+            ..BoidsSetup::PAPER
+        };
         // Beacons are a step old; at these speeds a step is a body's radius.
         setup.orca.margin_m = (d / 100.0) as f32;
         arena.scenario(setup)

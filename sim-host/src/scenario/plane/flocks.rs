@@ -4,7 +4,7 @@ use super::super::ScenarioError;
 use super::super::source::Source;
 use super::table::{GuidanceName, PlaneTable};
 use super::within;
-use staya_controller::flock::boids::BoidsParams;
+use staya_controller::agent::BoidsSetup;
 use staya_controller::flock::goal::GoalParams;
 use staya_controller::flock::lattice::{Algorithm, Gain, LatticeParams};
 
@@ -135,13 +135,10 @@ pub(super) fn goal_flock(
     Ok((params, arrival_m as f32))
 }
 
-pub(super) fn boids(
-    source: &Source<'_>,
-    table: &PlaneTable,
-) -> Result<BoidsParams<f32>, ScenarioError> {
+pub(super) fn boids(source: &Source<'_>, table: &PlaneTable) -> Result<BoidsSetup, ScenarioError> {
     let given = goes_with(source, table, GuidanceName::Boids, "boids", table.boids)?;
     let Some(given) = given else {
-        return Ok(BoidsParams::paper(1.0));
+        return Ok(BoidsSetup::PAPER);
     };
     within(
         source,
@@ -179,5 +176,10 @@ pub(super) fn boids(
     )?;
     let [crowded, closest, turn, away] =
         [given.crowded_m, given.closest_m, max_turn, max_turn_away].map(|x| x as f32);
-    Ok(BoidsParams::new(crowded, closest, turn, away))
+    Ok(BoidsSetup {
+        crowded_m: crowded,
+        closest_m: closest,
+        max_turn: turn,
+        max_turn_away: away,
+    })
 }

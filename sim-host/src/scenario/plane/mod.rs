@@ -18,7 +18,7 @@ use crate::radio::RadioParams;
 use crate::terrain::Terrain;
 use crate::world::MoveRules;
 use crate::world::plane::{Abilities, Solid};
-use staya_controller::flock::boids::BoidsParams;
+use staya_controller::agent::BoidsSetup;
 use staya_controller::flock::goal::GoalParams;
 use staya_controller::flock::lattice::LatticeParams;
 use staya_controller::formation::FormationParams;
@@ -76,7 +76,7 @@ pub struct PlaneSetup {
     /// Parameters of the goal flock, and how near counts as being at a goal, metres.
     pub goal_flock: (GoalParams<f32>, f32),
     /// Parameters of boids.
-    pub boids: BoidsParams<f32>,
+    pub boids: BoidsSetup,
     /// By rising tick.
     pub orders: Vec<Order>,
 }
@@ -105,7 +105,7 @@ impl PlaneSetup {
             push_out: PushOutParams::new(1.0),
             lattice: (LatticeParams::new(1.0), true),
             goal_flock: (GoalParams::new(1.0, 1.0), 1.0),
-            boids: BoidsParams::paper(1.0),
+            boids: BoidsSetup::PAPER,
             orders: Vec::new(),
         }
     }
