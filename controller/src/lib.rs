@@ -38,6 +38,7 @@ pub mod flock;
 pub mod formation;
 pub mod geom;
 pub mod grid;
+mod list;
 pub mod neighbor;
 pub mod obstacle;
 pub mod orca;

@@ -15,6 +15,7 @@
 
 use crate::cost::{Cost, EXCLUDED, Gain, Weights};
 use crate::grid::{Dir, UNIT};
+use crate::list::{self, sink_last};
 use crate::rand::Rng;
 use crate::scalar::integer::log2_q32;
 use core::num::NonZeroU64;
@@ -49,10 +50,11 @@ pub fn weighted_shuffle(weights: &Weights, sharpness: Sharpness, rng: &mut Rng) 
         if cost != EXCLUDED {
             // Eight moves, eight places.
             let _ = keyed.push((key, dir));
+            // Equals stay in the order of the moves.
+            sink_last(&mut keyed, |before, after| before.0 > after.0);
         }
     }
-    keyed.sort_unstable_by_key(|&(key, dir)| (key, dir.index()));
-    keyed.into_iter().map(|(_, dir)| dir).collect()
+    list::collect(keyed.iter().map(|&(_, dir)| dir))
 }
 
 /// log2 Exp(1) + extra / half in Q.32, moved up so that it is never negative.

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 /// [`APART`] says not.
 const LAYERS: [&[&str]; 4] = [
     &[
-        "scalar", "digest", "geom", "time", "rand", "grid", "cost", "shuffle", "obstacle",
+        "scalar", "digest", "geom", "time", "rand", "grid", "cost", "shuffle", "list", "obstacle",
     ],
     &["wire", "neighbor", "body"],
     &["route", "formation", "orca", "flock", "push_out"],

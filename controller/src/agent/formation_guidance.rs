@@ -11,6 +11,7 @@ use crate::formation::{
     should_stay,
 };
 use crate::grid::{BLOCKED, Cell, Dir, Window};
+use crate::list;
 use crate::neighbor::Neighbor;
 use crate::rand::Rng;
 use crate::route::{CostField, RouteParams, Router};
@@ -404,7 +405,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
         };
         let mut stays = false;
         let weights = if let Some(guide) = &guide {
-            guided.asks.extend(self.ask_pace(leader, guide.lag));
+            list::extend(&mut guided.asks, self.ask_pace(leader, guide.lag));
             guided.is_off_place = self.pace.waits();
             // The goal counts when the formation is there.
             guided.is_at_goal &= guide.has_arrived;
@@ -436,10 +437,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
             let towards = def(cell, &found.members);
             guided.recovers = towards != Dir::Stay;
             guided.waits = !guided.recovers;
-            guided.moves = Some(towards)
-                .filter(|_| guided.recovers)
-                .into_iter()
-                .collect();
+            guided.moves = list::collect(guided.recovers.then_some(towards));
         }
         if stays {
             guided.moves.clear();
@@ -448,8 +446,8 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
         let blocked = self.travel.note(view, cell, choice);
         if !guided.waits && !guided.is_at_goal {
             // Asks hold three: for the pace, and these two.
-            guided.asks.extend(blocked);
-            guided.asks.extend(self.ask_surplus(&found));
+            list::extend(&mut guided.asks, blocked);
+            list::extend(&mut guided.asks, self.ask_surplus(&found));
         }
         Ok(guided)
     }

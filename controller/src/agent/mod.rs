@@ -441,7 +441,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>> Agent<S, G, N, A> 
             }
         }
         // At the end, so that what was acknowledged in this step has made room.
-        for request in pass_on {
+        for request in &pass_on {
             if leader.is_somebody() && leader != request.origin {
                 let valid = Duration::from_millis(request.valid_ms.into());
                 link.ask(leader, request.origin, request.kind, valid, now);

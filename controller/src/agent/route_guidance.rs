@@ -3,6 +3,7 @@
 use super::guidance::{BadInput, Guidance, Guided, View};
 use super::travel::{Travel, on_grid, reachable_goal};
 use crate::grid::{Cell, Dir};
+use crate::list;
 use crate::rand::Rng;
 use crate::route::{CostField, Replan, RouteParams, Router};
 use crate::scalar::Scalar;
@@ -92,7 +93,7 @@ impl<const CELLS: usize, const M: usize> RouteGuidance<CELLS, M> {
                 .router
                 .follow(params, field, window, cell, target, others)
                 .ok()?;
-            return Some(core::iter::once(dir).collect());
+            return Some(list::collect([dir]));
         }
         let weights = self
             .router
@@ -132,7 +133,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize> Guidance<S> for RouteGuidanc
             guided.moves = moves.unwrap_or_default();
         }
         let choice = guided.moves.first().copied().unwrap_or_default();
-        guided.asks.extend(self.travel.note(view, cell, choice));
+        list::extend(&mut guided.asks, self.travel.note(view, cell, choice));
         Ok(guided)
     }
 

@@ -1,6 +1,7 @@
 //! From a graph to what one robot needs to know of it.
 
 use crate::grid::{Cell, DIAGONAL, Dir, UNIT};
+use crate::list::sink_last;
 use crate::wire::{RobotId, Template, TemplateEntry};
 
 /// A graph that gives no template.
@@ -67,8 +68,10 @@ impl<const F: usize> Template<F> {
                     }
                 }
             }
-            if let Some(ring) = template.entries.get_mut(before..) {
-                ring.sort_unstable_by_key(|entry| entry.id);
+            for end in before..template.entries.len() {
+                if let Some(ring) = template.entries.get_mut(before..=end) {
+                    sink_last(ring, |one, next| one.id > next.id);
+                }
             }
         }
         Ok(template)

@@ -7,6 +7,7 @@
 
 use crate::geom::{Position, Vec3};
 use crate::grid::{Cell, Dir};
+use crate::list::sink_last;
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 use crate::wire::{Beacon, CompactBeacon, Mode, RobotId};
@@ -325,16 +326,6 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
-    }
-}
-
-/// Moves the last item towards the front past all that must come after it.
-fn sink_last<T>(items: &mut [T], must_swap: impl Fn(&T, &T) -> bool) {
-    for i in (1..items.len()).rev() {
-        match items.get_mut(i - 1..=i) {
-            Some([before, after]) if must_swap(before, after) => core::mem::swap(before, after),
-            _ => break,
-        }
     }
 }
 

@@ -1,7 +1,8 @@
 //! Who is near by right now, seen from oneself: what guidance and collision avoidance in the plane and in space work with.
 
-use super::{Ages, Neighbor, sink_last};
+use super::{Ages, Neighbor};
 use crate::geom::{Position, Vec3};
+use crate::list::{self, sink_last};
 use crate::scalar::{Scalar, cast};
 use crate::time::{Duration, Instant};
 use crate::wire::{Mode, RobotId};
@@ -75,12 +76,8 @@ pub fn nearest<S: Scalar, const K: usize>(
             sink_last(&mut nearest, |before, after| before.0 > after.0);
         }
     }
-    let mut out = Vec::new();
-    for (_, entry) in nearest {
-        // Same capacity: it cannot be full. (`extend` would leave a panic in the firmware.)
-        let _ = out.push(seen(entry, own, own_radius_m, now, ages, doubt));
-    }
-    out
+    let seen = |entry| seen(entry, own, own_radius_m, now, ages, doubt);
+    list::collect(nearest.iter().map(|&(_, entry)| seen(entry)))
 }
 
 fn seen<S: Scalar>(

@@ -3,6 +3,7 @@
 use super::Obstacle;
 use crate::geom::Vec2;
 use crate::grid::{BLOCKED, Cell, GridFrame, Window};
+use crate::list;
 use crate::scalar::Scalar;
 use heapless::Vec;
 
@@ -36,10 +37,7 @@ pub fn grid_walls<S: Scalar, const K: usize>(
 ) -> Vec<Obstacle<S>, K> {
     let walls = Walls::<S, K>::around(window, frame, place_m, reach_m);
     let walls = walls.map(|walls| walls.nearest).unwrap_or_default();
-    walls
-        .into_iter()
-        .map(|wall| Obstacle::Wall(wall.ends_m))
-        .collect()
+    list::collect(walls.iter().map(|wall| Obstacle::Wall(wall.ends_m)))
 }
 
 /// The nearest walls found so far.

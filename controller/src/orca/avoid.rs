@@ -9,6 +9,7 @@ use super::escape::{Escape, EscapeParams, Scene};
 use super::{HalfPlane, Neighbor, Params, Solution, half_plane, solve, wall};
 use crate::body::Body;
 use crate::geom::Vec2;
+use crate::list;
 use crate::neighbor::Nearby;
 use crate::obstacle::Obstacle;
 use crate::rand::Rng;
@@ -192,10 +193,7 @@ impl<S: Scalar, const K: usize, P: HalfPlanes<S>> Avoider<S, K, P> {
             insert_nearest(&mut nearest, room, distance, plane);
         }
         let mut planes = Vec::<_, K>::new();
-        for (_, plane) in nearest {
-            // Same capacity: it cannot be full. (`collect` would leave a panic in the firmware.)
-            let _ = planes.push(plane);
-        }
+        list::extend(&mut planes, nearest.iter().map(|(_, plane)| *plane));
         let hard = planes.len();
         for other in nearby {
             let neighbor = Neighbor {

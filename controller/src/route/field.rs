@@ -237,7 +237,10 @@ impl<const CELLS: usize> CostField<CELLS> {
             let (Some(source), Some(sink)) = (source, sink) else {
                 continue;
             };
-            sink.copy_from_slice(source);
+            // Not `copy_from_slice`: that the lengths are equal is not seen, and its panic stays.
+            for (sink, u) in sink.iter_mut().zip(source) {
+                *sink = *u;
+            }
             least = source
                 .iter()
                 .copied()

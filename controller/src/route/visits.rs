@@ -1,6 +1,7 @@
 //! What the robot remembers of its own way (eq. 9).
 
 use crate::grid::Cell;
+use crate::list::to_end;
 use heapless::Vec;
 use serde::Serialize;
 
@@ -23,10 +24,14 @@ impl<const M: usize> VisitMemory<M> {
     /// Counts one entry into `cell`. O(M).
     pub fn enter(&mut self, cell: Cell) {
         let known = self.visits.iter().position(|&(at, _)| at == cell);
-        let count = known.map_or(0, |at| self.visits.remove(at).1);
-        if self.visits.is_full() && M > 0 {
-            self.visits.remove(0);
-        }
+        let goes = known.or_else(|| self.visits.is_full().then_some(0));
+        let gone = goes.and_then(|at| {
+            to_end(&mut self.visits, at);
+            self.visits.pop()
+        });
+        let count = gone
+            .filter(|&(at, _)| at == cell)
+            .map_or(0, |(_, count)| count);
         // Fails only for M = 0, a memory that remembers nothing.
         let _ = self.visits.push((cell, count.saturating_add(1)));
     }

@@ -3,6 +3,7 @@
 
 use super::{Newest, RobotId, TEMPLATE_PART, TemplateAssignment, TemplateEntry};
 use crate::grid::Cell;
+use crate::list;
 use heapless::Vec;
 use serde::{Deserialize, Serialize, Serializer};
 
@@ -78,7 +79,7 @@ impl TemplateAssignment {
             slot,
             offset,
             // A template without entries has one part without entries.
-            entries: chunks.next().unwrap_or_default().iter().copied().collect(),
+            entries: list::collect(chunks.next().unwrap_or_default().iter().copied()),
         }))
     }
 
@@ -217,7 +218,9 @@ impl<const F: usize> TemplateAssembler<F> {
                 Err(PartError::Contradiction)
             };
         }
-        place.copy_from_slice(&part.entries);
+        for (place, entry) in place.iter_mut().zip(&part.entries) {
+            *place = *entry;
+        }
         self.there |= bit;
         if part.is_last() {
             self.len = end;

@@ -1,0 +1,68 @@
+//! What fixed lists need beside [`heapless::Vec`]: its own ways to extend, collect, remove and sort, and its iterator by
+//! value, leave a panic in the firmware, even where none can happen.
+
+use heapless::{LenType, Vec};
+
+/// Adds items as long as there is room; what has none is dropped.
+pub(crate) fn extend<T, L: LenType, const N: usize>(
+    list: &mut Vec<T, N, L>,
+    items: impl IntoIterator<Item = T>,
+) {
+    for item in items {
+        if list.push(item).is_err() {
+            break;
+        }
+    }
+}
+
+/// The first `N` items.
+pub(crate) fn collect<T, const N: usize>(items: impl IntoIterator<Item = T>) -> Vec<T, N> {
+    let mut list = Vec::new();
+    extend(&mut list, items);
+    list
+}
+
+/// Moves the last item towards the front past all that must come after it.
+pub(crate) fn sink_last<T>(items: &mut [T], must_swap: impl Fn(&T, &T) -> bool) {
+    for i in (1..items.len()).rev() {
+        match items.get_mut(i - 1..=i) {
+            Some([before, after]) if must_swap(before, after) => core::mem::swap(before, after),
+            _ => break,
+        }
+    }
+}
+
+/// Moves the item at `at` to the end; those behind it move up. Nothing happens when there is none.
+pub(crate) fn to_end<T>(items: &mut [T], at: usize) {
+    let mut rest = items.get_mut(at..).unwrap_or_default();
+    while let [item, next, ..] = rest {
+        core::mem::swap(item, next);
+        rest = rest.get_mut(1..).unwrap_or_default();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_full_list_takes_nothing_more() {
+        let mut list = Vec::<_, 3>::from_array([1, 2]);
+        extend(&mut list, [3, 4, 5]);
+        assert_eq!(list, [1, 2, 3]);
+        assert_eq!(collect::<_, 2>(7..), [7, 8]);
+    }
+
+    #[test]
+    fn items_move_and_the_others_keep_their_order() {
+        let mut items = [1, 3, 5, 7, 4];
+        sink_last(&mut items, |before, after| before > after);
+        assert_eq!(items, [1, 3, 4, 5, 7]);
+        to_end(&mut items, 1);
+        assert_eq!(items, [1, 4, 5, 7, 3]);
+        to_end(&mut items, 4);
+        to_end(&mut items, 9);
+        assert_eq!(items, [1, 4, 5, 7, 3]);
+        to_end::<u8>(&mut [], 0);
+    }
+}
