@@ -1,0 +1,192 @@
+//! Swarms on the grid: bodies that move cell by cell.
+
+use crate::air::{Air, Faults, INBOX};
+use crate::hash::Hash;
+use crate::land::{Land, WINDOW};
+use crate::{Probe, Summary};
+use heapless::Vec;
+use serde::Serialize;
+use staya_controller::agent::{
+    Agent, CELLS, CellState, Command, FormationGuidance, GridWorkspace, Guidance, Inputs, Pose,
+    RouteGuidance, Unguarded,
+};
+use staya_controller::geom::{Position, Vec3};
+use staya_controller::grid::{BLOCKED, Cell, Norm, UNIT};
+use staya_controller::scalar::Scalar;
+use staya_controller::time::{Duration, Instant};
+use staya_controller::wire::Mode;
+
+/// Neighbours that an agent of a case knows.
+pub(crate) const KNOWN: usize = 8;
+/// Cells whose visits it remembers.
+const VISITS: usize = 32;
+/// Neighbours in its template.
+const TEMPLATE: usize = 8;
+/// Robots of a case on the grid.
+pub(crate) const ROBOTS: usize = 4;
+
+pub(crate) type Route = RouteGuidance<CELLS, VISITS>;
+pub(crate) type Formation = FormationGuidance<CELLS, VISITS, TEMPLATE>;
+pub(crate) type GridAgent<S, G> = Agent<S, G, KNOWN, Unguarded>;
+
+/// A tick in which a unit of [`UNIT`] is a millisecond: crossings need no division.
+pub(crate) const TICK: Duration = Duration::from_millis(UNIT.cast_signed());
+
+/// A robot with its body.
+pub(crate) struct Walker<S, G> {
+    pub(crate) agent: GridAgent<S, G>,
+    pub(crate) cell: Cell,
+    /// When it may leave its cell, milliseconds after the start.
+    pub(crate) free_at_ms: u32,
+}
+
+/// What does not change during a case.
+pub(crate) struct Scene {
+    pub(crate) land: Land,
+    pub(crate) faults: Faults,
+    /// After so many ticks it ends, arrived or not.
+    pub(crate) ticks: u32,
+}
+
+pub(crate) fn instant(tick: u32) -> Instant {
+    Instant::from_micros(0) + TICK.saturating_mul(tick.cast_signed())
+}
+
+/// Runs `walkers` until all have arrived. `commander` says what an operator says in a tick; robots hear it as they
+/// hear each other.
+pub(crate) fn run<S, G, P>(
+    scene: &Scene,
+    walkers: &mut Vec<Walker<S, G>, ROBOTS>,
+    mut commander: impl FnMut(u32, &mut Vec<u8, INBOX>),
+    probe: &mut P,
+) -> Summary
+where
+    S: Scalar,
+    G: Guidance<S, Workspace = GridWorkspace<CELLS>>,
+    GridAgent<S, G>: Serialize,
+    P: Probe<S>,
+{
+    // One place more, for the operator.
+    let mut air = Air::<{ ROBOTS + 1 }>::new(scene.faults);
+    let mut workspace = GridWorkspace::<CELLS>::new();
+    let mut hash = Hash::new();
+    let mut summary = Summary::of::<GridAgent<S, G>, G::Workspace>();
+    let mut commands: [Command<S>; ROBOTS] = [const { Command::Hold }; ROBOTS];
+    for tick in 0..scene.ticks {
+        let mut inbox = Vec::new();
+        commander(tick, &mut inbox);
+        air.send(ROBOTS, &inbox);
+        for (index, (walker, command)) in walkers.iter_mut().zip(&mut commands).enumerate() {
+            air.hear(index, tick, &mut inbox);
+            let out = step(scene, walker, tick, &inbox, &mut workspace, probe);
+            hash.outputs(&out);
+            hash.word(walker.agent.digest());
+            summary.count(&out);
+            air.send(index, &out.outbox);
+            *command = out.command;
+        }
+        air.turn();
+        for (index, command) in commands.iter().enumerate() {
+            if let Command::Move(moves) = command {
+                advance(scene, walkers, index, moves, tick);
+            }
+        }
+        for walker in walkers.iter() {
+            hash.bytes(&walker.cell.x.to_le_bytes());
+            hash.bytes(&walker.cell.y.to_le_bytes());
+        }
+        summary.ticks = tick.saturating_add(1);
+        let arrived = walkers.iter().filter(|w| w.agent.mode() == Mode::Arrived);
+        summary.arrived = arrived.count() as u32;
+        summary.overlaps = summary.overlaps.saturating_add(overlaps(walkers));
+        if summary.arrived as usize == walkers.len() {
+            break;
+        }
+    }
+    summary.hash = hash.value();
+    summary
+}
+
+fn step<S, G, P>(
+    scene: &Scene,
+    walker: &mut Walker<S, G>,
+    tick: u32,
+    inbox: &[u8],
+    workspace: &mut G::Workspace,
+    probe: &mut P,
+) -> staya_controller::agent::Outputs<S>
+where
+    S: Scalar,
+    G: Guidance<S>,
+    P: Probe<S>,
+{
+    let mut cells = Vec::<u8, WINDOW>::new();
+    let Cell { x, y } = walker.cell;
+    let now_ms = tick.saturating_mul(UNIT);
+    let busy_ms = walker.free_at_ms.saturating_sub(now_ms);
+    let inputs = Inputs {
+        pose: Pose {
+            position: Position::from_mm([i32::from(x) * 1000, i32::from(y) * 1000, 0]),
+            velocity_mps: Vec3::ZERO,
+        },
+        cell: Some(CellState {
+            cell: walker.cell,
+            busy: Duration::from_millis(busy_ms.cast_signed()),
+        }),
+        window: scene.land.window(walker.cell, &mut cells),
+        surroundings: None,
+        inbox,
+    };
+    probe.step(&mut walker.agent, &inputs, instant(tick), workspace)
+}
+
+/// Moves one body by the first of its wishes that leads into a free cell (KUZ algorithm 4).
+fn advance<S, G>(
+    scene: &Scene,
+    walkers: &mut [Walker<S, G>],
+    index: usize,
+    moves: &[staya_controller::grid::Dir],
+    tick: u32,
+) {
+    let now_ms = tick.saturating_mul(UNIT);
+    let Some(from) = walkers.get(index).map(|walker| walker.cell) else {
+        return;
+    };
+    let land = |cell: Cell| scene.land.at(cell);
+    let is_open = |dir: &staya_controller::grid::Dir| {
+        let step = dir.offset();
+        let to = from + step;
+        let corners = [from + Cell::new(step.x, 0), from + Cell::new(0, step.y)];
+        land(to) != BLOCKED
+            && corners.iter().all(|corner| land(*corner) != BLOCKED)
+            && walkers.iter().all(|walker| walker.cell != to)
+    };
+    let Some(dir) = moves.iter().copied().find(is_open) else {
+        return;
+    };
+    let to = from + dir.offset();
+    let crossing_ms = dir.length(Norm::Euclidean).saturating_mul(land(to).into());
+    if let Some(walker) = walkers.get_mut(index)
+        && walker.free_at_ms <= now_ms
+    {
+        // Who goes on at the first tick after it became free carries the rest of that tick over (KUZ eq. 6).
+        let is_going_on = now_ms.saturating_sub(walker.free_at_ms) < UNIT;
+        let start_ms = if is_going_on {
+            walker.free_at_ms
+        } else {
+            now_ms
+        };
+        walker.free_at_ms = start_ms.saturating_add(crossing_ms);
+        walker.cell = to;
+    }
+}
+
+/// Pairs of bodies in one cell.
+fn overlaps<S, G>(walkers: &[Walker<S, G>]) -> u32 {
+    let mut count = 0;
+    for (index, one) in walkers.iter().enumerate() {
+        let others = walkers.iter().skip(index.saturating_add(1));
+        count += others.filter(|other| other.cell == one.cell).count() as u32;
+    }
+    count
+}

@@ -1,0 +1,57 @@
+//! Land from a formula: no map needs a place in flash, and host and device see the same.
+
+use heapless::Vec;
+use staya_controller::grid::{BLOCKED, Cell, Window};
+
+/// Radius of the window that robots see.
+const SIGHT: i16 = 5;
+/// Cells of that window.
+pub(crate) const WINDOW: usize = 121;
+
+/// A square map with the corner (0, 0); beyond it are walls.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Land {
+    /// Cells from west to east and from south to north.
+    pub(crate) size: i16,
+    /// Impassability is from 1 to this power of two.
+    pub(crate) roughness_log2: u8,
+    /// Walls from south to north: column, first and last row.
+    pub(crate) walls: &'static [(i16, i16, i16)],
+}
+
+impl Land {
+    pub(crate) fn at(&self, cell: Cell) -> u8 {
+        let Cell { x, y } = cell;
+        let is_inside = x >= 0 && y >= 0 && x < self.size && y < self.size;
+        let is_wall =
+            |&(column, first, last): &(i16, i16, i16)| x == column && (first..=last).contains(&y);
+        if !is_inside || self.walls.iter().any(is_wall) {
+            return BLOCKED;
+        }
+        // Two rounds of multiplying and folding leave no pattern that a robot could see.
+        let mut bits = (u32::from(x.cast_unsigned()) << 16) | u32::from(y.cast_unsigned());
+        for _ in 0..2 {
+            bits = (bits ^ (bits >> 15)).wrapping_mul(0x9E37_79B1);
+        }
+        let high = bits.checked_shr(32 - u32::from(self.roughness_log2));
+        high.unwrap_or(0).saturating_add(1).min(255) as u8
+    }
+
+    /// What a robot in `cell` sees.
+    pub(crate) fn window<'a>(
+        &self,
+        cell: Cell,
+        cells: &'a mut Vec<u8, WINDOW>,
+    ) -> Option<Window<'a>> {
+        cells.clear();
+        let origin = cell - Cell::new(SIGHT, SIGHT);
+        let side = 2 * SIGHT + 1;
+        for y in 0..side {
+            for x in 0..side {
+                // As many places as cells.
+                let _ = cells.push(self.at(origin + Cell::new(x, y)));
+            }
+        }
+        Window::new(cells, origin, side.unsigned_abs(), side.unsigned_abs())
+    }
+}

@@ -1,0 +1,104 @@
+//! Canned swarms, one for each behaviour: a few agents in one program that hear each other's bytes and move their
+//! bodies, on land from a formula. The same code runs on a host and on a microcontroller, and a hash over everything
+//! that the agents did says whether they did the same.
+//!
+//! Nothing here allocates or panics. Bodies move by [`Scalar`] arithmetic and integers only, so that equal bits of
+//! the controller are all that equal hashes need.
+#![no_std]
+
+#[cfg(test)]
+extern crate std;
+
+mod air;
+mod grid;
+mod hash;
+mod land;
+mod plane;
+mod swarms;
+#[cfg(test)]
+mod tests;
+mod worst;
+
+pub use swarms::Case;
+pub use worst::Worst;
+
+use staya_controller::agent::{Agent, Guidance, Inputs, Outputs, Safety};
+use staya_controller::scalar::Scalar;
+use staya_controller::time::Instant;
+
+/// What stands around each [`Agent::step`] of a case: firmware counts instructions and stack there.
+pub trait Probe<S: Scalar> {
+    /// Does `agent.step(inputs, now, workspace)`.
+    fn step<G: Guidance<S>, A: Safety<S>, const N: usize>(
+        &mut self,
+        agent: &mut Agent<S, G, N, A>,
+        inputs: &Inputs<'_, S>,
+        now: Instant,
+        workspace: &mut G::Workspace,
+    ) -> Outputs<S>;
+}
+
+/// Measures nothing.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Unmeasured;
+
+impl<S: Scalar> Probe<S> for Unmeasured {
+    fn step<G: Guidance<S>, A: Safety<S>, const N: usize>(
+        &mut self,
+        agent: &mut Agent<S, G, N, A>,
+        inputs: &Inputs<'_, S>,
+        now: Instant,
+        workspace: &mut G::Workspace,
+    ) -> Outputs<S> {
+        agent.step(inputs, now, workspace)
+    }
+}
+
+/// What came of a case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Summary {
+    /// Over all that the agents gave, and where their bodies were, in each tick.
+    pub hash: u64,
+    /// Ticks until all had arrived, or the case's limit.
+    pub ticks: u32,
+    /// Steps of all agents together.
+    pub steps: u32,
+    /// Agents that said at the end that they had arrived.
+    pub arrived: u32,
+    /// Pairs of bodies that overlapped, summed over the ticks.
+    pub overlaps: u32,
+    /// Frames that agents refused: damaged or heard before.
+    pub rejected: u32,
+    /// Bytes of one agent.
+    pub agent_bytes: u32,
+    /// Bytes of the workspace that all agents share.
+    pub workspace_bytes: u32,
+}
+
+impl Summary {
+    fn of<A, W>() -> Self {
+        Self {
+            hash: 0,
+            ticks: 0,
+            steps: 0,
+            arrived: 0,
+            overlaps: 0,
+            rejected: 0,
+            agent_bytes: size_of::<A>() as u32,
+            workspace_bytes: size_of::<W>() as u32,
+        }
+    }
+
+    fn finish(self, hash: hash::Hash, ticks: u32) -> Self {
+        Self {
+            hash: hash.value(),
+            ticks,
+            ..self
+        }
+    }
+
+    fn count<S>(&mut self, out: &Outputs<S>) {
+        self.steps = self.steps.saturating_add(1);
+        self.rejected = self.rejected.saturating_add(out.rejected.into());
+    }
+}

@@ -1,0 +1,203 @@
+//! Swarms in the plane and in space: bodies that do at once what they are told.
+
+use crate::air::{Air, Faults, INBOX};
+use crate::grid::KNOWN;
+use crate::hash::Hash;
+use crate::land::{Land, WINDOW};
+use crate::{Probe, Summary};
+use heapless::Vec;
+use serde::Serialize;
+use staya_controller::agent::{
+    Agent, CellState, Command, Guidance, InCell, Inputs, Outputs, Pose, Safety, Surroundings,
+};
+use staya_controller::geom::{Position, Vec2, Vec3};
+use staya_controller::grid::GridFrame;
+use staya_controller::obstacle::{Obstacle, grid_walls};
+use staya_controller::scalar::Scalar;
+use staya_controller::time::{Duration, Instant};
+use staya_controller::wire::Mode;
+
+/// Robots of a case in the plane or in space.
+pub(crate) const ROBOTS: usize = 5;
+/// Obstacles that a robot sees.
+const OBSTACLES: usize = 8;
+/// Time from one step to the next.
+pub(crate) const STEP: Duration = Duration::from_millis(100);
+/// Side of a cell where there is land, millimetres.
+const CELL_MM: i32 = 1000;
+
+pub(crate) type PlaneAgent<S, G, A> = Agent<S, G, KNOWN, A>;
+
+/// A robot with its body.
+pub(crate) struct Mover<S, G, A> {
+    pub(crate) agent: PlaneAgent<S, G, A>,
+    pub(crate) position: Position,
+    pub(crate) velocity_mps: Vec3<S>,
+}
+
+/// Something that does not move, in the world.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Solid {
+    /// A wall between two points of the plane, millimetres.
+    Wall([[i32; 2]; 2]),
+    /// A ball: its centre and radius, millimetres.
+    Ball([i32; 3], i32),
+    /// The floor, at this height, millimetres.
+    Floor(i32),
+}
+
+/// What does not change during a case.
+pub(crate) struct Scene<S> {
+    pub(crate) solids: &'static [Solid],
+    /// Cells with walls, for guidances that need a grid.
+    pub(crate) land: Option<Land>,
+    pub(crate) max_speed_mps: S,
+    /// Two centres nearer than this overlap, millimetres.
+    pub(crate) apart_mm: i32,
+    pub(crate) faults: Faults,
+    /// After so many ticks it ends, arrived or not.
+    pub(crate) ticks: u32,
+}
+
+pub(crate) fn instant(tick: u32) -> Instant {
+    Instant::from_micros(0) + STEP.saturating_mul(tick.cast_signed())
+}
+
+/// Runs `movers` until all have arrived.
+pub(crate) fn run<S, G, A, P>(
+    scene: &Scene<S>,
+    movers: &mut Vec<Mover<S, G, A>, ROBOTS>,
+    workspace: &mut G::Workspace,
+    probe: &mut P,
+) -> Summary
+where
+    S: Scalar,
+    G: Guidance<S>,
+    A: Safety<S>,
+    PlaneAgent<S, G, A>: Serialize,
+    P: Probe<S>,
+{
+    let mut air = Air::<ROBOTS>::new(scene.faults);
+    let mut hash = Hash::new();
+    let mut summary = Summary::of::<PlaneAgent<S, G, A>, G::Workspace>();
+    let mut inbox = Vec::<u8, INBOX>::new();
+    for tick in 0..scene.ticks {
+        // Bodies move when all have decided: what they say and where they are belongs to one moment.
+        for (index, mover) in movers.iter_mut().enumerate() {
+            air.hear(index, tick, &mut inbox);
+            let out = step(scene, mover, tick, &inbox, workspace, probe);
+            hash.outputs(&out);
+            hash.word(mover.agent.digest());
+            summary.count(&out);
+            air.send(index, &out.outbox);
+            mover.velocity_mps = match out.command {
+                Command::Velocity(velocity_mps) => velocity_mps,
+                Command::Hold | Command::Move(_) => Vec3::ZERO,
+            };
+        }
+        air.turn();
+        let step_s = S::from_micro(STEP.as_micros());
+        for mover in movers.iter_mut() {
+            let way = mover.velocity_mps * step_s;
+            mover.position = mover.position.moved(way).unwrap_or(mover.position);
+            hash.position(mover.position);
+        }
+        summary.ticks = tick.saturating_add(1);
+        let arrived = movers.iter().filter(|m| m.agent.mode() == Mode::Arrived);
+        summary.arrived = arrived.count() as u32;
+        summary.overlaps = summary.overlaps.saturating_add(overlaps(scene, movers));
+        if summary.arrived as usize == movers.len() {
+            break;
+        }
+    }
+    summary.hash = hash.value();
+    summary
+}
+
+fn step<S, G, A, P>(
+    scene: &Scene<S>,
+    mover: &mut Mover<S, G, A>,
+    tick: u32,
+    inbox: &[u8],
+    workspace: &mut G::Workspace,
+    probe: &mut P,
+) -> Outputs<S>
+where
+    S: Scalar,
+    G: Guidance<S>,
+    A: Safety<S>,
+    P: Probe<S>,
+{
+    let mut cells = Vec::<u8, WINDOW>::new();
+    let mut obstacles = Vec::<Obstacle<S>, OBSTACLES>::new();
+    for solid in scene.solids {
+        // Scenes have no more than there is room for; a test says so.
+        let _ = obstacles.push(seen(solid, mover.position));
+    }
+    let frame = GridFrame {
+        origin_m: Vec2::ZERO,
+        cell_m: S::from_milli(CELL_MM),
+    };
+    let place_m = mover.position.since::<S>(Position::ORIGIN).xy();
+    let on_land = scene
+        .land
+        .and_then(|land| Some((land, frame.cell(place_m)?)));
+    let window = on_land.and_then(|(land, cell)| land.window(cell, &mut cells));
+    if let Some(window) = &window {
+        obstacles = grid_walls(window, &frame, place_m, S::from_i32(3));
+    }
+    let inputs = Inputs {
+        pose: Pose {
+            position: mover.position,
+            velocity_mps: mover.velocity_mps,
+        },
+        cell: on_land.map(|(_, cell)| CellState {
+            cell,
+            busy: Duration::ZERO,
+        }),
+        window,
+        surroundings: Some(Surroundings {
+            max_speed_mps: scene.max_speed_mps,
+            obstacles: &obstacles,
+            in_cell: on_land.map(|(_, cell)| InCell {
+                offset_m: place_m - frame.center(cell),
+                cell_m: frame.cell_m,
+            }),
+        }),
+        inbox,
+    };
+    probe.step(&mut mover.agent, &inputs, instant(tick), workspace)
+}
+
+/// A solid as the robot at `from` sees it.
+fn seen<S: Scalar>(solid: &Solid, from: Position) -> Obstacle<S> {
+    match *solid {
+        Solid::Wall(ends_mm) => {
+            Obstacle::Wall(ends_mm.map(|[x, y]| Position::from_mm([x, y, 0]).since::<S>(from).xy()))
+        }
+        Solid::Ball(center_mm, radius_mm) => Obstacle::Ball {
+            center_m: Position::from_mm(center_mm).since(from),
+            radius_m: S::from_milli(radius_mm),
+        },
+        Solid::Floor(height_mm) => Obstacle::Plane {
+            normal: Vec3::new(S::ZERO, S::ZERO, S::ONE),
+            distance_m: from.since::<S>(Position::from_mm([0, 0, height_mm])).z,
+        },
+    }
+}
+
+/// Pairs of bodies that overlap.
+fn overlaps<S, G, A>(scene: &Scene<S>, movers: &[Mover<S, G, A>]) -> u32 {
+    let mut count = 0;
+    for (index, one) in movers.iter().enumerate() {
+        for other in movers.iter().skip(index.saturating_add(1)) {
+            let squares = one.position.mm.iter().zip(other.position.mm).map(|(a, b)| {
+                let difference = i64::from(*a) - i64::from(b);
+                difference * difference
+            });
+            let least = i64::from(scene.apart_mm);
+            count += u32::from(squares.sum::<i64>() < least * least);
+        }
+    }
+    count
+}

@@ -1,0 +1,94 @@
+//! The three flocks.
+
+use super::waypoints::movers;
+use crate::air::Faults;
+use crate::plane::{ROBOTS, Scene, Solid, run};
+use crate::{Probe, Summary};
+use staya_controller::agent::{
+    BoidsGuidance, GoalFlockGuidance, LatticeGuidance, Place, PushOutSafety, Unguarded,
+};
+use staya_controller::flock::boids::BoidsParams;
+use staya_controller::flock::goal::GoalParams;
+use staya_controller::flock::lattice::{Gain, LatticeParams};
+use staya_controller::geom::{Position, Vec3};
+use staya_controller::push_out::PushOutParams;
+use staya_controller::scalar::Scalar;
+
+/// A loose crowd.
+const CROWD: [[i32; 3]; ROBOTS] = [
+    [0, 0, 0],
+    [0, 700, 0],
+    [600, 300, 0],
+    [-500, -400, 0],
+    [700, -500, 0],
+];
+
+fn scene<S: Scalar>(solids: &'static [Solid], ticks: u32) -> Scene<S> {
+    Scene {
+        solids,
+        land: None,
+        max_speed_mps: S::ONE,
+        // Flocks know points; push-out behind the goal flock knows bodies.
+        apart_mm: 300,
+        faults: Faults::default(),
+        ticks,
+    }
+}
+
+pub(super) fn lattice<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
+    // Beside the way of the reference.
+    const BALL: [Solid; 1] = [Solid::Ball([6000, 900, 0], 500)];
+    // Gentle enough for ten decisions a second on news that is a tenth of a second old.
+    let params = LatticeParams {
+        alpha: Gain::critical(S::ONE),
+        beta: Gain::critical(S::from_i32(4)),
+        gamma: Gain::critical(S::HALF),
+        ..LatticeParams::new(S::ONE)
+    };
+    let mut movers = movers(&CROWD, |_| LatticeGuidance::new(params, true), || Unguarded);
+    let reference = Place {
+        velocity_mps: Vec3::new(S::from_ratio(1, 4), S::ZERO, S::ZERO),
+        ..Place::fixed(Position::from_mm([1000, 0, 0]))
+    };
+    for mover in &mut movers {
+        let _ = mover.agent.assign_place(0, &reference);
+    }
+    run(&scene(&BALL, 400), &mut movers, &mut (), probe)
+}
+
+pub(super) fn goals<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
+    let params = GoalParams::new(S::from_milli(500), S::ONE);
+    let mut movers = movers(
+        &CROWD,
+        |_| GoalFlockGuidance::new(params, S::ONE, 3),
+        || PushOutSafety::new(PushOutParams::new(S::from_milli(350))),
+    );
+    for mover in &mut movers {
+        for (index, goal) in (0..).zip([[9000, 4000, 0], [9000, -4000, 0]]) {
+            let place = Place::fixed(Position::from_mm(goal));
+            let _ = mover.agent.assign_place(index, &place);
+        }
+    }
+    run(&scene(&[], 400), &mut movers, &mut (), probe)
+}
+
+pub(super) fn boids<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
+    let params = BoidsParams::new(
+        S::from_milli(300),
+        S::from_i32(30),
+        S::from_ratio(1, 20),
+        S::from_ratio(1, 50),
+    );
+    let mut movers = movers(
+        &CROWD,
+        |_| BoidsGuidance::new(params, S::HALF),
+        || Unguarded,
+    );
+    // Half of a circle of directions; their speeds differ, which is put right in the first step.
+    let ways = [[5, 0], [4, 3], [3, -4], [0, 5], [4, -3]];
+    for (mover, [x, y]) in movers.iter_mut().zip(ways) {
+        let tenths = |n| S::from_ratio(n, 10);
+        mover.velocity_mps = Vec3::new(tenths(x), tenths(y), S::ZERO);
+    }
+    run(&scene(&[], 400), &mut movers, &mut (), probe)
+}

@@ -1,0 +1,191 @@
+//! Cases on the grid.
+
+use crate::air::{Faults, INBOX};
+use crate::grid::{Formation, GridAgent, ROBOTS, Route, Scene, TICK, Walker, run};
+use crate::land::Land;
+use crate::{Probe, Summary};
+use heapless::Vec;
+use staya_controller::agent::AgentConfig;
+use staya_controller::formation::{FormationParams, Prediction, Template};
+use staya_controller::grid::Cell;
+use staya_controller::route::RouteParams;
+use staya_controller::scalar::Scalar;
+use staya_controller::wire::{
+    GoalAssignment, Header, Message, Request, RequestKind, RobotId, TemplateAssignment, encode,
+};
+
+/// Rough land with two walls to go around.
+const LAND: Land = Land {
+    size: 28,
+    roughness_log2: 2,
+    walls: &[(9, 7, 12), (18, 14, 19)],
+};
+/// The operator's number.
+const OPERATOR: RobotId = RobotId(200);
+/// Rows 1 2 and 3 4, robot 1 in front.
+const PLACES: [Cell; ROBOTS] = [
+    Cell::new(0, 0),
+    Cell::new(-3, 0),
+    Cell::new(0, -3),
+    Cell::new(-3, -3),
+];
+const EDGES: [(u16, u16); 4] = [(0, 1), (0, 2), (1, 3), (2, 3)];
+/// Robot 1 at the start, and its goal.
+const START: Cell = Cell::new(5, 5);
+const GOAL: Cell = Cell::new(24, 21);
+
+fn config<S: Scalar>(index: usize) -> AgentConfig<S> {
+    AgentConfig::new(RobotId(index as u32 + 1), 7, TICK)
+}
+
+pub(super) fn route<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
+    let scene = Scene {
+        land: LAND,
+        faults: Faults::default(),
+        ticks: 300,
+    };
+    // From each corner to the opposite one.
+    let corners = [(4, 4), (23, 4), (4, 23), (23, 23)].map(|(x, y)| Cell::new(x, y));
+    let mut walkers = Vec::new();
+    for (index, (cell, goal)) in corners
+        .into_iter()
+        .zip(corners.into_iter().rev())
+        .enumerate()
+    {
+        let guidance = Route::new(RouteParams::default());
+        let mut agent = GridAgent::new(&config(index), guidance);
+        agent.assign_goal(goal);
+        // As many places as robots.
+        let _ = walkers.push(Walker {
+            agent,
+            cell,
+            free_at_ms: 0,
+        });
+    }
+    run(&scene, &mut walkers, |_, _| {}, probe)
+}
+
+pub(super) fn formation<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
+    in_formation(Prediction::Constant, probe)
+}
+
+pub(super) fn reflexive<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
+    in_formation(Prediction::Reflexive, probe)
+}
+
+fn template(index: usize) -> Template<8> {
+    // The graph is sound: a test sees the robots keep their places.
+    Template::from_graph(&PLACES, &EDGES, index, 2).unwrap_or_default()
+}
+
+fn members<S: Scalar>(
+    params: FormationParams,
+    template: impl Fn(usize) -> Template<8>,
+) -> Vec<Walker<S, Formation>, ROBOTS> {
+    let mut walkers = Vec::new();
+    for (index, place) in PLACES.into_iter().enumerate() {
+        let guidance = Formation::new(RouteParams::default(), params, template(index));
+        let _ = walkers.push(Walker {
+            agent: GridAgent::new(&config(index), guidance),
+            cell: START + place,
+            free_at_ms: 0,
+        });
+    }
+    walkers
+}
+
+fn in_formation<S: Scalar, P: Probe<S>>(prediction: Prediction, probe: &mut P) -> Summary {
+    let params = FormationParams {
+        prediction,
+        ..FormationParams::default()
+    };
+    let mut walkers = members(params, template);
+    for (walker, place) in walkers.iter_mut().zip(PLACES) {
+        walker.agent.assign_goal(GOAL + place);
+    }
+    let scene = Scene {
+        land: LAND,
+        faults: Faults::default(),
+        ticks: 300,
+    };
+    run(&scene, &mut walkers, |_, _| {}, probe)
+}
+
+pub(super) fn packets<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
+    let scene = Scene {
+        land: LAND,
+        faults: Faults {
+            seed: 5,
+            loss: u32::MAX >> 3,
+            flip: u32::MAX >> 4,
+            twice: u32::MAX >> 3,
+        },
+        ticks: 400,
+    };
+    let mut walkers = members(FormationParams::default(), |_| Template::default());
+    let mut operator = Operator { sequence: 0 };
+    run(
+        &scene,
+        &mut walkers,
+        |tick, out| operator.speak(tick, out),
+        probe,
+    )
+}
+
+/// Says again and again what the robots are to do, since nobody tells it who has heard.
+struct Operator {
+    sequence: u16,
+}
+
+impl Operator {
+    /// When it says "stop" and "resume", ticks.
+    const STOP: core::ops::Range<u32> = 60..66;
+    const RESUME: core::ops::Range<u32> = 80..90;
+
+    fn speak(&mut self, tick: u32, out: &mut Vec<u8, INBOX>) {
+        let index = (tick & 3) as usize;
+        let to = RobotId(index as u32 + 1);
+        let Template {
+            slot,
+            offset,
+            entries,
+        } = template(index);
+        if let Ok(parts) = TemplateAssignment::split(to, 1, slot, offset, &entries) {
+            for part in parts {
+                self.say(Message::Template(part), out);
+            }
+        }
+        let goal = GoalAssignment {
+            to: RobotId::NOBODY,
+            version: 1,
+            target: GOAL,
+        };
+        self.say(Message::Goal(goal), out);
+        let request = |number, kind| {
+            Message::Request(Request {
+                to: RobotId(1),
+                origin: OPERATOR,
+                number,
+                kind,
+                valid_ms: 30_000,
+            })
+        };
+        if Self::STOP.contains(&tick) {
+            self.say(request(1, RequestKind::Stop), out);
+        }
+        if Self::RESUME.contains(&tick) {
+            self.say(request(2, RequestKind::Resume), out);
+        }
+    }
+
+    fn say(&mut self, message: Message, out: &mut Vec<u8, INBOX>) {
+        let header = Header {
+            boot: 0,
+            sender: OPERATOR,
+            sequence: self.sequence,
+        };
+        self.sequence = self.sequence.wrapping_add(1);
+        // What has no room in this tick is said in a later one.
+        let _ = encode(header, &message, out);
+    }
+}

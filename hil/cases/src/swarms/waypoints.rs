@@ -1,0 +1,196 @@
+//! Cases in which each robot has a place of its own to go to.
+
+use crate::air::Faults;
+use crate::grid::Route;
+use crate::land::Land;
+use crate::plane::{Mover, PlaneAgent, ROBOTS, STEP, Scene, Solid, run};
+use crate::{Probe, Summary};
+use heapless::Vec;
+use serde::Serialize;
+use staya_controller::agent::{
+    AgentConfig, FlySafety, GridWorkspace, Guidance, InPlane, OrcaSafety, Place, PushOutSafety,
+    Safety, WaypointGuidance,
+};
+use staya_controller::geom::{Position, Vec3};
+use staya_controller::grid::Cell;
+use staya_controller::neighbor::Doubt;
+use staya_controller::orca::{Analytic, AvoidParams, FlyParams, HalfPlanes};
+use staya_controller::push_out::PushOutParams;
+use staya_controller::route::RouteParams;
+use staya_controller::scalar::Scalar;
+use staya_controller::wire::RobotId;
+
+const RADIUS_MM: i32 = 150;
+/// Half-planes that a robot reckons with.
+const PLANES: usize = 16;
+
+/// A pentagon with a radius of 1.5 m, not quite even, so that no symmetry helps.
+const PENTAGON: [[i32; 3]; ROBOTS] = [
+    [1500, 0, 0],
+    [464, 1427, 0],
+    [-1214, 882, 0],
+    [-1214, -885, 0],
+    [464, -1420, 0],
+];
+
+pub(super) fn config<S: Scalar>(index: usize) -> AgentConfig<S> {
+    AgentConfig {
+        radius_m: S::from_milli(RADIUS_MM),
+        // What others say was said a step ago.
+        latency: STEP,
+        ..AgentConfig::new(RobotId(index as u32 + 1), 11, STEP)
+    }
+}
+
+fn doubt<S: Scalar>() -> Doubt<S> {
+    Doubt {
+        growth_mps: S::HALF,
+        most_m: S::from_milli(300),
+    }
+}
+
+/// One robot for each start, standing there.
+pub(super) fn movers<S: Scalar, G: Guidance<S>, A: Safety<S>>(
+    starts: &[[i32; 3]],
+    guidance: impl Fn(usize) -> G,
+    safety: impl Fn() -> A,
+) -> Vec<Mover<S, G, A>, ROBOTS> {
+    let mut movers = Vec::new();
+    for (index, start) in starts.iter().enumerate() {
+        // As many places as robots.
+        let _ = movers.push(Mover {
+            agent: PlaneAgent::guarded(&config(index), guidance(index), safety()),
+            position: Position::from_mm(*start),
+            velocity_mps: Vec3::ZERO,
+        });
+    }
+    movers
+}
+
+fn scene<S: Scalar>(solids: &'static [Solid]) -> Scene<S> {
+    Scene {
+        solids,
+        land: None,
+        max_speed_mps: S::HALF,
+        apart_mm: 2 * RADIUS_MM,
+        faults: Faults::default(),
+        ticks: 400,
+    }
+}
+
+fn waypoint<S: Scalar>() -> WaypointGuidance<S> {
+    WaypointGuidance::new(S::HALF, S::from_milli(30))
+}
+
+/// Sends each robot to its place and runs until all are there.
+fn to_places<S: Scalar, A: Safety<S> + Serialize, P: Probe<S>>(
+    scene: &Scene<S>,
+    starts: &[[i32; 3]],
+    goals: &[[i32; 3]],
+    safety: impl Fn() -> A,
+    probe: &mut P,
+) -> Summary {
+    let mut movers = movers(starts, |_| waypoint(), safety);
+    for (mover, goal) in movers.iter_mut().zip(goals) {
+        let place = Place::fixed(Position::from_mm(*goal));
+        // A waypoint has a place of number 0.
+        let _ = mover.agent.assign_place(0, &place);
+    }
+    run(scene, &mut movers, &mut (), probe)
+}
+
+pub(super) fn swap<S: Scalar, H: HalfPlanes<S> + Clone + Serialize, P: Probe<S>>(
+    source: H,
+    probe: &mut P,
+) -> Summary {
+    let params = AvoidParams::default();
+    to_places(
+        &scene(&[]),
+        &PENTAGON,
+        &PENTAGON.map(|place| place.map(|mm: i32| -mm)),
+        || OrcaSafety::<S, PLANES, H>::with_source(params, doubt(), source.clone()),
+        probe,
+    )
+}
+
+pub(super) fn doorway<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
+    // A gap of 0.5 m between two rooms.
+    const WALLS: [Solid; 2] = [
+        Solid::Wall([[0, -9000], [0, -250]]),
+        Solid::Wall([[0, 250], [0, 9000]]),
+    ];
+    let starts = [
+        [-1500, 0, 0],
+        [-2500, 300, 0],
+        [1500, 100, 0],
+        [2500, -300, 0],
+    ];
+    let goals = [
+        [2500, 300, 0],
+        [1500, 0, 0],
+        [-2500, -300, 0],
+        [-1500, 100, 0],
+    ];
+    let safety = || OrcaSafety::<S, PLANES>::new(AvoidParams::default(), doubt());
+    to_places(&scene(&WALLS), &starts, &goals, safety, probe)
+}
+
+pub(super) fn fly<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
+    const SOLIDS: [Solid; 2] = [Solid::Floor(0), Solid::Ball([0, 0, 1500], 200)];
+    let heights = [1000, 1400, 1800, 1200, 1600];
+    let at = |sign: i32| {
+        let mut places = PENTAGON;
+        for (place, height) in places.iter_mut().zip(heights) {
+            let [x, y, z] = place;
+            (*x, *y) = (*x * sign, *y * sign);
+            // Who starts low ends high.
+            *z = 1400 + sign * (height - 1400);
+        }
+        places
+    };
+    let safety = || FlySafety::<S, PLANES>::new(FlyParams::default(), doubt());
+    to_places(&scene(&SOLIDS), &at(1), &at(-1), safety, probe)
+}
+
+pub(super) fn push_out<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
+    const SOLIDS: [Solid; 2] = [
+        Solid::Ball([0, 0, 0], 300),
+        Solid::Wall([[-3000, 1900], [3000, 1900]]),
+    ];
+    let starts = [[-2000, 150, 0], [2000, 900, 0], [-300, -2000, 0]];
+    let goals = [[2000, 100, 0], [-2000, 1100, 0], [400, 1300, 0]];
+    let safety = || PushOutSafety::new(PushOutParams::new(S::from_milli(400)));
+    to_places(&scene(&SOLIDS), &starts, &goals, safety, probe)
+}
+
+pub(super) fn route_in_plane<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
+    let land = Land {
+        size: 16,
+        roughness_log2: 1,
+        walls: &[(7, 3, 10)],
+    };
+    let starts = [
+        [3500, 3500, 0],
+        [12_500, 3500, 0],
+        [3500, 12_500, 0],
+        [12_500, 12_500, 0],
+    ];
+    let goals = [
+        Cell::new(12, 11),
+        Cell::new(3, 12),
+        Cell::new(12, 4),
+        Cell::new(3, 3),
+    ];
+    let guidance = |_| InPlane::new(Route::new(RouteParams::default()), S::HALF);
+    let safety = || OrcaSafety::<S, PLANES>::with_source(AvoidParams::default(), doubt(), Analytic);
+    let mut movers = movers(&starts, guidance, safety);
+    for (mover, goal) in movers.iter_mut().zip(goals) {
+        mover.agent.assign_goal(goal);
+    }
+    let scene = Scene {
+        land: Some(land),
+        ticks: 700,
+        ..scene(&[])
+    };
+    run(&scene, &mut movers, &mut GridWorkspace::new(), probe)
+}

@@ -1,0 +1,57 @@
+//! What the swarms do, so that a hash stands for work done and not for robots that stand.
+
+use super::*;
+use staya_controller::scalar::Q16;
+use std::string::String;
+
+fn run<S: Scalar>(case: Case) -> Summary {
+    case.run::<S, _>(&mut Unmeasured)
+}
+
+fn each(check: impl Fn(&str, Summary), cases: &[Case]) {
+    for case in cases {
+        check(&std::format!("{} f32", case.name()), run::<f32>(*case));
+        check(&std::format!("{} Q16", case.name()), run::<Q16>(*case));
+    }
+}
+
+#[test]
+fn robots_with_goals_arrive_and_never_touch() {
+    let cases = [
+        (Case::Route, 4),
+        (Case::Formation, 4),
+        (Case::FormationReflexive, 4),
+        (Case::Packets, 4),
+        (Case::RouteInPlane, 4),
+        (Case::OrcaAnalytic, 5),
+        (Case::OrcaTemplate2k, 5),
+        (Case::OrcaTemplate8k, 5),
+        (Case::OrcaTemplate16k, 5),
+        (Case::OrcaTemplate64k, 5),
+        (Case::Doorway, 4),
+        (Case::Fly, 5),
+        (Case::PushOut, 3),
+        (Case::GoalFlock, 5),
+    ];
+    let mut faults = String::new();
+    for (case, robots) in cases {
+        for (scalar, summary) in [("f32", run::<f32>(case)), ("Q16", run::<Q16>(case))] {
+            if (summary.arrived, summary.overlaps) != (robots, 0) {
+                faults += &std::format!("{} {scalar}: {summary:?}\n", case.name());
+            }
+        }
+    }
+    assert!(faults.is_empty(), "{faults}");
+}
+
+#[test]
+fn a_bad_radio_costs_frames_and_a_good_one_none() {
+    each(
+        |name, summary| assert!(summary.rejected > 50, "{name}: {summary:?}"),
+        &[Case::Packets],
+    );
+    each(
+        |name, summary| assert_eq!(summary.rejected, 0, "{name}"),
+        &[Case::Formation, Case::OrcaAnalytic, Case::Boids],
+    );
+}

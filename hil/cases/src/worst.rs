@@ -1,0 +1,349 @@
+//! One agent of full size in the worst company: as many neighbours as it knows, all near, going anywhere, other ones in
+//! each step. Not a proof of the worst case, but what a firmware should have time for.
+
+use crate::hash::Hash;
+use crate::land::WINDOW;
+use crate::plane::STEP;
+use crate::{Probe, Summary};
+use heapless::Vec;
+use serde::Serialize;
+use staya_controller::agent::{
+    Agent, AgentConfig, BoidsGuidance, CELLS, CellState, FlySafety, FormationGuidance,
+    GoalFlockGuidance, GridWorkspace, Guidance, Inputs, LatticeGuidance, OrcaSafety, Place, Pose,
+    PushOutSafety, RouteGuidance, Safety, Surroundings, TEMPLATE, Unguarded, VISITS,
+    WaypointGuidance,
+};
+use staya_controller::flock::boids::BoidsParams;
+use staya_controller::flock::goal::GoalParams;
+use staya_controller::flock::lattice::LatticeParams;
+use staya_controller::formation::{FormationParams, Prediction, Template};
+use staya_controller::geom::{Position, Vec2, Vec3};
+use staya_controller::grid::{Cell, Dir, Window};
+use staya_controller::neighbor::Doubt;
+use staya_controller::obstacle::Obstacle;
+use staya_controller::orca::{Analytic, Template2k, Template64k};
+use staya_controller::orca::{AvoidParams, FlyParams, HalfPlanes};
+use staya_controller::push_out::PushOutParams;
+use staya_controller::rand::Rng;
+use staya_controller::route::RouteParams;
+use staya_controller::scalar::Scalar;
+use staya_controller::time::{Duration, Instant};
+use staya_controller::wire::{Beacon, Header, Message, Mode, RobotId, encode};
+
+/// Steps of each, in other company each time.
+const STEPS: u32 = 64;
+/// Obstacles in sight in the plane and in space.
+const OBSTACLES: usize = 4;
+const PURPOSE: u32 = u32::from_be_bytes(*b"wrst");
+const RADIUS_MM: i32 = 150;
+/// The own robot's number: in the middle, so that templates name others on both sides.
+const OWN: RobotId = RobotId(5);
+
+/// Bytes of sixteen beacons.
+type Inbox = Vec<u8, { 16 * Beacon::MAX_FRAME_LEN }>;
+
+/// Which behaviour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Worst {
+    /// A search of the whole window.
+    Route,
+    /// Formation among eight neighbours of the template.
+    Formation,
+    /// The same, each of the eight foreseen by a search of its own.
+    FormationReflexive,
+    /// ORCA in a crowd in which no velocity is permitted most of the time, half-planes by the formula.
+    OrcaAnalytic,
+    /// The same with the smallest table.
+    OrcaTemplate2k,
+    /// The same with the largest table.
+    OrcaTemplate64k,
+    /// ORCA in space in such a crowd.
+    Fly,
+    /// Push-out in such a crowd.
+    PushOut,
+    /// The alpha flock with everybody in range.
+    Lattice,
+    /// The goal flock with everybody in range.
+    GoalFlock,
+    /// Boids with everybody in range.
+    Boids,
+}
+
+impl Worst {
+    /// All of them.
+    pub const ALL: [Self; 11] = [
+        Self::Route,
+        Self::Formation,
+        Self::FormationReflexive,
+        Self::OrcaAnalytic,
+        Self::OrcaTemplate2k,
+        Self::OrcaTemplate64k,
+        Self::Fly,
+        Self::PushOut,
+        Self::Lattice,
+        Self::GoalFlock,
+        Self::Boids,
+    ];
+
+    /// Its name in tables.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Route => "worst_route",
+            Self::Formation => "worst_formation",
+            Self::FormationReflexive => "worst_formation_reflexive",
+            Self::OrcaAnalytic => "worst_orca_analytic",
+            Self::OrcaTemplate2k => "worst_orca_template_2k",
+            Self::OrcaTemplate64k => "worst_orca_template_64k",
+            Self::Fly => "worst_fly",
+            Self::PushOut => "worst_push_out",
+            Self::Lattice => "worst_lattice",
+            Self::GoalFlock => "worst_goal_flock",
+            Self::Boids => "worst_boids",
+        }
+    }
+
+    /// Runs 64 steps with `N` neighbours in each and at most `K` half-planes; on the grid with eight neighbours at most.
+    pub fn run<S: Scalar, P: Probe<S>, const N: usize, const K: usize>(
+        self,
+        probe: &mut P,
+    ) -> Summary {
+        match self {
+            Self::Route => on_grid::<S, _, P, N>(
+                RouteGuidance::<CELLS, VISITS>::new(RouteParams::default()),
+                probe,
+            ),
+            Self::Formation => on_grid::<S, _, P, N>(formation(Prediction::Constant), probe),
+            Self::FormationReflexive => {
+                on_grid::<S, _, P, N>(formation(Prediction::Reflexive), probe)
+            }
+            Self::OrcaAnalytic => orca::<S, _, P, N, K>(Analytic, probe),
+            Self::OrcaTemplate2k => orca::<S, _, P, N, K>(Template2k, probe),
+            Self::OrcaTemplate64k => orca::<S, _, P, N, K>(Template64k, probe),
+            Self::Fly => {
+                let safety = FlySafety::<S, K>::new(FlyParams::default(), doubt());
+                in_crowd::<S, _, _, P, N>(waypoint(), safety, probe)
+            }
+            Self::PushOut => {
+                let safety = PushOutSafety::new(PushOutParams::new(S::from_milli(400)));
+                in_crowd::<S, _, _, P, N>(waypoint(), safety, probe)
+            }
+            Self::Lattice => {
+                let guidance = LatticeGuidance::new(LatticeParams::new(S::ONE), true);
+                in_crowd::<S, _, _, P, N>(guidance, Unguarded, probe)
+            }
+            Self::GoalFlock => {
+                let params = GoalParams::new(S::HALF, S::ONE);
+                let guidance = GoalFlockGuidance::new(params, S::ONE, 3);
+                in_crowd::<S, _, _, P, N>(guidance, Unguarded, probe)
+            }
+            Self::Boids => {
+                let params = BoidsParams::new(
+                    S::from_milli(50),
+                    S::from_i32(30),
+                    S::from_ratio(1, 20),
+                    S::from_ratio(1, 50),
+                );
+                let guidance = BoidsGuidance::new(params, S::ONE);
+                in_crowd::<S, _, _, P, N>(guidance, Unguarded, probe)
+            }
+        }
+    }
+}
+
+fn doubt<S: Scalar>() -> Doubt<S> {
+    Doubt {
+        growth_mps: S::HALF,
+        most_m: S::from_milli(300),
+    }
+}
+
+fn waypoint<S: Scalar>() -> WaypointGuidance<S> {
+    WaypointGuidance::new(S::ONE, S::from_milli(10))
+}
+
+fn orca<S: Scalar, H: HalfPlanes<S> + Serialize, P: Probe<S>, const N: usize, const K: usize>(
+    source: H,
+    probe: &mut P,
+) -> Summary {
+    let safety = OrcaSafety::<S, K, H>::with_source(AvoidParams::default(), doubt(), source);
+    in_crowd::<S, _, _, P, N>(waypoint(), safety, probe)
+}
+
+/// Uniform within `most` of 0.
+fn about(rng: &mut Rng, most: u32) -> i32 {
+    rng.below(2 * most + 1).cast_signed() - most.cast_signed()
+}
+
+/// What `N` robots other than oneself say in this step.
+fn say<const N: usize>(
+    step: u32,
+    inbox: &mut Inbox,
+    mut beacon: impl FnMut(u32, &mut Rng) -> Beacon,
+) {
+    inbox.clear();
+    let numbers = (1..).filter(|number| *number != OWN.0);
+    for number in numbers.take(N) {
+        let mut rng = Rng::keyed(2, PURPOSE, number, step);
+        let header = Header {
+            boot: 0,
+            sender: RobotId(number),
+            sequence: step as u16,
+        };
+        // There is room.
+        let _ = encode(header, &Message::Beacon(beacon(number, &mut rng)), inbox);
+    }
+}
+
+fn in_crowd<S, G, A, P, const N: usize>(guidance: G, safety: A, probe: &mut P) -> Summary
+where
+    S: Scalar,
+    G: Guidance<S, Workspace = ()>,
+    A: Safety<S>,
+    Agent<S, G, N, A>: Serialize,
+    P: Probe<S>,
+{
+    let config = AgentConfig {
+        radius_m: S::from_milli(RADIUS_MM),
+        latency: STEP,
+        ..AgentConfig::new(OWN, 1, STEP)
+    };
+    let mut agent = Agent::<S, G, N, A>::guarded(&config, guidance, safety);
+    let _ = agent.assign_place(0, &Place::fixed(Position::from_mm([9000, 500, 0])));
+    let mut summary = Summary::of::<Agent<S, G, N, A>, ()>();
+    let (mut hash, mut inbox) = (Hash::new(), Inbox::new());
+    for step in 0..STEPS {
+        say::<N>(step, &mut inbox, |_, rng| Beacon {
+            position_mm: [about(rng, 900), about(rng, 900), about(rng, 300)],
+            velocity_mmps: [about(rng, 700), about(rng, 700), about(rng, 200)].map(|v| v as i16),
+            radius_mm: RADIUS_MM.unsigned_abs() as u16,
+            mode: Mode::Cruise,
+            ..Beacon::default()
+        });
+        let mut rng = Rng::keyed(2, PURPOSE, 0, step);
+        let mut metres = |most| S::from_milli(about(&mut rng, most));
+        let velocity_mps = Vec3::new(metres(700), metres(700), S::ZERO);
+        let mut obstacles = Vec::<Obstacle<S>, OBSTACLES>::new();
+        while !obstacles.is_full() {
+            let end = Vec2::new(metres(900), metres(900));
+            let other = end + Vec2::new(metres(900), metres(900));
+            // There is room.
+            let _ = obstacles.push(Obstacle::Wall([end, other]));
+        }
+        let inputs = Inputs {
+            pose: Pose {
+                position: Position::ORIGIN,
+                velocity_mps,
+            },
+            cell: None,
+            window: None,
+            surroundings: Some(Surroundings {
+                max_speed_mps: S::ONE,
+                obstacles: &obstacles,
+                in_cell: None,
+            }),
+            inbox: &inbox,
+        };
+        let now = Instant::from_micros(0) + STEP.saturating_mul(step.cast_signed());
+        let out = probe.step(&mut agent, &inputs, now, &mut ());
+        hash.outputs(&out);
+        hash.word(agent.digest());
+        summary.count(&out);
+    }
+    summary.finish(hash, STEPS)
+}
+
+/// Rows 1 2 3, 4 5 6, 7 8 9, robot 1 in front and the own one in the middle.
+const PLACES: [Cell; 9] = [
+    Cell::new(0, 0),
+    Cell::new(-3, 0),
+    Cell::new(-6, 0),
+    Cell::new(0, -3),
+    Cell::new(-3, -3),
+    Cell::new(-6, -3),
+    Cell::new(0, -6),
+    Cell::new(-3, -6),
+    Cell::new(-6, -6),
+];
+const EDGES: [(u16, u16); 12] = [
+    (0, 1),
+    (1, 2),
+    (3, 4),
+    (4, 5),
+    (6, 7),
+    (7, 8),
+    (0, 3),
+    (1, 4),
+    (2, 5),
+    (3, 6),
+    (4, 7),
+    (5, 8),
+];
+const LEADERS: [u32; 9] = [0, 1, 2, 1, 2, 3, 4, 5, 6];
+const TOP: Cell = Cell::new(50, 50);
+const GOAL: Cell = Cell::new(98, 98);
+/// Index of the own place.
+const MIDDLE: usize = 4;
+
+fn formation(prediction: Prediction) -> FormationGuidance<CELLS, VISITS, TEMPLATE> {
+    let params = FormationParams {
+        prediction,
+        ..FormationParams::default()
+    };
+    // The graph is sound: a test counts who is in it.
+    let template = Template::from_graph(&PLACES, &EDGES, MIDDLE, 2).unwrap_or_default();
+    FormationGuidance::new(RouteParams::default(), params, template)
+}
+
+fn on_grid<S, G, P, const N: usize>(guidance: G, probe: &mut P) -> Summary
+where
+    S: Scalar,
+    G: Guidance<S, Workspace = GridWorkspace<CELLS>>,
+    Agent<S, G, N>: Serialize,
+    P: Probe<S>,
+{
+    let config = AgentConfig::new(OWN, 1, STEP);
+    let mut agent = Agent::<S, G, N>::new(&config, guidance);
+    let cell = TOP + PLACES.get(MIDDLE).copied().unwrap_or_default();
+    agent.assign_goal(GOAL + (cell - TOP));
+    let mut workspace = GridWorkspace::new();
+    let mut summary = Summary::of::<Agent<S, G, N>, GridWorkspace<CELLS>>();
+    let (mut hash, mut inbox) = (Hash::new(), Inbox::new());
+    for step in 0..STEPS {
+        let mut rng = Rng::keyed(2, PURPOSE, 0, step);
+        let mut land = Vec::<u8, WINDOW>::new();
+        while !land.is_full() {
+            let _ = land.push(1 + rng.below(9) as u8);
+        }
+        say::<8>(step, &mut inbox, |number, rng| {
+            let index = number.saturating_sub(1) as usize;
+            let place = PLACES.get(index).copied().unwrap_or_default();
+            Beacon {
+                // Nobody is quite in place: whoever foresees them has to search their ways.
+                cell: TOP + place + Cell::new(about(rng, 1) as i16, i16::from(number != 1)),
+                heading: Dir::NorthEast,
+                leader: RobotId(LEADERS.get(index).copied().unwrap_or(0)),
+                slot: index as u8,
+                mode: Mode::Cruise,
+                target: GOAL + place,
+                ..Beacon::default()
+            }
+        });
+        let inputs = Inputs {
+            pose: Pose::default(),
+            cell: Some(CellState {
+                cell,
+                busy: Duration::ZERO,
+            }),
+            window: Window::new(&land, cell - Cell::new(5, 5), 11, 11),
+            surroundings: None,
+            inbox: &inbox,
+        };
+        let now = Instant::from_micros(0) + STEP.saturating_mul(step.cast_signed());
+        let out = probe.step(&mut agent, &inputs, now, &mut workspace);
+        hash.outputs(&out);
+        hash.word(agent.digest());
+        summary.count(&out);
+    }
+    summary.finish(hash, STEPS)
+}
