@@ -1,0 +1,125 @@
+//! Two driven wheels on one axle, and how they follow a velocity that points anywhere.
+
+use super::twist::{Kinematics, Twist};
+use staya_controller::agent::Pose;
+use staya_controller::geom::{Vec2, Vec3};
+use staya_controller::scalar::Scalar;
+
+/// Two wheels on one axle: left, right.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Differential<S> {
+    half_track_m: S,
+    per_track: S,
+}
+
+impl<S: Scalar> Differential<S> {
+    /// `track_m`: distance between the points where the wheels touch the ground; `None` unless more than 0 and finite.
+    #[must_use]
+    pub fn new(track_m: S) -> Option<Self> {
+        let per_track = S::ONE.checked_div(track_m)?;
+        (track_m > S::ZERO && track_m.is_finite()).then_some(Self {
+            half_track_m: track_m * S::HALF,
+            per_track,
+        })
+    }
+}
+
+impl<S: Scalar> Kinematics<S, 2> for Differential<S> {
+    fn wheels(&self, twist: &Twist<S>) -> [S; 2] {
+        let turn = twist.turn_radps * self.half_track_m;
+        [twist.forward_mps - turn, twist.forward_mps + turn]
+    }
+
+    fn twist(&self, &[left, right]: &[S; 2]) -> Twist<S> {
+        Twist {
+            forward_mps: (left + right) * S::HALF,
+            left_mps: S::ZERO,
+            turn_radps: (right - left) * self.per_track,
+        }
+    }
+}
+
+/// A robot that can only roll ahead and turn, made to follow any velocity by a point ahead of its axle.
+///
+/// A point at distance D ahead of the axle's middle moves with v ahead and with D w to the side, so that any velocity of it is
+/// a pair (v, w): the usual feedback linearisation. J. Snape, J. van den Berg, S. Guy, D. Manocha 2010, "Smooth and
+/// collision-free navigation for multiple robots under differential-drive constraints" (section IV) use it for ORCA: this "effective centre"
+/// is the robot as far as the controller is concerned, and then does exactly what ORCA assumes of it. Therefore
+///
+/// - give the controller the point's pose ([`Self::pose`]), not the axle's, and goals for that point;
+/// - the radius in [`AgentConfig`](staya_controller::agent::AgentConfig) is that of the disc around the point that holds the body at any
+///   heading: [`Self::radius`], the body's own plus D;
+/// - the top speed is what the wheels can do in the worst direction: [`Self::max_speed`].
+///
+/// D trades room for speed: half the track (Snape's choice) leaves 71 % of the wheels' speed; a small D takes little room, but the
+/// robot turns on the spot at the slightest change, and its top speed goes to zero. The way back leads over a turn: a robot that is sent
+/// straight back drives in reverse until anything disturbs it, and then swings round.
+///
+/// The other way is to keep the centre and let the radius grow by how far the robot strays from the wished path while it turns:
+/// J. Alonso-Mora, A. Breitenmoser, M. Rufli, P. Beardsley, R. Siegwart 2010, "Optimal reciprocal collision avoidance for multiple
+/// non-holonomic robots" (NH-ORCA). It forbids velocities whose error would be larger, which our safety layer does not; so
+/// it is not offered.
+///
+/// What remains as a margin to add to the radius: latency and acceleration. With acceleration a of the point and a command that
+/// is late by t, allow for speed * t + speed^2 / (2 a) in directions that change at once; give the controller the same a
+/// as its `max_acceleration_mps2` and the second term is its own business.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LookAhead<S> {
+    ahead_m: S,
+    per_ahead: S,
+}
+
+impl<S: Scalar> LookAhead<S> {
+    /// With the point `ahead_m` ahead of the axle; `None` unless more than 0 and finite.
+    #[must_use]
+    pub fn new(ahead_m: S) -> Option<Self> {
+        let per_ahead = S::ONE.checked_div(ahead_m)?;
+        (ahead_m > S::ZERO && ahead_m.is_finite()).then_some(Self { ahead_m, per_ahead })
+    }
+
+    /// What the robot at `heading_rad` (counter-clockwise from east) does so that the point goes with `velocity_mps` in the
+    /// world.
+    #[must_use]
+    pub fn twist(&self, velocity_mps: Vec2<S>, heading_rad: S) -> Twist<S> {
+        let wish = Twist::holonomic(velocity_mps, heading_rad, S::ZERO);
+        Twist {
+            forward_mps: wish.forward_mps,
+            left_mps: S::ZERO,
+            turn_radps: wish.left_mps * self.per_ahead,
+        }
+    }
+
+    /// The point's pose, for the controller, from the axle's: it turns at `turn_radps`. A place that is not a number
+    /// stays the axle's.
+    #[must_use]
+    pub fn pose(&self, axle: &Pose<S>, heading_rad: S, turn_radps: S) -> Pose<S> {
+        let (sin, cos) = heading_rad.sin_cos();
+        let way = Vec2::new(cos, sin) * self.ahead_m;
+        let swing = way.perp() * turn_radps;
+        Pose {
+            position: axle
+                .position
+                .moved(way.extend(S::ZERO))
+                .unwrap_or(axle.position),
+            velocity_mps: axle.velocity_mps + Vec3::new(swing.x, swing.y, S::ZERO),
+        }
+    }
+
+    /// Radius of the disc around the point that holds a body of `body_radius_m` around the axle's middle at any heading, metres.
+    #[must_use]
+    pub fn radius(&self, body_radius_m: S) -> S {
+        body_radius_m + self.ahead_m
+    }
+
+    /// The speed that the point can have in any direction with wheels that do `wheel_mps` at `track_m`: m/s. It is also the
+    /// factor for accelerations.
+    ///
+    /// In a direction at angle t to the nose the faster wheel does u (cos t + k sin t) with k = track / (2 D), at most
+    /// u sqrt(1 + k^2).
+    #[must_use]
+    pub fn max_speed(&self, wheel_mps: S, track_m: S) -> S {
+        let k = track_m * S::HALF * self.per_ahead;
+        let factor = S::norm([S::ONE, k, S::ZERO]);
+        wheel_mps.checked_div(factor).unwrap_or(S::ZERO)
+    }
+}

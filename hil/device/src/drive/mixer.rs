@@ -1,0 +1,99 @@
+//! From a body's motion to rim speeds that the motors can follow.
+
+use super::twist::{Kinematics, Twist};
+use staya_controller::scalar::Scalar;
+use staya_controller::time::Duration;
+
+/// What the wheels can do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits<S> {
+    /// Top rim speed, m/s: what the slowest motor does under load with an old battery, or the swarm's picture of the robot is wrong.
+    pub speed_mps: S,
+    /// How fast a rim may change its speed, m/s^2, before it slips or the supply gives in; [`Scalar::MAX`]: at once.
+    pub acceleration_mps2: S,
+}
+
+/// Keeps rim speeds within limits without bending the motion.
+///
+/// - Too fast: all wheels slow down by the same factor, so that a robot that goes any way keeps its direction, and one that cannot keeps its
+///   curve.
+/// - Too sudden: all wheels make the same part of their change, the largest that every one can make.
+/// - A motion that is not finite counts as standing still, which is reached within the acceleration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mixer<S, K, const W: usize> {
+    kinematics: K,
+    limits: Limits<S>,
+    rims_mps: [S; W],
+}
+
+impl<S: Scalar, K: Kinematics<S, W>, const W: usize> Mixer<S, K, W> {
+    /// A robot that stands; `None` unless both limits are more than 0 and the speed finite.
+    #[must_use]
+    pub fn new(kinematics: K, limits: Limits<S>) -> Option<Self> {
+        let Limits {
+            speed_mps: speed,
+            acceleration_mps2: acceleration,
+        } = limits;
+        let sensible = speed > S::ZERO && speed.is_finite() && acceleration > S::ZERO;
+        sensible.then_some(Self {
+            kinematics,
+            limits,
+            rims_mps: [S::ZERO; W],
+        })
+    }
+
+    /// The rim speeds for the next `span`, m/s. Call it as often as the motors are set; a span of 0 or less changes nothing where acceleration
+    /// is limited. O(W).
+    #[must_use]
+    pub fn mix(&mut self, twist: &Twist<S>, span: Duration) -> [S; W] {
+        let wish = self.slowed(self.kinematics.wheels(twist));
+        let span_s = S::from_micro(span.as_micros().max(0));
+        let most = self.limits.acceleration_mps2 * span_s;
+        let mut pairs = self.rims_mps.iter().zip(&wish);
+        let change = pairs.try_fold(S::ZERO, |most, (now, wish)| finite_max(most, *wish - *now));
+        let part = match change {
+            Some(change) if change > most && self.limits.acceleration_mps2 < S::MAX => {
+                most.checked_div(change)
+            }
+            _ => None,
+        };
+        for (now, wish) in self.rims_mps.iter_mut().zip(wish) {
+            *now = match part {
+                Some(part) => *now + (wish - *now) * part,
+                None => wish,
+            };
+        }
+        self.rims_mps
+    }
+
+    /// Stands at once, whatever the limits say: for emergencies, and when the motors were off.
+    pub fn stop(&mut self) {
+        self.rims_mps = [S::ZERO; W];
+    }
+
+    /// The robot's wheels.
+    #[must_use]
+    pub const fn kinematics(&self) -> &K {
+        &self.kinematics
+    }
+
+    /// Within the speed.
+    fn slowed(&self, rims_mps: [S; W]) -> [S; W] {
+        let top = self.limits.speed_mps;
+        let mut rims = rims_mps.iter();
+        match rims.try_fold(S::ZERO, |most, rim| finite_max(most, *rim)) {
+            Some(most) if most <= top => rims_mps,
+            Some(most) => match top.checked_div(most) {
+                // Rounding must not lead over the limit.
+                Some(factor) => rims_mps.map(|rim| (rim * factor).clamp(-top, top)),
+                None => [S::ZERO; W],
+            },
+            None => [S::ZERO; W],
+        }
+    }
+}
+
+/// The larger magnitude; `None` when the new one is not finite.
+fn finite_max<S: Scalar>(most: S, value: S) -> Option<S> {
+    value.is_finite().then(|| most.max(value.abs()))
+}

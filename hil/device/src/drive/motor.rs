@@ -1,0 +1,141 @@
+//! One motor behind a bridge.
+
+use embedded_hal::digital::OutputPin;
+use embedded_hal::pwm::SetDutyCycle;
+
+/// A motor at full power: duties are on [-[`FULL`], [`FULL`]].
+pub const FULL: i16 = i16::MAX;
+
+/// A motor that turns both ways.
+pub trait Motor {
+    /// What its pins can report.
+    type Error;
+
+    /// Sets the duty, [`FULL`] being full power ahead.
+    ///
+    /// # Errors
+    /// That of the pins; the duty is then unknown.
+    fn set(&mut self, duty: i16) -> Result<(), Self::Error>;
+}
+
+/// What went wrong at a [`SignMagnitude`] or at [`TwoPins`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SignMagnitudeError<P, D> {
+    /// At the PWM channel.
+    Pwm(P),
+    /// At a direction pin.
+    Pin(D),
+}
+
+/// A PWM channel for the power and a pin for the direction (high: ahead), as on DRV8835 (PH/EN mode), TB9051, Cytron MDD.
+#[derive(Clone, Debug)]
+pub struct SignMagnitude<P, D> {
+    pwm: P,
+    direction: D,
+}
+
+impl<P: SetDutyCycle, D: OutputPin> SignMagnitude<P, D> {
+    /// A motor on these pins; nothing is set yet.
+    #[must_use]
+    pub const fn new(pwm: P, direction: D) -> Self {
+        Self { pwm, direction }
+    }
+
+    /// The pins back.
+    #[must_use]
+    pub fn release(self) -> (P, D) {
+        (self.pwm, self.direction)
+    }
+}
+
+impl<P: SetDutyCycle, D: OutputPin> Motor for SignMagnitude<P, D> {
+    type Error = SignMagnitudeError<P::Error, D::Error>;
+
+    fn set(&mut self, duty: i16) -> Result<(), Self::Error> {
+        let power = scaled(duty, self.pwm.max_duty_cycle());
+        // Without power while the direction changes: half a period of the wrong one is a jerk.
+        let pwm = |result: Result<(), P::Error>| result.map_err(SignMagnitudeError::Pwm);
+        pwm(self.pwm.set_duty_cycle(0))?;
+        self.direction
+            .set_state((duty >= 0).into())
+            .map_err(SignMagnitudeError::Pin)?;
+        pwm(self.pwm.set_duty_cycle(power))
+    }
+}
+
+/// A PWM channel for the power and two pins for the direction (high, low: ahead; both low: coast), as on L298N and TB6612.
+#[derive(Clone, Debug)]
+pub struct TwoPins<P, A, B> {
+    pwm: P,
+    ahead: A,
+    back: B,
+}
+
+impl<P: SetDutyCycle, A: OutputPin, B: OutputPin<Error = A::Error>> TwoPins<P, A, B> {
+    /// A motor on these pins; nothing is set yet.
+    #[must_use]
+    pub const fn new(pwm: P, ahead: A, back: B) -> Self {
+        Self { pwm, ahead, back }
+    }
+}
+
+impl<P: SetDutyCycle, A: OutputPin, B: OutputPin<Error = A::Error>> Motor for TwoPins<P, A, B> {
+    type Error = SignMagnitudeError<P::Error, A::Error>;
+
+    fn set(&mut self, duty: i16) -> Result<(), Self::Error> {
+        let power = scaled(duty, self.pwm.max_duty_cycle());
+        let pwm = |result: Result<(), P::Error>| result.map_err(SignMagnitudeError::Pwm);
+        pwm(self.pwm.set_duty_cycle(0))?;
+        let ahead = self.ahead.set_state((duty > 0).into());
+        let back = self.back.set_state((duty < 0).into());
+        ahead.and(back).map_err(SignMagnitudeError::Pin)?;
+        pwm(self.pwm.set_duty_cycle(power))
+    }
+}
+
+/// A PWM channel for each direction, of one kind, as on DRV8833 and DRV8871 (IN/IN mode): the other one stays low, and between pulses the motor
+/// coasts.
+#[derive(Clone, Debug)]
+pub struct HBridge<P> {
+    ahead: P,
+    back: P,
+}
+
+impl<P: SetDutyCycle> HBridge<P> {
+    /// A motor on these channels; nothing is set yet.
+    #[must_use]
+    pub const fn new(ahead: P, back: P) -> Self {
+        Self { ahead, back }
+    }
+
+    /// The channels back.
+    #[must_use]
+    pub fn release(self) -> (P, P) {
+        (self.ahead, self.back)
+    }
+}
+
+impl<P: SetDutyCycle> Motor for HBridge<P> {
+    type Error = P::Error;
+
+    fn set(&mut self, duty: i16) -> Result<(), P::Error> {
+        let (used, idle) = if duty < 0 {
+            (&mut self.back, &mut self.ahead)
+        } else {
+            (&mut self.ahead, &mut self.back)
+        };
+        // First off, then on: both on would brake with full current.
+        idle.set_duty_cycle(0)?;
+        let power = scaled(duty, used.max_duty_cycle());
+        used.set_duty_cycle(power)
+    }
+}
+
+/// The duty's magnitude on [0, `max`], rounded to nearest.
+fn scaled(duty: i16, max: u16) -> u16 {
+    let full = u32::from(FULL.unsigned_abs());
+    let power = u32::from(duty.unsigned_abs()).min(full);
+    // At most 65,535 * 32,767 + 16,383 < 2^31.
+    let scaled = (power * u32::from(max) + (full >> 1)).checked_div(full);
+    scaled.and_then(|s| u16::try_from(s).ok()).unwrap_or(0)
+}

@@ -1,0 +1,81 @@
+//! How a body moves, and what its wheels have to do with it.
+
+use staya_controller::agent::Command;
+use staya_controller::geom::Vec2;
+use staya_controller::scalar::Scalar;
+
+/// How a body moves, seen from itself; also how it has moved in a span (metres and radians).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Twist<S> {
+    /// Ahead, m/s.
+    pub forward_mps: S,
+    /// To the left, m/s.
+    pub left_mps: S,
+    /// Counter-clockwise, rad/s.
+    pub turn_radps: S,
+}
+
+impl<S: Scalar> Twist<S> {
+    /// For robots that go any way: world velocity `velocity_mps` at `heading_rad` (of the robot's nose, counter-clockwise from
+    /// east), while it turns at `turn_radps`, which is the caller's choice.
+    #[must_use]
+    pub fn holonomic(velocity_mps: Vec2<S>, heading_rad: S, turn_radps: S) -> Self {
+        let (sin, cos) = heading_rad.sin_cos();
+        let seen = velocity_mps.rotate(cos, -sin);
+        Self {
+            forward_mps: seen.x,
+            left_mps: seen.y,
+            turn_radps,
+        }
+    }
+
+    /// No component is NaN or infinite.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.forward_mps.is_finite() && self.left_mps.is_finite() && self.turn_radps.is_finite()
+    }
+}
+
+/// The world velocity that a command asks for, m/s: zero for [`Command::Hold`].
+///
+/// Also zero for [`Command::Move`], which names cells; robots with wheels let a guidance on the grid go by velocities with
+/// [`InPlane`](staya_controller::agent::InPlane).
+#[must_use]
+pub fn wished_velocity<S: Scalar>(command: &Command<S>) -> Vec2<S> {
+    match command {
+        Command::Velocity(velocity_mps) => velocity_mps.xy(),
+        Command::Hold | Command::Move(_) => Vec2::ZERO,
+    }
+}
+
+/// The same angle on (-pi, pi]; NaN stays.
+#[must_use]
+pub fn wrap_angle<S: Scalar>(angle_rad: S) -> S {
+    let turn = S::PI + S::PI;
+    // Most angles are in range already, and those keep their bits.
+    if angle_rad > -S::PI && angle_rad <= S::PI {
+        return angle_rad;
+    }
+    let turns = (S::PI - angle_rad).checked_div(turn);
+    match turns.and_then(S::floor_to_i32) {
+        Some(turns) => {
+            let wrapped = angle_rad + S::from_i32(turns) * turn;
+            // Rounding may leave the interval by a bit.
+            if wrapped > -S::PI {
+                wrapped.min(S::PI)
+            } else {
+                S::PI
+            }
+        }
+        None => angle_rad,
+    }
+}
+
+/// A way of standing on `W` wheels: linear both ways, so that it serves speeds and distances.
+pub trait Kinematics<S, const W: usize> {
+    /// The rim speeds that make the body move so, m/s. What the body cannot do is left out.
+    fn wheels(&self, twist: &Twist<S>) -> [S; W];
+
+    /// How the body moves when the rims do, in the sense of least squares if they contradict each other.
+    fn twist(&self, rims_mps: &[S; W]) -> Twist<S>;
+}

@@ -1,0 +1,94 @@
+//! The link for asynchronous HALs.
+
+use super::{Counts, Receiver, Sender};
+use core::convert::Infallible;
+use core::future::pending;
+use embassy_futures::{select, yield_now};
+use embedded_io_async::{Read, Write};
+
+/// Bytes that one call moves at a time.
+const PIECE: usize = 32;
+
+/// Packets over the two halves of an asynchronous line.
+///
+/// Between two steps let [`Self::serve`] run beside the wait for the next one, for example
+/// `select(ticker.next(), link.serve()).await`. `IN` and `OUT` as for [`PacketLink`](super::PacketLink).
+///
+/// Reading and writing must stand being cancelled without losing bytes, as buffered UARTs do (those with a ring
+/// that an interrupt or a DMA fills).
+#[derive(Clone, Debug)]
+pub struct AsyncPacketLink<R, W, const IN: usize = 1024, const OUT: usize = 512> {
+    reader: R,
+    writer: W,
+    receiver: Receiver<IN>,
+    sender: Sender<OUT>,
+}
+
+impl<R: Read, W: Write, const IN: usize, const OUT: usize> AsyncPacketLink<R, W, IN, OUT> {
+    /// Over the line's two halves, with nothing received and nothing to send.
+    #[must_use]
+    pub const fn new(reader: R, writer: W) -> Self {
+        Self {
+            reader,
+            writer,
+            receiver: Receiver::new(),
+            sender: Sender::new(),
+        }
+    }
+
+    /// The frames since the last call, for [`Inputs::inbox`](staya_controller::agent::Inputs::inbox).
+    #[must_use]
+    pub fn take(&mut self) -> &[u8] {
+        self.receiver.take()
+    }
+
+    /// Queues the frames of [`Outputs::outbox`](staya_controller::agent::Outputs::outbox); [`Self::serve`] sends them.
+    pub fn send(&mut self, outbox: &[u8]) {
+        self.sender.send(outbox);
+    }
+
+    /// What came in, and what went out.
+    #[must_use]
+    pub const fn counts(&self) -> (Counts, Counts) {
+        (self.receiver.counts(), self.sender.counts())
+    }
+
+    /// Moves bytes both ways until it is cancelled. Errors of the line are counted, what they spoiled is forgotten, and after
+    /// each one other tasks have their turn.
+    pub async fn serve(&mut self) -> Infallible {
+        let Self {
+            reader,
+            writer,
+            receiver,
+            sender,
+        } = self;
+        let hear = async {
+            let mut piece = [0; PIECE];
+            loop {
+                let len = reader.read(&mut piece).await.unwrap_or(0);
+                match piece.get(..len) {
+                    Some(bytes) if !bytes.is_empty() => receiver.push(bytes),
+                    _ => {
+                        receiver.line_error();
+                        yield_now().await;
+                    }
+                }
+            }
+        };
+        let say = async {
+            while !sender.unsent().is_empty() {
+                match writer.write(sender.unsent()).await {
+                    Ok(len) if len > 0 => sender.sent(len),
+                    _ => {
+                        sender.line_error();
+                        yield_now().await;
+                    }
+                }
+            }
+            pending().await
+        };
+        match select::select(hear, say).await {
+            select::Either::First(never) | select::Either::Second(never) => never,
+        }
+    }
+}

@@ -1,0 +1,287 @@
+//! What range scans have shown of the land near by, in cells.
+//!
+//! Source of the rule: J. Borenstein, Y. Koren 1991, "Histogramic in-motion mapping for mobile robot obstacle avoidance" (HIMM), section 3: a hit
+//! adds 3 to its cell, what the beam crossed loses 1, on 0..=15. New here: a cell counts once per scan however many beams meet it,
+//! a hit wins over crossing beams, and what is not seen fades.
+
+use super::Scan;
+use staya_controller::geom::Vec2;
+use staya_controller::grid::{BLOCKED, Cell, GridFrame, Window};
+use staya_controller::scalar::Scalar;
+use staya_controller::time::{Duration, Instant};
+
+/// How cells gain and lose evidence of an obstacle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MapParams {
+    /// What a scan with a hit in the cell adds. More: single wrong ranges become obstacles.
+    pub hit: u8,
+    /// What a scan with a beam through the cell, and no hit in it, takes away. Less: what left stays longer.
+    pub free: u8,
+    /// The most that is remembered: with `free`, how many scans clear a cell at most.
+    pub ceiling: u8,
+    /// From here on the cell is blocked; more than 0.
+    pub blocked_at: u8,
+    /// Each time that this has passed, a cell loses one: what was seen once and not again is open after at most `ceiling` times this. More than 0; longer
+    /// remembers what is behind the robot, shorter forgets others that went away unseen.
+    pub fade_every: Duration,
+    /// Impassability of land of which nothing is known, 1..=255. [`BLOCKED`] would keep the robot from ever going where it has not looked.
+    pub ground: u8,
+}
+
+impl Default for MapParams {
+    /// HIMM's 3, 1 and 15; blocked by the second scan that says so; forgotten after 15 s unseen.
+    fn default() -> Self {
+        Self {
+            hit: 3,
+            free: 1,
+            ceiling: 15,
+            blocked_at: 6,
+            fade_every: Duration::from_millis(1000),
+            ground: 1,
+        }
+    }
+}
+
+/// What is known of one cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Known {
+    /// For an obstacle.
+    evidence: u8,
+    /// Impassability of the ground; [`BLOCKED`] for a cliff.
+    ground: u8,
+    /// What this scan says.
+    news: News,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum News {
+    None,
+    Free,
+    Hit,
+}
+
+/// A square of `SIDE` by `SIDE` cells around the robot that goes along with it. Odd sides have the robot in the middle; 11 is what
+/// route guidance of default capacity looks at.
+///
+/// Four bytes for each cell. What leaves the square is forgotten.
+#[derive(Clone, Debug)]
+pub struct LocalMap<const SIDE: usize = 11> {
+    params: MapParams,
+    origin: Cell,
+    /// From the south-west corner, row by row.
+    known: [[Known; SIDE]; SIDE],
+    window: [[u8; SIDE]; SIDE],
+    own: Cell,
+    faded: Option<Instant>,
+}
+
+impl<const SIDE: usize> LocalMap<SIDE> {
+    const SIDE_CELLS: i16 = {
+        assert!(SIDE > 0 && SIDE <= 255, "a side of 1 to 255 cells");
+        SIDE as i16
+    };
+
+    /// Around `own`, with nothing seen.
+    #[must_use]
+    pub const fn new(params: MapParams, own: Cell) -> Self {
+        let known = Known {
+            evidence: 0,
+            ground: params.ground,
+            news: News::None,
+        };
+        Self {
+            params,
+            origin: Self::corner(own),
+            known: [[known; SIDE]; SIDE],
+            window: [[params.ground; SIDE]; SIDE],
+            own,
+            faded: None,
+        }
+    }
+
+    /// Takes a scan in, made at `now` by a robot whose reference point is at `place_m` in the world, at `heading_rad`. Hits of which
+    /// `is_robot` (place relative to the robot, metres along the world's axes) says so clear their beam and mark nothing.
+    ///
+    /// Beams are followed in steps of half a cell up to the square's edge, so that a cell that a beam only cuts at a corner may stay as it
+    /// was. False, and nothing is taken in, when the robot is off the grid. Bounded work: O(SIDE^2) for the cells, O(SIDE) and one call of
+    /// `is_robot` for each range.
+    pub fn observe<S: Scalar>(
+        &mut self,
+        frame: &GridFrame<S>,
+        place_m: Vec2<S>,
+        heading_rad: S,
+        scan: &Scan<'_, S>,
+        now: Instant,
+        is_robot: impl Fn(Vec2<S>) -> bool,
+    ) -> bool {
+        let per_cell = S::ONE.checked_div(frame.cell_m);
+        let Some((own, per_cell)) = frame.cell(place_m).zip(per_cell) else {
+            return false;
+        };
+        self.follow(own);
+        self.fade(now);
+        // From here on in cells from the square's corner: small numbers, whatever the place in the world.
+        let half = frame.cell_m * S::HALF;
+        let corner_m = frame.center(self.origin) - Vec2::new(half, half);
+        let robot = (place_m - corner_m) * per_cell;
+        for ray in scan.rays(heading_rad).flatten() {
+            let from = robot + ray.from_m * per_cell;
+            self.clear(from, ray.ahead * S::HALF, ray.free_m * per_cell);
+            let end_m = ray.end_m();
+            if ray.is_hit && !is_robot(end_m) {
+                self.set(robot + end_m * per_cell, News::Hit);
+            }
+        }
+        self.judge();
+        self.show();
+        true
+    }
+
+    /// What another sensor says of the ground in `cell`: impassability, or [`BLOCKED`] for a cliff. It holds until it is said otherwise or the cell leaves
+    /// the square, because ranges tell nothing of it. Whether the cell is in the square.
+    pub fn set_ground(&mut self, cell: Cell, ground: u8) -> bool {
+        let Some(known) = self.at_mut(cell) else {
+            return false;
+        };
+        known.ground = ground;
+        self.show();
+        true
+    }
+
+    /// Moves the square so that it is around `own`. O(SIDE^2).
+    pub fn follow(&mut self, own: Cell) {
+        let origin = Self::corner(own);
+        if origin != self.origin {
+            let shift = |to: i16, from: i16| i32::from(to) - i32::from(from);
+            let (dx, dy) = (
+                shift(origin.x, self.origin.x),
+                shift(origin.y, self.origin.y),
+            );
+            let old = self.known;
+            let nothing = Known {
+                evidence: 0,
+                ground: self.params.ground,
+                news: News::None,
+            };
+            let from = |at: usize, shift: i32| {
+                usize::try_from(i32::try_from(at).unwrap_or(i32::MAX).saturating_add(shift)).ok()
+            };
+            self.known = core::array::from_fn(|y| {
+                let row = from(y, dy).and_then(|y| old.get(y));
+                core::array::from_fn(|x| {
+                    let known = row.zip(from(x, dx)).and_then(|(row, x)| row.get(x));
+                    known.copied().unwrap_or(nothing)
+                })
+            });
+            self.origin = origin;
+        }
+        self.own = own;
+        self.show();
+    }
+
+    /// For [`Inputs::window`](staya_controller::agent::Inputs::window), and for walls
+    /// [`grid_walls`](staya_controller::obstacle::grid_walls). The robot's own cell is passable whatever the sensors say: it is there.
+    #[must_use]
+    pub fn window(&self) -> Option<Window<'_>> {
+        let side = Self::SIDE_CELLS.cast_unsigned();
+        Window::new(self.window.as_flattened(), self.origin, side, side)
+    }
+
+    const fn corner(own: Cell) -> Cell {
+        let half = Self::SIDE_CELLS >> 1;
+        Cell::new(own.x.saturating_sub(half), own.y.saturating_sub(half))
+    }
+
+    fn at_mut(&mut self, cell: Cell) -> Option<&mut Known> {
+        let along = |at: i16, origin: i16| usize::try_from(i32::from(at) - i32::from(origin)).ok();
+        let (x, y) = along(cell.x, self.origin.x).zip(along(cell.y, self.origin.y))?;
+        self.known.get_mut(y)?.get_mut(x)
+    }
+
+    /// The cells that a beam crosses are free; all in cells from the corner. `step` is half a cell long.
+    fn clear<S: Scalar>(&mut self, from: Vec2<S>, step: Vec2<S>, length: S) {
+        let (mut place, mut gone) = (from, S::ZERO);
+        // A beam that goes on after so many steps has left the square.
+        for _ in 0..SIDE.saturating_mul(4) {
+            if !(gone < length && self.set(place, News::Free)) {
+                return;
+            }
+            place += step;
+            gone += S::HALF;
+        }
+    }
+
+    /// Notes what this scan says of the cell at `place`, in cells from the corner; false beyond the square.
+    fn set<S: Scalar>(&mut self, place: Vec2<S>, news: News) -> bool {
+        let along = |at: S| usize::try_from(at.floor_to_i32()?).ok();
+        let Some((x, y)) = along(place.x).zip(along(place.y)) else {
+            return false;
+        };
+        let Some(known) = self.known.get_mut(y).and_then(|row| row.get_mut(x)) else {
+            return false;
+        };
+        if known.news != News::Hit {
+            known.news = news;
+        }
+        true
+    }
+
+    /// Makes evidence of what the scan said.
+    fn judge(&mut self) {
+        let params = self.params;
+        for known in self.known.as_flattened_mut() {
+            let evidence = match known.news {
+                News::None => known.evidence,
+                News::Free => known.evidence.saturating_sub(params.free),
+                News::Hit => known.evidence.saturating_add(params.hit),
+            };
+            known.evidence = evidence.min(params.ceiling);
+            known.news = News::None;
+        }
+    }
+
+    /// Takes one from each cell for each span that has passed.
+    fn fade(&mut self, now: Instant) {
+        let Some(mut last) = self.faded else {
+            self.faded = Some(now);
+            return;
+        };
+        let every = self.params.fade_every;
+        let mut loss: u8 = 0;
+        // After `ceiling` spans nothing is left to fade.
+        while every > Duration::ZERO && now.since(last) >= every && loss < self.params.ceiling {
+            last = last + every;
+            loss = loss.saturating_add(1);
+        }
+        if loss == 0 && now.since(last) >= Duration::ZERO {
+            return;
+        }
+        // After a long pause, or with a clock that was set back, time begins anew.
+        self.faded = Some(if loss == self.params.ceiling || loss == 0 {
+            now
+        } else {
+            last
+        });
+        for known in self.known.as_flattened_mut() {
+            known.evidence = known.evidence.saturating_sub(loss);
+        }
+    }
+
+    fn show(&mut self) {
+        let blocked_at = self.params.blocked_at;
+        let known = self.known.as_flattened().iter();
+        for (shown, known) in self.window.as_flattened_mut().iter_mut().zip(known) {
+            *shown = if known.evidence >= blocked_at {
+                BLOCKED
+            } else {
+                known.ground
+            };
+        }
+        let along = |at: i16, origin: i16| usize::try_from(i32::from(at) - i32::from(origin)).ok();
+        let own = along(self.own.x, self.origin.x).zip(along(self.own.y, self.origin.y));
+        let shown = own.and_then(|(x, y)| self.window.get_mut(y)?.get_mut(x));
+        if let Some(shown) = shown {
+            *shown = (*shown).max(1);
+        }
+    }
+}
