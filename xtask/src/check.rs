@@ -14,7 +14,8 @@ pub fn run(repo: &Repo, report: &mut Report) {
     if has(repo, "fmt", "rustfmt", report) {
         let check = ["fmt", "--all", "--check"];
         report.command("formatting", repo.cargo(&check));
-        for (folder, _) in OTHERS {
+        let others = OTHERS.map(|(folder, _)| folder);
+        for folder in others.into_iter().chain([crate::example::FOLDER]) {
             let name = format!("formatting of {folder}");
             report.command(&name, repo.cargo_in(folder, &check));
         }

@@ -8,6 +8,7 @@ mod bless;
 mod check;
 mod debian;
 mod device;
+mod example;
 mod firmware;
 mod fuzz;
 mod layers;
@@ -27,12 +28,13 @@ The project's own commands.
 Usage: cargo xtask COMMAND
 
   check           formatting, layers, clippy and rustdoc, warnings denied
-  test            every test, and the controller built for microcontrollers
+  test            every test, and the controller and the example built for microcontrollers
   ci              check, then test
   bench [NAME]    benchmarks, also beside peer crates (those whose name contains NAME): medians, ratios, goals
   bless [NAME]    rewrite golden files by running the tests whose name contains NAME (default: golden)
   fuzz [--seconds N]
                   each fuzz target for N seconds (default: 60), if nightly Rust and cargo-fuzz are there
+  example         the example firmware of hil/example-stm32f4
   firmware [--debug] [PART...]
                   the programs of hil/firmware for stm32f405, nrf51, riscv32 (default: all): target/firmware/PART/BIN
   qemu            the emulators of the parts; installs them as root on Debian
@@ -66,6 +68,7 @@ fn main() -> ExitCode {
         ["bench", name] if !name.starts_with('-') => bench::run(&repo, &mut report, Some(name)),
         ["bless"] => bless::run(&repo, &mut report, "golden"),
         ["bless", name] if !name.starts_with('-') => bless::run(&repo, &mut report, name),
+        ["example"] => example::run(&repo, &mut report),
         ["fuzz"] => fuzz::run(&repo, &mut report, fuzz::SECONDS),
         ["fuzz", "--seconds", n] if n.parse().is_ok_and(|n: u32| n > 0) => {
             fuzz::run(&repo, &mut report, n);

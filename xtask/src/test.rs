@@ -28,6 +28,7 @@ pub fn run(repo: &Repo, report: &mut Report) {
     let mut fuzz = repo.cargo_in("tests/fuzz", &fuzz);
     report.part("fuzz targets on random bytes", || counted(&mut fuzz, ""));
     crate::device::run(repo, report);
+    crate::example::run(repo, report);
 }
 
 /// Runs test programs and adds up their closing lines. A program that ends without one (it
