@@ -16,6 +16,8 @@ pub mod ring;
 #[cfg(target_os = "none")]
 mod boots;
 #[cfg(target_os = "none")]
+pub mod fault;
+#[cfg(target_os = "none")]
 mod log;
 #[cfg(target_os = "none")]
 mod part;
@@ -48,16 +50,47 @@ macro_rules! entry {
     };
 }
 
-/// A panic handler that prints what happened and ends the emulator with exit code 101. For programs
-/// that print; on a board it prints over RTT and stops.
+/// A panic and an exception of the processor are said over the link as a fault, then the part
+/// starts anew.
 #[macro_export]
-macro_rules! panic_prints {
+macro_rules! faults_go_over_the_link {
     () => {
+        $crate::on_fault!($crate::fault::over_the_link);
+    };
+}
+
+/// A panic and an exception of the processor are printed, and end the emulator with exit code 101.
+/// On a board they are printed over RTT, and the part stops.
+#[macro_export]
+macro_rules! faults_are_printed {
+    () => {
+        $crate::on_fault!($crate::fault::printed);
+    };
+}
+
+/// Gives panics and exceptions to `$report`, a `fn(impl Display) -> !`.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! on_fault {
+    ($report:path) => {
         #[cfg(target_os = "none")]
         #[panic_handler]
-        fn panic(info: &core::panic::PanicInfo) -> ! {
-            $crate::runtime::print(format_args!("{info}\n"));
-            $crate::runtime::exit(101)
+        fn panic(info: &core::panic::PanicInfo<'_>) -> ! {
+            $report($crate::fault::Panic(info))
+        }
+
+        #[cfg(all(target_os = "none", target_arch = "arm"))]
+        #[cortex_m_rt::exception]
+        unsafe fn HardFault(frame: &cortex_m_rt::ExceptionFrame) -> ! {
+            $report($crate::fault::trap(frame.pc()))
+        }
+
+        // SAFETY: the name and the argument that riscv-rt gives to what handles every exception
+        // that has no handler of its own.
+        #[cfg(all(target_os = "none", target_arch = "riscv32"))]
+        #[unsafe(export_name = "ExceptionHandler")]
+        extern "C" fn exception(_: &riscv_rt::TrapFrame) -> ! {
+            $report($crate::fault::trap(riscv::register::mepc::read() as u32))
         }
     };
 }

@@ -11,9 +11,12 @@ static CHANNEL: AtomicU8 = AtomicU8::new(NONE);
 /// The handle of the host's console, plus one; 0 while it is not open.
 static CONSOLE: AtomicU32 = AtomicU32::new(0);
 
-/// Chooses the channel.
-pub fn choose(emulated: bool) {
+/// Chooses the channel. An emulator that serves no semihosting gets nothing.
+pub fn choose(emulated: bool, is_mute: bool) {
     if emulated {
+        if is_mute {
+            return;
+        }
         CHANNEL.store(SEMIHOSTING, Ordering::Relaxed);
     } else {
         rtt::start();

@@ -27,7 +27,7 @@ pub struct Start {
 pub fn start() -> Start {
     let boots = boots::count();
     let clocks = part::start();
-    log::choose(part::is_emulated());
+    log::choose(part::is_emulated(), boots::is_mute());
     Start {
         part: part::NAME,
         tick_hz: clocks.tick_hz,
@@ -93,7 +93,7 @@ pub fn print(text: fmt::Arguments<'_>) {
 
 /// Ends the emulator with this exit code. On a board it sleeps for good.
 pub fn exit(code: i32) -> ! {
-    if part::is_emulated() {
+    if part::is_emulated() && !boots::is_mute() {
         semihosting::process::exit(code);
     }
     loop {
@@ -101,8 +101,9 @@ pub fn exit(code: i32) -> ! {
     }
 }
 
-/// Starts again from the reset vector. RAM that counts starts is kept.
+/// Starts again from the reset vector, after what was sent has left. RAM that counts starts is kept.
 pub fn reset() -> ! {
+    part::flush();
     part::reset()
 }
 

@@ -150,6 +150,11 @@ impl<B: Brain, const CONTENT: usize> Session<B, CONTENT> {
         }
     }
 
+    /// Says anew what the device is, for a session that was made before its clock and its count of starts were known.
+    pub const fn introduce(&mut self, about: About) {
+        self.core.about = about;
+    }
+
     /// What the device says by itself after each start.
     pub fn hello(&mut self) -> &[u8] {
         self.core.say_hello();

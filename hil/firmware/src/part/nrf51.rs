@@ -17,8 +17,9 @@ const TX_PIN: usize = 24;
 const RX_PIN: usize = 25;
 /// How often a flag that tells of an oscillator is read before it counts as missing: tens of milliseconds.
 const PATIENCE: u32 = 50_000;
-/// How often the transmitter is asked for room: more than one byte's time at 9600 baud.
-const SEND_PATIENCE: u32 = 20_000;
+/// How long a byte may take before the line counts as dead, in ticks: two seconds, for the sake of an emulator whose
+/// host is slow to read.
+const SEND_PATIENCE: u32 = 2 * HZ;
 /// Capture and compare channels of TIMER0: what [`ticks`] reads, and what wakes the main loop.
 const NOW: usize = 0;
 const WAKE: usize = 1;
@@ -106,10 +107,13 @@ fn uart0() {
     unsafe { NVIC::unmask(Interrupt::UART0) };
 }
 
-/// Takes what the receiver's FIFO holds. The event goes first: a byte that comes meanwhile sets it again.
+/// Wakes [`send`], which looks at the event itself, and takes what the receiver's FIFO holds. The event goes first: a byte that comes meanwhile sets it again.
 // SAFETY: the name that nrf-pac's interrupt table has for it; a handler without arguments.
 #[unsafe(export_name = "UART0")]
 extern "C" fn on_uart() {
+    if UART0.events_txdrdy().read() != 0 {
+        UART0.intenclr().write(|int| int.set_txdrdy(true));
+    }
     for _ in 0..FIFO {
         if UART0.events_rxdrdy().read() == 0 {
             break;
@@ -127,12 +131,24 @@ extern "C" fn on_uart() {
     }
 }
 
-/// Waits for the byte's end: the event says that one has left, not that there is room.
+/// Sleeps until the byte's end: the event says that one has left, not that there is room.
 pub fn send(byte: u8) -> bool {
+    let began = ticks();
+    let is_sent = || UART0.events_txdrdy().read() != 0;
     UART0.events_txdrdy().write_value(0);
     UART0.txd().write(|txd| txd.set_txd(byte));
-    (0..SEND_PATIENCE).any(|_| UART0.events_txdrdy().read() != 0)
+    while !is_sent() {
+        if ticks().wrapping_sub(began) > SEND_PATIENCE {
+            return false;
+        }
+        UART0.intenset().write(|int| int.set_txdrdy(true));
+        sleep_unless(is_sent);
+    }
+    true
 }
+
+/// Nothing is left to send when [`send`] returns.
+pub fn flush() {}
 
 /// With interrupts masked, an interrupt that comes after the question still ends the wait.
 pub fn sleep_unless(is_due: impl FnOnce() -> bool) {

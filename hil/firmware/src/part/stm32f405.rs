@@ -176,6 +176,11 @@ pub fn send(byte: u8) -> bool {
     has_room
 }
 
+/// Waits until the last byte has left.
+pub fn flush() {
+    let _ = (0..SEND_PATIENCE).any(|_| USART1.sr().read().tc());
+}
+
 /// With interrupts masked, an interrupt that comes after the question still ends the wait.
 pub fn sleep_unless(is_due: impl FnOnce() -> bool) {
     cortex_m::interrupt::free(|_| {

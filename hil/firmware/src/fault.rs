@@ -1,0 +1,78 @@
+//! What happens when the firmware cannot go on: it says why, and starts anew or stops.
+//!
+//! A program chooses by [`faults_go_over_the_link!`](crate::faults_go_over_the_link) or
+//! [`faults_are_printed!`](crate::faults_are_printed), or has a panic handler of its own.
+
+use crate::{boots, runtime};
+use core::fmt::{self, Display};
+use core::panic::PanicInfo;
+use core::ptr::addr_of;
+use staya_link::message::FaultKind;
+use staya_link::session::fault_frame;
+
+/// Sends the reason over the link, cut to what a fault holds, then resets.
+pub fn over_the_link(reason: impl Display) -> ! {
+    let frame = fault_frame(FaultKind::Panic, reason);
+    runtime::send(frame.bytes());
+    runtime::reset()
+}
+
+/// Prints the reason and ends the emulator with exit code 101.
+pub fn printed(reason: impl Display) -> ! {
+    runtime::print(format_args!("{reason}\n"));
+    runtime::exit(101)
+}
+
+/// What a panic says, without the folders in front of the file: a fault has room for 80 bytes.
+pub struct Panic<'a>(pub &'a PanicInfo<'a>);
+
+impl Display for Panic<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(place) = self.0.location() {
+            let file = place.file().rsplit('/').next().unwrap_or_default();
+            write!(f, "{file}:{}: ", place.line())?;
+        }
+        write!(f, "{}", self.0.message())
+    }
+}
+
+/// An exception of the processor, by the address of the instruction.
+pub struct Trap(u32);
+
+impl Display for Trap {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "exception of the processor at {:#010x}", self.0)
+    }
+}
+
+/// The exception at this address. If it is a semihosting call, then nobody serves them: that is
+/// remembered, and the part resets.
+#[must_use]
+pub fn trap(address: u32) -> Trap {
+    if is_semihosting(address) {
+        boots::mute();
+        runtime::reset();
+    }
+    Trap(address)
+}
+
+/// Whether there is a semihosting call: BKPT 0xAB, or EBREAK between two shifts that do nothing.
+fn is_semihosting(address: u32) -> bool {
+    unsafe extern "C" {
+        static __stext: u8;
+        static __etext: u8;
+    }
+    let code = addr_of!(__stext) as usize..addr_of!(__etext) as usize;
+    let address = address as usize;
+    // An address outside of the code would be the next exception.
+    if !code.contains(&address) {
+        return false;
+    }
+    // SAFETY: code is readable, and instructions begin at even addresses.
+    let half = |at: usize| unsafe { (at as *const u16).read_volatile() };
+    if cfg!(target_arch = "arm") {
+        half(address) == 0xBEAB
+    } else {
+        half(address) == 0x0073 && half(address.wrapping_add(2)) == 0x0010
+    }
+}
