@@ -43,7 +43,7 @@ impl<S: Scalar> Kinematics<S, 2> for Differential<S> {
 ///
 /// A point at distance D ahead of the axle's middle moves with v ahead and with D w to the side, so that any velocity of it is
 /// a pair (v, w): the usual feedback linearisation. J. Snape, J. van den Berg, S. Guy, D. Manocha 2010, "Smooth and
-/// collision-free navigation for multiple robots under differential-drive constraints" (section IV) use it for ORCA: this "effective centre"
+/// collision-free navigation for multiple robots under differential-drive constraints" use it for ORCA: this "effective centre"
 /// is the robot as far as the controller is concerned, and then does exactly what ORCA assumes of it. Therefore
 ///
 /// - give the controller the point's pose ([`Self::pose`]), not the axle's, and goals for that point;
@@ -51,7 +51,7 @@ impl<S: Scalar> Kinematics<S, 2> for Differential<S> {
 ///   heading: [`Self::radius`], the body's own plus D;
 /// - the top speed is what the wheels can do in the worst direction: [`Self::max_speed`].
 ///
-/// D trades room for speed: half the track (Snape's choice) leaves 71 % of the wheels' speed; a small D takes little room, but the
+/// D trades room for speed: half the track leaves 71 % of the wheels' speed; a small D takes little room, but the
 /// robot turns on the spot at the slightest change, and its top speed goes to zero. The way back leads over a turn: a robot that is sent
 /// straight back drives in reverse until anything disturbs it, and then swings round.
 ///

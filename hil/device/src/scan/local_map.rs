@@ -1,6 +1,6 @@
 //! What range scans have shown of the land near by, in cells.
 //!
-//! Source of the rule: J. Borenstein, Y. Koren 1991, "Histogramic in-motion mapping for mobile robot obstacle avoidance" (HIMM), section 3: a hit
+//! Source of the rule: J. Borenstein, Y. Koren 1991, "Histogramic in-motion mapping for mobile robot obstacle avoidance" (HIMM): a hit
 //! adds 3 to its cell, what the beam crossed loses 1, on 0..=15. New here: a cell counts once per scan however many beams meet it,
 //! a hit wins over crossing beams, and what is not seen fades.
 
