@@ -1,0 +1,198 @@
+//! An emulated part: one QEMU process, its UART on a socket.
+//!
+//! The socket is the process's standard input (`-chardev socket,fd=0`), so that no name in the file system and no port of
+//! the network is needed; semihosting, which carries the firmware's logs, has the standard output for itself. Unix sockets in pairs, named Unix
+//! sockets and FIFOs take the same time per byte: the emulator takes and hands out one byte at a time.
+
+use crate::channel::OpenError;
+use crate::device::Part;
+use std::fs::File;
+use std::io::Read;
+use std::os::fd::OwnedFd;
+use std::os::unix::net::UnixStream;
+use std::os::unix::process::CommandExt;
+use std::path::Path;
+use std::process::{Child, ChildStderr, Command, Stdio};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Bytes of an emulator's complaints that are kept.
+const COMPLAINTS: usize = 2048;
+/// Ends the emulator when the thread that started it dies, however it dies; part of util-linux.
+const GUARD: &str = "/usr/bin/setpriv";
+
+/// A running emulator; ends with this value.
+#[derive(Debug)]
+pub struct Emulator {
+    child: Child,
+    complaints: Arc<Mutex<String>>,
+}
+
+/// Program, machine and what else this part needs; the Debian package of the program.
+const fn machine(part: Part) -> (&'static str, &'static [&'static str], &'static str) {
+    match part {
+        Part::Stm32f405 => (
+            "qemu-system-arm",
+            &["-machine", "netduinoplus2"],
+            "qemu-system-arm",
+        ),
+        Part::Microbit => (
+            "qemu-system-arm",
+            &["-machine", "microbit"],
+            "qemu-system-arm",
+        ),
+        Part::Riscv32 => (
+            "qemu-system-riscv32",
+            &["-machine", "virt", "-bios", "none"],
+            "qemu-system-misc",
+        ),
+    }
+}
+
+/// The emulator of a part with this firmware, as it is started. One instruction takes a nanosecond of the emulated clock.
+pub fn command(part: Part, elf: &Path) -> Command {
+    let (program, machine, _) = machine(part);
+    // In its own process group, so that Ctrl-C in a terminal reaches the runner alone, which ends it in order.
+    let mut command = if Path::new(GUARD).is_file() {
+        let mut command = Command::new(GUARD);
+        command.args(["--pdeathsig", "KILL", program]);
+        command
+    } else {
+        Command::new(program)
+    };
+    command.process_group(0);
+    command.args(machine);
+    command.args(["-display", "none", "-monitor", "none", "-nodefaults"]);
+    command.args(["-icount", "shift=0"]);
+    command.args(["-semihosting-config", "enable=on,target=native"]);
+    command.args(["-chardev", "socket,id=uart,fd=0"]);
+    command
+        .args(["-serial", "chardev:uart", "-kernel"])
+        .arg(elf);
+    command
+}
+
+/// Starts the emulator of a part; its logs go to the file `log` or nowhere.
+pub fn start(
+    part: Part,
+    elf: &Path,
+    log: Option<&Path>,
+) -> Result<(Emulator, UnixStream), OpenError> {
+    let (program, _, package) = machine(part);
+    if !elf.is_file() {
+        let (elf, part) = (elf.to_owned(), part.firmware_name());
+        return Err(OpenError::NoFirmware { elf, part });
+    }
+    if !is_installed(program) {
+        return Err(OpenError::NoEmulator { program, package });
+    }
+    let failed = |source| OpenError::Start { program, source };
+    let (ours, theirs) = UnixStream::pair().map_err(failed)?;
+    let log = match log {
+        Some(path) => {
+            let file = File::create(path).map_err(|source| OpenError::Log {
+                path: path.to_owned(),
+                source,
+            })?;
+            Stdio::from(file)
+        }
+        None => Stdio::null(),
+    };
+    let mut command = command(part, elf);
+    command.stdin(Stdio::from(OwnedFd::from(theirs)));
+    command.stdout(log).stderr(Stdio::piped());
+    let mut child = command.spawn().map_err(failed)?;
+    let complaints = Arc::default();
+    if let Some(stderr) = child.stderr.take() {
+        let complaints = Arc::clone(&complaints);
+        std::thread::spawn(move || listen(stderr, &complaints));
+    }
+    Ok((Emulator { child, complaints }, ours))
+}
+
+/// Whether a program of this name can be started.
+fn is_installed(program: &str) -> bool {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    std::env::split_paths(&path).any(|folder| folder.join(program).is_file())
+}
+
+/// Reads to the end and keeps the first bytes.
+fn listen(mut stderr: ChildStderr, complaints: &Mutex<String>) {
+    let mut buffer = [0; 512];
+    while let Ok(count @ 1..) = stderr.read(&mut buffer) {
+        let text = String::from_utf8_lossy(buffer.get(..count).unwrap_or(&[]));
+        let mut complaints = complaints.lock().unwrap_or_else(PoisonError::into_inner);
+        if complaints.len() < COMPLAINTS {
+            complaints.push_str(&text);
+        }
+    }
+}
+
+impl Emulator {
+    /// Its process id.
+    pub fn id(&self) -> u32 {
+        self.child.id()
+    }
+
+    /// How it ended and what it said, for people; `None` while it runs.
+    pub fn epitaph(&mut self) -> Option<String> {
+        // Its end of the socket closes a moment before it can be waited for.
+        for _ in 0..50 {
+            if let Ok(Some(status)) = self.child.try_wait() {
+                let complaints = self
+                    .complaints
+                    .lock()
+                    .unwrap_or_else(PoisonError::into_inner);
+                return Some(format!(
+                    "the emulator ended ({status}) {}",
+                    complaints.trim()
+                ));
+            }
+            std::thread::sleep(std::time::Duration::from_millis(10));
+        }
+        None
+    }
+}
+
+impl Drop for Emulator {
+    fn drop(&mut self) {
+        // By its own process id; one that has ended already is no concern.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn missing_firmware_is_named_with_the_command_that_builds_it() {
+        let error = start(Part::Microbit, Path::new("no/nrf51/lockstep"), None).expect_err("none");
+        let text = error.to_string();
+        assert!(text.contains("no/nrf51/lockstep"), "{text}");
+        assert!(text.contains("cargo xtask firmware nrf51"), "{text}");
+    }
+
+    #[test]
+    fn missing_program_is_named_with_its_package() {
+        assert!(is_installed("sh") && !is_installed("qemu-system-abacus"));
+        let (program, _, package) = machine(Part::Riscv32);
+        let text = OpenError::NoEmulator { program, package }.to_string();
+        assert!(text.contains("qemu-system-riscv32 is missing"), "{text}");
+        assert!(text.contains("apt-get install qemu-system-misc"), "{text}");
+    }
+
+    #[test]
+    fn each_part_has_its_machine_and_its_uart_on_the_socket() {
+        for (part, machine) in Part::ALL
+            .into_iter()
+            .zip(["netduinoplus2", "microbit", "virt"])
+        {
+            let command = command(part, Path::new("x.elf"));
+            let arguments: Vec<_> = command.get_args().filter_map(|a| a.to_str()).collect();
+            for expected in [machine, "shift=0", "socket,id=uart,fd=0", "x.elf"] {
+                assert!(arguments.contains(&expected), "{arguments:?}");
+            }
+        }
+    }
+}

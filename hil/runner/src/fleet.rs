@@ -1,0 +1,362 @@
+//! All devices of a run, in parallel. Read [`Fleet::send`] and [`Fleet::collect`] first.
+//!
+//! One thread per device reads; everything else happens in the caller's thread. Nothing waits longer than its limit, and each
+//! error names the robot, the device, what it was asked for and how long that was waited for.
+
+use crate::channel::{Channel, OpenError};
+use crate::device::Device;
+use crate::line::{LineFaults, micros};
+use crate::mismatch::Mismatch;
+use crate::statistics::Statistics;
+use crate::unit::Unit;
+use staya_controller::agent::{Inputs, Setup, Task};
+use staya_controller::time::Instant;
+use staya_controller::wire::RobotId;
+use staya_link::capacities::LandTooLarge;
+use staya_link::message::{Hello, Report};
+use staya_link::port::PortError;
+use std::io::{ErrorKind, Read};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::time::Duration;
+
+/// What one device is to be.
+#[derive(Clone, Debug)]
+pub struct Order {
+    /// Where, for people; see [`Device`].
+    pub device: String,
+    /// What the robot is.
+    pub setup: Setup,
+    /// What it has to do.
+    pub task: Option<Task>,
+    /// What the line does to frames.
+    pub faults: LineFaults,
+    /// When the device starts anew.
+    pub resets: Vec<Reset>,
+}
+
+/// A reset on request.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reset {
+    /// In place of this step.
+    pub tick: u32,
+    /// For so many steps the robot stands; at least 1. How long the device really takes plays no part, so that runs repeat.
+    pub down_ticks: u32,
+}
+
+/// How a fleet is run.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// The folder that `cargo xtask firmware` writes to.
+    pub firmware: PathBuf,
+    /// The folder for the logs of emulated devices, one file per robot; `None`: no logs.
+    pub logs: Option<PathBuf>,
+    /// A request is sent again after this, and the time that the line takes for it.
+    pub resend_after: Duration,
+    /// A step that takes longer is an error.
+    pub step_limit: Duration,
+    /// A start that takes longer is an error.
+    pub start_limit: Duration,
+    /// Tells this run from others that have talked to the same devices.
+    pub run: u32,
+    /// When this becomes true, [`Fleet::collect`] ends at once and all its answers are [`Trouble::Stopped`].
+    pub stop: Arc<AtomicBool>,
+}
+
+impl Options {
+    /// Requests are resent after half a second; 10 seconds for a step and 20 for a start.
+    #[must_use]
+    pub fn new(firmware: PathBuf) -> Self {
+        Self {
+            firmware,
+            logs: None,
+            resend_after: Duration::from_millis(500),
+            step_limit: Duration::from_secs(10),
+            start_limit: Duration::from_secs(20),
+            run: std::process::id(),
+            stop: Arc::default(),
+        }
+    }
+}
+
+/// What came of a robot's step.
+#[derive(Debug)]
+pub enum Answer {
+    /// Device and shadow decided the same.
+    Decided(Box<Report>),
+    /// The device has started anew: the robot stands in this step.
+    Down,
+    /// Device and shadow differ.
+    Mismatch(Box<Mismatch>),
+    /// The device is of no use any more.
+    Failed(FleetError),
+}
+
+/// What is wrong with a device.
+#[derive(Debug, thiserror::Error)]
+#[error("robot {} on {device}: {trouble}", .robot.0)]
+pub struct FleetError {
+    /// Which robot.
+    pub robot: RobotId,
+    /// Which device.
+    pub device: String,
+    /// What.
+    pub trouble: Box<Trouble>,
+}
+
+/// What may be wrong with a device.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "each text says it")]
+pub enum Trouble {
+    #[error(transparent)]
+    Open(#[from] OpenError),
+    #[error(transparent)]
+    Name(#[from] crate::device::DeviceError),
+    #[error("cannot start the thread that reads: {0}")]
+    Thread(std::io::Error),
+    #[error(transparent)]
+    Device(PortError),
+    #[error("{0}")]
+    Gone(String),
+    #[error("the firmware is for `{said}`, not for `{expected}`")]
+    OtherPart {
+        expected: &'static str,
+        said: String,
+    },
+    #[error(
+        "no robot in this process has the numbers and capacities of {0:?}: build firmware and host from the same source"
+    )]
+    NoShadow(Box<Hello>),
+    #[error(
+        "after the same setup the device's state has the digest {device:016x}, that in this process {shadow:016x}"
+    )]
+    Setup { device: u64, shadow: u64 },
+    #[error("the robot in this process refuses: {0}")]
+    Shadow(String),
+    #[error(transparent)]
+    Land(LandTooLarge),
+    #[error("a request of more than {0} bytes")]
+    TooLong(usize),
+    #[error("it is not ready for a step")]
+    NotReady,
+    #[error("stopped")]
+    Stopped,
+}
+
+/// Bytes of a device; none: its end.
+struct Arrival {
+    index: usize,
+    at_us: u64,
+    bytes: Vec<u8>,
+}
+
+/// All devices of a run. Dropping it ends the emulators.
+pub struct Fleet {
+    units: Vec<Unit>,
+    arrivals: Receiver<Arrival>,
+    // Kept, so that the receiver never finds itself alone.
+    _sender: Sender<Arrival>,
+    epoch: std::time::Instant,
+    stop: Arc<AtomicBool>,
+    readers: Arc<AtomicBool>,
+}
+
+impl std::fmt::Debug for Fleet {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Fleet")
+            .field("devices", &self.units.len())
+            .finish_non_exhaustive()
+    }
+}
+
+impl Fleet {
+    /// Starts all devices and makes each of them its robot. Call it from a thread that outlives the fleet: emulators die with the
+    /// thread that started them.
+    ///
+    /// # Errors
+    /// The first device that cannot be opened, does not answer or refuses.
+    pub fn start(orders: Vec<Order>, options: Options) -> Result<Self, FleetError> {
+        let mut lines = Vec::new();
+        for order in orders {
+            let robot = order.setup.agent.id;
+            let opened = open(&order, &options).map_err(|trouble| FleetError {
+                robot,
+                device: order.device.clone(),
+                trouble: Box::new(trouble),
+            })?;
+            lines.push((order, opened));
+        }
+        Self::over(lines, options)
+    }
+
+    /// The same over lines that are there already.
+    ///
+    /// # Errors
+    /// Those of [`Fleet::start`] but for opening.
+    pub fn over(lines: Vec<(Order, Channel)>, options: Options) -> Result<Self, FleetError> {
+        let (sender, arrivals) = channel();
+        let mut fleet = Self {
+            units: Vec::new(),
+            arrivals,
+            _sender: sender.clone(),
+            epoch: std::time::Instant::now(),
+            stop: Arc::clone(&options.stop),
+            readers: Arc::new(AtomicBool::new(true)),
+        };
+        for (index, (order, mut channel)) in lines.into_iter().enumerate() {
+            let (robot, device) = (order.setup.agent.id, order.device.clone());
+            let reader = std::mem::replace(&mut channel.read, Box::new(std::io::empty()));
+            let (sender, epoch) = (sender.clone(), fleet.epoch);
+            let goes_on = Arc::clone(&fleet.readers);
+            std::thread::Builder::new()
+                .name(format!("robot {}", robot.0))
+                .spawn(move || read(reader, index, epoch, &sender, &goes_on))
+                .map_err(|error| FleetError {
+                    robot,
+                    device,
+                    trouble: Box::new(Trouble::Thread(error)),
+                })?;
+            let now_us = fleet.now_us();
+            fleet
+                .units
+                .push(Unit::new(order, channel, &options, now_us));
+        }
+        fleet.settle();
+        for unit in &mut fleet.units {
+            if let Some(Answer::Failed(error)) = unit.answer() {
+                return Err(error);
+            }
+        }
+        Ok(fleet)
+    }
+
+    /// How many devices there are; numbers below are those of the orders.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.units.len()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.units.is_empty()
+    }
+
+    /// The process ids of the emulators.
+    #[must_use]
+    pub fn processes(&self) -> Vec<u32> {
+        self.units.iter().filter_map(Unit::process).collect()
+    }
+
+    /// Asks device number `index` for a step and returns at once; its shadow has stepped then. Inputs beyond its capacities are
+    /// cut as [`Capacities::fit`](staya_link::capacities::Capacities::fit) says, for both alike, and counted.
+    ///
+    /// What is wrong shows in [`Fleet::collect`]. A number that there is none of is ignored.
+    pub fn send(&mut self, index: usize, tick: u32, now: Instant, inputs: &Inputs<'_, f32>) {
+        let now_us = self.now_us();
+        if let Some(unit) = self.units.get_mut(index) {
+            unit.send(tick, now, inputs, now_us);
+        }
+    }
+
+    /// Waits for all devices, at most for the limits of the [`Options`]; an answer for each that was asked since the last call, in their order
+    /// (all of them, if all were asked). A device that has started anew by itself is made its robot again before this returns.
+    pub fn collect(&mut self) -> Vec<Answer> {
+        self.settle();
+        self.units.iter_mut().filter_map(Unit::answer).collect()
+    }
+
+    /// What is known of the devices so far.
+    #[must_use]
+    pub fn statistics(&self) -> Vec<Statistics> {
+        self.units.iter().map(Unit::statistics).collect()
+    }
+
+    fn now_us(&self) -> u64 {
+        micros(self.epoch.elapsed())
+    }
+
+    /// Works until no device is busy.
+    fn settle(&mut self) {
+        loop {
+            let now_us = self.now_us();
+            let mut next_us = None;
+            for unit in &mut self.units {
+                let due_us = unit.advance(now_us);
+                if !unit.is_settled() {
+                    // Without a time of its own there is more to do at once.
+                    let due_us = due_us.unwrap_or(now_us);
+                    next_us = Some(next_us.map_or(due_us, |next: u64| next.min(due_us)));
+                }
+            }
+            let Some(next_us) = next_us else { return };
+            if self.stop.load(Ordering::Relaxed) {
+                for unit in &mut self.units {
+                    unit.fail(Trouble::Stopped);
+                }
+                return;
+            }
+            // Looks at the flag now and then.
+            let patience = next_us.saturating_sub(self.now_us()).min(100_000);
+            match self.arrivals.recv_timeout(Duration::from_micros(patience)) {
+                Ok(first) => {
+                    let rest: Vec<Arrival> = self.arrivals.try_iter().collect();
+                    for arrival in std::iter::once(first).chain(rest) {
+                        if let Some(unit) = self.units.get_mut(arrival.index) {
+                            unit.arrived(&arrival.bytes, arrival.at_us);
+                        }
+                    }
+                }
+                Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => {}
+            }
+        }
+    }
+}
+
+impl Drop for Fleet {
+    fn drop(&mut self) {
+        self.readers.store(false, Ordering::Relaxed);
+    }
+}
+
+fn open(order: &Order, options: &Options) -> Result<Channel, Trouble> {
+    let device: Device = order.device.parse()?;
+    let robot = order.setup.agent.id.0;
+    let log = options
+        .logs
+        .as_ref()
+        .map(|folder| folder.join(format!("robot-{robot}.log")));
+    Ok(Channel::open(&device, &options.firmware, log.as_deref())?)
+}
+
+/// Reads until the device or the fleet ends.
+fn read(
+    mut reader: Box<dyn Read + Send>,
+    index: usize,
+    epoch: std::time::Instant,
+    sender: &Sender<Arrival>,
+    goes_on: &AtomicBool,
+) {
+    let mut buffer = [0; 2048];
+    while goes_on.load(Ordering::Relaxed) {
+        let bytes = match reader.read(&mut buffer) {
+            Ok(count) => buffer.get(..count).unwrap_or(&[]).to_vec(),
+            Err(error) => match error.kind() {
+                ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::Interrupted => continue,
+                _ => Vec::new(),
+            },
+        };
+        let is_over = bytes.is_empty();
+        let at_us = micros(epoch.elapsed());
+        let arrival = Arrival {
+            index,
+            at_us,
+            bytes,
+        };
+        if sender.send(arrival).is_err() || is_over {
+            return;
+        }
+    }
+}

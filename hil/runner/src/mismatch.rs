@@ -1,0 +1,87 @@
+//! The first step at which device and shadow differ.
+
+use staya_controller::wire::RobotId;
+use staya_link::message::Report;
+use std::fmt;
+
+/// What a device decided, and what the same robot in this process did.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mismatch {
+    /// Which robot.
+    pub robot: RobotId,
+    /// Which device.
+    pub device: String,
+    /// Which step.
+    pub tick: u32,
+    /// The device's decision.
+    pub on_device: Report,
+    /// The shadow's.
+    pub in_shadow: Report,
+}
+
+impl fmt::Display for Mismatch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            robot,
+            device,
+            tick,
+            on_device,
+            in_shadow,
+        } = self;
+        writeln!(f, "robot {} on {device} differs at step {tick}:", robot.0)?;
+        writeln!(f, "{:>10}  {:<38}  this host", "", "device")?;
+        let (a, b) = (on_device, in_shadow);
+        let rows = [
+            (
+                "digest",
+                format!("{:016x}", a.digest),
+                format!("{:016x}", b.digest),
+            ),
+            ("mode", format!("{:?}", a.mode), format!("{:?}", b.mode)),
+            ("leader", a.leader.0.to_string(), b.leader.0.to_string()),
+            (
+                "target",
+                format!("{:?}", a.target),
+                format!("{:?}", b.target),
+            ),
+            (
+                "command",
+                format!("{:?}", a.outputs.command),
+                format!("{:?}", b.outputs.command),
+            ),
+            (
+                "heard",
+                format!("{} and {} refused", a.outputs.received, a.outputs.rejected),
+                format!("{} and {} refused", b.outputs.received, b.outputs.rejected),
+            ),
+            (
+                "events",
+                format!("{:?}", a.outputs.events),
+                format!("{:?}", b.outputs.events),
+            ),
+            ("outbox", hex(&a.outputs.outbox), hex(&b.outputs.outbox)),
+            (
+                "call again",
+                format!("{} us", a.outputs.call_again.as_micros()),
+                format!("{} us", b.outputs.call_again.as_micros()),
+            ),
+        ];
+        for (name, device, host) in rows {
+            let mark = if device == host { ' ' } else { '*' };
+            if device.len() <= 38 {
+                writeln!(f, "{mark}{name:>9}  {device:<38}  {host}")?;
+            } else {
+                writeln!(
+                    f,
+                    "{mark}{name:>9}  {device}\n{:>10}  {:<38}  {host}",
+                    "", ""
+                )?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}

@@ -1,0 +1,410 @@
+//! One device: its port, its shadow, and what it is busy with.
+
+use crate::channel::Channel;
+use crate::fleet::{Answer, FleetError, Options, Order, Trouble};
+use crate::line::{Line, micros};
+use crate::mismatch::Mismatch;
+use crate::statistics::{Spread, Statistics, Tally};
+use staya_controller::agent::Inputs;
+use staya_controller::time::Instant;
+use staya_link::capacities::Capacities;
+use staya_link::frame::TooLong;
+use staya_link::message::{Hello, MAX_ANSWER, OBSTACLE, Report, Stepped};
+use staya_link::port::{Event, Limits, Next, Port};
+use staya_link::robot::{Brain, Large, Small};
+use std::io::Write;
+use std::time::Duration;
+
+/// Bytes of the longest request: as many as the largest device's frames have, and half as many again.
+const REQUEST: usize = 16_384;
+
+/// What a device is busy with.
+#[derive(Debug)]
+enum Phase {
+    /// Saying who it is.
+    Greeting,
+    /// Becoming its robot.
+    Configuring,
+    /// Nothing.
+    Ready,
+    /// Deciding; its shadow has decided.
+    Stepping(Box<Expected>),
+    /// Starting anew on request.
+    Restarting,
+    /// Nothing ever again.
+    Failed,
+}
+
+/// A step on its way.
+#[derive(Debug)]
+struct Expected {
+    tick: u32,
+    report: Report,
+    sent_us: u64,
+}
+
+/// One device of a fleet.
+pub struct Unit {
+    order: Order,
+    channel: Channel,
+    port: Box<Port<REQUEST>>,
+    shadow: Option<Box<dyn Brain + Send>>,
+    hello: Option<Hello>,
+    there: Line,
+    back: Line,
+    phase: Phase,
+    /// Steps that the robot still stands after a reset that was ordered.
+    down: u32,
+    answer: Option<Answer>,
+    /// Why nothing will come any more.
+    gone: Option<String>,
+    tally: Tally,
+    packed: Vec<u8>,
+    resend_after: Duration,
+    start_limit: Duration,
+    step_limit: Duration,
+}
+
+impl Unit {
+    /// A device that is being greeted.
+    pub fn new(order: Order, channel: Channel, options: &Options, now_us: u64) -> Self {
+        let robot = order.setup.agent.id.0;
+        let faults = order.faults;
+        let mut unit = Self {
+            port: Box::new(Port::new(
+                options.run,
+                limits(Duration::ZERO, Duration::ZERO),
+            )),
+            shadow: None,
+            hello: None,
+            there: Line::new(faults, 0, robot),
+            back: Line::new(faults, 1, robot),
+            phase: Phase::Ready,
+            down: 0,
+            answer: None,
+            gone: None,
+            tally: Tally::default(),
+            packed: Vec::new(),
+            // Both ways.
+            resend_after: options.resend_after + faults.delay * 2,
+            start_limit: options.start_limit,
+            step_limit: options.step_limit,
+            order,
+            channel,
+        };
+        unit.greet(now_us);
+        unit
+    }
+
+    pub fn robot(&self) -> u32 {
+        self.order.setup.agent.id.0
+    }
+
+    /// Its process, if it is emulated.
+    pub fn process(&self) -> Option<u32> {
+        self.channel.emulator.as_ref().map(|emulator| emulator.id())
+    }
+
+    /// How long to wait for an answer to a request of so many bytes.
+    fn set_limits(&mut self, bytes: usize, limit: Duration) {
+        let bytes = u32::try_from(bytes + MAX_ANSWER).unwrap_or(u32::MAX);
+        let line = self.channel.per_byte.saturating_mul(bytes);
+        self.port
+            .set_limits(limits(self.resend_after + line, limit));
+    }
+
+    fn greet(&mut self, now_us: u64) {
+        self.port.greet(now_us);
+        self.set_limits(0, self.start_limit);
+        self.phase = Phase::Greeting;
+    }
+
+    /// Asks for a step; the shadow decides at once.
+    pub fn send(&mut self, tick: u32, now: Instant, inputs: &Inputs<'_, f32>, now_us: u64) {
+        if matches!(self.phase, Phase::Failed) {
+            return;
+        }
+        if let Some(reset) = self.order.resets.iter().find(|reset| reset.tick == tick) {
+            self.down = reset.down_ticks.max(1);
+            self.tally.resets += 1;
+            self.port.restart(now_us);
+            self.set_limits(0, self.start_limit);
+            self.phase = Phase::Restarting;
+        }
+        if self.down > 0 {
+            self.down -= 1;
+            self.answer = Some(Answer::Down);
+            return;
+        }
+        if let Err(trouble) = self.ask(tick, now, inputs, now_us) {
+            self.fail(trouble);
+            return;
+        }
+        self.pump(now_us);
+    }
+
+    fn ask(
+        &mut self,
+        tick: u32,
+        now: Instant,
+        inputs: &Inputs<'_, f32>,
+        now_us: u64,
+    ) -> Result<(), Trouble> {
+        let (Some(hello), Some(shadow)) = (&self.hello, &mut self.shadow) else {
+            return Err(Trouble::NotReady);
+        };
+        let capacities = hello.capacities;
+        let (step, cut) = capacities
+            .fit(tick, now, inputs, &mut self.packed)
+            .map_err(Trouble::Land)?;
+        self.tally.cut_inbox_bytes += cut.inbox_bytes as u64;
+        self.tally.cut_obstacles += cut.obstacles as u64;
+        let report = shadow
+            .step(&step)
+            .map_err(|refusal| Trouble::Shadow(refusal.to_string()))?;
+        self.port
+            .step(&step, now_us)
+            .map_err(|TooLong| Trouble::TooLong(REQUEST))?;
+        self.set_limits(capacities.frame_bytes(), self.step_limit);
+        self.phase = Phase::Stepping(Box::new(Expected {
+            tick,
+            report,
+            sent_us: now_us,
+        }));
+        Ok(())
+    }
+
+    /// Bytes that the reader got at this time; none: the device is gone.
+    pub fn arrived(&mut self, bytes: &[u8], at_us: u64) {
+        if bytes.is_empty() {
+            let emulator = self.channel.emulator.as_mut();
+            let epitaph = emulator.and_then(|emulator| emulator.epitaph());
+            self.gone = Some(epitaph.unwrap_or_else(|| String::from("the line is closed")));
+            return;
+        }
+        self.back.push(bytes, at_us);
+    }
+
+    /// Does what is to be done now. When to call again; `None` when there is nothing to wait for.
+    pub fn advance(&mut self, now_us: u64) -> Option<u64> {
+        self.hear(now_us);
+        // What it said before it went still counts.
+        if !self.is_settled()
+            && self.back.next_us().is_none()
+            && let Some(why) = self.gone.take()
+        {
+            self.fail(Trouble::Gone(why));
+        }
+        let due = self.pump(now_us)?;
+        let lines = [self.there.next_us(), self.back.next_us()];
+        Some(lines.into_iter().flatten().fold(due, u64::min))
+    }
+
+    /// What came back.
+    fn hear(&mut self, now_us: u64) {
+        while let Some(due_us) = self.back.next_us() {
+            let Some(bytes) = self.back.pop(now_us) else {
+                return;
+            };
+            for byte in bytes {
+                match self.port.receive(byte, due_us) {
+                    Ok(None) => {}
+                    Ok(Some(event)) => self.take(event, due_us),
+                    Err(error) => self.fail(Trouble::Device(error)),
+                }
+            }
+        }
+    }
+
+    /// Sends what is due. When to look again; `None` when no request is on its way.
+    fn pump(&mut self, now_us: u64) -> Option<u64> {
+        let due = loop {
+            match self.port.poll(now_us) {
+                Ok(Next::Send(frame)) => self.there.push(frame, now_us),
+                Ok(Next::WaitUntil(due_us)) => break Some(due_us),
+                Ok(Next::Idle) => break None,
+                Err(error) => {
+                    self.fail(Trouble::Device(error));
+                    break None;
+                }
+            }
+        };
+        while let Some(bytes) = self.there.pop(now_us) {
+            // What does not get through in time is lost like anything on a bad line; a device that is gone shows at the reading end.
+            let _ = self.channel.write.write_all(&bytes);
+            let _ = self.channel.write.flush();
+        }
+        due
+    }
+
+    fn take(&mut self, event: Event, at_us: u64) {
+        match event {
+            Event::Hello(hello) => {
+                if let Err(trouble) = self.meet(hello, at_us) {
+                    self.fail(trouble);
+                }
+            }
+            Event::Configured(configured) => {
+                let shadow = self.shadow.as_mut();
+                let (setup, task) = (&self.order.setup, self.order.task.as_ref());
+                match shadow.map(|shadow| shadow.configure(setup, task)) {
+                    Some(Ok(digest)) if digest == configured.digest => self.phase = Phase::Ready,
+                    Some(Ok(shadow)) => {
+                        let device = configured.digest;
+                        self.fail(Trouble::Setup { device, shadow });
+                    }
+                    Some(Err(refusal)) => self.fail(Trouble::Shadow(refusal.to_string())),
+                    None => self.fail(Trouble::NotReady),
+                }
+            }
+            Event::Stepped(stepped) => self.compare(stepped, at_us),
+            Event::Restarted => {
+                match self.phase {
+                    Phase::Stepping(_) => {
+                        self.tally.resets += 1;
+                        self.answer = Some(Answer::Down);
+                    }
+                    // Right after its answer: the next step is that in which it is down.
+                    Phase::Ready => {
+                        self.tally.resets += 1;
+                        self.down = self.down.max(1);
+                    }
+                    // Ordered and counted, or once more on its way back.
+                    Phase::Restarting | Phase::Greeting | Phase::Configuring | Phase::Failed => {}
+                }
+                self.order.setup.agent.boot = self.order.setup.agent.boot.wrapping_add(1);
+                self.greet(at_us);
+            }
+        }
+    }
+
+    /// Checks who it is, and tells it what to be.
+    fn meet(&mut self, hello: Hello, now_us: u64) -> Result<(), Trouble> {
+        if let Some(part) = self.channel.part
+            && hello.part != part.firmware_name()
+        {
+            let (expected, said) = (part.firmware_name(), hello.part.to_string());
+            return Err(Trouble::OtherPart { expected, said });
+        }
+        if self.shadow.is_none() {
+            let shadow =
+                shadow(&hello).ok_or_else(|| Trouble::NoShadow(Box::new(hello.clone())))?;
+            self.shadow = Some(shadow);
+        }
+        self.packed = vec![0; usize::from(hello.capacities.obstacles) * OBSTACLE];
+        self.hello = Some(hello);
+        let (setup, task) = (&self.order.setup, self.order.task.as_ref());
+        self.port
+            .configure(setup, task, now_us)
+            .map_err(|TooLong| Trouble::TooLong(REQUEST))?;
+        self.set_limits(REQUEST / 16, self.start_limit);
+        self.phase = Phase::Configuring;
+        Ok(())
+    }
+
+    fn compare(&mut self, stepped: Stepped, at_us: u64) {
+        let Phase::Stepping(expected) = std::mem::replace(&mut self.phase, Phase::Ready) else {
+            return;
+        };
+        let narrow = |value: u64| u32::try_from(value).unwrap_or(u32::MAX);
+        let round_trip = at_us.saturating_sub(expected.sent_us);
+        let tally = &mut self.tally;
+        tally.steps += 1;
+        tally.round_trip_us.push(narrow(round_trip));
+        tally.ticks.push(stepped.cost.ticks);
+        tally.stack_bytes = tally.stack_bytes.max(stepped.cost.stack_bytes);
+        let on_device = stepped.report;
+        self.answer = Some(if on_device.is_identical(&expected.report) {
+            Answer::Decided(Box::new(on_device))
+        } else {
+            tally.mismatches += 1;
+            Answer::Mismatch(Box::new(Mismatch {
+                robot: self.order.setup.agent.id,
+                device: self.order.device.clone(),
+                tick: expected.tick,
+                on_device,
+                in_shadow: expected.report,
+            }))
+        });
+    }
+
+    pub fn fail(&mut self, trouble: Trouble) {
+        // The first trouble counts; what follows comes from it.
+        if matches!(self.phase, Phase::Failed) {
+            return;
+        }
+        self.phase = Phase::Failed;
+        self.answer = Some(Answer::Failed(FleetError {
+            robot: self.order.setup.agent.id,
+            device: self.order.device.clone(),
+            trouble: Box::new(trouble),
+        }));
+    }
+
+    /// Whether nothing is to be waited for.
+    pub fn is_settled(&self) -> bool {
+        matches!(self.phase, Phase::Ready | Phase::Failed)
+    }
+
+    /// What came of the last [`Unit::send`].
+    pub fn answer(&mut self) -> Option<Answer> {
+        self.answer.take()
+    }
+
+    pub fn statistics(&self) -> Statistics {
+        let tally = &self.tally;
+        let counts = self.port.counts();
+        let text = |of: fn(&Hello) -> &str| self.hello.as_ref().map_or("", of).to_owned();
+        let ticks_per_second = self
+            .hello
+            .as_ref()
+            .map_or(0, |hello| hello.ticks_per_second);
+        let is_emulated = self.channel.part.is_some();
+        Statistics {
+            robot: self.robot(),
+            device: self.order.device.clone(),
+            part: text(|hello| &hello.part),
+            firmware: text(|hello| &hello.firmware),
+            steps: tally.steps,
+            mismatches: tally.mismatches,
+            round_trip_us: Spread::of(&tally.round_trip_us),
+            ticks: Spread::of(&tally.ticks),
+            ticks_per_second,
+            instructions: is_emulated
+                .then(|| tally.instructions(ticks_per_second))
+                .flatten(),
+            stack_bytes: tally.stack_bytes,
+            resent: counts.resent.into(),
+            damaged: counts.damaged.into(),
+            resets: tally.resets,
+            cut_inbox_bytes: tally.cut_inbox_bytes,
+            cut_obstacles: tally.cut_obstacles,
+            sent_bytes: counts.sent_bytes,
+            received_bytes: counts.received_bytes,
+        }
+    }
+}
+
+/// Resends until the limit is over.
+fn limits(resend_after: Duration, limit: Duration) -> Limits {
+    let resend_after_us = micros(resend_after).max(1);
+    let attempts = micros(limit).div_ceil(resend_after_us).max(1);
+    Limits {
+        resend_after_us,
+        attempts: u32::try_from(attempts).unwrap_or(u32::MAX),
+    }
+}
+
+/// The robot in this process that computes as the device does: the same numbers, the same capacities.
+fn shadow(hello: &Hello) -> Option<Box<dyn Brain + Send>> {
+    let is_same = |brain: &dyn Brain| {
+        let inbox_bytes = hello.capacities.inbox_bytes;
+        let capacities = Capacities {
+            inbox_bytes,
+            ..brain.capacities()
+        };
+        brain.number() == hello.number && capacities == hello.capacities
+    };
+    let candidates: [Box<dyn Brain + Send>; 2] = [Box::new(Large::new()), Box::new(Small::new())];
+    candidates.into_iter().find(|brain| is_same(brain.as_ref()))
+}

@@ -1,0 +1,236 @@
+//! Robots, what they sense, and devices in threads.
+#![allow(dead_code, reason = "each test program uses its own part")]
+
+use staya_controller::agent::{
+    AgentConfig, AnyHalfPlanes, CellState, GuidanceSetup, Inputs, Place, Pose, RouteSetup,
+    SafetySetup, Setup, Surroundings, Task,
+};
+use staya_controller::geom::{Position, Vec2, Vec3};
+use staya_controller::grid::{Cell, Window};
+use staya_controller::neighbor::Doubt;
+use staya_controller::obstacle::Obstacle;
+use staya_controller::orca::AvoidParams;
+use staya_controller::route::{Replan, RouteParams};
+use staya_controller::shuffle::Sharpness;
+use staya_controller::time::{Duration, Instant};
+use staya_controller::wire::{Beacon, Header, Message, Mode, RobotId, encode};
+use staya_link::robot::Brain;
+use staya_link::session::{About, Reaction, Session};
+use staya_runner::{Channel, LineFaults, Order};
+use std::io::{Read, Write};
+use std::os::unix::net::UnixStream;
+
+/// A robot in the plane behind ORCA, or (every other number) one on the grid.
+pub fn order(robot: u32, device: &str) -> Order {
+    let agent = AgentConfig {
+        radius_m: 0.25,
+        max_acceleration_mps2: 2.0,
+        ..AgentConfig::new(RobotId(robot), 7, Duration::from_millis(100))
+    };
+    let place = Place::fixed(Position::from_mm([30_000, 500, 0]));
+    let (guidance, safety, task) = if robot.is_multiple_of(2) {
+        let route = RouteSetup {
+            params: RouteParams::default(),
+            replan: Replan::EachCell,
+            sharpness: Sharpness::Greedy,
+        };
+        let guidance = GuidanceSetup::Route {
+            route,
+            speed_mps: None,
+        };
+        (guidance, SafetySetup::None, Task::Cell(Cell::new(90, 40)))
+    } else {
+        let guidance = GuidanceSetup::Waypoint {
+            speed_mps: 1.0,
+            tolerance_m: 0.05,
+        };
+        let safety = SafetySetup::Orca {
+            params: AvoidParams::default(),
+            doubt: Doubt {
+                growth_mps: 0.5,
+                most_m: 0.25,
+            },
+            source: AnyHalfPlanes::Analytic,
+        };
+        let places = [(0, place)].into_iter().collect();
+        (guidance, safety, Task::Places(places))
+    };
+    Order {
+        device: device.to_owned(),
+        setup: Setup {
+            agent,
+            guidance,
+            safety,
+        },
+        task: Some(task),
+        faults: LineFaults::default(),
+        resets: Vec::new(),
+    }
+}
+
+/// What a robot senses at a tick, whatever it has decided before.
+pub struct Scene {
+    inbox: Vec<u8>,
+    land: Vec<u8>,
+    cell: Cell,
+    position: Position,
+    obstacles: Vec<Obstacle<f32>>,
+    on_grid: bool,
+}
+
+impl Scene {
+    pub fn new(robot: u32, tick: u32) -> Self {
+        let cell = Cell::new((tick / 5) as i16, (robot % 7) as i16);
+        let mm = [(tick * 60) as i32, robot as i32 * 300, 0];
+        let mut scene = Self {
+            inbox: Vec::new(),
+            land: (0..121)
+                .map(|i: u32| (i * 31 + tick / 5) as u8 % 4)
+                .collect(),
+            cell,
+            position: Position::from_mm(mm),
+            obstacles: vec![
+                Obstacle::Wall([Vec2::new(4.0, -1.0), Vec2::new(4.0, 1.0)]),
+                Obstacle::Ball {
+                    center_m: Vec3::new(3.0, 2.5, 0.0),
+                    radius_m: 0.5,
+                },
+            ],
+            on_grid: robot.is_multiple_of(2),
+        };
+        for other in 100..104 {
+            scene.hear(other, tick);
+        }
+        scene
+    }
+
+    /// Adds a beacon of a robot near by; some are damaged on the air.
+    pub fn hear(&mut self, sender: u32, tick: u32) {
+        let [x, y, _] = self.position.mm;
+        let aside = (sender % 5) as i32 * 700 - 1400;
+        let beacon = Beacon {
+            time: now(tick),
+            position_mm: [x + 1500 + aside / 3, y + aside, 0],
+            velocity_mmps: [-400, 20, 0],
+            radius_mm: 250,
+            cell: self.cell + Cell::new(2, (sender % 3) as i16 - 1),
+            mode: Mode::Cruise,
+            ..Beacon::default()
+        };
+        let header = Header {
+            boot: 0,
+            sender: RobotId(sender),
+            sequence: tick as u16,
+        };
+        let mut out = heapless::Vec::<u8, 128>::new();
+        encode(header, &Message::Beacon(beacon), &mut out).expect("fits");
+        if (tick + sender).is_multiple_of(9) {
+            out[10] ^= 1;
+        }
+        self.inbox.extend(out);
+    }
+
+    /// Adds a ball that is so far away.
+    pub fn see(&mut self, distance_m: f32) {
+        self.obstacles.push(Obstacle::Ball {
+            center_m: Vec3::new(0.0, distance_m, 0.0),
+            radius_m: 0.1,
+        });
+    }
+
+    pub fn inputs(&self) -> Inputs<'_, f32> {
+        let cell = CellState {
+            cell: self.cell,
+            busy: Duration::ZERO,
+        };
+        Inputs {
+            pose: Pose {
+                position: self.position,
+                velocity_mps: Vec3::new(0.5, 0.0, 0.0),
+            },
+            cell: self.on_grid.then_some(cell),
+            window: Window::new(&self.land, self.cell - Cell::new(5, 5), 11, 11)
+                .filter(|_| self.on_grid),
+            surroundings: (!self.on_grid).then_some(Surroundings {
+                max_speed_mps: 1.0,
+                obstacles: &self.obstacles,
+                in_cell: None,
+            }),
+            inbox: &self.inbox,
+        }
+    }
+}
+
+pub fn now(tick: u32) -> Instant {
+    Instant::from_micros(tick * 100_000)
+}
+
+/// What a device in a thread does at its step number so and so, counted over its whole life.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Mischief {
+    /// Starts anew.
+    pub resets_at: Option<u32>,
+    /// Says nothing any more.
+    pub silent_at: Option<u32>,
+    /// Closes the line.
+    pub leaves_at: Option<u32>,
+}
+
+/// A device in a thread, and the line to it.
+pub fn device<B: Brain + Send + 'static, const N: usize>(
+    new: fn() -> B,
+    part: &'static str,
+    mischief: Mischief,
+) -> Channel {
+    let (ours, theirs) = UnixStream::pair().expect("sockets");
+    std::thread::spawn(move || live::<B, N>(new, part, mischief, theirs));
+    Channel::new(ours.try_clone().expect("a second handle"), ours)
+}
+
+fn live<B: Brain, const N: usize>(
+    new: fn() -> B,
+    part: &'static str,
+    mischief: Mischief,
+    mut line: UnixStream,
+) {
+    let mut about = About {
+        part,
+        firmware: "a thread",
+        boot: 0,
+        ticks_per_second: 1_000_000_000,
+    };
+    let mut steps = 0;
+    'boots: loop {
+        about.boot += 1;
+        let mut session = Session::<B, N>::new(new(), about);
+        if line.write_all(session.hello()).is_err() {
+            return;
+        }
+        let mut buffer = [0; 256];
+        loop {
+            let Ok(count @ 1..) = line.read(&mut buffer) else {
+                return;
+            };
+            for byte in &buffer[..count] {
+                let before = session.counts().steps;
+                match session.receive(*byte, &mut ()) {
+                    Reaction::None => continue,
+                    Reaction::Restart => continue 'boots,
+                    Reaction::Answer(_) if mischief.silent_at.is_some_and(|at| at <= steps) => {}
+                    Reaction::Answer(frame) => {
+                        if line.write_all(frame).is_err() {
+                            return;
+                        }
+                    }
+                }
+                steps += session.counts().steps - before;
+                if mischief.leaves_at == Some(steps) {
+                    return;
+                }
+                if session.counts().steps > before && mischief.resets_at == Some(steps) {
+                    continue 'boots;
+                }
+            }
+        }
+    }
+}
