@@ -9,6 +9,7 @@ pub mod cli;
 pub mod engine;
 pub mod experiment;
 mod file;
+pub mod hil;
 pub mod metrics;
 pub mod nearby;
 pub mod plot;

@@ -39,6 +39,12 @@ impl Part {
         }
     }
 
+    /// The program that emulates it.
+    #[must_use]
+    pub const fn emulator(self) -> &'static str {
+        crate::emulator::machine(self).0
+    }
+
     /// Its firmware below a folder of firmware, as `cargo xtask firmware` lays it out.
     #[must_use]
     pub fn elf(self, folder: &Path) -> PathBuf {

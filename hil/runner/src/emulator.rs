@@ -28,7 +28,7 @@ pub struct Emulator {
 }
 
 /// Program, machine and what else this part needs; the Debian package of the program.
-const fn machine(part: Part) -> (&'static str, &'static [&'static str], &'static str) {
+pub const fn machine(part: Part) -> (&'static str, &'static [&'static str], &'static str) {
     match part {
         Part::Stm32f405 => (
             "qemu-system-arm",

@@ -261,6 +261,18 @@ impl Fleet {
         }
     }
 
+    /// Makes device number `index` another robot, or the same one just started, and waits until it is. A device that has been another
+    /// robot before gets a boot number of its own in any case, so that nobody takes its packets for old ones.
+    ///
+    /// What is wrong shows in [`Fleet::collect`]. A number that there is none of is ignored.
+    pub fn assign(&mut self, index: usize, setup: Setup, task: Option<Task>) {
+        let now_us = self.now_us();
+        if let Some(unit) = self.units.get_mut(index) {
+            unit.assign(setup, task, now_us);
+            self.settle();
+        }
+    }
+
     /// Waits for all devices, at most for the limits of the [`Options`]; an answer for each that was asked since the last call, in their order
     /// (all of them, if all were asked). A device that has started anew by itself is made its robot again before this returns.
     pub fn collect(&mut self) -> Vec<Answer> {

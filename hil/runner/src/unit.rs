@@ -5,7 +5,7 @@ use crate::fleet::{Answer, FleetError, Options, Order, Trouble};
 use crate::line::{Line, micros};
 use crate::mismatch::Mismatch;
 use crate::statistics::{Spread, Statistics, Tally};
-use staya_controller::agent::Inputs;
+use staya_controller::agent::{Inputs, Setup, Task};
 use staya_controller::time::Instant;
 use staya_link::capacities::Capacities;
 use staya_link::frame::TooLong;
@@ -117,6 +117,18 @@ impl Unit {
         self.port.greet(now_us);
         self.set_limits(0, self.start_limit);
         self.phase = Phase::Greeting;
+    }
+
+    /// Becomes another robot.
+    pub fn assign(&mut self, setup: Setup, task: Option<Task>, now_us: u64) {
+        if matches!(self.phase, Phase::Failed) {
+            return;
+        }
+        let boot = self.order.setup.agent.boot.wrapping_add(1);
+        self.order.setup = setup;
+        self.order.setup.agent.boot = boot;
+        self.order.task = task;
+        self.greet(now_us);
     }
 
     /// Asks for a step; the shadow decides at once.

@@ -1,4 +1,4 @@
-//! The command line: `staya run | terrain | orca | experiment`.
+//! The command line: `staya run | hil | terrain | orca | experiment`.
 //!
 //! A new command is a module with a `clap::Args` struct and `run(&self, &Global) -> Result<Ended>`,
 //! and one line in `Command`. Results go to standard output, progress and errors to standard
@@ -6,6 +6,7 @@
 //! then is kept).
 
 mod experiment;
+mod hil;
 mod orca;
 mod progress;
 mod run;
@@ -47,6 +48,8 @@ pub struct Global {
 enum Command {
     /// Run a scenario.
     Run(run::RunArgs),
+    /// Run some robots of a scenario as firmware, on emulated microcontrollers or boards.
+    Hil(hil::HilArgs),
     /// Make, measure and draw terrain.
     Terrain(terrain::TerrainArgs),
     /// Draw what ORCA forbids, and measure the template that looks it up.
@@ -102,6 +105,7 @@ fn run(cli: &Cli) -> Result<Ended> {
     }
     match &cli.command {
         Command::Run(args) => args.run(&cli.global),
+        Command::Hil(args) => args.run(&cli.global),
         Command::Terrain(args) => args.run(&cli.global),
         Command::Orca(args) => args.run(&cli.global),
         Command::Experiment(args) => args.run(&cli.global),

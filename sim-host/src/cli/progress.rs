@@ -37,6 +37,12 @@ impl Stop {
         self.0.store(true, Ordering::Relaxed);
     }
 
+    /// The request itself, for who cannot ask.
+    #[must_use]
+    pub fn flag(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.0)
+    }
+
     /// Whether somebody asked.
     #[must_use]
     pub fn is_requested(&self) -> bool {
