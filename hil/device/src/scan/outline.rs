@@ -67,7 +67,12 @@ pub fn outline<S: Scalar, const K: usize>(
     if let Some(wall) = wall {
         add(&mut nearest, wall.obstacle(params));
     }
-    nearest.into_iter().map(|(_, obstacle)| obstacle).collect()
+    let mut obstacles = Vec::new();
+    for (_, obstacle) in &nearest {
+        // There is room: both hold `K`. (`collect` would have a panic for the case that not.)
+        let _ = obstacles.push(*obstacle);
+    }
+    obstacles
 }
 
 /// A wall that may grow.
