@@ -8,6 +8,7 @@ mod bless;
 mod check;
 mod debian;
 mod device;
+mod emulate;
 mod example;
 mod firmware;
 mod fuzz;
@@ -15,8 +16,10 @@ mod layers;
 mod qemu;
 mod repo;
 mod report;
+mod swarms;
 mod test;
 
+use device::Toolchains;
 use firmware::{Part, Profile};
 use repo::Repo;
 use report::Report;
@@ -37,6 +40,7 @@ Usage: cargo xtask COMMAND
   example         the example firmware of hil/example-stm32f4
   firmware [--debug] [PART...]
                   the programs of hil/firmware for stm32f405, nrf51, riscv32 (default: all): target/firmware/PART/BIN
+  swarms          the canned swarms give the same hashes on the host and on every part; no panic in the firmware
   qemu            the emulators of the parts; installs them as root on Debian
   help            this text
 
@@ -81,6 +85,7 @@ fn main() -> ExitCode {
             }
         },
         ["qemu"] => qemu::run(&repo, &mut report),
+        ["swarms"] => swarms::run(&repo, &mut report, &mut Toolchains::default()),
         [] => {
             eprint!("{HELP}");
             return ExitCode::from(2);

@@ -29,7 +29,7 @@ pub fn run(repo: &Repo, report: &mut Report) {
 
 /// Makes sure that an emulator is there: installs all of them as root on Debian. Returns what it
 /// says it is.
-fn prepare(repo: &Repo, emulator: &str) -> Result<String, String> {
+pub fn prepare(repo: &Repo, emulator: &str) -> Result<String, String> {
     let version = || {
         let said = output_of(repo.command(emulator).arg("--version"))?;
         Some(said.lines().next().unwrap_or_default().to_string())

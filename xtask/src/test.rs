@@ -1,5 +1,6 @@
 //! `cargo xtask test`: everything that shows by running whether it is right.
 
+use crate::device::Toolchains;
 use crate::repo::{Repo, run_reading};
 use crate::report::{Counts, Report, parse_test_result};
 use std::process::Command;
@@ -29,6 +30,7 @@ pub fn run(repo: &Repo, report: &mut Report) {
     report.part("fuzz targets on random bytes", || counted(&mut fuzz, ""));
     crate::device::run(repo, report);
     crate::example::run(repo, report);
+    crate::swarms::run(repo, report, &mut Toolchains::default());
 }
 
 /// Runs test programs and adds up their closing lines. A program that ends without one (it

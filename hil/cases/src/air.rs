@@ -5,9 +5,9 @@ use staya_controller::rand::Rng;
 use staya_controller::wire::frames;
 
 /// Bytes of one robot that are kept for the next tick: its beacon and some requests. What does not fit is not sent.
-const SAID: usize = 192;
+const SAID: usize = 144;
 /// Bytes that one robot hears in a tick.
-pub(crate) const INBOX: usize = 640;
+pub(crate) const INBOX: usize = 576;
 /// Keeps the draws of this module apart from others.
 const PURPOSE: u32 = u32::from_be_bytes(*b"cair");
 

@@ -54,6 +54,7 @@ pub(crate) fn instant(tick: u32) -> Instant {
 
 /// Runs `walkers` until all have arrived. `commander` says what an operator says in a tick; robots hear it as they
 /// hear each other.
+#[inline(never)]
 pub(crate) fn run<S, G, P>(
     scene: &Scene,
     walkers: &mut Vec<Walker<S, G>, ROBOTS>,
@@ -107,6 +108,7 @@ where
     summary
 }
 
+#[inline(never)]
 fn step<S, G, P>(
     scene: &Scene,
     walker: &mut Walker<S, G>,

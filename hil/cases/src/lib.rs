@@ -2,7 +2,8 @@
 //! bodies, on land from a formula. The same code runs on a host and on a microcontroller, and a hash over everything
 //! that the agents did says whether they did the same.
 //!
-//! Nothing here allocates or panics. Bodies move by [`Scalar`] arithmetic and integers only, so that equal bits of
+//! Nothing here allocates or panics, and what is `inline(never)` keeps the stack of one case out of the others': the
+//! largest runs in the 16 KiB of RAM of a micro:bit. Bodies move by [`Scalar`] arithmetic and integers only, so that equal bits of
 //! the controller are all that equal hashes need.
 #![no_std]
 
@@ -22,8 +23,8 @@ mod worst;
 pub use swarms::Case;
 pub use worst::Worst;
 
-use staya_controller::agent::{Agent, Guidance, Inputs, Outputs, Safety};
-use staya_controller::scalar::Scalar;
+use staya_controller::agent::{Agent, Guidance, HALF_PLANES, Inputs, NEIGHBORS, Outputs, Safety};
+use staya_controller::scalar::{Q16, Scalar};
 use staya_controller::time::Instant;
 
 /// What stands around each [`Agent::step`] of a case: firmware counts instructions and stack there.
@@ -51,6 +52,26 @@ impl<S: Scalar> Probe<S> for Unmeasured {
         workspace: &mut G::Workspace,
     ) -> Outputs<S> {
         agent.step(inputs, now, workspace)
+    }
+}
+
+/// Every case with every kind of number that parts compute with, in the order of the golden table: name, kind of
+/// number, and what came of it.
+pub fn every(mut done: impl FnMut(&'static str, &'static str, &Summary)) {
+    each::<f32>("f32", &mut done);
+    each::<Q16>("Q16", &mut done);
+}
+
+fn each<S: Scalar>(
+    number: &'static str,
+    done: &mut impl FnMut(&'static str, &'static str, &Summary),
+) {
+    for &case in Case::ALL {
+        done(case.name(), number, &case.run::<S, _>(&mut Unmeasured));
+    }
+    for &worst in Worst::ALL {
+        let summary = worst.run::<S, _, NEIGHBORS, HALF_PLANES>(&mut Unmeasured);
+        done(worst.name(), number, &summary);
     }
 }
 

@@ -17,8 +17,6 @@ use staya_controller::scalar::Scalar;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::Mode;
 
-/// Robots of a case in the plane or in space.
-pub(crate) const ROBOTS: usize = 5;
 /// Obstacles that a robot sees.
 const OBSTACLES: usize = 8;
 /// Time from one step to the next.
@@ -64,9 +62,10 @@ pub(crate) fn instant(tick: u32) -> Instant {
 }
 
 /// Runs `movers` until all have arrived.
-pub(crate) fn run<S, G, A, P>(
+#[inline(never)]
+pub(crate) fn run<S, G, A, P, const R: usize>(
     scene: &Scene<S>,
-    movers: &mut Vec<Mover<S, G, A>, ROBOTS>,
+    movers: &mut Vec<Mover<S, G, A>, R>,
     workspace: &mut G::Workspace,
     probe: &mut P,
 ) -> Summary
@@ -77,7 +76,7 @@ where
     PlaneAgent<S, G, A>: Serialize,
     P: Probe<S>,
 {
-    let mut air = Air::<ROBOTS>::new(scene.faults);
+    let mut air = Air::<R>::new(scene.faults);
     let mut hash = Hash::new();
     let mut summary = Summary::of::<PlaneAgent<S, G, A>, G::Workspace>();
     let mut inbox = Vec::<u8, INBOX>::new();
@@ -114,6 +113,7 @@ where
     summary
 }
 
+#[inline(never)]
 fn step<S, G, A, P>(
     scene: &Scene<S>,
     mover: &mut Mover<S, G, A>,

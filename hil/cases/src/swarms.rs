@@ -5,7 +5,9 @@ mod on_grid;
 mod waypoints;
 
 use crate::{Probe, Summary};
-use staya_controller::orca::{Template2k, Template8k, Template16k, Template64k};
+#[cfg(feature = "large-tables")]
+use staya_controller::agent::AnyHalfPlanes;
+use staya_controller::orca::{Analytic, Template2k};
 use staya_controller::scalar::Scalar;
 
 /// A canned swarm.
@@ -27,10 +29,13 @@ pub enum Case {
     /// The same with half-planes from a table of 2 KiB.
     OrcaTemplate2k,
     /// The same with half-planes from a table of 8 KiB.
+    #[cfg(feature = "large-tables")]
     OrcaTemplate8k,
     /// The same with half-planes from a table of 16 KiB.
+    #[cfg(feature = "large-tables")]
     OrcaTemplate16k,
     /// The same with half-planes from a table of 64 KiB.
+    #[cfg(feature = "large-tables")]
     OrcaTemplate64k,
     /// Robots in two rooms change places through a door for one.
     Doorway,
@@ -48,7 +53,7 @@ pub enum Case {
 
 impl Case {
     /// Every case.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: &[Self] = &[
         Self::Route,
         Self::Formation,
         Self::FormationReflexive,
@@ -56,8 +61,11 @@ impl Case {
         Self::RouteInPlane,
         Self::OrcaAnalytic,
         Self::OrcaTemplate2k,
+        #[cfg(feature = "large-tables")]
         Self::OrcaTemplate8k,
+        #[cfg(feature = "large-tables")]
         Self::OrcaTemplate16k,
+        #[cfg(feature = "large-tables")]
         Self::OrcaTemplate64k,
         Self::Doorway,
         Self::Fly,
@@ -78,8 +86,12 @@ impl Case {
             Self::RouteInPlane => "route_in_plane",
             Self::OrcaAnalytic => "orca_analytic",
             Self::OrcaTemplate2k => "orca_template_2k",
+            // One agent type for the large ones: each would take another 12 KiB of flash.
+            #[cfg(feature = "large-tables")]
             Self::OrcaTemplate8k => "orca_template_8k",
+            #[cfg(feature = "large-tables")]
             Self::OrcaTemplate16k => "orca_template_16k",
+            #[cfg(feature = "large-tables")]
             Self::OrcaTemplate64k => "orca_template_64k",
             Self::Doorway => "doorway",
             Self::Fly => "fly",
@@ -100,11 +112,15 @@ impl Case {
             Self::FormationReflexive => on_grid::reflexive(probe),
             Self::Packets => on_grid::packets(probe),
             Self::RouteInPlane => waypoints::route_in_plane(probe),
-            Self::OrcaAnalytic => waypoints::swap(staya_controller::orca::Analytic, probe),
+            Self::OrcaAnalytic => waypoints::swap(Analytic, probe),
             Self::OrcaTemplate2k => waypoints::swap(Template2k, probe),
-            Self::OrcaTemplate8k => waypoints::swap(Template8k, probe),
-            Self::OrcaTemplate16k => waypoints::swap(Template16k, probe),
-            Self::OrcaTemplate64k => waypoints::swap(Template64k, probe),
+            // One agent type for the large ones: each would take another 12 KiB of flash.
+            #[cfg(feature = "large-tables")]
+            Self::OrcaTemplate8k => waypoints::swap(AnyHalfPlanes::Template8k, probe),
+            #[cfg(feature = "large-tables")]
+            Self::OrcaTemplate16k => waypoints::swap(AnyHalfPlanes::Template16k, probe),
+            #[cfg(feature = "large-tables")]
+            Self::OrcaTemplate64k => waypoints::swap(AnyHalfPlanes::Template64k, probe),
             Self::Doorway => waypoints::doorway(probe),
             Self::Fly => waypoints::fly(probe),
             Self::PushOut => waypoints::push_out(probe),

@@ -22,7 +22,7 @@ fn robots_with_goals_arrive_and_never_touch() {
         (Case::Formation, 4),
         (Case::FormationReflexive, 4),
         (Case::Packets, 4),
-        (Case::RouteInPlane, 4),
+        (Case::RouteInPlane, 3),
         (Case::OrcaAnalytic, 5),
         (Case::OrcaTemplate2k, 5),
         (Case::OrcaTemplate8k, 5),

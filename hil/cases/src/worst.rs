@@ -21,7 +21,9 @@ use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Cell, Dir, Window};
 use staya_controller::neighbor::Doubt;
 use staya_controller::obstacle::Obstacle;
-use staya_controller::orca::{Analytic, Template2k, Template64k};
+#[cfg(feature = "large-tables")]
+use staya_controller::orca::Template64k;
+use staya_controller::orca::{Analytic, Template2k};
 use staya_controller::orca::{AvoidParams, FlyParams, HalfPlanes};
 use staya_controller::push_out::PushOutParams;
 use staya_controller::rand::Rng;
@@ -56,6 +58,7 @@ pub enum Worst {
     /// The same with the smallest table.
     OrcaTemplate2k,
     /// The same with the largest table.
+    #[cfg(feature = "large-tables")]
     OrcaTemplate64k,
     /// ORCA in space in such a crowd.
     Fly,
@@ -71,12 +74,13 @@ pub enum Worst {
 
 impl Worst {
     /// All of them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: &[Self] = &[
         Self::Route,
         Self::Formation,
         Self::FormationReflexive,
         Self::OrcaAnalytic,
         Self::OrcaTemplate2k,
+        #[cfg(feature = "large-tables")]
         Self::OrcaTemplate64k,
         Self::Fly,
         Self::PushOut,
@@ -94,6 +98,7 @@ impl Worst {
             Self::FormationReflexive => "worst_formation_reflexive",
             Self::OrcaAnalytic => "worst_orca_analytic",
             Self::OrcaTemplate2k => "worst_orca_template_2k",
+            #[cfg(feature = "large-tables")]
             Self::OrcaTemplate64k => "worst_orca_template_64k",
             Self::Fly => "worst_fly",
             Self::PushOut => "worst_push_out",
@@ -119,6 +124,7 @@ impl Worst {
             }
             Self::OrcaAnalytic => orca::<S, _, P, N, K>(Analytic, probe),
             Self::OrcaTemplate2k => orca::<S, _, P, N, K>(Template2k, probe),
+            #[cfg(feature = "large-tables")]
             Self::OrcaTemplate64k => orca::<S, _, P, N, K>(Template64k, probe),
             Self::Fly => {
                 let safety = FlySafety::<S, K>::new(FlyParams::default(), doubt());
@@ -195,6 +201,7 @@ fn say<const N: usize>(
     }
 }
 
+#[inline(never)]
 fn in_crowd<S, G, A, P, const N: usize>(guidance: G, safety: A, probe: &mut P) -> Summary
 where
     S: Scalar,
@@ -295,6 +302,7 @@ fn formation(prediction: Prediction) -> FormationGuidance<CELLS, VISITS, TEMPLAT
     FormationGuidance::new(RouteParams::default(), params, template)
 }
 
+#[inline(never)]
 fn on_grid<S, G, P, const N: usize>(guidance: G, probe: &mut P) -> Summary
 where
     S: Scalar,

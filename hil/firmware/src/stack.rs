@@ -53,6 +53,12 @@ impl Painted {
         u32::try_from(top().saturating_sub(at)).unwrap_or(u32::MAX)
     }
 
+    /// How deep the stack was where [`paint`] was called, to within the frame of [`paint`].
+    #[must_use]
+    pub fn began(&self) -> u32 {
+        u32::try_from(top().saturating_sub(self.high)).unwrap_or(u32::MAX)
+    }
+
     /// Whether the stack's last word is still as it was painted; if not, the stack has probably run
     /// over the statics. Always true while the painted stretch ends above the stack's end.
     #[must_use]

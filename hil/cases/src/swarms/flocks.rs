@@ -2,7 +2,7 @@
 
 use super::waypoints::movers;
 use crate::air::Faults;
-use crate::plane::{ROBOTS, Scene, Solid, run};
+use crate::plane::{Scene, Solid, run};
 use crate::{Probe, Summary};
 use staya_controller::agent::{
     BoidsGuidance, GoalFlockGuidance, LatticeGuidance, Place, PushOutSafety, Unguarded,
@@ -15,7 +15,7 @@ use staya_controller::push_out::PushOutParams;
 use staya_controller::scalar::Scalar;
 
 /// A loose crowd.
-const CROWD: [[i32; 3]; ROBOTS] = [
+const CROWD: [[i32; 3]; 5] = [
     [0, 0, 0],
     [0, 700, 0],
     [600, 300, 0],
@@ -35,6 +35,7 @@ fn scene<S: Scalar>(solids: &'static [Solid], ticks: u32) -> Scene<S> {
     }
 }
 
+#[inline(never)]
 pub(super) fn lattice<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     // Beside the way of the reference.
     const BALL: [Solid; 1] = [Solid::Ball([6000, 900, 0], 500)];
@@ -56,6 +57,7 @@ pub(super) fn lattice<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     run(&scene(&BALL, 400), &mut movers, &mut (), probe)
 }
 
+#[inline(never)]
 pub(super) fn goals<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     let params = GoalParams::new(S::from_milli(500), S::ONE);
     let mut movers = movers(
@@ -72,6 +74,7 @@ pub(super) fn goals<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     run(&scene(&[], 400), &mut movers, &mut (), probe)
 }
 
+#[inline(never)]
 pub(super) fn boids<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     let params = BoidsParams::new(
         S::from_milli(300),

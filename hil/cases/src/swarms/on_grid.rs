@@ -38,13 +38,19 @@ fn config<S: Scalar>(index: usize) -> AgentConfig<S> {
     AgentConfig::new(RobotId(index as u32 + 1), 7, TICK)
 }
 
+#[inline(never)]
 pub(super) fn route<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     let scene = Scene {
         land: LAND,
         faults: Faults::default(),
         ticks: 300,
     };
-    // From each corner to the opposite one.
+    run(&scene, &mut travellers(), |_, _| {}, probe)
+}
+
+/// From each corner to the opposite one.
+#[inline(never)]
+fn travellers<S: Scalar>() -> Vec<Walker<S, Route>, ROBOTS> {
     let corners = [(4, 4), (23, 4), (4, 23), (23, 23)].map(|(x, y)| Cell::new(x, y));
     let mut walkers = Vec::new();
     for (index, (cell, goal)) in corners
@@ -62,13 +68,15 @@ pub(super) fn route<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
             free_at_ms: 0,
         });
     }
-    run(&scene, &mut walkers, |_, _| {}, probe)
+    walkers
 }
 
+#[inline(never)]
 pub(super) fn formation<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     in_formation(Prediction::Constant, probe)
 }
 
+#[inline(never)]
 pub(super) fn reflexive<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     in_formation(Prediction::Reflexive, probe)
 }
@@ -78,6 +86,7 @@ fn template(index: usize) -> Template<8> {
     Template::from_graph(&PLACES, &EDGES, index, 2).unwrap_or_default()
 }
 
+#[inline(never)]
 fn members<S: Scalar>(
     params: FormationParams,
     template: impl Fn(usize) -> Template<8>,
@@ -111,6 +120,7 @@ fn in_formation<S: Scalar, P: Probe<S>>(prediction: Prediction, probe: &mut P) -
     run(&scene, &mut walkers, |_, _| {}, probe)
 }
 
+#[inline(never)]
 pub(super) fn packets<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     let scene = Scene {
         land: LAND,
@@ -151,7 +161,9 @@ impl Operator {
             entries,
         } = template(index);
         if let Ok(parts) = TemplateAssignment::split(to, 1, slot, offset, &entries) {
-            for part in parts {
+            // One part each time, in turn: a tick has not room for more.
+            let turn = (tick >> 2) as usize;
+            for part in parts.filter(|part| usize::from(part.part) == turn & 1) {
                 self.say(Message::Template(part), out);
             }
         }

@@ -3,7 +3,7 @@
 use crate::air::Faults;
 use crate::grid::Route;
 use crate::land::Land;
-use crate::plane::{Mover, PlaneAgent, ROBOTS, STEP, Scene, Solid, run};
+use crate::plane::{Mover, PlaneAgent, STEP, Scene, Solid, run};
 use crate::{Probe, Summary};
 use heapless::Vec;
 use serde::Serialize;
@@ -25,7 +25,7 @@ const RADIUS_MM: i32 = 150;
 const PLANES: usize = 16;
 
 /// A pentagon with a radius of 1.5 m, not quite even, so that no symmetry helps.
-const PENTAGON: [[i32; 3]; ROBOTS] = [
+const PENTAGON: [[i32; 3]; 5] = [
     [1500, 0, 0],
     [464, 1427, 0],
     [-1214, 882, 0],
@@ -50,11 +50,12 @@ fn doubt<S: Scalar>() -> Doubt<S> {
 }
 
 /// One robot for each start, standing there.
-pub(super) fn movers<S: Scalar, G: Guidance<S>, A: Safety<S>>(
-    starts: &[[i32; 3]],
+#[inline(never)]
+pub(super) fn movers<S: Scalar, G: Guidance<S>, A: Safety<S>, const R: usize>(
+    starts: &[[i32; 3]; R],
     guidance: impl Fn(usize) -> G,
     safety: impl Fn() -> A,
-) -> Vec<Mover<S, G, A>, ROBOTS> {
+) -> Vec<Mover<S, G, A>, R> {
     let mut movers = Vec::new();
     for (index, start) in starts.iter().enumerate() {
         // As many places as robots.
@@ -83,10 +84,10 @@ fn waypoint<S: Scalar>() -> WaypointGuidance<S> {
 }
 
 /// Sends each robot to its place and runs until all are there.
-fn to_places<S: Scalar, A: Safety<S> + Serialize, P: Probe<S>>(
+fn to_places<S: Scalar, A: Safety<S> + Serialize, P: Probe<S>, const R: usize>(
     scene: &Scene<S>,
-    starts: &[[i32; 3]],
-    goals: &[[i32; 3]],
+    starts: &[[i32; 3]; R],
+    goals: &[[i32; 3]; R],
     safety: impl Fn() -> A,
     probe: &mut P,
 ) -> Summary {
@@ -99,6 +100,7 @@ fn to_places<S: Scalar, A: Safety<S> + Serialize, P: Probe<S>>(
     run(scene, &mut movers, &mut (), probe)
 }
 
+#[inline(never)]
 pub(super) fn swap<S: Scalar, H: HalfPlanes<S> + Clone + Serialize, P: Probe<S>>(
     source: H,
     probe: &mut P,
@@ -113,6 +115,7 @@ pub(super) fn swap<S: Scalar, H: HalfPlanes<S> + Clone + Serialize, P: Probe<S>>
     )
 }
 
+#[inline(never)]
 pub(super) fn doorway<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     // A gap of 0.5 m between two rooms.
     const WALLS: [Solid; 2] = [
@@ -135,6 +138,7 @@ pub(super) fn doorway<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     to_places(&scene(&WALLS), &starts, &goals, safety, probe)
 }
 
+#[inline(never)]
 pub(super) fn fly<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     const SOLIDS: [Solid; 2] = [Solid::Floor(0), Solid::Ball([0, 0, 1500], 200)];
     let heights = [1000, 1400, 1800, 1200, 1600];
@@ -152,6 +156,7 @@ pub(super) fn fly<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     to_places(&scene(&SOLIDS), &at(1), &at(-1), safety, probe)
 }
 
+#[inline(never)]
 pub(super) fn push_out<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     const SOLIDS: [Solid; 2] = [
         Solid::Ball([0, 0, 0], 300),
@@ -163,24 +168,15 @@ pub(super) fn push_out<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     to_places(&scene(&SOLIDS), &starts, &goals, safety, probe)
 }
 
+#[inline(never)]
 pub(super) fn route_in_plane<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     let land = Land {
         size: 16,
         roughness_log2: 1,
         walls: &[(7, 3, 10)],
     };
-    let starts = [
-        [3500, 3500, 0],
-        [12_500, 3500, 0],
-        [3500, 12_500, 0],
-        [12_500, 12_500, 0],
-    ];
-    let goals = [
-        Cell::new(12, 11),
-        Cell::new(3, 12),
-        Cell::new(12, 4),
-        Cell::new(3, 3),
-    ];
+    let starts = [[3500, 3500, 0], [12_500, 3500, 0], [3500, 12_500, 0]];
+    let goals = [Cell::new(12, 11), Cell::new(3, 12), Cell::new(12, 4)];
     let guidance = |_| InPlane::new(Route::new(RouteParams::default()), S::HALF);
     let safety = || OrcaSafety::<S, PLANES>::with_source(AvoidParams::default(), doubt(), Analytic);
     let mut movers = movers(&starts, guidance, safety);

@@ -1,0 +1,154 @@
+//! What a step costs: instructions and stack, for each canned swarm and for an agent in the worst company. Prints
+//! `case scalar steps median max stack agent workspace`: counts, instructions (on a board: clock cycles), bytes.
+//!
+//! Emulated with `-icount shift=0` an instruction takes a nanosecond, and the tick counter tells them apart.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+staya_firmware::entry!(program::run);
+staya_firmware::faults_are_printed!();
+
+#[cfg(target_os = "none")]
+mod program {
+    use heapless::Vec;
+    use staya_cases::{Case, Probe, Summary, Worst};
+    use staya_controller::agent::{Agent, Guidance, Inputs, Outputs, Safety};
+    use staya_controller::scalar::{Q16, Scalar};
+    use staya_controller::time::Instant;
+    use staya_firmware::{runtime, stack};
+
+    /// Samples that the median is of. When there are more steps, every second, fourth, ... counts.
+    const SAMPLES: usize = if cfg!(part = "nrf51") { 64 } else { 1024 };
+
+    /// Counts ticks and stack of each step.
+    struct Meter {
+        samples: Vec<u32, SAMPLES>,
+        /// One step of so many is a sample.
+        stride: u32,
+        steps: u32,
+        most_ticks: u32,
+        deepest: u32,
+        /// What measuring itself takes, ticks.
+        empty: u32,
+    }
+
+    impl Meter {
+        fn new() -> Self {
+            let before = runtime::ticks();
+            let empty = runtime::ticks().wrapping_sub(before);
+            Self {
+                samples: Vec::new(),
+                stride: 1,
+                steps: 0,
+                most_ticks: 0,
+                deepest: 0,
+                empty,
+            }
+        }
+
+        fn take(&mut self, ticks: u32, depth: u32) {
+            self.most_ticks = self.most_ticks.max(ticks);
+            self.deepest = self.deepest.max(depth);
+            if self.samples.is_full() {
+                let mut is_kept = false;
+                self.samples.retain(|_| {
+                    is_kept = !is_kept;
+                    is_kept
+                });
+                self.stride *= 2;
+            }
+            if self.steps.is_multiple_of(self.stride) {
+                // There is room.
+                let _ = self.samples.push(ticks);
+            }
+            self.steps += 1;
+        }
+
+        fn median(&mut self) -> u32 {
+            self.samples.sort_unstable();
+            let middle = self.samples.len() / 2;
+            self.samples.get(middle).copied().unwrap_or(0)
+        }
+    }
+
+    impl<S: Scalar> Probe<S> for Meter {
+        fn step<G: Guidance<S>, A: Safety<S>, const N: usize>(
+            &mut self,
+            agent: &mut Agent<S, G, N, A>,
+            inputs: &Inputs<'_, S>,
+            now: Instant,
+            workspace: &mut G::Workspace,
+        ) -> Outputs<S> {
+            let painted = stack::paint();
+            let before = runtime::ticks();
+            let out = step(agent, inputs, now, workspace);
+            let ticks = runtime::ticks().wrapping_sub(before);
+            let depth = painted.deepest().saturating_sub(painted.began());
+            self.take(ticks.saturating_sub(self.empty), depth);
+            out
+        }
+    }
+
+    /// A call of its own, so that the caller's frame is not counted.
+    #[inline(never)]
+    fn step<S: Scalar, G: Guidance<S>, A: Safety<S>, const N: usize>(
+        agent: &mut Agent<S, G, N, A>,
+        inputs: &Inputs<'_, S>,
+        now: Instant,
+        workspace: &mut G::Workspace,
+    ) -> Outputs<S> {
+        agent.step(inputs, now, workspace)
+    }
+
+    pub fn run() -> ! {
+        let start = runtime::start();
+        let row = |name: &str, scalar: &str, meter: &mut Meter, summary: Summary| {
+            let instructions = |ticks: u32| {
+                if start.emulated {
+                    u64::from(ticks) * 1_000_000_000 / u64::from(start.tick_hz)
+                } else {
+                    u64::from(ticks) * u64::from(start.clock_hz) / u64::from(start.tick_hz)
+                }
+            };
+            let median = instructions(meter.median());
+            runtime::print(format_args!(
+                "{name} {scalar} {} {} {} {} {} {}\n",
+                meter.steps,
+                median,
+                instructions(meter.most_ticks),
+                meter.deepest,
+                summary.agent_bytes,
+                summary.workspace_bytes,
+            ));
+        };
+        #[cfg(not(part = "nrf51"))]
+        {
+            swarms::<f32>("f32", &row);
+            worst::<f32, 16, 32>("f32", &row);
+        }
+        swarms::<Q16>("Q16", &row);
+        #[cfg(not(part = "nrf51"))]
+        worst::<Q16, 16, 32>("Q16", &row);
+        #[cfg(part = "nrf51")]
+        worst::<Q16, 8, 16>("Q16", &row);
+        runtime::exit(0)
+    }
+
+    fn swarms<S: Scalar>(scalar: &str, row: &impl Fn(&str, &str, &mut Meter, Summary)) {
+        for &case in Case::ALL {
+            let mut meter = Meter::new();
+            let summary = case.run::<S, _>(&mut meter);
+            row(case.name(), scalar, &mut meter, summary);
+        }
+    }
+
+    fn worst<S: Scalar, const N: usize, const K: usize>(
+        scalar: &str,
+        row: &impl Fn(&str, &str, &mut Meter, Summary),
+    ) {
+        for &case in Worst::ALL {
+            let mut meter = Meter::new();
+            let summary = case.run::<S, _, N, K>(&mut meter);
+            row(case.name(), scalar, &mut meter, summary);
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! Links only if no panic is reachable from any step of any behaviour, from packets, or from the link's device side: its panic
+//! handler calls a function that exists nowhere, which the linker notices unless the optimiser has thrown the
+//! handler out. It is not meant to be run.
+//!
+//! Everything that a step gets goes through `black_box`, so that the optimiser cannot lean on what the canned
+//! swarms happen to do. With the feature `reachable-panic` there is one, and the link must fail: `cargo xtask test` tries both.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+staya_firmware::entry!(program::run);
+
+#[cfg(target_os = "none")]
+mod program {
+    use core::hint::black_box;
+    use staya_cases::{Case, Probe, Worst};
+    use staya_controller::agent::{Agent, Guidance, Inputs, Outputs, Safety};
+    use staya_controller::scalar::Scalar;
+    use staya_controller::time::Instant;
+    use staya_link::robot::{SMALL_INBOX, Small};
+    use staya_link::session::{About, Meter, Reaction, Session, content_bytes};
+
+    #[cfg(not(part = "nrf51"))]
+    type Number = f32;
+    #[cfg(part = "nrf51")]
+    type Number = staya_controller::scalar::Q16;
+
+    /// Hides from the optimiser what goes into a step and what becomes of it.
+    struct Opaque;
+
+    impl<S: Scalar> Probe<S> for Opaque {
+        fn step<G: Guidance<S>, A: Safety<S>, const N: usize>(
+            &mut self,
+            agent: &mut Agent<S, G, N, A>,
+            inputs: &Inputs<'_, S>,
+            now: Instant,
+            workspace: &mut G::Workspace,
+        ) -> Outputs<S> {
+            let (agent, inputs) = (black_box(agent), black_box(inputs));
+            black_box(agent.step(inputs, black_box(now), black_box(workspace)))
+        }
+    }
+
+    pub fn run() -> ! {
+        for &case in black_box(Case::ALL) {
+            black_box(case.run::<Number, _>(&mut Opaque));
+        }
+        for &case in black_box(Worst::ALL) {
+            black_box(case.run::<Number, _, 8, 16>(&mut Opaque));
+        }
+        link();
+        #[cfg(feature = "reachable-panic")]
+        black_box([1, 2, 3][black_box(3)]);
+        loop {
+            core::hint::spin_loop();
+        }
+    }
+
+    /// Any bytes from the line.
+    fn link() {
+        const CONTENT: usize = content_bytes(169, 16, SMALL_INBOX);
+        let about = About {
+            part: "nopanic",
+            firmware: "nopanic",
+            boot: 0,
+            ticks_per_second: 1,
+        };
+        let mut session = Session::<Small, CONTENT>::new(Small::new(), black_box(about));
+        black_box(session.hello());
+        let mut meter = black_box(());
+        let mut wants_more = true;
+        while wants_more {
+            let session = black_box(&mut session);
+            wants_more = hear(session, &mut meter);
+        }
+    }
+
+    fn hear<const CONTENT: usize>(
+        session: &mut Session<Small, CONTENT>,
+        meter: &mut impl Meter,
+    ) -> bool {
+        match session.receive(black_box(0), meter) {
+            Reaction::None => true,
+            Reaction::Answer(frame) => !black_box(frame).is_empty(),
+            Reaction::Restart => false,
+        }
+    }
+
+    #[panic_handler]
+    fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+        unsafe extern "C" {
+            /// Defined nowhere.
+            fn staya_panic_is_reachable() -> !;
+        }
+        // SAFETY: never called: a program in which this call is left does not link.
+        unsafe { staya_panic_is_reachable() }
+    }
+}

@@ -1,0 +1,13 @@
+//! The canned swarms: what they do, as hashes that the host and every part must give.
+
+use std::fmt::Write as _;
+
+#[test]
+fn golden_hashes_of_the_canned_swarms() {
+    let mut table = String::new();
+    staya_cases::every(|name, number, summary| {
+        let (hash, steps) = (summary.hash, summary.steps);
+        writeln!(table, "{name} {number} {hash:016x} {steps}").expect("strings take everything");
+    });
+    staya_tests::golden("cases", &table);
+}
