@@ -57,7 +57,7 @@ pub struct InCell<S> {
 pub struct Inputs<'a, S> {
     /// Own state.
     pub pose: Pose<S>,
-    /// Own state on the grid; `None` for robots that do not move cell by cell.
+    /// Own state on the grid, also for [`InPlane`](super::InPlane); `None` for guidance without one.
     pub cell: Option<CellState>,
     /// The terrain that the robot can see, its own cell included (without it, or with `None`, a robot on
     /// the grid is in [`Mode::Fault`] and stands). Of any size: routes are searched within the

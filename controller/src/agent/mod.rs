@@ -1,8 +1,20 @@
 //! The one composer of behaviours: [`Agent::step`]. Read that function first.
 //!
-//! A step hears (`link`), decides (a [`Guidance`], then the [`crate::supervisor`]) and speaks. The
-//! guidances compose the behaviours of the layer below: [`RouteGuidance`] routes, and
-//! [`FormationGuidance`] routes and keeps a formation.
+//! A step hears (`link`), decides (a [`Guidance`], then the [`crate::supervisor`]), keeps clear (a
+//! [`Safety`] layer) and speaks. The guidances compose the behaviours of the layer below. Which one there is
+//! says what [`Inputs`] must hold (what is missing puts the robot into [`Mode::Fault`], and it stands) and what comes out:
+//!
+//! | guidance | inputs besides pose and inbox | where to go | command |
+//! | --- | --- | --- | --- |
+//! | [`RouteGuidance`], [`FormationGuidance`] | cell, window | [`Agent::assign_goal`] | [`Command::Move`] |
+//! | the same within [`InPlane`] | cell, window, surroundings with `in_cell` | [`Agent::assign_goal`] | [`Command::Velocity`] |
+//! | [`WaypointGuidance`], [`GoalFlockGuidance`] | surroundings | [`Agent::assign_place`] | [`Command::Velocity`] |
+//! | [`LatticeGuidance`] | surroundings | [`Agent::assign_place`], or nowhere: it flocks | [`Command::Velocity`] |
+//! | [`BoidsGuidance`] | surroundings | nowhere: it roams | [`Command::Velocity`] |
+//!
+//! What turns velocities into PWM, bytes of a UART into an inbox and ranges into a window is in the crate `staya-device`.
+//!
+//! Cell by cell, to a goal on the grid:
 //!
 //! ```
 //! use staya_controller::agent::*;
@@ -35,6 +47,42 @@
 //!     now = now + tick;
 //! }
 //! assert_eq!(cell, Cell::new(9, 5));
+//! ```
+//!
+//! By velocities, behind ORCA, to a place two metres east:
+//!
+//! ```
+//! use staya_controller::agent::*;
+//! use staya_controller::geom::Position;
+//! use staya_controller::neighbor::Doubt;
+//! use staya_controller::orca::AvoidParams;
+//! use staya_controller::time::{Duration, Instant};
+//! use staya_controller::wire::{Mode, RobotId};
+//!
+//! let tick = Duration::from_millis(50);
+//! let config = AgentConfig { radius_m: 0.1, ..AgentConfig::new(RobotId(3), 1, tick) };
+//! let safety = OrcaSafety::new(AvoidParams::default(), Doubt { growth_mps: 0.1, most_m: 0.2 });
+//! let mut agent = OrcaAgent::guarded(&config, WaypointGuidance::new(0.5, 0.02), safety);
+//! agent.assign_place(0, &Place::fixed(Position::from_mm([2000, 0, 0])));
+//!
+//! let (mut pose, mut now) = (Pose::default(), Instant::from_micros(0));
+//! while agent.mode() != Mode::Arrived {
+//!     let inputs = Inputs {
+//!         pose,
+//!         cell: None,
+//!         window: None,
+//!         surroundings: Some(Surroundings { max_speed_mps: 0.5, obstacles: &[], in_cell: None }),
+//!         inbox: &[],
+//!     };
+//!     let out = agent.step(&inputs, now, &mut ());
+//!     // A body without inertia: it goes as it is told.
+//!     if let Command::Velocity(velocity_mps) = out.command {
+//!         pose.velocity_mps = velocity_mps;
+//!         pose.position = pose.position.moved(velocity_mps * 0.05).unwrap();
+//!     }
+//!     now = now + tick;
+//! }
+//! assert!(pose.position.since::<f32>(Position::from_mm([2000, 0, 0])).norm() <= 0.02);
 //! ```
 
 mod any;
@@ -128,9 +176,11 @@ pub struct AgentConfig<S> {
     pub id: RobotId,
     /// Seed of what the robot draws at random.
     pub seed: u64,
-    /// Changes with each start; see [`crate::wire::SequenceWindow`].
+    /// Changes with each start (counted in lasting memory, or drawn at random): with the old one a robot that has restarted is not heard
+    /// until the others have forgotten it; see [`crate::wire::SequenceWindow`].
     pub boot: u8,
-    /// Time in which the robot crosses a cell of impassability 1; more than 0.
+    /// More than 0. On the grid the time in which the robot crosses a cell of impassability 1; for robots that go by velocities the time
+    /// from one step to the next, which must then be kept: the command is meant to hold for so long.
     pub tick: Duration,
     /// Time between two beacons. Longer saves the radio and makes everybody's news older.
     pub beacon_period: Duration,
@@ -169,7 +219,8 @@ impl<S: Scalar> AgentConfig<S> {
     }
 
     /// A beacon each tick, news stale after 4 and forgotten after 30 ticks, requests resent every
-    /// 3 ticks, stops for 12 ticks, a radius of 0, no inertia, no latency.
+    /// 3 ticks, stops for 12 ticks, a radius of 0, no inertia, no latency. Robots that go by velocities need at least their
+    /// [`radius_m`](Self::radius_m) besides, and on real radios their [`latency`](Self::latency).
     #[must_use]
     pub fn new(id: RobotId, seed: u64, tick: Duration) -> Self {
         Self {
@@ -269,7 +320,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>> Agent<S, G, N, A> 
         }
     }
 
-    /// Gives the robot a goal of its own, which a new place in the formation does not move (one that
+    /// Gives the robot a goal of its own on the grid (guidance that goes to places takes no notice: [`Self::assign_place`]), which a new place in the formation does not move (one that
     /// comes as a [`GoalAssignment`](crate::wire::GoalAssignment) is the formation's and moves).
     pub const fn assign_goal(&mut self, goal: Cell) {
         self.goal = Some(Goal::Own(goal));
