@@ -95,6 +95,11 @@ fn golden_six_robots() {
 }
 
 #[test]
+fn golden_ten_robots() {
+    check("ten-robots", None);
+}
+
+#[test]
 fn golden_figure_5() {
     check("figure-5", None);
 }
