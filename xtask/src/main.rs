@@ -9,6 +9,7 @@ mod check;
 mod debian;
 mod device;
 mod emulate;
+mod emulated;
 mod example;
 mod firmware;
 mod fuzz;

@@ -31,11 +31,12 @@ pub fn run(repo: &Repo, report: &mut Report) {
     crate::device::run(repo, report);
     crate::example::run(repo, report);
     crate::swarms::run(repo, report, &mut Toolchains::default());
+    crate::emulated::run(repo, report);
 }
 
 /// Runs test programs and adds up their closing lines. A program that ends without one (it
 /// crashed, or did not compile) is one failure. `why_skipped` is the note if anything was.
-fn counted(tests: &mut Command, why_skipped: &str) -> (Counts, String) {
+pub fn counted(tests: &mut Command, why_skipped: &str) -> (Counts, String) {
     let mut sum = Counts::default();
     let ended = run_reading(tests, |line| {
         if let Some(counts) = parse_test_result(line) {

@@ -110,6 +110,13 @@ impl<'a, const N: usize> Stuffer<'a, N> {
         })
     }
 
+    /// Not inlined: every kind of message calls it for each of its fields.
+    #[inline(never)]
+    fn check_and_stuff(&mut self, byte: u8) -> Option<()> {
+        self.crc.update(&[byte]);
+        self.stuff(byte)
+    }
+
     fn stuff(&mut self, byte: u8) -> Option<()> {
         if byte != 0 {
             self.out.push(byte).ok()?;
@@ -138,8 +145,8 @@ impl<const N: usize> Flavor for Stuffer<'_, N> {
     type Output = ();
 
     fn try_push(&mut self, byte: u8) -> postcard::Result<()> {
-        self.crc.update(&[byte]);
-        self.stuff(byte).ok_or(postcard::Error::SerializeBufferFull)
+        self.check_and_stuff(byte)
+            .ok_or(postcard::Error::SerializeBufferFull)
     }
 
     fn finalize(self) -> postcard::Result<()> {

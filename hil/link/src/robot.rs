@@ -11,6 +11,7 @@ use staya_controller::agent::{
 };
 use staya_controller::obstacle::Obstacle;
 use staya_controller::scalar::{Q16, Scalar, cast};
+use staya_controller::time::Instant;
 use staya_controller::wire::RobotId;
 
 /// The robot that an STM32F405 has room for.
@@ -76,11 +77,14 @@ pub trait Brain {
     /// What does not fit, see [`Refusal`]; then it is no robot at all.
     fn configure(&mut self, setup: &Setup, task: Option<&Task>) -> Result<u64, Refusal>;
 
-    /// One step of the robot.
+    /// One step of the robot. What it decided is kept for [`Brain::report`]: on the way through a step it would only take stack.
     ///
     /// # Errors
     /// [`Refusal::NotConfigured`], or inputs that do not fit or make no sense; the robot is as it was.
-    fn step(&mut self, inputs: &StepInputs<'_>) -> Result<Report, Refusal>;
+    fn step(&mut self, inputs: &StepInputs<'_>) -> Result<(), Refusal>;
+
+    /// What the last step decided; `None` for no robot.
+    fn report(&self) -> Option<Report>;
 
     /// Is no robot any more.
     fn forget(&mut self);
@@ -99,6 +103,7 @@ pub struct Robot<
     agent: Option<AnyAgent<S, CELLS, M, N, K>>,
     workspace: GridWorkspace<CELLS>,
     obstacles: Vec<Obstacle<S>, O>,
+    outputs: Outputs<S>,
 }
 
 impl<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usize, const O: usize>
@@ -111,6 +116,14 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usi
             agent: None,
             workspace: GridWorkspace::new(),
             obstacles: Vec::new(),
+            outputs: Outputs {
+                command: Command::Hold,
+                received: 0,
+                rejected: 0,
+                outbox: Vec::new(),
+                events: Vec::new(),
+                call_again: Instant::from_micros(0),
+            },
         }
     }
 
@@ -161,6 +174,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usi
         if needs > room {
             return Err(Refusal::Search { needs, room });
         }
+        self.outputs = Outputs::default();
         let agent = self.agent.insert(setup.agent());
         if task.is_none_or(|task| agent.assign(task)) {
             return Ok(agent.digest());
@@ -169,7 +183,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usi
         Err(Refusal::Task)
     }
 
-    fn step(&mut self, inputs: &StepInputs<'_>) -> Result<Report, Refusal> {
+    fn step(&mut self, inputs: &StepInputs<'_>) -> Result<(), Refusal> {
         let agent = self.agent.as_mut().ok_or(Refusal::NotConfigured)?;
         let window = match &inputs.land {
             Some(land) => Some(land.window().ok_or(Refusal::Nonsense)?),
@@ -204,9 +218,14 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usi
             surroundings,
             inbox: inputs.inbox,
         };
-        let outputs = agent.step(&own, inputs.now, &mut self.workspace);
-        Ok(Report {
-            outputs: in_f32(outputs),
+        self.outputs = agent.step(&own, inputs.now, &mut self.workspace);
+        Ok(())
+    }
+
+    fn report(&self) -> Option<Report> {
+        let agent = self.agent.as_ref()?;
+        Some(Report {
+            outputs: in_f32(&self.outputs),
             mode: agent.mode(),
             leader: agent.leader(),
             target: agent.target(),
@@ -219,17 +238,17 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usi
     }
 }
 
-fn in_f32<S: Scalar>(outputs: Outputs<S>) -> Outputs<f32> {
+fn in_f32<S: Scalar>(outputs: &Outputs<S>) -> Outputs<f32> {
     Outputs {
-        command: match outputs.command {
+        command: match &outputs.command {
             Command::Hold => Command::Hold,
-            Command::Move(moves) => Command::Move(moves),
+            Command::Move(moves) => Command::Move(moves.clone()),
             Command::Velocity(velocity_mps) => Command::Velocity(velocity_mps.cast()),
         },
         received: outputs.received,
         rejected: outputs.rejected,
-        outbox: outputs.outbox,
-        events: outputs.events,
+        outbox: outputs.outbox.clone(),
+        events: outputs.events.clone(),
         call_again: outputs.call_again,
     }
 }

@@ -319,17 +319,22 @@ impl<B: Brain, const CONTENT: usize> Core<B, CONTENT> {
             return self.malformed(seq);
         };
         meter.start();
-        let report = self.brain.step(&inputs);
+        let stepped = self.brain.step(&inputs);
         let cost = meter.finish();
-        let report = match report {
-            Ok(report) => report,
-            Err(refusal) => return self.refused(seq, refusal),
+        match stepped {
+            Ok(()) => self.tell(seq, cost),
+            Err(refusal) => self.refused(seq, refusal),
+        }
+    }
+
+    /// Not inlined: the report must not take stack away from the step.
+    #[inline(never)]
+    fn tell(&mut self, seq: u16, cost: Cost) -> Reaction<'_> {
+        let Some(report) = self.brain.report() else {
+            return self.refused(seq, Refusal::NotConfigured);
         };
-        if self
-            .answer
-            .fill(kind::STEPPED, &(seq, &report, cost))
-            .is_err()
-        {
+        let filled = self.answer.fill(kind::STEPPED, &(seq, &report, cost));
+        if filled.is_err() {
             let text = format_args!("an answer of more than {MAX_ANSWER} bytes");
             return self.fault(seq, FaultKind::Capacity, text);
         }

@@ -139,8 +139,10 @@ pub enum Trouble {
     Land(LandTooLarge),
     #[error("a request of more than {0} bytes")]
     TooLong(usize),
-    #[error("it is not ready for a step")]
+    #[error("it is still busy with the last step: collect its answer first")]
     NotReady,
+    #[error("it was given up before")]
+    GivenUp,
     #[error("stopped")]
     Stopped,
 }
@@ -273,8 +275,8 @@ impl Fleet {
         }
     }
 
-    /// Waits for all devices, at most for the limits of the [`Options`]; an answer for each that was asked since the last call, in their order
-    /// (all of them, if all were asked). A device that has started anew by itself is made its robot again before this returns.
+    /// Waits for all devices, at most for the limits of the [`Options`]; an answer for each that was asked since the last call, in their order:
+    /// one for each device, if all were asked. A device that has started anew by itself is made its robot again before this returns.
     pub fn collect(&mut self) -> Vec<Answer> {
         self.settle();
         self.units.iter_mut().filter_map(Unit::answer).collect()

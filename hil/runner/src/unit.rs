@@ -134,6 +134,11 @@ impl Unit {
     /// Asks for a step; the shadow decides at once.
     pub fn send(&mut self, tick: u32, now: Instant, inputs: &Inputs<'_, f32>, now_us: u64) {
         if matches!(self.phase, Phase::Failed) {
+            self.answer = Some(self.failed(Trouble::GivenUp));
+            return;
+        }
+        if !self.is_settled() {
+            self.fail(Trouble::NotReady);
             return;
         }
         if let Some(reset) = self.order.resets.iter().find(|reset| reset.tick == tick) {
@@ -171,9 +176,10 @@ impl Unit {
             .map_err(Trouble::Land)?;
         self.tally.cut_inbox_bytes += cut.inbox_bytes as u64;
         self.tally.cut_obstacles += cut.obstacles as u64;
-        let report = shadow
+        shadow
             .step(&step)
             .map_err(|refusal| Trouble::Shadow(refusal.to_string()))?;
+        let report = shadow.report().ok_or(Trouble::NotReady)?;
         self.port
             .step(&step, now_us)
             .map_err(|TooLong| Trouble::TooLong(REQUEST))?;
@@ -346,11 +352,15 @@ impl Unit {
             return;
         }
         self.phase = Phase::Failed;
-        self.answer = Some(Answer::Failed(FleetError {
+        self.answer = Some(self.failed(trouble));
+    }
+
+    fn failed(&self, trouble: Trouble) -> Answer {
+        Answer::Failed(FleetError {
             robot: self.order.setup.agent.id,
             device: self.order.device.clone(),
             trouble: Box::new(trouble),
-        }));
+        })
     }
 
     /// Whether nothing is to be waited for.

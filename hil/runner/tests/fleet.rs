@@ -180,14 +180,18 @@ impl Brain for Wrong {
         self.brain.configure(setup, task)
     }
 
-    fn step(&mut self, inputs: &StepInputs<'_>) -> Result<Report, Refusal> {
+    fn step(&mut self, inputs: &StepInputs<'_>) -> Result<(), Refusal> {
         self.steps += 1;
-        let mut report = self.brain.step(inputs)?;
+        self.brain.step(inputs)
+    }
+
+    fn report(&self) -> Option<Report> {
+        let mut report = self.brain.report()?;
         if self.steps >= 50 {
             report.digest ^= 1;
             report.outputs.received += 1;
         }
-        Ok(report)
+        Some(report)
     }
 
     fn forget(&mut self) {
@@ -261,8 +265,27 @@ fn silent_device_is_named_with_its_step_and_the_time() {
         text.starts_with(known) && text.ends_with("(5 attempts)"),
         "{text}"
     );
-    // It stays out, and says nothing a second time.
-    assert_eq!(tick(&mut fleet, 8).len(), 1);
+    // It stays out.
+    let mut answers = tick(&mut fleet, 8);
+    let _ = decided(answers.pop().expect("two"));
+    assert_eq!(
+        trouble(answers),
+        "robot 1 on qemu:microbit: it was given up before"
+    );
+}
+
+#[test]
+fn second_step_before_the_first_is_collected_is_an_error() {
+    let mut fleet = one(order(1, "thread"), large(Mischief::default()));
+    for t in 0..2 {
+        let scene = Scene::new(1, t);
+        fleet.send(0, t, now(t), &scene.inputs());
+    }
+    let text = trouble(fleet.collect());
+    assert!(
+        text.ends_with("still busy with the last step: collect its answer first"),
+        "{text}"
+    );
 }
 
 #[test]

@@ -1,0 +1,205 @@
+//! Fleets of emulated parts. `cargo xtask test` builds the firmware and runs these; by hand:
+//! `cargo xtask firmware && cargo test -p staya-runner --test emulated`.
+//!
+//! The firmware is looked for in `$STAYA_FIRMWARE`, or in `firmware` beside the folder that this test was built in.
+
+mod common;
+
+use common::{Scene, now, order};
+use staya_runner::{Answer, Fleet, LineFaults, Options, Part, Reset, Statistics};
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+fn firmware() -> PathBuf {
+    if let Some(folder) = std::env::var_os("STAYA_FIRMWARE") {
+        return folder.into();
+    }
+    // target/debug/deps/emulated-...
+    let program = std::env::current_exe().expect("this test's path");
+    let target = program.ancestors().nth(3).expect("a target folder");
+    target.join("firmware")
+}
+
+fn options() -> Options {
+    Options {
+        step_limit: Duration::from_secs(60),
+        start_limit: Duration::from_secs(60),
+        ..Options::new(firmware())
+    }
+}
+
+fn send(fleet: &mut Fleet, tick: u32) {
+    for index in 0..fleet.len() {
+        let scene = Scene::new(index as u32 + 1, tick);
+        fleet.send(index, tick, now(tick), &scene.inputs());
+    }
+}
+
+/// Steps all robots; how often each of them was down.
+fn run(fleet: &mut Fleet, ticks: u32) -> Vec<u32> {
+    let mut down = vec![0; fleet.len()];
+    for tick in 0..ticks {
+        send(fleet, tick);
+        let answers = fleet.collect();
+        assert_eq!(answers.len(), down.len());
+        for (answer, down) in answers.into_iter().zip(&mut down) {
+            match answer {
+                Answer::Decided(_) => {}
+                Answer::Down => *down += 1,
+                Answer::Mismatch(mismatch) => panic!("{mismatch}"),
+                Answer::Failed(error) => panic!("{error}"),
+            }
+        }
+    }
+    down
+}
+
+fn print(statistics: &Statistics) {
+    let Statistics {
+        device,
+        round_trip_us,
+        instructions,
+        stack_bytes,
+        resent,
+        sent_bytes,
+        received_bytes,
+        steps,
+        ..
+    } = statistics;
+    println!(
+        "{device}: {steps} steps, round trip {round_trip_us:?} us, instructions {instructions:?}, \
+        stack {stack_bytes}, resent {resent}, {} bytes a step",
+        (sent_bytes + received_bytes) / steps.max(&1)
+    );
+}
+
+/// Whether a process of this id runs the emulator; one that has ended and only waits to be asked how does not.
+fn is_alive(process: u32) -> bool {
+    let state = std::fs::read_to_string(Path::new("/proc").join(process.to_string()).join("stat"));
+    state.is_ok_and(|state| state.contains("(qemu") && !state.contains(") Z"))
+}
+
+#[test]
+fn every_part_decides_as_its_shadow() {
+    let parts = Part::ALL.into_iter().cycle().take(6);
+    let orders = parts
+        .zip(1..)
+        .map(|(part, robot)| order(robot, &format!("qemu:{}", part.name())));
+    let mut fleet = Fleet::start(orders.collect(), options()).expect("they start");
+    assert_eq!(run(&mut fleet, 100), [0; 6]);
+    for statistics in fleet.statistics() {
+        print(&statistics);
+        assert_eq!(
+            (statistics.steps, statistics.mismatches, statistics.resets),
+            (100, 0, 0)
+        );
+        assert!(
+            statistics
+                .instructions
+                .is_some_and(|spread| spread.median > 1000)
+        );
+        assert!(statistics.stack_bytes > 100);
+    }
+}
+
+#[test]
+fn emulated_parts_restart_on_request_and_rejoin_over_a_bad_line() {
+    let orders = Part::ALL.into_iter().zip(1..).map(|(part, robot)| {
+        let mut order = order(robot, &format!("qemu:{}", part.name()));
+        order.faults = LineFaults {
+            loss: 0.05,
+            bit_errors: 1e-5,
+            delay: Duration::from_millis(1),
+            seed: 9,
+        };
+        order.resets = vec![Reset {
+            tick: 20,
+            down_ticks: 5,
+        }];
+        order
+    });
+    let mut fleet = Fleet::start(orders.collect(), options()).expect("they start");
+    assert_eq!(run(&mut fleet, 60), [5; 3]);
+    for statistics in fleet.statistics() {
+        print(&statistics);
+        assert_eq!(
+            (statistics.steps, statistics.mismatches, statistics.resets),
+            (55, 0, 1)
+        );
+    }
+}
+
+#[test]
+fn emulators_end_with_their_fleet_also_on_panic() {
+    let orders = || vec![order(1, "qemu:microbit"), order(2, "qemu:stm32f405")];
+    let fleet = Fleet::start(orders(), options()).expect("they start");
+    let processes = fleet.processes();
+    assert_eq!(processes.len(), 2);
+    assert!(processes.iter().all(|process| is_alive(*process)));
+    drop(fleet);
+    assert!(!processes.iter().any(|process| is_alive(*process)));
+    let (sender, receiver) = std::sync::mpsc::channel();
+    let panicking = std::thread::spawn(move || {
+        let fleet = Fleet::start(orders(), options()).expect("they start");
+        sender.send(fleet.processes()).expect("somebody listens");
+        panic!("in the middle of a run");
+    });
+    let processes = receiver.recv().expect("two of them");
+    assert!(panicking.join().is_err());
+    assert!(!processes.iter().any(|process| is_alive(*process)));
+}
+
+#[test]
+fn emulator_that_is_killed_is_named() {
+    let orders = vec![order(1, "qemu:microbit")];
+    let mut fleet = Fleet::start(orders, options()).expect("it starts");
+    run(&mut fleet, 3);
+    let process = fleet.processes()[0].to_string();
+    let killed = std::process::Command::new("kill")
+        .args(["-KILL", &process])
+        .status();
+    assert!(killed.is_ok_and(|status| status.success()));
+    send(&mut fleet, 3);
+    let answer = fleet.collect().pop();
+    let Some(Answer::Failed(error)) = answer else {
+        panic!("{answer:?}");
+    };
+    let text = error.to_string();
+    assert!(
+        text.starts_with("robot 1 on qemu:microbit: the emulator ended"),
+        "{text}"
+    );
+}
+
+#[test]
+fn killed_runner_leaves_no_emulator() {
+    const WAITS: &str = "STAYA_RUNNER_WAITS";
+    if std::env::var_os(WAITS).is_some() {
+        // This is the runner that is to be killed; if nobody does, it ends by itself.
+        let fleet = Fleet::start(vec![order(1, "qemu:microbit")], options()).expect("it starts");
+        println!("\nemulator {}", fleet.processes()[0]);
+        std::thread::sleep(Duration::from_secs(120));
+        return;
+    }
+    let program = std::env::current_exe().expect("this test's path");
+    let mut runner = std::process::Command::new(program)
+        .args(["--exact", "killed_runner_leaves_no_emulator", "--nocapture"])
+        .env(WAITS, "1")
+        .env("STAYA_FIRMWARE", firmware())
+        .stdout(std::process::Stdio::piped())
+        .spawn()
+        .expect("this test starts itself");
+    let said = BufReader::new(runner.stdout.take().expect("piped")).lines();
+    let mut said = said.map_while(Result::ok);
+    let process = said.find_map(|line| line.strip_prefix("emulator ")?.parse().ok());
+    let process = process.expect("it says whom it started");
+    assert!(is_alive(process));
+    runner.kill().expect("it runs");
+    runner.wait().expect("it ended");
+    let is_over = (0..100).any(|_| {
+        std::thread::sleep(Duration::from_millis(50));
+        !is_alive(process)
+    });
+    assert!(is_over, "emulator {process} lives on");
+}
