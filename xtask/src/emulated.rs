@@ -2,9 +2,10 @@
 
 use crate::emulate;
 use crate::firmware::{PARTS, Profile};
-use crate::repo::Repo;
+use crate::repo::{Repo, run_reading};
 use crate::report::Report;
 use crate::test::counted;
+use std::process::Command;
 
 /// Runs the tests with the firmware that was built before, or says why not.
 pub fn run(repo: &Repo, report: &mut Report) {
@@ -24,4 +25,43 @@ pub fn run(repo: &Repo, report: &mut Report) {
     tests.args(["--test", "emulated"]);
     tests.env("STAYA_FIRMWARE", repo.target.join("firmware"));
     report.part(name, || counted(&mut tests, ""));
+    report.step("ten robots of a formation as firmware, 1000 steps", || {
+        let mut staya = repo.cargo(&["run", "--quiet", "--locked", "--package", "staya-sim", "--"]);
+        staya.args(["hil", "scenarios/ten-robots.toml", "--ticks", "1000"]);
+        staya.args(["--device", "qemu:stm32f405", "--devices", "10"]);
+        staya.arg("--firmware").arg(repo.target.join("firmware"));
+        is_the_same(&mut staya)
+    });
+}
+
+/// Runs `staya hil`, which fails by itself when a device and its shadow differ; the whole run must also be the one without devices.
+fn is_the_same(staya: &mut Command) -> Result<(), String> {
+    let mut verdict = None;
+    run_reading(staya, |line| {
+        if let Some(said) = line.trim_start().strip_prefix("without devices") {
+            verdict = Some(said.trim_end().ends_with(", the same"));
+        }
+    })?;
+    match verdict {
+        Some(true) => Ok(()),
+        Some(false) => Err(String::from("not the run without devices")),
+        None => Err(String::from("it did not come to its end")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn said(line: &str) -> Result<(), String> {
+        is_the_same(Command::new("echo").arg(line))
+    }
+
+    #[test]
+    fn only_the_run_without_devices_will_do() {
+        assert_eq!(said("  without devices 2dcb4dc319df1a21, the same"), Ok(()));
+        assert!(said("  without devices 2dcb4dc319df1a21, another one: ...").is_err());
+        assert!(said("  trace hash      2dcb4dc319df1a21").is_err());
+        assert!(is_the_same(&mut Command::new("false")).is_err());
+    }
 }
