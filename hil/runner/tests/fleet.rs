@@ -2,7 +2,8 @@
 
 mod common;
 
-use common::{Mischief, Scene, device, now, order};
+use common::{Mischief, Scene, device, live, now, order};
+use serialport::SerialPort;
 use staya_controller::agent::{Setup, Task};
 use staya_link::capacities::Capacities;
 use staya_link::message::{NumberFormat, Report, StepInputs};
@@ -91,6 +92,34 @@ fn devices_of_two_kinds_decide_as_their_shadows_and_are_counted() {
         assert!(statistics.sent_bytes > 200 * 100 && statistics.received_bytes > 200 * 50);
         assert_eq!(statistics.instructions, None, "a thread is no emulator");
     }
+}
+
+/// A pair of pseudo-terminals in place of a board's port.
+#[test]
+fn robot_behind_a_serial_port_decides_as_its_shadow() {
+    let (board, port) = serialport::TTYPort::pair().expect("pseudo-terminals");
+    let device = format!("serial:{},baud=1000000", port.name().expect("a path"));
+    let mut orders = vec![order(1, &device)];
+    orders[0].resets = vec![Reset {
+        tick: 20,
+        down_ticks: 2,
+    }];
+    std::thread::spawn(|| {
+        live::<Large, LARGE>(Large::new, "stm32f405", Mischief::default(), board);
+    });
+    let mut fleet = Fleet::start(orders, options()).expect("it starts");
+    drop(port);
+    let mut down = 0;
+    for t in 0..50 {
+        match tick(&mut fleet, t).pop().expect("one") {
+            Answer::Down => down += 1,
+            answer => drop(decided(answer)),
+        }
+    }
+    assert_eq!(down, 2);
+    let statistics = &fleet.statistics()[0];
+    assert_eq!((statistics.steps, statistics.mismatches), (48, 0));
+    assert_eq!(statistics.device, device);
 }
 
 #[test]

@@ -17,7 +17,7 @@ use staya_controller::wire::{Beacon, Header, Message, Mode, RobotId, encode};
 use staya_link::robot::Brain;
 use staya_link::session::{About, Reaction, Session};
 use staya_runner::{Channel, LineFaults, Order};
-use std::io::{Read, Write};
+use std::io::{ErrorKind, Read, Write};
 use std::os::unix::net::UnixStream;
 
 /// A robot in the plane behind ORCA, or (every other number) one on the grid.
@@ -187,11 +187,12 @@ pub fn device<B: Brain + Send + 'static, const N: usize>(
     Channel::new(ours.try_clone().expect("a second handle"), ours)
 }
 
-fn live<B: Brain, const N: usize>(
+/// The life of a device at its end of a line.
+pub fn live<B: Brain, const N: usize>(
     new: fn() -> B,
     part: &'static str,
     mischief: Mischief,
-    mut line: UnixStream,
+    mut line: impl Read + Write,
 ) {
     let mut about = About {
         part,
@@ -208,8 +209,10 @@ fn live<B: Brain, const N: usize>(
         }
         let mut buffer = [0; 256];
         loop {
-            let Ok(count @ 1..) = line.read(&mut buffer) else {
-                return;
+            let count = match line.read(&mut buffer) {
+                Ok(count @ 1..) => count,
+                Err(error) if error.kind() == ErrorKind::TimedOut => continue,
+                _ => return,
             };
             for byte in &buffer[..count] {
                 let before = session.counts().steps;
