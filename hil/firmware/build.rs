@@ -40,7 +40,9 @@ fn main() {
         println!("cargo:rustc-link-arg-bins=-T{script}");
     }
     // defmt's script keeps the panic that its macros fall back on, called or not; `nopanic` has no logs.
-    println!("cargo:rustc-link-arg-bin=nopanic=--defsym=__defmt_default_panic=0");
+    for bin in ["nopanic", "nopanic_device"] {
+        println!("cargo:rustc-link-arg-bin={bin}=--defsym=__defmt_default_panic=0");
+    }
     // Sections stay as small as they are: without it the linker fills up to 64 KiB pages.
     println!("cargo:rustc-link-arg-bins=--nmagic");
 }

@@ -67,7 +67,7 @@ impl Profile {
     }
 }
 
-/// Links only when the optimiser has thrown out every panic.
+/// Programs of names that begin so link only when the optimiser has thrown out every panic.
 const ONLY_OPTIMISED: &str = "nopanic";
 
 /// The command: one step per part.
@@ -134,7 +134,7 @@ fn bins(repo: &Repo, profile: Profile) -> Result<Vec<String>, String> {
         fs::read_dir(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let mut bins: Vec<String> = entries
         .filter_map(|entry| Some(entry.ok()?.path().file_stem()?.to_str()?.to_string()))
-        .filter(|bin| profile == Profile::Firmware || bin != ONLY_OPTIMISED)
+        .filter(|bin| profile == Profile::Firmware || !bin.starts_with(ONLY_OPTIMISED))
         .collect();
     bins.sort();
     Ok(bins)

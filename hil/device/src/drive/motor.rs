@@ -20,6 +20,7 @@ pub trait Motor {
 
 /// What went wrong at a [`SignMagnitude`] or at [`TwoPins`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum SignMagnitudeError<P, D> {
     /// At the PWM channel.
     Pwm(P),

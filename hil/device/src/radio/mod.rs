@@ -23,6 +23,7 @@ pub use sender::Sender;
 
 /// What happened on a line since the start; each count stays at its largest value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Counts {
     /// Frames that went through.
     pub frames: u32,
