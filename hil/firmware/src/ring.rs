@@ -66,6 +66,13 @@ impl<const N: usize> Ring<N> {
         self.tail.load(Ordering::Relaxed) == self.head.load(Ordering::Acquire)
     }
 
+    /// Whether there is room for a byte; for the writer.
+    #[must_use]
+    pub fn has_room(&self) -> bool {
+        let next = self.head.load(Ordering::Relaxed).wrapping_add(1) & (N - 1);
+        next != self.tail.load(Ordering::Acquire)
+    }
+
     /// How many bytes were lost since the start.
     #[must_use]
     pub fn lost(&self) -> u32 {
@@ -105,6 +112,7 @@ mod tests {
     fn full_ring_drops_the_newest_and_counts_it() {
         let ring = Ring::<4>::new();
         for byte in 1..=5 {
+            assert_eq!(ring.has_room(), byte <= 3);
             ring.push(byte);
         }
         assert_eq!(ring.lost(), 2);

@@ -47,7 +47,11 @@ pub fn ticks() -> u32 {
 /// The oldest byte that the UART has received and nobody has taken.
 #[must_use]
 pub fn receive() -> Option<u8> {
-    part::RECEIVED.pop()
+    let byte = part::RECEIVED.pop();
+    if byte.is_none() {
+        part::listen();
+    }
+    byte
 }
 
 /// Bytes that were received and lost since the start, because nobody took them in time.
