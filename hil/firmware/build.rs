@@ -24,27 +24,45 @@ fn main() {
         // cortex-m-rt's link.x includes memory.x, and the linker takes the one of its working
         // directory first: the workspace's, which is the map of the STM32F405.
         "thumbv7em-none-eabihf" => ("stm32f405", &["link.x"]),
-        // Hence a whole script of another name for the other Cortex-M.
-        "thumbv6m-none-eabi" => ("nrf51", &["nrf51.x"]),
+        // Hence whole scripts of other names for the other Cortex-M.
+        "thumbv6m-none-eabi" => ("nrf51", &["nrf51-memory.x", "nrf51.x"]),
         "riscv32imac-unknown-none-elf" => ("riscv32", &["riscv32.x", "link.x"]),
         _ => return,
     };
     println!("cargo:rustc-cfg=part=\"{part}\"");
     let here = env::var("CARGO_MANIFEST_DIR").unwrap_or_default();
     let here = Path::new(&here);
-    for script in ["nrf51.x", "riscv32.x", "../../memory.x"] {
-        println!("cargo:rerun-if-changed={}", here.join(script).display());
+    for watched in [here.to_path_buf(), here.join("../../memory.x")] {
+        println!("cargo:rerun-if-changed={}", watched.display());
     }
     println!("cargo:rustc-link-search={}", here.display());
-    for script in scripts.iter().chain(&["defmt.x"]) {
-        println!("cargo:rustc-link-arg-bins=-T{script}");
-    }
-    // defmt's script keeps the panic that its macros fall back on, called or not; `nopanic` has no logs.
-    for bin in ["nopanic", "nopanic_device"] {
-        println!("cargo:rustc-link-arg-bin={bin}=--defsym=__defmt_default_panic=0");
+    for bin in bins(here) {
+        let is_only_linked = bin.starts_with("nopanic");
+        for script in scripts.iter().chain(&["defmt.x"]) {
+            let script = match *script {
+                "nrf51-memory.x" if is_only_linked => "nrf51-nopanic-memory.x",
+                script => script,
+            };
+            println!("cargo:rustc-link-arg-bin={bin}=-T{script}");
+        }
+        if is_only_linked {
+            // defmt's script keeps the panic that its macros fall back on, called or not; these
+            // programs have no logs.
+            println!("cargo:rustc-link-arg-bin={bin}=--defsym=__defmt_default_panic=0");
+        }
     }
     // Sections stay as small as they are: without it the linker fills up to 64 KiB pages.
     println!("cargo:rustc-link-arg-bins=--nmagic");
+}
+
+/// The programs: each file in src/bin is one.
+fn bins(here: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(here.join("src/bin"))
+        .into_iter()
+        .flatten();
+    entries
+        .filter_map(|entry| Some(entry.ok()?.path().file_stem()?.to_str()?.to_string()))
+        .collect()
 }
 
 /// A number from the environment or the default, handed on to the crate as an environment variable.

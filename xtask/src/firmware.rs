@@ -90,6 +90,10 @@ pub fn build_step(
         Profile::Firmware => format!("firmware for {}", part.name),
         Profile::Debug => format!("firmware for {}, debug", part.name),
     };
+    if part.name == "nrf51" && profile == Profile::Debug {
+        report.skip(&name, "256 KiB of flash hold it only optimised");
+        return false;
+    }
     match toolchains.find(repo, part.target) {
         Ok(toolchain) => report.step(&name, || build(repo, &toolchain, part, profile)),
         Err(reason) => {
