@@ -10,7 +10,7 @@ use staya_controller::wire::{MAX_FRAME_LEN, decode};
 /// Only sound frames are kept, so that noise never costs one: a piece between two zero bytes that is too long, damaged
 /// or of another version is counted and forgotten (the agent judges the rest: late, repeated, its own). When `N`
 /// bytes do not hold all frames between two steps, the oldest ones go. A frame takes at most
-/// [`MAX_FRAME_LEN`] bytes; a beacon takes 30 to 50, so that 1024 bytes hold the beacons of twenty robots.
+/// [`MAX_FRAME_LEN`] bytes; a beacon takes some 48, so that 1024 bytes hold the beacons of twenty robots.
 #[derive(Clone, Debug, Default)]
 pub struct Receiver<const N: usize> {
     queue: FrameQueue<N>,

@@ -157,6 +157,17 @@ fn a_frame_that_is_on_the_line_is_finished_before_older_news_goes() {
 }
 
 #[test]
+fn the_zero_byte_that_goes_first_is_no_lost_frame() {
+    let mut sender = Sender::<64>::new();
+    for sequence in 0..10 {
+        sender.send(&frame(sequence));
+    }
+    let left = sequences(sender.unsent());
+    assert_eq!(left.last(), Some(&9));
+    assert_eq!(sender.counts().dropped as usize, 10 - left.len());
+}
+
+#[test]
 fn a_sender_without_room_drops_and_goes_on() {
     let mut sender = Sender::<8>::new();
     sender.send(&stream([1, 2]));

@@ -81,6 +81,8 @@ struct Sleeve<S> {
     last: Vec2<S>,
     /// The rightmost and the leftmost direction that pass all points; `None` while all are at the first one.
     bounds: Option<[Vec2<S>; 2]>,
+    /// How far from the first one the farthest is.
+    reach: S,
 }
 
 impl<S: Scalar> Sleeve<S> {
@@ -89,17 +91,20 @@ impl<S: Scalar> Sleeve<S> {
             first,
             last: first,
             bounds: None,
+            reach: S::ZERO,
         }
     }
 
     /// Goes on to `point` if the wall to it passes all points between within `tolerance`; whether it did.
     fn extend(&mut self, point: Vec2<S>, tolerance: S) -> bool {
         let way = point - self.first;
+        let length = way.norm();
         let aside = way.normalized().unwrap_or_default().perp() * tolerance;
         let mut own = [way - aside, way + aside];
         if let Some([right, left]) = self.bounds {
             let is_within = right.det(way) >= S::ZERO && way.det(left) >= S::ZERO;
-            if !is_within || right.dot(way) < S::ZERO {
+            // One that came back would leave the farthest point out.
+            if !is_within || right.dot(way) < S::ZERO || length < self.reach {
                 return false;
             }
             let [own_right, own_left] = own;
@@ -117,8 +122,9 @@ impl<S: Scalar> Sleeve<S> {
             ];
         }
         // A point nearer than the tolerance bounds nothing.
-        if way.norm() > tolerance || self.bounds.is_some() {
+        if length > tolerance || self.bounds.is_some() {
             self.bounds = Some(own);
+            self.reach = length;
         }
         self.last = point;
         true

@@ -276,6 +276,66 @@ fn a_gap_parts_two_walls_and_a_lone_hit_is_a_ball() {
     assert!(outline::<_, 8>(&scan, f64::NAN, &OUTLINE, |_| false).is_empty());
 }
 
+#[test]
+fn a_wall_does_not_leave_out_what_its_end_came_back_from() {
+    // Beams a fifth of a degree apart, almost along a wall: the second hit lies 25 cm behind the first, the third 15 cm before it.
+    let ranges = [1.0, 1.25, 1.1];
+    let scan = scan(0.0, 0.0035, &ranges);
+    let found = outline::<_, 8>(&scan, 0.0, &OUTLINE, |_| false);
+    let farthest = found.iter().filter_map(|obstacle| match obstacle {
+        Obstacle::Wall(ends) => Some(ends[0].x.max(ends[1].x)),
+        _ => None,
+    });
+    let farthest = farthest.fold(0.0, f64::max);
+    assert!(farthest > 1.24, "{found:?}");
+}
+
+#[test]
+fn neighbours_are_where_their_last_word_leads_and_as_large_as_they_say() {
+    let beacon = staya_controller::wire::Beacon {
+        position_mm: [3_000, 1_000, 0],
+        velocity_mmps: [500, 0, 0],
+        radius_mm: 200,
+        ..Default::default()
+    };
+    let neighbor = Neighbor::<f32>::from_beacon(staya_controller::wire::RobotId(2), &beacon, NOW);
+    let own = Position::from_mm([1_000, 1_000, 0]);
+    let seen = |ms: i32, x: f32| {
+        let now = NOW + Duration::from_millis(ms);
+        let longest = Duration::from_millis(400);
+        is_neighbor(&[neighbor], own, now, longest, Vec2::new(x, 0.0), 0.05)
+    };
+    assert!(seen(0, 2.24) && seen(0, 1.76) && !seen(0, 2.26) && !seen(0, 1.74));
+    assert!(seen(200, 2.34) && !seen(200, 1.84));
+    assert!(seen(9_000, 2.44) && !seen(9_000, 2.46), "not for ever");
+    assert!(!is_neighbor::<f32>(
+        &[],
+        own,
+        NOW,
+        Duration::ZERO,
+        Vec2::ZERO,
+        9.0
+    ));
+}
+
+/// How far the hit is away that what was found misses most.
+fn misses(found: &[Obstacle<f64>], scan: &Scan<'_, f64>, heading: f64) -> f64 {
+    let hits = scan.rays(heading).flatten().filter(|ray| ray.is_hit);
+    let gap = |obstacle: &Obstacle<f64>, end: Vec2<f64>| match *obstacle {
+        Obstacle::Wall([a, b]) => {
+            let wall = Obstacle::Wall([a - end, b - end]);
+            wall.nearest_point().unwrap().1
+        }
+        Obstacle::Ball { center_m, .. } => (center_m.xy() - end).norm(),
+        Obstacle::Plane { .. } => f64::MAX,
+    };
+    let missed = hits.map(|ray| {
+        let gaps = found.iter().map(|obstacle| gap(obstacle, ray.end_m()));
+        gaps.fold(f64::MAX, f64::min)
+    });
+    missed.fold(0.0, f64::max)
+}
+
 proptest! {
     #[test]
     fn walls_miss_no_hit_by_more_than_the_tolerance(ranges in proptest::collection::vec(0.06f64..5.0, 1..60), wobble in 0.0f64..2.0, heading in -4.0f64..4.0) {
@@ -284,16 +344,14 @@ proptest! {
         let ranges: Vec<f64> = ranges.iter().zip(room).map(|(noise, room)| room + (noise - 2.5) * wobble * wobble * wobble / 50.0).collect();
         let scan = scan(0.1, core::f64::consts::TAU / 60.0, &ranges);
         let found = outline::<_, 64>(&scan, heading, &OUTLINE, |_| false);
-        for ray in scan.rays(heading).flatten().filter(|ray| ray.is_hit) {
-            let end = ray.end_m();
-            let gap = |obstacle: &Obstacle<f64>| match *obstacle {
-                Obstacle::Wall([a, b]) => Obstacle::Wall([a - end, b - end]).nearest_point().unwrap().1,
-                Obstacle::Ball { center_m, .. } => (center_m.xy() - end).norm(),
-                Obstacle::Plane { .. } => f64::MAX,
-            };
-            let nearest = found.iter().map(gap).fold(f64::MAX, f64::min);
-            prop_assert!(nearest <= OUTLINE.tolerance_m * 1.001, "{nearest} {end:?}");
-        }
+        prop_assert!(misses(&found, &scan, heading) <= OUTLINE.tolerance_m * 1.001);
+    }
+
+    #[test]
+    fn walls_of_fine_beams_miss_no_hit_either(ranges in proptest::collection::vec(1.0f64..1.4, 1..40), step in 0.001f64..0.02) {
+        let scan = scan(0.1, step, &ranges);
+        let found = outline::<_, 64>(&scan, 0.0, &OUTLINE, |_| false);
+        prop_assert!(misses(&found, &scan, 0.0) <= OUTLINE.tolerance_m * 1.001);
     }
 
     #[test]
