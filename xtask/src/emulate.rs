@@ -30,11 +30,16 @@ pub fn prepare(repo: &Repo, part: &Part) -> Result<(), String> {
 /// Runs a program that prints and ends by itself; what it printed. Each instruction takes a nanosecond of
 /// the part's time.
 pub fn run(repo: &Repo, part: &Part, elf: &Path) -> Result<String, String> {
+    run_on_line(repo, part, elf, "none")
+}
+
+/// The same with the part's UART on one of QEMU's devices; what goes to `stdio` is what is returned.
+pub fn run_on_line(repo: &Repo, part: &Part, elf: &Path, line: &str) -> Result<String, String> {
     let mut command = repo.command(part.emulator);
     command
         .args(machine(part))
         .args(["-icount", "shift=0", "-display", "none"])
-        .args(["-monitor", "none", "-serial", "none"])
+        .args(["-monitor", "none", "-serial", line])
         .args(["-semihosting-config", "enable=on,target=native"])
         .arg("-kernel")
         .arg(elf)

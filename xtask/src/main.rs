@@ -11,6 +11,7 @@ mod device;
 mod emulate;
 mod emulated;
 mod example;
+mod faults;
 mod firmware;
 mod fuzz;
 mod layers;

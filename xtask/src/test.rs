@@ -31,6 +31,7 @@ pub fn run(repo: &Repo, report: &mut Report) {
     crate::device::run(repo, report);
     crate::example::run(repo, report);
     crate::swarms::run(repo, report, &mut Toolchains::default());
+    crate::faults::run(repo, report, &mut Toolchains::default());
     crate::emulated::run(repo, report);
 }
 
