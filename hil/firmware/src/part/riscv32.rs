@@ -112,6 +112,7 @@ fn uart() {
 pub fn ticks() -> u32 {
     minstret::read() as u32
 }
+
 /// Receives all the time.
 pub fn listen() {}
 

@@ -167,6 +167,7 @@ pub fn ticks() -> u32 {
         }
     }
 }
+
 /// Receives all the time.
 pub fn listen() {}
 
