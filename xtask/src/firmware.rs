@@ -125,7 +125,7 @@ fn build(repo: &Repo, toolchain: &Toolchain, part: &Part, profile: Profile) -> R
         fs::create_dir_all(parent).map_err(|error| format!("{}: {error}", parent.display()))?;
         let from = built.join(bin);
         fs::copy(&from, &to).map_err(|error| format!("{}: {error}", from.display()))?;
-        let (flash, ram) = footprint(&to)?;
+        let Sections { flash, ram, .. } = sections(&to)?;
         println!("{flash:>8} {ram:>8}  {}", to.display());
     }
     Ok(())
@@ -144,15 +144,28 @@ fn bins(repo: &Repo, profile: Profile) -> Result<Vec<String>, String> {
     Ok(bins)
 }
 
-/// Bytes of flash and of static RAM that an ELF file of 32 bits takes.
-fn footprint(file: &Path) -> Result<(u64, u64), String> {
+/// What an ELF file takes, bytes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct Sections {
+    /// Machine code.
+    pub text: u64,
+    /// Constants.
+    pub rodata: u64,
+    /// All that is in flash.
+    pub flash: u64,
+    /// Statics.
+    pub ram: u64,
+}
+
+/// What an ELF file of 32 bits takes.
+pub fn sections(file: &Path) -> Result<Sections, String> {
     let bytes = fs::read(file).map_err(|error| format!("{}: {error}", file.display()))?;
     sizes(&bytes).ok_or_else(|| format!("{}: no ELF file of 32 bits", file.display()))
 }
 
 /// The same from the file's section headers: what is loaded and has contents is flash, what is
 /// writable is RAM. What riscv-rt calls a section and is only the rest of RAM does not count.
-fn sizes(elf: &[u8]) -> Option<(u64, u64)> {
+fn sizes(elf: &[u8]) -> Option<Sections> {
     const EMPTY: u32 = 8;
     const WRITABLE: u32 = 1;
     const LOADED: u32 = 2;
@@ -170,7 +183,7 @@ fn sizes(elf: &[u8]) -> Option<(u64, u64)> {
     let offset = |at: usize| usize::try_from(word(at)?).ok();
     let (table, size, count, names) = (offset(32)?, half(46)?, half(48)?, half(50)?);
     let names = offset(table + names * size + 16)?;
-    let (mut flash, mut ram) = (0, 0);
+    let mut sum = Sections::default();
     for header in (0..count).map(|n| table + n * size) {
         let (kind, flags) = (word(header + 4)?, word(header + 8)?);
         let bytes = u64::from(word(header + 20)?);
@@ -180,13 +193,19 @@ fn sizes(elf: &[u8]) -> Option<(u64, u64)> {
             continue;
         }
         if kind != EMPTY {
-            flash += bytes;
+            sum.flash += bytes;
         }
         if flags & WRITABLE != 0 {
-            ram += bytes;
+            sum.ram += bytes;
+        }
+        if name.starts_with(b".text\0") {
+            sum.text += bytes;
+        }
+        if name.starts_with(b".rodata\0") {
+            sum.rodata += bytes;
         }
     }
-    Some((flash, ram))
+    Some(sum)
 }
 
 #[cfg(test)]
@@ -221,7 +240,13 @@ mod tests {
             section(name, kind, flags, 0, bytes);
         }
         section(0, 3, 0, 52, names.len() as u32);
-        assert_eq!(sizes(&elf), Some((108, 208)));
+        let sum = Sections {
+            text: 100,
+            rodata: 0,
+            flash: 108,
+            ram: 208,
+        };
+        assert_eq!(sizes(&elf), Some(sum));
         assert_eq!(sizes(&elf[..elf.len() - 200]), None);
         elf[4] = 2; // 64 bits
         assert_eq!(sizes(&elf), None);

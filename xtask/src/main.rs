@@ -18,6 +18,7 @@ mod layers;
 mod qemu;
 mod repo;
 mod report;
+mod size;
 mod swarms;
 mod test;
 
@@ -42,6 +43,7 @@ Usage: cargo xtask COMMAND
   example         the example firmware of hil/example-stm32f4
   firmware [--debug] [PART...]
                   the programs of hil/firmware for stm32f405, nrf51, riscv32 (default: all): target/firmware/PART/BIN
+  size [--json]   what the firmware takes on each part: flash, RAM, stack, instructions a step; against hil/budgets.toml
   swarms          the canned swarms give the same hashes on the host and on every part; no panic in the firmware
   qemu            the emulators of the parts; installs them as root on Debian
   help            this text
@@ -87,6 +89,8 @@ fn main() -> ExitCode {
             }
         },
         ["qemu"] => qemu::run(&repo, &mut report),
+        ["size"] => size::run(&repo, &mut report, &mut Toolchains::default(), false),
+        ["size", "--json"] => size::run(&repo, &mut report, &mut Toolchains::default(), true),
         ["swarms"] => swarms::run(&repo, &mut report, &mut Toolchains::default()),
         [] => {
             eprint!("{HELP}");

@@ -30,8 +30,10 @@ pub fn run(repo: &Repo, report: &mut Report) {
     report.part("fuzz targets on random bytes", || counted(&mut fuzz, ""));
     crate::device::run(repo, report);
     crate::example::run(repo, report);
-    crate::swarms::run(repo, report, &mut Toolchains::default());
-    crate::faults::run(repo, report, &mut Toolchains::default());
+    let mut toolchains = Toolchains::default();
+    crate::swarms::run(repo, report, &mut toolchains);
+    crate::size::run(repo, report, &mut toolchains, false);
+    crate::faults::run(repo, report, &mut toolchains);
     crate::emulated::run(repo, report);
 }
 

@@ -1,0 +1,117 @@
+//! `cargo xtask size`: what the firmware takes on each part, against `hil/budgets.toml`.
+
+mod bench;
+mod budget;
+
+use crate::device::Toolchains;
+use crate::emulate;
+use crate::firmware::{self, PARTS, Part, Profile, Sections};
+use crate::repo::Repo;
+use crate::report::Report;
+use bench::Row;
+use budget::Budget;
+use serde::Serialize;
+use std::fs;
+
+/// Where the limits are.
+const BUDGETS: &str = "hil/budgets.toml";
+
+/// What was measured on a part.
+#[derive(Serialize)]
+struct Measured {
+    part: &'static str,
+    /// Programs with their sections, bytes.
+    programs: Vec<(String, Sections)>,
+    rows: Vec<Row>,
+}
+
+/// Measures all parts; one step for each part's budget. `is_json`: prints the figures as JSON instead of as tables.
+pub fn run(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains, is_json: bool) {
+    let mut all = Vec::new();
+    for part in &PARTS {
+        let name = format!("budget of the {}", part.name);
+        if !firmware::build_step(repo, report, toolchains, part, Profile::Firmware) {
+            report.skip(&name, "there is no firmware");
+            continue;
+        }
+        if let Err(reason) = emulate::prepare(repo, part) {
+            report.skip(&name, &reason);
+            continue;
+        }
+        report.step(&name, || {
+            let measured = measure(repo, part)?;
+            let budget = read(repo, part)?;
+            let breaches = budget.breaches(&measured);
+            if !is_json {
+                print!("{}", measured.table());
+            }
+            all.push(measured);
+            if breaches.is_empty() {
+                return Ok(());
+            }
+            breaches.iter().for_each(|breach| println!("{breach}"));
+            Err(breaches.join("; "))
+        });
+    }
+    if is_json {
+        match serde_json::to_string_pretty(&all) {
+            Ok(text) => println!("{text}"),
+            Err(error) => println!("{error}"),
+        }
+    }
+}
+
+fn measure(repo: &Repo, part: &'static Part) -> Result<Measured, String> {
+    let elf = |program: &str| Profile::Firmware.elf(repo, part, program);
+    let programs = ["lockstep", "replay", "bench"];
+    let sections = |program: &&str| Ok((program.to_string(), firmware::sections(&elf(program))?));
+    let rows = bench::rows(&emulate::run(repo, part, &elf("bench"))?)?;
+    Ok(Measured {
+        part: part.name,
+        programs: programs
+            .iter()
+            .map(sections)
+            .collect::<Result<_, String>>()?,
+        rows,
+    })
+}
+
+fn read(repo: &Repo, part: &Part) -> Result<Budget, String> {
+    let text = fs::read_to_string(repo.root.join(BUDGETS));
+    let text = text.map_err(|error| format!("{BUDGETS}: {error}"))?;
+    Budget::read(&text, part.name).map_err(|error| format!("{BUDGETS}: {error}"))
+}
+
+impl Measured {
+    /// For people.
+    fn table(&self) -> String {
+        let mut text = format!(
+            "\n{:<24} {:>8} {:>8} {:>8} {:>8}\n",
+            self.part, "text", "rodata", "flash", "RAM"
+        );
+        for (program, sections) in &self.programs {
+            let Sections {
+                text: code,
+                rodata,
+                flash,
+                ram,
+            } = sections;
+            text += &format!("{program:<24} {code:>8} {rodata:>8} {flash:>8} {ram:>8}\n");
+        }
+        text += &format!(
+            "\n{:<26} {:>6} {:>6} {:>9} {:>9} {:>6} {:>6} {:>9}\n",
+            "bytes, instructions",
+            "number",
+            "steps",
+            "median",
+            "worst",
+            "stack",
+            "agent",
+            "workspace"
+        );
+        for row in &self.rows {
+            text += &format!("{row}\n");
+        }
+        text
+    }
+}

@@ -1,0 +1,143 @@
+//! Limits of a part, and which of them are breached.
+
+use super::Measured;
+use super::bench::Row;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+/// The limits of one part; what is not there is not limited.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Budget {
+    /// The kind of number that the limits are for.
+    number: String,
+    lockstep_text: Option<u64>,
+    lockstep_rodata: Option<u64>,
+    lockstep_ram: Option<u64>,
+    /// Static RAM of `lockstep` and the deepest step.
+    ram: Option<u64>,
+    agent_and_workspace: Option<u64>,
+    stack: Option<u64>,
+    /// Of the longest step, by case.
+    #[serde(default)]
+    instructions: BTreeMap<String, u64>,
+}
+
+impl Budget {
+    /// The limits of the part `name`.
+    pub fn read(text: &str, name: &str) -> Result<Self, String> {
+        let mut parts: BTreeMap<String, Self> =
+            toml::from_str(text).map_err(|error| error.to_string())?;
+        parts
+            .remove(name)
+            .ok_or_else(|| format!("no limits for {name}"))
+    }
+
+    /// A line for each limit that is breached, or that nothing was measured for.
+    pub fn breaches(&self, measured: &Measured) -> Vec<String> {
+        let rows = || measured.rows.iter().filter(|row| row.number == self.number);
+        let most = |value: fn(&Row) -> u64| rows().map(value).max();
+        let lockstep = measured
+            .programs
+            .iter()
+            .find(|(program, _)| program == "lockstep")
+            .map(|(_, sections)| sections);
+        let stack = most(|row| row.stack);
+        let ram = lockstep.zip(stack).map(|(it, stack)| it.ram + stack);
+        let mut checks = vec![
+            (
+                "text of lockstep",
+                self.lockstep_text,
+                lockstep.map(|it| it.text),
+            ),
+            (
+                "rodata of lockstep",
+                self.lockstep_rodata,
+                lockstep.map(|it| it.rodata),
+            ),
+            (
+                "RAM of lockstep",
+                self.lockstep_ram,
+                lockstep.map(|it| it.ram),
+            ),
+            ("RAM of lockstep with the deepest step", self.ram, ram),
+            (
+                "agent and workspace",
+                self.agent_and_workspace,
+                most(|row| row.agent + row.workspace),
+            ),
+            ("stack of a step", self.stack, stack),
+        ];
+        for (case, limit) in &self.instructions {
+            let row = rows().find(|row| row.case == *case);
+            checks.push((case, Some(*limit), row.map(|row| row.worst)));
+        }
+        checks
+            .into_iter()
+            .filter_map(|(what, limit, value)| match (limit?, value) {
+                (limit, Some(value)) if value <= limit => None,
+                (limit, Some(value)) => Some(format!("{what}: {value}, at most {limit}")),
+                (_, None) => Some(format!("{what}: limited, but not measured")),
+            })
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::firmware::Sections;
+
+    const TEXT: &str = "[a]\nnumber = 'f32'\nlockstep_text = 100\nram = 60\nstack = 10\n\
+        [a.instructions]\nroute = 7\nfly = 9\n[b]\nnumber = 'Q16'\n";
+
+    fn measured(text: u64, ram: u64, stack: u64, worst: u64) -> Measured {
+        let row = |case: &str, number: &str, worst| Row {
+            case: case.to_string(),
+            number: number.to_string(),
+            steps: 1,
+            median: 1,
+            worst,
+            stack,
+            agent: 1,
+            workspace: 1,
+        };
+        let sections = Sections {
+            text,
+            rodata: 0,
+            flash: 0,
+            ram,
+        };
+        Measured {
+            part: "a",
+            programs: vec![(String::from("lockstep"), sections)],
+            rows: vec![
+                row("route", "f32", worst),
+                row("fly", "f32", 1),
+                row("route", "Q16", 1000),
+            ],
+        }
+    }
+
+    #[test]
+    fn what_is_within_its_limits_passes_and_each_breach_is_told() {
+        let budget = Budget::read(TEXT, "a").unwrap();
+        assert!(budget.breaches(&measured(100, 50, 10, 7)).is_empty());
+        assert_eq!(budget.breaches(&measured(101, 50, 10, 8)).len(), 2);
+        let told = budget.breaches(&measured(100, 50, 11, 7));
+        assert_eq!(
+            told[0],
+            "RAM of lockstep with the deepest step: 61, at most 60"
+        );
+        assert_eq!(told[1], "stack of a step: 11, at most 10");
+    }
+
+    #[test]
+    fn a_limit_for_what_nobody_measured_is_a_breach() {
+        let text = TEXT.replace("fly", "boids");
+        let budget = Budget::read(&text, "a").unwrap();
+        assert_eq!(budget.breaches(&measured(1, 1, 1, 1)).len(), 1);
+        assert!(Budget::read(TEXT, "c").is_err());
+        assert!(Budget::read(&TEXT.replace("stack", "stuck"), "a").is_err());
+    }
+}
