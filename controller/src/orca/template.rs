@@ -45,6 +45,17 @@ pub fn half_plane_from_template<S: Scalar, T: Template>(
     neighbor: &Neighbor<S>,
     params: &Params<S>,
 ) -> Option<HalfPlane<S>> {
+    from_table(&T::TABLE, own_velocity_mps, neighbor, params)
+}
+
+/// Not generic over the table and not inlined: firmware that chooses among tables pays for it once.
+#[inline(never)]
+fn from_table<S: Scalar>(
+    table: &Table,
+    own_velocity_mps: Vec2<S>,
+    neighbor: &Neighbor<S>,
+    params: &Params<S>,
+) -> Option<HalfPlane<S>> {
     let analytic = || half_plane(own_velocity_mps, neighbor, params);
     let (p, r) = (neighbor.offset_m, neighbor.radii_m);
     let v = own_velocity_mps - neighbor.velocity_mps;
@@ -60,7 +71,7 @@ pub fn half_plane_from_template<S: Scalar, T: Template>(
     // Relative to the disc's centre, on the axes along and across the line to the neighbour.
     let w = v - p * rate;
     let (along, across) = (w.dot(ahead), ahead.det(w));
-    let Some(normal) = T::TABLE.normal(sine, Vec2::new(along, across.abs())) else {
+    let Some(normal) = table.normal(sine, Vec2::new(along, across.abs())) else {
         return analytic();
     };
     // On the axis to the right, as the analytic form.

@@ -5,7 +5,7 @@
 //! than the cheapest move, so that (Denardo and Fox 1979) a cell leaves the queue only once. All
 //! arrays have one cell of blocked border around the window: neighbours are plain index offsets.
 
-use super::{ExitRule, RouteParams, VisitMemory};
+use super::{ExitRule, RouteParams, VisitMemory, ray_exit};
 use crate::cost::{Cost, EXCLUDED, Weights};
 use crate::grid::{BLOCKED, Cell, DIAGONAL, Dir, Norm, UNIT, Window};
 
@@ -110,7 +110,25 @@ impl<const CELLS: usize> CostField<CELLS> {
         others: impl IntoIterator<Item = Cell>,
         visits: Option<&VisitMemory<M>>,
     ) -> Result<Weights, Unreachable> {
-        self.load(params, window, from, others, visits);
+        self.load(params, window, from);
+        let occupied = params.a1.of(UNIT);
+        for cell in others {
+            self.add_extra(cell, occupied);
+        }
+        for (cell, count) in visits.into_iter().flat_map(VisitMemory::iter) {
+            self.add_extra(cell, params.a2.of(UNIT * u32::from(count)));
+        }
+        self.solve(params, from, target)
+    }
+
+    /// [`Self::weights`] on the window that was loaded. Not inlined: firmware pays for it once.
+    #[inline(never)]
+    fn solve(
+        &mut self,
+        params: &RouteParams,
+        from: Cell,
+        target: Cell,
+    ) -> Result<Weights, Unreachable> {
         let from_index = self.index(from).ok_or(Unreachable)?;
         let query = Query {
             params,
@@ -119,27 +137,29 @@ impl<const CELLS: usize> CostField<CELLS> {
             target,
         };
         if let Some(inside) = self.index(target) {
-            self.search(&query, |field| field.offer(inside, 0));
+            self.search_from(&query, Some(inside));
             let weights = self.outgoing(&query);
             if weights.best().is_some() {
                 return Ok(weights);
             }
         }
         match params.exit {
-            ExitRule::Best => self.search(&query, |field| field.offer_border(&query)),
+            ExitRule::Best => {
+                self.begin(&query);
+                self.offer_border(&query);
+                self.search(&query);
+            }
             ExitRule::Ray => {
                 let exit = ray_exit(params.radius, from, target);
                 let at = self
                     .index(exit)
                     .filter(|&at| self.is_passable(at) && at != from_index);
-                self.search(&query, |field| {
-                    at.into_iter().for_each(|at| field.offer(at, 0))
-                });
+                self.search_from(&query, at);
                 if self.outgoing(&query).best().is_none() {
                     let nearest = self
                         .nearest_reachable_border(&query, exit)
                         .ok_or(Unreachable)?;
-                    self.search(&query, |field| field.offer(nearest, 0));
+                    self.search_from(&query, Some(nearest));
                 }
             }
         }
@@ -150,7 +170,7 @@ impl<const CELLS: usize> CostField<CELLS> {
     /// Goes on with the search of the last query, which ends when the robot's next moves have their
     /// prices, until every cell of the window has its cost. Work: O(w h).
     pub fn complete(&mut self, params: &RouteParams) {
-        self.advance(params, |_| false);
+        self.advance(params, None);
     }
 
     /// Cost to the exit of the last query from `cell`; `None` if it has none, or one so high that it
@@ -196,14 +216,8 @@ impl<const CELLS: usize> CostField<CELLS> {
     }
 
     /// Copies the part of `window` within the radius and prices its cells.
-    fn load<const M: usize>(
-        &mut self,
-        params: &RouteParams,
-        window: &Window<'_>,
-        from: Cell,
-        others: impl IntoIterator<Item = Cell>,
-        visits: Option<&VisitMemory<M>>,
-    ) {
+    #[inline(never)]
+    fn load(&mut self, params: &RouteParams, window: &Window<'_>, from: Cell) {
         let (origin, width, height) = window.cut(from, params.radius);
         self.origin = origin;
         self.stride = usize::from(width) + 2;
@@ -249,14 +263,6 @@ impl<const CELLS: usize> CostField<CELLS> {
         }
         let cheapest = params.a0.of(u32::from(least) * UNIT);
         self.shift = cheapest.checked_ilog2().unwrap_or(0);
-
-        let occupied = params.a1.of(UNIT);
-        for cell in others {
-            self.add_extra(cell, occupied);
-        }
-        for (cell, count) in visits.into_iter().flat_map(VisitMemory::iter) {
-            self.add_extra(cell, params.a2.of(UNIT * u32::from(count)));
-        }
     }
 
     fn add_extra(&mut self, cell: Cell, cost: Cost) {
@@ -265,8 +271,9 @@ impl<const CELLS: usize> CostField<CELLS> {
         }
     }
 
-    /// One search from the exits that `offer` names; the robot's own cell is closed.
-    fn search(&mut self, query: &Query<'_>, offer: impl FnOnce(&mut Self)) {
+    /// Before a search: no exit yet; the robot's own cell is closed.
+    #[inline(never)]
+    fn begin(&mut self, query: &Query<'_>) {
         let used = (usize::from(self.height) + 2) * self.stride;
         for ((cost, &u), bucket) in self
             .cost
@@ -284,17 +291,27 @@ impl<const CELLS: usize> CostField<CELLS> {
         }
         self.heads = [NIL; RING as usize];
         self.occupied = 0;
-        offer(self);
-
-        // Costs of the exits may lie far from 0: start the ring at the least of them.
-        self.at = self.lowest_offer();
-        self.advance(query.params, |field| field.has_settled_around(query.from));
     }
 
-    /// Empties bucket after bucket until nothing is left or `is_enough`.
-    fn advance(&mut self, params: &RouteParams, is_enough: impl Fn(&Self) -> bool) {
+    /// One search from one exit, if there is one.
+    fn search_from(&mut self, query: &Query<'_>, exit: Option<usize>) {
+        self.begin(query);
+        exit.into_iter().for_each(|at| self.offer(at, 0));
+        self.search(query);
+    }
+
+    /// One search from the exits that were offered.
+    fn search(&mut self, query: &Query<'_>) {
+        // Costs of the exits may lie far from 0: start the ring at the least of them.
+        self.at = self.lowest_offer();
+        self.advance(query.params, Some(query.from));
+    }
+
+    /// Empties bucket after bucket until nothing is left, or all around a cell is settled.
+    #[inline(never)]
+    fn advance(&mut self, params: &RouteParams, around: Option<usize>) {
         let mut idle = 0;
-        while self.occupied != 0 && !is_enough(self) {
+        while self.occupied != 0 && !around.is_some_and(|cell| self.has_settled_around(cell)) {
             let slot = self.at & (RING - 1);
             let gap = self.occupied.rotate_right(slot).trailing_zeros();
             let at = self.at.saturating_add(gap);
@@ -325,17 +342,12 @@ impl<const CELLS: usize> CostField<CELLS> {
         // Beyond the window lies what a search of a larger one left.
         let used = (usize::from(self.height) + 2) * self.stride;
         for cell in 0..used {
-            if self
-                .bucket
-                .get(cell)
-                .is_some_and(|&of| u32::from(of) != RING)
-            {
+            let of = self.bucket.get(cell);
+            if of.is_some_and(|&of| u32::from(of) != RING) {
                 let cost = self.cost.get(cell).copied().unwrap_or(0);
+                let last = self.at.saturating_add(RING - 1);
                 self.unlink(cell);
-                self.link(
-                    cell,
-                    (cost >> self.shift).min(self.at.saturating_add(RING - 1)),
-                );
+                self.link(cell, (cost >> self.shift).min(last));
             }
         }
     }
@@ -460,16 +472,14 @@ impl<const CELLS: usize> CostField<CELLS> {
         // Moves are symmetric in what they may enter, so a search from the own cell's neighbours
         // that are open to it finds what can be reached.
         let open = self.outgoing_with(query, |_| Some(0));
-        self.search(query, |field| {
-            for (dir, cost) in open.iter() {
-                if let (true, Some(at)) = (
-                    cost != EXCLUDED,
-                    field.index(query.from_cell + dir.offset()),
-                ) {
-                    field.offer(at, 0);
-                }
+        self.begin(query);
+        for (dir, cost) in open.iter() {
+            let beside = self.index(query.from_cell + dir.offset());
+            if let (true, Some(at)) = (cost != EXCLUDED, beside) {
+                self.offer(at, 0);
             }
-        });
+        }
+        self.search(query);
         self.complete(query.params);
         let reached = self.border().filter(|&cell| self.cost(cell).is_some());
         let reached = reached.filter(|&cell| cell != query.from_cell);
@@ -579,22 +589,4 @@ impl<const CELLS: usize> CostField<CELLS> {
         self.unlink(usize::from(head));
         Some(usize::from(head))
     }
-}
-
-/// The cell where the ray from `from` to `target` crosses the border of the square of that radius.
-fn ray_exit(radius: u8, from: Cell, target: Cell) -> Cell {
-    let (dx, dy) = (
-        i64::from(target.x) - i64::from(from.x),
-        i64::from(target.y) - i64::from(from.y),
-    );
-    let longest = dx.abs().max(dy.abs());
-    let scale = |d: i64| {
-        // Rounded to nearest, away from 0 at one half.
-        let half = if d < 0 { -longest } else { longest };
-        (2 * d * i64::from(radius) + half)
-            .checked_div(2 * longest)
-            .unwrap_or(0)
-    };
-    // At most the radius in each coordinate.
-    from + Cell::new(scale(dx) as i16, scale(dy) as i16)
 }

@@ -20,7 +20,7 @@ pub use router::{PLAN, Replan, Router};
 pub use visits::VisitMemory;
 
 use crate::cost::Gain;
-use crate::grid::Norm;
+use crate::grid::{Cell, Norm};
 use serde::{Deserialize, Serialize};
 
 /// Where a route leaves the window when the target lies outside.
@@ -80,4 +80,22 @@ impl Default for RouteParams {
             a3: Gain::from_int(3),
         }
     }
+}
+
+/// The cell where the ray from `from` to `target` crosses the border of the square of that radius.
+fn ray_exit(radius: u8, from: Cell, target: Cell) -> Cell {
+    let (dx, dy) = (
+        i64::from(target.x) - i64::from(from.x),
+        i64::from(target.y) - i64::from(from.y),
+    );
+    let longest = dx.abs().max(dy.abs());
+    let scale = |d: i64| {
+        // Rounded to nearest, away from 0 at one half.
+        let half = if d < 0 { -longest } else { longest };
+        (2 * d * i64::from(radius) + half)
+            .checked_div(2 * longest)
+            .unwrap_or(0)
+    };
+    // At most the radius in each coordinate.
+    from + Cell::new(scale(dx) as i16, scale(dy) as i16)
 }
