@@ -31,7 +31,9 @@ pub const fn chained(before: u64, next: u64) -> u64 {
 struct Digest(u64);
 
 impl Digest {
-    /// A bijection of the state for each word, so that no difference is lost.
+    /// A bijection of the state for each word, so that no difference is lost. Not inlined: a state has hundreds of words,
+    /// and firmware would pay for each.
+    #[inline(never)]
     const fn mix(&mut self, word: u32) {
         let mixed = (self.0 ^ word as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15);
         self.0 = mixed ^ (mixed >> 29);
