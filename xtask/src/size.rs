@@ -2,6 +2,7 @@
 
 mod bench;
 mod budget;
+mod reach;
 
 use crate::device::Toolchains;
 use crate::emulate;
@@ -23,6 +24,8 @@ struct Measured {
     /// Programs with their sections, bytes.
     programs: Vec<(String, Sections)>,
     rows: Vec<Row>,
+    /// What each behaviour's step needs of flash.
+    steps: Vec<reach::Step>,
 }
 
 /// Measures all parts; one step for each part's budget. `is_json`: prints the figures as JSON instead of as tables.
@@ -66,6 +69,8 @@ fn measure(repo: &Repo, part: &'static Part) -> Result<Measured, String> {
     let programs = ["lockstep", "replay", "bench"];
     let sections = |program: &&str| Ok((program.to_string(), firmware::sections(&elf(program))?));
     let rows = bench::rows(&emulate::run(repo, part, &elf("bench"))?)?;
+    let bytes = fs::read(elf("bench")).map_err(|error| error.to_string())?;
+    let steps = reach::steps(&reach::Program::read(&bytes)?);
     Ok(Measured {
         part: part.name,
         programs: programs
@@ -73,6 +78,7 @@ fn measure(repo: &Repo, part: &'static Part) -> Result<Measured, String> {
             .map(sections)
             .collect::<Result<_, String>>()?,
         rows,
+        steps,
     })
 }
 
@@ -111,6 +117,13 @@ impl Measured {
         );
         for row in &self.rows {
             text += &format!("{row}\n");
+        }
+        text += &format!(
+            "\n{:>8} {:>8}  step of a behaviour: number, guidance, safety, neighbours\n",
+            "text", "rodata"
+        );
+        for reach::Step { behaviour, reach } in &self.steps {
+            text += &format!("{:>8} {:>8}  {behaviour}\n", reach.text, reach.rodata);
         }
         text
     }

@@ -116,6 +116,7 @@ mod tests {
                 row("fly", "f32", 1),
                 row("route", "Q16", 1000),
             ],
+            steps: Vec::new(),
         }
     }
 

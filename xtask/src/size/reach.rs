@@ -1,0 +1,269 @@
+//! What a function needs of a program: the code and the constants that can be reached from it.
+//!
+//! From the relocations that `bench` is linked with (`--emit-relocs`): each says which function refers to what. Calls through
+//! pointers are followed where the pointer is stored. Constants without a name reach up to the next thing that somebody
+//! refers to.
+
+use object::{
+    Object as _, ObjectSection as _, ObjectSymbol as _, RelocationFlags, SymbolKind, elf,
+};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Bytes that are reached.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct Reach {
+    /// Machine code.
+    pub text: u64,
+    /// Constants.
+    pub rodata: u64,
+}
+
+/// Who refers to what in a program.
+pub struct Program {
+    /// Functions and constants by their address: bytes, and whether it is code.
+    things: BTreeMap<u64, (u64, bool)>,
+    /// Functions by name.
+    names: Vec<(String, u64)>,
+    /// Place of a reference, and what it refers to.
+    references: BTreeMap<u64, u64>,
+}
+
+impl Program {
+    /// Reads an ELF file that was linked with its relocations.
+    pub fn read(bytes: &[u8]) -> Result<Self, String> {
+        let file = object::File::parse(bytes).map_err(|error| error.to_string())?;
+        let mut program = Self {
+            things: BTreeMap::new(),
+            names: Vec::new(),
+            references: BTreeMap::new(),
+        };
+        let is_thumb = file.architecture() == object::Architecture::Arm;
+        // The lowest bit of a Thumb function's address says that it is one.
+        let plain = |address: u64| if is_thumb { address & !1 } else { address };
+        for symbol in file.symbols() {
+            let is_code = symbol.kind() == SymbolKind::Text;
+            let is_named = is_code || symbol.kind() == SymbolKind::Data;
+            if is_named && symbol.size() > 0 {
+                let address = if is_code {
+                    plain(symbol.address())
+                } else {
+                    symbol.address()
+                };
+                program.things.insert(address, (symbol.size(), is_code));
+                if let (true, Ok(name)) = (is_code, symbol.name()) {
+                    program
+                        .names
+                        .push((format!("{:#}", rustc_demangle::demangle(name)), address));
+                }
+            }
+        }
+        let mut constants = BTreeSet::new();
+        for section in file.sections() {
+            let Ok(data) = section.data() else { continue };
+            let start = section.address();
+            let mut halves = BTreeMap::new();
+            for (place, relocation) in section.relocations() {
+                let at = |offset: u64| {
+                    let from = usize::try_from(place.checked_sub(start)? + offset).ok()?;
+                    Some(u16::from_le_bytes(
+                        data.get(from..from + 2)?.try_into().ok()?,
+                    ))
+                };
+                let object::RelocationTarget::Symbol(index) = relocation.target() else {
+                    continue;
+                };
+                let Ok(symbol) = file.symbol_by_index(index) else {
+                    continue;
+                };
+                let RelocationFlags::Elf { r_type } = relocation.flags() else {
+                    continue;
+                };
+                let is_section = symbol.kind() == SymbolKind::Section;
+                let target = match r_type {
+                    // The linker has written the sum of symbol and addend there.
+                    elf::R_ARM_ABS32 if is_thumb => at(0)
+                        .zip(at(2))
+                        .map(|(low, high)| u64::from(low) | u64::from(high) << 16),
+                    elf::R_ARM_THM_MOVW_ABS_NC if is_thumb && is_section => {
+                        if let Some((register, half)) = at(0).zip(at(2)).map(move_wide) {
+                            halves.insert(register, half);
+                        }
+                        None
+                    }
+                    elf::R_ARM_THM_MOVT_ABS if is_thumb && is_section => {
+                        let high = at(0).zip(at(2)).map(move_wide);
+                        high.and_then(|(register, high)| Some(halves.get(&register)? | high << 16))
+                    }
+                    _ => Some(symbol.address().wrapping_add_signed(relocation.addend())),
+                };
+                if let Some(target) = target {
+                    program.references.insert(place, target);
+                    constants.insert(target);
+                }
+            }
+        }
+        // Constants without a name end where the next thing begins.
+        for section in file
+            .sections()
+            .filter(|section| section.name() == Ok(".rodata"))
+        {
+            let end = section.address() + section.size();
+            constants.extend(
+                program
+                    .things
+                    .range(section.address()..end)
+                    .map(|(at, _)| *at),
+            );
+            let inside: Vec<u64> = constants.range(section.address()..end).copied().collect();
+            for (index, at) in inside.iter().enumerate() {
+                let next = inside.get(index + 1).copied().unwrap_or(end);
+                program.things.entry(*at).or_insert((next - at, false));
+            }
+        }
+        Ok(program)
+    }
+
+    /// The functions whose name holds `part`.
+    pub fn functions<'a>(&'a self, part: &'a str) -> impl Iterator<Item = (&'a str, u64)> {
+        let named = self
+            .names
+            .iter()
+            .filter(move |(name, _)| name.contains(part));
+        named.map(|(name, at)| (name.as_str(), *at))
+    }
+
+    /// All that is reached from the function at `root`.
+    pub fn reach(&self, root: u64) -> Reach {
+        let mut seen = BTreeSet::new();
+        let mut open = vec![root];
+        let mut reach = Reach::default();
+        while let Some(target) = open.pop() {
+            let Some((at, size, is_code)) = self.thing(target) else {
+                continue;
+            };
+            if !seen.insert(at) {
+                continue;
+            }
+            if is_code {
+                reach.text += size;
+            } else {
+                reach.rodata += size;
+            }
+            open.extend(
+                self.references
+                    .range(at..at + size)
+                    .map(|(_, target)| *target),
+            );
+        }
+        reach
+    }
+
+    /// The thing that an address lies in.
+    fn thing(&self, address: u64) -> Option<(u64, u64, bool)> {
+        let (at, (size, is_code)) = self.things.range(..=address).next_back()?;
+        (address < at + size).then_some((*at, *size, *is_code))
+    }
+}
+
+/// The step of one behaviour and what it needs.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Step {
+    /// Kind of number, guidance, safety layer, neighbours.
+    pub behaviour: String,
+    /// Bytes.
+    pub reach: Reach,
+}
+
+/// The functions of `bench` that are one step of an agent each, those with most neighbours, and what they need.
+pub fn steps(program: &Program) -> Vec<Step> {
+    const ROOT: &str = "bench::program::step::<";
+    let roots = program.functions(ROOT).filter_map(|(name, at)| {
+        let arguments = name.strip_prefix(ROOT)?.strip_suffix('>')?;
+        let neighbors: u32 = arguments.rsplit(", ").next()?.parse().ok()?;
+        Some((neighbors, without_paths(arguments), at))
+    });
+    let roots: Vec<_> = roots.collect();
+    let most = roots.iter().map(|(neighbors, ..)| *neighbors).max();
+    let largest = roots
+        .into_iter()
+        .filter(|(neighbors, ..)| Some(*neighbors) == most);
+    let mut steps: Vec<Step> = largest
+        .map(|(_, behaviour, at)| Step {
+            behaviour,
+            reach: program.reach(at),
+        })
+        .collect();
+    steps.sort_by(|one, other| one.behaviour.cmp(&other.behaviour));
+    steps
+}
+
+/// `a::b::C<d::E>` as `C<E>`.
+fn without_paths(name: &str) -> String {
+    let mut short = String::new();
+    for c in name.chars() {
+        if c == ':' {
+            let end = short.rfind(|c: char| !c.is_alphanumeric() && c != '_');
+            short.truncate(end.map_or(0, |end| end + 1));
+        } else {
+            short.push(c);
+        }
+    }
+    short
+}
+
+/// Register and immediate of MOVW and MOVT (encoding T3 and T1).
+fn move_wide((first, second): (u16, u16)) -> (u16, u64) {
+    let immediate =
+        (first & 0xF) << 12 | (first >> 10 & 1) << 11 | (second >> 12 & 7) << 8 | second & 0xFF;
+    (second >> 8 & 0xF, immediate.into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn program(references: &[(u64, u64)]) -> Program {
+        let things = [
+            (0, (10, true)),
+            (10, (20, true)),
+            (30, (5, true)),
+            (100, (8, false)),
+        ];
+        Program {
+            things: things.into_iter().collect(),
+            names: vec![(String::from("a::step::<f32>"), 0)],
+            references: references.iter().copied().collect(),
+        }
+    }
+
+    #[test]
+    fn what_is_reached_counts_once_and_nothing_else_counts() {
+        let program = program(&[(4, 10), (12, 103), (14, 0), (16, 100), (18, 5000)]);
+        let roots: Vec<u64> = program.functions("step").map(|(_, at)| at).collect();
+        assert_eq!(roots, [0]);
+        assert_eq!(
+            program.reach(0),
+            Reach {
+                text: 30,
+                rodata: 8
+            }
+        );
+        assert_eq!(program.reach(30), Reach { text: 5, rodata: 0 });
+        assert_eq!(program.reach(50), Reach::default());
+    }
+
+    #[test]
+    fn behaviours_are_named_without_their_paths() {
+        assert_eq!(
+            without_paths("f32, a::b::C<d::E_f, 3>, g::H, 16"),
+            "f32, C<E_f, 3>, H, 16"
+        );
+    }
+
+    #[test]
+    fn halves_of_an_address_are_read_from_their_instructions() {
+        // movw r0, #0x1234 and movt r7, #0xABCD
+        assert_eq!(move_wide((0xF241, 0x2034)), (0, 0x1234));
+        assert_eq!(move_wide((0xF6CA, 0x37CD)), (7, 0xABCD));
+    }
+}
