@@ -6,6 +6,7 @@ use crate::geom::{Vec2, Vec3};
 use crate::neighbor::{Nearby, tie};
 use crate::obstacle::Obstacle;
 use crate::scalar::Scalar;
+use crate::wire::RobotId;
 
 /// Which way around.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,8 +29,7 @@ enum Shape<S> {
     Ball {
         center: Vec3<S>,
         radius: S,
-        /// Unit vector: the way out of the very centre.
-        otherwise: Vec3<S>,
+        otherwise: Otherwise<S>,
     },
     /// Behind a plane: a half-space or the side of a wall.
     Half {
@@ -37,6 +37,32 @@ enum Shape<S> {
         /// How far the robot is in front of it.
         room: S,
     },
+}
+
+/// The way out of the very centre of a ball. That of a pair of robots takes a sine, and is hardly ever asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Otherwise<S> {
+    /// This unit vector.
+    Way(Vec3<S>),
+    /// Backwards, or east for who stands.
+    Back(Vec3<S>),
+    /// The [`tie`] of the own robot and the other one.
+    Tie(RobotId, RobotId),
+}
+
+impl<S: Scalar> Otherwise<S> {
+    /// The unit vector. Not inlined: it is asked for in few places, and far from each of them.
+    #[inline(never)]
+    fn way(self) -> Vec3<S> {
+        match self {
+            Self::Way(way) => way,
+            Self::Back(velocity) => {
+                let east = Vec3::new(S::ONE, S::ZERO, S::ZERO);
+                (-velocity).normalized().unwrap_or(east)
+            }
+            Self::Tie(own, other) => tie(own, other).extend(S::ZERO),
+        }
+    }
 }
 
 /// A place that a robot's centre should not come into.
@@ -57,7 +83,7 @@ impl<S: Scalar> Zone<S> {
             shape: Shape::Ball {
                 center: other.offset_m,
                 radius: at_least(min_distance_m, radii),
-                otherwise: tie(body.id, other.id).extend(S::ZERO),
+                otherwise: Otherwise::Tie(body.id, other.id),
             },
             is_upright: false,
         })
@@ -73,15 +99,13 @@ impl<S: Scalar> Zone<S> {
         step: Vec3<S>,
     ) -> Option<Self> {
         let margin = at_least(min_distance_m, body.radius_m);
-        let east = Vec3::new(S::ONE, S::ZERO, S::ZERO);
         let (shape, is_upright) = match *obstacle {
             Obstacle::Ball { center_m, radius_m } => {
                 let is_sound = center_m.is_finite() && radius_m >= S::ZERO && radius_m.is_finite();
                 let shape = Shape::Ball {
                     center: center_m,
                     radius: radius_m + margin,
-                    // Back where it came from.
-                    otherwise: (-body.velocity_mps).normalized().unwrap_or(east),
+                    otherwise: Otherwise::Back(body.velocity_mps),
                 };
                 (is_sound.then_some(shape)?, false)
             }
@@ -175,7 +199,7 @@ fn wall<S: Scalar>([a, b]: [Vec2<S>; 2], margin: S, step: Vec2<S>) -> Option<Sha
     Some(Shape::Ball {
         center: end.extend(S::ZERO),
         radius: margin,
-        otherwise: normal.extend(S::ZERO),
+        otherwise: Otherwise::Way(normal.extend(S::ZERO)),
     })
 }
 
@@ -225,7 +249,7 @@ fn push_radially<S: Scalar>(shape: Shape<S>, step: Vec3<S>) -> Vec3<S> {
             otherwise,
         } => {
             let Some(ahead) = center.normalized() else {
-                return otherwise * radius;
+                return otherwise.way() * radius;
             };
             let distance = center.norm();
             let inwards = step.dot(ahead);
@@ -266,7 +290,7 @@ fn turn<S: Scalar>(shape: Shape<S>, step: Vec3<S>, is_smaller: bool) -> Option<V
             radius,
             otherwise,
         } => {
-            let axis = center.normalized().unwrap_or(-otherwise);
+            let axis = center.normalized().unwrap_or_else(|| -otherwise.way());
             (axis, length * cosine(center.norm(), radius, length))
         }
     };
