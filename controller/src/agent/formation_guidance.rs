@@ -112,16 +112,19 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
         id == self.leader || self.template.entries.iter().any(|entry| entry.id == id)
     }
 
+    // What has much on the stack is not inlined below, so that only one of it is there at a time.
+
     /// The others, each with the cell where it will be when one's own next move is over; of more than
     /// 32 those of the template and the leader, then the smallest numbers.
+    #[inline(never)]
     fn seen<S>(
         &self,
         view: &View<'_, S>,
         window: &Window<'_>,
         field: &mut CostField<CELLS>,
-    ) -> Vec<Seen, 32> {
+        all: &mut Vec<Seen, 32>,
+    ) {
         let top = self.top(view);
-        let mut all: Vec<Seen, 32> = Vec::new();
         for wanted in [true, false] {
             let others = view.neighbors.iter().filter(|other| {
                 let is_top = top.is_some_and(|(top, _)| top == other.id);
@@ -149,7 +152,6 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
                 }
             }
         }
-        all
     }
 
     /// Where a robot will be after the time of the next move if it goes on as it announced
@@ -257,6 +259,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
     }
 
     /// The way of a robot that leads or is alone: for itself, on land priced for all.
+    #[inline(never)]
     fn lead<S>(
         &mut self,
         view: &View<'_, S>,
@@ -280,6 +283,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
     }
 
     /// The way of a follower to its place.
+    #[inline(never)]
     fn follow<S>(
         &self,
         view: &View<'_, S>,
@@ -385,7 +389,8 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
         let target = reachable_goal(&window, view.goal);
         self.router.observe(&self.route, cell, target);
 
-        let seen = self.seen(view, &window, &mut workspace.field);
+        let mut seen = Vec::new();
+        self.seen(view, &window, &mut workspace.field, &mut seen);
         let found = find_neighbors(
             &self.template,
             cell,

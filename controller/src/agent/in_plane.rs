@@ -49,6 +49,7 @@ impl<S: Scalar, G> InPlane<S, G> {
 impl<S: Scalar, G: Guidance<S>> Guidance<S> for InPlane<S, G> {
     type Workspace = G::Workspace;
 
+    #[inline(never)]
     fn decide(
         &mut self,
         view: &View<'_, S>,

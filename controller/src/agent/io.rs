@@ -137,3 +137,14 @@ pub struct Outputs<S> {
     /// When to call again if nothing arrives before.
     pub call_again: Instant,
 }
+
+impl<S> Outputs<S> {
+    /// As [`Outputs::default`], in place.
+    pub(super) fn clear(&mut self) {
+        self.command = Command::Hold;
+        (self.received, self.rejected) = (0, 0);
+        self.outbox.clear();
+        self.events.clear();
+        self.call_again = Instant::default();
+    }
+}

@@ -38,6 +38,7 @@ impl<S: Scalar, const K: usize, P> OrcaSafety<S, K, P> {
 }
 
 impl<S: Scalar, const K: usize, P: HalfPlanes<S>> Safety<S> for OrcaSafety<S, K, P> {
+    #[inline(never)]
     fn keep_clear(&mut self, sight: &Sight<'_, S>, rng: &mut Rng) -> Vec3<S> {
         let solution = self.avoider.velocity(
             &sight.body,

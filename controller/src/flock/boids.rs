@@ -122,6 +122,7 @@ impl<S: Scalar> BoidsParams<S> {
     /// has no heading but counts for the middle. One whose place or velocity is not a number does not count. The
     /// answer is a unit vector (to rounding; errors do not add up over steps), whatever comes in. O(nearby).
     #[must_use]
+    #[inline(never)]
     pub fn steer(&self, own: RobotId, heading: Vec2<S>, nearby: &[Nearby<S>]) -> Vec2<S> {
         let heading = sound_heading(heading);
         let (mut velocities, mut offsets) = (Vec2::ZERO, Vec2::ZERO);

@@ -84,6 +84,7 @@ impl<S: Scalar> GoalParams<S> {
 /// number does not count; the answer is finite and at most as long as V_Max whatever comes in. O(nearby): each costs a
 /// root.
 #[must_use]
+#[inline(never)]
 pub fn wish<S: Scalar>(
     params: &GoalParams<S>,
     body: &Body<S>,

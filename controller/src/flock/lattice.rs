@@ -183,6 +183,7 @@ pub struct Reference<S> {
 ///
 /// O(nearby + obstacles): each costs two roots and a cosine.
 #[must_use]
+#[inline(never)]
 pub fn acceleration<S: Scalar>(
     params: &LatticeParams<S>,
     body: &Body<S>,

@@ -52,6 +52,7 @@ pub struct Found<const F: usize> {
 ///
 /// `robots` is asked several times and must give the same robots in the order of their numbers.
 #[must_use]
+#[inline(never)]
 pub fn find_neighbors<const F: usize>(
     template: &Template<F>,
     cell: Cell,

@@ -9,7 +9,6 @@ use super::escape::{Escape, EscapeParams, Scene};
 use super::{HalfPlane, Neighbor, Params, Solution, half_plane, solve, wall};
 use crate::body::Body;
 use crate::geom::Vec2;
-use crate::list;
 use crate::neighbor::Nearby;
 use crate::obstacle::Obstacle;
 use crate::rand::Rng;
@@ -155,7 +154,8 @@ impl<S: Scalar, const K: usize, P: HalfPlanes<S>> Avoider<S, K, P> {
         obstacles: &[Obstacle<S>],
         rng: &mut Rng,
     ) -> Solution<S> {
-        let (planes, hard) = self.planes(body, nearby, obstacles);
+        let mut planes = Vec::new();
+        let hard = self.planes(body, nearby, obstacles, &mut planes);
         let wish = wish_mps.clamp_norm(body.max_speed_mps);
         let scene = Scene {
             body,
@@ -168,21 +168,37 @@ impl<S: Scalar, const K: usize, P: HalfPlanes<S>> Avoider<S, K, P> {
             .escape
             .wish(&self.params.escape, &scene, rng)
             .clamp_norm(body.max_speed_mps);
-        reachable::<S, K>(body, &planes, hard, wish)
+        reachable::<S, K>(body, &mut planes, hard, wish)
     }
 
-    /// What obstacles (their number comes second) and robots forbid.
+    /// What obstacles (their number is the answer), then robots forbid.
     fn planes(
         &self,
         body: &Body<S>,
         nearby: &[Nearby<S>],
         obstacles: &[Obstacle<S>],
-    ) -> (Vec<HalfPlane<S>, K>, usize) {
-        let own = body.velocity_mps.xy();
-        let own = if own.is_finite() { own } else { Vec2::ZERO };
+        planes: &mut Vec<HalfPlane<S>, K>,
+    ) -> usize {
+        self.obstacle_planes(body, nearby.len(), obstacles, planes);
+        let hard = planes.len();
+        self.robot_planes(body, nearby, planes);
+        hard
+    }
+
+    /// What obstacles forbid a robot with `others` near by: the nearest first, as many as leave robots their half of the places.
+    /// Not inlined, so that its stack is free again for the solver.
+    #[inline(never)]
+    fn obstacle_planes(
+        &self,
+        body: &Body<S>,
+        others: usize,
+        obstacles: &[Obstacle<S>],
+        planes: &mut Vec<HalfPlane<S>, K>,
+    ) {
+        let own = finite_or_zero(body.velocity_mps.xy());
         // Half for each; what one leaves is the other's.
-        let room = K.saturating_sub(nearby.len().min(K >> 1));
-        let mut nearest = Vec::<(S, HalfPlane<S>), K>::new();
+        let room = K.saturating_sub(others.min(K >> 1));
+        let mut distances = Vec::<S, K>::new();
         for obstacle in obstacles {
             let Some((_, distance)) = obstacle.nearest_point() else {
                 continue;
@@ -190,11 +206,19 @@ impl<S: Scalar, const K: usize, P: HalfPlanes<S>> Avoider<S, K, P> {
             let Some(plane) = self.obstacle_plane(body, own, obstacle) else {
                 continue;
             };
-            insert_nearest(&mut nearest, room, distance, plane);
+            insert_nearest(&mut distances, planes, room, distance, plane);
         }
-        let mut planes = Vec::<_, K>::new();
-        list::extend(&mut planes, nearest.iter().map(|(_, plane)| *plane));
-        let hard = planes.len();
+    }
+
+    /// What robots forbid, as many as there is room for.
+    #[inline(never)]
+    fn robot_planes(
+        &self,
+        body: &Body<S>,
+        nearby: &[Nearby<S>],
+        planes: &mut Vec<HalfPlane<S>, K>,
+    ) {
+        let own = finite_or_zero(body.velocity_mps.xy());
         for other in nearby {
             let neighbor = Neighbor {
                 offset_m: other.offset_m.xy(),
@@ -219,7 +243,6 @@ impl<S: Scalar, const K: usize, P: HalfPlanes<S>> Avoider<S, K, P> {
                 break;
             }
         }
-        (planes, hard)
     }
 
     fn rules(&self, body: &Body<S>, horizon_s: S, share: S) -> Params<S> {
@@ -268,30 +291,42 @@ impl<S: Scalar, const K: usize, P: HalfPlanes<S>> Avoider<S, K, P> {
     }
 }
 
-/// Puts `item` in its place of the at most `room` nearest; of equal ones the earlier stays in front.
-fn insert_nearest<S: Scalar, T, const K: usize>(
-    nearest: &mut Vec<(S, T), K>,
+fn finite_or_zero<S: Scalar>(velocity: Vec2<S>) -> Vec2<S> {
+    if velocity.is_finite() {
+        velocity
+    } else {
+        Vec2::ZERO
+    }
+}
+
+/// Puts `plane` in its place of the at most `room` nearest, and its distance beside it; of equal ones the earlier stays in front.
+fn insert_nearest<S: Scalar, const K: usize>(
+    distances: &mut Vec<S, K>,
+    planes: &mut Vec<HalfPlane<S>, K>,
     room: usize,
     distance: S,
-    item: T,
+    plane: HalfPlane<S>,
 ) {
-    if nearest.len() >= room {
-        let is_nearer = nearest.last().is_some_and(|(last, _)| distance < *last);
+    if distances.len() >= room {
+        let is_nearer = distances.last().is_some_and(|last| distance < *last);
         if !is_nearer {
             return;
         }
-        nearest.pop();
+        distances.pop();
+        planes.pop();
     }
-    if nearest.push((distance, item)).is_err() {
+    if distances.push(distance).is_err() || planes.push(plane).is_err() {
         return;
     }
-    let mut at = nearest.len().saturating_sub(1);
+    let mut at = distances.len().saturating_sub(1);
     // By pattern: `swap` would leave a panic in the firmware.
     while let Some(before) = at.checked_sub(1)
-        && let Some([one, other]) = nearest.get_mut(before..=at)
-        && other.0 < one.0
+        && let Some([one, other]) = distances.get_mut(before..=at)
+        && let Some([first, second]) = planes.get_mut(before..=at)
+        && *other < *one
     {
         core::mem::swap(one, other);
+        core::mem::swap(first, second);
         at = before;
     }
 }
@@ -299,10 +334,10 @@ fn insert_nearest<S: Scalar, T, const K: usize>(
 /// The best velocity that the body can have after one step.
 ///
 /// With inertia these are a disc around its velocity: the same problem with that as origin, and the speed limit as one
-/// more hard half-plane, ahead of the velocity.
+/// more hard half-plane, ahead of the velocity. Moves `planes` to that origin.
 fn reachable<S: Scalar, const K: usize>(
     body: &Body<S>,
-    planes: &[HalfPlane<S>],
+    planes: &mut [HalfPlane<S>],
     hard: usize,
     wish: Vec2<S>,
 ) -> Solution<S> {
@@ -312,19 +347,14 @@ fn reachable<S: Scalar, const K: usize>(
     if !is_held || !own.is_finite() {
         return solve::<S, K>(planes, hard, wish, body.max_speed_mps);
     }
-    let mut moved = Vec::<_, K>::new();
-    for plane in planes {
-        // As many places as planes.
-        let _ = moved.push(HalfPlane {
-            point: plane.point - own,
-            normal: plane.normal,
-        });
+    for plane in planes.iter_mut() {
+        plane.point = plane.point - own;
     }
-    let solved = solve::<S, K>(&moved, hard, wish - own, change);
+    let solved = solve::<S, K>(planes, hard, wish - own, change);
     let velocity = body.reach((own + solved.velocity_mps).extend(S::ZERO)).xy();
     let worst = planes
         .iter()
-        .map(|plane| plane.penetration(velocity))
+        .map(|plane| plane.penetration(velocity - own))
         .fold(S::ZERO, S::max);
     Solution {
         velocity_mps: velocity,

@@ -77,7 +77,8 @@ impl<S: Scalar> Escape<S> {
         Self { turn: Turn::new() }
     }
 
-    /// The wish for the solver.
+    /// The wish for the solver. Not inlined, so that its stack is free again for it.
+    #[inline(never)]
     pub(super) fn wish(
         &mut self,
         params: &EscapeParams<S>,

@@ -64,6 +64,9 @@ impl<S: Scalar> FlyParams<S> {
 /// never a half-space, so ORCA's guarantee stands.
 ///
 /// What is not finite counts as absent (wish: as zero). Work: as [`solve`], and O(obstacles + `nearby`).
+///
+/// Not inlined: its half-spaces are no burden to firmware that does not fly.
+#[inline(never)]
 #[must_use]
 pub fn fly<S: Scalar, const K: usize>(
     params: &FlyParams<S>,

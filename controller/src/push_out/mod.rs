@@ -102,6 +102,7 @@ const TOLERANCE_MM: i32 = 1;
 /// body's acceleration.
 ///
 /// O(n) when nothing is in the way, else O(n^2), with model 1 of those in the way times all; n = `nearby` + `obstacles`.
+#[inline(never)]
 #[must_use]
 pub fn push_out<S: Scalar>(
     params: &PushOutParams<S>,

@@ -218,7 +218,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usi
             surroundings,
             inbox: inputs.inbox,
         };
-        self.outputs = agent.step(&own, inputs.now, &mut self.workspace);
+        agent.step_into(&own, inputs.now, &mut self.workspace, &mut self.outputs);
         Ok(())
     }
 

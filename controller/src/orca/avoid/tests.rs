@@ -158,7 +158,8 @@ fn a_full_avoider_keeps_the_nearest_and_no_room_is_no_crash() {
     let solution = few.velocity(&own, wish, None, &others, &walls, &mut rng());
     let got = solution.velocity_mps;
     assert!(got.x > -0.15 && (got - wish).norm() > 0.1, "{got:?}");
-    let (planes, hard) = few.planes(&own, &others, &walls);
+    let mut planes = Vec::new();
+    let hard = few.planes(&own, &others, &walls, &mut planes);
     assert_eq!((planes.len(), hard), (4, 2));
     let mut none = Avoider::<f32, 0>::new(AvoidParams::default());
     let solution = none.velocity(&own, wish, None, &others, &walls, &mut rng());
@@ -281,7 +282,8 @@ proptest! {
             .collect();
         let own = body(1, [0.2, 0.1]);
         let mut avoider = avoider();
-        let (planes, hard) = avoider.planes(&own, &others, &[]);
+        let mut planes = Vec::new();
+        let hard = avoider.planes(&own, &others, &[], &mut planes);
         let best = solve::<f32, 16>(&planes, hard, Vec2::ZERO, 0.5);
         let got = avoider.velocity(&own, Vec2::new(wish.0, wish.1), None, &others, &[], &mut rng());
         // The rule of escape bends the wish and nothing else.
