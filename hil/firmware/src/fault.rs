@@ -29,7 +29,9 @@ pub struct Panic<'a>(pub &'a PanicInfo<'a>);
 impl Display for Panic<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(place) = self.0.location() {
-            let file = place.file().rsplit('/').next().unwrap_or_default();
+            let path = place.file();
+            let start = path.bytes().rposition(|byte| byte == b'/');
+            let file = path.get(start.map_or(0, |at| at + 1)..).unwrap_or(path);
             write!(f, "{file}:{}: ", place.line())?;
         }
         write!(f, "{}", self.0.message())
