@@ -88,6 +88,8 @@ pub struct Summary {
     pub arrived: u32,
     /// Pairs of bodies that overlapped, summed over the ticks.
     pub overlaps: u32,
+    /// Distances of the nearest and of the farthest two bodies at the end, millimetres; 0 on the grid.
+    pub apart_mm: [u32; 2],
     /// Frames that agents refused: damaged or heard before.
     pub rejected: u32,
     /// Bytes of one agent.
@@ -104,6 +106,7 @@ impl Summary {
             steps: 0,
             arrived: 0,
             overlaps: 0,
+            apart_mm: [0; 2],
             rejected: 0,
             agent_bytes: size_of::<A>() as u32,
             workspace_bytes: size_of::<W>() as u32,

@@ -110,6 +110,7 @@ where
         }
     }
     summary.hash = hash.value();
+    summary.apart_mm = apart(movers);
     summary
 }
 
@@ -188,16 +189,25 @@ fn seen<S: Scalar>(solid: &Solid, from: Position) -> Obstacle<S> {
 
 /// Pairs of bodies that overlap.
 fn overlaps<S, G, A>(scene: &Scene<S>, movers: &[Mover<S, G, A>]) -> u32 {
-    let mut count = 0;
-    for (index, one) in movers.iter().enumerate() {
-        for other in movers.iter().skip(index.saturating_add(1)) {
-            let squares = one.position.mm.iter().zip(other.position.mm).map(|(a, b)| {
-                let difference = i64::from(*a) - i64::from(b);
-                difference * difference
-            });
-            let least = i64::from(scene.apart_mm);
-            count += u32::from(squares.sum::<i64>() < least * least);
-        }
-    }
-    count
+    let least = u64::from(scene.apart_mm.unsigned_abs());
+    pairs(movers)
+        .filter(|squared| *squared < least * least)
+        .count() as u32
+}
+
+/// Distances of the nearest and of the farthest pair, millimetres.
+fn apart<S, G, A>(movers: &[Mover<S, G, A>]) -> [u32; 2] {
+    let millimetres = |squared: Option<u64>| squared.unwrap_or(0).isqrt() as u32;
+    [pairs(movers).min(), pairs(movers).max()].map(millimetres)
+}
+
+/// The squared distance of each pair, square millimetres.
+fn pairs<S, G, A>(movers: &[Mover<S, G, A>]) -> impl Iterator<Item = u64> {
+    movers.iter().enumerate().flat_map(move |(index, one)| {
+        let others = movers.iter().skip(index.saturating_add(1));
+        others.map(|other| {
+            let both = one.position.mm.iter().zip(other.position.mm);
+            both.map(|(a, b)| u64::from(a.abs_diff(b)).pow(2)).sum()
+        })
+    })
 }

@@ -45,6 +45,27 @@ fn robots_with_goals_arrive_and_never_touch() {
 }
 
 #[test]
+fn an_alpha_flock_ends_in_its_lattice_and_boids_stay_together() {
+    each(
+        |name, summary| {
+            let [nearest, farthest] = summary.apart_mm;
+            // Five robots 1 m from their neighbours: as a row they would be 4 m long.
+            assert!((800..1100).contains(&nearest), "{name}: {summary:?}");
+            assert!(
+                farthest < 2600 && summary.overlaps == 0,
+                "{name}: {summary:?}"
+            );
+        },
+        &[Case::Lattice],
+    );
+    // Up to 127 degrees apart at first, which would take them 35 m apart in 40 s.
+    each(
+        |name, summary| assert!(summary.apart_mm[1] < 12_000, "{name}: {summary:?}"),
+        &[Case::Boids],
+    );
+}
+
+#[test]
 fn a_bad_radio_costs_frames_and_a_good_one_none() {
     each(
         |name, summary| assert!(summary.rejected > 50, "{name}: {summary:?}"),
