@@ -1,15 +1,16 @@
 //! The agent's end of the radio: bytes to news, and what is to be said to bytes.
 
 use super::guidance::Place;
-use super::io::{Event, OUTBOX, Outputs};
-use crate::geom::Position;
+use super::io::{Event, Inputs, OUTBOX, Outputs};
+use super::{AgentConfig, Last};
+use crate::geom::{Position, Vec3};
 use crate::grid::Cell;
 use crate::neighbor::{Ages, Neighbor, NeighborTable, Put, vec3_from_milli};
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 use crate::wire::{
-    Arrival, Beacon, Due, Frame, Header, Message, Newest, Orders, Request, RequestKind, Requests,
-    Retry, RobotId, SequenceWindow, TemplateAssignment, decode, encode,
+    Arrival, Beacon, Due, Frame, Header, Message, Mode, Newest, Orders, Request, RequestKind,
+    Requests, Retry, RobotId, SequenceWindow, TemplateAssignment, decode, encode,
 };
 use heapless::Vec;
 use serde::Serialize;
@@ -327,4 +328,35 @@ fn is_another(last: &mut Option<(RobotId, u8)>, header: Header) -> bool {
 /// Adds an event if there is room.
 pub(super) fn report<S>(out: &mut Outputs<S>, event: Event) {
     let _ = out.events.push(event);
+}
+
+/// What the robot says of itself. Lengths saturate; what is not a number counts as 0.
+pub(super) fn beacon<S: Scalar>(
+    config: &AgentConfig<S>,
+    last: &Last,
+    mode: Mode,
+    inputs: &Inputs<'_, S>,
+    v: Vec3<S>,
+    now: Instant,
+) -> Beacon {
+    let milli = |value: S| value.to_milli().unwrap_or(0);
+    let narrow = |value: S| milli(value).clamp(i16::MIN.into(), i16::MAX.into()) as i16;
+    let position = inputs.pose.position;
+    let state = inputs.cell.unwrap_or_default();
+    let busy_ms = i64::from(state.busy.as_micros().max(0))
+        .checked_div(1000)
+        .unwrap_or(0);
+    Beacon {
+        time: now,
+        position_mm: position.mm,
+        velocity_mmps: [narrow(v.x), narrow(v.y), narrow(v.z)],
+        radius_mm: u16::try_from(milli(config.radius_m).max(0)).unwrap_or(u16::MAX),
+        cell: state.cell,
+        heading: last.heading,
+        busy_ms: u16::try_from(busy_ms).unwrap_or(u16::MAX),
+        leader: last.leader,
+        slot: last.slot,
+        mode,
+        target: last.target,
+    }
 }

@@ -86,6 +86,7 @@
 //! ```
 
 mod any;
+mod config;
 mod flock_guidance;
 mod formation_guidance;
 mod guidance;
@@ -104,6 +105,7 @@ mod waypoint_guidance;
 mod tests;
 
 pub use any::{AnyGuidance, AnyHalfPlanes, AnySafety};
+pub use config::AgentConfig;
 pub use flock_guidance::{BoidsGuidance, GOALS, GoalFlockGuidance, LatticeGuidance};
 pub use formation_guidance::FormationGuidance;
 pub use guidance::{Ask, BadInput, Guidance, Guided, Place, View};
@@ -122,17 +124,16 @@ pub use waypoint_guidance::WaypointGuidance;
 
 use crate::body::Body;
 use crate::digest::digest;
-use crate::geom::Vec3;
 use crate::grid::{Cell, Dir};
-use crate::neighbor::{Ages, Knowledge, Nearby, Neighbor, nearest};
+use crate::neighbor::{Knowledge, Nearby, Neighbor, nearest};
 use crate::rand::Rng;
-use crate::scalar::{Scalar, cast};
+use crate::scalar::Scalar;
 use crate::supervisor::{Situation, moves, next_mode};
 use crate::time::{Duration, Instant};
-use crate::wire::{Beacon, Mode, Retry, RobotId, frames};
+use crate::wire::{Mode, RobotId, frames};
 use heapless::Vec;
-use link::{Link, Listener, News, report};
-use serde::{Deserialize, Serialize};
+use link::{Link, Listener, News, beacon, report};
+use serde::Serialize;
 
 /// Keeps the agent's draws apart from other uses of randomness.
 const PURPOSE: u32 = u32::from_be_bytes(*b"step");
@@ -168,82 +169,6 @@ const BYTES: [usize; 4] = [
 const _: () = assert!(matches!(BYTES, [2032, 2288, 1632, 2704]));
 #[cfg(target_pointer_width = "64")]
 const _: () = assert!(matches!(BYTES, [2064, 2320, 1648, 2712]));
-
-/// What does not change while the robot runs.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct AgentConfig<S> {
-    /// Own number, 1 or more.
-    pub id: RobotId,
-    /// Seed of what the robot draws at random.
-    pub seed: u64,
-    /// Changes with each start (counted in lasting memory, or drawn at random): with the old one a robot that has restarted is not heard
-    /// until the others have forgotten it; see [`crate::wire::SequenceWindow`].
-    pub boot: u8,
-    /// More than 0. On the grid the time in which the robot crosses a cell of impassability 1; for robots that go by velocities the time
-    /// from one step to the next, which must then be kept: the command is meant to hold for so long.
-    pub tick: Duration,
-    /// Time between two beacons. Longer saves the radio and makes everybody's news older.
-    pub beacon_period: Duration,
-    /// Radius of the ball around the body, metres.
-    pub radius_m: S,
-    /// How fast the body can change its velocity, m/s^2; [`Scalar::MAX`]: at once. For robots that do not
-    /// move cell by cell.
-    pub max_acceleration_mps2: S,
-    /// How old news is when it arrives: neighbours are taken to have gone on for so long. At least 0.
-    pub latency: Duration,
-    /// How old news of others may be.
-    pub ages: Ages,
-    /// How requests are resent.
-    pub retry: Retry,
-    /// How long a stop stands that is not renewed: bounds what a lost "resume" costs.
-    pub stop_valid: Duration,
-}
-
-impl<S: Scalar> AgentConfig<S> {
-    /// The same in another kind of number.
-    #[must_use]
-    pub fn cast<T: Scalar>(&self) -> AgentConfig<T> {
-        AgentConfig {
-            id: self.id,
-            seed: self.seed,
-            boot: self.boot,
-            tick: self.tick,
-            beacon_period: self.beacon_period,
-            radius_m: cast(self.radius_m),
-            max_acceleration_mps2: cast(self.max_acceleration_mps2),
-            latency: self.latency,
-            ages: self.ages,
-            retry: self.retry,
-            stop_valid: self.stop_valid,
-        }
-    }
-
-    /// A beacon each tick, news stale after 4 and forgotten after 30 ticks, requests resent every
-    /// 3 ticks, stops for 12 ticks, a radius of 0, no inertia, no latency. Robots that go by velocities need at least their
-    /// [`radius_m`](Self::radius_m) besides, and on real radios their [`latency`](Self::latency).
-    #[must_use]
-    pub fn new(id: RobotId, seed: u64, tick: Duration) -> Self {
-        Self {
-            id,
-            seed,
-            boot: 0,
-            tick,
-            beacon_period: tick,
-            radius_m: S::ZERO,
-            max_acceleration_mps2: S::MAX,
-            latency: Duration::ZERO,
-            ages: Ages {
-                stale_after: tick.saturating_mul(4),
-                expire_after: tick.saturating_mul(30),
-            },
-            retry: Retry {
-                attempts: 5,
-                interval: tick.saturating_mul(3),
-            },
-            stop_valid: tick.saturating_mul(12),
-        }
-    }
-}
 
 /// The controller of one robot: guidance `G`, at most `N` known neighbours, safety layer `A`.
 ///
@@ -666,36 +591,5 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>> Agent<S, G, N, A> 
         if decision.is_before(out.call_again) {
             out.call_again = decision;
         }
-    }
-}
-
-/// What the robot says of itself. Lengths saturate; what is not a number counts as 0.
-fn beacon<S: Scalar>(
-    config: &AgentConfig<S>,
-    last: &Last,
-    mode: Mode,
-    inputs: &Inputs<'_, S>,
-    v: Vec3<S>,
-    now: Instant,
-) -> Beacon {
-    let milli = |value: S| value.to_milli().unwrap_or(0);
-    let narrow = |value: S| milli(value).clamp(i16::MIN.into(), i16::MAX.into()) as i16;
-    let position = inputs.pose.position;
-    let state = inputs.cell.unwrap_or_default();
-    let busy_ms = i64::from(state.busy.as_micros().max(0))
-        .checked_div(1000)
-        .unwrap_or(0);
-    Beacon {
-        time: now,
-        position_mm: position.mm,
-        velocity_mmps: [narrow(v.x), narrow(v.y), narrow(v.z)],
-        radius_mm: u16::try_from(milli(config.radius_m).max(0)).unwrap_or(u16::MAX),
-        cell: state.cell,
-        heading: last.heading,
-        busy_ms: u16::try_from(busy_ms).unwrap_or(u16::MAX),
-        leader: last.leader,
-        slot: last.slot,
-        mode,
-        target: last.target,
     }
 }

@@ -1,10 +1,11 @@
 use super::*;
 use crate::formation::{FormationParams, Template};
+use crate::geom::Vec3;
 use crate::grid::{BLOCKED, Window};
 use crate::route::RouteParams;
 use crate::wire::{
-    Frame, GoalAssignment, Header, Message, Request, RequestKind, TemplateAssignment, decode,
-    encode, frames,
+    Beacon, Frame, GoalAssignment, Header, Message, Request, RequestKind, TemplateAssignment,
+    decode, encode, frames,
 };
 use std::boxed::Box;
 use std::vec;

@@ -348,7 +348,7 @@ fn reachable<S: Scalar, const K: usize>(
         return solve::<S, K>(planes, hard, wish, body.max_speed_mps);
     }
     for plane in planes.iter_mut() {
-        plane.point = plane.point - own;
+        plane.point -= own;
     }
     let solved = solve::<S, K>(planes, hard, wish - own, change);
     let velocity = body.reach((own + solved.velocity_mps).extend(S::ZERO)).xy();

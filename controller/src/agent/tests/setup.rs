@@ -4,16 +4,14 @@ use super::super::*;
 use crate::flock::goal::GoalParams;
 use crate::flock::lattice::LatticeParams;
 use crate::formation::FormationParams;
-use crate::geom::Position;
+use crate::geom::{Position, Vec3};
 use crate::neighbor::Doubt;
 use crate::orca::{AvoidParams, FlyParams};
 use crate::push_out::PushOutParams;
 use crate::route::{Replan, RouteParams};
 use crate::scalar::{Q16, Scalar};
 use crate::shuffle::Sharpness;
-use crate::wire::Header;
-use crate::wire::Message;
-use crate::wire::encode;
+use crate::wire::{Beacon, Header, Message, encode};
 
 const TICK: Duration = Duration::from_millis(50);
 

@@ -1,0 +1,83 @@
+//! What a robot's agent knows of itself from its start.
+
+use crate::neighbor::Ages;
+use crate::scalar::{Scalar, cast};
+use crate::time::Duration;
+use crate::wire::{Retry, RobotId};
+use serde::{Deserialize, Serialize};
+
+/// What does not change while the robot runs.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AgentConfig<S> {
+    /// Own number, 1 or more.
+    pub id: RobotId,
+    /// Seed of what the robot draws at random.
+    pub seed: u64,
+    /// Changes with each start (counted in lasting memory, or drawn at random): with the old one a robot that has restarted is not heard
+    /// until the others have forgotten it; see [`crate::wire::SequenceWindow`].
+    pub boot: u8,
+    /// More than 0. On the grid the time in which the robot crosses a cell of impassability 1; for robots that go by velocities the time
+    /// from one step to the next, which must then be kept: the command is meant to hold for so long.
+    pub tick: Duration,
+    /// Time between two beacons. Longer saves the radio and makes everybody's news older.
+    pub beacon_period: Duration,
+    /// Radius of the ball around the body, metres.
+    pub radius_m: S,
+    /// How fast the body can change its velocity, m/s^2; [`Scalar::MAX`]: at once. For robots that do not
+    /// move cell by cell.
+    pub max_acceleration_mps2: S,
+    /// How old news is when it arrives: neighbours are taken to have gone on for so long. At least 0.
+    pub latency: Duration,
+    /// How old news of others may be.
+    pub ages: Ages,
+    /// How requests are resent.
+    pub retry: Retry,
+    /// How long a stop stands that is not renewed: bounds what a lost "resume" costs.
+    pub stop_valid: Duration,
+}
+
+impl<S: Scalar> AgentConfig<S> {
+    /// The same in another kind of number.
+    #[must_use]
+    pub fn cast<T: Scalar>(&self) -> AgentConfig<T> {
+        AgentConfig {
+            id: self.id,
+            seed: self.seed,
+            boot: self.boot,
+            tick: self.tick,
+            beacon_period: self.beacon_period,
+            radius_m: cast(self.radius_m),
+            max_acceleration_mps2: cast(self.max_acceleration_mps2),
+            latency: self.latency,
+            ages: self.ages,
+            retry: self.retry,
+            stop_valid: self.stop_valid,
+        }
+    }
+
+    /// A beacon each tick, news stale after 4 and forgotten after 30 ticks, requests resent every
+    /// 3 ticks, stops for 12 ticks, a radius of 0, no inertia, no latency. Robots that go by velocities need at least their
+    /// [`radius_m`](Self::radius_m) besides, and on real radios their [`latency`](Self::latency).
+    #[must_use]
+    pub fn new(id: RobotId, seed: u64, tick: Duration) -> Self {
+        Self {
+            id,
+            seed,
+            boot: 0,
+            tick,
+            beacon_period: tick,
+            radius_m: S::ZERO,
+            max_acceleration_mps2: S::MAX,
+            latency: Duration::ZERO,
+            ages: Ages {
+                stale_after: tick.saturating_mul(4),
+                expire_after: tick.saturating_mul(30),
+            },
+            retry: Retry {
+                attempts: 5,
+                interval: tick.saturating_mul(3),
+            },
+            stop_valid: tick.saturating_mul(12),
+        }
+    }
+}
