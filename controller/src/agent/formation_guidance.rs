@@ -421,9 +421,11 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
             }
             weights
         } else {
-            // Who says that he cannot go on is not waited for.
+            // Who says that he cannot go on is not waited for, nor who has arrived: a part of the formation that lost the rest
+            // on the way would wait for ever for those who are at the goal before it.
             let able = found.members.iter();
-            let able = able.filter(|member| member.seen.mode != Mode::Fault);
+            let able =
+                able.filter(|member| !matches!(member.seen.mode, Mode::Fault | Mode::Arrived));
             let behind = able.map(|member| {
                 let off = member.seen.cell - (cell + member.offset);
                 lag(off, self.travel.choice())

@@ -139,7 +139,7 @@ impl HilArgs {
         let summary = self.drive(&scenario, plan, options, &stop, global)?;
         if global.json {
             print_json(&summary)?;
-        } else {
+        } else if !summary.devices.is_empty() {
             print(&summary.table()?)?;
         }
         match summary.trouble {

@@ -40,10 +40,14 @@ fn requests(out: &Outputs<f32>) -> Vec<Request> {
     requests.collect()
 }
 
-/// A leader waits for who falls behind, but not for who has failed.
+/// A leader waits for who falls behind, but not for who has failed, nor who has arrived: he will not come any nearer.
 #[test]
-fn who_has_failed_is_not_waited_for() {
-    for (mode, expected) in [(Mode::Cruise, Mode::Hold), (Mode::Fault, Mode::Cruise)] {
+fn who_has_failed_or_arrived_is_not_waited_for() {
+    for (mode, expected) in [
+        (Mode::Cruise, Mode::Hold),
+        (Mode::Fault, Mode::Cruise),
+        (Mode::Arrived, Mode::Cruise),
+    ] {
         let (mut agent, mut ws) = (formation_agent(1), workspace());
         agent.assign_goal(Cell::new(60, 5));
         let behind = Beacon {
