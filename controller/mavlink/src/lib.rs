@@ -1,0 +1,28 @@
+//! MAVLink for swarms: the messages that robots and ground stations exchange, without `std` or an allocator.
+//!
+//! [`dialect`] is made by `mavlink-bindgen` from `messages/staya.xml` (Staya's own messages) and `messages/common.xml` (the part of the public ones that Staya speaks).
+
+#![no_std]
+
+/// What `mavlink-bindgen` made.
+#[allow(
+    missing_docs,
+    unused_imports,
+    unused_mut,
+    unused_variables,
+    non_camel_case_types,
+    clippy::all,
+    clippy::disallowed_methods,
+    clippy::indexing_slicing,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::integer_division_remainder_used,
+    reason = "generated"
+)]
+mod generated {
+    include!(concat!(env!("OUT_DIR"), "/module.rs"));
+}
+
+pub use generated::dialect;
+pub use mavlink_core;
