@@ -1,8 +1,24 @@
 //! MAVLink for swarms: the messages that robots and ground stations exchange, without `std` or an allocator.
 //!
-//! [`dialect`] is made by `mavlink-bindgen` from `messages/staya.xml` (Staya's own messages) and `messages/common.xml` (the part of the public ones that Staya speaks).
+//! [`frame`] finds and makes frames in bytes. [`dialect`] is made by `mavlink-bindgen` from `messages/staya.xml` (Staya's own messages) and `messages/common.xml` (the part of the public ones that Staya speaks).
 
 #![no_std]
+// Tests may fail loudly.
+#![cfg_attr(
+    test,
+    allow(
+        clippy::indexing_slicing,
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::integer_division_remainder_used
+    )
+)]
+
+#[cfg(test)]
+extern crate std;
+
+pub mod frame;
 
 /// What `mavlink-bindgen` made.
 #[allow(

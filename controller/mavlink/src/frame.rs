@@ -1,0 +1,364 @@
+//! MAVLink frames in bytes: finding them, looking into them, making them. Read [`scan`] first.
+//!
+//! `mavlink-core` reads frames from streams into buffers of its own; robots and bridges have the bytes already, must keep them as they are
+//! (signatures, logs), and must tell foreign messages from damage.
+
+use crate::dialect::MavMessage;
+use crc::{CRC_16_MCRF4XX, Crc, Table};
+use heapless::Vec;
+use mavlink_core::{MavlinkVersion, Message, MessageData};
+
+/// Bytes of the longest frame: header, payload, checksum, signature.
+pub const MAX_FRAME_LEN: usize = 10 + 255 + 2 + SIGNATURE_LEN;
+/// Bytes of a signature at the end of a frame.
+pub const SIGNATURE_LEN: usize = 13;
+
+const START_V1: u8 = 0xFE;
+const START_V2: u8 = 0xFD;
+/// Incompatibility flag: a signature follows the checksum.
+const SIGNED: u8 = 1;
+
+static CRC: Crc<u16, Table<1>> = Crc::<u16, Table<1>>::new(&CRC_16_MCRF4XX);
+
+/// Who sends a frame, and which of its frames it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Sender {
+    /// System, 1 to 255 (255: a ground station).
+    pub system: u8,
+    /// Component of the system.
+    pub component: u8,
+    /// Counts the component's frames; wraps.
+    pub sequence: u8,
+}
+
+/// There is no room for the frame; nothing was written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Full;
+
+/// One whole frame, of MAVLink 1 or 2, whose length is right and whose checksum is right if the message is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RawFrame<'a> {
+    bytes: &'a [u8],
+    payload: &'a [u8],
+    sender: Sender,
+    message_id: u32,
+    version: u8,
+    is_signed: bool,
+    is_known: bool,
+}
+
+/// What [`scan`] finds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scan<'a> {
+    /// A frame after so many bytes that belong to none.
+    Frame {
+        /// Bytes before it.
+        junk: usize,
+        /// The frame.
+        frame: RawFrame<'a>,
+    },
+    /// No whole frame: so many bytes belong to none, and what follows them may be the beginning of one.
+    Nothing {
+        /// Bytes that no frame begins with.
+        junk: usize,
+    },
+}
+
+/// Why bytes are no frame.
+enum Fault {
+    /// More bytes are needed.
+    Short,
+    /// They are none.
+    Bad,
+}
+
+/// Finds the first frame in `bytes`, whatever comes before it. With `is_whole` nothing follows the bytes (a datagram), without it more of the
+/// stream may follow.
+///
+/// A message that the dialect does not have cannot be checked. It counts as one if a frame could begin behind it, or nothing is there.
+///
+/// Bounded work: O(n), and for each byte that begins a header that could be, one checksum of at most 280 bytes.
+#[must_use]
+pub fn scan(bytes: &[u8], is_whole: bool) -> Scan<'_> {
+    let mut junk = 0;
+    while let Some(rest) = bytes.get(junk..).filter(|rest| !rest.is_empty()) {
+        match parse(rest) {
+            Ok(frame) => return Scan::Frame { junk, frame },
+            Err(Fault::Short) if !is_whole => break,
+            Err(_) => junk += 1,
+        }
+    }
+    Scan::Nothing { junk }
+}
+
+/// Takes the next frame off `rest`, and the bytes before it that belong to none; `None` when there is none any more, and `rest` is empty
+/// then. For bytes that no more will follow.
+///
+/// Bounded work: that of [`scan`].
+pub fn next_frame<'a>(rest: &mut &'a [u8]) -> Option<RawFrame<'a>> {
+    match scan(rest, true) {
+        Scan::Frame { junk, frame } => {
+            *rest = rest.get(junk + frame.bytes.len()..).unwrap_or_default();
+            Some(frame)
+        }
+        Scan::Nothing { .. } => {
+            *rest = &[];
+            None
+        }
+    }
+}
+
+/// The frame at the beginning of `bytes`.
+fn parse(bytes: &[u8]) -> Result<RawFrame<'_>, Fault> {
+    let (frame, checked, payload, checksum) = match bytes {
+        [START_V1, rest @ ..] => {
+            let &[len, sequence, system, component, id] = rest.first_chunk().ok_or(Fault::Short)?;
+            let sender = Sender {
+                system,
+                component,
+                sequence,
+            };
+            let (payload, checksum, end) = body(bytes, 6, len, false)?;
+            let frame = RawFrame {
+                bytes: bytes.get(..end).ok_or(Fault::Short)?,
+                payload,
+                sender,
+                message_id: id.into(),
+                version: 1,
+                is_signed: false,
+                is_known: true,
+            };
+            (frame, bytes.get(1..6), payload, checksum)
+        }
+        [START_V2, rest @ ..] => {
+            let &[
+                len,
+                incompatible,
+                _compatible,
+                sequence,
+                system,
+                component,
+                a,
+                b,
+                c,
+            ] = rest.first_chunk().ok_or(Fault::Short)?;
+            // Whoever does not know a flag must drop the frame.
+            if incompatible & !SIGNED != 0 {
+                return Err(Fault::Bad);
+            }
+            let is_signed = incompatible & SIGNED != 0;
+            let sender = Sender {
+                system,
+                component,
+                sequence,
+            };
+            let (payload, checksum, end) = body(bytes, 10, len, is_signed)?;
+            let frame = RawFrame {
+                bytes: bytes.get(..end).ok_or(Fault::Short)?,
+                payload,
+                sender,
+                message_id: u32::from_le_bytes([a, b, c, 0]),
+                version: 2,
+                is_signed,
+                is_known: true,
+            };
+            (frame, bytes.get(1..10), payload, checksum)
+        }
+        _ => return Err(Fault::Bad),
+    };
+    let Some(extra) = extra_crc(frame.message_id) else {
+        let follows = bytes.get(frame.bytes.len());
+        return match follows {
+            None | Some(&(START_V1 | START_V2)) => Ok(RawFrame {
+                is_known: false,
+                ..frame
+            }),
+            Some(_) => Err(Fault::Bad),
+        };
+    };
+    if checksum_of(checked.ok_or(Fault::Short)?, payload, extra) == checksum {
+        Ok(frame)
+    } else {
+        Err(Fault::Bad)
+    }
+}
+
+/// Payload, checksum and the frame's length.
+fn body(
+    bytes: &[u8],
+    header: usize,
+    len: u8,
+    is_signed: bool,
+) -> Result<(&[u8], u16, usize), Fault> {
+    let end = header + usize::from(len);
+    let payload = bytes.get(header..end).ok_or(Fault::Short)?;
+    let rest = bytes.get(end..).ok_or(Fault::Short)?;
+    let checksum = u16::from_le_bytes(*rest.first_chunk().ok_or(Fault::Short)?);
+    let signature = if is_signed { SIGNATURE_LEN } else { 0 };
+    let total = end + 2 + signature;
+    if bytes.len() < total {
+        return Err(Fault::Short);
+    }
+    Ok((payload, checksum, total))
+}
+
+/// What the checksum of a message covers besides its bytes; `None` for one that the dialect does not have.
+fn extra_crc(message_id: u32) -> Option<u8> {
+    // No known message has 0 (a test says so), which stands for unknown ones.
+    Some(MavMessage::extra_crc(message_id)).filter(|extra| *extra != 0)
+}
+
+fn checksum_of(header: &[u8], payload: &[u8], extra: u8) -> u16 {
+    let mut digest = CRC.digest();
+    digest.update(header);
+    digest.update(payload);
+    digest.update(&[extra]);
+    digest.finalize()
+}
+
+impl<'a> RawFrame<'a> {
+    /// The frame that `bytes` are, no byte more or less.
+    #[must_use]
+    pub fn new(bytes: &'a [u8]) -> Option<Self> {
+        parse(bytes)
+            .ok()
+            .filter(|frame| frame.bytes.len() == bytes.len())
+    }
+
+    /// All of it.
+    #[must_use]
+    pub const fn bytes(&self) -> &'a [u8] {
+        self.bytes
+    }
+
+    /// The payload as it is on the wire: MAVLink 2 leaves zeros at its end out.
+    #[must_use]
+    pub const fn payload(&self) -> &'a [u8] {
+        self.payload
+    }
+
+    /// Who sends it.
+    #[must_use]
+    pub const fn sender(&self) -> Sender {
+        self.sender
+    }
+
+    /// What kind of message it is.
+    #[must_use]
+    pub const fn message_id(&self) -> u32 {
+        self.message_id
+    }
+
+    /// 1 or 2.
+    #[must_use]
+    pub const fn version(&self) -> u8 {
+        self.version
+    }
+
+    /// Whether the dialect has its message. Only then was the checksum compared.
+    #[must_use]
+    pub const fn is_known(&self) -> bool {
+        self.is_known
+    }
+
+    /// Link id, timestamp and value of the signature; `None` without one.
+    #[must_use]
+    pub fn signature(&self) -> Option<&'a [u8; SIGNATURE_LEN]> {
+        self.bytes.last_chunk().filter(|_| self.is_signed)
+    }
+
+    /// The message, if it is a `D`.
+    #[must_use]
+    pub fn get<D: MessageData>(&self) -> Option<D> {
+        if self.message_id != D::ID || !self.is_known {
+            return None;
+        }
+        D::deser(self.mavlink_version(), self.payload).ok()
+    }
+
+    /// The message; `None` for one that the dialect does not have.
+    #[must_use]
+    pub fn message(&self) -> Option<MavMessage> {
+        if !self.is_known {
+            return None;
+        }
+        MavMessage::parse(self.mavlink_version(), self.message_id, self.payload).ok()
+    }
+
+    const fn mavlink_version(&self) -> MavlinkVersion {
+        if self.version == 1 {
+            MavlinkVersion::V1
+        } else {
+            MavlinkVersion::V2
+        }
+    }
+}
+
+/// Appends a MAVLink 2 frame without a signature and returns its length.
+///
+/// # Errors
+/// [`Full`] when it does not fit.
+///
+/// Bounded work: O(payload).
+pub fn encode<D: MessageData, const N: usize>(
+    sender: Sender,
+    data: &D,
+    out: &mut Vec<u8, N>,
+) -> Result<usize, Full> {
+    let mut payload = [0; 255];
+    let len = data.ser(MavlinkVersion::V2, &mut payload);
+    write(sender, D::ID, D::EXTRA_CRC, &payload, len, out)
+}
+
+/// [`encode`] for any message.
+///
+/// # Errors
+/// [`Full`] when it does not fit.
+pub fn encode_message<const N: usize>(
+    sender: Sender,
+    message: &MavMessage,
+    out: &mut Vec<u8, N>,
+) -> Result<usize, Full> {
+    let mut payload = [0; 255];
+    let len = message.ser(MavlinkVersion::V2, &mut payload);
+    let id = message.message_id();
+    write(sender, id, MavMessage::extra_crc(id), &payload, len, out)
+}
+
+fn write<const N: usize>(
+    sender: Sender,
+    id: u32,
+    extra: u8,
+    payload: &[u8; 255],
+    len: usize,
+    out: &mut Vec<u8, N>,
+) -> Result<usize, Full> {
+    let payload = payload.get(..len).ok_or(Full)?;
+    let len = u8::try_from(len).map_err(|_| Full)?;
+    let [a, b, c, _] = id.to_le_bytes();
+    let header = [
+        START_V2,
+        len,
+        0,
+        0,
+        sender.sequence,
+        sender.system,
+        sender.component,
+        a,
+        b,
+        c,
+    ];
+    let [_, checked @ ..] = &header;
+    let checksum = checksum_of(checked, payload, extra).to_le_bytes();
+    let total = header.len() + payload.len() + checksum.len();
+    if N.saturating_sub(out.len()) < total {
+        return Err(Full);
+    }
+    for part in [&header[..], payload, &checksum[..]] {
+        out.extend_from_slice(part).map_err(|_| Full)?;
+    }
+    Ok(total)
+}
+
+#[cfg(test)]
+mod tests;
