@@ -128,9 +128,10 @@ pub struct Outputs<S> {
     pub command: Command<S>,
     /// Frames of the inbox that were heard: sound, not seen before, of somebody else.
     pub received: u16,
-    /// Frames of the inbox that were refused: damaged, foreign, repeated or replayed.
+    /// Frames of the inbox that were refused: damaged, of another version, repeated or replayed. Those of others on the same band
+    /// ([`DecodeError::Foreign`](crate::wire::DecodeError)) count neither here nor there.
     pub rejected: u16,
-    /// Bytes for the radio: COBS frames, each ended by a zero byte.
+    /// Bytes for the radio: frames of the agent's wire format; postcard's end with a zero byte each.
     pub outbox: Vec<u8, OUTBOX>,
     /// What happened; the oldest ones when more than [`EVENTS`].
     pub events: Vec<Event, EVENTS>,

@@ -9,8 +9,8 @@ use crate::neighbor::{Ages, Neighbor, NeighborTable, Put, vec3_from_milli};
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 use crate::wire::{
-    Arrival, Beacon, Due, Frame, Header, Message, Mode, Newest, Orders, Request, RequestKind,
-    Requests, Retry, RobotId, SequenceWindow, TemplateAssignment, decode, encode,
+    Arrival, Beacon, DecodeError, Due, Frame, Header, Message, Mode, Newest, Orders, Request,
+    RequestKind, Requests, Retry, RobotId, SequenceWindow, TemplateAssignment, Wire,
 };
 use heapless::Vec;
 use serde::Serialize;
@@ -21,8 +21,6 @@ const PENDING: usize = 4;
 const PLACES: usize = 4;
 /// Matters of others that are remembered.
 const ORDERS: usize = 8;
-/// Bytes that acknowledgements and requests leave free for the beacon.
-const RESERVED: usize = Beacon::MAX_FRAME_LEN;
 
 /// Where a robot stands whose cell nobody told: in the corner of all maps, in nobody's way.
 const NO_CELL: Cell = Cell::new(i16::MIN, i16::MIN);
@@ -51,7 +49,9 @@ pub(super) enum News<S> {
 
 /// What the link keeps between steps.
 #[derive(Clone, Debug, Serialize)]
-pub(super) struct Link<S, const N: usize> {
+pub(super) struct Link<S, const N: usize, W> {
+    /// The format of the frames.
+    wire: W,
     header: Header,
     pub(super) table: NeighborTable<S, N>,
     /// One window per entry of the table.
@@ -73,9 +73,10 @@ pub(super) struct Listener<'a> {
     pub(super) needs: &'a dyn Fn(RobotId) -> bool,
 }
 
-impl<S: Scalar, const N: usize> Link<S, N> {
-    pub(super) const fn new(id: RobotId, boot: u8, ages: Ages, retry: Retry) -> Self {
+impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
+    pub(super) const fn new(id: RobotId, boot: u8, ages: Ages, retry: Retry, wire: W) -> Self {
         Self {
+            wire,
             header: Header {
                 boot,
                 sender: id,
@@ -102,6 +103,11 @@ impl<S: Scalar, const N: usize> Link<S, N> {
         });
     }
 
+    /// Takes the next frame off the bytes of an inbox.
+    pub(super) fn next_frame<'a>(&self, inbox: &mut &'a [u8]) -> Option<&'a [u8]> {
+        self.wire.next_frame(inbox)
+    }
+
     /// Takes one frame in, acknowledges a request, and returns what the agent must act on.
     pub(super) fn hear(
         &mut self,
@@ -110,7 +116,12 @@ impl<S: Scalar, const N: usize> Link<S, N> {
         listener: &Listener<'_>,
         out: &mut Outputs<S>,
     ) -> Option<News<S>> {
-        let frame = decode(bytes).ok().and_then(|frame| {
+        let frame = match self.wire.decode(bytes) {
+            // Others talk on the same band: neither news nor damage.
+            Err(DecodeError::Foreign) => return None,
+            frame => frame.ok(),
+        };
+        let frame = frame.and_then(|frame| {
             let arrival = self.arrival(frame.header, out)?;
             Some((frame, arrival))
         });
@@ -170,7 +181,7 @@ impl<S: Scalar, const N: usize> Link<S, N> {
             }
             Message::Request(request) if is_mine(request.to) => {
                 let answer = self.orders.receive(frame.header, &request, now);
-                self.say(&Message::Ack(answer.ack), RESERVED, out);
+                self.say_early(&Message::Ack(answer.ack), out);
                 match request.kind {
                     _ if !answer.is_new => {}
                     RequestKind::Redirect => return Some(News::Redirect),
@@ -286,7 +297,7 @@ impl<S: Scalar, const N: usize> Link<S, N> {
         // Twice as many polls as requests always empty the list.
         for _ in 0..2 * PENDING {
             match self.requests.poll(now) {
-                Some(Due::Send(request)) => self.say(&Message::Request(request), RESERVED, out),
+                Some(Due::Send(request)) => self.say_early(&Message::Request(request), out),
                 Some(Due::Expired(Request { to, kind, .. })) => {
                     report(out, Event::RequestExpired { to, kind });
                 }
@@ -304,10 +315,16 @@ impl<S: Scalar, const N: usize> Link<S, N> {
         };
     }
 
+    /// Appends a frame to the outbox if a beacon still fits behind it.
+    fn say_early(&mut self, message: &Message, out: &mut Outputs<S>) {
+        self.say(message, self.wire.beacon_len(), out);
+    }
+
     /// Appends a frame to the outbox if `reserved` bytes stay free behind it.
     fn say(&mut self, message: &Message, reserved: usize, out: &mut Outputs<S>) {
         let before = out.outbox.len();
-        if encode(self.header, message, &mut out.outbox).is_err() {
+        let said = self.wire.encode(self.header, message, &mut out.outbox);
+        if said.is_err() {
             return;
         }
         if out.outbox.len() + reserved > OUTBOX {

@@ -98,6 +98,7 @@ mod other_safety;
 mod route_guidance;
 mod safety;
 mod setup;
+mod state;
 mod travel;
 mod waypoint_guidance;
 
@@ -123,14 +124,13 @@ pub use setup::{
 pub use waypoint_guidance::WaypointGuidance;
 
 use crate::body::Body;
-use crate::digest::digest;
 use crate::grid::{Cell, Dir};
-use crate::neighbor::{Knowledge, Nearby, Neighbor, nearest};
+use crate::neighbor::{Nearby, nearest};
 use crate::rand::Rng;
 use crate::scalar::Scalar;
 use crate::supervisor::{Situation, moves, next_mode};
 use crate::time::{Duration, Instant};
-use crate::wire::{Mode, RobotId, frames};
+use crate::wire::{Mode, Postcard, RobotId, Wire};
 use heapless::Vec;
 use link::{Link, Listener, News, beacon, report};
 use serde::Serialize;
@@ -170,17 +170,17 @@ const _: () = assert!(matches!(BYTES, [2032, 2288, 1632, 2704]));
 #[cfg(target_pointer_width = "64")]
 const _: () = assert!(matches!(BYTES, [2064, 2320, 1648, 2712]));
 
-/// The controller of one robot: guidance `G`, at most `N` known neighbours, safety layer `A`.
+/// The controller of one robot: guidance `G`, at most `N` known neighbours, safety layer `A`, wire format `W`.
 ///
 /// Bytes for the default capacities on a 32-bit part: 2032 for [`RouteAgent`], 2288 for [`FormationAgent`], 1632 for
 /// [`OrcaAgent`], and 2704 of workspace that all agents on the grid of a processor share; on a 64-bit host
 /// 2064, 2320, 1648 and 2712. The build fails when one of them changes unnoticed.
 #[derive(Clone, Debug, Serialize)]
-pub struct Agent<S, G, const N: usize, A = Unguarded> {
+pub struct Agent<S, G, const N: usize, A = Unguarded, W = Postcard> {
     config: AgentConfig<S>,
     guidance: G,
     safety: A,
-    link: Link<S, N>,
+    link: Link<S, N, W>,
     mode: Mode,
     goal: Option<Goal>,
     /// Decisions so far: each has random numbers of its own.
@@ -220,11 +220,19 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>> Agent<S, G, N, A> 
     /// A robot that has just started: idle, without a goal, knowing nobody.
     #[must_use]
     pub const fn guarded(config: &AgentConfig<S>, guidance: G, safety: A) -> Self {
+        Self::speaking(config, guidance, safety, Postcard)
+    }
+}
+
+impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, G, N, A, W> {
+    /// [`Agent::guarded`] with another wire format than [`Postcard`]. All robots of a swarm speak the same one.
+    #[must_use]
+    pub const fn speaking(config: &AgentConfig<S>, guidance: G, safety: A, wire: W) -> Self {
         Self {
             config: *config,
             guidance,
             safety,
-            link: Link::new(config.id, config.boot, config.ages, config.retry),
+            link: Link::new(config.id, config.boot, config.ages, config.retry, wire),
             mode: Mode::Idle,
             goal: None,
             decisions: 0,
@@ -272,52 +280,6 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>> Agent<S, G, N, A> 
                 places.iter().map(assigned).fold(true, |all, one| all & one)
             }
         }
-    }
-
-    /// A fingerprint of the whole state: two agents with equal ones have the same future. The same on every target and in
-    /// every build for the same history. O(bytes of the state).
-    #[must_use]
-    pub fn digest(&self) -> u64
-    where
-        Self: Serialize,
-    {
-        digest(self)
-    }
-
-    /// What the robot is doing.
-    #[must_use]
-    pub const fn mode(&self) -> Mode {
-        self.mode
-    }
-
-    /// Whom it follows.
-    #[must_use]
-    pub const fn leader(&self) -> RobotId {
-        self.last.leader
-    }
-
-    /// Where it is going; `None` without a goal.
-    #[must_use]
-    pub fn target(&self) -> Option<Cell> {
-        self.goal.map(|_| self.last.target)
-    }
-
-    /// Whom it knows, by rising number.
-    #[must_use]
-    pub fn neighbors(&self) -> &[Neighbor<S>] {
-        self.link.table.as_slice()
-    }
-
-    /// What is known of robot `id` at `now`, and whether it can still be trusted. O(log N).
-    #[must_use]
-    pub fn neighbor(&self, id: RobotId, now: Instant) -> Knowledge<'_, S> {
-        self.link.table.get(id, now)
-    }
-
-    /// The guidance, for what it can tell of itself.
-    #[must_use]
-    pub const fn guidance(&self) -> &G {
-        &self.guidance
     }
 
     /// One step: hear, decide, speak. A pure function of the agent, `inputs` and `now`.
@@ -401,7 +363,8 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>> Agent<S, G, N, A> 
         let mut pass_on = Vec::<_, 4>::new();
         let heard_at = now - config.latency;
         link.expire(now, out);
-        for bytes in frames(inputs.inbox) {
+        let mut inbox = inputs.inbox;
+        while let Some(bytes) = link.next_frame(&mut inbox) {
             let listener = Listener {
                 position: inputs.pose.position,
                 heard_at,

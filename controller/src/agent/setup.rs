@@ -24,15 +24,22 @@ use crate::push_out::PushOutParams;
 use crate::route::{Replan, RouteParams};
 use crate::scalar::{Scalar, cast};
 use crate::shuffle::Sharpness;
+use crate::wire::{Postcard, Wire};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
 /// Places that a [`Task`] has room for.
 pub const PLACES: usize = GOALS;
 
-/// An agent that can be anything: `CELLS` of a search, `M` remembered visits, `N` neighbours, `K` half-planes.
-pub type AnyAgent<S, const CELLS: usize, const M: usize, const N: usize, const K: usize> =
-    Agent<S, AnyGuidance<S, CELLS, M, TEMPLATE>, N, AnySafety<S, K>>;
+/// An agent that can be anything: `CELLS` of a search, `M` remembered visits, `N` neighbours, `K` half-planes, wire format `W`.
+pub type AnyAgent<
+    S,
+    const CELLS: usize,
+    const M: usize,
+    const N: usize,
+    const K: usize,
+    W = Postcard,
+> = Agent<S, AnyGuidance<S, CELLS, M, TEMPLATE>, N, AnySafety<S, K>, W>;
 
 /// All that makes a robot what it is before it has sensed anything.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -162,10 +169,27 @@ impl Setup {
     pub fn agent<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usize>(
         &self,
     ) -> AnyAgent<S, CELLS, M, N, K> {
-        Agent::guarded(
+        self.speaking(Postcard)
+    }
+
+    /// The robot, just started, that speaks another wire format.
+    #[must_use]
+    pub fn speaking<
+        S: Scalar,
+        const CELLS: usize,
+        const M: usize,
+        const N: usize,
+        const K: usize,
+        W: Wire,
+    >(
+        &self,
+        wire: W,
+    ) -> AnyAgent<S, CELLS, M, N, K, W> {
+        Agent::speaking(
             &self.agent.cast(),
             self.guidance.guidance(),
             self.safety.safety(),
+            wire,
         )
     }
 

@@ -158,6 +158,8 @@ pub enum EncodeError {
     Full,
     /// The header names nobody as the sender.
     NoSender,
+    /// The format has no room for this robot's number; give the robot another one, or the swarm another format.
+    Robot(RobotId),
 }
 
 /// Why a frame was refused.
@@ -182,6 +184,8 @@ pub enum DecodeError {
     Trailing,
     /// Sound, but the sender is nobody.
     NoSender,
+    /// Sound, but none of the swarm's messages: somebody else's, on a band that is shared with others.
+    Foreign,
 }
 
 /// Appends one frame without a tag to `out` and returns its length.

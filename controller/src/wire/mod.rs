@@ -2,6 +2,7 @@
 
 mod assembly;
 mod fixint;
+mod format;
 mod frame;
 mod message;
 mod newest;
@@ -10,6 +11,7 @@ mod requests;
 mod sequence;
 
 pub use assembly::{MAX_TEMPLATE, PartError, Template, TemplateAssembler};
+pub use format::{Postcard, Wire};
 pub use frame::{
     DecodeError, EncodeError, Frame, Header, MAX_FRAME_LEN, TAG_LEN, VERSION, decode,
     decode_verified, encode, encode_tagged, frames,

@@ -1,0 +1,48 @@
+use super::super::arbitrary;
+use super::*;
+use crate::digest::digest;
+use proptest::collection::vec;
+use proptest::prelude::*;
+
+#[test]
+fn a_format_that_keeps_nothing_adds_nothing_to_a_digest() {
+    assert_eq!(size_of::<Postcard>(), 0);
+    assert_eq!(digest(&(1_u8, Postcard)), digest(&1_u8));
+}
+
+/// Bytes with many zeros: what a stream of frames looks like to the one that splits it.
+fn stream() -> impl Strategy<Value = std::vec::Vec<u8>> {
+    vec(prop_oneof![Just(0), 0..4_u8], 0..40)
+}
+
+proptest! {
+    #[test]
+    fn postcard_splits_as_frames_does(bytes in stream()) {
+        let mut rest = bytes.as_slice();
+        let mut split = std::vec::Vec::new();
+        while let Some(frame) = Postcard.next_frame(&mut rest) {
+            split.push(frame);
+        }
+        prop_assert_eq!(split, frames(&bytes).collect::<std::vec::Vec<_>>());
+        prop_assert!(rest.is_empty());
+    }
+
+    #[test]
+    fn postcard_reads_what_it_wrote(
+        said in vec((arbitrary::header(), arbitrary::message()), 1..4)
+    ) {
+        let mut bytes = Vec::<u8, 256>::new();
+        for (header, message) in &said {
+            let before = bytes.len();
+            let len = Postcard.encode(*header, message, &mut bytes).unwrap();
+            prop_assert_eq!(bytes.len(), before + len);
+        }
+        let mut rest = bytes.as_slice();
+        for (header, message) in said {
+            let frame = Postcard.next_frame(&mut rest).unwrap();
+            let tag = None;
+            prop_assert_eq!(Postcard.decode(frame), Ok(Frame { header, message, tag }));
+        }
+        prop_assert_eq!(Postcard.next_frame(&mut rest), None);
+    }
+}
