@@ -31,6 +31,7 @@
 extern crate std;
 
 pub mod agent;
+pub mod auth;
 pub mod body;
 pub mod cost;
 pub mod digest;

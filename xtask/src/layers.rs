@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 const LAYERS: [&[&str]; 4] = [
     &[
         "scalar", "digest", "geom", "time", "rand", "grid", "cost", "shuffle", "list", "obstacle",
+        "auth",
     ],
     &["wire", "neighbor", "body"],
     &["route", "formation", "orca", "flock", "push_out"],
