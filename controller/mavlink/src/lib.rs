@@ -19,6 +19,7 @@
 extern crate std;
 
 pub mod frame;
+pub mod signing;
 
 /// What `mavlink-bindgen` made.
 #[allow(

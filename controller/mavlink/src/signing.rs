@@ -1,0 +1,274 @@
+//! MAVLink 2 signatures: who has the key is heard, everybody else is not. Read [`Signing`] first.
+//!
+//! The signature is the first 48 bits of SHA-256 over key, frame with checksum, link id and timestamp; 13 bytes with these two. Whoever
+//! guesses is right once in 2^48 tries. See "Message Signing" in MAVLink's guide; pymavlink and MAVProxy do the same.
+
+use crate::frame::{RawFrame, SIGNATURE_LEN};
+use crc::{CRC_16_MCRF4XX, Crc, Table};
+use serde::Serialize;
+use staya_controller::auth::{Freshness, Key, ReplayGuard, Sha256, is_same};
+
+/// Senders that a [`Signing`] of default capacity knows.
+pub const STREAMS: usize = 64;
+/// A minute of timestamps, which count tens of microseconds.
+pub const MINUTE: u64 = 6_000_000;
+/// What begins with timestamp 0: the first second of 2015 (UTC), in seconds after that of 1970.
+pub const EPOCH_UNIX_S: u64 = 1_420_070_400;
+
+/// Timestamps have 48 bits.
+const LAST_TIMESTAMP: u64 = (1 << 48) - 1;
+const START_V2: u8 = 0xFD;
+/// Incompatibility flag: a signature follows the checksum.
+const SIGNED: u8 = 1;
+/// Bytes of a header before the payload.
+const HEADER: usize = 10;
+
+static CRC: Crc<u16, Table<1>> = Crc::<u16, Table<1>>::new(&CRC_16_MCRF4XX);
+
+/// Why a frame was not signed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SignError {
+    /// It is no whole MAVLink 2 frame without a signature.
+    NotAFrame,
+    /// No timestamp is left: 89 years are over, or somebody with the key claimed so.
+    Exhausted,
+}
+
+/// What a frame is worth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Signed with the key, and not seen before.
+    Authentic,
+    /// Not signed, but of a message that may be: see [`Signing::with_unsigned`].
+    Unsigned,
+    /// Not signed: to be dropped.
+    RefusedUnsigned,
+    /// Signed with another key, or changed on the way: to be dropped.
+    Forged,
+    /// Signed with the key, but seen before or too old: to be dropped.
+    Replayed,
+    /// From a sender that is not known and for whom there is no room: to be dropped.
+    NoRoom,
+}
+
+impl Verdict {
+    /// Whether the frame is to be heard.
+    #[must_use]
+    pub const fn is_accepted(self) -> bool {
+        matches!(self, Self::Authentic | Self::Unsigned)
+    }
+}
+
+/// How many frames were what; counts stay at their end.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Counts {
+    /// [`Verdict::Authentic`].
+    pub authentic: u32,
+    /// [`Verdict::Unsigned`].
+    pub unsigned: u32,
+    /// [`Verdict::RefusedUnsigned`].
+    pub refused_unsigned: u32,
+    /// [`Verdict::Forged`].
+    pub forged: u32,
+    /// [`Verdict::Replayed`].
+    pub replayed: u32,
+    /// [`Verdict::NoRoom`].
+    pub no_room: u32,
+}
+
+impl Counts {
+    /// Frames that were to be dropped.
+    #[must_use]
+    pub const fn refused(&self) -> u32 {
+        self.refused_unsigned
+            .saturating_add(self.forged)
+            .saturating_add(self.replayed)
+            .saturating_add(self.no_room)
+    }
+
+    fn count(&mut self, verdict: Verdict) {
+        let count = match verdict {
+            Verdict::Authentic => &mut self.authentic,
+            Verdict::Unsigned => &mut self.unsigned,
+            Verdict::RefusedUnsigned => &mut self.refused_unsigned,
+            Verdict::Forged => &mut self.forged,
+            Verdict::Replayed => &mut self.replayed,
+            Verdict::NoRoom => &mut self.no_room,
+        };
+        *count = count.saturating_add(1);
+    }
+}
+
+/// Signs what one end of a link sends, and checks what it receives from up to `N` senders.
+///
+/// # Timestamps
+///
+/// Each signed frame has a timestamp, 10 us since 2015, greater than all before it of the same system, component and link id. It
+/// goes up by at least 1 per frame, and never falls behind what was received: so a swarm without clocks agrees on one.
+///
+/// - **With a clock:** give the time to [`Self::new`], and from time to time (once a second will do) to [`Self::advance_to`].
+/// - **Without:** store [`Self::timestamp`] in lasting memory at least once a minute, and start with what is stored plus [`MINUTE`].
+///   A robot that starts with an older one is not heard (pymavlink, Staya and autopilots alike) until it has caught up, which it does with the first frame
+///   of somebody else that it accepts; robots that all forgot theirs hear each other, but not who still knows.
+///
+/// # What is accepted
+///
+/// A frame with the right signature is fresh when its timestamp is greater than all of its stream (system, component, link id), or at most 31 behind
+/// and not seen before: a counter's frames may overtake each other, as with [`ReplayGuard`]; with a clock 31 are a third of a millisecond. A stream's
+/// first frame must not be more than [`MINUTE`] older than the newest timestamp known. So after a restart with a proper timestamp at
+/// most the last minute can be replayed, and only of who has not been heard since. A full table refuses new streams.
+///
+/// The state that serde sees does not hold the key.
+#[derive(Clone, Debug, Serialize)]
+pub struct Signing<const N: usize = STREAMS> {
+    #[serde(skip)]
+    key: Key,
+    link: u8,
+    /// Of the next frame.
+    timestamp: u64,
+    streams: ReplayGuard<N>,
+    may_be_unsigned: &'static [u32],
+    counts: Counts,
+}
+
+impl<const N: usize> Signing<N> {
+    /// With this key, as link number `link` of its system, from this timestamp on.
+    #[must_use]
+    pub const fn new(key: Key, link: u8, timestamp: u64) -> Self {
+        Self {
+            key,
+            link,
+            timestamp,
+            streams: ReplayGuard::new(),
+            may_be_unsigned: &[],
+            counts: Counts {
+                authentic: 0,
+                unsigned: 0,
+                refused_unsigned: 0,
+                forged: 0,
+                replayed: 0,
+                no_room: 0,
+            },
+        }
+    }
+
+    /// The same, but messages of these ids are heard without a signature too. Without this call none is. Telemetry radios cannot sign their
+    /// `RADIO_STATUS` (109).
+    #[must_use]
+    pub const fn with_unsigned(mut self, message_ids: &'static [u32]) -> Self {
+        self.may_be_unsigned = message_ids;
+        self
+    }
+
+    /// The timestamp of the next frame: what to store.
+    #[must_use]
+    pub const fn timestamp(&self) -> u64 {
+        self.timestamp
+    }
+
+    /// Says what time it is; an earlier one than known changes nothing.
+    pub const fn advance_to(&mut self, timestamp: u64) {
+        if timestamp > self.timestamp {
+            self.timestamp = timestamp;
+        }
+    }
+
+    /// How many frames were what so far.
+    #[must_use]
+    pub const fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    /// Makes a signed frame of one that is not: changes its flags and checksum in place, and returns what must be appended to it.
+    ///
+    /// # Errors
+    /// See [`SignError`]; the frame is as it was.
+    ///
+    /// Bounded work: SHA-256 over at most 307 bytes.
+    pub fn sign(&mut self, frame: &mut [u8]) -> Result<[u8; SIGNATURE_LEN], SignError> {
+        let total = frame.len();
+        let [START_V2, len, flags, .., low, high] = &mut *frame else {
+            return Err(SignError::NotAFrame);
+        };
+        if *flags != 0 || total != HEADER + usize::from(*len) + 2 {
+            return Err(SignError::NotAFrame);
+        }
+        if self.timestamp > LAST_TIMESTAMP {
+            return Err(SignError::Exhausted);
+        }
+        let checksum = u16::from_le_bytes([*low, *high]) ^ flag_in_checksum(*len);
+        *flags = SIGNED;
+        [*low, *high] = checksum.to_le_bytes();
+        let [a, b, c, d, e, f, _, _] = self.timestamp.to_le_bytes();
+        self.timestamp = self.timestamp.saturating_add(1);
+        let stamp = [self.link, a, b, c, d, e, f];
+        let [p, q, r, s, t, u] = self.value(frame, &stamp);
+        Ok([self.link, a, b, c, d, e, f, p, q, r, s, t, u])
+    }
+
+    /// Judges a frame, counts it, and remembers it if it is authentic.
+    ///
+    /// Bounded work: SHA-256 over at most 307 bytes, and O(N).
+    pub fn verify(&mut self, frame: &RawFrame<'_>) -> Verdict {
+        let verdict = self.judge(frame);
+        self.counts.count(verdict);
+        verdict
+    }
+
+    fn judge(&mut self, frame: &RawFrame<'_>) -> Verdict {
+        let (Some(signature), Some((signed, _))) = (
+            frame.signature(),
+            frame.bytes().split_last_chunk::<SIGNATURE_LEN>(),
+        ) else {
+            return if self.may_be_unsigned.contains(&frame.message_id()) {
+                Verdict::Unsigned
+            } else {
+                Verdict::RefusedUnsigned
+            };
+        };
+        let &[link, a, b, c, d, e, f, ref value @ ..] = signature;
+        if !is_same(&self.value(signed, &[link, a, b, c, d, e, f]), value) {
+            return Verdict::Forged;
+        }
+        let timestamp = u64::from_le_bytes([a, b, c, d, e, f, 0, 0]);
+        let sender = frame.sender();
+        let stream = u32::from_le_bytes([sender.system, sender.component, link, 0]);
+        let is_old = timestamp.saturating_add(MINUTE) < self.timestamp;
+        if is_old && !self.streams.knows(stream) {
+            return Verdict::Replayed;
+        }
+        match self.streams.admit(stream, timestamp) {
+            Freshness::New | Freshness::Late => {
+                self.advance_to(timestamp);
+                Verdict::Authentic
+            }
+            Freshness::Replayed => Verdict::Replayed,
+            Freshness::NoRoom => Verdict::NoRoom,
+        }
+    }
+
+    /// The value of a signature of these bytes.
+    fn value(&self, frame: &[u8], stamp: &[u8; 7]) -> [u8; 6] {
+        let mut hash = Sha256::new();
+        hash.update(self.key.as_bytes());
+        hash.update(frame);
+        hash.update(stamp);
+        let [a, b, c, d, e, f, ..] = hash.finish();
+        [a, b, c, d, e, f]
+    }
+}
+
+/// How the checksum of a frame with `len` bytes of payload changes when its flag is set. A checksum is linear in the bits that it covers, so this needs
+/// neither them nor the message's definition.
+fn flag_in_checksum(len: u8) -> u16 {
+    let mut digest = CRC.digest_with_initial(0);
+    digest.update(&[SIGNED]);
+    // The rest of the header, the payload, and what the definition adds.
+    for _ in 0..HEADER - 3 + usize::from(len) + 1 {
+        digest.update(&[0]);
+    }
+    digest.finalize()
+}
+
+#[cfg(test)]
+mod tests;

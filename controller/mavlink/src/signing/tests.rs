@@ -1,0 +1,224 @@
+use super::*;
+use crate::dialect::{HEARTBEAT_DATA, MavMessage};
+use crate::frame::{MAX_FRAME_LEN, Sender, encode, encode_message};
+use heapless::Vec;
+use proptest::prelude::*;
+
+/// What pymavlink makes with the key 0, 1, 2, ... 31; tests/python/test_signing.py compares it with pymavlink.
+const GOLDEN: &str = include_str!("../../../../tests/golden/signed-frames.txt");
+const NOW: u64 = 37_000_000_000_000;
+
+fn key() -> Key {
+    let mut bytes = [0; 32];
+    for (byte, number) in bytes.iter_mut().zip(0..) {
+        *byte = number;
+    }
+    Key::new(bytes)
+}
+
+type Bytes = Vec<u8, MAX_FRAME_LEN>;
+
+fn golden() -> impl Iterator<Item = (&'static str, Bytes)> {
+    let lines = GOLDEN.lines().filter(|line| !line.starts_with('#'));
+    lines.map(|line| {
+        let (name, hex) = line.split_once(' ').unwrap();
+        let byte = |at| u8::from_str_radix(&hex[at..at + 2], 16).unwrap();
+        (name, (0..hex.len()).step_by(2).map(byte).collect())
+    })
+}
+
+fn heartbeat(system: u8, sequence: u8) -> Bytes {
+    let sender = Sender {
+        system,
+        component: 1,
+        sequence,
+    };
+    let data = HEARTBEAT_DATA {
+        custom_mode: sequence.into(),
+        ..HEARTBEAT_DATA::default()
+    };
+    let mut frame = Bytes::new();
+    encode(sender, &data, &mut frame).unwrap();
+    frame
+}
+
+fn signed<const N: usize>(by: &mut Signing<N>, frame: &Bytes) -> Bytes {
+    let mut frame = frame.clone();
+    let signature = by.sign(&mut frame).unwrap();
+    frame.extend_from_slice(&signature).unwrap();
+    frame
+}
+
+fn judged<const N: usize>(by: &mut Signing<N>, frame: &[u8]) -> Verdict {
+    by.verify(&RawFrame::new(frame).expect("a sound frame"))
+}
+
+#[test]
+fn frames_signed_here_are_those_of_pymavlink() {
+    let mut sender = Signing::<4>::new(key(), 3, NOW);
+    let mut receiver = Signing::<4>::new(key(), 0, 0);
+    let mut stranger = Signing::<4>::new(Key::of_passphrase(b"another"), 0, 0);
+    let mut count = 0;
+    for (name, want) in golden() {
+        let raw = RawFrame::new(&want).expect("a sound frame");
+        let mut plain = Bytes::new();
+        encode_message(raw.sender(), &raw.message().unwrap(), &mut plain).unwrap();
+        assert_eq!(signed(&mut sender, &plain), want, "{name}");
+        assert_eq!(receiver.verify(&raw), Verdict::Authentic, "{name}");
+        assert_eq!(stranger.verify(&raw), Verdict::Forged, "{name}");
+        assert_eq!(receiver.verify(&raw), Verdict::Replayed, "{name}");
+        count += 1;
+    }
+    assert!(count >= 4);
+    assert_eq!(receiver.timestamp(), NOW + u64::from(count) - 1);
+    let counts = receiver.counts();
+    assert_eq!((counts.authentic, counts.refused()), (count, count));
+    assert_eq!((stranger.counts().forged, counts.replayed), (count, count));
+}
+
+#[test]
+fn a_signed_frame_keeps_message_and_checksum_sound() {
+    let frame = signed(&mut Signing::<1>::new(key(), 0, 5), &heartbeat(1, 9));
+    let raw = RawFrame::new(&frame).expect("the checksum covers the flag");
+    assert!(raw.is_known());
+    assert!(matches!(raw.message(), Some(MavMessage::HEARTBEAT(data)) if data.custom_mode == 9));
+}
+
+#[test]
+fn what_is_no_plain_frame_is_not_signed() {
+    let mut signing = Signing::<1>::new(key(), 0, 5);
+    let mut twice = signed(&mut signing, &heartbeat(1, 0));
+    let mut v1 = [0xFE, 0, 0, 1, 1, 0, 0, 0];
+    let mut cut = heartbeat(1, 0);
+    cut.pop();
+    for frame in [&mut twice[..], &mut v1, &mut cut, &mut [], &mut [0xFD]] {
+        let before = std::vec::Vec::from(&*frame);
+        assert_eq!(signing.sign(frame), Err(SignError::NotAFrame));
+        assert_eq!(before, frame);
+    }
+    assert_eq!(signing.timestamp(), 6);
+}
+
+#[test]
+fn timestamps_end() {
+    let mut signing = Signing::<1>::new(key(), 0, LAST_TIMESTAMP);
+    assert!(signing.sign(&mut heartbeat(1, 0)).is_ok());
+    let mut frame = heartbeat(1, 1);
+    assert_eq!(signing.sign(&mut frame), Err(SignError::Exhausted));
+    assert_eq!(frame, heartbeat(1, 1));
+}
+
+#[test]
+fn unsigned_frames_are_refused_except_those_named() {
+    let frame = heartbeat(1, 0);
+    let mut strict = Signing::<1>::new(key(), 0, 0);
+    assert_eq!(judged(&mut strict, &frame), Verdict::RefusedUnsigned);
+    let mut lax = strict.clone().with_unsigned(&[0, 109]);
+    assert_eq!(judged(&mut lax, &frame), Verdict::Unsigned);
+    let mut other = strict.clone().with_unsigned(&[109]);
+    assert_eq!(judged(&mut other, &frame), Verdict::RefusedUnsigned);
+    assert!(Verdict::Unsigned.is_accepted() && !Verdict::RefusedUnsigned.is_accepted());
+    assert_eq!(
+        (lax.counts().unsigned, other.counts().refused_unsigned),
+        (1, 2)
+    );
+}
+
+#[test]
+fn a_new_stream_is_at_most_a_minute_old() {
+    for (timestamp, want) in [
+        (NOW - MINUTE - 1, Verdict::Replayed),
+        (NOW - MINUTE, Verdict::Authentic),
+    ] {
+        let frame = signed(
+            &mut Signing::<1>::new(key(), 0, timestamp),
+            &heartbeat(1, 0),
+        );
+        let mut receiver = Signing::<1>::new(key(), 0, NOW);
+        assert_eq!(judged(&mut receiver, &frame), want);
+    }
+}
+
+#[test]
+fn timestamps_catch_up_with_those_received() {
+    let (mut old, mut young) = (
+        Signing::<2>::new(key(), 0, NOW),
+        Signing::<2>::new(key(), 0, 1),
+    );
+    let refused = signed(&mut young, &heartbeat(2, 0));
+    assert_eq!(judged(&mut old, &refused), Verdict::Replayed);
+    let heard = signed(&mut old, &heartbeat(1, 0));
+    assert_eq!(judged(&mut young, &heard), Verdict::Authentic);
+    let accepted = signed(&mut young, &heartbeat(2, 1));
+    assert_eq!(judged(&mut old, &accepted), Verdict::Authentic);
+    // Not by who has another key.
+    let mut liar = Signing::<2>::new(Key::of_passphrase(b"another"), 0, NOW + MINUTE);
+    let before = young.timestamp();
+    assert_eq!(
+        judged(&mut young, &signed(&mut liar, &heartbeat(3, 0))),
+        Verdict::Forged
+    );
+    assert_eq!(young.timestamp(), before);
+}
+
+#[test]
+fn a_sender_that_starts_anew_as_told_is_heard_and_its_old_frames_are_not() {
+    let mut receiver = Signing::<2>::new(key(), 0, 0);
+    let mut sender = Signing::<2>::new(key(), 0, 100);
+    let recorded: std::vec::Vec<_> = (0..40)
+        .map(|n| signed(&mut sender, &heartbeat(1, n)))
+        .collect();
+    for frame in &recorded {
+        assert_eq!(judged(&mut receiver, frame), Verdict::Authentic);
+    }
+    // Stored before the frames were sent.
+    let mut sender = Signing::<2>::new(key(), 0, 100 + MINUTE);
+    let anew = signed(&mut sender, &heartbeat(1, 0));
+    assert_eq!(judged(&mut receiver, &anew), Verdict::Authentic);
+    for frame in &recorded {
+        assert_eq!(judged(&mut receiver, frame), Verdict::Replayed);
+    }
+}
+
+#[test]
+fn links_and_components_are_streams_of_their_own_and_a_full_table_refuses_new_ones() {
+    let mut receiver = Signing::<2>::new(key(), 0, 0);
+    for link in 0..2 {
+        let frame = signed(&mut Signing::<1>::new(key(), link, 50), &heartbeat(1, 0));
+        assert_eq!(judged(&mut receiver, &frame), Verdict::Authentic);
+    }
+    let frame = signed(&mut Signing::<1>::new(key(), 2, 50), &heartbeat(1, 0));
+    assert_eq!(judged(&mut receiver, &frame), Verdict::NoRoom);
+    let next = signed(&mut Signing::<1>::new(key(), 1, 51), &heartbeat(1, 1));
+    assert_eq!(judged(&mut receiver, &next), Verdict::Authentic);
+}
+
+#[test]
+fn the_state_does_not_hold_the_key() {
+    let of = |key| staya_controller::digest::digest(&Signing::<2>::new(key, 1, 2));
+    assert_eq!(of(key()), of(Key::of_passphrase(b"another")));
+    assert_ne!(
+        of(key()),
+        staya_controller::digest::digest(&Signing::<2>::new(key(), 1, 3))
+    );
+}
+
+proptest! {
+    /// Whatever bit is flipped, and even if the checksum is made to fit again: the frame is not authentic.
+    #[test]
+    fn any_flipped_bit_is_refused(bit in 0_usize..34 * 8, sequence: u8) {
+        let mut frame = signed(&mut Signing::<2>::new(key(), 3, NOW), &heartbeat(1, sequence));
+        let bit = bit % (frame.len() * 8);
+        frame[bit / 8] ^= 1 << (bit % 8);
+        if let Some(raw) = RawFrame::new(&frame) {
+            prop_assert!(!Signing::<2>::new(key(), 0, NOW).verify(&raw).is_accepted());
+        }
+        let end = frame.len() - SIGNATURE_LEN;
+        let signature: [u8; SIGNATURE_LEN] = frame[end..].try_into().unwrap();
+        // As somebody without the key would do it: a sound frame under a signature of another one.
+        let mut forged = heartbeat(1, sequence.wrapping_add(1));
+        Signing::<2>::new(Key::new([0; 32]), 3, 0).sign(&mut forged).unwrap();
+        forged.extend_from_slice(&signature).unwrap();
+        prop_assert_eq!(judged(&mut Signing::<2>::new(key(), 0, NOW), &forged), Verdict::Forged);
+    }
+}
