@@ -1,0 +1,167 @@
+use super::*;
+use staya_mavlink::dialect::STAYA_GOAL_DATA;
+use staya_mavlink::frame::{RawFrame, Sender, encode};
+use std::io::Write as _;
+use std::net::{TcpStream, UdpSocket};
+use std::time::Instant;
+
+const PATIENCE: Duration = Duration::from_secs(10);
+
+fn framed(x: i16) -> Vec<u8> {
+    let mut out = heapless::Vec::<u8, 64>::new();
+    let goal = STAYA_GOAL_DATA {
+        target_x: x,
+        ..STAYA_GOAL_DATA::DEFAULT
+    };
+    encode(Sender::default(), &goal, &mut out).expect("room");
+    out.to_vec()
+}
+
+fn open(text: &str) -> Lines {
+    let endpoint = text.parse().expect(text);
+    Lines::open(&[endpoint]).expect(text)
+}
+
+fn goal(received: &Received) -> i16 {
+    let frame = RawFrame::new(&received.frame).expect("a frame");
+    frame.get::<STAYA_GOAL_DATA>().expect("a goal").target_x
+}
+
+fn pair(listening: &str, calling: &str) -> (Lines, Lines) {
+    let listening = open(&format!("{listening}:127.0.0.1:0"));
+    let port = listening.local(0).expect("an address").port();
+    (listening, open(&format!("{calling}:127.0.0.1:{port}")))
+}
+
+/// Sends until it arrives: a connection takes its time, a datagram may be lost.
+fn arrives(from: &Lines, to: &Lines, x: i16) -> Received {
+    let began = Instant::now();
+    while began.elapsed() < PATIENCE {
+        from.send(0, &framed(x));
+        if let Some(received) = to.receive(Duration::from_millis(100)) {
+            return received;
+        }
+    }
+    panic!("nothing arrived");
+}
+
+fn both_ways(listening: &Lines, calling: &Lines) {
+    let received = arrives(calling, listening, 5);
+    assert_eq!(goal(&received), 5);
+    listening.send_to(0, received.peer, &framed(6));
+    let answer = calling.receive(PATIENCE).expect("an answer");
+    assert_eq!(goal(&answer), 6);
+    listening.send(0, &framed(7));
+    let answer = calling.receive(PATIENCE).expect("an answer");
+    assert_eq!(goal(&answer), 7);
+    // What was written is counted a moment after it can be read.
+    let bytes = 2 * framed(6).len() as u64;
+    let began = Instant::now();
+    while listening.counts(0).bytes_out < bytes && began.elapsed() < PATIENCE {
+        std::thread::sleep(GLANCE);
+    }
+    let counts = listening.counts(0);
+    assert_eq!((counts.frames_out, counts.bytes_out), (2, bytes));
+    assert!(counts.frames_in >= 1 && counts.lost_in == 0);
+}
+
+#[test]
+fn datagrams_go_both_ways() {
+    let (listening, calling) = pair("udpin", "udpout");
+    both_ways(&listening, &calling);
+}
+
+#[test]
+fn connections_carry_both_ways() {
+    let (listening, calling) = pair("tcpin", "tcpout");
+    both_ways(&listening, &calling);
+}
+
+#[test]
+fn connection_that_ended_is_made_anew() {
+    let (listening, calling) = pair("tcpin", "tcpout");
+    arrives(&calling, &listening, 1);
+    let address = listening.local(0).expect("an address");
+    drop(listening);
+    let again = open(&format!("tcpin:{address}"));
+    assert_eq!(goal(&arrives(&calling, &again, 2)), 2);
+}
+
+#[test]
+fn frames_come_out_of_pieces_and_junk() {
+    let listening = open("tcpin:127.0.0.1:0");
+    let address = listening.local(0).expect("an address");
+    let mut socket = TcpStream::connect(address).expect("a connection");
+    let mut bytes = vec![0xFD, 7, 7];
+    bytes.extend(framed(1));
+    bytes.extend([1, 2, 3]);
+    bytes.extend(framed(2));
+    for piece in bytes.chunks(5) {
+        socket.write_all(piece).expect("a peer");
+        socket.flush().expect("a peer");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    let found: Vec<_> = (0..2).filter_map(|_| listening.receive(PATIENCE)).collect();
+    assert_eq!(found.iter().map(goal).collect::<Vec<_>>(), [1, 2]);
+    assert_eq!(listening.counts(0).junk_bytes, 6);
+}
+
+#[test]
+fn everybody_who_was_heard_is_told() {
+    let listening = open("udpin:127.0.0.1:0");
+    let port = listening.local(0).expect("an address").port();
+    let callers: Vec<_> = (0..3)
+        .map(|_| open(&format!("udpout:127.0.0.1:{port}")))
+        .collect();
+    for (x, caller) in (0..).zip(&callers) {
+        assert_eq!(goal(&arrives(caller, &listening, x)), x);
+    }
+    listening.send(0, &framed(9));
+    for caller in &callers {
+        assert_eq!(goal(&caller.receive(PATIENCE).expect("told")), 9);
+    }
+}
+
+#[test]
+fn absent_peer_stops_nobody() {
+    let unused = UdpSocket::bind("127.0.0.1:0").expect("a port");
+    let address = unused.local_addr().expect("an address");
+    drop(unused);
+    let lines = [format!("udpout:{address}"), format!("tcpout:{address}")];
+    let lines = lines.map(|text| text.parse().expect("a line"));
+    let lines = Lines::open(&lines).expect("lines");
+    for _ in 0..50 {
+        lines.send(0, &framed(1));
+        lines.send(1, &framed(1));
+    }
+    assert_eq!(lines.receive(Duration::ZERO), None);
+    assert_eq!(lines.counts(1).frames_out, 0);
+}
+
+#[test]
+fn peer_that_does_not_read_costs_frames_not_time() {
+    let listening = open("tcpin:127.0.0.1:0");
+    let address = listening.local(0).expect("an address");
+    let mut socket = TcpStream::connect(address).expect("a connection");
+    socket.write_all(&framed(1)).expect("a peer");
+    assert!(listening.receive(PATIENCE).is_some());
+    let began = Instant::now();
+    for _ in 0..400_000 {
+        listening.send(0, &framed(1));
+    }
+    assert!(listening.counts(0).lost_out > 0, "some found no room");
+    assert!(began.elapsed() < PATIENCE);
+    drop(socket);
+}
+
+#[test]
+fn taken_port_is_an_error_that_names_it() {
+    let listening = open("udpin:127.0.0.1:0");
+    let address = listening.local(0).expect("an address");
+    let again = format!("udpin:{address}").parse().expect("a line");
+    let error = Lines::open(&[again]).err().expect("taken").to_string();
+    assert!(
+        error.starts_with(&format!("cannot open udpin:{address}: ")),
+        "{error}"
+    );
+}
