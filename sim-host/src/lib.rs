@@ -3,7 +3,7 @@
 //! [`scenario`] reads what to simulate, [`terrain`] the land, [`engine`] runs every robot's
 //! [`staya_controller::agent::Agent`] through two-phase ticks over [`world`] and [`radio`],
 //! [`metrics`] measures, [`record`] keeps what happened, [`plot`] draws it, [`experiment`]
-//! reproduces papers, [`cli`] is the command `staya`.
+//! reproduces papers, [`mavlink`] is the edge to autopilots and ground stations, [`cli`] is the command `staya`.
 
 pub mod cli;
 pub mod engine;
