@@ -1,6 +1,6 @@
 //! MAVLink for swarms: the messages that robots and ground stations exchange, without `std` or an allocator.
 //!
-//! [`frame`] finds and makes frames in bytes. [`dialect`] is made by `mavlink-bindgen` from `messages/staya.xml` (Staya's own messages) and `messages/common.xml` (the part of the public ones that Staya speaks).
+//! [`wire`] is the wire format of a robot that speaks MAVLink. [`frame`] finds and makes frames in bytes. [`dialect`] is made by `mavlink-bindgen` from `messages/staya.xml` (Staya's own messages) and `messages/common.xml` (the part of the public ones that Staya speaks).
 
 #![no_std]
 // Tests may fail loudly.
@@ -20,6 +20,7 @@ extern crate std;
 
 pub mod frame;
 pub mod signing;
+pub mod wire;
 
 /// What `mavlink-bindgen` made.
 #[allow(

@@ -1,0 +1,426 @@
+//! The swarm's messages as MAVLink 2 frames: [`Mavlink`], a [`Wire`] like the controller's own postcard.
+//!
+//! Each of the controller's messages is one `STAYA_*` message of the dialect, with boot and sequence of its [`Header`] in the payload: MAVLink's own
+//! sequence of 8 bits tells too few frames apart to find repeated ones. A robot's number is its system: 1 to 254, and 255 a ground
+//! station. Its component is [`COMPONENT`].
+//!
+//! Others may talk on the same band: what is MAVLink but no `STAYA_*` message is [`DecodeError::Foreign`], which a robot neither believes nor counts as
+//! damage. Everything else between frames comes out of [`Wire::next_frame`] as one piece, which [`Wire::decode`] refuses, so that it counts.
+
+use crate::dialect::{
+    STAYA_ACK_DATA, STAYA_BEACON_DATA, STAYA_COMPACT_DATA, STAYA_GOAL_DATA, STAYA_PLACE_DATA,
+    STAYA_REQUEST_DATA, STAYA_TEMPLATE_DATA,
+};
+use crate::frame::{self, Full, RawFrame, Scan, Sender, scan};
+use heapless::Vec;
+use mavlink_core::MessageData;
+use serde::Serialize;
+use staya_controller::grid::{Cell, Dir};
+use staya_controller::time::Instant;
+use staya_controller::wire::{
+    Ack, Beacon, CompactBeacon, DecodeError, EncodeError, Frame, GoalAssignment, Header, Message,
+    Mode, PlaceAssignment, Request, RequestKind, RobotId, TEMPLATE_PART, TemplateAssignment,
+    TemplateEntry, Wire,
+};
+
+/// The component that robots speak as: an onboard computer (`MAV_COMP_ID_ONBOARD_COMPUTER`).
+pub const COMPONENT: u8 = 191;
+/// The largest number of a robot: 255 is a ground station.
+pub const MAX_ROBOT: u8 = 254;
+/// Bytes of a frame around its payload.
+const AROUND: usize = 12;
+
+/// Bytes of a beacon's frame, at most.
+pub const BEACON_LEN: usize = AROUND + STAYA_BEACON_DATA::ENCODED_LEN;
+
+/// MAVLink 2 frames without signature. It keeps nothing; signatures of others are not looked at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Mavlink;
+
+impl Wire for Mavlink {
+    fn beacon_len(&self) -> usize {
+        BEACON_LEN
+    }
+
+    /// Bounded work: O(bytes of the frame).
+    fn encode<const N: usize>(
+        &mut self,
+        header: Header,
+        message: &Message,
+        out: &mut Vec<u8, N>,
+    ) -> Result<usize, EncodeError> {
+        encode(header, message, out)
+    }
+
+    /// Bounded work: O(bytes of the frame).
+    fn decode(&mut self, frame: &[u8]) -> Result<Frame, DecodeError> {
+        decode(frame)
+    }
+
+    /// Bounded work: that of [`scan`].
+    fn next_frame<'a>(&self, rest: &mut &'a [u8]) -> Option<&'a [u8]> {
+        next_frame(rest)
+    }
+}
+
+/// Takes the next frame off `rest`, or the bytes before it that belong to none; `None` when nothing is left. For bytes that no
+/// more will follow.
+///
+/// Bounded work: that of [`scan`].
+pub fn next_frame<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
+    let len = match scan(rest, true) {
+        Scan::Frame { junk: 0, frame } => frame.bytes().len(),
+        Scan::Frame { junk, .. } | Scan::Nothing { junk } => junk,
+    };
+    let (piece, behind) = rest.split_at_checked(len)?;
+    *rest = behind;
+    (!piece.is_empty()).then_some(piece)
+}
+
+/// Appends a message as one MAVLink 2 frame without a signature and returns its length.
+///
+/// # Errors
+/// [`EncodeError::NoSender`] when `header` names nobody, [`EncodeError::Robot`] when somebody's number is above 255,
+/// [`EncodeError::Full`] when the frame does not fit. Nothing is written then.
+///
+/// Bounded work: O(bytes of the frame).
+pub fn encode<const N: usize>(
+    header: Header,
+    message: &Message,
+    out: &mut Vec<u8, N>,
+) -> Result<usize, EncodeError> {
+    if !header.sender.is_somebody() {
+        return Err(EncodeError::NoSender);
+    }
+    let sender = Sender {
+        system: system(header.sender)?,
+        component: COMPONENT,
+        // Counts frames as MAVLink wants it.
+        sequence: header.sequence as u8,
+    };
+    let Header { boot, sequence, .. } = header;
+    let written = match message {
+        Message::Beacon(beacon) => {
+            let [x_mm, y_mm, z_mm] = beacon.position_mm;
+            let [vx_mmps, vy_mmps, vz_mmps] = beacon.velocity_mmps;
+            let data = STAYA_BEACON_DATA {
+                time_us: beacon.time.as_micros(),
+                x_mm,
+                y_mm,
+                z_mm,
+                vx_mmps,
+                vy_mmps,
+                vz_mmps,
+                radius_mm: beacon.radius_mm,
+                cell_x: beacon.cell.x,
+                cell_y: beacon.cell.y,
+                target_x: beacon.target.x,
+                target_y: beacon.target.y,
+                busy_ms: beacon.busy_ms,
+                sequence,
+                boot,
+                heading: heading(beacon.heading),
+                leader: system(beacon.leader)?,
+                slot: beacon.slot,
+                mode: beacon.mode as u8,
+            };
+            frame::encode(sender, &data, out)
+        }
+        Message::Compact(beacon) => {
+            let [x_mm, y_mm] = beacon.position_mm;
+            let [vx_mmps, vy_mmps] = beacon.velocity_mmps;
+            let data = STAYA_COMPACT_DATA {
+                x_mm,
+                y_mm,
+                time_ms: beacon.time_ms,
+                vx_mmps,
+                vy_mmps,
+                sequence,
+                boot,
+                radius_cm: beacon.radius_cm,
+                mode: beacon.mode as u8,
+            };
+            frame::encode(sender, &data, out)
+        }
+        Message::Request(request) => {
+            let data = STAYA_REQUEST_DATA {
+                valid_ms: request.valid_ms,
+                sequence,
+                boot,
+                target_system: system(request.to)?,
+                origin: system(request.origin)?,
+                number: request.number,
+                kind: match request.kind {
+                    RequestKind::Stop => 0,
+                    RequestKind::Resume => 1,
+                    RequestKind::Redirect => 2,
+                },
+            };
+            frame::encode(sender, &data, out)
+        }
+        Message::Ack(ack) => {
+            let data = STAYA_ACK_DATA {
+                sequence,
+                boot,
+                target_system: system(ack.to)?,
+                request_boot: ack.boot,
+                number: ack.number,
+                accepted: ack.accepted.into(),
+            };
+            frame::encode(sender, &data, out)
+        }
+        Message::Template(part) => {
+            let data = template(part, boot, sequence)?;
+            frame::encode(sender, &data, out)
+        }
+        Message::Goal(goal) => {
+            let data = STAYA_GOAL_DATA {
+                sequence,
+                target_x: goal.target.x,
+                target_y: goal.target.y,
+                boot,
+                target_system: system(goal.to)?,
+                version: goal.version,
+            };
+            frame::encode(sender, &data, out)
+        }
+        Message::Place(place) => {
+            let [x_mm, y_mm, z_mm] = place.position_mm;
+            let [vx_mmps, vy_mmps, vz_mmps] = place.velocity_mmps;
+            let data = STAYA_PLACE_DATA {
+                x_mm,
+                y_mm,
+                z_mm,
+                vx_mmps,
+                vy_mmps,
+                vz_mmps,
+                sequence,
+                boot,
+                target_system: system(place.to)?,
+                version: place.version,
+                index: place.index,
+            };
+            frame::encode(sender, &data, out)
+        }
+    };
+    written.map_err(|Full| EncodeError::Full)
+}
+
+/// Reads one MAVLink 2 frame; a signature is not looked at.
+///
+/// # Errors
+/// [`DecodeError::Crc`] for bytes that are no sound frame, [`DecodeError::Foreign`] for one that is no `STAYA_*` message,
+/// [`DecodeError::NoSender`] for one of system 0, [`DecodeError::Body`] for a field without meaning (an unknown mode, more
+/// neighbours than a part holds, ...).
+///
+/// Bounded work: O(bytes of the frame).
+pub fn decode(bytes: &[u8]) -> Result<Frame, DecodeError> {
+    if bytes.is_empty() {
+        return Err(DecodeError::Empty);
+    }
+    let raw = RawFrame::new(bytes).ok_or(DecodeError::Crc)?;
+    let (boot, sequence, message) = match raw.message_id() {
+        STAYA_BEACON_DATA::ID => beacon(&body(&raw)?)?,
+        STAYA_COMPACT_DATA::ID => compact(&body(&raw)?)?,
+        STAYA_REQUEST_DATA::ID => request(&body(&raw)?)?,
+        STAYA_ACK_DATA::ID => ack(&body(&raw)?)?,
+        STAYA_TEMPLATE_DATA::ID => template_part(&body(&raw)?)?,
+        STAYA_GOAL_DATA::ID => {
+            let data: STAYA_GOAL_DATA = body(&raw)?;
+            let goal = GoalAssignment {
+                to: robot(data.target_system),
+                version: data.version,
+                target: Cell::new(data.target_x, data.target_y),
+            };
+            (data.boot, data.sequence, Message::Goal(goal))
+        }
+        STAYA_PLACE_DATA::ID => {
+            let data: STAYA_PLACE_DATA = body(&raw)?;
+            let place = PlaceAssignment {
+                to: robot(data.target_system),
+                version: data.version,
+                index: data.index,
+                position_mm: [data.x_mm, data.y_mm, data.z_mm],
+                velocity_mmps: [data.vx_mmps, data.vy_mmps, data.vz_mmps],
+            };
+            (data.boot, data.sequence, Message::Place(place))
+        }
+        _ => return Err(DecodeError::Foreign),
+    };
+    let header = Header {
+        boot,
+        sender: robot(raw.sender().system),
+        sequence,
+    };
+    if !header.sender.is_somebody() {
+        return Err(DecodeError::NoSender);
+    }
+    Ok(Frame {
+        header,
+        message,
+        tag: None,
+    })
+}
+
+/// Boot, sequence and message.
+type Parts = Result<(u8, u16, Message), DecodeError>;
+
+fn body<D: MessageData>(raw: &RawFrame<'_>) -> Result<D, DecodeError> {
+    raw.get().ok_or(DecodeError::Body)
+}
+
+fn beacon(data: &STAYA_BEACON_DATA) -> Parts {
+    let beacon = Beacon {
+        time: Instant::from_micros(data.time_us),
+        position_mm: [data.x_mm, data.y_mm, data.z_mm],
+        velocity_mmps: [data.vx_mmps, data.vy_mmps, data.vz_mmps],
+        radius_mm: data.radius_mm,
+        cell: Cell::new(data.cell_x, data.cell_y),
+        heading: dir(data.heading).ok_or(DecodeError::Body)?,
+        busy_ms: data.busy_ms,
+        leader: robot(data.leader),
+        slot: data.slot,
+        mode: mode(data.mode).ok_or(DecodeError::Body)?,
+        target: Cell::new(data.target_x, data.target_y),
+    };
+    Ok((data.boot, data.sequence, Message::Beacon(beacon)))
+}
+
+fn compact(data: &STAYA_COMPACT_DATA) -> Parts {
+    let beacon = CompactBeacon {
+        time_ms: data.time_ms,
+        position_mm: [data.x_mm, data.y_mm],
+        velocity_mmps: [data.vx_mmps, data.vy_mmps],
+        radius_cm: data.radius_cm,
+        mode: mode(data.mode).ok_or(DecodeError::Body)?,
+    };
+    Ok((data.boot, data.sequence, Message::Compact(beacon)))
+}
+
+fn request(data: &STAYA_REQUEST_DATA) -> Parts {
+    let request = Request {
+        to: robot(data.target_system),
+        origin: robot(data.origin),
+        number: data.number,
+        kind: match data.kind {
+            0 => RequestKind::Stop,
+            1 => RequestKind::Resume,
+            2 => RequestKind::Redirect,
+            _ => return Err(DecodeError::Body),
+        },
+        valid_ms: data.valid_ms,
+    };
+    Ok((data.boot, data.sequence, Message::Request(request)))
+}
+
+fn ack(data: &STAYA_ACK_DATA) -> Parts {
+    let ack = Ack {
+        to: robot(data.target_system),
+        boot: data.request_boot,
+        number: data.number,
+        accepted: match data.accepted {
+            0 => false,
+            1 => true,
+            _ => return Err(DecodeError::Body),
+        },
+    };
+    Ok((data.boot, data.sequence, Message::Ack(ack)))
+}
+
+fn template(
+    part: &TemplateAssignment,
+    boot: u8,
+    sequence: u16,
+) -> Result<STAYA_TEMPLATE_DATA, EncodeError> {
+    let mut data = STAYA_TEMPLATE_DATA {
+        sequence,
+        offset_x: part.offset.x,
+        offset_y: part.offset.y,
+        boot,
+        target_system: system(part.to)?,
+        version: part.version,
+        part: part.part,
+        parts: part.parts,
+        slot: part.slot,
+        ..STAYA_TEMPLATE_DATA::DEFAULT
+    };
+    let places = data.entry_x.iter_mut().zip(&mut data.entry_y);
+    let others = data.entry_id.iter_mut().zip(&mut data.entry_hops);
+    for ((entry, (x, y)), (id, hops)) in part.entries.iter().zip(places).zip(others) {
+        (*x, *y) = (entry.offset.x, entry.offset.y);
+        (*id, *hops) = (system(entry.id)?, entry.hops);
+        data.count += 1;
+    }
+    Ok(data)
+}
+
+// A part of the controller's fits one message.
+const _: () = assert!(TEMPLATE_PART == STAYA_TEMPLATE_DATA::DEFAULT.entry_id.len());
+
+fn template_part(data: &STAYA_TEMPLATE_DATA) -> Parts {
+    let count = usize::from(data.count);
+    if count > TEMPLATE_PART {
+        return Err(DecodeError::Body);
+    }
+    let places = data.entry_x.iter().zip(&data.entry_y);
+    let others = data.entry_id.iter().zip(&data.entry_hops);
+    let mut entries = Vec::new();
+    for ((x, y), (id, hops)) in places.zip(others).take(count) {
+        let entry = TemplateEntry {
+            offset: Cell::new(*x, *y),
+            id: robot(*id),
+            hops: *hops,
+        };
+        entries.push(entry).map_err(|_| DecodeError::Body)?;
+    }
+    let part = TemplateAssignment {
+        to: robot(data.target_system),
+        version: data.version,
+        part: data.part,
+        parts: data.parts,
+        slot: data.slot,
+        offset: Cell::new(data.offset_x, data.offset_y),
+        entries,
+    };
+    Ok((data.boot, data.sequence, Message::Template(part)))
+}
+
+/// The system with a robot's number; nobody is 0.
+fn system(id: RobotId) -> Result<u8, EncodeError> {
+    u8::try_from(id.0).map_err(|_| EncodeError::Robot(id))
+}
+
+fn robot(system: u8) -> RobotId {
+    RobotId(system.into())
+}
+
+/// 0: stays; 1 to 8: the move of that number less one.
+const fn heading(dir: Dir) -> u8 {
+    match dir {
+        Dir::Stay => 0,
+        dir => dir.index() as u8 + 1,
+    }
+}
+
+fn dir(heading: u8) -> Option<Dir> {
+    match heading {
+        0 => Some(Dir::Stay),
+        1..=8 => Some(Dir::from_index(heading - 1)),
+        _ => None,
+    }
+}
+
+fn mode(number: u8) -> Option<Mode> {
+    const MODES: [Mode; 6] = [
+        Mode::Idle,
+        Mode::Forming,
+        Mode::Cruise,
+        Mode::Hold,
+        Mode::Arrived,
+        Mode::Fault,
+    ];
+    MODES.get(usize::from(number)).copied()
+}
+
+#[cfg(test)]
+mod tests;
