@@ -6,6 +6,7 @@
 mod bench;
 mod bless;
 mod check;
+mod clients;
 mod debian;
 mod device;
 mod emulate;
@@ -40,6 +41,7 @@ Usage: cargo xtask COMMAND
   bless [NAME]    rewrite golden files by running the tests whose name contains NAME (default: golden)
   fuzz [--seconds N]
                   each fuzz target for N seconds (default: 60), if nightly Rust and cargo-fuzz are there
+  clients [NAME]  MAVLink clients (pymavlink, MAVSDK, MAVProxy, tshark) against staya, from Python: all tests or those whose names contain NAME
   example         the example firmware of hil/example-stm32f4
   firmware [--debug] [PART...]
                   the programs of hil/firmware for stm32f405, nrf51, riscv32 (default: all): target/firmware/PART/BIN
@@ -76,6 +78,10 @@ fn main() -> ExitCode {
         ["bench", name] if !name.starts_with('-') => bench::run(&repo, &mut report, Some(name)),
         ["bless"] => bless::run(&repo, &mut report, "golden"),
         ["bless", name] if !name.starts_with('-') => bless::run(&repo, &mut report, name),
+        ["clients"] => clients::run_command(&repo, &mut report, None),
+        ["clients", name] if !name.starts_with('-') => {
+            clients::run_command(&repo, &mut report, Some(name));
+        }
         ["example"] => example::run(&repo, &mut report),
         ["fuzz"] => fuzz::run(&repo, &mut report, fuzz::SECONDS),
         ["fuzz", "--seconds", n] if n.parse().is_ok_and(|n: u32| n > 0) => {

@@ -28,6 +28,7 @@ pub fn run(repo: &Repo, report: &mut Report) {
     let fuzz = ["test", "--locked", "--no-default-features"];
     let mut fuzz = repo.cargo_in("tests/fuzz", &fuzz);
     report.part("fuzz targets on random bytes", || counted(&mut fuzz, ""));
+    crate::clients::run_command(repo, report, None);
     crate::device::run(repo, report);
     crate::example::run(repo, report);
     let mut toolchains = Toolchains::default();
