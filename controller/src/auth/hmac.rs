@@ -21,11 +21,13 @@ impl Mac {
         }
     }
 
-    /// The code of a message. Two blocks of SHA-256 up to 55 bytes, and one for each 64 more.
+    /// The code of a message, given in parts. Two blocks of SHA-256 up to 55 bytes, and one for each 64 more.
     #[must_use]
-    pub fn of(&self, message: &[u8]) -> [u8; 32] {
+    pub fn of(&self, message: &[&[u8]]) -> [u8; 32] {
         let mut inner = Sha256::from_state(self.inner, 1);
-        inner.update(message);
+        for part in message {
+            inner.update(part);
+        }
         let mut outer = Sha256::from_state(self.outer, 1);
         outer.update(&inner.finish());
         outer.finish()

@@ -2,14 +2,15 @@
 //!
 //! ```text
 //! frame   = COBS(content) 0x00
-//! content = version:u8 boot:u8 sender:varint sequence:u16 message:postcard [tag:4] crc:u16
+//! content = version:u8 boot:u8 sender:varint sequence:u16 message:postcard [tag:8] crc:u16
 //! ```
 //!
 //! - `version` holds [`VERSION`] in its low 7 bits; its top bit says that a tag is present. Every
 //!   version keeps COBS, this byte in front and the CRC at the end, so that a foreign version can
 //!   be told from damage.
-//! - The tag authenticates everything before it ([`encode_tagged`], [`decode_verified`]). Which
-//!   function of which key it is belongs to the robot's owner.
+//! - The tag authenticates everything before it ([`encode_tagged`], [`decode_verified`]). What it is made of is said in
+//!   [`Sealed`](super::Sealed), which makes and checks it. A frame with a tag has at most 60 bytes too, because robots' numbers in it
+//!   are below 2^21 and take 3 bytes at most instead of 5.
 //! - The CRC covers everything before it. Integers are little-endian.
 //! - COBS (Cheshire, Baker 1999, "Consistent overhead byte stuffing", section 3) takes out the zero
 //!   bytes at the price of one byte, since no content is longer than 253 bytes. It is written here,
@@ -40,13 +41,15 @@ use serde::{Deserialize, Serialize};
 /// The version of the format that this code writes and reads, 1..=127.
 pub const VERSION: u8 = 1;
 /// Bytes of an authentication tag.
-pub const TAG_LEN: usize = 4;
+pub const TAG_LEN: usize = 8;
+/// The greatest number of a robot in frames with a tag, as sender and as leader.
+pub const MAX_TAGGED_ROBOT: RobotId = RobotId((1 << 21) - 1);
 
 /// The flag in the version byte: a tag is present.
 const TAGGED: u8 = 0x80;
 const CRC_LEN: usize = 2;
-/// A robot's number as a varint, at most.
-const ID: usize = 5;
+/// A robot's number as a varint in a frame with a tag, at most. Without a tag it is 5, and no message has so many numbers that such a frame were longer.
+const ID: usize = 3;
 /// Everything but the message: version, boot, sender, sequence, tag, CRC; COBS' byte, delimiter.
 const OVERHEAD: usize = 1 + 1 + ID + 2 + TAG_LEN + CRC_LEN + 2;
 const CELL: usize = 4;
@@ -54,46 +57,39 @@ const CELL: usize = 4;
 static CRC: Crc<u16, Table<1>> = Crc::<u16, Table<1>>::new(&CRC_16_IBM_SDLC);
 
 impl Beacon {
-    /// Bytes of a frame that carries one, at most: tag and delimiter included, without tag
-    /// [`TAG_LEN`] less.
+    /// Bytes of a frame that carries one, at most: tag and delimiter included.
     pub const MAX_FRAME_LEN: usize =
         OVERHEAD + 1 + 4 + 3 * 4 + 3 * 2 + 2 + CELL + 1 + 2 + ID + 1 + 1 + CELL;
 }
 
 impl CompactBeacon {
-    /// Bytes of a frame that carries one, at most: tag and delimiter included, without tag
-    /// [`TAG_LEN`] less.
+    /// Bytes of a frame that carries one, at most: tag and delimiter included.
     pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + 2 + 2 * 4 + 2 * 2 + 1 + 1;
 }
 
 impl Request {
-    /// Bytes of a frame that carries one, at most: tag and delimiter included, without tag
-    /// [`TAG_LEN`] less.
+    /// Bytes of a frame that carries one, at most: tag and delimiter included.
     pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + ID + 1 + 1 + 2;
 }
 
 impl Ack {
-    /// Bytes of a frame that carries one, at most: tag and delimiter included, without tag
-    /// [`TAG_LEN`] less.
+    /// Bytes of a frame that carries one, at most: tag and delimiter included.
     pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 1 + 1 + 1;
 }
 
 impl TemplateAssignment {
-    /// Bytes of a frame that carries one, at most: tag and delimiter included, without tag
-    /// [`TAG_LEN`] less.
+    /// Bytes of a frame that carries one, at most: tag and delimiter included.
     pub const MAX_FRAME_LEN: usize =
         OVERHEAD + 1 + ID + 1 + 1 + 1 + 1 + CELL + 1 + TEMPLATE_PART * (CELL + ID + 1);
 }
 
 impl GoalAssignment {
-    /// Bytes of a frame that carries one, at most: tag and delimiter included, without tag
-    /// [`TAG_LEN`] less.
+    /// Bytes of a frame that carries one, at most: tag and delimiter included.
     pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 1 + CELL;
 }
 
 impl PlaceAssignment {
-    /// Bytes of a frame that carries one, at most: tag and delimiter included, without tag
-    /// [`TAG_LEN`] less.
+    /// Bytes of a frame that carries one, at most: tag and delimiter included.
     pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 1 + 1 + 3 * 4 + 3 * 2;
 }
 
@@ -124,7 +120,9 @@ const MAX_CONTENT: usize = MAX_FRAME_LEN - 2;
 
 // Crazyflie peer-to-peer packets hold 60 bytes, its app channel 30; COBS here knows one block.
 const _: () = assert!(MAX_FRAME_LEN <= 60);
-const _: () = assert!(CompactBeacon::MAX_FRAME_LEN - TAG_LEN <= 30);
+const _: () = assert!(CompactBeacon::MAX_FRAME_LEN - TAG_LEN + (5 - ID) <= 30);
+// Sender, addressee and those of a template.
+const _: () = assert!((2 + TEMPLATE_PART) * (5 - ID) <= TAG_LEN);
 const _: () = assert!(MAX_CONTENT <= 253);
 
 /// Who says it, and which of its frames this is.
@@ -160,6 +158,8 @@ pub enum EncodeError {
     NoSender,
     /// The format has no room for this robot's number; give the robot another one, or the swarm another format.
     Robot(RobotId),
+    /// The format's counter has come to its end: the robot must start anew, or the swarm needs a new key.
+    Exhausted,
 }
 
 /// Why a frame was refused.
@@ -176,8 +176,14 @@ pub enum DecodeError {
     Crc,
     /// Sound, but another version of the format (the low 7 bits) than [`VERSION`].
     Version(u8),
-    /// Sound, but the caller of [`decode_verified`] refused the tag or its absence.
-    Tag,
+    /// Sound, but without the tag or signature that is asked for.
+    Unsigned,
+    /// Sound, but its tag or signature is not of the key that is asked for.
+    Forged,
+    /// Authentic, but recorded: seen before, or older than what was.
+    Replayed,
+    /// Authentic, but there is no room to remember its sender, see [`ReplayGuard`](crate::auth::ReplayGuard).
+    NoRoom,
     /// Sound, but no header and message that this code knows.
     Body,
     /// Sound, but something follows the message.
@@ -206,7 +212,7 @@ pub fn encode<const N: usize>(
 /// Like [`encode`], with the tag that `authenticate` makes of everything before it.
 ///
 /// # Errors
-/// Those of [`encode`].
+/// Those of [`encode`], and [`EncodeError::Robot`] when sender or leader are greater than [`MAX_TAGGED_ROBOT`].
 pub fn encode_tagged<const N: usize>(
     header: Header,
     message: &Message,
@@ -223,16 +229,16 @@ pub fn encode_tagged<const N: usize>(
 ///
 /// Bounded work: O([`MAX_FRAME_LEN`]).
 pub fn decode(frame: &[u8]) -> Result<Frame, DecodeError> {
-    decode_verified(frame, |_, _| true)
+    decode_verified(frame, |_, _| Ok(()))
 }
 
 /// Like [`decode`], and asks `verify` with the authenticated bytes and the tag, if there is one.
 ///
 /// # Errors
-/// Those of [`decode`], and [`DecodeError::Tag`] when `verify` says no.
+/// Those of [`decode`], and what `verify` says.
 pub fn decode_verified(
     frame: &[u8],
-    verify: impl FnOnce(&[u8], Option<[u8; TAG_LEN]>) -> bool,
+    verify: impl FnOnce(&[u8], Option<[u8; TAG_LEN]>) -> Result<(), DecodeError>,
 ) -> Result<Frame, DecodeError> {
     let (&first, stuffed) = frame.split_first().ok_or(DecodeError::Empty)?;
     let mut buffer = [0; MAX_CONTENT];
@@ -262,9 +268,7 @@ pub fn decode_verified(
             .ok_or(DecodeError::Body)?;
         (authenticated, Some(*tag))
     };
-    if !verify(authenticated, tag) {
-        return Err(DecodeError::Tag);
-    }
+    verify(authenticated, tag)?;
     let body = authenticated.get(1..).ok_or(DecodeError::Body)?;
     let ((header, message), trailing) =
         postcard::take_from_bytes::<(Header, Message)>(body).map_err(|_| DecodeError::Body)?;
@@ -301,6 +305,16 @@ fn write<const N: usize>(
 ) -> Result<usize, EncodeError> {
     if !header.sender.is_somebody() {
         return Err(EncodeError::NoSender);
+    }
+    if authenticate.is_some() {
+        let leader = match message {
+            Message::Beacon(beacon) => beacon.leader,
+            _ => RobotId::NOBODY,
+        };
+        let large = [header.sender, leader].into_iter();
+        if let Some(robot) = large.max().filter(|robot| *robot > MAX_TAGGED_ROBOT) {
+            return Err(EncodeError::Robot(robot));
+        }
     }
     let mut frame = [0; MAX_FRAME_LEN];
     let [first, content @ .., _delimiter] = &mut frame;

@@ -8,13 +8,14 @@ mod message;
 mod newest;
 mod orders;
 mod requests;
+mod sealed;
 mod sequence;
 
 pub use assembly::{MAX_TEMPLATE, PartError, Template, TemplateAssembler};
 pub use format::{Postcard, Wire};
 pub use frame::{
-    DecodeError, EncodeError, Frame, Header, MAX_FRAME_LEN, TAG_LEN, VERSION, decode,
-    decode_verified, encode, encode_tagged, frames,
+    DecodeError, EncodeError, Frame, Header, MAX_FRAME_LEN, MAX_TAGGED_ROBOT, TAG_LEN, VERSION,
+    decode, decode_verified, encode, encode_tagged, frames,
 };
 pub use message::{
     Ack, Beacon, CompactBeacon, GoalAssignment, Message, Mode, PlaceAssignment, Request,
@@ -23,6 +24,7 @@ pub use message::{
 pub use newest::Newest;
 pub use orders::{Answer, Orders};
 pub use requests::{AskError, Due, Requests, Retry};
+pub use sealed::{PEERS, Sealed};
 pub use sequence::{Arrival, SEQUENCE_SPAN, SequenceWindow};
 
 #[cfg(test)]

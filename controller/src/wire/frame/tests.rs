@@ -16,7 +16,7 @@ use std::vec::Vec as StdVec;
 
 type Outbox = heapless::Vec<u8, 256>;
 
-const LAST: RobotId = RobotId(u32::MAX);
+const LAST: RobotId = MAX_TAGGED_ROBOT;
 const FAR: Cell = Cell::new(i16::MIN, i16::MAX);
 const HEADER: Header = Header {
     boot: 7,
@@ -140,6 +140,15 @@ fn encoded(header: Header, message: &Message, tag: Option<[u8; TAG_LEN]>) -> Std
     out.to_vec()
 }
 
+/// Whether a frame with a tag has room for the numbers of these robots.
+fn fits(header: Header, message: &Message) -> bool {
+    let leader = match message {
+        Message::Beacon(beacon) => beacon.leader,
+        _ => RobotId::NOBODY,
+    };
+    header.sender.max(leader) <= MAX_TAGGED_ROBOT
+}
+
 /// A sound frame, without delimiter, around any content.
 fn seal(content: &[u8]) -> StdVec<u8> {
     let mut content = content.to_vec();
@@ -185,11 +194,11 @@ fn the_longest_message_of_each_kind_reaches_its_bound() {
 #[test]
 fn frames_fit_the_radios_they_are_made_for() {
     assert_eq!(Beacon::MAX_FRAME_LEN, 60);
-    assert_eq!(CompactBeacon::MAX_FRAME_LEN - TAG_LEN, 30);
-    assert_eq!(Request::MAX_FRAME_LEN - TAG_LEN, 28);
-    // One more entry would not fit.
-    assert_eq!(TemplateAssignment::MAX_FRAME_LEN, 52);
-    const { assert!(TemplateAssignment::MAX_FRAME_LEN + CELL + ID + 1 > 60) };
+    assert_eq!(CompactBeacon::MAX_FRAME_LEN - TAG_LEN, 28);
+    assert_eq!(Request::MAX_FRAME_LEN - TAG_LEN, 22);
+    // One more entry would not fit, be it with a tag or with large numbers.
+    assert_eq!(TemplateAssignment::MAX_FRAME_LEN, 48);
+    const { assert!(TemplateAssignment::MAX_FRAME_LEN + CELL + 5 + 1 > 57) };
 }
 
 #[test]
@@ -279,20 +288,42 @@ fn an_unknown_value_in_a_field_is_refused() {
 
 #[test]
 fn the_tag_covers_everything_before_it_and_is_handed_out() {
-    let tag = [0, 0, 7, 0];
+    let tag = [0, 0, 7, 0, 1, 2, 0, 9];
     let frame = encoded(HEADER, &beacon(), Some(tag));
     let sealed = content(VERSION | TAGGED, HEADER, &beacon());
     let frame = &frame[..frame.len() - 1];
-    let read = decode_verified(frame, |span, found| span == sealed && found == Some(tag));
+    let read = decode_verified(frame, |span, found| {
+        assert_eq!((span, found), (&sealed[..], Some(tag)));
+        Ok(())
+    });
     assert_eq!(read.unwrap().tag, Some(tag));
-    assert_eq!(decode_verified(frame, |_, _| false), Err(DecodeError::Tag));
+    let refused = decode_verified(frame, |_, _| Err(DecodeError::Forged));
+    assert_eq!(refused, Err(DecodeError::Forged));
     let bare = encoded(HEADER, &beacon(), None);
     let bare = &bare[..bare.len() - 1];
     assert_eq!(decode(bare).unwrap().tag, None);
-    assert_eq!(
-        decode_verified(bare, |_, found| found.is_some()),
-        Err(DecodeError::Tag)
-    );
+    let refused = decode_verified(bare, |_, found| {
+        found.map(|_| ()).ok_or(DecodeError::Unsigned)
+    });
+    assert_eq!(refused, Err(DecodeError::Unsigned));
+}
+
+#[test]
+fn large_numbers_of_robots_are_refused_in_frames_with_a_tag() {
+    let large = RobotId(MAX_TAGGED_ROBOT.0 + 1);
+    let from = |sender| Header { sender, ..HEADER };
+    let Message::Beacon(known) = beacon() else {
+        unreachable!()
+    };
+    let follower = |leader| Message::Beacon(Beacon { leader, ..known });
+    let say = |sender, leader| {
+        let (mut out, tag) = (Outbox::new(), [0; TAG_LEN]);
+        encode_tagged(from(sender), &follower(leader), |_| tag, &mut out)
+    };
+    assert!(say(MAX_TAGGED_ROBOT, MAX_TAGGED_ROBOT).is_ok());
+    assert_eq!(say(large, LAST), Err(EncodeError::Robot(large)));
+    assert_eq!(say(LAST, large), Err(EncodeError::Robot(large)));
+    assert!(encode(from(large), &follower(large), &mut Outbox::new()).is_ok());
 }
 
 #[test]
@@ -413,6 +444,7 @@ proptest! {
     fn what_is_sent_is_received(
         header in header(), message in message(), tag in any::<Option<[u8; TAG_LEN]>>()
     ) {
+        let tag = tag.filter(|_| fits(header, &message));
         let frame = encoded(header, &message, tag);
         prop_assert_eq!(frame.iter().position(|byte| *byte == 0), Some(frame.len() - 1));
         let read = decode(&frame[..frame.len() - 1]);
@@ -421,9 +453,11 @@ proptest! {
 
     #[test]
     fn no_message_is_longer_than_its_bound(header in header(), message in message()) {
-        let frame = encoded(header, &message, Some([0; TAG_LEN]));
-        prop_assert!(frame.len() <= bound(&message));
-        prop_assert!(bound(&message) <= MAX_FRAME_LEN);
+        prop_assert!(encoded(header, &message, None).len() <= bound(&message));
+        if fits(header, &message) {
+            let frame = encoded(header, &message, Some([0; TAG_LEN]));
+            prop_assert!(frame.len() <= MAX_FRAME_LEN);
+        }
     }
 
     #[test]
@@ -456,6 +490,8 @@ proptest! {
         for content in [bytes, likely] {
             if let Ok(frame) = decode(&seal(&content)) {
                 // What is believed can be said again.
+                let tag = frame.tag.filter(|_| fits(frame.header, &frame.message));
+                let frame = Frame { tag, ..frame };
                 let again = encoded(frame.header, &frame.message, frame.tag);
                 prop_assert_eq!(decode(&again[..again.len() - 1]), Ok(frame));
             }

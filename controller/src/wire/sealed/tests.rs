@@ -1,0 +1,291 @@
+use super::super::arbitrary;
+use super::super::{RobotId, decode, encode};
+use super::*;
+use crate::digest::digest;
+use crc::{CRC_16_IBM_SDLC, Crc};
+use proptest::collection::vec;
+use proptest::prelude::*;
+use std::vec::Vec as StdVec;
+
+const X25: Crc<u16> = Crc::<u16>::new(&CRC_16_IBM_SDLC);
+
+fn key() -> Key {
+    Key::of_passphrase(b"test")
+}
+
+fn sealed(starts: u32) -> Sealed<4> {
+    Sealed::at_start(&key(), starts).unwrap()
+}
+
+fn header(sender: u32, sequence: u16) -> Header {
+    Header {
+        boot: 3,
+        sender: RobotId(sender),
+        sequence,
+    }
+}
+
+fn goal() -> Message {
+    Message::Goal(super::super::GoalAssignment {
+        to: RobotId(2),
+        version: 4,
+        target: crate::grid::Cell::new(-3, 8),
+    })
+}
+
+/// A frame without its delimiter.
+fn said<W: Wire>(by: &mut W, header: Header) -> StdVec<u8> {
+    let mut out = Vec::<u8, 64>::new();
+    by.encode(header, &goal(), &mut out).unwrap();
+    assert_eq!(out.pop(), Some(0));
+    out.to_vec()
+}
+
+/// What lies under COBS, and the same the other way; plain loops, from the paper.
+fn unstuffed(frame: &[u8]) -> StdVec<u8> {
+    let mut content = StdVec::new();
+    let mut rest = frame;
+    while let Some((&code, tail)) = rest.split_first() {
+        let (block, next) = tail.split_at(usize::from(code) - 1);
+        content.extend_from_slice(block);
+        content.push(0);
+        rest = next;
+    }
+    content.pop();
+    content
+}
+
+fn stuffed(content: &[u8]) -> StdVec<u8> {
+    let blocks = content.split(|byte| *byte == 0);
+    let block = |block: &[u8]| [&[block.len() as u8 + 1], block].concat();
+    blocks.flat_map(block).collect()
+}
+
+#[test]
+fn the_bytes_of_a_sealed_frame_are_these() {
+    let frame = said(&mut sealed(5), header(12, 0x0102));
+    let content = unstuffed(&frame);
+    let (body, crc) = content.split_at(content.len() - 2);
+    assert_eq!(X25.checksum(body).to_le_bytes(), crc);
+    let (text, code) = body.split_at(body.len() - 4);
+    // version | tagged, boot, sender, sequence, goal: kind, to, version, x, y (zigzag); epoch 5 << 12.
+    assert_eq!(
+        text,
+        [
+            0x81, 3, 12, 2, 1, 5, 2, 4, 0xFD, 0xFF, 8, 0, 0x00, 0x50, 0, 0
+        ]
+    );
+    assert_eq!(code, &Mac::new(&key()).of(&[text])[..4]);
+    let plain = said(&mut Postcard, header(12, 0x0102));
+    assert_eq!(frame.len(), plain.len() + TAG_LEN);
+}
+
+#[test]
+fn who_has_the_key_is_heard_once_and_nobody_else_is() {
+    let frame = said(&mut sealed(0), header(1, 0));
+    let mut receiver = sealed(0);
+    let heard = receiver.decode(&frame).unwrap();
+    assert_eq!((heard.header, heard.message), (header(1, 0), goal()));
+    assert_eq!(receiver.decode(&frame), Err(DecodeError::Replayed));
+    let plain = said(&mut Postcard, header(1, 1));
+    assert_eq!(receiver.decode(&plain), Err(DecodeError::Unsigned));
+    let other = Key::of_passphrase(b"another");
+    let mut stranger = Sealed::<4>::at_start(&other, 9).unwrap();
+    let forged = said(&mut stranger, header(1, 1));
+    assert_eq!(receiver.decode(&forged), Err(DecodeError::Forged));
+    assert_eq!(stranger.decode(&frame), Err(DecodeError::Forged));
+    // What was refused has moved no counter.
+    assert!(receiver.decode(&said(&mut sealed(0), header(1, 1))).is_ok());
+}
+
+#[test]
+fn frames_that_overtake_each_other_are_heard_once_each() {
+    let mut sender = sealed(0);
+    let frames: StdVec<_> = (0..40).map(|n| said(&mut sender, header(1, n))).collect();
+    let mut receiver = sealed(0);
+    for at in [8, 39, 38, 9, 10] {
+        assert!(receiver.decode(&frames[at]).is_ok(), "{at}");
+    }
+    for at in [7, 8, 9, 10, 38, 39] {
+        assert_eq!(
+            receiver.decode(&frames[at]),
+            Err(DecodeError::Replayed),
+            "{at}"
+        );
+    }
+}
+
+#[test]
+fn the_sequence_wraps_into_the_epoch() {
+    let (mut sender, mut receiver) = (sealed(7), sealed(0));
+    let before = [u16::MAX - 1, u16::MAX].map(|n| said(&mut sender, header(1, n)));
+    let after = [0, 0, 1].map(|n| said(&mut sender, header(1, n)));
+    assert_eq!(after[0], after[1], "one that found no room is said again");
+    for frame in [&before[0], &after[0], &before[1], &after[2]] {
+        assert!(receiver.decode(frame).is_ok());
+    }
+    for frame in before.iter().chain(&after) {
+        assert_eq!(receiver.decode(frame), Err(DecodeError::Replayed));
+    }
+}
+
+#[test]
+fn a_start_has_so_many_frames_and_starts_end() {
+    let mut sender = sealed(0);
+    let mut out = Vec::<u8, 64>::new();
+    for _ in 1..1 << WRAP_BITS {
+        for sequence in [1, 0] {
+            out.clear();
+            sender
+                .encode(header(1, sequence), &goal(), &mut out)
+                .unwrap();
+        }
+    }
+    out.clear();
+    assert!(sender.encode(header(1, 1), &goal(), &mut out).is_ok());
+    let before = out.clone();
+    let end = sender.encode(header(1, 0), &goal(), &mut out);
+    assert_eq!((end, &out), (Err(EncodeError::Exhausted), &before));
+    // The next start's first counter is greater than all of these.
+    let mut receiver = sealed(0);
+    let first = said(&mut sealed(1), header(1, 0));
+    let last = before.strip_suffix(&[0]).unwrap();
+    assert!(receiver.decode(last).is_ok() && receiver.decode(&first).is_ok());
+    assert!(Sealed::<4>::at_start(&key(), (1 << 20) - 1).is_some());
+    assert!(Sealed::<4>::at_start(&key(), 1 << 20).is_none());
+}
+
+#[test]
+fn a_sender_that_starts_anew_is_heard_and_what_was_recorded_before_is_not() {
+    let mut receiver = sealed(0);
+    let mut sender = sealed(4);
+    let recorded: StdVec<_> = (100..110)
+        .map(|n| said(&mut sender, header(1, n)))
+        .collect();
+    for frame in &recorded {
+        assert!(receiver.decode(frame).is_ok());
+    }
+    assert!(receiver.decode(&said(&mut sealed(5), header(1, 0))).is_ok());
+    for frame in &recorded {
+        assert_eq!(receiver.decode(frame), Err(DecodeError::Replayed));
+    }
+    // Its memory was lost: refused until its starts are counted past the last one.
+    let forgotten = said(&mut sealed(0), header(1, 0));
+    assert_eq!(receiver.decode(&forgotten), Err(DecodeError::Replayed));
+}
+
+#[test]
+fn a_receiver_that_starts_anew_believes_recorded_frames_only_until_it_hears_the_sender_or_if_it_stored_nothing()
+ {
+    let mut sender = sealed(4);
+    let recorded: StdVec<_> = (0..3).map(|n| said(&mut sender, header(1, n))).collect();
+    let live = said(&mut sender, header(1, 100));
+
+    let mut before = sealed(0);
+    for frame in &recorded {
+        assert!(before.decode(frame).is_ok());
+    }
+    let mut bare = sealed(1);
+    assert!(bare.decode(&recorded[0]).is_ok(), "this is the gap");
+    assert!(bare.decode(&live).is_ok());
+    assert_eq!(bare.decode(&recorded[1]), Err(DecodeError::Replayed));
+
+    let mut stored = sealed(1);
+    for (peer, newest) in before.guard().export() {
+        assert!(stored.guard_mut().import(peer, newest));
+    }
+    let mut mission = sealed(5);
+    mission.refuse_before(5);
+    for receiver in [&mut stored, &mut mission] {
+        for frame in &recorded {
+            assert_eq!(receiver.decode(frame), Err(DecodeError::Replayed));
+        }
+    }
+    assert!(stored.decode(&live).is_ok());
+    assert!(mission.decode(&said(&mut sealed(5), header(1, 0))).is_ok());
+}
+
+#[test]
+fn a_full_table_refuses_new_senders_and_an_attacker_cannot_fill_it() {
+    let mut receiver = sealed(0);
+    let other = Key::of_passphrase(b"another");
+    for sender in 1..100 {
+        let mut stranger = Sealed::<4>::at_start(&other, 0).unwrap();
+        let forged = said(&mut stranger, header(sender, 0));
+        assert_eq!(receiver.decode(&forged), Err(DecodeError::Forged));
+    }
+    for sender in 1..=4 {
+        assert!(
+            receiver
+                .decode(&said(&mut sealed(0), header(sender, 0)))
+                .is_ok()
+        );
+    }
+    let fifth = said(&mut sealed(0), header(5, 0));
+    assert_eq!(receiver.decode(&fifth), Err(DecodeError::NoRoom));
+    assert!(receiver.decode(&said(&mut sealed(0), header(2, 1))).is_ok());
+}
+
+#[test]
+fn the_state_does_not_hold_the_key() {
+    let of = |key: &Key| digest(&Sealed::<4>::at_start(key, 1));
+    assert_eq!(of(&key()), of(&Key::of_passphrase(b"another")));
+    assert_ne!(digest(&sealed(1)), digest(&sealed(2)));
+}
+
+/// With a sum that fits, as an attacker makes it.
+fn summed(body: &[u8]) -> StdVec<u8> {
+    stuffed(&[body, &X25.checksum(body).to_le_bytes()].concat())
+}
+
+proptest! {
+    #[test]
+    fn any_flipped_bit_is_refused(bit in 0_usize..8 * 64, starts in 0_u32..1 << 20) {
+        let frame = said(&mut sealed(starts), header(12, 0x0102));
+        let mut content = unstuffed(&frame);
+        content.truncate(content.len() - 2);
+        prop_assert!(sealed(0).decode(&summed(&content)).is_ok());
+        let bit = bit % (content.len() * 8);
+        content[bit / 8] ^= 1 << (bit % 8);
+        prop_assert!(sealed(0).decode(&summed(&content)).is_err());
+        // Nor is a bit on the air.
+        let mut frame = frame;
+        let bit = bit % (frame.len() * 8);
+        frame[bit / 8] ^= 1 << (bit % 8);
+        prop_assert!(sealed(0).decode(&frame).is_err());
+    }
+
+    #[test]
+    fn sealed_reads_what_it_wrote_and_a_plain_reader_too(
+        spoken in (arbitrary::header(), arbitrary::message())
+    ) {
+        let (header, message) = spoken;
+        let mut out = Vec::<u8, 64>::new();
+        match sealed(1).encode(header, &message, &mut out) {
+            Ok(len) => {
+                prop_assert!(len == out.len() && len <= 60);
+                let frame = sealed(0).decode(&out[..len - 1]).unwrap();
+                prop_assert_eq!((frame.header, &frame.message), (header, &message));
+                prop_assert_eq!(decode(&out[..len - 1]).unwrap(), frame);
+            }
+            Err(error) => {
+                prop_assert!(matches!(error, EncodeError::Robot(robot) if robot.0 >= 1 << 21));
+                prop_assert!(encode(header, &message, &mut out).is_ok());
+            }
+        }
+    }
+
+    /// Whatever an attacker makes of what it has heard, in whatever order: nothing is heard twice.
+    #[test]
+    fn any_replay_is_refused(order in vec(0_usize..20, 0..100)) {
+        let mut sender = sealed(0);
+        let frames: StdVec<_> = (0..20).map(|n| said(&mut sender, header(1, n))).collect();
+        let mut receiver = sealed(0);
+        let mut heard = [false; 20];
+        for at in order {
+            let is_fresh = receiver.decode(&frames[at]).is_ok();
+            prop_assert_eq!(is_fresh, !heard[at]);
+            heard[at] = true;
+        }
+    }
+}
