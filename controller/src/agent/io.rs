@@ -4,7 +4,7 @@ use crate::geom::{Position, Vec2, Vec3};
 use crate::grid::{Cell, Dir, Window};
 use crate::obstacle::Obstacle;
 use crate::time::{Duration, Instant};
-use crate::wire::{Mode, RequestKind, RobotId};
+use crate::wire::{DecodeError, Mode, RequestKind, RobotId};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
@@ -120,6 +120,34 @@ pub enum Event {
     NeighborRebooted(RobotId),
 }
 
+/// Frames that were refused for who may have said them and when, by a format that authenticates them: [`Sealed`](crate::wire::Sealed) or MAVLink's
+/// signatures.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Refused {
+    /// Without tag or signature.
+    pub unsigned: u16,
+    /// With one of another key, or of another content.
+    pub forged: u16,
+    /// Recorded, or repeated by the radio.
+    pub replayed: u16,
+    /// Of senders for whom there is no room.
+    pub no_room: u16,
+}
+
+impl Refused {
+    /// Counts why a frame was refused, if it is for such a reason.
+    pub(super) fn count(&mut self, error: DecodeError) {
+        let count = match error {
+            DecodeError::Unsigned => &mut self.unsigned,
+            DecodeError::Forged => &mut self.forged,
+            DecodeError::Replayed => &mut self.replayed,
+            DecodeError::NoRoom => &mut self.no_room,
+            _ => return,
+        };
+        *count = count.saturating_add(1);
+    }
+}
+
 /// What one step gives.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[must_use = "a step only decides; the caller moves the body and sends the bytes"]
@@ -131,6 +159,8 @@ pub struct Outputs<S> {
     /// Frames of the inbox that were refused: damaged, of another version, repeated or replayed. Those of others on the same band
     /// ([`DecodeError::Foreign`](crate::wire::DecodeError)) count neither here nor there.
     pub rejected: u16,
+    /// How many of the refused were not authentic.
+    pub refused: Refused,
     /// Bytes for the radio: frames of the agent's wire format; postcard's end with a zero byte each.
     pub outbox: Vec<u8, OUTBOX>,
     /// What happened; the oldest ones when more than [`EVENTS`].
@@ -144,6 +174,7 @@ impl<S> Outputs<S> {
     pub(super) fn clear(&mut self) {
         self.command = Command::Hold;
         (self.received, self.rejected) = (0, 0);
+        self.refused = Refused::default();
         self.outbox.clear();
         self.events.clear();
         self.call_again = Instant::default();

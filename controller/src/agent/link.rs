@@ -119,7 +119,11 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
         let frame = match self.wire.decode(bytes) {
             // Others talk on the same band: neither news nor damage.
             Err(DecodeError::Foreign) => return None,
-            frame => frame.ok(),
+            Err(error) => {
+                out.refused.count(error);
+                None
+            }
+            Ok(frame) => Some(frame),
         };
         let frame = frame.and_then(|frame| {
             let arrival = self.arrival(frame.header, out)?;

@@ -112,7 +112,7 @@ pub use formation_guidance::FormationGuidance;
 pub use guidance::{Ask, BadInput, Guidance, Guided, Place, View};
 pub use in_plane::InPlane;
 pub use io::{
-    CellState, Command, EVENTS, Event, InCell, Inputs, OUTBOX, Outputs, Pose, Surroundings,
+    CellState, Command, EVENTS, Event, InCell, Inputs, OUTBOX, Outputs, Pose, Refused, Surroundings,
 };
 pub use orca_safety::OrcaSafety;
 pub use other_safety::{FlySafety, PushOutSafety};

@@ -500,4 +500,5 @@ mod in_plane;
 mod nonsense;
 mod nonsense_in_plane;
 mod plane;
+mod sealed;
 mod setup;

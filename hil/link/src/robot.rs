@@ -6,8 +6,8 @@ use core::fmt;
 use heapless::Vec;
 use staya_controller::agent::InCell;
 use staya_controller::agent::{
-    AnyAgent, CELLS, Command, GridWorkspace, HALF_PLANES, Inputs, NEIGHBORS, Outputs, Pose, Setup,
-    Surroundings, Task, VISITS,
+    AnyAgent, CELLS, Command, GridWorkspace, HALF_PLANES, Inputs, NEIGHBORS, Outputs, Pose,
+    Refused, Setup, Surroundings, Task, VISITS,
 };
 use staya_controller::obstacle::Obstacle;
 use staya_controller::scalar::{Q16, Scalar, cast};
@@ -120,6 +120,12 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usi
                 command: Command::Hold,
                 received: 0,
                 rejected: 0,
+                refused: Refused {
+                    unsigned: 0,
+                    forged: 0,
+                    replayed: 0,
+                    no_room: 0,
+                },
                 outbox: Vec::new(),
                 events: Vec::new(),
                 call_again: Instant::from_micros(0),
@@ -247,6 +253,7 @@ fn in_f32<S: Scalar>(outputs: &Outputs<S>) -> Outputs<f32> {
         },
         received: outputs.received,
         rejected: outputs.rejected,
+        refused: outputs.refused,
         outbox: outputs.outbox.clone(),
         events: outputs.events.clone(),
         call_again: outputs.call_again,

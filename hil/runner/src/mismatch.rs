@@ -51,8 +51,14 @@ impl fmt::Display for Mismatch {
             ),
             (
                 "heard",
-                format!("{} and {} refused", a.outputs.received, a.outputs.rejected),
-                format!("{} and {} refused", b.outputs.received, b.outputs.rejected),
+                format!(
+                    "{} and {} refused, {:?}",
+                    a.outputs.received, a.outputs.rejected, a.outputs.refused
+                ),
+                format!(
+                    "{} and {} refused, {:?}",
+                    b.outputs.received, b.outputs.rejected, b.outputs.refused
+                ),
             ),
             (
                 "events",

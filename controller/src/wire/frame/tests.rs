@@ -313,7 +313,7 @@ fn large_numbers_of_robots_are_refused_in_frames_with_a_tag() {
     let large = RobotId(MAX_TAGGED_ROBOT.0 + 1);
     let from = |sender| Header { sender, ..HEADER };
     let Message::Beacon(known) = beacon() else {
-        unreachable!()
+        panic!("a beacon")
     };
     let follower = |leader| Message::Beacon(Beacon { leader, ..known });
     let say = |sender, leader| {

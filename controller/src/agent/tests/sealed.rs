@@ -1,0 +1,72 @@
+//! An agent that speaks [`Sealed`] frames among those who have the key, and those who do not.
+
+use super::*;
+use crate::auth::Key;
+use crate::wire::{Sealed, Wire};
+
+type SealedAgent = Agent<f32, RouteGuidance<CELLS, VISITS>, NEIGHBORS, Unguarded, Sealed<4>>;
+
+fn wire(passphrase: &[u8]) -> Sealed<4> {
+    Sealed::at_start(&Key::of_passphrase(passphrase), 0).unwrap()
+}
+
+fn goal(x: i16) -> Message {
+    Message::Goal(GoalAssignment {
+        to: RobotId::NOBODY,
+        version: x as u8,
+        target: Cell::new(x, 5),
+    })
+}
+
+fn said<W: Wire>(by: &mut W, sequence: u16, message: &Message) -> Vec<u8> {
+    let mut out = heapless::Vec::<u8, 64>::new();
+    let header = Header {
+        boot: 0,
+        sender: RobotId(9),
+        sequence,
+    };
+    by.encode(header, message, &mut out).unwrap();
+    out.to_vec()
+}
+
+#[test]
+fn only_fresh_frames_of_who_has_the_key_are_obeyed_and_the_others_are_counted() {
+    let guidance = RouteGuidance::new(RouteParams::default());
+    let mut agent = SealedAgent::speaking(&config(1), guidance, Unguarded, wire(b"swarm"));
+    let mut friend = wire(b"swarm");
+    let first = said(&mut friend, 0, &goal(20));
+    let attacks = [
+        said(&mut Postcard, 1, &goal(30)),
+        said(&mut wire(b"guessed"), 2, &goal(31)),
+        said(&mut wire(b"guessed"), 3, &goal(32)),
+        first.clone(),
+    ];
+    let mut ws = workspace();
+    let mut hear = |inbox: &[u8], n| {
+        let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), inbox), tick(n), &mut ws);
+        (out, agent.target())
+    };
+    let (out, target) = hear(&first, 0);
+    assert_eq!((out.received, out.rejected), (1, 0));
+    assert_eq!(
+        (out.refused, target),
+        (Refused::default(), Some(Cell::new(20, 5)))
+    );
+    let (out, target) = hear(&attacks.concat(), 1);
+    let refused = Refused {
+        unsigned: 1,
+        forged: 2,
+        replayed: 1,
+        no_room: 0,
+    };
+    assert_eq!((out.received, out.rejected, out.refused), (0, 4, refused));
+    assert_eq!(target, Some(Cell::new(20, 5)));
+    let (out, target) = hear(&said(&mut friend, 1, &goal(40)), 2);
+    assert_eq!((out.received, target), (1, Some(Cell::new(40, 5))));
+    // What it says itself is heard by who has the key.
+    let mut listener = wire(b"swarm");
+    let mut outbox = out.outbox.as_slice();
+    let beacon = listener.next_frame(&mut outbox).unwrap();
+    assert_eq!(listener.decode(beacon).unwrap().header.sender, RobotId(1));
+    assert!(wire(b"guessed").decode(beacon).is_err());
+}
