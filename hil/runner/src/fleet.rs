@@ -275,6 +275,12 @@ impl Fleet {
         }
     }
 
+    /// Whether the robot of device number `index` stands in the next step, because its device was reset.
+    #[must_use]
+    pub fn is_down(&self, index: usize) -> bool {
+        self.units.get(index).is_some_and(Unit::is_down)
+    }
+
     /// Waits for all devices, at most for the limits of the [`Options`]; an answer for each that was asked since the last call, in their order:
     /// one for each device, if all were asked. A device that has started anew by itself is made its robot again before this returns.
     pub fn collect(&mut self) -> Vec<Answer> {

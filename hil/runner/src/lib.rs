@@ -4,7 +4,10 @@
 //! ```no_run
 //! use staya_runner::{Answer, Fleet, Options, Order};
 //! # fn orders() -> Vec<Order> { Vec::new() }
-//! # fn inputs(robot: usize) -> staya_controller::agent::Inputs<'static, f32> { unimplemented!() }
+//! # use staya_controller::agent::{Inputs, Pose};
+//! # fn inputs(_: usize) -> Inputs<'static, f32> {
+//! #     Inputs { pose: Pose::default(), cell: None, window: None, surroundings: None, inbox: &[] }
+//! # }
 //! # fn main() -> Result<(), staya_runner::FleetError> {
 //! let mut fleet = Fleet::start(orders(), Options::new("target/firmware".into()))?;
 //! for tick in 0..1000 {

@@ -363,6 +363,11 @@ impl Unit {
         })
     }
 
+    /// Whether the robot stands in the next step, because of a reset.
+    pub const fn is_down(&self) -> bool {
+        self.down > 0
+    }
+
     /// Whether nothing is to be waited for.
     pub fn is_settled(&self) -> bool {
         matches!(self.phase, Phase::Ready | Phase::Failed)

@@ -1,10 +1,11 @@
 //! `staya hil SCENARIO`: some of the robots run as firmware on emulated parts or boards, in lockstep with the rest.
 
+use super::run::ScenarioArgs;
 use super::{Ended, Global, Progress, Stop, print, print_json};
 use crate::engine::{Moment, Outcome, simulate, simulate_with};
 use crate::hil::{OnDevices, Plan, firmware};
 use crate::record::RobotRow;
-use crate::scenario::{Overrides, Scenario};
+use crate::scenario::Scenario;
 use anyhow::{Context as _, Result, bail};
 use clap::Args;
 use serde::Serialize;
@@ -25,20 +26,14 @@ use std::time::{Duration, Instant};
     staya hil scenarios/six-robots.toml --device serial:/dev/ttyACM0,baud=115200 --real-time"
 )]
 pub struct HilArgs {
-    /// The scenario, a .toml file.
-    scenario: PathBuf,
+    #[command(flatten)]
+    scenario: ScenarioArgs,
     /// Where a robot runs: qemu:stm32f405, qemu:microbit, qemu:riscv32 or serial:PORT[,baud=N]; several kinds at once if repeated.
     #[arg(long = "device", value_name = "DEVICE", required = true)]
     kinds: Vec<Device>,
     /// How many robots run on devices: the first ones of the scenario, kinds taken in turn [default: one per --device].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     devices: Option<u32>,
-    /// Seed of everything random, instead of the scenario's.
-    #[arg(long, value_name = "N")]
-    seed: Option<u64>,
-    /// Ticks after which to end, instead of the scenario's.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
-    ticks: Option<u32>,
     /// Pace the run by the clock, and count the ticks that came late.
     #[arg(long)]
     real_time: bool,
@@ -115,11 +110,7 @@ impl HilArgs {
     /// A scenario that cannot be read or is wrong; devices or firmware that are not there; a device that fell silent or differed
     /// from its shadow.
     pub fn run(&self, global: &Global) -> Result<Ended> {
-        let overrides = Overrides {
-            seed: self.seed,
-            ticks: self.ticks,
-        };
-        let scenario = Scenario::load(&self.scenario, &overrides)?;
+        let scenario = self.scenario.load()?;
         let plan = self.plan(&scenario)?;
         let mut parts: Vec<Part> = Vec::new();
         for (_, device) in &plan.devices {
@@ -389,6 +380,7 @@ impl Summary {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scenario::Overrides;
     use clap::Parser;
 
     #[derive(Parser)]

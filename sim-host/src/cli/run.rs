@@ -14,10 +14,9 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Run a scenario.
+/// Which scenario, and what of it is otherwise.
 #[derive(Args, Clone, Debug)]
-#[command(allow_negative_numbers = true)]
-pub struct RunArgs {
+pub struct ScenarioArgs {
     /// The scenario, a .toml file; scenarios/README.md lists those that come with Staya and all fields.
     scenario: PathBuf,
     /// Seed of everything random, instead of the scenario's.
@@ -26,6 +25,28 @@ pub struct RunArgs {
     /// Ticks after which to end, instead of the scenario's.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     ticks: Option<u32>,
+}
+
+impl ScenarioArgs {
+    /// Reads it.
+    ///
+    /// # Errors
+    /// It cannot be read, or is wrong.
+    pub fn load(&self) -> Result<Scenario> {
+        let overrides = Overrides {
+            seed: self.seed,
+            ticks: self.ticks,
+        };
+        Ok(Scenario::load(&self.scenario, &overrides)?)
+    }
+}
+
+/// Run a scenario.
+#[derive(Args, Clone, Debug)]
+#[command(allow_negative_numbers = true)]
+pub struct RunArgs {
+    #[command(flatten)]
+    scenario: ScenarioArgs,
     /// Where results go; files of an earlier run are replaced [default: out/<name of the scenario>].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -75,11 +96,7 @@ impl RunArgs {
     /// # Errors
     /// A scenario that cannot be read or is wrong, results that cannot be written.
     pub fn run(&self, global: &Global) -> Result<Ended> {
-        let overrides = Overrides {
-            seed: self.seed,
-            ticks: self.ticks,
-        };
-        let scenario = Scenario::load(&self.scenario, &overrides)?;
+        let scenario = self.scenario.load()?;
         let out = self
             .out
             .clone()

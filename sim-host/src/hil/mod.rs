@@ -61,6 +61,8 @@ pub struct OnDevices {
     /// Numbers in the plan of those that were sent, in that order, until somebody collects.
     asked: Vec<usize>,
     decisions: Vec<Option<Decision>>,
+    /// Whose devices were reset, until their robots are started anew.
+    lost: Vec<bool>,
     log: Log,
 }
 
@@ -76,6 +78,7 @@ impl OnDevices {
             fleet: None,
             asked: Vec::new(),
             decisions: vec![None; count],
+            lost: vec![false; count],
             log: log.clone(),
         };
         (devices, log)
@@ -128,7 +131,7 @@ impl OnDevices {
                         rejected: report.outputs.rejected,
                     });
                 }
-                Answer::Down => {}
+                Answer::Down => self.lost[at] = true,
                 Answer::Mismatch(mismatch) => self.fail(mismatch.to_string()),
                 Answer::Failed(error) => match *error.trouble {
                     // The run ends anyway.
@@ -164,9 +167,12 @@ impl Elsewhere for OnDevices {
         });
     }
 
-    fn has_restarted(&mut self, _: usize) -> bool {
-        // The fleet makes them their robots again.
-        false
+    fn has_restarted(&mut self, index: usize) -> bool {
+        // The fleet has made it a robot again, but only the engine knows what it has to do by now.
+        let (Some(at), Some(fleet)) = (self.at(index), &self.fleet) else {
+            return false;
+        };
+        self.lost[at] && !fleet.is_down(at) && std::mem::take(&mut self.lost[at])
     }
 
     fn send(&mut self, index: usize, tick: u32, now: Instant, inputs: &Inputs<'_, f32>) {

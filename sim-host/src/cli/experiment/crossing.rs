@@ -1,17 +1,14 @@
 //! `staya experiment swap` and `staya experiment doorway`.
 
-use crate::cli::{Ended, Global, Progress, Stop, print, print_json};
+use super::results::Work;
+use crate::cli::{Ended, Global, Stop};
 use crate::experiment::crossing::{Conditions, doorway, swap};
 use crate::plot::flock::Sheet;
 use crate::record::{self, prepare_dir};
 use crate::scenario::SafetyName;
 use anyhow::{Context as _, Result, bail};
 use clap::{Args, ValueEnum};
-use serde::Serialize;
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
-use std::time::Instant;
 
 /// What keeps robots apart.
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -165,39 +162,6 @@ fn numbers(text: &str) -> Result<Numbers, String> {
     Ok(Numbers(all))
 }
 
-/// Runs with a progress bar that several threads tell.
-fn with_progress<R>(
-    total: usize,
-    global: &Global,
-    stop: &Stop,
-    run: impl FnOnce(&(dyn Fn(usize) -> bool + Sync)) -> R,
-) -> R {
-    let progress = Mutex::new((Progress::new("runs", total as u64, global), 0));
-    let report = run(&|done| {
-        if let Ok(mut progress) = progress.lock()
-            && done > progress.1
-        {
-            progress.1 = done;
-            progress.0.set(done as u64, String::new);
-        }
-        !stop.is_requested()
-    });
-    if let Ok(progress) = progress.into_inner() {
-        progress.0.finish();
-    }
-    report
-}
-
-/// What `--json` prints.
-#[derive(Serialize)]
-struct Output<'a, R> {
-    #[serde(flatten)]
-    report: &'a R,
-    interrupted: bool,
-    wall_seconds: f64,
-    pictures: &'a [PathBuf],
-}
-
 fn write(sheet: &Sheet, stem: &Path) -> Result<Vec<PathBuf>, record::Error> {
     sheet.draw().write(stem)
 }
@@ -232,12 +196,13 @@ impl SwapArgs {
         let out = self.common.out("swap");
         prepare_dir(&out).context("pictures have no place")?;
         let stop = Stop::on_ctrl_c()?;
-        let began = Instant::now();
-        let report = with_progress(plan.total(), global, &stop, |progress| plan.run(progress));
-        let wall_seconds = began.elapsed().as_secs_f64();
-        let mut pictures = Vec::new();
+        let work = Work::new("runs", plan.total(), &out);
+        let run = |told: &(dyn Fn(usize) -> bool + Sync)| anyhow::Ok(plan.run(told));
+        let (report, mut course) = work.carry_out(global, &stop, run, |r| r.runs.len())?;
         if report.rows.len() > 1 {
-            pictures.extend(report.chart().write(&out.join("times"))?);
+            course
+                .pictures
+                .extend(report.chart().write(&out.join("times"))?);
         }
         // Of all that can be told apart in a picture, the largest.
         let drawn = report
@@ -247,27 +212,11 @@ impl SwapArgs {
             .map(|row| row.robots)
             .find(|&n| n <= 100);
         if let Some(robots) = drawn.filter(|_| !stop.is_requested()) {
-            pictures.extend(write(&plan.picture(robots), &out.join("swap"))?);
+            course
+                .pictures
+                .extend(write(&plan.picture(robots), &out.join("swap"))?);
         }
-        if global.json {
-            print_json(&Output {
-                report: &report,
-                interrupted: stop.is_requested(),
-                wall_seconds,
-                pictures: &pictures,
-            })?;
-        } else {
-            let mut text = report.to_string();
-            last_word(
-                &mut text,
-                report.runs.len(),
-                plan.total(),
-                wall_seconds,
-                &pictures,
-                &out,
-            )?;
-            print(&text)?;
-        }
+        course.tell(&report, |report| Ok(report.to_string()), global)?;
         Ok(Ended::by(&stop))
     }
 }
@@ -301,50 +250,17 @@ impl DoorwayArgs {
         let out = self.common.out("doorway");
         prepare_dir(&out).context("pictures have no place")?;
         let stop = Stop::on_ctrl_c()?;
-        let began = Instant::now();
-        let report = with_progress(plan.total(), global, &stop, |progress| plan.run(progress));
-        let wall_seconds = began.elapsed().as_secs_f64();
-        let mut pictures = Vec::new();
+        let work = Work::new("runs", plan.total(), &out);
+        let run = |told: &(dyn Fn(usize) -> bool + Sync)| anyhow::Ok(plan.run(told));
+        let (report, mut course) = work.carry_out(global, &stop, run, |r| r.runs.len())?;
         if let Some(run) = report.runs.first().filter(|_| !stop.is_requested()) {
-            pictures.extend(write(&plan.picture(run.width_m), &out.join("doorway"))?);
+            course
+                .pictures
+                .extend(write(&plan.picture(run.width_m), &out.join("doorway"))?);
         }
-        if global.json {
-            print_json(&Output {
-                report: &report,
-                interrupted: stop.is_requested(),
-                wall_seconds,
-                pictures: &pictures,
-            })?;
-        } else {
-            let mut text = report.to_string();
-            last_word(
-                &mut text,
-                report.runs.len(),
-                plan.total(),
-                wall_seconds,
-                &pictures,
-                &out,
-            )?;
-            print(&text)?;
-        }
+        course.tell(&report, |report| Ok(report.to_string()), global)?;
         Ok(Ended::by(&stop))
     }
-}
-
-fn last_word(
-    text: &mut String,
-    done: usize,
-    total: usize,
-    wall_seconds: f64,
-    pictures: &[PathBuf],
-    out: &Path,
-) -> std::fmt::Result {
-    text.push('\n');
-    if done < total {
-        write!(text, "stopped early, after {done} of {total}: ")?;
-    }
-    writeln!(text, "{done} runs in {wall_seconds:.1} s")?;
-    writeln!(text, "{} pictures in {}", pictures.len(), out.display())
 }
 
 #[cfg(test)]

@@ -1,16 +1,15 @@
 //! `staya experiment flock`.
 
 use super::params::SafetyArg;
-use super::results::{Course, number};
-use crate::cli::{Ended, Global, Progress, Stop};
+use super::results::{Work, number};
+use crate::cli::{Ended, Global, Stop};
 use crate::experiment::flock::closing::{Closing, ClosingReport, Meeting};
-use crate::experiment::flock::{Case, Plan, Report};
+use crate::experiment::flock::{Case, Plan, Report, Results};
 use crate::record::prepare_dir;
-use anyhow::{Result, bail};
+use anyhow::Result;
 use clap::{Args, ValueEnum};
 use std::fmt::Write as _;
 use std::path::PathBuf;
-use std::time::Instant;
 
 /// A simulation of the paper, as a word.
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -143,28 +142,12 @@ impl FlockArgs {
         let plan = self.plan();
         plan.check()?;
         let stop = Stop::on_ctrl_c()?;
-        let begun = Instant::now();
         prepare_dir(&self.out)?;
-        let mut progress = Progress::new("runs", plan.total() as u64, global);
-        let results = plan.carry_out(|done| {
-            progress.set(done as u64, String::new);
-            !stop.is_requested()
-        })?;
-        progress.finish();
-        if results.done() == 0 {
-            bail!("stopped before the first run was done");
-        }
+        let work = Work::new("runs", plan.total(), &self.out);
+        let (results, mut course) =
+            work.carry_out(global, &stop, |told| plan.carry_out(told), Results::done)?;
         let report = results.report();
-        let wall_seconds = begun.elapsed().as_secs_f64();
-        let course = Course {
-            unit: "runs",
-            done: results.done(),
-            total: plan.total(),
-            interrupted: stop.is_requested(),
-            wall_seconds,
-            out: &self.out,
-            pictures: report.draw(&self.out)?,
-        };
+        course.pictures = report.draw(&self.out)?;
         course.tell(&report, table, global)?;
         Ok(Ended::by(&stop))
     }
@@ -179,25 +162,13 @@ impl FlockArgs {
         };
         plan.check()?;
         let stop = Stop::on_ctrl_c()?;
-        let begun = Instant::now();
-        let mut progress = Progress::new("runs", plan.total() as u64, global);
-        let (report, done) = plan.carry_out(|done| {
-            progress.set(done as u64, String::new);
-            !stop.is_requested()
-        })?;
-        progress.finish();
-        if done == 0 {
-            bail!("stopped before the first run was done");
-        }
-        let course = Course {
-            unit: "runs",
-            done,
-            total: plan.total(),
-            interrupted: stop.is_requested(),
-            wall_seconds: begun.elapsed().as_secs_f64(),
-            out: &self.out,
-            pictures: Vec::new(),
-        };
+        let work = Work::new("runs", plan.total(), &self.out);
+        let ((report, _), course) = work.carry_out(
+            global,
+            &stop,
+            |told| plan.carry_out(told),
+            |(_, done)| *done,
+        )?;
         course.tell(&report, closing_table, global)?;
         Ok(Ended::by(&stop))
     }

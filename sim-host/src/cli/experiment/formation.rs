@@ -1,9 +1,9 @@
 //! `staya experiment formation`.
 
-use super::results::{Course, number};
+use super::results::{Work, number};
 use crate::cli::terrain::NormArg;
-use crate::cli::{Ended, Global, Progress, Stop};
-use crate::experiment::formation::{Journey, Plan, Report, Variants};
+use crate::cli::{Ended, Global, Stop};
+use crate::experiment::formation::{Journey, Plan, Report, Results, Variants};
 use crate::record::prepare_dir;
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
@@ -12,7 +12,6 @@ use staya_controller::grid::UNIT;
 use staya_controller::route::RouteParams;
 use std::fmt::Write as _;
 use std::path::PathBuf;
-use std::time::Instant;
 
 /// How others are foreseen, as a word.
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -184,28 +183,12 @@ impl FormationArgs {
         let plan = self.plan()?;
         plan.check()?;
         let stop = Stop::on_ctrl_c()?;
-        let begun = Instant::now();
         prepare_dir(&self.out)?;
-        let mut progress = Progress::new("landscapes", plan.total() as u64, global);
-        let results = plan.carry_out(|done| {
-            progress.set(done as u64, String::new);
-            !stop.is_requested()
-        })?;
-        progress.finish();
-        if results.done() == 0 {
-            bail!("stopped before the first landscape was done");
-        }
+        let work = Work::new("landscapes", plan.total(), &self.out);
+        let (results, mut course) =
+            work.carry_out(global, &stop, |told| plan.carry_out(told), Results::done)?;
         let report = results.report();
-        let wall_seconds = begun.elapsed().as_secs_f64();
-        let course = Course {
-            unit: "landscapes",
-            done: results.done(),
-            total: plan.total(),
-            interrupted: stop.is_requested(),
-            wall_seconds,
-            out: &self.out,
-            pictures: report.draw(&self.out)?,
-        };
+        course.pictures = report.draw(&self.out)?;
         let tables = |report: &Report| {
             let variants = variants(report, Variants::Eps)? + &variants(report, Variants::Loss)?;
             Ok(table(report)? + &variants)

@@ -1,17 +1,16 @@
 //! `staya experiment goals`.
 
 use super::params::SafetyArg;
-use super::results::{Course, number};
-use crate::cli::{Ended, Global, Progress, Stop};
-use crate::experiment::goals::{Plan, Report};
+use super::results::{Work, number};
+use crate::cli::{Ended, Global, Stop};
+use crate::experiment::goals::{Plan, Report, Results};
 use crate::record::prepare_dir;
 use crate::scenario::SafetyName;
-use anyhow::{Result, bail};
+use anyhow::Result;
 use clap::{Args, ValueEnum};
 use staya_controller::push_out::{Evasion, Model};
 use std::fmt::Write as _;
 use std::path::PathBuf;
-use std::time::Instant;
 
 /// Push-out's model, as a word.
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -128,28 +127,12 @@ impl GoalsArgs {
         let plan = self.plan();
         plan.check()?;
         let stop = Stop::on_ctrl_c()?;
-        let begun = Instant::now();
         prepare_dir(&self.out)?;
-        let mut progress = Progress::new("runs", plan.total() as u64, global);
-        let results = plan.carry_out(|done| {
-            progress.set(done as u64, String::new);
-            !stop.is_requested()
-        })?;
-        progress.finish();
-        if results.done() == 0 {
-            bail!("stopped before the first run was done");
-        }
+        let work = Work::new("runs", plan.total(), &self.out);
+        let (results, mut course) =
+            work.carry_out(global, &stop, |told| plan.carry_out(told), Results::done)?;
         let report = results.report();
-        let wall_seconds = begun.elapsed().as_secs_f64();
-        let course = Course {
-            unit: "runs",
-            done: results.done(),
-            total: plan.total(),
-            interrupted: stop.is_requested(),
-            wall_seconds,
-            out: &self.out,
-            pictures: report.draw(&self.out)?,
-        };
+        course.pictures = report.draw(&self.out)?;
         course.tell(&report, table, global)?;
         Ok(Ended::by(&stop))
     }

@@ -1,10 +1,12 @@
 //! What experiments say at their end.
 
-use crate::cli::{Global, print, print_json};
-use anyhow::Result;
+use crate::cli::{Global, Progress, Stop, print, print_json};
+use anyhow::{Result, bail};
 use serde::Serialize;
 use std::fmt::{self, Write as _};
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::time::Instant;
 
 /// How an experiment went.
 #[derive(Clone, Debug)]
@@ -33,6 +35,74 @@ struct Output<'a, R> {
     interrupted: bool,
     wall_seconds: f64,
     pictures: &'a [PathBuf],
+}
+
+/// An experiment under way, timed from its making on.
+#[derive(Debug)]
+pub struct Work<'a> {
+    /// What is done so many times: landscapes, runs.
+    pub unit: &'static str,
+    /// How many of them.
+    pub total: usize,
+    /// Where pictures will go.
+    pub out: &'a Path,
+    since: Instant,
+}
+
+impl<'a> Work<'a> {
+    /// Begins now.
+    #[must_use]
+    pub fn new(unit: &'static str, total: usize, out: &'a Path) -> Self {
+        Self {
+            unit,
+            total,
+            out,
+            since: Instant::now(),
+        }
+    }
+
+    /// Does it under a progress bar. `work` gets a function that it tells how much is done and that says whether to go on; `done` says how much its
+    /// results hold.
+    ///
+    /// # Errors
+    /// Those of `work`, and an end before there was anything to show.
+    pub fn carry_out<T, E: Into<anyhow::Error>>(
+        self,
+        global: &Global,
+        stop: &Stop,
+        work: impl FnOnce(&(dyn Fn(usize) -> bool + Sync)) -> Result<T, E>,
+        done: impl FnOnce(&T) -> usize,
+    ) -> Result<(T, Course<'a>)> {
+        let progress = Mutex::new((Progress::new(self.unit, self.total as u64, global), 0));
+        // Several threads may tell it, and late.
+        let results = work(&|done| {
+            if let Ok(mut progress) = progress.lock()
+                && done > progress.1
+            {
+                progress.1 = done;
+                progress.0.set(done as u64, String::new);
+            }
+            !stop.is_requested()
+        });
+        if let Ok((progress, _)) = progress.into_inner() {
+            progress.finish();
+        }
+        let results = results.map_err(Into::into)?;
+        let done = done(&results);
+        if done == 0 {
+            bail!("stopped before any of the {} was done", self.unit);
+        }
+        let course = Course {
+            unit: self.unit,
+            done,
+            total: self.total,
+            interrupted: stop.is_requested(),
+            wall_seconds: self.since.elapsed().as_secs_f64(),
+            out: self.out,
+            pictures: Vec::new(),
+        };
+        Ok((results, course))
+    }
 }
 
 impl Course<'_> {

@@ -1,20 +1,19 @@
 //! `staya experiment route`.
 
 use super::params::{RouteOptions, gain};
-use super::results::{Course, number};
+use super::results::{Work, number};
 use crate::cli::terrain::NormArg;
-use crate::cli::{Ended, Global, Progress, Stop};
+use crate::cli::{Ended, Global, Stop};
 use crate::experiment::route::{
-    Coefficient, Land, Loss, MAX_RADIUS, Means, Plan, Point, Report, decimal,
+    Coefficient, Land, Loss, MAX_RADIUS, Means, Plan, Point, Report, Results, decimal,
 };
 use crate::record::prepare_dir;
-use anyhow::{Result, bail};
+use anyhow::Result;
 use clap::{Args, ValueEnum};
 use staya_controller::cost::Gain;
 use staya_controller::route::RouteParams;
 use std::fmt::Write as _;
 use std::path::PathBuf;
-use std::time::Instant;
 
 /// A kind of landscapes as a word.
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -162,28 +161,12 @@ impl RouteArgs {
     }
 
     fn carry_out(&self, plan: &Plan, global: &Global, stop: &Stop) -> Result<Ended> {
-        let begun = Instant::now();
         prepare_dir(&self.out)?;
-        let mut progress = Progress::new("landscapes", plan.total() as u64, global);
-        let results = plan.carry_out(|done| {
-            progress.set(done as u64, String::new);
-            !stop.is_requested()
-        })?;
-        progress.finish();
-        if results.done() == 0 {
-            bail!("stopped before the first landscape was done");
-        }
+        let work = Work::new("landscapes", plan.total(), &self.out);
+        let (results, mut course) =
+            work.carry_out(global, stop, |told| plan.carry_out(told), Results::done)?;
         let report = results.report();
-        let wall_seconds = begun.elapsed().as_secs_f64();
-        let course = Course {
-            unit: "landscapes",
-            done: results.done(),
-            total: plan.total(),
-            interrupted: stop.is_requested(),
-            wall_seconds,
-            out: &self.out,
-            pictures: report.draw(&results.example()?, &self.out)?,
-        };
+        course.pictures = report.draw(&results.example()?, &self.out)?;
         let tables = |report: &Report| Ok(table(report)? + &sweep_tables(report, &plan.params)?);
         course.tell(&report, tables, global)?;
         Ok(Ended::by(stop))
