@@ -416,7 +416,7 @@ mod tests {
         assert!(out.join("figure3.svg").is_file() && out.join("sweep-a2.png").is_file());
         stop.request();
         let error = args.carry_out(&args.plan(), &quiet, &stop).unwrap_err();
-        assert!(error.to_string().contains("before the first landscape"));
+        assert!(error.to_string().contains("before any of the landscapes"));
     }
 
     #[test]
