@@ -10,6 +10,7 @@ pub mod engine;
 pub mod experiment;
 mod file;
 pub mod hil;
+pub mod key;
 pub mod mavlink;
 pub mod metrics;
 pub mod nearby;

@@ -19,6 +19,7 @@
 extern crate std;
 
 pub mod frame;
+pub mod signed;
 pub mod signing;
 pub mod wire;
 
