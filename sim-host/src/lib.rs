@@ -3,9 +3,11 @@
 //! [`scenario`] reads what to simulate, [`terrain`] the land, [`engine`] runs every robot's
 //! [`staya_controller::agent::Agent`] through two-phase ticks over [`world`] and [`radio`],
 //! [`metrics`] measures, [`record`] keeps what happened, [`plot`] draws it, [`experiment`]
-//! reproduces papers, [`mavlink`] is the edge to autopilots and ground stations, [`cli`] is the command `staya`.
+//! reproduces papers, [`mavlink`] is the edge to autopilots and ground stations, [`companion`] the controller beside
+//! autopilots, [`cli`] is the command `staya`.
 
 pub mod cli;
+pub mod companion;
 pub mod engine;
 pub mod experiment;
 mod file;

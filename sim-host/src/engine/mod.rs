@@ -19,7 +19,8 @@ mod simulate;
 pub use elsewhere::{Decision, Elsewhere};
 pub use grid::Grid;
 pub use ground::{Ground, Words};
-pub use plane::PlaneGround;
+pub use plane::{PlaneGround, Senses};
+pub(crate) use simulate::WIDE;
 pub use simulate::{Moment, Outcome, simulate, simulate_with};
 
 use crate::metrics::{Arrivals, Keeping};

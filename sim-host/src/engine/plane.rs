@@ -64,6 +64,60 @@ impl PlaneGround {
         &self.plane
     }
 
+    /// What a robot of the scenario senses where it is, with what velocity it has; the inbox is empty. Places are finite.
+    pub fn sense_at<'a>(
+        &'a self,
+        position_m: [f64; 3],
+        velocity_mps: [f64; 3],
+        senses: &'a mut Senses,
+    ) -> Inputs<'a, f32> {
+        let Senses { cells, obstacles } = senses;
+        let sight_m = self.setup.sight_m + self.setup.radius_m;
+        obstacles.clear();
+        let near = self
+            .plane
+            .solids()
+            .iter()
+            .filter(|solid| solid.distance_m(position_m) <= sight_m);
+        obstacles.extend(near.map(|solid| narrow(&solid.seen_from(position_m))));
+        let place = self.in_cell(position_m);
+        let window = place
+            .zip(self.plane.terrain())
+            .and_then(|((cell, _, _), land)| window(land, cell, self.radius, cells));
+        if let (Some((cell, off, cell_m)), Some(window)) = (place, &window) {
+            // The frame as seen from the robot.
+            let origin = |cells: i16, axis: usize| -off[axis] - (f64::from(cells) + 0.5) * cell_m;
+            let frame = GridFrame {
+                origin_m: Vec2::new(origin(cell.x, 0) as f32, origin(cell.y, 1) as f32),
+                cell_m: cell_m as f32,
+            };
+            let walls = grid_walls::<f32, WALLS>(window, &frame, Vec2::ZERO, sight_m as f32);
+            obstacles.extend(walls);
+        }
+        let [vx, vy, vz] = velocity_mps.map(|v| v as f32);
+        Inputs {
+            pose: Pose {
+                // The world's numbers are finite.
+                position: Position::from_metres(position_m).unwrap_or_default(),
+                velocity_mps: Vec3::new(vx, vy, vz),
+            },
+            cell: place.map(|(cell, _, _)| CellState {
+                cell,
+                busy: Duration::ZERO,
+            }),
+            window,
+            surroundings: Some(Surroundings {
+                max_speed_mps: self.plane.max_speed_mps(position_m) as f32,
+                obstacles,
+                in_cell: place.map(|(_, off, cell_m)| InCell {
+                    offset_m: Vec2::new(off[0] as f32, off[1] as f32),
+                    cell_m: cell_m as f32,
+                }),
+            }),
+            inbox: &[],
+        }
+    }
+
     /// Where in its cell of the land a body is.
     fn in_cell(&self, position_m: [f64; 3]) -> Option<(Cell, [f64; 2], f64)> {
         let cell = self.plane.cell(position_m)?;
@@ -121,51 +175,7 @@ impl Ground for PlaneGround {
 
     fn sense<'a>(&'a self, index: usize, _: u32, senses: &'a mut Senses) -> Inputs<'a, f32> {
         let disc = &self.plane.discs()[index];
-        let Senses { cells, obstacles } = senses;
-        let sight_m = self.setup.sight_m + disc.radius_m;
-        obstacles.clear();
-        let near = self
-            .plane
-            .solids()
-            .iter()
-            .filter(|solid| solid.distance_m(disc.position_m) <= sight_m);
-        obstacles.extend(near.map(|solid| narrow(&solid.seen_from(disc.position_m))));
-        let place = self.in_cell(disc.position_m);
-        let window = place
-            .zip(self.plane.terrain())
-            .and_then(|((cell, _, _), land)| window(land, cell, self.radius, cells));
-        if let (Some((cell, off, cell_m)), Some(window)) = (place, &window) {
-            // The frame as seen from the robot.
-            let origin = |cells: i16, axis: usize| -off[axis] - (f64::from(cells) + 0.5) * cell_m;
-            let frame = GridFrame {
-                origin_m: Vec2::new(origin(cell.x, 0) as f32, origin(cell.y, 1) as f32),
-                cell_m: cell_m as f32,
-            };
-            let walls = grid_walls::<f32, WALLS>(window, &frame, Vec2::ZERO, sight_m as f32);
-            obstacles.extend(walls);
-        }
-        let [vx, vy, vz] = disc.velocity_mps.map(|v| v as f32);
-        Inputs {
-            pose: Pose {
-                // The world's numbers are finite.
-                position: Position::from_metres(disc.position_m).unwrap_or_default(),
-                velocity_mps: Vec3::new(vx, vy, vz),
-            },
-            cell: place.map(|(cell, _, _)| CellState {
-                cell,
-                busy: Duration::ZERO,
-            }),
-            window,
-            surroundings: Some(Surroundings {
-                max_speed_mps: self.plane.max_speed_mps(disc.position_m) as f32,
-                obstacles,
-                in_cell: place.map(|(_, off, cell_m)| InCell {
-                    offset_m: Vec2::new(off[0] as f32, off[1] as f32),
-                    cell_m: cell_m as f32,
-                }),
-            }),
-            inbox: &[],
-        }
+        self.sense_at(disc.position_m, disc.velocity_mps, senses)
     }
 
     fn motion(&self, index: usize, _: u32) -> Motion {

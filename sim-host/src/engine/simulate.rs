@@ -13,7 +13,7 @@ use staya_controller::agent::{
 use std::ops::ControlFlow;
 
 /// Cells of a search for windows up to radius 16 with their border: (2 * 16 + 3)^2.
-const WIDE: usize = 1225;
+pub(crate) const WIDE: usize = 1225;
 /// The largest radius for which [`CELLS`] suffices.
 const NARROW_RADIUS: u8 = 5;
 

@@ -90,7 +90,7 @@ fn probability(source: &Source<'_>, field: &str, value: f64) -> Result<(), Scena
     Err(source.error(field, what, "give a number from 0 to 1"))
 }
 
-pub(super) fn within(
+pub(crate) fn within(
     source: &Source<'_>,
     field: &str,
     value: f64,

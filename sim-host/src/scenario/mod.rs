@@ -11,6 +11,7 @@ mod schema;
 mod setup;
 mod source;
 
+pub(crate) use check::within;
 pub use params::{
     ExitName, FormationTable, PredictionName, RecoveryName, ReplanName, RouteTable, Routing,
 };
@@ -25,14 +26,17 @@ pub use schema::{
     RobotsTable, ScatteredEntry, ScenEntry, ScenarioFile, TerrainTable, UniformTable,
 };
 pub use source::ScenarioError;
+pub(crate) use source::Source;
 
 use crate::radio::RadioParams;
 use crate::terrain::Terrain;
 use crate::world::MoveRules;
-use source::Source;
 use staya_controller::formation::FormationParams;
 use staya_controller::wire::RobotId;
 use std::path::Path;
+
+/// Where the fields are listed.
+const LIST: &str = "scenarios/README.md";
 
 /// What the command line may say instead of the file.
 #[derive(Clone, Copy, Debug, Default)]
@@ -105,7 +109,7 @@ impl Scenario {
     pub fn parse(text: &str, path: &Path, overrides: &Overrides) -> Result<Self, ScenarioError> {
         let source = Source::new(path, text)?;
         let mut file: ScenarioFile =
-            toml::from_str(source.text()).map_err(|error| source.serde_error(&error))?;
+            toml::from_str(source.text()).map_err(|error| source.serde_error(&error, LIST))?;
         file.seed = overrides.seed.unwrap_or(file.seed);
         file.ticks = overrides.ticks.unwrap_or(file.ticks);
         check::general(&source, &file)?;

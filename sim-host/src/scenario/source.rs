@@ -1,4 +1,4 @@
-//! A scenario's text, and errors that point into it.
+//! A text in TOML (a scenario, or another file that goes with one), and errors that point into it.
 
 use crate::file::read_remedy;
 use std::ops::Range;
@@ -7,7 +7,7 @@ use thiserror::Error;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// Why there is no scenario.
+/// Why there is no scenario, or other file of settings.
 #[derive(Debug, Error)]
 pub enum ScenarioError {
     /// The file cannot be read.
@@ -44,7 +44,7 @@ fn prefix(field: &str) -> String {
 
 /// The text of a scenario and where each field stands in it.
 #[derive(Debug)]
-pub(super) struct Source<'a> {
+pub(crate) struct Source<'a> {
     path: &'a Path,
     text: &'a str,
     root: Spanned<DeTable<'a>>,
@@ -52,7 +52,7 @@ pub(super) struct Source<'a> {
 
 impl<'a> Source<'a> {
     /// Takes a text apart without asking what its fields mean.
-    pub(super) fn new(path: &'a Path, text: &'a str) -> Result<Self, ScenarioError> {
+    pub(crate) fn new(path: &'a Path, text: &'a str) -> Result<Self, ScenarioError> {
         match DeTable::parse(text) {
             Ok(root) => Ok(Self { path, text, root }),
             Err(error) => Err(ScenarioError::Field {
@@ -66,16 +66,16 @@ impl<'a> Source<'a> {
     }
 
     /// The file's folder: what file names in a scenario are relative to.
-    pub(super) fn folder(&self) -> &Path {
+    pub(crate) fn folder(&self) -> &Path {
         self.path.parent().unwrap_or(Path::new(""))
     }
 
-    pub(super) fn text(&self) -> &'a str {
+    pub(crate) fn text(&self) -> &'a str {
         self.text
     }
 
     /// An error about a field, which may be one that is not there (then its table is named).
-    pub(super) fn error(
+    pub(crate) fn error(
         &self,
         field: &str,
         what: impl Into<String>,
@@ -90,8 +90,8 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// What serde says of a field, said with file, line and field.
-    pub(super) fn serde_error(&self, error: &toml::de::Error) -> ScenarioError {
+    /// What serde says of a field, said with file, line and field; `list` is where all fields are listed.
+    pub(crate) fn serde_error(&self, error: &toml::de::Error, list: &str) -> ScenarioError {
         let mut field = String::new();
         // The span of the whole file is empty.
         if let Some(span) = error.span().filter(|span| !span.is_empty()) {
@@ -102,12 +102,12 @@ impl<'a> Source<'a> {
             line: line_of(self.text, error.span()),
             field,
             what: in_words(&first_line(error.message())),
-            remedy: "scenarios/README.md lists all fields with their units".to_owned(),
+            remedy: format!("{list} lists all fields with their units"),
         }
     }
 
     /// Whether the file has this field or table at its top level.
-    pub(super) fn has(&self, name: &str) -> bool {
+    pub(crate) fn has(&self, name: &str) -> bool {
         self.root.get_ref().get(name).is_some()
     }
 
@@ -151,17 +151,27 @@ fn deepest(table: &DeTable<'_>, span: &Range<usize>, field: &mut String) {
             deepest_value(value.get_ref(), span, field);
             return;
         }
-        // A [table] header's span does not cover what follows it.
-        if let DeValue::Table(inner) = value.get_ref() {
+        // The span of a [table] header does not cover what follows it.
+        let tables = match value.get_ref() {
+            DeValue::Table(inner) => vec![(String::new(), inner)],
+            DeValue::Array(array) => array
+                .iter()
+                .enumerate()
+                .filter_map(|(index, element)| match element.get_ref() {
+                    DeValue::Table(inner) => Some((format!("[{index}]"), inner)),
+                    _ => None,
+                })
+                .collect(),
+            _ => Vec::new(),
+        };
+        for (index, inner) in tables {
             let mut below = String::new();
             deepest(inner, span, &mut below);
             if !below.is_empty() {
                 if !field.is_empty() {
                     field.push('.');
                 }
-                field.push_str(key.get_ref());
-                field.push('.');
-                field.push_str(&below);
+                field.push_str(&format!("{}{index}.{below}", key.get_ref()));
                 return;
             }
         }

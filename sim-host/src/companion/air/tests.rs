@@ -1,0 +1,96 @@
+use super::*;
+use staya_controller::wire::{Header, Message, Postcard, RobotId, encode};
+
+fn frames(count: u16) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    for sequence in 0..count {
+        let header = Header {
+            boot: 0,
+            sender: RobotId(1),
+            sequence,
+        };
+        let mut frame = heapless::Vec::<u8, 64>::new();
+        encode(header, &Message::Beacon(Default::default()), &mut frame).unwrap();
+        bytes.extend_from_slice(&frame);
+    }
+    bytes
+}
+
+#[test]
+fn tunnels_carry_whole_frames() {
+    for count in 0..12 {
+        let frames = frames(count);
+        let messages = tunnel(&Postcard, &frames);
+        let mut back = Vec::new();
+        for message in &messages {
+            let MavMessage::TUNNEL(data) = message else {
+                panic!("a tunnel");
+            };
+            assert!(data.payload_type >= 32_768);
+            let part = tunnelled(data).unwrap();
+            assert_eq!(part.last(), Some(&0), "ends with a frame's end");
+            back.extend_from_slice(part);
+        }
+        assert_eq!(back, frames);
+    }
+}
+
+#[test]
+fn tunnels_of_others_are_left_alone() {
+    let other = TUNNEL_DATA {
+        payload_type: 7,
+        payload_length: 4,
+        ..TUNNEL_DATA::DEFAULT
+    };
+    assert_eq!(tunnelled(&other), None);
+    let too_long = TUNNEL_DATA {
+        payload_type: PAYLOAD_TYPE,
+        payload_length: 129,
+        ..TUNNEL_DATA::DEFAULT
+    };
+    assert_eq!(tunnelled(&too_long), None);
+}
+
+fn heard(air: &Air) -> Vec<Vec<u8>> {
+    let mut all = Vec::new();
+    for _ in 0..100 {
+        air.receive(|bytes| all.push(bytes.to_vec()));
+        if !all.is_empty() {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    all
+}
+
+#[test]
+fn peers_hear_each_other() {
+    let free = || {
+        let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+        socket.local_addr().unwrap()
+    };
+    let (a, b) = (free(), free());
+    let open = |bind, peer| {
+        Air::open(&AirSetup::Peers {
+            bind,
+            peers: vec![peer],
+        })
+    };
+    let (first, second) = (open(a, b).unwrap(), open(b, a).unwrap());
+    first.send(b"one");
+    assert_eq!(heard(&second), [b"one"]);
+    second.send(b"two");
+    assert_eq!(heard(&first), [b"two"]);
+    let error = open(a, b).unwrap_err().to_string();
+    assert!(error.contains(&a.to_string()), "{error}");
+}
+
+#[test]
+fn nobody_is_heard_where_there_is_nobody() {
+    for setup in [AirSetup::Here, AirSetup::Tunnel] {
+        let air = Air::open(&setup).unwrap();
+        air.send(b"nothing");
+        air.receive(|_| panic!("heard something"));
+        assert_eq!(air.is_tunnel(), setup == AirSetup::Tunnel);
+    }
+}

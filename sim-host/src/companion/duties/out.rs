@@ -1,0 +1,108 @@
+//! The messages of a companion.
+
+use super::{AUTOPILOT, Kind};
+use staya_mavlink::dialect::{
+    COMMAND_LONG_DATA, EXTENDED_SYS_STATE_DATA, GLOBAL_POSITION_INT_DATA, HEARTBEAT_DATA,
+    LOCAL_POSITION_NED_DATA, MavMessage, SET_POSITION_TARGET_LOCAL_NED_DATA, STATUSTEXT_DATA,
+};
+use staya_mavlink::mavlink_core::MessageData as _;
+use std::time::Duration;
+
+/// `MAV_CMD_NAV_TAKEOFF`.
+pub const NAV_TAKEOFF: u16 = 22;
+/// `MAV_CMD_DO_SET_MODE`.
+pub const DO_SET_MODE: u16 = 176;
+/// `MAV_CMD_COMPONENT_ARM_DISARM`.
+pub const ARM_DISARM: u16 = 400;
+/// `MAV_CMD_SET_MESSAGE_INTERVAL`.
+const SET_MESSAGE_INTERVAL: u16 = 511;
+/// Only the velocity counts: `POSITION_TARGET_TYPEMASK` to ignore position, acceleration, yaw and yaw rate.
+const VELOCITY_ONLY: u16 = 0xDC7;
+/// `MAV_FRAME_LOCAL_NED`.
+const LOCAL_NED: u8 = 1;
+
+/// An onboard controller that is active.
+pub fn heartbeat() -> MavMessage {
+    MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+        mavtype: 18,
+        autopilot: 8,
+        system_status: 4,
+        mavlink_version: 3,
+        ..HEARTBEAT_DATA::DEFAULT
+    })
+}
+
+fn command(system: u8, command: u16, params: [f64; 7]) -> MavMessage {
+    let [param1, param2, param3, param4, param5, param6, param7] = params.map(|p| p as f32);
+    MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
+        param1,
+        param2,
+        param3,
+        param4,
+        param5,
+        param6,
+        param7,
+        command,
+        target_system: system,
+        target_component: AUTOPILOT,
+        confirmation: 0,
+    })
+}
+
+pub fn set_mode(system: u8, kind: Kind) -> MavMessage {
+    let mode = f64::from(kind.outside_control());
+    command(system, DO_SET_MODE, [1.0, mode, 0.0, 0.0, 0.0, 0.0, 0.0])
+}
+
+pub fn arm(system: u8) -> MavMessage {
+    command(system, ARM_DISARM, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+}
+
+pub fn takeoff(system: u8, altitude_m: f64) -> MavMessage {
+    command(
+        system,
+        NAV_TAKEOFF,
+        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, altitude_m],
+    )
+}
+
+/// Positions at a rate; whether it flies, for what does, twice a second.
+pub fn intervals(system: u8, kind: Kind, position_hz: f64) -> impl Iterator<Item = MavMessage> {
+    let state = kind.flies().then_some((EXTENDED_SYS_STATE_DATA::ID, 2.0));
+    [
+        (GLOBAL_POSITION_INT_DATA::ID, position_hz),
+        (LOCAL_POSITION_NED_DATA::ID, position_hz),
+    ]
+    .into_iter()
+    .chain(state)
+    .map(move |(id, hz)| {
+        let params = [f64::from(id), 1e6 / hz, 0.0, 0.0, 0.0, 0.0, 0.0];
+        command(system, SET_MESSAGE_INTERVAL, params)
+    })
+}
+
+/// A velocity, north, east, down.
+pub fn setpoint(system: u8, velocity_ned_mps: [f64; 3], now: Duration) -> MavMessage {
+    let [vx, vy, vz] = velocity_ned_mps.map(|v| v as f32);
+    MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
+        // Wraps like everybody's.
+        time_boot_ms: now.as_millis() as u32,
+        target_system: system,
+        target_component: AUTOPILOT,
+        coordinate_frame: LOCAL_NED,
+        type_mask: VELOCITY_ONLY,
+        vx,
+        vy,
+        vz,
+        ..SET_POSITION_TARGET_LOCAL_NED_DATA::DEFAULT
+    })
+}
+
+/// A line for the ground station; what does not fit 50 bytes is cut off.
+pub fn status_text(text: &str, is_worrying: bool) -> MavMessage {
+    MavMessage::STATUSTEXT(STATUSTEXT_DATA {
+        severity: if is_worrying { 4 } else { 6 },
+        text: text.into(),
+        ..STATUSTEXT_DATA::DEFAULT
+    })
+}

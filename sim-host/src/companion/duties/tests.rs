@@ -1,0 +1,621 @@
+use super::*;
+use staya_mavlink::dialect::{
+    COMMAND_ACK_DATA, EXTENDED_SYS_STATE_DATA, GLOBAL_POSITION_INT_DATA, HEARTBEAT_DATA,
+    LOCAL_POSITION_NED_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
+};
+
+const RULES: Rules = Rules {
+    entry: Entry::Wait,
+    arm: false,
+    takeoff: false,
+    altitude_m: None,
+    stale: Duration::from_secs(1),
+    link_lost: Duration::from_secs(3),
+    setpoint_every: Duration::from_millis(50),
+    position_hz: 10.0,
+};
+const ONCE: Rules = Rules {
+    entry: Entry::Once,
+    ..RULES
+};
+const FLY: Rules = Rules {
+    arm: true,
+    takeoff: true,
+    altitude_m: Some(10.0),
+    ..ONCE
+};
+const GUIDED: u32 = 15;
+const MANUAL: u32 = 0;
+const OFFBOARD: u32 = 6 << 16;
+const POSITION_CONTROL: u32 = 3 << 16;
+const ARMED: u8 = 0x81;
+const DISARMED: u8 = 0x01;
+
+/// Duties with an autopilot that says the same again and again.
+struct Bench {
+    duties: Duties,
+    now: Duration,
+    boot_ms: u32,
+    mode: u32,
+    base: u8,
+    above_home_m: f64,
+    beats: bool,
+    fixes: bool,
+    sent: Vec<MavMessage>,
+}
+
+impl Bench {
+    fn new(kind: Kind, rules: Rules, mode: u32, base: u8) -> Self {
+        Self {
+            duties: Duties::new(7, kind, rules),
+            now: Duration::ZERO,
+            boot_ms: 60_000,
+            mode,
+            base,
+            above_home_m: 0.0,
+            beats: true,
+            fixes: true,
+            sent: Vec::new(),
+        }
+    }
+
+    fn rover(rules: Rules) -> Self {
+        Self::new(Kind::ArduRover, rules, GUIDED, ARMED)
+    }
+
+    fn beat(&mut self) {
+        let beat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+            custom_mode: self.mode,
+            base_mode: self.base,
+            ..HEARTBEAT_DATA::DEFAULT
+        });
+        self.duties.hear(&beat, self.now);
+    }
+
+    fn fix(&mut self) {
+        let fix = MavMessage::GLOBAL_POSITION_INT(GLOBAL_POSITION_INT_DATA {
+            time_boot_ms: self.boot_ms,
+            lat: 557_500_000,
+            lon: 376_200_000,
+            alt: 156_000,
+            relative_alt: (self.above_home_m * 1e3) as i32,
+            vx: 100,
+            ..GLOBAL_POSITION_INT_DATA::DEFAULT
+        });
+        self.duties.hear(&fix, self.now);
+    }
+
+    /// Runs for so long in steps of 10 ms; returns what was sent meanwhile.
+    fn run(&mut self, seconds: f64) -> Vec<MavMessage> {
+        self.sent.clear();
+        for _ in 0..(seconds * 100.0).round() as u32 {
+            let ms = self.now.as_millis();
+            if self.beats && ms.is_multiple_of(1000) {
+                self.beat();
+            }
+            if self.fixes && ms.is_multiple_of(100) {
+                self.fix();
+            }
+            if self.duties.state() == State::Steering {
+                self.duties.steer([1.0, 2.0, 0.0], self.now);
+            }
+            self.duties.poll(self.now, &mut self.sent);
+            self.now += Duration::from_millis(10);
+            self.boot_ms = self.boot_ms.wrapping_add(10);
+        }
+        self.sent.clone()
+    }
+
+    fn state(&self) -> State {
+        self.duties.state()
+    }
+
+    fn events(&mut self) -> Vec<Event> {
+        std::iter::from_fn(|| self.duties.event()).collect()
+    }
+}
+
+fn setpoints(sent: &[MavMessage]) -> Vec<SET_POSITION_TARGET_LOCAL_NED_DATA> {
+    let setpoint = |message: &MavMessage| match message {
+        MavMessage::SET_POSITION_TARGET_LOCAL_NED(data) => Some(data.clone()),
+        _ => None,
+    };
+    sent.iter().filter_map(setpoint).collect()
+}
+
+fn commands(sent: &[MavMessage], number: u16) -> usize {
+    let is_it = |message: &&MavMessage| match message {
+        MavMessage::COMMAND_LONG(data) => data.command == number,
+        _ => false,
+    };
+    sent.iter().filter(is_it).count()
+}
+
+fn stands(setpoint: &SET_POSITION_TARGET_LOCAL_NED_DATA) -> bool {
+    [setpoint.vx, setpoint.vy, setpoint.vz] == [0.0; 3]
+}
+
+#[test]
+fn steers_at_the_rate_it_should_with_velocities_only() {
+    let mut bench = Bench::rover(RULES);
+    bench.run(1.0);
+    assert_eq!(bench.state(), State::Steering);
+    let sent = bench.run(10.0);
+    let setpoints = setpoints(&sent);
+    assert!(
+        (199..=201).contains(&setpoints.len()),
+        "{}",
+        setpoints.len()
+    );
+    for setpoint in &setpoints {
+        assert_eq!((setpoint.target_system, setpoint.target_component), (7, 1));
+        assert_eq!((setpoint.coordinate_frame, setpoint.type_mask), (1, 0xDC7));
+        assert_eq!([setpoint.vx, setpoint.vy, setpoint.vz], [1.0, 2.0, 0.0]);
+    }
+    let beats = sent
+        .iter()
+        .filter(|m| matches!(m, MavMessage::HEARTBEAT(_)));
+    assert_eq!(beats.count(), 10);
+}
+
+#[test]
+fn a_late_poll_makes_no_burst() {
+    let mut bench = Bench::rover(RULES);
+    bench.run(1.0);
+    bench.now += Duration::from_millis(900);
+    assert!(setpoints(&bench.run(0.1)).len() <= 3);
+}
+
+#[test]
+fn nothing_is_asked_of_a_pilot_who_keeps_the_vehicle() {
+    for kind in [Kind::ArduRover, Kind::ArduCopter] {
+        let mut bench = Bench::new(kind, RULES, MANUAL, ARMED);
+        let sent = bench.run(30.0);
+        assert_eq!(bench.state(), State::Pilot);
+        assert_eq!(setpoints(&sent).len(), 0);
+        assert_eq!(commands(&sent, out::DO_SET_MODE), 0);
+        assert_eq!(commands(&sent, out::ARM_DISARM), 0);
+    }
+}
+
+#[test]
+fn nobody_heard_nothing_but_heartbeats() {
+    let mut bench = Bench::rover(ONCE);
+    (bench.beats, bench.fixes) = (false, false);
+    let sent = bench.run(10.0);
+    assert_eq!(bench.state(), State::Silent);
+    assert!(sent.iter().all(|m| matches!(m, MavMessage::HEARTBEAT(_))));
+    assert_eq!(sent.len(), 10);
+}
+
+#[test]
+fn not_armed_it_waits() {
+    let mut bench = Bench::new(Kind::ArduRover, ONCE, GUIDED, DISARMED);
+    let sent = bench.run(5.0);
+    assert_eq!(bench.state(), State::Disarmed);
+    assert_eq!(setpoints(&sent).len() + commands(&sent, out::ARM_DISARM), 0);
+    bench.base = ARMED;
+    bench.run(1.0);
+    assert_eq!(bench.state(), State::Steering);
+}
+
+#[test]
+fn a_position_is_stale_only_after_its_time_and_then_it_stops() {
+    let mut bench = Bench::rover(RULES);
+    bench.run(2.0);
+    bench.fix();
+    let (at, mut sent) = (bench.now, Vec::new());
+    bench.beat();
+    bench.duties.poll(at + RULES.stale, &mut sent);
+    assert_eq!(bench.state(), State::Steering);
+    bench
+        .duties
+        .poll(at + RULES.stale + Duration::from_micros(1), &mut sent);
+    assert_eq!(bench.state(), State::Stopped);
+    assert!(stands(setpoints(&sent).last().unwrap()));
+}
+
+#[test]
+fn stale_telemetry_stops_and_fresh_one_goes_on() {
+    let mut bench = Bench::rover(RULES);
+    bench.run(2.0);
+    bench.fixes = false;
+    bench.run(1.0);
+    let sent = bench.run(2.0);
+    assert_eq!(bench.state(), State::Stopped);
+    let stops = setpoints(&sent);
+    assert!(stops.len() >= 38 && stops.iter().all(stands));
+    bench.fixes = true;
+    bench.run(0.2);
+    assert_eq!(bench.state(), State::Steering);
+    assert_eq!(bench.duties.tally().stops, 1);
+}
+
+#[test]
+fn a_lost_link_ends_setpoints_at_its_boundary() {
+    let mut bench = Bench::rover(RULES);
+    bench.run(2.0);
+    (bench.beats, bench.fixes) = (false, false);
+    bench.beat();
+    let (at, mut sent) = (bench.now, Vec::new());
+    bench.duties.poll(at + RULES.link_lost, &mut sent);
+    assert_eq!(bench.state(), State::Stopped);
+    sent.clear();
+    bench
+        .duties
+        .poll(at + RULES.link_lost + Duration::from_micros(1), &mut sent);
+    assert_eq!(bench.state(), State::Silent);
+    assert_eq!(setpoints(&sent).len(), 0);
+    // Back in the same boot, in the mode that the pilot chose: it goes on.
+    bench.now += Duration::from_secs(10);
+    bench.boot_ms += 10_000;
+    (bench.beats, bench.fixes) = (true, true);
+    bench.run(1.5);
+    assert_eq!(bench.state(), State::Steering);
+    assert!(
+        bench
+            .events()
+            .iter()
+            .any(|event| matches!(event, Event::Back(_)))
+    );
+}
+
+#[test]
+fn the_pilot_gets_the_vehicle_with_the_very_heartbeat() {
+    for rules in [RULES, ONCE] {
+        let mut bench = Bench::rover(rules);
+        bench.run(2.5);
+        bench.mode = MANUAL;
+        bench.beat();
+        assert_eq!(bench.state(), State::Pilot);
+        let sent = bench.run(60.0);
+        assert_eq!(setpoints(&sent).len(), 0);
+        assert_eq!(
+            commands(&sent, out::DO_SET_MODE),
+            0,
+            "it takes nothing back"
+        );
+        assert!(bench.events().contains(&Event::HandedOver(MANUAL)));
+        assert_eq!(bench.duties.tally().hand_overs, 1);
+        // The pilot gives it again.
+        bench.mode = GUIDED;
+        bench.run(1.5);
+        assert_eq!(bench.state(), State::Steering);
+    }
+}
+
+#[test]
+fn a_velocity_of_before_is_not_sent_after_an_interruption() {
+    let mut bench = Bench::rover(RULES);
+    bench.run(2.0);
+    bench.mode = MANUAL;
+    bench.beat();
+    bench.mode = GUIDED;
+    bench.beat();
+    let mut sent = Vec::new();
+    bench.duties.poll(bench.now, &mut sent);
+    assert!(stands(&setpoints(&sent)[0]), "the agent has not spoken yet");
+}
+
+#[test]
+fn an_agent_that_is_silent_stands() {
+    let mut bench = Bench::rover(RULES);
+    bench.run(2.0);
+    let mut sent = Vec::new();
+    for _ in 0..60 {
+        bench.now += Duration::from_millis(10);
+        bench.boot_ms += 10;
+        bench.fix();
+        bench.beat();
+        bench.duties.poll(bench.now, &mut sent);
+    }
+    assert!(stands(setpoints(&sent).last().unwrap()));
+}
+
+#[test]
+fn asks_once_and_then_steers() {
+    let mut bench = Bench::new(Kind::ArduRover, ONCE, MANUAL, ARMED);
+    let sent = bench.run(1.0);
+    assert_eq!(bench.state(), State::Entering);
+    assert_eq!(commands(&sent, out::DO_SET_MODE), 1);
+    assert_eq!(setpoints(&sent).len(), 0);
+    bench.mode = GUIDED;
+    bench.run(0.5);
+    assert_eq!(bench.state(), State::Steering);
+}
+
+#[test]
+fn asks_for_nothing_before_it_knows_where_it_is() {
+    let mut bench = Bench::new(Kind::ArduRover, ONCE, MANUAL, ARMED);
+    bench.fixes = false;
+    let sent = bench.run(42.0);
+    assert_eq!(bench.state(), State::Pilot);
+    assert_eq!(commands(&sent, out::DO_SET_MODE), 0);
+    bench.fixes = true;
+    let sent = bench.run(1.0);
+    assert_eq!(commands(&sent, out::DO_SET_MODE), 1);
+}
+
+#[test]
+fn asks_in_vain_so_often_and_no_more() {
+    let mut bench = Bench::new(Kind::ArduRover, ONCE, MANUAL, ARMED);
+    let sent = bench.run(120.0);
+    assert_eq!(commands(&sent, out::DO_SET_MODE), usize::from(ATTEMPTS));
+    assert_eq!(bench.state(), State::Pilot);
+    assert!(bench.events().contains(&Event::GaveUp));
+}
+
+#[test]
+fn a_pilot_who_acts_ends_the_asking() {
+    let mut bench = Bench::new(Kind::ArduRover, ONCE, MANUAL, ARMED);
+    bench.run(1.0);
+    // HOLD.
+    bench.mode = 4;
+    let sent = bench.run(30.0);
+    assert_eq!(commands(&sent, out::DO_SET_MODE), 0);
+    assert!(bench.events().contains(&Event::PilotActs));
+    bench.mode = GUIDED;
+    bench.run(1.0);
+    assert_eq!(bench.state(), State::Steering);
+}
+
+#[test]
+fn disarming_ends_it_and_nobody_arms_again() {
+    let mut bench = Bench::new(
+        Kind::ArduRover,
+        Rules { arm: true, ..ONCE },
+        MANUAL,
+        DISARMED,
+    );
+    assert_eq!(commands(&bench.run(1.0), out::DO_SET_MODE), 1);
+    bench.mode = GUIDED;
+    assert_eq!(commands(&bench.run(1.0), out::ARM_DISARM), 1);
+    bench.base = ARMED;
+    bench.run(1.0);
+    assert_eq!(bench.state(), State::Steering);
+    bench.base = DISARMED;
+    let sent = bench.run(30.0);
+    assert_eq!(bench.state(), State::Disarmed);
+    assert_eq!(commands(&sent, out::ARM_DISARM), 0);
+}
+
+#[test]
+fn a_refusal_is_told_once() {
+    let mut bench = Bench::new(Kind::ArduRover, ONCE, MANUAL, ARMED);
+    bench.run(1.0);
+    bench.events();
+    for result in [4, 4, 4, 0] {
+        let ack = MavMessage::COMMAND_ACK(COMMAND_ACK_DATA {
+            command: out::DO_SET_MODE,
+            result,
+            ..COMMAND_ACK_DATA::DEFAULT
+        });
+        bench.duties.hear(&ack, bench.now);
+    }
+    let told = bench.events();
+    assert_eq!(told.len(), 1);
+    assert_eq!(told[0].to_string(), "command 176: failed");
+}
+
+#[test]
+fn copter_is_armed_taken_off_and_then_steered_at_its_height() {
+    // GUIDED of a copter.
+    let mut bench = Bench::new(Kind::ArduCopter, FLY, 0, DISARMED);
+    assert_eq!(commands(&bench.run(1.0), out::DO_SET_MODE), 1);
+    bench.mode = 4;
+    assert_eq!(commands(&bench.run(1.0), out::ARM_DISARM), 1);
+    bench.base = ARMED;
+    let sent = bench.run(1.0);
+    assert_eq!(commands(&sent, out::NAV_TAKEOFF), 1);
+    assert_eq!(
+        setpoints(&sent).len(),
+        0,
+        "velocities would end the take-off"
+    );
+    bench.above_home_m = 8.9;
+    bench.run(0.5);
+    assert_eq!(bench.state(), State::Entering);
+    bench.above_home_m = 9.0;
+    let sent = bench.run(0.5);
+    assert_eq!(bench.state(), State::Steering);
+    assert_eq!(
+        setpoints(&sent).last().unwrap().vz,
+        -0.5,
+        "it climbs the last metre"
+    );
+    bench.above_home_m = 30.0;
+    assert_eq!(setpoints(&bench.run(0.5)).last().unwrap().vz, 1.0);
+}
+
+#[test]
+fn what_flies_is_not_steered_on_the_ground() {
+    let mut bench = Bench::new(Kind::ArduCopter, RULES, 4, ARMED);
+    let sent = bench.run(2.0);
+    assert_eq!(bench.state(), State::Grounded);
+    assert_eq!(setpoints(&sent).len(), 0);
+    bench.above_home_m = 1.0;
+    bench.run(0.5);
+    assert_eq!(bench.state(), State::Steering);
+    // What the autopilot itself says counts for more than a height.
+    let landed = |landed_state| {
+        MavMessage::EXTENDED_SYS_STATE(EXTENDED_SYS_STATE_DATA {
+            landed_state,
+            ..EXTENDED_SYS_STATE_DATA::DEFAULT
+        })
+    };
+    bench.duties.hear(&landed(1), bench.now);
+    bench.run(0.5);
+    assert_eq!(bench.state(), State::Grounded);
+    bench.above_home_m = 0.2;
+    bench.duties.hear(&landed(2), bench.now);
+    bench.run(0.5);
+    assert_eq!(bench.state(), State::Steering);
+}
+
+#[test]
+fn px4_gets_setpoints_before_the_mode_is_asked_for() {
+    let mut bench = Bench::new(Kind::Px4Rover, ONCE, POSITION_CONTROL, ARMED);
+    let sent = bench.run(0.9);
+    assert!(setpoints(&sent).len() >= 17 && setpoints(&sent).iter().all(stands));
+    assert_eq!(commands(&sent, out::DO_SET_MODE), 0);
+    let sent = bench.run(0.5);
+    let request = sent.iter().find_map(|message| match message {
+        MavMessage::COMMAND_LONG(data) if data.command == out::DO_SET_MODE => Some(data),
+        _ => None,
+    });
+    let request = request.expect("the mode is asked for");
+    assert_eq!((request.param1, request.param2), (1.0, 6.0));
+    bench.mode = OFFBOARD;
+    bench.run(1.0);
+    assert_eq!(bench.state(), State::Steering);
+}
+
+#[test]
+fn px4_can_be_put_into_offboard_by_its_pilot_but_is_left_alone_after_a_hand_over() {
+    let mut bench = Bench::new(Kind::Px4Copter, RULES, POSITION_CONTROL, ARMED);
+    bench.above_home_m = 5.0;
+    let offered = setpoints(&bench.run(2.0));
+    assert!(offered.len() >= 38 && offered.iter().all(stands));
+    bench.mode = OFFBOARD;
+    bench.run(2.0);
+    assert_eq!(bench.state(), State::Steering);
+    bench.mode = POSITION_CONTROL;
+    bench.beat();
+    let sent = bench.run(QUIET.as_secs_f64() - 0.01);
+    assert_eq!(setpoints(&sent).len(), 0);
+    let offered = setpoints(&bench.run(1.0));
+    assert!(!offered.is_empty() && offered.iter().all(stands));
+}
+
+#[test]
+fn px4_climbs_by_its_setpoints() {
+    let mut bench = Bench::new(Kind::Px4Copter, FLY, OFFBOARD, ARMED);
+    let sent = bench.run(1.0);
+    assert_eq!(bench.state(), State::Entering);
+    assert_eq!(commands(&sent, out::NAV_TAKEOFF), 0);
+    assert_eq!(setpoints(&sent).last().unwrap().vz, -1.0);
+    bench.above_home_m = 9.5;
+    bench.run(0.5);
+    assert_eq!(bench.state(), State::Steering);
+}
+
+#[test]
+fn a_restart_in_the_mode_is_no_permission() {
+    for rules in [RULES, ONCE] {
+        let mut bench = Bench::rover(rules);
+        bench.run(2.0);
+        bench.boot_ms = 100;
+        let sent = bench.run(10.0);
+        assert_eq!(bench.state(), State::Restarted);
+        assert!(setpoints(&sent).len() <= 1);
+        assert_eq!(bench.duties.tally().restarts, 1);
+        bench.mode = MANUAL;
+        bench.run(1.5);
+        assert_eq!(bench.state(), State::Pilot);
+        bench.mode = GUIDED;
+        bench.run(1.5);
+        assert_eq!(bench.state(), State::Steering);
+    }
+}
+
+#[test]
+fn telemetry_is_asked_for_again_after_a_restart_and_while_it_comes_too_slowly() {
+    let mut bench = Bench::rover(RULES);
+    assert_eq!(
+        commands(&bench.run(10.0), 511),
+        2,
+        "once: it comes as it should"
+    );
+    bench.boot_ms = 0;
+    assert_eq!(commands(&bench.run(2.0), 511), 2);
+    bench.fixes = false;
+    assert!(commands(&bench.run(9.0), 511) >= 4);
+    let mut copter = Bench::new(Kind::ArduCopter, RULES, 0, ARMED);
+    assert_eq!(commands(&copter.run(2.0), 511), 3, "and whether it flies");
+}
+
+#[test]
+fn overtaken_messages_are_left_out_and_clocks_may_wrap() {
+    let mut bench = Bench::rover(RULES);
+    bench.boot_ms = u32::MAX - 500;
+    bench.run(2.0);
+    assert_eq!(bench.duties.tally().restarts, 0, "the clock wrapped");
+    let before = bench.duties.tally().positions;
+    bench.boot_ms -= 1000;
+    bench.fix();
+    assert_eq!(bench.duties.tally().positions, before, "an old position");
+    bench.boot_ms += 1000;
+    // 2000 ms back is overtaken, 2001 a restart.
+    bench.fix();
+    bench.boot_ms = bench.boot_ms.wrapping_sub(2000);
+    bench.fix();
+    assert_eq!(bench.duties.tally().restarts, 0);
+    bench.boot_ms = bench.boot_ms.wrapping_sub(1);
+    bench.fix();
+    assert_eq!(bench.duties.tally().restarts, 1);
+    // An autopilot that had run for 30 days begins anew: seen as a jump ahead.
+    bench.boot_ms = 30 * 86_400_000;
+    bench.fix();
+    let restarts = bench.duties.tally().restarts;
+    bench.boot_ms = 1000;
+    bench.fix();
+    assert_eq!(bench.duties.tally().restarts, restarts + 1);
+}
+
+#[test]
+fn zero_zero_is_no_position() {
+    let mut bench = Bench::rover(RULES);
+    bench.fixes = false;
+    let nowhere = MavMessage::GLOBAL_POSITION_INT(GLOBAL_POSITION_INT_DATA::DEFAULT);
+    bench.duties.hear(&nowhere, bench.now);
+    bench.run(1.0);
+    assert_eq!(bench.state(), State::NoPosition);
+    assert_eq!(bench.duties.fix(), None);
+}
+
+#[test]
+fn velocity_is_the_finer_one_while_it_is_fresh() {
+    let mut bench = Bench::rover(RULES);
+    let local = |vx| {
+        MavMessage::LOCAL_POSITION_NED(LOCAL_POSITION_NED_DATA {
+            time_boot_ms: 60_000,
+            vx,
+            ..LOCAL_POSITION_NED_DATA::DEFAULT
+        })
+    };
+    bench.duties.hear(&local(0.123), bench.now);
+    bench.duties.hear(&local(f32::NAN), bench.now);
+    bench.fix();
+    let velocity = |bench: &Bench| bench.duties.fix().unwrap().velocity_ned_mps[0];
+    assert!((velocity(&bench) - 0.123).abs() < 1e-6);
+    bench.now += Duration::from_millis(201);
+    bench.fix();
+    assert!((velocity(&bench) - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn farewell_is_said_by_who_steers() {
+    let mut bench = Bench::rover(RULES);
+    bench.run(2.0);
+    assert!(bench.duties.farewell(bench.now).is_some());
+    bench.mode = MANUAL;
+    bench.beat();
+    assert!(bench.duties.farewell(bench.now).is_none());
+}
+
+#[test]
+fn words_of_states_fit_a_status_text() {
+    for state in [
+        State::Silent,
+        State::Pilot,
+        State::Restarted,
+        State::Entering,
+        State::Disarmed,
+        State::NoPosition,
+        State::Grounded,
+        State::Stopped,
+        State::Steering,
+    ] {
+        assert!("staya: ".len() + state.words().len() <= 50);
+    }
+}
