@@ -43,5 +43,7 @@ mod generated {
     include!(concat!(env!("OUT_DIR"), "/module.rs"));
 }
 
+pub mod constants;
+
 pub use generated::dialect;
 pub use mavlink_core;

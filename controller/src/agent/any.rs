@@ -1,6 +1,7 @@
 //! Guidance and safety layer chosen at run time: for the simulator and for firmware that is told by its host. A firmware that
 //! knows what it wants names the types and pays for nothing else.
 
+use super::Parameter;
 use super::flock_guidance::{BoidsGuidance, GoalFlockGuidance, LatticeGuidance};
 use super::formation_guidance::FormationGuidance;
 use super::guidance::{BadInput, Guidance, Guided, Place, View};
@@ -95,6 +96,14 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
     fn needs(&self, id: RobotId) -> bool {
         each!(self, guidance => Guidance::<S>::needs(guidance, id))
     }
+
+    fn parameter(&self, parameter: Parameter) -> Option<S> {
+        each!(self, guidance => guidance.parameter(parameter))
+    }
+
+    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
+        each!(self, guidance => guidance.tune(parameter, value))
+    }
 }
 
 /// Any source of half-planes: the formula, or a template of some size.
@@ -153,6 +162,24 @@ impl<S: Scalar, const K: usize> Safety<S> for AnySafety<S, K> {
             Self::Orca(safety) => safety.doubt(),
             Self::Fly(safety) => safety.doubt(),
             Self::PushOut(safety) => safety.doubt(),
+        }
+    }
+
+    fn parameter(&self, parameter: Parameter) -> Option<S> {
+        match self {
+            Self::Unguarded(safety) => safety.parameter(parameter),
+            Self::Orca(safety) => safety.parameter(parameter),
+            Self::Fly(safety) => safety.parameter(parameter),
+            Self::PushOut(safety) => safety.parameter(parameter),
+        }
+    }
+
+    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
+        match self {
+            Self::Unguarded(safety) => safety.tune(parameter, value),
+            Self::Orca(safety) => safety.tune(parameter, value),
+            Self::Fly(safety) => safety.tune(parameter, value),
+            Self::PushOut(safety) => safety.tune(parameter, value),
         }
     }
 }

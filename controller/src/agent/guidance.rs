@@ -1,6 +1,6 @@
 //! What the agent asks of a guidance.
 
-use super::{CellState, InCell, Pose};
+use super::{CellState, InCell, Parameter, Pose};
 use crate::body::Body;
 use crate::geom::{Position, Vec3};
 use crate::grid::{Cell, Dir, Window};
@@ -192,6 +192,16 @@ pub trait Guidance<S> {
 
     /// Whether a full neighbour table must keep this robot.
     fn needs(&self, _id: RobotId) -> bool {
+        false
+    }
+
+    /// What a parameter is now; `None` when it has no such one.
+    fn parameter(&self, _parameter: Parameter) -> Option<S> {
+        None
+    }
+
+    /// Changes a parameter; whether it has such one. `value` is within [`Parameter::range`].
+    fn tune(&mut self, _parameter: Parameter, _value: S) -> bool {
         false
     }
 }

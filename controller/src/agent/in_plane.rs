@@ -1,5 +1,6 @@
 //! A guidance made for the grid, on a body that moves in the plane.
 
+use super::Parameter;
 use super::guidance::{BadInput, Guidance, Guided, View};
 use crate::geom::Vec2;
 use crate::grid::{Cell, Dir};
@@ -114,5 +115,17 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for InPlane<S, G> {
 
     fn needs(&self, id: crate::wire::RobotId) -> bool {
         self.guidance.needs(id)
+    }
+
+    fn parameter(&self, parameter: Parameter) -> Option<S> {
+        (parameter == Parameter::Speed).then_some(self.speed_mps)
+    }
+
+    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
+        if parameter == Parameter::Speed {
+            // Without a speed it could not decide.
+            self.speed_mps = value.max(S::from_milli(1));
+        }
+        parameter == Parameter::Speed
     }
 }

@@ -86,6 +86,7 @@
 //! ```
 
 mod any;
+mod commanded;
 mod config;
 mod flock_guidance;
 mod formation_guidance;
@@ -95,6 +96,7 @@ mod io;
 mod link;
 mod orca_safety;
 mod other_safety;
+mod parameter;
 mod route_guidance;
 mod safety;
 mod setup;
@@ -106,6 +108,7 @@ mod waypoint_guidance;
 mod tests;
 
 pub use any::{AnyGuidance, AnyHalfPlanes, AnySafety};
+pub use commanded::{Commanded, Wish};
 pub use config::AgentConfig;
 pub use flock_guidance::{BoidsGuidance, GOALS, GoalFlockGuidance, LatticeGuidance};
 pub use formation_guidance::FormationGuidance;
@@ -116,6 +119,7 @@ pub use io::{
 };
 pub use orca_safety::OrcaSafety;
 pub use other_safety::{FlySafety, PushOutSafety};
+pub use parameter::Parameter;
 pub use route_guidance::{GridWorkspace, RouteGuidance};
 pub use safety::{Safety, Sight, Unguarded};
 pub use setup::{

@@ -1,5 +1,6 @@
 //! Optimal reciprocal collision avoidance as a safety layer.
 
+use super::Parameter;
 use super::safety::{Safety, Sight};
 use crate::geom::Vec3;
 use crate::neighbor::Doubt;
@@ -53,5 +54,28 @@ impl<S: Scalar, const K: usize, P: HalfPlanes<S>> Safety<S> for OrcaSafety<S, K,
 
     fn doubt(&self) -> Doubt<S> {
         self.doubt
+    }
+
+    fn parameter(&self, parameter: Parameter) -> Option<S> {
+        let params = self.avoider.params();
+        Some(match parameter {
+            Parameter::Horizon => params.horizon_s,
+            Parameter::WallHorizon => params.wall_horizon_s,
+            Parameter::Share => params.share,
+            Parameter::Margin => params.margin_m,
+            _ => return None,
+        })
+    }
+
+    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
+        let params = self.avoider.params_mut();
+        match parameter {
+            Parameter::Horizon => params.horizon_s = value,
+            Parameter::WallHorizon => params.wall_horizon_s = value,
+            Parameter::Share => params.share = value,
+            Parameter::Margin => params.margin_m = value,
+            _ => return false,
+        }
+        true
     }
 }

@@ -1,5 +1,6 @@
 //! Collision avoidance in space, and push-out, as safety layers.
 
+use super::Parameter;
 use super::safety::{Safety, Sight};
 use crate::geom::Vec3;
 use crate::neighbor::Doubt;
@@ -38,6 +39,29 @@ impl<S: Scalar, const K: usize> Safety<S> for FlySafety<S, K> {
 
     fn doubt(&self) -> Doubt<S> {
         self.doubt
+    }
+
+    fn parameter(&self, parameter: Parameter) -> Option<S> {
+        let params = &self.params;
+        Some(match parameter {
+            Parameter::Horizon => params.horizon_s,
+            Parameter::WallHorizon => params.obstacle_horizon_s,
+            Parameter::Share => params.share,
+            Parameter::Margin => params.margin_m,
+            _ => return None,
+        })
+    }
+
+    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
+        let params = &mut self.params;
+        match parameter {
+            Parameter::Horizon => params.horizon_s = value,
+            Parameter::WallHorizon => params.obstacle_horizon_s = value,
+            Parameter::Share => params.share = value,
+            Parameter::Margin => params.margin_m = value,
+            _ => return false,
+        }
+        true
     }
 }
 

@@ -1,5 +1,6 @@
 //! The last layer before the body: from the velocity that the guidance wishes to one that is safe.
 
+use super::Parameter;
 use crate::body::Body;
 use crate::geom::Vec3;
 use crate::neighbor::{Doubt, Nearby};
@@ -35,6 +36,16 @@ pub trait Safety<S: Scalar> {
             growth_mps: S::ZERO,
             most_m: S::ZERO,
         }
+    }
+
+    /// What a parameter is now; `None` when it has no such one.
+    fn parameter(&self, _parameter: Parameter) -> Option<S> {
+        None
+    }
+
+    /// Changes a parameter; whether it has such one. `value` is within [`Parameter::range`].
+    fn tune(&mut self, _parameter: Parameter, _value: S) -> bool {
+        false
     }
 }
 

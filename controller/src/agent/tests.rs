@@ -494,6 +494,7 @@ fn time_may_wrap() {
     assert_eq!(beacons, 6);
 }
 
+mod commanded;
 mod faults;
 mod flocks;
 mod in_plane;

@@ -1,5 +1,6 @@
 //! Straight to a place.
 
+use super::Parameter;
 use super::guidance::{BadInput, Guidance, Guided, Place, View};
 use crate::geom::Vec3;
 use crate::rand::Rng;
@@ -65,5 +66,22 @@ impl<S: Scalar> Guidance<S> for WaypointGuidance<S> {
 
     fn has_own_goal(&self) -> bool {
         self.place.is_some()
+    }
+
+    fn parameter(&self, parameter: Parameter) -> Option<S> {
+        match parameter {
+            Parameter::Speed => Some(self.speed_mps),
+            Parameter::Tolerance => Some(self.tolerance_m),
+            _ => None,
+        }
+    }
+
+    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
+        match parameter {
+            Parameter::Speed => self.speed_mps = value,
+            Parameter::Tolerance => self.tolerance_m = value,
+            _ => return false,
+        }
+        true
     }
 }

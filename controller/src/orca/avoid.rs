@@ -125,10 +125,15 @@ impl<S: Scalar, const K: usize, P> Avoider<S, K, P> {
         }
     }
 
-    /// The parameters that it was built with.
+    /// The parameters.
     #[must_use]
     pub const fn params(&self) -> &AvoidParams<S> {
         &self.params
+    }
+
+    /// The parameters, to be changed between two steps.
+    pub const fn params_mut(&mut self) -> &mut AvoidParams<S> {
+        &mut self.params
     }
 }
 

@@ -13,12 +13,14 @@ mod elsewhere;
 mod grid;
 mod ground;
 mod hash;
+mod operator;
 mod plane;
 mod simulate;
 
 pub use elsewhere::{Decision, Elsewhere};
 pub use grid::Grid;
 pub use ground::{Ground, Words};
+pub use operator::{Glance, Operated, operated};
 pub use plane::{PlaneGround, Senses};
 pub(crate) use simulate::WIDE;
 pub use simulate::{Moment, Outcome, simulate, simulate_with};
@@ -30,7 +32,7 @@ use crate::scenario::{Fault, Robot, Scenario};
 use hash::Chain;
 use rayon::prelude::*;
 use staya_controller::agent::{
-    Agent, AgentConfig, Command, Guidance, GuidanceSetup, Inputs, NEIGHBORS, OUTBOX, Safety,
+    Agent, AgentConfig, Command, Event, Guidance, GuidanceSetup, Inputs, NEIGHBORS, OUTBOX, Safety,
     SafetySetup, Setup,
 };
 use staya_controller::grid::Cell;
@@ -46,6 +48,10 @@ struct Computer<G, A> {
     /// `None`: elsewhere.
     agent: Option<Agent<f32, G, NEIGHBORS, A>>,
     outbox: heapless::Vec<u8, OUTBOX>,
+    /// Of the last step, if somebody wants to know.
+    events: Vec<Event>,
+    /// What the operator tells it: frames.
+    mail: Vec<u8>,
     /// Counts its starts.
     boot: u8,
     /// The tick at which its clock showed 0.
@@ -101,14 +107,15 @@ impl<W: Ground> Tick<'_, W> {
             true => &[],
             false => self.radio.inbox(index),
         };
-        let inbox = match self.ground.orders(self.tick) {
-            None => delivered,
-            Some(orders) => {
-                heard.clear();
-                heard.extend_from_slice(delivered);
-                heard.extend_from_slice(orders);
-                heard
+        let orders = self.ground.orders(self.tick).unwrap_or_default();
+        let inbox = if orders.is_empty() && computer.mail.is_empty() {
+            delivered
+        } else {
+            heard.clear();
+            for bytes in [delivered, orders, &computer.mail] {
+                heard.extend_from_slice(bytes);
             }
+            heard
         };
         Inputs {
             inbox,
@@ -143,6 +150,7 @@ pub struct Engine<W, G, A> {
     chains: Vec<Chain>,
     positions_m: Vec<[f64; 2]>,
     outside: Option<Outside>,
+    keeps_events: bool,
     arrivals: Arrivals,
     collisions: u64,
     packets: PacketCounts,
@@ -178,6 +186,7 @@ where
             chains: robots.iter().map(|robot| Chain::new(robot.id)).collect(),
             positions_m: vec![[0.0; 2]; robots.len()],
             outside: None,
+            keeps_events: false,
             arrivals: Arrivals::new(robots.len()),
             collisions: 0,
             packets: PacketCounts::default(),
@@ -238,6 +247,8 @@ where
         Computer {
             agent,
             outbox: heapless::Vec::new(),
+            events: Vec::new(),
+            mail: Vec::new(),
             boot,
             epoch: self.tick,
             down_until: self.tick,
@@ -387,7 +398,7 @@ where
 
     /// Steps the robots whose agents are here, in parallel.
     fn decide_here(&mut self) -> u64 {
-        let (tick, tick_us) = (self.tick, self.tick_us);
+        let (tick, tick_us, keeps_events) = (self.tick, self.tick_us, self.keeps_events);
         let moment = Tick {
             tick,
             ground: &self.ground,
@@ -409,6 +420,7 @@ where
                     let [x, y, _] = moment.ground.motion(index, tick).position_m;
                     *position_m = [x, y];
                     computer.outbox.clear();
+                    computer.events.clear();
                     *command = Command::Hold;
                     if tick < computer.down_until {
                         status.fall_silent();
@@ -424,6 +436,10 @@ where
                     };
                     let out = agent.step(&inputs, now, workspace);
                     computer.outbox = out.outbox;
+                    computer.mail.clear();
+                    if keeps_events {
+                        computer.events.extend_from_slice(&out.events);
+                    }
                     *command = out.command;
                     *status = Status {
                         mode: agent.mode(),

@@ -78,8 +78,7 @@ pub fn simulate_with(
         let engine = Engine::new(scenario, ground, brains(scenario));
         return Ok(go(scenario, engine, elsewhere, watch));
     }
-    let is_narrow = scenario.route.params.radius <= NARROW_RADIUS;
-    match (&scenario.formation, is_narrow) {
+    match (&scenario.formation, is_narrow(scenario)) {
         (None, true) => drive(scenario, route::<CELLS>(scenario), elsewhere, watch),
         (None, false) => drive(scenario, route::<WIDE>(scenario), elsewhere, watch),
         (Some(_), true) => drive(scenario, formation::<CELLS>(scenario), elsewhere, watch),
@@ -87,13 +86,20 @@ pub fn simulate_with(
     }
 }
 
-type Brain = (
+/// Whether searches of the default size are large enough.
+pub(super) const fn is_narrow(scenario: &Scenario) -> bool {
+    scenario.route.params.radius <= NARROW_RADIUS
+}
+
+pub(super) type Brain = (
     AnyGuidance<f32, WIDE, VISITS, TEMPLATE>,
     AnySafety<f32, HALF_PLANES>,
 );
 
 /// Guidance and safety layer of each robot in the plane.
-fn brains(scenario: &Scenario) -> impl Fn(usize) -> Brain + Send + Sync + 'static + use<> {
+pub(super) fn brains(
+    scenario: &Scenario,
+) -> impl Fn(usize) -> Brain + Send + Sync + 'static + use<> {
     // Only places in a formation differ from robot to robot.
     let kinds = match scenario.formation {
         Some(_) => scenario.robots.len(),
@@ -104,7 +110,7 @@ fn brains(scenario: &Scenario) -> impl Fn(usize) -> Brain + Send + Sync + 'stati
     move |index| (guidances[index % kinds].guidance(), safety.safety())
 }
 
-fn route<const C: usize>(
+pub(super) fn route<const C: usize>(
     scenario: &Scenario,
 ) -> impl Fn(usize) -> RouteGuidance<C, VISITS> + use<C> {
     let route = scenario.route;
@@ -115,7 +121,7 @@ fn route<const C: usize>(
     }
 }
 
-fn formation<const C: usize>(
+pub(super) fn formation<const C: usize>(
     scenario: &Scenario,
 ) -> impl Fn(usize) -> FormationGuidance<C, VISITS, TEMPLATE> + use<C> {
     let (route, params) = (scenario.route, scenario.formation_params);

@@ -349,4 +349,5 @@ proptest! {
 }
 
 mod elsewhere;
+mod operator;
 mod plane;

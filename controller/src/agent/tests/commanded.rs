@@ -1,0 +1,255 @@
+//! Robots that an operator takes over, and what can be tuned while they run.
+
+use super::plane::{
+    RADIUS_MM, Robot, STEP, body_at, in_plane, length, orca, place, step_number, waypoint,
+};
+use super::*;
+use crate::geom::Position;
+use crate::scalar::Q16;
+
+type Operated<S> = Robot<S, Commanded<S, WaypointGuidance<S>>, OrcaSafety<S, 16>>;
+
+fn robot<S: Scalar>(at_m: [f64; 2]) -> Operated<S> {
+    let guidance = Commanded::new(waypoint(), S::ONE, S::from_milli(10));
+    Robot::new(&in_plane(1), guidance, orca(), at_m)
+}
+
+fn east(millis: i32) -> Wish<f32> {
+    Wish::Velocity {
+        velocity_mps: Vec3::new(0.5, 0.0, 0.0),
+        valid: Duration::from_millis(millis),
+    }
+}
+
+#[test]
+fn without_a_wish_nothing_differs() {
+    let mut plain = Robot::new(&in_plane::<f32>(1), waypoint(), orca(), [0.0; 2]);
+    let mut wrapped = robot([0.0; 2]);
+    plain.agent.assign_place(0, &place(2000, 500));
+    wrapped.agent.assign_place(0, &place(2000, 500));
+    for n in 0..40 {
+        let now = step_number(n);
+        let other = bytes(
+            2,
+            0,
+            n as u16,
+            &[body_at([1000, 250], [0, 0], Mode::Cruise)],
+        );
+        assert_eq!(
+            plain.step(now, &other),
+            wrapped.step(now, &other),
+            "step {n}"
+        );
+    }
+    assert!(length(wrapped.at_m) > 1.0);
+}
+
+#[test]
+fn a_velocity_holds_until_its_time_is_over() {
+    let mut robot = robot([0.0; 2]);
+    robot.agent.guidance_mut().command(east(500));
+    for n in 0..5 {
+        let _ = robot.step(step_number(n), &[]);
+        assert_eq!(robot.velocity_mps, [0.5, 0.0], "step {n}");
+        assert_eq!(robot.agent.mode(), Mode::Cruise);
+    }
+    let _ = robot.step(step_number(5), &[]);
+    assert_eq!(
+        (robot.velocity_mps, robot.agent.mode()),
+        ([0.0; 2], Mode::Hold)
+    );
+    assert_eq!(robot.agent.guidance().wish(), &Wish::Hold);
+    // The same wish said again counts anew, however late.
+    robot.agent.guidance_mut().command(east(500));
+    let _ = robot.step(step_number(60), &[]);
+    assert_eq!(robot.velocity_mps, [0.5, 0.0]);
+}
+
+#[test]
+fn a_velocity_beyond_the_body_is_cut_and_one_that_is_no_number_is_a_fault() {
+    let mut robot = robot([0.0; 2]);
+    let wish = |x: f32| Wish::Velocity {
+        velocity_mps: Vec3::new(x, 0.0, 0.0),
+        valid: Duration::MAX,
+    };
+    robot.agent.guidance_mut().command(wish(7.0));
+    let _ = robot.step(step_number(0), &[]);
+    assert_eq!(robot.velocity_mps, [1.0, 0.0]);
+    for bad in [f32::NAN, f32::INFINITY] {
+        robot.agent.guidance_mut().command(wish(bad));
+        let _ = robot.step(step_number(1), &[]);
+        assert_eq!(
+            (robot.velocity_mps, robot.agent.mode()),
+            ([0.0; 2], Mode::Fault)
+        );
+    }
+}
+
+#[test]
+fn it_goes_where_the_operator_wants_and_then_its_own_way() {
+    fn check<S: Scalar>() {
+        let mut robot = robot::<S>([0.0; 2]);
+        robot.agent.assign_place(0, &place(-1000, 0));
+        robot.agent.guidance_mut().command(Wish::Place {
+            place: Place::fixed(Position::from_mm([1000, 0, 0])),
+            valid: None,
+        });
+        for n in 0..20 {
+            let _ = robot.step(step_number(n), &[]);
+        }
+        assert_eq!(robot.agent.mode(), Mode::Arrived);
+        assert!((robot.at_m[0] - 1.0).abs() < 0.02, "{:?}", robot.at_m);
+        robot.agent.guidance_mut().command(Wish::Own);
+        for n in 20..60 {
+            let _ = robot.step(step_number(n), &[]);
+        }
+        assert!((robot.at_m[0] + 1.0).abs() < 0.02, "{:?}", robot.at_m);
+    }
+    check::<f32>();
+    check::<f64>();
+    check::<Q16>();
+}
+
+#[test]
+fn a_place_that_moves_is_followed_until_its_time_is_over() {
+    let mut robot = robot::<f32>([0.0; 2]);
+    let mut moving = place(0, 0);
+    moving.velocity_mps = Vec3::new(0.0, 0.5, 0.0);
+    robot.agent.guidance_mut().command(Wish::Place {
+        place: moving,
+        valid: Some(Duration::from_millis(1000)),
+    });
+    for n in 100..130 {
+        let _ = robot.step(step_number(n), &[]);
+    }
+    assert_eq!(robot.agent.mode(), Mode::Hold);
+    assert!((robot.at_m[1] - 0.5).abs() < 0.06, "{:?}", robot.at_m);
+}
+
+#[test]
+fn who_is_off_stands_and_says_so_and_who_holds_gives_way() {
+    let crowding = body_at([2 * RADIUS_MM + 60, 0], [-900, 0], Mode::Cruise);
+    let mut moved = [0.0; 2];
+    for (moved, wish) in moved.iter_mut().zip([Wish::Off, Wish::Hold]) {
+        let mut robot = robot::<f32>([0.0; 2]);
+        robot.agent.guidance_mut().command(wish);
+        for n in 0..3 {
+            let out = robot.step(
+                step_number(n),
+                &bytes(2, 0, n as u16, std::slice::from_ref(&crowding)),
+            );
+            let mode = match &sent(&out)[..] {
+                [
+                    Frame {
+                        message: Message::Beacon(beacon),
+                        ..
+                    },
+                ] => beacon.mode,
+                other => panic!("{other:?}"),
+            };
+            assert_eq!(mode == Mode::Fault, wish == Wish::Off);
+        }
+        *moved = length(robot.at_m);
+    }
+    assert_eq!(moved[0], 0.0);
+    assert!(moved[1] > 0.01, "{moved:?}");
+}
+
+#[test]
+fn a_stop_of_others_does_not_stop_the_operator() {
+    let mut robot = robot::<f32>([0.0; 2]);
+    robot.agent.guidance_mut().command(east(5000));
+    let stop = Message::Request(Request {
+        to: RobotId(1),
+        origin: RobotId(2),
+        number: 1,
+        kind: RequestKind::Stop,
+        valid_ms: 5000,
+    });
+    let _ = robot.step(step_number(0), &bytes(2, 0, 0, &[stop]));
+    let _ = robot.step(step_number(1), &[]);
+    assert_eq!(robot.velocity_mps, [0.5, 0.0]);
+}
+
+/// On the grid.
+#[test]
+fn cells_take_the_place_of_the_own_goal_and_velocities_are_a_fault() {
+    type OnGrid = Agent<f32, Commanded<f32, RouteGuidance<CELLS, VISITS>>, NEIGHBORS>;
+    let guidance = Commanded::new(RouteGuidance::new(RouteParams::default()), 0.0, 0.0);
+    let mut agent = OnGrid::new(&config(1), guidance);
+    agent.assign_goal(Cell::new(9, 5));
+    let mut workspace = workspace();
+    let mut heading = |agent: &mut OnGrid, n: u32| {
+        let out = agent.step(
+            &inputs(&FLAT, Cell::new(5, 5), &[]),
+            tick(n),
+            &mut workspace,
+        );
+        match out.command {
+            Command::Move(moves) => moves.first().copied(),
+            Command::Hold => None,
+            Command::Velocity(_) => panic!("there are no velocities"),
+        }
+    };
+    assert_eq!(heading(&mut agent, 0), Some(Dir::East));
+    agent.guidance_mut().command(Wish::Cell(Cell::new(5, 9)));
+    assert_eq!(heading(&mut agent, 1), Some(Dir::North));
+    assert_eq!(agent.target(), Some(Cell::new(5, 9)));
+    agent.guidance_mut().command(east(1000));
+    assert_eq!(heading(&mut agent, 2), None);
+    assert_eq!(agent.mode(), Mode::Fault);
+    agent.guidance_mut().command(Wish::Own);
+    assert_eq!(
+        heading(&mut agent, 3),
+        None,
+        "out of a fault it looks first"
+    );
+    assert_eq!(heading(&mut agent, 4), Some(Dir::East));
+}
+
+#[test]
+fn parameters_are_what_was_set_and_nothing_out_of_range_is() {
+    let mut robot = robot::<f32>([0.0; 2]);
+    for parameter in Parameter::ALL {
+        let before = robot.agent.parameter(parameter).expect("it has all");
+        let [least, greatest] = parameter.range();
+        assert!((least..=greatest).contains(&before), "{parameter:?}");
+        for bad in [least - 1.0, greatest + 1.0, f32::NAN, f32::INFINITY] {
+            assert!(!robot.agent.set_parameter(parameter, bad), "{parameter:?}");
+            assert_eq!(robot.agent.parameter(parameter), Some(before));
+        }
+        for good in [least, greatest, 0.5] {
+            assert!(robot.agent.set_parameter(parameter, good), "{parameter:?}");
+            let after = robot.agent.parameter(parameter).expect("still");
+            assert!(
+                (after - good).abs() <= 1e-6 * good.max(1.0),
+                "{parameter:?} {after}"
+            );
+        }
+    }
+    // On the grid there is no speed, and what is not there is not set.
+    let mut other = route_agent(1);
+    assert_eq!(other.parameter(Parameter::Speed), None);
+    assert!(!other.set_parameter(Parameter::Speed, 1.0));
+    assert!(other.set_parameter(Parameter::BeaconPeriod, 2.0));
+}
+
+#[test]
+fn a_new_speed_and_beacon_period_hold_from_the_next_step() {
+    let mut robot = robot::<f32>([0.0; 2]);
+    robot.agent.assign_place(0, &place(9000, 0));
+    let _ = robot.step(step_number(0), &[]);
+    assert_eq!(robot.velocity_mps, [1.0, 0.0]);
+    assert!(robot.agent.set_parameter(Parameter::Speed, 0.25));
+    assert!(robot.agent.set_parameter(Parameter::BeaconPeriod, 1.0));
+    let mut beacons = 0;
+    for n in 1..=20 {
+        let out = robot.step(step_number(n), &[]);
+        assert_eq!(robot.velocity_mps, [0.25, 0.0]);
+        beacons += sent(&out).len();
+    }
+    assert_eq!(
+        (beacons, STEP.saturating_mul(10)),
+        (2, Duration::from_millis(1000))
+    );
+}

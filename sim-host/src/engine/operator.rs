@@ -1,0 +1,176 @@
+//! A swarm that somebody looks at and commands while it runs.
+
+use super::simulate::{WIDE, brains, formation, is_narrow, route};
+use super::{Engine, Grid, Ground, Outcome, PlaneGround, Status};
+use crate::record::Motion;
+use crate::scenario::Scenario;
+use crate::world::Misplaced;
+use staya_controller::agent::{
+    CELLS, Commanded, Event, Guidance, Parameter, Safety, Unguarded, Wish,
+};
+use staya_controller::wire::{Header, Message, encode};
+
+/// Bytes of the longest frame.
+const FRAME: usize = 64;
+
+/// What an operator can see of a robot: what the robot itself knows.
+#[derive(Clone, Copy, Debug)]
+pub struct Glance {
+    /// How it moves.
+    pub motion: Motion,
+    /// What it is doing.
+    pub status: Status,
+    /// Changes with each start of its computer.
+    pub boot: u8,
+    /// Whether its computer runs.
+    pub is_up: bool,
+    /// The operator's wish that it follows.
+    pub wish: Wish<f32>,
+    /// Robots that it knows.
+    pub neighbors: usize,
+}
+
+/// A scenario whose robots can be commanded between ticks. Robots are numbered as in [`Scenario::robots`].
+///
+/// While nobody commands, it is the run that [`simulate`](super::simulate) makes, to the bit. It goes on when all have arrived.
+pub trait Operated: Send {
+    /// One tick.
+    fn advance(&mut self);
+
+    /// Robot `index` now.
+    fn glance(&self, index: usize) -> Glance;
+
+    /// What happened to it in the last tick.
+    fn events(&self, index: usize) -> &[Event];
+
+    /// Gives it a wish; lost while its computer is down.
+    fn command(&mut self, index: usize, wish: Wish<f32>);
+
+    /// Lets it hear a message in the next tick, over no radio; lost while its computer is down.
+    fn tell(&mut self, index: usize, header: Header, message: &Message);
+
+    /// What a parameter of it is; `None` when it has no such one or is down.
+    fn parameter(&self, index: usize, parameter: Parameter) -> Option<f32>;
+
+    /// Changes a parameter; whether it has such one and takes the value.
+    fn set_parameter(&mut self, index: usize, parameter: Parameter, value: f32) -> bool;
+
+    /// What came of the run so far.
+    fn outcome(&self) -> Outcome;
+}
+
+/// A scenario before its first tick, with an operator.
+///
+/// # Errors
+/// See [`Grid::new`].
+pub fn operated(scenario: &Scenario) -> Result<Box<dyn Operated>, Misplaced> {
+    if let Some(setup) = &scenario.plane {
+        let ground = PlaneGround::new(scenario, setup);
+        let (speed, tolerance) = (setup.cruise_mps as f32, setup.tolerance_m as f32);
+        let brains = brains(scenario);
+        return Ok(boxed(scenario, ground, move |index| {
+            let (guidance, safety) = brains(index);
+            (Commanded::new(guidance, speed, tolerance), safety)
+        }));
+    }
+    match (&scenario.formation, is_narrow(scenario)) {
+        (None, true) => on_grid(scenario, route::<CELLS>(scenario)),
+        (None, false) => on_grid(scenario, route::<WIDE>(scenario)),
+        (Some(_), true) => on_grid(scenario, formation::<CELLS>(scenario)),
+        (Some(_), false) => on_grid(scenario, formation::<WIDE>(scenario)),
+    }
+}
+
+fn on_grid<G: Guidance<f32, Workspace: Default> + Send + 'static>(
+    scenario: &Scenario,
+    guidance: impl Fn(usize) -> G + Send + Sync + 'static,
+) -> Result<Box<dyn Operated>, Misplaced> {
+    let ground = Grid::new(scenario)?;
+    // Cell by cell there is neither speed nor distance.
+    Ok(boxed(scenario, ground, move |index| {
+        (Commanded::new(guidance(index), 0.0, 0.0), Unguarded)
+    }))
+}
+
+fn boxed<W, G, A>(
+    scenario: &Scenario,
+    ground: W,
+    brains: impl Fn(usize) -> (Commanded<f32, G>, A) + Send + Sync + 'static,
+) -> Box<dyn Operated>
+where
+    W: Ground + 'static,
+    G: Guidance<f32, Workspace: Default> + Send + 'static,
+    A: Safety<f32> + Send + 'static,
+{
+    let mut engine = Engine::new(scenario, ground, brains);
+    engine.keeps_events = true;
+    Box::new(engine)
+}
+
+impl<W, G, A> Engine<W, Commanded<f32, G>, A>
+where
+    W: Ground,
+    G: Guidance<f32, Workspace: Default> + Send,
+    A: Safety<f32> + Send,
+{
+    fn is_up(&self, index: usize) -> bool {
+        self.tick >= self.computers[index].down_until
+    }
+}
+
+impl<W, G, A> Operated for Engine<W, Commanded<f32, G>, A>
+where
+    W: Ground,
+    G: Guidance<f32, Workspace: Default> + Send,
+    A: Safety<f32> + Send,
+{
+    fn advance(&mut self) {
+        self.step();
+    }
+
+    fn glance(&self, index: usize) -> Glance {
+        let computer = &self.computers[index];
+        let agent = computer.agent.as_ref();
+        Glance {
+            motion: self.ground.motion(index, self.tick),
+            status: self.statuses[index],
+            boot: computer.boot,
+            is_up: self.is_up(index),
+            wish: agent.map_or(Wish::Own, |agent| *agent.guidance().wish()),
+            neighbors: agent.map_or(0, |agent| agent.neighbors().len()),
+        }
+    }
+
+    fn events(&self, index: usize) -> &[Event] {
+        &self.computers[index].events
+    }
+
+    fn command(&mut self, index: usize, wish: Wish<f32>) {
+        if let (true, Some(agent)) = (self.is_up(index), &mut self.computers[index].agent) {
+            agent.guidance_mut().command(wish);
+        }
+    }
+
+    fn tell(&mut self, index: usize, header: Header, message: &Message) {
+        let mut frame = heapless::Vec::<u8, FRAME>::new();
+        // What the controller's messages can be fits.
+        if self.is_up(index) && encode(header, message, &mut frame).is_ok() {
+            self.computers[index].mail.extend_from_slice(&frame);
+        }
+    }
+
+    fn parameter(&self, index: usize, parameter: Parameter) -> Option<f32> {
+        let agent = self.computers[index].agent.as_ref();
+        agent.filter(|_| self.is_up(index))?.parameter(parameter)
+    }
+
+    fn set_parameter(&mut self, index: usize, parameter: Parameter, value: f32) -> bool {
+        let is_up = self.is_up(index);
+        let agent = self.computers[index].agent.as_mut().filter(|_| is_up);
+        agent.is_some_and(|agent| agent.set_parameter(parameter, value))
+    }
+
+    fn outcome(&self) -> Outcome {
+        Self::outcome(self)
+    }
+}

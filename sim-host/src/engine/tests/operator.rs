@@ -1,0 +1,124 @@
+//! Runs that somebody commands.
+
+use super::*;
+use staya_controller::agent::{Parameter, Place, Wish};
+use staya_controller::geom::{Position, Vec3};
+use staya_controller::wire::{GoalAssignment, Header, Message};
+
+/// Two discs that meet on their ways, and a third one that goes down for a while.
+const DISCS: &str = "name = \"t\"\nticks = 120\ntick_s = 0.05\n[radio]\nrange_m = 5\nloss = 0.1\n\
+     [plane]\nradius_m = 0.2\nmax_speed_mps = 1\n[[plane.robots.list]]\nstart_m = [0, 0]\ngoal_m = [4, 0]\n\
+     [[plane.robots.list]]\nstart_m = [4, 0]\ngoal_m = [0, 0]\n[[plane.robots.list]]\nstart_m = [2, 3]\n\
+     goal_m = [2, -3]\n[[fault]]\nrobot = 3\nat_s = 1\ndown_s = 0.5\n";
+
+fn discs() -> Scenario {
+    Scenario::parse(DISCS, Path::new("t.toml"), &Overrides::default()).expect("a good scenario")
+}
+
+fn run(swarm: &mut dyn Operated, ticks: u32) {
+    for _ in 0..ticks {
+        swarm.advance();
+    }
+}
+
+fn hash_without_operator(scenario: &Scenario) -> u64 {
+    let outcome = simulate(scenario, |_, _| ControlFlow::Continue(()));
+    let outcome = outcome.expect("they can be placed");
+    assert_eq!(outcome.ticks, scenario.ticks, "nobody has arrived before");
+    outcome.trace_hash
+}
+
+#[test]
+fn a_run_without_commands_is_the_run_without_an_operator() {
+    let on_grid = Scenario {
+        ticks: 8,
+        ..scenario(TWO, LOSSY)
+    };
+    let formation = "formation = { rows = 2, columns = 2, start = [4, 8], goal = [15, 8] }";
+    let in_formation = Scenario {
+        ticks: 8,
+        ..scenario(formation, "")
+    };
+    for scenario in [on_grid, in_formation, discs()] {
+        let mut swarm = operated(&scenario).expect("they can be placed");
+        run(&mut *swarm, scenario.ticks);
+        let hash = swarm.outcome().trace_hash;
+        assert_eq!(hash, hash_without_operator(&scenario));
+    }
+}
+
+#[test]
+fn who_is_commanded_goes_elsewhere_and_nobody_is_hit() {
+    let scenario = discs();
+    let mut swarm = operated(&scenario).expect("they can be placed");
+    let meeting = Wish::Place {
+        place: Place::fixed(Position::from_mm([2000, 1000, 0])),
+        valid: None,
+    };
+    for robot in 0..2 {
+        swarm.command(robot, meeting);
+    }
+    run(&mut *swarm, 400);
+    for robot in 0..2 {
+        let glance = swarm.glance(robot);
+        assert_eq!(glance.wish, meeting);
+        let [x, y, _] = glance.motion.position_m;
+        let off_m = libm::hypot(x - 2.0, y - 1.0);
+        assert!(off_m < 0.5, "robot {robot} is {off_m} m off");
+    }
+    let outcome = swarm.outcome();
+    assert_eq!(outcome.collisions, 0);
+    assert_ne!(outcome.trace_hash, hash_without_operator(&scenario));
+}
+
+#[test]
+fn who_is_down_hears_nothing_and_starts_anew_as_the_scenario_has_it() {
+    let mut swarm = operated(&discs()).expect("they can be placed");
+    let east = Wish::Velocity {
+        velocity_mps: Vec3::new(1.0, 0.0, 0.0),
+        valid: Duration::from_millis(60_000),
+    };
+    swarm.command(2, east);
+    assert!(swarm.set_parameter(2, Parameter::Speed, 0.5));
+    run(&mut *swarm, 22);
+    let before = swarm.glance(2);
+    assert!(!before.is_up && before.motion.velocity_mps == [0.0; 3]);
+    assert!(!swarm.set_parameter(2, Parameter::Speed, 0.5));
+    assert_eq!(swarm.parameter(2, Parameter::Speed), None);
+    swarm.command(2, east);
+    run(&mut *swarm, 15);
+    let after = swarm.glance(2);
+    assert!(after.is_up && after.boot != before.boot && after.wish == Wish::Own);
+    assert_eq!(swarm.parameter(2, Parameter::Speed), Some(1.0));
+    assert!(after.motion.velocity_mps[1] < -0.5, "{:?}", after.motion);
+}
+
+#[test]
+fn a_goal_that_it_is_told_reaches_the_controller_and_events_come_back() {
+    let mut swarm = operated(&scenario(TWO, "")).expect("they can be placed");
+    let goal = GoalAssignment {
+        to: RobotId(1),
+        version: 1,
+        target: Cell::new(3, 9),
+    };
+    let header = Header {
+        boot: 0,
+        sender: RobotId(255),
+        sequence: 0,
+    };
+    swarm.tell(0, header, &Message::Goal(goal));
+    swarm.advance();
+    assert_eq!(swarm.glance(0).status.target, Cell::new(3, 9));
+    let begins = Event::ModeChanged {
+        from: Mode::Idle,
+        to: Mode::Cruise,
+    };
+    assert_eq!(swarm.events(0), [begins]);
+    assert_eq!(swarm.glance(1).status.target, Cell::new(12, 5));
+    run(&mut *swarm, 30);
+    let there = swarm.glance(0);
+    assert_eq!(
+        (there.motion.cell, there.status.mode),
+        (Cell::new(3, 9), Mode::Arrived)
+    );
+}
