@@ -6,6 +6,7 @@
 //! reproduces papers, [`mavlink`] is the edge to autopilots and ground stations, [`companion`] the controller beside
 //! autopilots, [`cli`] is the command `staya`.
 
+pub mod bridge;
 pub mod cli;
 pub mod companion;
 pub mod engine;

@@ -1,10 +1,11 @@
-//! The command line: `staya run | hil | companion | terrain | orca | experiment`.
+//! The command line: `staya run | hil | bridge | companion | terrain | orca | experiment`.
 //!
 //! A new command is a module with a `clap::Args` struct and `run(&self, &Global) -> Result<Ended>`,
 //! and one line in `Command`. Results go to standard output, progress and errors to standard
 //! error. Exit codes: 0 done, 1 failed, 2 wrong usage, 130 stopped by Ctrl-C (what was done until
 //! then is kept).
 
+mod bridge;
 mod companion;
 mod experiment;
 mod hil;
@@ -51,6 +52,8 @@ enum Command {
     Run(run::RunArgs),
     /// Run some robots of a scenario as firmware, on emulated microcontrollers or boards.
     Hil(hil::HilArgs),
+    /// Let ground stations and scripts see and command a simulated swarm by MAVLink.
+    Bridge(bridge::BridgeArgs),
     /// Steer vehicles of ArduPilot or PX4 as a swarm.
     Companion(companion::CompanionArgs),
     /// Make, measure and draw terrain.
@@ -109,6 +112,7 @@ fn run(cli: &Cli) -> Result<Ended> {
     match &cli.command {
         Command::Run(args) => args.run(&cli.global),
         Command::Hil(args) => args.run(&cli.global),
+        Command::Bridge(args) => args.run(&cli.global),
         Command::Companion(args) => args.run(&cli.global),
         Command::Terrain(args) => args.run(&cli.global),
         Command::Orca(args) => args.run(&cli.global),

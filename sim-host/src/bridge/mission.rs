@@ -1,0 +1,443 @@
+//! A vehicle's mission: a list of goals, and the protocol by which it comes and goes.
+//!
+//! As with ArduPilot, item 0 is the place that the client takes for home: it is kept, and never gone to.
+
+use staya_mavlink::constants::*;
+use staya_mavlink::dialect::*;
+use staya_mavlink::frame::Sender;
+
+/// Items that a vehicle has room for.
+pub const ITEMS: u16 = 128;
+/// After so long an item is asked for again, microseconds.
+const PATIENCE_US: u64 = 700_000;
+/// So often an item is asked for.
+const TRIES: u8 = 6;
+
+/// One item, as in MISSION_ITEM_INT: 1e-7 degrees, or 1e-4 metres in local frames.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Item {
+    /// What is to be done.
+    pub command: u16,
+    /// How x, y, z are meant.
+    pub frame: u8,
+    /// Whether the mission goes on by itself.
+    pub autocontinue: u8,
+    /// Parameters 1 to 4.
+    pub params: [f32; 4],
+    /// Parameter 5.
+    pub x: i32,
+    /// Parameter 6.
+    pub y: i32,
+    /// Parameter 7.
+    pub z: f32,
+}
+
+impl Item {
+    /// How many units of x and y are one of the older message.
+    const fn scale(frame: u8) -> f64 {
+        match frame {
+            MAV_FRAME_LOCAL_NED | MAV_FRAME_LOCAL_OFFSET_NED => 1e4,
+            _ => 1e7,
+        }
+    }
+
+    /// Of the newer message.
+    #[must_use]
+    pub const fn from_int(item: &MISSION_ITEM_INT_DATA) -> Self {
+        Self {
+            command: item.command,
+            frame: item.frame,
+            autocontinue: item.autocontinue,
+            params: [item.param1, item.param2, item.param3, item.param4],
+            x: item.x,
+            y: item.y,
+            z: item.z,
+        }
+    }
+
+    /// Of the older message; a place that is no number is one that no check lets pass.
+    #[must_use]
+    pub fn from_float(item: &MISSION_ITEM_DATA) -> Self {
+        let int = |x: f32| match x.is_finite() {
+            true => libm::round(f64::from(x) * Self::scale(item.frame)) as i32,
+            false => i32::MAX,
+        };
+        Self {
+            command: item.command,
+            frame: item.frame,
+            autocontinue: item.autocontinue,
+            params: [item.param1, item.param2, item.param3, item.param4],
+            x: int(item.x),
+            y: int(item.y),
+            z: item.z,
+        }
+    }
+
+    const fn to_int(self, seq: u16, current: bool, to: Sender) -> MISSION_ITEM_INT_DATA {
+        let [param1, param2, param3, param4] = self.params;
+        MISSION_ITEM_INT_DATA {
+            param1,
+            param2,
+            param3,
+            param4,
+            x: self.x,
+            y: self.y,
+            z: self.z,
+            seq,
+            command: self.command,
+            target_system: to.system,
+            target_component: to.component,
+            frame: self.frame,
+            current: current as u8,
+            autocontinue: self.autocontinue,
+            mission_type: MAV_MISSION_TYPE_MISSION,
+        }
+    }
+
+    fn to_float(self, seq: u16, current: bool, to: Sender) -> MISSION_ITEM_DATA {
+        let [param1, param2, param3, param4] = self.params;
+        let float = |x: i32| (f64::from(x) / Self::scale(self.frame)) as f32;
+        MISSION_ITEM_DATA {
+            param1,
+            param2,
+            param3,
+            param4,
+            x: float(self.x),
+            y: float(self.y),
+            z: self.z,
+            seq,
+            command: self.command,
+            target_system: to.system,
+            target_component: to.component,
+            frame: self.frame,
+            current: u8::from(current),
+            autocontinue: self.autocontinue,
+            mission_type: MAV_MISSION_TYPE_MISSION,
+        }
+    }
+}
+
+/// Items on their way in.
+#[derive(Clone, Debug, PartialEq)]
+struct Upload {
+    from: Sender,
+    count: u16,
+    items: Vec<Item>,
+    asked_us: u64,
+    tries: u8,
+}
+
+/// The mission and what of it is done.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mission {
+    items: Vec<Item>,
+    /// The item that is next, or under way.
+    current: u16,
+    upload: Option<Upload>,
+}
+
+impl Mission {
+    /// Items, home included.
+    #[must_use]
+    pub fn len(&self) -> u16 {
+        // At most ITEMS.
+        self.items.len() as u16
+    }
+
+    /// Whether there is nothing to go to.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.items.len() < 2
+    }
+
+    /// The number of the item that is next.
+    #[must_use]
+    pub const fn current(&self) -> u16 {
+        self.current
+    }
+
+    /// An item.
+    #[must_use]
+    pub fn item(&self, seq: u16) -> Option<&Item> {
+        self.items.get(usize::from(seq))
+    }
+
+    /// Goes on to another item; whether there is such one.
+    pub fn set_current(&mut self, seq: u16) -> bool {
+        let is_there = seq < self.len();
+        if is_there {
+            self.current = seq;
+        }
+        is_there
+    }
+
+    /// A client begins to send a mission.
+    pub fn count(&mut self, from: Sender, told: &MISSION_COUNT_DATA, now_us: u64) -> MavMessage {
+        if told.mission_type != MAV_MISSION_TYPE_MISSION {
+            return ack(from, told.mission_type, MAV_MISSION_UNSUPPORTED);
+        }
+        let is_another = |upload: &Upload| !same(upload.from, from);
+        if self.upload.as_ref().is_some_and(is_another) {
+            return ack(from, told.mission_type, MAV_MISSION_DENIED);
+        }
+        if told.count > ITEMS {
+            return ack(from, told.mission_type, MAV_MISSION_NO_SPACE);
+        }
+        if told.count == 0 {
+            return self.clear(from, MAV_MISSION_TYPE_MISSION);
+        }
+        self.upload = Some(Upload {
+            from,
+            count: told.count,
+            items: Vec::new(),
+            asked_us: now_us,
+            tries: 1,
+        });
+        request(from, 0)
+    }
+
+    /// A client sends an item; `fault` says what is wrong with it, 0 for nothing.
+    pub fn take(
+        &mut self,
+        from: Sender,
+        seq: u16,
+        item: Item,
+        now_us: u64,
+        fault: impl FnOnce(&Item) -> u8,
+    ) -> MavMessage {
+        let upload = self.upload.as_mut();
+        let Some(upload) = upload.filter(|upload| same(upload.from, from)) else {
+            return ack(from, MAV_MISSION_TYPE_MISSION, MAV_MISSION_INVALID_SEQUENCE);
+        };
+        let next = upload.items.len() as u16;
+        if seq == next {
+            // Home may be anything.
+            let fault = if seq == 0 { 0 } else { fault(&item) };
+            if fault != 0 {
+                self.upload = None;
+                return ack(from, MAV_MISSION_TYPE_MISSION, fault);
+            }
+            upload.items.push(item);
+        }
+        let next = upload.items.len() as u16;
+        if next < upload.count {
+            // Also when an item came twice: its client may have missed what was asked.
+            (upload.asked_us, upload.tries) = (now_us, 1);
+            return request(from, next);
+        }
+        self.items = core::mem::take(&mut upload.items);
+        self.upload = None;
+        self.current = 1.min(self.len() - 1);
+        ack(from, MAV_MISSION_TYPE_MISSION, MAV_MISSION_ACCEPTED)
+    }
+
+    /// Asks again for what did not come, and gives up at last.
+    pub fn poll(&mut self, now_us: u64) -> Option<MavMessage> {
+        let upload = self.upload.as_mut()?;
+        if now_us.saturating_sub(upload.asked_us) < PATIENCE_US {
+            return None;
+        }
+        let from = upload.from;
+        if upload.tries >= TRIES {
+            self.upload = None;
+            let cancelled = MAV_MISSION_OPERATION_CANCELLED;
+            return Some(ack(from, MAV_MISSION_TYPE_MISSION, cancelled));
+        }
+        upload.tries += 1;
+        upload.asked_us = now_us;
+        Some(request(from, upload.items.len() as u16))
+    }
+
+    /// A client wants to know how many items there are. Of other kinds than missions there are none.
+    #[must_use]
+    pub fn list(&self, from: Sender, mission_type: u8) -> MavMessage {
+        let is_known = mission_type == MAV_MISSION_TYPE_MISSION;
+        MavMessage::MISSION_COUNT(MISSION_COUNT_DATA {
+            count: if is_known { self.len() } else { 0 },
+            target_system: from.system,
+            target_component: from.component,
+            mission_type,
+        })
+    }
+
+    /// A client wants to know an item.
+    #[must_use]
+    pub fn tell(&self, from: Sender, seq: u16, mission_type: u8, as_int: bool) -> MavMessage {
+        let item = self.item(seq);
+        let Some(item) = item.filter(|_| mission_type == MAV_MISSION_TYPE_MISSION) else {
+            return ack(from, mission_type, MAV_MISSION_INVALID_SEQUENCE);
+        };
+        let is_current = seq == self.current;
+        if as_int {
+            MavMessage::MISSION_ITEM_INT(item.to_int(seq, is_current, from))
+        } else {
+            MavMessage::MISSION_ITEM(item.to_float(seq, is_current, from))
+        }
+    }
+
+    /// Forgets all items.
+    pub fn clear(&mut self, from: Sender, mission_type: u8) -> MavMessage {
+        // 255: of all kinds.
+        if matches!(mission_type, MAV_MISSION_TYPE_MISSION | 255) {
+            *self = Self::default();
+        }
+        ack(from, mission_type, MAV_MISSION_ACCEPTED)
+    }
+}
+
+const fn same(a: Sender, b: Sender) -> bool {
+    a.system == b.system && a.component == b.component
+}
+
+const fn request(to: Sender, seq: u16) -> MavMessage {
+    MavMessage::MISSION_REQUEST_INT(MISSION_REQUEST_INT_DATA {
+        seq,
+        target_system: to.system,
+        target_component: to.component,
+        mission_type: MAV_MISSION_TYPE_MISSION,
+    })
+}
+
+/// The end of a transfer.
+#[must_use]
+pub const fn ack(to: Sender, mission_type: u8, result: u8) -> MavMessage {
+    MavMessage::MISSION_ACK(MISSION_ACK_DATA {
+        target_system: to.system,
+        target_component: to.component,
+        mavtype: result,
+        mission_type,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GCS: Sender = Sender {
+        system: 255,
+        component: 190,
+        sequence: 0,
+    };
+
+    fn count(count: u16) -> MISSION_COUNT_DATA {
+        MISSION_COUNT_DATA {
+            count,
+            ..MISSION_COUNT_DATA::DEFAULT
+        }
+    }
+
+    fn item(x: i32) -> Item {
+        Item {
+            command: MAV_CMD_NAV_WAYPOINT,
+            x,
+            ..Item::default()
+        }
+    }
+
+    /// The item that was asked for, or the negative of what ended the transfer.
+    fn wanted(answer: &MavMessage) -> i32 {
+        match answer {
+            MavMessage::MISSION_REQUEST_INT(request) => request.seq.into(),
+            MavMessage::MISSION_ACK(ack) => -i32::from(ack.mavtype) - 1,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    fn ended(result: u8) -> i32 {
+        -i32::from(result) - 1
+    }
+
+    fn give(mission: &mut Mission, seq: u16) -> i32 {
+        wanted(&mission.take(GCS, seq, item(seq.into()), 0, |_| 0))
+    }
+
+    #[test]
+    fn a_mission_comes_item_by_item_and_is_read_back() {
+        let mut mission = Mission::default();
+        assert_eq!(wanted(&mission.count(GCS, &count(3), 0)), 0);
+        assert_eq!(give(&mut mission, 0), 1);
+        assert_eq!(give(&mut mission, 0), 1, "doubled");
+        assert_eq!(give(&mut mission, 2), 1, "too early");
+        assert_eq!(give(&mut mission, 1), 2);
+        assert!(mission.is_empty(), "nothing counts before the last item");
+        assert_eq!(give(&mut mission, 2), ended(MAV_MISSION_ACCEPTED));
+        assert_eq!((mission.len(), mission.current()), (3, 1));
+        assert_eq!(give(&mut mission, 2), ended(MAV_MISSION_INVALID_SEQUENCE));
+        let MavMessage::MISSION_ITEM_INT(told) = mission.tell(GCS, 2, 0, true) else {
+            panic!("an item");
+        };
+        assert_eq!((told.x, told.seq, told.current), (2, 2, 0));
+        assert_eq!(
+            wanted(&mission.tell(GCS, 3, 0, true)),
+            ended(MAV_MISSION_INVALID_SEQUENCE)
+        );
+        assert!(mission.set_current(2) && !mission.set_current(3));
+        let _ = mission.clear(GCS, 0);
+        assert_eq!(mission, Mission::default());
+    }
+
+    #[test]
+    fn what_does_not_come_is_asked_for_again_and_given_up() {
+        let mut mission = Mission::default();
+        let _ = mission.count(GCS, &count(2), 0);
+        assert_eq!(mission.poll(PATIENCE_US - 1), None);
+        let mut now = 0;
+        for _ in 1..TRIES {
+            now += PATIENCE_US;
+            assert_eq!(mission.poll(now).as_ref().map(wanted), Some(0));
+        }
+        now += PATIENCE_US;
+        let cancelled = Some(ended(MAV_MISSION_OPERATION_CANCELLED));
+        assert_eq!(mission.poll(now).as_ref().map(wanted), cancelled);
+        assert_eq!(mission.poll(now + PATIENCE_US), None);
+    }
+
+    #[test]
+    fn too_many_another_kind_another_client_and_bad_items_are_refused() {
+        let mut mission = Mission::default();
+        let fences = MISSION_COUNT_DATA {
+            mission_type: 1,
+            ..count(2)
+        };
+        let refused = ended(MAV_MISSION_UNSUPPORTED);
+        assert_eq!(wanted(&mission.count(GCS, &fences, 0)), refused);
+        let refused = ended(MAV_MISSION_NO_SPACE);
+        assert_eq!(wanted(&mission.count(GCS, &count(ITEMS + 1), 0)), refused);
+        assert_eq!(wanted(&mission.count(GCS, &count(ITEMS), 0)), 0);
+        let other = Sender { system: 254, ..GCS };
+        let refused = ended(MAV_MISSION_DENIED);
+        assert_eq!(wanted(&mission.count(other, &count(2), 0)), refused);
+        let taken = mission.take(other, 0, item(0), 0, |_| 0);
+        assert_eq!(wanted(&taken), ended(MAV_MISSION_INVALID_SEQUENCE));
+        // The same client may begin anew.
+        assert_eq!(wanted(&mission.count(GCS, &count(2), 0)), 0);
+        let home = mission.take(GCS, 0, item(0), 0, |_| MAV_MISSION_UNSUPPORTED);
+        assert_eq!(wanted(&home), 1, "home may be anything");
+        let bad = mission.take(GCS, 1, item(1), 0, |_| MAV_MISSION_UNSUPPORTED);
+        assert_eq!(wanted(&bad), ended(MAV_MISSION_UNSUPPORTED));
+        assert_eq!(mission, Mission::default());
+    }
+
+    #[test]
+    fn items_of_the_older_message_are_the_same() {
+        for (frame, x) in [(MAV_FRAME_GLOBAL, 12.5), (MAV_FRAME_LOCAL_NED, -3.25)] {
+            let float = MISSION_ITEM_DATA {
+                frame,
+                x,
+                y: 7.0,
+                z: 1.5,
+                seq: 4,
+                ..MISSION_ITEM_DATA::DEFAULT
+            };
+            let kept = Item::from_float(&float);
+            assert_eq!(kept.y, (7.0 * Item::scale(frame)) as i32);
+            let back = kept.to_float(4, false, Sender::default());
+            assert_eq!((back.x, back.y, back.z, back.seq), (x, 7.0, 1.5, 4));
+        }
+        let nonsense = MISSION_ITEM_DATA {
+            x: f32::NAN,
+            ..MISSION_ITEM_DATA::DEFAULT
+        };
+        assert_eq!(Item::from_float(&nonsense).x, i32::MAX);
+    }
+}

@@ -1,0 +1,22 @@
+//! The simulated swarm seen from outside: every robot is a MAVLink vehicle, for ground stations and scripts.
+//!
+//! [`Vehicle`] is one robot's side of the protocol, without sockets or a clock; [`Swarm`] runs a scenario in real time between vehicles and lines.
+//! An operator's wish reaches the robot's controller ([`Commanded`](staya_controller::agent::Commanded)), where the safety layer stays behind
+//! it; nobody's state is changed from outside.
+
+mod commands;
+mod craft;
+mod guided;
+mod mission;
+mod params;
+mod swarm;
+mod telemetry;
+#[cfg(test)]
+mod testing;
+mod vehicle;
+
+pub use craft::{Craft, FlightMode, Sample};
+pub use params::{Meaning, NotSet, Parameters};
+pub use swarm::{BridgeError, LineReport, Options, Report, Swarm};
+pub use telemetry::Streams;
+pub use vehicle::{Deed, Out, Vehicle};

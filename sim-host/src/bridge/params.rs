@@ -1,0 +1,215 @@
+//! A vehicle's parameters: the controller's own, and how long a velocity setpoint holds.
+
+use super::craft::Craft;
+use staya_controller::agent::Parameter;
+use staya_mavlink::constants::MAV_PARAM_TYPE_REAL32;
+use staya_mavlink::dialect::PARAM_VALUE_DATA;
+
+/// How long a velocity setpoint holds, by default: as an ArduPilot rover does it, simulated seconds.
+const SETPOINT_TIMEOUT_S: f32 = 3.0;
+
+/// What a parameter changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Meaning {
+    /// Something in the controller.
+    Controller(Parameter),
+    /// How long a velocity setpoint holds, simulated seconds.
+    SetpointTimeout,
+}
+
+/// One parameter.
+#[derive(Clone, Debug, PartialEq)]
+struct Entry {
+    name: &'static str,
+    meaning: Meaning,
+    value: f32,
+    range: [f32; 2],
+}
+
+/// All parameters of a vehicle, as clients see them: by rising name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameters(Vec<Entry>);
+
+/// Why a parameter was not set.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NotSet {
+    /// There is no such one.
+    Unknown,
+    /// It is not within these limits.
+    OutOf([f32; 2]),
+}
+
+/// The name that clients know a parameter by; at most 16 letters.
+const fn name(parameter: Parameter) -> &'static str {
+    match parameter {
+        Parameter::Radius => "RADIUS_M",
+        Parameter::BeaconPeriod => "BEACON_S",
+        Parameter::Speed => "SPEED_MPS",
+        Parameter::Tolerance => "TOLERANCE_M",
+        Parameter::Horizon => "ORCA_HORIZON_S",
+        Parameter::WallHorizon => "ORCA_WALL_S",
+        Parameter::Share => "ORCA_SHARE",
+        Parameter::Margin => "ORCA_MARGIN_M",
+    }
+}
+
+impl Parameters {
+    /// Those that a robot has: `value` says what they are.
+    #[must_use]
+    pub fn new(craft: &Craft, value: impl Fn(Parameter) -> Option<f32>) -> Self {
+        let own = Parameter::ALL.into_iter().filter_map(|parameter| {
+            let on_grid = craft.grid.is_some();
+            let of_bodies = !matches!(parameter, Parameter::BeaconPeriod);
+            if on_grid && of_bodies {
+                return None;
+            }
+            let [mut least, mut greatest] = parameter.range();
+            match parameter {
+                // Whoever thinks that he is smaller than he is hits others.
+                Parameter::Radius => least = craft.radius_m,
+                Parameter::Speed => greatest = craft.max_speed_mps,
+                _ => {}
+            }
+            let value = value(parameter)?;
+            Some(Entry {
+                name: name(parameter),
+                meaning: Meaning::Controller(parameter),
+                value,
+                range: [least, greatest],
+            })
+        });
+        let timeout = craft.grid.is_none().then_some(Entry {
+            name: "SETPOINT_S",
+            meaning: Meaning::SetpointTimeout,
+            value: SETPOINT_TIMEOUT_S,
+            range: [0.05, 600.0],
+        });
+        let mut entries: Vec<_> = own.chain(timeout).collect();
+        entries.sort_by_key(|entry| entry.name);
+        Self(entries)
+    }
+
+    /// How many there are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Where a parameter is, by the name of a message.
+    #[must_use]
+    pub fn find(&self, id: &[u8; 16]) -> Option<usize> {
+        let end = id.iter().position(|letter| *letter == 0);
+        let id = &id[..end.unwrap_or(id.len())];
+        self.0.iter().position(|entry| entry.name.as_bytes() == id)
+    }
+
+    /// The value of what a parameter changes.
+    #[must_use]
+    pub fn get(&self, meaning: Meaning) -> Option<f32> {
+        let mut entries = self.0.iter();
+        Some(entries.find(|entry| entry.meaning == meaning)?.value)
+    }
+
+    /// Changes a value; what it changes is the answer.
+    ///
+    /// # Errors
+    /// [`NotSet`]; nothing was changed.
+    pub fn set(&mut self, index: usize, value: f32) -> Result<Meaning, NotSet> {
+        let entry = self.0.get_mut(index).ok_or(NotSet::Unknown)?;
+        let [least, greatest] = entry.range;
+        // Also for what is no number.
+        if !(least..=greatest).contains(&value) {
+            return Err(NotSet::OutOf(entry.range));
+        }
+        entry.value = value;
+        Ok(entry.meaning)
+    }
+
+    /// The same by what it changes.
+    ///
+    /// # Errors
+    /// [`NotSet`]; nothing was changed.
+    pub fn set_meaning(&mut self, meaning: Meaning, value: f32) -> Result<Meaning, NotSet> {
+        let mut entries = self.0.iter();
+        let index = entries.position(|entry| entry.meaning == meaning);
+        self.set(index.ok_or(NotSet::Unknown)?, value)
+    }
+
+    /// A parameter as clients are told it.
+    #[must_use]
+    pub fn message(&self, index: usize) -> Option<PARAM_VALUE_DATA> {
+        let entry = self.0.get(index)?;
+        Some(PARAM_VALUE_DATA {
+            param_value: entry.value,
+            // At most nine.
+            param_count: self.0.len() as u16,
+            param_index: index as u16,
+            param_id: entry.name.into(),
+            param_type: MAV_PARAM_TYPE_REAL32,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{craft, on_grid};
+    use super::*;
+
+    fn padded(name: &str) -> [u8; 16] {
+        let mut id = [0; 16];
+        id[..name.len()].copy_from_slice(name.as_bytes());
+        id
+    }
+
+    fn all() -> Parameters {
+        Parameters::new(&craft(), |parameter| Some(parameter.range()[1]))
+    }
+
+    #[test]
+    fn names_fit_and_lead_back() {
+        let parameters = all();
+        assert_eq!(parameters.count(), Parameter::ALL.len() + 1);
+        for index in 0..parameters.count() {
+            let name = parameters.0[index].name;
+            assert!(name.len() <= 16);
+            assert_eq!(parameters.find(&padded(name)), Some(index), "{name}");
+            let told = parameters.message(index).expect("it is there");
+            assert_eq!(
+                (*told.param_id, usize::from(told.param_index)),
+                (padded(name), index)
+            );
+        }
+        assert_eq!(parameters.find(&padded("SPEED_MP")), None);
+        assert_eq!(parameters.find(&padded("")), None);
+        assert_eq!(parameters.message(parameters.count()), None);
+    }
+
+    #[test]
+    fn what_is_out_of_its_range_changes_nothing() {
+        let mut parameters = all();
+        let speed = parameters.find(&padded("SPEED_MPS")).expect("it is there");
+        let limit = craft().max_speed_mps;
+        for bad in [-0.1, limit * 1.01, f32::NAN, f32::INFINITY] {
+            let before = parameters.clone();
+            assert_eq!(parameters.set(speed, bad), Err(NotSet::OutOf([0.0, limit])));
+            assert_eq!(parameters, before);
+        }
+        let meaning = Meaning::Controller(Parameter::Speed);
+        assert_eq!(parameters.set(speed, limit), Ok(meaning));
+        assert_eq!(parameters.get(meaning), Some(limit));
+        let radius = Meaning::Controller(Parameter::Radius);
+        assert!(
+            parameters
+                .set_meaning(radius, craft().radius_m * 0.9)
+                .is_err()
+        );
+        assert_eq!(parameters.set(99, 1.0), Err(NotSet::Unknown));
+    }
+
+    #[test]
+    fn on_the_grid_there_is_only_the_beacon() {
+        let parameters = Parameters::new(&on_grid(), |_| Some(1.0));
+        assert_eq!(parameters.count(), 1);
+        assert_eq!(parameters.find(&padded("BEACON_S")), Some(0));
+    }
+}

@@ -1,0 +1,231 @@
+//! What a vehicle says, and when.
+
+use super::*;
+
+/// Messages that came within a second.
+fn second(bench: &mut Bench, from_us: u64) -> Vec<MavMessage> {
+    bench.out = Out::default();
+    for step in 1..500 {
+        let now_us = from_us + step * 2000;
+        bench.vehicle.poll(now_us, &mut bench.out);
+    }
+    core::mem::take(&mut bench.out.messages)
+}
+
+fn count<D: MessageData>(messages: &[MavMessage]) -> usize {
+    let is_one =
+        |message: &&MavMessage| staya_mavlink::mavlink_core::Message::message_id(*message) == D::ID;
+    messages.iter().filter(is_one).count()
+}
+
+#[test]
+fn rates_are_those_that_were_asked_for() {
+    let mut bench = Bench::new(craft());
+    let messages = second(&mut bench, 0);
+    assert_eq!(count::<HEARTBEAT_DATA>(&messages), 1);
+    assert_eq!(count::<LOCAL_POSITION_NED_DATA>(&messages), 10);
+    assert_eq!(count::<AUTOPILOT_VERSION_DATA>(&messages), 0);
+    let set = MAV_CMD_SET_MESSAGE_INTERVAL;
+    let (position, heartbeat) = (
+        LOCAL_POSITION_NED_DATA::ID as f32,
+        HEARTBEAT_DATA::ID as f32,
+    );
+    assert_eq!(
+        bench.command(set, two(position, 20_000.0)),
+        MAV_RESULT_ACCEPTED
+    );
+    let attitude = ATTITUDE_DATA::ID as f32;
+    assert_eq!(bench.command(set, two(attitude, -1.0)), MAV_RESULT_ACCEPTED);
+    let messages = second(&mut bench, 1_000_000);
+    assert_eq!(count::<LOCAL_POSITION_NED_DATA>(&messages), 50);
+    assert_eq!(count::<ATTITUDE_DATA>(&messages), 0);
+    assert_eq!(bench.command(set, two(attitude, 0.0)), MAV_RESULT_ACCEPTED);
+    assert_eq!(
+        bench.command(MAV_CMD_GET_MESSAGE_INTERVAL, first(attitude)),
+        MAV_RESULT_ACCEPTED
+    );
+    let told = MESSAGE_INTERVAL_DATA {
+        interval_us: 200_000,
+        message_id: 30,
+    };
+    assert_eq!(bench.out.messages[1], MavMessage::MESSAGE_INTERVAL(told));
+    // Too often, no number, no such message; and a heartbeat is a heartbeat.
+    for (bad, result) in [
+        (two(position, 10.0), MAV_RESULT_DENIED),
+        (two(position, -2.0), MAV_RESULT_DENIED),
+        (two(position, NAN), MAV_RESULT_DENIED),
+        (two(heartbeat, -1.0), MAV_RESULT_DENIED),
+        (two(NAN, 1000.0), MAV_RESULT_DENIED),
+        (two(12_345.0, 1000.0), MAV_RESULT_UNSUPPORTED),
+    ] {
+        assert_eq!(bench.command(set, bad), result, "{bad:?}");
+    }
+    bench.give(MavMessage::REQUEST_DATA_STREAM(REQUEST_DATA_STREAM_DATA {
+        req_message_rate: 4,
+        target_system: 7,
+        target_component: 1,
+        req_stream_id: 0,
+        start_stop: 1,
+    }));
+    let messages = second(&mut bench, 2_000_000);
+    assert_eq!(count::<LOCAL_POSITION_NED_DATA>(&messages), 4);
+    assert_eq!(count::<HEARTBEAT_DATA>(&messages), 1);
+}
+
+#[test]
+fn all_that_streams_can_be_requested() {
+    let mut bench = Bench::new(craft());
+    let request = MAV_CMD_REQUEST_MESSAGE;
+    for id in [0, 1, 2, 24, 30, 32, 33, 42, 49, 74, 147, 148, 242, 245_u32] {
+        assert_eq!(
+            bench.command(request, first(id as f32)),
+            MAV_RESULT_ACCEPTED,
+            "{id}"
+        );
+        assert_eq!(bench.out.messages.len(), 2, "{id}");
+    }
+    assert_eq!(bench.command(request, first(11.0)), MAV_RESULT_UNSUPPORTED);
+    let version = MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES;
+    assert_eq!(bench.command(version, first(1.0)), MAV_RESULT_ACCEPTED);
+    assert!(matches!(
+        bench.out.messages[1],
+        MavMessage::AUTOPILOT_VERSION(_)
+    ));
+}
+
+#[test]
+fn positions_are_north_east_down_and_on_the_earth() {
+    let mut bench = Bench::new(flying());
+    bench.tick(|sample| {
+        sample.position_m = [100.0, 200.0, 30.0];
+        sample.velocity_mps = [3.0, -4.0, 1.0];
+    });
+    let Some(MavMessage::LOCAL_POSITION_NED(local)) = bench.vehicle.telemetry(32) else {
+        panic!("a position");
+    };
+    assert_eq!([local.x, local.y, local.z], [200.0, 100.0, -30.0]);
+    assert_eq!([local.vx, local.vy, local.vz], [-4.0, 3.0, -1.0]);
+    let Some(MavMessage::GLOBAL_POSITION_INT(global)) = bench.vehicle.telemetry(33) else {
+        panic!("a position");
+    };
+    let expected = origin()
+        .to_global([100.0, 200.0, 30.0])
+        .expect("near")
+        .to_e7();
+    assert_eq!([global.lat, global.lon, global.alt], expected);
+    assert_eq!(
+        (global.relative_alt, global.vx, global.vy, global.vz),
+        (30_000, -400, 300, -100)
+    );
+    // atan2(3, -4): between south and east.
+    assert_eq!(global.hdg, 14_313);
+    assert_eq!(bench.vehicle.uptime_us(), 100_000);
+}
+
+#[test]
+fn heartbeats_say_how_it_is() {
+    let mut bench = Bench::new(craft());
+    let heartbeat = |bench: &Bench| match bench.vehicle.telemetry(0) {
+        Some(MavMessage::HEARTBEAT(heartbeat)) => heartbeat,
+        other => panic!("{other:?}"),
+    };
+    let beat = heartbeat(&bench);
+    assert_eq!(
+        (beat.mavtype, beat.autopilot, beat.custom_mode),
+        (10, 3, 10)
+    );
+    assert_eq!(
+        (beat.base_mode & 0x81, beat.system_status),
+        (0x81, MAV_STATE_ACTIVE)
+    );
+    bench.tick(|sample| sample.mode = Mode::Fault);
+    assert_eq!(heartbeat(&bench).system_status, MAV_STATE_CRITICAL);
+    bench.command(MAV_CMD_COMPONENT_ARM_DISARM, NONE);
+    let beat = heartbeat(&bench);
+    assert_eq!(
+        (beat.base_mode & 0x80, beat.system_status),
+        (0, MAV_STATE_STANDBY)
+    );
+}
+
+#[test]
+fn pings_times_and_files_are_answered_at_once() {
+    let mut bench = Bench::new(craft());
+    let ping = PING_DATA {
+        time_usec: 77,
+        seq: 3,
+        ..PING_DATA::DEFAULT
+    };
+    let answer = PING_DATA {
+        target_system: GCS.system,
+        target_component: GCS.component,
+        ..ping.clone()
+    };
+    let out = bench.give(MavMessage::PING(ping));
+    assert_eq!(out.messages, [MavMessage::PING(answer.clone())]);
+    assert!(
+        bench.give(MavMessage::PING(answer)).messages.is_empty(),
+        "an answer"
+    );
+    bench.tick(|_| {});
+    let out = bench.give(MavMessage::TIMESYNC(TIMESYNC_DATA { tc1: 0, ts1: 5 }));
+    let expected = TIMESYNC_DATA {
+        tc1: 100_000_000,
+        ts1: 5,
+    };
+    assert_eq!(out.messages, [MavMessage::TIMESYNC(expected)]);
+    let mut asked = FILE_TRANSFER_PROTOCOL_DATA {
+        target_system: 7,
+        target_component: 1,
+        ..FILE_TRANSFER_PROTOCOL_DATA::DEFAULT
+    };
+    asked.payload[..4].copy_from_slice(&[255, 255, 9, 4]);
+    let out = bench.give(MavMessage::FILE_TRANSFER_PROTOCOL(asked));
+    let [MavMessage::FILE_TRANSFER_PROTOCOL(answer)] = &out.messages[..] else {
+        panic!("an answer");
+    };
+    assert_eq!(answer.payload[..6], [0, 0, 9, 129, 1, 4]);
+    assert_eq!((answer.payload[12], answer.target_system), (10, 255));
+}
+
+#[test]
+fn who_is_down_is_silent_and_forgets_its_mode() {
+    let mut bench = guided(craft());
+    assert_eq!(load(&mut bench, &[item(0, 0.0, 0.0), item(1, 1.0, 1.0)]), 0);
+    bench.tick(|sample| sample.is_up = false);
+    assert!(second(&mut bench, 0).is_empty());
+    bench.give(MavMessage::PING(PING_DATA::DEFAULT));
+    assert!(bench.out.messages.is_empty());
+    bench.sample.is_up = true;
+    let (parameters, sample) = (bench.vehicle.parameters.clone(), bench.sample);
+    bench.vehicle.restart(parameters, sample, &mut bench.out);
+    assert_eq!(bench.texts(), ["started anew"]);
+    assert_eq!(
+        (bench.vehicle.mode, bench.vehicle.mission.len()),
+        (FlightMode::Auto, 2)
+    );
+    assert_eq!(bench.vehicle.uptime_us(), 0);
+}
+
+#[test]
+fn what_happens_is_said_and_a_setpoint_that_ran_out_too() {
+    let mut bench = guided(craft());
+    bench.tick(|sample| {
+        sample.wish = Wish::Velocity {
+            velocity_mps: Vec3::ZERO,
+            valid: Duration::ZERO,
+        };
+    });
+    bench.tick(|sample| sample.wish = Wish::Hold);
+    assert_eq!(bench.texts(), ["no setpoint any more: holding"]);
+    let arrived = Event::ModeChanged {
+        from: Mode::Cruise,
+        to: Mode::Arrived,
+    };
+    let lost = [2, 3].map(|id| Event::NeighborLost(staya_controller::wire::RobotId(id)));
+    let (sample, mut out) = (bench.sample, Out::default());
+    let events = [arrived, lost[0], lost[1]];
+    bench.vehicle.observe(sample, &events, 9_000_000, &mut out);
+    bench.out = out;
+    assert_eq!(bench.texts(), ["arrived", "robot 2 is not heard any more"]);
+}

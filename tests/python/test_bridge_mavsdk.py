@@ -1,0 +1,119 @@
+"""`staya bridge` as MAVSDK sees it: one vehicle and ten."""
+
+import math
+import time
+
+import pytest
+from bridge_client import LAT, LON
+from conftest import wait_until
+
+mavsdk = pytest.importorskip("mavsdk")
+
+from mavsdk import ComponentType, Configuration, Mavsdk  # noqa: E402
+from mavsdk.plugins.action import Action, ActionError  # noqa: E402
+from mavsdk.plugins.offboard import Offboard, VelocityNedYaw  # noqa: E402
+from mavsdk.plugins.param import Param  # noqa: E402
+from mavsdk.plugins.telemetry import Telemetry  # noqa: E402
+
+ONE = """
+name = "one"
+ticks = 1000
+tick_s = 0.05
+[plane]
+radius_m = 0.25
+max_speed_mps = 2
+tolerance_m = 0.1
+[[plane.robots.list]]
+start_m = [3, 0]
+"""
+
+
+@pytest.fixture
+def connect(staya, free_port):
+    """A function that starts a bridge and gives the vehicles that MAVSDK finds, by number."""
+    opened = []
+
+    def start(scenario, count, *options):
+        port = free_port()
+        process = staya("bridge", scenario, "--mavlink", f"udpout:127.0.0.1:{port}", "--speed", 3, "--quiet", *options)
+        sdk = Mavsdk(Configuration.create_with_component_type(ComponentType.GROUND_STATION))
+        opened.append(sdk)
+        sdk.add_any_connection(f"udpin://127.0.0.1:{port}")
+
+        def found():
+            systems = [system for system in sdk.get_systems() if system.has_autopilot()]
+            return systems if len(systems) == count else None
+
+        systems = wait_until(found, 15, f"{count} vehicles; {process.output()}")
+        return {system.get_system_id(): system for system in systems}
+
+    yield start
+    for sdk in opened:
+        sdk.destroy()
+
+
+def near(telemetry, north, east, within=0.3):
+    at = telemetry.position_velocity_ned().position
+    return math.hypot(at.north_m - north, at.east_m - east) < within
+
+
+def degrees(north, east):
+    return LAT + math.degrees(north / 6_367_500), LON + math.degrees(east / (6_388_000 * math.cos(math.radians(LAT))))
+
+
+def fly(system, north, east):
+    """Offboard velocity, then a goto, from where the vehicle stands."""
+    telemetry, action, offboard = Telemetry(system), Action(system), Offboard(system)
+    wait_until(lambda: telemetry.armed() and near(telemetry, north, east), 15, "telemetry")
+    place = telemetry.position()
+    latitude, longitude = degrees(north, east)
+    assert abs(place.latitude_deg - latitude) < 1e-6 and abs(place.longitude_deg - longitude) < 1e-6
+    offboard.set_velocity_ned(VelocityNedYaw(-0.8, 0.0, 0.0, 0.0))
+    offboard.start()
+    wait_until(lambda: abs(telemetry.position_velocity_ned().velocity.north_m_s + 0.8) < 0.05, 15, "the velocity")
+    assert offboard.is_active()
+    offboard.stop()
+    wait_until(lambda: abs(telemetry.position_velocity_ned().velocity.north_m_s) < 0.05, 15, "the stop")
+    action.goto_location(*degrees(north - 4.0, east + 0.3), place.absolute_altitude_m, 0.0)
+    wait_until(lambda: near(telemetry, north - 4.0, east + 0.3), 15, "the goto")
+    return telemetry, action
+
+
+def test_one_vehicle(connect, tmp_path):
+    scenario = tmp_path / "one.toml"
+    scenario.write_text(ONE)
+    (system,) = connect(scenario, 1).values()
+    telemetry, action = fly(system, 0.0, 3.0)
+    wait_until(lambda: telemetry.home().latitude_deg > 47, 10, "a home")
+    assert not telemetry.in_air()
+    # What these vehicles cannot do, they say.
+    with pytest.raises(ActionError):
+        action.takeoff()
+    parameters = Param(system)
+    assert parameters.get_param_float("RADIUS_M") == 0.25
+    parameters.set_param_float("SPEED_MPS", 0.5)
+    assert parameters.get_param_float("SPEED_MPS") == 0.5
+    action.disarm()
+    wait_until(lambda: not telemetry.armed(), 10, "to be disarmed")
+
+
+def test_ten_vehicles(connect):
+    systems = connect("scenarios/bridge.toml", 10)
+    assert sorted(systems) == list(range(1, 11))
+    # All of them are told the same, at once: each sends its setpoints by itself.
+    flights = {}
+    for number, system in systems.items():
+        telemetry, offboard = Telemetry(system), Offboard(system)
+        wait_until(telemetry.armed, 15, f"telemetry of {number}")
+        offboard.set_velocity_ned(VelocityNedYaw(-0.8 if number <= 5 else 0.8, 0.0, 0.0, 0.0))
+        offboard.start()
+        flights[number] = (telemetry, offboard, Action(system))
+    for number, (telemetry, offboard, action) in flights.items():
+        wanted = -0.8 if number <= 5 else 0.8
+        wait_until(lambda: abs(telemetry.position_velocity_ned().velocity.north_m_s - wanted) < 0.1, 15, f"{number}")
+    for _, offboard, _ in flights.values():
+        offboard.stop()
+    for number, (telemetry, _, action) in flights.items():
+        action.goto_location(*degrees(-6.0 if number <= 5 else 12.0, 2.0 * number), 488.0, 0.0)
+    for number, (telemetry, _, _) in flights.items():
+        wait_until(lambda: near(telemetry, -6.0 if number <= 5 else 12.0, 2.0 * number), 25, f"goto of {number}")
