@@ -337,6 +337,58 @@ def test_companions_in_two_processes_hear_each_other(tmp_path, free_port, staya,
         assert fleet.least_gap > 0.0, f"they touched: {fleet.least_gap} m"
 
 
+def two_that_meet(tmp_path, free_port, staya, keys):
+    """Two companions, each in a process of its own with its key, in a group; their reports after 3 s."""
+    write_scenario(tmp_path, [((0.0, 0.0), (8.0, 0.0)), ((8.0, 0.2), (0.0, 0.2))])
+    group, processes = free_port(), []
+    for i, key in enumerate(keys):
+        air = f'[air]\nmulticast = "239.255.77.1:{group}"\ninterface = "127.0.0.1"\n'
+        if key:
+            (tmp_path / f"{i}.key").write_text(f"passphrase: {key}\n")
+            (tmp_path / f"{i}.key").chmod(0o600)
+            air += f'key = "{i}.key"'
+        port = free_port()
+        config = write_config(tmp_path, [port], "rover", air=air, name=f"config-{i}.toml", robots=[i + 1])
+        processes.append((port, config))
+    # The pilots keep them.
+    vehicles = [Vehicle(i + 1, "rover", Line("127.0.0.1", processes[i][0]), (8.0 * i, 0.0)) for i in range(2)]
+    with Fleet(vehicles, RADIUS):
+        running = [staya("companion", config, "--json", "--quiet", "--seconds", "3") for _, config in processes]
+        assert [process.wait() for process in running] == [0, 0]
+    return [json.loads(process.output())["vehicles"][0] for process in running]
+
+
+def test_sealed_packets_are_heard_by_who_has_the_key(tmp_path, free_port, staya):
+    for report in two_that_meet(tmp_path, free_port, staya, ["one for all", "one for all"]):
+        assert report["neighbors"] == 1 and report["packets_heard"] > 10 and report["packets_refused"] == 0, report
+
+
+@pytest.mark.parametrize("keys", [("one for all", "another"), ("one for all", None)], ids=["wrong", "none"])
+def test_packets_without_the_right_key_are_refused(tmp_path, free_port, staya, keys):
+    first, second = two_that_meet(tmp_path, free_port, staya, keys)
+    assert first["neighbors"] == 0 and first["packets_heard"] == 0 and first["packets_refused"] > 10, first
+
+
+def test_signed_links_take_the_right_key_and_no_other(one, tmp_path):
+    key = bytes(range(32))
+    file = tmp_path / "link.key"
+    file.write_text(key.hex() + "\n")
+    file.chmod(0o600)
+    vehicle, fleet, start = one(mode=GUIDED, armed=True, key=key)
+    with fleet:
+        process = start("--link-key", file)
+        wait_until(lambda: vehicle.velocity[0] > 0.5, what="motion")
+        ends_well(process)
+    for other in (bytes(32), None):
+        vehicle, fleet, start = one(mode=GUIDED, armed=True, key=other)
+        with fleet:
+            process = start("--link-key", file, "--json", "--quiet", "--seconds", "2.5")
+            assert process.wait() == 0
+            report = json.loads(process.output())
+            assert report["links"][0]["refused"] >= 2
+            assert report["vehicles"][0]["state"] == "silent" and vehicle.setpoints == []
+
+
 def test_the_others_go_around_one_that_its_pilot_has_taken(tmp_path, free_port, staya):
     robots = [((0.0, 0.0), (10.0, 0.0)), ((5.0, 0.1), (5.0, 8.0))]
     write_scenario(tmp_path, robots)

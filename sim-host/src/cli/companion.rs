@@ -21,6 +21,12 @@ pub struct CompanionArgs {
     /// Write all messages of all links to a log, for mavlogdump, MAVExplorer or QGroundControl.
     #[arg(long, value_name = "FILE")]
     tlog: Option<PathBuf>,
+    /// Seal packets between companions with the key in this file, and hear only sealed ones; instead of air.key.
+    #[arg(long, value_name = "FILE")]
+    key: Option<PathBuf>,
+    /// Sign all messages on the links with the key in this file, and hear only signed ones; instead of link_key.
+    #[arg(long, value_name = "FILE")]
+    link_key: Option<PathBuf>,
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
@@ -35,7 +41,15 @@ impl CompanionArgs {
     /// # Errors
     /// A configuration that cannot be read or is wrong, links that cannot be opened, a log that cannot be written.
     pub fn run(&self, global: &Global) -> Result<Ended> {
-        let config = Config::load(&self.config)?;
+        let mut config = Config::load(&self.config)?;
+        for (given, kept) in [
+            (&self.key, &mut config.key),
+            (&self.link_key, &mut config.link_key),
+        ] {
+            if given.is_some() {
+                kept.clone_from(given);
+            }
+        }
         let mut options = Options {
             dry_run: self.dry_run,
             quiet: global.quiet,

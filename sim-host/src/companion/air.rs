@@ -5,12 +5,13 @@
 use socket2::{Domain, Protocol, Socket, Type};
 use staya_controller::wire::Wire;
 use staya_mavlink::dialect::{MavMessage, TUNNEL_DATA};
+use std::collections::VecDeque;
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket};
 
 /// The private payload type of TUNNEL messages that carry frames of Staya (private ones are 32768 and above).
 const PAYLOAD_TYPE: u16 = 0xD53A;
-/// Datagrams read at a time.
+/// Datagrams read at a time, and own ones that are remembered.
 const AT_A_TIME: usize = 256;
 
 /// How packets go to companions of other processes.
@@ -52,6 +53,8 @@ pub struct Air {
     socket: Option<UdpSocket>,
     to: Vec<SocketAddr>,
     is_tunnel: bool,
+    /// The last datagrams: a group gives them back.
+    sent: VecDeque<Vec<u8>>,
 }
 
 impl Air {
@@ -64,6 +67,7 @@ impl Air {
             socket,
             to,
             is_tunnel: false,
+            sent: VecDeque::new(),
         };
         match setup {
             AirSetup::Here => Ok(air(None, Vec::new())),
@@ -101,21 +105,29 @@ impl Air {
     }
 
     /// Sends what an agent says; what the network does not take is lost, as on a radio.
-    pub fn send(&self, frames: &[u8]) {
-        if let Some(socket) = &self.socket {
-            for to in &self.to {
-                let _ = socket.send_to(frames, to);
+    pub fn send(&mut self, frames: &[u8]) {
+        let Some(socket) = &self.socket else { return };
+        for to in &self.to {
+            let _ = socket.send_to(frames, to);
+            if to.ip().is_multicast() {
+                self.sent.push_back(frames.to_vec());
             }
+        }
+        while self.sent.len() > AT_A_TIME {
+            self.sent.pop_front();
         }
     }
 
-    /// Gives what has arrived to `heard`, datagram by datagram; at most 256.
-    pub fn receive(&self, mut heard: impl FnMut(&[u8])) {
+    /// Gives what has arrived to `heard`, datagram by datagram, but not own ones; at most 256.
+    pub fn receive(&mut self, mut heard: impl FnMut(&[u8])) {
         let Some(socket) = &self.socket else { return };
         let mut buffer = [0; 2048];
         for _ in 0..AT_A_TIME {
             match socket.recv_from(&mut buffer) {
-                Ok((len, _)) => heard(&buffer[..len]),
+                Ok((len, _)) => match self.sent.iter().position(|own| *own == buffer[..len]) {
+                    Some(own) => drop(self.sent.remove(own)),
+                    None => heard(&buffer[..len]),
+                },
                 // Nothing there, or news of a datagram that nobody took.
                 Err(_) => return,
             }

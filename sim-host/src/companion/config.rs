@@ -32,6 +32,8 @@ struct ConfigFile {
     /// How companions in other processes are reached.
     #[serde(default)]
     air: AirTable,
+    /// A key file: with it all messages on all links are signed, and only signed ones are heard. Default: none.
+    link_key: Option<PathBuf>,
     /// By what rules vehicles are steered.
     #[serde(default)]
     rules: RulesTable,
@@ -67,6 +69,8 @@ struct AirTable {
     peers: Vec<String>,
     /// Whether packets go through the vehicles' MAVLink links, as TUNNEL messages to everybody. Default: false.
     tunnel: bool,
+    /// A key file: with it packets are sealed, and only sealed ones are heard. Default: none.
+    key: Option<PathBuf>,
 }
 
 /// `[rules]`.
@@ -155,6 +159,10 @@ pub struct Config {
     pub origin: Origin,
     /// How packets of other processes come and go.
     pub air: AirSetup,
+    /// Where the key of packets is.
+    pub key: Option<PathBuf>,
+    /// Where the key of links is.
+    pub link_key: Option<PathBuf>,
     /// The lines to autopilots, each once.
     pub lines: Vec<Endpoint>,
     /// The vehicles, by rising number of their robots.
@@ -202,11 +210,14 @@ impl Config {
         let Some(plane) = scenario.plane.clone() else {
             return Err(no_plane(&source));
         };
+        let beside = |path: &PathBuf| source.folder().join(path);
         Ok(Self {
             scenario,
             plane,
             origin,
             air,
+            key: file.air.key.as_ref().map(beside),
+            link_key: file.link_key.as_ref().map(beside),
             lines,
             vehicles,
             lag_s: file.rules.lag_s,

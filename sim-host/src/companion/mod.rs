@@ -11,6 +11,7 @@ mod duties;
 mod kind;
 mod report;
 mod run;
+mod voice;
 
 pub use air::{Air, AirError, AirSetup};
 pub use brain::{Body, Brain};
@@ -19,3 +20,4 @@ pub use duties::{AUTOPILOT, COMPONENT, Duties, Entry, Event, Fix, Rules, State, 
 pub use kind::Kind;
 pub use report::{Report, VehicleReport};
 pub use run::{Options, RunError, run};
+pub use voice::{Seal, Voice, VoiceError};

@@ -29,7 +29,7 @@ pub struct VehicleReport {
     pub tally: Tally,
     /// Packets of others that were heard.
     pub packets_heard: u64,
-    /// Packets that were refused: damaged, foreign, repeated, replayed or forged.
+    /// Packets that were refused: damaged, repeated, replayed, forged or without a seal.
     pub packets_refused: u64,
     /// Other robots that it knows.
     pub neighbors: usize,
@@ -43,7 +43,7 @@ pub struct LineReport {
     /// What it carried.
     #[serde(flatten)]
     pub counts: Counts,
-    /// Frames refused for their signatures.
+    /// Frames refused for want of a signature that is right and new.
     pub refused: u32,
 }
 

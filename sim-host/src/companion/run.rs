@@ -5,13 +5,16 @@ use super::brain::{Body, Brain};
 use super::config::{Config, VehicleSetup};
 use super::duties::{AUTOPILOT, COMPONENT, Duties, Event, State, status_text};
 use super::report::{LineReport, Report, VehicleReport};
+use super::voice::{Seal, Voice, VoiceError};
 use crate::engine::PlaneGround;
+use crate::key::{self, KeyError, KeyFile};
 use crate::mavlink::geo::{Origin, enu, ned};
 use crate::mavlink::{Lines, OpenError, Peer, Received, Tlog, TlogError};
 use staya_controller::agent::Event as AgentEvent;
-use staya_controller::wire::{Mode, Postcard};
+use staya_controller::wire::Mode;
 use staya_mavlink::dialect::MavMessage;
 use staya_mavlink::frame::{MAX_FRAME_LEN, RawFrame, Sender, encode_message};
+use staya_mavlink::signing::Signing;
 use std::io::{self, Write as _};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -45,6 +48,12 @@ pub enum RunError {
     /// The LAN cannot be used.
     #[error(transparent)]
     Air(#[from] AirError),
+    /// The key of packets cannot be used.
+    #[error(transparent)]
+    Voice(#[from] VoiceError),
+    /// The key of links cannot be had.
+    #[error(transparent)]
+    Key(#[from] KeyError),
     /// The log cannot be written.
     #[error(transparent)]
     Tlog(#[from] TlogError),
@@ -57,7 +66,7 @@ pub enum RunError {
 struct Vehicle {
     setup: VehicleSetup,
     duties: Duties,
-    brain: Brain<Postcard>,
+    brain: Brain<Voice>,
     /// Where its autopilot was heard.
     peer: Option<Peer>,
     sequence: u8,
@@ -74,6 +83,9 @@ struct Companions<'a> {
     lines: Lines,
     air: Air,
     vehicles: Vec<Vehicle>,
+    /// One for each line, with a key for links.
+    signing: Option<Vec<Signing>>,
+    voice: Voice,
     options: &'a mut Options,
     began: Instant,
 }
@@ -89,6 +101,20 @@ pub fn run(
 ) -> Result<Report, RunError> {
     let ground = Arc::new(PlaneGround::new(&config.scenario, &config.plane));
     let boot = (micros_since_1970() >> 20) as u8;
+    let seal = config.key.as_deref().map(Seal::read).transpose()?;
+    let link_key = config.link_key.as_deref().map(KeyFile::read).transpose()?;
+    let remarks = [
+        seal.as_ref().and_then(|seal| seal.remark.as_ref()),
+        link_key.as_ref().and_then(|file| file.remark.as_ref()),
+    ];
+    for remark in remarks.into_iter().flatten() {
+        // A closed standard error must not stop it.
+        let _ = writeln!(io::stderr(), "staya: {remark}");
+    }
+    let signing = link_key.map(|file| {
+        let line = |link| Signing::new(file.key.clone(), link, key::timestamp());
+        (0..=u8::MAX).map(line).take(config.lines.len()).collect()
+    });
     let vehicle = |setup: &VehicleSetup| Vehicle {
         setup: setup.clone(),
         duties: Duties::new(setup.system, setup.kind, setup.rules),
@@ -98,7 +124,7 @@ pub fn run(
             setup.index,
             boot,
             config.lag_s,
-            Postcard,
+            Voice::new(seal.as_ref()),
         ),
         peer: None,
         sequence: 0,
@@ -114,6 +140,8 @@ pub fn run(
         lines: Lines::open(&config.lines)?,
         air: Air::open(&config.air)?,
         vehicles: config.vehicles.iter().map(vehicle).collect(),
+        signing,
+        voice: Voice::new(None),
         options,
         began: Instant::now(),
     };
@@ -171,6 +199,10 @@ impl Companions<'_> {
         Ok(())
     }
 
+    fn signing_of(&mut self, line: usize) -> Option<&mut Signing> {
+        self.signing.as_mut()?.get_mut(line)
+    }
+
     fn log(&mut self, frame: &[u8]) -> Result<(), RunError> {
         if let Some(tlog) = &mut self.options.tlog {
             tlog.add(frame)?;
@@ -183,13 +215,23 @@ impl Companions<'_> {
             return Ok(());
         };
         self.log(frame.bytes())?;
+        if let Some(signing) = self.signing_of(received.line)
+            && !signing.verify(&frame).is_accepted()
+        {
+            return Ok(());
+        }
         let Some(message) = frame.message() else {
             return Ok(());
         };
         let (sender, now) = (frame.sender(), self.now());
         if let MavMessage::TUNNEL(tunnel) = &message {
-            // What others say through the links; own packets may come back.
-            if let Some(frames) = tunnelled(tunnel) {
+            // What others say through the links. Own packets may come back.
+            let is_own = sender.component == COMPONENT
+                && self
+                    .vehicles
+                    .iter()
+                    .any(|vehicle| vehicle.setup.system == sender.system);
+            if let Some(frames) = tunnelled(tunnel).filter(|_| !is_own) {
                 for vehicle in &mut self.vehicles {
                     vehicle.listen(frames);
                 }
@@ -257,7 +299,7 @@ impl Companions<'_> {
             self.air.send(said);
         }
         if self.air.is_tunnel() {
-            for message in tunnel(&Postcard, said) {
+            for message in tunnel(&self.voice, said) {
                 self.send(index, &message)?;
             }
         }
@@ -301,9 +343,19 @@ impl Companions<'_> {
             return Ok(());
         }
         vehicle.sequence = vehicle.sequence.wrapping_add(1);
-        match vehicle.peer {
-            Some(peer) => self.lines.send_to(vehicle.setup.line, peer, &frame),
-            None => self.lines.send(vehicle.setup.line, &frame),
+        let (line, peer) = (vehicle.setup.line, vehicle.peer);
+        if let Some(signing) = self.signing_of(line) {
+            signing.advance_to(key::timestamp());
+            // What cannot be signed would not be heard.
+            let Ok(signature) = signing.sign(&mut frame) else {
+                return Ok(());
+            };
+            // There is room: see `MAX_FRAME_LEN`.
+            let _ = frame.extend_from_slice(&signature);
+        }
+        match peer {
+            Some(peer) => self.lines.send_to(line, peer, &frame),
+            None => self.lines.send(line, &frame),
         }
         self.log(&frame)
     }
@@ -370,7 +422,11 @@ impl Companions<'_> {
         let links = links.map(|(line, endpoint)| LineReport {
             link: endpoint.to_string(),
             counts: self.lines.counts(line),
-            refused: 0,
+            refused: self
+                .signing
+                .as_ref()
+                .and_then(|signing| signing.get(line))
+                .map_or(0, |signing| signing.counts().refused()),
         });
         Report {
             scenario: config.scenario.name.clone(),

@@ -51,7 +51,7 @@ fn tunnels_of_others_are_left_alone() {
     assert_eq!(tunnelled(&too_long), None);
 }
 
-fn heard(air: &Air) -> Vec<Vec<u8>> {
+fn heard(air: &mut Air) -> Vec<Vec<u8>> {
     let mut all = Vec::new();
     for _ in 0..100 {
         air.receive(|bytes| all.push(bytes.to_vec()));
@@ -76,11 +76,11 @@ fn peers_hear_each_other() {
             peers: vec![peer],
         })
     };
-    let (first, second) = (open(a, b).unwrap(), open(b, a).unwrap());
+    let (mut first, mut second) = (open(a, b).unwrap(), open(b, a).unwrap());
     first.send(b"one");
-    assert_eq!(heard(&second), [b"one"]);
+    assert_eq!(heard(&mut second), [b"one"]);
     second.send(b"two");
-    assert_eq!(heard(&first), [b"two"]);
+    assert_eq!(heard(&mut first), [b"two"]);
     let error = open(a, b).unwrap_err().to_string();
     assert!(error.contains(&a.to_string()), "{error}");
 }
@@ -88,9 +88,27 @@ fn peers_hear_each_other() {
 #[test]
 fn nobody_is_heard_where_there_is_nobody() {
     for setup in [AirSetup::Here, AirSetup::Tunnel] {
-        let air = Air::open(&setup).unwrap();
+        let mut air = Air::open(&setup).unwrap();
         air.send(b"nothing");
         air.receive(|_| panic!("heard something"));
         assert_eq!(air.is_tunnel(), setup == AirSetup::Tunnel);
     }
+}
+
+#[test]
+fn a_group_does_not_give_back_what_was_sent() {
+    let port = UdpSocket::bind("127.0.0.1:0")
+        .unwrap()
+        .local_addr()
+        .unwrap()
+        .port();
+    let setup = AirSetup::Multicast {
+        group: SocketAddrV4::new(Ipv4Addr::new(239, 255, 77, 1), port),
+        interface: Ipv4Addr::LOCALHOST,
+    };
+    let (mut first, mut second) = (Air::open(&setup).unwrap(), Air::open(&setup).unwrap());
+    first.send(b"one");
+    second.send(b"two");
+    assert_eq!(heard(&mut second), [b"one"]);
+    assert_eq!(heard(&mut first), [b"two"]);
 }

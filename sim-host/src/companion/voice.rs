@@ -1,0 +1,198 @@
+//! How agents say things to each other: open, or sealed with a key.
+
+use crate::file::{read_remedy, write_remedy};
+use crate::key::{KeyError, KeyFile};
+use heapless::Vec;
+use serde::Serialize;
+use staya_controller::auth::Key;
+use staya_controller::wire::{
+    DecodeError, EncodeError, Frame, Header, Message, Postcard, Sealed, Wire,
+};
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+/// The format of packets between companions.
+#[derive(Clone, Debug, Serialize)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "an agent has one, and it is on the heap"
+)]
+pub enum Voice {
+    /// Everybody can speak.
+    Open(Postcard),
+    /// Only who has the key is heard.
+    Sealed(Sealed),
+}
+
+/// Does `$do` with the format that is in it.
+macro_rules! each {
+    ($any:expr, $wire:ident => $do:expr) => {
+        match $any {
+            Voice::Open($wire) => $do,
+            Voice::Sealed($wire) => $do,
+        }
+    };
+}
+
+impl Wire for Voice {
+    fn beacon_len(&self) -> usize {
+        each!(self, wire => wire.beacon_len())
+    }
+
+    fn encode<const N: usize>(
+        &mut self,
+        header: Header,
+        message: &Message,
+        out: &mut Vec<u8, N>,
+    ) -> Result<usize, EncodeError> {
+        each!(self, wire => wire.encode(header, message, out))
+    }
+
+    fn decode(&mut self, frame: &[u8]) -> Result<Frame, DecodeError> {
+        each!(self, wire => wire.decode(frame))
+    }
+
+    fn next_frame<'a>(&self, rest: &mut &'a [u8]) -> Option<&'a [u8]> {
+        each!(self, wire => wire.next_frame(rest))
+    }
+}
+
+/// Why agents cannot speak with a key.
+#[derive(Debug, thiserror::Error)]
+pub enum VoiceError {
+    /// The key cannot be had.
+    #[error(transparent)]
+    Key(#[from] KeyError),
+    /// The number of starts cannot be read.
+    #[error("cannot read the number of starts in {}: {source}; {}", .path.display(), read_remedy(.source))]
+    Read {
+        /// Where it is kept.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// There is no number, or one that no start can have.
+    #[error(
+        "{} does not hold a number of starts below 1048576; write one into it that is greater than it ever was, or take a new key and remove it",
+        .path.display()
+    )]
+    NoNumber {
+        /// Where it is kept.
+        path: PathBuf,
+    },
+    /// The number of starts cannot be stored.
+    #[error("cannot store the number of starts in {}: {source}; {}", .path.display(), write_remedy(.source))]
+    Write {
+        /// Where it is kept.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+}
+
+/// A key and the number of this start, which no later one on this machine will have: [`Sealed`] says why.
+#[derive(Clone, Debug)]
+pub struct Seal {
+    key: Key,
+    starts: u32,
+    /// What its owner should know of the key's file.
+    pub remark: Option<String>,
+}
+
+impl Seal {
+    /// Reads the key in `path`, and the number of starts in the file of the same name with `.starts` behind it, where the next one is left.
+    ///
+    /// # Errors
+    /// [`VoiceError`], naming the file and the remedy.
+    pub fn read(path: &Path) -> Result<Self, VoiceError> {
+        let KeyFile { key, remark } = KeyFile::read(path)?;
+        let mut name = path.as_os_str().to_owned();
+        name.push(".starts");
+        let path = PathBuf::from(name);
+        let starts = match std::fs::read_to_string(&path) {
+            Ok(text) => text.trim().parse::<u32>().ok(),
+            Err(error) if error.kind() == ErrorKind::NotFound => Some(0),
+            Err(source) => return Err(VoiceError::Read { path, source }),
+        };
+        let starts = starts.filter(|starts| Sealed::<1>::at_start(&key, *starts).is_some());
+        let Some(starts) = starts else {
+            return Err(VoiceError::NoNumber { path });
+        };
+        if let Err(source) = std::fs::write(&path, format!("{}\n", starts + 1)) {
+            return Err(VoiceError::Write { path, source });
+        }
+        Ok(Self {
+            key,
+            starts,
+            remark,
+        })
+    }
+}
+
+impl Voice {
+    /// Sealed if there is a seal.
+    #[must_use]
+    pub fn new(seal: Option<&Seal>) -> Self {
+        let sealed = seal.and_then(|seal| Sealed::at_start(&seal.key, seal.starts));
+        sealed.map_or(Self::Open(Postcard), Self::Sealed)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use staya_controller::wire::RobotId;
+
+    const HEADER: Header = Header {
+        boot: 0,
+        sender: RobotId(3),
+        sequence: 1,
+    };
+
+    fn said(voice: &mut Voice) -> Vec<u8, 64> {
+        let mut out = Vec::new();
+        let message = Message::Beacon(Default::default());
+        voice.encode(HEADER, &message, &mut out).unwrap();
+        out
+    }
+
+    #[test]
+    fn who_has_the_key_is_heard_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("swarm.key");
+        std::fs::write(&path, "passphrase: one for all\n").unwrap();
+        let seal = |path: &Path| Seal::read(path).unwrap();
+        let mut speaker = Voice::new(Some(&seal(&path)));
+        let mut listener = Voice::new(Some(&seal(&path)));
+        let frame = said(&mut speaker);
+        let mut rest = frame.as_slice();
+        let frame = listener.next_frame(&mut rest).unwrap();
+        assert_eq!(listener.decode(frame).unwrap().header, HEADER);
+        assert!(listener.decode(frame).is_err(), "a replay");
+        assert!(said(&mut Voice::new(None)).as_slice() != frame);
+        let open = said(&mut Voice::new(None));
+        let mut rest = open.as_slice();
+        let frame = listener.next_frame(&mut rest).unwrap();
+        assert!(listener.decode(frame).is_err(), "without the key");
+    }
+
+    #[test]
+    fn each_start_has_a_number_of_its_own() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("swarm.key");
+        std::fs::write(&path, "passphrase: one for all\n").unwrap();
+        let starts = (0..3).map(|_| Seal::read(&path).unwrap().starts);
+        assert_eq!(starts.collect::<std::vec::Vec<_>>(), [0, 1, 2]);
+        let kept = folder.path().join("swarm.key.starts");
+        for wrong in ["", "many", "-1", "1048576"] {
+            std::fs::write(&kept, wrong).unwrap();
+            let error = Seal::read(&path).expect_err(wrong).to_string();
+            assert!(error.contains("swarm.key.starts does not hold"), "{error}");
+        }
+        std::fs::remove_file(&kept).unwrap();
+        std::fs::create_dir(&kept).unwrap();
+        assert!(matches!(Seal::read(&path), Err(VoiceError::Read { .. })));
+        let error = Seal::read(&folder.path().join("none")).expect_err("no key");
+        assert!(error.to_string().contains("none"), "{error}");
+    }
+}
