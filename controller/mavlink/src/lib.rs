@@ -1,6 +1,6 @@
 //! MAVLink for swarms: the messages that robots and ground stations exchange, without `std` or an allocator.
 //!
-//! [`wire`] is the wire format of a robot that speaks MAVLink. [`frame`] finds and makes frames in bytes. [`dialect`] is made by `mavlink-bindgen` from `messages/staya.xml` (Staya's own messages) and `messages/common.xml` (the part of the public ones that Staya speaks).
+//! [`wire`] is the wire format of a robot that speaks MAVLink, [`any`] all of them in one. [`frame`] finds and makes frames in bytes. [`dialect`] is made by `mavlink-bindgen` from `messages/staya.xml` (Staya's own messages) and `messages/common.xml` (the part of the public ones that Staya speaks).
 
 #![no_std]
 // Tests may fail loudly.
@@ -18,6 +18,7 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod any;
 pub mod frame;
 pub mod signed;
 pub mod signing;

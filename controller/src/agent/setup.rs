@@ -24,7 +24,7 @@ use crate::push_out::PushOutParams;
 use crate::route::{Replan, RouteParams};
 use crate::scalar::{Scalar, cast};
 use crate::shuffle::Sharpness;
-use crate::wire::{Postcard, Wire};
+use crate::wire::{Format, FromFormat, Postcard, Wire};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
@@ -50,6 +50,8 @@ pub struct Setup {
     pub guidance: GuidanceSetup,
     /// What keeps it clear.
     pub safety: SafetySetup,
+    /// How it speaks; the same for all robots of a swarm.
+    pub format: Format,
 }
 
 /// Routing over a window.
@@ -164,15 +166,22 @@ pub enum Task {
 }
 
 impl Setup {
-    /// The robot, just started.
+    /// The robot, just started; `None` unless `W` is, or can be, the format that it is to speak.
     #[must_use]
-    pub fn agent<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usize>(
+    pub fn agent<
+        S: Scalar,
+        const CELLS: usize,
+        const M: usize,
+        const N: usize,
+        const K: usize,
+        W: FromFormat,
+    >(
         &self,
-    ) -> AnyAgent<S, CELLS, M, N, K> {
-        self.speaking(Postcard)
+    ) -> Option<AnyAgent<S, CELLS, M, N, K, W>> {
+        Some(self.speaking(W::from_format(self.format)?))
     }
 
-    /// The robot, just started, that speaks another wire format.
+    /// The robot, just started, that speaks `wire` whatever [`Setup::format`] says.
     #[must_use]
     pub fn speaking<
         S: Scalar,

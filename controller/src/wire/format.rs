@@ -6,7 +6,7 @@
 
 use super::{Beacon, DecodeError, EncodeError, Frame, Header, Message, decode, encode, frames};
 use heapless::Vec;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A wire format: frames of one message each, which can be told apart in a stream of bytes.
 ///
@@ -37,6 +37,35 @@ pub trait Wire: Clone + core::fmt::Debug + Serialize {
     /// Takes the next frame off `rest`, or bytes between frames that [`Wire::decode`] will refuse, so that damage is counted.
     /// `None` when nothing is left; otherwise `rest` is shorter than before.
     fn next_frame<'a>(&self, rest: &mut &'a [u8]) -> Option<&'a [u8]>;
+}
+
+/// The wire formats that robots can be told to speak, by name.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[serde(rename_all = "snake_case")]
+pub enum Format {
+    /// [`Postcard`].
+    #[default]
+    Postcard,
+    /// MAVLink 2 frames with the messages of Staya's dialect: the crate `staya-mavlink`.
+    Mavlink,
+}
+
+impl Format {
+    /// As scenario files have it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Postcard => "postcard",
+            Self::Mavlink => "mavlink",
+        }
+    }
+}
+
+/// A wire format that is, or can be, the one of a name.
+pub trait FromFormat: Wire {
+    /// The format, without a past; `None` when this is another one.
+    fn from_format(format: Format) -> Option<Self>;
 }
 
 /// The frames of this crate: postcard within COBS, see [`encode`] and [`decode`]; without a tag. It keeps nothing.
@@ -71,6 +100,12 @@ impl Wire for Postcard {
         });
         *rest = rest.get(end..).unwrap_or_default();
         frame
+    }
+}
+
+impl FromFormat for Postcard {
+    fn from_format(format: Format) -> Option<Self> {
+        (format == Format::Postcard).then_some(Self)
     }
 }
 

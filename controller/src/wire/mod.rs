@@ -12,7 +12,7 @@ mod sealed;
 mod sequence;
 
 pub use assembly::{MAX_TEMPLATE, PartError, Template, TemplateAssembler};
-pub use format::{Postcard, Wire};
+pub use format::{Format, FromFormat, Postcard, Wire};
 pub use frame::{
     DecodeError, EncodeError, Frame, Header, MAX_FRAME_LEN, MAX_TAGGED_ROBOT, TAG_LEN, VERSION,
     decode, decode_verified, encode, encode_tagged, frames,

@@ -26,13 +26,14 @@ pub use worst::Worst;
 use staya_controller::agent::{Agent, Guidance, HALF_PLANES, Inputs, NEIGHBORS, Outputs, Safety};
 use staya_controller::scalar::{Q16, Scalar};
 use staya_controller::time::Instant;
+use staya_controller::wire::Wire;
 
 /// What stands around each [`Agent::step`] of a case: firmware counts instructions and stack there.
 pub trait Probe<S: Scalar> {
     /// Does `agent.step(inputs, now, workspace)`.
-    fn step<G: Guidance<S>, A: Safety<S>, const N: usize>(
+    fn step<G: Guidance<S>, A: Safety<S>, W: Wire, const N: usize>(
         &mut self,
-        agent: &mut Agent<S, G, N, A>,
+        agent: &mut Agent<S, G, N, A, W>,
         inputs: &Inputs<'_, S>,
         now: Instant,
         workspace: &mut G::Workspace,
@@ -44,9 +45,9 @@ pub trait Probe<S: Scalar> {
 pub struct Unmeasured;
 
 impl<S: Scalar> Probe<S> for Unmeasured {
-    fn step<G: Guidance<S>, A: Safety<S>, const N: usize>(
+    fn step<G: Guidance<S>, A: Safety<S>, W: Wire, const N: usize>(
         &mut self,
-        agent: &mut Agent<S, G, N, A>,
+        agent: &mut Agent<S, G, N, A, W>,
         inputs: &Inputs<'_, S>,
         now: Instant,
         workspace: &mut G::Workspace,

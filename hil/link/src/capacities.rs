@@ -7,6 +7,7 @@ use staya_controller::agent::Inputs;
 use staya_controller::obstacle::Obstacle;
 use staya_controller::scalar::Scalar;
 use staya_controller::time::Instant;
+use staya_controller::wire::Wire;
 
 /// Bytes of a step without terrain, obstacles and inbox, at most: overhead included (a test fills one).
 const FIXED: usize = 104;
@@ -84,7 +85,7 @@ impl Capacities {
 
     /// Makes a step of inputs. What is too much is cut by these rules, so that all that see the same inputs cut alike:
     ///
-    /// - of the inbox the newest whole frames that fit stay: news replace older ones;
+    /// - of the inbox, in the robot's wire format, the newest whole frames that fit stay: news replace older ones;
     /// - of the obstacles the nearest ones stay (of two equally near ones that which comes first), in their order.
     ///
     /// `packed` is scratch memory of at least 17 bytes per obstacle; with less, fewer obstacles stay. O(obstacles^2) when
@@ -97,6 +98,7 @@ impl Capacities {
         tick: u32,
         now: Instant,
         inputs: &Inputs<'a, f32>,
+        wire: &impl Wire,
         packed: &'a mut [u8],
     ) -> Result<(StepInputs<'a>, Cut), LandTooLarge> {
         let land = inputs.window.map(Land::from);
@@ -105,7 +107,7 @@ impl Capacities {
         if cells > room {
             return Err(LandTooLarge { cells, room });
         }
-        let inbox = newest(inputs.inbox, self.inbox_bytes.into());
+        let inbox = newest(inputs.inbox, self.inbox_bytes.into(), wire);
         let mut cut = Cut {
             inbox_bytes: inputs.inbox.len() - inbox.len(),
             obstacles: 0,
@@ -170,13 +172,8 @@ fn rank(obstacles: &[Obstacle<f32>], index: usize) -> usize {
 }
 
 /// The newest whole frames of `inbox` that fit into `room` bytes.
-fn newest(inbox: &[u8], room: usize) -> &[u8] {
-    let Some(excess) = inbox.len().checked_sub(room).filter(|excess| *excess > 0) else {
-        return inbox;
-    };
-    // A frame begins where the byte before it is a delimiter.
-    let before = excess - 1;
-    let delimiter = inbox.iter().skip(before).position(|byte| *byte == 0);
-    let start = delimiter.map_or(inbox.len(), |at| before + at + 1);
-    inbox.get(start..).unwrap_or(&[])
+fn newest<'a>(inbox: &'a [u8], room: usize, wire: &impl Wire) -> &'a [u8] {
+    let mut rest = inbox;
+    while rest.len() > room && wire.next_frame(&mut rest).is_some() {}
+    if rest.len() > room { &[] } else { rest }
 }

@@ -12,11 +12,12 @@ use staya_controller::agent::{
 use staya_controller::obstacle::Obstacle;
 use staya_controller::scalar::{Q16, Scalar, cast};
 use staya_controller::time::Instant;
-use staya_controller::wire::RobotId;
+use staya_controller::wire::{Format, FromFormat, Postcard, RobotId};
+use staya_mavlink::any::AnyWire;
 
-/// The robot that an STM32F405 has room for.
-pub type Large = Robot<f32, CELLS, VISITS, NEIGHBORS, HALF_PLANES, 32>;
-/// The robot that the micro:bit's nRF51 has room for.
+/// The robot that an STM32F405 has room for. It speaks whatever format it is told to.
+pub type Large = Robot<f32, CELLS, VISITS, NEIGHBORS, HALF_PLANES, 32, AnyWire>;
+/// The robot that the micro:bit's nRF51 has room for: its flash has none for other formats than postcard.
 pub type Small = Robot<Q16, CELLS, VISITS, 8, 16, 16>;
 /// Bytes of the inbox beside a [`Large`].
 pub const LARGE_INBOX: usize = 8192;
@@ -30,6 +31,8 @@ pub enum Refusal {
     NotConfigured,
     /// The setup is for nobody.
     Nobody,
+    /// It does not speak this format.
+    Format(Format),
     /// The guidance has no use for the task.
     Task,
     /// A search of so many cells.
@@ -53,6 +56,9 @@ impl fmt::Display for Refusal {
         match self {
             Self::NotConfigured => f.write_str("not configured"),
             Self::Nobody => f.write_str("a setup for nobody: numbers begin at 1"),
+            Self::Format(format) => {
+                write!(f, "no {} here: flash is too small for it", format.name())
+            }
             Self::Task => f.write_str("the guidance has no use for the task"),
             Self::Search { needs, room } => {
                 write!(f, "a search of {needs} cells, and room for {room}")
@@ -90,7 +96,8 @@ pub trait Brain {
     fn forget(&mut self);
 }
 
-/// A robot that is told what to be. `CELLS` of a search, `M` remembered visits, `N` neighbours, `K` half-planes, `O` obstacles.
+/// A robot that is told what to be. `CELLS` of a search, `M` remembered visits, `N` neighbours, `K` half-planes, `O` obstacles,
+/// wire format `W`.
 #[derive(Clone, Debug)]
 pub struct Robot<
     S,
@@ -99,15 +106,23 @@ pub struct Robot<
     const N: usize,
     const K: usize,
     const O: usize,
+    W = Postcard,
 > {
-    agent: Option<AnyAgent<S, CELLS, M, N, K>>,
+    agent: Option<AnyAgent<S, CELLS, M, N, K, W>>,
     workspace: GridWorkspace<CELLS>,
     obstacles: Vec<Obstacle<S>, O>,
     outputs: Outputs<S>,
 }
 
-impl<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usize, const O: usize>
-    Robot<S, CELLS, M, N, K, O>
+impl<
+    S: Scalar,
+    const CELLS: usize,
+    const M: usize,
+    const N: usize,
+    const K: usize,
+    const O: usize,
+    W: FromFormat,
+> Robot<S, CELLS, M, N, K, O, W>
 {
     /// Nobody yet.
     #[must_use]
@@ -135,21 +150,35 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usi
 
     /// The robot, once it was told what to be.
     #[must_use]
-    pub const fn agent(&self) -> Option<&AnyAgent<S, CELLS, M, N, K>> {
+    pub const fn agent(&self) -> Option<&AnyAgent<S, CELLS, M, N, K, W>> {
         self.agent.as_ref()
     }
 }
 
-impl<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usize, const O: usize>
-    Default for Robot<S, CELLS, M, N, K, O>
+impl<
+    S: Scalar,
+    const CELLS: usize,
+    const M: usize,
+    const N: usize,
+    const K: usize,
+    const O: usize,
+    W: FromFormat,
+> Default for Robot<S, CELLS, M, N, K, O, W>
 {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usize, const O: usize>
-    Brain for Robot<S, CELLS, M, N, K, O>
+impl<
+    S: Scalar,
+    const CELLS: usize,
+    const M: usize,
+    const N: usize,
+    const K: usize,
+    const O: usize,
+    W: FromFormat,
+> Brain for Robot<S, CELLS, M, N, K, O, W>
 {
     fn number(&self) -> NumberFormat {
         if S::IS_FLOATING {
@@ -181,7 +210,8 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usi
             return Err(Refusal::Search { needs, room });
         }
         self.outputs = Outputs::default();
-        let agent = self.agent.insert(setup.agent());
+        let wire = W::from_format(setup.format).ok_or(Refusal::Format(setup.format))?;
+        let agent = self.agent.insert(setup.speaking(wire));
         if task.is_none_or(|task| agent.assign(task)) {
             return Ok(agent.digest());
         }

@@ -346,7 +346,7 @@ impl<B: Brain, const CONTENT: usize> Core<B, CONTENT> {
     fn refused(&mut self, seq: u16, refusal: Refusal) -> Reaction<'_> {
         let kind = match refusal {
             Refusal::NotConfigured => FaultKind::NotConfigured,
-            Refusal::Nobody | Refusal::Task => FaultKind::Setup,
+            Refusal::Nobody | Refusal::Format(_) | Refusal::Task => FaultKind::Setup,
             Refusal::Search { .. } | Refusal::Obstacles { .. } => FaultKind::Capacity,
             Refusal::Nonsense => FaultKind::Malformed,
         };

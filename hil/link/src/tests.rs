@@ -18,7 +18,7 @@ use staya_controller::orca::AvoidParams;
 use staya_controller::route::{Replan, RouteParams};
 use staya_controller::shuffle::Sharpness;
 use staya_controller::time::Duration;
-use staya_controller::wire::RobotId;
+use staya_controller::wire::{Format, RobotId};
 use std::vec::Vec;
 
 pub const LARGE: usize = content_bytes(CELLS, 32, crate::robot::LARGE_INBOX);
@@ -59,6 +59,7 @@ pub fn in_plane() -> Setup {
             },
             source: AnyHalfPlanes::Analytic,
         },
+        format: Format::Postcard,
     }
 }
 
@@ -79,6 +80,7 @@ pub fn on_grid(radius: u8) -> (Setup, Task) {
             speed_mps: None,
         },
         safety: SafetySetup::None,
+        format: Format::Postcard,
     };
     (setup, Task::Cell(Cell::new(40, 17)))
 }

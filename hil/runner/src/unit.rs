@@ -12,6 +12,7 @@ use staya_link::frame::TooLong;
 use staya_link::message::{Hello, MAX_ANSWER, OBSTACLE, Report, Stepped};
 use staya_link::port::{Event, Limits, Next, Port};
 use staya_link::robot::{Brain, Large, Small};
+use staya_mavlink::any::AnyWire;
 use std::io::Write;
 use std::time::Duration;
 
@@ -171,8 +172,9 @@ impl Unit {
             return Err(Trouble::NotReady);
         };
         let capacities = hello.capacities;
+        let wire = AnyWire::new(self.order.setup.format);
         let (step, cut) = capacities
-            .fit(tick, now, inputs, &mut self.packed)
+            .fit(tick, now, inputs, &wire, &mut self.packed)
             .map_err(Trouble::Land)?;
         self.tally.cut_inbox_bytes += cut.inbox_bytes as u64;
         self.tally.cut_obstacles += cut.obstacles as u64;

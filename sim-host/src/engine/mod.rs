@@ -37,7 +37,8 @@ use staya_controller::agent::{
 };
 use staya_controller::grid::Cell;
 use staya_controller::time::{Duration, Instant};
-use staya_controller::wire::{Mode, RobotId};
+use staya_controller::wire::{Format, Mode, RobotId};
+use staya_mavlink::any::AnyWire;
 
 /// Robots that a thread takes at least at a time: less would cost more in handing out than in work.
 const BATCH: usize = 64;
@@ -46,7 +47,7 @@ const BATCH: usize = 64;
 #[derive(Debug)]
 struct Computer<G, A> {
     /// `None`: elsewhere.
-    agent: Option<Agent<f32, G, NEIGHBORS, A>>,
+    agent: Option<Agent<f32, G, NEIGHBORS, A, AnyWire>>,
     outbox: heapless::Vec<u8, OUTBOX>,
     /// Of the last step, if somebody wants to know.
     events: Vec<Event>,
@@ -137,6 +138,7 @@ struct Outside {
 /// A scenario in motion on ground `W`. `G` is the guidance of all its robots, `A` their safety layer.
 pub struct Engine<W, G, A> {
     seed: u64,
+    format: Format,
     tick_us: u32,
     tick: u32,
     robots: Vec<Robot>,
@@ -174,6 +176,7 @@ where
         let ids = robots.iter().map(|robot| robot.id);
         let mut engine = Self {
             seed: scenario.seed,
+            format: scenario.radio.format,
             tick_us: scenario.tick_us,
             tick: 0,
             faults: scenario.faults.clone(),
@@ -237,13 +240,18 @@ where
     /// Computer number `index` with its own agent, started now.
     fn start(&self, index: usize, boot: u8) -> Computer<G, A> {
         let (guidance, safety) = (self.brains)(index);
-        let mut agent = Agent::guarded(&self.config(index, boot), guidance, safety);
+        let wire = AnyWire::new(self.format);
+        let mut agent = Agent::speaking(&self.config(index, boot), guidance, safety, wire);
         // A guidance that has no use for its task says so; the scenario was checked for that.
         let _ = agent.assign(&self.ground.task(index, self.tick));
         self.computer(Some(agent), boot)
     }
 
-    fn computer(&self, agent: Option<Agent<f32, G, NEIGHBORS, A>>, boot: u8) -> Computer<G, A> {
+    fn computer(
+        &self,
+        agent: Option<Agent<f32, G, NEIGHBORS, A, AnyWire>>,
+        boot: u8,
+    ) -> Computer<G, A> {
         Computer {
             agent,
             outbox: heapless::Vec::new(),
@@ -265,6 +273,7 @@ where
                 agent: config,
                 guidance: guidance.clone(),
                 safety: *safety,
+                format: self.format,
             };
             outside.controllers.start(index, setup, task);
             Some(())

@@ -13,12 +13,11 @@ use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Cell, GridFrame, UNIT};
 use staya_controller::obstacle::{Obstacle, grid_walls};
 use staya_controller::time::{Duration, Instant};
-use staya_controller::wire::{Header, Message, Mode, PlaceAssignment, RobotId, encode};
+use staya_controller::wire::{Format, Header, Message, Mode, PlaceAssignment, RobotId, Wire};
+use staya_mavlink::any::{AnyWire, operator};
 
 /// Walls of the land that a robot sees at a time.
 const WALLS: usize = 16;
-/// The operator's number: no robot's.
-const OPERATOR: RobotId = RobotId(u32::MAX);
 
 /// Bodies that move in the plane or in space.
 pub struct PlaneGround {
@@ -53,7 +52,7 @@ impl PlaneGround {
             radius: scenario.route.params.radius,
             tick_us: scenario.tick_us,
             delay_us: libm::round(scenario.radio.delay_ms * 1000.0) as u32,
-            orders: frames(&setup.orders),
+            orders: frames(&setup.orders, scenario.radio.format),
             setup: setup.clone(),
         }
     }
@@ -131,11 +130,11 @@ impl PlaneGround {
 }
 
 /// The operator's orders as frames; those of one tick together.
-pub(super) fn frames(orders: &[Order]) -> Vec<(u32, Vec<u8>)> {
+pub(super) fn frames(orders: &[Order], format: Format) -> Vec<(u32, Vec<u8>)> {
     let mut frames = Vec::<(u32, Vec<u8>)>::new();
     // Each index counts by itself: what is newer may be at most half of all versions ahead.
     let mut versions = [0_u8; 256];
-    let mut sequence = 0_u16;
+    let (mut sequence, mut wire) = (0_u16, AnyWire::new(format));
     for order in orders {
         let version = &mut versions[usize::from(order.index)];
         *version = version.wrapping_add(1);
@@ -149,12 +148,13 @@ pub(super) fn frames(orders: &[Order]) -> Vec<(u32, Vec<u8>)> {
         };
         let header = Header {
             boot: 0,
-            sender: OPERATOR,
+            sender: operator(format),
             sequence,
         };
         sequence = sequence.wrapping_add(1);
         let mut bytes = heapless::Vec::<u8, 64>::new();
-        encode(header, &Message::Place(place), &mut bytes).expect("a frame has at most 60 bytes");
+        wire.encode(header, &Message::Place(place), &mut bytes)
+            .expect("a frame has at most 60 bytes");
         match frames.last_mut() {
             Some((tick, frame)) if *tick == order.tick => frame.extend_from_slice(&bytes),
             _ => frames.push((order.tick, bytes.to_vec())),

@@ -4,7 +4,8 @@ use super::Counts;
 use super::params::RadioParams;
 use staya_controller::agent::OUTBOX;
 use staya_controller::rand::Rng;
-use staya_controller::wire::RobotId;
+use staya_controller::wire::{RobotId, Wire};
+use staya_mavlink::any::AnyWire;
 
 /// Keeps the draws of this module apart from all others.
 const PACKET: u32 = 0x0052_0001;
@@ -33,6 +34,8 @@ struct Buckets {
 /// A tick's packets, sorted into square cells as wide as the radio reaches.
 #[derive(Clone, Debug)]
 pub(super) struct Air {
+    /// Tells the packets in an outbox apart.
+    wire: AnyWire,
     seed: u64,
     range_m: f64,
     buckets: Option<Buckets>,
@@ -66,6 +69,7 @@ impl Air {
             }
         });
         Self {
+            wire: AnyWire::new(params.format),
             seed,
             range_m: params.range_m,
             buckets,
@@ -99,7 +103,7 @@ impl Air {
             }
             let key = Rng::keyed(self.seed, PACKET, sender.0, tick).next_u64();
             let cell = self.lattice.cell(from_m) as u32;
-            for (number, bytes) in (0..).zip(outbox.split_inclusive(|&byte| byte == 0)) {
+            for (number, bytes) in (0..).zip(packets(&self.wire, outbox)) {
                 if let Some(buckets) = &mut self.buckets
                     && !buckets.take(index, bytes.len())
                 {
@@ -181,6 +185,16 @@ impl Air {
     pub(super) fn bytes(&self, packet: &Packet) -> &[u8] {
         &self.bytes[packet.start as usize..packet.end as usize]
     }
+}
+
+/// The bytes of each packet: a frame with its delimiter, if the format has one.
+fn packets<'a>(wire: &AnyWire, outbox: &'a [u8]) -> impl Iterator<Item = &'a [u8]> {
+    let mut rest = outbox;
+    std::iter::from_fn(move || {
+        let before = rest;
+        wire.next_frame(&mut rest)?;
+        Some(&before[..before.len() - rest.len()])
+    })
 }
 
 impl Lattice {

@@ -1,7 +1,8 @@
 //! The radio: carries bytes between robots, and loses, delays, repeats and damages them.
 //!
-//! It knows nothing of messages. A packet is what a robot sends up to and including a zero byte (the
-//! end of a COBS frame). Everything random about a packet is a function of (seed, tick, sender,
+//! It knows nothing of messages. A packet is a frame of the wire format that the robots speak, with its delimiter if there is one.
+//! Loss, delay, jitter, repetition and order do not depend on the bytes of a packet, and so not on the format; bit errors and
+//! bandwidth do. Everything random about a packet is a function of (seed, tick, sender,
 //! number within the tick, receiver), so that neither threads nor the order of robots matter.
 
 mod air;

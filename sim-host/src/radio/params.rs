@@ -1,6 +1,7 @@
 //! What a radio is like: the `[radio]` table of a scenario.
 
 use serde::Deserialize;
+use staya_controller::wire::Format;
 
 /// Bursts of loss on a link (Gilbert and Elliott's two-state channel).
 ///
@@ -26,6 +27,8 @@ const fn certain() -> f64 {
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, default)]
 pub struct RadioParams {
+    /// How messages become bytes: `postcard` (Staya's own frames) or `mavlink` (MAVLink 2, for robots up to number 254).
+    pub format: Format,
     /// Farthest distance at which a packet can be received, metres; `inf` for everywhere.
     pub range_m: f64,
     /// Probability that a packet is lost at a receiver, 0 to 1.
@@ -56,6 +59,7 @@ pub struct RadioParams {
 impl Default for RadioParams {
     fn default() -> Self {
         Self {
+            format: Format::Postcard,
             range_m: 100.0,
             loss: 0.0,
             burst: None,

@@ -6,6 +6,7 @@ use super::{Fault, Robot, ScenarioError, ScenarioFile};
 use crate::terrain::generate::{self, Plan};
 use crate::terrain::{Terrain, TerrainError};
 use staya_controller::wire::RobotId;
+use staya_mavlink::any::max_robot;
 
 /// Seconds as whole microseconds, rounded.
 pub(super) fn micros(seconds: f64) -> u32 {
@@ -25,6 +26,28 @@ pub(super) fn general(source: &Source<'_>, file: &ScenarioFile) -> Result<(), Sc
         return Err(source.error("ticks", "0 ticks are no run", "give 1 or more"));
     }
     within(source, "tick_s", file.tick_s, 0.001, 60.0, "seconds")
+}
+
+/// Whether the radio's format has room for the robots' numbers.
+pub(super) fn numbers(
+    source: &Source<'_>,
+    file: &ScenarioFile,
+    robots: &[Robot],
+) -> Result<(), ScenarioError> {
+    let (format, most) = (file.radio.format, max_robot(file.radio.format));
+    match robots.iter().find(|robot| robot.id > most) {
+        None => Ok(()),
+        Some(robot) => Err(source.error(
+            "radio.format",
+            format!(
+                "robot {} has no number in {}: systems are 1 to {}",
+                robot.id.0,
+                format.name(),
+                most.0
+            ),
+            "give fewer robots or smaller numbers, or format = \"postcard\"",
+        )),
+    }
 }
 
 pub(super) fn radio(source: &Source<'_>, file: &ScenarioFile) -> Result<(), ScenarioError> {

@@ -140,6 +140,7 @@ impl Scenario {
                 (land, robots, formation.flatten(), Some(plane))
             }
         };
+        check::numbers(&source, &file, &robots)?;
         let faults = check::faults(&source, &file, &robots)?;
         check::formation_only(&source, &file)?;
         let route = params::routing(&source, &file.route, &file.grid)?;

@@ -102,6 +102,16 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             "s.toml:9: radio.bit_error_rate: NaN is no probability",
         ),
         (
+            &format!("{HEAD}{robots}[radio]\nformat = \"morse\"\n"),
+            "s.toml:8: radio.format: unknown variant `morse`, expected `postcard` or `mavlink`",
+        ),
+        (
+            &format!(
+                "{HEAD}[robots]\nlist = [{{ start = [0, 0], goal = [3, 2], id = 255 }}]\n[radio]\nformat = \"mavlink\"\n"
+            ),
+            "s.toml:8: radio.format: robot 255 has no number in mavlink: systems are 1 to 254; give fewer robots",
+        ),
+        (
             &format!("{HEAD}{robots}[radio]\nrange_m = nan\n"),
             "s.toml:8: radio.range_m: NaN is no distance",
         ),

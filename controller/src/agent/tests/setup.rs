@@ -11,7 +11,7 @@ use crate::push_out::PushOutParams;
 use crate::route::{Replan, RouteParams};
 use crate::scalar::{Q16, Scalar};
 use crate::shuffle::Sharpness;
-use crate::wire::{Beacon, Header, Message, encode};
+use crate::wire::{Beacon, Format, Header, Message, encode};
 
 const TICK: Duration = Duration::from_millis(50);
 
@@ -85,13 +85,15 @@ fn setups() -> impl Iterator<Item = Setup> {
             agent: AgentConfig::new(RobotId(3), 7, TICK),
             guidance: guidance.clone(),
             safety,
+            format: Format::Postcard,
         })
     })
 }
 
 /// Digests of an agent that hears one neighbour, step by step.
 fn lived<S: Scalar>(setup: &Setup, steps: u32) -> std::vec::Vec<u64> {
-    let mut agent = setup.agent::<S, CELLS, VISITS, NEIGHBORS, HALF_PLANES>();
+    let agent = setup.agent::<S, CELLS, VISITS, NEIGHBORS, HALF_PLANES, Postcard>();
+    let mut agent = agent.unwrap();
     let place = Place::fixed(Position::from_mm([4000, 1000, 0]));
     let task = match setup.guidance {
         GuidanceSetup::Route { .. } | GuidanceSetup::Formation { .. } => {
@@ -186,6 +188,16 @@ fn the_whole_state_counts() {
     assert_ne!(same, other(&|setup| setup.agent.boot = 1));
     assert_ne!(same, other(&|setup| setup.agent.radius_m = 0.1));
     assert_ne!(same, other(&|setup| setup.safety = safeties()[3]));
+}
+
+#[test]
+fn no_robot_speaks_a_format_that_its_type_has_not() {
+    let setup = Setup {
+        format: Format::Mavlink,
+        ..setups().next().unwrap()
+    };
+    let agent = setup.agent::<f32, CELLS, VISITS, NEIGHBORS, HALF_PLANES, Postcard>();
+    assert!(agent.is_none());
 }
 
 #[test]

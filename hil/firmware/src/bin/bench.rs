@@ -14,6 +14,7 @@ mod program {
     use staya_controller::agent::{Agent, Guidance, Inputs, Outputs, Safety};
     use staya_controller::scalar::{Q16, Scalar};
     use staya_controller::time::Instant;
+    use staya_controller::wire::Wire;
     use staya_firmware::{runtime, stack};
 
     /// Samples that the median is of. When there are more steps, every second, fourth, ... counts.
@@ -71,9 +72,9 @@ mod program {
     }
 
     impl<S: Scalar> Probe<S> for Meter {
-        fn step<G: Guidance<S>, A: Safety<S>, const N: usize>(
+        fn step<G: Guidance<S>, A: Safety<S>, W: Wire, const N: usize>(
             &mut self,
-            agent: &mut Agent<S, G, N, A>,
+            agent: &mut Agent<S, G, N, A, W>,
             inputs: &Inputs<'_, S>,
             now: Instant,
             workspace: &mut G::Workspace,
@@ -90,8 +91,8 @@ mod program {
 
     /// A call of its own, so that the caller's frame is not counted.
     #[inline(never)]
-    fn step<S: Scalar, G: Guidance<S>, A: Safety<S>, const N: usize>(
-        agent: &mut Agent<S, G, N, A>,
+    fn step<S: Scalar, G: Guidance<S>, A: Safety<S>, W: Wire, const N: usize>(
+        agent: &mut Agent<S, G, N, A, W>,
         inputs: &Inputs<'_, S>,
         now: Instant,
         workspace: &mut G::Workspace,

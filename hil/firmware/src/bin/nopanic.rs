@@ -18,6 +18,7 @@ mod program {
         agent::{Agent, Guidance, Inputs, Outputs, Safety},
         scalar::Scalar,
         time::Instant,
+        wire::Wire,
     };
     use staya_link::robot::{SMALL_INBOX, Small};
     use staya_link::session::{About, Meter, Reaction, Session, content_bytes};
@@ -28,9 +29,9 @@ mod program {
 
     #[cfg(not(part = "nrf51"))]
     impl<S: Scalar> Probe<S> for Opaque {
-        fn step<G: Guidance<S>, A: Safety<S>, const N: usize>(
+        fn step<G: Guidance<S>, A: Safety<S>, W: Wire, const N: usize>(
             &mut self,
-            agent: &mut Agent<S, G, N, A>,
+            agent: &mut Agent<S, G, N, A, W>,
             inputs: &Inputs<'_, S>,
             now: Instant,
             workspace: &mut G::Workspace,

@@ -13,6 +13,7 @@ use staya_controller::obstacle::Obstacle;
 use staya_controller::rand::Rng;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{Beacon, Header, Message, Mode, RobotId, encode};
+use staya_mavlink::any::AnyWire;
 use std::vec::Vec;
 
 const LIMITS: Limits = Limits {
@@ -332,7 +333,13 @@ fn thousand_steps<B: Brain + Default>(
         };
         let mut packed = [0; 64];
         let (step, _) = capacities
-            .fit(tick, scene.now, &inputs, &mut packed)
+            .fit(
+                tick,
+                scene.now,
+                &inputs,
+                &AnyWire::new(setup.format),
+                &mut packed,
+            )
             .expect("fits");
         let report = bench.step(&step).expect("no reset");
         let (command, digest) = plain(&inputs, &step);
@@ -365,7 +372,8 @@ fn steps_over_a_bad_line_are_those_of_a_plain_agent() {
     let (on_grid, to_a_cell) = on_grid(5);
     for (setup, task) in [(setup, task), (on_grid, to_a_cell)] {
         for (faults, seed) in [(Faults::default(), 1), (BAD, 2), (BAD, 3)] {
-            let mut agent: AnyAgent<f32, CELLS, VISITS, NEIGHBORS, HALF_PLANES> = setup.agent();
+            let agent: Option<AnyAgent<f32, CELLS, VISITS, NEIGHBORS, HALF_PLANES>> = setup.agent();
+            let mut agent = agent.expect("postcard");
             assert!(agent.assign(&task));
             let mut workspace = GridWorkspace::new();
             let bench =
@@ -568,7 +576,7 @@ proptest! {
         let faults = Faults { lost, repeated, flipped, cut, delay_us };
         let (setup, task) = (in_plane(), to_the_east());
         let mut bench = Bench::<Large>::new(faults, seed);
-        let mut shadow: Robot<f32, CELLS, VISITS, NEIGHBORS, HALF_PLANES, 32> = Robot::new();
+        let mut shadow: Robot<f32, CELLS, VISITS, NEIGHBORS, HALF_PLANES, 32, AnyWire> = Robot::new();
         let digest = bench.configure(&setup, Some(&task));
         prop_assert_eq!(shadow.configure(&setup, Some(&task)), Ok(digest));
         for tick in 0..20 {

@@ -15,7 +15,7 @@ use staya_controller::grid::{Cell, Dir};
 use staya_controller::obstacle::Obstacle;
 use staya_controller::scalar::{Q16, Scalar};
 use staya_controller::time::{Duration, Instant};
-use staya_controller::wire::{Mode, RequestKind, RobotId, TemplateEntry};
+use staya_controller::wire::{Format, Mode, RequestKind, RobotId, TemplateEntry};
 
 /// Bytes of a frame's content.
 fn content(frame: &[u8]) -> usize {
@@ -132,6 +132,7 @@ fn longest_setup_fits() {
             speed_mps: Some(1.0),
         },
         safety: super::in_plane().safety,
+        format: Format::Mavlink,
     };
     let place = Place {
         position: Position::from_mm([i32::MIN; 3]),

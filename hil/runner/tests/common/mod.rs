@@ -13,7 +13,7 @@ use staya_controller::orca::AvoidParams;
 use staya_controller::route::{Replan, RouteParams};
 use staya_controller::shuffle::Sharpness;
 use staya_controller::time::{Duration, Instant};
-use staya_controller::wire::{Beacon, Header, Message, Mode, RobotId, encode};
+use staya_controller::wire::{Beacon, Format, Header, Message, Mode, RobotId, encode};
 use staya_link::robot::Brain;
 use staya_link::session::{About, Reaction, Session};
 use staya_runner::{Channel, LineFaults, Order};
@@ -61,6 +61,7 @@ pub fn order(robot: u32, device: &str) -> Order {
             agent,
             guidance,
             safety,
+            format: Format::Postcard,
         },
         task: Some(task),
         faults: LineFaults::default(),

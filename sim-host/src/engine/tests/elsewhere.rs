@@ -46,7 +46,7 @@ impl Elsewhere for Nearby {
             .lock()
             .expect("no test panics")
             .push((index, setup.agent.boot));
-        let mut agent = setup.agent();
+        let mut agent = setup.agent().expect("postcard");
         assert!(agent.assign(&task));
         self.slot(index).1 = Some(agent);
     }

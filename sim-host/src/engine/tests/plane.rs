@@ -3,7 +3,7 @@
 use super::*;
 use crate::scenario::{Order, Target};
 use staya_controller::agent::AgentConfig;
-use staya_controller::wire::{Message, decode, frames};
+use staya_controller::wire::{Format, Message, decode, frames};
 
 /// Robots of 0.2 m that go 1 m/s and decide ten times a second.
 fn in_plane(plane: &str, rest: &str) -> Scenario {
@@ -102,7 +102,7 @@ fn versions_of_orders_count_up_for_each_goal_by_itself() {
         },
     };
     let orders: Vec<_> = (0..70_000).map(order).collect();
-    let sent = crate::engine::plane::frames(&orders);
+    let sent = crate::engine::plane::frames(&orders, Format::Postcard);
     assert_eq!(sent.len(), 35_000);
     let mut last = [0_u8; 2];
     for (_, bytes) in &sent {
