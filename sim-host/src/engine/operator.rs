@@ -8,10 +8,9 @@ use crate::world::Misplaced;
 use staya_controller::agent::{
     CELLS, Commanded, Event, Guidance, Parameter, Safety, Unguarded, Wish,
 };
-use staya_controller::wire::{Header, Message, encode};
-
-/// Bytes of the longest frame.
-const FRAME: usize = 64;
+use staya_controller::wire::{Header, Message, Wire as _};
+use staya_mavlink::any::AnyWire;
+use staya_mavlink::frame::MAX_FRAME_LEN;
 
 /// What an operator can see of a robot: what the robot itself knows.
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +45,8 @@ pub trait Operated: Send {
     /// Gives it a wish; lost while its computer is down.
     fn command(&mut self, index: usize, wish: Wish<f32>);
 
-    /// Lets it hear a message in the next tick, over no radio; lost while its computer is down.
+    /// Lets it hear a message in the next tick, over no radio, in the format that robots speak (frames are counted here, whatever the header's number);
+    /// lost while its computer is down.
     fn tell(&mut self, index: usize, header: Header, message: &Message);
 
     /// What a parameter of it is; `None` when it has no such one or is down.
@@ -104,36 +104,43 @@ where
 {
     let mut engine = Engine::new(scenario, ground, brains);
     engine.keeps_events = true;
-    Box::new(engine)
+    Box::new(Desk {
+        engine,
+        wire: AnyWire::new(scenario.radio.format),
+        sequence: 0,
+    })
 }
 
-impl<W, G, A> Engine<W, Commanded<f32, G>, A>
-where
-    W: Ground,
-    G: Guidance<f32, Workspace: Default> + Send,
-    A: Safety<f32> + Send,
-{
+/// A swarm, and what its operator speaks.
+struct Desk<W, G, A> {
+    engine: Engine<W, Commanded<f32, G>, A>,
+    wire: AnyWire,
+    /// Of the next frame.
+    sequence: u16,
+}
+
+impl<W, G, A> Desk<W, G, A> {
     fn is_up(&self, index: usize) -> bool {
-        self.tick >= self.computers[index].down_until
+        self.engine.tick >= self.engine.computers[index].down_until
     }
 }
 
-impl<W, G, A> Operated for Engine<W, Commanded<f32, G>, A>
+impl<W, G, A> Operated for Desk<W, G, A>
 where
     W: Ground,
     G: Guidance<f32, Workspace: Default> + Send,
     A: Safety<f32> + Send,
 {
     fn advance(&mut self) {
-        self.step();
+        self.engine.step();
     }
 
     fn glance(&self, index: usize) -> Glance {
-        let computer = &self.computers[index];
+        let computer = &self.engine.computers[index];
         let agent = computer.agent.as_ref();
         Glance {
-            motion: self.ground.motion(index, self.tick),
-            status: self.statuses[index],
+            motion: self.engine.ground.motion(index, self.engine.tick),
+            status: self.engine.statuses[index],
             boot: computer.boot,
             is_up: self.is_up(index),
             wish: agent.map_or(Wish::Own, |agent| *agent.guidance().wish()),
@@ -142,35 +149,43 @@ where
     }
 
     fn events(&self, index: usize) -> &[Event] {
-        &self.computers[index].events
+        &self.engine.computers[index].events
     }
 
     fn command(&mut self, index: usize, wish: Wish<f32>) {
-        if let (true, Some(agent)) = (self.is_up(index), &mut self.computers[index].agent) {
+        if let (true, Some(agent)) = (self.is_up(index), &mut self.engine.computers[index].agent) {
             agent.guidance_mut().command(wish);
         }
     }
 
     fn tell(&mut self, index: usize, header: Header, message: &Message) {
-        let mut frame = heapless::Vec::<u8, FRAME>::new();
+        let mut frame = heapless::Vec::<u8, MAX_FRAME_LEN>::new();
+        let header = Header {
+            sequence: self.sequence,
+            ..header
+        };
+        self.sequence = self.sequence.wrapping_add(1);
         // What the controller's messages can be fits.
-        if self.is_up(index) && encode(header, message, &mut frame).is_ok() {
-            self.computers[index].mail.extend_from_slice(&frame);
+        if self.is_up(index) && self.wire.encode(header, message, &mut frame).is_ok() {
+            self.engine.computers[index].mail.extend_from_slice(&frame);
         }
     }
 
     fn parameter(&self, index: usize, parameter: Parameter) -> Option<f32> {
-        let agent = self.computers[index].agent.as_ref();
+        let agent = self.engine.computers[index].agent.as_ref();
         agent.filter(|_| self.is_up(index))?.parameter(parameter)
     }
 
     fn set_parameter(&mut self, index: usize, parameter: Parameter, value: f32) -> bool {
         let is_up = self.is_up(index);
-        let agent = self.computers[index].agent.as_mut().filter(|_| is_up);
+        let agent = self.engine.computers[index]
+            .agent
+            .as_mut()
+            .filter(|_| is_up);
         agent.is_some_and(|agent| agent.set_parameter(parameter, value))
     }
 
     fn outcome(&self) -> Outcome {
-        Self::outcome(self)
+        self.engine.outcome()
     }
 }

@@ -95,7 +95,13 @@ fn who_is_down_hears_nothing_and_starts_anew_as_the_scenario_has_it() {
 
 #[test]
 fn a_goal_that_it_is_told_reaches_the_controller_and_events_come_back() {
-    let mut swarm = operated(&scenario(TWO, "")).expect("they can be placed");
+    for radio in ["", "[radio]\nformat = \"mavlink\"\n"] {
+        let scenario = scenario(TWO, radio);
+        tell_a_goal(&mut *operated(&scenario).expect("they can be placed"));
+    }
+}
+
+fn tell_a_goal(swarm: &mut dyn Operated) {
     let goal = GoalAssignment {
         to: RobotId(1),
         version: 1,
@@ -115,7 +121,7 @@ fn a_goal_that_it_is_told_reaches_the_controller_and_events_come_back() {
     };
     assert_eq!(swarm.events(0), [begins]);
     assert_eq!(swarm.glance(1).status.target, Cell::new(12, 5));
-    run(&mut *swarm, 30);
+    run(swarm, 30);
     let there = swarm.glance(0);
     assert_eq!(
         (there.motion.cell, there.status.mode),
