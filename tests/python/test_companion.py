@@ -2,6 +2,7 @@
 
 import json
 import math
+import os
 import re
 import subprocess
 import sys
@@ -92,12 +93,12 @@ def test_goes_to_its_goal_in_a_mode_that_the_pilot_chose(one, kind):
         begun = time.monotonic()
         process.wait_for("arrived")
         found = rate(vehicle, begun + 0.5, begun + 2.5)
-        assert 17 <= found <= 22, f"{found} setpoints a second"
+        assert 15 <= found <= 22, f"{found} setpoints a second"
         time.sleep(0.7)
         assert math.hypot(vehicle.east - 6.0, vehicle.north) < 0.35
         beats = [at for at, what, source in vehicle.heard if what == "HEARTBEAT" and source == (1, 191)]
         gaps = [b - a for a, b in zip(beats, beats[1:])]
-        assert max(gaps) < 1.5 and min(gaps) > 0.5, gaps
+        assert max(gaps) < 2.0 and 0.8 < sum(gaps) / len(gaps) < 1.2, gaps
         output = ends_well(process)
         assert "steers, arrived, at" in output
         assert [setpoint[1:] for setpoint in vehicle.setpoints[-3:]] == [STAND] * 3, "it ends with zeros"
@@ -141,7 +142,7 @@ def test_stale_telemetry_stops_and_fresh_telemetry_goes_on(one):
         vehicle.mute_position = True
         at = time.monotonic()
         process.wait_for("position is stale")
-        assert 0.8 < time.monotonic() - at < 1.7
+        assert 0.8 < time.monotonic() - at < 2.5
         wait_until(lambda: abs(vehicle.velocity[0]) < 0.05, 5, "standing")
         since = time.monotonic()
         time.sleep(1.0)
@@ -240,7 +241,7 @@ def test_px4_leaves_offboard_when_the_companion_dies(one):
         process.child.kill()
         at = time.monotonic()
         wait_until(lambda: vehicle.mode != GUIDED, 5, "the failsafe")
-        assert 0.8 < time.monotonic() - at < 1.6
+        assert 0.8 < time.monotonic() - at < 2.0
 
 
 def test_links_that_lose_delay_and_damage_frames(one):
@@ -253,6 +254,33 @@ def test_links_that_lose_delay_and_damage_frames(one):
     report = json.loads(output)
     assert report["links"][0]["junk_bytes"] > 0, "damage was seen"
     assert report["interrupted"] and report["vehicles"][0]["restarts"] == 0
+
+
+def test_a_wrong_origin_moves_nothing(tmp_path, free_port, staya):
+    port = free_port()
+    write_scenario(tmp_path, [((0.0, 0.0), (6.0, 0.0))])
+    config = write_config(tmp_path, [port], "rover")
+    config.write_text(config.read_text().replace(str(ORIGIN[0]), str(ORIGIN[0] + 0.2)))
+    with Fleet([Vehicle(1, "rover", Line("127.0.0.1", port), mode=GUIDED, armed=True)]) as fleet:
+        process = staya("companion", config)
+        process.wait_for("too far from the origin")
+        time.sleep(1.5)
+        assert all(setpoint[1:] == STAND for setpoint in fleet.vehicles[0].setpoints)
+        ends_well(process)
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="needs Linux's /proc")
+def test_waiting_costs_little(one):
+    vehicle, fleet, start = one(armed=True)
+    with fleet:
+        process = start()
+        process.wait_for("the pilot steers")
+        time.sleep(3.0)
+        # User and system time in clock ticks: proc_pid_stat(5).
+        times = Path(f"/proc/{process.child.pid}/stat").read_text().rsplit(")", 1)[1].split()[11:13]
+        seconds = sum(map(int, times)) / os.sysconf("SC_CLK_TCK")
+        assert seconds < 1.5, f"{seconds} s of processor time in 3 s"
+        ends_well(process)
 
 
 def test_dry_run_shows_and_sends_nothing(one):

@@ -104,6 +104,12 @@ impl Air {
         self.is_tunnel
     }
 
+    /// Whether packets may come over a network.
+    #[must_use]
+    pub const fn is_lan(&self) -> bool {
+        self.socket.is_some()
+    }
+
     /// Sends what an agent says; what the network does not take is lost, as on a radio.
     pub fn send(&mut self, frames: &[u8]) {
         let Some(socket) = &self.socket else { return };

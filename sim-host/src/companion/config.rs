@@ -95,6 +95,8 @@ struct RulesTable {
     position_hz: f64,
     /// Time that a vehicle needs to follow a velocity, seconds: it brakes so much earlier. Default: 0.5.
     lag_s: f64,
+    /// Vehicles farther from the origin are not steered, metres. Default: 10000.
+    reach_m: f64,
 }
 
 impl Default for RulesTable {
@@ -109,6 +111,7 @@ impl Default for RulesTable {
             setpoint_hz: 20.0,
             position_hz: 10.0,
             lag_s: 0.5,
+            reach_m: 10_000.0,
         }
     }
 }
@@ -169,6 +172,8 @@ pub struct Config {
     pub vehicles: Vec<VehicleSetup>,
     /// How long a vehicle needs to follow a velocity, seconds.
     pub lag_s: f64,
+    /// Vehicles farther from the origin are not steered, metres.
+    pub reach_m: f64,
 }
 
 impl Config {
@@ -221,6 +226,7 @@ impl Config {
             lines,
             vehicles,
             lag_s: file.rules.lag_s,
+            reach_m: file.rules.reach_m,
         })
     }
 }
@@ -269,6 +275,7 @@ fn check_rules(source: &Source<'_>, rules: &RulesTable) -> Result<(), ScenarioEr
         ),
         ("position_hz", rules.position_hz, 1.0, 100.0, "Hz"),
         ("lag_s", rules.lag_s, 0.0, 10.0, "seconds"),
+        ("reach_m", rules.reach_m, 1.0, 500_000.0, "metres"),
     ] {
         within(source, &format!("rules.{field}"), value, low, high, unit)?;
     }

@@ -19,8 +19,8 @@ use std::io::{self, Write as _};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Longest wait for a frame: packets from the LAN wait so long at most.
-const GLANCE: Duration = Duration::from_millis(5);
+/// Longest wait for a frame when packets may come from the LAN meanwhile, and else.
+const GLANCES: [Duration; 2] = [Duration::from_millis(5), Duration::from_millis(20)];
 /// Bytes of packets that wait for an agent's next step; the rest is lost, as on a radio.
 const INBOX: usize = 16 * 1024;
 /// Setpoints to stand, and the time between them, at the end.
@@ -73,12 +73,15 @@ struct Vehicle {
     inbox: Vec<u8>,
     next_step: Duration,
     has_arrived: bool,
+    /// It is so far from the origin that it is not steered.
+    is_far: bool,
     heard: u64,
     refused: u64,
 }
 
 struct Companions<'a> {
     origin: Origin,
+    reach_m: f64,
     tick: Duration,
     lines: Lines,
     air: Air,
@@ -131,11 +134,13 @@ pub fn run(
         inbox: Vec::new(),
         next_step: Duration::ZERO,
         has_arrived: false,
+        is_far: false,
         heard: 0,
         refused: 0,
     };
     let mut companions = Companions {
         origin: config.origin,
+        reach_m: config.reach_m,
         tick: Duration::from_micros(config.scenario.tick_us.into()),
         lines: Lines::open(&config.lines)?,
         air: Air::open(&config.air)?,
@@ -163,6 +168,12 @@ pub fn run(
     Ok(report)
 }
 
+/// Whether a body is so near the origin, along the ground.
+fn is_within(body: &Body, reach_m: f64) -> bool {
+    let [x, y, _] = body.position_m;
+    x * x + y * y <= reach_m * reach_m
+}
+
 fn micros_since_1970() -> u128 {
     let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
     now.map_or(0, |time| time.as_micros())
@@ -175,9 +186,12 @@ impl Companions<'_> {
 
     /// Waits for a frame until something is due, then does all that is.
     fn turn(&mut self) -> Result<(), RunError> {
-        let due = |vehicle: &Vehicle| vehicle.next_step.min(vehicle.duties.due());
+        let now = self.now();
+        let due = |vehicle: &Vehicle| vehicle.next_step.min(vehicle.duties.due(now));
         let due = self.vehicles.iter().map(due).min().unwrap_or_default();
-        let mut wait = due.saturating_sub(self.now()).min(GLANCE);
+        let [lan, else_] = GLANCES;
+        let glance = if self.air.is_lan() { lan } else { else_ };
+        let mut wait = due.saturating_sub(now).min(glance);
         // What has come in meanwhile, but not what a flood would bring in.
         for _ in 0..1024 {
             let Some(received) = self.lines.receive(wait) else {
@@ -259,12 +273,24 @@ impl Companions<'_> {
         let missed = now.saturating_sub(vehicle.next_step).as_micros() / tick.as_micros().max(1);
         let moment = vehicle.next_step + tick * u32::try_from(missed).unwrap_or(u32::MAX);
         vehicle.next_step = moment + tick;
-        // Who has never had a position has nothing to say.
-        let Some(body) = vehicle.body(&self.origin, now) else {
+        let body = vehicle.body(&self.origin, now);
+        let is_far = vehicle.duties.fix().is_some()
+            && !body.is_some_and(|body| is_within(&body, self.reach_m));
+        let is_news = is_far && !vehicle.is_far;
+        vehicle.is_far = is_far;
+        if is_news {
+            self.tell(
+                index,
+                "is too far from the origin (rules.reach_m): not steered",
+            );
+        }
+        let vehicle = &mut self.vehicles[index];
+        // Who has no place in the swarm's world has nothing to say.
+        let Some(body) = body else {
             vehicle.inbox.clear();
             return Ok(());
         };
-        let steers = vehicle.duties.state() == State::Steering;
+        let steers = vehicle.duties.state() == State::Steering && !is_far;
         let out = vehicle.brain.step(&body, steers, &vehicle.inbox, moment);
         vehicle.inbox.clear();
         vehicle.heard += u64::from(out.received);

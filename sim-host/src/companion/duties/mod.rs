@@ -34,8 +34,8 @@ const LOOK: Duration = Duration::from_secs(3);
 const STREAM: Duration = Duration::from_secs(1);
 /// Between two requests of one thing.
 const RETRY: Duration = Duration::from_secs(2);
-/// How often a thing is asked for.
-const ATTEMPTS: u8 = 15;
+/// How often a thing is asked for: two minutes, since autopilots refuse arming and modes long after their first position.
+const ATTEMPTS: u8 = 60;
 /// How long there are no setpoints at all after a hand-over.
 const QUIET: Duration = Duration::from_secs(5);
 /// A command of the agent that is older is none.
@@ -476,10 +476,11 @@ impl Duties {
         }
     }
 
-    /// When [`poll`](Self::poll) has something to do if nothing is heard before.
+    /// When [`poll`](Self::poll) has something to send if nothing is heard before, and nothing goes stale.
     #[must_use]
-    pub fn due(&self) -> Duration {
-        self.next_heartbeat.min(self.next_setpoint)
+    pub fn due(&self, now: Duration) -> Duration {
+        let setpoint = self.setpoint(now).map(|_| self.next_setpoint);
+        setpoint.map_or(self.next_heartbeat, |due| due.min(self.next_heartbeat))
     }
 
     /// The setpoint to send, if there is one: north, east, down.

@@ -1,3 +1,5 @@
+mod entry;
+
 use super::*;
 use staya_mavlink::dialect::{
     COMMAND_ACK_DATA, EXTENDED_SYS_STATE_DATA, GLOBAL_POSITION_INT_DATA, HEARTBEAT_DATA,
@@ -313,190 +315,14 @@ fn an_agent_that_is_silent_stands() {
 }
 
 #[test]
-fn asks_once_and_then_steers() {
-    let mut bench = Bench::new(Kind::ArduRover, ONCE, MANUAL, ARMED);
-    let sent = bench.run(1.0);
-    assert_eq!(bench.state(), State::Entering);
-    assert_eq!(commands(&sent, out::DO_SET_MODE), 1);
-    assert_eq!(setpoints(&sent).len(), 0);
-    bench.mode = GUIDED;
-    bench.run(0.5);
-    assert_eq!(bench.state(), State::Steering);
-}
-
-#[test]
-fn asks_for_nothing_before_it_knows_where_it_is() {
-    let mut bench = Bench::new(Kind::ArduRover, ONCE, MANUAL, ARMED);
-    bench.fixes = false;
-    let sent = bench.run(42.0);
-    assert_eq!(bench.state(), State::Pilot);
-    assert_eq!(commands(&sent, out::DO_SET_MODE), 0);
-    bench.fixes = true;
-    let sent = bench.run(1.0);
-    assert_eq!(commands(&sent, out::DO_SET_MODE), 1);
-}
-
-#[test]
-fn asks_in_vain_so_often_and_no_more() {
-    let mut bench = Bench::new(Kind::ArduRover, ONCE, MANUAL, ARMED);
-    let sent = bench.run(120.0);
-    assert_eq!(commands(&sent, out::DO_SET_MODE), usize::from(ATTEMPTS));
-    assert_eq!(bench.state(), State::Pilot);
-    assert!(bench.events().contains(&Event::GaveUp));
-}
-
-#[test]
-fn a_pilot_who_acts_ends_the_asking() {
-    let mut bench = Bench::new(Kind::ArduRover, ONCE, MANUAL, ARMED);
-    bench.run(1.0);
-    // HOLD.
-    bench.mode = 4;
-    let sent = bench.run(30.0);
-    assert_eq!(commands(&sent, out::DO_SET_MODE), 0);
-    assert!(bench.events().contains(&Event::PilotActs));
-    bench.mode = GUIDED;
-    bench.run(1.0);
-    assert_eq!(bench.state(), State::Steering);
-}
-
-#[test]
-fn disarming_ends_it_and_nobody_arms_again() {
-    let mut bench = Bench::new(
-        Kind::ArduRover,
-        Rules { arm: true, ..ONCE },
-        MANUAL,
-        DISARMED,
-    );
-    assert_eq!(commands(&bench.run(1.0), out::DO_SET_MODE), 1);
-    bench.mode = GUIDED;
-    assert_eq!(commands(&bench.run(1.0), out::ARM_DISARM), 1);
-    bench.base = ARMED;
-    bench.run(1.0);
-    assert_eq!(bench.state(), State::Steering);
-    bench.base = DISARMED;
-    let sent = bench.run(30.0);
-    assert_eq!(bench.state(), State::Disarmed);
-    assert_eq!(commands(&sent, out::ARM_DISARM), 0);
-}
-
-#[test]
-fn a_refusal_is_told_once() {
-    let mut bench = Bench::new(Kind::ArduRover, ONCE, MANUAL, ARMED);
-    bench.run(1.0);
-    bench.events();
-    for result in [4, 4, 4, 0] {
-        let ack = MavMessage::COMMAND_ACK(COMMAND_ACK_DATA {
-            command: out::DO_SET_MODE,
-            result,
-            ..COMMAND_ACK_DATA::DEFAULT
-        });
-        bench.duties.hear(&ack, bench.now);
-    }
-    let told = bench.events();
-    assert_eq!(told.len(), 1);
-    assert_eq!(told[0].to_string(), "command 176: failed");
-}
-
-#[test]
-fn copter_is_armed_taken_off_and_then_steered_at_its_height() {
-    // GUIDED of a copter.
-    let mut bench = Bench::new(Kind::ArduCopter, FLY, 0, DISARMED);
-    assert_eq!(commands(&bench.run(1.0), out::DO_SET_MODE), 1);
-    bench.mode = 4;
-    assert_eq!(commands(&bench.run(1.0), out::ARM_DISARM), 1);
-    bench.base = ARMED;
-    let sent = bench.run(1.0);
-    assert_eq!(commands(&sent, out::NAV_TAKEOFF), 1);
-    assert_eq!(
-        setpoints(&sent).len(),
-        0,
-        "velocities would end the take-off"
-    );
-    bench.above_home_m = 8.9;
-    bench.run(0.5);
-    assert_eq!(bench.state(), State::Entering);
-    bench.above_home_m = 9.0;
-    let sent = bench.run(0.5);
-    assert_eq!(bench.state(), State::Steering);
-    assert_eq!(
-        setpoints(&sent).last().unwrap().vz,
-        -0.5,
-        "it climbs the last metre"
-    );
-    bench.above_home_m = 30.0;
-    assert_eq!(setpoints(&bench.run(0.5)).last().unwrap().vz, 1.0);
-}
-
-#[test]
-fn what_flies_is_not_steered_on_the_ground() {
-    let mut bench = Bench::new(Kind::ArduCopter, RULES, 4, ARMED);
-    let sent = bench.run(2.0);
-    assert_eq!(bench.state(), State::Grounded);
-    assert_eq!(setpoints(&sent).len(), 0);
-    bench.above_home_m = 1.0;
-    bench.run(0.5);
-    assert_eq!(bench.state(), State::Steering);
-    // What the autopilot itself says counts for more than a height.
-    let landed = |landed_state| {
-        MavMessage::EXTENDED_SYS_STATE(EXTENDED_SYS_STATE_DATA {
-            landed_state,
-            ..EXTENDED_SYS_STATE_DATA::DEFAULT
-        })
-    };
-    bench.duties.hear(&landed(1), bench.now);
-    bench.run(0.5);
-    assert_eq!(bench.state(), State::Grounded);
-    bench.above_home_m = 0.2;
-    bench.duties.hear(&landed(2), bench.now);
-    bench.run(0.5);
-    assert_eq!(bench.state(), State::Steering);
-}
-
-#[test]
-fn px4_gets_setpoints_before_the_mode_is_asked_for() {
-    let mut bench = Bench::new(Kind::Px4Rover, ONCE, POSITION_CONTROL, ARMED);
-    let sent = bench.run(0.9);
-    assert!(setpoints(&sent).len() >= 17 && setpoints(&sent).iter().all(stands));
-    assert_eq!(commands(&sent, out::DO_SET_MODE), 0);
-    let sent = bench.run(0.5);
-    let request = sent.iter().find_map(|message| match message {
-        MavMessage::COMMAND_LONG(data) if data.command == out::DO_SET_MODE => Some(data),
-        _ => None,
-    });
-    let request = request.expect("the mode is asked for");
-    assert_eq!((request.param1, request.param2), (1.0, 6.0));
-    bench.mode = OFFBOARD;
-    bench.run(1.0);
-    assert_eq!(bench.state(), State::Steering);
-}
-
-#[test]
-fn px4_can_be_put_into_offboard_by_its_pilot_but_is_left_alone_after_a_hand_over() {
-    let mut bench = Bench::new(Kind::Px4Copter, RULES, POSITION_CONTROL, ARMED);
-    bench.above_home_m = 5.0;
-    let offered = setpoints(&bench.run(2.0));
-    assert!(offered.len() >= 38 && offered.iter().all(stands));
-    bench.mode = OFFBOARD;
+fn there_is_nothing_to_do_before_it_is_due() {
+    let mut bench = Bench::rover(RULES);
     bench.run(2.0);
-    assert_eq!(bench.state(), State::Steering);
-    bench.mode = POSITION_CONTROL;
-    bench.beat();
-    let sent = bench.run(QUIET.as_secs_f64() - 0.01);
-    assert_eq!(setpoints(&sent).len(), 0);
-    let offered = setpoints(&bench.run(1.0));
-    assert!(!offered.is_empty() && offered.iter().all(stands));
-}
-
-#[test]
-fn px4_climbs_by_its_setpoints() {
-    let mut bench = Bench::new(Kind::Px4Copter, FLY, OFFBOARD, ARMED);
-    let sent = bench.run(1.0);
-    assert_eq!(bench.state(), State::Entering);
-    assert_eq!(commands(&sent, out::NAV_TAKEOFF), 0);
-    assert_eq!(setpoints(&sent).last().unwrap().vz, -1.0);
-    bench.above_home_m = 9.5;
-    bench.run(0.5);
-    assert_eq!(bench.state(), State::Steering);
+    let due = bench.duties.due(bench.now);
+    assert!(due >= bench.now && due <= bench.now + RULES.setpoint_every);
+    bench.mode = MANUAL;
+    bench.run(30.2);
+    assert!(bench.duties.due(bench.now) > bench.now + RULES.setpoint_every);
 }
 
 #[test]
