@@ -26,6 +26,8 @@ struct Measured {
     rows: Vec<Row>,
     /// What each behaviour's step needs of flash.
     steps: Vec<reach::Step>,
+    /// What it takes to write and to read frames of each wire format.
+    formats: Vec<reach::Step>,
 }
 
 /// Measures all parts; one step for each part's budget. `is_json`: prints the figures as JSON instead of as tables.
@@ -70,7 +72,7 @@ fn measure(repo: &Repo, part: &'static Part) -> Result<Measured, String> {
     let sections = |program: &&str| Ok((program.to_string(), firmware::sections(&elf(program))?));
     let rows = bench::rows(&emulate::run(repo, part, &elf("bench"))?)?;
     let bytes = fs::read(elf("bench")).map_err(|error| error.to_string())?;
-    let steps = reach::steps(&reach::Program::read(&bytes)?);
+    let program = reach::Program::read(&bytes)?;
     Ok(Measured {
         part: part.name,
         programs: programs
@@ -78,7 +80,8 @@ fn measure(repo: &Repo, part: &'static Part) -> Result<Measured, String> {
             .map(sections)
             .collect::<Result<_, String>>()?,
         rows,
-        steps,
+        steps: reach::steps(&program),
+        formats: reach::formats(&program),
     })
 }
 
@@ -119,10 +122,17 @@ impl Measured {
             text += &format!("{row}\n");
         }
         text += &format!(
-            "\n{:>8} {:>8}  step of a behaviour: number, guidance, safety, neighbours\n",
+            "\n{:>8} {:>8}  step of a behaviour: number, guidance, safety, wire format, neighbours\n",
             "text", "rodata"
         );
         for reach::Step { behaviour, reach } in &self.steps {
+            text += &format!("{:>8} {:>8}  {behaviour}\n", reach.text, reach.rodata);
+        }
+        text += &format!(
+            "\n{:>8} {:>8}  one frame of a wire format\n",
+            "text", "rodata"
+        );
+        for reach::Step { behaviour, reach } in &self.formats {
             text += &format!("{:>8} {:>8}  {behaviour}\n", reach.text, reach.rodata);
         }
         text

@@ -2,7 +2,7 @@
 
 use heapless::Vec;
 use staya_controller::rand::Rng;
-use staya_controller::wire::frames;
+use staya_controller::wire::Wire;
 
 /// Bytes of one robot that are kept for the next tick: its beacon and some requests. What does not fit is not sent.
 const SAID: usize = 144;
@@ -23,16 +23,19 @@ pub(crate) struct Faults {
     pub(crate) twice: u32,
 }
 
-/// What `R` senders said in the last tick.
-pub(crate) struct Air<const R: usize> {
+/// What `R` senders said in the last tick, in wire format `W`.
+pub(crate) struct Air<W, const R: usize> {
+    /// Tells frames apart.
+    wire: W,
     said: [Vec<u8, SAID>; R],
     next: [Vec<u8, SAID>; R],
     faults: Faults,
 }
 
-impl<const R: usize> Air<R> {
-    pub(crate) const fn new(faults: Faults) -> Self {
+impl<W: Wire, const R: usize> Air<W, R> {
+    pub(crate) const fn new(wire: W, faults: Faults) -> Self {
         Self {
+            wire,
             said: [const { Vec::new() }; R],
             next: [const { Vec::new() }; R],
             faults,
@@ -42,8 +45,9 @@ impl<const R: usize> Air<R> {
     /// Takes what `sender` says in this tick, frame by frame as long as there is room.
     pub(crate) fn send(&mut self, sender: usize, bytes: &[u8]) {
         if let Some(said) = self.next.get_mut(sender) {
-            for frame in frames(bytes) {
-                push_frame(said, frame);
+            let mut rest = bytes;
+            while let Some((_, packet)) = next_packet(&self.wire, &mut rest) {
+                push_packet(said, packet);
             }
         }
     }
@@ -65,40 +69,45 @@ impl<const R: usize> Air<R> {
             }
             let way = ((sender << 8) | receiver) as u32;
             let mut rng = Rng::keyed(self.faults.seed, PURPOSE, way, tick);
-            for frame in frames(said) {
-                self.carry(frame, &mut rng, inbox);
+            let mut rest = said.as_slice();
+            while let Some((len, packet)) = next_packet(&self.wire, &mut rest) {
+                self.carry(len, packet, &mut rng, inbox);
             }
         }
     }
 
-    /// Each frame draws as often as any other, so that the fate of one does not change the next one's.
-    fn carry(&self, frame: &[u8], rng: &mut Rng, inbox: &mut Vec<u8, INBOX>) {
+    /// Each packet, a frame of `len` bytes, draws as often as any other, so that the fate of one does not change the next one's.
+    fn carry(&self, len: usize, packet: &[u8], rng: &mut Rng, inbox: &mut Vec<u8, INBOX>) {
         let Faults {
             loss, flip, twice, ..
         } = self.faults;
         let (is_lost, is_wrong) = (rng.chance_q32(loss), rng.chance_q32(flip));
-        let (comes_twice, place) = (rng.chance_q32(twice), rng.below(8 * frame.len() as u32));
+        let (comes_twice, place) = (rng.chance_q32(twice), rng.below(8 * len as u32));
         if is_lost {
             return;
         }
         let start = inbox.len();
-        if push_frame(inbox, frame) && is_wrong {
+        if push_packet(inbox, packet) && is_wrong {
             let byte = start.saturating_add((place >> 3) as usize);
             if let Some(byte) = inbox.get_mut(byte) {
                 *byte ^= 1 << (place & 7);
             }
         }
         if comes_twice {
-            push_frame(inbox, frame);
+            push_packet(inbox, packet);
         }
     }
 }
 
-/// Appends a frame and its delimiter if both fit; whether they did.
-fn push_frame<const N: usize>(bytes: &mut Vec<u8, N>, frame: &[u8]) -> bool {
-    if bytes.len().saturating_add(frame.len()) >= N {
-        return false;
-    }
-    // There is room.
-    bytes.extend_from_slice(frame).is_ok() && bytes.push(0).is_ok()
+/// Takes the next frame off `rest`: its length, and its bytes with its delimiter if the format has one.
+fn next_packet<'a>(wire: &impl Wire, rest: &mut &'a [u8]) -> Option<(usize, &'a [u8])> {
+    let before = *rest;
+    let len = wire.next_frame(rest)?.len();
+    let packet = before.get(..before.len().saturating_sub(rest.len()))?;
+    Some((len, packet))
+}
+
+/// Appends a packet if it fits; whether it did.
+fn push_packet<const N: usize>(bytes: &mut Vec<u8, N>, packet: &[u8]) -> bool {
+    bytes.extend_from_slice(packet).is_ok()
 }

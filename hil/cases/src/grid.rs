@@ -14,7 +14,7 @@ use staya_controller::geom::{Position, Vec3};
 use staya_controller::grid::{BLOCKED, Cell, Norm, UNIT};
 use staya_controller::scalar::Scalar;
 use staya_controller::time::{Duration, Instant};
-use staya_controller::wire::Mode;
+use staya_controller::wire::{Mode, Postcard, Wire};
 
 /// Neighbours that an agent of a case knows.
 pub(crate) const KNOWN: usize = 8;
@@ -27,14 +27,14 @@ pub(crate) const ROBOTS: usize = 4;
 
 pub(crate) type Route = RouteGuidance<CELLS, VISITS>;
 pub(crate) type Formation = FormationGuidance<CELLS, VISITS, TEMPLATE>;
-pub(crate) type GridAgent<S, G> = Agent<S, G, KNOWN, Unguarded>;
+pub(crate) type GridAgent<S, G, W = Postcard> = Agent<S, G, KNOWN, Unguarded, W>;
 
 /// A tick in which a unit of [`UNIT`] is a millisecond: crossings need no division.
 pub(crate) const TICK: Duration = Duration::from_millis(UNIT.cast_signed());
 
 /// A robot with its body.
-pub(crate) struct Walker<S, G> {
-    pub(crate) agent: GridAgent<S, G>,
+pub(crate) struct Walker<S, G, W = Postcard> {
+    pub(crate) agent: GridAgent<S, G, W>,
     pub(crate) cell: Cell,
     /// When it may leave its cell, milliseconds after the start.
     pub(crate) free_at_ms: u32,
@@ -53,25 +53,27 @@ pub(crate) fn instant(tick: u32) -> Instant {
 }
 
 /// Runs `walkers` until all have arrived. `commander` says what an operator says in a tick; robots hear it as they
-/// hear each other.
+/// hear each other, all in wire format `wire`.
 #[inline(never)]
-pub(crate) fn run<S, G, P>(
+pub(crate) fn run<S, G, W, P>(
     scene: &Scene,
-    walkers: &mut Vec<Walker<S, G>, ROBOTS>,
+    walkers: &mut Vec<Walker<S, G, W>, ROBOTS>,
+    wire: W,
     mut commander: impl FnMut(u32, &mut Vec<u8, INBOX>),
     probe: &mut P,
 ) -> Summary
 where
     S: Scalar,
     G: Guidance<S, Workspace = GridWorkspace<CELLS>>,
-    GridAgent<S, G>: Serialize,
+    GridAgent<S, G, W>: Serialize,
+    W: Wire,
     P: Probe<S>,
 {
     // One place more, for the operator.
-    let mut air = Air::<{ ROBOTS + 1 }>::new(scene.faults);
+    let mut air = Air::<W, { ROBOTS + 1 }>::new(wire, scene.faults);
     let mut workspace = GridWorkspace::<CELLS>::new();
-    let mut hash = Hash::new();
-    let mut summary = Summary::of::<GridAgent<S, G>, G::Workspace>();
+    let (mut hash, mut course) = (Hash::new(), Hash::new());
+    let mut summary = Summary::of::<GridAgent<S, G, W>, G::Workspace>();
     let mut commands: [Command<S>; ROBOTS] = [const { Command::Hold }; ROBOTS];
     for tick in 0..scene.ticks {
         let mut inbox = Vec::new();
@@ -80,8 +82,11 @@ where
         for (index, (walker, command)) in walkers.iter_mut().zip(&mut commands).enumerate() {
             air.hear(index, tick, &mut inbox);
             let out = step(scene, walker, tick, &inbox, &mut workspace, probe);
+            let digest = walker.agent.digest();
             hash.outputs(&out);
-            hash.word(walker.agent.digest());
+            hash.word(digest);
+            course.command(&out.command);
+            course.word(digest);
             summary.count(&out);
             air.send(index, &out.outbox);
             *command = out.command;
@@ -93,8 +98,10 @@ where
             }
         }
         for walker in walkers.iter() {
-            hash.bytes(&walker.cell.x.to_le_bytes());
-            hash.bytes(&walker.cell.y.to_le_bytes());
+            for hash in [&mut hash, &mut course] {
+                hash.bytes(&walker.cell.x.to_le_bytes());
+                hash.bytes(&walker.cell.y.to_le_bytes());
+            }
         }
         summary.ticks = tick.saturating_add(1);
         let arrived = walkers.iter().filter(|w| w.agent.mode() == Mode::Arrived);
@@ -105,13 +112,14 @@ where
         }
     }
     summary.hash = hash.value();
+    summary.course = course.value();
     summary
 }
 
 #[inline(never)]
-fn step<S, G, P>(
+fn step<S, G, W, P>(
     scene: &Scene,
-    walker: &mut Walker<S, G>,
+    walker: &mut Walker<S, G, W>,
     tick: u32,
     inbox: &[u8],
     workspace: &mut G::Workspace,
@@ -120,6 +128,7 @@ fn step<S, G, P>(
 where
     S: Scalar,
     G: Guidance<S>,
+    W: Wire,
     P: Probe<S>,
 {
     let mut cells = Vec::<u8, WINDOW>::new();
@@ -143,9 +152,9 @@ where
 }
 
 /// Moves one body by the first of its wishes that leads into a free cell (KUZ algorithm 4).
-fn advance<S, G>(
+fn advance<S, G, W>(
     scene: &Scene,
-    walkers: &mut [Walker<S, G>],
+    walkers: &mut [Walker<S, G, W>],
     index: usize,
     moves: &[staya_controller::grid::Dir],
     tick: u32,
@@ -184,7 +193,7 @@ fn advance<S, G>(
 }
 
 /// Pairs of bodies in one cell.
-fn overlaps<S, G>(walkers: &[Walker<S, G>]) -> u32 {
+fn overlaps<S, G, W>(walkers: &[Walker<S, G, W>]) -> u32 {
     let mut count = 0;
     for (index, one) in walkers.iter().enumerate() {
         let others = walkers.iter().skip(index.saturating_add(1));

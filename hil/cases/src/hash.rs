@@ -41,7 +41,16 @@ impl Hash {
 
     /// All that a step gave, events aside: they follow from the rest of the state.
     pub(crate) fn outputs<S: Scalar>(&mut self, out: &Outputs<S>) {
-        match &out.command {
+        self.command(&out.command);
+        self.bytes(&out.received.to_le_bytes());
+        self.bytes(&out.rejected.to_le_bytes());
+        self.bytes(&out.outbox);
+        self.word(out.call_again.as_micros().into());
+    }
+
+    /// What a step wants the body to do.
+    pub(crate) fn command<S: Scalar>(&mut self, command: &Command<S>) {
+        match command {
             Command::Hold => self.bytes(&[0]),
             Command::Move(moves) => {
                 self.bytes(&[1, moves.len() as u8]);
@@ -54,9 +63,5 @@ impl Hash {
                 self.vector(*velocity_mps);
             }
         }
-        self.bytes(&out.received.to_le_bytes());
-        self.bytes(&out.rejected.to_le_bytes());
-        self.bytes(&out.outbox);
-        self.word(out.call_again.as_micros().into());
     }
 }

@@ -26,7 +26,8 @@ pub use worst::Worst;
 use staya_controller::agent::{Agent, Guidance, HALF_PLANES, Inputs, NEIGHBORS, Outputs, Safety};
 use staya_controller::scalar::{Q16, Scalar};
 use staya_controller::time::Instant;
-use staya_controller::wire::Wire;
+use staya_controller::wire::{Postcard, Wire};
+use staya_mavlink::wire::Mavlink;
 
 /// What stands around each [`Agent::step`] of a case: firmware counts instructions and stack there.
 pub trait Probe<S: Scalar> {
@@ -70,10 +71,32 @@ fn each<S: Scalar>(
     for &case in Case::ALL {
         done(case.name(), number, &case.run::<S, _>(&mut Unmeasured));
     }
+    in_each_format::<S>(number, done);
     for &worst in Worst::ALL {
         let summary = worst.run::<S, _, NEIGHBORS, HALF_PLANES>(&mut Unmeasured);
         done(worst.name(), number, &summary);
     }
+}
+
+/// [`Case::Packets`] in each wire format: for each its hash, and then its course, which is the same for all.
+pub fn in_each_format<S: Scalar>(
+    number: &'static str,
+    done: &mut impl FnMut(&'static str, &'static str, &Summary),
+) {
+    let course = |summary: Summary| Summary {
+        hash: summary.course,
+        ..summary
+    };
+    let postcard = packets_over::<S, _, _>(Postcard, &mut Unmeasured);
+    done("packets_course", number, &course(postcard));
+    let mavlink = packets_over::<S, _, _>(Mavlink, &mut Unmeasured);
+    done("packets_mavlink", number, &mavlink);
+    done("packets_mavlink_course", number, &course(mavlink));
+}
+
+/// [`Case::Packets`] in a wire format.
+pub fn packets_over<S: Scalar, W: Wire, P: Probe<S>>(wire: W, probe: &mut P) -> Summary {
+    swarms::on_grid::packets(wire, probe)
 }
 
 /// What came of a case.
@@ -81,6 +104,9 @@ fn each<S: Scalar>(
 pub struct Summary {
     /// Over all that the agents gave, and where their bodies were, in each tick.
     pub hash: u64,
+    /// The same without the bytes that went over the radio, and how many frames of them were heard; 0 for cases that run in one
+    /// wire format only.
+    pub course: u64,
     /// Ticks until all had arrived, or the case's limit.
     pub ticks: u32,
     /// Steps of all agents together.
@@ -103,6 +129,7 @@ impl Summary {
     fn of<A, W>() -> Self {
         Self {
             hash: 0,
+            course: 0,
             ticks: 0,
             steps: 0,
             arrived: 0,

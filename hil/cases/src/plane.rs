@@ -15,7 +15,7 @@ use staya_controller::grid::GridFrame;
 use staya_controller::obstacle::{Obstacle, grid_walls};
 use staya_controller::scalar::Scalar;
 use staya_controller::time::{Duration, Instant};
-use staya_controller::wire::Mode;
+use staya_controller::wire::{Mode, Postcard};
 
 /// Obstacles that a robot sees.
 const OBSTACLES: usize = 8;
@@ -76,7 +76,7 @@ where
     PlaneAgent<S, G, A>: Serialize,
     P: Probe<S>,
 {
-    let mut air = Air::<R>::new(scene.faults);
+    let mut air = Air::<_, R>::new(Postcard, scene.faults);
     let mut hash = Hash::new();
     let mut summary = Summary::of::<PlaneAgent<S, G, A>, G::Workspace>();
     let mut inbox = Vec::<u8, INBOX>::new();

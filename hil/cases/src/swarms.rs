@@ -1,7 +1,7 @@
 //! The cases: who is there, what they are to do, and what they are made of.
 
 mod flocks;
-mod on_grid;
+pub(crate) mod on_grid;
 mod waypoints;
 
 use crate::{Probe, Summary};
@@ -9,6 +9,7 @@ use crate::{Probe, Summary};
 use staya_controller::agent::AnyHalfPlanes;
 use staya_controller::orca::{Analytic, Template2k};
 use staya_controller::scalar::Scalar;
+use staya_controller::wire::Postcard;
 
 /// A canned swarm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -110,7 +111,7 @@ impl Case {
             Self::Route => on_grid::route(probe),
             Self::Formation => on_grid::formation(probe),
             Self::FormationReflexive => on_grid::reflexive(probe),
-            Self::Packets => on_grid::packets(probe),
+            Self::Packets => on_grid::packets(Postcard, probe),
             Self::RouteInPlane => waypoints::route_in_plane(probe),
             Self::OrcaAnalytic => waypoints::swap(Analytic, probe),
             Self::OrcaTemplate2k => waypoints::swap(Template2k, probe),

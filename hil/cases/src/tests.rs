@@ -76,3 +76,24 @@ fn a_bad_radio_costs_frames_and_a_good_one_none() {
         &[Case::Formation, Case::OrcaAnalytic, Case::Boids],
     );
 }
+
+#[test]
+fn packets_in_mavlink_take_the_same_course_as_in_postcard() {
+    fn check<S: Scalar>(number: &'static str) {
+        let mut hashes = std::vec::Vec::new();
+        in_each_format::<S>(number, &mut |name, _, summary| {
+            assert!(
+                summary.arrived == 4 && summary.rejected > 50,
+                "{name}: {summary:?}"
+            );
+            hashes.push(summary.hash);
+        });
+        let [course, mavlink, mavlink_course] = hashes[..] else {
+            panic!("three rows");
+        };
+        assert_eq!(course, mavlink_course, "{number}");
+        assert!(course != 0 && mavlink != run::<S>(Case::Packets).hash);
+    }
+    check::<f32>("f32");
+    check::<Q16>("Q16");
+}

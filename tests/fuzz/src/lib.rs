@@ -4,10 +4,12 @@
 //! looks for bytes that make it panic (`cargo xtask fuzz`); the tests here try random ones and those
 //! that once did.
 
+mod mavlink;
 mod requests;
 mod templates;
 mod wire;
 
+pub use mavlink::mavlink_decode;
 pub use requests::requests_model;
 pub use templates::templates;
 pub use wire::wire_decode;
@@ -32,6 +34,11 @@ mod tests {
     #[test]
     fn wire_decode_holds_for_random_bytes() {
         on_random_bytes(wire_decode, 20_000, 120);
+    }
+
+    #[test]
+    fn mavlink_decode_holds_for_random_bytes() {
+        on_random_bytes(mavlink_decode, 20_000, 300);
     }
 
     #[test]

@@ -3,6 +3,9 @@
 use serde::Serialize;
 use std::fmt::{self, Display};
 
+/// Stands for the kind of number where there is none: wire formats have only bytes.
+pub const NO_NUMBER: &str = "-";
+
 /// One case with one kind of number.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Row {

@@ -1,7 +1,7 @@
 //! Limits of a part, and which of them are breached.
 
 use super::Measured;
-use super::bench::Row;
+use super::bench::{NO_NUMBER, Row};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -35,7 +35,8 @@ impl Budget {
 
     /// A line for each limit that is breached, or that nothing was measured for.
     pub fn breaches(&self, measured: &Measured) -> Vec<String> {
-        let rows = || measured.rows.iter().filter(|row| row.number == self.number);
+        let is_limited = |row: &&Row| row.number == self.number || row.number == NO_NUMBER;
+        let rows = || measured.rows.iter().filter(is_limited);
         let most = |value: fn(&Row) -> u64| rows().map(value).max();
         let lockstep = measured
             .programs
@@ -117,6 +118,7 @@ mod tests {
                 row("route", "Q16", 1000),
             ],
             steps: Vec::new(),
+            formats: Vec::new(),
         }
     }
 

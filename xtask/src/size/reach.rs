@@ -197,6 +197,24 @@ pub fn steps(program: &Program) -> Vec<Step> {
     steps
 }
 
+/// The functions of `bench` that write or read one frame of a wire format, and what they need: of another one's constants and code
+/// they share some.
+pub fn formats(program: &Program) -> Vec<Step> {
+    let mut formats = Vec::new();
+    for direction in ["encode", "decode"] {
+        let root = format!("bench::program::{direction}::<");
+        for (name, at) in program.functions(&root) {
+            let format = name.strip_prefix(&root).and_then(|it| it.strip_suffix('>'));
+            formats.extend(format.map(|format| Step {
+                behaviour: format!("{direction}, {}", without_paths(format)),
+                reach: program.reach(at),
+            }));
+        }
+    }
+    formats.sort_by(|one, other| one.behaviour.cmp(&other.behaviour));
+    formats
+}
+
 /// `a::b::C<d::E>` as `C<E>`.
 fn without_paths(name: &str) -> String {
     let mut short = String::new();

@@ -5,13 +5,14 @@ use crate::grid::{Formation, GridAgent, ROBOTS, Route, Scene, TICK, Walker, run}
 use crate::land::Land;
 use crate::{Probe, Summary};
 use heapless::Vec;
-use staya_controller::agent::AgentConfig;
+use staya_controller::agent::{AgentConfig, Unguarded};
 use staya_controller::formation::{FormationParams, Prediction, Template};
 use staya_controller::grid::Cell;
 use staya_controller::route::RouteParams;
 use staya_controller::scalar::Scalar;
 use staya_controller::wire::{
-    GoalAssignment, Header, Message, Request, RequestKind, RobotId, TemplateAssignment, encode,
+    GoalAssignment, Header, Message, Postcard, Request, RequestKind, RobotId, TemplateAssignment,
+    Wire,
 };
 
 /// Rough land with two walls to go around.
@@ -45,7 +46,7 @@ pub(super) fn route<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
         faults: Faults::default(),
         ticks: 300,
     };
-    run(&scene, &mut travellers(), |_, _| {}, probe)
+    run(&scene, &mut travellers(), Postcard, |_, _| {}, probe)
 }
 
 /// From each corner to the opposite one.
@@ -87,15 +88,16 @@ fn template(index: usize) -> Template<8> {
 }
 
 #[inline(never)]
-fn members<S: Scalar>(
+fn members<S: Scalar, W: Wire>(
     params: FormationParams,
+    wire: &W,
     template: impl Fn(usize) -> Template<8>,
-) -> Vec<Walker<S, Formation>, ROBOTS> {
+) -> Vec<Walker<S, Formation, W>, ROBOTS> {
     let mut walkers = Vec::new();
     for (index, place) in PLACES.into_iter().enumerate() {
         let guidance = Formation::new(RouteParams::default(), params, template(index));
         let _ = walkers.push(Walker {
-            agent: GridAgent::new(&config(index), guidance),
+            agent: GridAgent::speaking(&config(index), guidance, Unguarded, wire.clone()),
             cell: START + place,
             free_at_ms: 0,
         });
@@ -108,7 +110,7 @@ fn in_formation<S: Scalar, P: Probe<S>>(prediction: Prediction, probe: &mut P) -
         prediction,
         ..FormationParams::default()
     };
-    let mut walkers = members(params, template);
+    let mut walkers = members(params, &Postcard, template);
     for (walker, place) in walkers.iter_mut().zip(PLACES) {
         walker.agent.assign_goal(GOAL + place);
     }
@@ -117,11 +119,11 @@ fn in_formation<S: Scalar, P: Probe<S>>(prediction: Prediction, probe: &mut P) -
         faults: Faults::default(),
         ticks: 300,
     };
-    run(&scene, &mut walkers, |_, _| {}, probe)
+    run(&scene, &mut walkers, Postcard, |_, _| {}, probe)
 }
 
 #[inline(never)]
-pub(super) fn packets<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
+pub(crate) fn packets<S: Scalar, W: Wire, P: Probe<S>>(wire: W, probe: &mut P) -> Summary {
     let scene = Scene {
         land: LAND,
         faults: Faults {
@@ -132,22 +134,27 @@ pub(super) fn packets<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
         },
         ticks: 400,
     };
-    let mut walkers = members(FormationParams::default(), |_| Template::default());
-    let mut operator = Operator { sequence: 0 };
+    let mut walkers = members(FormationParams::default(), &wire, |_| Template::default());
+    let mut operator = Operator {
+        wire: wire.clone(),
+        sequence: 0,
+    };
     run(
         &scene,
         &mut walkers,
+        wire,
         |tick, out| operator.speak(tick, out),
         probe,
     )
 }
 
 /// Says again and again what the robots are to do, since nobody tells it who has heard.
-struct Operator {
+struct Operator<W> {
+    wire: W,
     sequence: u16,
 }
 
-impl Operator {
+impl<W: Wire> Operator<W> {
     /// When it says "stop" and "resume", ticks.
     const STOP: core::ops::Range<u32> = 60..66;
     const RESUME: core::ops::Range<u32> = 80..90;
@@ -198,6 +205,6 @@ impl Operator {
         };
         self.sequence = self.sequence.wrapping_add(1);
         // What has no room in this tick is said in a later one.
-        let _ = encode(header, &message, out);
+        let _ = self.wire.encode(header, &message, out);
     }
 }

@@ -1,5 +1,6 @@
-//! What a step costs: instructions and stack, for each canned swarm and for an agent in the worst company. Prints
-//! `case scalar steps median max stack agent workspace`: counts, instructions (on a board: clock cycles), bytes.
+//! What a step costs: instructions and stack, for each canned swarm and for an agent in the worst company; and what a beacon costs in each wire
+//! format. Prints `case scalar steps median max stack agent workspace`: counts, instructions (on a board: clock cycles), bytes. For a
+//! wire format there is no scalar (`-`), and `agent` is what the format keeps.
 //!
 //! Emulated with `-icount shift=0` an instruction takes a nanosecond, and the tick counter tells them apart.
 #![cfg_attr(target_os = "none", no_std, no_main)]
@@ -9,13 +10,18 @@ staya_firmware::faults_are_printed!();
 
 #[cfg(target_os = "none")]
 mod program {
+    use core::hint::black_box;
     use heapless::Vec;
     use staya_cases::{Case, Probe, Summary, Worst};
-    use staya_controller::agent::{Agent, Guidance, Inputs, Outputs, Safety};
+    use staya_controller::agent::{Agent, Guidance, Inputs, OUTBOX, Outputs, Safety};
+    use staya_controller::grid::{Cell, Dir};
     use staya_controller::scalar::{Q16, Scalar};
     use staya_controller::time::Instant;
-    use staya_controller::wire::Wire;
+    use staya_controller::wire::{
+        Beacon, DecodeError, EncodeError, Frame, Header, Message, Mode, Postcard, RobotId, Wire,
+    };
     use staya_firmware::{runtime, stack};
+    use staya_mavlink::wire::Mavlink;
 
     /// Samples that the median is of. When there are more steps, every second, fourth, ... counts.
     const SAMPLES: usize = if cfg!(part = "nrf51") { 64 } else { 1024 };
@@ -44,6 +50,17 @@ mod program {
                 deepest: 0,
                 empty,
             }
+        }
+
+        #[inline(always)]
+        fn measure<T>(&mut self, work: impl FnOnce() -> T) -> T {
+            let painted = stack::paint();
+            let before = runtime::ticks();
+            let out = work();
+            let ticks = runtime::ticks().wrapping_sub(before);
+            let depth = painted.deepest().saturating_sub(painted.began());
+            self.take(ticks.saturating_sub(self.empty), depth);
+            out
         }
 
         fn take(&mut self, ticks: u32, depth: u32) {
@@ -79,13 +96,7 @@ mod program {
             now: Instant,
             workspace: &mut G::Workspace,
         ) -> Outputs<S> {
-            let painted = stack::paint();
-            let before = runtime::ticks();
-            let out = step(agent, inputs, now, workspace);
-            let ticks = runtime::ticks().wrapping_sub(before);
-            let depth = painted.deepest().saturating_sub(painted.began());
-            self.take(ticks.saturating_sub(self.empty), depth);
-            out
+            self.measure(|| step(agent, inputs, now, workspace))
         }
     }
 
@@ -102,7 +113,8 @@ mod program {
 
     pub fn run() -> ! {
         let start = runtime::start();
-        let row = |name: &str, scalar: &str, meter: &mut Meter, summary: Summary| {
+        let row = |name: &str, scalar: &str, meter: &mut Meter, bytes: [u32; 2]| {
+            let [agent_bytes, workspace_bytes] = bytes;
             let instructions = |ticks: u32| {
                 if start.emulated {
                     u64::from(ticks) * 1_000_000_000 / u64::from(start.tick_hz)
@@ -117,10 +129,18 @@ mod program {
                 median,
                 instructions(meter.most_ticks),
                 meter.deepest,
-                summary.agent_bytes,
-                summary.workspace_bytes,
+                agent_bytes,
+                workspace_bytes,
             ));
         };
+        #[cfg(not(part = "nrf51"))]
+        format(Mavlink, Mavlink, ["encode_mavlink", "decode_mavlink"], &row);
+        format(
+            Postcard,
+            Postcard,
+            ["encode_postcard", "decode_postcard"],
+            &row,
+        );
         #[cfg(not(part = "nrf51"))]
         {
             swarms::<f32>("f32", &row);
@@ -134,22 +154,78 @@ mod program {
         runtime::exit(0)
     }
 
-    fn swarms<S: Scalar>(scalar: &str, row: &impl Fn(&str, &str, &mut Meter, Summary)) {
+    /// Prints a row.
+    trait Print: Fn(&str, &str, &mut Meter, [u32; 2]) {}
+    impl<F: Fn(&str, &str, &mut Meter, [u32; 2])> Print for F {}
+
+    const fn bytes(summary: &Summary) -> [u32; 2] {
+        [summary.agent_bytes, summary.workspace_bytes]
+    }
+
+    /// What it costs `own` to say beacons and `other` to hear them: find the frame, then read it.
+    #[inline(never)]
+    fn format<W: Wire>(mut own: W, mut other: W, names: [&str; 2], row: &impl Print) {
+        let (mut saying, mut hearing) = (Meter::new(), Meter::new());
+        for sequence in 0..64_u16 {
+            let header = Header {
+                boot: 1,
+                sender: RobotId(7),
+                sequence,
+            };
+            let beacon = Message::Beacon(Beacon {
+                time: Instant::from_micros(u32::from(sequence) * 100_000),
+                position_mm: [12_345 + i32::from(sequence), -678_901, 4_000],
+                velocity_mmps: [250, -3, 1],
+                radius_mm: 150,
+                cell: Cell::new(98, -98),
+                heading: Dir::NorthWest,
+                busy_ms: 400,
+                leader: RobotId(1),
+                slot: 4,
+                mode: Mode::Cruise,
+                target: Cell::new(98, 70),
+            });
+            let mut out = Vec::<u8, OUTBOX>::new();
+            let said = saying.measure(|| encode(&mut own, header, black_box(&beacon), &mut out));
+            let heard = hearing.measure(|| decode(&mut other, black_box(&out)));
+            assert!(said.is_ok() && heard.is_ok_and(|frame| frame.message == beacon));
+        }
+        let kept = [size_of::<W>() as u32, 0];
+        let [encode, decode] = names;
+        row(encode, "-", &mut saying, kept);
+        row(decode, "-", &mut hearing, kept);
+    }
+
+    /// Calls of their own, as [`step`]: what they need of flash is told by their names.
+    #[inline(never)]
+    fn encode<W: Wire>(
+        wire: &mut W,
+        header: Header,
+        message: &Message,
+        out: &mut Vec<u8, OUTBOX>,
+    ) -> Result<usize, EncodeError> {
+        wire.encode(header, message, out)
+    }
+
+    #[inline(never)]
+    fn decode<W: Wire>(wire: &mut W, mut inbox: &[u8]) -> Result<Frame, DecodeError> {
+        let frame = wire.next_frame(&mut inbox).ok_or(DecodeError::Empty)?;
+        wire.decode(frame)
+    }
+
+    fn swarms<S: Scalar>(scalar: &str, row: &impl Print) {
         for &case in Case::ALL {
             let mut meter = Meter::new();
             let summary = case.run::<S, _>(&mut meter);
-            row(case.name(), scalar, &mut meter, summary);
+            row(case.name(), scalar, &mut meter, bytes(&summary));
         }
     }
 
-    fn worst<S: Scalar, const N: usize, const K: usize>(
-        scalar: &str,
-        row: &impl Fn(&str, &str, &mut Meter, Summary),
-    ) {
+    fn worst<S: Scalar, const N: usize, const K: usize>(scalar: &str, row: &impl Print) {
         for &case in Worst::ALL {
             let mut meter = Meter::new();
             let summary = case.run::<S, _, N, K>(&mut meter);
-            row(case.name(), scalar, &mut meter, summary);
+            row(case.name(), scalar, &mut meter, bytes(&summary));
         }
     }
 }

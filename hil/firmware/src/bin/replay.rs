@@ -21,6 +21,8 @@ mod program {
             let summary = case.run::<Q16, _>(&mut staya_cases::Unmeasured);
             print(case.name(), "Q16", &summary);
         }
+        #[cfg(part = "nrf51")]
+        staya_cases::in_each_format::<staya_controller::scalar::Q16>("Q16", &mut print);
         runtime::exit(0)
     }
 

@@ -366,3 +366,22 @@ fn unknown_shapes_are_refused() {
     assert_eq!(unpack::<f32>(&[3; OBSTACLE]), None);
     assert_eq!(unpack::<f32>(&[0xFF; OBSTACLE]), None);
 }
+
+#[test]
+fn a_large_robot_speaks_any_format_and_a_small_one_says_why_not() {
+    let setup = |format| Setup {
+        format,
+        ..super::in_plane()
+    };
+    let (mut large, mut small) = (Large::new(), Small::new());
+    let postcard = large.configure(&setup(Format::Postcard), None);
+    // How it speaks is no part of what it knows.
+    assert_eq!(large.configure(&setup(Format::Mavlink), None), postcard);
+    assert!(postcard.is_ok() && small.configure(&setup(Format::Postcard), None).is_ok());
+    let refusal = small.configure(&setup(Format::Mavlink), None).unwrap_err();
+    assert_eq!(
+        std::format!("{refusal}"),
+        "no mavlink here: flash is too small for it"
+    );
+    assert!(small.report().is_none());
+}

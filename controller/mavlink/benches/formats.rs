@@ -1,0 +1,65 @@
+//! Saying and hearing one beacon in each wire format: to hear is to find the frame in the inbox, and to read it.
+#![allow(clippy::unwrap_used)]
+
+use core::hint::black_box;
+use core::time::Duration;
+use criterion::{Criterion, criterion_group, criterion_main};
+use heapless::Vec;
+use staya_controller::grid::{Cell, Dir};
+use staya_controller::time::Instant;
+use staya_controller::wire::{Beacon, Header, Message, Mode, Postcard, RobotId, Wire};
+use staya_mavlink::wire::Mavlink;
+
+fn beacon() -> Message {
+    Message::Beacon(Beacon {
+        time: Instant::from_micros(123_456_789),
+        position_mm: [12_345, -678_901, 4_000],
+        velocity_mmps: [250, -3, 1],
+        radius_mm: 150,
+        cell: Cell::new(98, -98),
+        heading: Dir::NorthWest,
+        busy_ms: 400,
+        leader: RobotId(1),
+        slot: 4,
+        mode: Mode::Cruise,
+        target: Cell::new(98, 70),
+    })
+}
+
+fn format<W: Wire>(c: &mut Criterion, name: &str, mut wire: W) {
+    let mut header = Header {
+        boot: 1,
+        sender: RobotId(7),
+        sequence: 0,
+    };
+    let (message, mut out) = (beacon(), Vec::<u8, 256>::new());
+    c.bench_function(&format!("beacon/encode/{name}"), |bencher| {
+        bencher.iter(|| {
+            header.sequence = header.sequence.wrapping_add(1);
+            out.clear();
+            wire.encode(header, black_box(&message), &mut out).unwrap()
+        });
+    });
+    c.bench_function(&format!("beacon/decode/{name}"), |bencher| {
+        bencher.iter(|| {
+            let mut inbox = black_box(out.as_slice());
+            let frame = wire.next_frame(&mut inbox).unwrap();
+            wire.decode(frame).unwrap()
+        });
+    });
+}
+
+fn formats(c: &mut Criterion) {
+    format(c, "postcard", Postcard);
+    format(c, "mavlink", Mavlink);
+}
+
+/// Benchmarks of tens of nanoseconds need no five seconds each.
+fn short() -> Criterion {
+    Criterion::default()
+        .warm_up_time(Duration::from_millis(500))
+        .measurement_time(Duration::from_secs(2))
+}
+
+criterion_group!(name = benches; config = short(); targets = formats);
+criterion_main!(benches);
