@@ -19,7 +19,7 @@ RADIUS = 0.4
 STAND = (0.0, 0.0, 0.0)
 
 
-def write_scenario(folder, robots, *, tick_s=0.1, speed=1.5):
+def write_scenario(folder, robots, *, tick_s=0.1, speed=1.5, packets="postcard"):
     text = f"""
 name = "test"
 ticks = 1000
@@ -27,6 +27,7 @@ tick_s = {tick_s}
 [radio]
 range_m = 100
 delay_ms = 50
+format = "{packets}"
 [plane]
 radius_m = {RADIUS}
 max_speed_mps = {speed}
@@ -365,9 +366,9 @@ def test_companions_in_two_processes_hear_each_other(tmp_path, free_port, staya,
         assert fleet.least_gap > 0.0, f"they touched: {fleet.least_gap} m"
 
 
-def two_that_meet(tmp_path, free_port, staya, keys):
+def two_that_meet(tmp_path, free_port, staya, keys, packets):
     """Two companions, each in a process of its own with its key, in a group; their reports after 3 s."""
-    write_scenario(tmp_path, [((0.0, 0.0), (8.0, 0.0)), ((8.0, 0.2), (0.0, 0.2))])
+    write_scenario(tmp_path, [((0.0, 0.0), (8.0, 0.0)), ((8.0, 0.2), (0.0, 0.2))], packets=packets)
     group, processes = free_port(), []
     for i, key in enumerate(keys):
         air = f'[air]\nmulticast = "239.255.77.1:{group}"\ninterface = "127.0.0.1"\n'
@@ -386,14 +387,16 @@ def two_that_meet(tmp_path, free_port, staya, keys):
     return [json.loads(process.output())["vehicles"][0] for process in running]
 
 
-def test_sealed_packets_are_heard_by_who_has_the_key(tmp_path, free_port, staya):
-    for report in two_that_meet(tmp_path, free_port, staya, ["one for all", "one for all"]):
+@pytest.mark.parametrize("packets", ["postcard", "mavlink"])
+def test_sealed_packets_are_heard_by_who_has_the_key(tmp_path, free_port, staya, packets):
+    for report in two_that_meet(tmp_path, free_port, staya, ["one for all", "one for all"], packets):
         assert report["neighbors"] == 1 and report["packets_heard"] > 10 and report["packets_refused"] == 0, report
 
 
+@pytest.mark.parametrize("packets", ["postcard", "mavlink"])
 @pytest.mark.parametrize("keys", [("one for all", "another"), ("one for all", None)], ids=["wrong", "none"])
-def test_packets_without_the_right_key_are_refused(tmp_path, free_port, staya, keys):
-    first, second = two_that_meet(tmp_path, free_port, staya, keys)
+def test_packets_without_the_right_key_are_refused(tmp_path, free_port, staya, keys, packets):
+    first, _ = two_that_meet(tmp_path, free_port, staya, keys, packets)
     assert first["neighbors"] == 0 and first["packets_heard"] == 0 and first["packets_refused"] > 10, first
 
 

@@ -127,7 +127,7 @@ pub fn run(
             setup.index,
             boot,
             config.lag_s,
-            Voice::new(seal.as_ref()),
+            Voice::new(config.scenario.radio.format, seal.as_ref()),
         ),
         peer: None,
         sequence: 0,
@@ -146,7 +146,7 @@ pub fn run(
         air: Air::open(&config.air)?,
         vehicles: config.vehicles.iter().map(vehicle).collect(),
         signing,
-        voice: Voice::new(None),
+        voice: Voice::new(config.scenario.radio.format, None),
         options,
         began: Instant::now(),
     };

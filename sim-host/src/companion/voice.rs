@@ -1,35 +1,40 @@
-//! How agents say things to each other: open, or sealed with a key.
+//! How agents say things to each other: in the scenario's wire format, open or with a key.
 
 use crate::file::{read_remedy, write_remedy};
-use crate::key::{KeyError, KeyFile};
+use crate::key::{self, KeyError, KeyFile};
 use heapless::Vec;
 use serde::Serialize;
 use staya_controller::auth::Key;
 use staya_controller::wire::{
-    DecodeError, EncodeError, Frame, Header, Message, Postcard, Sealed, Wire,
+    DecodeError, EncodeError, Format, Frame, Header, Message, Postcard, Sealed, Wire,
 };
+use staya_mavlink::signed::Signed;
+use staya_mavlink::signing::Signing;
+use staya_mavlink::wire::Mavlink;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// The format of packets between companions.
 #[derive(Clone, Debug, Serialize)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "an agent has one, and it is on the heap"
-)]
 pub enum Voice {
-    /// Everybody can speak.
-    Open(Postcard),
-    /// Only who has the key is heard.
+    /// The controller's own frames.
+    Postcard(Postcard),
+    /// The same with a seal.
     Sealed(Sealed),
+    /// MAVLink 2.
+    Mavlink(Mavlink),
+    /// MAVLink 2 with signatures.
+    Signed(Signed),
 }
 
 /// Does `$do` with the format that is in it.
 macro_rules! each {
     ($any:expr, $wire:ident => $do:expr) => {
         match $any {
-            Voice::Open($wire) => $do,
+            Voice::Postcard($wire) => $do,
             Voice::Sealed($wire) => $do,
+            Voice::Mavlink($wire) => $do,
+            Voice::Signed($wire) => $do,
         }
     };
 }
@@ -45,6 +50,10 @@ impl Wire for Voice {
         message: &Message,
         out: &mut Vec<u8, N>,
     ) -> Result<usize, EncodeError> {
+        if let Self::Signed(signed) = self {
+            // So that who starts later does not take it for a recording.
+            signed.signing_mut().advance_to(key::timestamp());
+        }
         each!(self, wire => wire.encode(header, message, out))
     }
 
@@ -130,11 +139,20 @@ impl Seal {
 }
 
 impl Voice {
-    /// Sealed if there is a seal.
+    /// In a format, and so that only who has the key is heard, if there is one.
     #[must_use]
-    pub fn new(seal: Option<&Seal>) -> Self {
-        let sealed = seal.and_then(|seal| Sealed::at_start(&seal.key, seal.starts));
-        sealed.map_or(Self::Open(Postcard), Self::Sealed)
+    pub fn new(format: Format, seal: Option<&Seal>) -> Self {
+        match (format, seal) {
+            (Format::Mavlink, None) => Self::Mavlink(Mavlink),
+            (Format::Mavlink, Some(seal)) => {
+                let signing = Signing::new(seal.key.clone(), 0, key::timestamp());
+                Self::Signed(Signed::new(signing))
+            }
+            (Format::Postcard, seal) => {
+                let sealed = seal.and_then(|seal| Sealed::at_start(&seal.key, seal.starts));
+                sealed.map_or(Self::Postcard(Postcard), Self::Sealed)
+            }
+        }
     }
 }
 
@@ -149,7 +167,7 @@ mod tests {
         sequence: 1,
     };
 
-    fn said(voice: &mut Voice) -> Vec<u8, 64> {
+    fn said(voice: &mut Voice) -> Vec<u8, 128> {
         let mut out = Vec::new();
         let message = Message::Beacon(Default::default());
         voice.encode(HEADER, &message, &mut out).unwrap();
@@ -161,19 +179,22 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("swarm.key");
         std::fs::write(&path, "passphrase: one for all\n").unwrap();
-        let seal = |path: &Path| Seal::read(path).unwrap();
-        let mut speaker = Voice::new(Some(&seal(&path)));
-        let mut listener = Voice::new(Some(&seal(&path)));
-        let frame = said(&mut speaker);
-        let mut rest = frame.as_slice();
-        let frame = listener.next_frame(&mut rest).unwrap();
-        assert_eq!(listener.decode(frame).unwrap().header, HEADER);
-        assert!(listener.decode(frame).is_err(), "a replay");
-        assert!(said(&mut Voice::new(None)).as_slice() != frame);
-        let open = said(&mut Voice::new(None));
-        let mut rest = open.as_slice();
-        let frame = listener.next_frame(&mut rest).unwrap();
-        assert!(listener.decode(frame).is_err(), "without the key");
+        let seal = || Seal::read(&path).unwrap();
+        for format in [Format::Postcard, Format::Mavlink] {
+            let mut speaker = Voice::new(format, Some(&seal()));
+            let mut listener = Voice::new(format, Some(&seal()));
+            let frame = said(&mut speaker);
+            let mut rest = frame.as_slice();
+            let frame = listener.next_frame(&mut rest).unwrap();
+            assert_eq!(listener.decode(frame).unwrap().header, HEADER);
+            assert!(listener.decode(frame).is_err(), "a replay");
+            let open = said(&mut Voice::new(format, None));
+            let mut rest = open.as_slice();
+            let frame = listener.next_frame(&mut rest).unwrap();
+            assert!(listener.decode(frame).is_err(), "without the key");
+            let mut stranger = Voice::new(format, None);
+            assert!(stranger.decode(frame).is_ok(), "sound as it is");
+        }
     }
 
     #[test]
