@@ -93,6 +93,8 @@ def test_one_vehicle(connect, tmp_path):
     assert parameters.get_param_float("RADIUS_M") == 0.25
     parameters.set_param_float("SPEED_MPS", 0.5)
     assert parameters.get_param_float("SPEED_MPS") == 0.5
+    # Who is on the way is not disarmed.
+    wait_until(lambda: abs(telemetry.position_velocity_ned().velocity.north_m_s) < 0.01, 10, "the end of the goto")
     action.disarm()
     wait_until(lambda: not telemetry.armed(), 10, "to be disarmed")
 

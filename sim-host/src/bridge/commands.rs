@@ -4,7 +4,7 @@
 //! | --- | --- |
 //! | UNSUPPORTED | these vehicles have no such command (nor a takeoff, those that do not fly) |
 //! | DENIED | it makes no sense: a parameter that is needed is no number, out of range, or nothing can be there |
-//! | TEMPORARILY_REJECTED | not now: not armed, in the wrong mode, in the air |
+//! | TEMPORARILY_REJECTED | not now: not armed, in the wrong mode, in the air, on the way |
 //! | COMMAND_INT_ONLY, UNSUPPORTED_MAV_FRAME | its place comes in a form that is too coarse, or unknown |
 //!
 //! Parameters that a command does not use may be anything, NaN included.
@@ -21,6 +21,9 @@ use staya_mavlink::mavlink_core::MessageData as _;
 
 /// Highest that a vehicle is sent, metres above the ground.
 const HIGHEST_M: f32 = 1000.0;
+
+/// Who is slower stands, m/s.
+const STANDING_MPS: f64 = 0.05;
 
 /// A result other than accepted.
 pub(super) type Refusal = u8;
@@ -190,7 +193,10 @@ impl Vehicle {
     }
 
     fn arm(&mut self, arms: bool, forced: bool, out: &mut Out) -> Result<(), Refusal> {
-        if !arms && self.is_in_air() && !forced {
+        // Who goes dead on his way is hit by those who count on his going on.
+        let [vx, vy, vz] = self.sample.velocity_mps;
+        let moves = vx * vx + vy * vy + vz * vz > STANDING_MPS * STANDING_MPS;
+        if !arms && !forced && (moves || self.is_in_air()) {
             return Err(MAV_RESULT_TEMPORARILY_REJECTED);
         }
         if arms == self.is_armed {

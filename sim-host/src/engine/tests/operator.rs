@@ -128,3 +128,51 @@ fn tell_a_goal(swarm: &mut dyn Operated) {
         (Cell::new(3, 9), Mode::Arrived)
     );
 }
+
+/// Eight discs in a crowd, each with another whim of the operator every half second.
+#[test]
+fn no_whim_of_the_operator_makes_robots_collide() {
+    let crowd = "name = \"t\"\nticks = 120\ntick_s = 0.05\n[radio]\nrange_m = 20\n\
+         [plane]\nradius_m = 0.2\nmax_speed_mps = 1\n[plane.robots.circle]\ncount = 8\nradius_m = 1.5\n";
+    let parsed = Scenario::parse(crowd, Path::new("t.toml"), &Overrides::default());
+    let scenario = parsed.expect("a good scenario");
+    for seed in 0..6 {
+        let mut swarm = operated(&scenario).expect("they can be placed");
+        let mut rng = Rng::new(seed);
+        let mut below = |n: u64| rng.next_u64() % n;
+        for _ in 0..60 {
+            for robot in 0..8 {
+                let [x, y] = [below(4001), below(4001)].map(|mm| mm as i32 - 2000);
+                let [vx, vy, _] = swarm.glance(robot).motion.velocity_mps;
+                let speed = libm::hypot(vx, vy);
+                let wish = match below(7) {
+                    0 => Wish::Own,
+                    1 => Wish::Hold,
+                    6 if speed < 0.05 => Wish::Off,
+                    // Faster than they can go.
+                    2 | 3 => Wish::Velocity {
+                        velocity_mps: Vec3::new(x as f32 / 1000.0, y as f32 / 1000.0, 0.0),
+                        valid: Duration::from_millis(700),
+                    },
+                    // All to one place.
+                    4 => Wish::Place {
+                        place: Place::fixed(Position::ORIGIN),
+                        valid: None,
+                    },
+                    _ => Wish::Place {
+                        place: Place::fixed(Position::from_mm([x, y, 0])),
+                        valid: None,
+                    },
+                };
+                swarm.command(robot, wish);
+            }
+            run(&mut *swarm, 10);
+        }
+        let outcome = swarm.outcome();
+        assert_eq!(
+            outcome.collisions, 0,
+            "seed {seed}: {:?}",
+            outcome.clearance
+        );
+    }
+}

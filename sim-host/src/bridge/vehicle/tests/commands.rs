@@ -27,7 +27,7 @@ fn arming_stands_and_releases_the_motors() {
 }
 
 #[test]
-fn nobody_disarms_in_the_air_unless_forced() {
+fn nobody_disarms_in_the_air_or_on_the_way_unless_forced() {
     let mut bench = Bench::new(flying());
     bench.tick(|sample| sample.position_m[2] = 2.0);
     let arm = MAV_CMD_COMPONENT_ARM_DISARM;
@@ -37,6 +37,11 @@ fn nobody_disarms_in_the_air_unless_forced() {
         MAV_RESULT_ACCEPTED
     );
     assert_eq!(bench.wish(), Some(Wish::Off));
+    let mut bench = Bench::new(craft());
+    bench.tick(|sample| sample.velocity_mps = [0.0, -0.3, 0.0]);
+    assert_eq!(bench.command(arm, NONE), MAV_RESULT_TEMPORARILY_REJECTED);
+    bench.tick(|sample| sample.velocity_mps = [0.01, 0.0, 0.0]);
+    assert_eq!(bench.command(arm, NONE), MAV_RESULT_ACCEPTED);
 }
 
 #[test]
