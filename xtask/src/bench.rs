@@ -1,13 +1,16 @@
 //! `cargo xtask bench`: the project's benchmarks and those beside peer crates, in one run on one
 //! machine.
 
-use crate::repo::Repo;
+use crate::clients;
+use crate::repo::{Repo, run as run_to_end};
 use crate::report::{Counts, Report};
 use std::fs;
 use std::path::Path;
 use std::time::SystemTime;
 
 const PEERS: &str = "tests/peers";
+/// The one benchmark that is no criterion's.
+const BRIDGE: &str = "bridge";
 
 /// What a benchmark should reach.
 enum Goal {
@@ -37,6 +40,33 @@ const GOALS: [(&str, Goal); 7] = [
 
 /// Runs the benchmarks whose name contains `name` and judges their medians.
 pub fn run(repo: &Repo, report: &mut Report, name: Option<&str>) {
+    if name != Some(BRIDGE) {
+        criterion(repo, report, name);
+    }
+    if name.is_none_or(|name| BRIDGE.contains(name)) {
+        bridge(repo, report);
+    }
+}
+
+/// Messages through `staya bridge` beside pymavlink; the script judges.
+fn bridge(repo: &Repo, report: &mut Report) {
+    const NAME: &str = "bridge beside pymavlink";
+    let python = match clients::prepare(repo) {
+        Ok(python) => python,
+        Err(reason) => return report.skip(NAME, &reason),
+    };
+    let mut build = repo.cargo(&["build", "--release", "--locked", "--package", "staya-sim"]);
+    if !report.step("staya for the bridge", || run_to_end(&mut build)) {
+        return report.skip(NAME, "the program was not built");
+    }
+    let program = format!("staya{}", std::env::consts::EXE_SUFFIX);
+    let mut bench = repo.command(&python);
+    bench.arg("tests/python/bench_bridge.py");
+    bench.env("STAYA", repo.target.join("release").join(program));
+    report.command(NAME, bench);
+}
+
+fn criterion(repo: &Repo, report: &mut Report, name: Option<&str>) {
     let home = repo.target.join("criterion");
     let start = SystemTime::now();
     // Only targets that are benchmarks: a library's own tests need no release build.
