@@ -227,8 +227,9 @@ def test_a_restarted_autopilot_is_the_pilots(one):
         time.sleep(2.0)
         assert rate(vehicle, at + 0.1, at + 2.0) == 0.0
         assert {command for _, command in vehicle.commands} == {511}, "telemetry is asked for again, and nothing else"
+        told = process.output().count("the pilot steers")
         vehicle.pilot()
-        process.wait_for("the pilot steers")
+        wait_until(lambda: process.output().count("the pilot steers") > told, 5, "the pilot's turn")
         vehicle.pilot(GUIDED)
         wait_until(lambda: vehicle.velocity[0] > 0.5, 5, "motion")
         ends_well(process)
@@ -436,8 +437,9 @@ def test_the_others_go_around_one_that_its_pilot_has_taken(tmp_path, free_port, 
         ends_well(process)
 
 
-def test_six_travel_in_formation(tmp_path, free_port, staya):
-    """From a heap of a line into two rows of three, 20 m on."""
+@pytest.mark.parametrize("faults", [None, dict(drop=0.1, delay_s=0.1, corrupt=0.02)], ids=["good", "bad"])
+def test_six_travel_in_formation(tmp_path, free_port, staya, faults):
+    """In two rows of three, from places up to a metre off, over good links and such that lose, delay and damage frames."""
     (tmp_path / "formation.toml").write_text(
         """
 name = "formation"
@@ -469,7 +471,8 @@ margin_m = 0.2
     # Where the scenario's robots start, in metres, and up to 1 m off.
     off = [(0.6, -0.4), (-0.8, 0.3), (0.2, 0.9), (-0.5, -0.7), (0.9, 0.1), (-0.3, 0.5)]
     starts = [(17.0 - 4.0 * (i % 3) + off[i][0], 17.0 - 4.0 * (i // 3) + off[i][1]) for i in range(6)]
-    vehicles = [Vehicle(i + 1, "rover", Line("127.0.0.1", port), starts[i], mode=GUIDED, armed=True) for i in range(6)]
+    lines = [Line("127.0.0.1", port, Faults(**faults, seed=i) if faults else None) for i in range(6)]
+    vehicles = [Vehicle(i + 1, "rover", lines[i], starts[i], mode=GUIDED, armed=True) for i in range(6)]
     with Fleet(vehicles, RADIUS) as fleet:
         process = staya("companion", config)
 

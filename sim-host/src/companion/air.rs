@@ -98,7 +98,7 @@ impl Air {
         }
     }
 
-    /// Whether packets go as messages of [`tunnel`].
+    /// Whether packets go as TUNNEL messages.
     #[must_use]
     pub const fn is_tunnel(&self) -> bool {
         self.is_tunnel
