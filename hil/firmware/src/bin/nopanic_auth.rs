@@ -1,0 +1,67 @@
+//! Links only if no panic is reachable from the wire formats that authenticate, whatever arrives: `Sealed`, `Signed`, and MAVLink's signatures on raw
+//! frames. Works as `nopanic` does, which has the steps of the controller; it is not meant to be run.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+staya_firmware::entry!(program::run);
+
+#[cfg(target_os = "none")]
+mod program {
+    use core::hint::black_box;
+    use heapless::Vec;
+    use staya_controller::auth::{KEY_LEN, Key};
+    use staya_controller::wire::{Beacon, Header, Message, Sealed, Wire};
+    use staya_mavlink::frame::next_frame;
+    use staya_mavlink::signed::Signed;
+    use staya_mavlink::signing::Signing;
+
+    pub fn run() -> ! {
+        let key = || Key::new(black_box([1; KEY_LEN]));
+        let starts = black_box(1);
+        loop {
+            if let Some(mut sealed) = Sealed::<8>::at_start(&key(), starts) {
+                sealed.refuse_before(black_box(1));
+                talk(&mut sealed);
+                for (sender, counter) in black_box(&sealed).guard().export() {
+                    black_box((sender, counter));
+                }
+                black_box(sealed.guard_mut().import(black_box(1), black_box(1)));
+            }
+            let mut signed = Signed::<8>::new(Signing::new(key(), black_box(0), black_box(1)));
+            signed.signing_mut().advance_to(black_box(1));
+            talk(&mut signed);
+            let mut signing =
+                Signing::<8>::new(key(), 0, black_box(1)).with_unsigned(black_box(&[109]));
+            let mut bytes = [0; 300];
+            black_box(signing.sign(black_box(&mut bytes)).is_ok());
+            let mut rest = black_box(&bytes[..]);
+            while let Some(frame) = next_frame(&mut rest) {
+                black_box(signing.verify(&frame).is_accepted());
+            }
+            black_box(Key::of_passphrase(black_box(&[1; 9])).as_bytes());
+        }
+    }
+
+    fn talk<W: Wire>(wire: &mut W) {
+        let mut out = Vec::<u8, 256>::new();
+        let mut inbox = black_box(&[1; 99][..]);
+        while black_box(true) {
+            let wire = black_box(&mut *wire);
+            let message = black_box(Message::Beacon(Beacon::default()));
+            let said = wire.encode(black_box(Header::default()), &message, black_box(&mut out));
+            black_box(said.is_ok());
+            if let Some(frame) = wire.next_frame(black_box(&mut inbox)) {
+                black_box(wire.decode(frame).is_ok());
+            }
+        }
+    }
+
+    #[panic_handler]
+    fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+        unsafe extern "C" {
+            /// Defined nowhere.
+            fn staya_panic_is_reachable() -> !;
+        }
+        // SAFETY: never called: a program in which this call is left does not link.
+        unsafe { staya_panic_is_reachable() }
+    }
+}
