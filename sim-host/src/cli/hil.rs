@@ -111,6 +111,12 @@ impl HilArgs {
     /// from its shadow.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         let scenario = self.scenario.load()?;
+        if scenario.key.is_some() {
+            bail!(
+                "the robots of {} have a key, and the link does not carry keys to devices; leave [authentication] out",
+                scenario.name
+            );
+        }
         let plan = self.plan(&scenario)?;
         let mut parts: Vec<Part> = Vec::new();
         for (_, device) in &plan.devices {

@@ -37,7 +37,11 @@ impl ScenarioArgs {
             seed: self.seed,
             ticks: self.ticks,
         };
-        Ok(Scenario::load(&self.scenario, &overrides)?)
+        let scenario = Scenario::load(&self.scenario, &overrides)?;
+        if let Some(remark) = &scenario.key_remark {
+            eprintln!("{remark}");
+        }
+        Ok(scenario)
     }
 }
 
@@ -73,6 +77,8 @@ struct Summary {
     /// Robots in a wall, in another one's cell, or overlapping another one or an obstacle, summed over ticks.
     collisions: u64,
     packets: PacketCounts,
+    /// Whether the robots have a key.
+    is_authenticated: bool,
     /// Packets beyond a robot's bandwidth, never on the air.
     packets_throttled: u64,
     /// dPhi per robot, cells, graph placed on the top leader; null: no formation.
@@ -200,6 +206,7 @@ impl Summary {
             arrival_last_seconds: units.iter().max().map(|&last| seconds(last as f64)),
             collisions: outcome.collisions,
             packets: outcome.packets,
+            is_authenticated: scenario.key.is_some(),
             packets_throttled: outcome.throttled,
             formation_error_per_agent: formation.map(|f| f.error_per_agent),
             formation_error_per_agent_best_fit: formation.map(|f| f.best_fit_error_per_agent),
@@ -286,6 +293,15 @@ impl Summary {
                 packets.corrupted, packets.rejected
             ),
         )?;
+        if self.is_authenticated {
+            line(
+                "of them, by the key",
+                format!(
+                    "{} unsigned, {} forged, {} replayed",
+                    packets.unsigned, packets.forged, packets.replayed
+                ),
+            )?;
+        }
         line("trace hash", self.trace_hash.clone())?;
         writeln!(text, "written to {}", out.display())?;
         for file in &self.files {

@@ -8,6 +8,7 @@
 //!
 //! [`simulate`] runs a whole scenario with the guidance that it asks for.
 
+mod attacker;
 mod body;
 mod elsewhere;
 mod grid;
@@ -26,19 +27,20 @@ pub(crate) use simulate::WIDE;
 pub use simulate::{Moment, Outcome, simulate, simulate_with};
 
 use crate::metrics::{Arrivals, Keeping};
-use crate::radio::Radio;
+use crate::radio::{Radio, Voice};
 use crate::record::{PacketCounts, RobotRow, TickRow};
 use crate::scenario::{Fault, Robot, Scenario};
+use attacker::Attacker;
 use hash::Chain;
 use rayon::prelude::*;
 use staya_controller::agent::{
     Agent, AgentConfig, Command, Event, Guidance, GuidanceSetup, Inputs, NEIGHBORS, OUTBOX, Safety,
     SafetySetup, Setup,
 };
+use staya_controller::auth::Key;
 use staya_controller::grid::Cell;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{Format, Mode, RobotId};
-use staya_mavlink::any::AnyWire;
 
 /// Robots that a thread takes at least at a time: less would cost more in handing out than in work.
 const BATCH: usize = 64;
@@ -47,7 +49,7 @@ const BATCH: usize = 64;
 #[derive(Debug)]
 struct Computer<G, A> {
     /// `None`: elsewhere.
-    agent: Option<Agent<f32, G, NEIGHBORS, A, AnyWire>>,
+    agent: Option<Agent<f32, G, NEIGHBORS, A, Voice>>,
     outbox: heapless::Vec<u8, OUTBOX>,
     /// Of the last step, if somebody wants to know.
     events: Vec<Event>,
@@ -139,6 +141,7 @@ struct Outside {
 pub struct Engine<W, G, A> {
     seed: u64,
     format: Format,
+    key: Option<Key>,
     tick_us: u32,
     tick: u32,
     robots: Vec<Robot>,
@@ -150,7 +153,9 @@ pub struct Engine<W, G, A> {
     commands: Vec<Command<f32>>,
     statuses: Vec<Status>,
     chains: Vec<Chain>,
+    /// Of the robots, then of the attackers.
     positions_m: Vec<[f64; 2]>,
+    attackers: Vec<Attacker>,
     outside: Option<Outside>,
     keeps_events: bool,
     arrivals: Arrivals,
@@ -173,10 +178,18 @@ where
         brains: impl Fn(usize) -> (G, A) + Send + Sync + 'static,
     ) -> Self {
         let robots = scenario.robots.clone();
+        let (format, cell_m) = (scenario.radio.format, scenario.terrain.cell_m);
+        let attackers = scenario.attacks.iter();
+        let attackers = attackers.map(|attack| Attacker::new(attack, format, cell_m));
+        let attackers: Vec<_> = attackers.collect();
         let ids = robots.iter().map(|robot| robot.id);
+        let ids = ids.chain((0..attackers.len()).map(Attacker::id));
+        let mut positions_m = vec![[0.0; 2]; robots.len()];
+        positions_m.extend(attackers.iter().map(Attacker::place_m));
         let mut engine = Self {
             seed: scenario.seed,
-            format: scenario.radio.format,
+            format,
+            key: scenario.key.clone(),
             tick_us: scenario.tick_us,
             tick: 0,
             faults: scenario.faults.clone(),
@@ -187,7 +200,8 @@ where
             commands: vec![Command::Hold; robots.len()],
             statuses: Vec::new(),
             chains: robots.iter().map(|robot| Chain::new(robot.id)).collect(),
-            positions_m: vec![[0.0; 2]; robots.len()],
+            positions_m,
+            attackers,
             outside: None,
             keeps_events: false,
             arrivals: Arrivals::new(robots.len()),
@@ -240,7 +254,7 @@ where
     /// Computer number `index` with its own agent, started now.
     fn start(&self, index: usize, boot: u8) -> Computer<G, A> {
         let (guidance, safety) = (self.brains)(index);
-        let wire = AnyWire::new(self.format);
+        let wire = Voice::new(self.format, self.key.as_ref(), boot);
         let mut agent = Agent::speaking(&self.config(index, boot), guidance, safety, wire);
         // A guidance that has no use for its task says so; the scenario was checked for that.
         let _ = agent.assign(&self.ground.task(index, self.tick));
@@ -249,7 +263,7 @@ where
 
     fn computer(
         &self,
-        agent: Option<Agent<f32, G, NEIGHBORS, A, AnyWire>>,
+        agent: Option<Agent<f32, G, NEIGHBORS, A, Voice>>,
         boot: u8,
     ) -> Computer<G, A> {
         Computer {
@@ -287,17 +301,21 @@ where
     /// One tick. Returns what the swarm as a whole looks like after it.
     pub fn step(&mut self) -> TickRow {
         self.apply_faults();
-        let rejected = self.decide();
+        let refused = self.decide();
+        self.attack();
 
-        let computers = &self.computers;
-        let outbox = |index: usize| computers[index].outbox.as_slice();
+        let (computers, attackers) = (&self.computers, &self.attackers);
+        let outbox = |index: usize| match computers.get(index) {
+            Some(computer) => computer.outbox.as_slice(),
+            None => attackers[index - computers.len()].outbox(),
+        };
         let carried = self.radio.carry(self.tick, &self.positions_m, outbox);
         let packets = PacketCounts {
             sent: carried.sent,
             delivered: carried.delivered,
             lost: carried.lost,
             corrupted: carried.corrupted,
-            rejected,
+            ..refused
         };
         self.packets += packets;
         self.throttled += carried.throttled;
@@ -352,11 +370,20 @@ where
         }
     }
 
-    /// Phase one: everybody decides. Returns how many frames were refused.
-    fn decide(&mut self) -> u64 {
+    /// Attackers hear and speak, as robots do.
+    fn attack(&mut self) {
+        let robots = self.robots.len();
+        for (at, attacker) in self.attackers.iter_mut().enumerate() {
+            attacker.act(self.tick, self.radio.inbox(robots + at));
+        }
+    }
+
+    /// Phase one: everybody decides. Returns how many frames were refused, and nothing else.
+    fn decide(&mut self) -> PacketCounts {
         self.send_out();
-        let rejected = self.decide_here();
-        rejected + self.collect()
+        let mut refused = self.decide_here();
+        refused.rejected += self.collect();
+        refused
     }
 
     /// Lets those begin whose controllers are elsewhere.
@@ -406,7 +433,7 @@ where
     }
 
     /// Steps the robots whose agents are here, in parallel.
-    fn decide_here(&mut self) -> u64 {
+    fn decide_here(&mut self) -> PacketCounts {
         let (tick, tick_us, keeps_events) = (self.tick, self.tick_us, self.keeps_events);
         let moment = Tick {
             tick,
@@ -433,15 +460,15 @@ where
                     *command = Command::Hold;
                     if tick < computer.down_until {
                         status.fall_silent();
-                        return 0;
+                        return PacketCounts::default();
                     }
                     if computer.agent.is_none() {
-                        return 0;
+                        return PacketCounts::default();
                     }
                     let now = computer.now(tick, tick_us);
                     let inputs = moment.inputs(index, computer, senses, heard);
                     let Some(agent) = &mut computer.agent else {
-                        return 0;
+                        return PacketCounts::default();
                     };
                     let out = agent.step(&inputs, now, workspace);
                     computer.outbox = out.outbox;
@@ -455,10 +482,10 @@ where
                         leader: agent.leader(),
                         target: agent.target().unwrap_or(status.target),
                     };
-                    u64::from(out.rejected)
+                    PacketCounts::refused(out.rejected, out.refused)
                 },
             )
-            .sum()
+            .reduce(PacketCounts::default, |one, other| one + other)
     }
 
     /// Takes note of where everybody is after phase two.

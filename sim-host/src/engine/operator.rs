@@ -2,14 +2,14 @@
 
 use super::simulate::{WIDE, brains, formation, is_narrow, route};
 use super::{Engine, Grid, Ground, Outcome, PlaneGround, Status};
+use crate::radio::Voice;
 use crate::record::Motion;
 use crate::scenario::Scenario;
 use crate::world::Misplaced;
 use staya_controller::agent::{
     CELLS, Commanded, Event, Guidance, Parameter, Safety, Unguarded, Wish,
 };
-use staya_controller::wire::{Header, Message, Wire as _};
-use staya_mavlink::any::AnyWire;
+use staya_controller::wire::{Header, Message, RobotId, Wire as _};
 use staya_mavlink::frame::MAX_FRAME_LEN;
 
 /// What an operator can see of a robot: what the robot itself knows.
@@ -104,9 +104,12 @@ where
 {
     let mut engine = Engine::new(scenario, ground, brains);
     engine.keeps_events = true;
+    let key = scenario.key.as_ref();
+    let (wire, number) = Voice::operator(scenario.radio.format, key, 1);
     Box::new(Desk {
         engine,
-        wire: AnyWire::new(scenario.radio.format),
+        wire,
+        number: key.map(|_| number),
         sequence: 0,
     })
 }
@@ -114,7 +117,9 @@ where
 /// A swarm, and what its operator speaks.
 struct Desk<W, G, A> {
     engine: Engine<W, Commanded<f32, G>, A>,
-    wire: AnyWire,
+    wire: Voice,
+    /// As whom it speaks if the robots have a key; otherwise as whom it is told to.
+    number: Option<RobotId>,
     /// Of the next frame.
     sequence: u16,
 }
@@ -161,6 +166,7 @@ where
     fn tell(&mut self, index: usize, header: Header, message: &Message) {
         let mut frame = heapless::Vec::<u8, MAX_FRAME_LEN>::new();
         let header = Header {
+            sender: self.number.unwrap_or(header.sender),
             sequence: self.sequence,
             ..header
         };

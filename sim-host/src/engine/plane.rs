@@ -2,6 +2,7 @@
 
 use super::Status;
 use super::ground::{Ground, Words};
+use crate::radio::Voice;
 use crate::record::Motion;
 use crate::scenario::{Order, PlaneSetup, Robot, Scenario, Target};
 use crate::world::plane::{Clearance, Disc, Plane, narrow};
@@ -9,12 +10,12 @@ use crate::world::window;
 use staya_controller::agent::{
     AgentConfig, CellState, Command, InCell, Inputs, PLACES, Place, Pose, Surroundings, Task,
 };
+use staya_controller::auth::Key;
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Cell, GridFrame, UNIT};
 use staya_controller::obstacle::{Obstacle, grid_walls};
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{Format, Header, Message, Mode, PlaceAssignment, RobotId, Wire};
-use staya_mavlink::any::{AnyWire, operator};
 
 /// Walls of the land that a robot sees at a time.
 const WALLS: usize = 16;
@@ -52,7 +53,7 @@ impl PlaneGround {
             radius: scenario.route.params.radius,
             tick_us: scenario.tick_us,
             delay_us: libm::round(scenario.radio.delay_ms * 1000.0) as u32,
-            orders: frames(&setup.orders, scenario.radio.format),
+            orders: frames(&setup.orders, scenario.radio.format, scenario.key.as_ref()),
             setup: setup.clone(),
         }
     }
@@ -130,11 +131,12 @@ impl PlaneGround {
 }
 
 /// The operator's orders as frames; those of one tick together.
-pub(super) fn frames(orders: &[Order], format: Format) -> Vec<(u32, Vec<u8>)> {
+pub(super) fn frames(orders: &[Order], format: Format, key: Option<&Key>) -> Vec<(u32, Vec<u8>)> {
     let mut frames = Vec::<(u32, Vec<u8>)>::new();
     // Each index counts by itself: what is newer may be at most half of all versions ahead.
     let mut versions = [0_u8; 256];
-    let (mut sequence, mut wire) = (0_u16, AnyWire::new(format));
+    let (mut wire, sender) = Voice::operator(format, key, 0);
+    let mut sequence = 0_u16;
     for order in orders {
         let version = &mut versions[usize::from(order.index)];
         *version = version.wrapping_add(1);
@@ -148,7 +150,7 @@ pub(super) fn frames(orders: &[Order], format: Format) -> Vec<(u32, Vec<u8>)> {
         };
         let header = Header {
             boot: 0,
-            sender: operator(format),
+            sender,
             sequence,
         };
         sequence = sequence.wrapping_add(1);

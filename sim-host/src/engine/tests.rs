@@ -348,6 +348,7 @@ proptest! {
     }
 }
 
+mod attack;
 mod elsewhere;
 mod operator;
 mod plane;

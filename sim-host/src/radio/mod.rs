@@ -8,8 +8,10 @@
 mod air;
 mod fate;
 mod params;
+mod voice;
 
 pub use params::{Burst, RadioParams};
+pub use voice::{PEERS, Voice};
 
 use air::Air;
 use fate::{Fates, Verdict};

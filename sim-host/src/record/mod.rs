@@ -15,9 +15,10 @@ pub use history::{Frame, History, Sample, SeriesPoint};
 
 use file::LineFile;
 use serde::Serialize;
+use staya_controller::agent::Refused;
 use staya_controller::grid::Cell;
 use staya_controller::wire::Mode;
-use std::ops::AddAssign;
+use std::ops::{Add, AddAssign};
 use std::path::Path;
 
 /// Where a body is and how it moves.
@@ -74,12 +75,43 @@ pub struct PacketCounts {
     pub lost: u64,
     /// Delivered with flipped bits.
     pub corrupted: u64,
-    /// Refused by a receiver: damaged, foreign or replayed.
+    /// Refused by a receiver: damaged, foreign or replayed; with a key also those that follow.
     pub rejected: u64,
+    /// Refused because the tag or signature was missing.
+    pub unsigned: u64,
+    /// Refused because the tag or signature was of another key or content.
+    pub forged: u64,
+    /// Refused because it was heard before, or was older than what was; the radio's own repetitions included.
+    pub replayed: u64,
+}
+
+impl PacketCounts {
+    /// What a robot refused in a step, and why, and nothing else.
+    #[must_use]
+    pub fn refused(rejected: u16, why: Refused) -> Self {
+        Self {
+            rejected: rejected.into(),
+            unsigned: why.unsigned.into(),
+            forged: why.forged.into(),
+            replayed: why.replayed.into(),
+            ..Self::default()
+        }
+    }
+}
+
+impl Add for PacketCounts {
+    type Output = Self;
+    fn add(mut self, other: Self) -> Self {
+        self += other;
+        self
+    }
 }
 
 impl AddAssign for PacketCounts {
     fn add_assign(&mut self, other: Self) {
+        self.unsigned += other.unsigned;
+        self.forged += other.forged;
+        self.replayed += other.replayed;
         self.sent += other.sent;
         self.delivered += other.delivered;
         self.lost += other.lost;

@@ -13,6 +13,7 @@ fn tick(tick: u32) -> TickRow {
             lost: 9,
             corrupted: 2,
             rejected: 1,
+            ..PacketCounts::default()
         },
     }
 }

@@ -3,6 +3,7 @@
 //! [`ScenarioFile`] documents every field. A wrong one gives an error that names the file, the line,
 //! the field and the remedy.
 
+mod authentication;
 mod check;
 mod params;
 mod plane;
@@ -22,8 +23,9 @@ pub use plane::{
 };
 pub use robots::{Formation, Robot};
 pub use schema::{
-    Crop, EntropyTable, FaultTable, FormationEntry, GridTable, NaturalTable, RobotEntry,
-    RobotsTable, ScatteredEntry, ScenEntry, ScenarioFile, TerrainTable, UniformTable,
+    AttackKind, AttackTable, AuthenticationTable, Crop, EntropyTable, FaultTable, FormationEntry,
+    GridTable, NaturalTable, RobotEntry, RobotsTable, ScatteredEntry, ScenEntry, ScenarioFile,
+    TerrainTable, UniformTable,
 };
 pub use source::ScenarioError;
 pub(crate) use source::Source;
@@ -31,6 +33,7 @@ pub(crate) use source::Source;
 use crate::radio::RadioParams;
 use crate::terrain::Terrain;
 use crate::world::MoveRules;
+use staya_controller::auth::Key;
 use staya_controller::formation::FormationParams;
 use staya_controller::wire::RobotId;
 use std::path::Path;
@@ -56,6 +59,25 @@ pub struct Fault {
     pub from_tick: u32,
     /// The tick in which it starts anew; not before `from_tick`.
     pub to_tick: u32,
+}
+
+/// Somebody who wants the robots to go elsewhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Attack {
+    /// What it does.
+    pub kind: AttackKind,
+    /// Where it stands, metres.
+    pub place_m: [f64; 2],
+    /// The first tick in which it sends.
+    pub from_tick: u32,
+    /// The first tick in which it does not any more.
+    pub to_tick: u32,
+    /// Where it orders the robots to, metres.
+    pub lure_m: [f64; 2],
+    /// In whose name.
+    pub claims: RobotId,
+    /// Ticks from what it hears to its repetition.
+    pub delay_ticks: u32,
 }
 
 /// A checked scenario, ready to run.
@@ -87,6 +109,12 @@ pub struct Scenario {
     pub formation_params: FormationParams,
     /// Robots that go down.
     pub faults: Vec<Fault>,
+    /// What all robots share; `None`: they believe everybody.
+    pub key: Option<Key>,
+    /// What the owner of the key's file should know, as a line for people.
+    pub key_remark: Option<String>,
+    /// Those who have no key.
+    pub attacks: Vec<Attack>,
 }
 
 impl Scenario {
@@ -141,6 +169,8 @@ impl Scenario {
             }
         };
         check::numbers(&source, &file, &robots)?;
+        let (key, key_remark) = authentication::key(&source, &file, &robots)?.unzip();
+        let attacks = authentication::attacks(&source, &file, &robots)?;
         let faults = check::faults(&source, &file, &robots)?;
         check::formation_only(&source, &file)?;
         let route = params::routing(&source, &file.route, &file.grid)?;
@@ -162,6 +192,9 @@ impl Scenario {
             route,
             formation_params,
             faults,
+            key,
+            key_remark: key_remark.flatten(),
+            attacks,
         })
     }
 

@@ -48,6 +48,11 @@ pub struct ScenarioFile {
     /// Robots that fail during the run.
     #[serde(default)]
     pub fault: Vec<FaultTable>,
+    /// The robots' common key. Without this table everybody is believed.
+    pub authentication: Option<AuthenticationTable>,
+    /// Radios at the roadside whose owners want the robots to go elsewhere.
+    #[serde(default)]
+    pub attack: Vec<AttackTable>,
 }
 
 impl ScenarioFile {
@@ -254,4 +259,47 @@ pub struct FaultTable {
     /// How long it stands and is silent, seconds. Its clock starts from 0 again. Default: 0.
     #[serde(default)]
     pub down_s: f64,
+}
+
+/// `[authentication]`: exactly one of these. Robots then tag (postcard) or sign (MAVLink) what they send, and hear only who has the key.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AuthenticationTable {
+    /// A file with 64 hexadecimal digits, or with `passphrase: ` and words.
+    pub key_file: Option<PathBuf>,
+    /// The same text, for demonstrations: a scenario is no place for a secret.
+    pub key: Option<String>,
+}
+
+/// What an attacker does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AttackKind {
+    /// Records all that it hears, and sends it again later.
+    Replay,
+    /// Sends orders in a robot's name, with a tag or signature of a key that it guesses.
+    Forge,
+    /// Sends the same orders without tag or signature.
+    Unsigned,
+}
+
+/// `[[attack]]`: a radio like those of the robots, and nobody's friend.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AttackTable {
+    /// `"replay"`, `"forge"` or `"unsigned"`.
+    pub kind: AttackKind,
+    /// Where it stands, metres from the south-west corner.
+    pub place_m: [f64; 2],
+    /// When it begins to send, seconds after the start. Default: 0.
+    #[serde(default)]
+    pub from_s: f64,
+    /// When it ends. Default: never.
+    pub to_s: Option<f64>,
+    /// Where it orders the robots to, metres; not for `"replay"`.
+    pub lure_m: Option<[f64; 2]>,
+    /// The robot in whose name it speaks. Default: the last one.
+    pub claims: Option<u32>,
+    /// Seconds from what it hears to its repetition. Default: 10; only for `"replay"`.
+    pub delay_s: Option<f64>,
 }

@@ -95,8 +95,10 @@ fn who_is_down_hears_nothing_and_starts_anew_as_the_scenario_has_it() {
 
 #[test]
 fn a_goal_that_it_is_told_reaches_the_controller_and_events_come_back() {
-    for radio in ["", "[radio]\nformat = \"mavlink\"\n"] {
-        let scenario = scenario(TWO, radio);
+    let key = "[authentication]\nkey = \"passphrase: ours\"\n";
+    let mavlink = "[radio]\nformat = \"mavlink\"\n";
+    for rest in ["", mavlink, key, &format!("{mavlink}{key}")] {
+        let scenario = scenario(TWO, rest);
         tell_a_goal(&mut *operated(&scenario).expect("they can be placed"));
     }
 }

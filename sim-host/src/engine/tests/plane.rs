@@ -102,7 +102,7 @@ fn versions_of_orders_count_up_for_each_goal_by_itself() {
         },
     };
     let orders: Vec<_> = (0..70_000).map(order).collect();
-    let sent = crate::engine::plane::frames(&orders, Format::Postcard);
+    let sent = crate::engine::plane::frames(&orders, Format::Postcard, None);
     assert_eq!(sent.len(), 35_000);
     let mut last = [0_u8; 2];
     for (_, bytes) in &sent {

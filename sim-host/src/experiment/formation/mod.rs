@@ -328,6 +328,9 @@ impl Plan {
             },
             formation_params: self.formation,
             faults: Vec::new(),
+            key: None,
+            key_remark: None,
+            attacks: Vec::new(),
         }
     }
 

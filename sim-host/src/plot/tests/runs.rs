@@ -36,6 +36,7 @@ fn tick(tick: u32, error: f64) -> TickRow {
             lost: 1,
             corrupted: 0,
             rejected: 0,
+            ..PacketCounts::default()
         },
     }
 }

@@ -147,6 +147,9 @@ impl Scenario {
             route: Routing::default(),
             formation_params: FormationParams::default(),
             faults: Vec::new(),
+            key: None,
+            key_remark: None,
+            attacks: Vec::new(),
         }
     }
 }

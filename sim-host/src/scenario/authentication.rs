@@ -1,0 +1,141 @@
+//! The tables of the key and of those who do not have it.
+
+use super::check::within;
+use super::source::Source;
+use super::{Attack, AttackKind, AttackTable, Robot, ScenarioError, ScenarioFile};
+use crate::key::{self, KeyFile};
+use crate::radio::{PEERS, Voice};
+use staya_controller::auth::Key;
+use staya_controller::wire::RobotId;
+
+/// Metres from the corner that a place may have: what a packet can say.
+const FARTHEST_M: f64 = 2_000_000.0;
+
+/// The robots' key and what is to be said of its file, if there is one.
+pub(super) fn key(
+    source: &Source<'_>,
+    file: &ScenarioFile,
+    robots: &[Robot],
+) -> Result<Option<(Key, Option<String>)>, ScenarioError> {
+    let Some(table) = &file.authentication else {
+        return Ok(None);
+    };
+    let found = match (&table.key_file, &table.key) {
+        (Some(name), None) => {
+            let read = KeyFile::read(&source.folder().join(name)).map_err(|error| {
+                let remedy = "file names are relative to the scenario file";
+                source.error("authentication.key_file", error.to_string(), remedy)
+            })?;
+            (read.key, read.remark)
+        }
+        (None, Some(text)) => {
+            let key = key::parse(text).map_err(|(_, problem)| {
+                let remedy = "give 64 hexadecimal digits, or \"passphrase: \" and words";
+                source.error("authentication.key", problem, remedy)
+            })?;
+            (key, None)
+        }
+        _ => {
+            let remedy = "give exactly one of key_file, key";
+            return Err(source.error(
+                "authentication",
+                "it is not clear which key is meant",
+                remedy,
+            ));
+        }
+    };
+    // And two operators.
+    if robots.len() + 2 > PEERS {
+        let problem = format!(
+            "{} robots are too many: nobody forgets whom he has heard",
+            robots.len()
+        );
+        let remedy = format!("give at most {}, or leave this table out", PEERS - 2);
+        return Err(source.error("authentication", problem, remedy));
+    }
+    let most = Voice::max_robot(file.radio.format, true);
+    if let Some(robot) = robots.iter().find(|robot| robot.id > most) {
+        let problem = format!("robot {} has no number in frames with a tag", robot.id.0);
+        let remedy = format!("give numbers up to {}", most.0);
+        return Err(source.error("authentication", problem, remedy));
+    }
+    Ok(Some(found))
+}
+
+/// The attackers.
+pub(super) fn attacks(
+    source: &Source<'_>,
+    file: &ScenarioFile,
+    robots: &[Robot],
+) -> Result<Vec<Attack>, ScenarioError> {
+    let tables = file.attack.iter().enumerate();
+    tables
+        .map(|(index, table)| attack(source, file, robots, table, &format!("attack[{index}]")))
+        .collect()
+}
+
+fn attack(
+    source: &Source<'_>,
+    file: &ScenarioFile,
+    robots: &[Robot],
+    table: &AttackTable,
+    field: &str,
+) -> Result<Attack, ScenarioError> {
+    let lure_m = match (table.kind, table.lure_m, table.delay_s) {
+        (AttackKind::Replay, None, _) => [0.0; 2],
+        (AttackKind::Forge | AttackKind::Unsigned, Some(lure_m), None) => lure_m,
+        (AttackKind::Replay, Some(_), _) => {
+            let remedy = "leave lure_m out, or choose another kind";
+            return Err(source.error(field, "a replay says what others have said", remedy));
+        }
+        (_, None, _) => {
+            let remedy = "give lure_m, metres";
+            return Err(source.error(
+                field,
+                "it does not say where it orders the robots to",
+                remedy,
+            ));
+        }
+        (_, _, Some(_)) => {
+            let remedy = "leave delay_s out, or give kind = \"replay\"";
+            return Err(source.error(field, "only a replay has a delay", remedy));
+        }
+    };
+    for (name, place) in [("place_m", table.place_m), ("lure_m", lure_m)] {
+        for value in place {
+            let field = format!("{field}.{name}");
+            within(source, &field, value, -FARTHEST_M, FARTHEST_M, "metres")?;
+        }
+    }
+    let tick = |name: &str, seconds: f64| {
+        within(
+            source,
+            &format!("{field}.{name}"),
+            seconds,
+            0.0,
+            1e9,
+            "seconds",
+        )?;
+        Ok(libm::ceil(seconds / file.tick_s) as u32)
+    };
+    let last = robots.last().map_or(RobotId(1), |robot| robot.id);
+    let claims = table.claims.map_or(last, RobotId);
+    let most = Voice::max_robot(file.radio.format, true);
+    if !claims.is_somebody() || claims > most {
+        let remedy = format!("give 1 to {}", most.0);
+        return Err(source.error(
+            &format!("{field}.claims"),
+            "this is no robot's number",
+            remedy,
+        ));
+    }
+    Ok(Attack {
+        kind: table.kind,
+        place_m: table.place_m,
+        from_tick: tick("from_s", table.from_s)?,
+        to_tick: table.to_s.map_or(Ok(u32::MAX), |s| tick("to_s", s))?,
+        lure_m,
+        claims,
+        delay_ticks: tick("delay_s", table.delay_s.unwrap_or(10.0))?,
+    })
+}
