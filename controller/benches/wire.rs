@@ -5,11 +5,13 @@ use core::hint::black_box;
 use core::time::Duration;
 use criterion::{Criterion, criterion_group, criterion_main};
 use heapless::Vec;
+use staya_controller::auth::Key;
 use staya_controller::grid::{Cell, Dir};
 use staya_controller::time::Instant;
 use staya_controller::wire::{
     Ack, Beacon, CompactBeacon, GoalAssignment, Header, MAX_FRAME_LEN, Message, Mode, Request,
-    RequestKind, RobotId, TEMPLATE_PART, TemplateAssignment, TemplateEntry, decode, encode,
+    RequestKind, RobotId, Sealed, TEMPLATE_PART, TemplateAssignment, TemplateEntry, Wire, decode,
+    encode,
 };
 
 const TO: RobotId = RobotId(70_000);
@@ -118,12 +120,37 @@ fn wire(c: &mut Criterion) {
     group.finish();
 }
 
-/// Twelve benchmarks of tens of nanoseconds need no five seconds each.
+/// What a tag adds to a beacon: to make it, and to check it.
+fn sealed(c: &mut Criterion) {
+    let header = Header {
+        boot: 1,
+        sender: TO,
+        sequence: 4_711,
+    };
+    let [(_, beacon), ..] = messages();
+    let key = Key::of_passphrase(b"bench");
+    let mut sender = Sealed::<4>::at_start(&key, 1).unwrap();
+    let receiver = Sealed::<4>::at_start(&key, 1).unwrap();
+    let mut out = Vec::<u8, MAX_FRAME_LEN>::new();
+    c.bench_function("encode/sealed_beacon", |bencher| {
+        bencher.iter(|| {
+            out.clear();
+            sender.encode(header, black_box(&beacon), &mut out)
+        });
+    });
+    let (_delimiter, frame) = out.split_last().unwrap();
+    assert!(receiver.clone().decode(frame).is_ok());
+    c.bench_function("decode/sealed_beacon", |bencher| {
+        bencher.iter(|| receiver.clone().decode(black_box(frame)));
+    });
+}
+
+/// Fourteen benchmarks of tens of nanoseconds need no five seconds each.
 fn short() -> Criterion {
     Criterion::default()
         .warm_up_time(Duration::from_millis(500))
         .measurement_time(Duration::from_secs(2))
 }
 
-criterion_group!(name = benches; config = short(); targets = wire);
+criterion_group!(name = benches; config = short(); targets = wire, sealed);
 criterion_main!(benches);

@@ -18,7 +18,8 @@ const START_V2: u8 = 0xFD;
 /// Incompatibility flag: a signature follows the checksum.
 const SIGNED: u8 = 1;
 
-static CRC: Crc<u16, Table<1>> = Crc::<u16, Table<1>>::new(&CRC_16_MCRF4XX);
+/// The checksum's; a table for all of the crate.
+pub(crate) static CRC: Crc<u16, Table<1>> = Crc::<u16, Table<1>>::new(&CRC_16_MCRF4XX);
 
 /// Who sends a frame, and which of its frames it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -3,8 +3,7 @@
 //! The signature is the first 48 bits of SHA-256 over key, frame with checksum, link id and timestamp; 13 bytes with these two. Whoever
 //! guesses is right once in 2^48 tries. See "Message Signing" in MAVLink's guide; pymavlink and MAVProxy do the same.
 
-use crate::frame::{RawFrame, SIGNATURE_LEN};
-use crc::{CRC_16_MCRF4XX, Crc, Table};
+use crate::frame::{CRC, RawFrame, SIGNATURE_LEN};
 use serde::Serialize;
 use staya_controller::auth::{Freshness, Key, ReplayGuard, Sha256, is_same};
 
@@ -22,8 +21,6 @@ const START_V2: u8 = 0xFD;
 const SIGNED: u8 = 1;
 /// Bytes of a header before the payload.
 const HEADER: usize = 10;
-
-static CRC: Crc<u16, Table<1>> = Crc::<u16, Table<1>>::new(&CRC_16_MCRF4XX);
 
 /// Why a frame was not signed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

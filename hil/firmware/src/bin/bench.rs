@@ -22,6 +22,13 @@ mod program {
     };
     use staya_firmware::{runtime, stack};
     use staya_mavlink::wire::Mavlink;
+    #[cfg(not(part = "nrf51"))]
+    use {
+        staya_controller::auth::{KEY_LEN, Key},
+        staya_controller::wire::Sealed,
+        staya_mavlink::signed::Signed,
+        staya_mavlink::signing::Signing,
+    };
 
     /// Samples that the median is of. When there are more steps, every second, fourth, ... counts.
     const SAMPLES: usize = if cfg!(part = "nrf51") { 64 } else { 1024 };
@@ -143,6 +150,12 @@ mod program {
         );
         #[cfg(not(part = "nrf51"))]
         {
+            let names = ["encode_signed", "decode_signed"];
+            format::<Signed>(signed(), signed(), names, &row);
+            let names = ["encode_sealed", "decode_sealed"];
+            if let (Some(own), Some(other)) = (sealed(), sealed()) {
+                format::<Sealed>(own, other, names, &row);
+            }
             swarms::<f32>("f32", &row);
             worst::<f32, 16, 32>("f32", &row);
         }
@@ -152,6 +165,18 @@ mod program {
         #[cfg(part = "nrf51")]
         worst::<Q16, 8, 16>("Q16", &row);
         runtime::exit(0)
+    }
+
+    /// MAVLink with signatures.
+    #[cfg(not(part = "nrf51"))]
+    fn signed() -> Signed {
+        Signed::new(Signing::new(Key::new(black_box([7; KEY_LEN])), 0, 0))
+    }
+
+    /// Postcard with a tag.
+    #[cfg(not(part = "nrf51"))]
+    fn sealed() -> Option<Sealed> {
+        Sealed::at_start(&Key::new(black_box([7; KEY_LEN])), 0)
     }
 
     /// Prints a row.
