@@ -119,3 +119,16 @@ def test_ten_vehicles(connect):
         action.goto_location(*degrees(-6.0 if number <= 5 else 12.0, 2.0 * number), 488.0, 0.0)
     for number, (telemetry, _, _) in flights.items():
         wait_until(lambda: near(telemetry, -6.0 if number <= 5 else 12.0, 2.0 * number), 25, f"goto of {number}")
+
+
+def test_takeoff_and_landing(connect):
+    systems = connect("scenarios/bridge-fly.toml", 4, "--disarmed")
+    telemetry, action = Telemetry(systems[2]), Action(systems[2])
+    wait_until(lambda: telemetry.health().is_armable and telemetry.health().is_global_position_ok, 15, "its health")
+    assert not telemetry.armed()
+    action.set_takeoff_altitude(4.0)
+    action.arm()
+    action.takeoff()
+    wait_until(lambda: abs(telemetry.position().relative_altitude_m - 4.0) < 0.2 and telemetry.in_air(), 15, "the height")
+    action.land()
+    wait_until(lambda: not telemetry.armed() and not telemetry.in_air(), 15, "the landing")

@@ -117,7 +117,18 @@ impl Vehicle {
                 }
                 self.set_mode(number, out)
             }
-            MAV_CMD_NAV_TAKEOFF => self.take_off(command.params[6], out),
+            MAV_CMD_NAV_TAKEOFF => {
+                // Heights are above the ground.
+                let frame = command.spot.map(|spot| spot.frame);
+                let is_known = matches!(
+                    frame,
+                    None | Some(MAV_FRAME_GLOBAL_RELATIVE_ALT | MAV_FRAME_GLOBAL_RELATIVE_ALT_INT)
+                );
+                if self.craft.flies && !is_known {
+                    return Err(MAV_RESULT_COMMAND_UNSUPPORTED_MAV_FRAME);
+                }
+                self.take_off(command.params[6], out)
+            }
             MAV_CMD_NAV_LAND if self.craft.flies => {
                 self.needs_arms()?;
                 self.enter(FlightMode::Land, out);
@@ -215,6 +226,10 @@ impl Vehicle {
     fn set_mode(&mut self, number: u32, out: &mut Out) -> Result<(), Refusal> {
         let mode = FlightMode::from_number(number, self.craft.flies);
         let mode = mode.ok_or(MAV_RESULT_DENIED)?;
+        // Nobody leaves a formation by himself.
+        if mode == FlightMode::Return && self.craft.in_formation {
+            return Err(MAV_RESULT_DENIED);
+        }
         // Who has a mission has it flown in this mode, as with ArduPilot.
         if mode == FlightMode::Auto && self.is_armed && !self.mission.is_empty() {
             return self.start_mission(out);

@@ -74,13 +74,14 @@ pub struct Vehicle {
 pub(super) enum Kind {
     /// Each is news.
     News,
+    Parameter,
     Setpoint,
     Neighbor,
     Route,
 }
 
 impl Kind {
-    const COUNT: usize = 4;
+    const COUNT: usize = 5;
 }
 
 impl Vehicle {
@@ -355,7 +356,12 @@ impl Vehicle {
     }
 
     fn unknown_parameter(&mut self, out: &mut Out) {
-        self.text(out, Kind::News, MAV_SEVERITY_WARNING, "no such parameter");
+        self.text(
+            out,
+            Kind::Parameter,
+            MAV_SEVERITY_WARNING,
+            "no such parameter",
+        );
     }
 
     fn set_parameter(&mut self, wanted: &PARAM_SET_DATA, out: &mut Out) {

@@ -100,6 +100,14 @@ fn takeoff_and_landing() {
         MAV_RESULT_ACCEPTED
     );
     assert_eq!(place_mm(bench.wish()), [3000, 5000, 4000]);
+    let above_the_sea = COMMAND_INT_DATA {
+        z: 104.0,
+        command: MAV_CMD_NAV_TAKEOFF,
+        frame: MAV_FRAME_GLOBAL,
+        ..COMMAND_INT_DATA::DEFAULT
+    };
+    let frame = MAV_RESULT_COMMAND_UNSUPPORTED_MAV_FRAME;
+    assert_eq!(bench.command_int(above_the_sea), frame);
     bench.tick(|sample| sample.position_m[2] = 4.0);
     let again = bench.command(MAV_CMD_NAV_TAKEOFF, takeoff(4.0));
     assert_eq!(again, MAV_RESULT_TEMPORARILY_REJECTED, "it is in the air");
@@ -215,6 +223,9 @@ fn parameters_are_set_within_limits_and_told_either_way() {
         bench.give(read(0)).messages[..],
         [MavMessage::PARAM_VALUE(_)]
     ));
+    bench.give(read(count as i16));
+    assert!(bench.texts().is_empty(), "it was said just now");
+    bench.vehicle.now_us += 10_000_000;
     bench.give(read(count as i16));
     assert_eq!(bench.texts(), ["no such parameter"]);
     // The timeout of setpoints is the vehicle's own matter.

@@ -231,6 +231,8 @@ fn on_the_grid_places_are_cells_and_velocities_none() {
         in_formation: true,
         ..on_grid()
     });
+    let home = MAV_CMD_NAV_RETURN_TO_LAUNCH;
+    assert_eq!(bench.command(home, NONE), MAV_RESULT_DENIED);
     assert_eq!(
         bench.command_int(reposition(1.0, 1.0, 1.0)),
         MAV_RESULT_DENIED
