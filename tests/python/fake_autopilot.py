@@ -84,30 +84,77 @@ class Line:
     def send(self, now: float, data: bytes):
         self._queue(now, True, data)
 
-    def turn(self, now: float) -> list[bytes]:
-        """Sends what is due and returns what has arrived."""
+    def _receive(self) -> bytes | None:
         while True:
             try:
-                self._queue(now, False, self.socket.recv(4096))
+                return self.socket.recv(4096)
             except BlockingIOError:
-                break
+                return None
             except OSError:
                 # Nobody listens yet.
                 continue
+
+    def _send(self, data: bytes):
+        try:
+            self.socket.sendto(data, self.to)
+        except OSError:
+            pass
+
+    def turn(self, now: float) -> list[bytes]:
+        """Sends what is due and returns what has arrived."""
+        while data := self._receive():
+            self._queue(now, False, data)
         arrived = []
         while self.waiting and self.waiting[0][0] <= now:
             _, _, is_out, data = heapq.heappop(self.waiting)
-            if not is_out:
+            if is_out:
+                self._send(data)
+            else:
                 arrived.append(data)
-                continue
-            try:
-                self.socket.sendto(data, self.to)
-            except OSError:
-                pass
         return arrived
 
     def close(self):
         self.socket.close()
+
+
+class Server(Line):
+    """The same over TCP, as ArduPilot's simulation offers it: a companion connects."""
+
+    def __init__(self, host: str, port: int, faults: Faults | None = None):
+        self.faults, self.is_cut, self.waiting, self.count = faults or Faults(), False, [], 0
+        self.socket = socket.create_server((host, port))
+        self.socket.setblocking(False)
+        self.peer = None
+
+    def _receive(self):
+        try:
+            if self.peer is None:
+                self.peer, _ = self.socket.accept()
+                self.peer.setblocking(False)
+            data = self.peer.recv(4096)
+        except BlockingIOError:
+            return None
+        except OSError:
+            data = b""
+        if not data:
+            self._hang_up()
+        return data
+
+    def _send(self, data):
+        try:
+            if self.peer is not None:
+                self.peer.sendall(data)
+        except OSError:
+            self._hang_up()
+
+    def _hang_up(self):
+        if self.peer is not None:
+            self.peer.close()
+        self.peer = None
+
+    def close(self):
+        self._hang_up()
+        super().close()
 
 
 class Vehicle:
@@ -380,7 +427,7 @@ class Fleet:
 def main():
     parser = argparse.ArgumentParser(description="Fake autopilots for `staya companion`.")
     parser.add_argument("--kind", choices=sorted(MODES), default="rover")
-    parser.add_argument("--link", default="udpout:127.0.0.1:14550", help="where the companion listens")
+    parser.add_argument("--link", default="udpout:127.0.0.1:14550", help="where the companion listens, or tcpin:HOST:PORT, where it connects (further vehicles: 10 ports on each)")
     parser.add_argument("--count", type=int, default=1, help="vehicles in a row, 3 m apart, systems 1, 2, ...")
     parser.add_argument("--system", type=int, default=1, help="system of the first")
     parser.add_argument("--start", default="0,0", help="metres east,north of the origin, of the first")
@@ -394,15 +441,16 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     scheme, host, port = options.link.split(":")
-    if scheme != "udpout":
-        parser.error("only udpout:HOST:PORT")
+    if scheme not in ("udpout", "tcpin"):
+        parser.error("only udpout:HOST:PORT and tcpin:HOST:PORT")
     east, north = map(float, options.start.split(","))
     vehicles = []
     for i in range(options.count):
         faults = Faults(options.drop, options.delay, options.corrupt, options.seed + i)
+        line = Line(host, int(port), faults) if scheme == "udpout" else Server(host, int(port) + 10 * i, faults)
         vehicles.append(
             Vehicle(
-                options.system + i, options.kind, Line(host, int(port), faults), (east + 3.0 * i, north), mode=options.mode, armed=options.armed,
+                options.system + i, options.kind, line, (east + 3.0 * i, north), mode=options.mode, armed=options.armed,
                 position_after=options.position_after, origin=tuple(map(float, options.origin.split(","))),
             )
         )

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from conftest import wait_until
-from fake_autopilot import GUIDED, ORIGIN, PILOT, Faults, Fleet, Line, Vehicle
+from fake_autopilot import GUIDED, ORIGIN, PILOT, Faults, Fleet, Line, Server, Vehicle
 
 AUTOPILOTS = {"rover": "ardupilot-rover", "copter": "ardupilot-copter", "px4": "px4-copter"}
 # Of all scenarios here.
@@ -256,6 +256,22 @@ def test_links_that_lose_delay_and_damage_frames(one):
     report = json.loads(output)
     assert report["links"][0]["junk_bytes"] > 0, "damage was seen"
     assert report["interrupted"] and report["vehicles"][0]["restarts"] == 0
+
+
+def test_a_link_over_tcp_that_breaks_is_made_anew(tmp_path, free_port, staya):
+    port = free_port()
+    write_scenario(tmp_path, [((0.0, 0.0), (40.0, 0.0))])
+    config = write_config(tmp_path, [port], "rover")
+    config.write_text(config.read_text().replace("udpin", "tcpout"))
+    vehicle = Vehicle(1, "rover", Server("127.0.0.1", port), mode=GUIDED, armed=True)
+    with Fleet([vehicle]) as fleet:
+        process = staya("companion", config)
+        wait_until(lambda: vehicle.velocity[0] > 0.5, what="motion")
+        with fleet.lock:
+            vehicle.line._hang_up()
+            vehicle.setpoints.clear()
+        wait_until(lambda: len(vehicle.setpoints) > 20, 10, "setpoints again")
+        ends_well(process)
 
 
 def test_a_wrong_origin_moves_nothing(tmp_path, free_port, staya):
