@@ -6,6 +6,7 @@
 mod common;
 
 use common::{Scene, now, order};
+use staya_controller::wire::Format;
 use staya_runner::{Answer, Fleet, LineFaults, Options, Part, Reset, Statistics};
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
@@ -100,6 +101,30 @@ fn every_part_decides_as_its_shadow() {
                 .is_some_and(|spread| spread.median > 1000)
         );
         assert!(statistics.stack_bytes > 100);
+    }
+}
+
+#[test]
+fn parts_with_room_for_it_speak_mavlink() {
+    let parts = Part::ALL.into_iter().filter(|part| *part != Part::Microbit);
+    let orders = parts.zip(1..).map(|(part, robot)| {
+        let mut order = order(robot, &format!("qemu:{}", part.name()));
+        order.setup.format = Format::Mavlink;
+        order
+    });
+    let mut fleet = Fleet::start(orders.collect(), options()).expect("they start");
+    assert_eq!(fleet.len(), 2);
+    for tick in 0..40 {
+        for index in 0..fleet.len() {
+            let scene = Scene::over(Format::Mavlink, index as u32 + 1, tick);
+            fleet.send(index, tick, now(tick), &scene.inputs());
+        }
+        for answer in fleet.collect() {
+            let Answer::Decided(report) = answer else {
+                panic!("{answer:?}");
+            };
+            assert!(report.outputs.received > 0);
+        }
     }
 }
 

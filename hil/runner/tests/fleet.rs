@@ -5,6 +5,7 @@ mod common;
 use common::{Mischief, Scene, device, live, now, order};
 use serialport::SerialPort;
 use staya_controller::agent::{Setup, Task};
+use staya_controller::wire::Format;
 use staya_link::capacities::Capacities;
 use staya_link::message::{NumberFormat, Report, StepInputs};
 use staya_link::robot::{Brain, LARGE_INBOX, Large, Refusal, SMALL_INBOX, Small};
@@ -361,6 +362,47 @@ fn setup_that_does_not_fit_is_an_error_of_the_start() {
         .to_string();
     let text = "robot 2 on thread: the device answers to setup: Capacity: a search of 225 cells, and room for 169";
     assert_eq!(error, text);
+}
+
+#[test]
+fn a_small_part_says_why_it_speaks_no_mavlink() {
+    let mut order = order(2, "thread");
+    order.setup.format = Format::Mavlink;
+    let lines = vec![(order, small(Mischief::default()))];
+    let error = Fleet::over(lines, options())
+        .expect_err("no room")
+        .to_string();
+    assert_eq!(
+        error,
+        "robot 2 on thread: the device answers to setup: Setup: no mavlink here: flash is too small for it"
+    );
+}
+
+#[test]
+fn robots_that_speak_mavlink_decide_as_those_that_speak_postcard() {
+    let digests = |format: Format| {
+        let lines = (1..=2).map(|robot| {
+            let mut order = order(robot, "thread");
+            order.setup.format = format;
+            (order, large(Mischief::default()))
+        });
+        let mut fleet = Fleet::over(lines.collect(), options()).expect("they start");
+        let mut digests = Vec::new();
+        for t in 0..200 {
+            for index in 0..2 {
+                let scene = Scene::over(format, index as u32 + 1, t);
+                fleet.send(index, t, now(t), &scene.inputs());
+            }
+            for answer in fleet.collect() {
+                let report = decided(answer);
+                digests.push((report.digest, report.outputs.received));
+            }
+        }
+        digests
+    };
+    let mavlink = digests(Format::Mavlink);
+    assert!(mavlink.iter().all(|(_, received)| *received > 0));
+    assert_eq!(mavlink, digests(Format::Postcard));
 }
 
 #[test]

@@ -13,9 +13,10 @@ use staya_controller::orca::AvoidParams;
 use staya_controller::route::{Replan, RouteParams};
 use staya_controller::shuffle::Sharpness;
 use staya_controller::time::{Duration, Instant};
-use staya_controller::wire::{Beacon, Format, Header, Message, Mode, RobotId, encode};
+use staya_controller::wire::{Beacon, Format, Header, Message, Mode, RobotId, Wire};
 use staya_link::robot::Brain;
 use staya_link::session::{About, Reaction, Session};
+use staya_mavlink::any::AnyWire;
 use staya_runner::{Channel, LineFaults, Order};
 use std::io::{ErrorKind, Read, Write};
 use std::os::unix::net::UnixStream;
@@ -71,6 +72,7 @@ pub fn order(robot: u32, device: &str) -> Order {
 
 /// What a robot senses at a tick, whatever it has decided before.
 pub struct Scene {
+    wire: AnyWire,
     inbox: Vec<u8>,
     land: Vec<u8>,
     cell: Cell,
@@ -81,9 +83,15 @@ pub struct Scene {
 
 impl Scene {
     pub fn new(robot: u32, tick: u32) -> Self {
+        Self::over(Format::Postcard, robot, tick)
+    }
+
+    /// The same with others that speak this format.
+    pub fn over(format: Format, robot: u32, tick: u32) -> Self {
         let cell = Cell::new((tick / 5) as i16, (robot % 7) as i16);
         let mm = [(tick * 60) as i32, robot as i32 * 300, 0];
         let mut scene = Self {
+            wire: AnyWire::new(format),
             inbox: Vec::new(),
             land: (0..121)
                 .map(|i: u32| (i * 31 + tick / 5) as u8 % 4)
@@ -124,7 +132,8 @@ impl Scene {
             sequence: tick as u16,
         };
         let mut out = heapless::Vec::<u8, 128>::new();
-        encode(header, &Message::Beacon(beacon), &mut out).expect("fits");
+        let beacon = Message::Beacon(beacon);
+        self.wire.encode(header, &beacon, &mut out).expect("fits");
         if (tick + sender).is_multiple_of(9) {
             out[10] ^= 1;
         }
