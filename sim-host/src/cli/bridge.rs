@@ -86,6 +86,14 @@ fn origin(text: &str) -> Result<Origin, String> {
         .ok_or_else(|| "three numbers: -90 to 90, -180 to 180, metres".into())
 }
 
+/// Tells people something of a key's file.
+fn say(remark: Option<&str>) {
+    if let Some(remark) = remark {
+        // Standard error may be closed; it is only a remark.
+        let _ = writeln!(io::stderr(), "staya: {remark}");
+    }
+}
+
 impl BridgeArgs {
     /// Runs the command.
     ///
@@ -97,6 +105,7 @@ impl BridgeArgs {
             ticks: None,
         };
         let scenario = Scenario::load(&self.scenario, &overrides)?;
+        say(scenario.key_remark.as_deref());
         let ticks = match (self.ticks, self.seconds) {
             (Some(ticks), _) => Some(ticks),
             (None, Some(seconds)) => Some(libm::ceil(seconds / scenario.tick_s()) as u32),
@@ -105,10 +114,7 @@ impl BridgeArgs {
         let signing = match &self.key {
             Some(path) => {
                 let file = KeyFile::read(path)?;
-                if let Some(remark) = &file.remark {
-                    // Standard error may be closed; it is only a remark.
-                    let _ = writeln!(io::stderr(), "staya: {remark}");
-                }
+                say(file.remark.as_deref());
                 Some(Signing::new(file.key, 0, timestamp()))
             }
             None => None,
