@@ -86,7 +86,19 @@ fn origin(text: &str) -> Result<Origin, String> {
         .ok_or_else(|| "three numbers: -90 to 90, -180 to 180, metres".into())
 }
 
-/// Tells people something of a key's file.
+/// The lines as they were given, and where those are that listen.
+fn lines(swarm: &Swarm, endpoints: &[Endpoint]) -> String {
+    let named = endpoints.iter().enumerate().map(|(line, endpoint)| {
+        let local = swarm.lines().local(line);
+        local.map_or_else(
+            || endpoint.to_string(),
+            |local| format!("{endpoint} (here {local})"),
+        )
+    });
+    named.collect::<Vec<_>>().join(", ")
+}
+
+/// Tells people something beside the results.
 fn say(remark: Option<&str>) {
     if let Some(remark) = remark {
         // Standard error may be closed; it is only a remark.
@@ -131,18 +143,18 @@ impl BridgeArgs {
         };
         let stop = Stop::on_ctrl_c()?;
         let swarm = Swarm::new(&scenario, options)?;
-        let mut progress = Progress::new(&scenario.name, ticks.unwrap_or(u32::MAX).into(), global);
-        let lines: Vec<String> = (0..swarm.lines().len())
-            .map(|line| {
-                let local = swarm.lines().local(line);
-                local.map_or_else(String::new, |local| local.to_string())
-            })
-            .collect();
         let count = scenario.robots.len();
-        let lines = lines.join(" ");
+        let lines = lines(&swarm, &self.mavlink);
+        // What has no end of its own has no progress.
+        let mut progress = ticks.map(|ticks| Progress::new(&scenario.name, ticks.into(), global));
+        if progress.is_none() && !global.quiet {
+            say(Some(&format!("{count} vehicles at {lines}; Ctrl-C ends")));
+        }
         let mut shown = None;
         let report = swarm.run(|ticks| {
-            if shown != Some(ticks) {
+            if let Some(progress) = &mut progress
+                && shown != Some(ticks)
+            {
                 shown = Some(ticks);
                 progress.set(ticks.into(), || {
                     format!("ticks, {count} vehicles at {lines}")
@@ -150,7 +162,9 @@ impl BridgeArgs {
             }
             stop.is_requested()
         })?;
-        progress.finish();
+        if let Some(progress) = progress {
+            progress.finish();
+        }
         if global.json {
             print_json(&report)?;
         } else {
