@@ -6,11 +6,13 @@
 
 mod mavlink;
 mod requests;
+mod sealed;
 mod templates;
 mod wire;
 
 pub use mavlink::mavlink_decode;
 pub use requests::requests_model;
+pub use sealed::sealed;
 pub use templates::templates;
 pub use wire::wire_decode;
 
@@ -39,6 +41,11 @@ mod tests {
     #[test]
     fn mavlink_decode_holds_for_random_bytes() {
         on_random_bytes(mavlink_decode, 20_000, 300);
+    }
+
+    #[test]
+    fn sealed_holds_for_random_bytes() {
+        on_random_bytes(sealed, 5_000, 120);
     }
 
     #[test]

@@ -3,8 +3,8 @@
 use crc::{CRC_16_IBM_SDLC, Crc};
 use heapless::Vec as Bounded;
 use staya_controller::wire::{
-    DecodeError, EncodeError, Frame, MAX_FRAME_LEN, TAG_LEN, decode, decode_verified, encode, encode_tagged,
-    frames,
+    DecodeError, EncodeError, Frame, MAX_FRAME_LEN, TAG_LEN, decode, decode_verified, encode,
+    encode_tagged, frames,
 };
 
 /// The catalogue's own, to be checked against the controller's.
