@@ -15,10 +15,10 @@ use staya_controller::time::Instant;
 use staya_controller::wire::{Format, FromFormat, Postcard, RobotId};
 use staya_mavlink::any::AnyWire;
 
-/// The robot that an STM32F405 has room for. It speaks whatever format it is told to.
+/// The robot that an STM32F405 has room for. As the small one, it speaks whatever format it is told to.
 pub type Large = Robot<f32, CELLS, VISITS, NEIGHBORS, HALF_PLANES, 32, AnyWire>;
-/// The robot that the micro:bit's nRF51 has room for: its flash has none for other formats than postcard.
-pub type Small = Robot<Q16, CELLS, VISITS, 8, 16, 16>;
+/// The robot that the micro:bit's nRF51 has room for.
+pub type Small = Robot<Q16, CELLS, VISITS, 8, 16, 16, AnyWire>;
 /// Bytes of the inbox beside a [`Large`].
 pub const LARGE_INBOX: usize = 8192;
 /// Bytes of the inbox beside a [`Small`].
@@ -57,7 +57,7 @@ impl fmt::Display for Refusal {
             Self::NotConfigured => f.write_str("not configured"),
             Self::Nobody => f.write_str("a setup for nobody: numbers begin at 1"),
             Self::Format(format) => {
-                write!(f, "no {} here: flash is too small for it", format.name())
+                write!(f, "this firmware was built without {}", format.name())
             }
             Self::Task => f.write_str("the guidance has no use for the task"),
             Self::Search { needs, room } => {

@@ -105,15 +105,13 @@ fn every_part_decides_as_its_shadow() {
 }
 
 #[test]
-fn parts_with_room_for_it_speak_mavlink() {
-    let parts = Part::ALL.into_iter().filter(|part| *part != Part::Microbit);
-    let orders = parts.zip(1..).map(|(part, robot)| {
+fn every_part_speaks_mavlink() {
+    let orders = Part::ALL.into_iter().zip(1..).map(|(part, robot)| {
         let mut order = order(robot, &format!("qemu:{}", part.name()));
         order.setup.format = Format::Mavlink;
         order
     });
     let mut fleet = Fleet::start(orders.collect(), options()).expect("they start");
-    assert_eq!(fleet.len(), 2);
     for tick in 0..40 {
         for index in 0..fleet.len() {
             let scene = Scene::over(Format::Mavlink, index as u32 + 1, tick);
