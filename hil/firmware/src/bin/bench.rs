@@ -21,13 +21,13 @@ mod program {
         Beacon, DecodeError, EncodeError, Frame, Header, Message, Mode, Postcard, RobotId, Wire,
     };
     use staya_firmware::{runtime, stack};
-    use staya_mavlink::wire::Mavlink;
     #[cfg(not(part = "nrf51"))]
     use {
         staya_controller::auth::{KEY_LEN, Key},
         staya_controller::wire::Sealed,
         staya_mavlink::signed::Signed,
         staya_mavlink::signing::Signing,
+        staya_mavlink::wire::Mavlink,
     };
 
     /// Samples that the median is of. When there are more steps, every second, fourth, ... counts.
