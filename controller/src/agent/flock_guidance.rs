@@ -42,6 +42,7 @@ impl<S: Scalar> Guidance<S> for LatticeGuidance<S> {
         _: &mut Rng,
         (): &mut (),
     ) -> Result<Guided<S>, BadInput> {
+        view.can_go()?;
         let moves = self.moves;
         let reference = self.place.as_mut().map(|place| Reference {
             offset_m: if moves {
@@ -130,6 +131,7 @@ impl<S: Scalar> Guidance<S> for GoalFlockGuidance<S> {
         _: &mut Rng,
         (): &mut (),
     ) -> Result<Guided<S>, BadInput> {
+        view.can_go()?;
         let own = view.pose.position;
         let _ = self.goals.update(own, self.arrival_m, self.seed, view.id);
         let goal = self.goals.current();
@@ -184,6 +186,7 @@ impl<S: Scalar> Guidance<S> for BoidsGuidance<S> {
         rng: &mut Rng,
         (): &mut (),
     ) -> Result<Guided<S>, BadInput> {
+        view.can_go()?;
         let mut draw = || {
             let turn = S::from_ratio(rng.below(20_000).cast_signed() - 10_000, 10_000);
             let (sin, cos) = (turn * S::PI).sin_cos();

@@ -44,6 +44,20 @@ pub struct View<'a, S> {
     pub ages: Ages,
 }
 
+impl<S: Scalar> View<'_, S> {
+    /// Whether the body goes by velocities at all.
+    ///
+    /// # Errors
+    /// [`BadInput`] when [`Inputs::surroundings`](super::Inputs::surroundings) are missing, or say that it cannot move.
+    pub fn can_go(&self) -> Result<(), BadInput> {
+        if self.body.max_speed_mps > S::ZERO {
+            Ok(())
+        } else {
+            Err(BadInput)
+        }
+    }
+}
+
 impl<'a, S> View<'a, S> {
     /// A neighbour by its number. O(log N).
     #[must_use]

@@ -39,6 +39,7 @@ impl<S: Scalar> Guidance<S> for WaypointGuidance<S> {
         _: &mut Rng,
         (): &mut (),
     ) -> Result<Guided<S>, BadInput> {
+        view.can_go()?;
         let place = self.place.as_mut().ok_or(BadInput)?;
         let way = place.way(view.pose.position, view.now);
         let distance = way.norm();

@@ -1,10 +1,7 @@
 //! The agent beside an autopilot: what it senses comes from telemetry and the scenario's land, what it commands is a velocity.
 
-mod held;
-
 use crate::engine::{Ground, PlaneGround, Senses, WIDE};
 use crate::scenario::{SafetyName, Scenario};
-use held::Held;
 use staya_controller::agent::{
     Agent, AgentConfig, AnyGuidance, AnySafety, Command, GridWorkspace, HALF_PLANES, NEIGHBORS,
     Outputs, TEMPLATE, VISITS,
@@ -31,13 +28,8 @@ struct Brake {
     tolerance_m: f64,
 }
 
-type Mind<W> = Agent<
-    f32,
-    Held<AnyGuidance<f32, WIDE, VISITS, TEMPLATE>>,
-    NEIGHBORS,
-    AnySafety<f32, HALF_PLANES>,
-    W,
->;
+type Mind<W> =
+    Agent<f32, AnyGuidance<f32, WIDE, VISITS, TEMPLATE>, NEIGHBORS, AnySafety<f32, HALF_PLANES>, W>;
 
 /// An agent with its land.
 pub struct Brain<W> {
@@ -72,7 +64,7 @@ impl<W: Wire> Brain<W> {
             ..AgentConfig::new(robot.unwrap_or_default(), scenario.seed, tick)
         };
         ground.configure(&mut config);
-        let guidance = Held(scenario.guidance(index).guidance());
+        let guidance = scenario.guidance(index).guidance();
         let mut agent = Box::new(Agent::speaking(
             &config,
             guidance,

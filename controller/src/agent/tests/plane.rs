@@ -511,3 +511,29 @@ fn a_wish_that_is_no_number_is_no_wish() {
     let out = robot.step(step_number(0), &[]);
     assert_eq!(out.command, Command::Velocity(Vec3::ZERO));
 }
+
+/// Each guidance that goes by velocities, with something to do but no surroundings.
+#[test]
+fn without_surroundings_a_robot_is_in_fault_and_stands() {
+    use crate::flock::{boids::BoidsParams, goal::GoalParams, lattice::LatticeParams};
+    fn check(guidance: impl Guidance<f32, Workspace = ()>) {
+        let mut agent = Agent::<f32, _, NEIGHBORS>::new(&one_step_late(1), guidance);
+        agent.assign_place(0, &place(1000, 0));
+        let inputs = Inputs {
+            pose: Pose::default(),
+            cell: None,
+            window: None,
+            surroundings: None,
+            inbox: &[],
+        };
+        let out = agent.step(&inputs, step_number(0), &mut ());
+        assert_eq!((agent.mode(), out.command), (Mode::Fault, Command::Hold));
+    }
+    check(WaypointGuidance::new(0.5, 0.02));
+    check(LatticeGuidance::new(LatticeParams::new(1.0), true));
+    check(GoalFlockGuidance::new(GoalParams::new(0.2, 0.5), 0.5, 1));
+    check(BoidsGuidance::new(
+        BoidsParams::new(0.3, 1.5, 0.05, 0.02),
+        0.5,
+    ));
+}
