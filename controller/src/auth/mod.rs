@@ -1,7 +1,7 @@
 //! Who may speak: a key that the whole swarm shares, codes made with it, and what is remembered against replays.
 //!
 //! Built on RustCrypto's SHA-256 compression function. Padding and HMAC are written here, in a few lines that visibly never
-//! panic: the buffers of the `digest` and `hmac` crates leave panics in the firmware.
+//! panic, so that the linker's proof of that does not hang on what the optimiser makes of the buffers of `digest` and `hmac`.
 
 mod guard;
 mod hmac;
