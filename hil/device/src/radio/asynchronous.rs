@@ -1,6 +1,8 @@
 //! The link for asynchronous HALs.
 
-use super::{Counts, Receiver, Sender};
+use super::{Counts, Inbound, Outbound, Receiver, Sender};
+#[cfg(feature = "mavlink")]
+use super::{MavlinkReceiver, MavlinkSender};
 use core::convert::Infallible;
 use core::future::pending;
 use embassy_futures::{select, yield_now};
@@ -9,22 +11,31 @@ use embedded_io_async::{Read, Write};
 /// Bytes that one call moves at a time.
 const PIECE: usize = 32;
 
-/// Packets over the two halves of an asynchronous line.
+/// Frames over the two halves of an asynchronous line.
 ///
 /// Between two steps let [`Self::serve`] run beside the wait for the next one, for example
-/// `select(ticker.next(), link.serve()).await`. `IN` and `OUT` as for [`PacketLink`](super::PacketLink).
+/// `select(ticker.next(), link.serve()).await`.
 ///
 /// Reading and writing must stand being cancelled without losing bytes, as buffered UARTs do (those with a ring
 /// that an interrupt or a DMA fills).
 #[derive(Clone, Debug)]
-pub struct AsyncPacketLink<R, W, const IN: usize = 1024, const OUT: usize = 512> {
+pub struct AsyncLink<R, W, I, O> {
     reader: R,
     writer: W,
-    receiver: Receiver<IN>,
-    sender: Sender<OUT>,
+    receiver: I,
+    sender: O,
 }
 
-impl<R: Read, W: Write, const IN: usize, const OUT: usize> AsyncPacketLink<R, W, IN, OUT> {
+/// [`AsyncLink`] for robots that speak postcard; `IN` and `OUT` as for [`PacketLink`](super::PacketLink).
+pub type AsyncPacketLink<R, W, const IN: usize = 1024, const OUT: usize = 512> =
+    AsyncLink<R, W, Receiver<IN>, Sender<OUT>>;
+
+/// [`AsyncLink`] for robots that speak MAVLink; `IN` and `OUT` as for [`PacketLink`](super::PacketLink).
+#[cfg(feature = "mavlink")]
+pub type AsyncMavlinkLink<R, W, const IN: usize = 1536, const OUT: usize = 512> =
+    AsyncLink<R, W, MavlinkReceiver<IN>, MavlinkSender<OUT>>;
+
+impl<R, W, const IN: usize, const OUT: usize> AsyncPacketLink<R, W, IN, OUT> {
     /// Over the line's two halves, with nothing received and nothing to send.
     #[must_use]
     pub const fn new(reader: R, writer: W) -> Self {
@@ -35,7 +46,23 @@ impl<R: Read, W: Write, const IN: usize, const OUT: usize> AsyncPacketLink<R, W,
             sender: Sender::new(),
         }
     }
+}
 
+#[cfg(feature = "mavlink")]
+impl<R, W, const IN: usize, const OUT: usize> AsyncMavlinkLink<R, W, IN, OUT> {
+    /// Over the line's two halves, with nothing received and nothing to send.
+    #[must_use]
+    pub const fn new(reader: R, writer: W) -> Self {
+        Self {
+            reader,
+            writer,
+            receiver: MavlinkReceiver::new(),
+            sender: MavlinkSender::new(),
+        }
+    }
+}
+
+impl<R: Read, W: Write, I: Inbound, O: Outbound> AsyncLink<R, W, I, O> {
     /// The frames since the last call, for [`Inputs::inbox`](staya_controller::agent::Inputs::inbox).
     #[must_use]
     pub fn take(&mut self) -> &[u8] {
@@ -49,7 +76,7 @@ impl<R: Read, W: Write, const IN: usize, const OUT: usize> AsyncPacketLink<R, W,
 
     /// What came in, and what went out.
     #[must_use]
-    pub const fn counts(&self) -> (Counts, Counts) {
+    pub fn counts(&self) -> (Counts, Counts) {
         (self.receiver.counts(), self.sender.counts())
     }
 

@@ -1,24 +1,35 @@
 //! The link over a line that can say whether it is ready.
 
-use super::{Counts, Receiver, Sender};
+use super::{Counts, Inbound, Outbound, Receiver, Sender};
+#[cfg(feature = "mavlink")]
+use super::{MavlinkReceiver, MavlinkSender};
 use embedded_io::{Read, ReadReady, Write, WriteReady};
 
 /// Bytes that one call moves at a time.
 const PIECE: usize = 32;
 
-/// Packets over a line `U`, which it asks before each call whether it is ready: nothing here ever waits.
+/// Frames over a line `U`, which it asks before each call whether it is ready: nothing here ever waits.
 ///
 /// Call [`Self::pump`] at least as often as the HAL's own buffer fills up (at 115,200 baud a byte comes every 87 µs), [`Self::take`]
-/// once for each step, and [`Self::send`] after it. `IN` and `OUT`: bytes between two steps and bytes that wait to be sent;
-/// `OUT` at least [`OUTBOX`](staya_controller::agent::OUTBOX).
+/// once for each step, and [`Self::send`] after it.
 ///
-/// HALs whose UART lacks [`WriteReady`] use [`Receiver`] and [`Sender`] with what they have, or `AsyncPacketLink`.
+/// HALs whose UART lacks [`WriteReady`] use the receiver and the sender with what they have, or `AsyncLink`.
 #[derive(Clone, Debug)]
-pub struct PacketLink<U, const IN: usize = 1024, const OUT: usize = 512> {
+pub struct Link<U, R, S> {
     line: U,
-    receiver: Receiver<IN>,
-    sender: Sender<OUT>,
+    receiver: R,
+    sender: S,
 }
+
+/// [`Link`] for robots that speak postcard. `IN` and `OUT`: bytes between two steps and bytes that wait to be sent;
+/// `OUT` at least [`OUTBOX`](staya_controller::agent::OUTBOX).
+pub type PacketLink<U, const IN: usize = 1024, const OUT: usize = 512> =
+    Link<U, Receiver<IN>, Sender<OUT>>;
+
+/// [`Link`] for robots that speak MAVLink; `IN` and `OUT` as for [`PacketLink`].
+#[cfg(feature = "mavlink")]
+pub type MavlinkLink<U, const IN: usize = 1536, const OUT: usize = 512> =
+    Link<U, MavlinkReceiver<IN>, MavlinkSender<OUT>>;
 
 impl<U, const IN: usize, const OUT: usize> PacketLink<U, IN, OUT> {
     /// Over `line`, with nothing received and nothing to send.
@@ -30,7 +41,22 @@ impl<U, const IN: usize, const OUT: usize> PacketLink<U, IN, OUT> {
             sender: Sender::new(),
         }
     }
+}
 
+#[cfg(feature = "mavlink")]
+impl<U, const IN: usize, const OUT: usize> MavlinkLink<U, IN, OUT> {
+    /// Over `line`, with nothing received and nothing to send.
+    #[must_use]
+    pub const fn new(line: U) -> Self {
+        Self {
+            line,
+            receiver: MavlinkReceiver::new(),
+            sender: MavlinkSender::new(),
+        }
+    }
+}
+
+impl<U, R: Inbound, S: Outbound> Link<U, R, S> {
     /// The frames since the last call, for [`Inputs::inbox`](staya_controller::agent::Inputs::inbox).
     #[must_use]
     pub fn take(&mut self) -> &[u8] {
@@ -44,7 +70,7 @@ impl<U, const IN: usize, const OUT: usize> PacketLink<U, IN, OUT> {
 
     /// What came in, and what went out.
     #[must_use]
-    pub const fn counts(&self) -> (Counts, Counts) {
+    pub fn counts(&self) -> (Counts, Counts) {
         (self.receiver.counts(), self.sender.counts())
     }
 
@@ -61,11 +87,11 @@ impl<U, const IN: usize, const OUT: usize> PacketLink<U, IN, OUT> {
     }
 }
 
-impl<U, const IN: usize, const OUT: usize> PacketLink<U, IN, OUT>
+impl<U, R: Inbound, S: Outbound> Link<U, R, S>
 where
     U: Read + ReadReady + Write + WriteReady,
 {
-    /// Moves what can be moved without waiting: in at most `IN` bytes, out at most `OUT`.
+    /// Moves what can be moved without waiting: in at most [`Inbound::capacity`] bytes, out what is there.
     ///
     /// # Errors
     /// The line's first one. It is counted, what it spoiled is forgotten, and the link goes on at the next call: a caller may
@@ -84,7 +110,7 @@ where
 
     fn hear(&mut self) -> Result<(), U::Error> {
         let mut piece = [0; PIECE];
-        let mut left = IN;
+        let mut left = self.receiver.capacity();
         while left > 0 && self.line.read_ready()? {
             let len = self.line.read(&mut piece)?;
             let Some(bytes) = piece.get(..len).filter(|bytes| !bytes.is_empty()) else {

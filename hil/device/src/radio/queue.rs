@@ -47,13 +47,18 @@ impl<const N: usize> FrameQueue<N> {
 
     /// Takes `count` bytes out from `start` on. O(N).
     pub(super) fn remove(&mut self, start: usize, count: usize) {
-        let bytes = Cell::from_mut(self.bytes.as_mut_slice()).as_slice_of_cells();
-        let count = count.min(bytes.len().saturating_sub(start));
-        let later = bytes.iter().skip(start.saturating_add(count));
-        for (to, from) in bytes.iter().skip(start).zip(later) {
-            to.set(from.get());
-        }
-        let left = bytes.len().saturating_sub(count);
-        self.bytes.truncate(left);
+        remove(&mut self.bytes, start, count);
     }
+}
+
+/// Takes `count` bytes out from `start` on. O(N).
+pub(super) fn remove<const N: usize>(bytes: &mut Vec<u8, N>, start: usize, count: usize) {
+    let cells = Cell::from_mut(bytes.as_mut_slice()).as_slice_of_cells();
+    let count = count.min(cells.len().saturating_sub(start));
+    let later = cells.iter().skip(start.saturating_add(count));
+    for (to, from) in cells.iter().skip(start).zip(later) {
+        to.set(from.get());
+    }
+    let left = cells.len().saturating_sub(count);
+    bytes.truncate(left);
 }

@@ -1,7 +1,7 @@
 //! From bytes to frames.
 
 use super::queue::FrameQueue;
-use super::{Counts, count};
+use super::{Counts, Inbound, count};
 use heapless::Vec;
 use staya_controller::wire::{MAX_FRAME_LEN, decode};
 
@@ -41,44 +41,12 @@ impl<const N: usize> Receiver<N> {
         }
     }
 
-    /// Takes bytes in as they come, cut anywhere. O(bytes + N) and for each frame one
-    /// [`decode`](staya_controller::wire::decode).
-    pub fn push(&mut self, bytes: &[u8]) {
-        for byte in bytes {
-            if *byte == 0 {
-                self.end_frame();
-            } else if !self.is_skipping && self.partial.push(*byte).is_err() {
-                self.is_skipping = true;
-            }
-        }
-    }
-
     /// A packet from a radio that has packets of its own: frames whose last zero byte may be missing. What was begun before it
     /// has no end any more.
     pub fn push_packet(&mut self, packet: &[u8]) {
         self.end_frame();
         self.push(packet);
         self.end_frame();
-    }
-
-    /// The line lost bytes (an overrun, a framing error): what was begun is of no use.
-    pub fn line_error(&mut self) {
-        count(&mut self.counts.line_errors, 1);
-        self.is_skipping = true;
-    }
-
-    /// The frames since the last call, for [`Inputs::inbox`](staya_controller::agent::Inputs::inbox).
-    #[must_use]
-    pub fn take(&mut self) -> &[u8] {
-        self.forget_given();
-        self.given = self.queue.bytes().len();
-        self.queue.bytes()
-    }
-
-    /// What came so far.
-    #[must_use]
-    pub const fn counts(&self) -> Counts {
-        self.counts
     }
 
     fn end_frame(&mut self) {
@@ -102,5 +70,37 @@ impl<const N: usize> Receiver<N> {
         if given > 0 {
             self.queue.remove(0, given);
         }
+    }
+}
+
+impl<const N: usize> Inbound for Receiver<N> {
+    /// O(bytes + N) and for each frame one [`decode`](staya_controller::wire::decode).
+    fn push(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            if *byte == 0 {
+                self.end_frame();
+            } else if !self.is_skipping && self.partial.push(*byte).is_err() {
+                self.is_skipping = true;
+            }
+        }
+    }
+
+    fn line_error(&mut self) {
+        count(&mut self.counts.line_errors, 1);
+        self.is_skipping = true;
+    }
+
+    fn take(&mut self) -> &[u8] {
+        self.forget_given();
+        self.given = self.queue.bytes().len();
+        self.queue.bytes()
+    }
+
+    fn capacity(&self) -> usize {
+        N
+    }
+
+    fn counts(&self) -> Counts {
+        self.counts
     }
 }

@@ -1,7 +1,7 @@
 //! Frames that wait for the line.
 
 use super::queue::FrameQueue;
-use super::{Counts, count};
+use super::{Counts, Outbound, count};
 use staya_controller::wire::frames;
 
 /// Holds what steps want sent until the line takes it.
@@ -34,9 +34,11 @@ impl<const N: usize> Sender<N> {
             },
         }
     }
+}
 
-    /// Queues the frames of [`Outputs::outbox`](staya_controller::agent::Outputs::outbox). O(outbox + N) per frame.
-    pub fn send(&mut self, outbox: &[u8]) {
+impl<const N: usize> Outbound for Sender<N> {
+    /// O(outbox + N) per frame.
+    fn send(&mut self, outbox: &[u8]) {
         for frame in frames(outbox) {
             if self.queue.bytes().is_empty() {
                 self.queue.push(&[], 0);
@@ -46,14 +48,12 @@ impl<const N: usize> Sender<N> {
         }
     }
 
-    /// What the line should take next.
-    #[must_use]
-    pub fn unsent(&self) -> &[u8] {
+    fn unsent(&self) -> &[u8] {
         self.queue.bytes()
     }
 
-    /// The line took the first `bytes` of [`Self::unsent`]. O(N).
-    pub fn sent(&mut self, bytes: usize) {
+    /// O(N).
+    fn sent(&mut self, bytes: usize) {
         let sent = self.queue.bytes().iter().take(bytes);
         let mut begun = self.begun > 0;
         let mut ended = 0;
@@ -68,8 +68,8 @@ impl<const N: usize> Sender<N> {
         self.begun = if begun { self.queue.frame_len(0) } else { 0 };
     }
 
-    /// The line failed: of a frame whose first bytes are sent only the zero byte is left, which ends it for the receivers.
-    pub fn line_error(&mut self) {
+    /// Of a begun frame only the zero byte is left, which ends it for the receivers.
+    fn line_error(&mut self) {
         count(&mut self.counts.line_errors, 1);
         // One of which only the end is left has been sent.
         if self.begun > 1 {
@@ -80,9 +80,7 @@ impl<const N: usize> Sender<N> {
         }
     }
 
-    /// What was sent so far.
-    #[must_use]
-    pub const fn counts(&self) -> Counts {
+    fn counts(&self) -> Counts {
         self.counts
     }
 }

@@ -21,7 +21,7 @@ mod program {
         SignMagnitude, Twist, TwoPins, Wheels,
     };
     use staya_device::odometry::{Encoder, Odometry};
-    use staya_device::radio::{PacketLink, Receiver};
+    use staya_device::radio::{Inbound, MavlinkLink, MavlinkReceiver, PacketLink, Receiver};
     use staya_device::scan::{LocalMap, MapParams, OutlineParams, Scan, is_neighbor, outline};
 
     pub fn run() -> ! {
@@ -125,6 +125,18 @@ mod program {
             link.send(black_box(&[1; 9]));
             let radio = black_box(&mut radio);
             radio.push_packet(black_box(&[1; 9]));
+            radio.line_error();
+            black_box(radio.take());
+        }
+        let mut link = MavlinkLink::<Pin, 512, 256>::new(Pin);
+        let mut radio = MavlinkReceiver::<512>::new();
+        while black_box(true) {
+            let link = black_box(&mut link);
+            let Ok(()) = link.pump();
+            black_box(link.take());
+            link.send(black_box(&[0xFD; 90]));
+            let radio = black_box(&mut radio);
+            radio.push_packet(black_box(&[0xFD; 90]));
             radio.line_error();
             black_box(radio.take());
         }
