@@ -5,7 +5,7 @@ use crate::repo::Repo;
 use crate::report::Report;
 
 /// Where it is.
-pub const FOLDER: &str = "hil/example-stm32f4";
+pub const FOLDER: &str = "examples/stm32f4";
 const TARGET: &str = "thumbv7em-none-eabihf";
 
 /// A release build: that it links is the test, since no emulator has the part's clocks.

@@ -42,7 +42,7 @@ Usage: cargo xtask COMMAND
   fuzz [--seconds N]
                   each fuzz target for N seconds (default: 60), if nightly Rust and cargo-fuzz are there
   clients [NAME]  MAVLink clients (pymavlink, MAVSDK, MAVProxy, tshark) against staya, from Python: all tests or those whose names contain NAME
-  example         the example firmware of hil/example-stm32f4
+  example         the example firmware of examples/stm32f4
   firmware [--debug] [PART...]
                   the programs of hil/firmware for stm32f405, nrf51, riscv32 (default: all): target/firmware/PART/BIN
   size [--json]   what the firmware takes on each part: flash, RAM, stack, instructions a step; against hil/budgets.toml

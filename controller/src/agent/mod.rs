@@ -12,7 +12,7 @@
 //! | [`LatticeGuidance`] | surroundings | [`Agent::assign_place`], or nowhere: it flocks | [`Command::Velocity`] |
 //! | [`BoidsGuidance`] | surroundings | nowhere: it roams | [`Command::Velocity`] |
 //!
-//! What turns velocities into PWM, bytes of a UART into an inbox and ranges into a window is in the crate `staya-device`.
+//! What turns velocities into PWM, bytes of a UART into an inbox and ranges into a window is in the crate `staya-robot`.
 //!
 //! Cell by cell, to a goal on the grid:
 //!

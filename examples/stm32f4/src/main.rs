@@ -13,8 +13,8 @@ use embassy_time::{Instant as Clock, Ticker};
 use staya_controller::agent::*;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::{geom::Position, neighbor::Doubt, orca::AvoidParams, wire::RobotId};
-use staya_device::odometry::{Encoder, Odometry};
-use staya_device::{drive::*, radio::AsyncPacketLink};
+use staya_robot::odometry::{Encoder, Odometry};
+use staya_robot::{drive::*, radio::AsyncPacketLink};
 
 const TICK: Duration = Duration::from_millis(50);
 /// Measured on the robot: between the wheels, a wheel's radius, the body's radius, edges per turn of a wheel.

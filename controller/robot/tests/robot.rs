@@ -29,13 +29,13 @@ use staya_controller::route::RouteParams;
 use staya_controller::scalar::Scalar;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{Mode, RobotId};
-use staya_device::drive::{
+use staya_robot::drive::{
     Calibration, Differential, HBridge, Kinematics, Limits, LookAhead, Mixer, Wheels,
     wished_velocity,
 };
-use staya_device::odometry::{Encoder, Odometry};
-use staya_device::radio::PacketLink;
-use staya_device::scan::{LocalMap, MapParams, OutlineParams, Scan, is_neighbor, outline};
+use staya_robot::odometry::{Encoder, Odometry};
+use staya_robot::radio::PacketLink;
+use staya_robot::scan::{LocalMap, MapParams, OutlineParams, Scan, is_neighbor, outline};
 use std::cell::{Cell as Shared, RefCell};
 use std::collections::VecDeque;
 use std::rc::Rc;

@@ -17,10 +17,10 @@ use staya_controller::orca::AvoidParams;
 use staya_controller::scalar::{Q16, Scalar};
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{Mode, RobotId};
-use staya_device::drive::{
+use staya_robot::drive::{
     Calibration, Kinematics, Limits, Mixer, Omni, SignMagnitude, Twist, Wheels, wished_velocity,
 };
-use staya_device::odometry::{Encoder, Odometry};
+use staya_robot::odometry::{Encoder, Odometry};
 use std::cell::Cell;
 use std::rc::Rc;
 

@@ -1,4 +1,4 @@
-//! Links only if no panic is reachable from `staya-device`: from packets over a line, wheels, odometry and range scans, in `f32` and in
+//! Links only if no panic is reachable from `staya-robot`: from packets over a line, wheels, odometry and range scans, in `f32` and in
 //! Q16.16. Works as `nopanic` does, which has the steps of the controller; it is not meant to be run.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
@@ -16,13 +16,13 @@ mod program {
     use staya_controller::neighbor::Neighbor;
     use staya_controller::scalar::{Q16, Scalar};
     use staya_controller::time::{Duration, Instant};
-    use staya_device::drive::{
+    use staya_robot::drive::{
         Calibration, Differential, HBridge, Kinematics, Limits, LookAhead, Mecanum, Mixer, Omni,
         SignMagnitude, Twist, TwoPins, Wheels,
     };
-    use staya_device::odometry::{Encoder, Odometry};
-    use staya_device::radio::{Inbound, MavlinkLink, MavlinkReceiver, PacketLink, Receiver};
-    use staya_device::scan::{LocalMap, MapParams, OutlineParams, Scan, is_neighbor, outline};
+    use staya_robot::odometry::{Encoder, Odometry};
+    use staya_robot::radio::{Inbound, MavlinkLink, MavlinkReceiver, PacketLink, Receiver};
+    use staya_robot::scan::{LocalMap, MapParams, OutlineParams, Scan, is_neighbor, outline};
 
     pub fn run() -> ! {
         loop {
