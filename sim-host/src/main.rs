@@ -1,7 +1,101 @@
-//! The `staya` command.
+//! The command line: `staya run | hil | bridge | companion | terrain | orca | experiment`.
+//!
+//! A new command is a module with a `clap::Args` struct and `run(&self, &Global) -> Result<Ended>`,
+//! and one line in `Command`. Results go to standard output, progress and errors to standard
+//! error. Exit codes: 0 done, 1 failed, 2 wrong usage, 130 stopped by Ctrl-C (what was done until
+//! then is kept).
 
+mod bridge;
+mod companion;
+mod hil;
+mod run;
+mod terrain;
+
+use anyhow::{Context as _, Result};
+use clap::{Parser, Subcommand};
+use staya_console::{Ended, Global};
+use staya_papers::cli as papers;
+use std::io::{self, ErrorKind, Write as _};
 use std::process::ExitCode;
 
+/// Many robots, each with its own onboard controller, over one world and a lossy radio.
+#[derive(Debug, Parser)]
+#[command(name = "staya", version, propagate_version = true)]
+struct Cli {
+    #[command(flatten)]
+    global: Global,
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run a scenario.
+    Run(run::RunArgs),
+    /// Run some robots of a scenario as firmware, on emulated microcontrollers or boards.
+    Hil(hil::HilArgs),
+    /// Let ground stations and scripts see and command a simulated swarm by MAVLink.
+    Bridge(bridge::BridgeArgs),
+    /// Steer vehicles of ArduPilot or PX4 as a swarm.
+    Companion(companion::CompanionArgs),
+    /// Make, measure and draw terrain.
+    Terrain(terrain::TerrainArgs),
+    /// Draw what ORCA forbids, and measure the template that looks it up.
+    Orca(papers::orca::OrcaArgs),
+    /// Run the experiments of papers and benchmarks again.
+    Experiment(papers::ExperimentArgs),
+}
+
+/// Parses the command line, runs the command and reports its errors.
 fn main() -> ExitCode {
-    staya_sim::cli::main()
+    let cli = Cli::parse();
+    match run(&cli) {
+        Ok(Ended::Done) => ExitCode::SUCCESS,
+        Ok(Ended::Interrupted) => ExitCode::from(130),
+        // The reader of a pipe (`staya ... | head`) went away: nothing to tell anybody.
+        Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) => {
+            // Standard error may be closed as well; the exit code still tells.
+            let _ = writeln!(io::stderr(), "staya: {}", in_one_line(&error));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(cli: &Cli) -> Result<Ended> {
+    if let Some(threads) = cli.global.threads {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(usize::from(threads))
+            .build_global()
+            .with_context(|| format!("cannot start {threads} threads"))?;
+    }
+    match &cli.command {
+        Command::Run(args) => args.run(&cli.global),
+        Command::Hil(args) => args.run(&cli.global),
+        Command::Bridge(args) => args.run(&cli.global),
+        Command::Companion(args) => args.run(&cli.global),
+        Command::Terrain(args) => args.run(&cli.global),
+        Command::Orca(args) => args.run(&cli.global),
+        Command::Experiment(args) => args.run(&cli.global),
+    }
+}
+
+/// An error and its causes; a cause that the message before it quotes is not said again.
+fn in_one_line(error: &anyhow::Error) -> String {
+    let mut text = error.to_string();
+    for cause in error.chain().skip(1).map(ToString::to_string) {
+        if !text.contains(&cause) {
+            text.push_str(": ");
+            text.push_str(&cause);
+        }
+    }
+    text
+}
+
+fn is_broken_pipe(error: &anyhow::Error) -> bool {
+    error.chain().any(|cause| {
+        cause
+            .downcast_ref::<io::Error>()
+            .is_some_and(|e| e.kind() == ErrorKind::BrokenPipe)
+    })
 }

@@ -1,6 +1,6 @@
 //! Golden tables of swaps and doorways, as the commands print them.
 
-use staya_sim::experiment::crossing::{Conditions, doorway, swap};
+use staya_papers::crossing::{Conditions, doorway, swap};
 use staya_sim::scenario::SafetyName;
 use staya_tests::golden;
 

@@ -1,9 +1,9 @@
 //! What the experiments with flocks give, small, as tables that any change of behaviour breaks. `cargo xtask bless golden`
 //! rewrites them.
 
-use staya_sim::experiment::flock::closing::Closing;
-use staya_sim::experiment::flock::{Case, Plan};
-use staya_sim::experiment::goals;
+use staya_papers::flock::closing::Closing;
+use staya_papers::flock::{Case, Plan};
+use staya_papers::goals;
 use staya_sim::scenario::SafetyName;
 use staya_tests::golden;
 use std::fmt::Write as _;

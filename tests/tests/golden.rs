@@ -2,8 +2,8 @@
 //! breaks. `cargo xtask bless golden` rewrites them.
 
 use staya_controller::wire::Mode;
+use staya_papers::orca::Sample;
 use staya_sim::engine::Outcome;
-use staya_sim::experiment::orca::Sample;
 use staya_sim::record::{RobotRow, TickRow};
 use staya_sim::scenario::Scenario;
 use staya_tests::{golden, run, scenario};

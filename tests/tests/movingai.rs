@@ -2,7 +2,7 @@
 //! paper's window the numbers of robots that arrive are pinned.
 
 use staya_controller::cost::Gain;
-use staya_sim::experiment::movingai::{Answer, Benchmark, Memory, Report, Robots, Sight};
+use staya_papers::movingai::{Answer, Benchmark, Memory, Report, Robots, Sight};
 use std::path::{Path, PathBuf};
 
 /// Largest deviation from an optimal length, percent. sqrt 2 as 99/70 is off by 0.005 %.

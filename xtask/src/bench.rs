@@ -55,7 +55,7 @@ fn bridge(repo: &Repo, report: &mut Report) {
         Ok(python) => python,
         Err(reason) => return report.skip(NAME, &reason),
     };
-    let mut build = repo.cargo(&["build", "--release", "--locked", "--package", "staya-sim"]);
+    let mut build = repo.cargo(&["build", "--release", "--locked", "--package", "staya"]);
     if !report.step("staya for the bridge", || run_to_end(&mut build)) {
         return report.skip(NAME, "the program was not built");
     }

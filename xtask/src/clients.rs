@@ -20,7 +20,7 @@ pub fn run_command(repo: &Repo, report: &mut Report, only: Option<&str>) {
         Ok(python) => python,
         Err(reason) => return report.skip(NAME, &reason),
     };
-    let mut build = repo.cargo(&["build", "--locked", "--package", "staya-sim"]);
+    let mut build = repo.cargo(&["build", "--locked", "--package", "staya"]);
     if !report.step("staya for its clients", || run(&mut build)) {
         return report.skip(NAME, "the program was not built");
     }

@@ -26,7 +26,7 @@ pub fn run(repo: &Repo, report: &mut Report) {
     tests.env("STAYA_FIRMWARE", repo.target.join("firmware"));
     report.part(name, || counted(&mut tests, ""));
     report.step("ten robots of a formation as firmware, 1000 steps", || {
-        let mut staya = repo.cargo(&["run", "--quiet", "--locked", "--package", "staya-sim", "--"]);
+        let mut staya = repo.cargo(&["run", "--quiet", "--locked", "--package", "staya", "--"]);
         staya.args(["hil", "scenarios/ten-robots.toml", "--ticks", "1000"]);
         staya.args(["--device", "qemu:stm32f405", "--devices", "10"]);
         staya.arg("--firmware").arg(repo.target.join("firmware"));

@@ -5,7 +5,7 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use staya_peers::flockers::{Peer, flock, plan};
-use staya_sim::experiment::boids::Flock;
+use staya_papers::boids::Flock;
 use staya_sim::nearby::{Cells, Space};
 use std::time::{Duration, Instant};
 

@@ -11,7 +11,7 @@ use staya_controller::flock::boids::{BoidsParams, Torus};
 use staya_controller::geom::{Vec2, Vec3};
 use staya_controller::neighbor::Nearby;
 use staya_controller::wire::RobotId;
-use staya_sim::experiment::boids::{Flock, Plan};
+use staya_papers::boids::{Flock, Plan};
 use std::any::Any;
 use std::cell::RefCell;
 use std::fmt;

@@ -1,0 +1,449 @@
+//! COMMAND_LONG and COMMAND_INT: each is carried out or refused, and answered.
+//!
+//! | answer | when |
+//! | --- | --- |
+//! | UNSUPPORTED | these vehicles have no such command (nor a takeoff, those that do not fly) |
+//! | DENIED | it makes no sense: a parameter that is needed is no number, out of range, or nothing can be there |
+//! | TEMPORARILY_REJECTED | not now: not armed, in the wrong mode, in the air, on the way |
+//! | COMMAND_INT_ONLY, UNSUPPORTED_MAV_FRAME | its place comes in a form that is too coarse, or unknown |
+//!
+//! Parameters that a command does not use may be anything, NaN included.
+
+use super::craft::FlightMode;
+use super::params::Meaning;
+use super::vehicle::{Deed, Out, Vehicle};
+use crate::geo::Global;
+use staya_controller::agent::Parameter;
+use staya_mavlink::constants::*;
+use staya_mavlink::dialect::*;
+use staya_mavlink::frame::Sender;
+use staya_mavlink::mavlink_core::MessageData as _;
+
+/// Highest that a vehicle is sent, metres above the ground.
+const HIGHEST_M: f32 = 1000.0;
+
+/// Who is slower stands, m/s.
+const STANDING_MPS: f64 = 0.05;
+
+/// A result other than accepted.
+pub(super) type Refusal = u8;
+
+/// A place in a message.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spot {
+    pub(super) frame: u8,
+    pub(super) x: i32,
+    pub(super) y: i32,
+    pub(super) z: f32,
+}
+
+/// A command of either message.
+struct Command {
+    id: u16,
+    params: [f32; 7],
+    /// Of COMMAND_INT only.
+    spot: Option<Spot>,
+}
+
+/// A whole number that is needed.
+fn whole(x: f32, most: f32) -> Result<u32, Refusal> {
+    let is_one = (0.0..=most).contains(&x) && libm::truncf(x) == x;
+    if is_one {
+        Ok(x as u32)
+    } else {
+        Err(MAV_RESULT_DENIED)
+    }
+}
+
+impl Vehicle {
+    pub(super) fn command_long(&mut self, from: Sender, c: &COMMAND_LONG_DATA, out: &mut Out) {
+        let command = Command {
+            id: c.command,
+            params: [
+                c.param1, c.param2, c.param3, c.param4, c.param5, c.param6, c.param7,
+            ],
+            spot: None,
+        };
+        self.answer(from, &command, out);
+    }
+
+    pub(super) fn command_int(&mut self, from: Sender, c: &COMMAND_INT_DATA, out: &mut Out) {
+        let command = Command {
+            id: c.command,
+            params: [
+                c.param1, c.param2, c.param3, c.param4, c.x as f32, c.y as f32, c.z,
+            ],
+            spot: Some(Spot {
+                frame: c.frame,
+                x: c.x,
+                y: c.y,
+                z: c.z,
+            }),
+        };
+        self.answer(from, &command, out);
+    }
+
+    fn answer(&mut self, from: Sender, command: &Command, out: &mut Out) {
+        // What follows from a command comes after its answer.
+        let mut after = Out::default();
+        let result = self.execute(command, &mut after);
+        let result = result.err().unwrap_or(MAV_RESULT_ACCEPTED);
+        out.messages.push(MavMessage::COMMAND_ACK(COMMAND_ACK_DATA {
+            command: command.id,
+            result,
+            progress: 0,
+            result_param2: 0,
+            target_system: from.system,
+            target_component: from.component,
+        }));
+        out.results.push(result);
+        out.messages.append(&mut after.messages);
+        out.deeds.append(&mut after.deeds);
+    }
+
+    fn execute(&mut self, command: &Command, out: &mut Out) -> Result<(), Refusal> {
+        let [first, second, ..] = command.params;
+        match command.id {
+            MAV_CMD_COMPONENT_ARM_DISARM => {
+                let arms = whole(first, 1.0)? == 1;
+                self.arm(arms, second == ARM_DISARM_FORCE, out)
+            }
+            MAV_CMD_DO_SET_MODE => {
+                let base = whole(first, 255.0)?;
+                let is_custom = base & u32::from(MAV_MODE_FLAG_CUSTOM_MODE_ENABLED) != 0;
+                let number = whole(second, 255.0)?;
+                if !is_custom {
+                    return Err(MAV_RESULT_DENIED);
+                }
+                self.set_mode(number, out)
+            }
+            MAV_CMD_NAV_TAKEOFF => {
+                // Heights are above the ground.
+                let frame = command.spot.map(|spot| spot.frame);
+                let is_known = matches!(
+                    frame,
+                    None | Some(MAV_FRAME_GLOBAL_RELATIVE_ALT | MAV_FRAME_GLOBAL_RELATIVE_ALT_INT)
+                );
+                if self.craft.flies && !is_known {
+                    return Err(MAV_RESULT_COMMAND_UNSUPPORTED_MAV_FRAME);
+                }
+                self.take_off(command.params[6], out)
+            }
+            MAV_CMD_NAV_LAND if self.craft.flies => {
+                self.needs_arms()?;
+                self.enter(FlightMode::Land, out);
+                Ok(())
+            }
+            MAV_CMD_NAV_RETURN_TO_LAUNCH => {
+                self.needs_arms()?;
+                self.set_mode(FlightMode::Return.number(self.craft.flies), out)
+            }
+            MAV_CMD_DO_REPOSITION => self.reposition(command, out),
+            MAV_CMD_DO_CHANGE_SPEED => self.change_speed(second, out),
+            MAV_CMD_MISSION_START => {
+                self.needs_arms()?;
+                self.start_mission(out)
+            }
+            MAV_CMD_DO_SET_MISSION_CURRENT => {
+                let seq = whole(first, f32::from(u16::MAX))?;
+                self.set_current_item(seq as u16, out)
+            }
+            MAV_CMD_SET_MESSAGE_INTERVAL => {
+                let id = self.stream_id(first)?;
+                let now_us = self.now_us;
+                if self.streams.set_interval(id, second, now_us) {
+                    Ok(())
+                } else {
+                    Err(MAV_RESULT_DENIED)
+                }
+            }
+            MAV_CMD_GET_MESSAGE_INTERVAL => {
+                let id = whole(first, 16_777_215.0)?;
+                let interval_us = self.streams.interval_us(id).unwrap_or(0);
+                out.messages
+                    .push(MavMessage::MESSAGE_INTERVAL(MESSAGE_INTERVAL_DATA {
+                        interval_us,
+                        message_id: id as u16,
+                    }));
+                Ok(())
+            }
+            MAV_CMD_REQUEST_MESSAGE => {
+                let id = self.stream_id(first)?;
+                self.send_now(id, out)
+            }
+            MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES => {
+                self.send_now(AUTOPILOT_VERSION_DATA::ID, out)
+            }
+            MAV_CMD_GET_HOME_POSITION => self.send_now(HOME_POSITION_DATA::ID, out),
+            _ => Err(MAV_RESULT_UNSUPPORTED),
+        }
+    }
+
+    /// The number of a message that there is.
+    fn stream_id(&self, number: f32) -> Result<u32, Refusal> {
+        let id = whole(number, 16_777_215.0)?;
+        if self.streams.has(id) {
+            Ok(id)
+        } else {
+            Err(MAV_RESULT_UNSUPPORTED)
+        }
+    }
+
+    fn send_now(&self, id: u32, out: &mut Out) -> Result<(), Refusal> {
+        let message = self.telemetry(id).ok_or(MAV_RESULT_TEMPORARILY_REJECTED)?;
+        out.messages.push(message);
+        Ok(())
+    }
+
+    const fn needs_arms(&self) -> Result<(), Refusal> {
+        if self.is_armed {
+            Ok(())
+        } else {
+            Err(MAV_RESULT_TEMPORARILY_REJECTED)
+        }
+    }
+
+    fn arm(&mut self, arms: bool, forced: bool, out: &mut Out) -> Result<(), Refusal> {
+        // Who goes dead on his way is hit by those who count on his going on.
+        let [vx, vy, vz] = self.sample.velocity_mps;
+        let moves = vx * vx + vy * vy + vz * vz > STANDING_MPS * STANDING_MPS;
+        if !arms && !forced && (moves || self.is_in_air()) {
+            return Err(MAV_RESULT_TEMPORARILY_REJECTED);
+        }
+        if arms == self.is_armed {
+            return Ok(());
+        }
+        self.is_armed = arms;
+        if !arms {
+            self.is_on_mission = false;
+        }
+        self.begin(out);
+        let text = if arms { "armed" } else { "disarmed" };
+        self.text(out, super::vehicle::Kind::News, MAV_SEVERITY_INFO, text);
+        Ok(())
+    }
+
+    fn set_mode(&mut self, number: u32, out: &mut Out) -> Result<(), Refusal> {
+        let mode = FlightMode::from_number(number, self.craft.flies);
+        let mode = mode.ok_or(MAV_RESULT_DENIED)?;
+        // Nobody leaves a formation by himself.
+        if mode == FlightMode::Return && self.craft.in_formation {
+            return Err(MAV_RESULT_DENIED);
+        }
+        // Who has a mission has it flown in this mode, as with ArduPilot.
+        if mode == FlightMode::Auto && self.is_armed && !self.mission.is_empty() {
+            return self.start_mission(out);
+        }
+        self.enter(mode, out);
+        Ok(())
+    }
+
+    /// The older message for it, which nobody answers.
+    pub(super) fn set_mode_message(&mut self, wanted: &SET_MODE_DATA, out: &mut Out) {
+        let is_custom = wanted.base_mode & MAV_MODE_FLAG_CUSTOM_MODE_ENABLED != 0;
+        let result = match is_custom {
+            true => self.set_mode(wanted.custom_mode, out),
+            false => Err(MAV_RESULT_DENIED),
+        };
+        if result.is_err() {
+            let text = "no such mode";
+            self.text(out, super::vehicle::Kind::News, MAV_SEVERITY_WARNING, text);
+        }
+    }
+
+    fn take_off(&mut self, height_m: f32, out: &mut Out) -> Result<(), Refusal> {
+        if !self.craft.flies {
+            return Err(MAV_RESULT_UNSUPPORTED);
+        }
+        let is_sound = height_m > self.tolerance_m() && height_m <= HIGHEST_M;
+        let [x, y, _] = self.sample.position_m;
+        let wish = self.goal([x, y, f64::from(height_m)]);
+        let wish = wish.filter(|_| is_sound).ok_or(MAV_RESULT_DENIED)?;
+        self.needs_arms()?;
+        if self.mode != FlightMode::Guided || self.is_in_air() {
+            return Err(MAV_RESULT_TEMPORARILY_REJECTED);
+        }
+        out.deeds.push(Deed::Wish(wish));
+        Ok(())
+    }
+
+    fn reposition(&mut self, command: &Command, out: &mut Out) -> Result<(), Refusal> {
+        let [speed_mps, flags, ..] = command.params;
+        // Degrees as floats are off by a metre.
+        let spot = command.spot.ok_or(MAV_RESULT_COMMAND_INT_ONLY)?;
+        let place = self.global_place(spot)?;
+        let flags = if flags.is_nan() {
+            0
+        } else {
+            whole(flags, 255.0)?
+        };
+        let changes_mode = flags & MAV_DO_REPOSITION_FLAGS_CHANGE_MODE != 0;
+        if self.craft.in_formation {
+            return Err(MAV_RESULT_DENIED);
+        }
+        let wish = self.goal(place).ok_or(MAV_RESULT_DENIED)?;
+        self.needs_arms()?;
+        if self.mode != FlightMode::Guided && !changes_mode {
+            return Err(MAV_RESULT_TEMPORARILY_REJECTED);
+        }
+        // -1, NaN and 0: as fast as ever.
+        if speed_mps > 0.0 {
+            self.change_speed(speed_mps, out)?;
+        }
+        if self.mode != FlightMode::Guided {
+            self.enter(FlightMode::Guided, out);
+        }
+        out.deeds.push(Deed::Wish(wish));
+        Ok(())
+    }
+
+    /// "Go there now" by an item of no mission.
+    pub(super) fn guided_item(
+        &mut self,
+        from: Sender,
+        current: u8,
+        item: &super::mission::Item,
+        out: &mut Out,
+    ) -> MavMessage {
+        let spot = Spot {
+            frame: item.frame,
+            x: item.x,
+            y: item.y,
+            z: item.z,
+        };
+        let is_goto = current == 2 && item.command == MAV_CMD_NAV_WAYPOINT;
+        let result = match self.item_place_of(spot) {
+            Some(_) if !is_goto || self.craft.in_formation => MAV_MISSION_UNSUPPORTED,
+            Some(_) if !self.is_armed || self.mode != FlightMode::Guided => MAV_MISSION_ERROR,
+            Some(place) => match self.goal(place) {
+                Some(wish) => {
+                    out.deeds.push(Deed::Wish(wish));
+                    MAV_MISSION_ACCEPTED
+                }
+                None => MAV_MISSION_INVALID_PARAM5_X,
+            },
+            None => MAV_MISSION_INVALID_PARAM5_X,
+        };
+        super::mission::ack(from, MAV_MISSION_TYPE_MISSION, result)
+    }
+
+    fn change_speed(&mut self, speed_mps: f32, out: &mut Out) -> Result<(), Refusal> {
+        let speed = Meaning::Controller(Parameter::Speed);
+        if self.parameters.get(speed).is_none() {
+            return Err(MAV_RESULT_UNSUPPORTED);
+        }
+        let set = self.parameters.set_meaning(speed, speed_mps);
+        set.map_err(|_| MAV_RESULT_DENIED)?;
+        out.deeds.push(Deed::Set(Parameter::Speed, speed_mps));
+        Ok(())
+    }
+
+    /// East, north, up of a place on the Earth.
+    fn global_place(&self, spot: Spot) -> Result<[f64; 3], Refusal> {
+        let origin = &self.craft.origin;
+        // Heights above home are heights above the ground, which is at the origin's.
+        let above_m = match spot.frame {
+            MAV_FRAME_GLOBAL | MAV_FRAME_GLOBAL_INT => 0.0,
+            MAV_FRAME_GLOBAL_RELATIVE_ALT | MAV_FRAME_GLOBAL_RELATIVE_ALT_INT => {
+                origin.place().altitude_m
+            }
+            _ => return Err(MAV_RESULT_COMMAND_UNSUPPORTED_MAV_FRAME),
+        };
+        // Who does not fly has no use for a height, and may not know it.
+        let z = match (self.craft.flies, spot.z.is_nan()) {
+            (true, true) => return Err(MAV_RESULT_DENIED),
+            (true, false) => f64::from(spot.z) + above_m,
+            (false, _) => origin.place().altitude_m,
+        };
+        let mut place = Global::from_e7(spot.x, spot.y, 0);
+        place.altitude_m = z;
+        let place_m = origin.to_enu_m(&place).ok_or(MAV_RESULT_DENIED)?;
+        let is_low = place_m[2] <= f64::from(HIGHEST_M);
+        let is_above_ground = !self.craft.flies || place_m[2] >= -0.001;
+        if is_low && is_above_ground {
+            Ok(place_m)
+        } else {
+            Err(MAV_RESULT_DENIED)
+        }
+    }
+
+    /// The place of a mission's item.
+    pub(super) fn item_place(&self, item: &super::mission::Item) -> Option<[f64; 3]> {
+        self.item_place_of(Spot {
+            frame: item.frame,
+            x: item.x,
+            y: item.y,
+            z: item.z,
+        })
+    }
+
+    fn item_place_of(&self, spot: Spot) -> Option<[f64; 3]> {
+        if spot.frame == MAV_FRAME_LOCAL_NED {
+            let [north, east] = [spot.x, spot.y].map(|x| f64::from(x) / 1e4);
+            let up = if self.craft.flies {
+                -f64::from(spot.z)
+            } else {
+                0.0
+            };
+            return (0.0..=f64::from(HIGHEST_M))
+                .contains(&up)
+                .then_some([east, north, up]);
+        }
+        self.global_place(spot).ok()
+    }
+
+    /// What is wrong with a mission's item; 0: nothing.
+    pub(super) fn item_fault(&self, item: &super::mission::Item) -> u8 {
+        let is_known = match item.command {
+            MAV_CMD_NAV_WAYPOINT => true,
+            MAV_CMD_NAV_RETURN_TO_LAUNCH => return MAV_MISSION_ACCEPTED,
+            MAV_CMD_NAV_LAND if self.craft.flies => return MAV_MISSION_ACCEPTED,
+            MAV_CMD_NAV_TAKEOFF => self.craft.flies,
+            _ => false,
+        };
+        let is_frame = matches!(
+            item.frame,
+            MAV_FRAME_GLOBAL
+                | MAV_FRAME_LOCAL_NED
+                | MAV_FRAME_GLOBAL_RELATIVE_ALT
+                | MAV_FRAME_GLOBAL_INT
+                | MAV_FRAME_GLOBAL_RELATIVE_ALT_INT
+        );
+        let [hold_s, ..] = item.params;
+        match self.item_place(item) {
+            _ if !is_known || self.craft.in_formation => MAV_MISSION_UNSUPPORTED,
+            _ if !is_frame => MAV_MISSION_UNSUPPORTED_FRAME,
+            _ if hold_s < 0.0 || hold_s == f32::INFINITY => MAV_MISSION_INVALID_PARAM1,
+            _ if self.craft.flies && item.z.is_nan() => MAV_MISSION_INVALID_PARAM7,
+            Some(place) if self.goal(place).is_some() => MAV_MISSION_ACCEPTED,
+            _ => MAV_MISSION_INVALID_PARAM5_X,
+        }
+    }
+
+    fn start_mission(&mut self, out: &mut Out) -> Result<(), Refusal> {
+        if self.mission.is_empty() {
+            return Err(MAV_RESULT_DENIED);
+        }
+        // Item 0 is no goal, and after the last one it begins anew.
+        if self.mission.current() == 0 {
+            self.mission.set_current(1);
+        }
+        self.enter(FlightMode::Auto, out);
+        self.is_on_mission = true;
+        // Instead of the scenario's behaviour.
+        out.deeds.clear();
+        self.begin_item(out);
+        Ok(())
+    }
+
+    /// Goes on to another item of the mission.
+    pub(super) fn set_current_item(&mut self, seq: u16, out: &mut Out) -> Result<(), Refusal> {
+        if !self.mission.set_current(seq.max(1)) || seq >= self.mission.len() {
+            return Err(MAV_RESULT_DENIED);
+        }
+        if self.is_on_mission {
+            self.begin_item(out);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,290 @@
+//! Setpoints, and what robots say to each other: nobody answers them.
+
+use super::craft::FlightMode;
+use super::params::Meaning;
+use super::vehicle::{Deed, Kind, Out, Vehicle};
+use crate::geo::{Global, enu};
+use staya_controller::agent::{Place, Wish};
+use staya_controller::geom::Vec3;
+use staya_controller::grid::Cell;
+use staya_controller::time::Duration;
+use staya_controller::wire::{
+    GoalAssignment, Header, Message, PlaceAssignment, RobotId, TEMPLATE_PART, TemplateAssignment,
+    TemplateEntry,
+};
+use staya_mavlink::constants::*;
+use staya_mavlink::dialect::*;
+use staya_mavlink::frame::Sender;
+
+/// What a setpoint says, in metres east, north, up.
+#[derive(Clone, Copy, Debug)]
+struct Setpoint {
+    place_m: Option<[f64; 3]>,
+    velocity_mps: Option<[f64; 3]>,
+}
+
+/// Which of its numbers a setpoint means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Used {
+    place: bool,
+    place_z: bool,
+    velocity: bool,
+    velocity_z: bool,
+}
+
+impl Used {
+    /// What a type mask leaves; the answer to one that cannot be followed says why.
+    const fn new(mask: u16, flies: bool) -> Result<Self, &'static str> {
+        const PLACE: u16 = 0b11;
+        const VELOCITY: u16 = 0b11 << 3;
+        const ACCELERATION: u16 = 0b111 << 6;
+        let is_force = mask & POSITION_TARGET_TYPEMASK_FORCE_SET != 0;
+        if mask & ACCELERATION != ACCELERATION || is_force {
+            return Err("setpoint: accelerations are not for these vehicles");
+        }
+        // Half of a place is none.
+        let (place, velocity) = (mask & PLACE, mask & VELOCITY);
+        if !(place == 0 || place == PLACE) || !(velocity == 0 || velocity == VELOCITY) {
+            return Err("setpoint: x and y go together");
+        }
+        let used = Self {
+            place: place == 0,
+            place_z: flies && mask & POSITION_TARGET_TYPEMASK_Z_IGNORE == 0,
+            velocity: velocity == 0,
+            velocity_z: flies && mask & POSITION_TARGET_TYPEMASK_VZ_IGNORE == 0,
+        };
+        if used.place || used.velocity {
+            Ok(used)
+        } else {
+            Err("setpoint: neither place nor velocity")
+        }
+    }
+}
+
+impl Vehicle {
+    pub(super) fn target_local(
+        &mut self,
+        target: &SET_POSITION_TARGET_LOCAL_NED_DATA,
+        out: &mut Out,
+    ) {
+        let (is_offset, is_turned) = match target.coordinate_frame {
+            MAV_FRAME_LOCAL_NED => (false, false),
+            MAV_FRAME_LOCAL_OFFSET_NED => (true, false),
+            MAV_FRAME_BODY_NED | MAV_FRAME_BODY_OFFSET_NED => (true, true),
+            _ => return self.refuse("setpoint: no such frame here", out),
+        };
+        let used = match Used::new(target.type_mask, self.craft.flies) {
+            Ok(used) => used,
+            Err(text) => return self.refuse(text, out),
+        };
+        // From forward, right, down to east, north, up.
+        let turned = |xyz: [f32; 3]| {
+            let [x, y, z] = xyz.map(f64::from);
+            let yaw = f64::from(if is_turned { self.yaw } else { 0.0 });
+            let (sin, cos) = (libm::sin(yaw), libm::cos(yaw));
+            enu([x * cos - y * sin, x * sin + y * cos, z])
+        };
+        let here = self.sample.position_m;
+        let place_m = used.place.then(|| {
+            let [east, north, up] = turned([target.x, target.y, target.z]);
+            let [x, y, z] = if is_offset { here } else { [0.0; 3] };
+            let up = if used.place_z { z + up } else { here[2] };
+            [x + east, y + north, up]
+        });
+        let velocity_mps = used.velocity.then(|| {
+            let [east, north, up] = turned([target.vx, target.vy, target.vz]);
+            [east, north, if used.velocity_z { up } else { 0.0 }]
+        });
+        let setpoint = Setpoint {
+            place_m,
+            velocity_mps,
+        };
+        self.follow(setpoint, out);
+    }
+
+    pub(super) fn target_global(
+        &mut self,
+        target: &SET_POSITION_TARGET_GLOBAL_INT_DATA,
+        out: &mut Out,
+    ) {
+        let origin = self.craft.origin;
+        let ground_m = match target.coordinate_frame {
+            MAV_FRAME_GLOBAL | MAV_FRAME_GLOBAL_INT => 0.0,
+            MAV_FRAME_GLOBAL_RELATIVE_ALT | MAV_FRAME_GLOBAL_RELATIVE_ALT_INT => {
+                origin.place().altitude_m
+            }
+            _ => return self.refuse("setpoint: no such frame here", out),
+        };
+        let used = match Used::new(target.type_mask, self.craft.flies) {
+            Ok(used) => used,
+            Err(text) => return self.refuse(text, out),
+        };
+        let here = self.sample.position_m;
+        let mut place_m = None;
+        if used.place {
+            let mut place = Global::from_e7(target.lat_int, target.lon_int, 0);
+            place.altitude_m = origin.place().altitude_m;
+            let Some([x, y, _]) = origin.to_enu_m(&place) else {
+                return self.refuse("setpoint: there is no such place", out);
+            };
+            let up = f64::from(target.alt) + ground_m - origin.place().altitude_m;
+            place_m = Some([x, y, if used.place_z { up } else { here[2] }]);
+        }
+        let velocity_mps = used.velocity.then(|| {
+            let [east, north, up] = enu([target.vx, target.vy, target.vz].map(f64::from));
+            [east, north, if used.velocity_z { up } else { 0.0 }]
+        });
+        let setpoint = Setpoint {
+            place_m,
+            velocity_mps,
+        };
+        self.follow(setpoint, out);
+    }
+
+    fn refuse(&mut self, text: &str, out: &mut Out) {
+        self.text(out, Kind::Setpoint, MAV_SEVERITY_WARNING, text);
+    }
+
+    fn follow(&mut self, setpoint: Setpoint, out: &mut Out) {
+        if self.mode != FlightMode::Guided || !self.is_armed {
+            return self.refuse("setpoint: not armed and GUIDED", out);
+        }
+        let is_number = |v: Option<[f64; 3]>| v.is_none_or(|v| v.iter().all(|x| x.is_finite()));
+        if !is_number(setpoint.place_m) || !is_number(setpoint.velocity_mps) {
+            return self.refuse("setpoint: no number", out);
+        }
+        if self.craft.in_formation {
+            return self.refuse("setpoint: in formation; send STAYA_GOAL", out);
+        }
+        if self.craft.grid.is_some() && setpoint.velocity_mps.is_some() {
+            return self.refuse("setpoint: cell by cell there are no velocities", out);
+        }
+        let timeout_s = self.parameters.get(Meaning::SetpointTimeout).unwrap_or(0.0);
+        let valid = Duration::from_micros((timeout_s * 1e6) as i32);
+        let velocity_mps = setpoint.velocity_mps.map(|v| {
+            let [x, y, z] = v.map(|v| v as f32);
+            Vec3::new(x, y, z)
+        });
+        let wish = match (setpoint.place_m, velocity_mps) {
+            (None, None) => None,
+            (None, Some(velocity_mps)) => Some(Wish::Velocity {
+                velocity_mps,
+                valid,
+            }),
+            (Some(place_m), velocity) => self.goal(place_m).map(|wish| match (wish, velocity) {
+                (Wish::Place { place, .. }, Some(velocity_mps)) => Wish::Place {
+                    place: Place {
+                        velocity_mps,
+                        ..place
+                    },
+                    valid: Some(valid),
+                },
+                _ => wish,
+            }),
+        };
+        match wish {
+            Some(wish) => out.deeds.push(Deed::Wish(wish)),
+            None => self.refuse("setpoint: no room there", out),
+        }
+    }
+
+    /// What robots are told by whoever commands the swarm: handed on to the controller as if it had heard them.
+    pub(super) fn receive_orders(&mut self, from: Sender, message: &MavMessage, out: &mut Out) {
+        let Some((boot, sequence, message)) = order(message) else {
+            return;
+        };
+        let header = Header {
+            boot,
+            sender: RobotId(from.system.into()),
+            sequence,
+        };
+        out.deeds.push(Deed::Tell(header, message));
+    }
+}
+
+/// Boot, sequence and the controller's own form of an order; `None` for what is none.
+fn order(message: &MavMessage) -> Option<(u8, u16, Message)> {
+    let to = |system: u8| RobotId(system.into());
+    Some(match message {
+        MavMessage::STAYA_GOAL(goal) => {
+            let message = Message::Goal(GoalAssignment {
+                to: to(goal.target_system),
+                version: goal.version,
+                target: Cell::new(goal.target_x, goal.target_y),
+            });
+            (goal.boot, goal.sequence, message)
+        }
+        MavMessage::STAYA_PLACE(place) => {
+            let message = Message::Place(PlaceAssignment {
+                to: to(place.target_system),
+                version: place.version,
+                index: place.index,
+                position_mm: [place.x_mm, place.y_mm, place.z_mm],
+                velocity_mmps: [place.vx_mmps, place.vy_mmps, place.vz_mmps],
+            });
+            (place.boot, place.sequence, message)
+        }
+        MavMessage::STAYA_TEMPLATE(template) => {
+            let count = usize::from(template.count);
+            if count > TEMPLATE_PART {
+                return None;
+            }
+            let places = template.entry_x.iter().zip(&template.entry_y);
+            let robots = template.entry_id.iter().zip(&template.entry_hops);
+            let entries = places
+                .zip(robots)
+                .map(|((x, y), (id, hops))| TemplateEntry {
+                    offset: Cell::new(*x, *y),
+                    id: to(*id),
+                    hops: *hops,
+                });
+            let message = Message::Template(TemplateAssignment {
+                to: to(template.target_system),
+                version: template.version,
+                part: template.part,
+                parts: template.parts,
+                slot: template.slot,
+                offset: Cell::new(template.offset_x, template.offset_y),
+                entries: entries.take(count).collect(),
+            });
+            (template.boot, template.sequence, message)
+        }
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn masks_of_clients_mean_what_they_do() {
+        let used = |place, velocity| Used {
+            place,
+            place_z: true,
+            velocity,
+            velocity_z: true,
+        };
+        for (mask, expected) in [
+            (0xDF8, used(true, false)),
+            (0xDC7, used(false, true)),
+            (0xDC0, used(true, true)),
+        ] {
+            let found = Used::new(mask, true).expect("a good mask");
+            assert_eq!(
+                (found.place, found.velocity),
+                (expected.place, expected.velocity)
+            );
+        }
+        // MAVSDK's velocity with a yaw.
+        let found = Used::new(2503, false).expect("a good mask");
+        assert_eq!(
+            (found.velocity, found.place, found.velocity_z),
+            (true, false, false)
+        );
+        // Nothing, half a place, half a velocity, accelerations, forces.
+        for mask in [0xDFF, 0xDFA, 0xDCF, 0xC38, 0xFF8] {
+            assert!(Used::new(mask, true).is_err(), "{mask:#x}");
+        }
+    }
+}

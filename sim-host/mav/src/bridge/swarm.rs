@@ -1,0 +1,435 @@
+//! The simulation in real time between its vehicles and the lines to their clients.
+//!
+//! A tick is done when its time has come. Between two ticks frames are taken in and what is due is sent, so that answers do not wait for
+//! ticks and rates are those of the clock on the wall, whatever `speed` the simulation has. Setpoints and missions count simulated time.
+
+use super::craft::{Craft, Sample};
+use super::params::Parameters;
+use super::telemetry::Streams;
+use super::vehicle::{Deed, Out, Vehicle};
+use crate::geo::Origin;
+use crate::{Counts, Endpoint, Lines, OpenError, Received, Tlog, TlogError};
+use serde::Serialize;
+use staya_mavlink::dialect::MavMessage;
+use staya_mavlink::frame::{MAX_FRAME_LEN, RawFrame, Sender, encode_message};
+use staya_mavlink::mavlink_core::Message as _;
+use staya_mavlink::signing::Signing;
+use staya_sim::engine::{Operated, operated};
+use staya_sim::key::timestamp;
+use staya_sim::scenario::Scenario;
+use staya_sim::world::Misplaced;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Largest number that a vehicle can have.
+const LAST_SYSTEM: u32 = 254;
+/// What is due is looked for at least so often.
+const GLANCE: Duration = Duration::from_millis(4);
+/// Frames taken in between two looks at what is due.
+const AT_ONCE: usize = 512;
+
+/// How to run it.
+#[derive(Debug)]
+pub struct Options {
+    /// Lines to clients, one or more.
+    pub endpoints: Vec<Endpoint>,
+    /// Simulated seconds in a second; more than 0.
+    pub speed: f64,
+    /// Ticks after which to end; `None`: never.
+    pub ticks: Option<u32>,
+    /// Positions a second, of each kind and vehicle.
+    pub position_hz: f64,
+    /// Whether robots go their own ways from the start; otherwise they wait, disarmed.
+    pub starts_armed: bool,
+    /// Where the scenario is on the Earth.
+    pub origin: Origin,
+    /// Signs what goes out, and refuses what comes in without a good signature.
+    pub signing: Option<Signing>,
+    /// Where all frames are kept.
+    pub tlog: Option<PathBuf>,
+}
+
+/// Why there is no bridge.
+#[derive(Debug, thiserror::Error)]
+pub enum BridgeError {
+    /// A number that no MAVLink system has.
+    #[error(
+        "robot {0} cannot be a MAVLink vehicle: numbers are 1 to {LAST_SYSTEM}; give the scenario fewer robots, or other numbers"
+    )]
+    Number(u32),
+    /// The scenario's robots have no room.
+    #[error("the robots cannot be placed: {0}")]
+    Misplaced(#[from] Misplaced),
+    /// A line cannot be opened.
+    #[error(transparent)]
+    Line(#[from] OpenError),
+    /// The log cannot be written.
+    #[error(transparent)]
+    Log(#[from] TlogError),
+}
+
+/// A line's part of the figures.
+#[derive(Clone, Debug, Serialize)]
+pub struct LineReport {
+    /// As it was opened.
+    pub endpoint: String,
+    /// Frames, and their bytes, that came in.
+    pub frames_in: u64,
+    /// See there.
+    pub bytes_in: u64,
+    /// Frames that went out, once for each peer, and their bytes.
+    pub frames_out: u64,
+    /// See there.
+    pub bytes_out: u64,
+    /// Frames that could not be sent.
+    pub lost_out: u64,
+    /// Frames for which there was no room when they came in.
+    pub lost_in: u64,
+    /// Bytes that belong to no frame.
+    pub junk_bytes: u64,
+    /// Bytes that went out in a second, on average.
+    pub bytes_out_per_s: f64,
+}
+
+/// What came of it.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Robots, each a vehicle.
+    pub vehicles: usize,
+    /// Ticks done.
+    pub ticks: u32,
+    /// Simulated time, seconds.
+    pub sim_seconds: f64,
+    /// Time on the wall, seconds.
+    pub wall_seconds: f64,
+    /// Ticks whose work was not done when the next one was due.
+    pub deadlines_missed: u32,
+    /// The longest that a tick's work took, seconds.
+    pub slowest_seconds: f64,
+    /// Frames for vehicles that there are none of, or from no client.
+    pub frames_ignored: u64,
+    /// Frames refused for their signature, or for having none.
+    pub frames_refused: u64,
+    /// Answers to commands, by result.
+    pub commands: BTreeMap<&'static str, u64>,
+    /// What each line carried.
+    pub lines: Vec<LineReport>,
+    /// Overlaps of bodies, summed over ticks.
+    pub collisions: u64,
+    /// Least distance between the surfaces of two bodies, metres; null: on the grid, or nobody came near.
+    pub least_gap_m: Option<f64>,
+    /// 16 hex digits; that of `staya run` when nobody commanded.
+    pub trace_hash: String,
+}
+
+/// The swarm with all that belongs to it.
+pub struct Swarm {
+    engine: Box<dyn Operated>,
+    vehicles: Vec<Vehicle>,
+    /// Starts of each computer, as last seen.
+    boots: Vec<u8>,
+    /// Frames of each vehicle; wraps.
+    sequences: Vec<u8>,
+    craft: Arc<Craft>,
+    lines: Lines,
+    options: Options,
+    log: Option<Tlog>,
+    tick_us: u32,
+    ticks: u32,
+    began: Instant,
+    missed: u32,
+    slowest: Duration,
+    ignored: u64,
+    refused: u64,
+    commands: BTreeMap<&'static str, u64>,
+    out: Out,
+}
+
+impl Swarm {
+    /// A scenario before its first tick, and its lines open.
+    ///
+    /// # Errors
+    /// [`BridgeError`].
+    pub fn new(scenario: &Scenario, options: Options) -> Result<Self, BridgeError> {
+        let numbers: Vec<u32> = scenario.robots.iter().map(|robot| robot.id.0).collect();
+        if let Some(number) = numbers
+            .iter()
+            .find(|&&number| number == 0 || number > LAST_SYSTEM)
+        {
+            return Err(BridgeError::Number(*number));
+        }
+        let mut engine = operated(scenario)?;
+        let craft = Arc::new(Craft::new(scenario, options.origin));
+        let count = numbers.len();
+        let mut vehicles = Vec::with_capacity(count);
+        for (index, number) in numbers.into_iter().enumerate() {
+            let sample = Sample::new(0, &engine.glance(index));
+            let vehicle = Vehicle::new(
+                // At most 254.
+                number as u8,
+                Arc::clone(&craft),
+                Parameters::new(&craft, |parameter| engine.parameter(index, parameter)),
+                Streams::new(options.position_hz, index as f64 / count as f64),
+                sample,
+                options.starts_armed,
+            );
+            if let Some(Deed::Wish(wish)) = vehicle.first_deed() {
+                engine.command(index, wish);
+            }
+            vehicles.push(vehicle);
+        }
+        let lines = Lines::open(&options.endpoints)?;
+        let log = match &options.tlog {
+            Some(path) => Some(Tlog::create(path)?),
+            None => None,
+        };
+        Ok(Self {
+            boots: vec![0; count],
+            sequences: vec![0; count],
+            engine,
+            vehicles,
+            craft,
+            lines,
+            options,
+            log,
+            tick_us: scenario.tick_us,
+            ticks: 0,
+            began: Instant::now(),
+            missed: 0,
+            slowest: Duration::ZERO,
+            ignored: 0,
+            refused: 0,
+            commands: BTreeMap::new(),
+            out: Out::default(),
+        })
+    }
+
+    /// The lines, to say where they listen.
+    #[must_use]
+    pub const fn lines(&self) -> &Lines {
+        &self.lines
+    }
+
+    /// Runs until the ticks are used up or `is_over`, which is asked at least every few milliseconds and told the ticks done.
+    ///
+    /// # Errors
+    /// When the log cannot be written.
+    pub fn run(mut self, mut is_over: impl FnMut(u32) -> bool) -> Result<Report, BridgeError> {
+        let tick = Duration::from_secs_f64(f64::from(self.tick_us) / 1e6 / self.options.speed);
+        self.began = Instant::now();
+        let mut due = self.began + tick;
+        while self.options.ticks.is_none_or(|ticks| self.ticks < ticks) && !is_over(self.ticks) {
+            let now = Instant::now();
+            if now >= due {
+                self.tick()?;
+                let done = Instant::now();
+                self.slowest = self.slowest.max(done - now);
+                due += tick;
+                if done > due {
+                    // What came late is not made up for: the clock starts anew.
+                    self.missed += 1;
+                    due = done;
+                }
+            }
+            self.listen(due)?;
+            self.speak()?;
+        }
+        if let Some(log) = self.log.take() {
+            log.finish()?;
+        }
+        Ok(self.report())
+    }
+
+    /// Takes in what comes, for a moment, but not beyond `due`.
+    fn listen(&mut self, due: Instant) -> Result<(), BridgeError> {
+        let until = due.min(Instant::now() + GLANCE);
+        for _ in 0..AT_ONCE {
+            let left = until.saturating_duration_since(Instant::now());
+            let Some(received) = self.lines.receive(left) else {
+                break;
+            };
+            self.take(&received)?;
+        }
+        Ok(())
+    }
+
+    fn now_us(&self) -> u64 {
+        u64::try_from(self.began.elapsed().as_micros()).unwrap_or(u64::MAX)
+    }
+
+    /// One frame that came in.
+    fn take(&mut self, received: &Received) -> Result<(), BridgeError> {
+        if let Some(log) = &mut self.log {
+            log.add(&received.frame)?;
+        }
+        let Some(frame) = RawFrame::new(&received.frame) else {
+            return Ok(());
+        };
+        if let Some(signing) = &mut self.options.signing
+            && !signing.verify(&frame).is_accepted()
+        {
+            self.refused += 1;
+            return Ok(());
+        }
+        let Some(message) = frame.message() else {
+            self.ignored += 1;
+            return Ok(());
+        };
+        let (from, now_us) = (frame.sender(), self.now_us());
+        let system = message.target_system_id().unwrap_or(0);
+        // A heartbeat is for nobody; the rest that names nobody is for all.
+        let is_for_some = !matches!(message, MavMessage::HEARTBEAT(_));
+        let mut is_heard = false;
+        for index in 0..self.vehicles.len() {
+            let vehicle = &mut self.vehicles[index];
+            let is_own = from.system == vehicle.system();
+            if is_for_some && !is_own && (system == 0 || system == vehicle.system()) {
+                vehicle.receive(from, &message, now_us, &mut self.out);
+                is_heard = true;
+                self.carry_out(index)?;
+            }
+        }
+        self.ignored += u64::from(is_for_some && !is_heard);
+        Ok(())
+    }
+
+    /// Sends what is due.
+    fn speak(&mut self) -> Result<(), BridgeError> {
+        let now_us = self.now_us();
+        for index in 0..self.vehicles.len() {
+            self.vehicles[index].poll(now_us, &mut self.out);
+            self.carry_out(index)?;
+        }
+        Ok(())
+    }
+
+    /// One tick, and what the vehicles see of it.
+    fn tick(&mut self) -> Result<(), BridgeError> {
+        if let Some(signing) = &mut self.options.signing {
+            signing.advance_to(timestamp());
+        }
+        self.engine.advance();
+        self.ticks += 1;
+        let time_us = u64::from(self.ticks) * u64::from(self.tick_us);
+        let now_us = self.now_us();
+        for index in 0..self.vehicles.len() {
+            let glance = self.engine.glance(index);
+            let sample = Sample::new(time_us, &glance);
+            if glance.is_up && glance.boot != self.boots[index] {
+                self.boots[index] = glance.boot;
+                let engine = &self.engine;
+                let parameters =
+                    Parameters::new(&self.craft, |parameter| engine.parameter(index, parameter));
+                self.vehicles[index].restart(parameters, sample, &mut self.out);
+            }
+            let events = self.engine.events(index);
+            self.vehicles[index].observe(sample, events, now_us, &mut self.out);
+            self.carry_out(index)?;
+        }
+        Ok(())
+    }
+
+    /// What vehicle `index` wants done and sent.
+    fn carry_out(&mut self, index: usize) -> Result<(), BridgeError> {
+        for deed in self.out.deeds.drain(..) {
+            match deed {
+                Deed::Wish(wish) => self.engine.command(index, wish),
+                Deed::Tell(header, message) => self.engine.tell(index, header, &message),
+                // The vehicle has looked at its range.
+                Deed::Set(parameter, value) => {
+                    let _ = self.engine.set_parameter(index, parameter, value);
+                }
+            }
+        }
+        for result in self.out.results.drain(..) {
+            *self.commands.entry(name(result)).or_default() += 1;
+        }
+        for message in self.out.messages.drain(..) {
+            let sequence = &mut self.sequences[index];
+            let sender = Sender {
+                system: self.vehicles[index].system(),
+                component: staya_mavlink::constants::MAV_COMP_ID_AUTOPILOT1,
+                sequence: *sequence,
+            };
+            *sequence = sequence.wrapping_add(1);
+            let mut frame = heapless::Vec::<u8, MAX_FRAME_LEN>::new();
+            // Every message fits into the longest frame.
+            if encode_message(sender, &message, &mut frame).is_err() {
+                continue;
+            }
+            if let Some(signing) = &mut self.options.signing {
+                match signing.sign(&mut frame) {
+                    // There is room: it is counted in the longest frame.
+                    Ok(signature) => drop(frame.extend_from_slice(&signature)),
+                    // Better nothing than something that is not signed.
+                    Err(_) => continue,
+                }
+            }
+            if let Some(log) = &mut self.log {
+                log.add(&frame)?;
+            }
+            for line in 0..self.lines.len() {
+                self.lines.send(line, &frame);
+            }
+        }
+        Ok(())
+    }
+
+    fn report(&self) -> Report {
+        let wall_seconds = self.began.elapsed().as_secs_f64();
+        let line = |at: usize| {
+            let Counts {
+                frames_in,
+                bytes_in,
+                frames_out,
+                bytes_out,
+                junk_bytes,
+                lost_in,
+                lost_out,
+            } = self.lines.counts(at);
+            LineReport {
+                endpoint: self.options.endpoints[at].to_string(),
+                frames_in,
+                bytes_in,
+                frames_out,
+                bytes_out,
+                lost_out,
+                lost_in,
+                junk_bytes,
+                bytes_out_per_s: bytes_out as f64 / wall_seconds.max(1e-9),
+            }
+        };
+        let outcome = self.engine.outcome();
+        let gap = outcome.clearance.map(|clearance| clearance.bodies_m);
+        Report {
+            vehicles: self.vehicles.len(),
+            ticks: self.ticks,
+            sim_seconds: outcome.seconds,
+            wall_seconds,
+            deadlines_missed: self.missed,
+            slowest_seconds: self.slowest.as_secs_f64(),
+            frames_ignored: self.ignored,
+            frames_refused: self.refused,
+            commands: self.commands.clone(),
+            lines: (0..self.lines.len()).map(line).collect(),
+            collisions: outcome.collisions,
+            least_gap_m: gap.filter(|gap| gap.is_finite()),
+            trace_hash: format!("{:016x}", outcome.trace_hash),
+        }
+    }
+}
+
+/// A result's name.
+const fn name(result: u8) -> &'static str {
+    use staya_mavlink::constants::*;
+    match result {
+        MAV_RESULT_ACCEPTED => "accepted",
+        MAV_RESULT_TEMPORARILY_REJECTED => "temporarily rejected",
+        MAV_RESULT_DENIED => "denied",
+        MAV_RESULT_UNSUPPORTED => "unsupported",
+        MAV_RESULT_COMMAND_INT_ONLY => "as COMMAND_INT only",
+        _ => "unsupported frame",
+    }
+}

@@ -1,0 +1,373 @@
+//! What a vehicle says of itself, and how often.
+
+use super::craft::FlightMode;
+use super::vehicle::Vehicle;
+use crate::geo::ned;
+use staya_controller::wire::Mode;
+use staya_mavlink::constants::*;
+use staya_mavlink::dialect::*;
+use staya_mavlink::mavlink_core::MessageData as _;
+
+/// Shortest time between two messages of a kind, microseconds.
+const SHORTEST_US: u64 = 1000;
+/// "Not known", in fields that have a value for that.
+const UNKNOWN: u16 = u16::MAX;
+
+/// One message, again and again.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Stream {
+    id: u32,
+    /// By default; 0: not at all.
+    default_us: u64,
+    /// Now.
+    every_us: u64,
+    due_us: u64,
+}
+
+/// Messages that come by themselves.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Streams(Vec<Stream>);
+
+/// Microseconds between two messages at a rate, 0 for none.
+fn every(rate_hz: f64) -> u64 {
+    if rate_hz > 0.0 {
+        (1e6 / rate_hz) as u64
+    } else {
+        0
+    }
+}
+
+impl Streams {
+    /// The defaults: `position_hz` of each kind of position, half of that for the attitude, the rest about once a second. `phase` from 0
+    /// to 1: vehicles with different ones do not all speak at once.
+    #[must_use]
+    pub fn new(position_hz: f64, phase: f64) -> Self {
+        let second = every(1.0);
+        let rates = [
+            (HEARTBEAT_DATA::ID, second),
+            (SYS_STATUS_DATA::ID, second),
+            (SYSTEM_TIME_DATA::ID, 4 * second),
+            (GPS_RAW_INT_DATA::ID, second),
+            (ATTITUDE_DATA::ID, every(position_hz / 2.0)),
+            (LOCAL_POSITION_NED_DATA::ID, every(position_hz)),
+            (GLOBAL_POSITION_INT_DATA::ID, every(position_hz)),
+            (MISSION_CURRENT_DATA::ID, second),
+            (GPS_GLOBAL_ORIGIN_DATA::ID, 0),
+            (VFR_HUD_DATA::ID, every(position_hz / 5.0)),
+            (BATTERY_STATUS_DATA::ID, 2 * second),
+            (AUTOPILOT_VERSION_DATA::ID, 0),
+            (HOME_POSITION_DATA::ID, 2 * second),
+            (EXTENDED_SYS_STATE_DATA::ID, second),
+        ];
+        let streams = rates.map(|(id, every_us)| Stream {
+            id,
+            default_us: every_us,
+            every_us,
+            due_us: (every_us as f64 * phase) as u64,
+        });
+        Self(streams.into())
+    }
+
+    /// Whether there is such a message.
+    #[must_use]
+    pub fn has(&self, id: u32) -> bool {
+        self.0.iter().any(|stream| stream.id == id)
+    }
+
+    /// Calls `send` for each message that is due. One that is late is sent once.
+    pub fn each_due(&mut self, now_us: u64, mut send: impl FnMut(u32)) {
+        for stream in &mut self.0 {
+            if stream.every_us == 0 || now_us < stream.due_us {
+                continue;
+            }
+            send(stream.id);
+            let next = stream.due_us + stream.every_us;
+            stream.due_us = if next > now_us {
+                next
+            } else {
+                now_us + stream.every_us
+            };
+        }
+    }
+
+    /// Time between two messages, microseconds; -1: not sent; `None` when there is no such message.
+    #[must_use]
+    pub fn interval_us(&self, id: u32) -> Option<i32> {
+        let stream = self.0.iter().find(|stream| stream.id == id)?;
+        Some(match stream.every_us {
+            0 => -1,
+            us => i32::try_from(us).unwrap_or(i32::MAX),
+        })
+    }
+
+    /// As SET_MESSAGE_INTERVAL says it: -1 ends the stream, 0 is the default. Whether that can be.
+    pub fn set_interval(&mut self, id: u32, interval_us: f32, now_us: u64) -> bool {
+        let Some(stream) = self.0.iter_mut().find(|stream| stream.id == id) else {
+            return false;
+        };
+        let wanted = if interval_us == -1.0 {
+            0
+        } else if interval_us == 0.0 {
+            stream.default_us
+        } else if interval_us >= SHORTEST_US as f32 {
+            interval_us as u64
+        } else {
+            return false;
+        };
+        // Without its heartbeat it would be lost.
+        if id == HEARTBEAT_DATA::ID && wanted != stream.default_us {
+            return false;
+        }
+        (stream.every_us, stream.due_us) = (wanted, now_us + wanted);
+        true
+    }
+
+    /// As REQUEST_DATA_STREAM says it: all messages of a group; 0 ends them.
+    pub fn set_group(&mut self, group: u8, rate_hz: u16, now_us: u64) {
+        let ids: &[u32] = match group {
+            // All: what says how it moves and how it is, not what hardly changes.
+            0 => &[
+                SYS_STATUS_DATA::ID,
+                GPS_RAW_INT_DATA::ID,
+                ATTITUDE_DATA::ID,
+                LOCAL_POSITION_NED_DATA::ID,
+                GLOBAL_POSITION_INT_DATA::ID,
+                VFR_HUD_DATA::ID,
+            ],
+            2 => &[
+                SYS_STATUS_DATA::ID,
+                GPS_RAW_INT_DATA::ID,
+                MISSION_CURRENT_DATA::ID,
+            ],
+            6 => &[LOCAL_POSITION_NED_DATA::ID, GLOBAL_POSITION_INT_DATA::ID],
+            10 => &[ATTITUDE_DATA::ID],
+            11 => &[VFR_HUD_DATA::ID],
+            12 => &[SYSTEM_TIME_DATA::ID, BATTERY_STATUS_DATA::ID],
+            _ => &[],
+        };
+        let every_us = every(f64::from(rate_hz.min(1000)));
+        for stream in self.0.iter_mut().filter(|stream| ids.contains(&stream.id)) {
+            (stream.every_us, stream.due_us) = (every_us, now_us + every_us);
+        }
+    }
+}
+
+impl Vehicle {
+    /// A message about itself, by its number; `None` when there is no such one.
+    pub(super) fn telemetry(&self, id: u32) -> Option<MavMessage> {
+        let sample = &self.sample;
+        let time_boot_ms = (self.uptime_us() / 1000) as u32;
+        let [x, y, z] = ned(sample.position_m).map(|m| m as f32);
+        let velocity = ned(sample.velocity_mps);
+        let [vx, vy, vz] = velocity.map(|v| v as f32);
+        let speed_mps = libm::hypot(velocity[0], velocity[1]);
+        let cm = |v: f64| libm::round(v * 100.0) as i16;
+        // 0 to 360 degrees, in hundredths.
+        let heading = libm::round(f64::from(self.yaw).to_degrees() * 100.0) as i32;
+        let heading = heading.rem_euclid(36_000) as u16;
+        let place = |at_m: [f64; 3]| {
+            let global = self.craft.origin.to_global(at_m);
+            global.map(|global| global.to_e7())
+        };
+        let here = || place(sample.position_m);
+        Some(match id {
+            HEARTBEAT_DATA::ID => self.heartbeat(),
+            SYS_STATUS_DATA::ID => self.sys_status(),
+            SYSTEM_TIME_DATA::ID => MavMessage::SYSTEM_TIME(SYSTEM_TIME_DATA {
+                // The time of day is not known here.
+                time_unix_usec: 0,
+                time_boot_ms,
+            }),
+            GPS_RAW_INT_DATA::ID => {
+                let [lat, lon, alt] = here()?;
+                MavMessage::GPS_RAW_INT(GPS_RAW_INT_DATA {
+                    time_usec: self.uptime_us(),
+                    lat,
+                    lon,
+                    alt,
+                    eph: UNKNOWN,
+                    epv: UNKNOWN,
+                    vel: cm(speed_mps) as u16,
+                    cog: heading,
+                    fix_type: GPS_FIX_TYPE_3D_FIX,
+                    satellites_visible: u8::MAX,
+                    ..GPS_RAW_INT_DATA::DEFAULT
+                })
+            }
+            ATTITUDE_DATA::ID => MavMessage::ATTITUDE(ATTITUDE_DATA {
+                time_boot_ms,
+                yaw: self.yaw,
+                ..ATTITUDE_DATA::DEFAULT
+            }),
+            LOCAL_POSITION_NED_DATA::ID => {
+                MavMessage::LOCAL_POSITION_NED(LOCAL_POSITION_NED_DATA {
+                    time_boot_ms,
+                    x,
+                    y,
+                    z,
+                    vx,
+                    vy,
+                    vz,
+                })
+            }
+            GLOBAL_POSITION_INT_DATA::ID => {
+                let [lat, lon, alt] = here()?;
+                let [vx, vy, vz] = velocity.map(cm);
+                let above_home_m = sample.position_m[2] - self.home_m[2];
+                MavMessage::GLOBAL_POSITION_INT(GLOBAL_POSITION_INT_DATA {
+                    time_boot_ms,
+                    lat,
+                    lon,
+                    alt,
+                    relative_alt: libm::round(above_home_m * 1000.0) as i32,
+                    vx,
+                    vy,
+                    vz,
+                    hdg: heading,
+                })
+            }
+            MISSION_CURRENT_DATA::ID => MavMessage::MISSION_CURRENT(MISSION_CURRENT_DATA {
+                seq: self.mission.current(),
+                total: self.mission.len().saturating_sub(1),
+                // 1 none, 2 not started, 3 under way.
+                mission_state: match (self.mission.is_empty(), self.is_on_mission) {
+                    (true, _) => 1,
+                    (false, false) => 2,
+                    (false, true) => 3,
+                },
+                mission_mode: if self.is_on_mission { 1 } else { 2 },
+            }),
+            GPS_GLOBAL_ORIGIN_DATA::ID => {
+                let [latitude, longitude, altitude] = place([0.0; 3])?;
+                MavMessage::GPS_GLOBAL_ORIGIN(GPS_GLOBAL_ORIGIN_DATA {
+                    latitude,
+                    longitude,
+                    altitude,
+                    time_usec: self.uptime_us(),
+                })
+            }
+            VFR_HUD_DATA::ID => MavMessage::VFR_HUD(VFR_HUD_DATA {
+                airspeed: speed_mps as f32,
+                groundspeed: speed_mps as f32,
+                alt: (self.craft.origin.place().altitude_m + sample.position_m[2]) as f32,
+                climb: -vz,
+                heading: (heading / 100) as i16,
+                throttle: 0,
+            }),
+            BATTERY_STATUS_DATA::ID => MavMessage::BATTERY_STATUS(BATTERY_STATUS_DATA {
+                // There is no model of a battery, and so nothing is known of it.
+                current_consumed: -1,
+                energy_consumed: -1,
+                temperature: i16::MAX,
+                voltages: [UNKNOWN; 10],
+                current_battery: -1,
+                battery_remaining: -1,
+                ..BATTERY_STATUS_DATA::DEFAULT
+            }),
+            AUTOPILOT_VERSION_DATA::ID => MavMessage::AUTOPILOT_VERSION(self.version()),
+            HOME_POSITION_DATA::ID => {
+                let [latitude, longitude, altitude] = place(self.home_m)?;
+                let [x, y, z] = ned(self.home_m).map(|m| m as f32);
+                MavMessage::HOME_POSITION(HOME_POSITION_DATA {
+                    latitude,
+                    longitude,
+                    altitude,
+                    x,
+                    y,
+                    z,
+                    q: [1.0, 0.0, 0.0, 0.0],
+                    time_usec: self.uptime_us(),
+                    ..HOME_POSITION_DATA::DEFAULT
+                })
+            }
+            EXTENDED_SYS_STATE_DATA::ID => {
+                let landed_state = match (self.is_in_air(), self.mode) {
+                    (false, _) => MAV_LANDED_STATE_ON_GROUND,
+                    (true, FlightMode::Land) => MAV_LANDED_STATE_LANDING,
+                    (true, _) => MAV_LANDED_STATE_IN_AIR,
+                };
+                MavMessage::EXTENDED_SYS_STATE(EXTENDED_SYS_STATE_DATA {
+                    landed_state,
+                    ..EXTENDED_SYS_STATE_DATA::DEFAULT
+                })
+            }
+            _ => return None,
+        })
+    }
+
+    fn heartbeat(&self) -> MavMessage {
+        let flies = self.craft.flies;
+        let mut base_mode = MAV_MODE_FLAG_CUSTOM_MODE_ENABLED;
+        for (flag, holds) in [
+            (MAV_MODE_FLAG_SAFETY_ARMED, self.is_armed),
+            (MAV_MODE_FLAG_AUTO_ENABLED, self.mode == FlightMode::Auto),
+            (
+                MAV_MODE_FLAG_GUIDED_ENABLED,
+                matches!(self.mode, FlightMode::Guided | FlightMode::Auto),
+            ),
+        ] {
+            base_mode |= if holds { flag } else { 0 };
+        }
+        MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+            custom_mode: self.mode.number(flies),
+            mavtype: if flies {
+                MAV_TYPE_QUADROTOR
+            } else {
+                MAV_TYPE_GROUND_ROVER
+            },
+            // The modes are ArduPilot's: see `FlightMode`.
+            autopilot: MAV_AUTOPILOT_ARDUPILOTMEGA,
+            base_mode,
+            system_status: match (self.is_armed, self.sample.mode) {
+                (false, _) => MAV_STATE_STANDBY,
+                (true, Mode::Fault) => MAV_STATE_CRITICAL,
+                (true, _) => MAV_STATE_ACTIVE,
+            },
+            mavlink_version: 3,
+        })
+    }
+
+    fn sys_status(&self) -> MavMessage {
+        let present = MAV_SYS_STATUS_SENSOR_GPS
+            | MAV_SYS_STATUS_SENSOR_XY_POSITION_CONTROL
+            | MAV_SYS_STATUS_SENSOR_MOTOR_OUTPUTS
+            | MAV_SYS_STATUS_PREARM_CHECK;
+        let has_fault = self.is_armed && self.sample.mode == Mode::Fault;
+        let unsound = if has_fault {
+            MAV_SYS_STATUS_SENSOR_XY_POSITION_CONTROL
+        } else {
+            0
+        };
+        MavMessage::SYS_STATUS(SYS_STATUS_DATA {
+            onboard_control_sensors_present: present,
+            onboard_control_sensors_enabled: present,
+            onboard_control_sensors_health: present & !unsound,
+            voltage_battery: UNKNOWN,
+            current_battery: -1,
+            battery_remaining: -1,
+            ..SYS_STATUS_DATA::DEFAULT
+        })
+    }
+
+    fn version(&self) -> AUTOPILOT_VERSION_DATA {
+        let number = |text: &str| text.parse::<u32>().unwrap_or(0) & 0xFF;
+        let [major, minor, patch] = [
+            env!("CARGO_PKG_VERSION_MAJOR"),
+            env!("CARGO_PKG_VERSION_MINOR"),
+            env!("CARGO_PKG_VERSION_PATCH"),
+        ]
+        .map(number);
+        AUTOPILOT_VERSION_DATA {
+            capabilities: MAV_PROTOCOL_CAPABILITY_PARAM_FLOAT
+                | MAV_PROTOCOL_CAPABILITY_MISSION_INT
+                | MAV_PROTOCOL_CAPABILITY_COMMAND_INT
+                | MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED
+                | MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_GLOBAL_INT
+                | MAV_PROTOCOL_CAPABILITY_MAVLINK2
+                | MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_C_CAST,
+            uid: self.system.into(),
+            flight_sw_version: major << 24 | minor << 16 | patch << 8,
+            ..AUTOPILOT_VERSION_DATA::DEFAULT
+        }
+    }
+}

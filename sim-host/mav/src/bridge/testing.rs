@@ -1,0 +1,181 @@
+//! Vehicles for tests.
+
+use super::craft::{Craft, Sample};
+use super::params::Parameters;
+use super::telemetry::Streams;
+use super::vehicle::{Out, Vehicle};
+use crate::geo::{Global, Origin};
+use staya_controller::agent::{Parameter, Wish};
+use staya_controller::grid::{BLOCKED, Cell};
+use staya_controller::wire::Mode;
+use staya_mavlink::dialect::*;
+use staya_mavlink::frame::Sender;
+use staya_sim::terrain::Terrain;
+use std::sync::Arc;
+
+/// A ground station.
+pub(super) const GCS: Sender = Sender {
+    system: 255,
+    component: 190,
+    sequence: 0,
+};
+
+pub(super) fn origin() -> Origin {
+    let place = Global {
+        latitude_deg: 50.0,
+        longitude_deg: 8.0,
+        altitude_m: 100.0,
+    };
+    Origin::new(place).expect("a place")
+}
+
+/// Discs in the plane.
+pub(super) fn craft() -> Craft {
+    Craft {
+        flies: false,
+        grid: None,
+        in_formation: false,
+        max_speed_mps: 2.0,
+        radius_m: 0.25,
+        origin: origin(),
+        solids: Vec::new(),
+    }
+}
+
+/// Robots on a grid of 10 x 10 cells of 2 m, with a wall at (4, 4).
+pub(super) fn on_grid() -> Craft {
+    let mut land = Terrain::flat(10, 10);
+    land.cell_m = 2.0;
+    land.set(Cell::new(4, 4), BLOCKED);
+    Craft {
+        grid: Some(land),
+        max_speed_mps: 0.0,
+        radius_m: 0.0,
+        ..craft()
+    }
+}
+
+pub(super) fn sample() -> Sample {
+    Sample {
+        time_us: 0,
+        position_m: [3.0, 5.0, 0.0],
+        velocity_mps: [0.0; 3],
+        cell: Cell::new(1, 2),
+        mode: Mode::Cruise,
+        wish: Wish::Own,
+        is_up: true,
+    }
+}
+
+/// Vehicle 7, and what the last call made of it.
+pub(super) struct Bench {
+    pub(super) vehicle: Vehicle,
+    pub(super) sample: Sample,
+    pub(super) out: Out,
+}
+
+impl Bench {
+    pub(super) fn new(craft: Craft) -> Self {
+        let values = |parameter: Parameter| {
+            Some(match parameter {
+                Parameter::Speed => 1.0,
+                Parameter::Tolerance => 0.05,
+                _ => parameter.range()[1],
+            })
+        };
+        let parameters = Parameters::new(&craft, values);
+        let streams = Streams::new(10.0, 0.0);
+        let sample = sample();
+        Self {
+            vehicle: Vehicle::new(7, Arc::new(craft), parameters, streams, sample, true),
+            sample,
+            out: Out::default(),
+        }
+    }
+
+    /// The vehicle gets a message at a moment; what comes of it replaces what came before.
+    pub(super) fn give(&mut self, message: MavMessage) -> &Out {
+        self.out = Out::default();
+        let now_us = self.vehicle.now_us;
+        self.vehicle.receive(GCS, &message, now_us, &mut self.out);
+        &self.out
+    }
+
+    /// A command with these parameters; its result.
+    pub(super) fn command(&mut self, command: u16, params: [f32; 7]) -> u8 {
+        let [param1, param2, param3, param4, param5, param6, param7] = params;
+        self.give(MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
+            param1,
+            param2,
+            param3,
+            param4,
+            param5,
+            param6,
+            param7,
+            command,
+            target_system: 7,
+            target_component: 1,
+            confirmation: 0,
+        }));
+        self.result()
+    }
+
+    /// A command whose place is in whole numbers; its result.
+    pub(super) fn command_int(&mut self, command: COMMAND_INT_DATA) -> u8 {
+        self.give(MavMessage::COMMAND_INT(COMMAND_INT_DATA {
+            target_system: 7,
+            target_component: 1,
+            ..command
+        }));
+        self.result()
+    }
+
+    /// The result that was answered; there is exactly one answer, and it comes first.
+    pub(super) fn result(&self) -> u8 {
+        let acks = self
+            .out
+            .messages
+            .iter()
+            .filter_map(|message| match message {
+                MavMessage::COMMAND_ACK(ack) => Some(ack.result),
+                _ => None,
+            });
+        let acks: Vec<u8> = acks.collect();
+        assert_eq!(acks, self.out.results, "each command is answered once");
+        assert!(matches!(self.out.messages[0], MavMessage::COMMAND_ACK(_)));
+        acks[0]
+    }
+
+    /// A tick later.
+    pub(super) fn tick(&mut self, change: impl FnOnce(&mut Sample)) -> &Out {
+        self.sample.time_us += 100_000;
+        change(&mut self.sample);
+        self.out = Out::default();
+        let now_us = self.sample.time_us;
+        self.vehicle
+            .observe(self.sample, &[], now_us, &mut self.out);
+        &self.out
+    }
+
+    /// What the controller was told to wish at last.
+    pub(super) fn wish(&self) -> Option<Wish<f32>> {
+        let mut deeds = self.out.deeds.iter().rev();
+        deeds.find_map(|deed| match deed {
+            super::vehicle::Deed::Wish(wish) => Some(*wish),
+            _ => None,
+        })
+    }
+
+    /// Texts that were sent.
+    pub(super) fn texts(&self) -> Vec<String> {
+        let texts = self
+            .out
+            .messages
+            .iter()
+            .filter_map(|message| match message {
+                MavMessage::STATUSTEXT(text) => Some(text.text.to_str().unwrap_or("?").to_owned()),
+                _ => None,
+            });
+        texts.collect()
+    }
+}

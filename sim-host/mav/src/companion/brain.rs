@@ -1,0 +1,184 @@
+//! The agent beside an autopilot: what it senses comes from telemetry and the scenario's land, what it commands is a velocity.
+
+use staya_controller::agent::{
+    Agent, AgentConfig, AnyGuidance, AnySafety, Command, GridWorkspace, HALF_PLANES, NEIGHBORS,
+    Outputs, TEMPLATE, VISITS,
+};
+use staya_controller::geom::Vec3;
+use staya_controller::time::{self, Instant};
+use staya_controller::wire::{Mode, Wire};
+use staya_sim::engine::{Ground, PlaneGround, Senses, WIDE};
+use staya_sim::scenario::{SafetyName, Scenario};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// A vehicle as its telemetry has it, in metres and m/s east, north, up.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Body {
+    /// Where.
+    pub position_m: [f64; 3],
+    /// How fast.
+    pub velocity_mps: [f64; 3],
+}
+
+/// How a vehicle that heads for a place is kept from overshooting.
+#[derive(Clone, Copy, Debug)]
+struct Brake {
+    place_m: [f64; 3],
+    tolerance_m: f64,
+}
+
+type Mind<W> =
+    Agent<f32, AnyGuidance<f32, WIDE, VISITS, TEMPLATE>, NEIGHBORS, AnySafety<f32, HALF_PLANES>, W>;
+
+/// An agent with its land.
+pub struct Brain<W> {
+    ground: Arc<PlaneGround>,
+    agent: Box<Mind<W>>,
+    workspace: GridWorkspace<WIDE>,
+    senses: Senses,
+    out: Outputs<f32>,
+    is_in_space: bool,
+    brake: Option<Brake>,
+    max_acceleration_mps2: f64,
+    lag_s: f64,
+    /// What it commanded last, if it steers.
+    commanded_mps: Option<[f64; 3]>,
+}
+
+impl<W: Wire> Brain<W> {
+    /// Of robot number `index` of the scenario, whose robots are on `ground`; `boot` differs from start to start.
+    #[must_use]
+    pub fn new(
+        scenario: &Scenario,
+        ground: &Arc<PlaneGround>,
+        index: usize,
+        boot: u8,
+        lag_s: f64,
+        wire: W,
+    ) -> Self {
+        let robot = scenario.robots.get(index).map(|robot| robot.id);
+        let tick = time::Duration::from_micros(i32::try_from(scenario.tick_us).unwrap_or(i32::MAX));
+        let mut config = AgentConfig {
+            boot,
+            ..AgentConfig::new(robot.unwrap_or_default(), scenario.seed, tick)
+        };
+        ground.configure(&mut config);
+        let guidance = scenario.guidance(index).guidance();
+        let mut agent = Box::new(Agent::speaking(
+            &config,
+            guidance,
+            scenario.safety().safety(),
+            wire,
+        ));
+        // A guidance that has no use for its task says so; the scenario was checked for that.
+        let _ = agent.assign(&ground.task(index, 0));
+        let plane = scenario.plane.as_ref();
+        let places = plane.filter(|plane| !plane.guidance.is_on_grid());
+        let place = places.and_then(|plane| plane.starts.get(index)?.places.first());
+        let brake = plane.zip(place).map(|(plane, place)| Brake {
+            place_m: place.position_m,
+            tolerance_m: plane.tolerance_m,
+        });
+        let safety = plane.map(|plane| plane.safety);
+        Self {
+            ground: Arc::clone(ground),
+            agent,
+            workspace: GridWorkspace::default(),
+            senses: Senses::default(),
+            out: Outputs::default(),
+            is_in_space: safety == Some(SafetyName::Fly),
+            brake,
+            max_acceleration_mps2: f64::from(config.max_acceleration_mps2),
+            lag_s,
+            commanded_mps: None,
+        }
+    }
+
+    /// What the robot does.
+    #[must_use]
+    pub fn mode(&self) -> Mode {
+        self.agent.mode()
+    }
+
+    /// How many others it knows.
+    #[must_use]
+    pub fn neighbors(&self) -> usize {
+        self.agent.neighbors().len()
+    }
+
+    /// One step of the agent. One that does not steer (the pilot does, or telemetry is stale) says by its beacons where it is and that others must make way.
+    pub fn step(
+        &mut self,
+        body: &Body,
+        steers: bool,
+        inbox: &[u8],
+        now: Duration,
+    ) -> &Outputs<f32> {
+        let [x, y, z] = body.position_m;
+        // In the plane heights are told apart by nobody, and altitudes differ by metres between two receivers.
+        let position_m = [x, y, if self.is_in_space { z } else { 0.0 }];
+        let velocity_mps = self.own_velocity(body.velocity_mps);
+        let mut inputs = self
+            .ground
+            .sense_at(position_m, velocity_mps, &mut self.senses);
+        inputs.inbox = inbox;
+        if !steers {
+            inputs.surroundings = None;
+        }
+        if let (Some(around), Some(brake)) = (&mut inputs.surroundings, self.brake) {
+            let limit = speed_before(&brake, position_m, self.max_acceleration_mps2, self.lag_s);
+            around.max_speed_mps = around.max_speed_mps.min(limit as f32);
+        }
+        // The robot's clock wraps; steps are far closer to each other.
+        let now = Instant::from_micros(now.as_micros() as u32);
+        self.agent
+            .step_into(&inputs, now, &mut self.workspace, &mut self.out);
+        self.commanded_mps = steers.then(|| self.velocity_mps());
+        &self.out
+    }
+
+    /// What it commands: east, north, up, m/s.
+    #[must_use]
+    pub fn velocity_mps(&self) -> [f64; 3] {
+        match self.out.command {
+            Command::Velocity(Vec3 { x, y, z }) => [x, y, z].map(f64::from),
+            Command::Hold | Command::Move(_) => [0.0; 3],
+        }
+    }
+
+    /// The velocity that the vehicle is about to have: what it was told, within what it can change while it follows. Acceleration is
+    /// limited from there, or a vehicle that lags would never get going.
+    fn own_velocity(&self, measured_mps: [f64; 3]) -> [f64; 3] {
+        let Some(commanded) = self.commanded_mps else {
+            return measured_mps;
+        };
+        let off = [0, 1, 2].map(|axis| commanded[axis] - measured_mps[axis]);
+        let length = off.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let most = self.max_acceleration_mps2 * self.lag_s;
+        let share = if length > most { most / length } else { 1.0 };
+        [0, 1, 2].map(|axis| measured_mps[axis] + off[axis] * share)
+    }
+}
+
+/// How fast a vehicle may be that should stand at a place: it brakes with half of what it could, and reaches the place so slowly that it stands
+/// within the tolerance although it lags.
+fn speed_before(brake: &Brake, position_m: [f64; 3], acceleration_mps2: f64, lag_s: f64) -> f64 {
+    let way = [0, 1, 2].map(|axis| brake.place_m[axis] - position_m[axis]);
+    let distance_m = way.iter().map(|x| x * x).sum::<f64>().sqrt();
+    if lag_s <= 0.0 {
+        return f64::INFINITY;
+    }
+    let slow = brake.tolerance_m / (2.0 * lag_s);
+    // v^2 / 2a plus what it goes on while it lags is the way that is left.
+    let by_lag = acceleration_mps2 * lag_s / 2.0;
+    let fast = if acceleration_mps2.is_finite() {
+        (by_lag * by_lag + acceleration_mps2 * distance_m).sqrt() - by_lag
+    } else {
+        distance_m / (2.0 * lag_s)
+    };
+    slow.max(fast)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,115 @@
+use super::*;
+use staya_controller::wire::Postcard;
+use staya_sim::scenario::Overrides;
+use std::path::Path;
+
+const TICK: Duration = Duration::from_millis(100);
+
+fn brains(count: usize) -> Vec<Brain<Postcard>> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../companions/crossing.toml");
+    let scenario = Scenario::load(&path, &Overrides::default()).unwrap();
+    let plane = scenario.plane.as_ref().unwrap();
+    let ground = Arc::new(PlaneGround::new(&scenario, plane));
+    let brain = |index| Brain::new(&scenario, &ground, index, 1, 0.5, Postcard);
+    (0..count).map(brain).collect()
+}
+
+fn at(x: f64, y: f64) -> Body {
+    Body {
+        position_m: [x, y, 7.0],
+        velocity_mps: [0.0; 3],
+    }
+}
+
+#[test]
+fn heads_for_its_goal_and_says_where_it_is() {
+    let mut brain = brains(1).remove(0);
+    let mut body = at(0.0, 0.0);
+    for step in 0..50 {
+        let out = brain.step(&body, true, &[], TICK * step);
+        assert!(!out.outbox.is_empty());
+        body.velocity_mps = brain.velocity_mps();
+        for axis in 0..3 {
+            body.position_m[axis] += body.velocity_mps[axis] * 0.1;
+        }
+    }
+    let [x, y, z] = brain.velocity_mps();
+    assert!(
+        (x - 2.0).abs() < 1e-3 && y.abs() < 1e-3 && z == 0.0,
+        "{x} {y} {z}"
+    );
+    assert_eq!(brain.mode(), Mode::Cruise);
+}
+
+#[test]
+fn one_that_is_not_steered_is_in_fault_and_commands_nothing() {
+    let mut brain = brains(1).remove(0);
+    let _ = brain.step(&at(0.0, 0.0), true, &[], Duration::ZERO);
+    let out = brain.step(&at(1.0, 0.0), false, &[], TICK);
+    assert!(!out.outbox.is_empty(), "the others hear where it is");
+    assert_eq!(brain.mode(), Mode::Fault);
+    assert_eq!(brain.velocity_mps(), [0.0; 3]);
+}
+
+/// A vehicle that follows velocities with a lag reaches its place and stays there.
+#[test]
+fn a_vehicle_that_lags_does_not_overshoot_its_tolerance() {
+    let mut brain = brains(1).remove(0);
+    let mut body = at(30.0, 0.0);
+    let mut farthest = 0.0_f64;
+    for step in 0..400 {
+        let _ = brain.step(&body, true, &[], TICK * step);
+        let wish = brain.velocity_mps();
+        for _ in 0..10 {
+            for (axis, wish) in wish.into_iter().enumerate() {
+                let change = (wish - body.velocity_mps[axis]) / 0.5;
+                body.velocity_mps[axis] += change.clamp(-1.0, 1.0) * 0.01;
+                body.position_m[axis] += body.velocity_mps[axis] * 0.01;
+            }
+        }
+        farthest = farthest.max(body.position_m[0]);
+    }
+    assert_eq!(brain.mode(), Mode::Arrived);
+    assert!(farthest < 51.0, "{farthest}");
+    assert!((body.position_m[0] - 50.0).abs() < 1.0);
+}
+
+#[test]
+fn one_in_fault_is_evaded_by_the_other_alone() {
+    let mut brains = brains(2);
+    let mut second = brains.remove(1);
+    let mut first = brains.remove(0);
+    // The first one stands in the way of the second and does not steer.
+    let (stands, mut moves) = (at(25.0, 0.1), at(10.0, 0.0));
+    let mut least = f64::INFINITY;
+    for step in 0..300 {
+        let said = first.step(&stands, false, &[], TICK * step).outbox.clone();
+        let _ = second.step(&moves, true, &said, TICK * step);
+        moves.velocity_mps = second.velocity_mps();
+        for axis in 0..3 {
+            moves.position_m[axis] += moves.velocity_mps[axis] * 0.1;
+        }
+        let off = [0, 1].map(|axis| moves.position_m[axis] - stands.position_m[axis]);
+        least = least.min(off.iter().map(|x| x * x).sum::<f64>().sqrt());
+    }
+    assert_eq!(second.mode(), Mode::Arrived);
+    assert!(least >= 2.0, "{least}");
+}
+
+#[test]
+fn braking_is_faster_far_away_and_never_slower_than_what_ends_in_the_tolerance() {
+    let brake = Brake {
+        place_m: [0.0; 3],
+        tolerance_m: 1.0,
+    };
+    let speed = |distance| speed_before(&brake, [distance, 0.0, 0.0], 1.0, 0.5);
+    assert_eq!(speed(0.0), 1.0);
+    assert!(speed(100.0) > speed(10.0) && speed(10.0) > speed(2.0));
+    // v^2 / 2a + v lag = d with half of the acceleration.
+    let v = speed(10.0);
+    assert!((v * v + v * 0.5 - 10.0).abs() < 1e-9, "{v}");
+    assert_eq!(
+        speed_before(&brake, [5.0, 0.0, 0.0], 1.0, 0.0),
+        f64::INFINITY
+    );
+}

@@ -1,0 +1,590 @@
+//! What a companion owes its autopilot, as a state machine without I/O and clock: telemetry and time in, messages out. Read
+//! [`Duties::poll`] first.
+//!
+//! It says that it is there once a second, asks for the telemetry that it needs, and sends velocities at a steady rate while, and only while,
+//! it may steer: the autopilot is heard, it is in the mode for outside control, armed (and in the air, if it flies), and its position is fresh.
+//!
+//! Who decides about that mode is the pilot. With [`Entry::Once`] the companion asks for it (and for what else its rules say) a single time after its start; whatever
+//! a pilot does in the meantime ends that. When the mode is left, by whomever, setpoints stop with that heartbeat. After a restart
+//! of the autopilot the mode it comes up in is nobody's permission: it must be left and chosen again.
+
+mod event;
+mod out;
+
+pub use event::Event;
+pub use out::status_text;
+
+use super::kind::Kind;
+use crate::geo::Global;
+use serde::{Deserialize, Serialize};
+use staya_mavlink::dialect::MavMessage;
+use std::collections::VecDeque;
+use std::time::Duration;
+
+/// The companion's component of its vehicle's system: `MAV_COMP_ID_ONBOARD_COMPUTER`.
+pub const COMPONENT: u8 = 191;
+/// The autopilot's component.
+pub const AUTOPILOT: u8 = 1;
+
+/// Between two own heartbeats.
+const HEARTBEAT: Duration = Duration::from_secs(1);
+/// Between two looks at the rate of positions.
+const LOOK: Duration = Duration::from_secs(3);
+/// How long PX4 gets setpoints before the mode is asked for.
+const STREAM: Duration = Duration::from_secs(1);
+/// Between two requests of one thing.
+const RETRY: Duration = Duration::from_secs(2);
+/// How often a thing is asked for: two minutes, since autopilots refuse arming and modes long after their first position.
+const ATTEMPTS: u8 = 60;
+/// How long there are no setpoints at all after a hand-over.
+const QUIET: Duration = Duration::from_secs(5);
+/// A command of the agent that is older is none.
+const COMMAND_VALID: Duration = Duration::from_millis(500);
+/// A time since boot that is earlier by more is another boot; by less, a message that was overtaken.
+const OVERTAKEN_MS: i32 = 2000;
+/// A time since boot that is later by more is another boot, whose clock wrapped.
+const DAY_MS: i32 = 86_400_000;
+/// Lower than this over its home, a vehicle that does not say whether it flies is on the ground, metres.
+const LOW_M: f64 = 1.0;
+
+/// Who puts the vehicle into the mode for outside control.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Entry {
+    /// The pilot.
+    #[default]
+    Wait,
+    /// The companion, once after its start.
+    Once,
+}
+
+/// By what rules a vehicle is steered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rules {
+    /// Who asks for the mode.
+    pub entry: Entry,
+    /// Whether [`Entry::Once`] also arms. Otherwise it waits until somebody else has.
+    pub arm: bool,
+    /// Whether it then takes off, to `altitude_m`.
+    pub takeoff: bool,
+    /// Height above home that is kept, metres; `None`: vertical velocities are the agent's, zero in the plane.
+    pub altitude_m: Option<f64>,
+    /// A position that is older is stale.
+    pub stale: Duration,
+    /// An autopilot that is silent for longer is gone.
+    pub link_lost: Duration,
+    /// Between two setpoints.
+    pub setpoint_every: Duration,
+    /// Positions asked for, Hz.
+    pub position_hz: f64,
+}
+
+/// What a companion does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum State {
+    /// No heartbeat: it sends no setpoints.
+    Silent,
+    /// The vehicle is in another mode: it is the pilot's.
+    Pilot,
+    /// The autopilot has restarted in the mode for outside control, where nobody has put it.
+    Restarted,
+    /// It asks for the mode, arms or takes off.
+    Entering,
+    /// In the mode, not armed.
+    Disarmed,
+    /// In the mode and armed, without a position yet.
+    NoPosition,
+    /// In the mode and armed, not in the air.
+    Grounded,
+    /// It was steering and the position is stale: it tells the vehicle to stop.
+    Stopped,
+    /// It steers.
+    Steering,
+}
+
+/// The last position.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fix {
+    /// When it arrived.
+    pub at: Duration,
+    /// Where.
+    pub place: Global,
+    /// Above home, metres.
+    pub above_home_m: f64,
+    /// North, east, down, m/s.
+    pub velocity_ned_mps: [f64; 3],
+}
+
+/// The last heartbeat.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Beat {
+    at: Duration,
+    custom_mode: u32,
+    is_controlled: bool,
+    is_armed: bool,
+}
+
+/// What was asked for on entry.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Ask {
+    Mode,
+    Arm,
+    Takeoff,
+}
+
+/// What has happened so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Tally {
+    /// Heartbeats heard.
+    pub heartbeats: u64,
+    /// Positions heard.
+    pub positions: u64,
+    /// Setpoints sent.
+    pub setpoints: u64,
+    /// How often the mode was left while the companion steered.
+    pub hand_overs: u64,
+    /// How often it stopped for want of a position.
+    pub stops: u64,
+    /// Restarts of the autopilot.
+    pub restarts: u64,
+}
+
+/// One companion.
+#[derive(Clone, Debug)]
+pub struct Duties {
+    system: u8,
+    kind: Kind,
+    rules: Rules,
+    state: State,
+    beat: Option<Beat>,
+    fix: Option<Fix>,
+    boot_ms: Option<u32>,
+    /// Velocity from `LOCAL_POSITION_NED`, which is finer, and when.
+    velocity: Option<(Duration, [f64; 3])>,
+    landed: Option<u8>,
+    /// The companion may still ask.
+    may_enter: bool,
+    /// The mode is not a permission until it has been left.
+    must_be_left: bool,
+    quiet_until: Duration,
+    streaming_since: Option<Duration>,
+    asked: Option<(Ask, u8, Duration)>,
+    refused: Option<(u16, u8)>,
+    command: Option<(Duration, [f64; 3])>,
+    next_heartbeat: Duration,
+    next_setpoint: Duration,
+    next_look: Option<Duration>,
+    positions_at_look: u64,
+    events: VecDeque<Event>,
+    tally: Tally,
+}
+
+impl Duties {
+    /// Of the vehicle `system`, which has just been switched on for all it knows.
+    #[must_use]
+    pub fn new(system: u8, kind: Kind, rules: Rules) -> Self {
+        Self {
+            system,
+            kind,
+            rules,
+            state: State::Silent,
+            beat: None,
+            fix: None,
+            boot_ms: None,
+            velocity: None,
+            landed: None,
+            may_enter: rules.entry == Entry::Once,
+            must_be_left: false,
+            quiet_until: Duration::ZERO,
+            streaming_since: None,
+            asked: None,
+            refused: None,
+            command: None,
+            next_heartbeat: Duration::ZERO,
+            next_setpoint: Duration::ZERO,
+            next_look: None,
+            positions_at_look: 0,
+            events: VecDeque::new(),
+            tally: Tally::default(),
+        }
+    }
+
+    /// What it does, as of the last [`poll`](Self::poll).
+    #[must_use]
+    pub const fn state(&self) -> State {
+        self.state
+    }
+
+    /// What has happened.
+    #[must_use]
+    pub const fn tally(&self) -> Tally {
+        self.tally
+    }
+
+    /// The last position, however old.
+    #[must_use]
+    pub const fn fix(&self) -> Option<Fix> {
+        self.fix
+    }
+
+    /// The last position if it is not stale.
+    #[must_use]
+    pub fn fresh_fix(&self, now: Duration) -> Option<Fix> {
+        self.fix
+            .filter(|fix| now.saturating_sub(fix.at) <= self.rules.stale)
+    }
+
+    /// Takes the next thing off that is worth telling a person.
+    pub fn event(&mut self) -> Option<Event> {
+        self.events.pop_front()
+    }
+
+    /// Takes the velocity that the agent wants from now on, metres per second north, east, down.
+    pub fn steer(&mut self, velocity_ned_mps: [f64; 3], now: Duration) {
+        self.command = Some((now, velocity_ned_mps));
+    }
+
+    /// Takes a message of the vehicle's autopilot.
+    pub fn hear(&mut self, message: &MavMessage, now: Duration) {
+        match message {
+            MavMessage::HEARTBEAT(beat) => self.heartbeat(beat.custom_mode, beat.base_mode, now),
+            MavMessage::SYSTEM_TIME(time) => drop(self.is_in_order(time.time_boot_ms)),
+            MavMessage::GLOBAL_POSITION_INT(at) if self.is_in_order(at.time_boot_ms) => {
+                // Before they know where they are, autopilots say 0, 0.
+                if (at.lat, at.lon) == (0, 0) {
+                    return;
+                }
+                let fine = self.velocity.filter(|(heard, _)| {
+                    now.saturating_sub(*heard).as_secs_f64() * self.rules.position_hz <= 2.0
+                });
+                let coarse = [at.vx, at.vy, at.vz].map(|v| f64::from(v) / 100.0);
+                self.tally.positions += 1;
+                self.fix = Some(Fix {
+                    at: now,
+                    place: Global::from_e7(at.lat, at.lon, at.alt),
+                    above_home_m: f64::from(at.relative_alt) / 1e3,
+                    velocity_ned_mps: fine.map_or(coarse, |(_, velocity)| velocity),
+                });
+            }
+            MavMessage::LOCAL_POSITION_NED(at) if self.is_in_order(at.time_boot_ms) => {
+                let velocity = [at.vx, at.vy, at.vz];
+                if velocity.iter().all(|v| v.is_finite()) {
+                    self.velocity = Some((now, velocity.map(f64::from)));
+                }
+            }
+            MavMessage::EXTENDED_SYS_STATE(state) => self.landed = Some(state.landed_state),
+            MavMessage::COMMAND_ACK(ack) => self.acknowledged(ack.command, ack.result),
+            _ => {}
+        }
+    }
+
+    /// Takes note of the autopilot's clock; whether the message is not one that was overtaken.
+    fn is_in_order(&mut self, boot_ms: u32) -> bool {
+        let since = self
+            .boot_ms
+            .map(|last| boot_ms.wrapping_sub(last).cast_signed());
+        match since {
+            Some(ms) if (-OVERTAKEN_MS..0).contains(&ms) => return false,
+            Some(ms) if !(0..=DAY_MS).contains(&ms) => self.restarted(),
+            _ => {}
+        }
+        self.boot_ms = Some(boot_ms);
+        true
+    }
+
+    fn restarted(&mut self) {
+        self.tally.restarts += 1;
+        self.events.push_back(Event::Restarted);
+        self.must_be_left = self.beat.is_some_and(|beat| beat.is_controlled);
+        self.end_entry(None);
+        (self.fix, self.velocity, self.landed) = (None, None, None);
+        self.next_look = None;
+    }
+
+    fn heartbeat(&mut self, custom_mode: u32, base_mode: u8, now: Duration) {
+        const CUSTOM: u8 = 1;
+        const ARMED: u8 = 128;
+        let is_controlled = base_mode & CUSTOM != 0 && self.kind.is_outside_control(custom_mode);
+        let beat = Beat {
+            at: now,
+            custom_mode,
+            is_controlled,
+            is_armed: base_mode & ARMED != 0,
+        };
+        self.tally.heartbeats += 1;
+        if let Some(last) = self.beat {
+            if now.saturating_sub(last.at) > self.rules.link_lost {
+                self.events
+                    .push_back(Event::Back(now.saturating_sub(last.at)));
+                self.next_look = None;
+            }
+            let is_changed = last.custom_mode != custom_mode;
+            if is_changed && !is_controlled || last.is_armed && !beat.is_armed {
+                self.end_entry(Some(Event::PilotActs));
+            }
+            if last.is_controlled && !is_controlled {
+                self.quiet_until = now + QUIET;
+                self.streaming_since = None;
+                if matches!(self.state, State::Steering | State::Stopped) {
+                    self.tally.hand_overs += 1;
+                    self.events.push_back(Event::HandedOver(custom_mode));
+                }
+            }
+        }
+        if !is_controlled {
+            self.must_be_left = false;
+        }
+        self.beat = Some(beat);
+        // What ends with this heartbeat does not wait for the next poll.
+        self.settle(now);
+    }
+
+    /// The companion does not ask any more.
+    fn end_entry(&mut self, event: Option<Event>) {
+        if self.may_enter {
+            self.events.extend(event);
+        }
+        self.may_enter = false;
+        self.asked = None;
+    }
+
+    fn acknowledged(&mut self, command: u16, result: u8) {
+        const IN_PROGRESS: u8 = 5;
+        let is_own = [out::DO_SET_MODE, out::ARM_DISARM, out::NAV_TAKEOFF].contains(&command);
+        let is_done = result == 0 || result == IN_PROGRESS;
+        if !is_own || self.asked.is_none() {
+            return;
+        }
+        let refused = (!is_done).then_some((command, result));
+        // Each refusal is told once, however often it is repeated.
+        if let Some((command, result)) = refused.filter(|_| refused != self.refused) {
+            self.events.push_back(Event::Refused { command, result });
+        }
+        self.refused = refused;
+    }
+
+    /// Whether a vehicle that flies does.
+    fn is_in_air(&self, fix: &Fix) -> bool {
+        const ON_GROUND: u8 = 1;
+        const IN_AIR: u8 = 2;
+        if !self.kind.flies() {
+            return true;
+        }
+        if let (true, Some(altitude_m)) =
+            (self.may_enter && self.rules.takeoff, self.rules.altitude_m)
+        {
+            return fix.above_home_m >= altitude_m - (altitude_m * 0.1).max(0.5);
+        }
+        match self.landed {
+            Some(ON_GROUND) => false,
+            Some(IN_AIR) => true,
+            _ => fix.above_home_m >= LOW_M,
+        }
+    }
+
+    /// What to do now. The first rule that applies.
+    fn next_state(&self, now: Duration) -> State {
+        let beat = self.beat;
+        let heard = beat.filter(|beat| now.saturating_sub(beat.at) <= self.rules.link_lost);
+        let Some(beat) = heard else {
+            return State::Silent;
+        };
+        let fix = self.fresh_fix(now);
+        // It asks only for what it could use.
+        let enters = self.may_enter && fix.is_some() && (beat.is_armed || self.rules.arm);
+        if !beat.is_controlled {
+            return if enters {
+                State::Entering
+            } else {
+                State::Pilot
+            };
+        }
+        if self.must_be_left {
+            return State::Restarted;
+        }
+        if !beat.is_armed {
+            return if enters {
+                State::Entering
+            } else {
+                State::Disarmed
+            };
+        }
+        let Some(fix) = fix else {
+            return match self.state {
+                State::Steering | State::Stopped => State::Stopped,
+                _ => State::NoPosition,
+            };
+        };
+        if !self.is_in_air(&fix) {
+            let takes_off = enters && self.rules.takeoff;
+            return if takes_off {
+                State::Entering
+            } else {
+                State::Grounded
+            };
+        }
+        State::Steering
+    }
+
+    /// Changes the state, if it has to, and says so.
+    fn settle(&mut self, now: Duration) {
+        let (from, to) = (self.state, self.next_state(now));
+        if from == to {
+            return;
+        }
+        if to == State::Steering {
+            // It has what it wanted.
+            self.end_entry(None);
+        }
+        if to == State::Stopped {
+            self.tally.stops += 1;
+        }
+        if matches!(to, State::Steering | State::Stopped | State::Entering) {
+            self.next_setpoint = now;
+        }
+        self.command = None;
+        self.state = to;
+        self.events.push_back(Event::State { from, to });
+    }
+
+    /// The messages that are due at `now`, which never goes back. To be called more often than setpoints are due; at most one of each kind and
+    /// three requests come at a time.
+    pub fn poll(&mut self, now: Duration, out: &mut Vec<MavMessage>) {
+        self.settle(now);
+        if now >= self.next_heartbeat {
+            self.next_heartbeat = now + HEARTBEAT;
+            out.push(out::heartbeat());
+        }
+        if self.state == State::Silent {
+            return;
+        }
+        self.look(now, out);
+        if self.state == State::Entering {
+            self.enter(now, out);
+        }
+        if let Some(velocity) = self.setpoint(now).filter(|_| now >= self.next_setpoint) {
+            // A late call does not make for a burst.
+            let next = self.next_setpoint + self.rules.setpoint_every;
+            self.next_setpoint = next.max(now);
+            if now.saturating_sub(next) < self.rules.setpoint_every {
+                self.next_setpoint = next;
+            }
+            self.streaming_since.get_or_insert(now);
+            self.tally.setpoints += 1;
+            out.push(out::setpoint(self.system, velocity, now));
+        }
+    }
+
+    /// When [`poll`](Self::poll) has something to send if nothing is heard before, and nothing goes stale.
+    #[must_use]
+    pub fn due(&self, now: Duration) -> Duration {
+        let setpoint = self.setpoint(now).map(|_| self.next_setpoint);
+        setpoint.map_or(self.next_heartbeat, |due| due.min(self.next_heartbeat))
+    }
+
+    /// The setpoint to send, if there is one: north, east, down.
+    fn setpoint(&self, now: Duration) -> Option<[f64; 3]> {
+        const STAND: [f64; 3] = [0.0; 3];
+        match self.state {
+            State::Steering => {
+                let command = self.command;
+                let command = command.filter(|(at, _)| now.saturating_sub(*at) <= COMMAND_VALID);
+                let velocity = command.map_or(STAND, |(_, velocity)| velocity);
+                Some(self.at_altitude(velocity))
+            }
+            State::Stopped => Some(STAND),
+            State::Entering if self.kind.needs_stream() => Some(self.at_altitude(STAND)),
+            // So that the pilot can choose the mode at all. In other modes PX4 takes no notice.
+            State::Pilot | State::Disarmed | State::Grounded
+                if self.kind.needs_stream()
+                    && now >= self.quiet_until
+                    && self.fresh_fix(now).is_some() =>
+            {
+                Some(STAND)
+            }
+            _ => None,
+        }
+    }
+
+    /// With what brings it to its height and keeps it there.
+    fn at_altitude(&self, [north, east, down]: [f64; 3]) -> [f64; 3] {
+        let is_armed = self
+            .beat
+            .is_some_and(|beat| beat.is_armed && beat.is_controlled);
+        let height = self.rules.altitude_m.zip(self.fix).filter(|_| is_armed);
+        let down = height.map_or(down, |(altitude_m, fix)| {
+            -(0.5 * (altitude_m - fix.above_home_m)).clamp(-1.0, 1.0)
+        });
+        [north, east, down]
+    }
+
+    /// Asks for telemetry until it comes as often as it should.
+    fn look(&mut self, now: Duration, out: &mut Vec<MavMessage>) {
+        if self.next_look.is_some_and(|at| now < at) {
+            return;
+        }
+        let got = self.tally.positions - self.positions_at_look;
+        let wanted = self.rules.position_hz * LOOK.as_secs_f64();
+        if self.next_look.is_none() || (got as f64) < wanted / 2.0 {
+            out.extend(out::intervals(
+                self.system,
+                self.kind,
+                self.rules.position_hz,
+            ));
+        }
+        self.positions_at_look = self.tally.positions;
+        self.next_look = Some(now + LOOK);
+    }
+
+    /// Asks for the mode, then to be armed, then to take off; each until it is so.
+    fn enter(&mut self, now: Duration, out: &mut Vec<MavMessage>) {
+        let Some(beat) = self.beat else { return };
+        let ask = match (beat.is_controlled, beat.is_armed) {
+            (false, _) => Ask::Mode,
+            (true, false) => Ask::Arm,
+            (true, true) => Ask::Takeoff,
+        };
+        let is_streaming = |since: Duration| now.saturating_sub(since) >= STREAM;
+        if ask == Ask::Mode
+            && self.kind.needs_stream()
+            && !self.streaming_since.is_some_and(is_streaming)
+        {
+            return;
+        }
+        let attempt = match self.asked {
+            Some((last, attempt, at)) if last == ask => {
+                if now.saturating_sub(at) < RETRY {
+                    return;
+                }
+                attempt + 1
+            }
+            _ => 1,
+        };
+        if attempt > ATTEMPTS {
+            self.end_entry(Some(Event::GaveUp));
+            return;
+        }
+        self.asked = Some((ask, attempt, now));
+        match ask {
+            Ask::Mode => out.push(out::set_mode(self.system, self.kind)),
+            Ask::Arm => out.push(out::arm(self.system)),
+            // PX4 climbs by its setpoints.
+            Ask::Takeoff if self.kind.needs_stream() => {}
+            Ask::Takeoff => {
+                let altitude_m = self.rules.altitude_m.unwrap_or(0.0);
+                out.push(out::takeoff(self.system, altitude_m));
+            }
+        }
+    }
+
+    /// What to send a few times when the companion ends: stand, if it steers.
+    #[must_use]
+    pub fn farewell(&self, now: Duration) -> Option<MavMessage> {
+        let steers = matches!(self.state, State::Steering | State::Stopped);
+        steers.then(|| out::setpoint(self.system, [0.0; 3], now))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,18 @@
+//! MAVLink on the host.
+//!
+//! [`bridge`] shows a simulated swarm to ground stations and scripts, [`companion`] is the controller beside autopilots. Both speak over
+//! [`Lines`]: an [`Endpoint`] names a line as other MAVLink programs do, [`Lines`] opens any number of them and gives whole frames, [`Tlog`] keeps them;
+//! [`geo`] is where metres become degrees.
+
+pub mod bridge;
+pub mod companion;
+mod endpoint;
+pub mod geo;
+mod lines;
+mod stream;
+mod tlog;
+mod udp;
+
+pub use endpoint::{Endpoint, EndpointError};
+pub use lines::{Counts, Lines, OpenError, Peer, Received};
+pub use tlog::{Tlog, TlogError};

@@ -1,0 +1,465 @@
+//! Boids on a torus, and what finding neighbours costs (STA section 3).
+//!
+//! The controller's boids ([`staya_controller::flock::boids`]) run directly on the host, without radio or packets: each knows
+//! the exact places and headings of its neighbours. Every number of boids is run once with each
+//! search of [`nearby`](staya_sim::nearby) from the same start; the trajectories must be equal to the bit, and the time
+//! they take is measured on one thread.
+
+mod pictures;
+mod report;
+#[cfg(test)]
+mod tests;
+
+pub use report::{Report, Row, Timing};
+
+use rayon::prelude::*;
+use staya_controller::flock::boids::{BoidsParams, Torus};
+use staya_controller::geom::{Vec2, Vec3};
+use staya_controller::neighbor::Nearby;
+use staya_controller::rand::Rng;
+use staya_controller::wire::RobotId;
+use staya_sim::nearby::{AllPairs, Cells, Found, Query, Search, Space, Tree};
+use std::time::Instant;
+
+/// Purpose of the random numbers of boids' starts.
+const STARTS: u32 = 0x0045_0301;
+
+/// Boids that are steered in one piece of parallel work.
+const PIECE: usize = 256;
+
+/// The most boids that are searched by looking at all pairs, unless a plan says otherwise: 10,000 already take about
+/// a second a step, 100,000 would take a hundred.
+pub const MOST_BY_ALL_PAIRS: u32 = 10_000;
+
+/// Which search finds the neighbours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Looks at everybody.
+    AllPairs,
+    /// Lattice cells.
+    Cells,
+    /// A k-d tree.
+    Tree,
+}
+
+impl Method {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::AllPairs, Self::Cells, Self::Tree];
+
+    /// What it is called.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::AllPairs => "all pairs",
+            Self::Cells => "lattice cells",
+            Self::Tree => "k-d tree",
+        }
+    }
+
+    /// A search in this space for queries of this radius.
+    fn search(self, space: Space<f32, 2>, radius: f32) -> AnySearch {
+        match self {
+            Self::AllPairs => AnySearch::AllPairs(AllPairs::new(space)),
+            // Neighbours of up to 150 among about 3: cells of the radius itself.
+            Self::Cells => AnySearch::Cells(Cells::new(space, radius)),
+            Self::Tree => AnySearch::Tree(Tree::new(space)),
+        }
+    }
+}
+
+/// One of the three.
+#[derive(Clone, Debug)]
+enum AnySearch {
+    AllPairs(AllPairs<f32, 2>),
+    Cells(Cells<f32, 2>),
+    Tree(Tree<f32, 2>),
+}
+
+/// What to do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// Numbers of boids.
+    pub boids: Vec<u32>,
+    /// Steps that are timed for each, 1 or more. The hash is that of the last.
+    pub steps: u32,
+    /// More boids than this are not searched by all pairs.
+    pub most_by_all_pairs: u32,
+    /// Steps of the pictured flock.
+    pub picture_steps: u32,
+    /// Boids of the pictured flock.
+    pub picture_boids: u32,
+    /// Area per boid: the paper's torus of 800 x 600 has 20 boids, and larger ones are like it.
+    pub area_per_boid: f32,
+    /// Way of a boid in a step.
+    pub speed: f32,
+    /// Nearer than this, a boid turns away.
+    pub crowded: f32,
+    /// Up to this far, a neighbour counts.
+    pub closest: f32,
+    /// Largest turn to heading or middle, radians.
+    pub max_turn: f32,
+    /// Largest turn away, radians.
+    pub max_turn_away: f32,
+    /// Equal seeds give equal flocks.
+    pub seed: u64,
+}
+
+impl Default for Plan {
+    /// STA's values.
+    fn default() -> Self {
+        Self {
+            boids: vec![100, 300, 1000, 3000, 10_000, 30_000, 100_000],
+            steps: 20,
+            most_by_all_pairs: MOST_BY_ALL_PAIRS,
+            picture_steps: 2000,
+            picture_boids: 200,
+            area_per_boid: 800.0 * 600.0 / 20.0,
+            speed: 2.0,
+            crowded: 30.0,
+            closest: 150.0,
+            max_turn: 0.05,
+            max_turn_away: 0.02,
+            seed: 1,
+        }
+    }
+}
+
+/// Why a plan cannot be carried out.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PlanError {
+    /// Nothing to run.
+    #[error("no numbers of boids; give one or more")]
+    NoBoids,
+    /// A number that cannot be run.
+    #[error("{0} boids; give 1 to 1000000")]
+    Boids(u32),
+    /// Nothing to time.
+    #[error("0 steps; give 1 or more")]
+    NoSteps,
+    /// A length that is none.
+    #[error("{name} = {value}; give a number above 0")]
+    Length {
+        /// Which.
+        name: &'static str,
+        /// Its value.
+        value: f32,
+    },
+}
+
+/// Boids on their torus.
+#[derive(Clone, Debug)]
+pub struct Flock {
+    space: Space<f32, 2>,
+    torus: Torus<f32>,
+    params: BoidsParams<f32>,
+    closest: f32,
+    speed: f32,
+    places: Vec<[f32; 2]>,
+    headings: Vec<Vec2<f32>>,
+    next: Vec<Vec2<f32>>,
+}
+
+impl Plan {
+    /// Whether the plan can be carried out.
+    ///
+    /// # Errors
+    /// [`PlanError`]
+    pub fn check(&self) -> Result<(), PlanError> {
+        if self.boids.is_empty() {
+            return Err(PlanError::NoBoids);
+        }
+        let mut all = self.boids.iter().chain([&self.picture_boids]);
+        if let Some(&wrong) = all.find(|n| !(1..=1_000_000).contains(*n)) {
+            return Err(PlanError::Boids(wrong));
+        }
+        if self.steps == 0 {
+            return Err(PlanError::NoSteps);
+        }
+        let lengths = [
+            ("area per boid", self.area_per_boid),
+            ("speed", self.speed),
+            ("crowded", self.crowded),
+            ("closest", self.closest),
+        ];
+        let is_wrong = |(_, value): &&(_, f32)| !(*value > 0.0 && value.is_finite());
+        match lengths.iter().find(is_wrong) {
+            Some(&(name, value)) => Err(PlanError::Length { name, value }),
+            None => Ok(()),
+        }
+    }
+
+    /// The start of `boids` boids: places and headings even over the torus, a function of seed and number of the boid.
+    /// The torus has the paper's proportions, 4 to 3.
+    #[must_use]
+    pub fn flock(&self, boids: u32) -> Flock {
+        let width = (boids as f32 * self.area_per_boid * 4.0 / 3.0).sqrt();
+        self.flock_on(boids, [width, width * 0.75])
+    }
+
+    /// The same on a torus of these sides, which must be above 0.
+    #[must_use]
+    pub fn flock_on(&self, boids: u32, sides: [f32; 2]) -> Flock {
+        let start = |boid: u32| {
+            let mut rng = Rng::keyed(self.seed, STARTS, boid, 0);
+            // 24 bits: exact in f32 and below 1.
+            let mut share = || (rng.next_u32() >> 8) as f32 / 16_777_216.0;
+            let place = [share() * sides[0], share() * sides[1]];
+            let (sin, cos) = libm::sincosf(share() * std::f32::consts::TAU);
+            (place, Vec2::new(cos, sin))
+        };
+        let (places, headings) = (0..boids).map(start).unzip();
+        Flock {
+            space: Space::torus(sides).unwrap_or(Space::OPEN),
+            torus: Torus { size_m: sides },
+            params: BoidsParams::new(
+                self.crowded,
+                self.closest,
+                self.max_turn,
+                self.max_turn_away,
+            ),
+            closest: self.closest,
+            speed: self.speed,
+            places,
+            headings,
+            next: vec![Vec2::ZERO; boids as usize],
+        }
+    }
+
+    /// Whether this search is used for so many boids.
+    #[must_use]
+    pub const fn is_run(&self, method: Method, boids: u32) -> bool {
+        !matches!(method, Method::AllPairs) || boids <= self.most_by_all_pairs
+    }
+
+    /// Runs and times everything, then the pictured flock. `progress` is told how many of [`Plan::total`] are
+    /// done; when it answers `false`, what is done so far is returned.
+    ///
+    /// # Errors
+    /// [`PlanError`]
+    pub fn carry_out(&self, mut progress: impl FnMut(usize) -> bool) -> Result<Report, PlanError> {
+        self.check()?;
+        let mut rows = Vec::new();
+        let mut done = 0;
+        'all: for &boids in &self.boids {
+            let mut row = Row::new(boids, self.steps);
+            for method in Method::ALL {
+                if !progress(done) {
+                    // An unfinished row compares nothing.
+                    break 'all;
+                }
+                if self.is_run(method, boids) {
+                    row.timings
+                        .push(self.time(method, boids, &mut row.mean_neighbours));
+                }
+                done += 1;
+            }
+            row.parallel_us_per_boid = self.time_in_parallel(boids);
+            rows.push(row);
+        }
+        let mut picture = Vec::new();
+        if progress(done) {
+            picture = self.picture();
+        }
+        Ok(Report::new(self, rows, picture))
+    }
+
+    /// How many runs there are.
+    #[must_use]
+    pub fn total(&self) -> usize {
+        self.boids.len() * Method::ALL.len() + 1
+    }
+
+    fn time(&self, method: Method, boids: u32, mean_neighbours: &mut f64) -> Timing {
+        let mut flock = self.flock(boids);
+        let mut search = method.search(flock.space, self.closest);
+        let seconds = self.seconds_a_step(|| flock.step_by(&mut search));
+        let neighbours = match &search {
+            AnySearch::AllPairs(search) => flock.neighbours(search),
+            AnySearch::Cells(search) => flock.neighbours(search),
+            AnySearch::Tree(search) => flock.neighbours(search),
+        };
+        *mean_neighbours = neighbours as f64 / f64::from(boids);
+        Timing {
+            method: method.name(),
+            us_per_boid: seconds * 1e6 / f64::from(boids),
+            ms_per_step: seconds * 1e3,
+            hash: format!("{:016x}", flock.hash()),
+        }
+    }
+
+    fn time_in_parallel(&self, boids: u32) -> f64 {
+        let mut flock = self.flock(boids);
+        let mut cells = Cells::new(flock.space, self.closest);
+        self.seconds_a_step(|| flock.step_in_parallel(&mut cells)) * 1e6 / f64::from(boids)
+    }
+
+    /// Makes the plan's steps; the median of their times, which other work on the machine hardly moves.
+    fn seconds_a_step(&self, mut step: impl FnMut()) -> f64 {
+        let timed = |_| {
+            let begun = Instant::now();
+            step();
+            begun.elapsed().as_secs_f64()
+        };
+        let mut times: Vec<f64> = (0..self.steps).map(timed).collect();
+        times.sort_unstable_by(f64::total_cmp);
+        times[times.len() / 2]
+    }
+
+    /// The pictured flock at its start, after a tenth of its steps, and at its end.
+    fn picture(&self) -> Vec<(u32, Flock)> {
+        let mut flock = self.flock(self.picture_boids);
+        let mut cells = Cells::new(flock.space, self.closest);
+        let moments = [0, self.picture_steps / 10, self.picture_steps];
+        let mut kept = vec![(0, flock.clone())];
+        for step in 1..=self.picture_steps {
+            flock.step(&mut cells);
+            if moments.contains(&step) {
+                kept.push((step, flock.clone()));
+            }
+        }
+        kept
+    }
+}
+
+impl Flock {
+    /// Places on the torus.
+    #[must_use]
+    pub fn places(&self) -> &[[f32; 2]] {
+        &self.places
+    }
+
+    /// Unit vectors.
+    #[must_use]
+    pub fn headings(&self) -> &[Vec2<f32>] {
+        &self.headings
+    }
+
+    /// Sides of the torus.
+    #[must_use]
+    pub const fn sides(&self) -> [f32; 2] {
+        self.torus.size_m
+    }
+
+    fn step_by(&mut self, search: &mut AnySearch) {
+        match search {
+            AnySearch::AllPairs(search) => self.step(search),
+            AnySearch::Cells(search) => self.step_by_cells(search),
+            AnySearch::Tree(search) => self.step(search),
+        }
+    }
+
+    /// All boids turn at once, then all move. One thread.
+    pub fn step(&mut self, search: &mut impl Search<f32, 2>) {
+        search.rebuild(&self.places);
+        let mut scratch = Scratch::default();
+        let mut next = std::mem::take(&mut self.next);
+        for (boid, next) in (0..).zip(&mut next) {
+            *next = self.steer(search, boid, &mut scratch);
+        }
+        self.next = next;
+        self.advance();
+    }
+
+    /// The same in the order of the cells, which keeps neighbours in the cache; the same result.
+    pub fn step_by_cells(&mut self, cells: &mut Cells<f32, 2>) {
+        cells.rebuild(&self.places);
+        let mut scratch = Scratch::default();
+        let mut next = std::mem::take(&mut self.next);
+        for &boid in cells.order() {
+            next[boid as usize] = self.steer(cells, boid, &mut scratch);
+        }
+        self.next = next;
+        self.advance();
+    }
+
+    /// The same on all threads; the same result.
+    pub fn step_in_parallel(&mut self, cells: &mut Cells<f32, 2>) {
+        cells.rebuild(&self.places);
+        let (order, this) = (cells.order(), &*self);
+        let turned: Vec<(u32, Vec2<f32>)> = order
+            .par_iter()
+            .with_min_len(PIECE)
+            .map_init(Scratch::default, |scratch, &boid| {
+                (boid, this.steer(cells, boid, scratch))
+            })
+            .collect();
+        for (boid, heading) in turned {
+            self.next[boid as usize] = heading;
+        }
+        self.advance();
+    }
+
+    /// The next heading of a boid.
+    fn steer(&self, search: &impl Search<f32, 2>, boid: u32, scratch: &mut Scratch) -> Vec2<f32> {
+        let query = self.query(boid);
+        search.within(&query, &mut scratch.found);
+        scratch.nearby.clear();
+        let seen = scratch.found.iter().map(|other| {
+            let [x, y] = other.offset;
+            let heading = self.headings[other.index as usize];
+            Nearby {
+                id: RobotId(other.index + 1),
+                offset_m: Vec3::new(x, y, 0.0),
+                velocity_mps: heading.extend(0.0),
+                radius_m: 0.0,
+                gives_way: true,
+            }
+        });
+        scratch.nearby.extend(seen);
+        let heading = self.headings[boid as usize];
+        self.params
+            .steer(RobotId(boid + 1), heading, &scratch.nearby)
+    }
+
+    fn query(&self, boid: u32) -> Query<f32, 2> {
+        Query {
+            at: self.places[boid as usize],
+            radius: self.closest,
+            most: usize::MAX,
+            except: Some(boid),
+        }
+    }
+
+    fn advance(&mut self) {
+        std::mem::swap(&mut self.headings, &mut self.next);
+        for (place, heading) in self.places.iter_mut().zip(&self.headings) {
+            let moved = Vec2::new(place[0], place[1]) + *heading * self.speed;
+            let Vec2 { x, y } = self.torus.wrap(moved);
+            *place = [x, y];
+        }
+    }
+
+    /// Pairs of neighbours, each counted twice.
+    fn neighbours(&self, search: &impl Search<f32, 2>) -> u64 {
+        let mut found = Vec::new();
+        let mut count = 0;
+        for boid in 0..self.places.len() as u32 {
+            search.within(&self.query(boid), &mut found);
+            count += found.len() as u64;
+        }
+        count
+    }
+
+    /// A hash of places and headings, bit for bit.
+    #[must_use]
+    pub fn hash(&self) -> u64 {
+        // FNV-1a.
+        let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+        let headings = self.headings.iter().flat_map(|h| [h.x, h.y]);
+        let places = self.places.iter().copied().flatten();
+        for byte in places
+            .chain(headings)
+            .flat_map(|x| x.to_bits().to_le_bytes())
+        {
+            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+        hash
+    }
+}
+
+/// Buffers of a thread.
+#[derive(Debug, Default)]
+struct Scratch {
+    found: Vec<Found<f32, 2>>,
+    nearby: Vec<Nearby<f32>>,
+}

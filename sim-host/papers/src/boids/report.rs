@@ -1,0 +1,156 @@
+//! The numbers of the boids experiment, ready to be printed or plotted.
+
+use super::{Flock, Plan};
+use serde::Serialize;
+use staya_sim::metrics::flock::polarisation;
+use staya_sim::record::{Error, write_atomically};
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+/// One search over so many boids.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Timing {
+    /// Name of the search.
+    pub method: &'static str,
+    /// Wall time per boid and step on one thread, index included, microseconds: the median step.
+    pub us_per_boid: f64,
+    /// Wall time of the median step, milliseconds.
+    pub ms_per_step: f64,
+    /// Hash of places and headings after the last step.
+    pub hash: String,
+}
+
+/// So many boids by each search.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// Boids.
+    pub boids: u32,
+    /// Steps that were timed.
+    pub steps: u32,
+    /// Mean number of neighbours in the last step.
+    pub mean_neighbours: f64,
+    /// One entry per search that was run.
+    pub timings: Vec<Timing>,
+    /// Lattice cells with all threads, microseconds per boid and step.
+    pub parallel_us_per_boid: f64,
+}
+
+impl Row {
+    pub(super) const fn new(boids: u32, steps: u32) -> Self {
+        Self {
+            boids,
+            steps,
+            mean_neighbours: 0.0,
+            timings: Vec::new(),
+            parallel_us_per_boid: 0.0,
+        }
+    }
+
+    /// Whether all searches gave the same trajectories.
+    #[must_use]
+    pub fn is_equal(&self) -> bool {
+        self.timings
+            .windows(2)
+            .all(|pair| pair[0].hash == pair[1].hash)
+    }
+
+    /// Microseconds per boid and step by this search; `None`: not run.
+    #[must_use]
+    pub fn us_per_boid(&self, method: &str) -> Option<f64> {
+        let timing = self.timings.iter().find(|timing| timing.method == method);
+        timing.map(|timing| timing.us_per_boid)
+    }
+}
+
+/// The pictured flock at one moment.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Moment {
+    /// Steps done.
+    pub step: u32,
+    /// Length of the mean heading, 0 to 1.
+    pub polarisation: f64,
+}
+
+/// What came out.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Seed of the starts.
+    pub seed: u64,
+    /// Above this many boids, all pairs were not looked at.
+    pub most_by_all_pairs: u32,
+    /// Area per boid.
+    pub area_per_boid: f32,
+    /// Distance up to which neighbours count.
+    pub closest: f32,
+    /// Threads of the parallel column.
+    pub threads: usize,
+    /// By rising number of boids as planned.
+    pub rows: Vec<Row>,
+    /// The pictured flock.
+    pub moments: Vec<Moment>,
+    #[serde(skip)]
+    pub(super) flocks: Vec<(u32, Flock)>,
+}
+
+impl Report {
+    pub(super) fn new(plan: &Plan, rows: Vec<Row>, flocks: Vec<(u32, Flock)>) -> Self {
+        let order = |flock: &Flock| {
+            let headings = flock.headings().iter();
+            polarisation::<2>(
+                &headings
+                    .map(|h| [h.x, h.y].map(f64::from))
+                    .collect::<Vec<_>>(),
+            )
+        };
+        Self {
+            seed: plan.seed,
+            most_by_all_pairs: plan.most_by_all_pairs,
+            area_per_boid: plan.area_per_boid,
+            closest: plan.closest,
+            threads: rayon::current_num_threads(),
+            moments: flocks
+                .iter()
+                .map(|(step, flock)| Moment {
+                    step: *step,
+                    polarisation: order(flock),
+                })
+                .collect(),
+            rows,
+            flocks,
+        }
+    }
+
+    /// Whether all searches gave equal trajectories for every number of boids.
+    #[must_use]
+    pub fn is_equal(&self) -> bool {
+        self.rows.iter().all(Row::is_equal)
+    }
+
+    /// Writes `boids.csv` into `dir`: a line per number of boids and search. Names the file.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn write_csv(&self, dir: &Path) -> Result<PathBuf, Error> {
+        let mut text =
+            String::from("boids,steps,mean_neighbours,search,us_per_boid,ms_per_step,hash\n");
+        for row in &self.rows {
+            for timing in &row.timings {
+                // Writing to a string does not fail.
+                let _ = writeln!(
+                    text,
+                    "{},{},{:.3},{},{:.4},{:.4},{}",
+                    row.boids,
+                    row.steps,
+                    row.mean_neighbours,
+                    timing.method,
+                    timing.us_per_boid,
+                    timing.ms_per_step,
+                    timing.hash
+                );
+            }
+        }
+        let path = dir.join("boids.csv");
+        write_atomically(&path, text.as_bytes())?;
+        Ok(path)
+    }
+}

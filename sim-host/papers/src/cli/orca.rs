@@ -1,0 +1,208 @@
+//! `staya orca table | draw`: what ORCA forbids, looked up and drawn.
+
+use crate::orca::Sample;
+use crate::orca::pictures::{Drawing, Scene};
+use anyhow::{Result, anyhow};
+use clap::{Args, Subcommand};
+use serde::Serialize;
+use staya_console::{Ended, Global, print, print_json};
+use staya_sim::record::prepare_dir;
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+/// Draw what ORCA forbids, and measure the template that looks it up.
+#[derive(Args, Clone, Debug)]
+pub struct OrcaArgs {
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Clone, Debug, Subcommand)]
+enum Action {
+    /// How far half-planes from the voxel templates are off the exact ones, by size.
+    Table(TableArgs),
+    /// Draw the velocity obstacle of two robots, the half-plane, the R-function, M-images and the template
+    /// (default: the worked example of the functional voxel paper).
+    Draw(Box<DrawArgs>),
+}
+
+#[derive(Args, Clone, Copy, Debug)]
+struct TableArgs {
+    /// Pairs of robots to compare on.
+    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    pairs: u32,
+    /// Equal seeds give equal pairs.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+#[derive(Args, Clone, Debug)]
+#[command(allow_negative_numbers = true)]
+struct DrawArgs {
+    /// Place of robot A, who decides, metres.
+    #[arg(long, value_name = "X,Y", value_parser = vector, allow_hyphen_values = true, default_value = "2,-3")]
+    place_a: [f64; 2],
+    /// Place of robot B, metres.
+    #[arg(long, value_name = "X,Y", value_parser = vector, allow_hyphen_values = true, default_value = "-2,3")]
+    place_b: [f64; 2],
+    /// Velocity of robot A, m/s.
+    #[arg(long, value_name = "X,Y", value_parser = vector, allow_hyphen_values = true, default_value = "1.5,1")]
+    velocity_a: [f64; 2],
+    /// Velocity of robot B, m/s.
+    #[arg(long, value_name = "X,Y", value_parser = vector, allow_hyphen_values = true, default_value = "3,-1.5")]
+    velocity_b: [f64; 2],
+    /// Radii of A and B, metres.
+    #[arg(long, value_name = "A,B", value_parser = vector, default_value = "1,1")]
+    radii: [f64; 2],
+    /// tau: no collision for so long, seconds.
+    #[arg(long, default_value_t = 2.0)]
+    horizon: f64,
+    /// A's share of the correction.
+    #[arg(long, default_value_t = 1.0)]
+    share: f64,
+    /// Folder for the pictures.
+    #[arg(long, value_name = "DIR", default_value = "out/orca")]
+    out: PathBuf,
+}
+
+/// Two numbers with a comma.
+fn vector(text: &str) -> Result<[f64; 2]> {
+    let (x, y) = text
+        .split_once(',')
+        .ok_or_else(|| anyhow!("two numbers with a comma between them are needed, like 1.5,-2"))?;
+    let number = |text: &str| {
+        let text = text.trim();
+        text.parse().map_err(|_| anyhow!("`{text}` is no number"))
+    };
+    Ok([number(x)?, number(y)?])
+}
+
+impl OrcaArgs {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// A scene without sense, a picture that cannot be written.
+    pub fn run(&self, global: &Global) -> Result<Ended> {
+        match &self.action {
+            Action::Table(args) => args.run(global)?,
+            Action::Draw(args) => args.run(global)?,
+        }
+        Ok(Ended::Done)
+    }
+}
+
+impl TableArgs {
+    fn run(&self, global: &Global) -> Result<()> {
+        let sample = Sample {
+            pairs: self.pairs,
+            seed: self.seed,
+        };
+        let report = sample.report();
+        if global.json {
+            return print_json(&report);
+        }
+        print(&report.to_string())
+    }
+}
+
+/// What `draw --json` prints.
+#[derive(Debug, Serialize)]
+struct Drawn {
+    /// The least change of the relative velocity, m/s; negative when it is free already.
+    change_mps: f64,
+    point_mps: [f64; 2],
+    normal: [f64; 2],
+    pictures: Vec<PathBuf>,
+}
+
+impl DrawArgs {
+    fn scene(&self) -> Scene {
+        Scene {
+            places_m: [self.place_a, self.place_b],
+            velocities_mps: [self.velocity_a, self.velocity_b],
+            radii_m: self.radii,
+            horizon_s: self.horizon,
+            share: self.share,
+        }
+    }
+
+    fn run(&self, global: &Global) -> Result<()> {
+        let drawing: Drawing = self.scene().drawing()?;
+        prepare_dir(&self.out)?;
+        let pictures = drawing.draw(&self.out)?;
+        let (point, normal) = (drawing.plane.point, drawing.plane.normal);
+        if global.json {
+            return print_json(&Drawn {
+                change_mps: drawing.change_mps,
+                point_mps: [point.x, point.y],
+                normal: [normal.x, normal.y],
+                pictures,
+            });
+        }
+        let mut text = String::new();
+        writeln!(text, "least change u     {:.6} m/s", drawing.change_mps)?;
+        writeln!(
+            text,
+            "half-plane through ({:.6}, {:.6}) m/s",
+            point.x, point.y
+        )?;
+        writeln!(
+            text,
+            "normal             ({:.6}, {:.6})",
+            normal.x, normal.y
+        )?;
+        writeln!(
+            text,
+            "{} pictures in {}",
+            pictures.len(),
+            self.out.display()
+        )?;
+        print(&text)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Debug, Parser)]
+    struct Line {
+        #[command(flatten)]
+        orca: OrcaArgs,
+    }
+
+    fn read(words: &[&str]) -> Result<Action, String> {
+        Line::try_parse_from([&["orca"], words].concat())
+            .map(|line| line.orca.action)
+            .map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn defaults_are_the_papers_example_and_options_reach_the_scene() {
+        let scene = |words: &[&str]| match read(words).unwrap() {
+            Action::Draw(args) => args.scene(),
+            Action::Table(_) => panic!("another command"),
+        };
+        assert_eq!(scene(&["draw"]), Scene::default());
+        let words = "draw --place-a -1,2 --place-b 3,-4 --velocity-a -5,0.5 --velocity-b 0,-1 \
+            --radii 0.2,0.3 --horizon 4 --share 0.5";
+        let words: Vec<&str> = words.split_whitespace().collect();
+        let expected = Scene {
+            places_m: [[-1.0, 2.0], [3.0, -4.0]],
+            velocities_mps: [[-5.0, 0.5], [0.0, -1.0]],
+            radii_m: [0.2, 0.3],
+            horizon_s: 4.0,
+            share: 0.5,
+        };
+        assert_eq!(scene(&words), expected);
+    }
+
+    #[test]
+    fn wrong_usage_names_the_remedy() {
+        let message = |words: &[&str]| read(words).unwrap_err();
+        assert!(message(&["draw", "--place-a", "1"]).contains("like 1.5,-2"));
+        assert!(message(&["draw", "--radii", "1,x"]).contains("`x` is no number"));
+        assert!(message(&["table", "--pairs", "0"]).contains("1..=10000000"));
+    }
+}

@@ -1,0 +1,122 @@
+//! Robots that get in each other's way as badly as can be: [`swap`] over a circle, [`doorway`] through a gap.
+//!
+//! Every robot is a whole controller behind ORCA and knows of the others what the radio delivers: places rounded to a
+//! millimetre, one tick old. Plain ORCA jams in all of these.
+
+pub mod doorway;
+mod report;
+pub mod swap;
+
+use serde::Serialize;
+use staya_controller::grid::UNIT;
+use staya_plot::flock::Sheet;
+use staya_plot::motion_sheet;
+use staya_sim::engine::{Outcome, simulate};
+use staya_sim::radio::RadioParams;
+use staya_sim::record::{Options, Recorder, RobotRow};
+use staya_sim::scenario::{PlaneSetup, SafetyName, Scenario};
+use staya_sim::world::plane::Abilities;
+use std::ops::ControlFlow;
+
+/// What the runs have in common.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Conditions {
+    /// Time from one decision to the next, seconds: overlaps depend on it.
+    pub step_s: f64,
+    /// Highest speed, m/s.
+    pub speed_mps: f64,
+    /// How far the radio reaches, metres. Robots that head for each other must hear of each other a horizon before they meet.
+    pub range_m: f64,
+    /// Share of packets that get lost.
+    pub loss: f64,
+    /// What keeps robots apart.
+    pub safety: SafetyName,
+}
+
+impl Default for Conditions {
+    /// 0.05 s, 0.5 m/s, 3 m, no losses, ORCA.
+    fn default() -> Self {
+        Self {
+            step_s: 0.05,
+            speed_mps: 0.5,
+            range_m: 3.0,
+            loss: 0.0,
+            safety: SafetyName::Orca,
+        }
+    }
+}
+
+impl Conditions {
+    fn abilities(&self) -> Abilities {
+        Abilities {
+            max_speed_mps: self.speed_mps,
+            max_acceleration_mps2: f64::INFINITY,
+            step_s: self.step_s,
+        }
+    }
+
+    /// The scenario of one run that is given `longest_s` seconds.
+    fn scenario(&self, name: &str, seed: u64, longest_s: f64, setup: PlaneSetup) -> Scenario {
+        let radio = RadioParams {
+            range_m: self.range_m,
+            loss: self.loss,
+            ..RadioParams::default()
+        };
+        let ticks = libm::ceil(longest_s / self.step_s) as u32;
+        let setup = PlaneSetup {
+            safety: self.safety,
+            ..setup
+        };
+        Scenario::in_plane(name, seed, ticks.max(1), radio, setup)
+    }
+
+    /// Seconds after which each robot had arrived, and stayed.
+    fn arrivals_s(&self, outcome: &Outcome) -> Vec<Option<f64>> {
+        let seconds = |units: u64| units as f64 / f64::from(UNIT) * self.step_s;
+        let times = outcome.arrival_times.iter();
+        times.map(|time| time.map(seconds)).collect()
+    }
+}
+
+/// Runs a scenario; `see` sees the robots before the first tick and after each. `None` when `goes_on` says so before its
+/// end.
+fn run(
+    scenario: &Scenario,
+    goes_on: &(dyn Fn() -> bool + Sync),
+    mut see: impl FnMut(&mut dyn Iterator<Item = RobotRow>),
+) -> Option<Outcome> {
+    let mut stopped = false;
+    let outcome = simulate(scenario, |_, robots| {
+        see(robots);
+        if goes_on() {
+            ControlFlow::Continue(())
+        } else {
+            stopped = true;
+            ControlFlow::Break(())
+        }
+    });
+    let outcome = outcome.expect("bodies in the plane can start anywhere");
+    (!stopped).then_some(outcome)
+}
+
+/// Four moments of a run.
+fn picture(scenario: &Scenario) -> Sheet {
+    let in_memory = "a recorder without files cannot fail";
+    let mut recorder = Recorder::in_memory(Options::default());
+    let outcome = simulate(scenario, |moment, robots| {
+        recorder.tick(moment.row, robots).expect(in_memory);
+        ControlFlow::Continue(())
+    });
+    let _ = outcome.expect("bodies in the plane can start anywhere");
+    let history = recorder.finish().expect(in_memory);
+    let setup = scenario.plane.as_ref().expect("it was made in the plane");
+    motion_sheet(setup, &history)
+}
+
+/// Least gap of a run, metres; `None` when nobody came near.
+fn gap(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,282 @@
+//! The five simulations of the paper as scenarios.
+
+use super::{Plan, PlanError};
+use crate::arena::{Arena, FASTEST_MPS, normal, starts, uniform};
+use serde::Serialize;
+use staya_controller::flock::lattice::{Algorithm, Gain, LatticeParams};
+use staya_controller::rand::Rng;
+use staya_sim::scenario::{GuidanceName, SafetyName, Scenario, Target};
+use staya_sim::world::plane::Solid;
+
+/// Purpose of the random numbers that give each run its starts.
+const STARTS: u32 = 0x0046_0101;
+/// The paper's d: positions and speeds below are in its units, of which d has 7.
+const UNITS: f64 = 7.0;
+
+/// Which of the paper's simulations (OLF section VIII).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Case {
+    /// A: flocking in free space, algorithm 2 (figure 7).
+    Free,
+    /// B: algorithm 1 has no reference, and the group breaks up (figure 8).
+    Fragment,
+    /// C: robots that fly meet by algorithm 2 (figure 9).
+    Rendezvous3d,
+    /// D: through six obstacles that part the flock (figure 10).
+    Split,
+    /// E: through the gap between two obstacles (figure 11).
+    Squeeze,
+}
+
+impl Case {
+    /// All, in the paper's order.
+    pub const ALL: [Self; 5] = [
+        Self::Free,
+        Self::Fragment,
+        Self::Rendezvous3d,
+        Self::Split,
+        Self::Squeeze,
+    ];
+
+    /// As the command line and files call it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Free => "free",
+            Self::Fragment => "fragment",
+            Self::Rendezvous3d => "rendezvous3d",
+            Self::Split => "split",
+            Self::Squeeze => "squeeze",
+        }
+    }
+
+    /// What it shows.
+    pub(super) const fn title(self) -> &'static str {
+        match self {
+            Self::Free => "Flocking in free space by algorithm 2",
+            Self::Fragment => "Fragmentation by algorithm 1",
+            Self::Rendezvous3d => "Rendezvous in space by algorithm 2",
+            Self::Split => "Split and rejoin by algorithm 3",
+            Self::Squeeze => "Squeezing manoeuvre by algorithm 3",
+        }
+    }
+
+    /// Balls in the way: x, y, radius.
+    const fn balls(self) -> &'static [[f64; 3]] {
+        match self {
+            Self::Free | Self::Fragment | Self::Rendezvous3d => &[],
+            Self::Split => &[
+                [100.0, 20.0, 10.0],
+                [110.0, 60.0, 4.0],
+                [120.0, 40.0, 2.0],
+                [130.0, -20.0, 5.0],
+                [150.0, 40.0, 5.0],
+                [160.0, 0.0, 3.0],
+            ],
+            Self::Squeeze => &[[150.0, 30.0, 25.0], [150.0, 100.0, 25.0]],
+        }
+    }
+
+    /// What the paper's robots do, or where it does not say what works best.
+    pub(super) fn setting(self) -> Setting {
+        let flat = |x: f64, y: f64, vx: f64, vy: f64| ([x, y, 0.0], [vx, vy, 0.0]);
+        match self {
+            Self::Free => Setting {
+                robots: 150,
+                seconds: 30.0,
+                algorithm: Algorithm::Two,
+                gains: [50.0, 200.0, 1.0],
+                moving: Some(flat(0.0, 0.0, -1.5, -1.5)),
+                fixed: None,
+                moments: [0.0, 0.03, 0.08, 0.15, 0.4, 1.0],
+            },
+            Self::Fragment => Setting {
+                robots: 40,
+                seconds: 60.0,
+                algorithm: Algorithm::One,
+                gains: [1.0, 200.0, 1.0],
+                moving: None,
+                fixed: None,
+                moments: [0.0, 0.05, 0.1, 0.2, 0.5, 1.0],
+            },
+            Self::Rendezvous3d => Setting {
+                robots: 50,
+                seconds: 60.0,
+                algorithm: Algorithm::Two,
+                gains: [10.0, 200.0, 0.2],
+                moving: Some(([0.0; 3], [1.0, 0.0, 1.0])),
+                fixed: None,
+                moments: [0.0, 0.1, 1.0, 0.0, 0.1, 1.0],
+            },
+            Self::Split => Setting {
+                robots: 150,
+                seconds: 180.0,
+                algorithm: Algorithm::Three,
+                gains: [10.0, 200.0, 2.0],
+                moving: Some(flat(20.0, 20.0, 3.0, 0.0)),
+                fixed: Some(flat(200.0, 30.0, 5.0, 0.0)),
+                moments: [0.0, 0.0625, 0.16, 0.25, 0.35, 1.0],
+            },
+            Self::Squeeze => Setting {
+                robots: 150,
+                seconds: 420.0,
+                algorithm: Algorithm::Three,
+                gains: [10.0, 200.0, 2.0],
+                moving: Some(flat(60.0, 60.0, 3.0, 0.0)),
+                fixed: Some(flat(230.0, 60.0, 6.0, 0.0)),
+                moments: [0.0, 0.06, 0.115, 0.17, 0.285, 1.0],
+            },
+        }
+    }
+
+    /// Place and velocity of a robot.
+    fn draw(self, rng: &mut Rng) -> ([f64; 3], [f64; 3]) {
+        let at_rest = [0.0; 3];
+        match self {
+            Self::Free | Self::Fragment => {
+                // The paper does not tell how wide B is: so that about as many parts form as in figure 8.
+                let wide = if self == Self::Free { 50.0 } else { 20.0 };
+                let at = [normal(rng, wide), normal(rng, wide), 0.0];
+                let mut speed = || uniform(rng, -2.0, -1.0);
+                (at, [speed(), speed(), 0.0])
+            }
+            Self::Rendezvous3d => {
+                let mut along = || normal(rng, 30.0);
+                ([along(), along(), along()], at_rest)
+            }
+            Self::Split => {
+                let mut along = || uniform(rng, -40.0, 80.0);
+                ([along(), along(), 0.0], at_rest)
+            }
+            Self::Squeeze => {
+                let mut along = || uniform(rng, 0.0, 120.0);
+                ([along(), along(), 0.0], at_rest)
+            }
+        }
+    }
+
+    /// Obstacles where a robot's spacing is `spacing_m`.
+    pub(super) fn solids(self, spacing_m: f64) -> Vec<Solid> {
+        let unit_m = spacing_m / UNITS;
+        let ball = |&[x, y, radius]: &[f64; 3]| Solid::Ball {
+            center_m: [x * unit_m, y * unit_m, 0.0],
+            radius_m: radius * unit_m,
+        };
+        self.balls().iter().map(ball).collect()
+    }
+
+    /// The x behind which all obstacles lie behind a robot, metres.
+    pub(super) fn behind_m(self, spacing_m: f64) -> Option<f64> {
+        let ends = self.balls().iter().map(|[x, _, radius]| x + radius);
+        ends.reduce(f64::max).map(|x| x * spacing_m / UNITS)
+    }
+}
+
+/// What a case has of its own, in the paper's units.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Setting {
+    pub robots: u32,
+    pub seconds: f64,
+    pub algorithm: Algorithm,
+    /// c1 of alpha-, beta- and gamma-agents.
+    pub gains: [f64; 3],
+    /// Place at the start and velocity of a moving reference.
+    pub moving: Option<([f64; 3], [f64; 3])>,
+    /// The paper's static one.
+    pub fixed: Option<([f64; 3], [f64; 3])>,
+    /// When to draw the flock, shares of the time.
+    pub moments: [f64; 6],
+}
+
+impl Plan {
+    /// Radius of a body: a fourteenth of the spacing, half of the paper's unit.
+    #[must_use]
+    pub fn radius_m(&self) -> f64 {
+        self.spacing_m / 14.0
+    }
+
+    /// One run of a case.
+    pub(super) fn scenario(&self, case: Case, run: u32) -> Result<Scenario, PlanError> {
+        let setting = case.setting();
+        let unit_m = self.spacing_m / UNITS;
+        let metres = |vector: [f64; 3]| vector.map(|x| x * unit_m);
+        let reference = match setting.fixed {
+            Some(fixed) if self.is_static => Some(fixed),
+            _ => setting.moving,
+        };
+        let targets: Vec<Target> = reference
+            .iter()
+            .map(|&(place, velocity)| Target {
+                position_m: metres(place),
+                velocity_mps: metres(velocity),
+            })
+            .collect();
+        let robots = self.robots.unwrap_or(setting.robots);
+        let radius_m = self.radius_m();
+        let starts = starts(
+            robots,
+            2.0 * radius_m,
+            &targets,
+            |robot| Rng::keyed(self.seed, STARTS + case as u32, run, robot),
+            |rng| {
+                let (place, velocity) = case.draw(rng);
+                (metres(place), metres(velocity))
+            },
+        )
+        .ok_or(PlanError::Robots(robots))?;
+        let arena = Arena {
+            name: case.name(),
+            seed: Rng::keyed(self.seed, STARTS, run, case as u32).next_u64(),
+            step_s: self.step_s,
+            seconds: self.seconds.unwrap_or(setting.seconds),
+            radius_m,
+            max_speed_mps: match case {
+                // The avoider for space leans aside from whoever the body could reach at its highest speed.
+                Case::Rendezvous3d => FASTEST_MPS.min(12.0 * unit_m),
+                _ => FASTEST_MPS,
+            },
+            // What is beyond 1.2 d counts for nothing, but ORCA looks farther ahead.
+            range_m: 3.0 * self.spacing_m,
+            loss: self.loss,
+            sight_m: 3.0 * self.spacing_m,
+            guidance: GuidanceName::Lattice,
+            safety: match (self.safety, case) {
+                // In space only the avoider for space knows of heights.
+                (SafetyName::Orca, Case::Rendezvous3d) => SafetyName::Fly,
+                (safety, _) => safety,
+            },
+            solids: case.solids(self.spacing_m),
+        };
+        let mut setup = arena.setup(starts);
+        let [alpha, beta, gamma] = self.gains(case);
+        let gain = |c1: f64| Gain::critical(c1 as f32);
+        // Algorithm 1 stands in the paper without gains.
+        let alpha = match setting.algorithm {
+            Algorithm::One => Gain {
+                position: alpha as f32,
+                velocity: alpha as f32,
+            },
+            Algorithm::Two | Algorithm::Three => gain(alpha),
+        };
+        setup.lattice = (
+            LatticeParams {
+                algorithm: setting.algorithm,
+                alpha,
+                beta: gain(beta),
+                gamma: gain(gamma),
+                ..LatticeParams::new(self.spacing_m as f32)
+            },
+            !(self.is_static && setting.fixed.is_some()),
+        );
+        setup.orca.horizon_s = self.horizon_s as f32;
+        setup.orca.wall_horizon_s = self.horizon_s as f32;
+        Ok(arena.scenario(setup))
+    }
+
+    /// c1 of alpha-, beta- and gamma-agents of a case.
+    pub(super) fn gains(&self, case: Case) -> [f64; 3] {
+        let own = case.setting().gains;
+        [0, 1, 2].map(|kind| self.gains[kind].unwrap_or(own[kind]))
+    }
+}

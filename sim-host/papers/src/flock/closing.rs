@@ -1,0 +1,320 @@
+//! Flocks driven at each other, bare and with ORCA behind them.
+//!
+//! A flock's own repulsion is bounded: above some speed of closing robots go through each other. Two robots (a pair, a
+//! little off their common line) or two groups (three by three each) meet head on at a speed of so many spacings d per second,
+//! each side at half of it; their flocks want them where the other side comes from. Told are overlaps of bodies and the least distance.
+
+use super::PlanError;
+use crate::arena::{Arena, FASTEST_MPS, uniform};
+use crate::in_parallel;
+use serde::Serialize;
+use staya_controller::agent::BoidsSetup;
+use staya_controller::flock::goal::GoalParams;
+use staya_controller::flock::lattice::LatticeParams;
+use staya_controller::rand::Rng;
+use staya_sim::engine::simulate;
+use staya_sim::metrics::flock::gaps;
+use staya_sim::nearby::Space;
+use staya_sim::scenario::{GuidanceName, SafetyName, Scenario, Start, Target};
+use std::ops::ControlFlow;
+
+/// Purpose of the random numbers that put each side a little off.
+const OFFSETS: u32 = 0x0046_0201;
+/// Distance of the two sides at the start, in d.
+const GAP: f64 = 4.0;
+
+/// Which flock.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Flock {
+    /// Alpha flock (OLF), algorithm 3.
+    Alpha,
+    /// Goal flock (PAV), R_MinDist = d / 2.
+    Goal,
+    /// Boids (STA), crowded below d.
+    Boids,
+}
+
+/// Two robots or two groups.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Sides {
+    /// One against one.
+    Pair,
+    /// Nine against nine.
+    Groups,
+}
+
+/// What to do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Closing {
+    /// Speeds of closing, spacings per second, more than 0.
+    pub speeds: Vec<f64>,
+    /// Runs of each, 1 or more.
+    pub runs: u32,
+    /// Distance of neighbours (d), metres, 0.1 to 50.
+    pub spacing_m: f64,
+    /// Length of a tick, seconds, 0.001 to 0.1.
+    pub step_s: f64,
+    /// Equal seeds give equal results.
+    pub seed: u64,
+}
+
+impl Default for Closing {
+    /// 1, 2, 4, 8 d/s at d = 7 m; 8 d/s is nearly what beacons can tell.
+    fn default() -> Self {
+        Self {
+            speeds: vec![1.0, 2.0, 4.0, 8.0],
+            runs: 10,
+            spacing_m: 7.0,
+            step_s: 0.03,
+            seed: 1,
+        }
+    }
+}
+
+/// What came of it, over all runs.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Meeting {
+    /// Runs in which bodies overlapped.
+    pub runs_with_overlap: usize,
+    /// Overlapping pairs, summed over ticks and runs.
+    pub overlaps: usize,
+    /// Least distance of two centres, in d. Bodies touch at 1 / 7.
+    pub least_pair_over_d: f64,
+}
+
+/// One line of the table.
+#[derive(Clone, Debug, Serialize)]
+pub struct Line {
+    /// Which flock.
+    pub flock: Flock,
+    /// Who meets.
+    pub sides: Sides,
+    /// Speed of closing, spacings per second.
+    pub speed_over_d: f64,
+    /// Runs.
+    pub runs: usize,
+    /// Without a safety layer.
+    pub bare: Meeting,
+    /// With ORCA.
+    pub orca: Meeting,
+}
+
+/// Everything.
+#[derive(Clone, Debug, Serialize)]
+pub struct ClosingReport {
+    /// Seed of everything.
+    pub seed: u64,
+    /// Distance of neighbours (d), metres.
+    pub spacing_m: f64,
+    /// Radius of a body, metres.
+    pub radius_m: f64,
+    /// Length of a tick, seconds.
+    pub step_s: f64,
+    /// By flock, sides, speed. Those without a run are left out.
+    pub lines: Vec<Line>,
+}
+
+/// Overlapping pairs summed over ticks, and the least distance of centres.
+type Met = (usize, f64);
+
+impl Closing {
+    /// Radius of a body, metres.
+    #[must_use]
+    pub fn radius_m(&self) -> f64 {
+        self.spacing_m / 14.0
+    }
+
+    /// Whether it can be carried out.
+    ///
+    /// # Errors
+    /// [`PlanError`]
+    pub fn check(&self) -> Result<(), PlanError> {
+        match self.runs {
+            0 => return Err(PlanError::NoRuns),
+            runs if runs > crate::MAX_RUNS => return Err(PlanError::Runs(runs)),
+            _ => {}
+        }
+        if !(0.1..=50.0).contains(&self.spacing_m) {
+            return Err(PlanError::Spacing(self.spacing_m));
+        }
+        if !(0.001..=0.1).contains(&self.step_s) {
+            return Err(PlanError::Step(self.step_s));
+        }
+        let fastest = 2.0 * FASTEST_MPS / self.spacing_m;
+        let is_sound = |speed: &&f64| **speed > 0.0 && **speed <= fastest;
+        match self.speeds.iter().find(|speed| !is_sound(speed)) {
+            Some(&speed) => Err(PlanError::Speed { speed, fastest }),
+            None if self.speeds.is_empty() => Err(PlanError::NoCases),
+            None => Ok(()),
+        }
+    }
+
+    /// Flock, sides, speed of each line.
+    fn lines(&self) -> Vec<(Flock, Sides, f64)> {
+        let mut lines = Vec::new();
+        for flock in [Flock::Alpha, Flock::Goal, Flock::Boids] {
+            for sides in [Sides::Pair, Sides::Groups] {
+                lines.extend(self.speeds.iter().map(|&speed| (flock, sides, speed)));
+            }
+        }
+        lines
+    }
+
+    /// Runs in all, each bare and with ORCA.
+    #[must_use]
+    pub fn total(&self) -> usize {
+        self.lines().len() * self.runs as usize
+    }
+
+    /// Does everything, in parallel. `progress` is told how many runs are done; when it answers `false`, what is done so
+    /// far is returned, with the number of runs.
+    ///
+    /// # Errors
+    /// [`PlanError`]
+    pub fn carry_out(
+        &self,
+        progress: impl FnMut(usize) -> bool,
+    ) -> Result<(ClosingReport, usize), PlanError> {
+        self.check()?;
+        let lines = self.lines();
+        let met = in_parallel(self.total(), 8, progress, |(): &mut (), job| {
+            let (flock, sides, speed) = lines[job % lines.len()];
+            let run = (job / lines.len()) as u32;
+            let meet = |safety| {
+                let scenario = self.scenario(flock, sides, speed, safety, run);
+                self.meet(&scenario)
+            };
+            Ok::<_, PlanError>([meet(SafetyName::None)?, meet(SafetyName::Orca)?])
+        })?;
+        let done = met.len();
+        let line = |(index, &(flock, sides, speed_over_d)): (usize, &(Flock, Sides, f64))| {
+            let runs: Vec<[Met; 2]> = (met.iter().skip(index))
+                .step_by(lines.len())
+                .copied()
+                .collect();
+            let meeting = |way: usize| Meeting {
+                runs_with_overlap: runs.iter().filter(|run| run[way].0 > 0).count(),
+                overlaps: runs.iter().map(|run| run[way].0).sum(),
+                least_pair_over_d: runs.iter().map(|run| run[way].1).fold(f64::MAX, f64::min)
+                    / self.spacing_m,
+            };
+            (!runs.is_empty()).then(|| Line {
+                flock,
+                sides,
+                speed_over_d,
+                runs: runs.len(),
+                bare: meeting(0),
+                orca: meeting(1),
+            })
+        };
+        let report = ClosingReport {
+            seed: self.seed,
+            spacing_m: self.spacing_m,
+            radius_m: self.radius_m(),
+            step_s: self.step_s,
+            lines: lines.iter().enumerate().filter_map(line).collect(),
+        };
+        Ok((report, done))
+    }
+
+    /// Both sides a gap apart, at speed; they have passed and gone twice as far when the run ends.
+    fn scenario(
+        &self,
+        flock: Flock,
+        sides: Sides,
+        speed: f64,
+        safety: SafetyName,
+        run: u32,
+    ) -> Scenario {
+        let d = self.spacing_m;
+        let side_mps = speed * d / 2.0;
+        let guidance = match flock {
+            Flock::Alpha => GuidanceName::Lattice,
+            Flock::Goal => GuidanceName::GoalFlock,
+            Flock::Boids => GuidanceName::Boids,
+        };
+        let arena = Arena {
+            name: "closing",
+            seed: Rng::keyed(self.seed, OFFSETS, run, 1).next_u64(),
+            step_s: self.step_s,
+            seconds: 4.0 * GAP / speed,
+            radius_m: self.radius_m(),
+            max_speed_mps: side_mps,
+            range_m: 30.0 * d,
+            loss: 0.0,
+            sight_m: d,
+            guidance,
+            safety,
+            solids: Vec::new(),
+        };
+        let mut setup = arena.setup(self.starts(flock, sides, side_mps, run));
+        setup.lattice = (LatticeParams::new(d as f32), true);
+        setup.goal_flock = (GoalParams::new((d / 2.0) as f32, side_mps as f32), d as f32);
+        // Crowded below d, seen up to 4 d.
+        setup.boids = BoidsSetup {
+            crowded_m: d as f32,
+            closest_m: (4.0 * d) as f32,
+            ..BoidsSetup::PAPER
+        };
+        // Beacons are a step old; at these speeds a step is a body's radius.
+        setup.orca.margin_m = (d / 100.0) as f32;
+        arena.scenario(setup)
+    }
+
+    fn starts(&self, flock: Flock, sides: Sides, side_mps: f64, run: u32) -> Vec<Start> {
+        let d = self.spacing_m;
+        let rows = match sides {
+            Sides::Pair => 1,
+            Sides::Groups => 3_u32,
+        };
+        let mut rng = Rng::keyed(self.seed, OFFSETS, run, 0);
+        // How far the eastern side is off to the north: bodies would meet.
+        let off_m = uniform(&mut rng, -1.0, 1.0) * self.radius_m();
+        let mut starts = Vec::new();
+        for (way, off_m) in [(1.0, 0.0), (-1.0, off_m)] {
+            let target = match flock {
+                // The reference goes along, straight through the other side.
+                Flock::Alpha => Target {
+                    position_m: [-way * GAP * d / 2.0, off_m, 0.0],
+                    velocity_mps: [way * side_mps, 0.0, 0.0],
+                },
+                Flock::Goal | Flock::Boids => Target {
+                    position_m: [way * 100.0 * d, off_m, 0.0],
+                    velocity_mps: [0.0; 3],
+                },
+            };
+            for place in 0..rows * rows {
+                let [back, up] = [place / rows, place % rows].map(|n| f64::from(n) * d);
+                let jitter = [0, 1].map(|_| uniform(&mut rng, -0.1, 0.1) * self.radius_m());
+                starts.push(Start {
+                    position_m: [
+                        -way * (GAP * d / 2.0 + back) + jitter[0],
+                        up - f64::from(rows - 1) * d / 2.0 + off_m + jitter[1],
+                        0.0,
+                    ],
+                    velocity_mps: [way * side_mps, 0.0, 0.0],
+                    places: vec![target],
+                });
+            }
+        }
+        starts
+    }
+
+    fn meet(&self, scenario: &Scenario) -> Result<Met, PlanError> {
+        let radii = vec![self.radius_m(); scenario.robots.len()];
+        let horizon_m = self.spacing_m;
+        let (mut overlaps, mut least_m) = (0, f64::MAX);
+        simulate(scenario, |_, robots| {
+            let places_m: Vec<[f64; 3]> = robots.map(|robot| robot.motion.position_m).collect();
+            let gaps = gaps(&places_m, &radii, &[], horizon_m, Space::OPEN);
+            overlaps += gaps.overlapping_pairs;
+            if let Some(gap_m) = gaps.between_robots_m {
+                least_m = f64::min(least_m, gap_m + 2.0 * self.radius_m());
+            }
+            ControlFlow::Continue(())
+        })?;
+        Ok((overlaps, least_m))
+    }
+}

@@ -1,0 +1,238 @@
+//! The numbers of the flocks.
+
+use super::watch::{Frame, Run};
+use super::{Case, Plan, Results};
+use crate::stats::quantile;
+use serde::Serialize;
+use staya_sim::metrics::flock::{AlphaLimits, AlphaVerdict, FlockMeasure, alpha_flocking};
+use staya_sim::scenario::SafetyName;
+
+/// One run.
+#[derive(Clone, Debug, Serialize)]
+pub struct RunReport {
+    /// Number of the run, from 0.
+    pub run: usize,
+    /// From which iteration on the conditions of alpha-flocking hold until the end.
+    pub alpha: AlphaVerdict,
+    /// The flock at the end.
+    pub end: Option<FlockMeasure>,
+    /// Largest number of its parts at any time.
+    pub most_parts: usize,
+    /// Least distance of two centres from the third second on, in d; `null` if none were within d.
+    pub least_pair_over_d: Option<f64>,
+    /// Pairs of bodies (radius d / 14) that overlap, summed over ticks.
+    pub overlaps: usize,
+    /// Least distance of a centre from an obstacle's border, in d, negative inside; `null` without obstacles.
+    pub least_clearance_over_d: Option<f64>,
+    /// Robots whose centre was ever in an obstacle.
+    pub inside: usize,
+    /// Robots past all obstacles at the end; `null` without obstacles.
+    pub past: Option<usize>,
+    /// Fingerprint of the whole trace.
+    pub trace_hash: String,
+}
+
+/// One case over its runs.
+#[derive(Clone, Debug, Serialize)]
+pub struct CaseReport {
+    /// Which.
+    pub case: Case,
+    /// Robots of each run.
+    pub robots: usize,
+    /// Ticks of each run.
+    pub ticks: usize,
+    /// c1 of alpha-, beta- and gamma-agents.
+    pub gains: [f64; 3],
+    /// Runs.
+    pub runs: usize,
+    /// Runs with alpha-flocking at their end.
+    pub alpha_flocking: usize,
+    /// Iteration from which on it holds: median over those runs.
+    pub alpha_from_median: Option<f64>,
+    /// And the latest.
+    pub alpha_from_latest: Option<usize>,
+    /// The largest iteration of any run from which on all robots are connected; `null` when a run does not end so.
+    pub connected_from_latest: Option<usize>,
+    /// Mean C at the end.
+    pub connectivity: f64,
+    /// Largest R at the end, metres.
+    pub radius_m: f64,
+    /// Largest E~ at the end.
+    pub deviation_energy: f64,
+    /// Largest K~ at the end, (m/s)^2.
+    pub velocity_mismatch: f64,
+    /// Runs that end with one flock.
+    pub one_flock: usize,
+    /// Least of all runs.
+    pub least_pair_over_d: Option<f64>,
+    /// Of all runs.
+    pub overlaps: usize,
+    /// Least of all runs.
+    pub least_clearance_over_d: Option<f64>,
+    /// Of all runs.
+    pub inside: usize,
+    /// Of all runs.
+    pub past: Option<usize>,
+    /// Each run.
+    pub each: Vec<RunReport>,
+    #[serde(skip)]
+    pub(super) traces: Vec<Vec<Option<FlockMeasure>>>,
+    #[serde(skip)]
+    pub(super) frames: Vec<Frame>,
+}
+
+/// Everything.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Seed of everything.
+    pub seed: u64,
+    /// Runs of each case that were wanted.
+    pub runs: u32,
+    /// Distance of neighbours in the lattice (d), metres.
+    pub spacing_m: f64,
+    /// Radius of a body, metres.
+    pub radius_m: f64,
+    /// Length of a tick, seconds.
+    pub step_s: f64,
+    /// What is behind the flock.
+    pub safety: &'static str,
+    /// How far ahead ORCA looks, seconds.
+    pub horizon_s: f64,
+    /// Loss of packets.
+    pub loss: f64,
+    /// Whether the reference in D and E stands.
+    pub static_reference: bool,
+    /// By case. Those without a run are left out.
+    pub cases: Vec<CaseReport>,
+}
+
+/// A safety layer as the command line calls it.
+pub const fn safety_name(safety: SafetyName) -> &'static str {
+    match safety {
+        SafetyName::None => "none",
+        SafetyName::Orca => "orca",
+        SafetyName::Template2k => "template-2k",
+        SafetyName::Template8k => "template-8k",
+        SafetyName::Template16k => "template-16k",
+        SafetyName::Template64k => "template-64k",
+        SafetyName::Fly => "fly",
+        SafetyName::PushOut => "push-out",
+    }
+}
+
+impl Results {
+    /// The numbers.
+    #[must_use]
+    pub fn report(&self) -> Report {
+        let plan = &self.plan;
+        Report {
+            seed: plan.seed,
+            runs: plan.runs,
+            spacing_m: plan.spacing_m,
+            radius_m: plan.radius_m(),
+            step_s: plan.step_s,
+            safety: safety_name(plan.safety),
+            horizon_s: plan.horizon_s,
+            loss: plan.loss,
+            static_reference: plan.is_static,
+            cases: (0..plan.cases.len())
+                .filter_map(|index| self.case(index))
+                .collect(),
+        }
+    }
+
+    fn case(&self, index: usize) -> Option<CaseReport> {
+        let plan = &self.plan;
+        let case = plan.cases[index];
+        let runs: Vec<&Run> = (self.runs.iter().skip(index))
+            .step_by(plan.cases.len())
+            .collect();
+        let first = runs.first()?;
+        let robots = first.trace.iter().flatten().next()?.robots;
+        let each: Vec<RunReport> = (0..)
+            .zip(&runs)
+            .map(|(number, run)| RunReport::of(plan, case, number, robots, run))
+            .collect();
+        let alphas: Vec<usize> = each.iter().filter_map(|r| r.alpha.alpha_flocking).collect();
+        let from: Vec<f64> = alphas.iter().map(|&from| from as f64).collect();
+        let ends: Vec<FlockMeasure> = each.iter().filter_map(|run| run.end).collect();
+        let most = |value: fn(&FlockMeasure) -> f64| ends.iter().map(value).fold(0.0, f64::max);
+        let least =
+            |value: fn(&RunReport) -> Option<f64>| each.iter().filter_map(value).reduce(f64::min);
+        Some(CaseReport {
+            case,
+            robots,
+            ticks: first.trace.len() - 1,
+            gains: plan.gains(case),
+            runs: runs.len(),
+            alpha_flocking: alphas.len(),
+            alpha_from_median: quantile(&from, 0.5),
+            alpha_from_latest: alphas.iter().copied().max(),
+            connected_from_latest: runs
+                .iter()
+                .map(|run| connected_from(&run.trace))
+                .collect::<Option<Vec<_>>>()
+                .and_then(|all| all.into_iter().max()),
+            connectivity: ends.iter().map(|m| m.connectivity).sum::<f64>() / ends.len() as f64,
+            radius_m: most(|m| m.radius_m),
+            deviation_energy: most(|m| m.deviation_energy),
+            velocity_mismatch: most(|m| m.velocity_mismatch),
+            one_flock: ends.iter().filter(|m| m.components == 1).count(),
+            least_pair_over_d: least(|run| run.least_pair_over_d),
+            overlaps: each.iter().map(|run| run.overlaps).sum(),
+            least_clearance_over_d: least(|run| run.least_clearance_over_d),
+            inside: each.iter().map(|run| run.inside).sum(),
+            past: each.iter().map(|run| run.past).sum(),
+            traces: runs.iter().map(|run| run.trace.clone()).collect(),
+            frames: first.frames.clone(),
+            each,
+        })
+    }
+}
+
+/// The iteration from which on all are connected until the end.
+fn connected_from(trace: &[Option<FlockMeasure>]) -> Option<usize> {
+    let is_apart = |moment: &Option<FlockMeasure>| moment.is_none_or(|m| m.components > 1);
+    let from = trace.iter().rposition(is_apart).map_or(0, |last| last + 1);
+    (from < trace.len()).then_some(from)
+}
+
+impl RunReport {
+    fn of(plan: &Plan, case: Case, number: usize, robots: usize, run: &Run) -> Self {
+        let over_d = |metres: f64| metres.is_finite().then(|| metres / plan.spacing_m);
+        let unit_m = plan.spacing_m / 7.0;
+        let mut limits = AlphaLimits::paper(2.0 * lattice_radius_m(plan, case, robots));
+        // K is in (m/s)^2, of the paper's units.
+        limits.velocity_mismatch *= unit_m * unit_m;
+        Self {
+            run: number,
+            alpha: alpha_flocking(&run.trace, &limits),
+            end: run.trace.last().copied().flatten(),
+            most_parts: run
+                .trace
+                .iter()
+                .flatten()
+                .map(|m| m.components)
+                .max()
+                .unwrap_or(0),
+            least_pair_over_d: over_d(run.least_pair_m),
+            overlaps: run.overlaps,
+            least_clearance_over_d: over_d(run.least_clearance_m),
+            inside: run.inside,
+            past: case.behind_m(plan.spacing_m).map(|_| run.past),
+            trace_hash: format!("{:016x}", run.hash),
+        }
+    }
+}
+
+/// Radius of the disc (in space: the ball) that a perfect lattice fills: a cohesive flock is within twice that.
+fn lattice_radius_m(plan: &Plan, case: Case, robots: usize) -> f64 {
+    let (n, d) = (robots as f64, plan.spacing_m);
+    if case == Case::Rendezvous3d {
+        // d^3 / sqrt 2 a robot.
+        d * libm::cbrt(3.0 * n / (4.0 * std::f64::consts::PI * std::f64::consts::SQRT_2))
+    } else {
+        // d^2 sqrt 3 / 2 a robot.
+        d * libm::sqrt(n * libm::sqrt(3.0) / (2.0 * std::f64::consts::PI))
+    }
+}

@@ -1,0 +1,139 @@
+//! What is measured during a run.
+
+use super::{Case, Plan};
+use staya_sim::metrics::flock::{FlockMeasure, FlockMeter, gaps};
+use staya_sim::nearby::Space;
+use staya_sim::record::RobotRow;
+use staya_sim::scenario::Scenario;
+use staya_sim::world::plane::Solid;
+
+/// Pairs count from here on, seconds: the random starts have robots almost in one place.
+const SETTLED_S: f64 = 2.0;
+
+/// What one run gave.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Run {
+    /// The flock before the first tick and after each.
+    pub trace: Vec<Option<FlockMeasure>>,
+    /// Least distance of two centres after [`SETTLED_S`], metres; infinite when none were within d.
+    pub least_pair_m: f64,
+    /// Pairs of bodies that overlap, summed over ticks.
+    pub overlaps: usize,
+    /// Least distance of a centre from an obstacle's border, metres, negative inside; infinite without obstacles.
+    pub least_clearance_m: f64,
+    /// Robots whose centre was ever in an obstacle.
+    pub inside: usize,
+    /// Robots that are past all obstacles at the end.
+    pub past: usize,
+    /// Moments to draw.
+    pub frames: Vec<Frame>,
+    /// Of the whole trace.
+    pub hash: u64,
+}
+
+/// All robots at a moment.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Frame {
+    pub tick: u32,
+    pub places_m: Vec<[f64; 3]>,
+    pub velocities_mps: Vec<[f64; 3]>,
+}
+
+/// Measures a run as it goes.
+pub(super) struct Watch {
+    spacing_m: f64,
+    radius_m: f64,
+    settled: u32,
+    behind_m: Option<f64>,
+    solids: Vec<Solid>,
+    meter: FlockMeter<3>,
+    /// Ticks to keep.
+    wanted: Vec<u32>,
+    places_m: Vec<[f64; 3]>,
+    velocities_mps: Vec<[f64; 3]>,
+    was_inside: Vec<bool>,
+    run: Run,
+}
+
+impl Watch {
+    /// `draws`: whether to keep moments for pictures.
+    pub fn new(plan: &Plan, case: Case, scenario: &Scenario, draws: bool) -> Self {
+        let spacing_m = plan.spacing_m;
+        let moments = case.setting().moments;
+        let at = |share: f64| libm::round(share * f64::from(scenario.ticks)) as u32;
+        Self {
+            spacing_m,
+            radius_m: plan.radius_m(),
+            settled: crate::arena::ticks(SETTLED_S, plan.step_s),
+            behind_m: case.behind_m(spacing_m),
+            solids: case.solids(spacing_m),
+            meter: FlockMeter::new(spacing_m, 1.2 * spacing_m, Space::OPEN),
+            wanted: if draws {
+                moments.map(at).to_vec()
+            } else {
+                Vec::new()
+            },
+            places_m: Vec::new(),
+            velocities_mps: Vec::new(),
+            was_inside: vec![false; scenario.robots.len()],
+            run: Run {
+                trace: Vec::new(),
+                least_pair_m: f64::INFINITY,
+                overlaps: 0,
+                least_clearance_m: f64::INFINITY,
+                inside: 0,
+                past: 0,
+                frames: Vec::new(),
+                hash: 0,
+            },
+        }
+    }
+
+    /// Looks at all robots after a tick.
+    pub fn look(&mut self, tick: u32, robots: &mut dyn Iterator<Item = RobotRow>) {
+        self.places_m.clear();
+        self.velocities_mps.clear();
+        for robot in robots {
+            self.places_m.push(robot.motion.position_m);
+            self.velocities_mps.push(robot.motion.velocity_mps);
+        }
+        let measure = self.meter.look(&self.places_m, &self.velocities_mps);
+        self.run.trace.push(measure);
+        self.look_at_pairs(tick);
+        for (place, was_inside) in self.places_m.iter().zip(&mut self.was_inside) {
+            for solid in &self.solids {
+                let distance_m = solid.distance_m(*place);
+                self.run.least_clearance_m = self.run.least_clearance_m.min(distance_m);
+                *was_inside |= distance_m < 0.0;
+            }
+        }
+        // The last tick may be drawn twice.
+        if self.wanted.contains(&tick) {
+            self.run.frames.push(Frame {
+                tick,
+                places_m: self.places_m.clone(),
+                velocities_mps: self.velocities_mps.clone(),
+            });
+        }
+    }
+
+    fn look_at_pairs(&mut self, tick: u32) {
+        let radii = vec![self.radius_m; self.places_m.len()];
+        let horizon_m = self.spacing_m - 2.0 * self.radius_m;
+        let gaps = gaps(&self.places_m, &radii, &[], horizon_m, Space::OPEN);
+        self.run.overlaps += gaps.overlapping_pairs;
+        if let Some(gap_m) = gaps.between_robots_m.filter(|_| tick >= self.settled) {
+            let apart_m = gap_m + 2.0 * self.radius_m;
+            self.run.least_pair_m = self.run.least_pair_m.min(apart_m);
+        }
+    }
+
+    /// The results, at the end.
+    pub fn finish(mut self, hash: u64) -> Run {
+        let is_past = |place: &&[f64; 3]| self.behind_m.is_some_and(|x| place[0] > x);
+        self.run.past = self.places_m.iter().filter(is_past).count();
+        self.run.inside = self.was_inside.iter().filter(|inside| **inside).count();
+        self.run.hash = hash;
+        self.run
+    }
+}

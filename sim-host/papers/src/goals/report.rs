@@ -1,0 +1,159 @@
+//! The numbers of the goal flock.
+
+use super::watch::{Frame, Run};
+use super::{Plan, Results};
+use crate::flock::safety_name;
+use crate::stats::mean;
+use serde::Serialize;
+use staya_controller::push_out::{Evasion, Model};
+use staya_sim::scenario::SafetyName;
+
+/// One K1 and one R_nbh: means over the runs.
+#[derive(Clone, Debug, Serialize)]
+pub struct Point {
+    /// Gain on the goal.
+    pub k1: f64,
+    /// K1 / K2; `null` when K2 is 0.
+    pub k1_over_k2: Option<f64>,
+    /// R_nbh, metres.
+    pub neighborhood_m: f64,
+    /// Runs.
+    pub runs: usize,
+    /// Length of the mean direction on the way, 0 to 1.
+    pub polarisation: Option<f64>,
+    /// Share of the robots in the largest group on the way.
+    pub together: Option<f64>,
+    /// Radius of the crowd on the way over that at the start.
+    pub spread: Option<f64>,
+    /// Share of the robots that came to the middle.
+    pub gathered: f64,
+    /// Time until half of them had, seconds: mean over the runs in which they did.
+    pub half_gathered_s: Option<f64>,
+    /// Share of the robots at a goal at the end.
+    pub arrived: f64,
+    /// Shares of the goals in these.
+    pub goal_shares: [f64; 3],
+    /// Least distance of two centres of any run, over R_MinDist; `null` when all were farther apart.
+    pub least_pair_over_min_distance: Option<f64>,
+    /// Pairs of bodies (radius 0.3 R_MinDist) that overlap, summed over ticks and runs.
+    pub overlaps: usize,
+    /// Fingerprints of the traces, xored.
+    pub trace_hash: String,
+    #[serde(skip)]
+    pub(super) frames: Vec<Frame>,
+}
+
+/// Everything.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Seed of everything.
+    pub seed: u64,
+    /// Robots.
+    pub robots: u32,
+    /// Gain on the middle of the neighbours.
+    pub k2: f64,
+    /// Gain on who is too near.
+    pub k3: f64,
+    /// R_MinDist, metres.
+    pub min_distance_m: f64,
+    /// Radius of a body, metres.
+    pub radius_m: f64,
+    /// How near to the middle or to a goal counts, metres.
+    pub arrival_m: f64,
+    /// Length of a tick, seconds.
+    pub step_s: f64,
+    /// Length of a run, seconds.
+    pub seconds: f64,
+    /// What is behind the flock.
+    pub safety: String,
+    /// Whether the first goal was moved.
+    pub moves_goal: bool,
+    /// By R_nbh, then K1. Those without a run are left out.
+    pub points: Vec<Point>,
+    #[serde(skip)]
+    pub(super) plan: Plan,
+}
+
+impl Results {
+    /// The numbers.
+    #[must_use]
+    pub fn report(&self) -> Report {
+        let plan = &self.plan;
+        let points = plan.points();
+        Report {
+            seed: plan.seed,
+            robots: plan.robots,
+            k2: plan.k2,
+            k3: plan.k3,
+            min_distance_m: plan.min_distance_m,
+            radius_m: plan.radius_m(),
+            arrival_m: plan.arrival_m(),
+            step_s: plan.step_s,
+            seconds: plan.seconds,
+            safety: safety(plan),
+            moves_goal: plan.moves_goal,
+            points: (0..points.len())
+                .filter_map(|index| {
+                    let runs = self.runs.iter().skip(index).step_by(points.len());
+                    Point::of(plan, points[index], &runs.collect::<Vec<_>>())
+                })
+                .collect(),
+            plan: plan.clone(),
+        }
+    }
+}
+
+/// The safety layer in words.
+fn safety(plan: &Plan) -> String {
+    let name = safety_name(plan.safety);
+    if plan.safety != SafetyName::PushOut {
+        return name.into();
+    }
+    let model = match plan.push_out.0 {
+        Model::Radial => "radial",
+        Model::Tangential => "tangential",
+    };
+    let evasion = match plan.push_out.1 {
+        Evasion::Single => "single",
+        Evasion::Multiple => "multiple",
+    };
+    format!("{name} ({model}, {evasion})")
+}
+
+impl Point {
+    fn of(plan: &Plan, (k1, neighborhood_m): (f64, f64), runs: &[&Run]) -> Option<Self> {
+        let first = runs.first()?;
+        let robots = f64::from(plan.robots) * runs.len() as f64;
+        let way = |value: fn(&super::watch::Way) -> f64| {
+            let values = runs.iter().filter_map(|run| run.way.as_ref());
+            mean(&values.map(value).collect::<Vec<_>>())
+        };
+        let at = |goal: usize| runs.iter().map(|run| run.at_goals[goal]).sum::<usize>() as f64;
+        let at_goals = [at(0), at(1), at(2)];
+        let arrived: f64 = at_goals.iter().sum();
+        let halves: Vec<f64> = runs.iter().filter_map(|run| run.half_gathered_s).collect();
+        let least_m = runs
+            .iter()
+            .map(|run| run.least_pair_m)
+            .fold(f64::INFINITY, f64::min);
+        Some(Self {
+            k1,
+            k1_over_k2: (plan.k2 != 0.0).then(|| k1 / plan.k2),
+            neighborhood_m,
+            runs: runs.len(),
+            polarisation: way(|way| way.polarisation),
+            together: way(|way| way.together),
+            spread: way(|way| way.spread),
+            gathered: runs.iter().map(|run| run.gathered).sum::<usize>() as f64 / robots,
+            half_gathered_s: mean(&halves),
+            arrived: arrived / robots,
+            goal_shares: at_goals.map(|at| if arrived > 0.0 { at / arrived } else { 0.0 }),
+            least_pair_over_min_distance: least_m
+                .is_finite()
+                .then(|| least_m / plan.min_distance_m),
+            overlaps: runs.iter().map(|run| run.overlaps).sum(),
+            trace_hash: format!("{:016x}", runs.iter().fold(0, |all, run| all ^ run.hash)),
+            frames: first.frames.clone(),
+        })
+    }
+}

@@ -1,0 +1,200 @@
+//! What is measured on the way to the goals.
+
+use super::Plan;
+use crate::arena::distance_m;
+use staya_sim::metrics::flock::{FlockMeter, gaps, polarisation};
+use staya_sim::nearby::Space;
+use staya_sim::record::RobotRow;
+use staya_sim::scenario::Scenario;
+
+/// The first seconds do not count: robots start at rest.
+const WARM_UP_S: f64 = 5.0;
+
+/// Shares of the time at which the first run is drawn.
+pub(super) const MOMENTS: [f64; 6] = [0.0, 0.125, 0.25, 0.375, 0.5, 1.0];
+
+/// What one run gave.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Run {
+    /// Means over the way; `None` when it was over before it was looked at.
+    pub way: Option<Way>,
+    /// Robots that were at the middle.
+    pub gathered: usize,
+    /// Time until half of them were, seconds.
+    pub half_gathered_s: Option<f64>,
+    /// Robots at each goal at the end.
+    pub at_goals: [usize; 3],
+    /// Least distance of two centres, metres; infinite when none were within R_MinDist.
+    pub least_pair_m: f64,
+    /// Pairs of bodies that overlap, summed over ticks.
+    pub overlaps: usize,
+    /// Moments to draw.
+    pub frames: Vec<Frame>,
+    /// Of the whole trace.
+    pub hash: u64,
+}
+
+/// The crowd on its way, means over ticks.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Way {
+    /// Of the robots that have not gathered yet.
+    pub polarisation: f64,
+    /// Share of all robots in the largest group.
+    pub together: f64,
+    /// Root mean square distance from the centroid over that at the start.
+    pub spread: f64,
+}
+
+/// All robots at a moment.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Frame {
+    pub tick: u32,
+    pub places_m: Vec<[f64; 2]>,
+    pub velocities_mps: Vec<[f64; 2]>,
+}
+
+/// Measures a run as it goes.
+pub(super) struct Watch<'a> {
+    plan: &'a Plan,
+    /// Ticks to keep.
+    wanted: Vec<u32>,
+    warm_up: u32,
+    meter: FlockMeter<2>,
+    has_gathered: Vec<bool>,
+    places_m: Vec<[f64; 2]>,
+    velocities_mps: Vec<[f64; 2]>,
+    first_spread_m: f64,
+    sum: Way,
+    looks: u32,
+    run: Run,
+}
+
+impl<'a> Watch<'a> {
+    /// `draws`: whether to keep moments for pictures.
+    pub fn new(plan: &'a Plan, scenario: &Scenario, draws: bool) -> Self {
+        let at = |share: f64| libm::round(share * f64::from(scenario.ticks)) as u32;
+        let spacing_m = plan.min_distance_m;
+        Self {
+            plan,
+            wanted: if draws {
+                MOMENTS.map(at).to_vec()
+            } else {
+                Vec::new()
+            },
+            warm_up: crate::arena::ticks(WARM_UP_S, plan.step_s),
+            meter: FlockMeter::new(spacing_m, 2.0 * spacing_m, Space::OPEN),
+            has_gathered: vec![false; scenario.robots.len()],
+            places_m: Vec::new(),
+            velocities_mps: Vec::new(),
+            first_spread_m: 0.0,
+            sum: Way::default(),
+            looks: 0,
+            run: Run {
+                way: None,
+                gathered: 0,
+                half_gathered_s: None,
+                at_goals: [0; 3],
+                least_pair_m: f64::INFINITY,
+                overlaps: 0,
+                frames: Vec::new(),
+                hash: 0,
+            },
+        }
+    }
+
+    /// Looks at all robots after a tick.
+    pub fn look(&mut self, tick: u32, robots: &mut dyn Iterator<Item = RobotRow>) {
+        let arrival_m = self.plan.arrival_m();
+        let goals_m = self.plan.goals_at(tick);
+        let mean = |axis: usize| goals_m.iter().map(|goal| goal[axis]).sum::<f64>() / 3.0;
+        let middle_m = [mean(0), mean(1), 0.0];
+        self.places_m.clear();
+        self.velocities_mps.clear();
+        self.run.at_goals = [0; 3];
+        for (robot, has_gathered) in robots.zip(&mut self.has_gathered) {
+            let [x, y, _] = robot.motion.position_m;
+            let [vx, vy, _] = robot.motion.velocity_mps;
+            self.places_m.push([x, y]);
+            self.velocities_mps.push([vx, vy]);
+            let off_m = |place_m: [f64; 3]| distance_m(robot.motion.position_m, place_m);
+            *has_gathered |= off_m(middle_m) <= arrival_m;
+            let nearest = (0..3)
+                .map(|goal| (off_m(goals_m[goal]), goal))
+                .min_by(|a, b| a.0.total_cmp(&b.0));
+            // As the robot itself rounds.
+            if let Some((_, goal)) = nearest.filter(|(off, _)| *off <= arrival_m + 0.01) {
+                self.run.at_goals[goal] += usize::from(*has_gathered);
+            }
+        }
+        self.look_at_pairs();
+        self.look_at_crowd(tick);
+        if self.wanted.contains(&tick) {
+            self.run.frames.push(Frame {
+                tick,
+                places_m: self.places_m.clone(),
+                velocities_mps: self.velocities_mps.clone(),
+            });
+        }
+    }
+
+    fn look_at_pairs(&mut self) {
+        let radius_m = self.plan.radius_m();
+        let radii = vec![radius_m; self.places_m.len()];
+        let horizon_m = self.plan.min_distance_m - 2.0 * radius_m;
+        let gaps = gaps(&self.places_m, &radii, &[], horizon_m, Space::OPEN);
+        self.run.overlaps += gaps.overlapping_pairs;
+        if let Some(gap_m) = gaps.between_robots_m {
+            self.run.least_pair_m = self.run.least_pair_m.min(gap_m + 2.0 * radius_m);
+        }
+    }
+
+    fn look_at_crowd(&mut self, tick: u32) {
+        let robots = self.has_gathered.len();
+        self.run.gathered = self.has_gathered.iter().filter(|has| **has).count();
+        if 2 * self.run.gathered >= robots && self.run.half_gathered_s.is_none() {
+            self.run.half_gathered_s = Some(f64::from(tick) * self.plan.step_s);
+        }
+        let spread_m = spread(&self.places_m);
+        if tick == 0 {
+            self.first_spread_m = spread_m;
+        }
+        if tick < self.warm_up || self.run.half_gathered_s.is_some() {
+            return;
+        }
+        let on_way = self.velocities_mps.iter().zip(&self.has_gathered);
+        let on_way: Vec<[f64; 2]> = on_way.filter(|(_, has)| !**has).map(|(v, _)| *v).collect();
+        let largest = self
+            .meter
+            .look(&self.places_m, &self.velocities_mps)
+            .map_or(0, |measure| measure.largest_component);
+        self.sum.polarisation += polarisation(&on_way);
+        self.sum.together += largest as f64 / robots as f64;
+        self.sum.spread += spread_m / self.first_spread_m;
+        self.looks += 1;
+    }
+
+    /// The results, at the end.
+    pub fn finish(mut self, hash: u64) -> Run {
+        let looks = f64::from(self.looks);
+        self.run.way = (self.looks > 0).then(|| Way {
+            polarisation: self.sum.polarisation / looks,
+            together: self.sum.together / looks,
+            spread: self.sum.spread / looks,
+        });
+        self.run.hash = hash;
+        self.run
+    }
+}
+
+/// Root mean square distance from the centroid.
+fn spread(places_m: &[[f64; 2]]) -> f64 {
+    let count = places_m.len() as f64;
+    let variance = |axis: usize| {
+        let mean = places_m.iter().map(|place| place[axis]).sum::<f64>() / count;
+        let squares = places_m
+            .iter()
+            .map(|place| (place[axis] - mean) * (place[axis] - mean));
+        squares.sum::<f64>() / count
+    };
+    libm::sqrt(variance(0) + variance(1))
+}

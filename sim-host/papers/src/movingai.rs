@@ -1,0 +1,454 @@
+//! The queries of a Moving AI benchmark (N. Sturtevant, "Benchmarks for Grid-Based Pathfinding", IEEE TCIAIG 2012).
+//!
+//! With a window as large as the map the controller must find the optimal lengths that the benchmark states; with a
+//! small one the question is how many robots get out of the dead ends that they cannot see, and how late. What gets them out
+//! is the price of earlier visits, as far as they are remembered: a2 and [`Memory`].
+
+use super::in_parallel;
+use super::walk::{Task, Walker, holds};
+use crate::stats::Summary;
+use serde::Serialize;
+use staya_controller::grid::UNIT;
+use staya_controller::route::{Replan, RouteParams};
+use staya_sim::terrain::movingai::{Query, parse_map, parse_scen};
+use staya_sim::terrain::{Terrain, TerrainError, read};
+use std::path::{Path, PathBuf};
+
+/// Cells of the largest search, border included: 255 x 255, as many as 16-bit numbers can tell apart.
+const CELLS: usize = 255 * 255;
+
+/// How far the robot sees.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sight {
+    /// So many cells in each direction, 1 or more.
+    Radius(u8),
+    /// All of the map.
+    Map,
+}
+
+/// How many cells the robot's visit memory holds: 6 bytes each on the robot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[expect(missing_docs, reason = "the numbers say it")]
+pub enum Memory {
+    Cells16,
+    #[default]
+    Cells64,
+    Cells256,
+    Cells1024,
+}
+
+impl Memory {
+    /// The number of cells.
+    #[must_use]
+    pub const fn cells(self) -> usize {
+        match self {
+            Self::Cells16 => 16,
+            Self::Cells64 => 64,
+            Self::Cells256 => 256,
+            Self::Cells1024 => 1024,
+        }
+    }
+}
+
+/// The robots that answer the queries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Robots {
+    /// How far they see.
+    pub sight: Sight,
+    /// How much they remember of their way.
+    pub memory: Memory,
+    /// What they take ways to cost. Radius and moves do not count: [`Robots::sight`] is the radius, and moves
+    /// are those of the benchmark (diagonals are sqrt 2 long and cut no corners).
+    pub params: RouteParams,
+    /// When they search anew.
+    pub replan: Replan,
+}
+
+impl Robots {
+    /// Robots with the controller's defaults.
+    #[must_use]
+    pub fn new(sight: Sight) -> Self {
+        Self {
+            sight,
+            memory: Memory::default(),
+            params: RouteParams::default(),
+            replan: Replan::default(),
+        }
+    }
+}
+
+/// A map and what to do on it.
+#[derive(Clone, Debug)]
+pub struct Benchmark {
+    /// The map's file.
+    pub map: PathBuf,
+    /// The land; swamp is ground, as the benchmark has it.
+    pub land: Terrain,
+    /// Starts, goals and optimal lengths.
+    pub queries: Vec<Query>,
+}
+
+/// Why a benchmark cannot be run.
+#[derive(Debug, thiserror::Error)]
+pub enum BenchmarkError {
+    /// The map or the scenario cannot be read.
+    #[error(transparent)]
+    Terrain(#[from] TerrainError),
+    /// The scenario has no queries.
+    #[error("{}: no queries; each line after the first one is a query", .0.display())]
+    Empty(PathBuf),
+    /// The map is not beside the scenario.
+    #[error(
+        "{}: its map {named} is not beside it ({} does not exist); put it there, or name it by --map", .scen.display(), .looked_for.display()
+    )]
+    NoMap {
+        /// The scenario.
+        scen: PathBuf,
+        /// The map by the scenario's words.
+        named: String,
+        /// The file that would be it.
+        looked_for: PathBuf,
+    },
+    /// Queries for another map.
+    #[error(
+        "{}: query {query} is for a map of {} x {} cells, but {} has {} x {}; name the right one by --map", .scen.display(), .wanted[0], .wanted[1], .map.display(), .found[0], .found[1]
+    )]
+    Size {
+        /// The scenario.
+        scen: PathBuf,
+        /// Number of the query, from 1.
+        query: usize,
+        /// Columns and rows that the query expects.
+        wanted: [u16; 2],
+        /// The map.
+        map: PathBuf,
+        /// Its columns and rows.
+        found: [u16; 2],
+    },
+    /// A start or goal in a wall.
+    #[error(
+        "{}: query {query} starts or ends in a wall of {}; name the right map by --map", .scen.display(), .map.display()
+    )]
+    Blocked {
+        /// The scenario.
+        scen: PathBuf,
+        /// Number of the query, from 1.
+        query: usize,
+        /// The map.
+        map: PathBuf,
+    },
+    /// The whole map is too much for one search.
+    #[error(
+        "a map of {width} x {height} cells is more than the controller can see at once: no side over 256, and at most {CELLS} cells with a border of one around them; choose a radius"
+    )]
+    TooLarge {
+        /// Columns.
+        width: u16,
+        /// Rows.
+        height: u16,
+    },
+}
+
+impl Benchmark {
+    /// Reads a scenario and its map, by default the one beside it that it names.
+    ///
+    /// # Errors
+    /// [`BenchmarkError`], naming file and remedy.
+    pub fn load(scen: &Path, map: Option<&Path>) -> Result<Self, BenchmarkError> {
+        let queries = parse_scen(&read(scen)?, scen)?;
+        let first = queries
+            .first()
+            .ok_or_else(|| BenchmarkError::Empty(scen.to_owned()))?;
+        let beside = scen.with_file_name(Path::new(&first.map).file_name().unwrap_or_default());
+        let map = map.map_or(beside.clone(), Path::to_owned);
+        if map == beside && !map.is_file() {
+            return Err(BenchmarkError::NoMap {
+                scen: scen.to_owned(),
+                named: first.map.clone(),
+                looked_for: map,
+            });
+        }
+        let land = parse_map(&read(&map)?, &map, 1)?;
+        for (index, query) in queries.iter().enumerate() {
+            let (wanted, found) = ([query.width, query.height], [land.width(), land.height()]);
+            let (scen, map, query_number) = (scen.to_owned(), map.clone(), index + 1);
+            if wanted != found {
+                return Err(BenchmarkError::Size {
+                    scen,
+                    query: query_number,
+                    wanted,
+                    map,
+                    found,
+                });
+            }
+            if !(land.is_passable(query.start) && land.is_passable(query.goal)) {
+                return Err(BenchmarkError::Blocked {
+                    scen,
+                    query: query_number,
+                    map,
+                });
+            }
+        }
+        Ok(Self { map, land, queries })
+    }
+
+    /// Answers the queries in parallel; `progress` is told how many are done and says whether to go on.
+    ///
+    /// # Errors
+    /// [`BenchmarkError::TooLarge`]
+    pub fn answer(
+        &self,
+        robots: &Robots,
+        progress: impl FnMut(usize) -> bool,
+    ) -> Result<Vec<Answer>, BenchmarkError> {
+        match robots.memory {
+            Memory::Cells16 => self.answer_with::<16>(robots, progress),
+            Memory::Cells64 => self.answer_with::<64>(robots, progress),
+            Memory::Cells256 => self.answer_with::<256>(robots, progress),
+            Memory::Cells1024 => self.answer_with::<1024>(robots, progress),
+        }
+    }
+
+    fn answer_with<const M: usize>(
+        &self,
+        robots: &Robots,
+        progress: impl FnMut(usize) -> bool,
+    ) -> Result<Vec<Answer>, BenchmarkError> {
+        let default = RouteParams::default();
+        let params = RouteParams {
+            radius: match robots.sight {
+                Sight::Radius(radius) => radius,
+                Sight::Map => u8::MAX,
+            },
+            norm: default.norm,
+            corner_cutting: default.corner_cutting,
+            ..robots.params
+        };
+        let land = &self.land;
+        // A window that reaches beyond the map holds no more than the map.
+        if !holds(CELLS, land) && (robots.sight == Sight::Map || params.radius > 126) {
+            return Err(BenchmarkError::TooLarge {
+                width: land.width(),
+                height: land.height(),
+            });
+        }
+        let job = |walker: &mut Walker<CELLS, M>, index: usize| {
+            let query = &self.queries[index];
+            let task = Task {
+                land,
+                parked: &[],
+                from: query.start,
+                to: query.goal,
+            };
+            let walk = walker.walk(&task, &params, robots.replan);
+            let priced = match robots.sight {
+                Sight::Map => walker.price(land, &params, query.start, query.goal),
+                Sight::Radius(_) => None,
+            };
+            Ok(Answer {
+                optimal_cells: query.optimal_length,
+                arrived: walk.arrived,
+                length_cells: cells(walk.length as f64),
+                priced_cells: priced.map(cells),
+            })
+        };
+        in_parallel(self.queries.len(), 64, progress, job)
+    }
+}
+
+fn cells(units: f64) -> f64 {
+    units / f64::from(UNIT)
+}
+
+/// What one query gave.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Answer {
+    /// The optimal length that the benchmark states, cells.
+    pub optimal_cells: f64,
+    /// Whether the robot reached the goal.
+    pub arrived: bool,
+    /// Length of its way, cells; where it did not arrive, until it gave up.
+    pub length_cells: f64,
+    /// What the router with the whole map in its window took the shortest way to be at the start, cells; `None`
+    /// if it found none, or sees only a part.
+    pub priced_cells: Option<f64>,
+}
+
+impl Answer {
+    /// By how much the way is longer than the optimal one, percent of it.
+    #[must_use]
+    pub fn loss_percent(&self) -> f64 {
+        percent(self.length_cells, self.optimal_cells)
+    }
+
+    /// By how much the router's price is off the optimal length, percent of it; `None` without a price.
+    #[must_use]
+    pub fn price_error_percent(&self) -> Option<f64> {
+        Some(percent(self.priced_cells?, self.optimal_cells))
+    }
+}
+
+fn percent(ours: f64, optimal: f64) -> f64 {
+    if ours == optimal {
+        return 0.0;
+    }
+    100.0 * (ours - optimal) / optimal
+}
+
+/// The numbers of a benchmark, ready to be printed.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Always `movingai`.
+    pub experiment: &'static str,
+    /// The map's file.
+    pub map: PathBuf,
+    /// Columns of the map.
+    pub width: u16,
+    /// Rows of the map.
+    pub height: u16,
+    /// Window radius in cells; `null`: the whole map.
+    pub radius: Option<u8>,
+    /// Cells of the visit memory.
+    pub visits: usize,
+    /// Queries in the scenario.
+    pub queries: usize,
+    /// Queries answered, fewer after an early end.
+    pub answered: usize,
+    /// Robots that reached their goal.
+    pub arrived: usize,
+    /// Length above the optimal one in percent of it, over the robots that arrived.
+    pub loss_percent: Option<Summary>,
+    /// With the whole map in the window: the largest deviation, either way, of the router's price from the optimal
+    /// length, percent of it.
+    pub worst_price_error_percent: Option<f64>,
+    /// With the whole map in the window: queries for which the router knows no way.
+    pub without_price: Option<usize>,
+}
+
+impl Report {
+    /// The statistics of the answers.
+    #[must_use]
+    pub fn of(benchmark: &Benchmark, robots: &Robots, answers: &[Answer]) -> Self {
+        let losses: Vec<f64> = answers
+            .iter()
+            .filter(|answer| answer.arrived)
+            .map(Answer::loss_percent)
+            .collect();
+        let errors = answers.iter().filter_map(Answer::price_error_percent);
+        let whole = robots.sight == Sight::Map;
+        Self {
+            experiment: "movingai",
+            map: benchmark.map.clone(),
+            width: benchmark.land.width(),
+            height: benchmark.land.height(),
+            radius: match robots.sight {
+                Sight::Radius(radius) => Some(radius),
+                Sight::Map => None,
+            },
+            visits: robots.memory.cells(),
+            queries: benchmark.queries.len(),
+            answered: answers.len(),
+            arrived: losses.len(),
+            loss_percent: Summary::of(&losses),
+            worst_price_error_percent: errors.map(f64::abs).reduce(f64::max),
+            without_price: whole.then(|| {
+                answers
+                    .iter()
+                    .filter(|answer| answer.priced_cells.is_none())
+                    .count()
+            }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MAP: &str = "type octile\nheight 3\nwidth 4\nmap\n....\n.@@.\n...S\n";
+
+    /// Writes map and scenario; `rows` are the queries without bucket and map.
+    fn files(rows: &[&str]) -> (tempfile::TempDir, PathBuf) {
+        let dir = tempfile::tempdir().unwrap();
+        let scen = dir.path().join("a.map.scen");
+        let queries: String = rows
+            .iter()
+            .map(|row| format!("0\tmaps/x/a.map\t{}\n", row.replace(' ', "\t")))
+            .collect();
+        std::fs::write(&scen, format!("version 1\n{queries}")).unwrap();
+        std::fs::write(dir.path().join("a.map"), MAP).unwrap();
+        (dir, scen)
+    }
+
+    fn report(rows: &[&str], sight: Sight) -> Report {
+        let (_dir, scen) = files(rows);
+        let benchmark = Benchmark::load(&scen, None).unwrap();
+        let robots = Robots::new(sight);
+        let answers = benchmark.answer(&robots, |_| true).unwrap();
+        Report::of(&benchmark, &robots, &answers)
+    }
+
+    #[test]
+    fn right_lengths_are_met_and_wrong_ones_show() {
+        // Around the wall without cutting its corners; over swamp at the price of ground; not at all.
+        let right = ["4 3 0 0 3 2 5", "4 3 0 2 3 2 3", "4 3 2 2 2 2 0"];
+        let good = report(&right, Sight::Map);
+        assert_eq!(
+            (good.answered, good.arrived, good.without_price),
+            (3, 3, Some(0))
+        );
+        assert!(good.worst_price_error_percent.unwrap() < 1e-9);
+        assert_eq!(good.loss_percent.unwrap().max, 0.0);
+        for wrong in ["4 3 0 0 3 2 4.9", "4 3 0 0 3 2 5.1", "4 3 2 2 2 2 1"] {
+            let bad = report(&[wrong], Sight::Map);
+            assert!(bad.worst_price_error_percent.unwrap() > 1.0, "{wrong}");
+        }
+        let near = report(&right, Sight::Radius(1));
+        assert_eq!(near.worst_price_error_percent, None);
+        assert_eq!(near.without_price, None);
+    }
+
+    #[test]
+    fn files_that_do_not_belong_together_are_named() {
+        let message =
+            |scen: &Path, map: Option<&Path>| Benchmark::load(scen, map).unwrap_err().to_string();
+        let (dir, scen) = files(&["4 3 0 0 3 2 5", "4 4 0 0 3 2 5"]);
+        let size = message(&scen, None);
+        assert!(size.contains("query 2 is for a map of 4 x 4"), "{size}");
+        let (_dir, walled) = files(&["4 3 0 0 1 1 5"]);
+        assert!(message(&walled, None).contains("query 1 starts or ends in a wall"));
+        let (_dir, empty) = files(&[]);
+        assert!(message(&empty, None).contains("no queries"));
+        std::fs::remove_file(dir.path().join("a.map")).unwrap();
+        let missing = message(&scen, None);
+        assert!(
+            missing.contains("maps/x/a.map is not beside it"),
+            "{missing}"
+        );
+        assert!(message(&dir.path().join("none.scen"), None).contains("none.scen"));
+        let other = dir.path().join("other.map");
+        assert!(message(&scen, Some(&other)).contains("other.map"));
+    }
+
+    #[test]
+    fn land_too_large_to_be_seen_at_once_is_refused() {
+        let benchmark = |width, height| Benchmark {
+            map: "a.map".into(),
+            land: Terrain::flat(width, height),
+            queries: vec![],
+        };
+        let answer = |width, height, sight| {
+            benchmark(width, height)
+                .answer(&Robots::new(sight), |_| true)
+                .map_err(|error| error.to_string())
+        };
+        assert!(answer(253, 253, Sight::Map).is_ok());
+        assert!(answer(256, 250, Sight::Map).is_ok());
+        for (width, height) in [(254, 253), (257, 10)] {
+            let error = answer(width, height, Sight::Map).unwrap_err();
+            assert!(error.contains("choose a radius"), "{error}");
+        }
+        assert!(answer(1000, 1000, Sight::Radius(126)).is_ok());
+        assert!(answer(1000, 1000, Sight::Radius(127)).is_err());
+    }
+}

@@ -1,0 +1,492 @@
+//! How good is a route that sees no farther than a window? (KUZ section 5, figures 2 to 4.)
+//!
+//! Each run makes one landscape and sends one robot from (1, 1) to the opposite corner, (size - 2, size - 2), with
+//! the controller's [`Router`](staya_controller::route::Router). Its travel time (eqs. 6 and 7) and the length of
+//! its way are compared with those of the route that is the fastest of all, as if no other robot were there.
+//!
+//! What the coefficients do to time loss dT and length loss dL on natural land of 40 to 160 obstacles with r = 5
+//! (`--sweep a0,a1,a2,a3`):
+//! - a0 and a3 count by their ratio, since a2 hardly matters. Best is a3 = 3 a0, near the time that a cell takes on a
+//!   good way: dT 16..26 %, dL 3..6 %. At 2 a0 dT is 0..6 and dL 1..5 points more; at a0 robots wander (dT 70 % and more, up
+//!   to 8 % never arrive), and without a3 hardly any arrives. Upwards it is gentle: at 6 a0 dT is 2..9 points more, and
+//!   only at 12 a0 the robot goes nearly straight (dT 37..58 %, dL 5..13 %).
+//! - a1 does nothing to a robot alone. Among 500 parked robots (`--parked`), dT is about 0.5 points less with a1 = 2 than
+//!   with 0, and larger values gain nothing; dL does not change.
+//! - a2 does nothing to dT and dL, but without it 6 to 20 % of the robots circle for ever; 1/2 is enough.
+
+mod pictures;
+mod report;
+
+pub use report::{Arrivals, Loss, Means, Point, Report, Response, decimal};
+
+use super::walk::{Task, Walk, Walker};
+use super::{MAX_RUNS, in_parallel};
+use crate::optimal::Planner;
+use serde::Serialize;
+use staya_controller::cost::Gain;
+use staya_controller::grid::{Cell, Norm, UNIT};
+use staya_controller::rand::Rng;
+use staya_controller::route::{Replan, RouteParams};
+use staya_sim::terrain::generate::{self, natural, uniform};
+use staya_sim::terrain::metrics::Metrics;
+use staya_sim::terrain::{Terrain, TerrainError};
+
+/// Purpose of the random numbers that give each run its landscape.
+const LANDSCAPES: u32 = 0x0045_0001;
+/// Purpose of the random numbers that put cells into another order.
+const ORDER: u32 = 0x0045_0002;
+/// Purpose of the random numbers that place parked robots.
+const PARKED: u32 = 0x0045_0003;
+
+/// The number of obstacles whose arrival times KUZ shows in figure 4.
+const SHOWN: u32 = 130;
+
+/// Largest window radius of the experiment.
+pub const MAX_RADIUS: u8 = 31;
+/// Cells of the largest window with its border.
+const CELLS: usize = {
+    let side = 2 * MAX_RADIUS as usize + 3;
+    side * side
+};
+/// Sides that a landscape may have: start and target are different cells inside it.
+pub const SIZES: std::ops::RangeInclusive<u16> = 4..=2000;
+
+/// A family of random landscapes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Land {
+    /// Hills of mud around so many cells of the worst class (KUZ figures 7a and 7b; results in figure 3).
+    Natural(u32),
+    /// The cells of a natural landscape of so many obstacles in a random order: the same classes in the same
+    /// shares, hence the same entropy S, but no hills.
+    ///
+    /// KUZ figure 2 plots its "uniformly random" landscapes over N(S), the number of obstacles by entropy, so they do
+    /// not have equal shares of all classes (figure 7c: S = 1.85, where equal shares have ln 9 = 2.20). How the
+    /// shares are chosen is not said; these are comparable with natural land point by point.
+    Shuffled(u32),
+    /// Each cell is of any class with equal probability: the greatest entropy.
+    Uniform,
+}
+
+impl Land {
+    /// Obstacles; `None` where there is no such number.
+    #[must_use]
+    pub const fn obstacles(self) -> Option<u32> {
+        match self {
+            Self::Natural(obstacles) | Self::Shuffled(obstacles) => Some(obstacles),
+            Self::Uniform => None,
+        }
+    }
+
+    /// The family as one word.
+    #[must_use]
+    pub const fn family(self) -> &'static str {
+        match self {
+            Self::Natural(_) => "natural",
+            Self::Shuffled(_) => "shuffled",
+            Self::Uniform => "uniform",
+        }
+    }
+}
+
+/// One of the coefficients of the route cost (eqs. 7, 9 and 10).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Coefficient {
+    /// Weight of travel time.
+    A0,
+    /// Price of a cell with another robot in it.
+    A1,
+    /// Price of an earlier visit.
+    A2,
+    /// Price of the distance from the exit to the target.
+    A3,
+}
+
+impl Coefficient {
+    /// The parameters with another value of this coefficient.
+    #[must_use]
+    pub const fn set(self, mut params: RouteParams, value: Gain) -> RouteParams {
+        match self {
+            Self::A0 => params.a0 = value,
+            Self::A1 => params.a1 = value,
+            Self::A2 => params.a2 = value,
+            Self::A3 => params.a3 = value,
+        }
+        params
+    }
+
+    /// Its name in the paper's formulas.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::A0 => "a0",
+            Self::A1 => "a1",
+            Self::A2 => "a2",
+            Self::A3 => "a3",
+        }
+    }
+
+    /// Its value in the parameters.
+    #[must_use]
+    pub const fn get(self, params: &RouteParams) -> Gain {
+        match self {
+            Self::A0 => params.a0,
+            Self::A1 => params.a1,
+            Self::A2 => params.a2,
+            Self::A3 => params.a3,
+        }
+    }
+}
+
+/// What to do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// Families of landscapes, one point of the figures each.
+    pub lands: Vec<Land>,
+    /// Landscapes per point, 1 or more.
+    pub runs: u32,
+    /// Cells along each side, within [`SIZES`].
+    pub size: u16,
+    /// Classes of impassability l, 1 or more.
+    pub classes: u8,
+    /// Norm of the distance to an obstacle in natural land.
+    pub hill_norm: Norm,
+    /// Other robots on each landscape, standing in random cells. The paper has none; without any, a1 is without effect.
+    pub parked: u32,
+    /// Equal seeds give equal results.
+    pub seed: u64,
+    /// How the robot finds its way.
+    pub params: RouteParams,
+    /// When it searches anew.
+    pub replan: Replan,
+    /// Coefficients to try in other values, on the same landscapes, one at a time.
+    pub sweep: Vec<(Coefficient, Gain)>,
+}
+
+impl Default for Plan {
+    /// KUZ section 5 on natural land.
+    fn default() -> Self {
+        Self {
+            lands: [10, 40, 70, 100, 130, 160].map(Land::Natural).to_vec(),
+            runs: 1000,
+            size: 100,
+            classes: 9,
+            hill_norm: Norm::Euclidean,
+            parked: 0,
+            seed: 1,
+            params: RouteParams::default(),
+            replan: Replan::EachCell,
+            sweep: Vec::new(),
+        }
+    }
+}
+
+/// Why a plan cannot be carried out.
+#[derive(Debug, thiserror::Error)]
+pub enum PlanError {
+    /// Nothing to average.
+    #[error("0 runs; make 1 or more landscapes per point")]
+    NoRuns,
+    /// Their results would not fit the memory.
+    #[error("{0} runs; make at most {MAX_RUNS} landscapes per point")]
+    Runs(u32),
+    /// Nothing to run on.
+    #[error("no landscapes; give one number of obstacles or more")]
+    NoLands,
+    /// Start and target would coincide or lie outside.
+    #[error(
+        "a landscape of {0} x {0} cells; its side must be {min}..={max}",
+        min = SIZES.start(), max = SIZES.end()
+    )]
+    Size(u16),
+    /// The window would not fit the scratch memory, or hold no neighbour.
+    #[error("a window of radius {0}; it must be 1..={MAX_RADIUS}")]
+    Radius(u8),
+    /// Too many robots.
+    #[error("{parked} parked robots on {cells} cells; at most half of the cells can be taken")]
+    Parked {
+        /// Robots wanted.
+        parked: u32,
+        /// Cells of a landscape.
+        cells: u32,
+    },
+    /// A landscape cannot be made.
+    #[error(transparent)]
+    Terrain(#[from] TerrainError),
+}
+
+/// What one landscape gave.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// Configuration entropy S of the landscape.
+    pub entropy: f64,
+    /// Total edge TE of the landscape.
+    pub total_edge: u64,
+    /// Travel time of the fastest route, [`UNIT`]ths of a tick.
+    pub optimal_cost: u64,
+    /// Length of the fastest route, [`UNIT`]ths of a cell.
+    pub optimal_length: u64,
+    /// The robot's way with the plan's parameters, then with each of the sweep's.
+    pub walks: Vec<Walk>,
+}
+
+/// One landscape with both ways across it, to look at.
+#[derive(Clone, Debug)]
+pub struct Example {
+    /// The family that the land belongs to.
+    pub family: Land,
+    /// Radius of the robot's window, cells.
+    pub radius: u8,
+    /// The land.
+    pub land: Terrain,
+    /// The robot's way.
+    pub way: Vec<Cell>,
+    /// The fastest route.
+    pub optimal: Vec<Cell>,
+    /// Where other robots stand.
+    pub parked: Vec<Cell>,
+    /// The numbers.
+    pub run: Run,
+}
+
+/// What one thread needs.
+#[derive(Debug, Default)]
+struct Scratch {
+    walker: Walker<CELLS>,
+    planner: Planner,
+}
+
+impl Plan {
+    /// Whether the plan can be carried out.
+    ///
+    /// # Errors
+    /// [`PlanError`]
+    pub fn check(&self) -> Result<(), PlanError> {
+        if self.runs == 0 {
+            return Err(PlanError::NoRuns);
+        }
+        if self.runs > MAX_RUNS {
+            return Err(PlanError::Runs(self.runs));
+        }
+        if self.lands.is_empty() {
+            return Err(PlanError::NoLands);
+        }
+        if !SIZES.contains(&self.size) {
+            return Err(PlanError::Size(self.size));
+        }
+        if !(1..=MAX_RADIUS).contains(&self.params.radius) {
+            return Err(PlanError::Radius(self.params.radius));
+        }
+        let cells = u32::from(self.size) * u32::from(self.size);
+        if self.parked > cells / 2 {
+            let parked = self.parked;
+            return Err(PlanError::Parked { parked, cells });
+        }
+        // The first landscape of each family says whether the family exists.
+        for land in &self.lands {
+            self.landscape(*land, 0)?;
+        }
+        Ok(())
+    }
+
+    /// Landscapes in all.
+    #[must_use]
+    pub fn total(&self) -> usize {
+        self.lands.len() * self.runs as usize
+    }
+
+    /// Where robots start.
+    #[must_use]
+    pub const fn start(&self) -> Cell {
+        Cell::new(1, 1)
+    }
+
+    /// Where robots go.
+    #[must_use]
+    pub const fn target(&self) -> Cell {
+        let last = self.size.saturating_sub(2).cast_signed();
+        Cell::new(last, last)
+    }
+
+    /// The plan's own parameters, then those of the sweep.
+    fn variants(&self) -> impl Iterator<Item = RouteParams> + '_ {
+        let sweep = self
+            .sweep
+            .iter()
+            .map(|(coefficient, value)| coefficient.set(self.params, *value));
+        std::iter::once(self.params).chain(sweep)
+    }
+
+    /// The landscape of a run: a function of seed, obstacles and number of the run.
+    ///
+    /// # Errors
+    /// More obstacles than cells, or no classes.
+    pub fn landscape(&self, land: Land, run: u32) -> Result<Terrain, TerrainError> {
+        let key = land.obstacles().unwrap_or(u32::MAX);
+        let plan = generate::Plan {
+            width: self.size,
+            height: self.size,
+            classes: self.classes,
+            seed: Rng::keyed(self.seed, LANDSCAPES, key, run).next_u64(),
+        };
+        match land {
+            Land::Uniform => uniform(&plan),
+            Land::Natural(obstacles) => natural(&plan, obstacles, self.hill_norm),
+            Land::Shuffled(obstacles) => {
+                let mut cells = natural(&plan, obstacles, self.hill_norm)?.cells().to_vec();
+                let mut rng = Rng::keyed(self.seed, ORDER, key, run);
+                // Fisher and Yates: each order is equally likely.
+                for last in (1..cells.len()).rev() {
+                    cells.swap(last, rng.below(last as u32 + 1) as usize);
+                }
+                Terrain::from_cells(self.size, self.size, cells)
+            }
+        }
+    }
+
+    /// Where the other robots of a run stand, in ascending order; never on start or target.
+    fn parked(&self, land: Land, run: u32) -> Vec<Cell> {
+        let key = land.obstacles().unwrap_or(u32::MAX);
+        let mut rng = Rng::keyed(self.seed, PARKED, key, run);
+        let mut cells = std::collections::BTreeSet::new();
+        while cells.len() < self.parked as usize {
+            let mut side = || rng.below(u32::from(self.size)) as i16;
+            let cell = Cell::new(side(), side());
+            if cell != self.start() && cell != self.target() {
+                cells.insert(cell);
+            }
+        }
+        cells.into_iter().collect()
+    }
+
+    fn run_one(&self, scratch: &mut Scratch, land: Land, run: u32) -> Result<Run, TerrainError> {
+        let terrain = self.landscape(land, run)?;
+        let parked = self.parked(land, run);
+        Ok(self.run_on(scratch, &terrain, &parked).0)
+    }
+
+    fn run_on(
+        &self,
+        Scratch { walker, planner }: &mut Scratch,
+        land: &Terrain,
+        parked: &[Cell],
+    ) -> (Run, Vec<Cell>) {
+        let (from, to) = (self.start(), self.target());
+        let RouteParams {
+            norm,
+            corner_cutting,
+            ..
+        } = self.params;
+        let metrics = Metrics::of(land);
+        // Random land has no walls: there always is a route.
+        let optimal = planner.route(land, from, to, norm, corner_cutting);
+        let (optimal_cost, optimal_length, cells) = optimal.map_or((0, 0, Vec::new()), |route| {
+            (route.cost, route.length(norm), route.cells)
+        });
+        let task = Task {
+            land,
+            parked,
+            from,
+            to,
+        };
+        let walks = self
+            .variants()
+            .map(|params| walker.walk(&task, &params, self.replan));
+        let run = Run {
+            entropy: metrics.entropy,
+            total_edge: metrics.total_edge,
+            optimal_cost,
+            optimal_length,
+            walks: walks.collect(),
+        };
+        (run, cells)
+    }
+
+    /// Carries out the plan in parallel.
+    ///
+    /// `progress` is told how many landscapes are done and answers whether to go on. Each point's landscapes
+    /// take turns, so that an early end leaves about equally many of each.
+    ///
+    /// # Errors
+    /// [`PlanError`]
+    pub fn carry_out(&self, progress: impl FnMut(usize) -> bool) -> Result<Results, PlanError> {
+        self.check()?;
+        let points = self.lands.len();
+        let runs = in_parallel(self.total(), 64, progress, |scratch: &mut Scratch, job| {
+            self.run_one(scratch, self.lands[job % points], (job / points) as u32)
+        })?;
+        let mut by_land = vec![Vec::new(); points];
+        for (job, run) in runs.into_iter().enumerate() {
+            by_land[job % points].push(run);
+        }
+        Ok(Results {
+            plan: self.clone(),
+            runs: by_land,
+        })
+    }
+}
+
+/// What the runs gave.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Results {
+    /// What was asked for.
+    pub plan: Plan,
+    /// For each of the plan's lands, its runs in order; fewer than planned after an early end.
+    pub runs: Vec<Vec<Run>>,
+}
+
+impl Results {
+    /// Runs that are there.
+    #[must_use]
+    pub fn done(&self) -> usize {
+        self.runs.iter().map(Vec::len).sum()
+    }
+
+    /// The run with the median time loss, made again, on the land with about as many obstacles as the paper shows (130).
+    ///
+    /// # Errors
+    /// [`PlanError`]; there is no example without runs.
+    pub fn example(&self) -> Result<Example, PlanError> {
+        let plan = Plan {
+            sweep: Vec::new(),
+            ..self.plan.clone()
+        };
+        let off = |land: Land| land.obstacles().map_or(u32::MAX, |n| n.abs_diff(SHOWN));
+        let (family, runs) = plan
+            .lands
+            .iter()
+            .zip(&self.runs)
+            .filter(|(_, runs)| !runs.is_empty())
+            .min_by_key(|(land, _)| off(**land))
+            .ok_or(PlanError::NoRuns)?;
+        let loss = |run: &usize| {
+            let run = &runs[*run];
+            run.walks[0].cost as f64 / run.optimal_cost as f64
+        };
+        let mut order: Vec<usize> = (0..runs.len()).collect();
+        order.sort_by(|a, b| loss(a).total_cmp(&loss(b)));
+        let number = order[order.len() / 2] as u32;
+        let land = plan.landscape(*family, number)?;
+        let parked = plan.parked(*family, number);
+        let mut scratch = Scratch::default();
+        let (run, optimal) = plan.run_on(&mut scratch, &land, &parked);
+        Ok(Example {
+            family: *family,
+            radius: plan.params.radius,
+            land,
+            way: scratch.walker.path().to_vec(),
+            optimal,
+            parked,
+            run,
+        })
+    }
+}
+
+/// Ticks of a travel time in [`UNIT`]ths.
+#[must_use]
+pub fn ticks(cost: u64) -> f64 {
+    cost as f64 / f64::from(UNIT)
+}
+
+#[cfg(test)]
+mod tests;

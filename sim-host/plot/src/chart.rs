@@ -1,0 +1,326 @@
+//! Charts: what to show. The module `layout` says where it goes.
+//!
+//! ```no_run
+//! use staya_plot::{Chart, Panels, Series};
+//! # fn main() -> Result<(), staya_sim::record::Error> {
+//! let loss = Chart::new("Route loss on natural land", "obstacles", "loss (%)")
+//!     .note("1000 runs each, 95 % intervals")
+//!     .with(Series::intervals("measured", [[10.0, 4.1, 3.9, 4.3], [40.0, 9.0, 8.6, 9.4]]).joined())
+//!     .with(Series::reference("paper", [[10.0, 5.0], [40.0, 11.0]]));
+//! let times = Chart::new("Arrival times", "ticks", "runs")
+//!     .with(Series::bars("runs", [[0.0, 10.0, 3.0], [10.0, 20.0, 8.0]]));
+//! loss.write("out/loss".as_ref())?;
+//! Panels::new("Routes").with(loss).with(times).write("out/routes".as_ref())?;
+//! # Ok(()) }
+//! ```
+
+use super::canvas::Canvas;
+use super::colour::{Colour, MUTED};
+use super::layout;
+use staya_sim::record::Error;
+use std::path::{Path, PathBuf};
+
+/// Values of a series; what is NaN or infinite is left out (lines have a gap there).
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Data {
+    /// x, y; joined in this order.
+    Line(Vec<[f64; 2]>),
+    /// x, y.
+    Points(Vec<[f64; 2]>),
+    /// x, y, low, high.
+    Intervals(Vec<[f64; 4]>),
+    /// From x, to x, height.
+    Bars(Vec<[f64; 3]>),
+}
+
+/// One set of values with one look and one line in the legend.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series {
+    pub(super) name: String,
+    pub(super) data: Data,
+    pub(super) colour: Option<Colour>,
+    pub(super) dashed: bool,
+    pub(super) joined: bool,
+    pub(super) like_previous: bool,
+}
+
+impl Series {
+    fn new(name: impl Into<String>, data: Data) -> Self {
+        Self {
+            name: name.into(),
+            data,
+            colour: None,
+            dashed: false,
+            joined: false,
+            like_previous: false,
+        }
+    }
+
+    /// A line through `[x, y]` in the given order. An empty name keeps it out of the legend.
+    #[must_use]
+    pub fn line(name: impl Into<String>, points: impl IntoIterator<Item = [f64; 2]>) -> Self {
+        Self::new(name, Data::Line(points.into_iter().collect()))
+    }
+
+    /// Marks at `[x, y]`.
+    #[must_use]
+    pub fn points(name: impl Into<String>, points: impl IntoIterator<Item = [f64; 2]>) -> Self {
+        Self::new(name, Data::Points(points.into_iter().collect()))
+    }
+
+    /// Marks with error bars at `[x, y, low, high]`, such as a mean and its 95 % interval.
+    #[must_use]
+    pub fn intervals(name: impl Into<String>, points: impl IntoIterator<Item = [f64; 4]>) -> Self {
+        Self::new(name, Data::Intervals(points.into_iter().collect()))
+    }
+
+    /// Bars `[from x, to x, height]`, such as a histogram.
+    #[must_use]
+    pub fn bars(name: impl Into<String>, bars: impl IntoIterator<Item = [f64; 3]>) -> Self {
+        Self::new(name, Data::Bars(bars.into_iter().collect()))
+    }
+
+    /// A dashed grey line through `[x, y]`: what others found, or a goal.
+    #[must_use]
+    pub fn reference(name: impl Into<String>, points: impl IntoIterator<Item = [f64; 2]>) -> Self {
+        Self::line(name, points).dashed().colour(MUTED)
+    }
+
+    /// Joins the marks of [`Series::points`] and [`Series::intervals`] by a thin line.
+    #[must_use]
+    pub fn joined(self) -> Self {
+        Self {
+            joined: true,
+            ..self
+        }
+    }
+
+    /// Dashes the line.
+    #[must_use]
+    pub fn dashed(self) -> Self {
+        Self {
+            dashed: true,
+            ..self
+        }
+    }
+
+    /// Takes this colour instead of the palette's next.
+    #[must_use]
+    pub fn colour(self, colour: Colour) -> Self {
+        Self {
+            colour: Some(colour),
+            ..self
+        }
+    }
+
+    /// Takes the colour of the series before it, as a fit does of its data.
+    #[must_use]
+    pub fn like_previous(self) -> Self {
+        Self {
+            like_previous: true,
+            ..self
+        }
+    }
+}
+
+/// A chart with linear axes and marks at whole 1, 2, 5 x 10^k; the legend stands above the data.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chart {
+    pub(super) title: String,
+    pub(super) note: String,
+    pub(super) x_label: String,
+    pub(super) y_label: String,
+    pub(super) x_range: Option<[f64; 2]>,
+    pub(super) y_range: Option<[f64; 2]>,
+    pub(super) log_x: bool,
+    pub(super) log_y: bool,
+    pub(super) size: [f64; 2],
+    pub(super) series: Vec<Series>,
+}
+
+impl Chart {
+    /// A chart without data, 720 x 420 units (the PNG has twice as many pixels). Labels name the unit.
+    #[must_use]
+    pub fn new(
+        title: impl Into<String>,
+        x_label: impl Into<String>,
+        y_label: impl Into<String>,
+    ) -> Self {
+        Self {
+            title: title.into(),
+            note: String::new(),
+            x_label: x_label.into(),
+            y_label: y_label.into(),
+            x_range: None,
+            y_range: None,
+            log_x: false,
+            log_y: false,
+            size: [720.0, 420.0],
+            series: Vec::new(),
+        }
+    }
+
+    /// Adds a series, on top of those before.
+    #[must_use]
+    pub fn with(mut self, series: Series) -> Self {
+        self.series.push(series);
+        self
+    }
+
+    /// A small line of text under the title.
+    #[must_use]
+    pub fn note(self, note: impl Into<String>) -> Self {
+        Self {
+            note: note.into(),
+            ..self
+        }
+    }
+
+    /// Shows exactly this range of y. Without it: all data, and 0 where that costs little room.
+    #[must_use]
+    pub fn y_range(self, low: f64, high: f64) -> Self {
+        Self {
+            y_range: Some([low, high]),
+            ..self
+        }
+    }
+
+    /// Shows exactly this range of x. Without it: all data.
+    #[must_use]
+    pub fn x_range(self, low: f64, high: f64) -> Self {
+        Self {
+            x_range: Some([low, high]),
+            ..self
+        }
+    }
+
+    /// Makes the x axis logarithmic; values of 0 and less are left out.
+    #[must_use]
+    pub fn log_x(self) -> Self {
+        Self {
+            log_x: true,
+            ..self
+        }
+    }
+
+    /// Makes the y axis logarithmic; values of 0 and less are left out, and so are bars.
+    #[must_use]
+    pub fn log_y(self) -> Self {
+        Self {
+            log_y: true,
+            ..self
+        }
+    }
+
+    /// Width and height in units, at least 200 x 150 and at most 4000 x 4000.
+    #[must_use]
+    pub fn size(self, width: f64, height: f64) -> Self {
+        let within = |side: f64, least: f64| {
+            if side.is_nan() {
+                least
+            } else {
+                side.clamp(least, 4000.0)
+            }
+        };
+        let size = [within(width, 200.0), within(height, 150.0)];
+        Self { size, ..self }
+    }
+
+    /// Draws the chart.
+    #[must_use]
+    pub fn draw(&self) -> Canvas {
+        let [width, height] = self.size;
+        let mut canvas = Canvas::new(width, height, &self.title);
+        let area = [0.0, 0.0, width, height];
+        layout::draw(self, &mut canvas, area, layout::left_margin(self));
+        canvas
+    }
+
+    /// Writes `<stem>.svg` and `<stem>.png` and names them; see [`Canvas::write`].
+    ///
+    /// # Errors
+    /// The directory or a file cannot be written.
+    pub fn write(&self, stem: &Path) -> Result<Vec<PathBuf>, Error> {
+        self.draw().write(stem)
+    }
+}
+
+/// Several charts in one picture, row by row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Panels {
+    title: String,
+    columns: usize,
+    charts: Vec<Chart>,
+}
+
+impl Panels {
+    /// No charts yet, one per row. The title may be empty.
+    #[must_use]
+    pub fn new(title: impl Into<String>) -> Self {
+        Self {
+            title: title.into(),
+            columns: 1,
+            charts: Vec::new(),
+        }
+    }
+
+    /// Adds a chart; it keeps its size, and the axes of a column begin at the same place.
+    #[must_use]
+    pub fn with(mut self, chart: Chart) -> Self {
+        self.charts.push(chart);
+        self
+    }
+
+    /// Charts per row, 1 or more.
+    #[must_use]
+    pub fn columns(self, columns: usize) -> Self {
+        Self {
+            columns: columns.max(1),
+            ..self
+        }
+    }
+
+    /// Draws the charts.
+    #[must_use]
+    pub fn draw(&self) -> Canvas {
+        let most = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
+        let column = |index: usize| self.charts.iter().skip(index).step_by(self.columns);
+        let columns = self.columns.min(self.charts.len());
+        let widths: Vec<f64> = (0..columns)
+            .map(|index| most(&mut column(index).map(|chart| chart.size[0])))
+            .collect();
+        let lefts: Vec<f64> = (0..columns)
+            .map(|index| most(&mut column(index).map(layout::left_margin)))
+            .collect();
+        let rows: Vec<&[Chart]> = self.charts.chunks(self.columns).collect();
+        let heights: Vec<f64> = rows
+            .iter()
+            .map(|row| most(&mut row.iter().map(|chart| chart.size[1])))
+            .collect();
+        let (width, top) = (
+            widths.iter().sum::<f64>().max(200.0),
+            layout::headline_height(&self.title),
+        );
+        let height = (top + heights.iter().sum::<f64>()).max(150.0);
+        let mut canvas = Canvas::new(width, height, &self.title);
+        layout::headline(&mut canvas, &self.title, width);
+        let mut y = top;
+        for (row, height) in rows.into_iter().zip(heights) {
+            let mut x = 0.0;
+            for ((chart, width), left) in row.iter().zip(&widths).zip(&lefts) {
+                layout::draw(chart, &mut canvas, [x, y, *width, height], *left);
+                x += width;
+            }
+            y += height;
+        }
+        canvas
+    }
+
+    /// Writes `<stem>.svg` and `<stem>.png` and names them; see [`Canvas::write`].
+    ///
+    /// # Errors
+    /// The directory or a file cannot be written.
+    pub fn write(&self, stem: &Path) -> Result<Vec<PathBuf>, Error> {
+        self.draw().write(stem)
+    }
+}

@@ -1,0 +1,128 @@
+//! Many robots: how often each cell was entered, instead of a line per robot.
+
+use super::canvas::Pixels;
+use super::colour::Colour;
+use super::map::{Map, Raster};
+
+/// Entered once, about half as often as the busiest place (in decades), as often as that.
+const RAMP: [Colour; 3] = [
+    Colour::hex(0x7c_c4_ee).with_alpha(150),
+    Colour::hex(0x00_72_b2).with_alpha(215),
+    Colour::hex(0x08_1d_38).with_alpha(240),
+];
+
+/// The colour of `share`, 0 (entered once) to 1 (the busiest place).
+pub fn colour(share: f64) -> Colour {
+    if share < 0.5 {
+        RAMP[0].towards(RAMP[1], share * 2.0)
+    } else {
+        RAMP[1].towards(RAMP[2], share * 2.0 - 1.0)
+    }
+}
+
+/// How often robots entered each square of a map.
+pub struct Density {
+    raster: Raster,
+    entered: Vec<u32>,
+}
+
+impl Density {
+    /// Counts over ways in metres. Between two positions a robot is taken to have gone straight.
+    /// O(squares + entered squares).
+    pub fn new<'a>(map: &Map<'_>, ways: impl Iterator<Item = &'a [[f64; 2]]>) -> Self {
+        let raster = map.raster();
+        let mut entered = vec![0_u32; raster.columns as usize * raster.rows as usize];
+        for way in ways {
+            let mut squares = way.iter().map(|position| map.square(*position));
+            let Some(mut at) = squares.next() else {
+                continue;
+            };
+            enter(&raster, &mut entered, at);
+            for to in squares {
+                walk(at, to, |square| enter(&raster, &mut entered, square));
+                at = to;
+            }
+        }
+        Self { raster, entered }
+    }
+
+    /// The greatest count.
+    pub fn most(&self) -> u32 {
+        self.entered.iter().copied().max().unwrap_or(0)
+    }
+
+    /// The counts as a picture, in decades; what was never entered is clear.
+    pub fn pixels(&self) -> Pixels {
+        let decades = libm::log10(f64::from(self.most().max(2)));
+        let pixel = |count: &u32| match count {
+            0 => [0; 4],
+            count => {
+                let Colour { rgb, alpha } = colour(libm::log10(f64::from(*count)) / decades);
+                [rgb[0], rgb[1], rgb[2], alpha]
+            }
+        };
+        Pixels {
+            width: self.raster.columns,
+            height: self.raster.rows,
+            rgba: self.entered.iter().map(pixel).collect(),
+        }
+    }
+}
+
+fn enter(raster: &Raster, entered: &mut [u32], [x, y]: [i64; 2]) {
+    let (columns, rows) = (i64::from(raster.columns), i64::from(raster.rows));
+    if (0..columns).contains(&x) && (0..rows).contains(&y) {
+        let count = &mut entered[(y * columns + x) as usize];
+        *count = count.saturating_add(1);
+    }
+}
+
+/// The squares on the straight way after `from`, up to `to`.
+fn walk(from: [i64; 2], to: [i64; 2], mut visit: impl FnMut([i64; 2])) {
+    let by = [to[0] - from[0], to[1] - from[1]];
+    let steps = by[0].abs().max(by[1].abs());
+    for step in 1..=steps {
+        // Rounds to the nearest square.
+        let along = |axis: usize| from[axis] + (2 * by[axis] * step + steps).div_euclid(2 * steps);
+        visit([along(0), along(1)]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use staya_sim::terrain::Terrain;
+
+    #[test]
+    fn straight_ways_enter_each_square_once() {
+        for (to, middle) in [([4, 2], [2, 1]), ([-4, 0], [-2, 0]), ([0, -4], [0, -2])] {
+            let mut seen = Vec::new();
+            walk([0, 0], to, |square| seen.push(square));
+            assert_eq!((seen.len(), seen[1], seen[3]), (4, middle, to));
+        }
+        walk([3, 3], [3, 3], |_| {
+            panic!("a robot that stands enters nothing")
+        });
+    }
+
+    #[test]
+    fn counts_ways_north_up_and_forgets_what_is_outside() {
+        let terrain = Terrain::from_cells(3, 2, vec![1; 6]).unwrap();
+        let map = Map::new(&terrain, [0.0; 2]);
+        let ways: [&[[f64; 2]]; 4] = [
+            &[[0.5, 0.5], [2.5, 0.5], [2.5, 0.5]],
+            &[[2.5, 0.5], [9.5, 0.5]],
+            &[[-1e300, 0.5], [f64::INFINITY, 1e300]],
+            &[],
+        ];
+        let density = Density::new(&map, ways[..2].iter().copied().chain([ways[3]]));
+        assert_eq!(density.entered, [0, 0, 0, 1, 1, 2]);
+        assert_eq!(density.most(), 2);
+        let image = density.pixels();
+        assert_eq!(image.rgba[0], [0; 4]);
+        assert!(image.rgba[5][0] < image.rgba[4][0], "busier is darker");
+        // Wild positions are far outside, not on some square.
+        let wild = Density::new(&map, ways[2..3].iter().copied());
+        assert!(wild.most() <= 1);
+    }
+}

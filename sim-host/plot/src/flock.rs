@@ -1,0 +1,248 @@
+//! Robots in the plane at one moment: where they are, where they head, who is near whom, what stands in the way.
+//!
+//! A [`Snapshot`] is one moment, [`Sheet`] is several beside each other, as in OLF figures 7 to 12. For
+//! three dimensions, [`View`] makes two of them.
+//!
+//! ```no_run
+//! use staya_plot::flock::{Obstacle, Sheet, Snapshot};
+//! # fn main() -> Result<(), staya_sim::record::Error> {
+//! let moment = Snapshot {
+//!     title: "t = 0 s".into(),
+//!     positions_m: vec![[0.0, 0.0], [7.0, 0.0]],
+//!     velocities_mps: vec![[1.0, 0.0], [0.0, 1.0]],
+//!     radius_m: 0.5,
+//!     edges_within_m: Some(8.4),
+//!     obstacles: vec![Obstacle::Disc { centre_m: [20.0, 3.0], radius_m: 4.0 }],
+//!     ..Snapshot::default()
+//! };
+//! Sheet::new("Two robots", 2).with(moment.clone()).with(moment).draw().write("out/two".as_ref())?;
+//! # Ok(()) }
+//! ```
+
+mod frame;
+mod marks;
+
+use super::canvas::Canvas;
+use super::layout;
+use frame::Frame;
+
+/// Most robots that are drawn one by one; of larger crowds each is a dot or a dart of the least size.
+pub const MOST_DISCS: usize = 3000;
+
+/// What stands in the way.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Obstacle {
+    /// An area with these corners, metres.
+    Polygon(Vec<[f64; 2]>),
+    /// A disc.
+    Disc {
+        /// Its centre, metres.
+        centre_m: [f64; 2],
+        /// Its radius, metres.
+        radius_m: f64,
+    },
+    /// A wall of no thickness between two points, metres.
+    Segment([[f64; 2]; 2]),
+}
+
+/// One moment. What has a coordinate that is not finite is left out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Snapshot {
+    /// Stands above it.
+    pub title: String,
+    /// Where robots are, metres.
+    pub positions_m: Vec<[f64; 2]>,
+    /// Their velocities, metres per second: one each, or none at all. Robots that stand are drawn without direction.
+    pub velocities_mps: Vec<[f64; 2]>,
+    /// Radius of their bodies, metres; drawn to scale where that can be seen, as darts where not.
+    pub radius_m: f64,
+    /// Which colour of the palette each robot has; robots without an entry have the first.
+    pub groups: Vec<usize>,
+    /// Robots up to this far apart are joined by a line.
+    pub edges_within_m: Option<f64>,
+    /// What stands in the way.
+    pub obstacles: Vec<Obstacle>,
+    /// Where robots want to go, metres.
+    pub goals_m: Vec<[f64; 2]>,
+    /// The ways that robots came, metres, one line each.
+    pub trails_m: Vec<Vec<[f64; 2]>>,
+    /// Least and greatest x and y that are shown; `None`: everything.
+    pub view_m: Option<[[f64; 2]; 2]>,
+    /// Names of the axes.
+    pub labels: [String; 2],
+    /// Width and height in units.
+    pub size: [f64; 2],
+}
+
+impl Default for Snapshot {
+    /// Nothing, in 420 x 400 units.
+    fn default() -> Self {
+        Self {
+            title: String::new(),
+            positions_m: Vec::new(),
+            velocities_mps: Vec::new(),
+            radius_m: 0.0,
+            groups: Vec::new(),
+            edges_within_m: None,
+            obstacles: Vec::new(),
+            goals_m: Vec::new(),
+            trails_m: Vec::new(),
+            view_m: None,
+            labels: ["x (m)".into(), "y (m)".into()],
+            size: [420.0, 400.0],
+        }
+    }
+}
+
+impl Snapshot {
+    /// Draws it alone.
+    #[must_use]
+    pub fn draw(&self) -> Canvas {
+        let [width, height] = self.sound_size();
+        let mut canvas = Canvas::new(width, height, &self.title);
+        self.draw_into(&mut canvas, [0.0, 0.0, width, height]);
+        canvas
+    }
+
+    /// Draws it into left, top, width, height of a picture.
+    fn draw_into(&self, canvas: &mut Canvas, area: [f64; 4]) {
+        let frame = Frame::new(self, area);
+        frame.draw(self, canvas);
+        canvas.clip(Some(frame.plot));
+        marks::draw(self, &frame, canvas);
+        canvas.clip(None);
+    }
+
+    fn sound_size(&self) -> [f64; 2] {
+        self.size.map(|side| {
+            if side.is_nan() {
+                400.0
+            } else {
+                side.clamp(160.0, 4000.0)
+            }
+        })
+    }
+
+    /// Least and greatest x and y of everything in it; `None` when there is nothing.
+    fn extent(&self) -> Option<[[f64; 2]; 2]> {
+        let disc = |[x, y]: [f64; 2], r: f64| [[x - r, y - r], [x + r, y + r]];
+        let robots = self
+            .positions_m
+            .iter()
+            .flat_map(|&at| disc(at, self.radius_m.max(0.0)));
+        let obstacles = self.obstacles.iter().flat_map(|obstacle| match obstacle {
+            Obstacle::Polygon(corners) => corners.clone(),
+            Obstacle::Disc { centre_m, radius_m } => disc(*centre_m, *radius_m).to_vec(),
+            Obstacle::Segment(ends) => ends.to_vec(),
+        });
+        let trails = self.trails_m.iter().flatten().copied();
+        let all = robots
+            .chain(obstacles)
+            .chain(self.goals_m.iter().copied())
+            .chain(trails);
+        all.filter(|at| at.iter().all(|c| c.is_finite())).fold(
+            None,
+            |extent: Option<[[f64; 2]; 2]>, at| {
+                let [low, high] = extent.unwrap_or([at; 2]);
+                Some([
+                    [low[0].min(at[0]), low[1].min(at[1])],
+                    [high[0].max(at[0]), high[1].max(at[1])],
+                ])
+            },
+        )
+    }
+}
+
+/// How points in space are seen in the plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum View {
+    /// From above: x and y.
+    Plan,
+    /// From the south: x and height.
+    Elevation,
+    /// From the south-east and above: east to the right, north to the upper right at half its length, height up.
+    Oblique,
+}
+
+impl View {
+    /// A place or a velocity as it is seen.
+    #[must_use]
+    pub fn of(self, [x, y, z]: [f64; 3]) -> [f64; 2] {
+        match self {
+            Self::Plan => [x, y],
+            Self::Elevation => [x, z],
+            Self::Oblique => {
+                // Half of the length at 45 degrees.
+                let north = y * 0.5 * std::f64::consts::FRAC_1_SQRT_2;
+                [x + north, z + north]
+            }
+        }
+    }
+
+    /// Names of the axes in this view.
+    #[must_use]
+    pub fn labels(self) -> [String; 2] {
+        match self {
+            Self::Plan => ["x (m)".into(), "y (m)".into()],
+            Self::Elevation => ["x (m)".into(), "z (m)".into()],
+            Self::Oblique => ["x + 0.35 y (m)".into(), "z + 0.35 y (m)".into()],
+        }
+    }
+}
+
+/// Several snapshots in one picture, row by row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sheet {
+    title: String,
+    columns: usize,
+    snapshots: Vec<Snapshot>,
+}
+
+impl Sheet {
+    /// No snapshots yet, `columns` (1 or more) in a row. The title may be empty.
+    #[must_use]
+    pub fn new(title: impl Into<String>, columns: usize) -> Self {
+        Self {
+            title: title.into(),
+            columns: columns.max(1),
+            snapshots: Vec::new(),
+        }
+    }
+
+    /// Adds a snapshot; it keeps its size.
+    #[must_use]
+    pub fn with(mut self, snapshot: Snapshot) -> Self {
+        self.snapshots.push(snapshot);
+        self
+    }
+
+    /// Draws them all.
+    #[must_use]
+    pub fn draw(&self) -> Canvas {
+        let most = |sides: &mut dyn Iterator<Item = f64>| sides.fold(0.0, f64::max);
+        let sizes: Vec<[f64; 2]> = self.snapshots.iter().map(Snapshot::sound_size).collect();
+        let columns = self.columns.min(sizes.len().max(1));
+        let widths: Vec<f64> = (0..columns)
+            .map(|column| most(&mut sizes.iter().skip(column).step_by(columns).map(|s| s[0])))
+            .collect();
+        let heights: Vec<f64> = sizes
+            .chunks(columns)
+            .map(|row| most(&mut row.iter().map(|size| size[1])))
+            .collect();
+        let top = layout::headline_height(&self.title);
+        let width = widths.iter().sum::<f64>().max(200.0);
+        let height = (top + heights.iter().sum::<f64>()).max(150.0);
+        let mut canvas = Canvas::new(width, height, &self.title);
+        layout::headline(&mut canvas, &self.title, width);
+        let mut y = top;
+        for (row, height) in self.snapshots.chunks(columns).zip(heights) {
+            let mut x = 0.0;
+            for (snapshot, width) in row.iter().zip(&widths) {
+                snapshot.draw_into(&mut canvas, [x, y, *width, height]);
+                x += width;
+            }
+            y += height;
+        }
+        canvas
+    }
+}

@@ -1,0 +1,149 @@
+//! Title, axes and scale of a snapshot: metres are equally long along both axes.
+
+use super::Snapshot;
+use crate::canvas::{Anchor, Canvas, Stroke, Text};
+use crate::colour::{GRID, INK, MUTED};
+use crate::ticks::{self, Tick};
+use crate::{font, layout};
+
+const PAD: f64 = 12.0;
+const TITLE: f64 = 13.5;
+const LABEL: f64 = 11.5;
+const SMALL: f64 = 10.5;
+/// Room around everything that is shown, share of its larger side.
+const MARGIN: f64 = 0.04;
+
+/// Where metres are in the picture.
+pub struct Frame {
+    /// Left, top, width, height of the plotting area.
+    pub plot: [f64; 4],
+    area: [f64; 4],
+    /// Metres at the plotting area's lower left corner.
+    low: [f64; 2],
+    /// Units per metre.
+    pub scale: f64,
+    ticks: [Vec<Tick>; 2],
+}
+
+impl Frame {
+    /// Fits everything, or the chosen view, into left, top, width, height.
+    pub fn new(snapshot: &Snapshot, area: [f64; 4]) -> Self {
+        let [x, y, width, height] = area;
+        let is_range = |[low, high]: &[[f64; 2]; 2]| {
+            (0..2).all(|axis| low[axis] < high[axis] && (high[axis] - low[axis]).is_finite())
+        };
+        let chosen = snapshot.view_m.map(|[x, y]| [[x[0], y[0]], [x[1], y[1]]]);
+        let [low, high] = chosen.filter(is_range).unwrap_or_else(|| {
+            let [low, high] = snapshot.extent().unwrap_or([[0.0; 2], [1.0; 2]]);
+            let margin = ((high[0] - low[0]).max(high[1] - low[1]) * MARGIN).max(1e-6);
+            [low.map(|c| c - margin), high.map(|c| c + margin)]
+        });
+        // What is too wide to count in is shown as nothing much.
+        let [x_range, y_range] = [0, 1].map(|axis| ticks::sound(low[axis], high[axis]));
+        let top = y
+            + PAD
+            + if snapshot.title.is_empty() {
+                0.0
+            } else {
+                TITLE + 8.0
+            };
+        let bottom = y + height - PAD - LABEL - SMALL - 14.0;
+        // The widest number decides how much is left; its own axis' marks depend little on that.
+        let rough = ticks::linear(y_range[0], y_range[1], marks(bottom - top, 34.0));
+        let widest = rough
+            .iter()
+            .map(|tick| font::width(&tick.label, SMALL, false))
+            .fold(0.0, f64::max);
+        let left = x + PAD + LABEL * 1.5 + widest * layout::OTHER_FONTS + 6.0;
+        let right = x + width - PAD - 10.0;
+        let room = [(right - left).max(20.0), (bottom - top).max(20.0)];
+        let sides = [x_range[1] - x_range[0], y_range[1] - y_range[0]];
+        let scale = (room[0] / sides[0]).min(room[1] / sides[1]);
+        // The axis with room to spare shows more, evenly on both sides.
+        let shown = room.map(|units| units / scale);
+        let middle = [x_range, y_range].map(|[low, high]| low + (high - low) / 2.0);
+        let low = [0, 1].map(|axis| middle[axis] - shown[axis] / 2.0);
+        let ticks = [0, 1].map(|axis| {
+            let spacing = [52.0, 34.0][axis];
+            ticks::linear(
+                low[axis],
+                low[axis] + shown[axis],
+                marks(room[axis], spacing),
+            )
+        });
+        Self {
+            plot: [left, top, room[0], room[1]],
+            area,
+            low,
+            scale,
+            ticks,
+        }
+    }
+
+    /// Where a place is in the picture; `None` when it is not finite or far outside, where readers lose their precision.
+    pub fn at(&self, place: [f64; 2]) -> Option<[f64; 2]> {
+        let [left, top, _, height] = self.plot;
+        let at = [
+            left + (place[0] - self.low[0]) * self.scale,
+            top + height - (place[1] - self.low[1]) * self.scale,
+        ];
+        at.iter()
+            .all(|c| c.is_finite() && c.abs() < 1e5)
+            .then_some(at)
+    }
+
+    /// Draws title, grid, marks, numbers and names.
+    pub fn draw(&self, snapshot: &Snapshot, canvas: &mut Canvas) {
+        let [left, top, width, height] = self.plot;
+        let (right, bottom) = (left + width, top + height);
+        let [x, y, area_width, area_height] = self.area;
+        if !snapshot.title.is_empty() {
+            let at = [x + PAD, y + PAD + TITLE];
+            layout::heading(canvas, &snapshot.title, TITLE, at, area_width - 2.0 * PAD);
+        }
+        let places = |axis: usize| {
+            let ticks = self.ticks[axis].iter();
+            ticks.map(move |tick| (tick, (tick.value - self.low[axis]) * self.scale))
+        };
+        let vertical =
+            places(0).map(|(_, along)| vec![[left + along, top], [left + along, bottom]]);
+        let level = places(1).map(|(_, up)| vec![[left, bottom - up], [right, bottom - up]]);
+        canvas.lines(vertical.chain(level).collect(), Stroke::new(GRID, 0.7));
+        canvas.rectangle(self.plot, None, Some(Stroke::new(INK, 0.9)));
+        let number = |at, anchor, label: &str| Text {
+            colour: MUTED,
+            ..Text::new(at, SMALL, anchor, label)
+        };
+        for (tick, along) in places(0) {
+            let half = font::width(&tick.label, SMALL, false) / 2.0;
+            let at = (left + along).min(x + area_width - half - 2.0);
+            canvas.text(number(
+                [at, bottom + SMALL + 4.0],
+                Anchor::Middle,
+                &tick.label,
+            ));
+        }
+        for (tick, up) in places(1) {
+            let text = number([left - 6.0, bottom - up], Anchor::End, &tick.label);
+            canvas.text(text.centred());
+        }
+        let (label, size) = font::fit(&snapshot.labels[0], LABEL, false, width);
+        let at = [left + width / 2.0, y + area_height - PAD + 2.0];
+        canvas.text(Text::new(at, size, Anchor::Middle, label));
+        let (label, size) = font::fit(&snapshot.labels[1], LABEL, false, height);
+        canvas.text(Text {
+            upwards: true,
+            ..Text::new(
+                [x + PAD + LABEL * 0.8, top + height / 2.0],
+                size,
+                Anchor::Middle,
+                label,
+            )
+        });
+    }
+}
+
+/// How many marks an axis of this length has.
+fn marks(length: f64, spacing: f64) -> usize {
+    ((length / spacing) as usize).clamp(2, 12)
+}

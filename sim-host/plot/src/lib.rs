@@ -1,0 +1,32 @@
+//! Pictures as SVG and PNG, on machines without fonts or displays.
+//!
+//! [`Chart`] and [`Panels`] draw data; [`run_pictures`] draws what happened in a run; [`flock`] draws robots in the plane at
+//! some moments. All make a
+//! [`canvas::Canvas`], a list of shapes, which is written once as SVG and once, through
+//! `tiny-skia` and letters that are compiled in, as PNG. Drawing asks for no clock and no
+//! randomness: the same data give the same bytes.
+
+pub mod canvas;
+pub mod chart;
+pub mod colour;
+mod crowd;
+pub mod flock;
+mod font;
+mod layout;
+mod map;
+mod motion;
+mod raster;
+mod run;
+mod scale;
+mod series;
+mod svg;
+pub mod terrain;
+pub mod ticks;
+mod trajectories;
+
+pub use chart::{Chart, Panels, Series};
+pub use motion::{motion_pictures, motion_sheet};
+pub use run::run_pictures;
+
+#[cfg(test)]
+mod tests;

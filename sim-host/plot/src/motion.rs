@@ -1,0 +1,139 @@
+//! The pictures of a run in the plane.
+
+use super::flock::{Obstacle, Sheet, Snapshot};
+use super::run::packets;
+use staya_sim::record::{self, Error, Frame, History};
+use staya_sim::scenario::PlaneSetup;
+use staya_sim::world::plane::Solid;
+use std::path::{Path, PathBuf};
+
+/// Moments in the picture.
+const MOMENTS: usize = 4;
+/// Most robots whose ways are drawn.
+const MOST_TRAILS: usize = 100;
+/// Points of a way.
+const TRAIL_POINTS: usize = 400;
+/// Palette.
+const COLOURS: usize = 8;
+
+/// Draws the pictures of one run into `out_dir`, which is made if needed, each as SVG and PNG, and names the
+/// files.
+///
+/// - `motion`: where robots are, with their ways so far, at four moments from start to end; seen from above;
+/// - `packets`: packets per second by their fate, over time.
+///
+/// O(samples of the history).
+///
+/// # Errors
+/// The directory or a file cannot be written.
+pub fn motion_pictures(
+    setup: &PlaneSetup,
+    history: &History,
+    out_dir: &Path,
+) -> Result<Vec<PathBuf>, Error> {
+    record::make_dir(out_dir)?;
+    let mut files = motion_sheet(setup, history)
+        .draw()
+        .write(&out_dir.join("motion"))?;
+    files.extend(packets(history).write(&out_dir.join("packets"))?);
+    Ok(files)
+}
+
+/// Four moments of a run beside each other.
+#[must_use]
+pub fn motion_sheet(setup: &PlaneSetup, history: &History) -> Sheet {
+    let frames = history.frames();
+    let obstacles: Vec<_> = setup.solids.iter().filter_map(drawn).collect();
+    let goals: Vec<[f64; 2]> = setup
+        .starts
+        .iter()
+        .flat_map(|start| &start.places)
+        .map(|target| [target.position_m[0], target.position_m[1]])
+        .collect();
+    let mut goals_m = goals;
+    goals_m.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+    goals_m.dedup();
+    let view_m = view(frames, setup.radius_m);
+    let mut sheet = Sheet::new("", 2);
+    let last = frames.len().saturating_sub(1);
+    let mut before = None;
+    for moment in 0..MOMENTS {
+        let at = last * moment / (MOMENTS - 1);
+        if before == Some(at) || frames.is_empty() {
+            continue;
+        }
+        before = Some(at);
+        let frame = &frames[at];
+        let robots = frame.samples.len();
+        sheet = sheet.with(Snapshot {
+            title: format!("after {:.1} s", frame.time_s),
+            positions_m: frame.samples.iter().map(|s| s.position_m).collect(),
+            velocities_mps: velocities(frames, at),
+            radius_m: setup.radius_m,
+            groups: (0..robots).map(|robot| robot % COLOURS).collect(),
+            obstacles: obstacles.clone(),
+            goals_m: goals_m.clone(),
+            trails_m: trails(&frames[..=at], robots.min(MOST_TRAILS)),
+            view_m,
+            ..Snapshot::default()
+        });
+    }
+    sheet
+}
+
+fn drawn(solid: &Solid) -> Option<Obstacle> {
+    match *solid {
+        Solid::Wall(ends) => Some(Obstacle::Segment(ends)),
+        Solid::Ball { center_m, radius_m } => Some(Obstacle::Disc {
+            centre_m: [center_m[0], center_m[1]],
+            radius_m,
+        }),
+        // Its border is a line without ends.
+        Solid::Plane { .. } => None,
+    }
+}
+
+/// What robots go through.
+fn view(frames: &[Frame], radius_m: f64) -> Option<[[f64; 2]; 2]> {
+    let places = frames.iter().flat_map(|frame| &frame.samples);
+    let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+    for sample in places {
+        for axis in 0..2 {
+            low[axis] = low[axis].min(sample.position_m[axis]);
+            high[axis] = high[axis].max(sample.position_m[axis]);
+        }
+    }
+    let widest = (high[0] - low[0]).max(high[1] - low[1]);
+    let margin = 2.0 * radius_m + 0.05 * widest;
+    let is_sound = widest.is_finite();
+    is_sound.then(|| [0, 1].map(|axis| [low[axis] - margin, high[axis] + margin]))
+}
+
+/// Velocities by the difference to a neighbouring frame.
+fn velocities(frames: &[Frame], at: usize) -> Vec<[f64; 2]> {
+    let [from, to] = match frames.get(at + 1) {
+        Some(_) => [at, at + 1],
+        None => [at.saturating_sub(1), at],
+    };
+    let span_s = frames[to].time_s - frames[from].time_s;
+    let pairs = frames[from].samples.iter().zip(&frames[to].samples);
+    pairs
+        .map(|(before, after)| {
+            [0, 1].map(|axis| {
+                let way = after.position_m[axis] - before.position_m[axis];
+                if span_s > 0.0 { way / span_s } else { 0.0 }
+            })
+        })
+        .collect()
+}
+
+fn trails(frames: &[Frame], robots: usize) -> Vec<Vec<[f64; 2]>> {
+    let every = frames.len().div_ceil(TRAIL_POINTS).max(1);
+    let thinned = || frames.iter().step_by(every).chain(frames.last());
+    (0..robots)
+        .map(|robot| {
+            let samples = thinned().filter_map(|frame| frame.samples.get(robot));
+            samples.map(|sample| sample.position_m).collect()
+        })
+        .collect()
+}

@@ -1,0 +1,209 @@
+//! The pictures of one run.
+
+use super::chart::{Chart, Panels, Series};
+use super::colour::{self, Colour, WHITE};
+use super::{ticks, trajectories};
+use staya_sim::record::{self, Error, History, PacketCounts, SeriesPoint};
+use staya_sim::terrain::Terrain;
+use std::path::{Path, PathBuf};
+
+/// Points of a curve above which a running mean is drawn over it.
+const NOISY: usize = 150;
+/// Points of a curve of means.
+const MEANS: usize = 100;
+
+/// Draws the pictures of one run into `out_dir`, which is made if needed, each as SVG and PNG, and
+/// names the files.
+///
+/// - `trajectories`: the land, each robot's way, and the formation (`edges` between robot ids) over time;
+/// - `formation`: formation error and graph distance over time, only if the run has values of them;
+/// - `packets`: packets per second by their fate, over time.
+///
+/// O(cells + samples of the history).
+///
+/// # Errors
+/// The directory or a file cannot be written.
+pub fn run_pictures(
+    terrain: &Terrain,
+    history: &History,
+    edges: &[(u32, u32)],
+    out_dir: &Path,
+) -> Result<Vec<PathBuf>, Error> {
+    record::make_dir(out_dir)?;
+    let stem = out_dir.join("trajectories");
+    let canvas = trajectories::draw(terrain, history, edges).map_err(Error::new("draw", &stem))?;
+    let mut files = canvas.write(&stem)?;
+    if let Some(panels) = formation(history.series()) {
+        files.extend(panels.write(&out_dir.join("formation"))?);
+    }
+    files.extend(packets(history).write(&out_dir.join("packets"))?);
+    Ok(files)
+}
+
+/// Formation error and graph distance over time; `None` if the run has neither.
+pub(super) fn formation(series: &[SeriesPoint]) -> Option<Panels> {
+    let clock = Clock::new(series);
+    let curve = |title: &str, label: &str, colour, value: fn(&SeriesPoint) -> f64| {
+        let points: Vec<[f64; 2]> = series
+            .iter()
+            .map(|point| [clock.at(point), value(point)])
+            .collect();
+        points.iter().any(|[_, value]| value.is_finite()).then(|| {
+            with_mean(
+                Chart::new(title, clock.label, label),
+                points,
+                colour,
+                &clock,
+            )
+        })
+    };
+    let charts = [
+        curve("Formation error per agent", "error (cells)", 0, |point| {
+            point.formation_error_per_agent
+        }),
+        curve("Graph distance", "graph distance", 1, |point| {
+            point.graph_distance
+        }),
+    ];
+    let mut charts = charts.into_iter().flatten().peekable();
+    charts.peek()?;
+    Some(charts.fold(Panels::new("Formation over time"), Panels::with))
+}
+
+/// A curve; a noisy one pale, with its running mean on top.
+fn with_mean(chart: Chart, points: Vec<[f64; 2]>, index: usize, clock: &Clock) -> Chart {
+    let chart = chart.size(760.0, 300.0);
+    let colour = colour::nth(index);
+    if points.len() <= NOISY {
+        return chart.with(Series::line("", points).colour(colour));
+    }
+    let run = points.len().div_ceil(MEANS);
+    let means: Vec<[f64; 2]> = points.chunks(run).filter_map(mean).collect();
+    let width = ((points[run][0] - points[0][0]).abs() * 100.0).round() / 100.0;
+    let pale: Colour = colour.towards(WHITE, 0.62);
+    chart
+        .with(Series::line("recorded", points).colour(pale))
+        .with(Series::line(format!("mean over {width} {}", clock.unit), means).colour(colour))
+}
+
+/// The mean of the points that have a value; `None` makes no gap, the pale curve shows it.
+fn mean(points: &[[f64; 2]]) -> Option<[f64; 2]> {
+    let known: Vec<&[f64; 2]> = points.iter().filter(|[_, y]| y.is_finite()).collect();
+    let count = known.len() as f64;
+    let sum = known.iter().fold([0.0; 2], |sum, point| {
+        [sum[0] + point[0], sum[1] + point[1]]
+    });
+    (!known.is_empty()).then(|| sum.map(|value| value / count))
+}
+
+/// Packets per second by their fate.
+pub(super) fn packets(history: &History) -> Panels {
+    let series = history.series();
+    let clock = Clock::new(series);
+    let bins: Vec<(f64, f64, PacketCounts)> = series
+        .chunks(series.len().div_ceil(MEANS).max(1))
+        .map(|points| bin(points, &clock))
+        .collect();
+    let line = |name: &str, index: usize, count: fn(&PacketCounts) -> u64| {
+        let points = bins
+            .iter()
+            .map(|(at, length, packets)| [*at, count(packets) as f64 / length]);
+        Series::line(name, points).colour(colour::nth(index))
+    };
+    let per = format!("packets per {}", clock.one);
+    let ends =
+        [series.first(), series.last()].map(|point| point.map_or(0.0, |point| clock.at(point)));
+    // From the first tick, although the first mean is a little later.
+    let chart = |title| {
+        Chart::new(title, clock.label, &per)
+            .x_range(ends[0], ends[1])
+            .size(760.0, 300.0)
+    };
+    let all = history.totals();
+    let n = ticks::grouped;
+    Panels::new("Packets over time")
+        .with(
+            chart("Sent, delivered and lost")
+                .note(format!(
+                    "in all {} sent, {} delivered (one sent packet may reach many), {} lost",
+                    n(all.sent),
+                    n(all.delivered),
+                    n(all.lost)
+                ))
+                .with(line("delivered", 0, |packets| packets.delivered))
+                .with(line("lost", 1, |packets| packets.lost))
+                .with(line("sent", 6, |packets| packets.sent)),
+        )
+        .with(
+            chart("Corrupted and rejected")
+                .note(format!(
+                    "in all {} corrupted on the way, {} rejected by receivers (damaged, foreign or replayed)",
+                    n(all.corrupted),
+                    n(all.rejected)
+                ))
+                .with(line("corrupted", 3, |packets| packets.corrupted))
+                .with(line("rejected", 2, |packets| packets.rejected)),
+        )
+}
+
+/// Middle, length (both in the clock's unit) and sum of some neighbouring points.
+fn bin(points: &[SeriesPoint], clock: &Clock) -> (f64, f64, PacketCounts) {
+    let mut sum = PacketCounts::default();
+    let mut ticks = 0;
+    for point in points {
+        sum += point.packets;
+        ticks += point.ticks;
+    }
+    let length = f64::from(ticks.max(1)) * clock.per_tick;
+    let start = points.first().map_or(0.0, |point| clock.at(point));
+    // A point stands for the ticks from its first one on.
+    let middle = start + (length - clock.per_tick) / 2.0;
+    (middle, length, sum)
+}
+
+/// Counts in seconds; in ticks if the run is too short to tell how long a tick is.
+struct Clock {
+    /// Length of a tick.
+    per_tick: f64,
+    in_ticks: bool,
+    label: &'static str,
+    unit: &'static str,
+    one: &'static str,
+}
+
+impl Clock {
+    fn new(series: &[SeriesPoint]) -> Self {
+        let per_tick = match series {
+            [first, .., last] => {
+                let ticks = last.tick.wrapping_sub(first.tick);
+                (last.time_s - first.time_s) / f64::from(ticks)
+            }
+            _ => f64::NAN,
+        };
+        if per_tick.is_finite() && per_tick > 0.0 {
+            Self {
+                per_tick,
+                in_ticks: false,
+                label: "simulated time (s)",
+                unit: "s",
+                one: "second",
+            }
+        } else {
+            Self {
+                per_tick: 1.0,
+                in_ticks: true,
+                label: "tick",
+                unit: "ticks",
+                one: "tick",
+            }
+        }
+    }
+
+    fn at(&self, point: &SeriesPoint) -> f64 {
+        if self.in_ticks {
+            f64::from(point.tick)
+        } else {
+            point.time_s
+        }
+    }
+}

@@ -1,0 +1,495 @@
+//! Where the robots went: the land, a line per robot, and the formation from early to late.
+
+use super::canvas::{Anchor, Canvas, Point, Shape, Stroke, Text};
+use super::colour::{self, Colour, INK, MUTED, WHITE};
+use super::crowd::{self, Density};
+use super::layout::{OTHER_FONTS, heading};
+use super::map::{self, Map};
+use super::{font, raster, ticks};
+use staya_controller::grid::Cell;
+use staya_sim::record::{Frame, History};
+use staya_sim::terrain::Terrain;
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::io;
+
+/// Robots that the legend names.
+const NAMED: usize = 12;
+/// Robots above which the picture shows how often each cell was entered, no ways and no formation.
+const CROWD: usize = 200;
+/// Robots above which starts and targets would hide everything else.
+const MAX_ENDS: usize = 2000;
+/// Points of all ways above which they are drawn as pixels in the SVG too, which bounds its size.
+const MAX_POINTS: usize = 60_000;
+/// Longest side of a map, in cells, that is always shown whole.
+const SMALL_MAP: f64 = 100.0;
+/// Moments in which the formation is shown.
+const MOMENTS: usize = 8;
+/// Free room around the map.
+const PAD: f64 = 16.0;
+/// The narrowest picture, so that title and legend have room.
+const MIN_WIDTH: f64 = 460.0;
+const SMALL: f64 = 11.5;
+const ROW: f64 = 19.0;
+
+/// Points that lie closer to the last one than this (in units) are left out of a way.
+const NEAR: f64 = 0.25;
+
+/// A robot's way in metres, and the middle of the cell where it was sent last, if on the map.
+#[derive(Debug, Default)]
+struct Way {
+    positions_m: Vec<[f64; 2]>,
+    target_m: Option<[f64; 2]>,
+}
+
+/// Draws the picture.
+///
+/// # Errors
+/// The picture would have too many pixels.
+pub fn draw(terrain: &Terrain, history: &History, edges: &[(u32, u32)]) -> io::Result<Canvas> {
+    let ways = ways(terrain, history.frames());
+    let view = view(terrain, &ways);
+    let crowd = (ways.len() > CROWD).then(|| {
+        let map = Map::new(&view, [0.0; 2]);
+        Density::new(&map, ways.values().map(|way| &way.positions_m[..]))
+    });
+    let with_edges = crowd.is_none() && !edges.is_empty();
+
+    let title = title(history.frames(), ways.len());
+    let width = Map::new(&view, [0.0; 2]).area[2].max(MIN_WIDTH) + 2.0 * PAD;
+    let room = width - 2.0 * PAD;
+    let mut canvas = Canvas::new(width, 0.0, &title);
+    heading(&mut canvas, &title, 16.0, [PAD, PAD + 15.0], room);
+    let (note, size) = font::fit(
+        &note(terrain, &view, ways.len()),
+        SMALL,
+        false,
+        room / OTHER_FONTS,
+    );
+    let mut line = Text::new([PAD, PAD + 34.0], size, Anchor::Start, note);
+    line.colour = MUTED;
+    canvas.text(line);
+    let keys = match &crowd {
+        Some(density) => crowd_keys(density, ways.len()),
+        None => keys(&ways, with_edges),
+    };
+    let top = legend(&mut canvas, &keys, PAD + 42.0, width - PAD) + 8.0;
+
+    let map = Map::new(&view, [PAD, top]);
+    canvas.height = top + map.area[3] + map::FOOTER + 6.0;
+    canvas.clip(Some(map.area));
+    map.ground(&mut canvas);
+    if let Some(density) = crowd {
+        map.image(&mut canvas, density.pixels());
+        if ways.len() <= MAX_ENDS {
+            draw_crowd_ends(&mut canvas, &map, &ways);
+        }
+    } else {
+        draw_ways(&mut canvas, &map, &ways)?;
+        if with_edges {
+            draw_formation(&mut canvas, &map, history.frames(), edges, &ways);
+        }
+        draw_ends(&mut canvas, &map, &ways);
+    }
+    canvas.clip(None);
+    map.frame(&mut canvas);
+    map.footer(&mut canvas, PAD, width - PAD);
+    Ok(canvas)
+}
+
+fn title(frames: &[Frame], robots: usize) -> String {
+    let (Some(first), Some(last)) = (frames.first(), frames.last()) else {
+        return "No robot was recorded".into();
+    };
+    let plural = if robots == 1 { "" } else { "s" };
+    let seconds = last.time_s - first.time_s;
+    let robots = ticks::grouped(robots as u64);
+    format!("Trajectories of {robots} robot{plural} over {seconds:.0} s")
+}
+
+fn note(terrain: &Terrain, view: &Terrain, robots: usize) -> String {
+    let size = format!(
+        "{} × {} cells of {} m",
+        view.width(),
+        view.height(),
+        (view.cell_m * 100.0).round() / 100.0
+    );
+    let all = (terrain.width(), terrain.height());
+    let part = if (view.width(), view.height()) == all {
+        String::new()
+    } else {
+        format!(", part of a map of {} × {}", all.0, all.1)
+    };
+    let lanes = if (2..=NAMED).contains(&robots) {
+        "; ways through the same cells are drawn side by side"
+    } else {
+        ""
+    };
+    size + &part + lanes
+}
+
+/// Each robot's way, by its id. Positions that are no numbers are left out.
+fn ways(terrain: &Terrain, frames: &[Frame]) -> BTreeMap<u32, Way> {
+    let mut ways: BTreeMap<u32, Way> = BTreeMap::new();
+    for frame in frames {
+        for sample in &frame.samples {
+            let way = ways.entry(sample.id).or_default();
+            way.target_m = middle_m(terrain, sample.target);
+            if sample.position_m.iter().all(|value| value.is_finite()) {
+                way.positions_m.push(sample.position_m);
+            }
+        }
+    }
+    ways
+}
+
+/// The map, or the piece around all ways and targets where they cover only a small part of it.
+fn view<'a>(terrain: &'a Terrain, ways: &BTreeMap<u32, Way>) -> Cow<'a, Terrain> {
+    let sides = [terrain.width(), terrain.height()].map(f64::from);
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for way in ways.values() {
+        let cells = way.positions_m.iter().chain(&way.target_m).map(|place_m| {
+            let at = |axis: usize| (place_m[axis] - terrain.origin_m[axis]) / terrain.cell_m;
+            [at(0), at(1)]
+        });
+        for place in cells {
+            for axis in 0..2 {
+                low[axis] = low[axis].min(place[axis]);
+                high[axis] = high[axis].max(place[axis]);
+            }
+        }
+    }
+    let reach = (high[0] - low[0]).max(high[1] - low[1]);
+    if !reach.is_finite() || sides[0].max(sides[1]) <= SMALL_MAP {
+        return Cow::Borrowed(terrain);
+    }
+    let margin = (reach * 0.2).max(6.0);
+    let first: [f64; 2] =
+        std::array::from_fn(|axis| libm::floor(low[axis] - margin).clamp(0.0, sides[axis] - 1.0));
+    let size: [f64; 2] = std::array::from_fn(|axis| {
+        (libm::ceil(high[axis] + margin) - first[axis]).clamp(1.0, sides[axis] - first[axis])
+    });
+    if size[0] * size[1] > 0.4 * sides[0] * sides[1] {
+        return Cow::Borrowed(terrain);
+    }
+    let [x, y, width, height] = [first[0], first[1], size[0], size[1]].map(|value| value as u16);
+    terrain
+        .crop(x, y, width, height)
+        .map_or(Cow::Borrowed(terrain), Cow::Owned)
+}
+
+fn middle_m(terrain: &Terrain, cell: Cell) -> Option<[f64; 2]> {
+    terrain.index(cell)?;
+    let [x, y] = terrain.origin_m;
+    Some([
+        x + (f64::from(cell.x) + 0.5) * terrain.cell_m,
+        y + (f64::from(cell.y) + 0.5) * terrain.cell_m,
+    ])
+}
+
+/// Colour and dashes of the `index`-th of `robots`.
+fn look(index: usize, robots: usize) -> Stroke {
+    let width = match robots {
+        0..=NAMED => 1.9,
+        13..=50 => 1.3,
+        _ => 0.9,
+    };
+    let stroke = Stroke::new(colour::nth(index), width);
+    // When colours come again, dashes keep them apart.
+    if robots <= NAMED && index >= colour::PALETTE.len() {
+        stroke.dashed(6.0, 3.0)
+    } else {
+        stroke
+    }
+}
+
+fn draw_ways(canvas: &mut Canvas, map: &Map<'_>, ways: &BTreeMap<u32, Way>) -> io::Result<()> {
+    let lane = lane_width(map, ways.len());
+    let middle = (ways.len().max(1) - 1) as f64 / 2.0;
+    let lines: Vec<Vec<Point>> = ways
+        .values()
+        .enumerate()
+        .map(|(index, way)| {
+            let by = (index as f64 - middle) * lane;
+            let line = line(map, way).into_iter();
+            line.map(|[x, y]| [x + by, y + by]).collect()
+        })
+        .collect();
+    let points: usize = lines.iter().map(Vec::len).sum();
+    if points <= MAX_POINTS {
+        draw_lines(canvas, lines, lane);
+        return Ok(());
+    }
+    let [left, top, width, height] = map.area;
+    let mut layer = Canvas::new(width, height, "");
+    let lines = lines.into_iter().map(|line| {
+        let moved = line.into_iter().map(|[x, y]| [x - left, y - top]);
+        moved.collect()
+    });
+    draw_lines(&mut layer, lines.collect(), lane);
+    canvas.shapes.push(Shape::Image {
+        area: map.area,
+        pixels: raster::layer(&layer, raster::SCALE)?,
+    });
+    Ok(())
+}
+
+/// How far ways are moved apart, to the south-east, so that ways through the same cells run side by side:
+/// two thirds of a cell for all of them, or a line's width each, whichever is more. Dots, starts
+/// and targets are where the robots were.
+fn lane_width(map: &Map<'_>, robots: usize) -> f64 {
+    match robots {
+        2..=NAMED => (map.cell * 0.67 / robots as f64).clamp(1.3, 2.2),
+        _ => 0.0,
+    }
+}
+
+/// A way in picture units, without points that change nothing visible.
+fn line(map: &Map<'_>, way: &Way) -> Vec<Point> {
+    let mut line: Vec<Point> = Vec::new();
+    for position in &way.positions_m {
+        let point = map.place(*position);
+        match line[..] {
+            [.., last] if close(last, point) => continue,
+            // A turn by nothing: the point before lies on the line.
+            [.., before, last] if straight(before, last, point) => {
+                line.pop();
+            }
+            _ => {}
+        }
+        line.push(point);
+    }
+    line
+}
+
+fn close(a: Point, b: Point) -> bool {
+    (a[0] - b[0]).abs() < NEAR && (a[1] - b[1]).abs() < NEAR
+}
+
+fn straight(a: Point, b: Point, c: Point) -> bool {
+    let (u, v) = ([b[0] - a[0], b[1] - a[1]], [c[0] - b[0], c[1] - b[1]]);
+    let cross = u[0] * v[1] - u[1] * v[0];
+    let along = u[0] * v[0] + u[1] * v[1];
+    along > 0.0 && cross.abs() <= 1e-6 * along
+}
+
+/// Lines in their colours, no wider than their lane, over a pale seam that keeps them apart from dark land.
+fn draw_lines(canvas: &mut Canvas, lines: Vec<Vec<Point>>, lane: f64) {
+    let robots = lines.len();
+    if robots <= NAMED {
+        let seam = Stroke::new(WHITE.with_alpha(170), 3.6);
+        canvas.lines(lines.clone(), seam);
+    }
+    for (index, line) in lines.into_iter().enumerate() {
+        let stroke = look(index, robots);
+        let width = if lane > 0.0 {
+            stroke.width.min(lane)
+        } else {
+            stroke.width
+        };
+        canvas.line(line, Stroke { width, ..stroke });
+    }
+}
+
+/// Starts and targets of a crowd as small dots.
+fn draw_crowd_ends(canvas: &mut Canvas, map: &Map<'_>, ways: &BTreeMap<u32, Way>) {
+    let mut starts = ways.values().filter_map(|way| way.positions_m.first());
+    let mut targets = ways.values().filter_map(|way| way.target_m.as_ref());
+    let dots = |places: &mut dyn Iterator<Item = &[f64; 2]>| -> Vec<Vec<Point>> {
+        places.map(|place| vec![map.place(*place)]).collect()
+    };
+    let size = (map.cell * 0.6).clamp(1.2, 4.0);
+    for (key, dots) in CROWD_ENDS
+        .into_iter()
+        .zip([dots(&mut starts), dots(&mut targets)])
+    {
+        canvas.lines(dots, Stroke::new(key.0, size));
+    }
+}
+
+/// Colours of a crowd's starts and targets.
+const CROWD_ENDS: [(Colour, &str); 2] = [
+    (colour::PALETTE[2], "starts"),
+    (colour::PALETTE[1], "targets"),
+];
+
+/// Starts as rings, targets as crosses.
+fn draw_ends(canvas: &mut Canvas, map: &Map<'_>, ways: &BTreeMap<u32, Way>) {
+    let size = if ways.len() <= NAMED {
+        5.0
+    } else {
+        (map.cell * 0.45).clamp(1.2, 4.0)
+    };
+    for (index, way) in ways.values().enumerate() {
+        let colour = look(index, ways.len()).colour;
+        if let Some(start) = way.positions_m.first() {
+            ring(canvas, map.place(*start), size, colour);
+        }
+        if let Some(target) = way.target_m {
+            cross(canvas, map.place(target), size, colour);
+        }
+    }
+}
+
+fn ring(canvas: &mut Canvas, at: Point, radius: f64, colour: Colour) {
+    // Filled, so that the way seems to begin at the ring.
+    canvas.circle(at, radius * 1.4, Some(WHITE), None);
+    canvas.circle(at, radius, None, Some(Stroke::new(colour, radius * 0.4)));
+}
+
+fn cross(canvas: &mut Canvas, [x, y]: Point, size: f64, colour: Colour) {
+    let lines = vec![
+        vec![[x - size, y - size], [x + size, y + size]],
+        vec![[x - size, y + size], [x + size, y - size]],
+    ];
+    canvas.lines(lines.clone(), Stroke::new(WHITE, size * 0.8));
+    canvas.lines(lines, Stroke::new(colour, size * 0.4));
+}
+
+/// The colour of the formation at a moment, 0 (first) to 1 (last): from light to dark.
+fn moment_colour(share: f64) -> Colour {
+    Colour::hex(0xb0_8c_f0).towards(Colour::hex(0x1f_06_4a), share)
+}
+
+/// Frames at about equal distances in time, with 0..=1 for how late they are.
+fn moments(frames: &[Frame]) -> Vec<(&Frame, f64)> {
+    let (Some(first), Some(last)) = (frames.first(), frames.last()) else {
+        return Vec::new();
+    };
+    let span = f64::from(last.tick.wrapping_sub(first.tick));
+    let mut chosen: Vec<(&Frame, f64)> = Vec::new();
+    for moment in 0..MOMENTS {
+        let share = moment as f64 / (MOMENTS - 1) as f64;
+        let since = |frame: &Frame| f64::from(frame.tick.wrapping_sub(first.tick));
+        let at = frames.partition_point(|frame| since(frame) < share * span);
+        if let Some(frame) = frames.get(at)
+            && chosen
+                .last()
+                .is_none_or(|(other, _)| other.tick != frame.tick)
+        {
+            chosen.push((frame, share));
+        }
+    }
+    chosen
+}
+
+fn draw_formation(
+    canvas: &mut Canvas,
+    map: &Map<'_>,
+    frames: &[Frame],
+    edges: &[(u32, u32)],
+    ways: &BTreeMap<u32, Way>,
+) {
+    for (frame, share) in moments(frames) {
+        let places: BTreeMap<u32, Point> = frame
+            .samples
+            .iter()
+            .filter(|sample| sample.position_m.iter().all(|value| value.is_finite()))
+            .map(|sample| (sample.id, map.place(sample.position_m)))
+            .collect();
+        let lines: Vec<Vec<Point>> = edges
+            .iter()
+            .filter_map(|(a, b)| Some(vec![*places.get(a)?, *places.get(b)?]))
+            .collect();
+        let colour = moment_colour(share);
+        canvas.lines(lines.clone(), Stroke::new(WHITE.with_alpha(150), 2.6));
+        canvas.lines(lines, Stroke::new(colour, 1.2));
+        let radius = if ways.len() <= NAMED { 3.2 } else { 2.0 };
+        for (index, id) in ways.keys().enumerate() {
+            if let Some(place) = places.get(id) {
+                let fill = look(index, ways.len()).colour;
+                let edge = Stroke::new(colour, 1.0);
+                canvas.circle(*place, radius, Some(fill), Some(edge));
+            }
+        }
+    }
+}
+
+/// A line of the legend.
+enum Key {
+    Way(Stroke),
+    Start,
+    Target,
+    Formation,
+    Density,
+    Dot(Colour),
+}
+
+fn keys(ways: &BTreeMap<u32, Way>, with_edges: bool) -> Vec<(Key, String)> {
+    let robots = ways.len();
+    let mut keys = Vec::new();
+    if robots == 0 {
+        return keys;
+    }
+    if robots <= NAMED {
+        for (index, id) in ways.keys().enumerate() {
+            let name = if index == 0 {
+                format!("robot {id}")
+            } else {
+                id.to_string()
+            };
+            keys.push((Key::Way(look(index, robots)), name));
+        }
+    }
+    keys.push((Key::Start, "start".into()));
+    keys.push((Key::Target, "target".into()));
+    if with_edges {
+        keys.push((Key::Formation, "formation, early to late".into()));
+    }
+    keys
+}
+
+fn crowd_keys(density: &Density, robots: usize) -> Vec<(Key, String)> {
+    let most = ticks::grouped(density.most().into());
+    let mut keys = vec![(
+        Key::Density,
+        format!("times a cell was entered, 1 to {most}"),
+    )];
+    if robots <= MAX_ENDS {
+        let ends = CROWD_ENDS.map(|(colour, name)| (Key::Dot(colour), name.to_owned()));
+        keys.extend(ends);
+    }
+    keys
+}
+
+/// Rows of samples and names below `top`; answers where they end.
+fn legend(canvas: &mut Canvas, keys: &[(Key, String)], top: f64, right: f64) -> f64 {
+    let (mut x, mut top) = (PAD, top);
+    for (key, name) in keys {
+        let sample = match key {
+            Key::Way(_) => 22.0,
+            Key::Start | Key::Target | Key::Dot(_) => 12.0,
+            Key::Formation | Key::Density => 50.0,
+        };
+        let width = sample + 6.0 + font::width(name, SMALL, false) * OTHER_FONTS;
+        if x > PAD && x + width > right {
+            x = PAD;
+            top += ROW;
+        }
+        let y = top + ROW / 2.0;
+        let middle = [x + sample / 2.0, y];
+        match key {
+            Key::Way(stroke) => canvas.line(vec![[x + 1.0, y], [x + sample - 1.0, y]], *stroke),
+            Key::Start => ring(canvas, middle, 4.5, INK),
+            Key::Target => cross(canvas, middle, 4.5, INK),
+            Key::Dot(colour) => canvas.circle(middle, 3.0, Some(*colour), None),
+            Key::Density => {
+                for part in 0..10 {
+                    let area = [x + f64::from(part) * 5.0, y - 5.0, 5.0, 10.0];
+                    canvas.rectangle(area, Some(crowd::colour(f64::from(part) / 9.0)), None);
+                }
+            }
+            Key::Formation => {
+                for part in 0..5 {
+                    let from = x + f64::from(part) * 10.0;
+                    let stroke = Stroke::new(moment_colour(f64::from(part) / 4.0), 1.6);
+                    canvas.line(vec![[from + 1.0, y], [from + 8.0, y]], stroke);
+                }
+            }
+        }
+        let text = Text::new([x + sample + 6.0, y], SMALL, Anchor::Start, name);
+        canvas.text(text.centred());
+        x += width + 14.0;
+    }
+    if keys.is_empty() { top } else { top + ROW }
+}

@@ -1,0 +1,577 @@
+//! Ticks: every robot's own [`Agent`] between one world and one radio. Read [`Engine::step`] first.
+//!
+//! A tick has two phases. First all robots decide, in parallel: each gets its own pose and cell, the
+//! land around it and the bytes that the radio delivered, and nothing else. Then the radio carries
+//! what they sent and the world moves their bodies. What a robot does in a tick can therefore
+//! reach another one in the next tick at the earliest, and neither the number of threads nor the
+//! order of robots matters.
+//!
+//! [`simulate`] runs a whole scenario with the guidance that it asks for.
+
+mod attacker;
+mod body;
+mod elsewhere;
+mod grid;
+mod ground;
+mod hash;
+mod operator;
+mod plane;
+mod simulate;
+
+pub use elsewhere::{Decision, Elsewhere};
+pub use grid::Grid;
+pub use ground::{Ground, Words};
+pub use operator::{Glance, Operated, operated};
+pub use plane::{PlaneGround, Senses};
+pub use simulate::WIDE;
+pub use simulate::{Moment, Outcome, simulate, simulate_with};
+
+use crate::metrics::{Arrivals, Keeping};
+use crate::radio::{Radio, Voice};
+use crate::record::{PacketCounts, RobotRow, TickRow};
+use crate::scenario::{Fault, Robot, Scenario};
+use attacker::Attacker;
+use hash::Chain;
+use rayon::prelude::*;
+use staya_controller::agent::{
+    Agent, AgentConfig, Command, Event, Guidance, GuidanceSetup, Inputs, NEIGHBORS, OUTBOX, Safety,
+    SafetySetup, Setup,
+};
+use staya_controller::auth::Key;
+use staya_controller::grid::Cell;
+use staya_controller::time::{Duration, Instant};
+use staya_controller::wire::{Format, Mode, RobotId};
+
+/// Robots that a thread takes at least at a time: less would cost more in handing out than in work.
+const BATCH: usize = 64;
+
+/// A robot's computer.
+#[derive(Debug)]
+struct Computer<G, A> {
+    /// `None`: elsewhere.
+    agent: Option<Agent<f32, G, NEIGHBORS, A, Voice>>,
+    outbox: heapless::Vec<u8, OUTBOX>,
+    /// Of the last step, if somebody wants to know.
+    events: Vec<Event>,
+    /// What the operator tells it: frames.
+    mail: Vec<u8>,
+    /// Counts its starts.
+    boot: u8,
+    /// The tick at which its clock showed 0.
+    epoch: u32,
+    /// Down before this tick.
+    down_until: u32,
+}
+
+/// What the rest of the engine needs to know of a robot after its decision.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Status {
+    /// What it is doing.
+    pub mode: Mode,
+    /// Whom it follows.
+    pub leader: RobotId,
+    /// The cell that it heads for.
+    pub target: Cell,
+}
+
+impl Status {
+    /// Its computer is down.
+    const fn fall_silent(&mut self) {
+        (self.mode, self.leader) = (Mode::Fault, RobotId::NOBODY);
+    }
+}
+
+impl<G, A> Computer<G, A> {
+    /// Its own clock.
+    const fn now(&self, tick: u32, tick_us: u32) -> Instant {
+        Instant::from_micros(tick.wrapping_sub(self.epoch).wrapping_mul(tick_us))
+    }
+}
+
+/// The beginning of a tick, as robots see it.
+struct Tick<'a, W> {
+    tick: u32,
+    ground: &'a W,
+    radio: &'a Radio,
+}
+
+impl<W: Ground> Tick<'_, W> {
+    /// What robot `index` senses and hears.
+    fn inputs<'b, G, A>(
+        &'b self,
+        index: usize,
+        computer: &Computer<G, A>,
+        senses: &'b mut W::Scratch,
+        heard: &'b mut Vec<u8>,
+    ) -> Inputs<'b, f32> {
+        // What arrived while it was down, it never heard.
+        let has_just_restarted = computer.boot > 0 && computer.epoch == self.tick;
+        let delivered = match has_just_restarted {
+            true => &[],
+            false => self.radio.inbox(index),
+        };
+        let orders = self.ground.orders(self.tick).unwrap_or_default();
+        let inbox = if orders.is_empty() && computer.mail.is_empty() {
+            delivered
+        } else {
+            heard.clear();
+            for bytes in [delivered, orders, &computer.mail] {
+                heard.extend_from_slice(bytes);
+            }
+            heard
+        };
+        Inputs {
+            inbox,
+            ..self.ground.sense(index, self.tick, senses)
+        }
+    }
+}
+
+/// Makes the guidance and the safety layer of a robot by its number in [`Scenario::robots`].
+type Brains<G, A> = Box<dyn Fn(usize) -> (G, A) + Send + Sync>;
+
+/// The controllers that run elsewhere, and what they are made of.
+struct Outside {
+    controllers: Box<dyn Elsewhere>,
+    /// By number, rising.
+    robots: Vec<(usize, GuidanceSetup, SafetySetup)>,
+}
+
+/// A scenario in motion on ground `W`. `G` is the guidance of all its robots, `A` their safety layer.
+pub struct Engine<W, G, A> {
+    seed: u64,
+    format: Format,
+    key: Option<Key>,
+    tick_us: u32,
+    tick: u32,
+    robots: Vec<Robot>,
+    faults: Vec<Fault>,
+    brains: Brains<G, A>,
+    ground: W,
+    radio: Radio,
+    computers: Vec<Computer<G, A>>,
+    commands: Vec<Command<f32>>,
+    statuses: Vec<Status>,
+    chains: Vec<Chain>,
+    /// Of the robots, then of the attackers.
+    positions_m: Vec<[f64; 2]>,
+    attackers: Vec<Attacker>,
+    outside: Option<Outside>,
+    keeps_events: bool,
+    arrivals: Arrivals,
+    collisions: u64,
+    packets: PacketCounts,
+    throttled: u64,
+}
+
+impl<W, G, A> Engine<W, G, A>
+where
+    W: Ground,
+    G: Guidance<f32, Workspace: Default> + Send,
+    A: Safety<f32> + Send,
+{
+    /// The scenario before its first tick, on `ground`. `brains(i)` makes guidance and safety layer of robot number `i` in
+    /// [`Scenario::robots`], at its first start and at each restart.
+    pub fn new(
+        scenario: &Scenario,
+        ground: W,
+        brains: impl Fn(usize) -> (G, A) + Send + Sync + 'static,
+    ) -> Self {
+        let robots = scenario.robots.clone();
+        let (format, cell_m) = (scenario.radio.format, scenario.terrain.cell_m);
+        let attackers = scenario.attacks.iter();
+        let attackers = attackers.map(|attack| Attacker::new(attack, format, cell_m));
+        let attackers: Vec<_> = attackers.collect();
+        let ids = robots.iter().map(|robot| robot.id);
+        let ids = ids.chain((0..attackers.len()).map(Attacker::id));
+        let mut positions_m = vec![[0.0; 2]; robots.len()];
+        positions_m.extend(attackers.iter().map(Attacker::place_m));
+        let mut engine = Self {
+            seed: scenario.seed,
+            format,
+            key: scenario.key.clone(),
+            tick_us: scenario.tick_us,
+            tick: 0,
+            faults: scenario.faults.clone(),
+            brains: Box::new(brains),
+            radio: Radio::new(&scenario.radio, scenario.seed, scenario.tick_us, ids),
+            ground,
+            computers: Vec::new(),
+            commands: vec![Command::Hold; robots.len()],
+            statuses: Vec::new(),
+            chains: robots.iter().map(|robot| Chain::new(robot.id)).collect(),
+            positions_m,
+            attackers,
+            outside: None,
+            keeps_events: false,
+            arrivals: Arrivals::new(robots.len()),
+            collisions: 0,
+            packets: PacketCounts::default(),
+            throttled: 0,
+            robots,
+        };
+        engine.computers = (0..engine.robots.len())
+            .map(|index| engine.start(index, 0))
+            .collect();
+        let waiting = |robot: &Robot| Status {
+            mode: Mode::Idle,
+            leader: RobotId::NOBODY,
+            target: robot.goal,
+        };
+        engine.statuses = engine.robots.iter().map(waiting).collect();
+        engine
+    }
+
+    /// The same with some of its robots' controllers elsewhere; before the first tick.
+    #[must_use]
+    pub fn with_elsewhere(mut self, scenario: &Scenario, controllers: Box<dyn Elsewhere>) -> Self {
+        let robots = controllers.robots().into_iter();
+        let robots = robots.filter(|&index| index < self.robots.len());
+        let robots = robots.map(|index| (index, scenario.guidance(index), scenario.safety()));
+        let robots: Vec<_> = robots.collect();
+        let indices: Vec<_> = robots.iter().map(|&(index, ..)| index).collect();
+        self.outside = Some(Outside {
+            controllers,
+            robots,
+        });
+        for index in indices {
+            self.restart(index, 0);
+        }
+        self
+    }
+
+    /// What the computer of robot `index` must know at its start number `boot`.
+    fn config(&self, index: usize, boot: u8) -> AgentConfig<f32> {
+        let tick = Duration::from_micros(i32::try_from(self.tick_us).unwrap_or(i32::MAX));
+        let mut config = AgentConfig {
+            boot,
+            ..AgentConfig::new(self.robots[index].id, self.seed, tick)
+        };
+        self.ground.configure(&mut config);
+        config
+    }
+
+    /// Computer number `index` with its own agent, started now.
+    fn start(&self, index: usize, boot: u8) -> Computer<G, A> {
+        let (guidance, safety) = (self.brains)(index);
+        let wire = Voice::new(self.format, self.key.as_ref(), boot);
+        let mut agent = Agent::speaking(&self.config(index, boot), guidance, safety, wire);
+        // A guidance that has no use for its task says so; the scenario was checked for that.
+        let _ = agent.assign(&self.ground.task(index, self.tick));
+        self.computer(Some(agent), boot)
+    }
+
+    fn computer(
+        &self,
+        agent: Option<Agent<f32, G, NEIGHBORS, A, Voice>>,
+        boot: u8,
+    ) -> Computer<G, A> {
+        Computer {
+            agent,
+            outbox: heapless::Vec::new(),
+            events: Vec::new(),
+            mail: Vec::new(),
+            boot,
+            epoch: self.tick,
+            down_until: self.tick,
+        }
+    }
+
+    /// Starts computer number `index` anew, here or elsewhere.
+    fn restart(&mut self, index: usize, boot: u8) {
+        let (config, task) = (self.config(index, boot), self.ground.task(index, self.tick));
+        let robots = self.outside.as_mut().and_then(|outside| {
+            let found = outside.robots.iter().find(|(robot, ..)| *robot == index);
+            let (_, guidance, safety) = found?;
+            let setup = Setup {
+                agent: config,
+                guidance: guidance.clone(),
+                safety: *safety,
+                format: self.format,
+            };
+            outside.controllers.start(index, setup, task);
+            Some(())
+        });
+        self.computers[index] = match robots {
+            Some(()) => self.computer(None, boot),
+            None => self.start(index, boot),
+        };
+    }
+
+    /// One tick. Returns what the swarm as a whole looks like after it.
+    pub fn step(&mut self) -> TickRow {
+        self.apply_faults();
+        let refused = self.decide();
+        self.attack();
+
+        let (computers, attackers) = (&self.computers, &self.attackers);
+        let outbox = |index: usize| match computers.get(index) {
+            Some(computer) => computer.outbox.as_slice(),
+            None => attackers[index - computers.len()].outbox(),
+        };
+        let carried = self.radio.carry(self.tick, &self.positions_m, outbox);
+        let packets = PacketCounts {
+            sent: carried.sent,
+            delivered: carried.delivered,
+            lost: carried.lost,
+            corrupted: carried.corrupted,
+            ..refused
+        };
+        self.packets += packets;
+        self.throttled += carried.throttled;
+
+        self.ground.advance(self.tick, &self.commands);
+        self.collisions += self.ground.count_collisions(self.tick);
+        self.observe();
+        let keeping = self.ground.keeping(true);
+        self.tick += 1;
+        self.row(keeping, packets)
+    }
+
+    /// Takes computers down whose fault begins; who comes up again has forgotten everything but its
+    /// number, its parameters and its task.
+    fn apply_faults(&mut self) {
+        for at in 0..self.faults.len() {
+            let fault = self.faults[at];
+            let found = self.robots.binary_search_by_key(&fault.robot, |r| r.id);
+            let Ok(index) = found.as_ref().copied() else {
+                continue;
+            };
+            if fault.from_tick == self.tick {
+                let computer = &mut self.computers[index];
+                computer.down_until = computer.down_until.max(fault.to_tick);
+            }
+            let ends = fault.to_tick == self.tick;
+            if ends && self.computers[index].down_until == self.tick {
+                let boot = self.computers[index].boot.wrapping_add(1);
+                self.restart(index, boot);
+            }
+        }
+        self.revive();
+    }
+
+    /// Starts those anew whose controllers elsewhere have lost their state.
+    fn revive(&mut self) {
+        let Some(outside) = &mut self.outside else {
+            return;
+        };
+        let controllers = &mut outside.controllers;
+        let robots = outside.robots.iter().map(|&(index, ..)| index);
+        let lost: Vec<_> = robots
+            .filter(|&index| controllers.has_restarted(index))
+            .collect();
+        for index in lost {
+            let computer = &self.computers[index];
+            // One that is down anyway starts when that is over.
+            if computer.down_until <= self.tick {
+                let boot = computer.boot.wrapping_add(1);
+                self.restart(index, boot);
+            }
+        }
+    }
+
+    /// Attackers hear and speak, as robots do.
+    fn attack(&mut self) {
+        let robots = self.robots.len();
+        for (at, attacker) in self.attackers.iter_mut().enumerate() {
+            attacker.act(self.tick, self.radio.inbox(robots + at));
+        }
+    }
+
+    /// Phase one: everybody decides. Returns how many frames were refused, and nothing else.
+    fn decide(&mut self) -> PacketCounts {
+        self.send_out();
+        let mut refused = self.decide_here();
+        refused.rejected += self.collect();
+        refused
+    }
+
+    /// Lets those begin whose controllers are elsewhere.
+    fn send_out(&mut self) {
+        let Some(outside) = &mut self.outside else {
+            return;
+        };
+        let (tick, mut senses, mut heard) = (self.tick, W::Scratch::default(), Vec::new());
+        for &(index, ..) in &outside.robots {
+            let computer = &self.computers[index];
+            if tick < computer.down_until {
+                continue;
+            }
+            let moment = Tick {
+                tick,
+                ground: &self.ground,
+                radio: &self.radio,
+            };
+            let inputs = moment.inputs(index, computer, &mut senses, &mut heard);
+            let now = computer.now(tick, self.tick_us);
+            outside.controllers.send(index, tick, now, &inputs);
+        }
+    }
+
+    /// Takes in what those decided. Returns how many frames they refused.
+    fn collect(&mut self) -> u64 {
+        let Some(outside) = &mut self.outside else {
+            return 0;
+        };
+        let mut rejected = 0;
+        for &(index, ..) in &outside.robots {
+            let computer = &mut self.computers[index];
+            if self.tick < computer.down_until {
+                continue;
+            }
+            match outside.controllers.collect(index) {
+                Some(decision) => {
+                    computer.outbox = decision.outbox;
+                    self.commands[index] = decision.command;
+                    self.statuses[index] = decision.status;
+                    rejected += u64::from(decision.rejected);
+                }
+                None => self.statuses[index].fall_silent(),
+            }
+        }
+        rejected
+    }
+
+    /// Steps the robots whose agents are here, in parallel.
+    fn decide_here(&mut self) -> PacketCounts {
+        let (tick, tick_us, keeps_events) = (self.tick, self.tick_us, self.keeps_events);
+        let moment = Tick {
+            tick,
+            ground: &self.ground,
+            radio: &self.radio,
+        };
+        let scratch = || (G::Workspace::default(), W::Scratch::default(), Vec::new());
+        let work = (
+            &mut self.computers,
+            &mut self.commands,
+            &mut self.statuses,
+            &mut self.positions_m,
+        );
+        work.into_par_iter()
+            .enumerate()
+            .with_min_len(BATCH)
+            .map_init(
+                scratch,
+                |(workspace, senses, heard), (index, (computer, command, status, position_m))| {
+                    let [x, y, _] = moment.ground.motion(index, tick).position_m;
+                    *position_m = [x, y];
+                    computer.outbox.clear();
+                    computer.events.clear();
+                    *command = Command::Hold;
+                    if tick < computer.down_until {
+                        status.fall_silent();
+                        return PacketCounts::default();
+                    }
+                    if computer.agent.is_none() {
+                        return PacketCounts::default();
+                    }
+                    let now = computer.now(tick, tick_us);
+                    let inputs = moment.inputs(index, computer, senses, heard);
+                    let Some(agent) = &mut computer.agent else {
+                        return PacketCounts::default();
+                    };
+                    let out = agent.step(&inputs, now, workspace);
+                    computer.outbox = out.outbox;
+                    computer.mail.clear();
+                    if keeps_events {
+                        computer.events.extend_from_slice(&out.events);
+                    }
+                    *command = out.command;
+                    *status = Status {
+                        mode: agent.mode(),
+                        leader: agent.leader(),
+                        target: agent.target().unwrap_or(status.target),
+                    };
+                    PacketCounts::refused(out.rejected, out.refused)
+                },
+            )
+            .reduce(PacketCounts::default, |one, other| one + other)
+    }
+
+    /// Takes note of where everybody is after phase two.
+    fn observe(&mut self) {
+        let (ground, tick) = (&self.ground, self.tick);
+        for (index, status) in self.statuses.iter().enumerate() {
+            self.chains[index].extend(&ground.words(index, tick, status));
+            let arrival = ground.arrival(index, tick, status);
+            self.arrivals
+                .note(index, arrival.is_some(), arrival.unwrap_or(0));
+        }
+    }
+
+    /// The swarm's line of the record before the first tick.
+    fn first_row(&mut self) -> TickRow {
+        let keeping = self.ground.keeping(false);
+        self.row(keeping, PacketCounts::default())
+    }
+
+    /// The swarm's line of the record, with `packets` of the tick that is over.
+    fn row(&self, keeping: Option<Keeping>, packets: PacketCounts) -> TickRow {
+        TickRow {
+            tick: self.tick,
+            time_s: self.seconds(),
+            formation_error_per_agent: keeping.map_or(f64::NAN, |k| k.error_per_agent),
+            graph_distance: keeping.map_or(f64::NAN, |k| k.graph_distance),
+            packets,
+        }
+    }
+
+    /// The robots' lines of the record, by rising number, as of now.
+    pub fn rows(&self) -> impl Iterator<Item = RobotRow> {
+        self.statuses
+            .iter()
+            .enumerate()
+            .map(|(index, status)| RobotRow {
+                id: self.robots[index].id.0,
+                motion: self.ground.motion(index, self.tick),
+                mode: status.mode,
+                leader: status.leader.0,
+                target: status.target,
+                formation_error_cells: self.ground.formation_error(index) as f32,
+            })
+    }
+
+    /// Ticks done.
+    #[must_use]
+    pub const fn ticks(&self) -> u32 {
+        self.tick
+    }
+
+    /// Simulated time, seconds.
+    #[must_use]
+    pub fn seconds(&self) -> f64 {
+        f64::from(self.tick) * f64::from(self.tick_us) / 1e6
+    }
+
+    /// Whether all robots stand at their targets and know it.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        self.arrivals.is_complete()
+    }
+
+    /// The ground with its bodies.
+    #[must_use]
+    pub const fn ground(&self) -> &W {
+        &self.ground
+    }
+
+    /// What came of it so far.
+    #[must_use]
+    pub fn outcome(&self) -> Outcome {
+        Outcome {
+            ticks: self.tick,
+            seconds: self.seconds(),
+            arrived: self.arrivals.count(),
+            arrival_times: self.arrivals.times().to_vec(),
+            collisions: self.collisions,
+            packets: self.packets,
+            throttled: self.throttled,
+            formation: self.ground.mean_keeping(),
+            clearance: self.ground.clearance(),
+            trace_hash: hash::sum(&self.chains),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,16 @@
+//! The simulator as a library: a world, a lossy radio and any number of controllers between them.
+//!
+//! [`scenario`] reads what to simulate, [`terrain`] the land, [`engine`] runs every robot's
+//! [`staya_controller::agent::Agent`] through two-phase ticks over [`world`] and [`radio`],
+//! [`metrics`] measures, [`record`] keeps what happened. [`nearby`] tells who is near whom, [`key`] reads the secret of a swarm.
+
+pub mod engine;
+pub mod file;
+pub mod key;
+pub mod metrics;
+pub mod nearby;
+pub mod radio;
+pub mod record;
+pub mod scenario;
+pub mod terrain;
+pub mod world;

@@ -1,0 +1,238 @@
+//! What happened in a run: two CSV files that grow with it and a bounded [`History`] for pictures.
+//!
+//! The engine calls [`Recorder::tick`] once per tick, after everybody moved. `series.csv` gets a
+//! line each time; `trace.csv` gets a line per robot every [`Options::trace_every`] ticks. Both hold
+//! whole ticks only: lines reach the file in blocks that end with a tick, and a block that the disk
+//! refuses is cut off again. So a run that is stopped leaves files that can be read.
+
+mod csv;
+mod file;
+mod history;
+
+pub use file::make_dir;
+pub use file::{Error, prepare_dir, write_atomically, write_summary};
+pub use history::{Frame, History, Sample, SeriesPoint};
+
+use file::LineFile;
+use serde::Serialize;
+use staya_controller::agent::Refused;
+use staya_controller::grid::Cell;
+use staya_controller::wire::Mode;
+use std::ops::{Add, AddAssign};
+use std::path::Path;
+
+/// Where a body is and how it moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion {
+    /// The cell it stands in.
+    pub cell: Cell,
+    /// World position, metres (x east, y north, z up).
+    pub position_m: [f64; 3],
+    /// World velocity, metres per second.
+    pub velocity_mps: [f64; 3],
+}
+
+/// One robot after one tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RobotRow {
+    /// Its number.
+    pub id: u32,
+    /// Where its body is and how it moves.
+    pub motion: Motion,
+    /// What it is doing.
+    pub mode: Mode,
+    /// Its leader, 0 = none.
+    pub leader: u32,
+    /// The cell it heads for.
+    pub target: Cell,
+    /// Distance from its place in the formation, cells; NaN when it has no place.
+    pub formation_error_cells: f32,
+}
+
+/// The whole swarm after one tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TickRow {
+    /// Number of the tick; grows from call to call.
+    pub tick: u32,
+    /// Simulated time, seconds.
+    pub time_s: f64,
+    /// Mean distance of the robots from their places, cells; NaN without a formation.
+    pub formation_error_per_agent: f64,
+    /// Graph distance (KUZ section 6); NaN without a formation.
+    pub graph_distance: f64,
+    /// What the radio did during this tick.
+    pub packets: PacketCounts,
+}
+
+/// Packets by their fate.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct PacketCounts {
+    /// Handed to the radio.
+    pub sent: u64,
+    /// Handed to a receiver.
+    pub delivered: u64,
+    /// Lost on the way.
+    pub lost: u64,
+    /// Delivered with flipped bits.
+    pub corrupted: u64,
+    /// Refused by a receiver: damaged, foreign or replayed; with a key also those that follow.
+    pub rejected: u64,
+    /// Refused because the tag or signature was missing.
+    pub unsigned: u64,
+    /// Refused because the tag or signature was of another key or content.
+    pub forged: u64,
+    /// Refused because it was heard before, or was older than what was; the radio's own repetitions included.
+    pub replayed: u64,
+}
+
+impl PacketCounts {
+    /// What a robot refused in a step, and why, and nothing else.
+    #[must_use]
+    pub fn refused(rejected: u16, why: Refused) -> Self {
+        Self {
+            rejected: rejected.into(),
+            unsigned: why.unsigned.into(),
+            forged: why.forged.into(),
+            replayed: why.replayed.into(),
+            ..Self::default()
+        }
+    }
+}
+
+impl Add for PacketCounts {
+    type Output = Self;
+    fn add(mut self, other: Self) -> Self {
+        self += other;
+        self
+    }
+}
+
+impl AddAssign for PacketCounts {
+    fn add_assign(&mut self, other: Self) {
+        self.unsigned += other.unsigned;
+        self.forged += other.forged;
+        self.replayed += other.replayed;
+        self.sent += other.sent;
+        self.delivered += other.delivered;
+        self.lost += other.lost;
+        self.corrupted += other.corrupted;
+        self.rejected += other.rejected;
+    }
+}
+
+/// How much to keep.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Options {
+    /// Ticks between two samples in `trace.csv`; 0: one per started thousand robots, so that a
+    /// tick adds at most about 1000 lines on average.
+    pub trace_every: u32,
+    /// Robot samples that [`History`] may hold, 32 bytes each. When they run out, every second frame
+    /// goes and the interval doubles; the first and the last frame always stay.
+    pub history_samples: usize,
+}
+
+impl Default for Options {
+    /// The interval by the number of robots, 32 MB of history.
+    fn default() -> Self {
+        Self {
+            trace_every: 0,
+            history_samples: 1 << 20,
+        }
+    }
+}
+
+/// Collects a run, tick by tick.
+#[derive(Debug)]
+pub struct Recorder {
+    files: Option<Files>,
+    history: History,
+}
+
+#[derive(Debug)]
+struct Files {
+    trace: LineFile,
+    series: LineFile,
+    trace_every: u32,
+}
+
+impl Recorder {
+    /// A recorder that writes `trace.csv`, `series.csv` and their schemas into `out_dir`, which is
+    /// made if needed; files of an earlier run are replaced.
+    ///
+    /// # Errors
+    /// The directory or a file in it cannot be made.
+    pub fn new(out_dir: impl AsRef<Path>, options: Options) -> Result<Self, Error> {
+        let dir = out_dir.as_ref();
+        file::make_dir(dir)?;
+        csv::write_schemas(dir)?;
+        Ok(Self {
+            files: Some(Files {
+                trace: LineFile::create(&dir.join("trace.csv"), &csv::header(&csv::TRACE))?,
+                series: LineFile::create(&dir.join("series.csv"), &csv::header(&csv::SERIES))?,
+                trace_every: options.trace_every,
+            }),
+            history: History::with_capacity(options.history_samples),
+        })
+    }
+
+    /// A recorder that keeps only the history.
+    #[must_use]
+    pub fn in_memory(options: Options) -> Self {
+        Self {
+            files: None,
+            history: History::with_capacity(options.history_samples),
+        }
+    }
+
+    /// Takes one tick. Order of `robots` is kept; it should be the same in each tick. O(robots).
+    ///
+    /// # Errors
+    /// A file cannot be written. What was complete before stays readable.
+    pub fn tick(
+        &mut self,
+        tick: &TickRow,
+        robots: impl Iterator<Item = RobotRow>,
+    ) -> Result<(), Error> {
+        let first_tick = self.history.first_tick().unwrap_or(tick.tick);
+        let frame = self.history.begin_frame(tick);
+        match &mut self.files {
+            None => frame.samples.extend(robots.map(Sample::from)),
+            Some(files) => {
+                let since = tick.tick.wrapping_sub(first_tick);
+                // With a chosen interval the first tick is always due, and tells the number of robots.
+                let due = since.checked_rem(files.trace_every).is_none_or(|r| r == 0);
+                for robot in robots {
+                    if due {
+                        csv::trace_line(files.trace.pending(), tick, &robot);
+                    }
+                    frame.samples.push(Sample::from(robot));
+                }
+                if files.trace_every == 0 {
+                    let thousands = frame.samples.len().div_ceil(1000).max(1);
+                    files.trace_every = u32::try_from(thousands).unwrap_or(u32::MAX);
+                }
+                csv::series_line(files.series.pending(), tick);
+                files.trace.end_block()?;
+                files.series.end_block()?;
+            }
+        }
+        self.history.end_frame();
+        Ok(())
+    }
+
+    /// Writes what is still in memory and hands out the history.
+    ///
+    /// # Errors
+    /// A file cannot be written.
+    pub fn finish(mut self) -> Result<History, Error> {
+        if let Some(files) = &mut self.files {
+            files.trace.flush()?;
+            files.series.flush()?;
+        }
+        self.history.close();
+        Ok(self.history)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,253 @@
+//! The checks that need more than the type of a field.
+
+use super::params::ReplanName;
+use super::source::Source;
+use super::{Fault, Robot, ScenarioError, ScenarioFile};
+use crate::terrain::generate::{self, Plan};
+use crate::terrain::{Terrain, TerrainError};
+use staya_controller::wire::RobotId;
+use staya_mavlink::any::max_robot;
+
+/// Seconds as whole microseconds, rounded.
+pub(super) fn micros(seconds: f64) -> u32 {
+    libm::round(seconds * 1e6) as u32
+}
+
+pub(super) fn general(source: &Source<'_>, file: &ScenarioFile) -> Result<(), ScenarioError> {
+    let allowed = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+    if file.name.is_empty() || file.name.len() > 100 || !file.name.chars().all(allowed) {
+        return Err(source.error(
+            "name",
+            format!("{:?} cannot name a folder of results", file.name),
+            "use 1 to 100 letters, digits, - and _",
+        ));
+    }
+    if file.ticks == 0 {
+        return Err(source.error("ticks", "0 ticks are no run", "give 1 or more"));
+    }
+    within(source, "tick_s", file.tick_s, 0.001, 60.0, "seconds")
+}
+
+/// Whether the radio's format has room for the robots' numbers.
+pub(super) fn numbers(
+    source: &Source<'_>,
+    file: &ScenarioFile,
+    robots: &[Robot],
+) -> Result<(), ScenarioError> {
+    let (format, most) = (file.radio.format, max_robot(file.radio.format));
+    match robots.iter().find(|robot| robot.id > most) {
+        None => Ok(()),
+        Some(robot) => Err(source.error(
+            "radio.format",
+            format!(
+                "robot {} has no number in {}: systems are 1 to {}",
+                robot.id.0,
+                format.name(),
+                most.0
+            ),
+            "give fewer robots or smaller numbers, or format = \"postcard\"",
+        )),
+    }
+}
+
+pub(super) fn radio(source: &Source<'_>, file: &ScenarioFile) -> Result<(), ScenarioError> {
+    let radio = &file.radio;
+    if radio.range_m.is_nan() || radio.range_m < 0.0 {
+        return Err(source.error(
+            "radio.range_m",
+            format!("{} is no distance", radio.range_m),
+            "give metres, 0 or more, or inf",
+        ));
+    }
+    for (field, value) in [
+        ("radio.loss", radio.loss),
+        ("radio.duplicate", radio.duplicate),
+        ("radio.reorder", radio.reorder),
+        ("radio.bit_error_rate", radio.bit_error_rate),
+    ] {
+        probability(source, field, value)?;
+    }
+    for (field, value) in [
+        ("radio.delay_ms", radio.delay_ms),
+        ("radio.jitter_ms", radio.jitter_ms),
+        ("radio.reorder_ms", radio.reorder_ms),
+    ] {
+        within(source, field, value, 0.0, 600_000.0, "milliseconds")?;
+    }
+    if let Some(burst) = &radio.burst {
+        probability(source, "radio.burst.loss", burst.loss)?;
+        within(
+            source,
+            "radio.burst.share",
+            burst.share,
+            0.0,
+            0.99,
+            "(share of time)",
+        )?;
+        let least_ms = file.tick_s * 1000.0 / (1.0 - burst.share);
+        if !(burst.mean_ms >= least_ms && burst.mean_ms <= 600_000.0) {
+            return Err(source.error(
+                "radio.burst.mean_ms",
+                format!("{} is out of range", burst.mean_ms),
+                format!("with this tick and share, give {least_ms:.1} to 600000 milliseconds"),
+            ));
+        }
+    }
+    for (index, [from, to]) in radio.blackout_s.iter().enumerate() {
+        if !(*from >= 0.0 && from < to && to.is_finite()) {
+            return Err(source.error(
+                &format!("radio.blackout_s[{index}]"),
+                format!("[{from}, {to}] is no span of time"),
+                "give [from, to] in seconds after the start with 0 <= from < to",
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn probability(source: &Source<'_>, field: &str, value: f64) -> Result<(), ScenarioError> {
+    if (0.0..=1.0).contains(&value) {
+        return Ok(());
+    }
+    let what = format!("{value} is no probability");
+    Err(source.error(field, what, "give a number from 0 to 1"))
+}
+
+/// A number that must lie between two others, both allowed.
+///
+/// # Errors
+/// The place and the range, when it does not.
+pub fn within(
+    source: &Source<'_>,
+    field: &str,
+    value: f64,
+    low: f64,
+    high: f64,
+    unit: &str,
+) -> Result<(), ScenarioError> {
+    if (low..=high).contains(&value) {
+        return Ok(());
+    }
+    let what = format!("{value} is out of range");
+    Err(source.error(
+        field,
+        what,
+        format!("give {low} to {high} {unit}").trim_end(),
+    ))
+}
+
+pub(super) fn terrain(source: &Source<'_>, file: &ScenarioFile) -> Result<Terrain, ScenarioError> {
+    let Some(table) = &file.terrain else {
+        return Err(source.error("terrain", "it is missing", "say what land is meant"));
+    };
+    let plan = |width, height, classes, seed: Option<u64>| Plan {
+        width,
+        height,
+        classes,
+        seed: seed.unwrap_or(file.seed),
+    };
+    let (field, made) = match (&table.file, table.uniform, table.natural, table.entropy) {
+        (Some(name), None, None, None) => {
+            let path = source.folder().join(name);
+            ("terrain.file", Terrain::load_with(&path, &table.load))
+        }
+        (None, Some(t), None, None) => {
+            let plan = plan(t.width, t.height, t.classes, t.seed);
+            ("terrain.uniform", generate::uniform(&plan))
+        }
+        (None, None, Some(t), None) => {
+            let plan = plan(t.width, t.height, t.classes, t.seed);
+            let made = generate::natural(&plan, t.obstacles, t.norm);
+            ("terrain.natural", made)
+        }
+        (None, None, None, Some(t)) => {
+            let plan = plan(t.width, t.height, t.classes, t.seed);
+            let wanted = generate::ByMetrics {
+                entropy: t.entropy,
+                entropy_tolerance: t.entropy_tolerance,
+                total_edge: t.total_edge,
+                edge_tolerance: t.edge_tolerance,
+            };
+            ("terrain.entropy", generate::by_metrics(&plan, &wanted))
+        }
+        _ => {
+            return Err(source.error(
+                "terrain",
+                "it is not clear what land is meant",
+                "give exactly one of file, uniform, natural, entropy",
+            ));
+        }
+    };
+    let made = made.map_err(|error| terrain_error(source, field, &error))?;
+    let mut terrain = match table.crop {
+        None => made,
+        Some(crop) => made
+            .crop(crop.x, crop.y, crop.width, crop.height)
+            .map_err(|error| terrain_error(source, "terrain.crop", &error))?,
+    };
+    if let Some(cell_m) = table.cell_m {
+        within(source, "terrain.cell_m", cell_m, 0.001, 100_000.0, "metres")?;
+        terrain.cell_m = cell_m;
+    }
+    Ok(terrain)
+}
+
+fn terrain_error(source: &Source<'_>, field: &str, error: &TerrainError) -> ScenarioError {
+    let remedy = match error {
+        TerrainError::Read { .. } => "file names are relative to the scenario file",
+        _ => "see maps/README.md",
+    };
+    source.error(field, error.to_string(), remedy)
+}
+
+/// What would be ignored is refused: a table for robots in formation without one, a choice that they do not have.
+pub(super) fn formation_only(
+    source: &Source<'_>,
+    file: &ScenarioFile,
+) -> Result<(), ScenarioError> {
+    let in_formation = file.in_formation();
+    if !in_formation && source.has("formation") {
+        return Err(source.error(
+            "formation",
+            "these robots keep no formation",
+            "give robots.formation, or leave this table out",
+        ));
+    }
+    if in_formation && matches!(file.route.replan, Some(ReplanName::UntilChanged)) {
+        return Err(source.error(
+            "route.replan",
+            "robots in formation search in each cell",
+            "give \"each_cell\", or leave it out",
+        ));
+    }
+    Ok(())
+}
+
+pub(super) fn faults(
+    source: &Source<'_>,
+    file: &ScenarioFile,
+    robots: &[Robot],
+) -> Result<Vec<Fault>, ScenarioError> {
+    let mut faults = Vec::with_capacity(file.fault.len());
+    for (index, fault) in file.fault.iter().enumerate() {
+        let robot = RobotId(fault.robot);
+        if robots.binary_search_by_key(&robot, |r| r.id).is_err() {
+            return Err(source.error(
+                &format!("fault[{index}].robot"),
+                format!("there is no robot {}", fault.robot),
+                "give the number of a robot of this scenario",
+            ));
+        }
+        for (name, seconds) in [("at_s", fault.at_s), ("down_s", fault.down_s)] {
+            let field = format!("fault[{index}].{name}");
+            within(source, &field, seconds, 0.0, 1e9, "seconds")?;
+        }
+        let tick = |seconds: f64| libm::ceil(seconds / file.tick_s) as u32;
+        faults.push(Fault {
+            robot,
+            from_tick: tick(fault.at_s),
+            to_tick: tick(fault.at_s + fault.down_s),
+        });
+    }
+    Ok(faults)
+}

@@ -1,0 +1,209 @@
+//! Scenarios: what to simulate, read from TOML and checked before anything runs.
+//!
+//! [`ScenarioFile`] documents every field. A wrong one gives an error that names the file, the line,
+//! the field and the remedy.
+
+mod authentication;
+mod check;
+mod params;
+mod plane;
+mod robots;
+mod schema;
+mod setup;
+mod source;
+
+pub use check::within;
+pub use params::{
+    ExitName, FormationTable, PredictionName, RecoveryName, ReplanName, RouteTable, Routing,
+};
+pub use plane::{
+    BallEntry, BoidsTable, CircleEntry, CloudEntry, GoalFlockTable, GuidanceName, HalfSpaceEntry,
+    LatticeTable, ModelName, OrcaTable, Order, OrderEntry, Place, PlaneRobotEntry, PlaneRobots,
+    PlaneSetup, PlaneTable, PushOutTable, SafetyName, Start, Target, WallEntry, circle_starts,
+};
+pub use robots::{Formation, Robot};
+pub use schema::{
+    AttackKind, AttackTable, AuthenticationTable, Crop, EntropyTable, FaultTable, FormationEntry,
+    GridTable, NaturalTable, RobotEntry, RobotsTable, ScatteredEntry, ScenEntry, ScenarioFile,
+    TerrainTable, UniformTable,
+};
+pub use source::ScenarioError;
+pub use source::Source;
+
+use crate::radio::RadioParams;
+use crate::terrain::Terrain;
+use crate::world::MoveRules;
+use staya_controller::auth::Key;
+use staya_controller::formation::FormationParams;
+use staya_controller::wire::RobotId;
+use std::path::Path;
+
+/// Where the fields are listed.
+const LIST: &str = "scenarios/README.md";
+
+/// What the command line may say instead of the file.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Overrides {
+    /// Instead of `seed`.
+    pub seed: Option<u64>,
+    /// Instead of `ticks`; at least 1.
+    pub ticks: Option<u32>,
+}
+
+/// A robot that goes down for a while.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// Which one.
+    pub robot: RobotId,
+    /// The first tick in which it stands and is silent.
+    pub from_tick: u32,
+    /// The tick in which it starts anew; not before `from_tick`.
+    pub to_tick: u32,
+}
+
+/// Somebody who wants the robots to go elsewhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Attack {
+    /// What it does.
+    pub kind: AttackKind,
+    /// Where it stands, metres.
+    pub place_m: [f64; 2],
+    /// The first tick in which it sends.
+    pub from_tick: u32,
+    /// The first tick in which it does not any more.
+    pub to_tick: u32,
+    /// Where it orders the robots to, metres.
+    pub lure_m: [f64; 2],
+    /// In whose name.
+    pub claims: RobotId,
+    /// Ticks from what it hears to its repetition.
+    pub delay_ticks: u32,
+}
+
+/// A checked scenario, ready to run.
+#[derive(Clone, Debug)]
+pub struct Scenario {
+    /// Its name.
+    pub name: String,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// Ticks after which the run ends.
+    pub ticks: u32,
+    /// Length of a tick, microseconds.
+    pub tick_us: u32,
+    /// The land; one flat cell when bodies in the plane have none.
+    pub terrain: Terrain,
+    /// How bodies move.
+    pub rules: MoveRules,
+    /// The radio.
+    pub radio: RadioParams,
+    /// Who takes part, by rising number; starts are free and no two are the same, nor are goals.
+    pub robots: Vec<Robot>,
+    /// The formation of robots 1, 2, ..., if they keep one.
+    pub formation: Option<Formation>,
+    /// Bodies in the plane or in space, if they do not move from cell to cell.
+    pub plane: Option<PlaneSetup>,
+    /// How robots find their ways.
+    pub route: Routing,
+    /// How robots keep a formation, if they do.
+    pub formation_params: FormationParams,
+    /// Robots that go down.
+    pub faults: Vec<Fault>,
+    /// What all robots share; `None`: they believe everybody.
+    pub key: Option<Key>,
+    /// What the owner of the key's file should know, as a line for people.
+    pub key_remark: Option<String>,
+    /// Those who have no key.
+    pub attacks: Vec<Attack>,
+}
+
+impl Scenario {
+    /// Reads and checks a scenario file and the files that it names.
+    ///
+    /// # Errors
+    /// [`ScenarioError`], naming file, line, field and remedy.
+    pub fn load(path: &Path, overrides: &Overrides) -> Result<Self, ScenarioError> {
+        let text = std::fs::read_to_string(path).map_err(|source| ScenarioError::Io {
+            path: path.to_owned(),
+            source,
+        })?;
+        Self::parse(&text, path, overrides)
+    }
+
+    /// As [`Scenario::load`], of a text that stands (or might stand) in the file `path`.
+    ///
+    /// # Errors
+    /// See [`Scenario::load`].
+    pub fn parse(text: &str, path: &Path, overrides: &Overrides) -> Result<Self, ScenarioError> {
+        let source = Source::new(path, text)?;
+        let mut file: ScenarioFile =
+            toml::from_str(source.text()).map_err(|error| source.serde_error(&error, LIST))?;
+        file.seed = overrides.seed.unwrap_or(file.seed);
+        file.ticks = overrides.ticks.unwrap_or(file.ticks);
+        check::general(&source, &file)?;
+        check::radio(&source, &file)?;
+        let (terrain, robots, formation, plane) = match &file.plane {
+            None => {
+                let terrain = check::terrain(&source, &file)?;
+                let (robots, formation) = robots::build(&source, &file, &terrain)?;
+                (terrain, robots, formation, None)
+            }
+            Some(table) => {
+                let land = match &file.terrain {
+                    Some(_) => Some(check::terrain(&source, &file)?),
+                    None => None,
+                };
+                let cells = match (&file.robots, &land) {
+                    (Some(_), Some(land)) => Some(robots::build(&source, &file, land)?),
+                    (Some(_), None) => {
+                        let remedy = "give [terrain], or plane.robots in metres";
+                        return Err(source.error("robots", "there are no cells", remedy));
+                    }
+                    (None, _) => None,
+                };
+                let (robots, formation) = cells.unzip();
+                let robots = robots.as_deref();
+                let (plane, robots) = plane::build(&source, &file, table, land.as_ref(), robots)?;
+                let land = land.unwrap_or_else(|| Terrain::flat(1, 1));
+                (land, robots, formation.flatten(), Some(plane))
+            }
+        };
+        check::numbers(&source, &file, &robots)?;
+        let (key, key_remark) = authentication::key(&source, &file, &robots)?.unzip();
+        let attacks = authentication::attacks(&source, &file, &robots)?;
+        let faults = check::faults(&source, &file, &robots)?;
+        check::formation_only(&source, &file)?;
+        let route = params::routing(&source, &file.route, &file.grid)?;
+        let formation_params = params::formation(&source, &file.formation)?;
+        Ok(Self {
+            name: file.name,
+            seed: file.seed,
+            ticks: file.ticks,
+            tick_us: check::micros(file.tick_s),
+            terrain,
+            rules: MoveRules {
+                norm: file.grid.norm,
+                corner_cutting: file.grid.corner_cutting,
+            },
+            radio: file.radio,
+            robots,
+            formation,
+            plane,
+            route,
+            formation_params,
+            faults,
+            key,
+            key_remark: key_remark.flatten(),
+            attacks,
+        })
+    }
+
+    /// Length of a tick, seconds.
+    #[must_use]
+    pub fn tick_s(&self) -> f64 {
+        f64::from(self.tick_us) / 1e6
+    }
+}
+
+#[cfg(test)]
+mod tests;

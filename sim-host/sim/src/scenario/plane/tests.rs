@@ -1,0 +1,458 @@
+use super::super::Overrides;
+use super::*;
+use proptest::prelude::*;
+use std::path::Path;
+
+const HEAD: &str = "name = \"t\"\nticks = 5\n";
+const PLANE: &str = "[plane]\nradius_m = 0.2\nmax_speed_mps = 1\n";
+const TWO: &str =
+    "[plane.robots]\nlist = [{ start_m = [0, 0], goal_m = [5, 0] }, { start_m = [3, 0, 1] }]\n";
+const LAND: &str = "[terrain]\nuniform = { width = 9, height = 9, classes = 1 }\ncell_m = 2\n";
+
+fn parse(text: &str) -> Result<Scenario, ScenarioError> {
+    Scenario::parse(text, Path::new("s.toml"), &Overrides::default())
+}
+
+fn setup(text: &str) -> PlaneSetup {
+    let scenario = parse(text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    scenario.plane.expect("robots in the plane")
+}
+
+#[test]
+fn the_smallest_plane_has_the_documented_defaults() {
+    let scenario = parse(&format!("{HEAD}{PLANE}{TWO}")).expect("good");
+    assert_eq!(scenario.robots.len(), 2);
+    let plane = scenario.plane.expect("robots in the plane");
+    assert_eq!(plane.abilities.max_acceleration_mps2, f64::INFINITY);
+    assert_eq!((plane.cruise_mps, plane.sight_m), (1.0, 10.0));
+    assert!((plane.tolerance_m - 0.02).abs() < 1e-12);
+    assert_eq!(
+        (plane.guidance, plane.safety, plane.has_terrain),
+        (GuidanceName::Waypoint, SafetyName::Orca, false)
+    );
+    assert_eq!(plane.orca, AvoidParams::default());
+    assert_eq!((plane.doubt.growth_mps, plane.doubt.most_m), (0.5, 0.2));
+    let [one, two] = &plane.starts[..] else {
+        panic!("two robots")
+    };
+    assert_eq!(one.places[0].position_m, [5.0, 0.0, 0.0]);
+    assert_eq!((two.position_m, two.places.len()), ([3.0, 0.0, 1.0], 0));
+}
+
+#[test]
+fn the_readme_says_the_defaults_of_orca() {
+    let readme = include_str!("../../../../../scenarios/README.md");
+    let row = |field: &str| {
+        let mut rows = readme.lines();
+        let row = rows.find(|line| line.starts_with(&format!("| `{field}`")));
+        let row = row.unwrap_or_else(|| panic!("no row of {field}"));
+        row.trim_end_matches(" |")
+            .rsplit(" | ")
+            .next()
+            .expect("a column")
+    };
+    let params = AvoidParams::<f32>::default();
+    let horizons = format!("{}, {}", params.horizon_s, params.wall_horizon_s);
+    assert_eq!(row("horizon_s"), horizons);
+    assert_eq!(row("share"), params.share.to_string());
+    assert_eq!(row("margin_m"), params.margin_m.to_string());
+}
+
+#[test]
+fn every_mistake_is_named_with_line_field_and_remedy() {
+    let with = |plane: &str| format!("{HEAD}{PLANE}{plane}{TWO}");
+    let after = |rest: &str| format!("{HEAD}{PLANE}{TWO}{rest}");
+    let robots = |robots: &str| format!("{HEAD}{PLANE}[plane.robots]\n{robots}\n");
+    let flock = |name: &str, table: &str, goals: &str| {
+        format!(
+            "{HEAD}{PLANE}guidance = \"{name}\"\n[plane.robots]\n\
+             cloud = {{ count = 2, from_m = [0, 0], to_m = [9, 9]{goals} }}\n[plane.{name}]\n{table}\n"
+        )
+    };
+    let cases = [
+        // The body.
+        (
+            with("").replace("radius_m = 0.2", "radius_m = -1"),
+            "s.toml:4: plane.radius_m: -1 is out of range; give 0.001 to 65 metres",
+        ),
+        (
+            with("").replace("max_speed_mps = 1", "max_speed_mps = 33"),
+            "s.toml:5: plane.max_speed_mps: 33 is out of range; give 0.001 to 32 m/s",
+        ),
+        (
+            with("max_acceleration_mps2 = nan\n"),
+            "s.toml:6: plane.max_acceleration_mps2: NaN is no acceleration",
+        ),
+        (
+            with("max_acceleration_mps2 = 0\n"),
+            "s.toml:6: plane.max_acceleration_mps2: 0 is no acceleration",
+        ),
+        (
+            with("cruise_mps = 0\n"),
+            "s.toml:6: plane.cruise_mps: 0 is out of range; give 0.001 to 1 m/s",
+        ),
+        (
+            with("tolerance_m = 0\n"),
+            "s.toml:6: plane.tolerance_m: 0 is out of range",
+        ),
+        (
+            with("sight_m = inf\n"),
+            "s.toml:6: plane.sight_m: inf is out of range",
+        ),
+        // Unknown names.
+        (
+            with("guidance = \"sheep\"\n"),
+            "s.toml:6: plane.guidance: unknown variant `sheep`",
+        ),
+        (
+            with("safety = \"luck\"\n"),
+            "s.toml:6: plane.safety: unknown variant `luck`",
+        ),
+        (
+            with("colour = 1\n"),
+            "s.toml:6: plane.colour: unknown field `colour`",
+        ),
+        (
+            robots("list = [{ start_m = [0] }]"),
+            "s.toml:7: plane.robots.list[0].start_m: expected [x, y] or [x, y, z]",
+        ),
+        // Who takes part.
+        (
+            format!("{HEAD}{PLANE}"),
+            "s.toml:3: plane.robots: it is not clear who takes part; give either plane.robots",
+        ),
+        (
+            robots(""),
+            "s.toml:6: plane.robots: it is not clear who takes part; give exactly one of",
+        ),
+        (
+            robots("list = []"),
+            "s.toml:7: plane.robots.list: nobody takes part",
+        ),
+        (
+            robots("circle = { count = 0, radius_m = 3 }"),
+            "s.toml:7: plane.robots.circle.count: 0 robots are no swarm",
+        ),
+        (
+            robots("circle = { count = 3, radius_m = nan }"),
+            "s.toml:7: plane.robots.circle.radius_m: NaN is out of range",
+        ),
+        (
+            robots("circle = { count = 1000001, radius_m = 3 }"),
+            "s.toml:7: plane.robots.circle.count: 1000001 robots",
+        ),
+        (
+            robots("circle = { count = 3, radius_m = 3 }\nlist = []"),
+            "s.toml:6: plane.robots: it is not clear who takes part",
+        ),
+        (
+            robots("cloud = { count = 100, from_m = [0, 0], to_m = [1, 1] }"),
+            "s.toml:7: plane.robots.cloud: the robots find no room",
+        ),
+        (
+            robots("cloud = { count = 1, from_m = [-inf, 0], to_m = [inf, 1] }"),
+            "s.toml:7: plane.robots.cloud.from_m: this is too far away",
+        ),
+        (
+            robots("cloud = { count = 1, from_m = [0, 0], to_m = [nan, 1] }"),
+            "s.toml:7: plane.robots.cloud.to_m: this is too far away",
+        ),
+        (
+            robots(
+                "cloud = { count = 1, from_m = [0, 0], to_m = [1, 1], velocity_to_mps = [99, 0] }",
+            ),
+            "s.toml:7: plane.robots.cloud.velocity_to_mps: this is too fast",
+        ),
+        (
+            robots(
+                "cloud = { count = 1, from_m = [0, 0], to_m = [1, 1], goals_m = [[1, 2], [3, 4]] }",
+            ),
+            "s.toml:7: plane.robots.cloud.goals_m: 2 goals are too many for guidance \"waypoint\"",
+        ),
+        (
+            format!("{HEAD}{LAND}{PLANE}{TWO}[robots]\nscattered = {{ count = 2 }}\n"),
+            "s.toml:9: plane.robots: it is not clear who takes part",
+        ),
+        (
+            format!("{HEAD}{PLANE}[robots]\nscattered = {{ count = 2 }}\n"),
+            "s.toml:6: robots: there are no cells; give [terrain]",
+        ),
+        // Where they are.
+        (
+            robots("list = [{ start_m = [0, 0] }, { start_m = [2000001, 0] }]"),
+            "s.toml:7: plane.robots.list[1].start_m: this is too far away; stay within 2000 km",
+        ),
+        (
+            robots("list = [{ start_m = [0, 0], goal_m = [0, nan] }]"),
+            "s.toml:7: plane.robots.list[0].goal_m: this is too far away",
+        ),
+        (
+            robots("list = [{ start_m = [0, 0], velocity_mps = [0, -32.5] }]"),
+            "s.toml:7: plane.robots.list[0].velocity_mps: this is too fast; give at most 32 m/s",
+        ),
+        (
+            robots("list = [{ start_m = [0, 0] }, { start_m = [4, 0] }, { start_m = [0, 0.39] }]"),
+            "s.toml:6: plane.robots: robots 1 and 3 overlap at the start; put them 0.4 m apart",
+        ),
+        (
+            robots("circle = { count = 40, radius_m = 2 }"),
+            "s.toml:6: plane.robots: robots 1 and 2 overlap at the start",
+        ),
+        // What goes with what.
+        (
+            with("guidance = \"route\"\n"),
+            "s.toml:6: plane.guidance: this guidance goes from cell to cell; give [terrain]",
+        ),
+        (
+            format!(
+                "{HEAD}{LAND}[robots]\nscattered = {{ count = 2 }}\n{PLANE}guidance = \"formation\"\n"
+            ),
+            "s.toml:11: plane.guidance: robots.formation and guidance \"formation\" go together",
+        ),
+        (
+            with("guidance = \"lattice\"\n"),
+            "s.toml:3: plane.lattice: this guidance needs distances",
+        ),
+        (
+            after("[plane.boids]\ncrowded_m = 1\nclosest_m = 2\n"),
+            "s.toml:8: plane.boids: these robots have another guidance",
+        ),
+        (
+            with("safety = \"push_out\"\n"),
+            "s.toml:3: plane.push_out: safety \"push_out\" and its table go together",
+        ),
+        (
+            after("[plane.push_out]\nmin_distance_m = 1\n"),
+            "s.toml:8: plane.push_out: safety \"push_out\" and its table go together",
+        ),
+        (
+            format!("{}[plane.orca]\nshare = 0.5\n", with("safety = \"none\"\n")),
+            "s.toml:9: plane.orca: these robots have another safety layer",
+        ),
+        // Obstacles.
+        (
+            after("[[plane.wall]]\npoints_m = [[1, 2]]\n"),
+            "s.toml:9: plane.wall[0].points_m: this is no wall; give two or more points",
+        ),
+        (
+            after("[[plane.wall]]\npoints_m = [[1, 2], [3, 1e300]]\n"),
+            "s.toml:9: plane.wall[0].points_m: this is no wall",
+        ),
+        (
+            after("[[plane.ball]]\ncenter_m = [1, 2]\nradius_m = 0\n"),
+            "s.toml:10: plane.ball[0].radius_m: 0 is out of range",
+        ),
+        (
+            after("[[plane.ball]]\ncenter_m = [nan, 2]\nradius_m = 1\n"),
+            "s.toml:9: plane.ball[0].center_m: this is too far away",
+        ),
+        (
+            after("[[plane.half_space]]\npoint_m = [0, inf]\nnormal = [1, 0]\n"),
+            "s.toml:9: plane.half_space[0].point_m: this is too far away",
+        ),
+        (
+            after("[[plane.half_space]]\npoint_m = [0, -9]\nnormal = [0, 0]\n"),
+            "s.toml:10: plane.half_space[0].normal: this is no direction",
+        ),
+        (
+            after("[[plane.ball]]\ncenter_m = [3.5, 0, 1]\nradius_m = 0.31\n"),
+            "s.toml:6: plane.robots: robot 2 starts in an obstacle",
+        ),
+        // Parameters.
+        (
+            after("[plane.orca]\nhorizon_s = 0\n"),
+            "s.toml:9: plane.orca.horizon_s: 0 is out of range; give 0.01 to 60 seconds",
+        ),
+        (
+            after("[plane.orca]\nshare = 1.1\n"),
+            "s.toml:9: plane.orca.share: 1.1 is out of range; give 0 to 1",
+        ),
+        (
+            after("[plane.orca]\ndoubt_m = -1\n"),
+            "s.toml:9: plane.orca.doubt_m: -1 is out of range",
+        ),
+        (
+            flock("lattice", "spacing_m = 1\nalgorithm = 4", ""),
+            "s.toml:11: plane.lattice.algorithm: there is no algorithm 4; give 1, 2 or 3",
+        ),
+        (
+            flock("lattice", "spacing_m = nan", ""),
+            "s.toml:10: plane.lattice.spacing_m: NaN is out of range",
+        ),
+        (
+            flock("goal_flock", "min_distance_m = 1\nneighborhood_m = 1", ""),
+            "s.toml:11: plane.goal_flock.neighborhood_m: 1 is out of range; give 2 to",
+        ),
+        (
+            flock(
+                "goal_flock",
+                "min_distance_m = 1",
+                ", goals_m = [[1, 1], [2, 2], [3, 3], [4, 4], [5, 5]]",
+            ),
+            "s.toml:8: plane.robots.cloud.goals_m: 5 goals are too many for guidance \"goal_flock\"",
+        ),
+        (
+            flock(
+                "goal_flock",
+                "min_distance_m = 1",
+                ", goals_m = [[1, 1]], goal_velocity_mps = [1, 0]",
+            ),
+            "s.toml:8: plane.robots.cloud.goal_velocity_mps: goals of guidance \"goal_flock\" do not move",
+        ),
+        (
+            flock(
+                "boids",
+                "crowded_m = 1\nclosest_m = 3",
+                ", goals_m = [[1, 1]]",
+            ),
+            "s.toml:8: plane.robots.cloud.goals_m: 1 goals are too many for guidance \"boids\"",
+        ),
+        (
+            flock("boids", "crowded_m = 1\nclosest_m = 3\nmax_turn = 4", ""),
+            "s.toml:12: plane.boids.max_turn: 4 is out of range",
+        ),
+        // Orders.
+        (
+            after("[[plane.order]]\nat_s = nan\nplace_m = [1, 1]\n"),
+            "s.toml:9: plane.order[0].at_s: NaN is out of range",
+        ),
+        (
+            after("[[plane.order]]\nat_s = 1\ngoal = 1\nplace_m = [1, 1]\n"),
+            "s.toml:10: plane.order[0].goal: robots with guidance \"waypoint\" have no goal 1",
+        ),
+        (
+            after("[[plane.order]]\nat_s = 1\nplace_m = [1, 9e6]\n"),
+            "s.toml:10: plane.order[0].place_m: this is too far away",
+        ),
+        (
+            after("[[plane.order]]\nat_s = 1\nplace_m = [1, 9]\nvelocity_mps = [33, 0]\n"),
+            "s.toml:11: plane.order[0].velocity_mps: this is too fast",
+        ),
+        (
+            flock(
+                "goal_flock",
+                "min_distance_m = 1\n[[plane.order]]\nat_s = 1\nplace_m = [1, 1]\nvelocity_mps = [1, 0]",
+                "",
+            ),
+            "s.toml:14: plane.order[0].velocity_mps: goals of guidance \"goal_flock\" do not move",
+        ),
+        (
+            flock(
+                "boids",
+                "crowded_m = 1\nclosest_m = 3\n[[plane.order]]\nat_s = 1\nplace_m = [1, 1]",
+                "",
+            ),
+            "s.toml:12: plane.order[0].goal: robots with guidance \"boids\" have no goal 0",
+        ),
+    ];
+    let mut wrong = String::new();
+    for (text, expected) in cases {
+        let refusal = match parse(&text) {
+            Err(error) => error.to_string(),
+            Ok(_) => "nothing".to_owned(),
+        };
+        if !refusal.starts_with(expected) || !refusal.contains("; ") {
+            wrong += &format!("expected {expected}\n     got {refusal}\n");
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong}");
+}
+
+#[test]
+fn walls_are_chains_and_polygons() {
+    let points = "points_m = [[1, 2], [3, 2], [3, 4]]";
+    let solids = |closed: &str| {
+        setup(&format!(
+            "{HEAD}{PLANE}{TWO}[[plane.wall]]\n{points}\n{closed}"
+        ))
+        .solids
+    };
+    let open = solids("");
+    assert_eq!(open.len(), 2);
+    let polygon = solids("closed = true\n");
+    assert_eq!(polygon[..2], open[..]);
+    assert_eq!(polygon[2], Solid::Wall([[3.0, 4.0], [1.0, 2.0]]));
+}
+
+#[test]
+fn a_normal_may_have_any_length() {
+    let text =
+        format!("{HEAD}{PLANE}{TWO}[[plane.half_space]]\npoint_m = [0, -9]\nnormal = [0, 8]\n");
+    let [Solid::Plane { normal, .. }] = setup(&text).solids[..] else {
+        panic!("one half-space")
+    };
+    assert_eq!(normal, [0.0, 1.0, 0.0]);
+}
+
+#[test]
+fn a_cloud_has_room_for_everybody_and_is_the_same_each_time() {
+    let text = format!(
+        "{HEAD}{PLANE}[plane.robots]\ncloud = {{ count = 100, from_m = [-4, 4], to_m = [4, -4] }}\n"
+    );
+    let starts = setup(&text).starts;
+    assert_eq!(starts, setup(&text).starts);
+    for (index, one) in starts.iter().enumerate() {
+        assert!(one.position_m[..2].iter().all(|x| x.abs() <= 4.0));
+        assert_eq!(one.position_m[2], 0.0);
+        for other in &starts[..index] {
+            let [dx, dy] = [0, 1].map(|i| one.position_m[i] - other.position_m[i]);
+            assert!(libm::hypot(dx, dy) >= 0.4);
+        }
+    }
+}
+
+#[test]
+fn orders_come_by_time_whatever_their_order_in_the_file() {
+    let order = |at_s: f64, x: f64| format!("[[plane.order]]\nat_s = {at_s}\nplace_m = [{x}, 0]\n");
+    let text = format!(
+        "tick_s = 0.5\n{HEAD}{PLANE}{TWO}{}{}{}",
+        order(3.1, 1.0),
+        order(0.0, 2.0),
+        order(3.0, 3.0)
+    );
+    let orders = setup(&text).orders;
+    let of = |order: &Order| (order.tick, order.target.position_m[0]);
+    let all: Vec<_> = orders.iter().map(of).collect();
+    assert_eq!(all, [(0, 2.0), (6, 3.0), (7, 1.0)]);
+}
+
+#[test]
+fn robots_of_the_grid_start_in_the_middles_of_their_cells() {
+    let text = format!(
+        "{HEAD}{LAND}[robots]\nlist = [{{ start = [0, 1], goal = [3, 8] }}]\n{PLANE}guidance = \"route\"\n"
+    );
+    let plane = setup(&text);
+    assert!(plane.has_terrain);
+    assert_eq!(plane.starts[0].position_m, [1.0, 3.0, 0.0]);
+    assert_eq!(plane.starts[0].places[0].position_m, [7.0, 17.0, 0.0]);
+}
+
+proptest! {
+    #[test]
+    fn arbitrary_changes_to_a_good_plane_never_panic(
+        changes in prop::collection::vec((0..2000_usize, "[-0-9a-z\\[\\]{}=., \\n\"]{0,3}"), 1..6),
+        which in 0..4_usize,
+    ) {
+        let robots = [
+            TWO,
+            "[plane.robots.circle]\ncount = 9\nradius_m = 4\nnoise_m = 0.1\n",
+            "[plane.robots.cloud]\ncount = 9\nfrom_m = [-4, 3]\nto_m = [9, 9]\nvelocity_to_mps = [1, 0.5]\n\
+             goals_m = [[1, 2]]\ngoal_velocity_mps = [0.1, 0]\n",
+            "[robots]\nlist = [{ start = [0, 0], goal = [3, 2] }]\n",
+        ][which];
+        let text = format!(
+            "tick_s = 0.5\n{HEAD}{LAND}{PLANE}max_acceleration_mps2 = 3\ncruise_mps = 0.5\ntolerance_m = 0.1\nsight_m = 5\n\
+             {robots}[[plane.wall]]\npoints_m = [[1, 12], [3, 12], [3, 14]]\nclosed = true\n[[plane.ball]]\ncenter_m = [15, -9]\n\
+             radius_m = 2\n[[plane.half_space]]\npoint_m = [0, -9]\nnormal = [0, 1]\n[plane.orca]\nhorizon_s = 3\nmargin_m = 0.01\n\
+             [[plane.order]]\nat_s = 2\nplace_m = [3, 4]\nvelocity_mps = [0.1, 0.1]\n"
+        );
+        prop_assert!(parse(&text).is_ok_and(|scenario| scenario.plane.is_some()), "{text}");
+        let mut text: Vec<char> = text.chars().collect();
+        for (at, change) in changes {
+            let at = at % text.len();
+            let end = (at + change.len()).min(text.len());
+            text.splice(at..end, change.chars());
+        }
+        let _ = parse(&text.into_iter().collect::<String>());
+    }
+}

@@ -1,0 +1,233 @@
+//! A text in TOML (a scenario, or another file that goes with one), and errors that point into it.
+
+use crate::file::read_remedy;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// Why there is no scenario, or other file of settings.
+#[derive(Debug, Error)]
+pub enum ScenarioError {
+    /// The file cannot be read.
+    #[error("{}: {source}; {}", .path.display(), read_remedy(.source))]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// Something in it is wrong.
+    #[error("{}:{line}: {}{what}; {remedy}", .path.display(), prefix(.field))]
+    Field {
+        /// The file.
+        path: PathBuf,
+        /// The line, counted from 1.
+        line: usize,
+        /// The field, as in `radio.loss` or `robots.list[2].start`; empty when none is known.
+        field: String,
+        /// What is wrong.
+        what: String,
+        /// What to do about it.
+        remedy: String,
+    },
+}
+
+fn prefix(field: &str) -> String {
+    if field.is_empty() {
+        String::new()
+    } else {
+        format!("{field}: ")
+    }
+}
+
+/// The text of a scenario and where each field stands in it.
+#[derive(Debug)]
+pub struct Source<'a> {
+    path: &'a Path,
+    text: &'a str,
+    root: Spanned<DeTable<'a>>,
+}
+
+impl<'a> Source<'a> {
+    /// Takes a text apart without asking what its fields mean.
+    pub fn new(path: &'a Path, text: &'a str) -> Result<Self, ScenarioError> {
+        match DeTable::parse(text) {
+            Ok(root) => Ok(Self { path, text, root }),
+            Err(error) => Err(ScenarioError::Field {
+                path: path.to_owned(),
+                line: line_of(text, error.span()),
+                field: String::new(),
+                what: first_line(error.message()),
+                remedy: "this is not TOML; strings need quotes, tables [brackets]".to_owned(),
+            }),
+        }
+    }
+
+    /// The file's folder: what file names in a scenario are relative to.
+    #[must_use]
+    pub fn folder(&self) -> &Path {
+        self.path.parent().unwrap_or(Path::new(""))
+    }
+
+    /// All of it.
+    #[must_use]
+    pub fn text(&self) -> &'a str {
+        self.text
+    }
+
+    /// An error about a field, which may be one that is not there (then its table is named).
+    pub fn error(
+        &self,
+        field: &str,
+        what: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> ScenarioError {
+        ScenarioError::Field {
+            path: self.path.to_owned(),
+            line: line_of(self.text, self.span(field)),
+            field: field.to_owned(),
+            what: what.into(),
+            remedy: remedy.into(),
+        }
+    }
+
+    /// What serde says of a field, said with file, line and field; `list` is where all fields are listed.
+    pub fn serde_error(&self, error: &toml::de::Error, list: &str) -> ScenarioError {
+        let mut field = String::new();
+        // The span of the whole file is empty.
+        if let Some(span) = error.span().filter(|span| !span.is_empty()) {
+            deepest(self.root.get_ref(), &span, &mut field);
+        }
+        ScenarioError::Field {
+            path: self.path.to_owned(),
+            line: line_of(self.text, error.span()),
+            field,
+            what: in_words(&first_line(error.message())),
+            remedy: format!("{list} lists all fields with their units"),
+        }
+    }
+
+    /// Whether the file has this field or table at its top level.
+    pub fn has(&self, name: &str) -> bool {
+        self.root.get_ref().get(name).is_some()
+    }
+
+    /// Where a field stands, or as much of the way to it as there is.
+    fn span(&self, field: &str) -> Option<Range<usize>> {
+        let mut span = None;
+        let mut table = self.root.get_ref();
+        for segment in field.split('.') {
+            let mut parts = segment.split(['[', ']']).filter(|part| !part.is_empty());
+            let Some(entry) = parts.next().and_then(|name| table.get(name)) else {
+                return span;
+            };
+            let mut value = entry;
+            span = Some(value.span());
+            for index in parts {
+                let element = match (value.get_ref(), index.parse::<usize>()) {
+                    (DeValue::Array(array), Ok(index)) => array.get(index),
+                    _ => None,
+                };
+                let Some(element) = element else { return span };
+                value = element;
+                span = Some(value.span());
+            }
+            match value.get_ref() {
+                DeValue::Table(inner) => table = inner,
+                _ => return span,
+            }
+        }
+        span
+    }
+}
+
+/// Appends the path to the innermost field around `span`.
+fn deepest(table: &DeTable<'_>, span: &Range<usize>, field: &mut String) {
+    for (key, value) in table {
+        if holds(&key.span(), span) || holds(&value.span(), span) {
+            if !field.is_empty() {
+                field.push('.');
+            }
+            field.push_str(key.get_ref());
+            deepest_value(value.get_ref(), span, field);
+            return;
+        }
+        // The span of a [table] header does not cover what follows it.
+        let tables = match value.get_ref() {
+            DeValue::Table(inner) => vec![(String::new(), inner)],
+            DeValue::Array(array) => array
+                .iter()
+                .enumerate()
+                .filter_map(|(index, element)| match element.get_ref() {
+                    DeValue::Table(inner) => Some((format!("[{index}]"), inner)),
+                    _ => None,
+                })
+                .collect(),
+            _ => Vec::new(),
+        };
+        for (index, inner) in tables {
+            let mut below = String::new();
+            deepest(inner, span, &mut below);
+            if !below.is_empty() {
+                if !field.is_empty() {
+                    field.push('.');
+                }
+                field.push_str(&format!("{}{index}.{below}", key.get_ref()));
+                return;
+            }
+        }
+    }
+}
+
+fn deepest_value(value: &DeValue<'_>, span: &Range<usize>, field: &mut String) {
+    match value {
+        DeValue::Table(inner) => deepest(inner, span, field),
+        DeValue::Array(array) => {
+            let found = array
+                .iter()
+                .enumerate()
+                .find(|(_, e)| holds(&e.span(), span));
+            if let Some((index, element)) = found {
+                field.push_str(&format!("[{index}]"));
+                deepest_value(element.get_ref(), span, field);
+            }
+        }
+        _ => {}
+    }
+}
+
+fn holds(outer: &Range<usize>, inner: &Range<usize>) -> bool {
+    outer.start <= inner.start && inner.end <= outer.end
+}
+
+fn line_of(text: &str, span: Option<Range<usize>>) -> usize {
+    let start = span.map_or(0, |span| span.start);
+    1 + text
+        .bytes()
+        .take(start)
+        .filter(|&byte| byte == b'\n')
+        .count()
+}
+
+fn first_line(message: &str) -> String {
+    message.lines().next().unwrap_or_default().to_owned()
+}
+
+/// Rust's names of types at the end of a message, as a person would say them.
+fn in_words(message: &str) -> String {
+    let Some((start, name)) = message.rsplit_once(", expected ") else {
+        return message.to_owned();
+    };
+    let name = match name {
+        "f64" => "a number",
+        "u8" => "a whole number from 0 to 255",
+        "u16" => "a whole number from 0 to 65535",
+        "u32" => "a whole number from 0 to 4294967295",
+        "u64" => "a whole number, 0 or more",
+        "i16" => "a whole number from -32768 to 32767",
+        other => other,
+    };
+    format!("{start}, expected {name}")
+}

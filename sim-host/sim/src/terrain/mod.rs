@@ -1,0 +1,304 @@
+//! The land: a grid of impassability, where it comes from, what describes it.
+//!
+//! Files: [`movingai`] (`.map`, `.scen`), [`esri`] heights (`.asc`) through [`slope`], [`ros`] (`.yaml` with `.pgm`; also
+//! the format that Staya writes). [`Terrain::load`] chooses by extension. [`generate`] makes land by chance, and
+//! [`metrics`] describes it.
+
+pub mod esri;
+pub mod generate;
+pub mod metrics;
+pub mod movingai;
+pub mod ros;
+pub mod rows;
+pub mod slope;
+
+mod error;
+mod text;
+
+pub use error::{MAX_SIDE, Place, TerrainError};
+pub use slope::SlopeRule;
+
+use error::format_error;
+pub use error::{parameter_error, read, write};
+use serde::{Deserialize, Serialize};
+use staya_controller::grid::{BLOCKED, Cell};
+use std::path::Path;
+
+/// How files become impassability where their format leaves it open.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct LoadOptions {
+    /// `.map`: impassability of swamp, 1..=255 (0: blocked).
+    pub swamp: u8,
+    /// `.asc`: cells along each side that become one before slopes are taken, 1 or more.
+    pub downsample: u16,
+    /// `.asc`: how slopes become impassability.
+    pub slope: SlopeRule,
+    /// `.yaml`: impassability of unknown cells in mode `trinary`; 0: blocked.
+    pub unknown: u8,
+    /// `.yaml`: classes in mode `scale` where the file names no number, 1..=255.
+    pub classes: u8,
+}
+
+impl Default for LoadOptions {
+    fn default() -> Self {
+        Self {
+            swamp: movingai::SWAMP,
+            downsample: 1,
+            slope: SlopeRule::default(),
+            unknown: BLOCKED,
+            classes: 9,
+        }
+    }
+}
+
+/// A grid of impassability. Row 0 is the southernmost row; picture and file rows exist only at the
+/// file edge.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Terrain {
+    width: u16,
+    height: u16,
+    /// Ticks to cross each cell, or [`BLOCKED`]; row by row from the south-west corner.
+    cells: Vec<u8>,
+    /// Side of a cell, metres.
+    pub cell_m: f64,
+    /// World position of the south-west corner, metres (x east, y north).
+    pub origin_m: [f64; 2],
+}
+
+impl Terrain {
+    /// Flat passable land of `width` x `height` cells of 1 m with impassability 1.
+    #[must_use]
+    pub fn flat(width: u16, height: u16) -> Self {
+        let cells = vec![1; usize::from(width) * usize::from(height)];
+        Self {
+            width,
+            height,
+            cells,
+            cell_m: 1.0,
+            origin_m: [0.0; 2],
+        }
+    }
+
+    /// Land of given impassabilities, row by row from the south-west corner, with cells of 1 m.
+    ///
+    /// # Errors
+    /// [`TerrainError::Size`] unless both sides are 1..=[`MAX_SIDE`] and `cells` has `width * height` entries.
+    pub fn from_cells(width: u16, height: u16, cells: Vec<u8>) -> Result<Self, TerrainError> {
+        let sides = 1..=MAX_SIDE;
+        let fits = cells.len() == usize::from(width) * usize::from(height);
+        if !(sides.contains(&width) && sides.contains(&height) && fits) {
+            return Err(TerrainError::Size {
+                width: width.into(),
+                height: height.into(),
+                cells: cells.len(),
+            });
+        }
+        Ok(Self {
+            width,
+            height,
+            cells,
+            cell_m: 1.0,
+            origin_m: [0.0; 2],
+        })
+    }
+
+    /// Reads a terrain file with the default [`LoadOptions`].
+    ///
+    /// # Errors
+    /// See [`Terrain::load_with`].
+    pub fn load(path: &Path) -> Result<Self, TerrainError> {
+        Self::load_with(path, &LoadOptions::default())
+    }
+
+    /// Reads a terrain file: `.map`, `.asc`, or `.yaml` / `.yml` with the `.pgm` that it names.
+    ///
+    /// # Errors
+    /// [`TerrainError`], naming file, line and remedy.
+    pub fn load_with(path: &Path, options: &LoadOptions) -> Result<Self, TerrainError> {
+        let extension = path.extension().and_then(|extension| extension.to_str());
+        match extension.unwrap_or("").to_ascii_lowercase().as_str() {
+            "map" => movingai::parse_map(&read(path)?, path, options.swamp),
+            "asc" => {
+                let heights = esri::parse_heights(&read(path)?, path)?;
+                let terrain = options
+                    .slope
+                    .apply(&heights.downsample(options.downsample)?)?;
+                if terrain.cells.iter().all(|u| *u == BLOCKED) {
+                    return Err(format_error(
+                        path,
+                        Place::File,
+                        "every cell is steeper than the maximum slope or unknown",
+                        "heights and cellsize must both be in metres (project grids in degrees first); or raise slope.max_slope",
+                    ));
+                }
+                Ok(terrain)
+            }
+            "yaml" | "yml" => ros::load(path, options),
+            "pgm" => Err(parameter_error(
+                format!("{} is the picture of a map", path.display()),
+                "name the .yaml file that describes it",
+            )),
+            _ => Err(TerrainError::UnknownKind(path.to_owned())),
+        }
+    }
+
+    /// The piece of `width` x `height` cells whose south-west cell is column `x`, row `y`; it stays where it lies in the world.
+    ///
+    /// # Errors
+    /// [`TerrainError::Crop`] unless the piece has cells and all of them are on the map.
+    pub fn crop(&self, x: u16, y: u16, width: u16, height: u16) -> Result<Self, TerrainError> {
+        let (right, top) = (
+            u32::from(x) + u32::from(width),
+            u32::from(y) + u32::from(height),
+        );
+        let inside = right <= u32::from(self.width) && top <= u32::from(self.height);
+        if !inside || width == 0 || height == 0 {
+            return Err(TerrainError::Crop {
+                x,
+                y,
+                width,
+                height,
+                map_width: self.width,
+                map_height: self.height,
+            });
+        }
+        let columns = usize::from(x)..usize::from(x) + usize::from(width);
+        let cells = self
+            .cells
+            .chunks_exact(self.width.into())
+            .skip(y.into())
+            .take(height.into())
+            .flat_map(|row| &row[columns.clone()])
+            .copied()
+            .collect();
+        Ok(Self {
+            width,
+            height,
+            cells,
+            cell_m: self.cell_m,
+            origin_m: [
+                self.origin_m[0] + f64::from(x) * self.cell_m,
+                self.origin_m[1] + f64::from(y) * self.cell_m,
+            ],
+        })
+    }
+
+    /// Cells from west to east.
+    #[must_use]
+    pub const fn width(&self) -> u16 {
+        self.width
+    }
+
+    /// Cells from south to north.
+    #[must_use]
+    pub const fn height(&self) -> u16 {
+        self.height
+    }
+
+    /// Impassabilities, row by row from the south-west corner.
+    #[must_use]
+    pub fn cells(&self) -> &[u8] {
+        &self.cells
+    }
+
+    /// Position of a cell in [`Terrain::cells`]; `None` outside the map.
+    #[must_use]
+    pub fn index(&self, cell: Cell) -> Option<usize> {
+        let (x, y) = (u16::try_from(cell.x).ok()?, u16::try_from(cell.y).ok()?);
+        (x < self.width && y < self.height)
+            .then(|| usize::from(y) * usize::from(self.width) + usize::from(x))
+    }
+
+    /// Ticks to cross a cell; [`BLOCKED`] for walls and everything outside the map.
+    #[must_use]
+    pub fn get(&self, cell: Cell) -> u8 {
+        self.index(cell).map_or(BLOCKED, |at| self.cells[at])
+    }
+
+    /// Sets the impassability of a cell; a cell outside the map is ignored.
+    pub fn set(&mut self, cell: Cell, impassability: u8) {
+        if let Some(at) = self.index(cell) {
+            self.cells[at] = impassability;
+        }
+    }
+
+    /// Whether a robot can stand there.
+    #[must_use]
+    pub fn is_passable(&self, cell: Cell) -> bool {
+        self.get(cell) != BLOCKED
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_that_do_not_fit_are_refused() {
+        assert!(Terrain::from_cells(2, 3, vec![1; 6]).is_ok());
+        assert!(Terrain::from_cells(2, 3, vec![1; 5]).is_err());
+        assert!(Terrain::from_cells(0, 3, vec![]).is_err());
+        assert!(Terrain::from_cells(32_768, 1, vec![1; 32_768]).is_err());
+        assert!(Terrain::from_cells(32_767, 1, vec![1; 32_767]).is_ok());
+    }
+
+    #[test]
+    fn a_piece_keeps_its_cells_and_its_place_in_the_world() {
+        let mut map = Terrain::from_cells(4, 3, (1..=12).collect()).unwrap();
+        map.cell_m = 2.0;
+        map.origin_m = [10.0, 20.0];
+        let piece = map.crop(1, 1, 2, 2).unwrap();
+        assert_eq!(piece.cells(), [6, 7, 10, 11]);
+        assert_eq!((piece.cell_m, piece.origin_m), (2.0, [12.0, 22.0]));
+        assert_eq!(map.crop(0, 0, 4, 3).unwrap(), map);
+        for (x, y, width, height) in [
+            (3, 0, 2, 1),
+            (0, 0, 0, 1),
+            (0, 3, 1, 1),
+            (u16::MAX, 0, 2, 1),
+        ] {
+            let message = map.crop(x, y, width, height).unwrap_err().to_string();
+            assert!(message.contains("leaves the map of 4 x 3"), "{message}");
+        }
+    }
+
+    #[test]
+    fn the_maps_that_come_with_staya_load() {
+        let maps = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../maps");
+        let sizes = [
+            ("jacksboro.asc", (324, 344)),
+            ("figure-5.map", (60, 30)),
+            ("arena-40.map", (40, 30)),
+            ("office.yaml", (48, 32)),
+        ];
+        for (name, size) in sizes {
+            let terrain = Terrain::load(&maps.join(name)).unwrap();
+            assert_eq!((terrain.width(), terrain.height()), size, "{name}");
+        }
+    }
+
+    #[test]
+    fn unknown_kinds_of_files_are_named_with_the_known_ones() {
+        let message = |name: &str| Terrain::load(Path::new(name)).unwrap_err().to_string();
+        assert!(message("a.tif").contains("a.tif: unknown kind of terrain file; use .map"));
+        assert!(message("a").contains("unknown kind"));
+        assert!(message("a.pgm").contains("name the .yaml file"));
+        assert!(message("no/such.map").starts_with("no/such.map: "));
+    }
+
+    #[test]
+    fn heights_in_a_grid_of_degrees_are_refused_with_the_remedy() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("degrees.asc");
+        let text = "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 0.00083\n100 130\n";
+        std::fs::write(&path, text).unwrap();
+        let message = Terrain::load(&path).unwrap_err().to_string();
+        assert!(
+            message.contains("degrees.asc: every cell is steeper"),
+            "{message}"
+        );
+        std::fs::write(&path, text.replace("0.00083", "92")).unwrap();
+        assert_eq!(Terrain::load(&path).unwrap().cells(), [6, 6]);
+    }
+}

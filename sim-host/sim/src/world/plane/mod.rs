@@ -1,0 +1,225 @@
+//! Bodies in the plane or in space: discs (balls) that take the velocity they are told, as far as their inertia and the
+//! land under them allow.
+//!
+//! This is no physics engine: nothing stops a body but its own robot. Bodies pass through each other and through
+//! obstacles, and each such overlap is counted, so that a controller cannot lean on the world to be safe.
+
+mod solid;
+
+pub use solid::Solid;
+pub use solid::narrow;
+
+use crate::nearby::{Cells, Query, Search, Space};
+use crate::terrain::Terrain;
+use staya_controller::agent::Command;
+use staya_controller::body::Body as Limits;
+use staya_controller::geom::Vec3;
+use staya_controller::grid::{BLOCKED, Cell};
+use staya_controller::wire::RobotId;
+
+/// A robot's body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Disc {
+    /// The robot.
+    pub id: RobotId,
+    /// Radius, metres.
+    pub radius_m: f64,
+    /// World position of its centre, metres.
+    pub position_m: [f64; 3],
+    /// World velocity, metres per second.
+    pub velocity_mps: [f64; 3],
+}
+
+/// What bodies can do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Abilities {
+    /// Highest speed on easy land (impassability 1) and off the map, m/s; u times less where the land takes u times
+    /// longer to cross.
+    pub max_speed_mps: f64,
+    /// Highest acceleration, m/s^2; infinite: none.
+    pub max_acceleration_mps2: f64,
+    /// Length of a tick, seconds.
+    pub step_s: f64,
+}
+
+/// Bodies, land and obstacles.
+#[derive(Clone, Debug)]
+pub struct Plane {
+    abilities: Abilities,
+    terrain: Option<Terrain>,
+    solids: Vec<Solid>,
+    discs: Vec<Disc>,
+    centers: Vec<[f64; 3]>,
+    index: Cells<f64, 3>,
+    largest_m: f64,
+}
+
+/// How near bodies are to each other and to obstacles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clearance {
+    /// Least distance between the surfaces of two bodies, metres, negative when they overlap; infinite when no two are
+    /// within three radii of each other.
+    pub bodies_m: f64,
+    /// Least distance between a body's surface and an obstacle, metres; infinite without obstacles.
+    pub solids_m: f64,
+    /// Pairs of bodies that overlap.
+    pub overlaps: u64,
+    /// Bodies that overlap an obstacle, or whose centre is in a blocked cell.
+    pub intrusions: u64,
+}
+
+impl Clearance {
+    /// Nothing is near.
+    pub const FREE: Self = Self {
+        bodies_m: f64::INFINITY,
+        solids_m: f64::INFINITY,
+        overlaps: 0,
+        intrusions: 0,
+    };
+}
+
+/// Less overlap than this is rounding, metres.
+const ROUNDING_M: f64 = 1e-9;
+
+impl Plane {
+    /// A world with these bodies.
+    #[must_use]
+    pub fn new(
+        abilities: Abilities,
+        terrain: Option<Terrain>,
+        solids: Vec<Solid>,
+        discs: Vec<Disc>,
+    ) -> Self {
+        let largest_m = discs.iter().map(|disc| disc.radius_m).fold(0.0, f64::max);
+        Self {
+            abilities,
+            terrain,
+            solids,
+            centers: Vec::with_capacity(discs.len()),
+            index: Cells::new(Space::OPEN, (3.0 * largest_m).max(1e-3)),
+            largest_m,
+            discs,
+        }
+    }
+
+    /// The bodies, in the order of their robots.
+    #[must_use]
+    pub fn discs(&self) -> &[Disc] {
+        &self.discs
+    }
+
+    /// The obstacles.
+    #[must_use]
+    pub fn solids(&self) -> &[Solid] {
+        &self.solids
+    }
+
+    /// The land, if there is any.
+    #[must_use]
+    pub const fn terrain(&self) -> Option<&Terrain> {
+        self.terrain.as_ref()
+    }
+
+    /// The cell of the land under a place; `None` off the map and without land.
+    #[must_use]
+    pub fn cell(&self, position_m: [f64; 3]) -> Option<Cell> {
+        let terrain = self.terrain.as_ref()?;
+        let at = |axis: usize| {
+            let cells = (position_m[axis] - terrain.origin_m[axis]) / terrain.cell_m;
+            (cells >= 0.0 && cells < f64::from(i16::MAX)).then_some(cells as i16)
+        };
+        let cell = Cell::new(at(0)?, at(1)?);
+        terrain.index(cell).map(|_| cell)
+    }
+
+    /// How fast a body can go at a place, m/s. In a blocked cell, where it should not be, as on the worst land.
+    #[must_use]
+    pub fn max_speed_mps(&self, position_m: [f64; 3]) -> f64 {
+        let cell = self.cell(position_m);
+        let land = cell.zip(self.terrain.as_ref());
+        let ticks = match land.map(|(cell, terrain)| terrain.get(cell)) {
+            None => 1,
+            Some(BLOCKED) => 9,
+            Some(ticks) => ticks,
+        };
+        self.abilities.max_speed_mps / f64::from(ticks)
+    }
+
+    /// Moves the bodies for one tick as their robots command; `commands[i]` belongs to body `i`. A body goes at even speed
+    /// throughout the tick; one that is told to hold, or to move by cells, brakes.
+    ///
+    /// # Panics
+    /// When there are fewer commands than bodies.
+    pub fn advance(&mut self, commands: &[Command<f32>]) {
+        assert!(
+            commands.len() >= self.discs.len(),
+            "a command for each body"
+        );
+        for (index, command) in commands.iter().enumerate().take(self.discs.len()) {
+            let wish = match *command {
+                Command::Velocity(v) => Vec3::new(v.x.into(), v.y.into(), v.z.into()),
+                Command::Hold | Command::Move(_) => Vec3::ZERO,
+            };
+            let disc = self.discs[index];
+            let [vx, vy, vz] = disc.velocity_mps;
+            let limits = Limits {
+                id: disc.id,
+                velocity_mps: Vec3::new(vx, vy, vz),
+                radius_m: disc.radius_m,
+                max_speed_mps: self.max_speed_mps(disc.position_m),
+                max_acceleration_mps2: self.abilities.max_acceleration_mps2,
+                step_s: self.abilities.step_s,
+            };
+            let v = limits.reach(wish);
+            let disc = &mut self.discs[index];
+            disc.velocity_mps = [v.x, v.y, v.z];
+            for (place, speed) in disc.position_m.iter_mut().zip(disc.velocity_mps) {
+                *place += speed * self.abilities.step_s;
+            }
+        }
+    }
+
+    /// How near bodies are to each other and to obstacles now. O(bodies x (neighbours + obstacles)).
+    pub fn clearance(&mut self) -> Clearance {
+        self.centers.clear();
+        self.centers
+            .extend(self.discs.iter().map(|disc| disc.position_m));
+        self.index.rebuild(&self.centers);
+        let mut clearance = Clearance::FREE;
+        let mut found = Vec::new();
+        for (number, disc) in (0..).zip(&self.discs) {
+            let query = Query {
+                at: disc.position_m,
+                radius: 3.0 * self.largest_m,
+                most: usize::MAX,
+                except: Some(number),
+            };
+            self.index.within(&query, &mut found);
+            for near in &found {
+                let other = &self.discs[near.index as usize];
+                let gap = near.distance_squared.sqrt() - disc.radius_m - other.radius_m;
+                clearance.bodies_m = clearance.bodies_m.min(gap);
+                if near.index > number && gap < -ROUNDING_M {
+                    clearance.overlaps += 1;
+                }
+            }
+            let gaps = self
+                .solids
+                .iter()
+                .map(|solid| solid.distance_m(disc.position_m));
+            let gap = gaps.fold(f64::INFINITY, f64::min) - disc.radius_m;
+            clearance.solids_m = clearance.solids_m.min(gap);
+            let is_in_wall = self
+                .cell(disc.position_m)
+                .zip(self.terrain.as_ref())
+                .is_some_and(|(cell, terrain)| terrain.get(cell) == BLOCKED);
+            if gap < -ROUNDING_M || is_in_wall {
+                clearance.intrusions += 1;
+            }
+        }
+        clearance
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,82 @@
+//! What stands in the plane and does not move.
+
+use staya_controller::geom::{Vec2, Vec3};
+use staya_controller::obstacle::Obstacle;
+
+/// An obstacle in world coordinates, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Solid {
+    /// An upright wall of no thickness between two points.
+    Wall([[f64; 2]; 2]),
+    /// A ball, in the plane a disc.
+    Ball {
+        /// Its centre.
+        center_m: [f64; 3],
+        /// Its radius.
+        radius_m: f64,
+    },
+    /// Everything behind a plane.
+    Plane {
+        /// A point of the plane.
+        point_m: [f64; 3],
+        /// Unit vector out of the obstacle.
+        normal: [f64; 3],
+    },
+}
+
+impl Solid {
+    /// The obstacle as it is seen from a place: relative to it, to the precision of `f64`.
+    #[must_use]
+    pub fn seen_from(&self, place_m: [f64; 3]) -> Obstacle<f64> {
+        let flat = |point: [f64; 2]| Vec2::new(point[0] - place_m[0], point[1] - place_m[1]);
+        let way = |point: [f64; 3]| {
+            Vec3::new(
+                point[0] - place_m[0],
+                point[1] - place_m[1],
+                point[2] - place_m[2],
+            )
+        };
+        match *self {
+            Self::Wall(ends) => Obstacle::Wall(ends.map(flat)),
+            Self::Ball { center_m, radius_m } => Obstacle::Ball {
+                center_m: way(center_m),
+                radius_m,
+            },
+            Self::Plane { point_m, normal } => {
+                let normal = Vec3::new(normal[0], normal[1], normal[2]);
+                Obstacle::Plane {
+                    normal,
+                    distance_m: -way(point_m).dot(normal),
+                }
+            }
+        }
+    }
+
+    /// Distance from a place to the obstacle, metres; negative inside.
+    #[must_use]
+    pub fn distance_m(&self, place_m: [f64; 3]) -> f64 {
+        match (self.seen_from(place_m).nearest_point(), *self) {
+            (Some((_, distance_m)), _) => distance_m,
+            // In the very centre.
+            (None, Self::Ball { radius_m, .. }) => -radius_m,
+            (None, _) => f64::INFINITY,
+        }
+    }
+}
+
+/// An obstacle in the controller's numbers; robot-relative, so that they are small.
+pub fn narrow(obstacle: &Obstacle<f64>) -> Obstacle<f32> {
+    let flat = |v: Vec2<f64>| Vec2::new(v.x as f32, v.y as f32);
+    let way = |v: Vec3<f64>| Vec3::new(v.x as f32, v.y as f32, v.z as f32);
+    match *obstacle {
+        Obstacle::Wall(ends) => Obstacle::Wall(ends.map(flat)),
+        Obstacle::Ball { center_m, radius_m } => Obstacle::Ball {
+            center_m: way(center_m),
+            radius_m: radius_m as f32,
+        },
+        Obstacle::Plane { normal, distance_m } => Obstacle::Plane {
+            normal: way(normal),
+            distance_m: distance_m as f32,
+        },
+    }
+}

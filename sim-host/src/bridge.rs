@@ -1,0 +1,254 @@
+//! `staya bridge SCENARIO`: the simulated swarm for ground stations and scripts, by MAVLink.
+
+use anyhow::Result;
+use clap::Args;
+use staya_console::{Ended, Global, Progress, Stop, print, print_json};
+use staya_mav::Endpoint;
+use staya_mav::bridge::{Options, Report, Swarm};
+use staya_mav::geo::{Global as Place, Origin};
+use staya_mavlink::signing::Signing;
+use staya_sim::key::{KeyFile, timestamp};
+use staya_sim::scenario::{Overrides, Scenario};
+use std::fmt::Write as _;
+use std::io::{self, Write as _};
+use std::path::PathBuf;
+
+/// Run a scenario in real time, each robot a MAVLink vehicle that ground stations and scripts see and command.
+#[derive(Args, Clone, Debug)]
+#[command(allow_negative_numbers = true)]
+pub struct BridgeArgs {
+    /// The scenario, a .toml file, with at most 254 robots.
+    scenario: PathBuf,
+    /// A line to clients: udpout:HOST:PORT, udpin:HOST:PORT, tcpin:HOST:PORT, tcpout:HOST:PORT or serial:PORT,baud=N; may be repeated.
+    #[arg(long, value_name = "LINE", default_value = "udpout:127.0.0.1:14550")]
+    mavlink: Vec<Endpoint>,
+    /// Simulated seconds in a second.
+    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = speed)]
+    speed: f64,
+    /// Simulated seconds after which to end [default: when Ctrl-C is pressed].
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    seconds: Option<f64>,
+    /// Ticks after which to end, instead.
+    #[arg(long, value_name = "N", conflicts_with = "seconds", value_parser = clap::value_parser!(u32).range(1..))]
+    ticks: Option<u32>,
+    /// Positions a second of each vehicle, of each kind, until a client asks for another rate.
+    #[arg(long, value_name = "HZ", default_value_t = 10.0, value_parser = rate)]
+    rate: f64,
+    /// Let the robots wait, disarmed, for the operator; otherwise they go their own ways until somebody commands.
+    #[arg(long)]
+    disarmed: bool,
+    /// Where on the Earth the scenario's origin is: degrees north, degrees east, metres above the sea.
+    #[arg(long, value_name = "LAT,LON,ALT", default_value = "47.397742,8.545594,488", value_parser = origin)]
+    origin: Origin,
+    /// Sign what is sent, and refuse what is not signed with this key: a file with 64 hex digits, or "passphrase: WORDS".
+    #[arg(long, value_name = "FILE")]
+    key: Option<PathBuf>,
+    /// Keep all frames in a log that MAVExplorer and mavlogdump read.
+    #[arg(long, value_name = "FILE")]
+    tlog: Option<PathBuf>,
+    /// Seed of everything random, instead of the scenario's.
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+}
+
+/// A number within limits.
+fn within(text: &str, least: f64, most: f64) -> Result<f64, String> {
+    let value: Option<f64> = text.parse().ok();
+    value
+        .filter(|value| (least..=most).contains(value))
+        .ok_or_else(|| format!("a number from {least} to {most}"))
+}
+
+fn speed(text: &str) -> Result<f64, String> {
+    within(text, 0.01, 1000.0)
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    within(text, 0.001, 1e6)
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    within(text, 0.1, 1000.0)
+}
+
+fn origin(text: &str) -> Result<Origin, String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    let place = match numbers.as_deref() {
+        Ok(&[latitude_deg, longitude_deg, altitude_m]) => Some(Place {
+            latitude_deg,
+            longitude_deg,
+            altitude_m,
+        }),
+        _ => None,
+    };
+    place
+        .and_then(Origin::new)
+        .ok_or_else(|| "three numbers: -90 to 90, -180 to 180, metres".into())
+}
+
+/// The lines as they were given, and where those are that listen.
+fn lines(swarm: &Swarm, endpoints: &[Endpoint]) -> String {
+    let named = endpoints.iter().enumerate().map(|(line, endpoint)| {
+        let local = swarm.lines().local(line);
+        local.map_or_else(
+            || endpoint.to_string(),
+            |local| format!("{endpoint} (here {local})"),
+        )
+    });
+    named.collect::<Vec<_>>().join(", ")
+}
+
+/// Tells people something beside the results.
+fn say(remark: Option<&str>) {
+    if let Some(remark) = remark {
+        // Standard error may be closed; it is only a remark.
+        let _ = writeln!(io::stderr(), "staya: {remark}");
+    }
+}
+
+impl BridgeArgs {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// A scenario or key that cannot be read or is wrong, too many robots, a line that cannot be opened, a log that cannot be written.
+    pub fn run(&self, global: &Global) -> Result<Ended> {
+        let overrides = Overrides {
+            seed: self.seed,
+            ticks: None,
+        };
+        let scenario = Scenario::load(&self.scenario, &overrides)?;
+        say(scenario.key_remark.as_deref());
+        let ticks = match (self.ticks, self.seconds) {
+            (Some(ticks), _) => Some(ticks),
+            (None, Some(seconds)) => Some(libm::ceil(seconds / scenario.tick_s()) as u32),
+            (None, None) => None,
+        };
+        let signing = match &self.key {
+            Some(path) => {
+                let file = KeyFile::read(path)?;
+                say(file.remark.as_deref());
+                Some(Signing::new(file.key, 0, timestamp()))
+            }
+            None => None,
+        };
+        let options = Options {
+            endpoints: self.mavlink.clone(),
+            speed: self.speed,
+            ticks,
+            position_hz: self.rate,
+            starts_armed: !self.disarmed,
+            origin: self.origin,
+            signing,
+            tlog: self.tlog.clone(),
+        };
+        let stop = Stop::on_ctrl_c()?;
+        let swarm = Swarm::new(&scenario, options)?;
+        let count = scenario.robots.len();
+        let lines = lines(&swarm, &self.mavlink);
+        // What has no end of its own has no progress.
+        let mut progress = ticks.map(|ticks| Progress::new(&scenario.name, ticks.into(), global));
+        if progress.is_none() && !global.quiet {
+            say(Some(&format!("{count} vehicles at {lines}; Ctrl-C ends")));
+        }
+        let mut shown = None;
+        let report = swarm.run(|ticks| {
+            if let Some(progress) = &mut progress
+                && shown != Some(ticks)
+            {
+                shown = Some(ticks);
+                progress.set(ticks.into(), || {
+                    format!("ticks, {count} vehicles at {lines}")
+                });
+            }
+            stop.is_requested()
+        })?;
+        if let Some(progress) = progress {
+            progress.finish();
+        }
+        if global.json {
+            print_json(&report)?;
+        } else {
+            print(&table(&scenario.name, &report)?)?;
+        }
+        // Without an end of its own, Ctrl-C is how it ends.
+        Ok(match ticks {
+            None => Ended::Done,
+            Some(_) => Ended::by(&stop),
+        })
+    }
+}
+
+/// The figures for a reader.
+fn table(name: &str, report: &Report) -> Result<String, std::fmt::Error> {
+    let mut text = String::new();
+    writeln!(text, "{name}")?;
+    let mut line = |name: &str, value: String| writeln!(text, "  {name:<16}{value}");
+    line("vehicles", report.vehicles.to_string())?;
+    line(
+        "simulated",
+        format!(
+            "{} s in {} ticks, {:.1} s on the wall",
+            report.sim_seconds, report.ticks, report.wall_seconds
+        ),
+    )?;
+    line(
+        "deadlines",
+        format!(
+            "{} of {} missed, slowest tick {:.4} s",
+            report.deadlines_missed, report.ticks, report.slowest_seconds
+        ),
+    )?;
+    let commands = report.commands.iter();
+    let commands: Vec<_> = commands
+        .map(|(result, count)| format!("{count} {result}"))
+        .collect();
+    let commands = match commands.is_empty() {
+        true => "none".into(),
+        false => commands.join(", "),
+    };
+    line("commands", commands)?;
+    line(
+        "frames dropped",
+        format!(
+            "{} for nobody here, {} without a good signature",
+            report.frames_ignored, report.frames_refused
+        ),
+    )?;
+    line("collisions", report.collisions.to_string())?;
+    line("trace hash", report.trace_hash.clone())?;
+    writeln!(
+        text,
+        "\n{:<32}{:>10}{:>10}{:>12}{:>8}{:>12}{:>8}",
+        "line", "frames in", "out", "kB/s out", "lost", "junk bytes", "lost in"
+    )?;
+    for line in &report.lines {
+        writeln!(
+            text,
+            "{:<32}{:>10}{:>10}{:>12.1}{:>8}{:>12}{:>8}",
+            line.endpoint,
+            line.frames_in,
+            line.frames_out,
+            line.bytes_out_per_s / 1000.0,
+            line.lost_out,
+            line.junk_bytes,
+            line.lost_in
+        )?;
+    }
+    Ok(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn origins_are_places_on_the_earth() {
+        let zurich = origin("47.4, 8.5,488").expect("a place").place();
+        assert_eq!((zurich.latitude_deg, zurich.altitude_m), (47.4, 488.0));
+        for bad in [
+            "", "1,2", "1,2,3,4", "91,0,0", "0,181,0", "a,b,c", "nan,0,0",
+        ] {
+            assert!(origin(bad).is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! `staya companion CONFIG.toml`: the controller beside autopilots.
+
+use anyhow::Result;
+use clap::Args;
+use staya_console::{Ended, Global, Stop, print, print_json};
+use staya_mav::Tlog;
+use staya_mav::companion::{Config, Options, run};
+use std::path::PathBuf;
+
+/// Steer vehicles of ArduPilot or PX4 as a swarm.
+#[derive(Args, Clone, Debug)]
+pub struct CompanionArgs {
+    /// The configuration, a .toml file; docs/autopilots.md lists its fields, companions/ has examples.
+    config: PathBuf,
+    /// Show the messages that would be sent, and send nothing.
+    #[arg(long)]
+    dry_run: bool,
+    /// End after so long; without it, at Ctrl-C.
+    #[arg(long, value_name = "N", value_parser = seconds)]
+    seconds: Option<f64>,
+    /// Write all messages of all links to a log, for mavlogdump, MAVExplorer or QGroundControl.
+    #[arg(long, value_name = "FILE")]
+    tlog: Option<PathBuf>,
+    /// Seal packets between companions with the key in this file, and hear only sealed ones; instead of air.key.
+    #[arg(long, value_name = "FILE")]
+    key: Option<PathBuf>,
+    /// Sign all messages on the links with the key in this file, and hear only signed ones; instead of link_key.
+    #[arg(long, value_name = "FILE")]
+    link_key: Option<PathBuf>,
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let seconds = text.parse::<f64>().ok();
+    let seconds = seconds.filter(|s| (0.0..=1e6).contains(s));
+    seconds.ok_or_else(|| String::from("give seconds, 0 to 1000000"))
+}
+
+impl CompanionArgs {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// A configuration that cannot be read or is wrong, links that cannot be opened, a log that cannot be written.
+    pub fn run(&self, global: &Global) -> Result<Ended> {
+        let mut config = Config::load(&self.config)?;
+        for (given, kept) in [
+            (&self.key, &mut config.key),
+            (&self.link_key, &mut config.link_key),
+        ] {
+            if given.is_some() {
+                kept.clone_from(given);
+            }
+        }
+        let mut options = Options {
+            dry_run: self.dry_run,
+            quiet: global.quiet,
+            seconds: self.seconds,
+            tlog: self.tlog.as_deref().map(Tlog::create).transpose()?,
+        };
+        let stop = Stop::on_ctrl_c()?;
+        let report = run(&config, &mut options, || !stop.is_requested())?;
+        if global.json {
+            print_json(&report)?;
+        } else {
+            print(&report.to_string())?;
+        }
+        Ok(Ended::by(&stop))
+    }
+}

@@ -1,0 +1,200 @@
+//! Robots of a run whose controllers run on devices: on emulated parts or on boards.
+//!
+//! [`OnDevices`] is what the engine sees; [`firmware`](super::firmware) finds what the devices run. The devices themselves, their line and
+//! the comparison with their shadows are `staya-runner`'s.
+
+use staya_controller::agent::{Inputs, Setup, Task};
+use staya_controller::time::Instant;
+use staya_runner::{Answer, Device, Fleet, LineFaults, Options, Order, Reset, Statistics, Trouble};
+use staya_sim::engine::{Decision, Elsewhere, Status};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// Which robots run where, and what is to happen to them.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// A robot's number in the scenario and its device, by rising number.
+    pub devices: Vec<(usize, Device)>,
+    /// What all lines do to frames.
+    pub faults: LineFaults,
+    /// Each device starts anew at these moments, one after the other: the first in its tick, the next one tick later.
+    pub resets: Vec<Reset>,
+}
+
+/// What came of the devices. Clones share it.
+#[derive(Clone, Debug, Default)]
+pub struct Log(Arc<Mutex<Entries>>);
+
+#[derive(Debug, Default)]
+struct Entries {
+    trouble: Option<String>,
+    statistics: Vec<Statistics>,
+}
+
+impl Log {
+    fn entries(&self) -> MutexGuard<'_, Entries> {
+        // Entries are whole between any two statements.
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The first thing that went wrong: the run should end.
+    #[must_use]
+    pub fn trouble(&self) -> Option<String> {
+        self.entries().trouble.clone()
+    }
+
+    /// Figures of each device once the run is over.
+    #[must_use]
+    pub fn statistics(&self) -> Vec<Statistics> {
+        self.entries().statistics.clone()
+    }
+}
+
+/// The devices as the engine sees them. They are started when the first step begins.
+pub struct OnDevices {
+    plan: Plan,
+    options: Option<Options>,
+    /// What each device is to be; then they are part of the fleet.
+    orders: Vec<Option<Order>>,
+    fleet: Option<Fleet>,
+    /// Numbers in the plan of those that were sent, in that order, until somebody collects.
+    asked: Vec<usize>,
+    decisions: Vec<Option<Decision>>,
+    /// Whose devices were reset, until their robots are started anew.
+    lost: Vec<bool>,
+    log: Log,
+}
+
+impl OnDevices {
+    /// Devices of a plan, and where to ask what became of them.
+    #[must_use]
+    pub fn new(plan: Plan, options: Options) -> (Self, Log) {
+        let (log, count) = (Log::default(), plan.devices.len());
+        let devices = Self {
+            plan,
+            options: Some(options),
+            orders: (0..count).map(|_| None).collect(),
+            fleet: None,
+            asked: Vec::new(),
+            decisions: vec![None; count],
+            lost: vec![false; count],
+            log: log.clone(),
+        };
+        (devices, log)
+    }
+
+    /// The number in the plan of robot `index`.
+    fn at(&self, index: usize) -> Option<usize> {
+        let devices = &self.plan.devices;
+        devices
+            .binary_search_by_key(&index, |(robot, _)| *robot)
+            .ok()
+    }
+
+    fn fail(&self, trouble: String) {
+        self.log.entries().trouble.get_or_insert(trouble);
+    }
+
+    /// Starts the devices, once.
+    fn begin(&mut self) {
+        let Some(options) = self.options.take() else {
+            return;
+        };
+        let orders: Option<Vec<Order>> = self.orders.iter_mut().map(Option::take).collect();
+        // The engine starts all robots before any of them steps.
+        let Some(orders) = orders else {
+            return self.fail(String::from("a robot on a device was never started"));
+        };
+        match Fleet::start(orders, options) {
+            Ok(fleet) => self.fleet = Some(fleet),
+            Err(error) => self.fail(error.to_string()),
+        }
+    }
+
+    fn gather(&mut self) {
+        let Some(fleet) = &mut self.fleet else {
+            return;
+        };
+        let answers = fleet.collect();
+        for (at, answer) in std::mem::take(&mut self.asked).into_iter().zip(answers) {
+            match answer {
+                Answer::Decided(report) => {
+                    self.decisions[at] = Some(Decision {
+                        status: Status {
+                            mode: report.mode,
+                            leader: report.leader,
+                            target: report.target.unwrap_or_default(),
+                        },
+                        command: report.outputs.command,
+                        outbox: report.outputs.outbox,
+                        rejected: report.outputs.rejected,
+                    });
+                }
+                Answer::Down => self.lost[at] = true,
+                Answer::Mismatch(mismatch) => self.fail(mismatch.to_string()),
+                Answer::Failed(error) => match *error.trouble {
+                    // The run ends anyway.
+                    Trouble::Stopped => {}
+                    _ => self.fail(error.to_string()),
+                },
+            }
+        }
+    }
+}
+
+impl Elsewhere for OnDevices {
+    fn robots(&self) -> Vec<usize> {
+        self.plan.devices.iter().map(|&(index, _)| index).collect()
+    }
+
+    fn start(&mut self, index: usize, setup: Setup, task: Task) {
+        let Some(at) = self.at(index) else { return };
+        if let Some(fleet) = &mut self.fleet {
+            fleet.assign(at, setup, Some(task));
+            return;
+        }
+        let resets = self.plan.resets.iter().map(|reset| Reset {
+            tick: reset.tick.saturating_add(at as u32),
+            ..*reset
+        });
+        self.orders[at] = Some(Order {
+            device: self.plan.devices[at].1.to_string(),
+            setup,
+            task: Some(task),
+            faults: self.plan.faults,
+            resets: resets.collect(),
+        });
+    }
+
+    fn has_restarted(&mut self, index: usize) -> bool {
+        // The fleet has made it a robot again, but only the engine knows what it has to do by now.
+        let (Some(at), Some(fleet)) = (self.at(index), &self.fleet) else {
+            return false;
+        };
+        self.lost[at] && !fleet.is_down(at) && std::mem::take(&mut self.lost[at])
+    }
+
+    fn send(&mut self, index: usize, tick: u32, now: Instant, inputs: &Inputs<'_, f32>) {
+        self.begin();
+        if let (Some(at), Some(fleet)) = (self.at(index), &mut self.fleet) {
+            self.asked.push(at);
+            fleet.send(at, tick, now, inputs);
+        }
+    }
+
+    fn collect(&mut self, index: usize) -> Option<Decision> {
+        // The first one collects for all.
+        if !self.asked.is_empty() {
+            self.gather();
+        }
+        let at = self.at(index)?;
+        self.decisions[at].take()
+    }
+}
+
+impl Drop for OnDevices {
+    fn drop(&mut self) {
+        if let Some(fleet) = &self.fleet {
+            self.log.entries().statistics = fleet.statistics();
+        }
+    }
+}

@@ -1,0 +1,313 @@
+//! `staya run SCENARIO`: one run, its figures and its pictures.
+
+use anyhow::{Context as _, Result};
+use clap::Args;
+use serde::Serialize;
+use staya_console::{Ended, Global, Progress, Stop, print, print_json};
+use staya_controller::grid::UNIT;
+use staya_plot::{motion_pictures, run_pictures};
+use staya_sim::engine::{Moment, Outcome, simulate};
+use staya_sim::record::{self, History, Options, PacketCounts, Recorder, RobotRow, write_summary};
+use staya_sim::scenario::{Overrides, Scenario};
+use std::fmt::Write as _;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Which scenario, and what of it is otherwise.
+#[derive(Args, Clone, Debug)]
+pub struct ScenarioArgs {
+    /// The scenario, a .toml file; scenarios/README.md lists those that come with Staya and all fields.
+    scenario: PathBuf,
+    /// Seed of everything random, instead of the scenario's.
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    /// Ticks after which to end, instead of the scenario's.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    ticks: Option<u32>,
+}
+
+impl ScenarioArgs {
+    /// Reads it.
+    ///
+    /// # Errors
+    /// It cannot be read, or is wrong.
+    pub fn load(&self) -> Result<Scenario> {
+        let overrides = Overrides {
+            seed: self.seed,
+            ticks: self.ticks,
+        };
+        let scenario = Scenario::load(&self.scenario, &overrides)?;
+        if let Some(remark) = &scenario.key_remark {
+            eprintln!("{remark}");
+        }
+        Ok(scenario)
+    }
+}
+
+/// Run a scenario.
+#[derive(Args, Clone, Debug)]
+#[command(allow_negative_numbers = true)]
+pub struct RunArgs {
+    #[command(flatten)]
+    scenario: ScenarioArgs,
+    /// Where results go; files of an earlier run are replaced [default: out/<name of the scenario>].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+/// The figures of a run, as in `summary.json` and with `--json`.
+#[derive(Clone, Debug, Serialize)]
+struct Summary {
+    scenario: String,
+    seed: u64,
+    robots: usize,
+    /// Ticks done.
+    ticks: u32,
+    sim_seconds: f64,
+    /// Of the simulation itself, without reading and drawing.
+    wall_seconds: f64,
+    /// Stopped by Ctrl-C.
+    interrupted: bool,
+    /// Robots that stand at their targets and know it.
+    arrived: usize,
+    /// Mean and last of their travel times, simulated seconds; null: nobody arrived.
+    arrival_mean_seconds: Option<f64>,
+    arrival_last_seconds: Option<f64>,
+    /// Robots in a wall, in another one's cell, or overlapping another one or an obstacle, summed over ticks.
+    collisions: u64,
+    packets: PacketCounts,
+    /// Whether the robots have a key.
+    is_authenticated: bool,
+    /// Packets beyond a robot's bandwidth, never on the air.
+    packets_throttled: u64,
+    /// dPhi per robot, cells, graph placed on the top leader; null: no formation.
+    formation_error_per_agent: Option<f64>,
+    /// The same, graph placed by the best-fitting translation.
+    formation_error_per_agent_best_fit: Option<f64>,
+    graph_distance_mean: Option<f64>,
+    /// Least distance between the surfaces of two bodies, metres; null: on the grid, or nobody came near.
+    least_gap_m: Option<f64>,
+    /// Least distance between a body and an obstacle, metres.
+    least_obstacle_gap_m: Option<f64>,
+    /// 16 hex digits; equal for equal traces.
+    trace_hash: String,
+    /// What was written.
+    files: Vec<PathBuf>,
+}
+
+impl RunArgs {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// A scenario that cannot be read or is wrong, results that cannot be written.
+    pub fn run(&self, global: &Global) -> Result<Ended> {
+        let scenario = self.scenario.load()?;
+        let out = self
+            .out
+            .clone()
+            .unwrap_or_else(|| Path::new("out").join(&scenario.name));
+        let stop = Stop::on_ctrl_c()?;
+        let summary = run(&scenario, &out, &stop, global)?;
+        if global.json {
+            print_json(&summary)?;
+        } else {
+            print(&summary.table(&out)?)?;
+        }
+        Ok(Ended::by(&stop))
+    }
+}
+
+/// Runs a scenario and leaves everything about it in `out`.
+fn run(scenario: &Scenario, out: &Path, stop: &Stop, global: &Global) -> Result<Summary> {
+    let recorder = Recorder::new(out, Options::default())?;
+    let began = Instant::now();
+    let (outcome, history) = simulate_recorded(scenario, recorder, stop, global)?;
+    let wall_seconds = began.elapsed().as_secs_f64();
+    let edges: Vec<_> = match &scenario.formation {
+        Some(formation) => {
+            let id = |place: u16| u32::from(place) + 1;
+            let edges = formation.edges.iter();
+            edges.map(|&(a, b)| (id(a), id(b))).collect()
+        }
+        None => Vec::new(),
+    };
+    let names = [
+        "summary.json",
+        "series.csv",
+        "series.schema.json",
+        "trace.csv",
+        "trace.schema.json",
+    ];
+    let mut files: Vec<_> = names.iter().map(|name| out.join(name)).collect();
+    files.extend(match &scenario.plane {
+        None => run_pictures(&scenario.terrain, &history, &edges, out)?,
+        Some(setup) => motion_pictures(setup, &history, out)?,
+    });
+    let mut summary = Summary::new(scenario, &outcome, files);
+    summary.wall_seconds = wall_seconds;
+    summary.interrupted = stop.is_requested();
+    write_summary(out, &summary)?;
+    Ok(summary)
+}
+
+fn simulate_recorded(
+    scenario: &Scenario,
+    mut recorder: Recorder,
+    stop: &Stop,
+    global: &Global,
+) -> Result<(Outcome, History)> {
+    let mut progress = Progress::new(&scenario.name, scenario.ticks.into(), global);
+    let mut failed: Option<record::Error> = None;
+    let count = scenario.robots.len();
+    let watch = |moment: &Moment<'_>, robots: &mut dyn Iterator<Item = RobotRow>| {
+        if let Err(error) = recorder.tick(moment.row, robots) {
+            failed = Some(error);
+            return ControlFlow::Break(());
+        }
+        progress.set(moment.row.tick.into(), || {
+            format!("ticks, {} of {count} robots arrived", moment.arrived)
+        });
+        if stop.is_requested() {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    };
+    let outcome = simulate(scenario, watch).context("the robots cannot be placed")?;
+    progress.finish();
+    match failed {
+        Some(error) => Err(error.into()),
+        None => Ok((outcome, recorder.finish()?)),
+    }
+}
+
+/// What JSON has a form for.
+fn finite(value: Option<f64>) -> Option<f64> {
+    value.filter(|value| value.is_finite())
+}
+
+impl Summary {
+    fn new(scenario: &Scenario, outcome: &Outcome, files: Vec<PathBuf>) -> Self {
+        let units: Vec<u64> = outcome.arrival_times.iter().flatten().copied().collect();
+        let seconds = |units: f64| units / f64::from(UNIT) * scenario.tick_s();
+        let mean = units.iter().sum::<u64>() as f64 / units.len() as f64;
+        let formation = outcome.formation;
+        Self {
+            scenario: scenario.name.clone(),
+            seed: scenario.seed,
+            robots: scenario.robots.len(),
+            ticks: outcome.ticks,
+            sim_seconds: outcome.seconds,
+            wall_seconds: 0.0,
+            interrupted: false,
+            arrived: outcome.arrived,
+            arrival_mean_seconds: (!units.is_empty()).then(|| seconds(mean)),
+            arrival_last_seconds: units.iter().max().map(|&last| seconds(last as f64)),
+            collisions: outcome.collisions,
+            packets: outcome.packets,
+            is_authenticated: scenario.key.is_some(),
+            packets_throttled: outcome.throttled,
+            formation_error_per_agent: formation.map(|f| f.error_per_agent),
+            formation_error_per_agent_best_fit: formation.map(|f| f.best_fit_error_per_agent),
+            graph_distance_mean: formation.map(|f| f.graph_distance),
+            least_gap_m: finite(outcome.clearance.map(|c| c.bodies_m)),
+            least_obstacle_gap_m: finite(outcome.clearance.map(|c| c.solids_m)),
+            trace_hash: format!("{:016x}", outcome.trace_hash),
+            files,
+        }
+    }
+
+    /// The figures for a reader.
+    fn table(&self, out: &Path) -> Result<String, std::fmt::Error> {
+        let mut text = String::new();
+        let robot_ticks = self.robots as f64 * f64::from(self.ticks);
+        let cost_us = self.wall_seconds * 1e6 / robot_ticks.max(1.0);
+        let stopped = if self.interrupted { ", stopped" } else { "" };
+        writeln!(text, "{} (seed {}{stopped})", self.scenario, self.seed)?;
+        let mut line = |name: &str, value: String| writeln!(text, "  {name:<22}{value}");
+        line(
+            "simulated",
+            format!("{} s in {} ticks", self.sim_seconds, self.ticks),
+        )?;
+        line(
+            "took",
+            format!(
+                "{:.2} s, {cost_us:.2} us per robot and tick",
+                self.wall_seconds
+            ),
+        )?;
+        let mut arrived = format!("{} of {} robots", self.arrived, self.robots);
+        if let (Some(mean), Some(last)) = (self.arrival_mean_seconds, self.arrival_last_seconds) {
+            write!(
+                arrived,
+                ", on average after {mean:.1} s, the last after {last:.1} s"
+            )?;
+        }
+        line("arrived", arrived)?;
+        line("collisions", self.collisions.to_string())?;
+        if let Some(gap) = self.least_gap_m {
+            line("least gap", format!("{gap:.4} m between two robots"))?;
+        }
+        if let Some(gap) = self.least_obstacle_gap_m {
+            line("", format!("{gap:.4} m to an obstacle"))?;
+        }
+        if let (Some(error), Some(best_fit), Some(distance)) = (
+            self.formation_error_per_agent,
+            self.formation_error_per_agent_best_fit,
+            self.graph_distance_mean,
+        ) {
+            line(
+                "formation error",
+                format!("{error:.3} cells per robot ({best_fit:.3} by best fit)"),
+            )?;
+            line("graph distance", format!("{distance:.3}"))?;
+        }
+        let packets = &self.packets;
+        let share = |part: u64, whole: u64| match whole {
+            0 => String::new(),
+            _ => format!(" ({:.1} %)", 100.0 * part as f64 / whole as f64),
+        };
+        let receptions = packets.delivered + packets.lost;
+        let (sent, throttled) = (packets.sent, self.packets_throttled);
+        line(
+            "packets",
+            match throttled {
+                0 => format!("{sent} sent"),
+                _ => format!("{sent} sent, {throttled} held back by bandwidth"),
+            },
+        )?;
+        line(
+            "receptions",
+            format!(
+                "{} delivered, {} lost{}",
+                packets.delivered,
+                packets.lost,
+                share(packets.lost, receptions)
+            ),
+        )?;
+        line(
+            "bad frames",
+            format!(
+                "{} damaged, {} refused",
+                packets.corrupted, packets.rejected
+            ),
+        )?;
+        if self.is_authenticated {
+            line(
+                "of them, by the key",
+                format!(
+                    "{} unsigned, {} forged, {} replayed",
+                    packets.unsigned, packets.forged, packets.replayed
+                ),
+            )?;
+        }
+        line("trace hash", self.trace_hash.clone())?;
+        writeln!(text, "written to {}", out.display())?;
+        for file in &self.files {
+            let name = file.strip_prefix(out).unwrap_or(file);
+            writeln!(text, "  {}", name.display())?;
+        }
+        Ok(text)
+    }
+}

@@ -1,0 +1,330 @@
+//! `staya terrain generate | metrics | draw`: land by chance, land described, land shown.
+
+use anyhow::{Result, bail};
+use clap::{Args, Subcommand, ValueEnum};
+use serde::Serialize;
+use staya_console::{Ended, Global, print, print_json};
+use staya_papers::cli::params::NormArg;
+use staya_plot::terrain::{draw, scale_for};
+use staya_sim::terrain::generate::{ByMetrics, Plan, by_metrics, natural, uniform};
+use staya_sim::terrain::metrics::{Metrics, obstacles_of_entropy};
+use staya_sim::terrain::{LoadOptions, SlopeRule, Terrain, ros};
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+/// Make, measure and draw terrain.
+#[derive(Args, Clone, Debug)]
+pub struct TerrainArgs {
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Clone, Debug, Subcommand)]
+enum Action {
+    /// Make a random landscape.
+    Generate(Generate),
+    /// Print size, entropy and edges of a terrain file.
+    Metrics(Source),
+    /// Draw a terrain file; darker is less passable.
+    Draw {
+        #[command(flatten)]
+        source: Source,
+        /// The picture: .png or .svg.
+        #[arg(long, value_name = "FILE")]
+        out: PathBuf,
+        /// Pixels per cell [default: about 1000 pixels along the longer side].
+        #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..))]
+        scale: Option<u32>,
+    },
+}
+
+/// How a random landscape is made.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Kind {
+    /// Every cell drawn on its own.
+    Uniform,
+    /// Hills of mud around the worst cells.
+    Natural,
+    /// By wanted configuration entropy and total edge.
+    Entropy,
+}
+
+#[derive(Args, Clone, Debug)]
+#[command(allow_negative_numbers = true)]
+struct Generate {
+    /// How the landscape is made.
+    #[arg(long, value_enum, default_value = "natural")]
+    kind: Kind,
+    /// Cells from west to east.
+    #[arg(long, default_value_t = 100)]
+    width: u16,
+    /// Cells from south to north.
+    #[arg(long, default_value_t = 100)]
+    height: u16,
+    /// Number of classes of impassability.
+    #[arg(long, default_value_t = 9)]
+    classes: u8,
+    /// natural: number of least passable cells.
+    #[arg(long, default_value_t = 70)]
+    obstacles: u32,
+    /// natural: how distances are measured.
+    #[arg(long, value_enum, default_value = "euclidean")]
+    norm: NormArg,
+    /// entropy: the wanted configuration entropy S, 0 to ln(classes).
+    #[arg(long, required_if_eq("kind", "entropy"))]
+    entropy: Option<f64>,
+    /// entropy: how far S may be off.
+    #[arg(long, default_value_t = 0.01)]
+    entropy_tolerance: f64,
+    /// entropy: the wanted total edge TE.
+    #[arg(long, required_if_eq("kind", "entropy"))]
+    total_edge: Option<u64>,
+    /// entropy: how far TE may be off.
+    #[arg(long, default_value_t = 2)]
+    edge_tolerance: u64,
+    /// Equal seeds give equal landscapes.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// The landscape as a ROS map: this .yaml and a .pgm picture beside it. Reads back exactly.
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+}
+
+/// A terrain file, and how to read it.
+#[derive(Args, Clone, Debug)]
+#[command(allow_negative_numbers = true)]
+struct Source {
+    /// .map (Moving AI), .asc (ESRI heights) or .yaml (ROS map with a .pgm).
+    file: PathBuf,
+    /// Only a piece of the map: column and row of its south-west cell, width, height.
+    #[arg(
+        long,
+        value_name = "X,Y,W,H",
+        value_delimiter = ',',
+        num_args = 1,
+        allow_hyphen_values = true
+    )]
+    crop: Option<Vec<u16>>,
+    /// .asc: the steepest passable slope, rise over run.
+    #[arg(long, value_name = "SLOPE", default_value_t = SlopeRule::default().max_slope)]
+    max_slope: f64,
+    /// .asc: classes of slope.
+    #[arg(long, value_name = "N", default_value_t = SlopeRule::default().classes)]
+    slope_classes: u8,
+    /// .asc: cells along each side that become one.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    downsample: u16,
+}
+
+impl Source {
+    fn load(&self) -> Result<Terrain> {
+        let options = LoadOptions {
+            slope: SlopeRule {
+                classes: self.slope_classes,
+                max_slope: self.max_slope,
+            },
+            downsample: self.downsample,
+            ..LoadOptions::default()
+        };
+        let terrain = Terrain::load_with(&self.file, &options)?;
+        match self.crop.as_deref() {
+            None => Ok(terrain),
+            Some(&[x, y, width, height]) => Ok(terrain.crop(x, y, width, height)?),
+            Some(_) => bail!("--crop needs four numbers; give X,Y,WIDTH,HEIGHT in cells"),
+        }
+    }
+}
+
+/// What the commands report.
+#[derive(Debug, Serialize)]
+struct Report {
+    file: PathBuf,
+    width: u16,
+    height: u16,
+    cell_m: f64,
+    #[serde(flatten)]
+    metrics: Metrics,
+    /// N(S) of a natural landscape of the same entropy (100 x 100 cells, 9 classes).
+    equivalent_obstacles: f64,
+}
+
+impl Report {
+    fn new(file: PathBuf, terrain: &Terrain) -> Self {
+        let metrics = Metrics::of(terrain);
+        Self {
+            file,
+            width: terrain.width(),
+            height: terrain.height(),
+            cell_m: terrain.cell_m,
+            metrics,
+            equivalent_obstacles: obstacles_of_entropy(metrics.entropy),
+        }
+    }
+
+    fn print(&self, global: &Global) -> Result<()> {
+        if global.json {
+            return print_json(self);
+        }
+        let m = &self.metrics;
+        let mut text = String::new();
+        let share = 100.0 * m.blocked as f64 / m.cells as f64;
+        writeln!(text, "{}", self.file.display())?;
+        writeln!(
+            text,
+            "  size                  {} x {} cells of {} m",
+            self.width, self.height, self.cell_m
+        )?;
+        writeln!(
+            text,
+            "  classes               {}, blocked {share:.1} %",
+            m.classes
+        )?;
+        writeln!(text, "  entropy S             {:.4}", m.entropy)?;
+        writeln!(text, "  total edge TE         {}", m.total_edge)?;
+        writeln!(text, "  edge density TED      {:.4}", m.total_edge_density)?;
+        writeln!(
+            text,
+            "  obstacles by N(S)     {:.1}",
+            self.equivalent_obstacles
+        )?;
+        print(&text)
+    }
+}
+
+impl TerrainArgs {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// A file that cannot be read or written, a parameter out of range.
+    pub fn run(&self, global: &Global) -> Result<Ended> {
+        match &self.action {
+            Action::Generate(generate) => generate.run(global)?,
+            Action::Metrics(source) => {
+                Report::new(source.file.clone(), &source.load()?).print(global)?;
+            }
+            Action::Draw { source, out, scale } => {
+                let terrain = source.load()?;
+                draw(&terrain, scale.unwrap_or(scale_for(&terrain, 1000)), out)?;
+                Report::new(out.clone(), &terrain).print(global)?;
+            }
+        }
+        Ok(Ended::Done)
+    }
+}
+
+impl Generate {
+    fn run(&self, global: &Global) -> Result<()> {
+        let extension = self
+            .out
+            .extension()
+            .and_then(|extension| extension.to_str());
+        if !matches!(extension, Some("yaml" | "yml")) {
+            bail!(
+                "--out {}: landscapes are written as ROS maps; choose a name that ends in .yaml (the picture goes into a .pgm beside it)",
+                self.out.display()
+            );
+        }
+        let plan = Plan {
+            width: self.width,
+            height: self.height,
+            classes: self.classes,
+            seed: self.seed,
+        };
+        let terrain = match (self.kind, self.entropy, self.total_edge) {
+            (Kind::Uniform, _, _) => uniform(&plan)?,
+            (Kind::Natural, _, _) => natural(&plan, self.obstacles, self.norm.into())?,
+            (Kind::Entropy, Some(entropy), Some(total_edge)) => by_metrics(
+                &plan,
+                &ByMetrics {
+                    entropy,
+                    entropy_tolerance: self.entropy_tolerance,
+                    total_edge,
+                    edge_tolerance: self.edge_tolerance,
+                },
+            )?,
+            (Kind::Entropy, _, _) => bail!("--kind entropy needs --entropy and --total-edge"),
+        };
+        ros::save(&terrain, &self.out)?;
+        Report::new(self.out.clone(), &terrain).print(global)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Debug, Parser)]
+    struct Line {
+        #[command(flatten)]
+        terrain: TerrainArgs,
+    }
+
+    fn run(words: &[&str]) -> Result<Ended> {
+        let line = Line::try_parse_from([&["terrain"], words].concat())?;
+        let global = Global {
+            json: true,
+            ..Global::default()
+        };
+        line.terrain.run(&global)
+    }
+
+    #[test]
+    fn what_is_generated_is_measured_and_drawn() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = |name: &str| dir.path().join(name).to_str().unwrap().to_owned();
+        let (land, picture) = (path("a.yaml"), path("a.png"));
+        let size = ["--width", "30", "--height", "20"];
+        let kinds: [&[&str]; 3] = [
+            &["--kind", "uniform"],
+            &[
+                "--kind",
+                "natural",
+                "--obstacles",
+                "7",
+                "--norm",
+                "chebyshev",
+            ],
+            &[
+                "--kind",
+                "entropy",
+                "--entropy",
+                "1.2",
+                "--total-edge",
+                "300",
+            ],
+        ];
+        for kind in kinds {
+            let words = [&["generate", "--out", &land], kind, &size].concat();
+            assert_eq!(run(&words).unwrap(), Ended::Done);
+            let terrain = Terrain::load(land.as_ref()).unwrap();
+            assert_eq!((terrain.width(), terrain.height()), (30, 20));
+        }
+        let metrics = Metrics::of(&Terrain::load(land.as_ref()).unwrap());
+        assert!(metrics.total_edge.abs_diff(300) <= 2);
+        assert_eq!(run(&["metrics", &land]).unwrap(), Ended::Done);
+        run(&[
+            "draw", &land, "--out", &picture, "--crop", "1,2,10,5", "--scale", "3",
+        ])
+        .unwrap();
+        assert!(std::fs::metadata(&picture).unwrap().len() > 0);
+    }
+
+    #[test]
+    fn wrong_usage_names_the_remedy() {
+        let message = |words: &[&str]| run(words).unwrap_err().to_string();
+        assert!(message(&["generate", "--out", "a.asc"]).contains("ends in .yaml"));
+        assert!(
+            message(&["generate", "--kind", "entropy", "--out", "a.yaml"]).contains("--total-edge")
+        );
+        assert!(message(&["metrics", "a.tif"]).contains("unknown kind of terrain file"));
+        let dir = tempfile::tempdir().unwrap();
+        let land = dir.path().join("a.yaml");
+        ros::save(&Terrain::flat(3, 3), &land).unwrap();
+        let land = land.to_str().unwrap();
+        assert!(message(&["metrics", land, "--crop", "1,2"]).contains("X,Y,WIDTH,HEIGHT"));
+        assert!(
+            message(&["metrics", land, "--crop", "1,2,9,9"]).contains("leaves the map of 3 x 3")
+        );
+    }
+}
