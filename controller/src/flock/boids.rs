@@ -1,8 +1,8 @@
 //! Boids on a torus: constant speed, only the heading changes.
 //!
-//! Source: E. N. Starovoitova 2018, section 2 and the listing of class `Boid`. Per step a boid that has a neighbour nearer
-//! than `crowded` turns away from that neighbour's heading; otherwise it turns to the mean heading of its neighbours and then
-//! to their middle. Read [`BoidsParams::steer`].
+//! Source: V. A. Starovoitova 2018 (STA), sections 2.1 and 2.4 and the listing of class `Boid`. Per step a boid that has a
+//! neighbour nearer than `crowded` turns away from that neighbour's heading; otherwise it turns to the mean heading of its
+//! neighbours and then to their middle. Read [`BoidsParams::steer`].
 //!
 //! **Defects of the listing, put right here:**
 //! - The mean heading summed angles, so that the mean of +179 and -179 degrees was 0; it also summed the own heading without

@@ -2,7 +2,7 @@
 //!
 //! [`route`]: KUZ section 5, windowed routing against the global optimum on random land. [`formation`]: KUZ section 8, six
 //! robots in formation. [`movingai`]: the queries of the Moving AI benchmark. [`crossing`]: swaps over a circle and
-//! doorways. [`boids`]: STA section 3, boids on a torus and what finding neighbours costs. [`orca`]: FVM, the template of the
+//! doorways. [`boids`]: STA section 2.3, boids on a torus and what finding neighbours costs. [`orca`]: FVM, the template of the
 //! velocity obstacle against the exact one. [`flock`]: OLF section VIII, the five simulations. [`goals`]: PAV, a group on
 //! its way to three goals.
 //!

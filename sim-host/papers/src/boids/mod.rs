@@ -1,4 +1,4 @@
-//! Boids on a torus, and what finding neighbours costs (STA section 3).
+//! Boids on a torus, and what finding neighbours costs (STA section 2.3).
 //!
 //! The controller's boids ([`staya_controller::flock::boids`]) run directly on the host, without radio or packets: each knows
 //! the exact places and headings of its neighbours. Every number of boids is run once with each

@@ -10,7 +10,7 @@ use staya_sim::record::prepare_dir;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-/// Boids on a torus: three ways to find neighbours, equal flights, and what they cost (STA section 3).
+/// Boids on a torus: three ways to find neighbours, equal flights, and what they cost (STA section 2.3).
 #[derive(Args, Clone, Debug)]
 pub struct BoidsArgs {
     /// Numbers of boids, one line of the table each.

@@ -37,7 +37,7 @@ enum Experiment {
     Doorway(crossing::DoorwayArgs),
     /// The queries of a Moving AI benchmark: how many robots arrive, and at what loss.
     Movingai(movingai::MovingAiArgs),
-    /// Boids on a torus: three ways to find neighbours, equal flights, and what they cost (STA section 3).
+    /// Boids on a torus: three ways to find neighbours, equal flights, and what they cost (STA section 2.3).
     Boids(boids::BoidsArgs),
     /// The five flocking simulations of Olfati-Saber 2006, and flocks driven at each other.
     Flock(Box<flock::FlockArgs>),
