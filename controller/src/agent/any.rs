@@ -85,6 +85,10 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
         each!(self, guidance => guidance.assign_place(index, place))
     }
 
+    fn goes_to_cells(&self) -> bool {
+        each!(self, guidance => Guidance::<S>::goes_to_cells(guidance))
+    }
+
     fn has_own_goal(&self) -> bool {
         each!(self, guidance => Guidance::<S>::has_own_goal(guidance))
     }

@@ -167,6 +167,10 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
         self.inside.assign_place(index, place)
     }
 
+    fn goes_to_cells(&self) -> bool {
+        self.inside.goes_to_cells()
+    }
+
     fn has_own_goal(&self) -> bool {
         self.wish != Wish::Own || self.inside.has_own_goal()
     }

@@ -459,6 +459,10 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
         Ok(guided)
     }
 
+    fn goes_to_cells(&self) -> bool {
+        true
+    }
+
     fn redirect(&mut self) {
         self.travel.redirect();
     }

@@ -194,6 +194,11 @@ pub trait Guidance<S> {
         false
     }
 
+    /// Whether a cell of the grid is what it goes to.
+    fn goes_to_cells(&self) -> bool {
+        false
+    }
+
     /// Whether it knows where to go without a cell as its goal.
     fn has_own_goal(&self) -> bool {
         false

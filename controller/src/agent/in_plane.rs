@@ -109,6 +109,10 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for InPlane<S, G> {
         self.guidance.assign_template(part, is_anew)
     }
 
+    fn goes_to_cells(&self) -> bool {
+        self.guidance.goes_to_cells()
+    }
+
     fn goal_offset(&self) -> Cell {
         self.guidance.goal_offset()
     }

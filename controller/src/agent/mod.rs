@@ -257,11 +257,16 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         }
     }
 
-    /// Gives the robot a goal of its own on the grid (guidance that goes to places takes no notice: [`Self::assign_place`]), which a new place in the formation does not move (one that
-    /// comes as a [`GoalAssignment`](crate::wire::GoalAssignment) is the formation's and moves).
-    pub const fn assign_goal(&mut self, goal: Cell) {
-        self.goal = Some(Goal::Own(goal));
-        self.last.target = goal;
+    /// Gives the robot a goal of its own on the grid, which a new place in the formation does not move (one that
+    /// comes as a [`GoalAssignment`](crate::wire::GoalAssignment) is the formation's and moves); whether its guidance goes to cells
+    /// (to the others, see [`Self::assign_place`], it means nothing).
+    pub fn assign_goal(&mut self, goal: Cell) -> bool {
+        let goes_there = self.guidance.goes_to_cells();
+        if goes_there {
+            self.goal = Some(Goal::Own(goal));
+            self.last.target = goal;
+        }
+        goes_there
     }
 
     /// Gives the robot a place to go to, number `index` of those that its guidance has room for; whether
@@ -273,10 +278,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
     /// Gives the robot what it has to do; whether its guidance has a use for all of it.
     pub fn assign(&mut self, task: &Task) -> bool {
         match task {
-            Task::Cell(goal) => {
-                self.assign_goal(*goal);
-                true
-            }
+            Task::Cell(goal) => self.assign_goal(*goal),
             Task::Places(places) => {
                 let assigned = |(index, place): &(u8, Place<f32>)| -> bool {
                     self.assign_place(*index, &place.cast())
@@ -377,6 +379,8 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
             match link.hear(bytes, now, &listener, out) {
                 None => {}
                 Some(News::Redirect) => guidance.redirect(),
+                // To a robot that goes to places it means nothing.
+                Some(News::Goal(_)) if !guidance.goes_to_cells() => {}
                 Some(News::Goal(top)) => {
                     *goal = Some(Goal::Formation(top));
                     last.target = top + guidance.goal_offset();

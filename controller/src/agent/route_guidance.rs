@@ -137,6 +137,10 @@ impl<S: Scalar, const CELLS: usize, const M: usize> Guidance<S> for RouteGuidanc
         Ok(guided)
     }
 
+    fn goes_to_cells(&self) -> bool {
+        true
+    }
+
     fn redirect(&mut self) {
         self.travel.redirect();
     }

@@ -38,6 +38,10 @@ impl Guidance<f32> for Counting {
         })
     }
 
+    fn goes_to_cells(&self) -> bool {
+        true
+    }
+
     fn redirect(&mut self) {
         self.redirections += 1;
     }

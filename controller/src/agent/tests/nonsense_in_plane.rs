@@ -195,7 +195,7 @@ proptest! {
         let config = AgentConfig { radius_m, max_acceleration_mps2, ..AgentConfig::new(RobotId(9), 1, tick) };
         let (speed, length) = size;
         let mut agent = Any::guarded(&config, guidance(which.0, speed, length), safety(which.1, length, speed));
-        agent.assign_goal(Cell::new(7, 7));
+        let _ = agent.assign_goal(Cell::new(7, 7)) | agent.assign_place(0, &Place::fixed(Position::from_mm([9000, 9000, 0])));
         let mut ws = workspace();
         for step in &steps {
             let inputs = Inputs {

@@ -5,7 +5,7 @@ use crate::geom::{Position, Vec2, Vec3};
 use crate::neighbor::Doubt;
 use crate::orca::AvoidParams;
 use crate::scalar::Q16;
-use crate::wire::PlaceAssignment;
+use crate::wire::{GoalAssignment, PlaceAssignment};
 
 pub(super) const STEP: Duration = Duration::from_millis(100);
 pub(super) const RADIUS_MM: i32 = 200;
@@ -510,6 +510,32 @@ fn a_wish_that_is_no_number_is_no_wish() {
     let mut robot = Robot::new(&in_plane(1), Mad, orca(), [0.0; 2]);
     let out = robot.step(step_number(0), &[]);
     assert_eq!(out.command, Command::Velocity(Vec3::ZERO));
+}
+
+/// Said by its owner or by the radio: it stays what it was, and gives way.
+#[test]
+fn a_goal_on_the_grid_changes_nothing_for_who_goes_to_places() {
+    let crowding = body_at([2 * RADIUS_MM + 60, 0], [-900, 0], Mode::Cruise);
+    let goal = Message::Goal(GoalAssignment {
+        to: RobotId::NOBODY,
+        version: 1,
+        target: Cell::new(3, 4),
+    });
+    let after_three = |is_told: bool, hears: &[Message]| {
+        let mut robot = Robot::new(&in_plane::<f32>(1), waypoint(), orca(), [0.0; 2]);
+        if is_told {
+            assert!(!robot.agent.assign(&Task::Cell(Cell::new(3, 4))));
+        }
+        for n in 0..3 {
+            let _ = robot.step(step_number(n), &bytes(2, 0, 2 * n as u16, hears));
+        }
+        (robot.agent.mode(), robot.at_m)
+    };
+    let idle = after_three(false, std::slice::from_ref(&crowding));
+    assert_eq!(idle.0, Mode::Idle);
+    assert!(length(idle.1) > 0.01, "it gives way");
+    assert_eq!(after_three(true, std::slice::from_ref(&crowding)), idle);
+    assert_eq!(after_three(false, &[crowding, goal]), idle);
 }
 
 /// Each guidance that goes by velocities, with something to do but no surroundings.
