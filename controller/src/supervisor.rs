@@ -6,6 +6,8 @@ use serde::Serialize;
 /// What the next mode depends on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Situation {
+    /// The motors are off, or somebody else steers.
+    pub is_passive: bool,
     /// An input that the guidance needs is missing or wrong.
     pub has_fault: bool,
     /// There is somewhere to go.
@@ -22,48 +24,30 @@ pub struct Situation {
 
 /// The mode that follows `mode` in a situation: the first of these rules that applies.
 ///
-/// 1. A fault stands the robot still, whatever else holds.
-/// 2. Out of [`Mode::Fault`] the way leads through [`Mode::Idle`]: for one step it stands and looks.
-/// 3. Without a goal it is idle.
-/// 4. At its goal it has arrived; a stop changes nothing there.
-/// 5. A stop, or no open way, holds it.
-/// 6. Off its place it is forming; [`Mode::Cruise`] otherwise.
+/// 1. One that is not to be steered is passive, whatever else holds.
+/// 2. A fault stands the robot still.
+/// 3. Out of [`Mode::Passive`] and [`Mode::Fault`] the way leads through [`Mode::Idle`]: for one step it stands and looks.
+/// 4. Without a goal it is idle.
+/// 5. At its goal it has arrived; a stop changes nothing there.
+/// 6. A stop, or no open way, holds it.
+/// 7. Off its place it is forming; [`Mode::Cruise`] otherwise.
 #[must_use]
 pub const fn next_mode(mode: Mode, situation: Situation) -> Mode {
-    match (mode, situation) {
-        (
-            _,
-            Situation {
-                has_fault: true, ..
-            },
-        ) => Mode::Fault,
-        (Mode::Fault, _)
-        | (
-            _,
-            Situation {
-                has_goal: false, ..
-            },
-        ) => Mode::Idle,
-        (
-            _,
-            Situation {
-                is_at_goal: true, ..
-            },
-        ) => Mode::Arrived,
-        (
-            _,
-            Situation {
-                is_stopped: true, ..
-            }
-            | Situation { is_stuck: true, .. },
-        ) => Mode::Hold,
-        (
-            _,
-            Situation {
-                is_off_place: true, ..
-            },
-        ) => Mode::Forming,
-        _ => Mode::Cruise,
+    let s = situation;
+    if s.is_passive {
+        Mode::Passive
+    } else if s.has_fault {
+        Mode::Fault
+    } else if !mode.gives_way() || !s.has_goal {
+        Mode::Idle
+    } else if s.is_at_goal {
+        Mode::Arrived
+    } else if s.is_stopped || s.is_stuck {
+        Mode::Hold
+    } else if s.is_off_place {
+        Mode::Forming
+    } else {
+        Mode::Cruise
     }
 }
 
@@ -77,17 +61,18 @@ pub const fn moves(mode: Mode) -> bool {
 mod tests {
     use super::*;
 
-    const MODES: [Mode; 6] = [
+    const MODES: [Mode; 7] = [
         Mode::Idle,
         Mode::Forming,
         Mode::Cruise,
         Mode::Hold,
         Mode::Arrived,
         Mode::Fault,
+        Mode::Passive,
     ];
 
     fn situations() -> impl Iterator<Item = Situation> {
-        (0..64_u8).map(|bits| {
+        (0..128_u8).map(|bits| {
             let bit = |n: u8| bits & (1 << n) != 0;
             Situation {
                 has_fault: bit(0),
@@ -96,6 +81,7 @@ mod tests {
                 is_stopped: bit(3),
                 is_stuck: bit(4),
                 is_off_place: bit(5),
+                is_passive: bit(6),
             }
         })
     }
@@ -107,43 +93,35 @@ mod tests {
             for s in situations() {
                 let to = next_mode(from, s);
                 let goes = s.has_goal && !s.is_at_goal && !s.is_stopped && !s.is_stuck;
+                let sound = !s.is_passive && !s.has_fault;
+                let settled = sound && from.gives_way();
                 let expected = [
-                    (Mode::Fault, s.has_fault),
-                    (
-                        Mode::Idle,
-                        !s.has_fault && (from == Mode::Fault || !s.has_goal),
-                    ),
-                    (Mode::Arrived, s.has_goal && s.is_at_goal),
+                    (Mode::Passive, s.is_passive),
+                    (Mode::Fault, s.has_fault && !s.is_passive),
+                    (Mode::Idle, sound && (!from.gives_way() || !s.has_goal)),
+                    (Mode::Arrived, settled && s.has_goal && s.is_at_goal),
                     (
                         Mode::Hold,
-                        s.has_goal && !s.is_at_goal && (s.is_stopped || s.is_stuck),
+                        settled && s.has_goal && !s.is_at_goal && (s.is_stopped || s.is_stuck),
                     ),
-                    (Mode::Forming, goes && s.is_off_place),
-                    (Mode::Cruise, goes && !s.is_off_place),
+                    (Mode::Forming, settled && goes && s.is_off_place),
+                    (Mode::Cruise, settled && goes && !s.is_off_place),
                 ];
                 for (mode, condition) in expected {
-                    let shadowed = s.has_fault && mode != Mode::Fault
-                        || from == Mode::Fault && !matches!(mode, Mode::Fault | Mode::Idle);
-                    assert_eq!(
-                        to == mode,
-                        condition && !shadowed,
-                        "{from:?} {s:?} {mode:?}"
-                    );
+                    assert_eq!(to == mode, condition, "{from:?} {s:?} {mode:?}");
                 }
             }
         }
     }
 
     #[test]
-    fn every_mode_is_reached_from_every_other_except_out_of_a_fault() {
+    fn every_mode_is_reached_from_every_other_that_is_steered() {
         for from in MODES {
             let reached: std::collections::HashSet<Mode> =
                 situations().map(|s| next_mode(from, s)).collect();
-            assert_eq!(
-                reached.len(),
-                if from == Mode::Fault { 2 } else { 6 },
-                "{from:?}"
-            );
+            // From the two others the way leads through one step of standing.
+            let modes = if from.gives_way() { 7 } else { 3 };
+            assert_eq!(reached.len(), modes, "{from:?}");
         }
     }
 

@@ -411,13 +411,14 @@ fn dir(heading: u8) -> Option<Dir> {
 }
 
 fn mode(number: u8) -> Option<Mode> {
-    const MODES: [Mode; 6] = [
+    const MODES: [Mode; 7] = [
         Mode::Idle,
         Mode::Forming,
         Mode::Cruise,
         Mode::Hold,
         Mode::Arrived,
         Mode::Fault,
+        Mode::Passive,
     ];
     MODES.get(usize::from(number)).copied()
 }

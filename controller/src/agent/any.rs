@@ -89,6 +89,10 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
         each!(self, guidance => Guidance::<S>::goes_to_cells(guidance))
     }
 
+    fn goes_by_velocity(&self) -> bool {
+        each!(self, guidance => Guidance::<S>::goes_by_velocity(guidance))
+    }
+
     fn has_own_goal(&self) -> bool {
         each!(self, guidance => Guidance::<S>::has_own_goal(guidance))
     }

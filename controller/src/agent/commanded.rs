@@ -17,7 +17,8 @@ pub enum Wish<S> {
     /// Its own behaviour.
     #[default]
     Own,
-    /// Its motors off: it is in [`Mode::Fault`](crate::wire::Mode::Fault), so that the others do not count on its giving way.
+    /// To be left alone: its motors are off, or somebody else steers. It is in [`Mode::Passive`](crate::wire::Mode::Passive), so that the
+    /// others hear where it is and do not count on its giving way.
     Off,
     /// To stay where it is (and give way to others).
     Hold,
@@ -40,11 +41,23 @@ pub enum Wish<S> {
     Cell(Cell),
 }
 
+/// A task that means nothing to the guidance: it goes to other things, or by other means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct WrongTask;
+
+impl core::fmt::Display for WrongTask {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str("the guidance has no use for the task")
+    }
+}
+
+impl core::error::Error for WrongTask {}
+
 /// Guidance `G` until an operator wishes something else, and again when he wishes no more.
 ///
 /// It only wishes, as any guidance does: the safety layer behind it keeps the robot clear of others whatever the
-/// operator wants. Robots that follow this one see by its beacon that it left its formation. In the plane or in space any `G` will
-/// do, on the grid [`Wish::Velocity`] and [`Wish::Place`] are [`BadInput`].
+/// operator wants. Robots that follow this one see by its beacon that it left its formation.
 #[derive(Clone, Debug, Serialize)]
 pub struct Commanded<S, G> {
     inside: G,
@@ -67,9 +80,28 @@ impl<S: Scalar, G> Commanded<S, G> {
     }
 
     /// The operator's wish from the next step on.
-    pub const fn command(&mut self, wish: Wish<S>) {
+    ///
+    /// # Errors
+    /// [`WrongTask`] for a velocity or a place where the guidance inside moves cell by cell, for a cell where it does not go to cells, and
+    /// for a velocity that is no number. The wish that held before goes on.
+    pub fn command(&mut self, wish: Wish<S>) -> Result<(), WrongTask>
+    where
+        G: Guidance<S>,
+    {
+        let is_possible = match &wish {
+            Wish::Own | Wish::Off | Wish::Hold => true,
+            Wish::Velocity { velocity_mps, .. } => {
+                self.inside.goes_by_velocity() && velocity_mps.is_finite()
+            }
+            Wish::Place { .. } => self.inside.goes_by_velocity(),
+            Wish::Cell(_) => self.inside.goes_to_cells(),
+        };
+        if !is_possible {
+            return Err(WrongTask);
+        }
         self.wish = wish;
         self.since = None;
+        Ok(())
     }
 
     /// The wish that holds now: one that has run out is [`Wish::Hold`].
@@ -128,13 +160,15 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
         workspace: &mut Self::Workspace,
     ) -> Result<Guided<S>, BadInput> {
         self.renew(view.now);
-        // Cell by cell there is no speed.
-        let is_free = view.body.max_speed_mps > S::ZERO;
         match self.wish {
             Wish::Own => self.inside.decide(view, rng, workspace),
-            Wish::Off => Err(BadInput),
+            Wish::Off => Ok(Guided {
+                is_passive: true,
+                ..standing(view)
+            }),
             Wish::Hold => Ok(standing(view)),
-            Wish::Velocity { velocity_mps, .. } if is_free && velocity_mps.is_finite() => {
+            Wish::Velocity { velocity_mps, .. } => {
+                view.can_go()?;
                 Ok(Guided {
                     velocity_mps: velocity_mps.clamp_norm(view.body.max_speed_mps),
                     target: view.goal,
@@ -142,12 +176,11 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
                     ..Guided::default()
                 })
             }
-            Wish::Place { .. } if is_free => Ok(Guided {
+            Wish::Place { .. } => Ok(Guided {
                 target: view.goal,
                 recovers: true,
                 ..self.straight.decide(view, rng, &mut ())?
             }),
-            Wish::Velocity { .. } | Wish::Place { .. } => Err(BadInput),
             Wish::Cell(goal) => {
                 let view = View { goal, ..*view };
                 self.inside.decide(&view, rng, workspace)
@@ -169,6 +202,10 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
 
     fn goes_to_cells(&self) -> bool {
         self.inside.goes_to_cells()
+    }
+
+    fn goes_by_velocity(&self) -> bool {
+        self.inside.goes_by_velocity()
     }
 
     fn has_own_goal(&self) -> bool {

@@ -423,9 +423,9 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
         } else {
             // Who says that he cannot go on is not waited for, nor who has arrived: a part of the formation that lost the rest
             // on the way would wait for ever for those who are at the goal before it.
+            let goes_on = |mode: Mode| mode.gives_way() && mode != Mode::Arrived;
             let able = found.members.iter();
-            let able =
-                able.filter(|member| !matches!(member.seen.mode, Mode::Fault | Mode::Arrived));
+            let able = able.filter(|member| goes_on(member.seen.mode));
             let behind = able.map(|member| {
                 let off = member.seen.cell - (cell + member.offset);
                 lag(off, self.travel.choice())
@@ -461,6 +461,10 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
 
     fn goes_to_cells(&self) -> bool {
         true
+    }
+
+    fn goes_by_velocity(&self) -> bool {
+        false
     }
 
     fn redirect(&mut self) {

@@ -143,6 +143,8 @@ pub struct Guided<S> {
     pub leader: RobotId,
     /// Its place in the formation.
     pub slot: u8,
+    /// Nobody is to steer it from here: its motors are off, or somebody else steers.
+    pub is_passive: bool,
     /// It stands where it should.
     pub is_at_goal: bool,
     /// It should wait for others.
@@ -197,6 +199,11 @@ pub trait Guidance<S> {
     /// Whether a cell of the grid is what it goes to.
     fn goes_to_cells(&self) -> bool {
         false
+    }
+
+    /// Whether it wishes velocities, not moves from cell to cell.
+    fn goes_by_velocity(&self) -> bool {
+        true
     }
 
     /// Whether it knows where to go without a cell as its goal.

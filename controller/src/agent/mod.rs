@@ -108,7 +108,7 @@ mod waypoint_guidance;
 mod tests;
 
 pub use any::{AnyGuidance, AnyHalfPlanes, AnySafety};
-pub use commanded::{Commanded, Wish};
+pub use commanded::{Commanded, Wish, WrongTask};
 pub use config::AgentConfig;
 pub use flock_guidance::{BoidsGuidance, GOALS, GoalFlockGuidance, LatticeGuidance};
 pub use formation_guidance::FormationGuidance;
@@ -242,6 +242,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
             decisions: 0,
             last: Last {
                 situation: Situation {
+                    is_passive: false,
                     has_fault: false,
                     has_goal: false,
                     is_at_goal: false,
@@ -435,8 +436,13 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         let is_stopped = self.link.is_stopped(now);
         let own_goal = self.guidance.has_own_goal();
         let goal = self.goal_cell().or(own_goal.then_some(Cell::default()));
-        self.last.situation.has_goal = goal.is_some();
-        let goal = goal?;
+        let situation = &mut self.last.situation;
+        situation.has_goal = goal.is_some();
+        let Some(goal) = goal else {
+            // Nothing was asked, so nothing is missing.
+            (situation.is_passive, situation.has_fault) = (false, false);
+            return None;
+        };
         if inputs.cell.is_some_and(|cell| cell.busy > Duration::ZERO) {
             return None;
         }
@@ -459,6 +465,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         let guided = self.guidance.decide(&view, rng, workspace);
         let situation = &mut self.last.situation;
         situation.has_fault = guided.is_err();
+        situation.is_passive = guided.as_ref().is_ok_and(|guided| guided.is_passive);
         let guided = guided.ok()?;
         for ask in &guided.asks {
             let (valid, own) = (self.config.stop_valid, self.config.id);
@@ -496,7 +503,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
             report(out, Event::ModeChanged { from, to });
         }
         let Some(guided) = guided else { return };
-        let goes = moves(to) || (guided.makes_way && to != Mode::Fault);
+        let goes = moves(to) || (guided.makes_way && to.gives_way());
         self.last.heading = Dir::Stay;
         if goes && inputs.surroundings.is_some() {
             out.command = Command::Velocity(guided.velocity_mps);
@@ -506,8 +513,8 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         }
     }
 
-    /// What the safety layer makes of the wished velocity. Who stands gives way too; only a robot in
-    /// [`Mode::Fault`] does nothing.
+    /// What the safety layer makes of the wished velocity. Who stands gives way too, unless its mode says that it does not
+    /// ([`Mode::gives_way`]).
     #[inline(never)]
     fn keep_clear(
         &mut self,
@@ -520,7 +527,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         let Some(surroundings) = inputs.surroundings else {
             return;
         };
-        if self.mode == Mode::Fault {
+        if !self.mode.gives_way() {
             out.command = Command::Hold;
             return;
         }

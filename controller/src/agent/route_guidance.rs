@@ -141,6 +141,10 @@ impl<S: Scalar, const CELLS: usize, const M: usize> Guidance<S> for RouteGuidanc
         true
     }
 
+    fn goes_by_velocity(&self) -> bool {
+        false
+    }
+
     fn redirect(&mut self) {
         self.travel.redirect();
     }

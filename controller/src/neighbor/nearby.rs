@@ -5,7 +5,7 @@ use crate::geom::{Position, Vec3};
 use crate::list::{self, sink_last};
 use crate::scalar::{Scalar, cast};
 use crate::time::{Duration, Instant};
-use crate::wire::{Mode, RobotId};
+use crate::wire::RobotId;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
@@ -20,7 +20,7 @@ pub struct Nearby<S> {
     pub velocity_mps: Vec3<S>,
     /// Radius of the ball that it is in, metres.
     pub radius_m: S,
-    /// Whether it gives way too: fresh, and not in [`Mode::Fault`].
+    /// Whether it gives way too: fresh, and its agent steers it ([`Mode::gives_way`]).
     pub gives_way: bool,
 }
 
@@ -96,7 +96,7 @@ fn seen<S: Scalar>(
         offset_m,
         velocity_mps: entry.velocity_mps,
         radius_m: entry.radius_m,
-        gives_way: is_fresh && entry.mode != Mode::Fault,
+        gives_way: is_fresh && entry.mode.gives_way(),
     };
     if !is_fresh {
         nearby.velocity_mps = Vec3::ZERO;

@@ -34,6 +34,7 @@ fn mode() -> impl Strategy<Value = Mode> {
         Just(Mode::Hold),
         Just(Mode::Arrived),
         Just(Mode::Fault),
+        Just(Mode::Passive),
     ]
 }
 

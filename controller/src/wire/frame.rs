@@ -39,7 +39,7 @@ use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
 /// The version of the format that this code writes and reads, 1..=127.
-pub const VERSION: u8 = 1;
+pub const VERSION: u8 = 2;
 /// Bytes of an authentication tag.
 pub const TAG_LEN: usize = 8;
 /// The greatest number of a robot in frames with a tag, as sender and as leader.

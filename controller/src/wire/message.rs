@@ -49,6 +49,16 @@ pub enum Mode {
     Arrived,
     /// Own input is missing or wrong; standing.
     Fault,
+    /// Its agent does not steer it: the motors are off, or somebody else does.
+    Passive,
+}
+
+impl Mode {
+    /// Whether its agent steers it at all, be it to stand, so that others can count on its giving way.
+    #[must_use]
+    pub const fn gives_way(self) -> bool {
+        !matches!(self, Self::Fault | Self::Passive)
+    }
 }
 
 /// What a robot says of itself, periodically. Everything that others may rely on.

@@ -47,7 +47,7 @@ fn without_a_wish_nothing_differs() {
 #[test]
 fn a_velocity_holds_until_its_time_is_over() {
     let mut robot = robot([0.0; 2]);
-    robot.agent.guidance_mut().command(east(500));
+    robot.agent.guidance_mut().command(east(500)).unwrap();
     for n in 0..5 {
         let _ = robot.step(step_number(n), &[]);
         assert_eq!(robot.velocity_mps, [0.5, 0.0], "step {n}");
@@ -60,27 +60,26 @@ fn a_velocity_holds_until_its_time_is_over() {
     );
     assert_eq!(robot.agent.guidance().wish(), &Wish::Hold);
     // The same wish said again counts anew, however late.
-    robot.agent.guidance_mut().command(east(500));
+    robot.agent.guidance_mut().command(east(500)).unwrap();
     let _ = robot.step(step_number(60), &[]);
     assert_eq!(robot.velocity_mps, [0.5, 0.0]);
 }
 
 #[test]
-fn a_velocity_beyond_the_body_is_cut_and_one_that_is_no_number_is_a_fault() {
+fn a_velocity_beyond_the_body_is_cut_and_one_that_is_no_number_refused() {
     let mut robot = robot([0.0; 2]);
     let wish = |x: f32| Wish::Velocity {
         velocity_mps: Vec3::new(x, 0.0, 0.0),
         valid: Duration::MAX,
     };
-    robot.agent.guidance_mut().command(wish(7.0));
-    let _ = robot.step(step_number(0), &[]);
-    assert_eq!(robot.velocity_mps, [1.0, 0.0]);
-    for bad in [f32::NAN, f32::INFINITY] {
-        robot.agent.guidance_mut().command(wish(bad));
-        let _ = robot.step(step_number(1), &[]);
+    robot.agent.guidance_mut().command(wish(7.0)).unwrap();
+    for (n, bad) in [f32::NAN, f32::INFINITY, 7.0].into_iter().enumerate() {
+        let taken = robot.agent.guidance_mut().command(wish(bad));
+        assert_eq!(taken, bad.is_finite().then_some(()).ok_or(WrongTask));
+        let _ = robot.step(step_number(n as i32), &[]);
         assert_eq!(
             (robot.velocity_mps, robot.agent.mode()),
-            ([0.0; 2], Mode::Fault)
+            ([1.0, 0.0], Mode::Cruise)
         );
     }
 }
@@ -90,16 +89,20 @@ fn it_goes_where_the_operator_wants_and_then_its_own_way() {
     fn check<S: Scalar>() {
         let mut robot = robot::<S>([0.0; 2]);
         robot.agent.assign_place(0, &place(-1000, 0));
-        robot.agent.guidance_mut().command(Wish::Place {
-            place: Place::fixed(Position::from_mm([1000, 0, 0])),
-            valid: None,
-        });
+        robot
+            .agent
+            .guidance_mut()
+            .command(Wish::Place {
+                place: Place::fixed(Position::from_mm([1000, 0, 0])),
+                valid: None,
+            })
+            .unwrap();
         for n in 0..20 {
             let _ = robot.step(step_number(n), &[]);
         }
         assert_eq!(robot.agent.mode(), Mode::Arrived);
         assert!((robot.at_m[0] - 1.0).abs() < 0.02, "{:?}", robot.at_m);
-        robot.agent.guidance_mut().command(Wish::Own);
+        robot.agent.guidance_mut().command(Wish::Own).unwrap();
         for n in 20..60 {
             let _ = robot.step(step_number(n), &[]);
         }
@@ -115,10 +118,14 @@ fn a_place_that_moves_is_followed_until_its_time_is_over() {
     let mut robot = robot::<f32>([0.0; 2]);
     let mut moving = place(0, 0);
     moving.velocity_mps = Vec3::new(0.0, 0.5, 0.0);
-    robot.agent.guidance_mut().command(Wish::Place {
-        place: moving,
-        valid: Some(Duration::from_millis(1000)),
-    });
+    robot
+        .agent
+        .guidance_mut()
+        .command(Wish::Place {
+            place: moving,
+            valid: Some(Duration::from_millis(1000)),
+        })
+        .unwrap();
     for n in 100..130 {
         let _ = robot.step(step_number(n), &[]);
     }
@@ -132,7 +139,7 @@ fn who_is_off_stands_and_says_so_and_who_holds_gives_way() {
     let mut moved = [0.0; 2];
     for (moved, wish) in moved.iter_mut().zip([Wish::Off, Wish::Hold]) {
         let mut robot = robot::<f32>([0.0; 2]);
-        robot.agent.guidance_mut().command(wish);
+        robot.agent.guidance_mut().command(wish).unwrap();
         for n in 0..3 {
             let out = robot.step(
                 step_number(n),
@@ -147,7 +154,11 @@ fn who_is_off_stands_and_says_so_and_who_holds_gives_way() {
                 ] => beacon.mode,
                 other => panic!("{other:?}"),
             };
-            assert_eq!(mode == Mode::Fault, wish == Wish::Off);
+            let expected = match wish {
+                Wish::Off => Mode::Passive,
+                _ => Mode::Hold,
+            };
+            assert_eq!(mode, expected);
         }
         *moved = length(robot.at_m);
     }
@@ -158,7 +169,7 @@ fn who_is_off_stands_and_says_so_and_who_holds_gives_way() {
 #[test]
 fn a_stop_of_others_does_not_stop_the_operator() {
     let mut robot = robot::<f32>([0.0; 2]);
-    robot.agent.guidance_mut().command(east(5000));
+    robot.agent.guidance_mut().command(east(5000)).unwrap();
     let stop = Message::Request(Request {
         to: RobotId(1),
         origin: RobotId(2),
@@ -173,7 +184,7 @@ fn a_stop_of_others_does_not_stop_the_operator() {
 
 /// On the grid.
 #[test]
-fn cells_take_the_place_of_the_own_goal_and_velocities_are_a_fault() {
+fn cells_take_the_place_of_the_own_goal_and_velocities_are_refused() {
     type OnGrid = Agent<f32, Commanded<f32, RouteGuidance<CELLS, VISITS>>, NEIGHBORS>;
     let guidance = Commanded::new(RouteGuidance::new(RouteParams::default()), 0.0, 0.0);
     let mut agent = OnGrid::new(&config(1), guidance);
@@ -192,19 +203,52 @@ fn cells_take_the_place_of_the_own_goal_and_velocities_are_a_fault() {
         }
     };
     assert_eq!(heading(&mut agent, 0), Some(Dir::East));
-    agent.guidance_mut().command(Wish::Cell(Cell::new(5, 9)));
+    agent
+        .guidance_mut()
+        .command(Wish::Cell(Cell::new(5, 9)))
+        .unwrap();
     assert_eq!(heading(&mut agent, 1), Some(Dir::North));
     assert_eq!(agent.target(), Some(Cell::new(5, 9)));
-    agent.guidance_mut().command(east(1000));
-    assert_eq!(heading(&mut agent, 2), None);
-    assert_eq!(agent.mode(), Mode::Fault);
-    agent.guidance_mut().command(Wish::Own);
-    assert_eq!(
-        heading(&mut agent, 3),
-        None,
-        "out of a fault it looks first"
-    );
-    assert_eq!(heading(&mut agent, 4), Some(Dir::East));
+    // What it has no use for is an error, and changes nothing.
+    let there = Wish::Place {
+        place: place(1000, 0),
+        valid: None,
+    };
+    for wrong in [east(1000), there] {
+        assert_eq!(agent.guidance_mut().command(wrong), Err(WrongTask));
+    }
+    assert_eq!(heading(&mut agent, 2), Some(Dir::North));
+    agent.guidance_mut().command(Wish::Own).unwrap();
+    assert_eq!(heading(&mut agent, 3), Some(Dir::East));
+}
+
+#[test]
+fn a_cell_is_refused_by_who_goes_to_places() {
+    let mut robot = robot::<f32>([0.0; 2]);
+    robot.agent.assign_place(0, &place(1000, 0));
+    let cell = Wish::Cell(Cell::new(3, 4));
+    assert_eq!(robot.agent.guidance_mut().command(cell), Err(WrongTask));
+    let _ = robot.step(step_number(0), &[]);
+    assert_eq!(robot.agent.mode(), Mode::Cruise);
+}
+
+/// Switched off and on again by its pilot, one that has nothing to do is idle.
+#[test]
+fn out_of_passive_the_way_leads_through_idle() {
+    for has_place in [false, true] {
+        let mut robot = robot::<f32>([0.0; 2]);
+        if has_place {
+            robot.agent.assign_place(0, &place(1000, 0));
+        }
+        let mut modes = Vec::new();
+        for (n, wish) in [Wish::Off, Wish::Own, Wish::Own].into_iter().enumerate() {
+            robot.agent.guidance_mut().command(wish).unwrap();
+            let _ = robot.step(step_number(n as i32), &[]);
+            modes.push(robot.agent.mode());
+        }
+        let last = if has_place { Mode::Cruise } else { Mode::Idle };
+        assert_eq!(modes, [Mode::Passive, Mode::Idle, last]);
+    }
 }
 
 #[test]

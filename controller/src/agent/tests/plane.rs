@@ -256,18 +256,21 @@ fn who_stands_gives_way_and_who_has_a_fault_does_nothing() {
 }
 
 #[test]
-fn a_neighbour_with_a_fault_gets_the_whole_correction() {
+fn a_neighbour_that_does_not_give_way_gets_the_whole_correction() {
     let correction = |mode| {
         let mut robot = Robot::new(&in_plane(1), Onlooker::default(), orca(), [0.0; 2]);
         let inbox = bytes(2, 0, 0, &[body_at([900, 100], [-600, 0], mode)]);
         let _ = robot.step(step_number(0), &inbox);
         let gives_way = robot.agent.guidance().seen[0].gives_way;
-        assert_eq!(gives_way, mode != Mode::Fault);
+        assert_eq!(gives_way, mode == Mode::Cruise);
         robot.speed()
     };
-    let (half, whole) = (correction(Mode::Cruise), correction(Mode::Fault));
+    let half = correction(Mode::Cruise);
     assert!(half > 0.01);
-    assert!((whole / half - 2.0).abs() < 0.02, "{half} {whole}");
+    for mode in [Mode::Fault, Mode::Passive] {
+        let whole = correction(mode);
+        assert!((whole / half - 2.0).abs() < 0.02, "{half} {whole} {mode:?}");
+    }
 }
 
 #[test]

@@ -72,7 +72,7 @@ fn the_bytes_of_a_sealed_frame_are_these() {
     assert_eq!(
         text,
         [
-            0x81, 3, 12, 2, 1, 5, 2, 4, 0xFD, 0xFF, 8, 0, 0x00, 0x50, 0, 0
+            0x82, 3, 12, 2, 1, 5, 2, 4, 0xFD, 0xFF, 8, 0, 0x00, 0x50, 0, 0
         ]
     );
     assert_eq!(code, &Mac::new(&key()).of(&[text])[..4]);

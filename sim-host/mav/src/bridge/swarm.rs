@@ -176,7 +176,7 @@ impl Swarm {
                 options.starts_armed,
             );
             if let Some(Deed::Wish(wish)) = vehicle.first_deed() {
-                engine.command(index, wish);
+                let _ = engine.command(index, wish);
             }
             vehicles.push(vehicle);
         }
@@ -335,9 +335,11 @@ impl Swarm {
     fn carry_out(&mut self, index: usize) -> Result<(), BridgeError> {
         for deed in self.out.deeds.drain(..) {
             match deed {
-                Deed::Wish(wish) => self.engine.command(index, wish),
                 Deed::Tell(header, message) => self.engine.tell(index, header, &message),
-                // The vehicle has looked at its range.
+                // The vehicle wishes only what its robot can do, and has looked at the range.
+                Deed::Wish(wish) => {
+                    let _ = self.engine.command(index, wish);
+                }
                 Deed::Set(parameter, value) => {
                     let _ = self.engine.set_parameter(index, parameter, value);
                 }

@@ -332,7 +332,7 @@ impl Vehicle {
             | MAV_SYS_STATUS_SENSOR_XY_POSITION_CONTROL
             | MAV_SYS_STATUS_SENSOR_MOTOR_OUTPUTS
             | MAV_SYS_STATUS_PREARM_CHECK;
-        let has_fault = self.is_armed && self.sample.mode == Mode::Fault;
+        let has_fault = self.sample.mode == Mode::Fault;
         let unsound = if has_fault {
             MAV_SYS_STATUS_SENSOR_XY_POSITION_CONTROL
         } else {

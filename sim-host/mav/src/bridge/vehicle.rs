@@ -181,10 +181,9 @@ impl Vehicle {
     fn report(&mut self, event: &Event, out: &mut Out) {
         use MAV_SEVERITY_INFO as INFO;
         match *event {
-            // Motors that are off are no news.
             Event::ModeChanged {
                 to: Mode::Fault, ..
-            } if self.is_armed => {
+            } => {
                 self.text(out, Kind::News, MAV_SEVERITY_ERROR, "fault: standing");
             }
             Event::ModeChanged {

@@ -1,8 +1,8 @@
 //! The agent beside an autopilot: what it senses comes from telemetry and the scenario's land, what it commands is a velocity.
 
 use staya_controller::agent::{
-    Agent, AgentConfig, AnyGuidance, AnySafety, Command, GridWorkspace, HALF_PLANES, NEIGHBORS,
-    Outputs, TEMPLATE, VISITS,
+    Agent, AgentConfig, AnyGuidance, AnySafety, Command, Commanded, GridWorkspace, HALF_PLANES,
+    NEIGHBORS, Outputs, TEMPLATE, VISITS, Wish,
 };
 use staya_controller::geom::Vec3;
 use staya_controller::time::{self, Instant};
@@ -28,8 +28,9 @@ struct Brake {
     tolerance_m: f64,
 }
 
-type Mind<W> =
-    Agent<f32, AnyGuidance<f32, WIDE, VISITS, TEMPLATE>, NEIGHBORS, AnySafety<f32, HALF_PLANES>, W>;
+/// What the scenario wants, unless the pilot has the vehicle.
+type Guided = Commanded<f32, AnyGuidance<f32, WIDE, VISITS, TEMPLATE>>;
+type Mind<W> = Agent<f32, Guided, NEIGHBORS, AnySafety<f32, HALF_PLANES>, W>;
 
 /// An agent with its land.
 pub struct Brain<W> {
@@ -64,7 +65,8 @@ impl<W: Wire> Brain<W> {
             ..AgentConfig::new(robot.unwrap_or_default(), scenario.seed, tick)
         };
         ground.configure(&mut config);
-        let guidance = scenario.guidance(index).guidance();
+        // Nobody wishes places here, so neither speed nor tolerance counts.
+        let guidance = Commanded::new(scenario.guidance(index).guidance(), 0.0, 0.0);
         let mut agent = Box::new(Agent::speaking(
             &config,
             guidance,
@@ -123,8 +125,10 @@ impl<W: Wire> Brain<W> {
             .ground
             .sense_at(position_m, velocity_mps, &mut self.senses);
         inputs.inbox = inbox;
-        if !steers {
-            inputs.surroundings = None;
+        let wish = if steers { Wish::Own } else { Wish::Off };
+        if *self.agent.guidance().wish() != wish {
+            // Both are possible for any guidance.
+            let _ = self.agent.guidance_mut().command(wish);
         }
         if let (Some(around), Some(brake)) = (&mut inputs.surroundings, self.brake) {
             let limit = speed_before(&brake, position_m, self.max_acceleration_mps2, self.lag_s);

@@ -42,8 +42,8 @@ pub trait Operated: Send {
     /// What happened to it in the last tick.
     fn events(&self, index: usize) -> &[Event];
 
-    /// Gives it a wish; lost while its computer is down.
-    fn command(&mut self, index: usize, wish: Wish<f32>);
+    /// Gives it a wish; whether it takes it: it does not while its computer is down, nor what its guidance has no use for.
+    fn command(&mut self, index: usize, wish: Wish<f32>) -> bool;
 
     /// Lets it hear a message in the next tick, over no radio, in the format that robots speak (frames are counted here, whatever the header's number);
     /// lost while its computer is down.
@@ -157,10 +157,11 @@ where
         &self.engine.computers[index].events
     }
 
-    fn command(&mut self, index: usize, wish: Wish<f32>) {
-        if let (true, Some(agent)) = (self.is_up(index), &mut self.engine.computers[index].agent) {
-            agent.guidance_mut().command(wish);
-        }
+    fn command(&mut self, index: usize, wish: Wish<f32>) -> bool {
+        let is_up = self.is_up(index);
+        let agent = self.engine.computers[index].agent.as_mut();
+        let agent = agent.filter(|_| is_up);
+        agent.is_some_and(|agent| agent.guidance_mut().command(wish).is_ok())
     }
 
     fn tell(&mut self, index: usize, header: Header, message: &Message) {

@@ -35,7 +35,7 @@ pub const TRACE: [Column; 16] = [
         "mode",
         "string",
         "",
-        "idle, forming, cruise, hold, arrived or fault",
+        "idle, forming, cruise, hold, arrived, fault or passive",
     ),
     ("leader", "integer", "1", "its leader's number, 0 = none"),
     (
@@ -138,6 +138,7 @@ pub fn trace_line(out: &mut Vec<u8>, tick: &TickRow, robot: &RobotRow) {
         Mode::Hold => "hold",
         Mode::Arrived => "arrived",
         Mode::Fault => "fault",
+        Mode::Passive => "passive",
     };
     let ([x, y, z], [vx, vy, vz]) = (robot.motion.position_m, robot.motion.velocity_mps);
     append(

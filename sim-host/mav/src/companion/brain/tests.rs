@@ -42,12 +42,12 @@ fn heads_for_its_goal_and_says_where_it_is() {
 }
 
 #[test]
-fn one_that_is_not_steered_is_in_fault_and_commands_nothing() {
+fn one_that_is_not_steered_is_passive_and_commands_nothing() {
     let mut brain = brains(1).remove(0);
     let _ = brain.step(&at(0.0, 0.0), true, &[], Duration::ZERO);
     let out = brain.step(&at(1.0, 0.0), false, &[], TICK);
     assert!(!out.outbox.is_empty(), "the others hear where it is");
-    assert_eq!(brain.mode(), Mode::Fault);
+    assert_eq!(brain.mode(), Mode::Passive);
     assert_eq!(brain.velocity_mps(), [0.0; 3]);
 }
 
@@ -75,7 +75,7 @@ fn a_vehicle_that_lags_does_not_overshoot_its_tolerance() {
 }
 
 #[test]
-fn one_in_fault_is_evaded_by_the_other_alone() {
+fn one_that_is_passive_is_evaded_by_the_other_alone() {
     let mut brains = brains(2);
     let mut second = brains.remove(1);
     let mut first = brains.remove(0);

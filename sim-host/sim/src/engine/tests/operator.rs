@@ -56,7 +56,7 @@ fn who_is_commanded_goes_elsewhere_and_nobody_is_hit() {
         valid: None,
     };
     for robot in 0..2 {
-        swarm.command(robot, meeting);
+        assert!(swarm.command(robot, meeting));
     }
     run(&mut *swarm, 400);
     for robot in 0..2 {
@@ -78,14 +78,14 @@ fn who_is_down_hears_nothing_and_starts_anew_as_the_scenario_has_it() {
         velocity_mps: Vec3::new(1.0, 0.0, 0.0),
         valid: Duration::from_millis(60_000),
     };
-    swarm.command(2, east);
+    assert!(swarm.command(2, east));
     assert!(swarm.set_parameter(2, Parameter::Speed, 0.5));
     run(&mut *swarm, 22);
     let before = swarm.glance(2);
     assert!(!before.is_up && before.motion.velocity_mps == [0.0; 3]);
     assert!(!swarm.set_parameter(2, Parameter::Speed, 0.5));
     assert_eq!(swarm.parameter(2, Parameter::Speed), None);
-    swarm.command(2, east);
+    assert!(!swarm.command(2, east), "nobody is there");
     run(&mut *swarm, 15);
     let after = swarm.glance(2);
     assert!(after.is_up && after.boot != before.boot && after.wish == Wish::Own);
@@ -166,7 +166,7 @@ fn no_whim_of_the_operator_makes_robots_collide() {
                         valid: None,
                     },
                 };
-                swarm.command(robot, wish);
+                assert!(swarm.command(robot, wish));
             }
             run(&mut *swarm, 10);
         }
