@@ -2,7 +2,7 @@
 //!
 //! A cost is time: the unit is 1/[`TICK`] of a tick, a tick being the time in which a robot
 //! crosses a cell of impassability 1. Behaviours give each of the eight moves a weight and add
-//! their weights up (KUZ section 7, "it is simplest to add them").
+//! their weights up (A. V. Kuznetsov 2017, KUZ, section 7: "it is simplest to add them").
 
 use crate::grid::{Dir, UNIT};
 use serde::{Deserialize, Serialize};

@@ -1,10 +1,10 @@
 //! The weighted shuffle: moves in random order, cheap ones likelier in front.
 //!
-//! Source: KUZ section 7, item 3; Efraimidis and Spirakis 2006, "Weighted random sampling with a
-//! reservoir", algorithm A: sort by key = Exp(1) / w'. The paper leaves open how a cost w becomes a
-//! priority w'; here w' = 2^(-(w - least) / h): the priority halves with every h of extra cost, so
-//! that only differences between moves matter and h says what difference is noticed. Keys are
-//! compared by their logarithm, log2 Exp(1) + (w - least) / h, in integers.
+//! Source: A. V. Kuznetsov 2017 (KUZ), section 7, item 3; Efraimidis and Spirakis 2006, "Weighted random sampling with
+//! a reservoir", algorithm A: sort by key = Exp(1) / w'. The paper leaves open how a cost w becomes a priority w'; here
+//! w' = 2^(-(w - least) / h): the priority halves with every h of extra cost, so that only differences between moves
+//! matter and h says what difference is noticed. Keys are compared by their logarithm, log2 Exp(1) + (w - least) / h,
+//! in integers.
 //!
 //! What the paper asks of the shuffle holds: equal moves come first equally often, and "the probability
 //! of a direction that breaks the formation is close to zero" (item 4), since a move that is k halvings

@@ -1,7 +1,8 @@
 //! Keeping a formation: who my neighbours should be, where they are, and what that makes each move
 //! cost.
 //!
-//! Source: KUZ section 7, algorithms 2 and 5 to 7; section 6 for the measures. Read section 7 first.
+//! Source: A. V. Kuznetsov 2017 (KUZ), section 7, algorithms 2 and 5 to 7; section 6 for the measures. Read section 7
+//! first.
 //! Everything here is a pure function on slices; what a robot remembers is [`Pace`] and its
 //! [`Template`]. Lengths are integers in [`UNIT`](crate::grid::UNIT)s per cell, costs those of [`crate::cost`].
 //!

@@ -1,6 +1,6 @@
 //! Windowed routing: the cheapest way out of what the robot sees, towards its target.
 //!
-//! Source: KUZ sections 3 and 5, algorithms 1 and 3, equations 7 to 10. Read section 3 first.
+//! Source: A. V. Kuznetsov 2017 (KUZ), sections 3 and 5, algorithms 1 and 3, equations 7 to 10. Read section 3 first.
 //! Costs are integers, see [`crate::cost`], so that host and device agree to the bit.
 //!
 //! What differs from the paper: the direction of algorithm 3, line 7 is (target - cell), which the

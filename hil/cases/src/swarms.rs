@@ -14,7 +14,7 @@ use staya_controller::wire::Postcard;
 /// A canned swarm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Case {
-    /// Each for itself across rough land with walls, to the opposite corner (KUZ algorithm 1).
+    /// Each for itself across rough land with walls, to the opposite corner (A. V. Kuznetsov 2017, KUZ, algorithm 1).
     Route,
     /// Two rows of two keep their places across rough land (KUZ algorithm 2).
     Formation,

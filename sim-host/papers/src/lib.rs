@@ -1,10 +1,15 @@
 //! Experiments: papers and benchmarks, run again.
 //!
-//! [`route`]: KUZ section 5, windowed routing against the global optimum on random land. [`formation`]: KUZ section 8, six
-//! robots in formation. [`movingai`]: the queries of the Moving AI benchmark. [`crossing`]: swaps over a circle and
-//! doorways. [`boids`]: STA section 2.3, boids on a torus and what finding neighbours costs. [`orca`]: FVM, the template of the
-//! velocity obstacle against the exact one. [`flock`]: OLF section VIII, the five simulations. [`goals`]: PAV, a group on
-//! its way to three goals.
+//! | module | paper |
+//! | --- | --- |
+//! | [`route`] | A. V. Kuznetsov 2017 (KUZ), section 5: windowed routing against the global optimum on random land |
+//! | [`formation`] | KUZ, section 8: six robots in formation |
+//! | [`movingai`] | N. Sturtevant 2012: the queries of the Moving AI benchmark |
+//! | [`crossing`] | van den Berg et al. 2011 (ORCA): swaps over a circle, and doorways |
+//! | [`orca`] | Tolok et al. (FVM): looked-up half-planes against the exact ones |
+//! | [`flock`] | R. Olfati-Saber 2006 (OLF), section VIII: the five simulations |
+//! | [`goals`] | V. E. Pavlovsky and V. V. Pavlovsky (PAV): a group on its way to three goals |
+//! | [`boids`] | V. A. Starovoitova 2018 (STA), section 2.3: boids on a torus, and what finding neighbours costs |
 //!
 //! An experiment is a plan with a check, a function that runs it (in parallel, with the same result on any number of
 //! threads; stopped early, it keeps whole runs) and a report that can be serialised.

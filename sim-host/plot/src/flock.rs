@@ -1,7 +1,7 @@
 //! Robots in the plane at one moment: where they are, where they head, who is near whom, what stands in the way.
 //!
-//! A [`Snapshot`] is one moment, [`Sheet`] is several beside each other, as in OLF figures 7 to 12. For
-//! three dimensions, [`View`] makes two of them.
+//! A [`Snapshot`] is one moment, [`Sheet`] is several beside each other, as in figures 7 to 12 of R. Olfati-Saber 2006
+//! (OLF). For three dimensions, [`View`] makes two of them.
 //!
 //! ```no_run
 //! use staya_plot::flock::{Obstacle, Sheet, Snapshot};

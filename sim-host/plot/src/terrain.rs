@@ -1,4 +1,4 @@
-//! Pictures of land: the darker, the less passable (KUZ figure 7); walls are black.
+//! Pictures of land: the darker, the less passable (A. V. Kuznetsov 2017, KUZ, figure 7); walls are black.
 
 use staya_controller::grid::BLOCKED;
 use staya_sim::terrain::{Terrain, TerrainError, parameter_error, rows::flip_row, write};

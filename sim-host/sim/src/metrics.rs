@@ -1,7 +1,7 @@
 //! What a run is measured by: how well the formation is kept, and when robots arrive.
 //!
-//! Source: KUZ section 6. All sums run over robots in the order of their numbers, on one thread, so
-//! that every figure is the same on any machine. Distances are Euclidean, between cells.
+//! Source: A. V. Kuznetsov 2017 (KUZ), section 6. All sums run over robots in the order of their numbers, on one
+//! thread, so that every figure is the same on any machine. Distances are Euclidean, between cells.
 
 pub mod flock;
 

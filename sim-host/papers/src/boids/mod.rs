@@ -1,9 +1,9 @@
-//! Boids on a torus, and what finding neighbours costs (STA section 2.3).
+//! Boids on a torus, and what finding neighbours costs (V. A. Starovoitova 2018, STA, section 2.3).
 //!
-//! The controller's boids ([`staya_controller::flock::boids`]) run directly on the host, without radio or packets: each knows
-//! the exact places and headings of its neighbours. Every number of boids is run once with each
-//! search of [`nearby`](staya_sim::nearby) from the same start; the trajectories must be equal to the bit, and the time
-//! they take is measured on one thread.
+//! The controller's boids ([`staya_controller::flock::boids`]) run directly on the host, without radio or packets: each
+//! knows the exact places and headings of its neighbours. Every number of boids is run once with each search of
+//! [`nearby`](staya_sim::nearby) from the same start; the trajectories must be equal to the bit, and the time they take
+//! is measured on one thread.
 
 mod pictures;
 mod report;

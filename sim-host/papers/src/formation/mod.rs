@@ -1,4 +1,4 @@
-//! How well do six robots keep their formation, and what does it cost? (KUZ section 8, figure 6.)
+//! How well do six robots keep formation, and what does it cost? (A. V. Kuznetsov 2017, KUZ, section 8, figure 6.)
 //!
 //! Each run makes one natural landscape and sends the six robots of figure 5 across it several times: each for
 //! itself, then in formation with the plan's parameters, then with other values of eps and with a lossy radio. Robots

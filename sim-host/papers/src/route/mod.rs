@@ -1,4 +1,4 @@
-//! How good is a route that sees no farther than a window? (KUZ section 5, figures 2 to 4.)
+//! How good is a route that sees no farther than a window? (A. V. Kuznetsov 2017, KUZ, section 5, figures 2 to 4.)
 //!
 //! Each run makes one landscape and sends one robot from (1, 1) to the opposite corner, (size - 2, size - 2), with
 //! the controller's [`Router`](staya_controller::route::Router). Its travel time (eqs. 6 and 7) and the length of

@@ -1,6 +1,6 @@
 //! What describes a landscape: configuration entropy, total edge and its density.
 //!
-//! Source: KUZ section 4, definitions 2 and 3. Blocked cells are a class of their own.
+//! Source: A. V. Kuznetsov 2017 (KUZ), section 4, definitions 2 and 3. Blocked cells are a class of their own.
 
 use super::Terrain;
 use serde::Serialize;

@@ -1,8 +1,8 @@
 //! Bodies on the grid: who stands where, who may move when, and who gives way.
 //!
-//! Source: KUZ sections 2 and 3, eq. 6 (timing) and algorithm 4 (moves). The paper leaves open who
-//! moves first; here the order of a tick is drawn anew each tick from (seed, tick, robot), so
-//! that no robot has precedence for good and the order of robots in memory plays no part.
+//! Source: A. V. Kuznetsov 2017 (KUZ), sections 2 and 3, eq. 6 (timing) and algorithm 4 (moves). The paper leaves open
+//! who moves first; here the order of a tick is drawn anew each tick from (seed, tick, robot), so that no robot has
+//! precedence for good and the order of robots in memory plays no part.
 
 pub mod plane;
 mod window;

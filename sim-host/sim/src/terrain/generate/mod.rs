@@ -1,7 +1,7 @@
 //! Random landscapes; a function of their parameters and a seed.
 //!
-//! Source: KUZ section 5 and figure 7 (`uniform`, `natural`), section 4 and its reference 15 (landscapes of a given
-//! configuration entropy and total edge).
+//! Source: A. V. Kuznetsov 2017 (KUZ), section 5 and figure 7 (`uniform`, `natural`), section 4 and its reference 15
+//! (landscapes of a given configuration entropy and total edge).
 
 mod by_metrics;
 
