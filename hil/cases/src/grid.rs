@@ -1,8 +1,8 @@
 //! Swarms on the grid: bodies that move cell by cell.
 
-use crate::air::{Air, Faults, INBOX};
 use crate::hash::Hash;
 use crate::land::{Land, WINDOW};
+use crate::medium::{Faults, INBOX, Medium};
 use crate::{Probe, Summary};
 use heapless::Vec;
 use serde::Serialize;
@@ -70,7 +70,7 @@ where
     P: Probe<S>,
 {
     // One place more, for the operator.
-    let mut air = Air::<W, { ROBOTS + 1 }>::new(wire, scene.faults);
+    let mut medium = Medium::<W, { ROBOTS + 1 }>::new(wire, scene.faults);
     let mut workspace = GridWorkspace::<CELLS>::new();
     let (mut hash, mut course) = (Hash::new(), Hash::new());
     let mut summary = Summary::of::<GridAgent<S, G, W>, G::Workspace>();
@@ -78,9 +78,9 @@ where
     for tick in 0..scene.ticks {
         let mut inbox = Vec::new();
         commander(tick, &mut inbox);
-        air.send(ROBOTS, &inbox);
+        medium.send(ROBOTS, &inbox);
         for (index, (walker, command)) in walkers.iter_mut().zip(&mut commands).enumerate() {
-            air.hear(index, tick, &mut inbox);
+            medium.hear(index, tick, &mut inbox);
             let out = step(scene, walker, tick, &inbox, &mut workspace, probe);
             let digest = walker.agent.digest();
             hash.outputs(&out);
@@ -88,10 +88,10 @@ where
             course.command(&out.command);
             course.word(digest);
             summary.count(&out);
-            air.send(index, &out.outbox);
+            medium.send(index, &out.outbox);
             *command = out.command;
         }
-        air.turn();
+        medium.turn();
         for (index, command) in commands.iter().enumerate() {
             if let Command::Move(moves) = command {
                 advance(scene, walkers, index, moves, tick);

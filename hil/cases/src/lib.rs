@@ -10,10 +10,10 @@
 #[cfg(test)]
 extern crate std;
 
-mod air;
 mod grid;
 mod hash;
 mod land;
+mod medium;
 mod plane;
 mod swarms;
 #[cfg(test)]
@@ -21,7 +21,7 @@ mod tests;
 mod worst;
 
 pub use swarms::Case;
-pub use worst::Worst;
+pub use worst::WorstCase;
 
 use staya_controller::agent::{Agent, Guidance, HALF_PLANES, Inputs, NEIGHBORS, Outputs, Safety};
 use staya_controller::scalar::{Q16, Scalar};
@@ -72,7 +72,7 @@ fn each<S: Scalar>(
         done(case.name(), number, &case.run::<S, _>(&mut Unmeasured));
     }
     in_each_format::<S>(number, done);
-    for &worst in Worst::ALL {
+    for &worst in WorstCase::ALL {
         let summary = worst.run::<S, _, NEIGHBORS, HALF_PLANES>(&mut Unmeasured);
         done(worst.name(), number, &summary);
     }

@@ -1,9 +1,9 @@
 //! Swarms in the plane and in space: bodies that do at once what they are told.
 
-use crate::air::{Air, Faults, INBOX};
 use crate::grid::KNOWN;
 use crate::hash::Hash;
 use crate::land::{Land, WINDOW};
+use crate::medium::{Faults, INBOX, Medium};
 use crate::{Probe, Summary};
 use heapless::Vec;
 use serde::Serialize;
@@ -76,25 +76,25 @@ where
     PlaneAgent<S, G, A>: Serialize,
     P: Probe<S>,
 {
-    let mut air = Air::<_, R>::new(Postcard, scene.faults);
+    let mut medium = Medium::<_, R>::new(Postcard, scene.faults);
     let mut hash = Hash::new();
     let mut summary = Summary::of::<PlaneAgent<S, G, A>, G::Workspace>();
     let mut inbox = Vec::<u8, INBOX>::new();
     for tick in 0..scene.ticks {
         // Bodies move when all have decided: what they say and where they are belongs to one moment.
         for (index, mover) in movers.iter_mut().enumerate() {
-            air.hear(index, tick, &mut inbox);
+            medium.hear(index, tick, &mut inbox);
             let out = step(scene, mover, tick, &inbox, workspace, probe);
             hash.outputs(&out);
             hash.word(mover.agent.digest());
             summary.count(&out);
-            air.send(index, &out.outbox);
+            medium.send(index, &out.outbox);
             mover.velocity_mps = match out.command {
                 Command::Velocity(velocity_mps) => velocity_mps,
                 Command::Hold | Command::Move(_) => Vec3::ZERO,
             };
         }
-        air.turn();
+        medium.turn();
         let step_s = S::from_micro(STEP.as_micros());
         for mover in movers.iter_mut() {
             let way = mover.velocity_mps * step_s;

@@ -46,7 +46,7 @@ type Inbox = Vec<u8, { 16 * Beacon::MAX_FRAME_LEN }>;
 
 /// Which behaviour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Worst {
+pub enum WorstCase {
     /// A search of the whole window.
     Route,
     /// Formation among eight neighbours of the template.
@@ -72,7 +72,7 @@ pub enum Worst {
     Boids,
 }
 
-impl Worst {
+impl WorstCase {
     /// All of them.
     pub const ALL: &[Self] = &[
         Self::Route,

@@ -1,7 +1,7 @@
 //! The three flocks.
 
 use super::waypoints::movers;
-use crate::air::Faults;
+use crate::medium::Faults;
 use crate::plane::{Scene, Solid, run};
 use crate::{Probe, Summary};
 use staya_controller::agent::{

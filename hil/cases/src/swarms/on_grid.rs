@@ -1,8 +1,8 @@
 //! Cases on the grid.
 
-use crate::air::{Faults, INBOX};
 use crate::grid::{Formation, GridAgent, ROBOTS, Route, Scene, TICK, Walker, run};
 use crate::land::Land;
+use crate::medium::{Faults, INBOX};
 use crate::{Probe, Summary};
 use heapless::Vec;
 use staya_controller::agent::{AgentConfig, Unguarded};

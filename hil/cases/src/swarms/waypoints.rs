@@ -1,8 +1,8 @@
 //! Cases in which each robot has a place of its own to go to.
 
-use crate::air::Faults;
 use crate::grid::Route;
 use crate::land::Land;
+use crate::medium::Faults;
 use crate::plane::{Mover, PlaneAgent, STEP, Scene, Solid, run};
 use crate::{Probe, Summary};
 use heapless::Vec;

@@ -12,7 +12,7 @@ staya_firmware::faults_are_printed!();
 mod program {
     use core::hint::black_box;
     use heapless::Vec;
-    use staya_cases::{Case, Probe, Summary, Worst};
+    use staya_cases::{Case, Probe, Summary, WorstCase};
     use staya_controller::agent::{Agent, Guidance, Inputs, OUTBOX, Outputs, Safety};
     use staya_controller::grid::{Cell, Dir};
     use staya_controller::scalar::{Q16, Scalar};
@@ -247,7 +247,7 @@ mod program {
     }
 
     fn worst<S: Scalar, const N: usize, const K: usize>(scalar: &str, row: &impl Print) {
-        for &case in Worst::ALL {
+        for &case in WorstCase::ALL {
             let mut meter = Meter::new();
             let summary = case.run::<S, _, N, K>(&mut meter);
             row(case.name(), scalar, &mut meter, bytes(&summary));

@@ -59,13 +59,13 @@ mod program {
 
     #[cfg(not(part = "nrf51"))]
     fn swarms() {
-        use staya_cases::{Case, Worst, packets_over};
+        use staya_cases::{Case, WorstCase, packets_over};
         use staya_mavlink::wire::Mavlink;
         for &case in black_box(Case::ALL) {
             black_box(case.run::<f32, _>(&mut Opaque));
         }
         black_box(packets_over::<f32, _, _>(black_box(Mavlink), &mut Opaque));
-        for &case in black_box(Worst::ALL) {
+        for &case in black_box(WorstCase::ALL) {
             black_box(case.run::<f32, _, 8, 16>(&mut Opaque));
         }
     }

@@ -1,4 +1,4 @@
-//! The radio between the robots of a case: what one said in a tick all others hear in the next, or what is left of it.
+//! The radio medium between the robots of a case: what one said in a tick all others hear in the next, or what is left of it.
 
 use heapless::Vec;
 use staya_controller::rand::Rng;
@@ -23,8 +23,8 @@ pub(crate) struct Faults {
     pub(crate) twice: u32,
 }
 
-/// What `R` senders said in the last tick, in wire format `W`.
-pub(crate) struct Air<W, const R: usize> {
+/// The medium that `R` senders share: what they said in the last tick, in wire format `W`.
+pub(crate) struct Medium<W, const R: usize> {
     /// Tells frames apart.
     wire: W,
     said: [Vec<u8, SAID>; R],
@@ -32,7 +32,7 @@ pub(crate) struct Air<W, const R: usize> {
     faults: Faults,
 }
 
-impl<W: Wire, const R: usize> Air<W, R> {
+impl<W: Wire, const R: usize> Medium<W, R> {
     pub(crate) const fn new(wire: W, faults: Faults) -> Self {
         Self {
             wire,
