@@ -37,11 +37,13 @@
 extern crate std;
 
 pub mod capacities;
+pub mod fit;
 pub mod frame;
 pub mod message;
 pub mod port;
 pub mod robot;
 pub mod session;
+pub mod surroundings;
 
 #[cfg(test)]
 mod tests;

@@ -6,13 +6,11 @@
 //! covers the device's own numbers.
 
 use crate::capacities::Capacities;
+use crate::surroundings::{PackedSurroundings, TerrainWindow};
 use heapless::String;
 use serde::{Deserialize, Serialize};
-use staya_controller::agent::{CellState, InCell, Outputs, Pose, Setup, Task};
-use staya_controller::geom::{Vec2, Vec3};
-use staya_controller::grid::{Cell, Window};
-use staya_controller::obstacle::Obstacle;
-use staya_controller::scalar::Scalar;
+use staya_controller::agent::{CellState, Outputs, Pose, Setup, Task};
+use staya_controller::grid::Cell;
 use staya_controller::time::Instant;
 use staya_controller::wire::{Mode, RobotId};
 
@@ -20,8 +18,6 @@ use staya_controller::wire::{Mode, RobotId};
 pub const MAX_ANSWER: usize = 512;
 /// Bytes of what is in a [`Configure`], at most: overhead included (a test fills one).
 pub const MAX_CONFIGURE: usize = 640;
-/// Bytes of a packed obstacle.
-pub const OBSTACLE: usize = 17;
 
 /// Kinds of messages: from the host, then from the device.
 pub mod kind {
@@ -101,115 +97,12 @@ pub struct StepInputs<'a> {
     pub cell: Option<CellState>,
     /// Terrain in sight.
     #[serde(borrow)]
-    pub land: Option<Land<'a>>,
+    pub window: Option<TerrainWindow<'a>>,
     /// Surroundings in the plane or in space.
     #[serde(borrow)]
-    pub around: Option<Around<'a>>,
+    pub surroundings: Option<PackedSurroundings<'a>>,
     /// What the radio delivered.
     pub inbox: &'a [u8],
-}
-
-/// A [`Window`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Land<'a> {
-    /// The south-west cell.
-    pub origin: Cell,
-    /// Cells from west to east.
-    pub width: u16,
-    /// Cells from south to north.
-    pub height: u16,
-    /// Impassabilities, row by row from the south-west corner.
-    pub cells: &'a [u8],
-}
-
-impl<'a> From<Window<'a>> for Land<'a> {
-    fn from(window: Window<'a>) -> Self {
-        Self {
-            origin: window.origin(),
-            width: window.width(),
-            height: window.height(),
-            cells: window.cells(),
-        }
-    }
-}
-
-impl<'a> Land<'a> {
-    /// The window; `None` unless there are as many cells as width and height say.
-    #[must_use]
-    pub fn window(&self) -> Option<Window<'a>> {
-        Window::new(self.cells, self.origin, self.width, self.height)
-    }
-}
-
-/// [`Surroundings`](staya_controller::agent::Surroundings) with packed obstacles.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Around<'a> {
-    /// How fast the body can go where it is, m/s.
-    pub max_speed_mps: f32,
-    /// Where in its cell the robot is.
-    pub in_cell: Option<InCell<f32>>,
-    /// [`OBSTACLE`] bytes each, see [`pack`].
-    pub obstacles: &'a [u8],
-}
-
-impl Around<'_> {
-    /// The obstacles in the device's own numbers; `None` for one of no known shape. What is left over at the end is
-    /// [`Around::is_whole`]'s matter.
-    pub fn obstacles<S: Scalar>(&self) -> impl Iterator<Item = Option<Obstacle<S>>> {
-        let (packed, _) = self.obstacles.as_chunks();
-        packed.iter().map(unpack)
-    }
-
-    /// Whether the packed obstacles end where the last one does.
-    #[must_use]
-    pub const fn is_whole(&self) -> bool {
-        let (_, rest) = self.obstacles.as_chunks::<OBSTACLE>();
-        rest.is_empty()
-    }
-}
-
-/// An obstacle as its shape's number (0 wall, 1 ball, 2 plane) and four `f32`, little-endian.
-#[must_use]
-pub fn pack(obstacle: &Obstacle<f32>) -> [u8; OBSTACLE] {
-    let (shape, numbers) = match *obstacle {
-        Obstacle::Wall([a, b]) => (0, [a.x, a.y, b.x, b.y]),
-        Obstacle::Ball { center_m, radius_m } => {
-            (1, [center_m.x, center_m.y, center_m.z, radius_m])
-        }
-        Obstacle::Plane { normal, distance_m } => (2, [normal.x, normal.y, normal.z, distance_m]),
-    };
-    let [a, b, c, d] = numbers.map(f32::to_le_bytes);
-    let mut packed = [shape; OBSTACLE];
-    let bytes = a.into_iter().chain(b).chain(c).chain(d);
-    for (to, from) in packed.iter_mut().skip(1).zip(bytes) {
-        *to = from;
-    }
-    packed
-}
-
-/// The inverse of [`pack`], in any kind of number; `None` for a shape that is not known. No number becomes 0.
-#[must_use]
-pub fn unpack<S: Scalar>(packed: &[u8; OBSTACLE]) -> Option<Obstacle<S>> {
-    let (shape, numbers) = packed.split_first()?;
-    let ([a, b, c, d], _) = numbers.as_chunks::<4>() else {
-        return None;
-    };
-    let [a, b, c, d] = [a, b, c, d].map(|bytes| {
-        let value = f32::from_le_bytes(*bytes);
-        S::from_f32(value).unwrap_or(S::ZERO)
-    });
-    match shape {
-        0 => Some(Obstacle::Wall([Vec2::new(a, b), Vec2::new(c, d)])),
-        1 => Some(Obstacle::Ball {
-            center_m: Vec3::new(a, b, c),
-            radius_m: d,
-        }),
-        2 => Some(Obstacle::Plane {
-            normal: Vec3::new(a, b, c),
-            distance_m: d,
-        }),
-        _ => None,
-    }
 }
 
 /// The kind of number that a device computes with.
@@ -255,14 +148,14 @@ pub struct Stepped {
     /// Of the request.
     pub seq: u16,
     /// What must be the same on every device.
-    pub report: Report,
+    pub result: StepResult,
     /// What differs between devices.
     pub cost: Cost,
 }
 
 /// A decision and what came of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Report {
+pub struct StepResult {
     /// What the step gave.
     pub outputs: Outputs<f32>,
     /// What the robot is doing.
@@ -275,13 +168,13 @@ pub struct Report {
     pub digest: u64,
 }
 
-impl Report {
+impl StepResult {
     /// Whether both say the same to the last bit (`==` takes the two zeros for equal).
     #[must_use]
     pub fn is_identical(&self, other: &Self) -> bool {
-        let bytes = |report: &Self| {
+        let bytes = |result: &Self| {
             let mut frame = crate::frame::Frame::<MAX_ANSWER>::new();
-            frame.fill(kind::STEPPED, report).map(|()| frame)
+            frame.fill(kind::STEPPED, result).map(|()| frame)
         };
         match (bytes(self), bytes(other)) {
             (Ok(a), Ok(b)) => a.bytes() == b.bytes(),

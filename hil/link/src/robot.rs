@@ -1,7 +1,7 @@
-//! What a session asks of a robot's brain, and the one brain that can be anything.
+//! What a session asks of a robot's controller, and the one controller that can be any robot.
 
 use crate::capacities::Capacities;
-use crate::message::{NumberFormat, Report, StepInputs};
+use crate::message::{NumberFormat, StepInputs, StepResult};
 use core::fmt;
 use heapless::Vec;
 use staya_controller::agent::InCell;
@@ -24,7 +24,7 @@ pub const LARGE_INBOX: usize = 8192;
 /// Bytes of the inbox beside a [`Small`].
 pub const SMALL_INBOX: usize = 1024;
 
-/// Why a brain refused.
+/// Why a controller refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
     /// It was not told what to be.
@@ -70,7 +70,7 @@ impl fmt::Display for Refusal {
 }
 
 /// The part of a device that decides. Object-safe, so that a host can hold the shadows of different parts.
-pub trait Brain {
+pub trait Controller {
     /// What it computes with.
     fn number(&self) -> NumberFormat;
 
@@ -83,14 +83,14 @@ pub trait Brain {
     /// What does not fit, see [`Refusal`]; then it is no robot at all.
     fn configure(&mut self, setup: &Setup, task: Option<&Task>) -> Result<u64, Refusal>;
 
-    /// One step of the robot. What it decided is kept for [`Brain::report`]: on the way through a step it would only take stack.
+    /// One step of the robot. What it decided is kept for [`Controller::result`]: on the way through a step it would only take stack.
     ///
     /// # Errors
     /// [`Refusal::NotConfigured`], or inputs that do not fit or make no sense; the robot is as it was.
     fn step(&mut self, inputs: &StepInputs<'_>) -> Result<(), Refusal>;
 
     /// What the last step decided; `None` for no robot.
-    fn report(&self) -> Option<Report>;
+    fn result(&self) -> Option<StepResult>;
 
     /// Is no robot any more.
     fn forget(&mut self);
@@ -178,7 +178,7 @@ impl<
     const K: usize,
     const O: usize,
     W: FromFormat,
-> Brain for Robot<S, CELLS, M, N, K, O, W>
+> Controller for Robot<S, CELLS, M, N, K, O, W>
 {
     fn number(&self) -> NumberFormat {
         if S::IS_FLOATING {
@@ -221,25 +221,25 @@ impl<
 
     fn step(&mut self, inputs: &StepInputs<'_>) -> Result<(), Refusal> {
         let agent = self.agent.as_mut().ok_or(Refusal::NotConfigured)?;
-        let window = match &inputs.land {
-            Some(land) => Some(land.window().ok_or(Refusal::Nonsense)?),
+        let window = match &inputs.window {
+            Some(window) => Some(window.window().ok_or(Refusal::Nonsense)?),
             None => None,
         };
         self.obstacles.clear();
-        if let Some(around) = &inputs.around {
-            for obstacle in around.obstacles() {
+        if let Some(packed) = &inputs.surroundings {
+            for obstacle in packed.obstacles() {
                 let obstacle = obstacle.ok_or(Refusal::Nonsense)?;
                 let kept = self.obstacles.push(obstacle);
                 kept.map_err(|_| Refusal::Obstacles { room: O })?;
             }
         }
-        if inputs.around.is_some_and(|around| !around.is_whole()) {
+        if inputs.surroundings.is_some_and(|packed| !packed.is_whole()) {
             return Err(Refusal::Nonsense);
         }
-        let surroundings = inputs.around.map(|around| Surroundings {
-            max_speed_mps: cast(around.max_speed_mps),
+        let surroundings = inputs.surroundings.map(|packed| Surroundings {
+            max_speed_mps: cast(packed.max_speed_mps),
             obstacles: self.obstacles.as_slice(),
-            in_cell: around.in_cell.map(|place| InCell {
+            in_cell: packed.in_cell.map(|place| InCell {
                 offset_m: place.offset_m.cast(),
                 cell_m: cast(place.cell_m),
             }),
@@ -258,9 +258,9 @@ impl<
         Ok(())
     }
 
-    fn report(&self) -> Option<Report> {
+    fn result(&self) -> Option<StepResult> {
         let agent = self.agent.as_ref()?;
-        Some(Report {
+        Some(StepResult {
             outputs: in_f32(&self.outputs),
             mode: agent.mode(),
             leader: agent.leader(),

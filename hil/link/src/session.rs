@@ -26,7 +26,7 @@ use crate::message::{
     Configured, Cost, Fault, FaultKind, Greeting, Hello, MAX_ANSWER, MAX_CONFIGURE, Restart,
     StepInputs, Token, kind,
 };
-use crate::robot::{Brain, Refusal};
+use crate::robot::{Controller, Refusal};
 use core::fmt::{Display, Write};
 use heapless::String;
 use postcard::take_from_bytes;
@@ -34,7 +34,7 @@ use postcard::take_from_bytes;
 /// Bytes of a frame that is no decision, at most (a test fills one).
 const MAX_NOTE: usize = 128;
 
-/// `CONTENT` of a [`Session`] whose brain searches so many cells and sees so many obstacles, for an inbox of so many bytes.
+/// `CONTENT` of a [`Session`] whose controller searches so many cells and sees so many obstacles, for an inbox of so many bytes.
 #[must_use]
 pub const fn content_bytes(search_cells: usize, obstacles: usize, inbox_bytes: usize) -> usize {
     let step = capacities::step_bytes(search_cells, obstacles, inbox_bytes);
@@ -63,7 +63,7 @@ impl Meter for () {
     }
 }
 
-/// What a device says of itself besides its brain's capacities.
+/// What a device says of itself besides its controller's capacities.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct About {
     /// Which part it is; 24 bytes.
@@ -101,16 +101,16 @@ pub struct Counts {
     pub damaged: u32,
 }
 
-/// The device's end: brain `B`, frames of at most `CONTENT` bytes of content, see [`content_bytes`].
+/// The device's end: controller `C`, frames of at most `CONTENT` bytes of content, see [`content_bytes`].
 #[derive(Clone, Debug)]
-pub struct Session<B, const CONTENT: usize> {
+pub struct Session<C, const CONTENT: usize> {
     deframer: Deframer<CONTENT>,
-    core: Core<B, CONTENT>,
+    core: Core<C, CONTENT>,
 }
 
 #[derive(Clone, Debug)]
-struct Core<B, const CONTENT: usize> {
-    brain: B,
+struct Core<C, const CONTENT: usize> {
+    controller: C,
     about: About,
     token: Option<Token>,
     /// The request that `answer` answers; `None`: no robot yet.
@@ -122,7 +122,7 @@ struct Core<B, const CONTENT: usize> {
 }
 
 /// How a request stands to the last one.
-enum Place {
+enum Freshness {
     Repeated,
     Stale,
     Next,
@@ -131,15 +131,15 @@ enum Place {
     First,
 }
 
-impl<B: Brain, const CONTENT: usize> Session<B, CONTENT> {
+impl<C: Controller, const CONTENT: usize> Session<C, CONTENT> {
     /// Nobody yet.
     #[must_use]
-    pub const fn new(brain: B, about: About) -> Self {
+    pub const fn new(controller: C, about: About) -> Self {
         const { assert!(CONTENT >= MAX_CONFIGURE, "no room for a setup") };
         Self {
             deframer: Deframer::new(),
             core: Core {
-                brain,
+                controller,
                 about,
                 token: None,
                 last: None,
@@ -162,8 +162,8 @@ impl<B: Brain, const CONTENT: usize> Session<B, CONTENT> {
     }
 
     /// What it is that decides.
-    pub const fn brain(&self) -> &B {
-        &self.core.brain
+    pub const fn controller(&self) -> &C {
+        &self.core.controller
     }
 
     /// What has come over the line.
@@ -193,7 +193,7 @@ impl Counts {
     }
 }
 
-impl<B: Brain, const CONTENT: usize> Core<B, CONTENT> {
+impl<C: Controller, const CONTENT: usize> Core<C, CONTENT> {
     fn refuse(&mut self, error: FrameError) -> Reaction<'_> {
         match error {
             FrameError::Version(theirs) => self.fault(
@@ -245,7 +245,7 @@ impl<B: Brain, const CONTENT: usize> Core<B, CONTENT> {
         if is_new {
             self.token = Some(token);
             self.last = None;
-            self.brain.forget();
+            self.controller.forget();
         }
         self.say_hello();
         Reaction::Answer(self.note.bytes())
@@ -253,23 +253,23 @@ impl<B: Brain, const CONTENT: usize> Core<B, CONTENT> {
 
     fn request(&mut self, kind: u8, seq: u16, body: &[u8], meter: &mut impl Meter) -> Reaction<'_> {
         match (self.place(seq), kind) {
-            (Place::Repeated, _) => {
+            (Freshness::Repeated, _) => {
                 self.counts.repeated = self.counts.repeated.wrapping_add(1);
                 Reaction::Answer(self.answer.bytes())
             }
-            (Place::Stale, _) => {
+            (Freshness::Stale, _) => {
                 self.counts.stale = self.counts.stale.wrapping_add(1);
                 Reaction::None
             }
-            (Place::First | Place::Next | Place::Ahead, kind::CONFIGURE) => {
+            (Freshness::First | Freshness::Next | Freshness::Ahead, kind::CONFIGURE) => {
                 self.configure(seq, body)
             }
-            (Place::First, _) => self.fault(
+            (Freshness::First, _) => self.fault(
                 seq,
                 FaultKind::NotConfigured,
                 format_args!("a step, but no setup"),
             ),
-            (Place::Ahead, _) => {
+            (Freshness::Ahead, _) => {
                 let last = self.last.unwrap_or_default();
                 self.fault(
                     seq,
@@ -277,19 +277,19 @@ impl<B: Brain, const CONTENT: usize> Core<B, CONTENT> {
                     format_args!("request {seq} after {last}"),
                 )
             }
-            (Place::Next, _) => self.step(seq, body, meter),
+            (Freshness::Next, _) => self.step(seq, body, meter),
         }
     }
 
-    fn place(&self, seq: u16) -> Place {
+    fn place(&self, seq: u16) -> Freshness {
         let Some(last) = self.last else {
-            return Place::First;
+            return Freshness::First;
         };
         match seq.wrapping_sub(last).cast_signed() {
-            0 => Place::Repeated,
-            1 => Place::Next,
-            2.. => Place::Ahead,
-            _ => Place::Stale,
+            0 => Freshness::Repeated,
+            1 => Freshness::Next,
+            2.. => Freshness::Ahead,
+            _ => Freshness::Stale,
         }
     }
 
@@ -298,10 +298,10 @@ impl<B: Brain, const CONTENT: usize> Core<B, CONTENT> {
     fn configure(&mut self, seq: u16, body: &[u8]) -> Reaction<'_> {
         self.last = None;
         let Ok((Setting { setup, task }, [])) = take_from_bytes(body) else {
-            self.brain.forget();
+            self.controller.forget();
             return self.malformed(seq);
         };
-        match self.brain.configure(&setup, task.as_ref()) {
+        match self.controller.configure(&setup, task.as_ref()) {
             Ok(digest) => {
                 // An answer has room for it.
                 let _ = self
@@ -319,7 +319,7 @@ impl<B: Brain, const CONTENT: usize> Core<B, CONTENT> {
             return self.malformed(seq);
         };
         meter.start();
-        let stepped = self.brain.step(&inputs);
+        let stepped = self.controller.step(&inputs);
         let cost = meter.finish();
         match stepped {
             Ok(()) => self.tell(seq, cost),
@@ -327,13 +327,13 @@ impl<B: Brain, const CONTENT: usize> Core<B, CONTENT> {
         }
     }
 
-    /// Not inlined: the report must not take stack away from the step.
+    /// Not inlined: the result must not take stack away from the step.
     #[inline(never)]
     fn tell(&mut self, seq: u16, cost: Cost) -> Reaction<'_> {
-        let Some(report) = self.brain.report() else {
+        let Some(result) = self.controller.result() else {
             return self.refused(seq, Refusal::NotConfigured);
         };
-        let filled = self.answer.fill(kind::STEPPED, &(seq, &report, cost));
+        let filled = self.answer.fill(kind::STEPPED, &(seq, &result, cost));
         if filled.is_err() {
             let text = format_args!("an answer of more than {MAX_ANSWER} bytes");
             return self.fault(seq, FaultKind::Capacity, text);
@@ -364,13 +364,15 @@ impl<B: Brain, const CONTENT: usize> Core<B, CONTENT> {
     }
 
     fn say_hello(&mut self) {
-        let Self { about, brain, .. } = self;
+        let Self {
+            about, controller, ..
+        } = self;
         let hello = Hello {
             token: self.token,
             boot: about.boot,
             ticks_per_second: about.ticks_per_second,
-            number: brain.number(),
-            capacities: Self::capacities(brain),
+            number: controller.number(),
+            capacities: Self::capacities(controller),
             part: text(about.part),
             firmware: text(about.firmware),
         };
@@ -379,8 +381,8 @@ impl<B: Brain, const CONTENT: usize> Core<B, CONTENT> {
     }
 
     /// What the buffer has room for besides the rest is the inbox.
-    fn capacities(brain: &B) -> Capacities {
-        let capacities = brain.capacities();
+    fn capacities(controller: &C) -> Capacities {
+        let capacities = controller.capacities();
         let (cells, obstacles) = (capacities.search_cells, capacities.obstacles);
         let rest = capacities::step_bytes(cells.into(), obstacles.into(), 0);
         let inbox = CONTENT.saturating_sub(rest);

@@ -93,7 +93,7 @@ pub fn frame<T: serde::Serialize>(kind: u8, body: &T) -> Vec<u8> {
 }
 
 /// All that comes out of a session for these bytes.
-pub fn answers<B: crate::robot::Brain, const N: usize>(
+pub fn answers<B: crate::robot::Controller, const N: usize>(
     session: &mut Session<B, N>,
     bytes: &[u8],
 ) -> Vec<Vec<u8>> {

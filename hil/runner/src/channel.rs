@@ -1,10 +1,11 @@
 //! Byte lines to devices.
 
-use crate::device::{Device, Part};
-use crate::emulator::{self, Emulator};
+use crate::device::Device;
+use crate::emulator::{self, Emulator, EmulatorError};
+use crate::part::Part;
 use std::fmt;
-use std::io::{self, Read, Write};
-use std::path::{Path, PathBuf};
+use std::io::{Read, Write};
+use std::path::Path;
 use std::time::Duration;
 
 /// How long a read or a write waits; who reads asks again, what cannot be written counts as lost.
@@ -14,27 +15,10 @@ const PATIENCE: Duration = Duration::from_millis(500);
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each text says it")]
 pub enum OpenError {
-    #[error("{program} is missing: on Debian run, as root, `apt-get install {package}`")]
-    NoEmulator {
-        program: &'static str,
-        package: &'static str,
-    },
-    #[error("no firmware in {}: run `cargo xtask firmware {part}`", .elf.display())]
-    NoFirmware { elf: PathBuf, part: &'static str },
-    #[error("cannot start {program}: {source}")]
-    Start {
-        program: &'static str,
-        source: io::Error,
-    },
-    #[error("cannot write the log {}: {source}", .path.display())]
-    Log { path: PathBuf, source: io::Error },
-    #[error("cannot open {}: {source}{}", .path.display(), .ports)]
-    Serial {
-        path: PathBuf,
-        source: serialport::Error,
-        /// What ports there are, for people.
-        ports: String,
-    },
+    #[error(transparent)]
+    Emulator(#[from] EmulatorError),
+    #[error(transparent)]
+    Serial(#[from] staya_serial::OpenError),
 }
 
 /// A line to a device, in both directions.
@@ -80,7 +64,7 @@ impl Channel {
         match device {
             Device::Emulated(part) => {
                 let (emulator, socket) = emulator::start(*part, &part.elf(firmware), log)?;
-                let failed = |source| OpenError::Start {
+                let failed = |source| EmulatorError::Start {
                     program: "the emulator",
                     source,
                 };
@@ -91,48 +75,12 @@ impl Channel {
                 channel.part = Some(*part);
                 Ok(channel)
             }
-            Device::Serial { path, baud } => {
-                let failed = |source| OpenError::Serial {
-                    path: path.clone(),
-                    source,
-                    ports: ports(),
-                };
-                let name = path.to_string_lossy();
-                let port = serialport::new(name, *baud).timeout(PATIENCE).open();
-                let port = port.map_err(failed)?;
-                let read = port.try_clone().map_err(failed)?;
-                let mut channel = Self::new(read, port);
-                // A start bit, eight bits, a stop bit.
-                channel.per_byte = Duration::from_secs(10) / (*baud).max(1);
+            Device::Serial(port) => {
+                let (reader, writer) = port.open(PATIENCE)?;
+                let mut channel = Self::new(reader, writer);
+                channel.per_byte = port.byte_time();
                 Ok(channel)
             }
         }
-    }
-}
-
-/// The serial ports of this machine, as the end of a sentence.
-fn ports() -> String {
-    let found = serialport::available_ports().unwrap_or_default();
-    let names: Vec<String> = found.into_iter().map(|port| port.port_name).collect();
-    if names.is_empty() {
-        return String::from("; this machine shows no serial port");
-    }
-    format!("; there are {}", names.join(", "))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn missing_port_is_named() {
-        let device: Device = "serial:/dev/no-such-port".parse().expect("a device");
-        let error = Channel::open(&device, Path::new("."), None).expect_err("no port");
-        let text = error.to_string();
-        assert!(
-            text.starts_with("cannot open /dev/no-such-port: "),
-            "{text}"
-        );
-        assert!(text.contains("; "), "{text}");
     }
 }

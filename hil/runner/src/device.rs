@@ -1,56 +1,9 @@
 //! What a device is, as people write it: `qemu:stm32f405`, `serial:/dev/ttyACM0,baud=115200`.
 
+use crate::part::Part;
+use staya_serial::SerialPort;
 use std::fmt;
-use std::path::{Path, PathBuf};
 use std::str::FromStr;
-
-/// A microcontroller that an emulator runs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Part {
-    /// STM32F405 (Cortex-M4F), QEMU's `netduinoplus2`.
-    Stm32f405,
-    /// The micro:bit's nRF51 (Cortex-M0), QEMU's `microbit`.
-    Microbit,
-    /// RISC-V without an FPU, QEMU's `virt`.
-    Riscv32,
-}
-
-impl Part {
-    /// Every part.
-    pub const ALL: [Self; 3] = [Self::Stm32f405, Self::Microbit, Self::Riscv32];
-
-    /// As people write it.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Stm32f405 => "stm32f405",
-            Self::Microbit => "microbit",
-            Self::Riscv32 => "riscv32",
-        }
-    }
-
-    /// As its firmware says it, and the folder that the firmware is built in.
-    #[must_use]
-    pub const fn firmware_name(self) -> &'static str {
-        match self {
-            Self::Stm32f405 => "stm32f405",
-            Self::Microbit => "nrf51",
-            Self::Riscv32 => "riscv32",
-        }
-    }
-
-    /// The program that emulates it.
-    #[must_use]
-    pub const fn emulator(self) -> &'static str {
-        crate::emulator::machine(self).0
-    }
-
-    /// Its firmware below a folder of firmware, as `cargo xtask firmware` lays it out.
-    #[must_use]
-    pub fn elf(self, folder: &Path) -> PathBuf {
-        folder.join(self.firmware_name()).join("lockstep")
-    }
-}
 
 /// Where a robot's controller runs.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -58,16 +11,8 @@ pub enum Device {
     /// In an emulator that is started for it.
     Emulated(Part),
     /// On a board behind a serial port.
-    Serial {
-        /// The port.
-        path: PathBuf,
-        /// Bits per second.
-        baud: u32,
-    },
+    Serial(SerialPort),
 }
-
-/// Bits per second of a serial port when nothing else is said.
-pub const BAUD: u32 = 115_200;
 
 /// A text that names no device.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -97,7 +42,10 @@ impl FromStr for Device {
                     error(format!("no part `{rest}`; there are {}", names.join(", ")))
                 })
             }
-            "serial" => serial(rest).map_err(error),
+            "serial" => match rest.parse() {
+                Ok(port) => Ok(Self::Serial(port)),
+                Err(reason) => Err(error(reason.to_string())),
+            },
             _ => Err(error(format!(
                 "`{kind}` is neither `qemu:PART` nor `serial:PORT[,baud=N]`"
             ))),
@@ -105,32 +53,11 @@ impl FromStr for Device {
     }
 }
 
-fn serial(rest: &str) -> Result<Device, String> {
-    let mut pieces = rest.split(',');
-    let path = pieces.next().unwrap_or_default();
-    if path.is_empty() {
-        return Err(String::from(
-            "no port; write for instance serial:/dev/ttyACM0,baud=115200",
-        ));
-    }
-    let mut baud = BAUD;
-    for piece in pieces {
-        let (key, value) = piece.split_once('=').unwrap_or((piece, ""));
-        if key != "baud" {
-            return Err(format!("no option `{key}`; there is `baud`"));
-        }
-        let number = value.parse().ok().filter(|number| *number > 0);
-        baud = number.ok_or_else(|| format!("baud `{value}` is no whole number above 0"))?;
-    }
-    let path = path.into();
-    Ok(Device::Serial { path, baud })
-}
-
 impl fmt::Display for Device {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Emulated(part) => write!(f, "qemu:{}", part.name()),
-            Self::Serial { path, baud } => write!(f, "serial:{},baud={baud}", path.display()),
+            Self::Serial(port) => write!(f, "serial:{port}"),
         }
     }
 }
@@ -166,8 +93,6 @@ mod tests {
             ("", ["``", "qemu:PART"]),
             ("serial:", ["no port", "/dev/ttyACM0"]),
             ("serial:/dev/x,speed=1", ["`speed`", "`baud`"]),
-            ("serial:/dev/x,baud=fast", ["`fast`", "whole number"]),
-            ("serial:/dev/x,baud=0", ["`0`", "above 0"]),
         ] {
             let error = text.parse::<Device>().expect_err(text).to_string();
             for piece in pieces {

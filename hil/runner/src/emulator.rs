@@ -4,14 +4,13 @@
 //! the network is needed; semihosting, which carries the firmware's logs, has the standard output for itself. Unix sockets in pairs, named Unix
 //! sockets and FIFOs take the same time per byte: the emulator takes and hands out one byte at a time.
 
-use crate::channel::OpenError;
-use crate::device::Part;
+use crate::part::Part;
 use std::fs::File;
-use std::io::Read;
+use std::io::{self, Read};
 use std::os::fd::OwnedFd;
 use std::os::unix::net::UnixStream;
 use std::os::unix::process::CommandExt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStderr, Command, Stdio};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -20,6 +19,26 @@ const COMPLAINTS: usize = 2048;
 /// Ends the emulator when the thread that started it dies, however it dies; part of util-linux.
 const GUARD: &str = "/usr/bin/setpriv";
 
+/// Why there is no emulator.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "each text says it")]
+pub enum EmulatorError {
+    #[error("{program} is missing: on Debian run, as root, `apt-get install {package}`")]
+    NoEmulator {
+        program: &'static str,
+        package: &'static str,
+    },
+    #[error("no firmware in {}: run `cargo xtask firmware {part}`", .elf.display())]
+    NoFirmware { elf: PathBuf, part: &'static str },
+    #[error("cannot start {program}: {source}")]
+    Start {
+        program: &'static str,
+        source: io::Error,
+    },
+    #[error("cannot write the log {}: {source}", .path.display())]
+    Log { path: PathBuf, source: io::Error },
+}
+
 /// A running emulator; ends with this value.
 #[derive(Debug)]
 pub struct Emulator {
@@ -27,30 +46,9 @@ pub struct Emulator {
     complaints: Arc<Mutex<String>>,
 }
 
-/// Program, machine and what else this part needs; the Debian package of the program.
-pub const fn machine(part: Part) -> (&'static str, &'static [&'static str], &'static str) {
-    match part {
-        Part::Stm32f405 => (
-            "qemu-system-arm",
-            &["-machine", "netduinoplus2"],
-            "qemu-system-arm",
-        ),
-        Part::Microbit => (
-            "qemu-system-arm",
-            &["-machine", "microbit"],
-            "qemu-system-arm",
-        ),
-        Part::Riscv32 => (
-            "qemu-system-riscv32",
-            &["-machine", "virt", "-bios", "none"],
-            "qemu-system-misc",
-        ),
-    }
-}
-
 /// The emulator of a part with this firmware, as it is started. One instruction takes a nanosecond of the emulated clock.
 pub fn command(part: Part, elf: &Path) -> Command {
-    let (program, machine, _) = machine(part);
+    let (program, machine, _) = part.machine();
     // In its own process group, so that Ctrl-C in a terminal reaches the runner alone, which ends it in order.
     let mut command = if Path::new(GUARD).is_file() {
         let mut command = Command::new(GUARD);
@@ -76,20 +74,20 @@ pub fn start(
     part: Part,
     elf: &Path,
     log: Option<&Path>,
-) -> Result<(Emulator, UnixStream), OpenError> {
-    let (program, _, package) = machine(part);
+) -> Result<(Emulator, UnixStream), EmulatorError> {
+    let (program, _, package) = part.machine();
     if !elf.is_file() {
         let (elf, part) = (elf.to_owned(), part.firmware_name());
-        return Err(OpenError::NoFirmware { elf, part });
+        return Err(EmulatorError::NoFirmware { elf, part });
     }
     if !is_installed(program) {
-        return Err(OpenError::NoEmulator { program, package });
+        return Err(EmulatorError::NoEmulator { program, package });
     }
-    let failed = |source| OpenError::Start { program, source };
+    let failed = |source| EmulatorError::Start { program, source };
     let (ours, theirs) = UnixStream::pair().map_err(failed)?;
     let log = match log {
         Some(path) => {
-            let file = File::create(path).map_err(|source| OpenError::Log {
+            let file = File::create(path).map_err(|source| EmulatorError::Log {
                 path: path.to_owned(),
                 source,
             })?;
@@ -176,8 +174,8 @@ mod tests {
     #[test]
     fn missing_program_is_named_with_its_package() {
         assert!(is_installed("sh") && !is_installed("qemu-system-abacus"));
-        let (program, _, package) = machine(Part::Riscv32);
-        let text = OpenError::NoEmulator { program, package }.to_string();
+        let (program, _, package) = Part::Riscv32.machine();
+        let text = EmulatorError::NoEmulator { program, package }.to_string();
         assert!(text.contains("qemu-system-riscv32 is missing"), "{text}");
         assert!(text.contains("apt-get install qemu-system-misc"), "{text}");
     }

@@ -3,149 +3,20 @@
 //! One thread per device reads; everything else happens in the caller's thread. Nothing waits longer than its limit, and each
 //! error names the robot, the device, what it was asked for and how long that was waited for.
 
-use crate::channel::{Channel, OpenError};
+use crate::answer::{Answer, Cause, FleetError};
+use crate::channel::Channel;
+use crate::config::{DeviceConfig, Options};
 use crate::device::Device;
-use crate::line::{LineFaults, micros};
-use crate::mismatch::Mismatch;
+use crate::line::micros;
 use crate::statistics::Statistics;
 use crate::unit::Unit;
 use staya_controller::agent::{Inputs, Setup, Task};
 use staya_controller::time::Instant;
-use staya_controller::wire::RobotId;
-use staya_link::capacities::LandTooLarge;
-use staya_link::message::{Hello, Report};
-use staya_link::port::PortError;
 use std::io::{ErrorKind, Read};
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
-
-/// What one device is to be.
-#[derive(Clone, Debug)]
-pub struct Order {
-    /// Where, for people; see [`Device`].
-    pub device: String,
-    /// What the robot is.
-    pub setup: Setup,
-    /// What it has to do.
-    pub task: Option<Task>,
-    /// What the line does to frames.
-    pub faults: LineFaults,
-    /// When the device starts anew.
-    pub resets: Vec<Reset>,
-}
-
-/// A reset on request.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Reset {
-    /// In place of this step.
-    pub tick: u32,
-    /// For so many steps the robot stands; at least 1. How long the device really takes plays no part, so that runs repeat.
-    pub down_ticks: u32,
-}
-
-/// How a fleet is run.
-#[derive(Clone, Debug)]
-pub struct Options {
-    /// The folder that `cargo xtask firmware` writes to.
-    pub firmware: PathBuf,
-    /// The folder for the logs of emulated devices, one file per robot; `None`: no logs.
-    pub logs: Option<PathBuf>,
-    /// A request is sent again after this, and the time that the line takes for it.
-    pub resend_after: Duration,
-    /// A step that takes longer is an error.
-    pub step_limit: Duration,
-    /// A start that takes longer is an error.
-    pub start_limit: Duration,
-    /// Tells this run from others that have talked to the same devices.
-    pub run: u32,
-    /// When this becomes true, [`Fleet::collect`] ends at once and all its answers are [`Trouble::Stopped`].
-    pub stop: Arc<AtomicBool>,
-}
-
-impl Options {
-    /// Requests are resent after half a second; 10 seconds for a step and 20 for a start.
-    #[must_use]
-    pub fn new(firmware: PathBuf) -> Self {
-        Self {
-            firmware,
-            logs: None,
-            resend_after: Duration::from_millis(500),
-            step_limit: Duration::from_secs(10),
-            start_limit: Duration::from_secs(20),
-            run: std::process::id(),
-            stop: Arc::default(),
-        }
-    }
-}
-
-/// What came of a robot's step.
-#[derive(Debug)]
-pub enum Answer {
-    /// Device and shadow decided the same.
-    Decided(Box<Report>),
-    /// The device has started anew: the robot stands in this step.
-    Down,
-    /// Device and shadow differ.
-    Mismatch(Box<Mismatch>),
-    /// The device is of no use any more.
-    Failed(FleetError),
-}
-
-/// What is wrong with a device.
-#[derive(Debug, thiserror::Error)]
-#[error("robot {} on {device}: {trouble}", .robot.0)]
-pub struct FleetError {
-    /// Which robot.
-    pub robot: RobotId,
-    /// Which device.
-    pub device: String,
-    /// What.
-    pub trouble: Box<Trouble>,
-}
-
-/// What may be wrong with a device.
-#[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "each text says it")]
-pub enum Trouble {
-    #[error(transparent)]
-    Open(#[from] OpenError),
-    #[error(transparent)]
-    Name(#[from] crate::device::DeviceError),
-    #[error("cannot start the thread that reads: {0}")]
-    Thread(std::io::Error),
-    #[error(transparent)]
-    Device(PortError),
-    #[error("{0}")]
-    Gone(String),
-    #[error("the firmware is for `{said}`, not for `{expected}`")]
-    OtherPart {
-        expected: &'static str,
-        said: String,
-    },
-    #[error(
-        "no robot in this process has the numbers and capacities of {0:?}: build firmware and host from the same source"
-    )]
-    NoShadow(Box<Hello>),
-    #[error(
-        "after the same setup the device's state has the digest {device:016x}, that in this process {shadow:016x}"
-    )]
-    Setup { device: u64, shadow: u64 },
-    #[error("the robot in this process refuses: {0}")]
-    Shadow(String),
-    #[error(transparent)]
-    Land(LandTooLarge),
-    #[error("a request of more than {0} bytes")]
-    TooLong(usize),
-    #[error("it is still busy with the last step: collect its answer first")]
-    NotReady,
-    #[error("it was given up before")]
-    GivenUp,
-    #[error("stopped")]
-    Stopped,
-}
 
 /// Bytes of a device; none: its end.
 struct Arrival {
@@ -179,16 +50,16 @@ impl Fleet {
     ///
     /// # Errors
     /// The first device that cannot be opened, does not answer or refuses.
-    pub fn start(orders: Vec<Order>, options: Options) -> Result<Self, FleetError> {
+    pub fn start(configs: Vec<DeviceConfig>, options: Options) -> Result<Self, FleetError> {
         let mut lines = Vec::new();
-        for order in orders {
-            let robot = order.setup.agent.id;
-            let opened = open(&order, &options).map_err(|trouble| FleetError {
+        for config in configs {
+            let robot = config.setup.agent.id;
+            let opened = open(&config, &options).map_err(|cause| FleetError {
                 robot,
-                device: order.device.clone(),
-                trouble: Box::new(trouble),
+                device: config.device.clone(),
+                cause: Box::new(cause),
             })?;
-            lines.push((order, opened));
+            lines.push((config, opened));
         }
         Self::over(lines, options)
     }
@@ -197,7 +68,7 @@ impl Fleet {
     ///
     /// # Errors
     /// Those of [`Fleet::start`] but for opening.
-    pub fn over(lines: Vec<(Order, Channel)>, options: Options) -> Result<Self, FleetError> {
+    pub fn over(lines: Vec<(DeviceConfig, Channel)>, options: Options) -> Result<Self, FleetError> {
         let (sender, arrivals) = channel();
         let mut fleet = Self {
             units: Vec::new(),
@@ -207,8 +78,8 @@ impl Fleet {
             stop: Arc::clone(&options.stop),
             readers: Arc::new(AtomicBool::new(true)),
         };
-        for (index, (order, mut channel)) in lines.into_iter().enumerate() {
-            let (robot, device) = (order.setup.agent.id, order.device.clone());
+        for (index, (config, mut channel)) in lines.into_iter().enumerate() {
+            let (robot, device) = (config.setup.agent.id, config.device.clone());
             let reader = std::mem::replace(&mut channel.read, Box::new(std::io::empty()));
             let (sender, epoch) = (sender.clone(), fleet.epoch);
             let goes_on = Arc::clone(&fleet.readers);
@@ -218,12 +89,12 @@ impl Fleet {
                 .map_err(|error| FleetError {
                     robot,
                     device,
-                    trouble: Box::new(Trouble::Thread(error)),
+                    cause: Box::new(Cause::Thread(error)),
                 })?;
             let now_us = fleet.now_us();
             fleet
                 .units
-                .push(Unit::new(order, channel, &options, now_us));
+                .push(Unit::new(config, channel, &options, now_us));
         }
         fleet.settle();
         for unit in &mut fleet.units {
@@ -234,7 +105,7 @@ impl Fleet {
         Ok(fleet)
     }
 
-    /// How many devices there are; numbers below are those of the orders.
+    /// How many devices there are; numbers below are those of the configs.
     #[must_use]
     pub fn len(&self) -> usize {
         self.units.len()
@@ -314,7 +185,7 @@ impl Fleet {
             let Some(next_us) = next_us else { return };
             if self.stop.load(Ordering::Relaxed) {
                 for unit in &mut self.units {
-                    unit.fail(Trouble::Stopped);
+                    unit.fail(Cause::Stopped);
                 }
                 return;
             }
@@ -341,9 +212,9 @@ impl Drop for Fleet {
     }
 }
 
-fn open(order: &Order, options: &Options) -> Result<Channel, Trouble> {
-    let device: Device = order.device.parse()?;
-    let robot = order.setup.agent.id.0;
+fn open(config: &DeviceConfig, options: &Options) -> Result<Channel, Cause> {
+    let device: Device = config.device.parse()?;
+    let robot = config.setup.agent.id.0;
     let log = options
         .logs
         .as_ref()

@@ -1,15 +1,15 @@
 //! Robots on devices: starts emulators, opens serial ports, steps all of them in lockstep and compares each with its shadow, the same
-//! robot in this process. Read [`fleet::Fleet`] first.
+//! robot in this process. Read [`Fleet`] first.
 //!
 //! ```no_run
-//! use staya_runner::{Answer, Fleet, Options, Order};
-//! # fn orders() -> Vec<Order> { Vec::new() }
+//! use staya_runner::{Answer, Fleet, Options, DeviceConfig};
+//! # fn configs() -> Vec<DeviceConfig> { Vec::new() }
 //! # use staya_controller::agent::{Inputs, Pose};
 //! # fn inputs(_: usize) -> Inputs<'static, f32> {
 //! #     Inputs { pose: Pose::default(), cell: None, window: None, surroundings: None, inbox: &[] }
 //! # }
 //! # fn main() -> Result<(), staya_runner::FleetError> {
-//! let mut fleet = Fleet::start(orders(), Options::new("target/firmware".into()))?;
+//! let mut fleet = Fleet::start(configs(), Options::new("target/firmware".into()))?;
 //! for tick in 0..1000 {
 //!     let now = staya_controller::time::Instant::from_micros(tick * 100_000);
 //!     for index in 0..fleet.len() {
@@ -18,7 +18,7 @@
 //!     // While the devices decide, the host steps the other robots.
 //!     for answer in fleet.collect() {
 //!         match answer {
-//!             Answer::Decided(report) => println!("{:?}", report.outputs.command),
+//!             Answer::Decided(result) => println!("{:?}", result.outputs.command),
 //!             Answer::Down => println!("stands"),
 //!             Answer::Mismatch(mismatch) => println!("{mismatch}"),
 //!             Answer::Failed(error) => return Err(error),
@@ -29,18 +29,25 @@
 //! # }
 //! ```
 
-pub mod channel;
-pub mod device;
+mod answer;
+mod channel;
+mod config;
+mod device;
 mod emulator;
-pub mod fleet;
+mod fleet;
 mod line;
 mod mismatch;
+mod part;
 mod statistics;
 mod unit;
 
+pub use answer::{Answer, Cause, FleetError};
 pub use channel::{Channel, OpenError};
-pub use device::{Device, DeviceError, Part};
-pub use fleet::{Answer, Fleet, FleetError, Options, Order, Reset, Trouble};
+pub use config::{DeviceConfig, Options, Reset};
+pub use device::{Device, DeviceError};
+pub use emulator::EmulatorError;
+pub use fleet::Fleet;
 pub use line::LineFaults;
 pub use mismatch::Mismatch;
+pub use part::Part;
 pub use statistics::{Spread, Statistics};

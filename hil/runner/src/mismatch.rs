@@ -1,7 +1,7 @@
 //! The first step at which device and shadow differ.
 
 use staya_controller::wire::RobotId;
-use staya_link::message::Report;
+use staya_link::message::StepResult;
 use std::fmt;
 
 /// What a device decided, and what the same robot in this process did.
@@ -14,9 +14,9 @@ pub struct Mismatch {
     /// Which step.
     pub tick: u32,
     /// The device's decision.
-    pub on_device: Report,
+    pub on_device: StepResult,
     /// The shadow's.
-    pub in_shadow: Report,
+    pub in_shadow: StepResult,
 }
 
 impl fmt::Display for Mismatch {

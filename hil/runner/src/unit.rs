@@ -1,7 +1,8 @@
 //! One device: its port, its shadow, and what it is busy with.
 
+use crate::answer::{Answer, Cause, FleetError};
 use crate::channel::Channel;
-use crate::fleet::{Answer, FleetError, Options, Order, Trouble};
+use crate::config::{DeviceConfig, Options};
 use crate::line::{Line, micros};
 use crate::mismatch::Mismatch;
 use crate::statistics::{Spread, Statistics, Tally};
@@ -9,9 +10,10 @@ use staya_controller::agent::{Inputs, Setup, Task};
 use staya_controller::time::Instant;
 use staya_link::capacities::Capacities;
 use staya_link::frame::TooLong;
-use staya_link::message::{Hello, MAX_ANSWER, OBSTACLE, Report, Stepped};
+use staya_link::message::{Hello, MAX_ANSWER, StepResult, Stepped};
 use staya_link::port::{Event, Limits, Next, Port};
-use staya_link::robot::{Brain, Large, Small};
+use staya_link::robot::{Controller, Large, Small};
+use staya_link::surroundings::OBSTACLE_BYTES;
 use staya_mavlink::any::AnyWire;
 use std::io::Write;
 use std::time::Duration;
@@ -40,16 +42,16 @@ enum Phase {
 #[derive(Debug)]
 struct Expected {
     tick: u32,
-    report: Report,
+    result: StepResult,
     sent_us: u64,
 }
 
 /// One device of a fleet.
 pub struct Unit {
-    order: Order,
+    config: DeviceConfig,
     channel: Channel,
     port: Box<Port<REQUEST>>,
-    shadow: Option<Box<dyn Brain + Send>>,
+    shadow: Option<Box<dyn Controller + Send>>,
     hello: Option<Hello>,
     there: Line,
     back: Line,
@@ -68,9 +70,9 @@ pub struct Unit {
 
 impl Unit {
     /// A device that is being greeted.
-    pub fn new(order: Order, channel: Channel, options: &Options, now_us: u64) -> Self {
-        let robot = order.setup.agent.id.0;
-        let faults = order.faults;
+    pub fn new(config: DeviceConfig, channel: Channel, options: &Options, now_us: u64) -> Self {
+        let robot = config.setup.agent.id.0;
+        let faults = config.faults;
         let mut unit = Self {
             port: Box::new(Port::new(
                 options.run,
@@ -90,7 +92,7 @@ impl Unit {
             resend_after: options.resend_after + faults.delay * 2,
             start_limit: options.start_limit,
             step_limit: options.step_limit,
-            order,
+            config,
             channel,
         };
         unit.greet(now_us);
@@ -98,7 +100,7 @@ impl Unit {
     }
 
     pub fn robot(&self) -> u32 {
-        self.order.setup.agent.id.0
+        self.config.setup.agent.id.0
     }
 
     /// Its process, if it is emulated.
@@ -125,24 +127,24 @@ impl Unit {
         if matches!(self.phase, Phase::Failed) {
             return;
         }
-        let boot = self.order.setup.agent.boot.wrapping_add(1);
-        self.order.setup = setup;
-        self.order.setup.agent.boot = boot;
-        self.order.task = task;
+        let boot = self.config.setup.agent.boot.wrapping_add(1);
+        self.config.setup = setup;
+        self.config.setup.agent.boot = boot;
+        self.config.task = task;
         self.greet(now_us);
     }
 
     /// Asks for a step; the shadow decides at once.
     pub fn send(&mut self, tick: u32, now: Instant, inputs: &Inputs<'_, f32>, now_us: u64) {
         if matches!(self.phase, Phase::Failed) {
-            self.answer = Some(self.failed(Trouble::GivenUp));
+            self.answer = Some(self.failed(Cause::GivenUp));
             return;
         }
         if !self.is_settled() {
-            self.fail(Trouble::NotReady);
+            self.fail(Cause::NotReady);
             return;
         }
-        if let Some(reset) = self.order.resets.iter().find(|reset| reset.tick == tick) {
+        if let Some(reset) = self.config.resets.iter().find(|reset| reset.tick == tick) {
             self.down = reset.down_ticks.max(1);
             self.tally.resets += 1;
             self.port.restart(now_us);
@@ -154,8 +156,8 @@ impl Unit {
             self.answer = Some(Answer::Down);
             return;
         }
-        if let Err(trouble) = self.ask(tick, now, inputs, now_us) {
-            self.fail(trouble);
+        if let Err(cause) = self.ask(tick, now, inputs, now_us) {
+            self.fail(cause);
             return;
         }
         self.pump(now_us);
@@ -167,28 +169,28 @@ impl Unit {
         now: Instant,
         inputs: &Inputs<'_, f32>,
         now_us: u64,
-    ) -> Result<(), Trouble> {
+    ) -> Result<(), Cause> {
         let (Some(hello), Some(shadow)) = (&self.hello, &mut self.shadow) else {
-            return Err(Trouble::NotReady);
+            return Err(Cause::NotReady);
         };
         let capacities = hello.capacities;
-        let wire = AnyWire::new(self.order.setup.format);
+        let wire = AnyWire::new(self.config.setup.format);
         let (step, cut) = capacities
             .fit(tick, now, inputs, &wire, &mut self.packed)
-            .map_err(Trouble::Land)?;
+            .map_err(Cause::Window)?;
         self.tally.cut_inbox_bytes += cut.inbox_bytes as u64;
         self.tally.cut_obstacles += cut.obstacles as u64;
         shadow
             .step(&step)
-            .map_err(|refusal| Trouble::Shadow(refusal.to_string()))?;
-        let report = shadow.report().ok_or(Trouble::NotReady)?;
+            .map_err(|refusal| Cause::Shadow(refusal.to_string()))?;
+        let result = shadow.result().ok_or(Cause::NotReady)?;
         self.port
             .step(&step, now_us)
-            .map_err(|TooLong| Trouble::TooLong(REQUEST))?;
+            .map_err(|TooLong| Cause::TooLong(REQUEST))?;
         self.set_limits(capacities.frame_bytes(), self.step_limit);
         self.phase = Phase::Stepping(Box::new(Expected {
             tick,
-            report,
+            result,
             sent_us: now_us,
         }));
         Ok(())
@@ -213,7 +215,7 @@ impl Unit {
             && self.back.next_us().is_none()
             && let Some(why) = self.gone.take()
         {
-            self.fail(Trouble::Gone(why));
+            self.fail(Cause::Gone(why));
         }
         let due = self.pump(now_us)?;
         let lines = [self.there.next_us(), self.back.next_us()];
@@ -230,7 +232,7 @@ impl Unit {
                 match self.port.receive(byte, due_us) {
                     Ok(None) => {}
                     Ok(Some(event)) => self.take(event, due_us),
-                    Err(error) => self.fail(Trouble::Device(error)),
+                    Err(error) => self.fail(Cause::Device(error)),
                 }
             }
         }
@@ -244,7 +246,7 @@ impl Unit {
                 Ok(Next::WaitUntil(due_us)) => break Some(due_us),
                 Ok(Next::Idle) => break None,
                 Err(error) => {
-                    self.fail(Trouble::Device(error));
+                    self.fail(Cause::Device(error));
                     break None;
                 }
             }
@@ -260,21 +262,21 @@ impl Unit {
     fn take(&mut self, event: Event, at_us: u64) {
         match event {
             Event::Hello(hello) => {
-                if let Err(trouble) = self.meet(hello, at_us) {
-                    self.fail(trouble);
+                if let Err(cause) = self.meet(hello, at_us) {
+                    self.fail(cause);
                 }
             }
             Event::Configured(configured) => {
                 let shadow = self.shadow.as_mut();
-                let (setup, task) = (&self.order.setup, self.order.task.as_ref());
+                let (setup, task) = (&self.config.setup, self.config.task.as_ref());
                 match shadow.map(|shadow| shadow.configure(setup, task)) {
                     Some(Ok(digest)) if digest == configured.digest => self.phase = Phase::Ready,
                     Some(Ok(shadow)) => {
                         let device = configured.digest;
-                        self.fail(Trouble::Setup { device, shadow });
+                        self.fail(Cause::Setup { device, shadow });
                     }
-                    Some(Err(refusal)) => self.fail(Trouble::Shadow(refusal.to_string())),
-                    None => self.fail(Trouble::NotReady),
+                    Some(Err(refusal)) => self.fail(Cause::Shadow(refusal.to_string())),
+                    None => self.fail(Cause::NotReady),
                 }
             }
             Event::Stepped(stepped) => self.compare(stepped, at_us),
@@ -292,31 +294,30 @@ impl Unit {
                     // Ordered and counted, or once more on its way back.
                     Phase::Restarting | Phase::Greeting | Phase::Configuring | Phase::Failed => {}
                 }
-                self.order.setup.agent.boot = self.order.setup.agent.boot.wrapping_add(1);
+                self.config.setup.agent.boot = self.config.setup.agent.boot.wrapping_add(1);
                 self.greet(at_us);
             }
         }
     }
 
     /// Checks who it is, and tells it what to be.
-    fn meet(&mut self, hello: Hello, now_us: u64) -> Result<(), Trouble> {
+    fn meet(&mut self, hello: Hello, now_us: u64) -> Result<(), Cause> {
         if let Some(part) = self.channel.part
             && hello.part != part.firmware_name()
         {
             let (expected, said) = (part.firmware_name(), hello.part.to_string());
-            return Err(Trouble::OtherPart { expected, said });
+            return Err(Cause::OtherPart { expected, said });
         }
         if self.shadow.is_none() {
-            let shadow =
-                shadow(&hello).ok_or_else(|| Trouble::NoShadow(Box::new(hello.clone())))?;
+            let shadow = shadow(&hello).ok_or_else(|| Cause::NoShadow(Box::new(hello.clone())))?;
             self.shadow = Some(shadow);
         }
-        self.packed = vec![0; usize::from(hello.capacities.obstacles) * OBSTACLE];
+        self.packed = vec![0; usize::from(hello.capacities.obstacles) * OBSTACLE_BYTES];
         self.hello = Some(hello);
-        let (setup, task) = (&self.order.setup, self.order.task.as_ref());
+        let (setup, task) = (&self.config.setup, self.config.task.as_ref());
         self.port
             .configure(setup, task, now_us)
-            .map_err(|TooLong| Trouble::TooLong(REQUEST))?;
+            .map_err(|TooLong| Cause::TooLong(REQUEST))?;
         self.set_limits(REQUEST / 16, self.start_limit);
         self.phase = Phase::Configuring;
         Ok(())
@@ -333,35 +334,35 @@ impl Unit {
         tally.round_trip_us.push(narrow(round_trip));
         tally.ticks.push(stepped.cost.ticks);
         tally.stack_bytes = tally.stack_bytes.max(stepped.cost.stack_bytes);
-        let on_device = stepped.report;
-        self.answer = Some(if on_device.is_identical(&expected.report) {
+        let on_device = stepped.result;
+        self.answer = Some(if on_device.is_identical(&expected.result) {
             Answer::Decided(Box::new(on_device))
         } else {
             tally.mismatches += 1;
             Answer::Mismatch(Box::new(Mismatch {
-                robot: self.order.setup.agent.id,
-                device: self.order.device.clone(),
+                robot: self.config.setup.agent.id,
+                device: self.config.device.clone(),
                 tick: expected.tick,
                 on_device,
-                in_shadow: expected.report,
+                in_shadow: expected.result,
             }))
         });
     }
 
-    pub fn fail(&mut self, trouble: Trouble) {
-        // The first trouble counts; what follows comes from it.
+    pub fn fail(&mut self, cause: Cause) {
+        // The first cause counts; what follows comes from it.
         if matches!(self.phase, Phase::Failed) {
             return;
         }
         self.phase = Phase::Failed;
-        self.answer = Some(self.failed(trouble));
+        self.answer = Some(self.failed(cause));
     }
 
-    fn failed(&self, trouble: Trouble) -> Answer {
+    fn failed(&self, cause: Cause) -> Answer {
         Answer::Failed(FleetError {
-            robot: self.order.setup.agent.id,
-            device: self.order.device.clone(),
-            trouble: Box::new(trouble),
+            robot: self.config.setup.agent.id,
+            device: self.config.device.clone(),
+            cause: Box::new(cause),
         })
     }
 
@@ -391,7 +392,7 @@ impl Unit {
         let is_emulated = self.channel.part.is_some();
         Statistics {
             robot: self.robot(),
-            device: self.order.device.clone(),
+            device: self.config.device.clone(),
             part: text(|hello| &hello.part),
             firmware: text(|hello| &hello.firmware),
             steps: tally.steps,
@@ -425,15 +426,18 @@ fn limits(resend_after: Duration, limit: Duration) -> Limits {
 }
 
 /// The robot in this process that computes as the device does: the same numbers, the same capacities.
-fn shadow(hello: &Hello) -> Option<Box<dyn Brain + Send>> {
-    let is_same = |brain: &dyn Brain| {
+fn shadow(hello: &Hello) -> Option<Box<dyn Controller + Send>> {
+    let is_same = |controller: &dyn Controller| {
         let inbox_bytes = hello.capacities.inbox_bytes;
         let capacities = Capacities {
             inbox_bytes,
-            ..brain.capacities()
+            ..controller.capacities()
         };
-        brain.number() == hello.number && capacities == hello.capacities
+        controller.number() == hello.number && capacities == hello.capacities
     };
-    let candidates: [Box<dyn Brain + Send>; 2] = [Box::new(Large::new()), Box::new(Small::new())];
-    candidates.into_iter().find(|brain| is_same(brain.as_ref()))
+    let candidates: [Box<dyn Controller + Send>; 2] =
+        [Box::new(Large::new()), Box::new(Small::new())];
+    candidates
+        .into_iter()
+        .find(|controller| is_same(controller.as_ref()))
 }

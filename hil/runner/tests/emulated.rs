@@ -5,7 +5,7 @@
 
 mod common;
 
-use common::{Scene, now, order};
+use common::{Scene, config, now};
 use staya_controller::wire::Format;
 use staya_runner::{Answer, Fleet, LineFaults, Options, Part, Reset, Statistics};
 use std::io::{BufRead, BufReader};
@@ -84,10 +84,10 @@ fn is_alive(process: u32) -> bool {
 #[test]
 fn every_part_decides_as_its_shadow() {
     let parts = Part::ALL.into_iter().cycle().take(6);
-    let orders = parts
+    let configs = parts
         .zip(1..)
-        .map(|(part, robot)| order(robot, &format!("qemu:{}", part.name())));
-    let mut fleet = Fleet::start(orders.collect(), options()).expect("they start");
+        .map(|(part, robot)| config(robot, &format!("qemu:{}", part.name())));
+    let mut fleet = Fleet::start(configs.collect(), options()).expect("they start");
     assert_eq!(run(&mut fleet, 100), [0; 6]);
     for statistics in fleet.statistics() {
         print(&statistics);
@@ -106,43 +106,43 @@ fn every_part_decides_as_its_shadow() {
 
 #[test]
 fn every_part_speaks_mavlink() {
-    let orders = Part::ALL.into_iter().zip(1..).map(|(part, robot)| {
-        let mut order = order(robot, &format!("qemu:{}", part.name()));
-        order.setup.format = Format::Mavlink;
-        order
+    let configs = Part::ALL.into_iter().zip(1..).map(|(part, robot)| {
+        let mut config = config(robot, &format!("qemu:{}", part.name()));
+        config.setup.format = Format::Mavlink;
+        config
     });
-    let mut fleet = Fleet::start(orders.collect(), options()).expect("they start");
+    let mut fleet = Fleet::start(configs.collect(), options()).expect("they start");
     for tick in 0..40 {
         for index in 0..fleet.len() {
             let scene = Scene::over(Format::Mavlink, index as u32 + 1, tick);
             fleet.send(index, tick, now(tick), &scene.inputs());
         }
         for answer in fleet.collect() {
-            let Answer::Decided(report) = answer else {
+            let Answer::Decided(result) = answer else {
                 panic!("{answer:?}");
             };
-            assert!(report.outputs.received > 0);
+            assert!(result.outputs.received > 0);
         }
     }
 }
 
 #[test]
 fn emulated_parts_restart_on_request_and_rejoin_over_a_bad_line() {
-    let orders = Part::ALL.into_iter().zip(1..).map(|(part, robot)| {
-        let mut order = order(robot, &format!("qemu:{}", part.name()));
-        order.faults = LineFaults {
+    let configs = Part::ALL.into_iter().zip(1..).map(|(part, robot)| {
+        let mut config = config(robot, &format!("qemu:{}", part.name()));
+        config.faults = LineFaults {
             loss: 0.05,
             bit_errors: 1e-5,
             delay: Duration::from_millis(1),
             seed: 9,
         };
-        order.resets = vec![Reset {
+        config.resets = vec![Reset {
             tick: 20,
             down_ticks: 5,
         }];
-        order
+        config
     });
-    let mut fleet = Fleet::start(orders.collect(), options()).expect("they start");
+    let mut fleet = Fleet::start(configs.collect(), options()).expect("they start");
     assert_eq!(run(&mut fleet, 60), [5; 3]);
     for statistics in fleet.statistics() {
         print(&statistics);
@@ -155,8 +155,8 @@ fn emulated_parts_restart_on_request_and_rejoin_over_a_bad_line() {
 
 #[test]
 fn emulators_end_with_their_fleet_also_on_panic() {
-    let orders = || vec![order(1, "qemu:microbit"), order(2, "qemu:stm32f405")];
-    let fleet = Fleet::start(orders(), options()).expect("they start");
+    let configs = || vec![config(1, "qemu:microbit"), config(2, "qemu:stm32f405")];
+    let fleet = Fleet::start(configs(), options()).expect("they start");
     let processes = fleet.processes();
     assert_eq!(processes.len(), 2);
     assert!(processes.iter().all(|process| is_alive(*process)));
@@ -164,7 +164,7 @@ fn emulators_end_with_their_fleet_also_on_panic() {
     assert!(!processes.iter().any(|process| is_alive(*process)));
     let (sender, receiver) = std::sync::mpsc::channel();
     let panicking = std::thread::spawn(move || {
-        let fleet = Fleet::start(orders(), options()).expect("they start");
+        let fleet = Fleet::start(configs(), options()).expect("they start");
         sender.send(fleet.processes()).expect("somebody listens");
         panic!("in the middle of a run");
     });
@@ -175,8 +175,8 @@ fn emulators_end_with_their_fleet_also_on_panic() {
 
 #[test]
 fn emulator_that_is_killed_is_named() {
-    let orders = vec![order(1, "qemu:microbit")];
-    let mut fleet = Fleet::start(orders, options()).expect("it starts");
+    let configs = vec![config(1, "qemu:microbit")];
+    let mut fleet = Fleet::start(configs, options()).expect("it starts");
     run(&mut fleet, 3);
     let process = fleet.processes()[0].to_string();
     let killed = std::process::Command::new("kill")
@@ -200,7 +200,7 @@ fn killed_runner_leaves_no_emulator() {
     const WAITS: &str = "STAYA_RUNNER_WAITS";
     if std::env::var_os(WAITS).is_some() {
         // This is the runner that is to be killed; if nobody does, it ends by itself.
-        let fleet = Fleet::start(vec![order(1, "qemu:microbit")], options()).expect("it starts");
+        let fleet = Fleet::start(vec![config(1, "qemu:microbit")], options()).expect("it starts");
         println!("\nemulator {}", fleet.processes()[0]);
         std::thread::sleep(Duration::from_secs(120));
         return;

@@ -2,15 +2,15 @@
 
 mod common;
 
-use common::{Mischief, Scene, device, live, now, order};
+use common::{Mischief, Scene, config, device, live, now};
 use serialport::SerialPort;
 use staya_controller::agent::{Setup, Task};
 use staya_controller::wire::Format;
 use staya_link::capacities::Capacities;
-use staya_link::message::{NumberFormat, Report, StepInputs};
-use staya_link::robot::{Brain, LARGE_INBOX, Large, Refusal, SMALL_INBOX, Small};
+use staya_link::message::{NumberFormat, StepInputs, StepResult};
+use staya_link::robot::{Controller, LARGE_INBOX, Large, Refusal, SMALL_INBOX, Small};
 use staya_link::session::content_bytes;
-use staya_runner::{Answer, Channel, Fleet, LineFaults, Options, Order, Reset, Trouble};
+use staya_runner::{Answer, Cause, Channel, DeviceConfig, Fleet, LineFaults, Options, Reset};
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
@@ -32,17 +32,17 @@ fn options() -> Options {
     }
 }
 
-fn one(order: Order, channel: Channel) -> Fleet {
-    Fleet::over(vec![(order, channel)], options()).expect("it starts")
+fn one(config: DeviceConfig, channel: Channel) -> Fleet {
+    Fleet::over(vec![(config, channel)], options()).expect("it starts")
 }
 
 /// Robots 1 to 4, two of each kind.
-fn four(change: impl Fn(&mut Order)) -> Fleet {
+fn four(change: impl Fn(&mut DeviceConfig)) -> Fleet {
     let lines = (1..=4).map(|robot| {
-        let mut order = order(robot, "thread");
-        change(&mut order);
+        let mut config = config(robot, "thread");
+        change(&mut config);
         let well = Mischief::default();
-        (order, if robot <= 2 { large(well) } else { small(well) })
+        (config, if robot <= 2 { large(well) } else { small(well) })
     });
     Fleet::over(lines.collect(), options()).expect("they start")
 }
@@ -56,9 +56,9 @@ fn tick(fleet: &mut Fleet, tick: u32) -> Vec<Answer> {
     fleet.collect()
 }
 
-fn decided(answer: Answer) -> Report {
+fn decided(answer: Answer) -> StepResult {
     match answer {
-        Answer::Decided(report) => *report,
+        Answer::Decided(result) => *result,
         other => panic!("{other:?}"),
     }
 }
@@ -100,15 +100,15 @@ fn devices_of_two_kinds_decide_as_their_shadows_and_are_counted() {
 fn robot_behind_a_serial_port_decides_as_its_shadow() {
     let (board, port) = serialport::TTYPort::pair().expect("pseudo-terminals");
     let device = format!("serial:{},baud=1000000", port.name().expect("a path"));
-    let mut orders = vec![order(1, &device)];
-    orders[0].resets = vec![Reset {
+    let mut configs = vec![config(1, &device)];
+    configs[0].resets = vec![Reset {
         tick: 20,
         down_ticks: 2,
     }];
     std::thread::spawn(|| {
         live::<Large, LARGE>(Large::new, "stm32f405", Mischief::default(), board);
     });
-    let mut fleet = Fleet::start(orders, options()).expect("it starts");
+    let mut fleet = Fleet::start(configs, options()).expect("it starts");
     drop(port);
     let mut down = 0;
     for t in 0..50 {
@@ -126,8 +126,8 @@ fn robot_behind_a_serial_port_decides_as_its_shadow() {
 #[test]
 fn faults_of_the_line_change_no_decision() {
     let clean = run(&mut four(|_| {}), 100);
-    let mut fleet = four(|order| {
-        order.faults = LineFaults {
+    let mut fleet = four(|config| {
+        config.faults = LineFaults {
             loss: 0.1,
             bit_errors: 2e-5,
             delay: Duration::from_micros(300),
@@ -145,9 +145,9 @@ fn ordered_reset_takes_so_many_steps_and_the_robot_rejoins() {
     let reset = |tick, down_ticks| Reset { tick, down_ticks };
     let runs: Vec<_> = (0..2)
         .map(|_| {
-            let mut fleet = four(|order| {
-                if order.setup.agent.id.0.is_multiple_of(2) {
-                    order.resets = vec![reset(10, 3), reset(20, 1)];
+            let mut fleet = four(|config| {
+                if config.setup.agent.id.0.is_multiple_of(2) {
+                    config.resets = vec![reset(10, 3), reset(20, 1)];
                 }
             });
             let mut digests = Vec::new();
@@ -177,7 +177,7 @@ fn device_that_resets_by_itself_is_down_for_a_step_and_rejoins() {
         resets_at: Some(30),
         ..Mischief::default()
     };
-    let mut fleet = one(order(1, "thread"), large(mischief));
+    let mut fleet = one(config(1, "thread"), large(mischief));
     let mut down = Vec::new();
     for t in 0..60 {
         match tick(&mut fleet, t).pop().expect("one") {
@@ -193,50 +193,50 @@ fn device_that_resets_by_itself_is_down_for_a_step_and_rejoins() {
 
 /// A device that counts wrong from its fiftieth step on.
 struct Wrong {
-    brain: Large,
+    controller: Large,
     steps: u32,
 }
 
-impl Brain for Wrong {
+impl Controller for Wrong {
     fn number(&self) -> NumberFormat {
-        self.brain.number()
+        self.controller.number()
     }
 
     fn capacities(&self) -> Capacities {
-        self.brain.capacities()
+        self.controller.capacities()
     }
 
     fn configure(&mut self, setup: &Setup, task: Option<&Task>) -> Result<u64, Refusal> {
-        self.brain.configure(setup, task)
+        self.controller.configure(setup, task)
     }
 
     fn step(&mut self, inputs: &StepInputs<'_>) -> Result<(), Refusal> {
         self.steps += 1;
-        self.brain.step(inputs)
+        self.controller.step(inputs)
     }
 
-    fn report(&self) -> Option<Report> {
-        let mut report = self.brain.report()?;
+    fn result(&self) -> Option<StepResult> {
+        let mut result = self.controller.result()?;
         if self.steps >= 50 {
-            report.digest ^= 1;
-            report.outputs.received += 1;
+            result.digest ^= 1;
+            result.outputs.received += 1;
         }
-        Some(report)
+        Some(result)
     }
 
     fn forget(&mut self) {
-        self.brain.forget();
+        self.controller.forget();
     }
 }
 
 #[test]
 fn first_difference_is_found_and_both_sides_can_be_printed() {
     let new = || Wrong {
-        brain: Large::new(),
+        controller: Large::new(),
         steps: 0,
     };
     let channel = device::<Wrong, LARGE>(new, "stm32f405", Mischief::default());
-    let mut fleet = one(order(1, "qemu:stm32f405"), channel);
+    let mut fleet = one(config(1, "qemu:stm32f405"), channel);
     run(&mut fleet, 49);
     let Some(Answer::Mismatch(mismatch)) = tick(&mut fleet, 49).pop() else {
         panic!("the fiftieth step differs");
@@ -260,7 +260,7 @@ fn first_difference_is_found_and_both_sides_can_be_printed() {
     assert_eq!(fleet.statistics()[0].mismatches, 1);
 }
 
-fn trouble(answers: Vec<Answer>) -> String {
+fn cause(answers: Vec<Answer>) -> String {
     match answers.into_iter().next() {
         Some(Answer::Failed(error)) => error.to_string(),
         other => panic!("{other:?}"),
@@ -279,8 +279,8 @@ fn silent_device_is_named_with_its_step_and_the_time() {
     };
     let mut fleet = Fleet::over(
         vec![
-            (order(1, "qemu:microbit"), small(mischief)),
-            (order(2, "thread"), large(Mischief::default())),
+            (config(1, "qemu:microbit"), small(mischief)),
+            (config(2, "thread"), large(Mischief::default())),
         ],
         options,
     )
@@ -289,7 +289,7 @@ fn silent_device_is_named_with_its_step_and_the_time() {
     let mut answers = tick(&mut fleet, 7);
     // The others are not held up.
     let _ = decided(answers.pop().expect("two"));
-    let text = trouble(answers);
+    let text = cause(answers);
     let known = "robot 1 on qemu:microbit: no answer to step 7 within ";
     assert!(
         text.starts_with(known) && text.ends_with("(5 attempts)"),
@@ -299,19 +299,19 @@ fn silent_device_is_named_with_its_step_and_the_time() {
     let mut answers = tick(&mut fleet, 8);
     let _ = decided(answers.pop().expect("two"));
     assert_eq!(
-        trouble(answers),
+        cause(answers),
         "robot 1 on qemu:microbit: it was given up before"
     );
 }
 
 #[test]
 fn second_step_before_the_first_is_collected_is_an_error() {
-    let mut fleet = one(order(1, "thread"), large(Mischief::default()));
+    let mut fleet = one(config(1, "thread"), large(Mischief::default()));
     for t in 0..2 {
         let scene = Scene::new(1, t);
         fleet.send(0, t, now(t), &scene.inputs());
     }
-    let text = trouble(fleet.collect());
+    let text = cause(fleet.collect());
     assert!(
         text.ends_with("still busy with the last step: collect its answer first"),
         "{text}"
@@ -324,9 +324,9 @@ fn device_that_leaves_is_named() {
         leaves_at: Some(3),
         ..Mischief::default()
     };
-    let mut fleet = one(order(5, "thread"), large(mischief));
+    let mut fleet = one(config(5, "thread"), large(mischief));
     run(&mut fleet, 3);
-    let text = trouble(tick(&mut fleet, 3));
+    let text = cause(tick(&mut fleet, 3));
     assert_eq!(text, "robot 5 on thread: the line is closed");
 }
 
@@ -340,7 +340,7 @@ fn device_that_never_answers_is_an_error_of_the_start() {
         start_limit: Duration::from_millis(60),
         ..options()
     };
-    let lines = vec![(order(1, "thread"), large(mischief))];
+    let lines = vec![(config(1, "thread"), large(mischief))];
     let error = Fleet::over(lines, options)
         .expect_err("nobody answers")
         .to_string();
@@ -352,11 +352,12 @@ fn device_that_never_answers_is_an_error_of_the_start() {
 
 #[test]
 fn setup_that_does_not_fit_is_an_error_of_the_start() {
-    let mut order = order(2, "thread");
-    if let staya_controller::agent::GuidanceSetup::Route { route, .. } = &mut order.setup.guidance {
+    let mut config = config(2, "thread");
+    if let staya_controller::agent::GuidanceSetup::Route { route, .. } = &mut config.setup.guidance
+    {
         route.params.radius = 6;
     }
-    let lines = vec![(order, small(Mischief::default()))];
+    let lines = vec![(config, small(Mischief::default()))];
     let error = Fleet::over(lines, options())
         .expect_err("too far")
         .to_string();
@@ -368,10 +369,10 @@ fn setup_that_does_not_fit_is_an_error_of_the_start() {
 fn robots_that_speak_mavlink_decide_as_those_that_speak_postcard() {
     let digests = |format: Format| {
         let lines = (1..=2).map(|robot| {
-            let mut order = order(robot, "thread");
-            order.setup.format = format;
+            let mut config = config(robot, "thread");
+            config.setup.format = format;
             let well = Mischief::default();
-            (order, if robot == 1 { large(well) } else { small(well) })
+            (config, if robot == 1 { large(well) } else { small(well) })
         });
         let mut fleet = Fleet::over(lines.collect(), options()).expect("they start");
         let mut digests = Vec::new();
@@ -381,8 +382,8 @@ fn robots_that_speak_mavlink_decide_as_those_that_speak_postcard() {
                 fleet.send(index, t, now(t), &scene.inputs());
             }
             for answer in fleet.collect() {
-                let report = decided(answer);
-                digests.push((report.digest, report.outputs.received));
+                let result = decided(answer);
+                digests.push((result.digest, result.outputs.received));
             }
         }
         digests
@@ -394,7 +395,7 @@ fn robots_that_speak_mavlink_decide_as_those_that_speak_postcard() {
 
 #[test]
 fn inputs_beyond_the_capacities_are_cut_for_both_alike_and_counted() {
-    let mut fleet = one(order(1, "thread"), small(Mischief::default()));
+    let mut fleet = one(config(1, "thread"), small(Mischief::default()));
     for t in 0..20 {
         let mut scene = Scene::new(1, t);
         for other in 200..230 {
@@ -404,8 +405,8 @@ fn inputs_beyond_the_capacities_are_cut_for_both_alike_and_counted() {
             scene.see(2.0 + far as f32);
         }
         fleet.send(0, t, now(t), &scene.inputs());
-        let report = decided(fleet.collect().pop().expect("one"));
-        let heard = report.outputs.received + report.outputs.rejected;
+        let result = decided(fleet.collect().pop().expect("one"));
+        let heard = result.outputs.received + result.outputs.rejected;
         assert!((10..30).contains(&heard), "{heard} of 34");
     }
     let statistics = &fleet.statistics()[0];
@@ -424,9 +425,9 @@ fn stop_ends_the_wait() {
         ..options()
     };
     patient.stop.store(true, Ordering::Relaxed);
-    let lines = vec![(order(1, "thread"), large(mischief))];
+    let lines = vec![(config(1, "thread"), large(mischief))];
     let error = Fleet::over(lines, patient).expect_err("stopped");
-    assert!(matches!(*error.trouble, Trouble::Stopped));
+    assert!(matches!(*error.cause, Cause::Stopped));
 }
 
 #[test]
@@ -445,7 +446,7 @@ fn unknown_devices_and_missing_firmware_are_errors_of_the_start() {
             ["cannot open /dev/nothing-there", "; "],
         ),
     ] {
-        let error = Fleet::start(vec![order(3, device)], options())
+        let error = Fleet::start(vec![config(3, device)], options())
             .expect_err(device)
             .to_string();
         assert!(

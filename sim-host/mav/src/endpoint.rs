@@ -1,9 +1,8 @@
 //! `udpout:127.0.0.1:14550` and its like.
 
-use staya_runner::Device;
+use staya_serial::SerialPort;
 use std::fmt;
 use std::net::{SocketAddr, ToSocketAddrs};
-use std::path::PathBuf;
 use std::str::FromStr;
 
 /// Where the other side of a line is, written as pymavlink, MAVProxy and MAVSDK users know it.
@@ -18,12 +17,7 @@ pub enum Endpoint {
     /// `tcpin:HOST:PORT`: connections at this address, any number.
     TcpIn(SocketAddr),
     /// `serial:PORT[,baud=N]`.
-    Serial {
-        /// The port.
-        path: PathBuf,
-        /// Bits per second.
-        baud: u32,
-    },
+    Serial(SerialPort),
 }
 
 /// A text that names no line.
@@ -54,11 +48,10 @@ impl FromStr for Endpoint {
             "tcpout" | "tcp" => Self::TcpOut,
             "tcpin" => Self::TcpIn,
             "serial" => {
-                return match text.parse() {
-                    Ok(Device::Serial { path, baud }) => Ok(Self::Serial { path, baud }),
-                    Ok(Device::Emulated(_)) => Err(error(String::from("not a port"))),
-                    Err(reason) => Err(error(reason.what)),
-                };
+                let port: Result<SerialPort, _> = rest.parse();
+                return port
+                    .map(Self::Serial)
+                    .map_err(|reason| error(reason.to_string()));
             }
             _ => return Err(error(format!("`{kind}` is no kind of line"))),
         };
@@ -86,7 +79,7 @@ impl fmt::Display for Endpoint {
             Self::UdpIn(address) => write!(f, "udpin:{address}"),
             Self::TcpOut(address) => write!(f, "tcpout:{address}"),
             Self::TcpIn(address) => write!(f, "tcpin:{address}"),
-            Self::Serial { path, baud } => write!(f, "serial:{},baud={baud}", path.display()),
+            Self::Serial(port) => write!(f, "serial:{port}"),
         }
     }
 }

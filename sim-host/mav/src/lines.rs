@@ -199,7 +199,7 @@ impl Lines {
                 Endpoint::UdpIn(address) => udp::open_in(*address, &shared),
                 Endpoint::TcpOut(address) => Ok(stream::connect(*address, &shared)),
                 Endpoint::TcpIn(address) => stream::listen(*address, &shared),
-                Endpoint::Serial { path, baud } => stream::serial(path, *baud, &shared),
+                Endpoint::Serial(port) => stream::serial(port, &shared),
             };
             let endpoint = endpoint.clone();
             let (outgoing, threads) = match opened {

@@ -1,11 +1,10 @@
 //! Lines of bytes: TCP and serial ports.
 
 use super::lines::{GLANCE, Outgoing, Peer, Shared};
-use staya_runner::{Channel, Device};
+use staya_serial::SerialPort;
 use std::collections::HashMap;
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream};
-use std::path::Path;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
@@ -17,6 +16,8 @@ const QUEUE: usize = 1024;
 const RETRY: Duration = Duration::from_secs(1);
 /// How long a write may take before the peer counts as gone.
 const PATIENCE: Duration = Duration::from_secs(2);
+/// How long a serial port is read or written before it is looked at again.
+const PAUSE: Duration = Duration::from_millis(500);
 
 type Threads = Vec<JoinHandle<()>>;
 type Opened = io::Result<(Box<dyn Outgoing>, Threads)>;
@@ -116,13 +117,10 @@ pub(super) fn listen(at: SocketAddr, shared: &Shared) -> Opened {
 }
 
 /// A serial port; opened again when it was unplugged.
-pub(super) fn serial(path: &Path, baud: u32, shared: &Shared) -> Opened {
-    let device = Device::Serial {
-        path: path.to_owned(),
-        baud,
-    };
-    let open = move || Channel::open(&device, Path::new("."), None);
-    let mut channel = Some(open().map_err(io::Error::other)?);
+pub(super) fn serial(port: &SerialPort, shared: &Shared) -> Opened {
+    let port = port.clone();
+    let open = move || port.open(PAUSE);
+    let mut opened = Some(open().map_err(io::Error::other)?);
     let peers = Peers::default();
     let stream = Stream {
         peers: peers.clone(),
@@ -132,11 +130,11 @@ pub(super) fn serial(path: &Path, baud: u32, shared: &Shared) -> Opened {
     let shared = shared.clone();
     let work = move || {
         while !shared.is_closed() {
-            if let Some(Channel { read, write, .. }) = channel.take() {
+            if let Some((read, write)) = opened.take() {
                 converse(read, write, Peer::Wire, &peers, &shared);
             }
             wait(RETRY, &shared);
-            channel = open().ok();
+            opened = open().ok();
         }
     };
     Ok((Box::new(stream), vec![thread::spawn(work)]))

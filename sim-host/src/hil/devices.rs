@@ -5,7 +5,9 @@
 
 use staya_controller::agent::{Inputs, Setup, Task};
 use staya_controller::time::Instant;
-use staya_runner::{Answer, Device, Fleet, LineFaults, Options, Order, Reset, Statistics, Trouble};
+use staya_runner::{
+    Answer, Cause, Device, DeviceConfig, Fleet, LineFaults, Options, Reset, Statistics,
+};
 use staya_sim::engine::{Decision, Elsewhere, Status};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -54,7 +56,7 @@ pub struct OnDevices {
     plan: Plan,
     options: Option<Options>,
     /// What each device is to be; then they are part of the fleet.
-    orders: Vec<Option<Order>>,
+    orders: Vec<Option<DeviceConfig>>,
     fleet: Option<Fleet>,
     /// Numbers in the plan of those that were sent, in that order, until somebody collects.
     asked: Vec<usize>,
@@ -99,7 +101,7 @@ impl OnDevices {
         let Some(options) = self.options.take() else {
             return;
         };
-        let orders: Option<Vec<Order>> = self.orders.iter_mut().map(Option::take).collect();
+        let orders: Option<Vec<DeviceConfig>> = self.orders.iter_mut().map(Option::take).collect();
         // The engine starts all robots before any of them steps.
         let Some(orders) = orders else {
             return self.fail(String::from("a robot on a device was never started"));
@@ -117,23 +119,23 @@ impl OnDevices {
         let answers = fleet.collect();
         for (at, answer) in std::mem::take(&mut self.asked).into_iter().zip(answers) {
             match answer {
-                Answer::Decided(report) => {
+                Answer::Decided(result) => {
                     self.decisions[at] = Some(Decision {
                         status: Status {
-                            mode: report.mode,
-                            leader: report.leader,
-                            target: report.target.unwrap_or_default(),
+                            mode: result.mode,
+                            leader: result.leader,
+                            target: result.target.unwrap_or_default(),
                         },
-                        command: report.outputs.command,
-                        outbox: report.outputs.outbox,
-                        rejected: report.outputs.rejected,
+                        command: result.outputs.command,
+                        outbox: result.outputs.outbox,
+                        rejected: result.outputs.rejected,
                     });
                 }
                 Answer::Down => self.lost[at] = true,
                 Answer::Mismatch(mismatch) => self.fail(mismatch.to_string()),
-                Answer::Failed(error) => match *error.trouble {
+                Answer::Failed(error) => match *error.cause {
                     // The run ends anyway.
-                    Trouble::Stopped => {}
+                    Cause::Stopped => {}
                     _ => self.fail(error.to_string()),
                 },
             }
@@ -156,7 +158,7 @@ impl Elsewhere for OnDevices {
             tick: reset.tick.saturating_add(at as u32),
             ..*reset
         });
-        self.orders[at] = Some(Order {
+        self.orders[at] = Some(DeviceConfig {
             device: self.plan.devices[at].1.to_string(),
             setup,
             task: Some(task),

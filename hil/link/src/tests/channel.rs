@@ -1,318 +1,31 @@
 //! Both ends over a line with faults, in simulated time.
 
-use super::{ABOUT, LARGE, in_plane, on_grid};
-use crate::message::{Report, StepInputs, pack};
-use crate::port::{Asked, Event, Limits, Next, Port, PortError};
-use crate::robot::{Brain, Large, Robot, Small};
-use crate::session::{About, Reaction, Session};
+mod bench;
+mod world;
+
+use self::bench::{Bench, Faults, LIMITS};
+use self::world::{World, inbox};
+use super::{in_plane, on_grid};
+use crate::message::{StepInputs, StepResult};
+use crate::port::{Asked, Event, Next, Port, PortError};
+use crate::robot::{Controller, Large, Robot, Small};
+use crate::surroundings::{PackedSurroundings, pack};
 use proptest::prelude::*;
 use staya_controller::agent::*;
-use staya_controller::geom::{Position, Vec2, Vec3};
-use staya_controller::grid::{Cell, Window};
+use staya_controller::geom::{Position, Vec2};
 use staya_controller::obstacle::Obstacle;
-use staya_controller::rand::Rng;
-use staya_controller::time::{Duration, Instant};
-use staya_controller::wire::{Beacon, Header, Message, Mode, RobotId, encode};
+use staya_controller::time::Instant;
 use staya_mavlink::any::AnyWire;
 use std::vec::Vec;
 
-const LIMITS: Limits = Limits {
-    resend_after_us: 20_000,
-    attempts: 60,
-};
-
-/// What one direction does to frames, probabilities in percent.
-#[derive(Clone, Copy, Debug, Default)]
-struct Faults {
-    lost: u32,
-    repeated: u32,
-    flipped: u32,
-    cut: u32,
-    /// Longest delay: frames overtake each other.
-    delay_us: u32,
-}
-
-/// One direction.
-struct Line {
-    faults: Faults,
-    rng: Rng,
-    on_the_way: Vec<(u64, Vec<u8>)>,
-}
-
-impl Line {
-    fn new(faults: Faults, seed: u64) -> Self {
-        Self {
-            faults,
-            rng: Rng::new(seed),
-            on_the_way: Vec::new(),
-        }
-    }
-
-    fn happens(&mut self, percent: u32) -> bool {
-        self.rng.below(100) < percent
-    }
-
-    fn send(&mut self, frame: &[u8], now: u64) {
-        let faults = self.faults;
-        let copies = 1 + usize::from(self.happens(faults.repeated));
-        for _ in 0..copies {
-            if self.happens(faults.lost) {
-                continue;
-            }
-            let mut bytes = frame.to_vec();
-            if self.happens(faults.flipped) {
-                let at = self.rng.below(bytes.len() as u32) as usize;
-                bytes[at] ^= 1 << self.rng.below(8);
-            }
-            if self.happens(faults.cut) {
-                bytes.truncate(self.rng.below(bytes.len() as u32) as usize);
-            }
-            let delay = 100 + u64::from(self.rng.below(faults.delay_us));
-            self.on_the_way.push((now + delay, bytes));
-        }
-    }
-
-    fn next(&self) -> Option<u64> {
-        self.on_the_way.iter().map(|(due, _)| *due).min()
-    }
-
-    fn arrived(&mut self, now: u64) -> Vec<Vec<u8>> {
-        self.on_the_way.sort_by_key(|(due, _)| *due);
-        let count = self
-            .on_the_way
-            .iter()
-            .filter(|(due, _)| *due <= now)
-            .count();
-        self.on_the_way
-            .drain(..count)
-            .map(|(_, bytes)| bytes)
-            .collect()
-    }
-}
-
-/// A host, a device and what is between them.
-struct Bench<B> {
-    port: Port<16384>,
-    session: Session<B, LARGE>,
-    there: Line,
-    back: Line,
-    now: u64,
-    boot: u32,
-}
-
-impl<B: Brain + Default> Bench<B> {
-    fn new(faults: Faults, seed: u64) -> Self {
-        let mut bench = Self {
-            port: Port::new(seed as u32, LIMITS),
-            session: Session::new(B::default(), ABOUT),
-            there: Line::new(faults, seed),
-            back: Line::new(faults, seed ^ 0xFFFF),
-            now: 0,
-            boot: ABOUT.boot,
-        };
-        let hello = bench.session.hello().to_vec();
-        bench.back.send(&hello, 0);
-        bench
-    }
-
-    fn reset(&mut self) {
-        self.boot += 1;
-        let boot = self.boot;
-        self.session = Session::new(B::default(), About { boot, ..ABOUT });
-        let hello = self.session.hello().to_vec();
-        self.back.send(&hello, self.now);
-    }
-
-    /// Until something comes of what was asked.
-    fn wait(&mut self) -> Result<Event, PortError> {
-        loop {
-            let until = match self.port.poll(self.now)? {
-                Next::Send(frame) => {
-                    self.there.send(frame, self.now);
-                    continue;
-                }
-                Next::WaitUntil(until) => until,
-                Next::Idle => panic!("nothing was asked"),
-            };
-            let next = [self.there.next(), self.back.next()]
-                .into_iter()
-                .flatten()
-                .min();
-            self.now = next.map_or(until, |next| next.min(until)).max(self.now);
-            let mut restarts = false;
-            for bytes in self.there.arrived(self.now) {
-                for byte in bytes {
-                    match self.session.receive(byte, &mut ()) {
-                        Reaction::None => {}
-                        Reaction::Answer(frame) => self.back.send(frame, self.now),
-                        Reaction::Restart => restarts = true,
-                    }
-                }
-            }
-            if restarts {
-                self.reset();
-            }
-            for bytes in self.back.arrived(self.now) {
-                let mut said = None;
-                for byte in bytes {
-                    said = self.port.receive(byte, self.now)?.or(said);
-                }
-                if let Some(event) = said {
-                    return Ok(event);
-                }
-            }
-        }
-    }
-
-    /// Greets and configures until the device has it.
-    fn configure(&mut self, setup: &Setup, task: Option<&Task>) -> u64 {
-        loop {
-            self.port.greet(self.now);
-            if !matches!(self.wait(), Ok(Event::Hello(_))) {
-                continue;
-            }
-            self.port.configure(setup, task, self.now).expect("fits");
-            match self.wait() {
-                Ok(Event::Configured(configured)) => return configured.digest,
-                Ok(Event::Restarted) => {}
-                other => panic!("{other:?}"),
-            }
-        }
-    }
-
-    fn step(&mut self, inputs: &StepInputs<'_>) -> Option<Report> {
-        self.port.step(inputs, self.now).expect("fits");
-        match self.wait() {
-            Ok(Event::Stepped(stepped)) => Some(stepped.report),
-            Ok(Event::Restarted) => None,
-            other => panic!("step {}: {other:?}", inputs.tick),
-        }
-    }
-}
-
-/// A beacon of robot 2 on its way round the first one.
-fn inbox(tick: u32, now: Instant) -> Vec<u8> {
-    let at = (tick % 400) as i32;
-    let beacon = Beacon {
-        time: now,
-        position_mm: [at * 50 - 2000, 300 - at, 0],
-        velocity_mmps: [500, -10, 0],
-        radius_mm: 250,
-        mode: Mode::Cruise,
-        ..Beacon::default()
-    };
-    let header = Header {
-        boot: 0,
-        sender: RobotId(2),
-        sequence: tick as u16,
-    };
-    let mut out = heapless::Vec::<u8, 128>::new();
-    encode(header, &Message::Beacon(beacon), &mut out).expect("fits");
-    // Every ninth one is damaged on the air.
-    if tick.is_multiple_of(9) {
-        out[10] ^= 1;
-    }
-    out.to_vec()
-}
-
-/// A robot without faults that lives beside the one behind the line, and the world for both.
-struct World {
-    position: Position,
-    velocity: Vec3<f32>,
-    cell: Cell,
-}
-
-/// What the world shows to the robot.
-struct Scene {
-    now: Instant,
-    inbox: Vec<u8>,
-    land: Vec<u8>,
-    origin: Cell,
-    obstacles: [Obstacle<f32>; 2],
-}
-
-impl World {
-    const START: Self = Self {
-        position: Position::ORIGIN,
-        velocity: Vec3::new(0.0, 0.0, 0.0),
-        cell: Cell::new(0, 0),
-    };
-
-    fn scene(&self, tick: u32) -> Scene {
-        let now = Instant::from_micros(tick.wrapping_mul(100_000));
-        let origin = self.cell - Cell::new(5, 5);
-        let impassability = |i: i16| {
-            let (x, y) = (origin.x + i % 11, origin.y + i / 11);
-            if (x * 7 + y * 3) % 5 == 1 {
-                0
-            } else {
-                1 + (x + y).rem_euclid(3) as u8
-            }
-        };
-        let [x, y, _] = self.position.mm.map(|mm| mm as f32 / 1000.0);
-        let corner = |dx: f32, dy: f32| Vec2::new(dx - x, dy - y);
-        Scene {
-            now,
-            inbox: inbox(tick, now),
-            land: (0..121).map(impassability).collect(),
-            origin,
-            obstacles: [
-                Obstacle::Wall([corner(4.0, -1.0), corner(4.0, 1.0)]),
-                Obstacle::Ball {
-                    center_m: corner(8.0, 0.5).extend(0.0),
-                    radius_m: 0.5,
-                },
-            ],
-        }
-    }
-
-    fn follow(&mut self, command: &Command<f32>) {
-        match command {
-            Command::Hold => self.velocity = Vec3::default(),
-            Command::Velocity(velocity) => {
-                self.velocity = *velocity;
-                self.position = self.position.moved(*velocity * 0.1).expect("finite");
-            }
-            Command::Move(moves) => self.cell = self.cell + moves[0].offset(),
-        }
-    }
-}
-
-impl Scene {
-    fn inputs(&self, world: &World, plane: bool) -> Inputs<'_, f32> {
-        let cell = CellState {
-            cell: world.cell,
-            busy: Duration::ZERO,
-        };
-        Inputs {
-            pose: Pose {
-                position: world.position,
-                velocity_mps: world.velocity,
-            },
-            cell: (!plane).then_some(cell),
-            window: if plane {
-                None
-            } else {
-                Window::new(&self.land, self.origin, 11, 11)
-            },
-            surroundings: plane.then_some(Surroundings {
-                max_speed_mps: 1.0,
-                obstacles: &self.obstacles,
-                in_cell: None,
-            }),
-            inbox: &self.inbox,
-        }
-    }
-}
-
-/// A step of a brain without a line.
-fn decide(brain: &mut impl Brain, step: &StepInputs<'_>) -> Report {
-    brain.step(step).expect("fits");
-    brain.report().expect("a robot")
+/// A step of a controller without a line.
+fn decide(controller: &mut impl Controller, step: &StepInputs<'_>) -> StepResult {
+    controller.step(step).expect("fits");
+    controller.result().expect("a robot")
 }
 
 /// A thousand steps of a robot over a line, beside the same robot without one; what the line cost.
-fn thousand_steps<B: Brain + Default>(
+fn thousand_steps<B: Controller + Default>(
     faults: Faults,
     seed: u64,
     (setup, task): (&Setup, Option<&Task>),
@@ -341,10 +54,10 @@ fn thousand_steps<B: Brain + Default>(
                 &mut packed,
             )
             .expect("fits");
-        let report = bench.step(&step).expect("no reset");
+        let result = bench.step(&step).expect("no reset");
         let (command, digest) = plain(&inputs, &step);
-        assert_eq!(report.outputs.command, command, "step {tick}");
-        assert_eq!(report.digest, digest, "step {tick}");
+        assert_eq!(result.outputs.command, command, "step {tick}");
+        assert_eq!(result.digest, digest, "step {tick}");
         let before = (world.position, world.cell);
         world.follow(&command);
         moved |= before != (world.position, world.cell);
@@ -404,8 +117,8 @@ fn fixed_point_steps_over_a_bad_line_are_those_of_its_shadow() {
     let mut shadow = Small::new();
     shadow.configure(&setup, Some(&task)).expect("fits");
     thousand_steps::<Small>(BAD, 4, (&setup, Some(&task)), |_, step| {
-        let report = decide(&mut shadow, step);
-        (report.outputs.command, report.digest)
+        let result = decide(&mut shadow, step);
+        (result.outputs.command, result.digest)
     });
 }
 
@@ -431,8 +144,8 @@ fn device_that_resets_is_noticed_and_rejoins() {
                 now: Instant::from_micros(tick * 100_000),
                 pose: Pose::default(),
                 cell: None,
-                land: None,
-                around: Some(crate::message::Around {
+                window: None,
+                surroundings: Some(PackedSurroundings {
                     max_speed_mps: 1.0,
                     in_cell: None,
                     obstacles: &packed,
@@ -443,7 +156,7 @@ fn device_that_resets_is_noticed_and_rejoins() {
                 if by_host {
                     bench.port.restart(bench.now);
                     assert_eq!(bench.wait(), Ok(Event::Restarted));
-                    assert!(bench.boot > 1 && bench.session.brain().agent().is_none());
+                    assert!(bench.boot > 1 && bench.session.controller().agent().is_none());
                 } else {
                     bench.reset();
                     assert_eq!(bench.step(&step), None, "step {tick}: a reset is no answer");
@@ -455,9 +168,9 @@ fn device_that_resets_is_noticed_and_rejoins() {
                 assert_eq!(shadow.configure(&again, Some(&task)), Ok(digest));
                 continue;
             }
-            let report = bench.step(&step).expect("no reset");
+            let result = bench.step(&step).expect("no reset");
             assert!(
-                report.is_identical(&decide(&mut shadow, &step)),
+                result.is_identical(&decide(&mut shadow, &step)),
                 "step {tick}"
             );
             done += 1;
@@ -499,8 +212,8 @@ fn silent_device_is_given_up_with_what_was_asked_and_for_how_long() {
         now: Instant::from_micros(0),
         pose: Pose::default(),
         cell: None,
-        land: None,
-        around: None,
+        window: None,
+        surroundings: None,
         inbox: &[],
     };
     bench.port.step(&inputs, bench.now).expect("fits");
@@ -582,12 +295,12 @@ proptest! {
         for tick in 0..20 {
             let now = Instant::from_micros(tick * 100_000);
             let inbox = inbox(tick, now);
-            let around = crate::message::Around { max_speed_mps: 1.0, in_cell: None, obstacles: &[] };
+            let surroundings = Some(PackedSurroundings { max_speed_mps: 1.0, in_cell: None, obstacles: &[] });
             let step = StepInputs {
-                tick, now, pose: Pose::default(), cell: None, land: None, around: Some(around), inbox: &inbox,
+                tick, now, pose: Pose::default(), cell: None, window: None, surroundings, inbox: &inbox,
             };
-            let report = bench.step(&step).expect("no reset");
-            prop_assert!(report.is_identical(&decide(&mut shadow, &step)));
+            let result = bench.step(&step).expect("no reset");
+            prop_assert!(result.is_identical(&decide(&mut shadow, &step)));
         }
     }
 }

@@ -1,8 +1,9 @@
 //! What is cut when inputs are more than a device has room for.
 
-use crate::capacities::{Capacities, Cut, LandTooLarge, window_cells};
-use crate::message::OBSTACLE;
-use crate::robot::{Brain, Small};
+use crate::capacities::{Capacities, window_cells};
+use crate::fit::{Cut, WindowTooLarge};
+use crate::robot::{Controller, Small};
+use crate::surroundings::OBSTACLE_BYTES;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use staya_controller::agent::{Inputs, Pose, Surroundings};
@@ -51,7 +52,7 @@ fn inbox_keeps_its_newest_whole_frames() {
     let kept = |bytes: u16| {
         let (step, cut) = room(0, bytes)
             .fit(1, NOW, &inputs(&inbox, &[]), &Postcard, &mut [])
-            .expect("no land");
+            .expect("no window");
         assert_eq!(cut.inbox_bytes, inbox.len() - step.inbox.len());
         step.inbox.to_vec()
     };
@@ -67,12 +68,15 @@ fn inbox_keeps_its_newest_whole_frames() {
 fn nearest_obstacles_stay_in_their_order() {
     let far_first = [ball(9.0), ball(3.0), ball(-3.0), ball(1.0)];
     let kept = |count: u16| {
-        let mut packed = [0; 4 * OBSTACLE];
+        let mut packed = [0; 4 * OBSTACLE_BYTES];
         let (step, cut) = room(count, 0)
             .fit(1, NOW, &inputs(&[], &far_first), &Postcard, &mut packed)
-            .expect("no land");
-        let around = step.around.expect("given");
-        let kept: Vec<Obstacle<f32>> = around.obstacles().map(|o| o.expect("known")).collect();
+            .expect("no window");
+        let surroundings = step.surroundings.expect("given");
+        let kept: Vec<Obstacle<f32>> = surroundings
+            .obstacles()
+            .map(|o| o.expect("known"))
+            .collect();
         assert_eq!(cut.obstacles, 4 - kept.len());
         kept
     };
@@ -88,13 +92,13 @@ fn nearest_obstacles_stay_in_their_order() {
 fn an_obstacle_that_is_nowhere_goes_first() {
     let nowhere = Obstacle::Wall([Vec2::new(f32::NAN, 0.0); 2]);
     let obstacles = [nowhere, ball(4.0), ball(2.0)];
-    let mut packed = [0; 3 * OBSTACLE];
+    let mut packed = [0; 3 * OBSTACLE_BYTES];
     let (step, _) = room(2, 0)
         .fit(1, NOW, &inputs(&[], &obstacles), &Postcard, &mut packed)
-        .expect("no land");
+        .expect("no window");
     let kept = step
-        .around
-        .map(|around| around.obstacles().flatten().collect::<Vec<_>>());
+        .surroundings
+        .map(|packed| packed.obstacles().flatten().collect::<Vec<_>>());
     assert_eq!(kept, Some(std::vec![ball(4.0), ball(2.0)]));
 }
 
@@ -116,11 +120,11 @@ fn land_is_never_cut() {
         let fitted = room(0, 0)
             .fit(1, NOW, &inputs, &Postcard, &mut [])
             .map(|(step, cut)| {
-                let same = step.land.and_then(|land| land.window());
+                let same = step.window.and_then(|window| window.window());
                 assert_eq!(same.map(|w| w.cells()), Some(land));
                 cut
             });
-        let too_large = LandTooLarge {
+        let too_large = WindowTooLarge {
             cells: 144,
             room: 121,
         };
@@ -138,7 +142,7 @@ proptest! {
     #[test]
     fn any_inbox_is_cut_at_a_frame(frames in vec(vec(1_u8..4, 1..8), 0..12), bytes in 0_u16..70) {
         let inbox: Vec<u8> = frames.iter().flat_map(|frame| frame.iter().copied().chain([0])).collect();
-        let (step, _) = room(0, bytes).fit(1, NOW, &inputs(&inbox, &[]), &Postcard, &mut []).expect("no land");
+        let (step, _) = room(0, bytes).fit(1, NOW, &inputs(&inbox, &[]), &Postcard, &mut []).expect("no window");
         let kept = step.inbox;
         prop_assert!(kept.len() <= usize::from(bytes) && inbox.ends_with(kept));
         let cut = &inbox[..inbox.len() - kept.len()];
@@ -166,7 +170,7 @@ fn an_inbox_of_another_format_is_cut_at_its_frames() {
     wire.encode(header, &message, &mut inbox).expect("fits");
     let kept = |bytes: usize| {
         let fitted = room(0, bytes as u16).fit(1, NOW, &inputs(&inbox, &[]), &wire, &mut []);
-        fitted.expect("no land").0.inbox.len()
+        fitted.expect("no window").0.inbox.len()
     };
     assert_eq!(
         [2 * len, 2 * len - 1, len, len - 1].map(kept),

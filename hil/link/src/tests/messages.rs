@@ -3,8 +3,9 @@
 use super::{frame, read};
 use crate::capacities::Capacities;
 use crate::message::*;
-use crate::robot::{Brain, Large, Robot, Small};
+use crate::robot::{Controller, Large, Robot, Small};
 use crate::session::{Session, fault_frame};
+use crate::surroundings::{OBSTACLE_BYTES, PackedSurroundings, TerrainWindow, pack, unpack};
 use heapless::Vec;
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -33,9 +34,9 @@ const LATE: Duration = Duration::from_micros(i32::MIN);
 const LAST: Instant = Instant::from_micros(u32::MAX);
 const HIGH: RobotId = RobotId(u32::MAX);
 
-fn longest_report() -> Report {
+fn longest_result() -> StepResult {
     let event = Event::TargetMoved { from: FAR, to: FAR };
-    Report {
+    StepResult {
         outputs: Outputs {
             command: Command::Velocity(Vec3::new(1.0, 2.0, 3.0)),
             received: u16::MAX,
@@ -61,7 +62,7 @@ fn longest_report() -> Report {
 fn longest_answer_fits() {
     let stepped = Stepped {
         seq: u16::MAX,
-        report: longest_report(),
+        result: longest_result(),
         cost: Cost {
             ticks: u32::MAX,
             stack_bytes: u32::MAX,
@@ -70,7 +71,7 @@ fn longest_answer_fits() {
     let bytes = frame(kind::STEPPED, &stepped);
     assert!(bytes.len() <= MAX_ANSWER, "{}", bytes.len());
     assert_eq!(read::<Stepped>(kind::STEPPED, &bytes), stepped);
-    assert!(stepped.report.is_identical(&stepped.report));
+    assert!(stepped.result.is_identical(&stepped.result));
     for text in ["", "x", &"long ".repeat(100)] {
         let fault = fault_frame(FaultKind::Panic, text);
         let said: Fault = read(kind::FAULT, fault.bytes());
@@ -162,7 +163,7 @@ fn template(entries: Vec<TemplateEntry, TEMPLATE>) -> Template<TEMPLATE> {
 
 #[test]
 fn longest_step_fits_its_buffer() {
-    let obstacles = [0; OBSTACLE * 32];
+    let obstacles = [0; OBSTACLE_BYTES * 32];
     let (cells, inbox) = ([9; 121], [8; 8192]);
     let inputs = StepInputs {
         tick: u32::MAX,
@@ -175,13 +176,13 @@ fn longest_step_fits_its_buffer() {
             cell: FAR,
             busy: LATE,
         }),
-        land: Some(Land {
+        window: Some(TerrainWindow {
             origin: FAR,
             width: u16::MAX,
             height: u16::MAX,
             cells: &cells,
         }),
-        around: Some(Around {
+        surroundings: Some(PackedSurroundings {
             max_speed_mps: 1.0,
             in_cell: Some(InCell {
                 offset_m: Vec2::new(1.0, 2.0),
@@ -282,13 +283,13 @@ proptest! {
                 cell: Cell::new(x, y),
                 busy: Duration::from_micros(busy),
             }),
-            land: land.as_ref().map(|([x, y], width, cells)| Land {
+            window: land.as_ref().map(|([x, y], width, cells)| TerrainWindow {
                 origin: Cell::new(*x, *y),
                 width: *width,
                 height: 7,
                 cells,
             }),
-            around: packed.as_ref().map(|obstacles| Around {
+            surroundings: packed.as_ref().map(|obstacles| PackedSurroundings {
                 max_speed_mps: x,
                 in_cell: cell.map(|_| InCell { offset_m: Vec2::new(x, y), cell_m: z }),
                 obstacles,
@@ -303,8 +304,8 @@ proptest! {
                 prop_assert_eq!(postcard::from_bytes::<Step<'_>>(body), Ok(Step { seq, inputs }));
             }
         }
-        if let Some(around) = inputs.around {
-            let read: Option<std::vec::Vec<_>> = around.obstacles::<f32>().collect();
+        if let Some(surroundings) = inputs.surroundings {
+            let read: Option<std::vec::Vec<_>> = surroundings.obstacles::<f32>().collect();
             prop_assert_eq!(read, obstacles);
         }
     }
@@ -341,9 +342,9 @@ proptest! {
             call_again: Instant::from_micros(counts.2),
         };
         let (mode, leader) = (Mode::Cruise, RobotId(counts.3));
-        let report = Report { outputs, mode, leader, target: None, digest };
+        let result = StepResult { outputs, mode, leader, target: None, digest };
         let cost = Cost { ticks: counts.2, stack_bytes: counts.3 };
-        let stepped = Stepped { seq, report, cost };
+        let stepped = Stepped { seq, result, cost };
         let bytes = frame(kind::STEPPED, &stepped);
         prop_assert_eq!(read::<Stepped>(kind::STEPPED, &bytes), stepped);
     }
@@ -351,9 +352,9 @@ proptest! {
 
 #[test]
 fn identical_means_every_bit() {
-    let report = longest_report();
+    let result = longest_result();
     let with = |x: f32| {
-        let mut other = report.clone();
+        let mut other = result.clone();
         other.outputs.command = Command::Velocity(Vec3::new(x, 0.0, 0.0));
         other
     };
@@ -363,8 +364,8 @@ fn identical_means_every_bit() {
 
 #[test]
 fn unknown_shapes_are_refused() {
-    assert_eq!(unpack::<f32>(&[3; OBSTACLE]), None);
-    assert_eq!(unpack::<f32>(&[0xFF; OBSTACLE]), None);
+    assert_eq!(unpack::<f32>(&[3; OBSTACLE_BYTES]), None);
+    assert_eq!(unpack::<f32>(&[0xFF; OBSTACLE_BYTES]), None);
 }
 
 #[test]
@@ -386,5 +387,5 @@ fn robots_speak_any_format_and_one_that_was_built_for_one_says_so() {
         std::format!("{refusal}"),
         "this firmware was built without mavlink"
     );
-    assert!(lean.report().is_none());
+    assert!(lean.result().is_none());
 }

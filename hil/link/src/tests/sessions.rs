@@ -3,8 +3,9 @@
 use super::{answers, frame, hello, in_plane, large, on_grid, read, small, stepped};
 use crate::frame::VERSION;
 use crate::message::*;
-use crate::robot::{Brain, Small};
+use crate::robot::{Controller, Small};
 use crate::session::{About, Meter, Reaction, Session};
+use crate::surroundings::{OBSTACLE_BYTES, PackedSurroundings, TerrainWindow};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use staya_controller::agent::{Pose, Task};
@@ -26,8 +27,8 @@ fn step(seq: u16) -> Vec<u8> {
         now: Instant::from_micros(u32::from(seq).wrapping_mul(100_000)),
         pose: Pose::default(),
         cell: None,
-        land: None,
-        around: None,
+        window: None,
+        surroundings: None,
         inbox: &[],
     };
     frame(kind::STEP, &Step { seq, inputs })
@@ -45,17 +46,20 @@ fn repeated_request_gets_the_very_same_answer_and_no_second_step() {
     let configured = answers(&mut session, &configure(9));
     assert_eq!(answers(&mut session, &configure(9)), configured);
     let first = answers(&mut session, &step(10));
-    let state = session.brain().agent().map(|agent| agent.digest());
-    assert_eq!(Some(stepped(&first[0]).report.digest), state);
+    let state = session.controller().agent().map(|agent| agent.digest());
+    assert_eq!(Some(stepped(&first[0]).result.digest), state);
     for _ in 0..3 {
         assert_eq!(answers(&mut session, &step(10)), first);
     }
-    assert_eq!(session.brain().agent().map(|agent| agent.digest()), state);
+    assert_eq!(
+        session.controller().agent().map(|agent| agent.digest()),
+        state
+    );
     assert_eq!((session.counts().steps, session.counts().repeated), (1, 4));
     let second = answers(&mut session, &step(11));
     assert_ne!(
-        stepped(&second[0]).report.digest,
-        stepped(&first[0]).report.digest
+        stepped(&second[0]).result.digest,
+        stepped(&first[0]).result.digest
     );
 }
 
@@ -130,13 +134,13 @@ fn too_many_obstacles_and_nonsense_are_refused_and_the_robot_goes_on() {
             now: Instant::from_micros(0),
             pose: Pose::default(),
             cell: None,
-            land: Some(Land {
+            window: Some(TerrainWindow {
                 origin: staya_controller::grid::Cell::default(),
                 width: 2,
                 height: 2,
                 cells,
             }),
-            around: Some(Around {
+            surroundings: Some(PackedSurroundings {
                 max_speed_mps: 1.0,
                 in_cell: None,
                 obstacles: &obstacles,
@@ -154,11 +158,20 @@ fn too_many_obstacles_and_nonsense_are_refused_and_the_robot_goes_on() {
         fault.map(|fault| fault.kind)
     };
     let land = [1; 4];
-    assert_eq!(with(17 * OBSTACLE, 0, &land), Some(FaultKind::Capacity));
-    assert_eq!(with(OBSTACLE - 1, 0, &land), Some(FaultKind::Malformed));
-    assert_eq!(with(OBSTACLE, 3, &land), Some(FaultKind::Malformed));
-    assert_eq!(with(OBSTACLE, 0, &land[1..]), Some(FaultKind::Malformed));
-    assert_eq!(with(16 * OBSTACLE, 0, &land), None);
+    assert_eq!(
+        with(17 * OBSTACLE_BYTES, 0, &land),
+        Some(FaultKind::Capacity)
+    );
+    assert_eq!(
+        with(OBSTACLE_BYTES - 1, 0, &land),
+        Some(FaultKind::Malformed)
+    );
+    assert_eq!(with(OBSTACLE_BYTES, 3, &land), Some(FaultKind::Malformed));
+    assert_eq!(
+        with(OBSTACLE_BYTES, 0, &land[1..]),
+        Some(FaultKind::Malformed)
+    );
+    assert_eq!(with(16 * OBSTACLE_BYTES, 0, &land), None);
 }
 
 #[test]
@@ -191,12 +204,12 @@ fn greeting_with_a_new_token_makes_it_forget_and_a_delayed_one_does_not() {
     for number in [1, 0, u16::MAX] {
         let delayed = Token { number, ..TOKEN };
         assert_eq!(said(answers(&mut session, &greet(delayed))), Some(TOKEN));
-        assert!(session.brain().agent().is_some());
+        assert!(session.controller().agent().is_some());
     }
     for token in [Token { number: 2, ..TOKEN }, Token { run: 6, number: 0 }] {
         answers(&mut session, &configure(7));
         assert_eq!(said(answers(&mut session, &greet(token))), Some(token));
-        assert!(session.brain().agent().is_none());
+        assert!(session.controller().agent().is_none());
     }
 }
 
@@ -300,7 +313,7 @@ fn part_and_numbers_are_said() {
     );
     assert_eq!((hello.boot, hello.ticks_per_second), (3, 16));
     assert_eq!(hello.number, NumberFormat::Q16);
-    let brain = Small::new().capacities();
+    let controller = Small::new().capacities();
     let room = usize::from(hello.capacities.inbox_bytes);
     // A micro:bit's buffer also holds what a setup needs.
     assert!(room >= crate::robot::SMALL_INBOX);
@@ -309,7 +322,7 @@ fn part_and_numbers_are_said() {
         hello.capacities,
         crate::capacities::Capacities {
             inbox_bytes,
-            ..brain
+            ..controller
         }
     );
 }

@@ -14,15 +14,15 @@ use staya_controller::route::{Replan, RouteParams};
 use staya_controller::shuffle::Sharpness;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{Beacon, Format, Header, Message, Mode, RobotId, Wire};
-use staya_link::robot::Brain;
+use staya_link::robot::Controller;
 use staya_link::session::{About, Reaction, Session};
 use staya_mavlink::any::AnyWire;
-use staya_runner::{Channel, LineFaults, Order};
+use staya_runner::{Channel, DeviceConfig, LineFaults};
 use std::io::{ErrorKind, Read, Write};
 use std::os::unix::net::UnixStream;
 
 /// A robot in the plane behind ORCA, or (every other number) one on the grid.
-pub fn order(robot: u32, device: &str) -> Order {
+pub fn config(robot: u32, device: &str) -> DeviceConfig {
     let agent = AgentConfig {
         radius_m: 0.25,
         max_acceleration_mps2: 2.0,
@@ -56,7 +56,7 @@ pub fn order(robot: u32, device: &str) -> Order {
         let places = [(0, place)].into_iter().collect();
         (guidance, safety, Task::Places(places))
     };
-    Order {
+    DeviceConfig {
         device: device.to_owned(),
         setup: Setup {
             agent,
@@ -187,7 +187,7 @@ pub struct Mischief {
 }
 
 /// A device in a thread, and the line to it.
-pub fn device<B: Brain + Send + 'static, const N: usize>(
+pub fn device<B: Controller + Send + 'static, const N: usize>(
     new: fn() -> B,
     part: &'static str,
     mischief: Mischief,
@@ -198,7 +198,7 @@ pub fn device<B: Brain + Send + 'static, const N: usize>(
 }
 
 /// The life of a device at its end of a line.
-pub fn live<B: Brain, const N: usize>(
+pub fn live<B: Controller, const N: usize>(
     new: fn() -> B,
     part: &'static str,
     mischief: Mischief,

@@ -1,0 +1,114 @@
+//! What a robot sees, as the link carries it: terrain stays in the buffer that it was received in, obstacles are packed.
+
+use serde::{Deserialize, Serialize};
+use staya_controller::agent::InCell;
+use staya_controller::geom::{Vec2, Vec3};
+use staya_controller::grid::{Cell, Window};
+use staya_controller::obstacle::Obstacle;
+use staya_controller::scalar::Scalar;
+
+/// Bytes of a packed obstacle.
+pub const OBSTACLE_BYTES: usize = 17;
+
+/// A [`Window`] as the link carries it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TerrainWindow<'a> {
+    /// The south-west cell.
+    pub origin: Cell,
+    /// Cells from west to east.
+    pub width: u16,
+    /// Cells from south to north.
+    pub height: u16,
+    /// Impassabilities, row by row from the south-west corner.
+    pub cells: &'a [u8],
+}
+
+impl<'a> From<Window<'a>> for TerrainWindow<'a> {
+    fn from(window: Window<'a>) -> Self {
+        Self {
+            origin: window.origin(),
+            width: window.width(),
+            height: window.height(),
+            cells: window.cells(),
+        }
+    }
+}
+
+impl<'a> TerrainWindow<'a> {
+    /// The window; `None` unless there are as many cells as width and height say.
+    #[must_use]
+    pub fn window(&self) -> Option<Window<'a>> {
+        Window::new(self.cells, self.origin, self.width, self.height)
+    }
+}
+
+/// [`Surroundings`](staya_controller::agent::Surroundings) with packed obstacles.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PackedSurroundings<'a> {
+    /// How fast the body can go where it is, m/s.
+    pub max_speed_mps: f32,
+    /// Where in its cell the robot is.
+    pub in_cell: Option<InCell<f32>>,
+    /// [`OBSTACLE_BYTES`] bytes each, see [`pack`].
+    pub obstacles: &'a [u8],
+}
+
+impl PackedSurroundings<'_> {
+    /// The obstacles in the device's own numbers; `None` for one of no known shape. What is left over at the end is
+    /// [`PackedSurroundings::is_whole`]'s matter.
+    pub fn obstacles<S: Scalar>(&self) -> impl Iterator<Item = Option<Obstacle<S>>> {
+        let (packed, _) = self.obstacles.as_chunks();
+        packed.iter().map(unpack)
+    }
+
+    /// Whether the packed obstacles end where the last one does.
+    #[must_use]
+    pub const fn is_whole(&self) -> bool {
+        let (_, rest) = self.obstacles.as_chunks::<OBSTACLE_BYTES>();
+        rest.is_empty()
+    }
+}
+
+/// An obstacle as its shape's number (0 wall, 1 ball, 2 plane) and four `f32`, little-endian.
+#[must_use]
+pub fn pack(obstacle: &Obstacle<f32>) -> [u8; OBSTACLE_BYTES] {
+    let (shape, numbers) = match *obstacle {
+        Obstacle::Wall([a, b]) => (0, [a.x, a.y, b.x, b.y]),
+        Obstacle::Ball { center_m, radius_m } => {
+            (1, [center_m.x, center_m.y, center_m.z, radius_m])
+        }
+        Obstacle::Plane { normal, distance_m } => (2, [normal.x, normal.y, normal.z, distance_m]),
+    };
+    let [a, b, c, d] = numbers.map(f32::to_le_bytes);
+    let mut packed = [shape; OBSTACLE_BYTES];
+    let bytes = a.into_iter().chain(b).chain(c).chain(d);
+    for (to, from) in packed.iter_mut().skip(1).zip(bytes) {
+        *to = from;
+    }
+    packed
+}
+
+/// The inverse of [`pack`], in any kind of number; `None` for a shape that is not known. No number becomes 0.
+#[must_use]
+pub fn unpack<S: Scalar>(packed: &[u8; OBSTACLE_BYTES]) -> Option<Obstacle<S>> {
+    let (shape, numbers) = packed.split_first()?;
+    let ([a, b, c, d], _) = numbers.as_chunks::<4>() else {
+        return None;
+    };
+    let [a, b, c, d] = [a, b, c, d].map(|bytes| {
+        let value = f32::from_le_bytes(*bytes);
+        S::from_f32(value).unwrap_or(S::ZERO)
+    });
+    match shape {
+        0 => Some(Obstacle::Wall([Vec2::new(a, b), Vec2::new(c, d)])),
+        1 => Some(Obstacle::Ball {
+            center_m: Vec3::new(a, b, c),
+            radius_m: d,
+        }),
+        2 => Some(Obstacle::Plane {
+            normal: Vec3::new(a, b, c),
+            distance_m: d,
+        }),
+        _ => None,
+    }
+}

@@ -1,0 +1,75 @@
+//! What comes back from a fleet.
+
+use crate::channel::OpenError;
+use crate::device::DeviceError;
+use crate::mismatch::Mismatch;
+use staya_controller::wire::RobotId;
+use staya_link::fit::WindowTooLarge;
+use staya_link::message::{Hello, StepResult};
+use staya_link::port::PortError;
+
+/// What came of a robot's step.
+#[derive(Debug)]
+pub enum Answer {
+    /// Device and shadow decided the same.
+    Decided(Box<StepResult>),
+    /// The device has started anew: the robot stands in this step.
+    Down,
+    /// Device and shadow differ.
+    Mismatch(Box<Mismatch>),
+    /// The device is of no use any more.
+    Failed(FleetError),
+}
+
+/// What is wrong with a device.
+#[derive(Debug, thiserror::Error)]
+#[error("robot {} on {device}: {cause}", .robot.0)]
+pub struct FleetError {
+    /// Which robot.
+    pub robot: RobotId,
+    /// Which device.
+    pub device: String,
+    /// What.
+    pub cause: Box<Cause>,
+}
+
+/// Why a device is of no use.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "each text says it")]
+pub enum Cause {
+    #[error(transparent)]
+    Open(#[from] OpenError),
+    #[error(transparent)]
+    Name(#[from] DeviceError),
+    #[error("cannot start the thread that reads: {0}")]
+    Thread(std::io::Error),
+    #[error(transparent)]
+    Device(PortError),
+    #[error("{0}")]
+    Gone(String),
+    #[error("the firmware is for `{said}`, not for `{expected}`")]
+    OtherPart {
+        expected: &'static str,
+        said: String,
+    },
+    #[error(
+        "no robot in this process has the numbers and capacities of {0:?}: build firmware and host from the same source"
+    )]
+    NoShadow(Box<Hello>),
+    #[error(
+        "after the same setup the device's state has the digest {device:016x}, that in this process {shadow:016x}"
+    )]
+    Setup { device: u64, shadow: u64 },
+    #[error("the robot in this process refuses: {0}")]
+    Shadow(String),
+    #[error(transparent)]
+    Window(WindowTooLarge),
+    #[error("a request of more than {0} bytes")]
+    TooLong(usize),
+    #[error("it is still busy with the last step: collect its answer first")]
+    NotReady,
+    #[error("it was given up before")]
+    GivenUp,
+    #[error("stopped")]
+    Stopped,
+}
