@@ -19,22 +19,22 @@ use std::path::PathBuf;
 pub struct BridgeArgs {
     /// The scenario, a .toml file, with at most 254 robots.
     scenario: PathBuf,
-    /// A line to clients: udpout:HOST:PORT, udpin:HOST:PORT, tcpin:HOST:PORT, tcpout:HOST:PORT or serial:PORT,baud=N; may be repeated.
+    /// Line to clients: udpout:HOST:PORT, udpin:HOST:PORT, tcpin:HOST:PORT, tcpout:HOST:PORT or serial:PORT,baud=N; may be repeated.
     #[arg(long, value_name = "LINE", default_value = "udpout:127.0.0.1:14550")]
     mavlink: Vec<Endpoint>,
-    /// Simulated seconds in a second.
+    /// Simulated seconds per second of real time.
     #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = speed)]
     speed: f64,
-    /// Simulated seconds after which to end [default: when Ctrl-C is pressed].
+    /// End after this many simulated seconds [default: at Ctrl-C].
     #[arg(long, value_name = "S", value_parser = seconds)]
     seconds: Option<f64>,
-    /// Ticks after which to end, instead.
+    /// End after this many ticks instead.
     #[arg(long, value_name = "N", conflicts_with = "seconds", value_parser = clap::value_parser!(u32).range(1..))]
     ticks: Option<u32>,
-    /// Positions a second of each vehicle, of each kind, until a client asks for another rate.
+    /// Positions per second, of each vehicle and each kind, until a client asks for another rate.
     #[arg(long, value_name = "HZ", default_value_t = 10.0, value_parser = rate)]
     rate: f64,
-    /// Let the robots wait, disarmed, for the operator; otherwise they go their own ways until somebody commands.
+    /// Robots wait, disarmed, for the operator, instead of following the scenario until they get a command.
     #[arg(long)]
     disarmed: bool,
     /// Where on the Earth the scenario's origin is: degrees north, degrees east, metres above the sea.
@@ -43,10 +43,10 @@ pub struct BridgeArgs {
     /// Sign what is sent, and refuse what is not signed with this key: a file with 64 hex digits, or "passphrase: WORDS".
     #[arg(long, value_name = "FILE")]
     key: Option<PathBuf>,
-    /// Keep all frames in a log that MAVExplorer and mavlogdump read.
+    /// Write all frames to a log that MAVExplorer and mavlogdump read.
     #[arg(long, value_name = "FILE")]
     tlog: Option<PathBuf>,
-    /// Seed of everything random, instead of the scenario's.
+    /// Seed of all random numbers, instead of the scenario's.
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
 }

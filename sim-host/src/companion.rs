@@ -7,7 +7,7 @@ use staya_mav::Tlog;
 use staya_mav::companion::{Config, Options, run};
 use std::path::PathBuf;
 
-/// Steer vehicles of ArduPilot or PX4 as a swarm.
+/// Steer ArduPilot or PX4 vehicles as a swarm.
 #[derive(Args, Clone, Debug)]
 pub struct CompanionArgs {
     /// The configuration, a .toml file; docs/autopilots.md lists its fields, companions/ has examples.
@@ -15,7 +15,7 @@ pub struct CompanionArgs {
     /// Show the messages that would be sent, and send nothing.
     #[arg(long)]
     dry_run: bool,
-    /// End after so long; without it, at Ctrl-C.
+    /// End after this many seconds [default: at Ctrl-C].
     #[arg(long, value_name = "N", value_parser = seconds)]
     seconds: Option<f64>,
     /// Write all messages of all links to a log, for mavlogdump, MAVExplorer or QGroundControl.

@@ -31,13 +31,13 @@ use std::time::{Duration, Instant};
 pub struct HilArgs {
     #[command(flatten)]
     scenario: ScenarioArgs,
-    /// Where a robot runs: qemu:stm32f405, qemu:microbit, qemu:riscv32 or serial:PORT[,baud=N]; several kinds at once if repeated.
+    /// Where a robot runs: qemu:stm32f405, qemu:microbit, qemu:riscv32 or serial:PORT[,baud=N]; may be repeated to mix kinds.
     #[arg(long = "device", value_name = "DEVICE", required = true)]
     kinds: Vec<Device>,
     /// How many robots run on devices: the first ones of the scenario, kinds taken in turn [default: one per --device].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     devices: Option<u32>,
-    /// Pace the run by the clock, and count the ticks that came late.
+    /// Run in real time, and count the ticks that are late.
     #[arg(long)]
     real_time: bool,
     /// Folder with firmware, PART/lockstep [default: what `cargo xtask firmware` makes, made anew when needed].
@@ -58,7 +58,7 @@ pub struct HilArgs {
     /// Reset the devices one after the other from this tick on; may be repeated.
     #[arg(long, value_name = "TICK", help_heading = "Faults of the line")]
     reset: Vec<u32>,
-    /// Ticks for which a robot stands that was reset.
+    /// Ticks for which a robot that was reset stands still.
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..), help_heading = "Faults of the line")]
     down: u32,
 }

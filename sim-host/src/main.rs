@@ -18,7 +18,7 @@ use staya_papers::cli as papers;
 use std::io::{self, ErrorKind, Write as _};
 use std::process::ExitCode;
 
-/// Many robots, each with its own onboard controller, over one world and a lossy radio.
+/// Swarms of robots, each with its own onboard controller, in one world with a lossy radio.
 #[derive(Debug, Parser)]
 #[command(name = "staya", version, propagate_version = true)]
 struct Cli {
@@ -34,15 +34,15 @@ enum Command {
     Run(run::RunArgs),
     /// Run some robots of a scenario as firmware, on emulated microcontrollers or boards.
     Hil(hil::HilArgs),
-    /// Let ground stations and scripts see and command a simulated swarm by MAVLink.
+    /// Let ground stations and scripts see and command a simulated swarm over MAVLink.
     Bridge(bridge::BridgeArgs),
-    /// Steer vehicles of ArduPilot or PX4 as a swarm.
+    /// Steer ArduPilot or PX4 vehicles as a swarm.
     Companion(companion::CompanionArgs),
     /// Make, measure and draw terrain.
     Terrain(terrain::TerrainArgs),
-    /// Draw what ORCA forbids, and measure the template that looks it up.
+    /// Draw what ORCA forbids two robots, and measure the tables that it can be looked up in.
     Orca(papers::orca::OrcaArgs),
-    /// Run the experiments of papers and benchmarks again.
+    /// Rerun experiments from papers, and benchmarks.
     Experiment(papers::ExperimentArgs),
 }
 

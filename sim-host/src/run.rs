@@ -17,12 +17,12 @@ use std::time::Instant;
 /// Which scenario, and what of it is otherwise.
 #[derive(Args, Clone, Debug)]
 pub struct ScenarioArgs {
-    /// The scenario, a .toml file; scenarios/README.md lists those that come with Staya and all fields.
+    /// The scenario, a .toml file; scenarios/README.md lists the ones that come with Staya, and all fields.
     scenario: PathBuf,
-    /// Seed of everything random, instead of the scenario's.
+    /// Seed of all random numbers, instead of the scenario's.
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
-    /// Ticks after which to end, instead of the scenario's.
+    /// End after this many ticks, instead of the scenario's number.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     ticks: Option<u32>,
 }
@@ -51,7 +51,7 @@ impl ScenarioArgs {
 pub struct RunArgs {
     #[command(flatten)]
     scenario: ScenarioArgs,
-    /// Where results go; files of an earlier run are replaced [default: out/<name of the scenario>].
+    /// Folder for the results; files of an earlier run are replaced [default: out/<name of the scenario>].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }

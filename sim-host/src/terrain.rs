@@ -41,11 +41,11 @@ enum Action {
 /// How a random landscape is made.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Kind {
-    /// Every cell drawn on its own.
+    /// Every cell drawn independently.
     Uniform,
     /// Hills of mud around the worst cells.
     Natural,
-    /// By wanted configuration entropy and total edge.
+    /// With a given configuration entropy and total edge.
     Entropy,
 }
 
@@ -96,7 +96,7 @@ struct Generate {
 struct Source {
     /// .map (Moving AI), .asc (ESRI heights) or .yaml (ROS map with a .pgm).
     file: PathBuf,
-    /// Only a piece of the map: column and row of its south-west cell, width, height.
+    /// Only a part of the map: column and row of its south-west cell, width, height.
     #[arg(
         long,
         value_name = "X,Y,W,H",
@@ -111,7 +111,7 @@ struct Source {
     /// .asc: classes of slope.
     #[arg(long, value_name = "N", default_value_t = SlopeRule::default().classes)]
     slope_classes: u8,
-    /// .asc: cells along each side that become one.
+    /// .asc: average squares of this many cells along each side into one.
     #[arg(long, value_name = "N", default_value_t = 1)]
     downsample: u16,
 }

@@ -10,7 +10,7 @@ use staya_sim::record::prepare_dir;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-/// Boids on a torus: three ways to find neighbours, equal flights, and what they cost (STA section 2.3).
+/// Boids on a torus: what three ways to find neighbours cost, with equal flights (Starovoitova, section 2.3).
 #[derive(Args, Clone, Debug)]
 pub struct BoidsArgs {
     /// Numbers of boids, one line of the table each.
@@ -21,10 +21,10 @@ pub struct BoidsArgs {
         default_value = "100,300,1000,3000,10000,30000,100000"
     )]
     boids: Vec<u32>,
-    /// Steps that are timed for each search and number of boids.
+    /// Steps to time for each search and number of boids.
     #[arg(long, default_value_t = Plan::default().steps)]
     steps: u32,
-    /// More boids than this are not searched by looking at all pairs.
+    /// Skip the search of all pairs for more boids than this.
     #[arg(long, value_name = "N", default_value_t = Plan::default().most_by_all_pairs)]
     all_pairs_up_to: u32,
     /// Boids in the picture.

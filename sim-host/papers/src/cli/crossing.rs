@@ -41,10 +41,10 @@ impl From<SafetyArg> for SafetyName {
 /// What both experiments understand.
 #[derive(Args, Clone, Debug)]
 struct Common {
-    /// Each start is off by up to this along both axes, metres.
+    /// Move each start at random by up to this along both axes, metres.
     #[arg(long, value_name = "M", default_value_t = 0.0)]
     noise: f64,
-    /// Runs of each point, with seeds that count up.
+    /// Runs per point, with consecutive seeds.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     seeds: u32,
     /// The first seed.
@@ -59,13 +59,13 @@ struct Common {
     /// How far the radio reaches, metres [default: 3 for swap, 6 for doorway].
     #[arg(long, value_name = "M")]
     range: Option<f64>,
-    /// Share of packets that get lost, 0 to 1.
+    /// Share of packets lost, 0 to 1.
     #[arg(long, value_name = "P", default_value_t = 0.0)]
     loss: f64,
     /// What keeps robots apart.
     #[arg(long, value_enum, default_value = "orca")]
     safety: SafetyArg,
-    /// Where pictures go [default: out/swap, out/doorway].
+    /// Folder for the pictures [default: out/swap, out/doorway].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
@@ -103,20 +103,20 @@ impl Common {
 #[derive(Args, Clone, Debug)]
 #[command(allow_negative_numbers = true)]
 pub struct SwapArgs {
-    /// Numbers of robots: single ones and spans, as in "4,6,8" or "2..64".
+    /// Numbers of robots: single numbers and ranges, as in "4,6,8" or "2..64".
     #[arg(long, value_name = "LIST", default_value = "2..64", value_parser = numbers)]
     robots: Numbers,
-    /// Radius of the circle, metres [default: 0.1 for each robot, at least 2].
+    /// Radius of the circle, metres [default: 0.1 per robot, at least 2].
     #[arg(long, value_name = "M")]
     circle: Option<f64>,
-    /// A run ends after so many times the free time.
+    /// End a run after this many times the free time.
     #[arg(long, value_name = "N", default_value_t = 6.0)]
     patience: f64,
     #[command(flatten)]
     common: Common,
 }
 
-/// Two crowds in opposite directions through one gap: who passes, in what order, how near they come.
+/// Two crowds pass one gap in opposite directions: who passes, in what order, how near they come.
 #[derive(Args, Clone, Debug)]
 #[command(allow_negative_numbers = true)]
 pub struct DoorwayArgs {
@@ -126,7 +126,7 @@ pub struct DoorwayArgs {
     /// Robots on each side; their radius is 0.3 m.
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=1000))]
     robots: u32,
-    /// A run ends after so many seconds.
+    /// End a run after this many seconds.
     #[arg(long, value_name = "S", default_value_t = 900.0)]
     longest: f64,
     #[command(flatten)]

@@ -38,18 +38,18 @@ enum ReferenceArg {
 
 /// The five flocking simulations of Olfati-Saber 2006 (section VIII), each robot an agent that hears packets only.
 ///
-/// c1 of alpha- and gamma-agents (c2 = 2 sqrt c1), and of the reference's speed, are those that worked best: the paper tells none.
+/// The paper gives no gains: c1 of alpha- and gamma-agents (c2 = 2 sqrt c1) and the reference's speed are what worked best.
 /// A: 50 and 1. C: 10 and 0.2. D, E: 10, 200 (beta) and 2, with a reference that moves at 3/7 d per second. B has no
 /// gains. Any spacing gives the same figures, lengths and speeds in proportion.
 #[derive(Args, Clone, Debug)]
 pub struct FlockArgs {
-    /// Which simulations; without it all.
+    /// Which simulations [default: all].
     #[arg(long, value_enum, value_delimiter = ',')]
     case: Vec<CaseArg>,
-    /// Drive flocks at each other instead, bare and with ORCA: overlaps and least distances over speeds.
+    /// Instead, drive flocks at each other, bare and with ORCA: overlaps and least distances by speed.
     #[arg(long, conflicts_with_all = ["case", "robots", "safety", "horizon", "seconds", "c_alpha", "c_beta", "c_gamma", "reference", "loss"])]
     closing: bool,
-    /// Speeds of closing, spacings per second.
+    /// Closing speeds, spacings per second.
     #[arg(
         long,
         value_name = "SPEED,...",
@@ -58,13 +58,13 @@ pub struct FlockArgs {
         requires = "closing"
     )]
     speeds: Vec<f64>,
-    /// Runs of each, with starts of their own.
+    /// Runs of each, with different starts.
     #[arg(long, default_value_t = 10)]
     seeds: u32,
-    /// Robots instead of the paper's.
+    /// Number of robots, instead of the paper's.
     #[arg(long)]
     robots: Option<u32>,
-    /// What is behind the flock; in space "orca" is "fly".
+    /// Safety layer behind the flock; in space "orca" means "fly".
     #[arg(long, value_enum, default_value = "none")]
     safety: SafetyArg,
     /// How far ahead ORCA looks.
@@ -76,16 +76,16 @@ pub struct FlockArgs {
     /// Length of a tick.
     #[arg(long, value_name = "SECONDS", default_value_t = 0.03)]
     step: f64,
-    /// Length of each run instead of the case's own.
+    /// Length of each run, instead of the case's own.
     #[arg(long)]
     seconds: Option<f64>,
-    /// Gain c1 on other robots instead of the case's own.
+    /// Gain c1 on other robots, instead of the case's own.
     #[arg(long, value_name = "C1")]
     c_alpha: Option<f64>,
-    /// Gain c1 on obstacles instead of the case's own.
+    /// Gain c1 on obstacles, instead of the case's own.
     #[arg(long, value_name = "C1")]
     c_beta: Option<f64>,
-    /// Gain c1 on the reference instead of the case's own.
+    /// Gain c1 on the reference, instead of the case's own.
     #[arg(long, value_name = "C1")]
     c_gamma: Option<f64>,
     /// Where the reference of D and E is.

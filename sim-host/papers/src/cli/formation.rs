@@ -31,7 +31,7 @@ enum RecoveryArg {
     Def,
 }
 
-/// Six robots in formation on natural land: error, arrivals, travel time (KUZ section 8, figure 6).
+/// Six robots in formation on natural land: error, arrivals, travel time (Kuznetsov, section 8, figure 6).
 #[derive(Args, Clone, Debug)]
 #[command(allow_negative_numbers = true)]
 pub struct FormationArgs {
@@ -46,7 +46,7 @@ pub struct FormationArgs {
     /// Landscapes per point.
     #[arg(long, default_value_t = 100)]
     runs: u32,
-    /// How far from its place a neighbour may be and still counts as found, cells.
+    /// How far from its place a neighbour may be and still count as found, cells.
     #[arg(long, default_value_t = FormationParams::default().eps)]
     eps: u8,
     /// Loss of packets, 0 to 1.
@@ -68,7 +68,7 @@ pub struct FormationArgs {
         default_value = "0.1,0.3,0.6"
     )]
     other_losses: Vec<f64>,
-    /// Try no other values.
+    /// Do not try other values.
     #[arg(long, conflicts_with_all = ["other_eps", "other_losses"])]
     only: bool,
     /// How many cells ahead of the top leader's the others aim.
@@ -104,7 +104,7 @@ pub struct FormationArgs {
     /// How the distance to an obstacle is measured.
     #[arg(long, value_enum, default_value = "euclidean")]
     hill_norm: NormArg,
-    /// Ticks after which a run is given up.
+    /// Give up a run after this many ticks.
     #[arg(long, default_value_t = 10_000)]
     ticks: u32,
     /// Equal seeds give equal results.

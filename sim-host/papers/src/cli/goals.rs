@@ -34,7 +34,7 @@ enum EvasionArg {
 #[derive(Args, Clone, Debug)]
 #[command(allow_negative_numbers = true)]
 pub struct GoalsArgs {
-    /// Gains on the goal.
+    /// Gains of the pull to the goal.
     #[arg(
         long,
         value_name = "K1,...",
@@ -42,13 +42,13 @@ pub struct GoalsArgs {
         default_value = "0,5,15,30,50,100,150"
     )]
     k1: Vec<f64>,
-    /// Gain on the middle of the neighbours.
+    /// Gain of the pull to the middle of the neighbours.
     #[arg(long, default_value_t = Plan::default().k2)]
     k2: f64,
-    /// Gain on robots that are too near.
+    /// Gain of the push away from robots that are too near.
     #[arg(long, default_value_t = Plan::default().k3)]
     k3: f64,
-    /// How far neighbours are seen (R_nbh); of them the nearest sixteen count.
+    /// How far neighbours are seen (R_nbh); the nearest sixteen count.
     #[arg(
         long,
         value_name = "METRES,...",
@@ -59,13 +59,13 @@ pub struct GoalsArgs {
     /// Least distance of robots (R_MinDist); bodies have 0.3 of it as radius.
     #[arg(long, value_name = "METRES", default_value_t = Plan::default().min_distance_m)]
     min_distance: f64,
-    /// Robots.
+    /// Number of robots.
     #[arg(long, default_value_t = Plan::default().robots)]
     robots: u32,
-    /// Runs of each point, with starts of their own.
+    /// Runs per point, with different starts.
     #[arg(long, default_value_t = Plan::default().runs)]
     seeds: u32,
-    /// What is behind the flock; with nothing, robots overlap where they crowd around the goals.
+    /// Safety layer behind the flock; with none, robots overlap where they crowd around the goals.
     #[arg(long, value_enum, default_value = "orca")]
     safety: SafetyArg,
     /// What push-out makes of a step.

@@ -18,7 +18,7 @@ use anyhow::Result;
 use clap::{Args, Subcommand};
 use staya_console::{Ended, Global};
 
-/// Run the experiments of papers and benchmarks again.
+/// Rerun experiments from papers, and benchmarks.
 #[derive(Args, Clone, Debug)]
 pub struct ExperimentArgs {
     #[command(subcommand)]
@@ -27,21 +27,21 @@ pub struct ExperimentArgs {
 
 #[derive(Clone, Debug, Subcommand)]
 enum Experiment {
-    /// Windowed routing against the global optimum on random land (KUZ section 5, figures 2 to 4).
+    /// Windowed routing against the global optimum on random land (Kuznetsov, figures 2 to 4).
     Route(Box<route::RouteArgs>),
-    /// Six robots in formation on natural land: error, arrivals, travel time (KUZ section 8, figure 6).
+    /// Six robots in formation on natural land: error, arrivals, travel time (Kuznetsov, figure 6).
     Formation(Box<formation::FormationArgs>),
     /// Robots on a circle, each bound for the opposite side: who arrives, how late, how near they come.
     Swap(crossing::SwapArgs),
-    /// Two crowds in opposite directions through one gap.
+    /// Two crowds pass one gap in opposite directions.
     Doorway(crossing::DoorwayArgs),
-    /// The queries of a Moving AI benchmark: how many robots arrive, and at what loss.
+    /// The queries of a Moving AI benchmark: how many robots arrive, and how much longer they take.
     Movingai(movingai::MovingAiArgs),
-    /// Boids on a torus: three ways to find neighbours, equal flights, and what they cost (STA section 2.3).
+    /// Boids on a torus: what three ways to find neighbours cost, with equal flights (Starovoitova, section 2.3).
     Boids(boids::BoidsArgs),
     /// The five flocking simulations of Olfati-Saber 2006, and flocks driven at each other.
     Flock(Box<flock::FlockArgs>),
-    /// 225 robots that go to three goals as a group, more or less (Pavlovsky and Pavlovsky).
+    /// 225 robots travel to three goals: how much of a group they stay (Pavlovsky and Pavlovsky).
     Goals(Box<goals::GoalsArgs>),
 }
 

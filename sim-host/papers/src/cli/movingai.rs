@@ -32,7 +32,7 @@ impl From<MemoryArg> for Memory {
     }
 }
 
-/// The queries of a Moving AI benchmark: how many robots arrive, and at what loss.
+/// The queries of a Moving AI benchmark: how many robots arrive, and how much longer they take.
 #[derive(Args, Clone, Debug)]
 #[command(allow_negative_numbers = true)]
 pub struct MovingAiArgs {
@@ -41,11 +41,11 @@ pub struct MovingAiArgs {
     /// The map, if it is not beside the scenario under the name that the scenario gives.
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
-    /// Radius of the robot's window in cells, or "map": it sees everything, and what it takes the shortest ways to be
-    /// is compared with the benchmark's optimal lengths.
+    /// Radius of the robot's window in cells, or "map": the robot sees everything, and the lengths that it
+    /// finds are compared with the benchmark's optimal ones.
     #[arg(long, value_name = "CELLS|map", default_value = "5", value_parser = sight)]
     radius: Sight,
-    /// Cells whose earlier visits the robot remembers: what gets it out of dead ends larger than its window.
+    /// How many visited cells the robot remembers, which gets it out of dead ends larger than its window.
     #[arg(long, value_enum, value_name = "CELLS", default_value = "64")]
     visits: MemoryArg,
     #[command(flatten)]

@@ -10,7 +10,7 @@ use staya_sim::record::prepare_dir;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-/// Draw what ORCA forbids, and measure the template that looks it up.
+/// Draw what ORCA forbids two robots, and measure the tables that it can be looked up in.
 #[derive(Args, Clone, Debug)]
 pub struct OrcaArgs {
     #[command(subcommand)]
@@ -39,10 +39,10 @@ struct TableArgs {
 #[derive(Args, Clone, Debug)]
 #[command(allow_negative_numbers = true)]
 struct DrawArgs {
-    /// Place of robot A, who decides, metres.
+    /// Position of robot A, which decides, metres.
     #[arg(long, value_name = "X,Y", value_parser = vector, allow_hyphen_values = true, default_value = "2,-3")]
     place_a: [f64; 2],
-    /// Place of robot B, metres.
+    /// Position of robot B, metres.
     #[arg(long, value_name = "X,Y", value_parser = vector, allow_hyphen_values = true, default_value = "-2,3")]
     place_b: [f64; 2],
     /// Velocity of robot A, m/s.
@@ -54,7 +54,7 @@ struct DrawArgs {
     /// Radii of A and B, metres.
     #[arg(long, value_name = "A,B", value_parser = vector, default_value = "1,1")]
     radii: [f64; 2],
-    /// tau: no collision for so long, seconds.
+    /// tau: no collision within this time, seconds.
     #[arg(long, default_value_t = 2.0)]
     horizon: f64,
     /// A's share of the correction.

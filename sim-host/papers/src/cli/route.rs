@@ -53,7 +53,7 @@ impl CoefficientArg {
     }
 }
 
-/// Windowed routing against the global optimum on random land (KUZ section 5, figures 2 to 4).
+/// Windowed routing against the global optimum on random land (Kuznetsov, section 5, figures 2 to 4).
 #[derive(Args, Clone, Debug)]
 #[command(allow_negative_numbers = true)]
 pub struct RouteArgs {
