@@ -3,7 +3,7 @@
 
 use staya_controller::flock::lattice::{LatticeParams, Reference, acceleration};
 use staya_controller::obstacle::Obstacle;
-use staya_controller::{body::Body, geom::Vec3, neighbor::Nearby, rand::Rng, wire::RobotId};
+use staya_controller::{body::Body, geom::Vec3, neighbor::Nearby, rand::Rng, robot::RobotId};
 
 const ROBOTS: usize = 30;
 const SPACING_M: f64 = 0.5;

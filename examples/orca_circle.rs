@@ -3,7 +3,7 @@
 
 use staya_controller::orca::{AvoidParams, Avoider};
 use staya_controller::scalar::Scalar;
-use staya_controller::{body::Body, geom::Vec3, neighbor::Nearby, rand::Rng, wire::RobotId};
+use staya_controller::{body::Body, geom::Vec3, neighbor::Nearby, rand::Rng, robot::RobotId};
 
 const ROBOTS: u32 = 24;
 const RADIUS_M: f64 = 0.25;

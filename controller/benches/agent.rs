@@ -10,12 +10,14 @@ use staya_controller::agent::{
     AgentConfig, CELLS, CellState, FormationAgent, FormationGuidance, GridWorkspace, Inputs, Pose,
     RouteAgent, RouteGuidance,
 };
-use staya_controller::formation::{FormationParams, Prediction, Template};
+use staya_controller::formation::{FormationParams, Prediction};
 use staya_controller::grid::{Cell, Dir, Window};
 use staya_controller::rand::Rng;
+use staya_controller::robot::{Mode, RobotId};
 use staya_controller::route::RouteParams;
+use staya_controller::template::Template;
 use staya_controller::time::{Duration, Instant};
-use staya_controller::wire::{Beacon, Header, Message, Mode, RobotId, encode};
+use staya_controller::wire::{Beacon, Header, Message, encode};
 
 /// Rows 1 2 3, 4 5 6, 7 8 9, robot 1 in front.
 const PLACES: [Cell; 9] = [

@@ -13,7 +13,7 @@ use staya_controller::neighbor::Nearby;
 use staya_controller::obstacle::Obstacle;
 use staya_controller::push_out::{Model, PushOutParams, push_out};
 use staya_controller::rand::Rng;
-use staya_controller::wire::RobotId;
+use staya_controller::robot::RobotId;
 
 const NEIGHBORS: usize = 10;
 const CASES: usize = 64;

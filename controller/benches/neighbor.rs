@@ -6,8 +6,9 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use staya_controller::geom::Position;
 use staya_controller::neighbor::{Ages, Doubt, Neighbor, NeighborTable, Put, nearest};
 use staya_controller::rand::Rng;
+use staya_controller::robot::RobotId;
 use staya_controller::time::{Duration, Instant};
-use staya_controller::wire::{Beacon, RobotId};
+use staya_controller::wire::Beacon;
 
 const ROBOTS: u32 = 16;
 const AGES: Ages = Ages {

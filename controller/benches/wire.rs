@@ -7,11 +7,12 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use heapless::Vec;
 use staya_controller::auth::Key;
 use staya_controller::grid::{Cell, Dir};
+use staya_controller::robot::{Mode, RobotId};
+use staya_controller::template::TemplateEntry;
 use staya_controller::time::Instant;
 use staya_controller::wire::{
-    Ack, Beacon, CompactBeacon, GoalAssignment, Header, MAX_FRAME_LEN, Message, Mode, Request,
-    RequestKind, RobotId, Sealed, TEMPLATE_PART, TemplateAssignment, TemplateEntry, Wire, decode,
-    encode,
+    Ack, Beacon, CompactBeacon, GoalAssignment, Header, MAX_FRAME_LEN, Message, Request,
+    RequestKind, Sealed, TEMPLATE_PART, TemplateAssignment, Wire, decode, encode,
 };
 
 const TO: RobotId = RobotId(70_000);

@@ -1,8 +1,8 @@
 //! What a robot knows of its own body: all that guidance and collision avoidance need of it.
 
 use crate::geom::Vec3;
+use crate::robot::RobotId;
 use crate::scalar::Scalar;
-use crate::wire::RobotId;
 
 /// The own body right now.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -206,6 +206,13 @@ impl<S: Scalar> Vec3<S> {
         }
     }
 
+    /// The vector of so many thousandths: metres from millimetres.
+    #[must_use]
+    pub fn from_milli(milli: [i32; 3]) -> Self {
+        let [x, y, z] = milli.map(S::from_milli);
+        Self::new(x, y, z)
+    }
+
     /// Vector product.
     #[must_use]
     pub fn cross(self, other: Self) -> Self {

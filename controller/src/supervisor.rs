@@ -1,6 +1,6 @@
 //! The mode of a robot as one pure function of its mode and its situation. Read [`next_mode`] first.
 
-use crate::wire::Mode;
+use crate::robot::Mode;
 use serde::Serialize;
 
 /// What the next mode depends on.

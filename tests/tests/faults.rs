@@ -1,6 +1,6 @@
 //! Radios that fail and robots that reboot: the swarm comes through, and finds its formation again.
 
-use staya_controller::wire::{Mode, RobotId};
+use staya_controller::robot::{Mode, RobotId};
 use staya_sim::engine::Outcome;
 use staya_sim::record::{RobotRow, TickRow};
 use staya_sim::scenario::{Fault, Scenario};

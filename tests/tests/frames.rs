@@ -1,10 +1,12 @@
 //! One MAVLink frame of each of the swarm's messages, for other implementations: `tests/python/test_dialect.py` reads the golden file.
 
 use staya_controller::grid::{Cell, Dir};
+use staya_controller::robot::{Mode, RobotId};
+use staya_controller::template::TemplateEntry;
 use staya_controller::time::Instant;
 use staya_controller::wire::{
-    Ack, Beacon, CompactBeacon, Frame, GoalAssignment, Header, Message, Mode, PlaceAssignment,
-    Request, RequestKind, RobotId, TemplateAssignment, TemplateEntry,
+    Ack, Beacon, CompactBeacon, Frame, GoalAssignment, Header, Message, PlaceAssignment, Request,
+    RequestKind, TemplateAssignment,
 };
 use staya_mavlink::wire::{decode, encode};
 use std::fmt::Write as _;

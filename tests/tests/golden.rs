@@ -1,7 +1,7 @@
 //! What happens in each scenario, as a table that a person can read and any change of behaviour
 //! breaks. `cargo xtask bless golden` rewrites them.
 
-use staya_controller::wire::Mode;
+use staya_controller::robot::Mode;
 use staya_papers::orca::Sample;
 use staya_sim::engine::Outcome;
 use staya_sim::record::{RobotRow, TickRow};

@@ -8,10 +8,10 @@ use std::path::{Path, PathBuf};
 /// [`APART`] says not.
 const LAYERS: [&[&str]; 4] = [
     &[
-        "scalar", "digest", "geom", "time", "rand", "grid", "cost", "shuffle", "list", "obstacle",
-        "auth",
+        "scalar", "digest", "geom", "time", "rand", "grid", "cost", "shuffle", "list", "fixint",
+        "obstacle", "robot", "auth",
     ],
-    &["wire", "neighbor", "body"],
+    &["body", "neighbor", "template", "wire"],
     &["route", "formation", "orca", "flock", "push_out"],
     &["supervisor", "agent"],
 ];

@@ -6,8 +6,9 @@ use core::time::Duration;
 use criterion::{Criterion, criterion_group, criterion_main};
 use heapless::Vec;
 use staya_controller::grid::{Cell, Dir};
+use staya_controller::robot::{Mode, RobotId};
 use staya_controller::time::Instant;
-use staya_controller::wire::{Beacon, Header, Message, Mode, Postcard, RobotId, Wire};
+use staya_controller::wire::{Beacon, Header, Message, Postcard, Wire};
 use staya_mavlink::wire::Mavlink;
 
 fn beacon() -> Message {

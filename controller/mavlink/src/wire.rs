@@ -16,11 +16,12 @@ use heapless::Vec;
 use mavlink_core::MessageData;
 use serde::Serialize;
 use staya_controller::grid::{Cell, Dir};
+use staya_controller::robot::{Mode, RobotId};
+use staya_controller::template::TemplateEntry;
 use staya_controller::time::Instant;
 use staya_controller::wire::{
     Ack, Beacon, CompactBeacon, DecodeError, EncodeError, Frame, GoalAssignment, Header, Message,
-    Mode, PlaceAssignment, Request, RequestKind, RobotId, TEMPLATE_PART, TemplateAssignment,
-    TemplateEntry, Wire,
+    PlaceAssignment, Request, RequestKind, TEMPLATE_PART, TemplateAssignment, Wire,
 };
 
 /// The component that robots speak as: an onboard computer (`MAV_COMP_ID_ONBOARD_COMPUTER`).

@@ -14,9 +14,9 @@ use staya_controller::agent::{
 use staya_controller::geom::{Position, Vec2};
 use staya_controller::neighbor::Doubt;
 use staya_controller::orca::AvoidParams;
+use staya_controller::robot::{Mode, RobotId};
 use staya_controller::scalar::{Q16, Scalar};
 use staya_controller::time::{Duration, Instant};
-use staya_controller::wire::{Mode, RobotId};
 use staya_robot::drive::{
     Calibration, Kinematics, Limits, Mixer, Omni, SignMagnitude, Twist, Wheels, wished_velocity,
 };

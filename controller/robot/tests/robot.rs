@@ -25,10 +25,10 @@ use staya_controller::neighbor::Doubt;
 use staya_controller::obstacle::Obstacle;
 use staya_controller::orca::AvoidParams;
 use staya_controller::rand::Rng;
+use staya_controller::robot::{Mode, RobotId};
 use staya_controller::route::RouteParams;
 use staya_controller::scalar::Scalar;
 use staya_controller::time::{Duration, Instant};
-use staya_controller::wire::{Mode, RobotId};
 use staya_robot::drive::{
     Calibration, Differential, HBridge, Kinematics, Limits, LookAhead, Mixer, Wheels,
     wished_velocity,

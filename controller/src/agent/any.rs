@@ -16,8 +16,9 @@ use crate::grid::Cell;
 use crate::neighbor::Doubt;
 use crate::orca::{self, HalfPlane, HalfPlanes};
 use crate::rand::Rng;
+use crate::robot::RobotId;
 use crate::scalar::Scalar;
-use crate::wire::{RobotId, TemplateAssignment};
+use crate::wire::TemplateAssignment;
 use serde::{Deserialize, Serialize};
 
 /// Any guidance, on the grid, in the plane or in space.

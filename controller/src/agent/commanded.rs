@@ -6,9 +6,10 @@ use super::waypoint_guidance::WaypointGuidance;
 use crate::geom::Vec3;
 use crate::grid::Cell;
 use crate::rand::Rng;
+use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
-use crate::wire::{RobotId, TemplateAssignment};
+use crate::wire::TemplateAssignment;
 use serde::Serialize;
 
 /// What an operator wants of a robot.
@@ -17,7 +18,7 @@ pub enum Wish<S> {
     /// Its own behaviour.
     #[default]
     Own,
-    /// To be left alone: its motors are off, or somebody else steers. It is in [`Mode::Passive`](crate::wire::Mode::Passive), so that the
+    /// To be left alone: its motors are off, or somebody else steers. It is in [`Mode::Passive`](crate::robot::Mode::Passive), so that the
     /// others hear where it is and do not count on its giving way.
     Off,
     /// To stay where it is (and give way to others).

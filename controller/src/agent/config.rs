@@ -1,9 +1,10 @@
 //! What a robot's agent knows of itself from its start.
 
 use crate::neighbor::Ages;
+use crate::robot::RobotId;
 use crate::scalar::{Scalar, cast};
 use crate::time::Duration;
-use crate::wire::{Retry, RobotId};
+use crate::wire::Retry;
 use serde::{Deserialize, Serialize};
 
 /// What does not change while the robot runs.

@@ -6,19 +6,20 @@ use super::route_guidance::GridWorkspace;
 use super::travel::{PATIENCE, Travel, on_grid, reachable_goal};
 use crate::cost::{Gain, Weights};
 use crate::formation::{
-    Anchor, FormationParams, Found, GraphDistance, Member, Pace, Prediction, Recovery, Seen,
-    Template, aim, blended, def, distances, find_leader, find_neighbors, graph_distance, lag,
-    should_stay,
+    Anchor, FormationParams, Found, GraphDistance, Member, Pace, Prediction, Recovery, Seen, aim,
+    blended, def, distances, find_leader, find_neighbors, graph_distance, lag, should_stay,
 };
 use crate::grid::{BLOCKED, Cell, Dir, Window};
 use crate::list;
 use crate::neighbor::Neighbor;
 use crate::rand::Rng;
+use crate::robot::{Mode, RobotId};
 use crate::route::{CostField, RouteParams, Router};
 use crate::scalar::Scalar;
 use crate::shuffle::Sharpness;
+use crate::template::Template;
 use crate::time::Duration;
-use crate::wire::{Mode, RequestKind, RobotId, TemplateAssembler, TemplateAssignment};
+use crate::wire::{RequestKind, TemplateAssembler, TemplateAssignment};
 use core::iter::successors;
 use heapless::Vec;
 use serde::Serialize;

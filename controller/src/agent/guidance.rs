@@ -7,9 +7,10 @@ use crate::grid::{Cell, Dir, Window};
 use crate::neighbor::{Ages, Nearby, Neighbor};
 use crate::obstacle::Obstacle;
 use crate::rand::Rng;
+use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
-use crate::wire::{RequestKind, RobotId, TemplateAssignment};
+use crate::wire::{RequestKind, TemplateAssignment};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
@@ -174,7 +175,7 @@ pub trait Guidance<S> {
     /// Chooses the next move. Called when the robot is free to move.
     ///
     /// # Errors
-    /// [`BadInput`] puts the robot into [`Mode::Fault`](crate::wire::Mode::Fault).
+    /// [`BadInput`] puts the robot into [`Mode::Fault`](crate::robot::Mode::Fault).
     fn decide(
         &mut self,
         view: &View<'_, S>,

@@ -117,7 +117,7 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for InPlane<S, G> {
         self.guidance.goal_offset()
     }
 
-    fn needs(&self, id: crate::wire::RobotId) -> bool {
+    fn needs(&self, id: crate::robot::RobotId) -> bool {
         self.guidance.needs(id)
     }
 

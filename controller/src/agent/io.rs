@@ -3,8 +3,9 @@
 use crate::geom::{Position, Vec2, Vec3};
 use crate::grid::{Cell, Dir, Window};
 use crate::obstacle::Obstacle;
+use crate::robot::{Mode, RobotId};
 use crate::time::{Duration, Instant};
-use crate::wire::{DecodeError, Mode, RequestKind, RobotId};
+use crate::wire::{DecodeError, RequestKind};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 

@@ -5,12 +5,13 @@ use super::io::{Event, Inputs, OUTBOX, Outputs};
 use super::{AgentConfig, Last};
 use crate::geom::{Position, Vec3};
 use crate::grid::Cell;
-use crate::neighbor::{Ages, Neighbor, NeighborTable, Put, vec3_from_milli};
+use crate::neighbor::{Ages, Neighbor, NeighborTable, Put};
+use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 use crate::wire::{
-    Arrival, Beacon, DecodeError, Due, Frame, Header, Message, Mode, Newest, Orders, Request,
-    RequestKind, Requests, Retry, RobotId, SequenceWindow, TemplateAssignment, Wire,
+    Arrival, Beacon, DecodeError, Due, Frame, Header, Message, Newest, Orders, Request,
+    RequestKind, Requests, Retry, SequenceWindow, TemplateAssignment, Wire,
 };
 use heapless::Vec;
 use serde::Serialize;
@@ -222,7 +223,7 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
                         version: place.version,
                         place: Place {
                             position: Position::from_mm(place.position_mm),
-                            velocity_mps: vec3_from_milli(place.velocity_mmps.map(i32::from)),
+                            velocity_mps: Vec3::from_milli(place.velocity_mmps.map(i32::from)),
                             at: listener.heard_at,
                         },
                     });

@@ -21,7 +21,7 @@
 //! use staya_controller::grid::{Cell, Window};
 //! use staya_controller::route::RouteParams;
 //! use staya_controller::time::{Duration, Instant};
-//! use staya_controller::wire::RobotId;
+//! use staya_controller::robot::RobotId;
 //!
 //! let tick = Duration::from_millis(100);
 //! let config = AgentConfig::new(RobotId(3), 1, tick);
@@ -57,7 +57,7 @@
 //! use staya_controller::neighbor::Doubt;
 //! use staya_controller::orca::AvoidParams;
 //! use staya_controller::time::{Duration, Instant};
-//! use staya_controller::wire::{Mode, RobotId};
+//! use staya_controller::robot::{Mode, RobotId};
 //!
 //! let tick = Duration::from_millis(50);
 //! let config = AgentConfig { radius_m: 0.1, ..AgentConfig::new(RobotId(3), 1, tick) };
@@ -131,10 +131,11 @@ use crate::body::Body;
 use crate::grid::{Cell, Dir};
 use crate::neighbor::{Nearby, nearest};
 use crate::rand::Rng;
+use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
 use crate::supervisor::{Situation, moves, next_mode};
 use crate::time::{Duration, Instant};
-use crate::wire::{Mode, Postcard, RobotId, Wire};
+use crate::wire::{Postcard, Wire};
 use heapless::Vec;
 use link::{Link, Listener, News, beacon, report};
 use serde::Serialize;

@@ -5,10 +5,10 @@ use super::travel::{Travel, on_grid, reachable_goal};
 use crate::grid::{Cell, Dir};
 use crate::list;
 use crate::rand::Rng;
+use crate::robot::RobotId;
 use crate::route::{CostField, Replan, RouteParams, Router};
 use crate::scalar::Scalar;
 use crate::shuffle::Sharpness;
-use crate::wire::RobotId;
 use heapless::Vec;
 use serde::Serialize;
 

@@ -4,9 +4,10 @@ use super::{Agent, Guidance, Safety};
 use crate::digest::digest;
 use crate::grid::Cell;
 use crate::neighbor::{Knowledge, Neighbor};
+use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
 use crate::time::Instant;
-use crate::wire::{Mode, RobotId, Wire};
+use crate::wire::Wire;
 use serde::Serialize;
 
 impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, G, N, A, W> {

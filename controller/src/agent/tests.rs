@@ -1,8 +1,9 @@
 use super::*;
-use crate::formation::{FormationParams, Template};
+use crate::formation::FormationParams;
 use crate::geom::Vec3;
 use crate::grid::{BLOCKED, Window};
 use crate::route::RouteParams;
+use crate::template::Template;
 use crate::wire::{
     Beacon, Frame, GoalAssignment, Header, Message, Request, RequestKind, TemplateAssignment,
     decode, encode, frames,

@@ -5,8 +5,9 @@ use super::guidance::{Ask, BadInput, View};
 use crate::cost::Weights;
 use crate::grid::{BLOCKED, Cell, Dir, Window};
 use crate::rand::Rng;
+use crate::robot::RobotId;
 use crate::shuffle::{Sharpness, weighted_shuffle};
-use crate::wire::{RequestKind, RobotId};
+use crate::wire::RequestKind;
 use heapless::Vec;
 use serde::Serialize;
 

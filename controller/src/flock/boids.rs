@@ -17,8 +17,8 @@
 
 use crate::geom::{Position, Vec2};
 use crate::neighbor::{Nearby, tie};
+use crate::robot::RobotId;
 use crate::scalar::Scalar;
-use crate::wire::RobotId;
 use serde::Serialize;
 
 /// A largest turn, as what rotates by it.

@@ -14,8 +14,8 @@ use crate::body::Body;
 use crate::geom::{Position, Vec3};
 use crate::neighbor::{Nearby, tie};
 use crate::rand::Rng;
+use crate::robot::RobotId;
 use crate::scalar::{Scalar, cast};
-use crate::wire::RobotId;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 

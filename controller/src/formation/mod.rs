@@ -4,7 +4,8 @@
 //! Source: A. V. Kuznetsov 2017 (KUZ), section 7, algorithms 2 and 5 to 7; section 6 for the measures. Read section 7
 //! first.
 //! Everything here is a pure function on slices; what a robot remembers is [`Pace`] and its
-//! [`Template`]. Lengths are integers in [`UNIT`](crate::grid::UNIT)s per cell, costs those of [`crate::cost`].
+//! [`Template`](crate::template::Template). Lengths are integers in [`UNIT`](crate::grid::UNIT)s per cell,
+//! costs those of [`crate::cost`].
 //!
 //! What differs from the paper, and why (figures: `staya experiment formation`):
 //! - In the paper each robot weighs the shortest way to its *own* target against its neighbours'
@@ -30,7 +31,6 @@
 mod measure;
 mod neighbors;
 mod steering;
-mod template;
 
 #[cfg(test)]
 mod tests;
@@ -38,9 +38,6 @@ mod tests;
 pub use measure::{FormationError, GraphDistance, graph_distance};
 pub use neighbors::{Found, Member, Seen, find_leader, find_neighbors};
 pub use steering::{Anchor, Pace, aim, blended, def, deviation, distances, lag, should_stay};
-pub use template::{TemplateError, rotated};
-
-pub use crate::wire::Template;
 
 use crate::cost::Gain;
 use serde::{Deserialize, Serialize};

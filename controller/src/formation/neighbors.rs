@@ -1,7 +1,8 @@
 //! Who of the template is there (KUZ algorithm 5), and whom to follow (algorithm 6).
 
 use crate::grid::{Cell, Dir};
-use crate::wire::{Mode, RobotId, Template};
+use crate::robot::{Mode, RobotId};
+use crate::template::Template;
 use heapless::Vec;
 
 /// Another robot as the formation sees it.

@@ -3,7 +3,7 @@
 use super::{FormationParams, Member};
 use crate::cost::{Cost, EXCLUDED, Weights};
 use crate::grid::{BLOCKED, Cell, DIAGONAL, Dir, Norm, UNIT, Window};
-use crate::wire::TemplateEntry;
+use crate::template::TemplateEntry;
 use serde::Serialize;
 
 /// Somebody beside whom one has a place.

@@ -1,6 +1,7 @@
 use super::*;
 use crate::grid::{BLOCKED, Cell, Dir, Window};
-use crate::wire::{Mode, RobotId, TemplateEntry};
+use crate::robot::{Mode, RobotId};
+use crate::template::{Template, TemplateEntry, TemplateError, rotated};
 use proptest::prelude::*;
 use std::vec::Vec;
 

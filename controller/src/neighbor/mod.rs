@@ -8,9 +8,9 @@
 use crate::geom::{Position, Vec3};
 use crate::grid::{Cell, Dir};
 use crate::list::sink_last;
+use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
-use crate::wire::{Beacon, CompactBeacon, Mode, RobotId};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
@@ -52,47 +52,6 @@ pub struct Neighbor<S> {
 }
 
 impl<S: Scalar> Neighbor<S> {
-    /// The robot `id` as its beacon, received at `now`, describes it.
-    #[must_use]
-    pub fn from_beacon(id: RobotId, beacon: &Beacon, now: Instant) -> Self {
-        Self {
-            id,
-            heard: now,
-            busy_until: now + Duration::from_millis(i32::from(beacon.busy_ms)),
-            position: Position::from_mm(beacon.position_mm),
-            velocity_mps: vec3_from_milli(beacon.velocity_mmps.map(i32::from)),
-            radius_m: S::from_milli(i32::from(beacon.radius_mm)),
-            cell: beacon.cell,
-            target: beacon.target,
-            leader: beacon.leader,
-            heading: beacon.heading,
-            slot: beacon.slot,
-            mode: beacon.mode,
-        }
-    }
-
-    /// The robot `id` as its compact beacon, received at `now`, describes it: at height 0, without
-    /// a leader, standing in `cell`, which the caller finds from the position if it uses cells.
-    #[must_use]
-    pub fn from_compact(id: RobotId, beacon: &CompactBeacon, cell: Cell, now: Instant) -> Self {
-        let [x, y] = beacon.position_mm;
-        let [vx, vy] = beacon.velocity_mmps.map(i32::from);
-        Self {
-            id,
-            heard: now,
-            busy_until: now,
-            position: Position::from_mm([x, y, 0]),
-            velocity_mps: vec3_from_milli([vx, vy, 0]),
-            radius_m: S::from_milli(i32::from(beacon.radius_cm) * 10),
-            cell,
-            target: cell,
-            leader: RobotId::NOBODY,
-            heading: Dir::Stay,
-            slot: 0,
-            mode: beacon.mode,
-        }
-    }
-
     /// Time since it was heard; `None` when that lies in the future, which means that more than
     /// half the clock's range has passed.
     #[must_use]
@@ -108,12 +67,6 @@ impl<S: Scalar> Neighbor<S> {
         let span = self.age(now).map_or(longest, |age| age.min(longest));
         self.position.since(from) + self.velocity_mps * S::from_micro(span.as_micros())
     }
-}
-
-/// A vector from thousandths.
-pub(crate) fn vec3_from_milli<S: Scalar>(milli: [i32; 3]) -> Vec3<S> {
-    let [x, y, z] = milli.map(S::from_milli);
-    Vec3::new(x, y, z)
 }
 
 /// How old news may be.

@@ -3,9 +3,9 @@
 use super::{Ages, Neighbor};
 use crate::geom::{Position, Vec3};
 use crate::list::{self, sink_last};
+use crate::robot::RobotId;
 use crate::scalar::{Scalar, cast};
 use crate::time::{Duration, Instant};
-use crate::wire::RobotId;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
@@ -20,7 +20,7 @@ pub struct Nearby<S> {
     pub velocity_mps: Vec3<S>,
     /// Radius of the ball that it is in, metres.
     pub radius_m: S,
-    /// Whether it gives way too: fresh, and its agent steers it ([`Mode::gives_way`]).
+    /// Whether it gives way too: fresh, and its agent steers it ([`Mode::gives_way`](crate::robot::Mode::gives_way)).
     pub gives_way: bool,
 }
 

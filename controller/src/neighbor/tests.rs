@@ -5,6 +5,7 @@
 )]
 
 use super::*;
+use crate::wire::{Beacon, CompactBeacon};
 use proptest::prelude::*;
 use std::vec::Vec as StdVec;
 

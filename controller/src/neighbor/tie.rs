@@ -2,8 +2,8 @@
 
 use crate::geom::Vec2;
 use crate::rand::Rng;
+use crate::robot::RobotId;
 use crate::scalar::Scalar;
-use crate::wire::RobotId;
 
 const PURPOSE: u32 = 0x7469_6573; // "ties"
 

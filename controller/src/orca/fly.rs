@@ -7,8 +7,8 @@ use crate::body::Body;
 use crate::geom::Vec3;
 use crate::neighbor::{Nearby, tie};
 use crate::obstacle::Obstacle;
+use crate::robot::RobotId;
 use crate::scalar::{Scalar, cast};
-use crate::wire::RobotId;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 

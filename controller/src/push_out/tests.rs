@@ -1,8 +1,8 @@
 use super::*;
 use crate::geom::Vec2;
 use crate::neighbor::tie;
+use crate::robot::RobotId;
 use crate::scalar::Q16;
-use crate::wire::RobotId;
 use proptest::prelude::*;
 use std::vec::Vec;
 

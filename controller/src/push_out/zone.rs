@@ -5,8 +5,8 @@ use crate::body::Body;
 use crate::geom::{Vec2, Vec3};
 use crate::neighbor::{Nearby, tie};
 use crate::obstacle::Obstacle;
+use crate::robot::RobotId;
 use crate::scalar::Scalar;
-use crate::wire::RobotId;
 
 /// Which way around.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

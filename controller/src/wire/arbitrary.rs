@@ -2,6 +2,8 @@
 
 use super::*;
 use crate::grid::{Cell, Dir};
+use crate::robot::{Mode, RobotId};
+use crate::template::TemplateEntry;
 use crate::time::Instant;
 use proptest::collection::vec;
 use proptest::prelude::*;

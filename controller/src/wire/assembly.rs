@@ -1,11 +1,13 @@
 //! A formation template in parts: splitting it for the air, and putting it together again from
 //! parts that come in any order, more than once, or not at all.
 
-use super::{Newest, RobotId, TEMPLATE_PART, TemplateAssignment, TemplateEntry};
+use super::{Newest, TEMPLATE_PART, TemplateAssignment};
 use crate::grid::Cell;
 use crate::list;
+use crate::robot::RobotId;
+use crate::template::{Template, TemplateEntry};
 use heapless::Vec;
-use serde::{Deserialize, Serialize, Serializer};
+use serde::{Serialize, Serializer};
 
 /// Parts that a [`TemplateAssembler`] can tell apart: one bit each.
 const MAX_PARTS: usize = u64::BITS as usize;
@@ -19,18 +21,6 @@ const NO_ENTRY: TemplateEntry = TemplateEntry {
     id: RobotId::NOBODY,
     hops: 0,
 };
-
-/// A robot's place in the formation and where its neighbours there should be (KUZ section 3), at
-/// most `F` of them.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Template<const F: usize> {
-    /// The robot's place in the formation.
-    pub slot: u8,
-    /// Cell difference from the top leader's place to this robot's place.
-    pub offset: Cell,
-    /// The neighbours within the geodesic radius, in the sender's order.
-    pub entries: Vec<TemplateEntry, F>,
-}
 
 /// Why a part was refused; what was collected before is as it was.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

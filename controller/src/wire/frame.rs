@@ -31,9 +31,10 @@
 //! Cortex-M0 (`opt-level = "s"`, one link-time unit), and no panic is reachable from them.
 
 use super::message::{
-    Ack, Beacon, CompactBeacon, GoalAssignment, Message, PlaceAssignment, Request, RobotId,
-    TEMPLATE_PART, TemplateAssignment,
+    Ack, Beacon, CompactBeacon, GoalAssignment, Message, PlaceAssignment, Request, TEMPLATE_PART,
+    TemplateAssignment,
 };
+use crate::robot::RobotId;
 use crc::{CRC_16_IBM_SDLC, Crc, Table};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
@@ -133,7 +134,7 @@ pub struct Header {
     /// Who sends this frame; never nobody.
     pub sender: RobotId,
     /// Counts the sender's frames of every kind, wraps.
-    #[serde(with = "super::fixint")]
+    #[serde(with = "crate::fixint")]
     pub sequence: u16,
 }
 

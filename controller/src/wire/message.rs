@@ -4,62 +4,12 @@
 //! takes its full width, everything else is a byte or a varint. A change here is a new
 //! [`VERSION`](super::VERSION).
 
-use super::fixint;
+use crate::fixint;
 use crate::grid::{Cell, Dir};
+use crate::robot::{Mode, RobotId};
+use crate::template::TemplateEntry;
 use crate::time::Instant;
 use serde::{Deserialize, Serialize};
-
-/// A robot's number; 0 means nobody (the paper's "anyone").
-///
-/// 32 bits, because a simulated swarm has up to a million robots; small numbers stay small on the
-/// wire (varint).
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
-)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[serde(transparent)]
-pub struct RobotId(pub u32);
-
-impl RobotId {
-    /// Nobody in particular; as an addressee: everybody.
-    pub const NOBODY: Self = Self(0);
-
-    /// Whether this is the number of a robot.
-    #[must_use]
-    pub const fn is_somebody(self) -> bool {
-        self.0 != 0
-    }
-}
-
-/// What the robot is doing as a whole; see [`crate::supervisor`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[repr(u8)]
-pub enum Mode {
-    /// No goal yet.
-    #[default]
-    Idle,
-    /// Taking its place in the formation, before or during travel.
-    Forming,
-    /// On the way to its target.
-    Cruise,
-    /// Standing because somebody asked or no way is open.
-    Hold,
-    /// At its target.
-    Arrived,
-    /// Own input is missing or wrong; standing.
-    Fault,
-    /// Its agent does not steer it: the motors are off, or somebody else does.
-    Passive,
-}
-
-impl Mode {
-    /// Whether its agent steers it at all, be it to stand, so that others can count on its giving way.
-    #[must_use]
-    pub const fn gives_way(self) -> bool {
-        !matches!(self, Self::Fault | Self::Passive)
-    }
-}
 
 /// What a robot says of itself, periodically. Everything that others may rely on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -152,18 +102,6 @@ pub struct Ack {
     pub number: u8,
     /// Whether it will be followed.
     pub accepted: bool,
-}
-
-/// Where a neighbour in the formation should be, relative to oneself (KUZ section 3: template).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct TemplateEntry {
-    /// Wanted cell difference, neighbour minus self.
-    #[serde(with = "fixint")]
-    pub offset: Cell,
-    /// Which robot should stand there; nobody = anyone.
-    pub id: RobotId,
-    /// Geodesic distance from self in the formation's graph, 1..=rho.
-    pub hops: u8,
 }
 
 /// Entries in one [`TemplateAssignment`]: as many as a frame of 60 bytes carries.

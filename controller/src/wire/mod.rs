@@ -1,9 +1,9 @@
 //! What robots say to each other: messages, and the frames that carry them.
 
 mod assembly;
-mod fixint;
 mod format;
 mod frame;
+mod heard;
 mod message;
 mod newest;
 mod orders;
@@ -11,15 +11,15 @@ mod requests;
 mod sealed;
 mod sequence;
 
-pub use assembly::{MAX_TEMPLATE, PartError, Template, TemplateAssembler};
+pub use assembly::{MAX_TEMPLATE, PartError, TemplateAssembler};
 pub use format::{Format, FromFormat, Postcard, Wire};
 pub use frame::{
     DecodeError, EncodeError, Frame, Header, MAX_FRAME_LEN, MAX_TAGGED_ROBOT, TAG_LEN, VERSION,
     decode, decode_verified, encode, encode_tagged, frames,
 };
 pub use message::{
-    Ack, Beacon, CompactBeacon, GoalAssignment, Message, Mode, PlaceAssignment, Request,
-    RequestKind, RobotId, TEMPLATE_PART, TemplateAssignment, TemplateEntry,
+    Ack, Beacon, CompactBeacon, GoalAssignment, Message, PlaceAssignment, Request, RequestKind,
+    TEMPLATE_PART, TemplateAssignment,
 };
 pub use newest::Newest;
 pub use orders::{Answer, Orders};

@@ -3,7 +3,8 @@
 //!
 //! The other side is [`Requests`](super::Requests).
 
-use super::{Ack, Header, Request, RequestKind, RobotId};
+use super::{Ack, Header, Request, RequestKind};
+use crate::robot::RobotId;
 use crate::time::{Duration, Instant};
 use heapless::Vec;
 use serde::Serialize;

@@ -3,8 +3,9 @@
 //! The other side is [`Orders`](super::Orders). Source: KUZ section 7 (requests go up the leader
 //! chain); the papers' requests are never lost, ours are small datagrams over a lossy radio.
 
-use super::{Ack, Request, RequestKind, RobotId};
+use super::{Ack, Request, RequestKind};
 use crate::rand::Rng;
+use crate::robot::RobotId;
 use crate::time::{Duration, Instant};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};

@@ -12,7 +12,7 @@ use embassy_stm32::{rcc::*, rng, time::Hertz, wdg::IndependentWatchdog};
 use embassy_time::{Instant as Clock, Ticker};
 use staya_controller::agent::*;
 use staya_controller::time::{Duration, Instant};
-use staya_controller::{geom::Position, neighbor::Doubt, orca::AvoidParams, wire::RobotId};
+use staya_controller::{geom::Position, neighbor::Doubt, orca::AvoidParams, robot::RobotId};
 use staya_robot::odometry::{Encoder, Odometry};
 use staya_robot::{drive::*, radio::AsyncPacketLink};
 

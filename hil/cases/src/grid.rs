@@ -12,9 +12,10 @@ use staya_controller::agent::{
 };
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::grid::{BLOCKED, Cell, Norm, UNIT};
+use staya_controller::robot::Mode;
 use staya_controller::scalar::Scalar;
 use staya_controller::time::{Duration, Instant};
-use staya_controller::wire::{Mode, Postcard, Wire};
+use staya_controller::wire::{Postcard, Wire};
 
 /// Neighbours that an agent of a case knows.
 pub(crate) const KNOWN: usize = 8;

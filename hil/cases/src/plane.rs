@@ -13,9 +13,10 @@ use staya_controller::agent::{
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::GridFrame;
 use staya_controller::obstacle::{Obstacle, grid_walls};
+use staya_controller::robot::Mode;
 use staya_controller::scalar::Scalar;
 use staya_controller::time::{Duration, Instant};
-use staya_controller::wire::{Mode, Postcard};
+use staya_controller::wire::Postcard;
 
 /// Obstacles that a robot sees.
 const OBSTACLES: usize = 8;

@@ -16,7 +16,7 @@ use staya_controller::agent::{
 use staya_controller::flock::boids::BoidsParams;
 use staya_controller::flock::goal::GoalParams;
 use staya_controller::flock::lattice::LatticeParams;
-use staya_controller::formation::{FormationParams, Prediction, Template};
+use staya_controller::formation::{FormationParams, Prediction};
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Cell, Dir, Window};
 use staya_controller::neighbor::Doubt;
@@ -27,10 +27,12 @@ use staya_controller::orca::{Analytic, Template2k};
 use staya_controller::orca::{AvoidParams, FlyParams, HalfPlanes};
 use staya_controller::push_out::PushOutParams;
 use staya_controller::rand::Rng;
+use staya_controller::robot::{Mode, RobotId};
 use staya_controller::route::RouteParams;
 use staya_controller::scalar::Scalar;
+use staya_controller::template::Template;
 use staya_controller::time::{Duration, Instant};
-use staya_controller::wire::{Beacon, Header, Message, Mode, RobotId, encode};
+use staya_controller::wire::{Beacon, Header, Message, encode};
 
 /// Steps of each, in other company each time.
 const STEPS: u32 = 64;

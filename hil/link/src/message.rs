@@ -11,8 +11,8 @@ use heapless::String;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{CellState, Outputs, Pose, Setup, Task};
 use staya_controller::grid::Cell;
+use staya_controller::robot::{Mode, RobotId};
 use staya_controller::time::Instant;
-use staya_controller::wire::{Mode, RobotId};
 
 /// Bytes of a frame from the device, at most: delimiters included (a test fills one).
 pub const MAX_ANSWER: usize = 512;

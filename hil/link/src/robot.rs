@@ -10,9 +10,10 @@ use staya_controller::agent::{
     Refused, Setup, Surroundings, Task, VISITS,
 };
 use staya_controller::obstacle::Obstacle;
+use staya_controller::robot::RobotId;
 use staya_controller::scalar::{Q16, Scalar, cast};
 use staya_controller::time::Instant;
-use staya_controller::wire::{Format, FromFormat, Postcard, RobotId};
+use staya_controller::wire::{Format, FromFormat, Postcard};
 use staya_mavlink::any::AnyWire;
 
 /// The robot that an STM32F405 has room for. As the small one, it speaks whatever format it is told to.

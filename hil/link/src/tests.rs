@@ -15,10 +15,11 @@ use staya_controller::agent::{
 use staya_controller::grid::Cell;
 use staya_controller::neighbor::Doubt;
 use staya_controller::orca::AvoidParams;
+use staya_controller::robot::RobotId;
 use staya_controller::route::{Replan, RouteParams};
 use staya_controller::shuffle::Sharpness;
 use staya_controller::time::Duration;
-use staya_controller::wire::{Format, RobotId};
+use staya_controller::wire::Format;
 use std::vec::Vec;
 
 pub const LARGE: usize = content_bytes(CELLS, 32, crate::robot::LARGE_INBOX);

@@ -3,7 +3,7 @@
 use crate::channel::OpenError;
 use crate::device::DeviceError;
 use crate::mismatch::Mismatch;
-use staya_controller::wire::RobotId;
+use staya_controller::robot::RobotId;
 use staya_link::fit::WindowTooLarge;
 use staya_link::message::{Hello, StepResult};
 use staya_link::port::PortError;

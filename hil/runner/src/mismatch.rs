@@ -1,6 +1,6 @@
 //! The first step at which device and shadow differ.
 
-use staya_controller::wire::RobotId;
+use staya_controller::robot::RobotId;
 use staya_link::message::StepResult;
 use std::fmt;
 

@@ -216,7 +216,7 @@ impl Arrivals {
 mod tests {
     use super::*;
     use staya_controller::grid::Dir;
-    use staya_controller::wire::RobotId;
+    use staya_controller::robot::RobotId;
 
     fn bodies(cells: &[(i16, i16)]) -> Vec<Body> {
         (1..)

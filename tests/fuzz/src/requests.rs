@@ -3,10 +3,11 @@
 
 use arbitrary::{Result, Unstructured};
 use heapless::Vec as Bounded;
+use staya_controller::robot::RobotId;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{
     Arrival, Due, Header, MAX_FRAME_LEN, Message, Orders, Request, RequestKind, Requests, Retry,
-    RobotId, SequenceWindow, decode, encode,
+    SequenceWindow, decode, encode,
 };
 use std::collections::BTreeMap;
 

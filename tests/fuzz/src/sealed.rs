@@ -3,9 +3,8 @@
 use heapless::Vec as Bounded;
 use staya_controller::auth::Key;
 use staya_controller::grid::Cell;
-use staya_controller::wire::{
-    Frame, GoalAssignment, Header, MAX_FRAME_LEN, Message, RobotId, Sealed, Wire,
-};
+use staya_controller::robot::RobotId;
+use staya_controller::wire::{Frame, GoalAssignment, Header, MAX_FRAME_LEN, Message, Sealed, Wire};
 use staya_mavlink::signed::Signed;
 use staya_mavlink::signing::Signing;
 

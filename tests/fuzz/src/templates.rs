@@ -3,9 +3,11 @@
 use arbitrary::{Result, Unstructured};
 use heapless::Vec as Bounded;
 use staya_controller::grid::Cell;
+use staya_controller::robot::RobotId;
+use staya_controller::template::{Template, TemplateEntry};
 use staya_controller::wire::{
-    Header, MAX_FRAME_LEN, Message, RobotId, TEMPLATE_PART, Template, TemplateAssembler,
-    TemplateAssignment, TemplateEntry, decode, encode,
+    Header, MAX_FRAME_LEN, Message, TEMPLATE_PART, TemplateAssembler, TemplateAssignment, decode,
+    encode,
 };
 
 const F: usize = 7;

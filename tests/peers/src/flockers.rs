@@ -10,7 +10,7 @@ use krabmaga::engine::state::State;
 use staya_controller::flock::boids::{BoidsParams, Torus};
 use staya_controller::geom::{Vec2, Vec3};
 use staya_controller::neighbor::Nearby;
-use staya_controller::wire::RobotId;
+use staya_controller::robot::RobotId;
 use staya_papers::boids::{Flock, Plan};
 use std::any::Any;
 use std::cell::RefCell;

@@ -3,7 +3,8 @@ use crate::dialect::HEARTBEAT_DATA;
 use crate::frame::{Sender, encode};
 use proptest::prelude::*;
 use staya_controller::auth::Key;
-use staya_controller::wire::{Beacon, RobotId};
+use staya_controller::robot::RobotId;
+use staya_controller::wire::Beacon;
 
 fn wire(passphrase: &[u8], timestamp: u64) -> Signed<4> {
     Signed::new(Signing::new(Key::of_passphrase(passphrase), 0, timestamp))

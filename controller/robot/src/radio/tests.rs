@@ -1,7 +1,8 @@
 use super::*;
 use embedded_io::{ErrorKind, ErrorType, Read, ReadReady, Write, WriteReady};
 use proptest::prelude::*;
-use staya_controller::wire::{Ack, Header, MAX_FRAME_LEN, Message, RobotId, encode, frames};
+use staya_controller::robot::RobotId;
+use staya_controller::wire::{Ack, Header, MAX_FRAME_LEN, Message, encode, frames};
 use std::collections::VecDeque;
 use std::vec::Vec;
 

@@ -298,7 +298,7 @@ fn neighbours_are_where_their_last_word_leads_and_as_large_as_they_say() {
         radius_mm: 200,
         ..Default::default()
     };
-    let neighbor = Neighbor::<f32>::from_beacon(staya_controller::wire::RobotId(2), &beacon, NOW);
+    let neighbor = Neighbor::<f32>::from_beacon(staya_controller::robot::RobotId(2), &beacon, NOW);
     let own = Position::from_mm([1_000, 1_000, 0]);
     let seen = |ms: i32, x: f32| {
         let now = NOW + Duration::from_millis(ms);

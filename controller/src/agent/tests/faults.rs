@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::formation::Recovery;
-use crate::wire::{Ack, TemplateEntry};
+use crate::template::TemplateEntry;
+use crate::wire::Ack;
 
 fn goal(version: u8, x: i16) -> Message {
     Message::Goal(GoalAssignment {

@@ -6,7 +6,8 @@ use crate::formation::{Prediction, Recovery};
 use crate::grid::Norm;
 use crate::route::{ExitRule, Replan};
 use crate::shuffle::Sharpness;
-use crate::wire::{TemplateEntry, arbitrary};
+use crate::template::TemplateEntry;
+use crate::wire::arbitrary;
 use proptest::collection::vec;
 use proptest::prelude::*;
 

@@ -51,7 +51,7 @@ fn guidances() -> [GuidanceSetup; 6] {
         GuidanceSetup::Formation {
             route,
             formation: FormationParams::default(),
-            template: crate::formation::Template::default(),
+            template: crate::template::Template::default(),
             speed_mps: Some(0.4),
         },
     ]

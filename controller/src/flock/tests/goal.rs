@@ -3,8 +3,8 @@ use super::{body, exact, near, number};
 use crate::body::Body;
 use crate::geom::{Position, Vec3};
 use crate::neighbor::{Nearby, tie};
+use crate::robot::RobotId;
 use crate::scalar::{Q16, Scalar};
-use crate::wire::RobotId;
 use proptest::prelude::*;
 use std::vec::Vec;
 

@@ -6,8 +6,8 @@ use crate::body::Body;
 use crate::geom::{Vec2, Vec3};
 use crate::neighbor::{Nearby, tie};
 use crate::obstacle::Obstacle;
+use crate::robot::RobotId;
 use crate::scalar::{Q16, Scalar};
-use crate::wire::RobotId;
 
 type V = Vec3<f64>;
 

@@ -6,8 +6,8 @@ use crate::body::Body;
 use crate::geom::Vec3;
 use crate::neighbor::Nearby;
 use crate::obstacle::Obstacle;
+use crate::robot::RobotId;
 use crate::scalar::{Fast32, Q16, Scalar};
-use crate::wire::RobotId;
 use proptest::prelude::*;
 use std::vec::Vec;
 

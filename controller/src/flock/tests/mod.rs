@@ -7,8 +7,8 @@ mod simulation;
 use crate::body::Body;
 use crate::geom::Vec3;
 use crate::neighbor::Nearby;
+use crate::robot::RobotId;
 use crate::scalar::Scalar;
-use crate::wire::RobotId;
 
 fn number<S: Scalar>(value: f64) -> S {
     S::from_f64(value).unwrap()

@@ -7,7 +7,7 @@ use crate::geom::Vec3;
 use crate::neighbor::Nearby;
 use crate::obstacle::Obstacle;
 use crate::rand::Rng;
-use crate::wire::RobotId;
+use crate::robot::RobotId;
 use std::vec::Vec;
 
 type V = Vec3<f64>;

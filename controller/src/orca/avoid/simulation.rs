@@ -3,7 +3,7 @@
 use super::tests::rng_of;
 use super::*;
 use crate::geom::{Position, Vec3};
-use crate::wire::RobotId;
+use crate::robot::RobotId;
 use std::vec::Vec;
 
 type V = [f64; 2];

@@ -1,8 +1,8 @@
 use super::*;
 use crate::geom::Vec3;
 use crate::rand::Rng;
+use crate::robot::RobotId;
 use crate::scalar::Q16;
-use crate::wire::RobotId;
 use proptest::prelude::*;
 
 fn body(id: u32, velocity: [f32; 2]) -> Body<f32> {

@@ -1,5 +1,5 @@
 use super::*;
-use crate::wire::RobotId;
+use crate::robot::RobotId;
 use proptest::prelude::*;
 use std::vec::Vec as StdVec;
 

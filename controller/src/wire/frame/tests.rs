@@ -7,9 +7,11 @@
 use super::*;
 use crate::grid::{Cell, Dir};
 use crate::rand::Rng;
+use crate::robot::Mode;
+use crate::template::TemplateEntry;
 use crate::time::Instant;
+use crate::wire::RequestKind;
 use crate::wire::arbitrary::{header, message};
-use crate::wire::{Mode, RequestKind, TemplateEntry};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use std::vec::Vec as StdVec;

@@ -1,7 +1,8 @@
 use super::super::arbitrary;
-use super::super::{RobotId, decode, encode};
+use super::super::{decode, encode};
 use super::*;
 use crate::digest::digest;
+use crate::robot::RobotId;
 use crc::{CRC_16_IBM_SDLC, Crc};
 use proptest::collection::vec;
 use proptest::prelude::*;

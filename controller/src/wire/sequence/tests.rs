@@ -1,7 +1,7 @@
 #![allow(clippy::std_instead_of_alloc)]
 
 use super::*;
-use crate::wire::RobotId;
+use crate::robot::RobotId;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use std::collections::BTreeSet;

@@ -6,13 +6,14 @@ use crate::medium::{Faults, INBOX};
 use crate::{Probe, Summary};
 use heapless::Vec;
 use staya_controller::agent::{AgentConfig, Unguarded};
-use staya_controller::formation::{FormationParams, Prediction, Template};
+use staya_controller::formation::{FormationParams, Prediction};
 use staya_controller::grid::Cell;
+use staya_controller::robot::RobotId;
 use staya_controller::route::RouteParams;
 use staya_controller::scalar::Scalar;
+use staya_controller::template::Template;
 use staya_controller::wire::{
-    GoalAssignment, Header, Message, Postcard, Request, RequestKind, RobotId, TemplateAssignment,
-    Wire,
+    GoalAssignment, Header, Message, Postcard, Request, RequestKind, TemplateAssignment, Wire,
 };
 
 /// Rough land with two walls to go around.

@@ -16,9 +16,9 @@ use staya_controller::grid::Cell;
 use staya_controller::neighbor::Doubt;
 use staya_controller::orca::{Analytic, AvoidParams, FlyParams, HalfPlanes};
 use staya_controller::push_out::PushOutParams;
+use staya_controller::robot::RobotId;
 use staya_controller::route::RouteParams;
 use staya_controller::scalar::Scalar;
-use staya_controller::wire::RobotId;
 
 const RADIUS_MM: i32 = 150;
 /// Half-planes that a robot reckons with.

@@ -15,10 +15,11 @@ mod program {
     use staya_cases::{Case, Probe, Summary, WorstCase};
     use staya_controller::agent::{Agent, Guidance, Inputs, OUTBOX, Outputs, Safety};
     use staya_controller::grid::{Cell, Dir};
+    use staya_controller::robot::{Mode, RobotId};
     use staya_controller::scalar::{Q16, Scalar};
     use staya_controller::time::Instant;
     use staya_controller::wire::{
-        Beacon, DecodeError, EncodeError, Frame, Header, Message, Mode, Postcard, RobotId, Wire,
+        Beacon, DecodeError, EncodeError, Frame, Header, Message, Postcard, Wire,
     };
     use staya_firmware::{runtime, stack};
     #[cfg(not(part = "nrf51"))]

@@ -10,8 +10,9 @@ use staya_controller::agent::{Inputs, Pose, Surroundings};
 use staya_controller::geom::{Vec2, Vec3};
 use staya_controller::grid::{Cell, Window};
 use staya_controller::obstacle::Obstacle;
+use staya_controller::robot::RobotId;
 use staya_controller::time::Instant;
-use staya_controller::wire::{Beacon, Format, Header, Message, Postcard, RobotId, Wire};
+use staya_controller::wire::{Beacon, Format, Header, Message, Postcard, Wire};
 use staya_mavlink::any::AnyWire;
 use std::vec::Vec;
 

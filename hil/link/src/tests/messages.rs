@@ -10,13 +10,16 @@ use heapless::Vec;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use staya_controller::agent::*;
-use staya_controller::formation::{FormationParams, Template};
+use staya_controller::formation::FormationParams;
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Cell, Dir};
 use staya_controller::obstacle::Obstacle;
+use staya_controller::robot::{Mode, RobotId};
 use staya_controller::scalar::{Q16, Scalar};
+use staya_controller::template::Template;
+use staya_controller::template::TemplateEntry;
 use staya_controller::time::{Duration, Instant};
-use staya_controller::wire::{Format, Mode, Postcard, RequestKind, RobotId, TemplateEntry};
+use staya_controller::wire::{Format, Postcard, RequestKind};
 
 /// Bytes of a frame's content.
 fn content(frame: &[u8]) -> usize {

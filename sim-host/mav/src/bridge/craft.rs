@@ -3,7 +3,7 @@
 use crate::geo::Origin;
 use staya_controller::agent::Wish;
 use staya_controller::grid::{BLOCKED, Cell};
-use staya_controller::wire::Mode;
+use staya_controller::robot::Mode;
 use staya_sim::engine::Glance;
 use staya_sim::scenario::{SafetyName, Scenario};
 use staya_sim::terrain::Terrain;

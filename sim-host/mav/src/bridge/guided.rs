@@ -7,10 +7,11 @@ use crate::geo::{Global, enu};
 use staya_controller::agent::{Place, Wish};
 use staya_controller::geom::Vec3;
 use staya_controller::grid::Cell;
+use staya_controller::robot::RobotId;
+use staya_controller::template::TemplateEntry;
 use staya_controller::time::Duration;
 use staya_controller::wire::{
-    GoalAssignment, Header, Message, PlaceAssignment, RobotId, TEMPLATE_PART, TemplateAssignment,
-    TemplateEntry,
+    GoalAssignment, Header, Message, PlaceAssignment, TEMPLATE_PART, TemplateAssignment,
 };
 use staya_mavlink::constants::*;
 use staya_mavlink::dialect::*;

@@ -3,7 +3,7 @@
 use super::craft::FlightMode;
 use super::vehicle::Vehicle;
 use crate::geo::ned;
-use staya_controller::wire::Mode;
+use staya_controller::robot::Mode;
 use staya_mavlink::constants::*;
 use staya_mavlink::dialect::*;
 use staya_mavlink::mavlink_core::MessageData as _;

@@ -7,7 +7,7 @@ use super::vehicle::{Out, Vehicle};
 use crate::geo::{Global, Origin};
 use staya_controller::agent::{Parameter, Wish};
 use staya_controller::grid::{BLOCKED, Cell};
-use staya_controller::wire::Mode;
+use staya_controller::robot::Mode;
 use staya_mavlink::dialect::*;
 use staya_mavlink::frame::Sender;
 use staya_sim::terrain::Terrain;

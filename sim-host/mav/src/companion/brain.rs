@@ -5,8 +5,9 @@ use staya_controller::agent::{
     NEIGHBORS, Outputs, TEMPLATE, VISITS, Wish,
 };
 use staya_controller::geom::Vec3;
+use staya_controller::robot::Mode;
 use staya_controller::time::{self, Instant};
-use staya_controller::wire::{Mode, Wire};
+use staya_controller::wire::Wire;
 use staya_sim::engine::{Ground, PlaneGround, Senses, WIDE};
 use staya_sim::scenario::{SafetyName, Scenario};
 use std::sync::Arc;

@@ -6,7 +6,7 @@ use super::kind::Kind;
 use crate::Endpoint;
 use crate::geo::{Global, Origin};
 use serde::Deserialize;
-use staya_controller::wire::RobotId;
+use staya_controller::robot::RobotId;
 use staya_sim::scenario::{
     GuidanceName, Overrides, PlaneSetup, Scenario, ScenarioError, Source, within,
 };

@@ -4,7 +4,7 @@ use super::duties::{State, Tally};
 use super::kind::Kind;
 use crate::Counts;
 use serde::Serialize;
-use staya_controller::wire::Mode;
+use staya_controller::robot::Mode;
 use std::fmt::{self, Write as _};
 
 /// A vehicle at the end.

@@ -9,7 +9,7 @@ use super::voice::{Seal, Voice, VoiceError};
 use crate::geo::{Origin, enu, ned};
 use crate::{Lines, OpenError, Peer, Received, Tlog, TlogError};
 use staya_controller::agent::Event as AgentEvent;
-use staya_controller::wire::Mode;
+use staya_controller::robot::Mode;
 use staya_mavlink::dialect::MavMessage;
 use staya_mavlink::frame::{MAX_FRAME_LEN, RawFrame, Sender, encode_message};
 use staya_mavlink::signing::Signing;

@@ -159,7 +159,7 @@ impl Voice {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use staya_controller::wire::RobotId;
+    use staya_controller::robot::RobotId;
 
     const HEADER: Header = Header {
         boot: 0,

@@ -17,7 +17,7 @@ use staya_controller::flock::boids::{BoidsParams, Torus};
 use staya_controller::geom::{Vec2, Vec3};
 use staya_controller::neighbor::Nearby;
 use staya_controller::rand::Rng;
-use staya_controller::wire::RobotId;
+use staya_controller::robot::RobotId;
 use staya_sim::nearby::{AllPairs, Cells, Found, Query, Search, Space, Tree};
 use std::time::Instant;
 

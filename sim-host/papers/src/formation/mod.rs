@@ -11,12 +11,13 @@ pub use report::{Journey, Point, Report, Variants};
 
 use super::{MAX_RUNS, in_parallel};
 use staya_controller::agent::TEMPLATE;
-use staya_controller::formation::{FormationParams, Template, TemplateError};
+use staya_controller::formation::FormationParams;
 use staya_controller::grid::{Cell, Norm, UNIT};
 use staya_controller::rand::Rng;
+use staya_controller::robot::RobotId;
 use staya_controller::route::{Replan, RouteParams};
 use staya_controller::shuffle::Sharpness;
-use staya_controller::wire::RobotId;
+use staya_controller::template::{Template, TemplateError};
 use staya_sim::engine::simulate;
 use staya_sim::radio::RadioParams;
 use staya_sim::scenario::{Formation, Robot, Routing, Scenario};

@@ -1,8 +1,8 @@
 use super::*;
 use crate::walk::Walker;
 use staya_controller::grid::{BLOCKED, Dir, Window};
+use staya_controller::robot::RobotId;
 use staya_controller::route::{CostField, ExitRule, Router};
-use staya_controller::wire::RobotId;
 use staya_sim::world::{MoveRules, World};
 
 /// Small, fast, and independent of the controller's defaults.

@@ -3,7 +3,7 @@ use crate::colour::PALETTE;
 use crate::{run, run_pictures, trajectories};
 use staya_controller::grid::{BLOCKED, Cell};
 use staya_controller::rand::Rng;
-use staya_controller::wire::Mode;
+use staya_controller::robot::Mode;
 use staya_sim::record::{History, Motion, Options, PacketCounts, Recorder, RobotRow, TickRow};
 use staya_sim::terrain::Terrain;
 use staya_sim::terrain::generate::{Plan, uniform};

@@ -6,9 +6,8 @@ use heapless::Vec as Bounded;
 use staya_controller::agent::OUTBOX;
 use staya_controller::auth::Key;
 use staya_controller::grid::Cell;
-use staya_controller::wire::{
-    Format, GoalAssignment, Header, Message, PlaceAssignment, RobotId, Wire,
-};
+use staya_controller::robot::RobotId;
+use staya_controller::wire::{Format, GoalAssignment, Header, Message, PlaceAssignment, Wire};
 use std::collections::VecDeque;
 
 /// The start number that it claims to be at: so high that only the missing key gives it away.

@@ -74,7 +74,7 @@ mod tests {
     use crate::world::MoveRules;
     use staya_controller::agent::Command;
     use staya_controller::grid::Cell;
-    use staya_controller::wire::RobotId;
+    use staya_controller::robot::RobotId;
 
     #[test]
     fn a_crossing_leads_evenly_from_centre_to_centre() {

@@ -10,8 +10,8 @@ use crate::scenario::{Robot, Scenario};
 use crate::world::{Misplaced, World};
 use staya_controller::agent::{AgentConfig, CellState, Command, Inputs, Task};
 use staya_controller::grid::UNIT;
+use staya_controller::robot::Mode;
 use staya_controller::time::Duration;
-use staya_controller::wire::Mode;
 
 /// Bodies that hold a cell each.
 pub struct Grid {

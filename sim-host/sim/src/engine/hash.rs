@@ -2,7 +2,7 @@
 
 use crate::world::Body;
 use staya_controller::rand::Rng;
-use staya_controller::wire::{Mode, RobotId};
+use staya_controller::robot::{Mode, RobotId};
 
 /// Keeps these words apart from other uses of the generator.
 const START: u32 = 0x0048_0001;

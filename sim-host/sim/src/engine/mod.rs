@@ -39,8 +39,9 @@ use staya_controller::agent::{
 };
 use staya_controller::auth::Key;
 use staya_controller::grid::Cell;
+use staya_controller::robot::{Mode, RobotId};
 use staya_controller::time::{Duration, Instant};
-use staya_controller::wire::{Format, Mode, RobotId};
+use staya_controller::wire::Format;
 
 /// Robots that a thread takes at least at a time: less would cost more in handing out than in work.
 const BATCH: usize = 64;

@@ -9,7 +9,8 @@ use crate::world::Misplaced;
 use staya_controller::agent::{
     CELLS, Commanded, Event, Guidance, Parameter, Safety, Unguarded, Wish,
 };
-use staya_controller::wire::{Header, Message, RobotId, Wire as _};
+use staya_controller::robot::RobotId;
+use staya_controller::wire::{Header, Message, Wire as _};
 use staya_mavlink::frame::MAX_FRAME_LEN;
 
 /// What an operator can see of a robot: what the robot itself knows.

@@ -14,8 +14,9 @@ use staya_controller::auth::Key;
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Cell, GridFrame, UNIT};
 use staya_controller::obstacle::{Obstacle, grid_walls};
+use staya_controller::robot::{Mode, RobotId};
 use staya_controller::time::{Duration, Instant};
-use staya_controller::wire::{Format, Header, Message, Mode, PlaceAssignment, RobotId, Wire};
+use staya_controller::wire::{Format, Header, Message, PlaceAssignment, Wire};
 
 /// Walls of the land that a robot sees at a time.
 const WALLS: usize = 16;

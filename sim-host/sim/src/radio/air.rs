@@ -4,7 +4,8 @@ use super::Counts;
 use super::params::RadioParams;
 use staya_controller::agent::OUTBOX;
 use staya_controller::rand::Rng;
-use staya_controller::wire::{RobotId, Wire};
+use staya_controller::robot::RobotId;
+use staya_controller::wire::Wire;
 use staya_mavlink::any::AnyWire;
 
 /// Keeps the draws of this module apart from all others.

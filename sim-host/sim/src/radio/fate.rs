@@ -3,7 +3,7 @@
 use super::air::Packet;
 use super::params::{Burst, RadioParams};
 use staya_controller::rand::Rng;
-use staya_controller::wire::RobotId;
+use staya_controller::robot::RobotId;
 
 /// Keep the draws of this module apart from all others.
 const LINK: u32 = 0x0052_0002;

@@ -17,7 +17,7 @@ use air::Air;
 use fate::{Fates, Verdict};
 use rayon::prelude::*;
 use serde::Serialize;
-use staya_controller::wire::RobotId;
+use staya_controller::robot::RobotId;
 use std::ops::{Add, AddAssign};
 
 /// What became of packets. Each receiver in range counts on its own.

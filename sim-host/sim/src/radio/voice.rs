@@ -3,9 +3,9 @@
 use heapless::Vec;
 use serde::{Serialize, Serializer};
 use staya_controller::auth::Key;
+use staya_controller::robot::RobotId;
 use staya_controller::wire::{
-    DecodeError, EncodeError, Format, Frame, Header, MAX_TAGGED_ROBOT, Message, RobotId, Sealed,
-    Wire,
+    DecodeError, EncodeError, Format, Frame, Header, MAX_TAGGED_ROBOT, Message, Sealed, Wire,
 };
 use staya_mavlink::any::{self, AnyWire};
 use staya_mavlink::signed::Signed;

@@ -1,7 +1,7 @@
 //! The lines of `trace.csv` and `series.csv` and the sidecars that explain them.
 
 use super::{Error, RobotRow, TickRow, write_atomically};
-use staya_controller::wire::Mode;
+use staya_controller::robot::Mode;
 use std::io::Write;
 use std::path::Path;
 

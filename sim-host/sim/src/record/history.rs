@@ -2,7 +2,7 @@
 
 use super::{PacketCounts, RobotRow, TickRow};
 use staya_controller::grid::Cell;
-use staya_controller::wire::Mode;
+use staya_controller::robot::Mode;
 
 /// Points that the series may hold; when they run out, neighbours are merged.
 const SERIES_POINTS: usize = 1 << 14;

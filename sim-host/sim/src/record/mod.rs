@@ -17,7 +17,7 @@ use file::LineFile;
 use serde::Serialize;
 use staya_controller::agent::Refused;
 use staya_controller::grid::Cell;
-use staya_controller::wire::Mode;
+use staya_controller::robot::Mode;
 use std::ops::{Add, AddAssign};
 use std::path::Path;
 

@@ -6,7 +6,7 @@ use super::{Attack, AttackKind, AttackTable, Robot, ScenarioError, ScenarioFile}
 use crate::key::{self, KeyFile};
 use crate::radio::{PEERS, Voice};
 use staya_controller::auth::Key;
-use staya_controller::wire::RobotId;
+use staya_controller::robot::RobotId;
 
 /// Metres from the corner that a place may have: what a packet can say.
 const FARTHEST_M: f64 = 2_000_000.0;

@@ -5,7 +5,7 @@ use super::source::Source;
 use super::{Fault, Robot, ScenarioError, ScenarioFile};
 use crate::terrain::generate::{self, Plan};
 use crate::terrain::{Terrain, TerrainError};
-use staya_controller::wire::RobotId;
+use staya_controller::robot::RobotId;
 use staya_mavlink::any::max_robot;
 
 /// Seconds as whole microseconds, rounded.

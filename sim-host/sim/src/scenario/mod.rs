@@ -35,7 +35,7 @@ use crate::terrain::Terrain;
 use crate::world::MoveRules;
 use staya_controller::auth::Key;
 use staya_controller::formation::FormationParams;
-use staya_controller::wire::RobotId;
+use staya_controller::robot::RobotId;
 use std::path::Path;
 
 /// Where the fields are listed.

@@ -6,10 +6,10 @@ use super::{ScenarioError, ScenarioFile};
 use crate::terrain::Terrain;
 use crate::terrain::movingai;
 use staya_controller::agent::TEMPLATE;
-use staya_controller::formation::{Template, TemplateError};
 use staya_controller::grid::Cell;
 use staya_controller::rand::Rng;
-use staya_controller::wire::RobotId;
+use staya_controller::robot::RobotId;
+use staya_controller::template::{Template, TemplateError};
 use std::collections::BTreeSet;
 
 /// Keep the draws of this module apart from all others.

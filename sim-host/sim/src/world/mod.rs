@@ -13,7 +13,7 @@ use crate::terrain::Terrain;
 use staya_controller::agent::Command;
 use staya_controller::grid::{BLOCKED, Cell, Dir, Norm, UNIT};
 use staya_controller::rand::Rng;
-use staya_controller::wire::RobotId;
+use staya_controller::robot::RobotId;
 use thiserror::Error;
 
 /// Keeps the draws of this module apart from all others.

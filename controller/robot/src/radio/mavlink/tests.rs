@@ -1,7 +1,8 @@
 use super::*;
 use crate::radio::MavlinkLink;
 use proptest::prelude::*;
-use staya_controller::wire::{Ack, Header, Message, RobotId};
+use staya_controller::robot::RobotId;
+use staya_controller::wire::{Ack, Header, Message};
 use staya_mavlink::dialect::HEARTBEAT_DATA;
 use staya_mavlink::frame::{self, Sender};
 use staya_mavlink::wire::{encode, next_frame};

@@ -4,8 +4,9 @@ use staya_controller::agent::*;
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Cell, Window};
 use staya_controller::obstacle::Obstacle;
+use staya_controller::robot::{Mode, RobotId};
 use staya_controller::time::{Duration, Instant};
-use staya_controller::wire::{Beacon, Header, Message, Mode, RobotId, encode};
+use staya_controller::wire::{Beacon, Header, Message, encode};
 use std::vec::Vec;
 
 /// A beacon of robot 2 on its way round the first one.

@@ -1,5 +1,6 @@
 use super::*;
-use staya_controller::wire::{Header, Message, Postcard, RobotId, encode};
+use staya_controller::robot::RobotId;
+use staya_controller::wire::{Header, Message, Postcard, encode};
 
 fn frames(count: u16) -> Vec<u8> {
     let mut bytes = Vec::new();

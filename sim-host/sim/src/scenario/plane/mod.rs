@@ -26,7 +26,7 @@ use staya_controller::grid::Cell;
 use staya_controller::neighbor::Doubt;
 use staya_controller::orca::AvoidParams;
 use staya_controller::push_out::{Evasion, Model, PushOutParams};
-use staya_controller::wire::RobotId;
+use staya_controller::robot::RobotId;
 
 /// Robots that a plane can hold.
 const MAX_ROBOTS: u32 = 1_000_000;

@@ -15,7 +15,7 @@ use staya_controller::agent::Command;
 use staya_controller::body::Body as Limits;
 use staya_controller::geom::Vec3;
 use staya_controller::grid::{BLOCKED, Cell};
-use staya_controller::wire::RobotId;
+use staya_controller::robot::RobotId;
 
 /// A robot's body.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -222,7 +222,7 @@ fn what_happens_is_said_and_a_setpoint_that_ran_out_too() {
         from: Mode::Cruise,
         to: Mode::Arrived,
     };
-    let lost = [2, 3].map(|id| Event::NeighborLost(staya_controller::wire::RobotId(id)));
+    let lost = [2, 3].map(|id| Event::NeighborLost(staya_controller::robot::RobotId(id)));
     let (sample, mut out) = (bench.sample, Out::default());
     let events = [arrived, lost[0], lost[1]];
     bench.vehicle.observe(sample, &events, 9_000_000, &mut out);

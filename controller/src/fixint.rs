@@ -10,7 +10,7 @@ use crate::time::Instant;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// A value that always takes the same number of bytes.
-pub(super) trait Fixed: Copy {
+pub(crate) trait Fixed: Copy {
     /// Its bytes: an array, or an array of arrays.
     type Bytes: Serialize + for<'de> Deserialize<'de>;
     /// To bytes, least significant first.
@@ -70,10 +70,10 @@ impl Fixed for Instant {
     }
 }
 
-pub(super) fn serialize<T: Fixed, S: Serializer>(value: &T, to: S) -> Result<S::Ok, S::Error> {
+pub(crate) fn serialize<T: Fixed, S: Serializer>(value: &T, to: S) -> Result<S::Ok, S::Error> {
     value.to_bytes().serialize(to)
 }
 
-pub(super) fn deserialize<'de, T: Fixed, D: Deserializer<'de>>(from: D) -> Result<T, D::Error> {
+pub(crate) fn deserialize<'de, T: Fixed, D: Deserializer<'de>>(from: D) -> Result<T, D::Error> {
     T::Bytes::deserialize(from).map(T::from_bytes)
 }

@@ -1,8 +1,35 @@
-//! From a graph to what one robot needs to know of it.
+//! A robot's place in a formation: where its neighbours there should be, from a graph of the whole.
 
+use crate::fixint;
 use crate::grid::{Cell, DIAGONAL, Dir, UNIT};
 use crate::list::sink_last;
-use crate::wire::{RobotId, Template, TemplateEntry};
+use crate::robot::RobotId;
+use heapless::Vec;
+use serde::{Deserialize, Serialize};
+
+/// A robot's place in the formation and where its neighbours there should be (KUZ section 3), at
+/// most `F` of them.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Template<const F: usize> {
+    /// The robot's place in the formation.
+    pub slot: u8,
+    /// Cell difference from the top leader's place to this robot's place.
+    pub offset: Cell,
+    /// The neighbours within the geodesic radius, in the sender's order.
+    pub entries: Vec<TemplateEntry, F>,
+}
+
+/// Where a neighbour in the formation should be, relative to oneself (KUZ section 3: template).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TemplateEntry {
+    /// Wanted cell difference, neighbour minus self.
+    #[serde(with = "fixint")]
+    pub offset: Cell,
+    /// Which robot should stand there; nobody = anyone.
+    pub id: RobotId,
+    /// Geodesic distance from self in the formation's graph, 1..=rho.
+    pub hops: u8,
+}
 
 /// A graph that gives no template.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,7 +65,7 @@ impl<const F: usize> Template<F> {
         let mut template = Self {
             slot,
             offset: here - top,
-            entries: heapless::Vec::new(),
+            entries: Vec::new(),
         };
         for hops in 1..=rho {
             let before = template.entries.len();
