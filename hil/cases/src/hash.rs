@@ -1,4 +1,4 @@
-//! One number for all that a swarm did.
+//! A hash over everything that a swarm did.
 
 use staya_controller::agent::{Command, Outputs};
 use staya_controller::geom::{Position, Vec3};

@@ -1,4 +1,4 @@
-//! Swarms in the plane and in space: bodies that do at once what they are told.
+//! Swarms in the plane and in space: bodies that follow their commands at once.
 
 use crate::grid::KNOWN;
 use crate::hash::Hash;

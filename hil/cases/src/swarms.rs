@@ -1,4 +1,4 @@
-//! The cases: who is there, what they are to do, and what they are made of.
+//! The cases: which robots, their tasks, and their controllers.
 
 mod flocks;
 pub(crate) mod on_grid;

@@ -1,4 +1,4 @@
-//! What comes back from a fleet.
+//! The answers of a fleet's devices.
 
 use crate::channel::OpenError;
 use crate::device::DeviceError;

@@ -1,4 +1,4 @@
-//! What is wanted of a fleet.
+//! The configuration of a fleet.
 
 use crate::line::LineFaults;
 use staya_controller::agent::{Setup, Task};

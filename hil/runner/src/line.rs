@@ -1,4 +1,4 @@
-//! Faults of a line on request: what a bad cable or a radio in its place would do to frames.
+//! Faults of a line on request: what a bad cable, or a radio instead of one, would do to frames.
 
 use staya_controller::rand::Rng;
 use std::collections::VecDeque;

@@ -1,4 +1,4 @@
-//! The land as a picture's ground, with the way from metres to picture units.
+//! Land as the background of a picture, and the mapping from metres to picture units.
 
 use super::canvas::{Anchor, Canvas, Pixels, Point, Shape, Stroke, Text};
 use super::colour::{Colour, INK, MUTED, WHITE};

@@ -1,4 +1,4 @@
-//! What to do about a file that cannot be read or written.
+//! Errors of files that cannot be read or written, with the remedy.
 
 use std::io::{Error, ErrorKind};
 

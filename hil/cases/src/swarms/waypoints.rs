@@ -1,4 +1,4 @@
-//! Cases in which each robot has a place of its own to go to.
+//! Cases in which each robot has a waypoint of its own.
 
 use crate::grid::Route;
 use crate::land::Land;

@@ -1,4 +1,4 @@
-//! Somebody at the roadside with a radio like the robots' own, and without their key.
+//! An attacker with a radio like the robots' own, but without their key.
 
 use crate::radio::Voice;
 use crate::scenario::{Attack, AttackKind};

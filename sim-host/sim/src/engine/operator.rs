@@ -1,4 +1,4 @@
-//! A swarm that somebody looks at and commands while it runs.
+//! A run that an operator watches and commands.
 
 use super::simulate::{WIDE, brains, formation, is_narrow, route};
 use super::{Engine, Grid, Ground, Outcome, PlaneGround, Status};

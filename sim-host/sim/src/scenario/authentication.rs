@@ -1,4 +1,4 @@
-//! The tables of the key and of those who do not have it.
+//! `[authentication]` and `[[attack]]`: the key, and attackers without it.
 
 use super::check::within;
 use super::source::Source;

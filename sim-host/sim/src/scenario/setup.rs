@@ -1,4 +1,4 @@
-//! What each robot of a scenario is to be, as the controller takes it.
+//! The controller's setup of each robot of a scenario.
 
 use super::{GuidanceName, PlaneSetup, SafetyName, Scenario};
 use staya_controller::agent::{AnyHalfPlanes, GuidanceSetup, RouteSetup, SafetySetup};

@@ -1,4 +1,4 @@
-//! What can be wrong with terrain, said so that a person can put it right.
+//! What can be wrong with terrain, reported so that a person can fix it.
 
 use crate::file::{read_remedy, write_remedy};
 use std::fmt;

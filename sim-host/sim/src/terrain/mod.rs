@@ -1,7 +1,7 @@
 //! The land: a grid of impassability, where it comes from, what describes it.
 //!
 //! Files: [`movingai`] (`.map`, `.scen`), [`esri`] heights (`.asc`) through [`slope`], [`ros`] (`.yaml` with `.pgm`; also
-//! the format that Staya writes). [`Terrain::load`] chooses by extension. [`generate`] makes land by chance, and
+//! the format that Staya writes). [`Terrain::load`] chooses by extension. [`generate`] makes random land, and
 //! [`metrics`] describes it.
 
 pub mod esri;

@@ -1,4 +1,4 @@
-//! Who touches whom and what.
+//! Overlaps: which bodies touch each other or an obstacle.
 
 use super::{dot, length, minus, squared};
 use crate::nearby::{Cells, Query, Search as _, Space};

@@ -1,4 +1,4 @@
-//! Where robots and obstacles may be, how fast, and what goes with what.
+//! Checks of `[plane]`: positions, speeds, and which tables go together.
 
 use super::super::ScenarioError;
 use super::super::source::Source;

@@ -1,4 +1,4 @@
-//! Where robots in the plane start, and what they are told.
+//! Where robots in the plane start, and their tasks.
 
 use super::super::source::Source;
 use super::super::{Robot, ScenarioError};

@@ -2,7 +2,7 @@
 //! land under them allow.
 //!
 //! This is no physics engine: nothing stops a body but its own robot. Bodies pass through each other and through
-//! obstacles, and each such overlap is counted, so that a controller cannot lean on the world to be safe.
+//! obstacles, and each such overlap is counted, so that no controller can rely on the world to be safe.
 
 mod solid;
 
