@@ -5,9 +5,10 @@
     clippy::std_instead_of_core
 )]
 
+mod common;
+
 use core::convert::Infallible;
 use embedded_hal::digital::{ErrorType as PinError, OutputPin};
-use embedded_hal::pwm::{ErrorType as PwmError, SetDutyCycle};
 use staya_controller::agent::{
     Agent, AgentConfig, Inputs, OrcaSafety, Place, Surroundings, WaypointGuidance,
 };
@@ -32,24 +33,9 @@ const WHEEL_M: f64 = 0.025;
 const ARM_M: f64 = 0.1;
 const TICKS_PER_TURN: u16 = 1200;
 
-#[derive(Clone, Default)]
-struct Power(Rc<Cell<u16>>);
+type Power = common::Channel<MAX_DUTY>;
 
-impl PwmError for Power {
-    type Error = Infallible;
-}
-
-impl SetDutyCycle for Power {
-    fn max_duty_cycle(&self) -> u16 {
-        MAX_DUTY
-    }
-
-    fn set_duty_cycle(&mut self, duty: u16) -> Result<(), Infallible> {
-        self.0.set(duty);
-        Ok(())
-    }
-}
-
+/// A direction pin.
 #[derive(Clone, Default)]
 struct Ahead(Rc<Cell<bool>>);
 

@@ -11,8 +11,9 @@
     clippy::std_instead_of_core
 )]
 
+mod common;
+
 use core::convert::Infallible;
-use embedded_hal::pwm::{ErrorType as PwmErrorType, SetDutyCycle};
 use embedded_io::{ErrorType, Read, ReadReady, Write, WriteReady};
 use staya_controller::agent::{
     Agent, AgentConfig, CELLS, CellState, GridWorkspace, Guidance, HALF_PLANES, InCell, InPlane,
@@ -36,7 +37,7 @@ use staya_robot::drive::{
 use staya_robot::odometry::{Encoder, Odometry};
 use staya_robot::radio::PacketLink;
 use staya_robot::scan::{LocalMap, MapParams, OutlineParams, Scan, is_neighbor, outline};
-use std::cell::{Cell as Shared, RefCell};
+use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
 
@@ -59,25 +60,7 @@ const FRAME: GridFrame<f32> = GridFrame {
     cell_m: 0.4,
 };
 
-/// A channel whose duty the world can see.
-#[derive(Clone, Default)]
-struct Channel(Rc<Shared<u16>>);
-
-impl PwmErrorType for Channel {
-    type Error = Infallible;
-}
-
-impl SetDutyCycle for Channel {
-    fn max_duty_cycle(&self) -> u16 {
-        MAX_DUTY
-    }
-
-    fn set_duty_cycle(&mut self, duty: u16) -> Result<(), Infallible> {
-        assert!(duty <= MAX_DUTY);
-        self.0.set(duty);
-        Ok(())
-    }
-}
+type Channel = common::Channel<MAX_DUTY>;
 
 /// A UART: what came from the air, and what waits to go there.
 #[derive(Clone, Default)]

@@ -14,7 +14,7 @@ use staya_controller::agent::*;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::{geom::Position, neighbor::Doubt, orca::AvoidParams, robot::RobotId};
 use staya_robot::odometry::{Encoder, Odometry};
-use staya_robot::{drive::*, radio::AsyncPacketLink};
+use staya_robot::{drive::*, radio::PacketLink};
 
 const TICK: Duration = Duration::from_millis(50);
 /// Measured on the robot: between the wheels, a wheel's radius, the body's radius, edges per turn of a wheel.
@@ -34,7 +34,7 @@ async fn robot(p: Peripherals) -> Option<()> {
     modem.baudrate = 57_600;
     let uart = BufferedUart::new(p.USART1, p.PA10, p.PA9, &mut tx, &mut rx, Irqs, modem);
     let (tx, rx) = uart.ok()?.split();
-    let mut radio = AsyncPacketLink::<_, _>::new(rx, tx);
+    let mut radio = PacketLink::<_>::new((rx, tx));
     let left = Qei::new(p.TIM3, p.PA6, p.PA7, Default::default());
     let right = Qei::new(p.TIM4, p.PB6, p.PB7, Default::default());
     let mut left_rim = Encoder::new(WHEEL_M, TICKS_PER_TURN, false)?;

@@ -7,6 +7,7 @@ use staya_controller::scalar::Scalar;
 
 /// Two wheels on one axle: left, right.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Differential<S> {
     half_track_m: S,
     per_track: S,
@@ -64,6 +65,7 @@ impl<S: Scalar> Kinematics<S, 2> for Differential<S> {
 /// is late by t, allow for speed * t + speed^2 / (2 a) in directions that change at once; give the controller the same a
 /// as its `max_acceleration_mps2` and the second term is its own business.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct LookAhead<S> {
     ahead_m: S,
     per_ahead: S,

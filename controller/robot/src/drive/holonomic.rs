@@ -5,6 +5,7 @@ use staya_controller::scalar::Scalar;
 
 /// `W` omni wheels at equal angles on a circle, each rolling along it, numbered counter-clockwise; three or four.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Omni<S, const W: usize> {
     /// Cosine and sine of where each wheel is, seen from the centre.
     places: [(S, S); W],
@@ -64,6 +65,7 @@ impl<S: Scalar, const W: usize> Kinematics<S, W> for Omni<S, W> {
 /// Four mecanum wheels: front left, front right, rear left, rear right. The rollers that touch the ground point
 /// to the middle (seen from above, all rollers that one sees make an X).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Mecanum<S> {
     /// Half the wheel base plus half the track.
     arm_m: S,

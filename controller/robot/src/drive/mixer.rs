@@ -6,6 +6,7 @@ use staya_controller::time::Duration;
 
 /// What the wheels can do.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Limits<S> {
     /// Top rim speed, m/s: what the slowest motor does under load with an old battery, or the swarm's picture of the robot is wrong.
     pub speed_mps: S,

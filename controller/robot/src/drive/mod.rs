@@ -20,7 +20,7 @@ mod wheels;
 pub use differential::{Differential, LookAhead};
 pub use holonomic::{Mecanum, Omni};
 pub use mixer::{Limits, Mixer};
-pub use motor::{FULL, HBridge, Motor, SignMagnitude, SignMagnitudeError, TwoPins};
+pub use motor::{FULL, HBridge, Motor, MotorError, SignMagnitude, TwoPins};
 pub use twist::{Kinematics, Twist, wished_velocity, wrap_angle};
 pub use wheels::{Calibration, Wheels, rim_speed};
 

@@ -1,5 +1,6 @@
 //! One motor behind a bridge.
 
+use core::fmt;
 use embedded_hal::digital::OutputPin;
 use embedded_hal::pwm::SetDutyCycle;
 
@@ -21,12 +22,23 @@ pub trait Motor {
 /// What went wrong at a [`SignMagnitude`] or at [`TwoPins`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum SignMagnitudeError<P, D> {
+pub enum MotorError<P, D> {
     /// At the PWM channel.
     Pwm(P),
     /// At a direction pin.
     Pin(D),
 }
+
+impl<P: fmt::Debug, D: fmt::Debug> fmt::Display for MotorError<P, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Pwm(error) => write!(f, "the PWM channel failed: {error:?}"),
+            Self::Pin(error) => write!(f, "the direction pin failed: {error:?}"),
+        }
+    }
+}
+
+impl<P: fmt::Debug, D: fmt::Debug> core::error::Error for MotorError<P, D> {}
 
 /// A PWM channel for the power and a pin for the direction (high: ahead), as on DRV8835 (PH/EN mode), TB9051, Cytron MDD.
 #[derive(Clone, Debug)]
@@ -50,16 +62,16 @@ impl<P: SetDutyCycle, D: OutputPin> SignMagnitude<P, D> {
 }
 
 impl<P: SetDutyCycle, D: OutputPin> Motor for SignMagnitude<P, D> {
-    type Error = SignMagnitudeError<P::Error, D::Error>;
+    type Error = MotorError<P::Error, D::Error>;
 
     fn set(&mut self, duty: i16) -> Result<(), Self::Error> {
         let power = scaled(duty, self.pwm.max_duty_cycle());
         // Without power while the direction changes: half a period of the wrong one is a jerk.
-        let pwm = |result: Result<(), P::Error>| result.map_err(SignMagnitudeError::Pwm);
+        let pwm = |result: Result<(), P::Error>| result.map_err(MotorError::Pwm);
         pwm(self.pwm.set_duty_cycle(0))?;
         self.direction
             .set_state((duty >= 0).into())
-            .map_err(SignMagnitudeError::Pin)?;
+            .map_err(MotorError::Pin)?;
         pwm(self.pwm.set_duty_cycle(power))
     }
 }
@@ -81,15 +93,15 @@ impl<P: SetDutyCycle, A: OutputPin, B: OutputPin<Error = A::Error>> TwoPins<P, A
 }
 
 impl<P: SetDutyCycle, A: OutputPin, B: OutputPin<Error = A::Error>> Motor for TwoPins<P, A, B> {
-    type Error = SignMagnitudeError<P::Error, A::Error>;
+    type Error = MotorError<P::Error, A::Error>;
 
     fn set(&mut self, duty: i16) -> Result<(), Self::Error> {
         let power = scaled(duty, self.pwm.max_duty_cycle());
-        let pwm = |result: Result<(), P::Error>| result.map_err(SignMagnitudeError::Pwm);
+        let pwm = |result: Result<(), P::Error>| result.map_err(MotorError::Pwm);
         pwm(self.pwm.set_duty_cycle(0))?;
         let ahead = self.ahead.set_state((duty > 0).into());
         let back = self.back.set_state((duty < 0).into());
-        ahead.and(back).map_err(SignMagnitudeError::Pin)?;
+        ahead.and(back).map_err(MotorError::Pin)?;
         pwm(self.pwm.set_duty_cycle(power))
     }
 }

@@ -371,7 +371,7 @@ mod pins {
     fn a_dead_direction_pin_leaves_the_motor_without_power() {
         let pin = Pin::new(&[PinStep::set(State::Low).with_error(failed())]);
         let mut motor = SignMagnitude::new(pwm(255, &[0]), pin);
-        assert_eq!(motor.set(-1), Err(SignMagnitudeError::Pin(failed())));
+        assert_eq!(motor.set(-1), Err(MotorError::Pin(failed())));
         let (mut pwm, mut pin) = motor.release();
         pwm.done();
         pin.done();

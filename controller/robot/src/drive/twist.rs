@@ -6,6 +6,7 @@ use staya_controller::scalar::Scalar;
 
 /// How a body moves, seen from itself; also how it has moved in a span (metres and radians).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Twist<S> {
     /// Ahead, m/s.
     pub forward_mps: S,

@@ -7,6 +7,7 @@ use staya_controller::scalar::Scalar;
 ///
 /// duty = `dead_duty` + (1 - `dead_duty`) * speed / `full_mps`, with the sign of the speed; below `still_mps` none at all.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Calibration<S> {
     /// Rim speed at full duty under the robot's weight, m/s ([`rim_speed`]); more than 0.
     pub full_mps: S,

@@ -1,91 +1,25 @@
-//! The link for asynchronous HALs.
+//! The link over asynchronous lines.
 
-use super::{Counts, Inbound, Outbound, Receiver, Sender};
-#[cfg(feature = "mavlink")]
-use super::{MavlinkReceiver, MavlinkSender};
+use super::link::PIECE;
+use super::{Framing, PacketLink};
 use core::convert::Infallible;
 use core::future::pending;
 use embassy_futures::{select, yield_now};
 use embedded_io_async::{Read, Write};
 
-/// Bytes that one call moves at a time.
-const PIECE: usize = 32;
-
-/// Frames over the two halves of an asynchronous line.
-///
-/// Between two steps let [`Self::serve`] run beside the wait for the next one, for example
-/// `select(ticker.next(), link.serve()).await`.
-///
-/// Reading and writing must stand being cancelled without losing bytes, as buffered UARTs do (those with a ring
-/// that an interrupt or a DMA fills).
-#[derive(Clone, Debug)]
-pub struct AsyncLink<R, W, I, O> {
-    reader: R,
-    writer: W,
-    receiver: I,
-    sender: O,
-}
-
-/// [`AsyncLink`] for robots that speak postcard; `IN` and `OUT` as for [`PacketLink`](super::PacketLink).
-pub type AsyncPacketLink<R, W, const IN: usize = 1024, const OUT: usize = 512> =
-    AsyncLink<R, W, Receiver<IN>, Sender<OUT>>;
-
-/// [`AsyncLink`] for robots that speak MAVLink; `IN` and `OUT` as for [`PacketLink`](super::PacketLink).
-#[cfg(feature = "mavlink")]
-pub type AsyncMavlinkLink<R, W, const IN: usize = 1536, const OUT: usize = 512> =
-    AsyncLink<R, W, MavlinkReceiver<IN>, MavlinkSender<OUT>>;
-
-impl<R, W, const IN: usize, const OUT: usize> AsyncPacketLink<R, W, IN, OUT> {
-    /// Over the line's two halves, with nothing received and nothing to send.
-    #[must_use]
-    pub const fn new(reader: R, writer: W) -> Self {
-        Self {
-            reader,
-            writer,
-            receiver: Receiver::new(),
-            sender: Sender::new(),
-        }
-    }
-}
-
-#[cfg(feature = "mavlink")]
-impl<R, W, const IN: usize, const OUT: usize> AsyncMavlinkLink<R, W, IN, OUT> {
-    /// Over the line's two halves, with nothing received and nothing to send.
-    #[must_use]
-    pub const fn new(reader: R, writer: W) -> Self {
-        Self {
-            reader,
-            writer,
-            receiver: MavlinkReceiver::new(),
-            sender: MavlinkSender::new(),
-        }
-    }
-}
-
-impl<R: Read, W: Write, I: Inbound, O: Outbound> AsyncLink<R, W, I, O> {
-    /// The frames since the last call, for [`Inputs::inbox`](staya_controller::agent::Inputs::inbox).
-    #[must_use]
-    pub fn take(&mut self) -> &[u8] {
-        self.receiver.take()
-    }
-
-    /// Queues the frames of [`Outputs::outbox`](staya_controller::agent::Outputs::outbox); [`Self::serve`] sends them.
-    pub fn send(&mut self, outbox: &[u8]) {
-        self.sender.send(outbox);
-    }
-
-    /// What came in, and what went out.
-    #[must_use]
-    pub fn counts(&self) -> (Counts, Counts) {
-        (self.receiver.counts(), self.sender.counts())
-    }
-
-    /// Moves bytes both ways until it is cancelled. Errors of the line are counted, what they spoiled is forgotten, and after
+/// Over the two halves of an asynchronous line, for example `PacketLink::<_>::new((rx, tx))`.
+impl<R: Read, W: Write, F: Framing, const IN: usize, const OUT: usize>
+    PacketLink<(R, W), F, IN, OUT>
+{
+    /// Moves bytes both ways until it is cancelled: let it run beside the wait for the next step, for example
+    /// `select(ticker.next(), link.serve()).await`. Errors of the line are counted, what they spoiled is forgotten, and after
     /// each one other tasks have their turn.
+    ///
+    /// Reading and writing must stand being cancelled without losing bytes, as buffered UARTs do (those with a ring
+    /// that an interrupt or a DMA fills).
     pub async fn serve(&mut self) -> Infallible {
         let Self {
-            reader,
-            writer,
+            line: (reader, writer),
             receiver,
             sender,
         } = self;

@@ -1,37 +1,30 @@
-//! The link over a line that can say whether it is ready.
+//! Frames over a line, with and without waiting.
 
-use super::{Counts, Inbound, Outbound, Receiver, Sender};
-#[cfg(feature = "mavlink")]
-use super::{MavlinkReceiver, MavlinkSender};
+use super::{Counts, Framing, Receiver, Sender};
 use embedded_io::{Read, ReadReady, Write, WriteReady};
+use staya_controller::wire::Postcard;
 
 /// Bytes that one call moves at a time.
-const PIECE: usize = 32;
+pub(super) const PIECE: usize = 32;
 
-/// Frames over a line `U`, which it asks before each call whether it is ready: nothing here ever waits.
+/// Frames of the wire format `F` over a line `U`. `IN` and `OUT`: bytes between two steps, and bytes that wait to be sent, `OUT` at
+/// least [`OUTBOX`](staya_controller::agent::OUTBOX).
 ///
-/// Call [`Self::pump`] at least as often as the HAL's own buffer fills up (at 115,200 baud a byte comes every 87 µs), [`Self::take`]
-/// once for each step, and [`Self::send`] after it.
+/// Call [`Self::take`] once for each step and [`Self::send`] after it. In between something has to move the bytes:
 ///
-/// HALs whose UART lacks [`WriteReady`] use the receiver and the sender with what they have, or `AsyncLink`.
+/// - over a line that can say whether it is ready (`embedded-io`), [`Self::pump`], which never waits. Call it at least as often
+///   as the HAL's own buffer fills up (at 115,200 baud a byte comes every 87 µs);
+/// - over the two halves of an asynchronous line (`embedded-io-async`, feature `async`), `serve`, beside the wait for the next step.
+///
+/// HALs whose UART has neither use a [`Receiver`] and a [`Sender`] with what they have.
 #[derive(Clone, Debug)]
-pub struct Link<U, R, S> {
-    line: U,
-    receiver: R,
-    sender: S,
+pub struct PacketLink<U, F = Postcard, const IN: usize = 1024, const OUT: usize = 512> {
+    pub(super) line: U,
+    pub(super) receiver: Receiver<F, IN>,
+    pub(super) sender: Sender<F, OUT>,
 }
 
-/// [`Link`] for robots that speak postcard. `IN` and `OUT`: bytes between two steps and bytes that wait to be sent;
-/// `OUT` at least [`OUTBOX`](staya_controller::agent::OUTBOX).
-pub type PacketLink<U, const IN: usize = 1024, const OUT: usize = 512> =
-    Link<U, Receiver<IN>, Sender<OUT>>;
-
-/// [`Link`] for robots that speak MAVLink; `IN` and `OUT` as for [`PacketLink`].
-#[cfg(feature = "mavlink")]
-pub type MavlinkLink<U, const IN: usize = 1536, const OUT: usize = 512> =
-    Link<U, MavlinkReceiver<IN>, MavlinkSender<OUT>>;
-
-impl<U, const IN: usize, const OUT: usize> PacketLink<U, IN, OUT> {
+impl<U, F: Framing, const IN: usize, const OUT: usize> PacketLink<U, F, IN, OUT> {
     /// Over `line`, with nothing received and nothing to send.
     #[must_use]
     pub const fn new(line: U) -> Self {
@@ -41,36 +34,21 @@ impl<U, const IN: usize, const OUT: usize> PacketLink<U, IN, OUT> {
             sender: Sender::new(),
         }
     }
-}
 
-#[cfg(feature = "mavlink")]
-impl<U, const IN: usize, const OUT: usize> MavlinkLink<U, IN, OUT> {
-    /// Over `line`, with nothing received and nothing to send.
-    #[must_use]
-    pub const fn new(line: U) -> Self {
-        Self {
-            line,
-            receiver: MavlinkReceiver::new(),
-            sender: MavlinkSender::new(),
-        }
-    }
-}
-
-impl<U, R: Inbound, S: Outbound> Link<U, R, S> {
     /// The frames since the last call, for [`Inputs::inbox`](staya_controller::agent::Inputs::inbox).
     #[must_use]
     pub fn take(&mut self) -> &[u8] {
         self.receiver.take()
     }
 
-    /// Queues the frames of [`Outputs::outbox`](staya_controller::agent::Outputs::outbox); [`Self::pump`] sends them.
+    /// Queues the frames of [`Outputs::outbox`](staya_controller::agent::Outputs::outbox).
     pub fn send(&mut self, outbox: &[u8]) {
         self.sender.send(outbox);
     }
 
     /// What came in, and what went out.
     #[must_use]
-    pub fn counts(&self) -> (Counts, Counts) {
+    pub const fn counts(&self) -> (Counts, Counts) {
         (self.receiver.counts(), self.sender.counts())
     }
 
@@ -87,11 +65,11 @@ impl<U, R: Inbound, S: Outbound> Link<U, R, S> {
     }
 }
 
-impl<U, R: Inbound, S: Outbound> Link<U, R, S>
+impl<U, F: Framing, const IN: usize, const OUT: usize> PacketLink<U, F, IN, OUT>
 where
     U: Read + ReadReady + Write + WriteReady,
 {
-    /// Moves what can be moved without waiting: in at most [`Inbound::capacity`] bytes, out what is there.
+    /// Moves what can be moved without waiting: in at most `IN` bytes (more would only push each other out), out what is there.
     ///
     /// # Errors
     /// The line's first one. It is counted, what it spoiled is forgotten, and the link goes on at the next call: a caller may
@@ -110,7 +88,7 @@ where
 
     fn hear(&mut self) -> Result<(), U::Error> {
         let mut piece = [0; PIECE];
-        let mut left = self.receiver.capacity();
+        let mut left = IN;
         while left > 0 && self.line.read_ready()? {
             let len = self.line.read(&mut piece)?;
             let Some(bytes) = piece.get(..len).filter(|bytes| !bytes.is_empty()) else {

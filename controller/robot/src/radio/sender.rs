@@ -1,86 +1,121 @@
 //! Frames that wait for the line.
 
-use super::queue::FrameQueue;
-use super::{Counts, Outbound, count};
-use staya_controller::wire::frames;
+use super::{Counts, Framing, count, remove};
+use core::marker::PhantomData;
+use heapless::Vec;
 
 /// Holds what steps want sent until the line takes it.
 ///
 /// When `N` bytes do not hold it all, the oldest frames go, but never the rest of one whose first bytes are on the line.
-/// A zero byte goes before the first frame after a pause, so that what the receivers' idle lines picked up does not spoil it.
-#[derive(Clone, Debug, Default)]
-pub struct Sender<const N: usize> {
-    queue: FrameQueue<N>,
+/// Where frames have a delimiter, one goes before the first frame after a pause, so that what the receivers' idle lines picked up does
+/// not spoil it.
+#[derive(Clone, Debug)]
+pub struct Sender<F, const N: usize> {
+    bytes: Vec<u8, N>,
     /// Bytes that are left of a frame whose first bytes are sent.
     begun: usize,
-    /// It failed: what is left is only its end.
+    /// What is begun is no whole frame: a delimiter by itself, or the end of a frame that failed.
     is_cut: bool,
     counts: Counts,
+    framing: PhantomData<F>,
 }
 
-impl<const N: usize> Sender<N> {
+impl<F: Framing, const N: usize> Sender<F, N> {
+    /// Bytes of a delimiter.
+    const END: usize = F::DELIMITER.is_some() as usize;
+
     /// With nothing to send.
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            queue: FrameQueue::new(),
+            bytes: Vec::new(),
             begun: 0,
             is_cut: false,
-            counts: Counts {
-                frames: 0,
-                refused: 0,
-                dropped: 0,
-                line_errors: 0,
-            },
+            counts: Counts::NONE,
+            framing: PhantomData,
         }
     }
-}
 
-impl<const N: usize> Outbound for Sender<N> {
-    /// O(outbox + N) per frame.
-    fn send(&mut self, outbox: &[u8]) {
-        for frame in frames(outbox) {
-            if self.queue.bytes().is_empty() {
-                self.queue.push(&[], 0);
+    /// Queues the frames of [`Outputs::outbox`](staya_controller::agent::Outputs::outbox). O(outbox + `N`) per frame.
+    pub fn send(&mut self, outbox: &[u8]) {
+        let mut rest = outbox;
+        while let Some(frame) = F::next_frame(&mut rest) {
+            if frame.len() > Self::END {
+                self.queue(frame);
             }
-            let dropped = self.queue.push(frame, self.begun);
-            count(&mut self.counts.dropped, dropped);
         }
     }
 
-    fn unsent(&self) -> &[u8] {
-        self.queue.bytes()
+    /// What the line should take next.
+    #[must_use]
+    pub fn unsent(&self) -> &[u8] {
+        &self.bytes
     }
 
-    /// O(N).
-    fn sent(&mut self, bytes: usize) {
-        let sent = self.queue.bytes().iter().take(bytes);
-        let mut begun = self.begun > 0;
-        let mut ended = 0;
-        for byte in sent {
-            if *byte == 0 && begun {
-                ended += usize::from(!core::mem::take(&mut self.is_cut));
+    /// The line took the first `bytes` of [`Self::unsent`]. O(`N`).
+    pub fn sent(&mut self, bytes: usize) {
+        let mut left = bytes.min(self.bytes.len());
+        let mut at = 0_usize;
+        while left > 0 {
+            if self.begun == 0 {
+                self.begun = self.frame_len(at);
+                self.is_cut = self.begun <= Self::END;
             }
-            begun = *byte != 0;
+            let now = left.min(self.begun);
+            self.begun = self.begun.saturating_sub(now);
+            at = at.saturating_add(now);
+            left = left.saturating_sub(now);
+            if self.begun == 0 && !self.is_cut {
+                count(&mut self.counts.frames, 1);
+            }
         }
-        count(&mut self.counts.frames, ended);
-        self.queue.remove(0, bytes);
-        self.begun = if begun { self.queue.frame_len(0) } else { 0 };
+        remove(&mut self.bytes, 0, at);
     }
 
-    /// Of a begun frame only the zero byte is left, which ends it for the receivers.
-    fn line_error(&mut self) {
+    /// The line failed: of a begun frame only the delimiter is left, which ends it for the receivers.
+    pub fn line_error(&mut self) {
         count(&mut self.counts.line_errors, 1);
         // One of which only the end is left has been sent.
-        if self.begun > 1 {
-            self.queue.remove(0, self.begun.saturating_sub(1));
-            self.begun = 1;
+        if self.begun > Self::END {
+            remove(&mut self.bytes, 0, self.begun.saturating_sub(Self::END));
+            self.begun = Self::END;
             self.is_cut = true;
             count(&mut self.counts.dropped, 1);
         }
     }
 
-    fn counts(&self) -> Counts {
+    /// What was sent so far.
+    #[must_use]
+    pub const fn counts(&self) -> Counts {
         self.counts
+    }
+
+    fn queue(&mut self, frame: &[u8]) {
+        if let (true, Some(delimiter)) = (self.bytes.is_empty(), F::DELIMITER) {
+            // Without room for it there is none for the frame.
+            let _ = self.bytes.push(delimiter);
+        }
+        if self.begun.saturating_add(frame.len()) > N {
+            return count(&mut self.counts.dropped, 1);
+        }
+        while self.bytes.len().saturating_add(frame.len()) > N {
+            let oldest = self.frame_len(self.begun);
+            count(&mut self.counts.dropped, usize::from(oldest > Self::END));
+            remove(&mut self.bytes, self.begun, oldest);
+        }
+        // There is room now.
+        let _ = self.bytes.extend_from_slice(frame);
+    }
+
+    /// Bytes of the frame that begins at `start`; at least 1.
+    fn frame_len(&self, start: usize) -> usize {
+        let mut rest = self.bytes.get(start..).unwrap_or_default();
+        F::next_frame(&mut rest).map_or(1, <[u8]>::len)
+    }
+}
+
+impl<F: Framing, const N: usize> Default for Sender<F, N> {
+    fn default() -> Self {
+        Self::new()
     }
 }

@@ -12,6 +12,7 @@ use staya_controller::time::{Duration, Instant};
 
 /// How cells gain and lose evidence of an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct MapParams {
     /// What a scan with a hit in the cell adds. More: single wrong ranges become obstacles.
     pub hit: u8,

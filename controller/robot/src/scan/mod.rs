@@ -17,6 +17,7 @@ use staya_controller::time::{Duration, Instant};
 
 /// Ranges at equal angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Scan<'a, S> {
     /// Where the first one looks, counter-clockwise from the robot's nose.
     pub first_rad: S,
@@ -36,6 +37,7 @@ pub struct Scan<'a, S> {
 
 /// One measurement, relative to the robot, along the world's axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Ray<S> {
     /// Where the sensor is, metres.
     pub from_m: Vec2<S>,

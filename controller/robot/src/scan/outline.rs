@@ -12,6 +12,7 @@ use staya_controller::scalar::Scalar;
 
 /// How hits become walls.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct OutlineParams<S> {
     /// A wall may miss the hits that it stands for by so much, metres: some times the sensor's noise. Less: more walls for the same land.
     pub tolerance_m: S,

@@ -16,17 +16,20 @@ mod program {
     use staya_controller::neighbor::Neighbor;
     use staya_controller::scalar::{Q16, Scalar};
     use staya_controller::time::{Duration, Instant};
+    use staya_controller::wire::Postcard;
+    use staya_mavlink::wire::Mavlink;
     use staya_robot::drive::{
         Calibration, Differential, HBridge, Kinematics, Limits, LookAhead, Mecanum, Mixer, Omni,
         SignMagnitude, Twist, TwoPins, Wheels,
     };
     use staya_robot::odometry::{Encoder, Odometry};
-    use staya_robot::radio::{Inbound, MavlinkLink, MavlinkReceiver, PacketLink, Receiver};
+    use staya_robot::radio::{Framing, PacketLink, Receiver};
     use staya_robot::scan::{LocalMap, MapParams, OutlineParams, Scan, is_neighbor, outline};
 
     pub fn run() -> ! {
         loop {
-            packets();
+            packets::<Postcard>();
+            packets::<Mavlink>();
             let _ = wheels::<f32>();
             let _ = wheels::<Q16>();
             ranges::<f32>();
@@ -115,26 +118,14 @@ mod program {
         }
     }
 
-    fn packets() {
-        let mut link = PacketLink::<Pin, 256, 128>::new(Pin);
-        let mut radio = Receiver::<128>::new();
+    fn packets<F: Framing>() {
+        let mut link = PacketLink::<Pin, F, 512, 256>::new(Pin);
+        let mut radio = Receiver::<F, 512>::new();
         while black_box(true) {
             let link = black_box(&mut link);
             let Ok(()) = link.pump();
             black_box(link.take());
-            link.send(black_box(&[1; 9]));
-            let radio = black_box(&mut radio);
-            radio.push_packet(black_box(&[1; 9]));
-            radio.line_error();
-            black_box(radio.take());
-        }
-        let mut link = MavlinkLink::<Pin, 512, 256>::new(Pin);
-        let mut radio = MavlinkReceiver::<512>::new();
-        while black_box(true) {
-            let link = black_box(&mut link);
-            let Ok(()) = link.pump();
-            black_box(link.take());
-            link.send(black_box(&[0xFD; 90]));
+            link.send(black_box(&[1; 90]));
             let radio = black_box(&mut radio);
             radio.push_packet(black_box(&[0xFD; 90]));
             radio.line_error();

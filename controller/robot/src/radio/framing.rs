@@ -1,0 +1,92 @@
+//! What receiving and sending need to know of a wire format.
+
+use staya_controller::wire::{MAX_FRAME_LEN, Postcard, decode};
+
+/// How the frames of a wire format follow each other on a line. An agent and its link name the same format; frames that are
+/// sealed with a key are framed as [`Postcard`]'s, signed ones as MAVLink's.
+pub trait Framing {
+    /// The byte that ends each frame and occurs nowhere else, if the format has one.
+    const DELIMITER: Option<u8>;
+    /// Bytes of the longest frame, its delimiter included.
+    const LONGEST: usize;
+
+    /// What received bytes begin with. Bounded work: O([`Self::LONGEST`]).
+    fn first(bytes: &[u8]) -> Piece;
+
+    /// Takes the next frame off whole frames, its delimiter included; `None` when nothing is left.
+    fn next_frame<'a>(frames: &mut &'a [u8]) -> Option<&'a [u8]>;
+}
+
+/// A piece of what came over a line, and its bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Piece {
+    /// A sound frame that a robot's controller understands.
+    Frame(usize),
+    /// Nothing, or something sound that is for others.
+    Other(usize),
+    /// Noise, damage, another version of the format.
+    Noise(usize),
+    /// The beginning of a frame, or no byte at all: the rest is to come.
+    Begun,
+}
+
+impl Framing for Postcard {
+    const DELIMITER: Option<u8> = Some(0);
+    const LONGEST: usize = MAX_FRAME_LEN;
+
+    fn first(bytes: &[u8]) -> Piece {
+        let mut rest = bytes;
+        let Some(piece) = Self::next_frame(&mut rest) else {
+            return Piece::Begun;
+        };
+        let len = piece.len();
+        match piece.split_last() {
+            Some((_, frame)) if decode(frame).is_ok() => Piece::Frame(len),
+            Some((_, [_, ..])) => Piece::Noise(len),
+            // Two zero bytes in a row.
+            _ => Piece::Other(len),
+        }
+    }
+
+    fn next_frame<'a>(frames: &mut &'a [u8]) -> Option<&'a [u8]> {
+        let zero = frames.iter().position(|byte| *byte == 0)?;
+        let (frame, rest) = frames.split_at_checked(zero.saturating_add(1))?;
+        *frames = rest;
+        Some(frame)
+    }
+}
+
+#[cfg(feature = "mavlink")]
+mod mavlink {
+    use super::{Framing, Piece};
+    use staya_controller::wire::DecodeError;
+    use staya_mavlink::frame::{MAX_FRAME_LEN, Scan, next_frame, scan};
+    use staya_mavlink::wire::{Mavlink, decode};
+
+    /// Nothing ends these frames: their headers say how long they are. MAVLink messages that are none of the swarm's are
+    /// [`Piece::Other`].
+    impl Framing for Mavlink {
+        const DELIMITER: Option<u8> = None;
+        const LONGEST: usize = MAX_FRAME_LEN;
+
+        fn first(bytes: &[u8]) -> Piece {
+            match scan(bytes, false) {
+                Scan::Frame { junk: 0, frame } => {
+                    let len = frame.bytes().len();
+                    match decode(frame.bytes()) {
+                        Ok(_) => Piece::Frame(len),
+                        Err(DecodeError::Foreign) => Piece::Other(len),
+                        Err(_) => Piece::Noise(len),
+                    }
+                }
+                Scan::Nothing { junk: 0 } => Piece::Begun,
+                Scan::Frame { junk, .. } | Scan::Nothing { junk } => Piece::Noise(junk),
+            }
+        }
+
+        fn next_frame<'a>(frames: &mut &'a [u8]) -> Option<&'a [u8]> {
+            next_frame(frames).map(|frame| frame.bytes())
+        }
+    }
+}
