@@ -4,7 +4,7 @@
 use core::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use staya_controller::geom::Position;
-use staya_controller::neighbor::{Ages, Doubt, Neighbor, NeighborTable, Put, nearest};
+use staya_controller::neighbor::{Ages, Neighbor, NeighborTable, Put, StalenessInflation, nearest};
 use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;
 use staya_controller::time::{Duration, Instant};
@@ -60,13 +60,13 @@ fn neighbor_table(c: &mut Criterion) {
         });
     });
     group.bench_function("nearest_8", |bencher| {
-        let doubt = Doubt {
+        let inflation = StalenessInflation {
             growth_mps: 0.5,
-            most_m: 1.0,
+            max_m: 1.0,
         };
         bencher.iter(|| {
             let known = table.as_slice();
-            nearest::<f32, 8>(known, black_box(here), 0.15, now, &AGES, &doubt)
+            nearest::<f32, 8>(known, black_box(here), 0.15, now, &AGES, &inflation)
         });
     });
     group.finish();

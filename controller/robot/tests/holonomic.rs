@@ -13,7 +13,7 @@ use staya_controller::agent::{
     Agent, AgentConfig, Inputs, OrcaSafety, Place, Surroundings, WaypointGuidance,
 };
 use staya_controller::geom::{Position, Vec2};
-use staya_controller::neighbor::Doubt;
+use staya_controller::neighbor::StalenessInflation;
 use staya_controller::orca::AvoidParams;
 use staya_controller::robot::{Mode, RobotId};
 use staya_controller::scalar::{Q16, Scalar};
@@ -83,11 +83,11 @@ fn an_omni_robot_in_fixed_point_arrives_while_it_spins() {
         max_acceleration_mps2: q(1.0),
         ..AgentConfig::new(RobotId(1), 1, TICK)
     };
-    let doubt = Doubt {
+    let inflation = StalenessInflation {
         growth_mps: Q16::ZERO,
-        most_m: Q16::ZERO,
+        max_m: Q16::ZERO,
     };
-    let safety = OrcaSafety::<Q16, 16>::new(AvoidParams::default(), doubt);
+    let safety = OrcaSafety::<Q16, 16>::new(AvoidParams::default(), inflation);
     let guidance = WaypointGuidance::new(max_speed_mps, q(0.02));
     let mut agent = Agent::<Q16, _, 8, _>::guarded(&config, guidance, safety);
     let goal = Vec2::new(-1.5, 2.0);

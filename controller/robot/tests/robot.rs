@@ -22,7 +22,7 @@ use staya_controller::agent::{
 };
 use staya_controller::geom::{Position, Vec2};
 use staya_controller::grid::{Cell, GridFrame};
-use staya_controller::neighbor::Doubt;
+use staya_controller::neighbor::StalenessInflation;
 use staya_controller::obstacle::Obstacle;
 use staya_controller::orca::AvoidParams;
 use staya_controller::rand::Rng;
@@ -242,11 +242,11 @@ impl<G: Guidance<f32>> Firmware<G> {
             latency: Duration::from_millis(25),
             ..AgentConfig::new(RobotId(id), 5, TICK)
         };
-        let doubt = Doubt {
+        let inflation = StalenessInflation {
             growth_mps: 0.1,
-            most_m: 0.2,
+            max_m: 0.2,
         };
-        let safety = OrcaSafety::new(AvoidParams::default(), doubt);
+        let safety = OrcaSafety::new(AvoidParams::default(), inflation);
         let motor = Calibration {
             full_mps: FULL_MPS as f32,
             dead_duty: DEAD as f32,

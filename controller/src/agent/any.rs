@@ -13,7 +13,7 @@ use super::safety::{Safety, Sight, Unguarded};
 use super::waypoint_guidance::WaypointGuidance;
 use crate::geom::{Vec2, Vec3};
 use crate::grid::Cell;
-use crate::neighbor::Doubt;
+use crate::neighbor::StalenessInflation;
 use crate::orca::{self, HalfPlane, HalfPlanes};
 use crate::rand::Rng;
 use crate::robot::RobotId;
@@ -165,12 +165,12 @@ impl<S: Scalar, const K: usize> Safety<S> for AnySafety<S, K> {
         }
     }
 
-    fn doubt(&self) -> Doubt<S> {
+    fn inflation(&self) -> StalenessInflation<S> {
         match self {
-            Self::Unguarded(safety) => safety.doubt(),
-            Self::Orca(safety) => safety.doubt(),
-            Self::Fly(safety) => safety.doubt(),
-            Self::PushOut(safety) => safety.doubt(),
+            Self::Unguarded(safety) => safety.inflation(),
+            Self::Orca(safety) => safety.inflation(),
+            Self::Fly(safety) => safety.inflation(),
+            Self::PushOut(safety) => safety.inflation(),
         }
     }
 

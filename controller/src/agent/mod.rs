@@ -54,14 +54,14 @@
 //! ```
 //! use staya_controller::agent::*;
 //! use staya_controller::geom::Position;
-//! use staya_controller::neighbor::Doubt;
+//! use staya_controller::neighbor::StalenessInflation;
 //! use staya_controller::orca::AvoidParams;
 //! use staya_controller::time::{Duration, Instant};
 //! use staya_controller::robot::{Mode, RobotId};
 //!
 //! let tick = Duration::from_millis(50);
 //! let config = AgentConfig { radius_m: 0.1, ..AgentConfig::new(RobotId(3), 1, tick) };
-//! let safety = OrcaSafety::new(AvoidParams::default(), Doubt { growth_mps: 0.1, most_m: 0.2 });
+//! let safety = OrcaSafety::new(AvoidParams::default(), StalenessInflation { growth_mps: 0.1, max_m: 0.2 });
 //! let mut agent = OrcaAgent::guarded(&config, WaypointGuidance::new(0.5, 0.02), safety);
 //! agent.assign_place(0, &Place::fixed(Position::from_mm([2000, 0, 0])));
 //!
@@ -334,14 +334,14 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         if inputs.surroundings.is_none() {
             return Vec::new();
         }
-        let (config, doubt) = (&self.config, self.safety.doubt());
+        let (config, inflation) = (&self.config, self.safety.inflation());
         nearest(
             self.link.table.as_slice(),
             inputs.pose.position,
             config.radius_m,
             now,
             &config.ages,
-            &doubt,
+            &inflation,
         )
     }
 

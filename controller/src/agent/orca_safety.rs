@@ -3,7 +3,7 @@
 use super::Parameter;
 use super::safety::{Safety, Sight};
 use crate::geom::Vec3;
-use crate::neighbor::Doubt;
+use crate::neighbor::StalenessInflation;
 use crate::orca::{AvoidParams, Avoider, HalfPlanes};
 use crate::rand::Rng;
 use crate::scalar::Scalar;
@@ -13,16 +13,16 @@ use serde::Serialize;
 #[derive(Clone, Debug, Serialize)]
 pub struct OrcaSafety<S, const K: usize, P = crate::orca::Analytic> {
     avoider: Avoider<S, K, P>,
-    doubt: Doubt<S>,
+    inflation: StalenessInflation<S>,
 }
 
 impl<S: Scalar, const K: usize> OrcaSafety<S, K> {
-    /// With exact half-planes. `doubt`: how the balls of silent neighbours grow.
+    /// With exact half-planes. `inflation`: how the balls of silent neighbours grow.
     #[must_use]
-    pub const fn new(params: AvoidParams<S>, doubt: Doubt<S>) -> Self {
+    pub const fn new(params: AvoidParams<S>, inflation: StalenessInflation<S>) -> Self {
         Self {
             avoider: Avoider::new(params),
-            doubt,
+            inflation,
         }
     }
 }
@@ -30,10 +30,14 @@ impl<S: Scalar, const K: usize> OrcaSafety<S, K> {
 impl<S: Scalar, const K: usize, P> OrcaSafety<S, K, P> {
     /// With half-planes from `source`.
     #[must_use]
-    pub const fn with_source(params: AvoidParams<S>, doubt: Doubt<S>, source: P) -> Self {
+    pub const fn with_source(
+        params: AvoidParams<S>,
+        inflation: StalenessInflation<S>,
+        source: P,
+    ) -> Self {
         Self {
             avoider: Avoider::with_source(params, source),
-            doubt,
+            inflation,
         }
     }
 }
@@ -52,8 +56,8 @@ impl<S: Scalar, const K: usize, P: HalfPlanes<S>> Safety<S> for OrcaSafety<S, K,
         solution.velocity_mps.extend(sight.wish_mps.z)
     }
 
-    fn doubt(&self) -> Doubt<S> {
-        self.doubt
+    fn inflation(&self) -> StalenessInflation<S> {
+        self.inflation
     }
 
     fn parameter(&self, parameter: Parameter) -> Option<S> {

@@ -3,7 +3,7 @@
 use super::Parameter;
 use super::safety::{Safety, Sight};
 use crate::geom::Vec3;
-use crate::neighbor::Doubt;
+use crate::neighbor::StalenessInflation;
 use crate::orca::{FlyParams, fly};
 use crate::push_out::{PushOutParams, push_out};
 use crate::rand::Rng;
@@ -14,14 +14,14 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct FlySafety<S, const K: usize> {
     params: FlyParams<S>,
-    doubt: Doubt<S>,
+    inflation: StalenessInflation<S>,
 }
 
 impl<S: Scalar, const K: usize> FlySafety<S, K> {
-    /// `doubt`: how the balls of silent neighbours grow.
+    /// `inflation`: how the balls of silent neighbours grow.
     #[must_use]
-    pub const fn new(params: FlyParams<S>, doubt: Doubt<S>) -> Self {
-        Self { params, doubt }
+    pub const fn new(params: FlyParams<S>, inflation: StalenessInflation<S>) -> Self {
+        Self { params, inflation }
     }
 }
 
@@ -37,8 +37,8 @@ impl<S: Scalar, const K: usize> Safety<S> for FlySafety<S, K> {
         fly::<S, K>(&self.params, &body, wish_mps, way_m, nearby, obstacles).velocity_mps
     }
 
-    fn doubt(&self) -> Doubt<S> {
-        self.doubt
+    fn inflation(&self) -> StalenessInflation<S> {
+        self.inflation
     }
 
     fn parameter(&self, parameter: Parameter) -> Option<S> {

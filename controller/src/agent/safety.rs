@@ -3,7 +3,7 @@
 use super::Parameter;
 use crate::body::Body;
 use crate::geom::Vec3;
-use crate::neighbor::{Doubt, Nearby};
+use crate::neighbor::{Nearby, StalenessInflation};
 use crate::obstacle::Obstacle;
 use crate::rand::Rng;
 use crate::scalar::Scalar;
@@ -31,10 +31,10 @@ pub trait Safety<S: Scalar> {
     fn keep_clear(&mut self, sight: &Sight<'_, S>, rng: &mut Rng) -> Vec3<S>;
 
     /// How neighbours that have fallen silent are to be seen.
-    fn doubt(&self) -> Doubt<S> {
-        Doubt {
+    fn inflation(&self) -> StalenessInflation<S> {
+        StalenessInflation {
             growth_mps: S::ZERO,
-            most_m: S::ZERO,
+            max_m: S::ZERO,
         }
     }
 

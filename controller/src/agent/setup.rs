@@ -18,7 +18,7 @@ use crate::flock::goal::GoalParams;
 use crate::flock::lattice::LatticeParams;
 use crate::formation::FormationParams;
 use crate::grid::Cell;
-use crate::neighbor::Doubt;
+use crate::neighbor::StalenessInflation;
 use crate::orca::{AvoidParams, FlyParams};
 use crate::push_out::PushOutParams;
 use crate::route::{Replan, RouteParams};
@@ -145,12 +145,12 @@ pub enum SafetySetup {
     None,
     Orca {
         params: AvoidParams<f32>,
-        doubt: Doubt<f32>,
+        inflation: StalenessInflation<f32>,
         source: AnyHalfPlanes,
     },
     Fly {
         params: FlyParams<f32>,
-        doubt: Doubt<f32>,
+        inflation: StalenessInflation<f32>,
     },
     PushOut {
         params: PushOutParams<f32>,
@@ -285,15 +285,15 @@ impl SafetySetup {
             Self::None => AnySafety::Unguarded(Unguarded),
             Self::Orca {
                 params,
-                doubt,
+                inflation,
                 source,
             } => AnySafety::Orca(OrcaSafety::with_source(
                 params.cast(),
-                doubt.cast(),
+                inflation.cast(),
                 *source,
             )),
-            Self::Fly { params, doubt } => {
-                AnySafety::Fly(FlySafety::new(params.cast(), doubt.cast()))
+            Self::Fly { params, inflation } => {
+                AnySafety::Fly(FlySafety::new(params.cast(), inflation.cast()))
             }
             Self::PushOut { params } => AnySafety::PushOut(PushOutSafety::new(params.cast())),
         }

@@ -19,7 +19,7 @@ mod nearby;
 mod tests;
 mod tie;
 
-pub use nearby::{Doubt, Nearby, nearest};
+pub use nearby::{Nearby, StalenessInflation, nearest};
 pub use tie::tie;
 
 /// One robot as last heard.

@@ -24,22 +24,22 @@ pub struct Nearby<S> {
     pub gives_way: bool,
 }
 
-/// How doubt about a silent robot grows.
+/// How the ball around a silent robot grows with the age of the news.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Doubt<S> {
+pub struct StalenessInflation<S> {
     /// Speed at which a stale neighbour's ball grows, m/s: how fast it might have gone since. 0: never.
     pub growth_mps: S,
     /// How much the ball grows at most, metres.
-    pub most_m: S,
+    pub max_m: S,
 }
 
-impl<S: Scalar> Doubt<S> {
+impl<S: Scalar> StalenessInflation<S> {
     /// The same in another kind of number.
     #[must_use]
-    pub fn cast<T: Scalar>(&self) -> Doubt<T> {
-        Doubt {
+    pub fn cast<T: Scalar>(&self) -> StalenessInflation<T> {
+        StalenessInflation {
             growth_mps: cast(self.growth_mps),
-            most_m: cast(self.most_m),
+            max_m: cast(self.max_m),
         }
     }
 }
@@ -48,8 +48,8 @@ impl<S: Scalar> Doubt<S> {
 /// unknown distance (NaN) comes last.
 ///
 /// A fresh one is where its velocity has taken it since it was heard. A stale one (older than
-/// [`Ages::stale_after`], not yet forgotten) stands where that ended; its ball grows as `doubt` says, but
-/// never over the own ball of `own_radius_m`, since doubt alone is no collision; and it does not give
+/// [`Ages::stale_after`], not yet forgotten) stands where that ended; its ball grows as `inflation` says, but
+/// never over the own ball of `own_radius_m`, since old news alone is no collision; and it does not give
 /// way. One older than [`Ages::expire_after`] is not there any more.
 ///
 /// O(N K); 40 K bytes of stack (`f32`).
@@ -60,7 +60,7 @@ pub fn nearest<S: Scalar, const K: usize>(
     own_radius_m: S,
     now: Instant,
     ages: &Ages,
-    doubt: &Doubt<S>,
+    inflation: &StalenessInflation<S>,
 ) -> Vec<Nearby<S>, K> {
     let mut nearest = Vec::<(u64, &Neighbor<S>), K>::new();
     for entry in known {
@@ -76,7 +76,7 @@ pub fn nearest<S: Scalar, const K: usize>(
             sink_last(&mut nearest, |before, after| before.0 > after.0);
         }
     }
-    let seen = |entry| seen(entry, own, own_radius_m, now, ages, doubt);
+    let seen = |entry| seen(entry, own, own_radius_m, now, ages, inflation);
     list::collect(nearest.iter().map(|&(_, entry)| seen(entry)))
 }
 
@@ -86,7 +86,7 @@ fn seen<S: Scalar>(
     own_radius_m: S,
     now: Instant,
     ages: &Ages,
-    doubt: &Doubt<S>,
+    inflation: &StalenessInflation<S>,
 ) -> Nearby<S> {
     let offset_m = entry.offset_at(own, now, ages.stale_after);
     let age = entry.age(now).unwrap_or(Duration::MAX);
@@ -101,7 +101,7 @@ fn seen<S: Scalar>(
     if !is_fresh {
         nearby.velocity_mps = Vec3::ZERO;
         let silent = age.as_micros().saturating_sub(ages.stale_after.as_micros());
-        let growth = (doubt.growth_mps * S::from_micro(silent)).min(doubt.most_m);
+        let growth = (inflation.growth_mps * S::from_micro(silent)).min(inflation.max_m);
         let room = offset_m.norm() - own_radius_m - entry.radius_m;
         nearby.radius_m += growth.min(room).max(S::ZERO);
     }

@@ -38,13 +38,13 @@ fn nearest_ids<const N: usize, const K: usize>(
     table: &NeighborTable<f32, N>,
     own: Position,
 ) -> StdVec<u32> {
-    let nearest = nearest::<f32, K>(table.as_slice(), own, 0.0, at(0), &AGES, &DOUBT);
+    let nearest = nearest::<f32, K>(table.as_slice(), own, 0.0, at(0), &AGES, &INFLATION);
     nearest.iter().map(|near| near.id.0).collect()
 }
 
-const DOUBT: Doubt<f32> = Doubt {
+const INFLATION: StalenessInflation<f32> = StalenessInflation {
     growth_mps: 0.5,
-    most_m: 1.0,
+    max_m: 1.0,
 };
 
 fn put<const N: usize>(table: &mut NeighborTable<f32, N>, n: Neighbor<f32>, now: Instant) -> Put {
@@ -234,7 +234,14 @@ fn a_silent_neighbour_widens_then_expires() {
     robot.radius_m = 0.25;
     let look = |millis: i32, own_radius_m: f32| {
         let now = at(0) + Duration::from_millis(millis);
-        let seen = nearest::<_, 1>(&[robot], Position::ORIGIN, own_radius_m, now, &AGES, &DOUBT);
+        let seen = nearest::<_, 1>(
+            &[robot],
+            Position::ORIGIN,
+            own_radius_m,
+            now,
+            &AGES,
+            &INFLATION,
+        );
         seen.first()
             .map(|n| (n.offset_m.x, n.velocity_mps.x, n.radius_m, n.gives_way))
     };
@@ -253,7 +260,7 @@ fn a_silent_neighbour_widens_then_expires() {
 fn who_is_in_fault_does_not_give_way() {
     let mut robot = standing(1, 1.0, at(0));
     robot.mode = Mode::Fault;
-    let seen = nearest::<_, 1>(&[robot], Position::ORIGIN, 0.0, at(0), &AGES, &DOUBT);
+    let seen = nearest::<_, 1>(&[robot], Position::ORIGIN, 0.0, at(0), &AGES, &INFLATION);
     assert!(!seen[0].gives_way);
 }
 

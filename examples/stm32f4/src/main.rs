@@ -12,7 +12,7 @@ use embassy_stm32::{rcc::*, rng, time::Hertz, wdg::IndependentWatchdog};
 use embassy_time::{Instant as Clock, Ticker};
 use staya_controller::agent::*;
 use staya_controller::time::{Duration, Instant};
-use staya_controller::{geom::Position, neighbor::Doubt, orca::AvoidParams, robot::RobotId};
+use staya_controller::{geom::Position, neighbor::StalenessInflation, orca::AvoidParams, robot::RobotId};
 use staya_robot::odometry::{Encoder, Odometry};
 use staya_robot::{drive::*, radio::PacketLink};
 
@@ -58,7 +58,7 @@ async fn robot(p: Peripherals) -> Option<()> {
     config.radius_m = ahead.radius(BODY_M) + 0.02;
     config.max_acceleration_mps2 = ahead.max_speed(limits.acceleration_mps2, TRACK_M);
     let max_speed_mps = ahead.max_speed(limits.speed_mps, TRACK_M);
-    let safety = OrcaSafety::new(AvoidParams::default(), Doubt { growth_mps: 0.1, most_m: 0.2 });
+    let safety = OrcaSafety::new(AvoidParams::default(), StalenessInflation { growth_mps: 0.1, max_m: 0.2 });
     let mut agent = OrcaAgent::guarded(&config, WaypointGuidance::new(max_speed_mps, 0.02), safety);
     agent.assign_place(0, &Place::fixed(Position::from_mm([2000, 1000, 0])));
 

@@ -19,7 +19,7 @@ use staya_controller::flock::lattice::LatticeParams;
 use staya_controller::formation::{FormationParams, Prediction};
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Cell, Dir, Window};
-use staya_controller::neighbor::Doubt;
+use staya_controller::neighbor::StalenessInflation;
 use staya_controller::obstacle::Obstacle;
 #[cfg(feature = "large-tables")]
 use staya_controller::orca::Template64k;
@@ -129,7 +129,7 @@ impl WorstCase {
             #[cfg(feature = "large-tables")]
             Self::OrcaTemplate64k => orca::<S, _, P, N, K>(Template64k, probe),
             Self::Fly => {
-                let safety = FlySafety::<S, K>::new(FlyParams::default(), doubt());
+                let safety = FlySafety::<S, K>::new(FlyParams::default(), inflation());
                 in_crowd::<S, _, _, P, N>(waypoint(), safety, probe)
             }
             Self::PushOut => {
@@ -159,10 +159,10 @@ impl WorstCase {
     }
 }
 
-fn doubt<S: Scalar>() -> Doubt<S> {
-    Doubt {
+fn inflation<S: Scalar>() -> StalenessInflation<S> {
+    StalenessInflation {
         growth_mps: S::HALF,
-        most_m: S::from_milli(300),
+        max_m: S::from_milli(300),
     }
 }
 
@@ -174,7 +174,7 @@ fn orca<S: Scalar, H: HalfPlanes<S> + Serialize, P: Probe<S>, const N: usize, co
     source: H,
     probe: &mut P,
 ) -> Summary {
-    let safety = OrcaSafety::<S, K, H>::with_source(AvoidParams::default(), doubt(), source);
+    let safety = OrcaSafety::<S, K, H>::with_source(AvoidParams::default(), inflation(), source);
     in_crowd::<S, _, _, P, N>(waypoint(), safety, probe)
 }
 

@@ -13,7 +13,7 @@ use staya_controller::agent::{
     AgentConfig, AnyHalfPlanes, CELLS, GuidanceSetup, RouteSetup, SafetySetup, Setup, Task,
 };
 use staya_controller::grid::Cell;
-use staya_controller::neighbor::Doubt;
+use staya_controller::neighbor::StalenessInflation;
 use staya_controller::orca::AvoidParams;
 use staya_controller::robot::RobotId;
 use staya_controller::route::{Replan, RouteParams};
@@ -54,9 +54,9 @@ pub fn in_plane() -> Setup {
         },
         safety: SafetySetup::Orca {
             params: AvoidParams::default(),
-            doubt: Doubt {
+            inflation: StalenessInflation {
                 growth_mps: 0.5,
-                most_m: 0.25,
+                max_m: 0.25,
             },
             source: AnyHalfPlanes::Analytic,
         },

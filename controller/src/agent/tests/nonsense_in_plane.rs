@@ -6,7 +6,7 @@ use crate::flock::boids::BoidsParams;
 use crate::flock::goal::GoalParams;
 use crate::flock::lattice::LatticeParams;
 use crate::geom::{Position, Vec2, Vec3};
-use crate::neighbor::Doubt;
+use crate::neighbor::StalenessInflation;
 use crate::obstacle::Obstacle;
 use crate::orca::{AvoidParams, FlyParams};
 use crate::push_out::PushOutParams;
@@ -159,20 +159,20 @@ fn guidance(which: u8, speed: f32, length: f32) -> AnyGuidance<f32, CELLS, VISIT
 }
 
 fn safety(which: u8, length: f32, growth_mps: f32) -> AnySafety<f32, 16> {
-    let doubt = Doubt {
+    let inflation = StalenessInflation {
         growth_mps,
-        most_m: length,
+        max_m: length,
     };
     let orca = |source| {
         AnySafety::Orca(OrcaSafety::with_source(
             AvoidParams::default(),
-            doubt,
+            inflation,
             source,
         ))
     };
     match which % 8 {
         0 => AnySafety::Unguarded(Unguarded),
-        1 => AnySafety::Fly(FlySafety::new(FlyParams::default(), doubt)),
+        1 => AnySafety::Fly(FlySafety::new(FlyParams::default(), inflation)),
         2 => AnySafety::PushOut(PushOutSafety::new(PushOutParams::new(length))),
         3 => orca(AnyHalfPlanes::Template2k),
         4 => orca(AnyHalfPlanes::Template8k),

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::geom::{Position, Vec2, Vec3};
-use crate::neighbor::Doubt;
+use crate::neighbor::StalenessInflation;
 use crate::orca::AvoidParams;
 use crate::scalar::Q16;
 use crate::wire::{GoalAssignment, PlaceAssignment};
@@ -30,11 +30,11 @@ pub(super) fn one_step_late<S: Scalar>(id: u32) -> AgentConfig<S> {
 }
 
 pub(super) fn orca<S: Scalar>() -> OrcaSafety<S, 16> {
-    let doubt = Doubt {
+    let inflation = StalenessInflation {
         growth_mps: S::HALF,
-        most_m: S::from_milli(300),
+        max_m: S::from_milli(300),
     };
-    OrcaSafety::new(AvoidParams::default(), doubt)
+    OrcaSafety::new(AvoidParams::default(), inflation)
 }
 
 pub(super) fn waypoint<S: Scalar>() -> WaypointGuidance<S> {

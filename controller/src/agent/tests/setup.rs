@@ -5,7 +5,7 @@ use crate::flock::goal::GoalParams;
 use crate::flock::lattice::LatticeParams;
 use crate::formation::FormationParams;
 use crate::geom::{Position, Vec3};
-use crate::neighbor::Doubt;
+use crate::neighbor::StalenessInflation;
 use crate::orca::{AvoidParams, FlyParams};
 use crate::push_out::PushOutParams;
 use crate::route::{Replan, RouteParams};
@@ -58,20 +58,20 @@ fn guidances() -> [GuidanceSetup; 6] {
 }
 
 fn safeties() -> [SafetySetup; 4] {
-    let doubt = Doubt {
+    let inflation = StalenessInflation {
         growth_mps: 0.25,
-        most_m: 0.3,
+        max_m: 0.3,
     };
     [
         SafetySetup::None,
         SafetySetup::Orca {
             params: AvoidParams::default(),
-            doubt,
+            inflation,
             source: AnyHalfPlanes::Template2k,
         },
         SafetySetup::Fly {
             params: FlyParams::default(),
-            doubt,
+            inflation,
         },
         SafetySetup::PushOut {
             params: PushOutParams::new(0.4),

@@ -13,7 +13,7 @@ use staya_controller::agent::{
 };
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::grid::Cell;
-use staya_controller::neighbor::Doubt;
+use staya_controller::neighbor::StalenessInflation;
 use staya_controller::orca::{Analytic, AvoidParams, FlyParams, HalfPlanes};
 use staya_controller::push_out::PushOutParams;
 use staya_controller::robot::RobotId;
@@ -42,10 +42,10 @@ pub(super) fn config<S: Scalar>(index: usize) -> AgentConfig<S> {
     }
 }
 
-fn doubt<S: Scalar>() -> Doubt<S> {
-    Doubt {
+fn inflation<S: Scalar>() -> StalenessInflation<S> {
+    StalenessInflation {
         growth_mps: S::HALF,
-        most_m: S::from_milli(300),
+        max_m: S::from_milli(300),
     }
 }
 
@@ -110,7 +110,7 @@ pub(super) fn swap<S: Scalar, H: HalfPlanes<S> + Clone + Serialize, P: Probe<S>>
         &scene(&[]),
         &PENTAGON,
         &PENTAGON.map(|place| place.map(|mm: i32| -mm)),
-        || OrcaSafety::<S, PLANES, H>::with_source(params, doubt(), source.clone()),
+        || OrcaSafety::<S, PLANES, H>::with_source(params, inflation(), source.clone()),
         probe,
     )
 }
@@ -134,7 +134,7 @@ pub(super) fn doorway<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
         [-2500, -300, 0],
         [-1500, 100, 0],
     ];
-    let safety = || OrcaSafety::<S, PLANES>::new(AvoidParams::default(), doubt());
+    let safety = || OrcaSafety::<S, PLANES>::new(AvoidParams::default(), inflation());
     to_places(&scene(&WALLS), &starts, &goals, safety, probe)
 }
 
@@ -152,7 +152,7 @@ pub(super) fn fly<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
         }
         places
     };
-    let safety = || FlySafety::<S, PLANES>::new(FlyParams::default(), doubt());
+    let safety = || FlySafety::<S, PLANES>::new(FlyParams::default(), inflation());
     to_places(&scene(&SOLIDS), &at(1), &at(-1), safety, probe)
 }
 
@@ -178,7 +178,8 @@ pub(super) fn route_in_plane<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     let starts = [[3500, 3500, 0], [12_500, 3500, 0], [3500, 12_500, 0]];
     let goals = [Cell::new(12, 11), Cell::new(3, 12), Cell::new(12, 4)];
     let guidance = |_| InPlane::new(Route::new(RouteParams::default()), S::HALF);
-    let safety = || OrcaSafety::<S, PLANES>::with_source(AvoidParams::default(), doubt(), Analytic);
+    let safety =
+        || OrcaSafety::<S, PLANES>::with_source(AvoidParams::default(), inflation(), Analytic);
     let mut movers = movers(&starts, guidance, safety);
     for (mover, goal) in movers.iter_mut().zip(goals) {
         mover.agent.assign_goal(goal);

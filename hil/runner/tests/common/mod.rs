@@ -7,7 +7,7 @@ use staya_controller::agent::{
 };
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Cell, Window};
-use staya_controller::neighbor::Doubt;
+use staya_controller::neighbor::StalenessInflation;
 use staya_controller::obstacle::Obstacle;
 use staya_controller::orca::AvoidParams;
 use staya_controller::robot::{Mode, RobotId};
@@ -48,9 +48,9 @@ pub fn config(robot: u32, device: &str) -> DeviceConfig {
         };
         let safety = SafetySetup::Orca {
             params: AvoidParams::default(),
-            doubt: Doubt {
+            inflation: StalenessInflation {
                 growth_mps: 0.5,
-                most_m: 0.25,
+                max_m: 0.25,
             },
             source: AnyHalfPlanes::Analytic,
         };

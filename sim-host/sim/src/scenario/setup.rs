@@ -75,10 +75,10 @@ impl Scenario {
 
 impl PlaneSetup {
     fn safety_setup(&self) -> SafetySetup {
-        let (orca, doubt) = (self.orca, self.doubt);
+        let (orca, inflation) = (self.orca, self.inflation);
         let by = |source| SafetySetup::Orca {
             params: orca,
-            doubt,
+            inflation,
             source,
         };
         match self.safety {
@@ -95,7 +95,7 @@ impl PlaneSetup {
                     share: orca.share,
                     margin_m: orca.margin_m,
                 },
-                doubt,
+                inflation,
             },
             SafetyName::PushOut => SafetySetup::PushOut {
                 params: self.push_out,

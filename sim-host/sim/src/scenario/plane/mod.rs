@@ -23,7 +23,7 @@ use staya_controller::flock::goal::GoalParams;
 use staya_controller::flock::lattice::LatticeParams;
 use staya_controller::formation::FormationParams;
 use staya_controller::grid::Cell;
-use staya_controller::neighbor::Doubt;
+use staya_controller::neighbor::StalenessInflation;
 use staya_controller::orca::AvoidParams;
 use staya_controller::push_out::{Evasion, Model, PushOutParams};
 use staya_controller::robot::RobotId;
@@ -68,7 +68,7 @@ pub struct PlaneSetup {
     /// Parameters of ORCA.
     pub orca: AvoidParams<f32>,
     /// How silent robots are seen.
-    pub doubt: Doubt<f32>,
+    pub inflation: StalenessInflation<f32>,
     /// Parameters of push-out.
     pub push_out: PushOutParams<f32>,
     /// Parameters of the alpha flock, and whether its reference moves.
@@ -98,9 +98,9 @@ impl PlaneSetup {
             guidance: GuidanceName::Waypoint,
             safety: SafetyName::Orca,
             orca: AvoidParams::default(),
-            doubt: Doubt {
+            inflation: StalenessInflation {
                 growth_mps: abilities.max_speed_mps as f32 / 2.0,
-                most_m: radius_m as f32,
+                max_m: radius_m as f32,
             },
             push_out: PushOutParams::new(1.0),
             lattice: (LatticeParams::new(1.0), true),
@@ -244,7 +244,7 @@ pub(super) fn build(
         guidance: table.guidance,
         safety: table.safety,
         orca: orca(source, &table.orca)?,
-        doubt: doubt(source, table)?,
+        inflation: inflation(source, table)?,
         push_out: push_out(source, table)?,
         lattice: flocks::lattice(source, table)?,
         goal_flock: flocks::goal_flock(source, table, cruise_mps)?,
@@ -379,21 +379,34 @@ fn push_out(source: &Source<'_>, table: &PlaneTable) -> Result<PushOutParams<f32
     })
 }
 
-fn doubt(source: &Source<'_>, table: &PlaneTable) -> Result<Doubt<f32>, ScenarioError> {
-    let growth_mps = table.orca.doubt_mps.unwrap_or(table.max_speed_mps / 2.0);
-    let most_m = table.orca.doubt_m.unwrap_or(table.radius_m);
+fn inflation(
+    source: &Source<'_>,
+    table: &PlaneTable,
+) -> Result<StalenessInflation<f32>, ScenarioError> {
+    let growth_mps = table
+        .orca
+        .inflation_mps
+        .unwrap_or(table.max_speed_mps / 2.0);
+    let max_m = table.orca.inflation_m.unwrap_or(table.radius_m);
     within(
         source,
-        "plane.orca.doubt_mps",
+        "plane.orca.inflation_mps",
         growth_mps,
         0.0,
         1000.0,
         "m/s",
     )?;
-    within(source, "plane.orca.doubt_m", most_m, 0.0, 1000.0, "metres")?;
-    Ok(Doubt {
+    within(
+        source,
+        "plane.orca.inflation_m",
+        max_m,
+        0.0,
+        1000.0,
+        "metres",
+    )?;
+    Ok(StalenessInflation {
         growth_mps: growth_mps as f32,
-        most_m: most_m as f32,
+        max_m: max_m as f32,
     })
 }
 

@@ -272,9 +272,11 @@ pub struct OrcaTable {
     /// Distance kept on top of the radii, metres.
     pub margin_m: Option<f64>,
     /// How fast the ball around a silent robot grows, m/s. Default: half the highest speed.
-    pub doubt_mps: Option<f64>,
+    #[serde(alias = "doubt_mps")]
+    pub inflation_mps: Option<f64>,
     /// How much it grows at most, metres. Default: the radius.
-    pub doubt_m: Option<f64>,
+    #[serde(alias = "doubt_m")]
+    pub inflation_m: Option<f64>,
 }
 
 impl OrcaTable {
@@ -286,16 +288,16 @@ impl OrcaTable {
             wall_horizon_s,
             share,
             margin_m,
-            doubt_mps,
-            doubt_m,
+            inflation_mps,
+            inflation_m,
         } = self;
         let fields = [
             horizon_s,
             wall_horizon_s,
             share,
             margin_m,
-            doubt_mps,
-            doubt_m,
+            inflation_mps,
+            inflation_m,
         ];
         fields.iter().all(|field| field.is_none())
     }

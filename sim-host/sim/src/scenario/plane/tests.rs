@@ -19,6 +19,15 @@ fn setup(text: &str) -> PlaneSetup {
 }
 
 #[test]
+fn staleness_inflation_is_read_by_its_former_names_too() {
+    for (growth, most) in [("inflation_mps", "inflation_m"), ("doubt_mps", "doubt_m")] {
+        let table = format!("[plane.orca]\n{growth} = 0.25\n{most} = 0.75\n");
+        let inflation = setup(&format!("{HEAD}{PLANE}{table}{TWO}")).inflation;
+        assert_eq!((inflation.growth_mps, inflation.max_m), (0.25, 0.75));
+    }
+}
+
+#[test]
 fn the_smallest_plane_has_the_documented_defaults() {
     let scenario = parse(&format!("{HEAD}{PLANE}{TWO}")).expect("good");
     assert_eq!(scenario.robots.len(), 2);
@@ -31,7 +40,10 @@ fn the_smallest_plane_has_the_documented_defaults() {
         (GuidanceName::Waypoint, SafetyName::Orca, false)
     );
     assert_eq!(plane.orca, AvoidParams::default());
-    assert_eq!((plane.doubt.growth_mps, plane.doubt.most_m), (0.5, 0.2));
+    assert_eq!(
+        (plane.inflation.growth_mps, plane.inflation.max_m),
+        (0.5, 0.2)
+    );
     let [one, two] = &plane.starts[..] else {
         panic!("two robots")
     };
@@ -268,8 +280,8 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             "s.toml:9: plane.orca.share: 1.1 is out of range; give 0 to 1",
         ),
         (
-            after("[plane.orca]\ndoubt_m = -1\n"),
-            "s.toml:9: plane.orca.doubt_m: -1 is out of range",
+            after("[plane.orca]\ninflation_m = -1\n"),
+            "s.toml:9: plane.orca.inflation_m: -1 is out of range",
         ),
         (
             flock("lattice", "spacing_m = 1\nalgorithm = 4", ""),
