@@ -40,7 +40,8 @@ pub struct HilArgs {
     /// Run in real time, and count the ticks that are late.
     #[arg(long)]
     real_time: bool,
-    /// Folder with firmware, PART/lockstep [default: what `cargo xtask firmware` makes, made anew when needed].
+    /// Folder with firmware, PART/lockstep [default: $STAYA_FIRMWARE, or the repository's target/firmware (`cargo run` there builds
+    /// it when needed), or ~/.local/share/staya/firmware].
     #[arg(long, value_name = "DIR")]
     firmware: Option<PathBuf>,
     /// Folder for the logs of emulated devices, one file per robot [default: no logs].

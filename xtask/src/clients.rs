@@ -1,14 +1,15 @@
 //! `cargo xtask clients`: real MAVLink clients against `staya`, from Python.
 
-use crate::debian;
+use crate::apt;
 use crate::repo::{Repo, output_of, run, run_reading};
 use crate::report::{Counts, Report};
 use std::path::PathBuf;
 
 const NAME: &str = "MAVLink clients";
 const TESTS: &str = "tests/python";
-/// Python with venv, and what looks into a capture.
-const PACKAGES: [&str; 3] = ["python3", "python3-venv", "tshark"];
+const PYTHON: [&str; 2] = ["python3", "python3-venv"];
+/// Looks into a capture.
+const TSHARK: &str = "tshark";
 const REMEDY: &str = "on Debian run, as root, `apt-get update && apt-get install python3 python3-venv tshark`; \
     what Python needs comes from PyPI (tests/python/requirements.txt)";
 /// Tests wait for real time more than they compute.
@@ -60,13 +61,15 @@ pub fn prepare(repo: &Repo) -> Result<PathBuf, String> {
                 .args(["-c", "import venv, ensurepip"]),
         )
     };
-    let has_tshark = || output_of(repo.command("tshark").arg("--version")).is_some();
-    if (system_python().is_none() || !has_tshark()) && debian::can_install(repo) {
-        debian::install(repo, &PACKAGES)
-            .map_err(|reason| format!("apt-get failed ({reason}); {REMEDY}"))?;
-    }
     if system_python().is_none() {
-        return Err(format!("no Python 3 with venv; {REMEDY}"));
+        apt::install(repo, &PYTHON)
+            .map_err(|reason| format!("no Python 3 with venv ({reason}); {REMEDY}"))?;
+    }
+    if output_of(repo.command(TSHARK).arg("--version")).is_none() {
+        // Without it one test is skipped.
+        if let Err(reason) = apt::unpack(repo, &[TSHARK], &[TSHARK]) {
+            println!("no {TSHARK} ({reason}); {REMEDY}");
+        }
     }
     if output_of(repo.command(&python).arg("--version")).is_none() {
         let mut venv = repo.command("python3");

@@ -1,69 +1,73 @@
 //! Debian's packaged Rust, which can build `core` from source for any target, where rustup's
 //! targets are out of reach.
 
-use crate::repo::{Repo, output_of, run};
+use crate::apt;
+use crate::repo::{Repo, output_of};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 const PACKAGES: [&str; 4] = ["rustc-web", "cargo-web", "rust-web-src", "lld"];
-const RUSTC: &str = "/usr/bin/rustc";
-const CARGO: &str = "/usr/bin/cargo";
+const PROGRAMS: [&str; 3] = ["rustc", "cargo", "ld.lld"];
 /// What a person without these packages should run; either line is enough.
 const REMEDY: &str = "run `rustup target add thumbv7em-none-eabihf thumbv6m-none-eabi \
     riscv32imac-unknown-none-elf` \
     or, on Debian, as root `apt-get update && apt-get install rustc-web cargo-web rust-web-src lld`";
 
-/// Makes sure that the packages are there: installs them as root on Debian. The error says why
-/// they are not, and what to do.
-pub fn prepare(repo: &Repo) -> Result<(), String> {
-    if is_complete(repo) {
-        return Ok(());
+/// Debian's Rust, with the sources of `core`.
+#[derive(Clone)]
+pub struct Rust {
+    /// The folder of its programs.
+    bin: PathBuf,
+}
+
+/// Finds the packages, or unpacks them. The error says why they are not there, and what to do.
+pub fn prepare(repo: &Repo) -> Result<Rust, String> {
+    let find = || {
+        let places = [PathBuf::from("/usr/bin"), repo.tools()];
+        let mut found = places.into_iter().map(|bin| Rust { bin });
+        found.find(|rust| rust.is_complete(repo))
+    };
+    if let Some(rust) = find() {
+        return Ok(rust);
     }
     println!("\nNo installed toolchain has the targets, and Debian's packages are not complete.");
-    if !can_install(repo) {
-        return Err(format!("no toolchain for microcontrollers; {REMEDY}"));
-    }
-    install(repo, &PACKAGES).map_err(|reason| format!("apt-get failed ({reason}); {REMEDY}"))?;
-    if is_complete(repo) {
-        Ok(())
-    } else {
-        let version = output_of(repo.command(RUSTC).arg("--version")).unwrap_or_default();
-        Err(format!(
-            "Debian's Rust ({version}) lacks the sources of core; {REMEDY}"
-        ))
-    }
+    apt::unpack(repo, &PACKAGES, &PROGRAMS)
+        .map_err(|reason| format!("no toolchain for microcontrollers ({reason}); {REMEDY}"))?;
+    find().ok_or_else(|| format!("Debian's Rust lacks the sources of core; {REMEDY}"))
 }
 
-/// Whether packages can be installed: as root on Debian.
-pub fn can_install(repo: &Repo) -> bool {
-    is_debian() && output_of(repo.command("id").arg("-u")).as_deref() == Some("0")
-}
-
-/// Installs packages. The error says why not.
-pub fn install(repo: &Repo, packages: &[&str]) -> Result<(), String> {
-    println!("Installing {}:", packages.join(", "));
-    run(&mut apt_get(repo, &["update"]))?;
-    // Nothing that is installed may have to go for it.
-    let install = ["install", "--yes", "--no-install-recommends", "--no-remove"];
-    run(apt_get(repo, &install).args(packages))
-}
-
-/// Debian's cargo with these arguments, with Debian's rustc, allowed to build `core`, in a target
-/// folder of its own: two compilers in one folder would build everything anew at each change.
-pub fn cargo(repo: &Repo, arguments: &[&str]) -> Command {
-    let mut command = repo.command(CARGO);
-    // Cargo and rustup tell their children which toolchain runs; that is another one here.
-    for (name, _) in std::env::vars_os() {
-        if name.to_str().is_some_and(names_a_toolchain) {
-            command.env_remove(name);
+impl Rust {
+    /// Its cargo with these arguments, with its rustc, allowed to build `core`, in a target folder of its own: two compilers in
+    /// one folder would build everything anew at each change.
+    pub fn cargo(&self, repo: &Repo, arguments: &[&str]) -> Command {
+        let mut command = repo.command(self.bin.join("cargo"));
+        // Cargo and rustup tell their children which toolchain runs; that is another one here.
+        for (name, _) in std::env::vars_os() {
+            if name.to_str().is_some_and(names_a_toolchain) {
+                command.env_remove(name);
+            }
         }
+        command
+            .args(arguments)
+            .env("RUSTC", self.bin.join("rustc"))
+            .env("RUSTC_BOOTSTRAP", "1")
+            .env("CARGO_TARGET_DIR", target_folder(repo));
+        command
     }
-    command
-        .args(arguments)
-        .env("RUSTC", RUSTC)
-        .env("RUSTC_BOOTSTRAP", "1")
-        .env("CARGO_TARGET_DIR", target_folder(repo));
-    command
+
+    /// Whether compiler, cargo, linker and the sources of `core` are all there.
+    fn is_complete(&self, repo: &Repo) -> bool {
+        let sysroot = output_of(
+            repo.command(self.bin.join("rustc"))
+                .args(["--print", "sysroot"]),
+        );
+        let sources = sysroot
+            .map(|root| Path::new(&root).join("lib/rustlib/src/rust/library/core/src/lib.rs"));
+        let programs = PROGRAMS
+            .iter()
+            .all(|program| self.bin.join(program).is_file());
+        programs && sources.is_some_and(|sources| sources.is_file())
+    }
 }
 
 /// Where Debian's cargo builds.
@@ -82,32 +86,6 @@ fn names_a_toolchain(variable: &str) -> bool {
     ];
     const BEGINNINGS: [&str; 4] = ["RUST", "CARGO_BUILD_RUSTC", "CARGO_PKG_", "CARGO_MANIFEST_"];
     NAMES.contains(&variable) || BEGINNINGS.iter().any(|start| variable.starts_with(start))
-}
-
-/// Whether Debian's compiler, cargo and the sources of `core` are all there.
-fn is_complete(repo: &Repo) -> bool {
-    let sysroot = output_of(repo.command(RUSTC).args(["--print", "sysroot"]));
-    let sources = |root: String| {
-        Path::new(&root)
-            .join("lib/rustlib/src/rust/library/core/src/lib.rs")
-            .is_file()
-    };
-    Path::new(CARGO).is_file() && sysroot.is_some_and(sources)
-}
-
-fn is_debian() -> bool {
-    std::fs::read_to_string("/etc/os-release")
-        .is_ok_and(|text| text.lines().any(|line| line == "ID=debian"))
-}
-
-/// apt-get that asks nothing and waits for another one to finish.
-fn apt_get(repo: &Repo, arguments: &[&str]) -> Command {
-    let mut command = repo.command("apt-get");
-    command
-        .args(["--quiet", "-o", "DPkg::Lock::Timeout=300"])
-        .args(arguments)
-        .env("DEBIAN_FRONTEND", "noninteractive");
-    command
 }
 
 #[cfg(test)]

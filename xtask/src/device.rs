@@ -12,14 +12,14 @@ pub enum Toolchain {
     /// The toolchain that runs this program has the target.
     Own,
     /// Debian's packages build it from source.
-    Debian,
+    Debian(debian::Rust),
 }
 
-/// Finds toolchains; looks for Debian's packages (and installs them) once, and only if a target
+/// Finds toolchains; looks for Debian's packages (and fetches them) once, and only if a target
 /// needs them.
 #[derive(Default)]
 pub struct Toolchains {
-    debian: Option<Result<(), String>>,
+    debian: Option<Result<debian::Rust, String>>,
 }
 
 /// Builds the controller for each target, plain and with every feature: Cortex-M4F and Cortex-M0,
@@ -50,7 +50,7 @@ impl Toolchains {
             return Ok(Toolchain::Own);
         }
         let ready = self.debian.get_or_insert_with(|| debian::prepare(repo));
-        ready.clone().map(|()| Toolchain::Debian)
+        ready.clone().map(Toolchain::Debian)
     }
 }
 
@@ -59,8 +59,8 @@ impl Toolchain {
     pub fn cargo(&self, repo: &Repo, target: &str, subcommand: &str) -> Command {
         let mut command = match self {
             Self::Own => repo.cargo(&[subcommand]),
-            Self::Debian => {
-                let mut command = debian::cargo(repo, &[subcommand, "-Zbuild-std=core"]);
+            Self::Debian(rust) => {
+                let mut command = rust.cargo(repo, &[subcommand, "-Zbuild-std=core"]);
                 // The targets ask for Rust's own copy of the linker, which Debian does not have.
                 let target = target.to_uppercase().replace('-', "_");
                 command.env(format!("CARGO_TARGET_{target}_LINKER"), "ld.lld");
@@ -75,7 +75,7 @@ impl Toolchain {
     pub fn target_folder(&self, repo: &Repo) -> PathBuf {
         match self {
             Self::Own => repo.target.clone(),
-            Self::Debian => debian::target_folder(repo),
+            Self::Debian(_) => debian::target_folder(repo),
         }
     }
 

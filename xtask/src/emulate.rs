@@ -22,7 +22,7 @@ fn machine(part: &Part) -> &'static [&'static str] {
     }
 }
 
-/// Whether the part's emulator is there; installs it as root on Debian.
+/// Whether the part's emulator is there; unpacks it on Debian.
 pub fn prepare(repo: &Repo, part: &Part) -> Result<(), String> {
     qemu::prepare(repo, part.emulator).map(drop)
 }

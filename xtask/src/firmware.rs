@@ -70,11 +70,50 @@ impl Profile {
 /// Programs of names that begin so link only when the optimiser has thrown out every panic.
 const ONLY_OPTIMISED: &str = "nopanic";
 
+/// What `cargo xtask firmware` is asked for.
+pub struct Request<'a> {
+    /// All of them if none is named.
+    parts: Vec<&'static Part>,
+    profile: Profile,
+    /// The only program to build.
+    bin: Option<&'a str>,
+}
+
+impl<'a> Request<'a> {
+    /// Reads the command line: `[--debug] [--bin NAME] [PART...]`.
+    pub fn read(arguments: &[&'a str]) -> Option<Self> {
+        let (mut parts, mut profile, mut bin) = (Vec::new(), Profile::Firmware, None);
+        let mut arguments = arguments.iter().copied();
+        while let Some(argument) = arguments.next() {
+            match argument {
+                "--debug" => profile = Profile::Debug,
+                "--bin" => bin = Some(arguments.next()?),
+                name => parts.push(part(name)?),
+            }
+        }
+        if parts.is_empty() {
+            parts.extend(&PARTS);
+        }
+        Some(Self {
+            parts,
+            profile,
+            bin,
+        })
+    }
+}
+
 /// The command: one step per part.
-pub fn run_command(repo: &Repo, report: &mut Report, parts: &[&Part], profile: Profile) {
+pub fn run_command(repo: &Repo, report: &mut Report, request: &Request<'_>) {
     let mut toolchains = Toolchains::default();
-    for part in parts {
-        build_step(repo, report, &mut toolchains, part, profile);
+    for part in &request.parts {
+        build_some(
+            repo,
+            report,
+            &mut toolchains,
+            part,
+            request.profile,
+            request.bin,
+        );
     }
 }
 
@@ -86,6 +125,17 @@ pub fn build_step(
     part: &Part,
     profile: Profile,
 ) -> bool {
+    build_some(repo, report, toolchains, part, profile, None)
+}
+
+fn build_some(
+    repo: &Repo,
+    report: &mut Report,
+    toolchains: &mut Toolchains,
+    part: &Part,
+    profile: Profile,
+    bin: Option<&str>,
+) -> bool {
     let name = match profile {
         Profile::Firmware => format!("firmware for {}", part.name),
         Profile::Debug => format!("firmware for {}, debug", part.name),
@@ -95,7 +145,7 @@ pub fn build_step(
         return false;
     }
     match toolchains.find(repo, part.target) {
-        Ok(toolchain) => report.step(&name, || build(repo, &toolchain, part, profile)),
+        Ok(toolchain) => report.step(&name, || build(repo, &toolchain, part, profile, bin)),
         Err(reason) => {
             report.skip(&name, &reason);
             false
@@ -103,13 +153,26 @@ pub fn build_step(
     }
 }
 
-/// Builds every program for a part and copies the ELF files to where they are looked for.
-fn build(repo: &Repo, toolchain: &Toolchain, part: &Part, profile: Profile) -> Result<(), String> {
+/// Builds every program for a part, or the one that is named, and copies the ELF files to where they are looked for.
+fn build(
+    repo: &Repo,
+    toolchain: &Toolchain,
+    part: &Part,
+    profile: Profile,
+    only: Option<&str>,
+) -> Result<(), String> {
     let (profile_name, folder) = profile.names();
     let mut cargo = toolchain.cargo(repo, part.target, "build");
     cargo.args(["--locked", "--profile", profile_name]);
     cargo.args(["--package", "staya-firmware"]);
-    let bins = bins(repo, profile)?;
+    let mut bins = bins(repo, profile)?;
+    bins.retain(|bin| only.is_none_or(|only| only == bin));
+    if bins.is_empty() {
+        return Err(format!(
+            "no program {} in hil/firmware",
+            only.unwrap_or_default()
+        ));
+    }
     for bin in &bins {
         cargo.args(["--bin", bin]);
     }
@@ -250,6 +313,18 @@ mod tests {
         assert_eq!(sizes(&elf[..elf.len() - 200]), None);
         elf[4] = 2; // 64 bits
         assert_eq!(sizes(&elf), None);
+    }
+
+    #[test]
+    fn the_command_line_names_parts_a_profile_and_a_program() {
+        let all = Request::read(&[]).unwrap();
+        assert_eq!((all.parts.len(), all.bin), (PARTS.len(), None));
+        let one = Request::read(&["--bin", "lockstep", "nrf51", "--debug"]).unwrap();
+        assert_eq!((one.parts.len(), one.bin), (1, Some("lockstep")));
+        assert!(one.profile == Profile::Debug && one.parts[0].name == "nrf51");
+        for wrong in [&["z80"][..], &["--bin"], &["--binary", "lockstep"]] {
+            assert!(Request::read(wrong).is_none(), "{wrong:?}");
+        }
     }
 
     #[test]

@@ -3,6 +3,7 @@
 //! One file per command; what they share is [`repo`] (where things are and how a child process is
 //! started) and [`report`] (what passed, and the closing line).
 
+mod apt;
 mod bench;
 mod bless;
 mod check;
@@ -24,7 +25,6 @@ mod swarms;
 mod test;
 
 use device::Toolchains;
-use firmware::{Part, Profile};
 use repo::Repo;
 use report::Report;
 use std::process::ExitCode;
@@ -43,15 +43,15 @@ Usage: cargo xtask COMMAND
                   each fuzz target for N seconds (default: 60), if nightly Rust and cargo-fuzz are there
   clients [NAME]  MAVLink clients (pymavlink, MAVSDK, MAVProxy, tshark) against staya, from Python: all tests or those whose names contain NAME
   example         the example firmware of examples/stm32f4
-  firmware [--debug] [PART...]
-                  the programs of hil/firmware for stm32f405, nrf51, riscv32 (default: all): target/firmware/PART/BIN
+  firmware [--debug] [--bin NAME] [PART...]
+                  the programs of hil/firmware, or one of them, for stm32f405, nrf51, riscv32 (default: all): target/firmware/PART/BIN
   size [--json]   what the firmware takes on each part: flash, RAM, stack, instructions a step; against hil/budgets.toml
   swarms          the canned swarms give the same hashes on the host and on every part; no panic in the firmware
-  qemu            the emulators of the parts; installs them as root on Debian
+  qemu            the emulators of the parts; fetches them on Debian
   help            this text
 
 `test` builds for microcontrollers with rustup's targets if they are installed, otherwise with
-Debian's packages, which it installs by itself when run as root on Debian; what it cannot do it
+Debian's packages, which it unpacks into target/tools if they are not installed; what it cannot do it
 reports as skipped, with the reason.
 
 The last line counts tests and steps: `N passed, N failed, N skipped`. The exit code is 1 if
@@ -87,8 +87,8 @@ fn main() -> ExitCode {
         ["fuzz", "--seconds", n] if n.parse().is_ok_and(|n: u32| n > 0) => {
             fuzz::run(&repo, &mut report, n);
         }
-        ["firmware", arguments @ ..] => match firmware_arguments(arguments) {
-            Some((parts, profile)) => firmware::run_command(&repo, &mut report, &parts, profile),
+        ["firmware", arguments @ ..] => match firmware::Request::read(arguments) {
+            Some(request) => firmware::run_command(&repo, &mut report, &request),
             None => {
                 eprint!("xtask: no such part or option\n\n{HELP}");
                 return ExitCode::from(2);
@@ -111,20 +111,4 @@ fn main() -> ExitCode {
         }
     }
     report.close()
-}
-
-/// The parts and the profile that the command line names; all parts if it names none.
-fn firmware_arguments(arguments: &[&str]) -> Option<(Vec<&'static Part>, Profile)> {
-    let mut parts = Vec::new();
-    let mut profile = Profile::Firmware;
-    for &argument in arguments {
-        match argument {
-            "--debug" => profile = Profile::Debug,
-            name => parts.push(firmware::part(name)?),
-        }
-    }
-    if parts.is_empty() {
-        parts.extend(&firmware::PARTS);
-    }
-    Some((parts, profile))
 }

@@ -1,12 +1,13 @@
 //! `cargo xtask qemu`: the emulators of the parts.
 
-use crate::debian;
+use crate::apt;
 use crate::firmware::PARTS;
 use crate::repo::{Repo, output_of};
 use crate::report::Report;
 
 /// Debian's packages of both emulators.
 const PACKAGES: [&str; 2] = ["qemu-system-arm", "qemu-system-misc"];
+const PROGRAMS: [&str; 2] = ["qemu-system-arm", "qemu-system-riscv32"];
 const REMEDY: &str = "on Debian run, as root, \
     `apt-get update && apt-get install qemu-system-arm qemu-system-misc`";
 
@@ -27,8 +28,7 @@ pub fn run(repo: &Repo, report: &mut Report) {
     }
 }
 
-/// Makes sure that an emulator is there: installs all of them as root on Debian. Returns what it
-/// says it is.
+/// Makes sure that an emulator is there: unpacks all of them on Debian. Returns what it says it is.
 pub fn prepare(repo: &Repo, emulator: &str) -> Result<String, String> {
     let version = || {
         let said = output_of(repo.command(emulator).arg("--version"))?;
@@ -37,10 +37,7 @@ pub fn prepare(repo: &Repo, emulator: &str) -> Result<String, String> {
     if let Some(version) = version() {
         return Ok(version);
     }
-    if !debian::can_install(repo) {
-        return Err(format!("no {emulator}; {REMEDY}"));
-    }
-    debian::install(repo, &PACKAGES)
-        .map_err(|reason| format!("no {emulator}, apt-get failed ({reason}); {REMEDY}"))?;
+    apt::unpack(repo, &PACKAGES, &PROGRAMS)
+        .map_err(|reason| format!("no {emulator} ({reason}); {REMEDY}"))?;
     version().ok_or_else(|| format!("no {emulator}; {REMEDY}"))
 }

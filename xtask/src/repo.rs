@@ -32,9 +32,19 @@ impl Repo {
         Self { root, target }
     }
 
-    /// A program to run at the top of the repository, without standard input.
+    /// Where programs are that were fetched for this repository alone.
+    pub fn tools(&self) -> PathBuf {
+        self.target.join("tools/bin")
+    }
+
+    /// A program to run at the top of the repository, without standard input; it and what it starts find [`Repo::tools`] as well.
     pub fn command(&self, program: impl AsRef<std::ffi::OsStr>) -> Command {
         let mut command = Command::new(program);
+        let path = std::env::var_os("PATH").unwrap_or_default();
+        let folders = std::env::split_paths(&path).chain([self.tools()]);
+        if let Ok(path) = std::env::join_paths(folders) {
+            command.env("PATH", path);
+        }
         command
             .current_dir(&self.root)
             .stdin(Stdio::null())

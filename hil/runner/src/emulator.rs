@@ -23,12 +23,14 @@ const GUARD: &str = "/usr/bin/setpriv";
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each text says it")]
 pub enum EmulatorError {
-    #[error("{program} is missing: on Debian run, as root, `apt-get install {package}`")]
+    #[error(
+        "{program} is missing: on Debian run, as root, `apt-get install {package}`, or `cargo xtask qemu` in Staya's repository"
+    )]
     NoEmulator {
         program: &'static str,
         package: &'static str,
     },
-    #[error("no firmware in {}: run `cargo xtask firmware {part}`", .elf.display())]
+    #[error("no firmware in {}: `cargo xtask firmware {part}` makes it", .elf.display())]
     NoFirmware { elf: PathBuf, part: &'static str },
     #[error("cannot start {program}: {source}")]
     Start {
@@ -46,13 +48,13 @@ pub struct Emulator {
     complaints: Arc<Mutex<String>>,
 }
 
-/// The emulator of a part with this firmware, as it is started. One instruction takes a nanosecond of the emulated clock.
-pub fn command(part: Part, elf: &Path) -> Command {
-    let (program, machine, _) = part.machine();
+/// The emulator `program` of a part with this firmware, as it is started. One instruction takes a nanosecond of the emulated clock.
+pub fn command(part: Part, program: &Path, elf: &Path) -> Command {
+    let (_, machine, _) = part.machine();
     // In its own process group, so that Ctrl-C in a terminal reaches the runner alone, which ends it in order.
     let mut command = if Path::new(GUARD).is_file() {
         let mut command = Command::new(GUARD);
-        command.args(["--pdeathsig", "KILL", program]);
+        command.args(["--pdeathsig", "KILL"]).arg(program);
         command
     } else {
         Command::new(program)
@@ -80,9 +82,9 @@ pub fn start(
         let (elf, part) = (elf.to_owned(), part.firmware_name());
         return Err(EmulatorError::NoFirmware { elf, part });
     }
-    if !is_installed(program) {
+    let Some(path) = find_emulator(program) else {
         return Err(EmulatorError::NoEmulator { program, package });
-    }
+    };
     let failed = |source| EmulatorError::Start { program, source };
     let (ours, theirs) = UnixStream::pair().map_err(failed)?;
     let log = match log {
@@ -95,7 +97,7 @@ pub fn start(
         }
         None => Stdio::null(),
     };
-    let mut command = command(part, elf);
+    let mut command = command(part, &path, elf);
     command.stdin(Stdio::from(OwnedFd::from(theirs)));
     command.stdout(log).stderr(Stdio::piped());
     let mut child = command.spawn().map_err(failed)?;
@@ -107,10 +109,17 @@ pub fn start(
     Ok((Emulator { child, complaints }, ours))
 }
 
-/// Whether a program of this name can be started.
-fn is_installed(program: &str) -> bool {
+/// The emulator of this name: on the path, or where `cargo xtask qemu` unpacks it, beside the folder that this program was built in
+/// (`target/release/staya`, `target/debug/deps/a-test`).
+#[must_use]
+pub fn find_emulator(program: &str) -> Option<PathBuf> {
     let path = std::env::var_os("PATH").unwrap_or_default();
-    std::env::split_paths(&path).any(|folder| folder.join(program).is_file())
+    let here = std::env::current_exe().unwrap_or_default();
+    let targets = here.ancestors().skip(2).take(2);
+    std::env::split_paths(&path)
+        .chain(targets.map(|target| target.join("tools/bin")))
+        .map(|folder| folder.join(program))
+        .find(|program| program.is_file())
 }
 
 /// Reads to the end and keeps the first bytes.
@@ -173,7 +182,7 @@ mod tests {
 
     #[test]
     fn missing_program_is_named_with_its_package() {
-        assert!(is_installed("sh") && !is_installed("qemu-system-abacus"));
+        assert!(find_emulator("sh").is_some() && find_emulator("qemu-system-abacus").is_none());
         let (program, _, package) = Part::Riscv32.machine();
         let text = EmulatorError::NoEmulator { program, package }.to_string();
         assert!(text.contains("qemu-system-riscv32 is missing"), "{text}");
@@ -186,7 +195,7 @@ mod tests {
             .into_iter()
             .zip(["netduinoplus2", "microbit", "virt"])
         {
-            let command = command(part, Path::new("x.elf"));
+            let command = command(part, Path::new("qemu"), Path::new("x.elf"));
             let arguments: Vec<_> = command.get_args().filter_map(|a| a.to_str()).collect();
             for expected in [machine, "shift=0", "socket,id=uart,fd=0", "x.elf"] {
                 assert!(arguments.contains(&expected), "{arguments:?}");

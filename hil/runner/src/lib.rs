@@ -45,7 +45,7 @@ pub use answer::{Answer, Cause, FleetError};
 pub use channel::{Channel, OpenError};
 pub use config::{DeviceConfig, Options, Reset};
 pub use device::{Device, DeviceError};
-pub use emulator::EmulatorError;
+pub use emulator::{EmulatorError, find_emulator};
 pub use fleet::Fleet;
 pub use line::LineFaults;
 pub use mismatch::Mismatch;
