@@ -46,15 +46,29 @@ struct Part {
 #[derive(Default)]
 pub struct Report {
     parts: Vec<Part>,
+    /// What does not run has failed.
+    is_strict: bool,
 }
 
 impl Report {
+    /// Under `CI=true` all that is skipped is a failure: a machine that lacks something must not look like one that passes.
+    pub fn new() -> Self {
+        Self {
+            is_strict: std::env::var_os("CI").is_some_and(|value| value == "true"),
+            ..Self::default()
+        }
+    }
+
     /// Runs one part that counts by itself; announces it first. `work` returns its counts and a
     /// note for the table.
     pub fn part(&mut self, name: &str, work: impl FnOnce() -> (Counts, String)) -> Counts {
         println!("\n== {name}");
         let start = Instant::now();
-        let (counts, note) = work();
+        let (mut counts, mut note) = work();
+        if self.is_strict && counts.skipped > 0 {
+            counts.failed += std::mem::take(&mut counts.skipped);
+            note = format!("with CI=true nothing may be skipped: {note}");
+        }
         self.parts.push(Part {
             name: name.to_string(),
             counts,
@@ -212,5 +226,18 @@ mod tests {
         assert!(failed.step("a", || Ok(())));
         assert!(!failed.step("b", || Err("because".into())));
         assert_eq!(failed.close(), ExitCode::FAILURE);
+    }
+
+    #[test]
+    fn what_is_skipped_has_failed_where_it_must_run() {
+        let mut report = Report {
+            is_strict: true,
+            ..Report::default()
+        };
+        report.skip("a", "no emulator");
+        let part = &report.parts[0];
+        assert_eq!((part.counts.failed, part.counts.skipped), (1, 0));
+        assert!(part.note.contains("no emulator"));
+        assert_eq!(report.close(), ExitCode::FAILURE);
     }
 }
