@@ -1,6 +1,7 @@
 //! Vectors in the plane and in space. Degenerate geometry is a value, never a NaN in disguise.
 
 use crate::scalar::{Scalar, cast};
+use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 use serde::{Deserialize, Serialize};
 
@@ -38,6 +39,26 @@ impl<S> Vec3<S> {
     pub const fn new(x: S, y: S, z: S) -> Self {
         Self { x, y, z }
     }
+}
+
+/// What algorithms of any dimension need of [`Vec2`] and [`Vec3`]; each has the same methods of its own.
+#[expect(missing_docs, reason = "the vectors' own methods document them")]
+pub trait Vector:
+    Copy
+    + Debug
+    + PartialEq
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Neg<Output = Self>
+    + Mul<Self::Scalar, Output = Self>
+{
+    type Scalar: Scalar;
+    const ZERO: Self;
+    fn dot(self, other: Self) -> Self::Scalar;
+    fn norm(self) -> Self::Scalar;
+    fn normalized(self) -> Option<Self>;
+    fn clamp_norm(self, max: Self::Scalar) -> Self;
+    fn is_finite(self) -> bool;
 }
 
 /// What both kinds of vectors can do, written once over their components.
@@ -105,6 +126,36 @@ macro_rules! impl_vector {
             #[must_use]
             pub fn is_finite(self) -> bool {
                 $(self.$c.is_finite())&&+
+            }
+        }
+
+        impl<S: Scalar> Vector for $vector<S> {
+            type Scalar = S;
+            const ZERO: Self = Self::ZERO;
+
+            #[inline]
+            fn dot(self, other: Self) -> S {
+                self.dot(other)
+            }
+
+            #[inline]
+            fn norm(self) -> S {
+                self.norm()
+            }
+
+            #[inline]
+            fn normalized(self) -> Option<Self> {
+                self.normalized()
+            }
+
+            #[inline]
+            fn clamp_norm(self, max: S) -> Self {
+                self.clamp_norm(max)
+            }
+
+            #[inline]
+            fn is_finite(self) -> bool {
+                self.is_finite()
             }
         }
 
