@@ -5,10 +5,9 @@
 use core::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use staya_controller::geom::{Vec2, Vec3};
-use staya_controller::orca::space::{self, half_space};
 use staya_controller::orca::{
-    Analytic, HalfPlane, HalfPlanes, Neighbor, Params, Template2k, Template8k, Template16k,
-    Template64k, solve,
+    Analytic, HalfPlane, HalfSpaces, MovingBall, Params, VoxelTable2k, VoxelTable8k, VoxelTable16k,
+    VoxelTable64k, half_space, solve,
 };
 use staya_controller::rand::Rng;
 use staya_controller::scalar::{Q16, Scalar};
@@ -36,13 +35,13 @@ fn params<S: Scalar>() -> Params<S> {
 }
 
 /// Own velocity and a robot of the same radius 0.3 m within 5 m that does not overlap.
-fn pair<S: Scalar>(rng: &mut Rng) -> (Vec2<S>, Neighbor<S>) {
+fn pair<S: Scalar>(rng: &mut Rng) -> (Vec2<S>, MovingBall<Vec2<S>>) {
     let radii_m = S::from_milli(600);
     let mut offset_m = Vec2::ZERO;
     while offset_m.norm() <= radii_m {
         offset_m = vector(rng, 5.0);
     }
-    let other = Neighbor {
+    let other = MovingBall {
         offset_m,
         velocity_mps: vector(rng, 1.5),
         radii_m,
@@ -52,11 +51,11 @@ fn pair<S: Scalar>(rng: &mut Rng) -> (Vec2<S>, Neighbor<S>) {
 }
 
 /// Where a half-plane comes from.
-type Source<'a, S> = &'a dyn Fn(Vec2<S>, &Neighbor<S>) -> Option<HalfPlane<S>>;
+type Source<'a, S> = &'a dyn Fn(Vec2<S>, &MovingBall<Vec2<S>>) -> Option<HalfPlane<S>>;
 
 fn half_planes<S: Scalar>(c: &mut Criterion, scalar: &str) {
     let mut rng = Rng::new(1);
-    let pairs: Vec<(Vec2<S>, Neighbor<S>)> = (0..SCENES).map(|_| pair(&mut rng)).collect();
+    let pairs: Vec<(Vec2<S>, MovingBall<Vec2<S>>)> = (0..SCENES).map(|_| pair(&mut rng)).collect();
     let mut group = c.benchmark_group(format!("half_plane_{scalar}"));
     let mut run = |name: &str, source: Source<'_, S>| {
         let mut turn = 0;
@@ -68,16 +67,16 @@ fn half_planes<S: Scalar>(c: &mut Criterion, scalar: &str) {
             });
         });
     };
-    fn by<S: Scalar, P: HalfPlanes<S>>(
+    fn by<S: Scalar, P: HalfSpaces<S, Velocity = Vec2<S>>>(
         source: P,
-    ) -> impl Fn(Vec2<S>, &Neighbor<S>) -> Option<HalfPlane<S>> {
-        move |own, other| source.half_plane(own, other, &params())
+    ) -> impl Fn(Vec2<S>, &MovingBall<Vec2<S>>) -> Option<HalfPlane<S>> {
+        move |own, other| source.half_space(own, other, &params())
     }
     run("analytic", &by(Analytic));
-    run("template_2k", &by(Template2k));
-    run("template_8k", &by(Template8k));
-    run("template_16k", &by(Template16k));
-    run("template_64k", &by(Template64k));
+    run("template_2k", &by(VoxelTable2k));
+    run("template_8k", &by(VoxelTable8k));
+    run("template_16k", &by(VoxelTable16k));
+    run("template_64k", &by(VoxelTable64k));
 }
 
 fn what_is_left(c: &mut Criterion) {
@@ -86,15 +85,15 @@ fn what_is_left(c: &mut Criterion) {
     let mut spaces = Vec::new();
     for _ in 0..SCENES {
         let own: Vec2<f32> = vector(&mut rng, 1.0);
-        let others: Vec<Neighbor<f32>> = (0..NEIGHBORS).map(|_| pair(&mut rng).1).collect();
+        let others: Vec<MovingBall<Vec2<f32>>> = (0..NEIGHBORS).map(|_| pair(&mut rng).1).collect();
         let in_plane = others
             .iter()
-            .filter_map(|other| Analytic.half_plane(own, other, &params()));
+            .filter_map(|other| Analytic.half_space(own, other, &params()));
         planes.push((in_plane.collect::<Vec<_>>(), vector::<f32>(&mut rng, 1.0)));
         let up = |rng: &mut Rng| within::<f32>(rng, 1.0);
         let own = own.extend(up(&mut rng));
         let in_space = others.iter().filter_map(|other| {
-            let other = space::Neighbor {
+            let other = MovingBall {
                 offset_m: other.offset_m.extend(up(&mut rng)),
                 velocity_mps: other.velocity_mps.extend(up(&mut rng)),
                 radii_m: other.radii_m,
@@ -111,14 +110,14 @@ fn what_is_left(c: &mut Criterion) {
         bencher.iter(|| {
             turn = (turn + 1) % SCENES;
             let (planes, wish) = &planes[turn];
-            solve::<f32, NEIGHBORS>(black_box(planes), 0, black_box(*wish), 1.0)
+            solve::<_, NEIGHBORS>(black_box(planes), 0, black_box(*wish), 1.0)
         });
     });
     group.bench_function("space", |bencher| {
         bencher.iter(|| {
             turn = (turn + 1) % SCENES;
             let (spaces, wish) = &spaces[turn];
-            space::solve::<f32, NEIGHBORS>(black_box(spaces), 0, black_box(*wish), 1.0)
+            solve::<_, NEIGHBORS>(black_box(spaces), 0, black_box(*wish), 1.0)
         });
     });
 }

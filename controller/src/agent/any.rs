@@ -6,15 +6,15 @@ use super::flock_guidance::{BoidsGuidance, GoalFlockGuidance, LatticeGuidance};
 use super::formation_guidance::FormationGuidance;
 use super::guidance::{BadInput, Guidance, Guided, Place, View};
 use super::in_plane::InPlane;
-use super::orca_safety::OrcaSafety;
-use super::other_safety::{FlySafety, PushOutSafety};
+use super::orca_safety::{FlySafety, OrcaSafety};
+use super::other_safety::PushOutSafety;
 use super::route_guidance::{GridWorkspace, RouteGuidance};
 use super::safety::{Safety, Sight, Unguarded};
 use super::waypoint_guidance::WaypointGuidance;
 use crate::geom::{Vec2, Vec3};
 use crate::grid::Cell;
 use crate::neighbor::StalenessInflation;
-use crate::orca::{self, HalfPlane, HalfPlanes};
+use crate::orca::{self, HalfPlane, HalfSpaces, MovingBall};
 use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
@@ -127,20 +127,22 @@ pub enum AnyHalfPlanes {
     Template64k,
 }
 
-impl<S: Scalar> HalfPlanes<S> for AnyHalfPlanes {
-    fn half_plane(
+impl<S: Scalar> HalfSpaces<S> for AnyHalfPlanes {
+    type Velocity = Vec2<S>;
+
+    fn half_space(
         &self,
         own_velocity_mps: Vec2<S>,
-        neighbor: &orca::Neighbor<S>,
+        disc: &MovingBall<Vec2<S>>,
         params: &orca::Params<S>,
     ) -> Option<HalfPlane<S>> {
         let own = own_velocity_mps;
         match self {
-            Self::Analytic => orca::half_plane(own, neighbor, params),
-            Self::Template2k => orca::Template2k.half_plane(own, neighbor, params),
-            Self::Template8k => orca::Template8k.half_plane(own, neighbor, params),
-            Self::Template16k => orca::Template16k.half_plane(own, neighbor, params),
-            Self::Template64k => orca::Template64k.half_plane(own, neighbor, params),
+            Self::Analytic => orca::half_plane(own, disc, params),
+            Self::Template2k => orca::VoxelTable2k.half_space(own, disc, params),
+            Self::Template8k => orca::VoxelTable8k.half_space(own, disc, params),
+            Self::Template16k => orca::VoxelTable16k.half_space(own, disc, params),
+            Self::Template64k => orca::VoxelTable64k.half_space(own, disc, params),
         }
     }
 }
@@ -148,7 +150,7 @@ impl<S: Scalar> HalfPlanes<S> for AnyHalfPlanes {
 /// Any safety layer; at most `K` half-planes count.
 #[derive(Clone, Debug, Serialize)]
 #[expect(missing_docs, reason = "each variant's type says it")]
-pub enum AnySafety<S, const K: usize> {
+pub enum AnySafety<S: Scalar, const K: usize> {
     Unguarded(Unguarded),
     Orca(OrcaSafety<S, K, AnyHalfPlanes>),
     Fly(FlySafety<S, K>),

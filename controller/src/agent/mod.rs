@@ -117,8 +117,8 @@ pub use in_plane::InPlane;
 pub use io::{
     CellState, Command, EVENTS, Event, InCell, Inputs, OUTBOX, Outputs, Pose, Refused, Surroundings,
 };
-pub use orca_safety::OrcaSafety;
-pub use other_safety::{FlySafety, PushOutSafety};
+pub use orca_safety::{FlySafety, OrcaSafety};
+pub use other_safety::PushOutSafety;
 pub use parameter::Parameter;
 pub use route_guidance::{GridWorkspace, RouteGuidance};
 pub use safety::{Safety, Sight, Unguarded};

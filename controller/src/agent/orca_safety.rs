@@ -4,31 +4,39 @@ use super::Parameter;
 use super::safety::{Safety, Sight};
 use crate::geom::Vec3;
 use crate::neighbor::StalenessInflation;
-use crate::orca::{AvoidParams, Avoider, HalfPlanes};
+use crate::orca::{Analytic, AvoidParams, Avoider, Dimension, HalfSpaces, InSpace};
 use crate::rand::Rng;
 use crate::scalar::Scalar;
 use serde::Serialize;
 
-/// [`Avoider`] in the plane; heights are left alone.
+/// An [`Avoider`]: in the plane, where heights are left alone, or in space, as its source of constraints says.
 #[derive(Clone, Debug, Serialize)]
-pub struct OrcaSafety<S, const K: usize, P = crate::orca::Analytic> {
+pub struct OrcaSafety<S: Scalar, const K: usize, P: HalfSpaces<S> = Analytic> {
     avoider: Avoider<S, K, P>,
     inflation: StalenessInflation<S>,
 }
 
+/// For robots that fly: at most `K` half-spaces.
+pub type FlySafety<S, const K: usize> = OrcaSafety<S, K, InSpace>;
+
 impl<S: Scalar, const K: usize> OrcaSafety<S, K> {
-    /// With exact half-planes. `inflation`: how the balls of silent neighbours grow.
+    /// In the plane, with exact half-planes. `inflation`: how the balls of silent neighbours grow.
     #[must_use]
     pub const fn new(params: AvoidParams<S>, inflation: StalenessInflation<S>) -> Self {
-        Self {
-            avoider: Avoider::new(params),
-            inflation,
-        }
+        Self::with_source(params, inflation, Analytic)
     }
 }
 
-impl<S: Scalar, const K: usize, P> OrcaSafety<S, K, P> {
-    /// With half-planes from `source`.
+impl<S: Scalar, const K: usize> FlySafety<S, K> {
+    /// In space. `inflation`: how the balls of silent neighbours grow.
+    #[must_use]
+    pub const fn in_space(params: AvoidParams<S>, inflation: StalenessInflation<S>) -> Self {
+        Self::with_source(params, inflation, InSpace)
+    }
+}
+
+impl<S: Scalar, const K: usize, P: HalfSpaces<S>> OrcaSafety<S, K, P> {
+    /// With constraints from `source`.
     #[must_use]
     pub const fn with_source(
         params: AvoidParams<S>,
@@ -42,18 +50,18 @@ impl<S: Scalar, const K: usize, P> OrcaSafety<S, K, P> {
     }
 }
 
-impl<S: Scalar, const K: usize, P: HalfPlanes<S>> Safety<S> for OrcaSafety<S, K, P> {
+impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Safety<S> for OrcaSafety<S, K, P> {
     #[inline(never)]
     fn keep_clear(&mut self, sight: &Sight<'_, S>, rng: &mut Rng) -> Vec3<S> {
         let solution = self.avoider.velocity(
             &sight.body,
-            sight.wish_mps.xy(),
-            sight.way_m.map(Vec3::xy),
+            sight.wish_mps.into(),
+            sight.way_m.map(Into::into),
             sight.nearby,
             sight.obstacles,
             rng,
         );
-        solution.velocity_mps.extend(sight.wish_mps.z)
+        solution.velocity_mps.at_height(sight.wish_mps.z)
     }
 
     fn inflation(&self) -> StalenessInflation<S> {

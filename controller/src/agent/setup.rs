@@ -7,8 +7,8 @@ use super::flock_guidance::{BoidsGuidance, GOALS, GoalFlockGuidance, LatticeGuid
 use super::formation_guidance::FormationGuidance;
 use super::guidance::Place;
 use super::in_plane::InPlane;
-use super::orca_safety::OrcaSafety;
-use super::other_safety::{FlySafety, PushOutSafety};
+use super::orca_safety::{FlySafety, OrcaSafety};
+use super::other_safety::PushOutSafety;
 use super::route_guidance::RouteGuidance;
 use super::safety::Unguarded;
 use super::waypoint_guidance::WaypointGuidance;
@@ -19,7 +19,7 @@ use crate::flock::lattice::LatticeParams;
 use crate::formation::FormationParams;
 use crate::grid::Cell;
 use crate::neighbor::StalenessInflation;
-use crate::orca::{AvoidParams, FlyParams};
+use crate::orca::AvoidParams;
 use crate::push_out::PushOutParams;
 use crate::route::{Replan, RouteParams};
 use crate::scalar::{Scalar, cast};
@@ -149,7 +149,7 @@ pub enum SafetySetup {
         source: AnyHalfPlanes,
     },
     Fly {
-        params: FlyParams<f32>,
+        params: AvoidParams<f32>,
         inflation: StalenessInflation<f32>,
     },
     PushOut {
@@ -293,7 +293,7 @@ impl SafetySetup {
                 *source,
             )),
             Self::Fly { params, inflation } => {
-                AnySafety::Fly(FlySafety::new(params.cast(), inflation.cast()))
+                AnySafety::Fly(FlySafety::in_space(params.cast(), inflation.cast()))
             }
             Self::PushOut { params } => AnySafety::PushOut(PushOutSafety::new(params.cast())),
         }

@@ -30,7 +30,8 @@ pub enum Obstacle<S> {
 
 impl<S: Scalar> Obstacle<S> {
     /// The obstacle's point nearest to the robot's centre (the centre itself inside of a ball or a
-    /// half-space), and how far it is away: negative inside. `None` for one that is not finite, and at the centre of a ball.
+    /// half-space), and how far it is away: negative inside. `None` for one that is not finite, and at the centre of a
+    /// ball.
     #[must_use]
     pub fn nearest_point(&self) -> Option<(Vec3<S>, S)> {
         match *self {

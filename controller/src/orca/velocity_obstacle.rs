@@ -1,4 +1,4 @@
-//! The truncated velocity obstacle as one function of the velocity (FVM, eqs. 1 to 4, 13 and 15).
+//! The truncated velocity obstacle as one function of the velocity (Tolok et al., FVM, eqs. 1 to 4, 13 and 15).
 
 use crate::geom::Vec2;
 use crate::scalar::Scalar;
@@ -6,8 +6,8 @@ use crate::scalar::Scalar;
 /// The relative velocities that lead to a collision within a time horizon: a cone with its tip cut off by a disc.
 ///
 /// What differs from the paper: its lines are y = x tg(angle), which fail for upright lines and, with
-/// alpha = arctg(y / x), for everything with x < 0 (the inequalities turn round); here each predicate is the signed distance to
-/// its line, from the vector to the neighbour, without an angle. Eq. 13 has the disc's centre
+/// alpha = arctg(y / x), for everything with x < 0 (the inequalities turn round); here each predicate is the signed
+/// distance to its line, from the vector to the neighbour, without an angle. Eq. 13 has the disc's centre
 /// at -(p_B - p_A) / tau; it is at +(p_B - p_A) / tau, as in the paper's figure 4. Eq. 3 is headed Pr1 and means Pr3.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VelocityObstacle<S> {
@@ -67,7 +67,8 @@ impl<S: Scalar> VelocityObstacle<S> {
     }
 
     /// Pr1, Pr2 (right of the left leg, left of the right one), Pr3, Pr4 (beyond the perpendiculars from the disc's
-    /// centre on the left and on the right leg) and Disc, m/s: each the signed distance to its line or circle, positive inside.
+    /// centre on the left and on the right leg) and Disc, m/s: each the signed distance to its line or circle, positive
+    /// inside.
     #[must_use]
     pub fn predicates(&self, velocity_mps: Vec2<S>) -> [S; 5] {
         let [left, right] = self.legs();
@@ -84,10 +85,10 @@ impl<S: Scalar> VelocityObstacle<S> {
     /// Pr1 and Pr2 and (Pr3 or Pr4) or Disc, with the R-functions min for "and" and max for "or": positive
     /// inside the velocity obstacle, negative outside, zero on its border.
     ///
-    /// Its sign is exact; its value is the distance to the border only outside of the tip. Beyond the perpendiculars the
-    /// greatest term may be Pr3 or Pr4, whose gradient runs along the leg: the gradient of an
+    /// Its sign is exact; its value is the distance to the border only outside of the tip. Beyond the perpendiculars
+    /// the greatest term may be Pr3 or Pr4, whose gradient runs along the leg: the gradient of an
     /// R-function leads out of the obstacle, not always the shortest way. The
-    /// [template](super::half_plane_from_template) therefore keeps the normal to the nearest border.
+    /// [table](super::half_plane_from_table) therefore keeps the normal to the nearest border.
     #[must_use]
     pub fn value(&self, velocity_mps: Vec2<S>) -> S {
         let [pr1, pr2, pr3, pr4, disc] = self.predicates(velocity_mps);

@@ -1,6 +1,6 @@
 //! What a static obstacle forbids (ORCA section 5.4): a wall is a segment; polygons are several.
 
-use super::HalfPlane;
+use super::dimension::HalfPlane;
 use crate::geom::Vec2;
 use crate::scalar::Scalar;
 
@@ -14,8 +14,8 @@ struct Nearest<S> {
 /// the robot's centre, metres) for `horizon_s` seconds. A wall does nothing to avoid, so the whole
 /// correction is the robot's.
 ///
-/// The wall widened by the robot is a capsule C; the velocities that meet it within the horizon are K = {c / t : c in C,
-/// 0 < t <= horizon}, a convex set bounded by two tangents from the origin and the near side of C / horizon. The
+/// The wall widened by the robot is a capsule C; the velocities that meet it within the horizon are K = {c / t : c in
+/// C, 0 < t <= horizon}, a convex set bounded by two tangents from the origin and the near side of C / horizon. The
 /// half-plane touches K where it is nearest to the own velocity, hence forbids all of K. A robot
 /// that touches or overlaps the wall may not come nearer.
 ///
@@ -144,3 +144,6 @@ fn leg<S: Scalar>(
         plane: HalfPlane { point, normal },
     })
 }
+
+#[cfg(test)]
+mod tests;

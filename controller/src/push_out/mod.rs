@@ -8,9 +8,10 @@
 //! close in may come as near as one step of the other below the least distance, and crowds may block each other.
 //!
 //! **What differs from the paper:**
-//! - Robots and obstacles have bodies: the least distance is at least the sum of two radii, from an obstacle the own radius.
-//! - The whole step counts and not only its end, so that no fast robot jumps through a small obstacle. Model 1 pushes out
-//!   the deepest point of the step, but not to where the border is hidden behind itself.
+//! - Robots and obstacles have bodies: the least distance is at least the sum of two radii, from an obstacle the own
+//!   radius.
+//! - The whole step counts and not only its end, so that no fast robot jumps through a small obstacle. Model 1 pushes
+//!   out the deepest point of the step, but not to where the border is hidden behind itself.
 //! - The paper steps sideways when position, new position and centre are on one line; here also when they
 //!   nearly are, since a push back along the line leaves nothing of the step there either.
 //! - Robots that are too near already are pushed out no faster than they can go. Those in one place go apart by
@@ -101,7 +102,8 @@ const TOLERANCE_MM: i32 = 1;
 /// and not faster than the body. Zero when the time step or the least distance is not above 0. Does not look at the
 /// body's acceleration.
 ///
-/// O(n) when nothing is in the way, else O(n^2), with model 1 of those in the way times all; n = `nearby` + `obstacles`.
+/// O(n) when nothing is in the way, else O(n^2), with model 1 of those in the way times all; n = `nearby` +
+/// `obstacles`.
 #[inline(never)]
 #[must_use]
 pub fn push_out<S: Scalar>(

@@ -203,8 +203,8 @@ fn wall<S: Scalar>([a, b]: [Vec2<S>; 2], margin: S, step: Vec2<S>) -> Option<Sha
     })
 }
 
-/// The point of the step that counts for a ball: the nearest to the centre, or the end when the robot is inside already and
-/// does not go deeper.
+/// The point of the step that counts for a ball: the nearest to the centre, or the end when the robot is inside already
+/// and does not go deeper.
 fn deepest<S: Scalar>(center: Vec3<S>, radius: S, step: Vec3<S>) -> Vec3<S> {
     let Some(direction) = step.normalized() else {
         return Vec3::ZERO;

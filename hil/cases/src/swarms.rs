@@ -7,7 +7,7 @@ mod waypoints;
 use crate::{Probe, Summary};
 #[cfg(feature = "large-tables")]
 use staya_controller::agent::AnyHalfPlanes;
-use staya_controller::orca::{Analytic, Template2k};
+use staya_controller::orca::{Analytic, VoxelTable2k};
 use staya_controller::scalar::Scalar;
 use staya_controller::wire::Postcard;
 
@@ -114,7 +114,7 @@ impl Case {
             Self::Packets => on_grid::packets(Postcard, probe),
             Self::RouteInPlane => waypoints::route_in_plane(probe),
             Self::OrcaAnalytic => waypoints::swap(Analytic, probe),
-            Self::OrcaTemplate2k => waypoints::swap(Template2k, probe),
+            Self::OrcaTemplate2k => waypoints::swap(VoxelTable2k, probe),
             // One agent type for the large ones: each would take another 12 KiB of flash.
             #[cfg(feature = "large-tables")]
             Self::OrcaTemplate8k => waypoints::swap(AnyHalfPlanes::Template8k, probe),

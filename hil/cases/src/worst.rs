@@ -22,9 +22,9 @@ use staya_controller::grid::{Cell, Dir, Window};
 use staya_controller::neighbor::StalenessInflation;
 use staya_controller::obstacle::Obstacle;
 #[cfg(feature = "large-tables")]
-use staya_controller::orca::Template64k;
-use staya_controller::orca::{Analytic, Template2k};
-use staya_controller::orca::{AvoidParams, FlyParams, HalfPlanes};
+use staya_controller::orca::VoxelTable64k;
+use staya_controller::orca::{Analytic, VoxelTable2k};
+use staya_controller::orca::{AvoidParams, HalfSpaces};
 use staya_controller::push_out::PushOutParams;
 use staya_controller::rand::Rng;
 use staya_controller::robot::{Mode, RobotId};
@@ -125,11 +125,11 @@ impl WorstCase {
                 on_grid::<S, _, P, N>(formation(Prediction::Reflexive), probe)
             }
             Self::OrcaAnalytic => orca::<S, _, P, N, K>(Analytic, probe),
-            Self::OrcaTemplate2k => orca::<S, _, P, N, K>(Template2k, probe),
+            Self::OrcaTemplate2k => orca::<S, _, P, N, K>(VoxelTable2k, probe),
             #[cfg(feature = "large-tables")]
-            Self::OrcaTemplate64k => orca::<S, _, P, N, K>(Template64k, probe),
+            Self::OrcaTemplate64k => orca::<S, _, P, N, K>(VoxelTable64k, probe),
             Self::Fly => {
-                let safety = FlySafety::<S, K>::new(FlyParams::default(), inflation());
+                let safety = FlySafety::<S, K>::in_space(AvoidParams::default(), inflation());
                 in_crowd::<S, _, _, P, N>(waypoint(), safety, probe)
             }
             Self::PushOut => {
@@ -170,7 +170,7 @@ fn waypoint<S: Scalar>() -> WaypointGuidance<S> {
     WaypointGuidance::new(S::ONE, S::from_milli(10))
 }
 
-fn orca<S: Scalar, H: HalfPlanes<S> + Serialize, P: Probe<S>, const N: usize, const K: usize>(
+fn orca<S: Scalar, H: HalfSpaces<S> + Serialize, P: Probe<S>, const N: usize, const K: usize>(
     source: H,
     probe: &mut P,
 ) -> Summary {

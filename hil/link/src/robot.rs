@@ -101,7 +101,7 @@ pub trait Controller {
 /// wire format `W`.
 #[derive(Clone, Debug)]
 pub struct Robot<
-    S,
+    S: Scalar,
     const CELLS: usize,
     const M: usize,
     const N: usize,

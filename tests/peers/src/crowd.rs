@@ -2,7 +2,7 @@
 
 use dodgy_2d::{Agent, AvoidanceOptions};
 use staya_controller::geom::Vec2;
-use staya_controller::orca::{HalfPlane, Neighbor, Params, half_plane, solve};
+use staya_controller::orca::{HalfPlane, MovingBall, Params, half_plane, solve};
 use staya_controller::rand::Rng;
 use std::borrow::Cow;
 
@@ -18,7 +18,7 @@ pub(crate) const HORIZON_S: f32 = 2.0;
 pub struct Crowd {
     own_velocity: Vec2<f32>,
     preferred: Vec2<f32>,
-    neighbors: Vec<Neighbor<f32>>,
+    neighbors: Vec<MovingBall<Vec2<f32>>>,
     own_agent: Agent,
     agents: Vec<Cow<'static, Agent>>,
 }
@@ -36,7 +36,7 @@ impl Crowd {
         while neighbors.len() < NEIGHBORS {
             let (offset_m, velocity_mps) = (pair(6.0), pair(1.0));
             if offset_m.norm() > 2.0 * RADIUS_M {
-                neighbors.push(Neighbor {
+                neighbors.push(MovingBall {
                     offset_m,
                     velocity_mps,
                     radii_m: 2.0 * RADIUS_M,
@@ -84,7 +84,7 @@ impl Crowd {
                 count += 1;
             }
         }
-        let found = solve::<f32, NEIGHBORS>(&planes[..count], 0, self.preferred, SPEED_MPS);
+        let found = solve::<_, NEIGHBORS>(&planes[..count], 0, self.preferred, SPEED_MPS);
         let Vec2 { x, y } = found.velocity_mps;
         ([x, y], found.penetration_mps)
     }

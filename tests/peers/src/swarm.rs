@@ -4,7 +4,7 @@
 use crate::crowd::{HORIZON_S, NEIGHBORS, RADIUS_M, SPEED_MPS, STEP_S};
 use dodgy_2d::{Agent, AvoidanceOptions};
 use staya_controller::geom::Vec2;
-use staya_controller::orca::{HalfPlane, Neighbor, Params, half_plane, solve};
+use staya_controller::orca::{HalfPlane, MovingBall, Params, half_plane, solve};
 use staya_controller::rand::Rng;
 use staya_sim::nearby::{Cells, Found, Query, Search, Space};
 use std::borrow::Cow;
@@ -98,7 +98,7 @@ impl Swarm {
             let mut count = 0;
             for other in &self.found {
                 let agent = &self.agents[other.index as usize];
-                let neighbor = Neighbor {
+                let neighbor = MovingBall {
                     offset_m: Vec2::new(other.offset[0], other.offset[1]),
                     velocity_mps: velocity(agent),
                     radii_m: RADIUS_M + agent.radius,
@@ -110,7 +110,7 @@ impl Swarm {
                 }
             }
             let wish = self.wishes[own];
-            let found = solve::<f32, NEIGHBORS>(&planes[..count], 0, wish, SPEED_MPS);
+            let found = solve::<_, NEIGHBORS>(&planes[..count], 0, wish, SPEED_MPS);
             self.chosen[own] = [found.velocity_mps.x, found.velocity_mps.y];
         }
     }

@@ -8,7 +8,7 @@ use crate::flock::lattice::LatticeParams;
 use crate::geom::{Position, Vec2, Vec3};
 use crate::neighbor::StalenessInflation;
 use crate::obstacle::Obstacle;
-use crate::orca::{AvoidParams, FlyParams};
+use crate::orca::AvoidParams;
 use crate::push_out::PushOutParams;
 use crate::wire::PlaceAssignment;
 use proptest::collection::vec;
@@ -172,7 +172,7 @@ fn safety(which: u8, length: f32, growth_mps: f32) -> AnySafety<f32, 16> {
     };
     match which % 8 {
         0 => AnySafety::Unguarded(Unguarded),
-        1 => AnySafety::Fly(FlySafety::new(FlyParams::default(), inflation)),
+        1 => AnySafety::Fly(FlySafety::in_space(AvoidParams::default(), inflation)),
         2 => AnySafety::PushOut(PushOutSafety::new(PushOutParams::new(length))),
         3 => orca(AnyHalfPlanes::Template2k),
         4 => orca(AnyHalfPlanes::Template8k),

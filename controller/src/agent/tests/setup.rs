@@ -6,7 +6,7 @@ use crate::flock::lattice::LatticeParams;
 use crate::formation::FormationParams;
 use crate::geom::{Position, Vec3};
 use crate::neighbor::StalenessInflation;
-use crate::orca::{AvoidParams, FlyParams};
+use crate::orca::AvoidParams;
 use crate::push_out::PushOutParams;
 use crate::route::{Replan, RouteParams};
 use crate::scalar::{Q16, Scalar};
@@ -70,7 +70,7 @@ fn safeties() -> [SafetySetup; 4] {
             source: AnyHalfPlanes::Template2k,
         },
         SafetySetup::Fly {
-            params: FlyParams::default(),
+            params: AvoidParams::default(),
             inflation,
         },
         SafetySetup::PushOut {

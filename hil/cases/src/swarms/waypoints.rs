@@ -14,7 +14,7 @@ use staya_controller::agent::{
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::grid::Cell;
 use staya_controller::neighbor::StalenessInflation;
-use staya_controller::orca::{Analytic, AvoidParams, FlyParams, HalfPlanes};
+use staya_controller::orca::{Analytic, AvoidParams, HalfSpaces};
 use staya_controller::push_out::PushOutParams;
 use staya_controller::robot::RobotId;
 use staya_controller::route::RouteParams;
@@ -101,7 +101,7 @@ fn to_places<S: Scalar, A: Safety<S> + Serialize, P: Probe<S>, const R: usize>(
 }
 
 #[inline(never)]
-pub(super) fn swap<S: Scalar, H: HalfPlanes<S> + Clone + Serialize, P: Probe<S>>(
+pub(super) fn swap<S: Scalar, H: HalfSpaces<S> + Clone + Serialize, P: Probe<S>>(
     source: H,
     probe: &mut P,
 ) -> Summary {
@@ -152,7 +152,7 @@ pub(super) fn fly<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
         }
         places
     };
-    let safety = || FlySafety::<S, PLANES>::new(FlyParams::default(), inflation());
+    let safety = || FlySafety::<S, PLANES>::in_space(AvoidParams::default(), inflation());
     to_places(&scene(&SOLIDS), &at(1), &at(-1), safety, probe)
 }
 

@@ -8,8 +8,8 @@ use crate::stats::{mean, quantile};
 use serde::Serialize;
 use staya_controller::geom::Vec2;
 use staya_controller::orca::{
-    Analytic, HalfPlanes, Neighbor, Params, Table, Template, Template2k, Template8k, Template16k,
-    Template64k,
+    Analytic, HalfSpaces, MovingBall, Params, VelocityObstacleTable, VoxelTable, VoxelTable2k,
+    VoxelTable8k, VoxelTable16k, VoxelTable64k,
 };
 use staya_controller::rand::Rng;
 use std::f64::consts::TAU;
@@ -76,7 +76,7 @@ const PARAMS: Params<f64> = Params {
 
 impl Sample {
     /// The pairs: own velocity and neighbour.
-    fn draw(&self) -> Vec<(Vec2<f64>, Neighbor<f64>)> {
+    fn draw(&self) -> Vec<(Vec2<f64>, MovingBall<V>)> {
         (0..self.pairs)
             .map(|pair| {
                 let mut rng = Rng::keyed(self.seed, PAIRS, pair, 0);
@@ -88,7 +88,7 @@ impl Sample {
                     Vec2::new(cos, sin) * libm::sqrt(squared)
                 };
                 let own = within(0.0, 1.5);
-                let other = Neighbor {
+                let other = MovingBall {
                     offset_m: within(radii_m, 5.0),
                     velocity_mps: within(0.0, 1.5),
                     radii_m,
@@ -107,24 +107,24 @@ impl Sample {
             pairs: self.pairs,
             seed: self.seed,
             sizes: vec![
-                size::<Template2k>("Template2k", &pairs, Template2k),
-                size::<Template8k>("Template8k", &pairs, Template8k),
-                size::<Template16k>("Template16k", &pairs, Template16k),
-                size::<Template64k>("Template64k", &pairs, Template64k),
+                size::<VoxelTable2k>("Template2k", &pairs, VoxelTable2k),
+                size::<VoxelTable8k>("Template8k", &pairs, VoxelTable8k),
+                size::<VoxelTable16k>("Template16k", &pairs, VoxelTable16k),
+                size::<VoxelTable64k>("Template64k", &pairs, VoxelTable64k),
             ],
         }
     }
 }
 
-fn size<T: Template>(
+fn size<T: VoxelTable>(
     name: &'static str,
-    pairs: &[(Vec2<f64>, Neighbor<f64>)],
-    template: impl HalfPlanes<f64>,
+    pairs: &[(Vec2<f64>, MovingBall<V>)],
+    template: impl HalfSpaces<f64, Velocity = V>,
 ) -> Size {
-    let table: Table = T::TABLE;
+    let table: VelocityObstacleTable = T::TABLE;
     let compared = pairs.iter().filter_map(|(own, other)| {
-        let exact = Analytic.half_plane(*own, other, &PARAMS)?;
-        let found = template.half_plane(*own, other, &PARAMS)?;
+        let exact = Analytic.half_space(*own, other, &PARAMS)?;
+        let found = template.half_space(*own, other, &PARAMS)?;
         let (sin, cos) = (
             exact.normal.det(found.normal),
             exact.normal.dot(found.normal),

@@ -8,7 +8,7 @@ use super::view::{
 };
 use anyhow::{Context as _, bail};
 use staya_controller::orca::{
-    HalfPlane, Neighbor, Params, Template, Template16k, VelocityObstacle, half_plane,
+    HalfPlane, MovingBall, Params, VelocityObstacle, VoxelTable, VoxelTable16k, half_plane,
 };
 use staya_plot::canvas::{Anchor, Canvas, Point, Stroke, Text};
 use staya_plot::colour::{Colour, INK, MUTED, PALETTE, WHITE};
@@ -52,7 +52,7 @@ impl Default for Scene {
 #[derive(Clone, Copy, Debug)]
 pub struct Drawing {
     obstacle: VelocityObstacle<f64>,
-    neighbor: Neighbor<f64>,
+    neighbor: MovingBall<V>,
     /// Velocities of A and B, and of A relative to B.
     own: V,
     relative: V,
@@ -88,7 +88,7 @@ impl Scene {
             bail!("radii and the horizon must be above 0");
         }
         let radii_m = self.radii_m.iter().sum();
-        let neighbor = Neighbor {
+        let neighbor = MovingBall {
             offset_m: other_place - place,
             velocity_mps: other,
             radii_m,
@@ -365,7 +365,7 @@ impl Drawing {
             let w = at - tip;
             let across = ahead.det(w);
             let sine = radius / tip.norm();
-            let table = Template16k::TABLE;
+            let table = VoxelTable16k::TABLE;
             let normal = table.normal(sine, V::new(w.dot(ahead), across.abs()))?;
             let side = if across > 0.0 { normal.y } else { -normal.y };
             Some(ahead.rotate(normal.x, side))

@@ -2,7 +2,6 @@
 
 use super::{GuidanceName, PlaneSetup, SafetyName, Scenario};
 use staya_controller::agent::{AnyHalfPlanes, GuidanceSetup, RouteSetup, SafetySetup};
-use staya_controller::orca::FlyParams;
 
 impl Scenario {
     /// How robot number `index` goes.
@@ -89,12 +88,7 @@ impl PlaneSetup {
             SafetyName::Template16k => by(AnyHalfPlanes::Template16k),
             SafetyName::Template64k => by(AnyHalfPlanes::Template64k),
             SafetyName::Fly => SafetySetup::Fly {
-                params: FlyParams {
-                    horizon_s: orca.horizon_s,
-                    obstacle_horizon_s: orca.wall_horizon_s,
-                    share: orca.share,
-                    margin_m: orca.margin_m,
-                },
+                params: orca,
                 inflation,
             },
             SafetyName::PushOut => SafetySetup::PushOut {

@@ -1,5 +1,6 @@
 use super::*;
 use crate::orca::VelocityObstacle;
+use crate::orca::fixtures::ball;
 use crate::rand::Rng;
 use crate::scalar::Q16;
 use proptest::prelude::*;
@@ -17,17 +18,8 @@ const PARAMS: Params<f64> = Params {
     share: 1.0,
 };
 
-fn neighbor(offset: V, velocity: V, radii_m: f64) -> Neighbor<f64> {
-    Neighbor {
-        offset_m: offset,
-        velocity_mps: velocity,
-        radii_m,
-        tie: V::ZERO,
-    }
-}
-
 /// Robots of 0.1 to 0.5 m within 5 m, at up to 1.5 m/s.
-fn sample(rng: &mut Rng) -> (V, Neighbor<f64>) {
+fn sample(rng: &mut Rng) -> (V, MovingBall<V>) {
     let mut unit = || f64::from(rng.below(1 << 20)) / f64::from(1 << 20);
     let radii = 0.2 + 0.8 * unit();
     let mut within = |least: f64, most: f64| {
@@ -36,7 +28,7 @@ fn sample(rng: &mut Rng) -> (V, Neighbor<f64>) {
         v(cos, sin) * length
     };
     let (offset, own, other) = (within(radii, 5.0), within(0.0, 1.5), within(0.0, 1.5));
-    (own, neighbor(offset, other, radii))
+    (own, ball(offset, other, radii))
 }
 
 /// Errors against the analytic form: angles in degrees and demanded changes in (R_A + R_B) / tau.
@@ -46,7 +38,7 @@ struct Errors {
 }
 
 impl Errors {
-    fn of(lookup: impl Fn(V, &Neighbor<f64>) -> HalfPlane<f64>) -> Self {
+    fn of(lookup: impl Fn(V, &MovingBall<V>) -> HalfPlane<f64>) -> Self {
         let mut rng = Rng::new(1);
         let (mut angles, mut changes) = (Vec::new(), Vec::new());
         for _ in 0..20_000 {
@@ -77,12 +69,12 @@ impl Errors {
     }
 }
 
-fn looked_up<T: Template>(own: V, other: &Neighbor<f64>) -> HalfPlane<f64> {
-    half_plane_from_template::<f64, T>(own, other, &PARAMS).unwrap()
+fn looked_up<T: VoxelTable>(own: V, other: &MovingBall<V>) -> HalfPlane<f64> {
+    half_plane_from_table::<f64, T>(own, other, &PARAMS).unwrap()
 }
 
-/// As [`half_plane_from_template`] with the nearest direction of the level below.
-fn single_node<T: Template>(own: V, other: &Neighbor<f64>) -> HalfPlane<f64> {
+/// As [`half_plane_from_table`] with the nearest direction of the level below.
+fn single_node<T: VoxelTable>(own: V, other: &MovingBall<V>) -> HalfPlane<f64> {
     let table = T::TABLE;
     let (ahead, distance) = (other.offset_m.normalized().unwrap(), other.offset_m.norm());
     let w = own - other.velocity_mps - other.offset_m * 0.5;
@@ -101,7 +93,7 @@ fn single_node<T: Template>(own: V, other: &Neighbor<f64>) -> HalfPlane<f64> {
 }
 
 /// Angle (degrees) and change ((R_A + R_B) / tau): mean, 99 of 100, greatest.
-fn check<T: Template>(bytes: usize, angle: [f64; 3], change: [f64; 3]) {
+fn check<T: VoxelTable>(bytes: usize, angle: [f64; 3], change: [f64; 3]) {
     assert!(T::TABLE.bytes() <= bytes, "{}", T::TABLE.bytes());
     let errors = Errors::of(looked_up::<T>);
     let single = Errors::of(single_node::<T>);
@@ -115,57 +107,57 @@ fn check<T: Template>(bytes: usize, angle: [f64; 3], change: [f64; 3]) {
 
 #[test]
 fn errors_against_the_analytic_form_are_bounded_in_2_kib() {
-    check::<Template2k>(2048, [0.03, 0.5, 1.6], [0.00013, 0.0028, 0.05]);
+    check::<VoxelTable2k>(2048, [0.03, 0.5, 1.6], [0.00013, 0.0028, 0.05]);
 }
 
 #[test]
 fn errors_against_the_analytic_form_are_bounded_in_8_kib() {
-    check::<Template8k>(8192, [0.0075, 0.06, 0.8], [0.000035, 0.0007, 0.025]);
+    check::<VoxelTable8k>(8192, [0.0075, 0.06, 0.8], [0.000035, 0.0007, 0.025]);
 }
 
 #[test]
 fn errors_against_the_analytic_form_are_bounded_in_16_kib() {
-    check::<Template16k>(16384, [0.004, 0.015, 0.55], [0.000025, 0.0005, 0.004]);
+    check::<VoxelTable16k>(16384, [0.004, 0.015, 0.55], [0.000025, 0.0005, 0.004]);
 }
 
 #[test]
 fn errors_against_the_analytic_form_are_bounded_in_64_kib() {
-    check::<Template64k>(65536, [0.0015, 0.006, 0.25], [0.000014, 0.0003, 0.003]);
+    check::<VoxelTable64k>(65536, [0.0015, 0.006, 0.25], [0.000014, 0.0003, 0.003]);
 }
 
 /// FVM's worked example in each size.
 #[test]
 fn worked_example_of_the_paper_within_the_tables_error() {
-    fn check<T: Template>(most: f64) {
-        let other = neighbor(v(-4.0, 6.0), v(3.0, -1.5), 2.0);
+    fn check<T: VoxelTable>(most: f64) {
+        let other = ball(v(-4.0, 6.0), v(3.0, -1.5), 2.0);
         let plane = looked_up::<T>(v(1.5, 1.0), &other);
         let apart = (plane.point - v(1.707107, 0.792893)).norm();
         assert!(apart < most, "{apart}");
         // At least the correction that the paper demands.
         assert!(plane.penetration(v(1.5, 1.0)) >= 0.292893 - 1e-6);
     }
-    check::<Template2k>(5e-4);
-    check::<Template8k>(2e-4);
-    check::<Template16k>(1e-4);
-    check::<Template64k>(5e-5);
+    check::<VoxelTable2k>(5e-4);
+    check::<VoxelTable8k>(2e-4);
+    check::<VoxelTable16k>(1e-4);
+    check::<VoxelTable64k>(5e-5);
 }
 
 #[test]
 fn overlap_nonsense_and_the_discs_centre_are_as_in_the_analytic_form() {
-    let both = |own: V, other: &Neighbor<f64>, params: &Params<f64>| {
+    let both = |own: V, other: &MovingBall<V>, params: &Params<f64>| {
         (
-            half_plane_from_template::<f64, Template2k>(own, other, params),
+            half_plane_from_table::<f64, VoxelTable2k>(own, other, params),
             half_plane(own, other, params),
         )
     };
     for other in [
-        neighbor(v(0.5, 0.0), v(0.1, 0.0), 1.0),
-        neighbor(v(1.0, 0.0), V::ZERO, 1.0),
-        neighbor(V::ZERO, V::ZERO, 1.0),
-        neighbor(v(3.0, f64::NAN), V::ZERO, 1.0),
-        neighbor(v(3.0, 0.0), v(f64::INFINITY, 0.0), 1.0),
-        neighbor(v(3.0, 0.0), V::ZERO, f64::NAN),
-        neighbor(v(3.0, 0.0), V::ZERO, -1.0),
+        ball(v(0.5, 0.0), v(0.1, 0.0), 1.0),
+        ball(v(1.0, 0.0), V::ZERO, 1.0),
+        ball(V::ZERO, V::ZERO, 1.0),
+        ball(v(3.0, f64::NAN), V::ZERO, 1.0),
+        ball(v(3.0, 0.0), v(f64::INFINITY, 0.0), 1.0),
+        ball(v(3.0, 0.0), V::ZERO, f64::NAN),
+        ball(v(3.0, 0.0), V::ZERO, -1.0),
     ] {
         let (found, exact) = both(v(0.2, 0.1), &other, &PARAMS);
         assert_eq!(found, exact, "{other:?}");
@@ -174,7 +166,7 @@ fn overlap_nonsense_and_the_discs_centre_are_as_in_the_analytic_form() {
         horizon_s: 0.0,
         ..PARAMS
     };
-    let other = neighbor(v(3.0, 0.0), V::ZERO, 1.0);
+    let other = ball(v(3.0, 0.0), V::ZERO, 1.0);
     assert_eq!(both(V::ZERO, &other, &stopped), (None, None));
     // Straight to the disc's centre.
     let (found, exact) = both(v(1.5, 0.0), &other, &PARAMS);
@@ -185,8 +177,8 @@ fn overlap_nonsense_and_the_discs_centre_are_as_in_the_analytic_form() {
 
 #[test]
 fn stored_normals_lie_between_backwards_and_the_leg() {
-    fn check<T: Template>() {
-        let Table {
+    fn check<T: VoxelTable>() {
+        let VelocityObstacleTable {
             sines,
             directions,
             normals,
@@ -207,10 +199,10 @@ fn stored_normals_lie_between_backwards_and_the_leg() {
             assert_eq!(nodes[directions - 1], [ONE as i16, 0]);
         }
     }
-    check::<Template2k>();
-    check::<Template8k>();
-    check::<Template16k>();
-    check::<Template64k>();
+    check::<VoxelTable2k>();
+    check::<VoxelTable8k>();
+    check::<VoxelTable16k>();
+    check::<VoxelTable64k>();
 }
 
 proptest! {
@@ -219,7 +211,7 @@ proptest! {
     /// Nothing of the velocity obstacle is permitted, and both robots of a pair get opposite half-planes.
     #[test]
     fn every_half_plane_forbids_the_whole_obstacle(seed: u64) {
-        fn check<T: Template>(own: V, other: &Neighbor<f64>) -> Result<(), TestCaseError> {
+        fn check<T: VoxelTable>(own: V, other: &MovingBall<V>) -> Result<(), TestCaseError> {
             let plane = looked_up::<T>(own, other);
             prop_assert!((plane.normal.norm() - 1.0).abs() < 1e-6, "{plane:?}");
             let obstacle = VelocityObstacle::new(other.offset_m, other.radii_m, 2.0).unwrap();
@@ -231,16 +223,16 @@ proptest! {
             for leg in obstacle.legs() {
                 prop_assert!(leg.dot(plane.normal) < 1e-9, "{}", leg.dot(plane.normal));
             }
-            let theirs = neighbor(-other.offset_m, own, other.radii_m);
+            let theirs = ball(-other.offset_m, own, other.radii_m);
             let theirs = looked_up::<T>(other.velocity_mps, &theirs);
             prop_assert!((plane.normal + theirs.normal).norm() < 1e-9);
             Ok(())
         }
         let (own, other) = sample(&mut Rng::new(seed));
-        check::<Template2k>(own, &other)?;
-        check::<Template8k>(own, &other)?;
-        check::<Template16k>(own, &other)?;
-        check::<Template64k>(own, &other)?;
+        check::<VoxelTable2k>(own, &other)?;
+        check::<VoxelTable8k>(own, &other)?;
+        check::<VoxelTable16k>(own, &other)?;
+        check::<VoxelTable64k>(own, &other)?;
     }
 
     /// The demanded change is never less than the least one.
@@ -248,7 +240,7 @@ proptest! {
     fn never_demands_less_than_the_analytic_form(seed: u64) {
         let (own, other) = sample(&mut Rng::new(seed));
         let exact = half_plane(own, &other, &PARAMS).unwrap().penetration(own);
-        let found = looked_up::<Template2k>(own, &other).penetration(own);
+        let found = looked_up::<VoxelTable2k>(own, &other).penetration(own);
         prop_assert!(found >= exact - 1e-6, "{found} < {exact}");
     }
 
@@ -260,7 +252,7 @@ proptest! {
         let value = obstacle.value(own - other.velocity_mps);
         let exact = half_plane(own, &other, &PARAMS).unwrap().penetration(own);
         prop_assert!((value > 0.0) == (exact > 0.0) || value.abs() < 1e-9, "{value} {exact}");
-        let change = looked_up::<Template64k>(own, &other).penetration(own);
+        let change = looked_up::<VoxelTable64k>(own, &other).penetration(own);
         prop_assert!(value < 1e-6 || change > 0.0, "{value} {change}");
         prop_assert!(value > -0.005 || change < 0.0, "{value} {change}");
     }
@@ -272,10 +264,10 @@ proptest! {
     ) {
         let (sin, cos) = Scalar::sin_cos(angle);
         let (own, other) = sample(&mut Rng::new(seed));
-        let plain = looked_up::<Template8k>(own, &other);
+        let plain = looked_up::<VoxelTable8k>(own, &other);
         for map in [&(|at: V| at.rotate(cos, sin)) as &dyn Fn(V) -> V, &|at: V| v(at.x, -at.y)] {
-            let moved = neighbor(map(other.offset_m), map(other.velocity_mps), other.radii_m);
-            let found = looked_up::<Template8k>(map(own), &moved);
+            let moved = ball(map(other.offset_m), map(other.velocity_mps), other.radii_m);
+            let found = looked_up::<VoxelTable8k>(map(own), &moved);
             prop_assert!((found.normal - map(plain.normal)).norm() < 1e-6);
             prop_assert!((found.point - map(plain.point)).norm() < 1e-6);
         }
@@ -283,9 +275,9 @@ proptest! {
 
     #[test]
     fn f32_and_q16_agree_with_f64(seed: u64) {
-        fn asked<S: Scalar>(own: V, other: &Neighbor<f64>) -> f64 {
+        fn asked<S: Scalar>(own: V, other: &MovingBall<V>) -> f64 {
             let near = |at: V| Vec2::new(S::from_f64(at.x).unwrap(), S::from_f64(at.y).unwrap());
-            let other = Neighbor {
+            let other = MovingBall {
                 offset_m: near(other.offset_m),
                 velocity_mps: near(other.velocity_mps),
                 radii_m: S::from_f64(other.radii_m).unwrap(),
@@ -293,7 +285,7 @@ proptest! {
             };
             let params = Params { horizon_s: S::TWO, separation_s: S::ONE, share: S::ONE };
             let own = near(own);
-            let found = half_plane_from_template::<S, Template16k>(own, &other, &params);
+            let found = half_plane_from_table::<S, VoxelTable16k>(own, &other, &params);
             found.unwrap().penetration(own).to_f64()
         }
         let (own, other) = sample(&mut Rng::new(seed));

@@ -3,9 +3,10 @@
 /// Length of a stored normal, and what sines of levels count in: powers of two that every scalar can tell apart.
 pub(super) const ONE: i32 = 1 << 14;
 
-/// The local geometry of the velocity obstacle: for some sines of its half angle, in some directions from its disc's centre.
+/// The local geometry of the velocity obstacle: for some sines of its half angle, in some directions from its disc's
+/// centre.
 #[derive(Clone, Copy, Debug)]
-pub struct Table {
+pub struct VelocityObstacleTable {
     /// Sines of the half angle, ascending from 0 to 1, in 1 / 2^14.
     pub(super) sines: &'static [u16],
     /// Directions in each level: equal steps of x / (x + y) from square to the axis to straight back.
@@ -15,7 +16,7 @@ pub struct Table {
     pub(super) normals: &'static [[i16; 2]],
 }
 
-impl Table {
+impl VelocityObstacleTable {
     /// Bytes of the table.
     #[must_use]
     pub const fn bytes(&self) -> usize {
@@ -29,24 +30,24 @@ impl Table {
     }
 }
 
-/// A choice of a [`Table`], as a type, so that firmware links the one that it uses.
-pub trait Template {
+/// A choice of a [`VelocityObstacleTable`], as a type, so that firmware links the one that it uses.
+pub trait VoxelTable {
     /// The table.
-    const TABLE: Table;
+    const TABLE: VelocityObstacleTable;
 }
 
-macro_rules! template {
+macro_rules! voxel_table {
     ($(#[$doc:meta])* $name:ident: $levels:literal x $directions:literal) => {
         $(#[$doc])*
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
         pub struct $name;
 
-        impl Template for $name {
-            const TABLE: Table = {
+        impl VoxelTable for $name {
+            const TABLE: VelocityObstacleTable = {
                 const LEGS: [[i16; 2]; $levels] = legs();
                 static SINES: [u16; $levels] = sines(&LEGS);
                 static NORMALS: [[i16; 2]; $levels * $directions] = normals(&LEGS, $directions);
-                Table {
+                VelocityObstacleTable {
                     sines: &SINES,
                     directions: $directions,
                     normals: &NORMALS,
@@ -56,21 +57,21 @@ macro_rules! template {
     };
 }
 
-template!(
+voxel_table!(
     /// At most 2 KiB.
-    Template2k: 20 x 25
+    VoxelTable2k: 20 x 25
 );
-template!(
+voxel_table!(
     /// At most 8 KiB.
-    Template8k: 40 x 50
+    VoxelTable8k: 40 x 50
 );
-template!(
+voxel_table!(
     /// At most 16 KiB.
-    Template16k: 56 x 72
+    VoxelTable16k: 56 x 72
 );
-template!(
+voxel_table!(
     /// At most 64 KiB.
-    Template64k: 110 x 148
+    VoxelTable64k: 110 x 148
 );
 
 /// The normal of the left leg in each level, from square to the axis (far away) to straight back (touching).

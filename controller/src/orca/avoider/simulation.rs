@@ -1,8 +1,8 @@
 //! Swarms of avoiders with what a good radio gives: places and velocities of the present step, rounded to millimetres.
 
-use super::tests::rng_of;
 use super::*;
 use crate::geom::{Position, Vec3};
+use crate::orca::fixtures::rng_of;
 use crate::robot::RobotId;
 use std::vec::Vec;
 

@@ -1,8 +1,8 @@
 //! Who goes through a gap, and who waits where.
 //!
-//! ORCA alone jams in a door: everybody pushes, nobody can leave. This is the rule of robots whose way leads through the
-//! same gap (a door or a passage not longer than [`DEEPEST`]), found by each for itself from the walls that it sees and
-//! the places and velocities of others. Lengths are in own radii.
+//! ORCA alone jams in a door: everybody pushes, nobody can leave. This is the rule of robots whose way leads through
+//! the same gap (a door or a passage not longer than [`DEEPEST`]), found by each for itself from the walls that it sees
+//! and the places and velocities of others. Lengths are in own radii.
 //!
 //! - Of the robots on one side the nearest to the gap is first, equal ones by number; only the first goes. The others
 //!   stand at a distance that grows with their rank, beside the lane that leads out of the gap, so that who comes out
@@ -13,15 +13,16 @@
 //!   nobody waiting opposite, robots follow each other.
 //! - Who is in the gap goes on. If two meet in it, the one nearer to its middle goes on, and the other goes back
 //!   beside the lane.
-//! - Robots that merely stand near a gap look like waiting ones, and views may differ: when nobody has been in the
-//!   gap for a while (drawn by each robot for itself, longer for later ranks), whose turn it is no longer counts.
+//! - Robots that merely stand near a gap look like waiting ones, and what robots see may differ: when nobody has been
+//!   in the gap for a while (drawn by each robot for itself, longer for later ranks), whose turn it is no longer
+//!   counts.
 //!
 //! So nobody waits for ever: a turn that is not taken passes on, and two that are taken at once are told apart in
 //! the gap by distance.
 
-use super::escape::Scene;
 use super::gap::{Gap, Wanted, gap_on_way};
 use crate::geom::Vec2;
+use crate::orca::dimension::Situation;
 use crate::rand::Rng;
 use crate::scalar::Scalar;
 use serde::Serialize;
@@ -30,8 +31,8 @@ use serde::Serialize;
 const DEEPEST: i32 = 8_000;
 /// Widest gap in which the rule holds; wider ones are open land.
 const WIDEST: i32 = 10_000;
-/// Gaps farther off do not matter yet: as far as robots wait. Walls must be seen at least as far, since where sight ends, two
-/// walls of a corridor look like a gap.
+/// Gaps farther off do not matter yet: as far as robots wait. Walls must be seen at least as far, since where sight
+/// ends, two walls of a corridor look like a gap.
 const WITHIN: i32 = 14_000;
 /// How far behind a gap one still goes straight on.
 const PAST: i32 = 2_000;
@@ -39,12 +40,13 @@ const PAST: i32 = 2_000;
 const PLAY: i32 = 150;
 /// How far from the gap one waits or comes out.
 const YARD: i32 = 5_000;
-/// Distances that differ by less are equal: the rounding of what robots know is the same for both but for this, micrometres.
+/// Distances that differ by less are equal: the rounding of what robots know is the same for both but for this,
+/// micrometres.
 const TIE_UM: i32 = 100;
 
 /// What a robot remembers of the gap before it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(super) struct Turn<S> {
+pub struct RightOfWay<S> {
     /// Which way the last robot seen in the gap went: whether as this one wants to.
     last_went_ahead: Option<bool>,
     /// For how long nobody has been seen in it, seconds, and for how long this is not remarkable.
@@ -54,9 +56,9 @@ pub(super) struct Turn<S> {
 }
 
 /// The gap, the robot and the others, seen from the gap.
-struct View<'a, S> {
+struct Approach<'a, S: Scalar> {
     gap: Gap<S>,
-    scene: &'a Scene<'a, S>,
+    situation: &'a Situation<'a, Vec2<S>>,
     /// The own place: see [`Gap::place`].
     own: Vec2<S>,
 }
@@ -79,28 +81,27 @@ struct Traffic<S> {
     largest: S,
 }
 
-impl<S: Scalar> Turn<S> {
-    pub(super) const fn new() -> Self {
-        Self {
-            last_went_ahead: None,
-            idle_s: None,
-            goes: false,
-        }
-    }
+impl<S: Scalar> RightOfWay<S> {
+    /// Of a robot that is at no gap.
+    pub(in crate::orca) const NEW: Self = Self {
+        last_went_ahead: None,
+        idle_s: None,
+        goes: false,
+    };
 
     /// The wish of a robot whose way leads through a gap, with others near by; `None` when it does not. An empty
     /// gap is left to others for `patience_s` to twice as long.
-    pub(super) fn wish(
+    pub(in crate::orca) fn wish(
         &mut self,
-        scene: &Scene<'_, S>,
+        situation: &Situation<'_, Vec2<S>>,
         patience_s: S,
         rng: &mut Rng,
     ) -> Option<Vec2<S>> {
-        let Some(view) = View::new(scene) else {
-            *self = Self::new();
+        let Some(approach) = Approach::new(situation) else {
+            *self = Self::NEW;
             return None;
         };
-        let traffic = view.traffic();
+        let traffic = approach.traffic();
         if traffic.ahead || traffic.against {
             self.last_went_ahead = Some(traffic.ahead);
             self.idle_s = None;
@@ -109,30 +110,31 @@ impl<S: Scalar> Turn<S> {
             let more = S::from_ratio(rng.below(1000).cast_signed(), 1000);
             (S::ZERO, patience_s + patience_s * more)
         });
-        self.idle_s = Some((idle_s + scene.body.step_s, enough_s));
+        self.idle_s = Some((idle_s + situation.body.step_s, enough_s));
         let is_impatient = idle_s > enough_s + S::from_i32(traffic.rank);
-        let has_lanes = view.has_lanes(traffic.largest);
-        self.goes = self.may_go(&view, &traffic, has_lanes, is_impatient);
+        let has_lanes = approach.has_lanes(traffic.largest);
+        self.goes = self.may_go(&approach, &traffic, has_lanes, is_impatient);
         let aim = if self.goes {
-            Some(view.way_through(has_lanes))
+            Some(approach.way_through(has_lanes))
         } else {
-            view.place_to_wait(traffic.rank, has_lanes)
+            approach.place_to_wait(traffic.rank, has_lanes)
         };
-        let way = aim.map_or(Vec2::ZERO, |place| view.gap.way(place));
-        let most = way.norm().checked_div(scene.body.step_s);
-        let speed = scene.wish.norm();
+        let way = aim.map_or(Vec2::ZERO, |place| approach.gap.way(place));
+        let most = way.norm().checked_div(situation.body.step_s);
+        let speed = situation.wish.norm();
         let pace = most.map_or(speed, |most| most.min(speed));
         Some(way.normalized().map_or(Vec2::ZERO, |unit| unit * pace))
     }
 
     fn may_go(
         &self,
-        view: &View<'_, S>,
+        approach: &Approach<'_, S>,
         traffic: &Traffic<S>,
         has_lanes: bool,
         is_impatient: bool,
     ) -> bool {
-        let is_inside = view.own.x > -view.radii(1_200) && view.own.y.abs() < view.gap.half;
+        let is_inside =
+            approach.own.x > -approach.radii(1_200) && approach.own.y.abs() < approach.gap.half;
         if has_lanes {
             return traffic.rank == 0 || is_inside || is_impatient && !traffic.ahead;
         }
@@ -157,37 +159,41 @@ impl<S: Scalar> Turn<S> {
     }
 }
 
-impl<'a, S: Scalar> View<'a, S> {
-    fn new(scene: &'a Scene<'a, S>) -> Option<Self> {
-        let radius = scene.body.radius_m;
+impl<'a, S: Scalar> Approach<'a, S> {
+    fn new(situation: &'a Situation<'a, Vec2<S>>) -> Option<Self> {
+        let radius = situation.body.radius_m;
         let radii = |thousandths: i32| radius * S::from_milli(thousandths);
-        let ahead = scene.wish.normalized()?;
-        if scene.nearby.is_empty() {
+        let ahead = situation.wish.normalized()?;
+        if situation.nearby.is_empty() {
             return None;
         }
-        let target = scene.goal.unwrap_or(ahead * radii(20_000));
+        let target = situation.goal.unwrap_or(ahead * radii(20_000));
         let wanted = Wanted {
             least_m: radii(2_020),
             most_m: radii(WIDEST),
             deepest_m: radii(DEEPEST),
             past_m: radii(PAST),
         };
-        let gap = gap_on_way(scene.obstacles, target, &wanted)?;
+        let gap = gap_on_way(situation.obstacles, target, &wanted)?;
         let own = gap.place(Vec2::ZERO);
         if own.norm() > radii(WITHIN) {
             return None;
         }
-        Some(Self { gap, scene, own })
+        Some(Self {
+            gap,
+            situation,
+            own,
+        })
     }
 
     /// A length in thousandths of the own radius.
     fn radii(&self, thousandths: i32) -> S {
-        self.scene.body.radius_m * S::from_milli(thousandths)
+        self.situation.body.radius_m * S::from_milli(thousandths)
     }
 
     /// Whether robots can pass each other in the gap.
     fn has_lanes(&self, largest: S) -> bool {
-        let two = self.scene.body.radius_m + largest;
+        let two = self.situation.body.radius_m + largest;
         self.gap.half + self.gap.half >= two + two + self.radii(PLAY)
     }
 
@@ -208,20 +214,20 @@ impl<'a, S: Scalar> View<'a, S> {
             comes_out: false,
             opposite: false,
             opposite_is_nearer: false,
-            largest: self.scene.body.radius_m,
+            largest: self.situation.body.radius_m,
         };
         // Slower than this is standing.
-        let slow = self.scene.body.max_speed_mps * S::from_milli(100);
+        let slow = self.situation.body.max_speed_mps * S::from_milli(100);
         let tie = S::from_micro(TIE_UM);
         let own_distance = self.own.norm();
-        for other in self.scene.nearby {
+        for other in self.situation.nearby {
             let place = self.gap.place(other.offset_m.xy());
             let speed_ahead = self.gap.turn(other.velocity_mps.xy()).x;
             let distance = place.norm();
             let is_nearer = distance < own_distance - tie
-                || distance <= own_distance + tie && other.id < self.scene.body.id;
+                || distance <= own_distance + tie && other.id < self.situation.body.id;
             let is_beside_axis = place.y.abs();
-            let reach = self.scene.body.radius_m + other.radius_m;
+            let reach = self.situation.body.radius_m + other.radius_m;
             traffic.largest = traffic.largest.max(other.radius_m);
             if place.x.abs() < other.radius_m + self.radii(500) && is_beside_axis < self.gap.half {
                 traffic.ahead |= speed_ahead > slow;
@@ -244,7 +250,7 @@ impl<'a, S: Scalar> View<'a, S> {
     /// Where to go next on the way through.
     fn way_through(&self, has_lanes: bool) -> Vec2<S> {
         let lane = self.lane(has_lanes);
-        let play = self.gap.half - self.scene.body.radius_m;
+        let play = self.gap.half - self.situation.body.radius_m;
         if self.own.x > S::ZERO {
             // Out, and to the right.
             Vec2::new(self.radii(4_000), lane + self.radii(300))
@@ -258,7 +264,7 @@ impl<'a, S: Scalar> View<'a, S> {
 
     /// Where to wait; `None`: here.
     fn place_to_wait(&self, rank: i32, has_lanes: bool) -> Option<Vec2<S>> {
-        let radius = self.scene.body.radius_m;
+        let radius = self.situation.body.radius_m;
         let own = self.own;
         let side = if has_lanes || own.y >= S::ZERO {
             S::ONE

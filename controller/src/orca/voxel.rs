@@ -1,5 +1,5 @@
-//! Half-planes by looking up: the voxel template of the velocity obstacle (FVM, conclusion: "the functional voxel model is a
-//! template that holds the local geometry in each point").
+//! Half-planes by looking up: the voxel template of the velocity obstacle (Tolok et al., FVM, conclusion: "the
+//! functional voxel model is a template that holds the local geometry in each point").
 //!
 //! Turned so that the neighbour is on the x axis and divided by (R_A + R_B) / tau, a velocity obstacle depends on one
 //! number, the sine of the cone's half angle (R_A + R_B) / distance, and around the centre of its disc it is
@@ -10,17 +10,17 @@
 //! - Legs and disc are all tangent to the unit disc, so the local equation of every voxel is cos x + sin y = 1: the
 //!   distance to the border is cos x + sin y - 1 and need not be stored.
 //! - For the same reason the normal is the same all along a ray from the disc's centre, and behind the centre it is
-//!   that of the leg. So voxels (sine, x, |y|) say nothing that (sine, direction) does not, with directions in front of the centre only: no
-//!   velocity is outside of the sampled range, and a dimension less leaves bytes for finer steps. With voxels over (sine, x, |y|), tried first,
-//!   mean angle errors were 0.18 degrees in 2 KiB and 0.06 in 64 KiB.
+//!   that of the leg. So voxels (sine, x, |y|) say nothing that (sine, direction) does not, with directions in front of
+//!   the centre only: no velocity is outside of the sampled range, and a dimension less leaves bytes for finer steps.
+//!   With voxels over (sine, x, |y|), tried first, mean angle errors were 0.18 degrees in 2 KiB and 0.06 in 64 KiB.
 //! - The normal is that of the nearest border, not of the R-function's gradient (see [`VelocityObstacle::value`]).
-//! - Nodes are interpolated, four for a point: with the nearest alone the mean angle error is 40 times as large or more in each
-//!   size (a test says so), which no size makes up for.
+//! - Nodes are interpolated, four for a point: with the nearest alone the mean angle error is 40 times as large or more
+//!   in each size (a test says so), which no size makes up for.
 //!
 //! **A half-plane from the table is always safe**: any normal between those of the two legs gives a line that touches
-//! the disc and has the whole obstacle behind it, and what is looked up is never outside of them. The table's error only makes the demanded change of
-//! velocity longer than the least one; and both robots of a pair read the same nodes, so their half-planes stay
-//! opposite.
+//! the disc and has the whole obstacle behind it, and what is looked up is never outside of them. The table's error
+//! only makes the demanded change of velocity longer than the least one; and both robots of a pair read the same nodes,
+//! so their half-planes stay opposite.
 //!
 //! [`VelocityObstacle::value`]: super::VelocityObstacle::value
 
@@ -28,37 +28,40 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-pub use table::{Table, Template, Template2k, Template8k, Template16k, Template64k};
+pub use table::{
+    VelocityObstacleTable, VoxelTable, VoxelTable2k, VoxelTable8k, VoxelTable16k, VoxelTable64k,
+};
 
-use super::{HalfPlane, HalfPlanes, Neighbor, Params, half_plane};
+use super::avoider::HalfSpaces;
+use super::{HalfPlane, MovingBall, Params, half_plane};
 use crate::geom::Vec2;
 use crate::scalar::Scalar;
 use table::ONE;
 
 /// As [`half_plane`], with the normal from the table of `T`.
 ///
-/// Robots that overlap get the analytic half-plane: there is no cone then. `None` when an input is not finite, or r or a time is
-/// not above 0. Bounded work: one search among the levels (of at most 110), four nodes.
+/// Robots that overlap get the analytic half-plane: there is no cone then. `None` when an input is not finite, or r or
+/// a time is not above 0. Bounded work: one search among the levels (of at most 110), four nodes.
 #[must_use]
-pub fn half_plane_from_template<S: Scalar, T: Template>(
+pub fn half_plane_from_table<S: Scalar, T: VoxelTable>(
     own_velocity_mps: Vec2<S>,
-    neighbor: &Neighbor<S>,
+    disc: &MovingBall<Vec2<S>>,
     params: &Params<S>,
 ) -> Option<HalfPlane<S>> {
-    from_table(&T::TABLE, own_velocity_mps, neighbor, params)
+    from_table(&T::TABLE, own_velocity_mps, disc, params)
 }
 
 /// Not generic over the table and not inlined: firmware that chooses among tables pays for it once.
 #[inline(never)]
 fn from_table<S: Scalar>(
-    table: &Table,
+    table: &VelocityObstacleTable,
     own_velocity_mps: Vec2<S>,
-    neighbor: &Neighbor<S>,
+    disc: &MovingBall<Vec2<S>>,
     params: &Params<S>,
 ) -> Option<HalfPlane<S>> {
-    let analytic = || half_plane(own_velocity_mps, neighbor, params);
-    let (p, r) = (neighbor.offset_m, neighbor.radii_m);
-    let v = own_velocity_mps - neighbor.velocity_mps;
+    let analytic = || half_plane(own_velocity_mps, disc, params);
+    let (p, r) = (disc.offset_m, disc.radii_m);
+    let v = own_velocity_mps - disc.velocity_mps;
     let distance = p.norm();
     if !(v.is_finite() && r > S::ZERO && distance > r && params.horizon_s > S::ZERO) {
         return analytic();
@@ -87,20 +90,23 @@ fn from_table<S: Scalar>(
 }
 
 /// Half-planes by looking up, for an [`Avoider`](super::Avoider).
-impl<S: Scalar, T: Template> HalfPlanes<S> for T {
-    fn half_plane(
+impl<S: Scalar, T: VoxelTable> HalfSpaces<S> for T {
+    type Velocity = Vec2<S>;
+
+    fn half_space(
         &self,
         own_velocity_mps: Vec2<S>,
-        neighbor: &Neighbor<S>,
+        disc: &MovingBall<Vec2<S>>,
         params: &Params<S>,
     ) -> Option<HalfPlane<S>> {
-        half_plane_from_template::<S, T>(own_velocity_mps, neighbor, params)
+        half_plane_from_table::<S, T>(own_velocity_mps, disc, params)
     }
 }
 
-impl Table {
-    /// The outward unit normal at the border nearest to the point `w`, w.y >= 0, of the velocity obstacle with this sine of its
-    /// half angle and the disc's centre in the origin, whatever the disc's radius. `None` when something is not finite.
+impl VelocityObstacleTable {
+    /// The outward unit normal at the border nearest to the point `w`, w.y >= 0, of the velocity obstacle with this
+    /// sine of its half angle and the disc's centre in the origin, whatever the disc's radius. `None` when something is
+    /// not finite.
     ///
     /// At most -sine along x: never past the normal of the leg.
     #[must_use]

@@ -1,10 +1,9 @@
 use super::*;
-use crate::geom::Vec2;
-use crate::scalar::{Q16, Scalar};
+use crate::orca::fixtures::{ball, params, worst};
+use crate::orca::solve;
+use crate::scalar::Q16;
 use proptest::prelude::*;
 use std::vec::Vec;
-
-mod land;
 
 type V = Vec2<f64>;
 
@@ -12,28 +11,11 @@ fn v(x: f64, y: f64) -> V {
     V::new(x, y)
 }
 
-fn params(horizon_s: f64, share: f64) -> Params<f64> {
-    Params {
-        horizon_s,
-        separation_s: 0.05,
-        share,
-    }
-}
-
-fn neighbor(offset: V, velocity: V, radii_m: f64) -> Neighbor<f64> {
-    Neighbor {
-        offset_m: offset,
-        velocity_mps: velocity,
-        radii_m,
-        tie: V::ZERO,
-    }
-}
-
 /// FVM's worked example: the relative velocity lies before the cut-off disc.
 #[test]
 fn worked_example_of_the_paper_to_1e_6() {
     let own = v(1.5, 1.0);
-    let other = neighbor(v(-4.0, 6.0), v(3.0, -1.5), 2.0);
+    let other = ball(v(-4.0, 6.0), v(3.0, -1.5), 2.0);
     for (share, x, y) in [(1.0, 1.707107, 0.792893), (0.5, 1.603553, 0.896447)] {
         let plane = half_plane(own, &other, &params(2.0, share)).unwrap();
         assert!((plane.point - v(x, y)).norm() < 1e-6, "{plane:?}");
@@ -44,9 +26,8 @@ fn worked_example_of_the_paper_to_1e_6() {
 #[test]
 fn head_on_robots_are_sent_to_opposite_sides() {
     // Ahead 10 m, closing at 2 m/s, a little to the left: pass on the right.
-    let plane = |offset: V, own: V| {
-        half_plane(own, &neighbor(offset, -own, 1.0), &params(20.0, 0.5)).unwrap()
-    };
+    let plane =
+        |offset: V, own: V| half_plane(own, &ball(offset, -own, 1.0), &params(20.0, 0.5)).unwrap();
     let ours = plane(v(10.0, 0.1), v(1.0, 0.0));
     let theirs = plane(v(-10.0, -0.1), v(-1.0, 0.0));
     assert!(ours.normal.y < -0.9, "project on right leg {ours:?}");
@@ -58,21 +39,21 @@ fn head_on_robots_are_sent_to_opposite_sides() {
 #[test]
 fn overlapping_and_coincident_robots_are_sent_apart() {
     let p = params(2.0, 0.5);
-    let overlapping = half_plane(V::ZERO, &neighbor(v(0.5, 0.0), V::ZERO, 1.0), &p).unwrap();
+    let overlapping = half_plane(V::ZERO, &ball(v(0.5, 0.0), V::ZERO, 1.0), &p).unwrap();
     assert_eq!(overlapping.normal, v(-1.0, 0.0));
     // 0.5 m of overlap in 0.05 s, half of it ours.
     assert!((overlapping.point.x + 5.0).abs() < 1e-9);
     let tied = |tie: V| {
-        let other = Neighbor {
+        let other = MovingBall {
             tie,
-            ..neighbor(V::ZERO, V::ZERO, 1.0)
+            ..ball(V::ZERO, V::ZERO, 1.0)
         };
         half_plane(V::ZERO, &other, &p).unwrap().normal
     };
     assert_eq!(tied(v(0.0, 3.0)), -tied(v(0.0, -3.0)));
     assert_eq!(tied(V::ZERO), v(1.0, 0.0));
     // Touching exactly: no speed towards each other.
-    let touching = half_plane(V::ZERO, &neighbor(v(1.0, 0.0), V::ZERO, 1.0), &p).unwrap();
+    let touching = half_plane(V::ZERO, &ball(v(1.0, 0.0), V::ZERO, 1.0), &p).unwrap();
     assert!(touching.penetration(V::ZERO).abs() < 1e-9);
     assert!(touching.penetration(v(0.1, 0.0)) > 0.0);
 }
@@ -81,30 +62,23 @@ fn overlapping_and_coincident_robots_are_sent_apart() {
 fn what_is_not_finite_gives_no_half_plane() {
     let p = params(2.0, 0.5);
     for bad in [f64::NAN, f64::INFINITY] {
-        assert!(half_plane(v(bad, 0.0), &neighbor(v(3.0, 0.0), V::ZERO, 1.0), &p).is_none());
-        assert!(half_plane(V::ZERO, &neighbor(v(3.0, bad), V::ZERO, 1.0), &p).is_none());
-        assert!(half_plane(V::ZERO, &neighbor(v(3.0, 0.0), v(bad, bad), 1.0), &p).is_none());
+        assert!(half_plane(v(bad, 0.0), &ball(v(3.0, 0.0), V::ZERO, 1.0), &p).is_none());
+        assert!(half_plane(V::ZERO, &ball(v(3.0, bad), V::ZERO, 1.0), &p).is_none());
+        assert!(half_plane(V::ZERO, &ball(v(3.0, 0.0), v(bad, bad), 1.0), &p).is_none());
     }
-    assert!(half_plane(V::ZERO, &neighbor(v(3.0, 0.0), V::ZERO, f64::NAN), &p).is_none());
-    assert!(
-        half_plane(
-            V::ZERO,
-            &neighbor(v(3.0, 0.0), V::ZERO, 1.0),
-            &params(0.0, 0.5)
-        )
-        .is_none()
-    );
-    let solution = solve::<f64, 4>(&[], 0, v(f64::NAN, 1.0), 1.0);
+    assert!(half_plane(V::ZERO, &ball(v(3.0, 0.0), V::ZERO, f64::NAN), &p).is_none());
+    assert!(half_plane(V::ZERO, &ball(v(3.0, 0.0), V::ZERO, 1.0), &params(0.0, 0.5)).is_none());
+    let solution = solve::<_, 4>(&[], 0, v(f64::NAN, 1.0), 1.0);
     assert_eq!(solution.velocity_mps, V::ZERO);
 }
 
 #[test]
 fn speed_limit_and_preference_alone() {
     assert_eq!(
-        solve::<f64, 4>(&[], 0, v(0.3, 0.4), 1.0).velocity_mps,
+        solve::<_, 4>(&[], 0, v(0.3, 0.4), 1.0).velocity_mps,
         v(0.3, 0.4)
     );
-    let fast = solve::<f64, 4>(&[], 0, v(3.0, 4.0), 1.0).velocity_mps;
+    let fast = solve::<_, 4>(&[], 0, v(3.0, 4.0), 1.0).velocity_mps;
     assert!((fast - v(0.6, 0.8)).norm() < 1e-12);
 }
 
@@ -122,8 +96,8 @@ fn copies_of_a_half_plane_change_nothing() {
         };
         let planes = [plane(normal), plane(twin), plane(normal)];
         let wish = Vec2::new(0.5, 0.01);
-        let one = solve::<f32, 4>(&planes[..1], 3, wish, 0.5);
-        let all = solve::<f32, 4>(&planes, 3, wish, 0.5);
+        let one = solve::<_, 4>(&planes[..1], 3, wish, 0.5);
+        let all = solve::<_, 4>(&planes, 3, wish, 0.5);
         differing += u32::from((one.velocity_mps - all.velocity_mps).norm() > 1e-5);
     }
     assert_eq!(differing, 0);
@@ -137,34 +111,11 @@ fn opposite_walls_are_met_halfway_and_hard_ones_not_at_all() {
     };
     // x >= 0.5 and x <= -0.3 contradict each other.
     let planes = [plane(0.5, 1.0), plane(-0.3, -1.0)];
-    let soft = solve::<f64, 4>(&planes, 0, V::ZERO, 1.0);
+    let soft = solve::<_, 4>(&planes, 0, V::ZERO, 1.0);
     assert!((soft.velocity_mps.x - 0.1).abs() < 1e-9, "{soft:?}");
     assert!((soft.penetration_mps - 0.4).abs() < 1e-9);
-    let hard = solve::<f64, 4>(&planes, 1, V::ZERO, 1.0);
+    let hard = solve::<_, 4>(&planes, 1, V::ZERO, 1.0);
     assert!((hard.velocity_mps.x - 0.5).abs() < 1e-9, "{hard:?}");
-}
-
-#[test]
-fn walls_ahead_beside_and_touching() {
-    let forward = v(1.0, 0.0);
-    // A wall 2 m ahead across the way, radius 0.5, 1 s: at most 1.5 m/s towards it.
-    let ahead = wall(forward, [v(2.0, -5.0), v(2.0, 5.0)], 0.5, 1.0).unwrap();
-    assert!(
-        (ahead.point.dot(ahead.normal) + 1.5).abs() < 1e-9,
-        "{ahead:?}"
-    );
-    assert!((ahead.normal - v(-1.0, 0.0)).norm() < 1e-9);
-    // A wall along the way at 1 m to the left: sideways at most 0.5 m/s.
-    let beside = wall(forward, [v(-50.0, 1.0), v(50.0, 1.0)], 0.5, 1.0).unwrap();
-    assert!((beside.normal - v(0.0, -1.0)).norm() < 1e-9);
-    assert!(beside.penetration(v(1.0, 0.49)) < 0.0 && beside.penetration(v(1.0, 0.51)) > 0.0);
-    // Touching: no nearer.
-    let touching = wall(forward, [v(0.5, -1.0), v(0.5, 1.0)], 0.5, 1.0).unwrap();
-    assert_eq!((touching.point, touching.normal), (V::ZERO, v(-1.0, 0.0)));
-    // A wall of no length is a post.
-    let post = wall(v(3.0, 0.1), [v(2.0, 0.0); 2], 0.5, 10.0).unwrap();
-    assert!(post.normal.y > 0.9, "pass on the left leg {post:?}");
-    assert!(wall(forward, [v(f64::NAN, 0.0), v(1.0, 1.0)], 0.5, 1.0).is_none());
 }
 
 /// Half-planes of neighbours around a robot, as they occur.
@@ -175,11 +126,7 @@ fn crowd() -> impl Strategy<Value = (Vec<HalfPlane<f64>>, V, V)> {
         let planes = others
             .iter()
             .filter_map(|&(offset, velocity, radii)| {
-                half_plane(
-                    own,
-                    &neighbor(offset * 2.0, velocity, radii),
-                    &params(2.0, 0.5),
-                )
+                half_plane(own, &ball(offset * 2.0, velocity, radii), &params(2.0, 0.5))
             })
             .collect();
         (planes, own, preferred)
@@ -196,8 +143,7 @@ fn oracle(planes: &[HalfPlane<f64>], preferred: V, speed: f64) -> (f64, f64) {
             if at.norm() > speed {
                 continue;
             }
-            let worst = planes.iter().map(|p| p.penetration(at)).fold(0.0, f64::max);
-            let found = (worst, (at - preferred).norm());
+            let found = (worst(planes, at), (at - preferred).norm());
             if found.0 < best.0 - 1e-12 || (found.0 <= best.0 + 1e-12 && found.1 < best.1) {
                 best = found;
             }
@@ -213,7 +159,7 @@ proptest! {
     #[test]
     fn answer_is_the_best_within_the_disc((planes, _, preferred) in crowd()) {
         let speed = 1.5;
-        let answer = solve::<f64, 10>(&planes, 0, preferred, speed);
+        let answer = solve::<_, 10>(&planes, 0, preferred, speed);
         prop_assert!(answer.velocity_mps.norm() <= speed + 1e-9);
         let (worst, distance) = oracle(&planes, preferred, speed);
         let grid = 0.02;
@@ -232,22 +178,22 @@ proptest! {
         let (sin, cos) = (libm::sin(angle), libm::cos(angle));
         let turn = |at: V| at.rotate(cos, sin);
         let flip = |at: V| v(at.x, -at.y);
-        let plain = solve::<f64, 10>(&planes, 0, preferred, 1.5).velocity_mps;
+        let plain = solve::<_, 10>(&planes, 0, preferred, 1.5).velocity_mps;
         for map in [&turn as &dyn Fn(V) -> V, &flip] {
             let moved: Vec<_> = planes
                 .iter()
                 .map(|p| HalfPlane { point: map(p.point), normal: map(p.normal) })
                 .collect();
-            let answer = solve::<f64, 10>(&moved, 0, map(preferred), 1.5).velocity_mps;
+            let answer = solve::<_, 10>(&moved, 0, map(preferred), 1.5).velocity_mps;
             prop_assert!((answer - map(plain)).norm() < 1e-6, "{answer:?} {plain:?}");
         }
     }
 
     #[test]
     fn order_of_neighbours_does_not_matter((planes, _, preferred) in crowd()) {
-        let answer = solve::<f64, 10>(&planes, 0, preferred, 1.5);
+        let answer = solve::<_, 10>(&planes, 0, preferred, 1.5);
         let reversed: Vec<_> = planes.iter().rev().copied().collect();
-        let other = solve::<f64, 10>(&reversed, 0, preferred, 1.5);
+        let other = solve::<_, 10>(&reversed, 0, preferred, 1.5);
         prop_assert!((answer.penetration_mps - other.penetration_mps).abs() < 1e-6);
         if answer.penetration_mps < 1e-9 {
             prop_assert!((answer.velocity_mps - other.velocity_mps).norm() < 1e-6);
@@ -263,44 +209,14 @@ proptest! {
     ) {
         let (a, b) = (v(own.0, own.1), v(other.0, other.1));
         let p = params(2.0, 0.5);
-        let ours = half_plane(a, &neighbor(v(x, 0.0), b, 1.0), &p).unwrap();
-        let theirs = half_plane(b, &neighbor(v(-x, 0.0), a, 1.0), &p).unwrap();
-        let a = solve::<f64, 1>(&[ours], 0, a, 10.0).velocity_mps;
-        let b = solve::<f64, 1>(&[theirs], 0, b, 10.0).velocity_mps;
+        let ours = half_plane(a, &ball(v(x, 0.0), b, 1.0), &p).unwrap();
+        let theirs = half_plane(b, &ball(v(-x, 0.0), a, 1.0), &p).unwrap();
+        let a = solve::<_, 1>(&[ours], 0, a, 10.0).velocity_mps;
+        let b = solve::<_, 1>(&[theirs], 0, b, 10.0).velocity_mps;
         let least = (0..=200)
             .map(|k| (v(x, 0.0) + (b - a) * (2.0 * f64::from(k) / 200.0)).norm())
             .fold(f64::MAX, f64::min);
         prop_assert!(least > 1.0 - 1e-6, "{least}");
-    }
-
-    /// Whoever obeys a wall's half-plane does not touch it within the horizon, and who would not
-    /// have touched it is hardly changed.
-    #[test]
-    fn whoever_obeys_a_wall_does_not_touch_it(
-        a in (-4.0_f64..4.0, -4.0_f64..4.0),
-        b in (-4.0_f64..4.0, -4.0_f64..4.0),
-        own in (-3.0_f64..3.0, -3.0_f64..3.0),
-    ) {
-        let (ends, own) = ([v(a.0, a.1), v(b.0, b.1)], v(own.0, own.1));
-        let (radius, horizon) = (0.5, 2.0);
-        let clearance = |velocity: V| {
-            (0..=400)
-                .map(|k| velocity * (horizon * f64::from(k) / 400.0))
-                .map(|at| {
-                    let along = ends[1] - ends[0];
-                    let t = ((at - ends[0]).dot(along) / along.norm_squared()).clamp(0.0, 1.0);
-                    (at - ends[0] - along * t).norm()
-                })
-                .fold(f64::MAX, f64::min)
-        };
-        prop_assume!(clearance(V::ZERO) > radius && (ends[1] - ends[0]).norm() > 1e-3);
-        let plane = wall(own, ends, radius, horizon).unwrap();
-        prop_assert!((plane.normal.norm() - 1.0).abs() < 1e-9);
-        let obeys = solve::<f64, 1>(&[plane], 0, own, 20.0).velocity_mps;
-        prop_assert!(clearance(obeys) > radius - 1e-6, "{plane:?} {}", clearance(obeys));
-        if clearance(own) > radius + 0.02 {
-            prop_assert!((obeys - own).norm() < 1e-9, "free already: {own:?} became {obeys:?}");
-        }
     }
 
     #[test]
@@ -308,10 +224,10 @@ proptest! {
         x in -6.0_f64..6.0, y in 1.2_f64..6.0,
         vx in -1.5_f64..1.5, vy in -1.5_f64..1.5,
     ) {
-        let exact = half_plane(v(0.5, 0.5), &neighbor(v(x, y), v(vx, vy), 1.0), &params(2.0, 0.5)).unwrap();
+        let exact = half_plane(v(0.5, 0.5), &ball(v(x, y), v(vx, vy), 1.0), &params(2.0, 0.5)).unwrap();
         fn near<S: Scalar>(exact: &HalfPlane<f64>, x: f64, y: f64, vx: f64, vy: f64) -> f64 {
             let s = |value: f64| S::from_f64(value).unwrap();
-            let other = Neighbor {
+            let other = MovingBall {
                 offset_m: Vec2::new(s(x), s(y)),
                 velocity_mps: Vec2::new(s(vx), s(vy)),
                 radii_m: S::ONE,
@@ -326,5 +242,46 @@ proptest! {
         }
         prop_assert!(near::<f32>(&exact, x, y, vx, vy) < 1e-5);
         prop_assert!(near::<Q16>(&exact, x, y, vx, vy) < 2e-3);
+    }
+}
+
+proptest! {
+    /// By squares and by angles the change is the same; the normal too, unless two ways out are equally long.
+    #[test]
+    fn both_ways_to_leave_the_cone_agree(
+        p in (-9.0_f64..9.0, -9.0_f64..9.0),
+        v in (-3.0_f64..3.0, -3.0_f64..3.0),
+        r in 0.1_f64..2.0,
+        horizon in 0.1_f64..9.0,
+    ) {
+        let (p, v) = (Vec2::new(p.0, p.1), Vec2::new(v.0, v.1));
+        prop_assume!(p.norm() > r * 1.001);
+        let ahead = p.normalized().unwrap_or_default();
+        let w = v - p * (1.0 / horizon);
+        let is_clear = (ahead.dot(w) + r / p.norm() * w.norm()).abs() > 1e-9 && ahead.det(w).abs() > 1e-9;
+        prop_assume!(is_clear);
+        let squares = leave_cone(v, p, p.norm_squared(), r, 1.0 / horizon);
+        let angles = leave_cone_by_angle(v, p, ahead, r, horizon);
+        let (Some((u, normal)), Some((by_angle, expected))) = (squares, angles) else {
+            return Err(TestCaseError::fail("no way out"));
+        };
+        prop_assert!((u - by_angle).abs() < 1e-9, "{u} {by_angle}");
+        prop_assert!((normal - expected).norm() < 1e-6, "{normal:?} {expected:?}");
+    }
+}
+
+#[test]
+fn shortest_vectors_still_give_half_planes() {
+    let params = params(2.0, 0.5);
+    let tiny = [0.0, 1e-30, 1e-23, 1e-20, 1e-15, 1e-10];
+    for (reach, off) in tiny.iter().flat_map(|reach| tiny.map(|off| (*reach, off))) {
+        let disc = |offset_m: Vec2<f32>, radii_m: f32| ball(offset_m, Vec2::ZERO, radii_m);
+        // A relative velocity that points at the disc's centre but for `off`, and robots of hardly any size.
+        let own = Vec2::new(500.0 - off, off);
+        let far = half_plane(own, &disc(Vec2::new(1000.0, 0.0), 1.0), &params);
+        let small = half_plane(own, &disc(Vec2::new(reach * 3.0, 0.0), reach), &params);
+        let is_unit = |plane: HalfPlane<f32>| (plane.normal.norm() - 1.0).abs() < 1e-5;
+        assert!(far.is_some_and(is_unit), "{off}");
+        assert!(reach == 0.0 || small.is_some_and(is_unit), "{reach} {off}");
     }
 }

@@ -1,38 +1,12 @@
 use super::*;
-use crate::geom::Vec3;
+use crate::orca::fixtures::{body, robot};
 use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::scalar::Q16;
 use proptest::prelude::*;
 
-fn body(id: u32, velocity: [f32; 2]) -> Body<f32> {
-    Body {
-        id: RobotId(id),
-        velocity_mps: Vec3::new(velocity[0], velocity[1], 0.0),
-        radius_m: 0.15,
-        max_speed_mps: 0.5,
-        max_acceleration_mps2: f32::MAX,
-        step_s: 0.05,
-    }
-}
-
-fn nearby(id: u32, offset: [f32; 2], velocity: [f32; 2]) -> Nearby<f32> {
-    Nearby {
-        id: RobotId(id),
-        offset_m: Vec3::new(offset[0], offset[1], 0.0),
-        velocity_mps: Vec3::new(velocity[0], velocity[1], 0.0),
-        radius_m: 0.15,
-        gives_way: true,
-    }
-}
-
 fn avoider() -> Avoider<f32, 16> {
     Avoider::new(AvoidParams::default())
-}
-
-/// The generator of a robot in a step.
-pub(super) fn rng_of(robot: u32, tick: u32) -> Rng {
-    Rng::keyed(1, 5, robot, tick)
 }
 
 fn rng() -> Rng {
@@ -46,7 +20,7 @@ fn whoever_is_alone_does_as_it_wishes() {
     let solution = avoider().velocity(&body, wish, None, &[], &[], &mut rng());
     assert_eq!(solution.velocity_mps, wish);
     assert_eq!(solution.penetration_mps, 0.0);
-    let far = [nearby(2, [2.9, 0.0], [0.0, 0.0])];
+    let far = [robot(2, [2.9, 0.0], [0.0, 0.0])];
     let solution = avoider().velocity(&body, wish, None, &far, &[], &mut rng());
     assert_eq!(solution.velocity_mps, wish);
 }
@@ -59,7 +33,7 @@ fn robots_in_the_same_place_part_in_opposite_directions() {
                 &body(own, [0.0, 0.0]),
                 Vec2::ZERO,
                 None,
-                &[nearby(other, [0.0, 0.0], [0.0, 0.0])],
+                &[robot(other, [0.0, 0.0], [0.0, 0.0])],
                 &[],
                 &mut rng(),
             )
@@ -77,10 +51,10 @@ fn who_does_not_give_way_is_given_all_the_way() {
     let swerve = |gives_way| {
         let other = Nearby {
             gives_way,
-            ..nearby(2, [1.2, -0.01], [-0.5, 0.0])
+            ..robot(2, [1.2, -0.01], [-0.5, 0.0])
         };
         let mut params = AvoidParams::default();
-        params.escape.lean_rad = 0.0;
+        params.deadlock.lean_rad = 0.0;
         let mut avoider = Avoider::<f32, 16>::new(params);
         let wish = Vec2::new(0.5, 0.0);
         avoider
@@ -150,7 +124,7 @@ fn a_body_with_inertia_gets_what_it_can_reach() {
 #[test]
 fn a_full_avoider_keeps_the_nearest_and_no_room_is_no_crash() {
     let others: [Nearby<f32>; 30] =
-        core::array::from_fn(|k| nearby(k as u32 + 2, [0.4 + 0.1 * k as f32, 0.0], [-0.5, 0.0]));
+        core::array::from_fn(|k| robot(k as u32 + 2, [0.4 + 0.1 * k as f64, 0.0], [-0.5, 0.0]));
     let walls = [Obstacle::Wall([Vec2::new(-0.3, -1.0), Vec2::new(-0.3, 1.0)]); 30];
     let wish = Vec2::new(0.5, 0.0);
     let own = body(1, [0.5, 0.0]);
@@ -159,7 +133,7 @@ fn a_full_avoider_keeps_the_nearest_and_no_room_is_no_crash() {
     let got = solution.velocity_mps;
     assert!(got.x > -0.15 && (got - wish).norm() > 0.1, "{got:?}");
     let mut planes = Vec::new();
-    let hard = few.planes(&own, &others, &walls, &mut planes);
+    let hard = few.constraints(&own, &others, &walls, &mut planes);
     assert_eq!((planes.len(), hard), (4, 2));
     let mut none = Avoider::<f32, 0>::new(AvoidParams::default());
     let solution = none.velocity(&own, wish, None, &others, &walls, &mut rng());
@@ -196,9 +170,9 @@ fn who_goes_the_same_way_or_away_is_no_reason_to_lean() {
     let own = body(1, [0.4, 0.0]);
     let wish = Vec2::new(0.4, 0.0);
     let others = [
-        nearby(2, [0.8, 0.0], [0.4, 0.0]),
-        nearby(3, [0.5, 0.7], [0.5, 0.1]),
-        nearby(4, [-0.6, 0.0], [0.4, 0.0]),
+        robot(2, [0.8, 0.0], [0.4, 0.0]),
+        robot(3, [0.5, 0.7], [0.5, 0.1]),
+        robot(4, [-0.6, 0.0], [0.4, 0.0]),
     ];
     let got = avoider().velocity(&own, wish, None, &others, &[], &mut rng());
     assert_eq!(got.velocity_mps, wish);
@@ -221,13 +195,13 @@ fn a_robot_opposite_gets_its_turn_at_a_door() {
             > 0.05
     };
     // Equally far: the smaller number. Nearer: whatever the number.
-    assert!(!goes(&mut avoider(), nearby(4, [1.2, 0.0], [0.0, 0.0])));
-    assert!(goes(&mut avoider(), nearby(6, [1.2, 0.0], [0.0, 0.0])));
-    assert!(!goes(&mut avoider(), nearby(6, [1.1, 0.3], [0.0, 0.0])));
-    assert!(goes(&mut avoider(), nearby(4, [1.3, 0.2], [0.0, 0.0])));
+    assert!(!goes(&mut avoider(), robot(4, [1.2, 0.0], [0.0, 0.0])));
+    assert!(goes(&mut avoider(), robot(6, [1.2, 0.0], [0.0, 0.0])));
+    assert!(!goes(&mut avoider(), robot(6, [1.1, 0.3], [0.0, 0.0])));
+    assert!(goes(&mut avoider(), robot(4, [1.3, 0.2], [0.0, 0.0])));
     // A turn that nobody takes passes on.
     let mut waiting = avoider();
-    let first = (0..200).find(|_| goes(&mut waiting, nearby(4, [1.2, 0.0], [0.0, 0.0])));
+    let first = (0..200).find(|_| goes(&mut waiting, robot(4, [1.2, 0.0], [0.0, 0.0])));
     assert!(
         first.is_some_and(|tick| (59..=121).contains(&tick)),
         "{first:?}"
@@ -246,9 +220,17 @@ proptest! {
             ..body(1, [0.0, 0.0])
         };
         let others = [
-            nearby(2, [f[0], f[1]], [f[2], f[3]]),
-            Nearby { radius_m: f[4], ..nearby(3, [0.5, 0.1], [f[5], 0.1]) },
-            nearby(4, [0.5, -0.4], [0.0, 0.0]),
+            Nearby {
+                offset_m: Vec3::new(f[0], f[1], 0.0),
+                velocity_mps: Vec3::new(f[2], f[3], 0.0),
+                ..robot(2, [0.0; 2], [0.0; 2])
+            },
+            Nearby {
+                velocity_mps: Vec3::new(f[5], 0.1, 0.0),
+                radius_m: f[4],
+                ..robot(3, [0.5, 0.1], [0.0; 2])
+            },
+            robot(4, [0.5, -0.4], [0.0, 0.0]),
         ];
         let obstacles = [
             Obstacle::Wall([Vec2::new(f[6], f[7]), Vec2::new(1.0, f[8])]),
@@ -271,22 +253,22 @@ proptest! {
 
     #[test]
     fn the_answer_is_permitted_if_anything_is(
-        places in proptest::collection::vec((-2.0_f32..2.0, -2.0_f32..2.0), 1..10),
+        places in proptest::collection::vec((-2.0_f64..2.0, -2.0_f64..2.0), 1..10),
         wish in (-0.5_f32..0.5, -0.5_f32..0.5),
     ) {
         let others: std::vec::Vec<_> = places
             .iter()
             .enumerate()
             .filter(|(_, (x, y))| x * x + y * y > 0.1)
-            .map(|(k, (x, y))| nearby(k as u32 + 2, [*x, *y], [-0.2 * x, -0.2 * y]))
+            .map(|(k, (x, y))| robot(k as u32 + 2, [*x, *y], [-0.2 * x, -0.2 * y]))
             .collect();
         let own = body(1, [0.2, 0.1]);
         let mut avoider = avoider();
         let mut planes = Vec::new();
-        let hard = avoider.planes(&own, &others, &[], &mut planes);
-        let best = solve::<f32, 16>(&planes, hard, Vec2::ZERO, 0.5);
+        let hard = avoider.constraints(&own, &others, &[], &mut planes);
+        let best = solve::<_, 16>(&planes, hard, Vec2::ZERO, 0.5);
         let got = avoider.velocity(&own, Vec2::new(wish.0, wish.1), None, &others, &[], &mut rng());
-        // The rule of escape bends the wish and nothing else.
+        // The rule against deadlocks bends the wish and nothing else.
         prop_assert!((got.penetration_mps - best.penetration_mps).abs() < 1e-3, "{got:?} {best:?}");
     }
 }

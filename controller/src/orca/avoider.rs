@@ -1,0 +1,334 @@
+//! One step of ORCA for one robot, in the plane or in space: what RVO2's `Agent::computeNewVelocity` does.
+//!
+//! [`Avoider::velocity`] gathers what the nearest obstacles and robots forbid, lets the rule against
+//! [deadlocks](super::deadlock) bend the wish where ORCA alone would stand still for ever, and
+//! [solves](super::linear_program) within what the body can reach.
+
+use super::dimension::{Dimension, HalfPlane, HalfSpace, MovingBall, Situation};
+use super::linear_program::{Solution, solve};
+use super::{AvoidParams, Params, half_plane, half_space, wall};
+use crate::body::Body;
+use crate::geom::{Vec2, Vec3, Vector};
+use crate::list::{self, sink_last};
+use crate::neighbor::Nearby;
+use crate::obstacle::Obstacle;
+use crate::rand::Rng;
+use crate::scalar::Scalar;
+use heapless::Vec;
+use serde::Serialize;
+
+#[cfg(test)]
+mod simulation;
+#[cfg(test)]
+mod space;
+#[cfg(test)]
+mod tests;
+
+/// Where robots avoid each other, and how it is found out what a moving neighbour forbids.
+pub trait HalfSpaces<S: Scalar> {
+    /// Velocities: [`Vec2`] in the plane, [`Vec3`] in space.
+    type Velocity: Dimension<Scalar = S>;
+
+    /// What `ball` forbids a robot with `own_velocity_mps`; `None` when an input makes no sense.
+    fn half_space(
+        &self,
+        own_velocity_mps: Self::Velocity,
+        ball: &MovingBall<Self::Velocity>,
+        params: &Params<S>,
+    ) -> Option<HalfSpace<Self::Velocity>>;
+}
+
+/// In the plane, exactly by [`half_plane`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Analytic;
+
+impl<S: Scalar> HalfSpaces<S> for Analytic {
+    type Velocity = Vec2<S>;
+
+    fn half_space(
+        &self,
+        own_velocity_mps: Vec2<S>,
+        disc: &MovingBall<Vec2<S>>,
+        params: &Params<S>,
+    ) -> Option<HalfPlane<S>> {
+        half_plane(own_velocity_mps, disc, params)
+    }
+}
+
+/// In space, exactly by [`half_space`].
+///
+/// While somebody is in the way, robots lean by 25 degrees to the right and, by their numbers, somewhat up or down;
+/// [`DeadlockParams`](super::DeadlockParams) plays no part. Walls are upright and have no top: only the horizontal
+/// velocity counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct InSpace;
+
+impl<S: Scalar> HalfSpaces<S> for InSpace {
+    type Velocity = Vec3<S>;
+
+    fn half_space(
+        &self,
+        own_velocity_mps: Vec3<S>,
+        ball: &MovingBall<Vec3<S>>,
+        params: &Params<S>,
+    ) -> Option<HalfSpace<Vec3<S>>> {
+        half_space(own_velocity_mps, ball, params)
+    }
+}
+
+/// Collision avoidance of one robot; at most `K` constraints count. `P` says where: [`Analytic`] or a
+/// [`VoxelTable`](super::VoxelTable) in the plane, [`InSpace`] in space.
+///
+/// Bytes: those of [`AvoidParams`] and the few of the rule against deadlocks; 16 K bytes of stack (`f32`; in space 24
+/// K), three times that when no velocity is permitted.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Avoider<S: Scalar, const K: usize, P: HalfSpaces<S> = Analytic> {
+    params: AvoidParams<S>,
+    source: P,
+    memory: <P::Velocity as Dimension>::Memory,
+}
+
+impl<S: Scalar, const K: usize> Avoider<S, K> {
+    /// An avoider in the plane with exact half-planes.
+    #[must_use]
+    pub const fn new(params: AvoidParams<S>) -> Self {
+        Self::with_source(params, Analytic)
+    }
+}
+
+impl<S: Scalar, const K: usize> Avoider<S, K, InSpace> {
+    /// An avoider in space.
+    #[must_use]
+    pub const fn in_space(params: AvoidParams<S>) -> Self {
+        Self::with_source(params, InSpace)
+    }
+}
+
+impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Avoider<S, K, P> {
+    /// An avoider whose constraints of moving neighbours come from `source`.
+    #[must_use]
+    pub const fn with_source(params: AvoidParams<S>, source: P) -> Self {
+        Self {
+            params,
+            source,
+            memory: P::Velocity::FRESH,
+        }
+    }
+
+    /// The parameters.
+    #[must_use]
+    pub const fn params(&self) -> &AvoidParams<S> {
+        &self.params
+    }
+
+    /// The parameters, to be changed between two steps.
+    pub const fn params_mut(&mut self) -> &mut AvoidParams<S> {
+        &mut self.params
+    }
+
+    /// The velocity to take until the next step: the nearest to `wish_mps`, bent by the rule against deadlocks, that
+    /// robots and obstacles permit; where they permit none, the one that violates them least, obstacles
+    /// first. Call it once each [`Body::step_s`].
+    ///
+    /// `goal_m` is the way to the goal, if there is one: near it nobody swerves. `nearby` is nearest first. Obstacles
+    /// count before robots, the nearest first (of equally near ones the earlier in the slice), though robots get up to
+    /// half of the `K` places.
+    ///
+    /// A body with inertia gets the best of the velocities that it can [reach](Body::reach) within the step, so that it
+    /// may violate a constraint which came up faster than it can brake: choose horizons longer than
+    /// speed / acceleration. What is not finite counts as absent (wish: as zero). Work: as [`solve`], at most
+    /// twice, and O(obstacles x K + `nearby`).
+    #[must_use]
+    pub fn velocity(
+        &mut self,
+        body: &Body<S>,
+        wish_mps: P::Velocity,
+        goal_m: Option<P::Velocity>,
+        nearby: &[Nearby<S>],
+        obstacles: &[Obstacle<S>],
+        rng: &mut Rng,
+    ) -> Solution<P::Velocity> {
+        let mut constraints = Vec::new();
+        let hard = self.constraints(body, nearby, obstacles, &mut constraints);
+        let situation = Situation {
+            body,
+            wish: wish_mps.clamp_norm(body.max_speed_mps),
+            goal: goal_m.filter(|goal| goal.is_finite()),
+            nearby,
+            obstacles,
+        };
+        let wish = Dimension::break_deadlock(&mut self.memory, &self.params, &situation, rng);
+        let wish = wish.clamp_norm(body.max_speed_mps);
+        reachable::<P::Velocity, K>(body, &mut constraints, hard, wish)
+    }
+
+    /// What obstacles (their number is the answer), then robots forbid.
+    fn constraints(
+        &self,
+        body: &Body<S>,
+        nearby: &[Nearby<S>],
+        obstacles: &[Obstacle<S>],
+        constraints: &mut Vec<HalfSpace<P::Velocity>, K>,
+    ) -> usize {
+        // Half for each; what one leaves is the other's.
+        let room = K.saturating_sub(nearby.len().min(K >> 1));
+        nearest_obstacles(&self.params, body, obstacles, room, constraints);
+        let hard = constraints.len();
+        self.robots(body, nearby, constraints);
+        hard
+    }
+
+    /// What robots forbid, as many as there is room for. Not inlined, so that its stack is free again for the solver.
+    #[inline(never)]
+    fn robots(
+        &self,
+        body: &Body<S>,
+        nearby: &[Nearby<S>],
+        constraints: &mut Vec<HalfSpace<P::Velocity>, K>,
+    ) {
+        let own = own_velocity(body);
+        for other in nearby {
+            let tie = if body.id < other.id { -S::ONE } else { S::ONE };
+            let ball = MovingBall {
+                offset_m: other.offset_m.into(),
+                velocity_mps: other.velocity_mps.into(),
+                radii_m: body.radius_m + other.radius_m + self.params.margin_m,
+                tie: Vec3::new(tie, S::ZERO, S::ZERO).into(),
+            };
+            let params = Params {
+                horizon_s: self.params.horizon_s,
+                separation_s: body.step_s,
+                share: if other.gives_way {
+                    self.params.share
+                } else {
+                    S::ONE
+                },
+            };
+            if let Some(constraint) = self.source.half_space(own, &ball, &params)
+                && constraints.push(constraint).is_err()
+            {
+                break;
+            }
+        }
+    }
+}
+
+/// The own velocity; zero when it is not finite.
+fn own_velocity<V: Dimension>(body: &Body<V::Scalar>) -> V {
+    let own = V::from(body.velocity_mps);
+    if own.is_finite() { own } else { V::ZERO }
+}
+
+/// What the at most `room` nearest obstacles forbid, nearest first. Not inlined, so that its stack is free again for
+/// the solver.
+#[inline(never)]
+fn nearest_obstacles<V: Dimension, const K: usize>(
+    params: &AvoidParams<V::Scalar>,
+    body: &Body<V::Scalar>,
+    obstacles: &[Obstacle<V::Scalar>],
+    room: usize,
+    constraints: &mut Vec<HalfSpace<V>, K>,
+) {
+    let own = own_velocity(body);
+    let mut nearest = Vec::<(V::Scalar, HalfSpace<V>), K>::new();
+    for obstacle in obstacles {
+        // Nothing is nearer than a ball in whose very centre the robot is.
+        let nearest_point = obstacle.nearest_point();
+        let distance = nearest_point.map_or(-V::Scalar::MAX, |(_, distance)| distance);
+        let Some(constraint) = static_obstacle(params, body, own, obstacle) else {
+            continue;
+        };
+        if nearest.len() >= room {
+            let is_nearer = nearest
+                .last()
+                .is_some_and(|(farthest, _)| distance < *farthest);
+            if !is_nearer {
+                continue;
+            }
+            nearest.pop();
+        }
+        if nearest.push((distance, constraint)).is_ok() {
+            sink_last(&mut nearest, |before, after| after.0 < before.0);
+        }
+    }
+    list::extend(
+        constraints,
+        nearest.iter().map(|(_, constraint)| *constraint),
+    );
+}
+
+/// What an obstacle forbids: it does nothing to avoid, so the whole correction is the robot's.
+fn static_obstacle<V: Dimension>(
+    params: &AvoidParams<V::Scalar>,
+    body: &Body<V::Scalar>,
+    own: V,
+    obstacle: &Obstacle<V::Scalar>,
+) -> Option<HalfSpace<V>> {
+    let zero = V::Scalar::ZERO;
+    let horizon_s = params.wall_horizon_s;
+    match *obstacle {
+        Obstacle::Wall(ends_m) => {
+            let own = own.at_height(zero).xy();
+            let plane = wall(own, ends_m, body.radius_m + params.margin_m, horizon_s)?;
+            Some(HalfSpace {
+                point: plane.point.extend(zero).into(),
+                normal: plane.normal.extend(zero).into(),
+            })
+        }
+        Obstacle::Ball { center_m, radius_m } => {
+            let ball = MovingBall {
+                offset_m: center_m.into(),
+                velocity_mps: V::ZERO,
+                radii_m: body.radius_m + radius_m + params.margin_m,
+                // Out of its very centre: up, in the plane east.
+                tie: Vec3::new(zero, zero, V::Scalar::ONE).into(),
+            };
+            let params = Params {
+                horizon_s,
+                separation_s: body.step_s,
+                share: V::Scalar::ONE,
+            };
+            V::half_space(own, &ball, &params)
+        }
+        Obstacle::Plane { normal, distance_m } => {
+            // What it cuts out of where robots are: a floor cuts nothing out of the plane.
+            let normal = V::from(normal);
+            let length = normal.norm();
+            let normal = normal.normalized()?;
+            let away = distance_m.checked_div(length)? - body.radius_m - params.margin_m;
+            let closing = away.max(zero).checked_div(horizon_s)?;
+            let point = -normal * closing;
+            point.is_finite().then_some(HalfSpace { point, normal })
+        }
+    }
+}
+
+/// The best velocity that the body can have after one step.
+///
+/// With inertia these are a disc (ball) around its velocity: the same problem with that as origin; what comes out too
+/// fast is [shortened](Body::reach). Moves `constraints` to that origin.
+fn reachable<V: Dimension, const K: usize>(
+    body: &Body<V::Scalar>,
+    constraints: &mut [HalfSpace<V>],
+    hard: usize,
+    wish: V,
+) -> Solution<V> {
+    let own = V::from(body.velocity_mps);
+    let change = body.max_acceleration_mps2 * body.step_s;
+    let is_held = change < body.max_speed_mps + body.max_speed_mps;
+    if !is_held || !own.is_finite() {
+        return solve::<V, K>(constraints, hard, wish, body.max_speed_mps);
+    }
+    for constraint in constraints.iter_mut() {
+        constraint.point = constraint.point - own;
+    }
+    let solved = solve::<V, K>(constraints, hard, wish - own, change);
+    let velocity = body.reach((own + solved.velocity_mps).at_height(V::Scalar::ZERO));
+    let velocity = V::from(velocity);
+    Solution {
+        velocity_mps: velocity,
+        ..Solution::of(velocity - own, constraints)
+    }
+}

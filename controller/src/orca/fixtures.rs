@@ -1,0 +1,79 @@
+//! What the tests of ORCA share: robots of 0.15 m at up to 0.5 m/s that decide 20 times a second.
+
+use super::{HalfSpace, MovingBall, Params};
+use crate::body::Body;
+use crate::geom::{Vec3, Vector};
+use crate::neighbor::Nearby;
+use crate::rand::Rng;
+use crate::robot::RobotId;
+use crate::scalar::Scalar;
+
+pub const RADIUS_M: f64 = 0.15;
+pub const SPEED_MPS: f64 = 0.5;
+pub const STEP_S: f64 = 0.05;
+
+pub fn scalar<S: Scalar>(value: f64) -> S {
+    S::from_f64(value).unwrap()
+}
+
+pub fn params<S: Scalar>(horizon_s: f64, share: f64) -> Params<S> {
+    Params {
+        horizon_s: scalar(horizon_s),
+        separation_s: scalar(STEP_S),
+        share: scalar(share),
+    }
+}
+
+/// A neighbour that has no preference when it is in the same place.
+pub fn ball<V: Vector>(offset_m: V, velocity_mps: V, radii_m: V::Scalar) -> MovingBall<V> {
+    MovingBall {
+        offset_m,
+        velocity_mps,
+        radii_m,
+        tie: V::ZERO,
+    }
+}
+
+/// How far a velocity is on the wrong side of the constraint that it violates most; 0 when it violates none.
+pub fn worst<V: Vector<Scalar = f64>>(constraints: &[HalfSpace<V>], at: V) -> f64 {
+    let depths = constraints.iter().map(|one| one.penetration(at));
+    depths.fold(0.0, f64::max)
+}
+
+/// A robot without inertia.
+pub fn body<S: Scalar, const D: usize>(id: u32, velocity_mps: [f64; D]) -> Body<S> {
+    Body {
+        id: RobotId(id),
+        velocity_mps: vector(velocity_mps),
+        radius_m: scalar(RADIUS_M),
+        max_speed_mps: scalar(SPEED_MPS),
+        max_acceleration_mps2: S::MAX,
+        step_s: scalar(STEP_S),
+    }
+}
+
+/// A robot that gives way.
+pub fn robot<S: Scalar, const D: usize>(
+    id: u32,
+    offset_m: [f64; D],
+    velocity_mps: [f64; D],
+) -> Nearby<S> {
+    Nearby {
+        id: RobotId(id),
+        offset_m: vector(offset_m),
+        velocity_mps: vector(velocity_mps),
+        radius_m: scalar(RADIUS_M),
+        gives_way: true,
+    }
+}
+
+/// In the plane with two components.
+pub fn vector<S: Scalar, const D: usize>(components: [f64; D]) -> Vec3<S> {
+    let at = |axis: usize| scalar(components.get(axis).copied().unwrap_or(0.0));
+    Vec3::new(at(0), at(1), at(2))
+}
+
+/// The generator of a robot in a step.
+pub fn rng_of(robot: u32, tick: u32) -> Rng {
+    Rng::keyed(1, 5, robot, tick)
+}

@@ -1,0 +1,221 @@
+//! ORCA in the plane: the half-plane that one neighbour leaves (ORCA section 4; Tolok et al., the functional voxel
+//! model, FVM, eqs. 6 to 13), and linear programming on one border (RVO2's `linearProgram1`).
+
+use super::deadlock::{RightOfWay, lean};
+use super::dimension::{Aim, Dimension, HalfPlane, HalfSpace, MovingBall, Situation, leave_ball};
+use super::{AvoidParams, Params};
+use crate::geom::{Vec2, Vec3};
+use crate::rand::Rng;
+use crate::scalar::Scalar;
+
+impl<S: Scalar> Dimension for Vec2<S> {
+    type Memory = RightOfWay<S>;
+    const FRESH: Self::Memory = RightOfWay::NEW;
+    const SHARES_CONTRADICTIONS: bool = false;
+
+    fn at_height(self, height: S) -> Vec3<S> {
+        self.extend(height)
+    }
+
+    #[inline]
+    fn half_space(
+        own_velocity_mps: Self,
+        ball: &MovingBall<Self>,
+        params: &Params<S>,
+    ) -> Option<HalfSpace<Self>> {
+        half_plane(own_velocity_mps, ball, params)
+    }
+
+    fn best_on_border(
+        constraint: &HalfSpace<Self>,
+        before: &[HalfSpace<Self>],
+        speed: S,
+        aim: Aim<Self>,
+    ) -> Option<Self> {
+        best_on_line(constraint, before, speed, aim)
+    }
+
+    /// In narrow places robots take turns; elsewhere they pass each other on the right.
+    #[inline(never)] // Its stack is free again for the solver.
+    fn break_deadlock(
+        memory: &mut Self::Memory,
+        params: &AvoidParams<S>,
+        situation: &Situation<'_, Self>,
+        rng: &mut Rng,
+    ) -> Self {
+        let params = &params.deadlock;
+        let at_gap = memory.wish(situation, params.patience_s, rng);
+        at_gap.unwrap_or_else(|| lean(params, situation))
+    }
+}
+
+/// The velocities that avoid a disc for the time horizon, if it does its share.
+///
+/// The truncated velocity obstacle VO of relative velocities is a cone with its tip cut off by the disc of
+/// radius r / tau around p / tau. The least change u brings the relative velocity to its border; the
+/// half-plane lies at the own velocity plus the own share of u.
+///
+/// `None` when an input is not finite, or r or a time is not above 0. Constant work.
+#[must_use]
+#[inline]
+pub fn half_plane<S: Scalar>(
+    own_velocity_mps: Vec2<S>,
+    disc: &MovingBall<Vec2<S>>,
+    params: &Params<S>,
+) -> Option<HalfPlane<S>> {
+    let MovingBall {
+        offset_m: p,
+        velocity_mps,
+        radii_m: r,
+        tie,
+    } = *disc;
+    let v = own_velocity_mps - velocity_mps;
+    if r <= S::ZERO {
+        return None;
+    }
+    let squared = p.norm_squared();
+    let is_plain = squared > r * r && squared > tiny() && squared < S::MAX;
+    // What is not finite comes out as such, and is refused at the end.
+    let (u, normal) = if S::IS_FLOATING && is_plain {
+        let rate = S::ONE.checked_div(params.horizon_s)?;
+        leave_cone(v, p, squared, r, rate)?
+    } else if !(p.is_finite() && v.is_finite() && r.is_finite()) {
+        return None;
+    } else {
+        match p.normalized() {
+            Some(ahead) if p.norm() > r => leave_cone_by_angle(v, p, ahead, r, params.horizon_s)?,
+            _ => {
+                // Overlapping: apart again after the separation time, straight away from each other if
+                // nothing else says where to.
+                let tip = Vec2::new(
+                    p.x.checked_div(params.separation_s)?,
+                    p.y.checked_div(params.separation_s)?,
+                );
+                let away = (-p).normalized().or_else(|| tie.normalized());
+                let away = away.unwrap_or(Vec2::new(S::ONE, S::ZERO));
+                leave_ball(v - tip, r.checked_div(params.separation_s)?, away)
+            }
+        }
+    };
+    let point = own_velocity_mps + normal * (u * params.share);
+    point.is_finite().then_some(HalfPlane { point, normal })
+}
+
+/// From the relative velocity `v` to the border of the cone to `p` (its squared length given) with its tip cut off
+/// at `rate` times `p`: length of the change and outward normal.
+///
+/// One root and one reciprocal, and choices instead of branches: whether the disc or a leg is nearer, and which leg, no
+/// branch predictor can know. Squares must be as precise as lengths.
+#[inline(always)]
+fn leave_cone<S: Scalar>(
+    v: Vec2<S>,
+    p: Vec2<S>,
+    squared: S,
+    r: S,
+    rate: S,
+) -> Option<(S, Vec2<S>)> {
+    let w = v - p * rate;
+    let (w_squared, towards) = (w.norm_squared(), w.dot(p));
+    // Project on cut-off disc: w points back by more than the angle to the legs.
+    let is_back = (towards < S::ZERO) & (towards * towards > r * r * w_squared);
+    let is_disc = is_back & (w_squared > tiny());
+    let choose = |disc: S, leg: S| if is_disc { disc } else { leg };
+    let root = choose(w_squared, squared - r * r).sqrt();
+    // Project on left leg or on right leg: the tangent is p turned by the angle with this sine and cosine.
+    let signed = if p.det(w) > S::ZERO { root } else { -root };
+    let across = Vec2::new(
+        choose(w.x, -(p.y * signed + p.x * r)),
+        choose(w.y, p.x * signed - p.y * r),
+    );
+    let scale = S::ONE.checked_div(choose(root, squared))?;
+    let normal = across * scale;
+    Some((choose(r * rate - root, -(v.dot(normal))), normal))
+}
+
+/// A square so small that lengths below its root (f32: 1e-14) have no direction.
+fn tiny<S: Scalar>() -> S {
+    let squared = S::EPSILON * S::EPSILON;
+    squared * squared
+}
+
+/// The same for numbers whose squares lose precision: by unit vectors and angles.
+fn leave_cone_by_angle<S: Scalar>(
+    v: Vec2<S>,
+    p: Vec2<S>,
+    ahead: Vec2<S>,
+    r: S,
+    horizon_s: S,
+) -> Option<(S, Vec2<S>)> {
+    let tip = Vec2::new(p.x.checked_div(horizon_s)?, p.y.checked_div(horizon_s)?);
+    let w = v - tip;
+    let sin = r.checked_div(p.norm())?;
+    if w.dot(ahead) < -(sin * w.norm()) {
+        return Some(leave_ball(w, r.checked_div(horizon_s)?, -ahead));
+    }
+    let cos = (S::ONE - sin * sin).sqrt();
+    let normal = if ahead.det(w) > S::ZERO {
+        ahead.rotate(cos, sin).perp()
+    } else {
+        -ahead.rotate(cos, -sin).perp()
+    };
+    Some((-(v.dot(normal)), normal))
+}
+
+/// The best velocity on the border of a half-plane that those before it and the speed disc permit.
+fn best_on_line<S: Scalar>(
+    plane: &HalfPlane<S>,
+    before: &[HalfPlane<S>],
+    speed: S,
+    aim: Aim<Vec2<S>>,
+) -> Option<Vec2<S>> {
+    let direction = plane.direction();
+    // The border's point nearest to the origin, and half of the chord that the disc cuts out.
+    let distance = plane.point.dot(plane.normal);
+    let foot = plane.normal * distance;
+    if distance.abs() > speed {
+        return None;
+    }
+    let half_chord = ((speed - distance) * (speed + distance)).sqrt();
+    let (mut low, mut high) = (-half_chord, half_chord);
+    // Choices instead of branches: which side a plane cuts off, no predictor can know.
+    let mut is_shut = false;
+    for other in before {
+        let slope = direction.dot(other.normal);
+        let gap = other.penetration(foot);
+        let crossing = gap.checked_div(slope);
+        let t = crossing.unwrap_or(S::ZERO);
+        let is_crossed = crossing.is_some() & (slope.abs() > S::EPSILON * S::from_i32(64));
+        // Parallel: all of the border is permitted, or nothing. What rounding leaves between two copies of one
+        // half-plane (walls that share a corner) is not nothing.
+        is_shut |= !is_crossed & (gap > rounding(speed, other));
+        let rises = slope > S::ZERO;
+        low = if is_crossed & rises & (t > low) {
+            t
+        } else {
+            low
+        };
+        high = if is_crossed & !rises & (t < high) {
+            t
+        } else {
+            high
+        };
+    }
+    if is_shut || low > high {
+        return None;
+    }
+    let t = match aim {
+        Aim::Near(goal) => (goal - foot).dot(direction).clamp(low, high),
+        Aim::Along(way) if way.dot(direction) > S::ZERO => high,
+        Aim::Along(_) => low,
+    };
+    Some(foot + direction * t)
+}
+
+/// How far off a penetration may be by rounding.
+fn rounding<S: Scalar>(speed: S, plane: &HalfPlane<S>) -> S {
+    let scale = speed + plane.point.x.abs() + plane.point.y.abs();
+    S::EPSILON * S::from_i32(16) * scale.max(S::ONE)
+}
+
+#[cfg(test)]
+mod tests;
