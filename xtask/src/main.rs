@@ -10,6 +10,7 @@ mod check;
 mod clients;
 mod debian;
 mod device;
+mod documents;
 mod emulate;
 mod emulated;
 mod example;
@@ -34,7 +35,7 @@ The project's own commands.
 
 Usage: cargo xtask COMMAND
 
-  check           formatting, layers, clippy and rustdoc, warnings denied
+  check           formatting, layers, what documents name, clippy and rustdoc, warnings denied
   test            every test, and the controller and the example built for microcontrollers
   ci              check, then test
   bench [NAME]    benchmarks, also beside peer crates (those whose name contains NAME): medians, ratios, goals
