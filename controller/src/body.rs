@@ -42,7 +42,7 @@ impl<S: Scalar> Body<S> {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "fixed"))]
 mod tests {
     use super::*;
     use crate::scalar::Q16;

@@ -274,7 +274,7 @@ macro_rules! named_parts {
 
 named_parts!(SerializeStruct, SerializeStructVariant);
 
-#[cfg(test)]
+#[cfg(all(test, feature = "fixed"))]
 mod tests {
     use super::*;
     use crate::scalar::{Q16, Scalar};

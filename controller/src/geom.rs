@@ -330,7 +330,7 @@ impl Position {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "fixed", feature = "micromath"))]
 mod tests {
     use super::*;
     use crate::scalar::{Fast32, Q16};

@@ -1,15 +1,11 @@
-//! Onboard control of a robot in a swarm.
+#![doc = include_str!("../README.md")]
 //!
-//! The robot's brain is a pure function of what it has sensed and received: [`agent::Agent::step`]
-//! takes the time, the own pose, a window of terrain and the bytes that the radio delivered, and
-//! returns a motion command, bytes to send, events and the time of the next call. It never
-//! allocates, never panics, never blocks, reads no clock and keeps no statics, so that the same
-//! code gives the same bits on a microcontroller, in a simulator and beside an autopilot.
+//! ## Layers
 //!
-//! Layers point down only:
-//! numbers and geometry ([`scalar`], [`geom`], [`time`], [`rand`], [`grid`], [`cost`], [`shuffle`],
-//! [`obstacle`])
-//! < what is known of others and of oneself ([`wire`], [`neighbor`], [`body`])
+//! Modules use only what stands before them:
+//! numbers, geometry and what robots are called ([`scalar`], [`geom`], [`time`], [`rand`], [`grid`], [`cost`], [`shuffle`],
+//! [`obstacle`], [`robot`], [`auth`])
+//! < what is known of oneself and of others ([`body`], [`neighbor`], [`template`], [`wire`])
 //! < behaviours ([`route`], [`formation`], [`orca`], [`flock`], [`push_out`]; they never import each other)
 //! < composition ([`supervisor`], [`agent`]).
 #![no_std]
@@ -30,27 +26,35 @@
 #[cfg(test)]
 extern crate std;
 
+#[cfg(feature = "agent")]
 pub mod agent;
+#[cfg(feature = "auth")]
 pub mod auth;
 pub mod body;
 pub mod cost;
 pub mod digest;
 mod fixint;
+#[cfg(feature = "flock")]
 pub mod flock;
+#[cfg(feature = "formation")]
 pub mod formation;
 pub mod geom;
 pub mod grid;
 mod list;
 pub mod neighbor;
 pub mod obstacle;
+#[cfg(feature = "orca")]
 pub mod orca;
+#[cfg(feature = "push_out")]
 pub mod push_out;
 pub mod rand;
 pub mod robot;
+#[cfg(feature = "route")]
 pub mod route;
 pub mod scalar;
 pub mod shuffle;
 pub mod supervisor;
 pub mod template;
 pub mod time;
+#[cfg(feature = "wire")]
 pub mod wire;

@@ -32,15 +32,6 @@ pub(crate) fn sink_last<T>(items: &mut [T], must_swap: impl Fn(&T, &T) -> bool) 
     }
 }
 
-/// Moves the item at `at` to the end; those behind it move up. Nothing happens when there is none.
-pub(crate) fn to_end<T>(items: &mut [T], at: usize) {
-    let mut rest = items.get_mut(at..).unwrap_or_default();
-    while let [item, next, ..] = rest {
-        core::mem::swap(item, next);
-        rest = rest.get_mut(1..).unwrap_or_default();
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -54,15 +45,9 @@ mod tests {
     }
 
     #[test]
-    fn items_move_and_the_others_keep_their_order() {
+    fn the_last_item_sinks_and_the_others_keep_their_order() {
         let mut items = [1, 3, 5, 7, 4];
         sink_last(&mut items, |before, after| before > after);
         assert_eq!(items, [1, 3, 4, 5, 7]);
-        to_end(&mut items, 1);
-        assert_eq!(items, [1, 4, 5, 7, 3]);
-        to_end(&mut items, 4);
-        to_end(&mut items, 9);
-        assert_eq!(items, [1, 4, 5, 7, 3]);
-        to_end::<u8>(&mut [], 0);
     }
 }

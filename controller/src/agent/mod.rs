@@ -104,7 +104,7 @@ mod state;
 mod travel;
 mod waypoint_guidance;
 
-#[cfg(test)]
+#[cfg(all(test, feature = "auth", feature = "fixed"))]
 mod tests;
 
 pub use any::{AnyGuidance, AnyHalfPlanes, AnySafety};

