@@ -99,6 +99,7 @@ def test_one_vehicle(connect, tmp_path):
     wait_until(lambda: not telemetry.armed(), 10, "to be disarmed")
 
 
+@pytest.mark.long
 def test_ten_vehicles(connect):
     systems = connect("scenarios/bridge.toml", 10)
     assert sorted(systems) == list(range(1, 11))

@@ -382,6 +382,7 @@ def test_only_who_has_the_key_is_heard(bridge, tmp_path, staya, free_port):
     assert figures["frames_refused"] >= 2 and figures["commands"] == {"accepted": 1}
 
 
+@pytest.mark.long
 def test_a_hundred_vehicles_at_ten_positions_a_second_lose_nothing(bridge):
     hundred = bridge("scenarios/bridge-100.toml", speed=1)
     link = hundred.link

@@ -453,6 +453,7 @@ def test_the_others_go_around_one_that_its_pilot_has_taken(tmp_path, free_port, 
         ends_well(process)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("faults", [None, dict(drop=0.1, delay_s=0.1, corrupt=0.02)], ids=["good", "bad"])
 def test_six_travel_in_formation(tmp_path, free_port, staya, faults):
     """In two rows of three, from places up to a metre off, over good links and such that lose, delay and damage frames."""

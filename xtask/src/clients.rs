@@ -3,6 +3,7 @@
 use crate::apt;
 use crate::repo::{Repo, output_of, run, run_reading};
 use crate::report::{Counts, Report};
+use crate::test::{Extent, LONG};
 use std::path::PathBuf;
 
 const NAME: &str = "MAVLink clients";
@@ -15,8 +16,9 @@ const REMEDY: &str = "on Debian run, as root, `apt-get update && apt-get install
 /// Tests wait for real time more than they compute.
 const WORKERS: &str = "4";
 
-/// Makes the environment, builds the program and runs the tests; `only` the tests whose names contain it.
-pub fn run_command(repo: &Repo, report: &mut Report, only: Option<&str>) {
+/// Makes the environment, builds the program and runs the tests; `only` the tests whose names contain it, and of those with the
+/// mark `long` none unless all are wanted.
+pub fn run_command(repo: &Repo, report: &mut Report, only: Option<&str>, extent: Extent) {
     let python = match prepare(repo) {
         Ok(python) => python,
         Err(reason) => return report.skip(NAME, &reason),
@@ -30,6 +32,10 @@ pub fn run_command(repo: &Repo, report: &mut Report, only: Option<&str>) {
         tests.args(["-m", "pytest", "-q", TESTS, "-n", WORKERS]);
         tests.args(["--dist", "worksteal", "--color", "no"]);
         tests.args(only.into_iter().flat_map(|name| ["-k", name]));
+        if extent == Extent::Short {
+            // Deselected tests are counted as skipped, with the reason.
+            tests.args(["-m", "not long"]);
+        }
         let program = format!("staya{}", std::env::consts::EXE_SUFFIX);
         tests.env("STAYA", repo.target.join("debug").join(program));
         let mut counts = None;
@@ -37,6 +43,9 @@ pub fn run_command(repo: &Repo, report: &mut Report, only: Option<&str>) {
             counts = closing_line(line).or(counts);
         });
         match (ended, counts) {
+            (Ok(()), Some(counts)) if counts.skipped > 0 && extent == Extent::Short => {
+                (counts, String::from(LONG))
+            }
             (Ok(()), Some(counts)) => (counts, String::new()),
             (Err(_), Some(counts)) if counts.failed > 0 => (counts, String::from("see above")),
             (ended, counts) => {

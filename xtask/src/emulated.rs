@@ -25,6 +25,10 @@ pub fn run(repo: &Repo, report: &mut Report) {
     tests.args(["--test", "emulated"]);
     tests.env("STAYA_FIRMWARE", repo.target.join("firmware"));
     report.part(name, || counted(&mut tests, ""));
+}
+
+/// Ten emulated parts for a thousand steps, each compared with its shadow: the run is the one without devices.
+pub fn run_ten(repo: &Repo, report: &mut Report) {
     report.step("ten robots of a formation as firmware, 1000 steps", || {
         let mut staya = repo.cargo(&["run", "--quiet", "--locked", "--package", "staya", "--"]);
         staya.args(["hil", "scenarios/ten-robots.toml", "--ticks", "1000"]);

@@ -75,19 +75,19 @@ pub struct Request<'a> {
     /// All of them if none is named.
     parts: Vec<&'static Part>,
     profile: Profile,
-    /// The only program to build.
-    bin: Option<&'a str>,
+    /// The programs to build; all of them if none is named.
+    bins: Vec<&'a str>,
 }
 
 impl<'a> Request<'a> {
-    /// Reads the command line: `[--debug] [--bin NAME] [PART...]`.
+    /// Reads the command line: `[--debug] [--bin NAME]... [PART...]`.
     pub fn read(arguments: &[&'a str]) -> Option<Self> {
-        let (mut parts, mut profile, mut bin) = (Vec::new(), Profile::Firmware, None);
+        let (mut parts, mut profile, mut bins) = (Vec::new(), Profile::Firmware, Vec::new());
         let mut arguments = arguments.iter().copied();
         while let Some(argument) = arguments.next() {
             match argument {
                 "--debug" => profile = Profile::Debug,
-                "--bin" => bin = Some(arguments.next()?),
+                "--bin" => bins.push(arguments.next()?),
                 name => parts.push(part(name)?),
             }
         }
@@ -97,7 +97,7 @@ impl<'a> Request<'a> {
         Some(Self {
             parts,
             profile,
-            bin,
+            bins,
         })
     }
 }
@@ -106,14 +106,8 @@ impl<'a> Request<'a> {
 pub fn run_command(repo: &Repo, report: &mut Report, request: &Request<'_>) {
     let mut toolchains = Toolchains::default();
     for part in &request.parts {
-        build_some(
-            repo,
-            report,
-            &mut toolchains,
-            part,
-            request.profile,
-            request.bin,
-        );
+        let Request { profile, bins, .. } = request;
+        build_some(repo, report, &mut toolchains, part, *profile, bins);
     }
 }
 
@@ -125,16 +119,17 @@ pub fn build_step(
     part: &Part,
     profile: Profile,
 ) -> bool {
-    build_some(repo, report, toolchains, part, profile, None)
+    build_some(repo, report, toolchains, part, profile, &[])
 }
 
-fn build_some(
+/// The same with the programs of these names; all of them if none is named.
+pub fn build_some(
     repo: &Repo,
     report: &mut Report,
     toolchains: &mut Toolchains,
     part: &Part,
     profile: Profile,
-    bin: Option<&str>,
+    bins: &[&str],
 ) -> bool {
     let name = match profile {
         Profile::Firmware => format!("firmware for {}", part.name),
@@ -145,7 +140,7 @@ fn build_some(
         return false;
     }
     match toolchains.find(repo, part.target) {
-        Ok(toolchain) => report.step(&name, || build(repo, &toolchain, part, profile, bin)),
+        Ok(toolchain) => report.step(&name, || build(repo, &toolchain, part, profile, bins)),
         Err(reason) => {
             report.skip(&name, &reason);
             false
@@ -153,26 +148,26 @@ fn build_some(
     }
 }
 
-/// Builds every program for a part, or the one that is named, and copies the ELF files to where they are looked for.
+/// Builds every program for a part, or those that are named, and copies the ELF files to where they are looked for.
 fn build(
     repo: &Repo,
     toolchain: &Toolchain,
     part: &Part,
     profile: Profile,
-    only: Option<&str>,
+    only: &[&str],
 ) -> Result<(), String> {
     let (profile_name, folder) = profile.names();
     let mut cargo = toolchain.cargo(repo, part.target, "build");
     cargo.args(["--locked", "--profile", profile_name]);
     cargo.args(["--package", "staya-firmware"]);
     let mut bins = bins(repo, profile)?;
-    bins.retain(|bin| only.is_none_or(|only| only == bin));
-    if bins.is_empty() {
-        return Err(format!(
-            "no program {} in hil/firmware",
-            only.unwrap_or_default()
-        ));
+    if let Some(unknown) = only
+        .iter()
+        .find(|&&name| !bins.iter().any(|bin| bin == name))
+    {
+        return Err(format!("no program {unknown} in hil/firmware"));
     }
+    bins.retain(|bin| only.is_empty() || only.contains(&bin.as_str()));
     for bin in &bins {
         cargo.args(["--bin", bin]);
     }
@@ -318,9 +313,9 @@ mod tests {
     #[test]
     fn the_command_line_names_parts_a_profile_and_a_program() {
         let all = Request::read(&[]).unwrap();
-        assert_eq!((all.parts.len(), all.bin), (PARTS.len(), None));
+        assert_eq!((all.parts.len(), all.bins.len()), (PARTS.len(), 0));
         let one = Request::read(&["--bin", "lockstep", "nrf51", "--debug"]).unwrap();
-        assert_eq!((one.parts.len(), one.bin), (1, Some("lockstep")));
+        assert_eq!((one.parts.len(), one.bins), (1, vec!["lockstep"]));
         assert!(one.profile == Profile::Debug && one.parts[0].name == "nrf51");
         for wrong in [&["z80"][..], &["--bin"], &["--binary", "lockstep"]] {
             assert!(Request::read(wrong).is_none(), "{wrong:?}");

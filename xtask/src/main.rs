@@ -29,6 +29,7 @@ use device::Toolchains;
 use repo::Repo;
 use report::Report;
 use std::process::ExitCode;
+use test::Extent;
 
 const HELP: &str = "\
 The project's own commands.
@@ -36,8 +37,9 @@ The project's own commands.
 Usage: cargo xtask COMMAND
 
   check           formatting, layers, what documents name, clippy and rustdoc, warnings denied
-  test            every test, and the controller and the example built for microcontrollers
-  ci              check, then test
+  test [--all]    the tests: on the host, by MAVLink clients, on emulated parts; with --all also the long proofs: each program
+                  on each part, debug builds, budgets, ten parts for 1000 steps, peers, fuzz targets on random bytes
+  ci              check, then test --all
   bench [NAME]    benchmarks, also beside peer crates (those whose name contains NAME): medians, ratios, goals
   bless [NAME]    rewrite golden files by running the tests whose name contains NAME (default: golden)
   fuzz [--seconds N]
@@ -72,18 +74,19 @@ fn main() -> ExitCode {
             return ExitCode::SUCCESS;
         }
         ["check"] => check::run(&repo, &mut report),
-        ["test"] => test::run(&repo, &mut report),
+        ["test"] => test::run(&repo, &mut report, Extent::Short),
+        ["test", "--all"] => test::run(&repo, &mut report, Extent::All),
         ["ci"] => {
             check::run(&repo, &mut report);
-            test::run(&repo, &mut report);
+            test::run(&repo, &mut report, Extent::All);
         }
         ["bench"] => bench::run(&repo, &mut report, None),
         ["bench", name] if !name.starts_with('-') => bench::run(&repo, &mut report, Some(name)),
         ["bless"] => bless::run(&repo, &mut report, "golden"),
         ["bless", name] if !name.starts_with('-') => bless::run(&repo, &mut report, name),
-        ["clients"] => clients::run_command(&repo, &mut report, None),
+        ["clients"] => clients::run_command(&repo, &mut report, None, Extent::All),
         ["clients", name] if !name.starts_with('-') => {
-            clients::run_command(&repo, &mut report, Some(name));
+            clients::run_command(&repo, &mut report, Some(name), Extent::All);
         }
         ["example"] => example::run(&repo, &mut report),
         ["fuzz"] => fuzz::run(&repo, &mut report, fuzz::SECONDS),

@@ -31,10 +31,22 @@ pub fn run(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains) {
     });
     for part in &PARTS {
         for profile in profiles(part) {
-            on_part(repo, report, toolchains, part, *profile);
+            on_part(repo, report, toolchains, part, *profile, &[]);
         }
     }
     panics(repo, report, toolchains);
+}
+
+/// Programs that show on each part what matters most: devices in lockstep, canned swarms; and, on the part that has room for all
+/// of the controller, that no panic is reachable.
+pub fn run_short(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains) {
+    for part in &PARTS {
+        let bins: &[&str] = match part.name {
+            "stm32f405" => &["lockstep", "replay", "nopanic"],
+            _ => &["lockstep", "replay"],
+        };
+        on_part(repo, report, toolchains, part, Profile::Firmware, bins);
+    }
 }
 
 /// The part with an FPU also without optimisation: there an operation too many or too few would show.
@@ -45,18 +57,20 @@ fn profiles(part: &Part) -> &'static [Profile] {
     }
 }
 
+/// The programs of `bins` (all if it names none), then the canned swarms.
 fn on_part(
     repo: &Repo,
     report: &mut Report,
     toolchains: &mut Toolchains,
     part: &Part,
     profile: Profile,
+    bins: &[&str],
 ) {
     let name = match profile {
         Profile::Firmware => format!("canned swarms on the {}", part.name),
         Profile::Debug => format!("canned swarms on the {}, debug", part.name),
     };
-    if !firmware::build_step(repo, report, toolchains, part, profile) {
+    if !firmware::build_some(repo, report, toolchains, part, profile, bins) {
         return report.skip(&name, "there is no firmware");
     }
     match emulate::prepare(repo, part) {

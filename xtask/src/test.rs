@@ -8,34 +8,61 @@ use std::process::Command;
 /// Tests in a module of this name read data beside the repository, which CI has.
 const NEEDS_SHARED: &str = "needs_shared::";
 
-/// Host tests, then what other workspaces and other targets can show.
-pub fn run(repo: &Repo, report: &mut Report) {
-    let mut tests = repo.cargo(&["test", "--locked", "--workspace", "--no-fail-fast"]);
-    let mut why_skipped = String::new();
+/// Why tests are left out that only [`Extent::All`] runs.
+pub const LONG: &str = "long proofs run with `cargo xtask test --all`";
+
+/// How much is tested.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Extent {
+    /// What every change should pass: all tests on the host but the long ones, clients, each part once.
+    Short,
+    /// All there is: besides, peers, every program on every part, debug builds, budgets, long tests.
+    All,
+}
+
+/// Host tests and clients, then what other targets and other workspaces can show.
+pub fn run(repo: &Repo, report: &mut Report, extent: Extent) {
+    let mut why_skipped = Vec::new();
+    let mut options = Vec::new();
+    match extent {
+        Extent::Short => why_skipped.push(String::from(LONG)),
+        Extent::All => options.push("--include-ignored"),
+    }
     let shared = std::env::var_os("STAYA_SHARED")
         .map_or_else(|| repo.root.join("../shared"), std::path::PathBuf::from);
     if !shared.is_dir() {
-        tests.args(["--", "--skip", NEEDS_SHARED]);
-        why_skipped = format!(
-            "skipped: {NEEDS_SHARED}* need {}, which is not there",
-            shared.display()
-        );
-        println!("{why_skipped}");
+        options.extend(["--skip", NEEDS_SHARED]);
+        let folder = shared.display();
+        why_skipped.push(format!("{NEEDS_SHARED}* need {folder}, which is not there"));
     }
+    let why_skipped = why_skipped.join("; ");
+    let arguments = ["test", "--locked", "--workspace", "--no-fail-fast"];
+    let mut build = repo.cargo(&arguments);
+    report.command("tests on the host, compiled", {
+        build.arg("--no-run");
+        build
+    });
+    let mut tests = repo.cargo(&arguments);
+    tests.arg("--").args(options);
     report.part("tests on the host", || counted(&mut tests, &why_skipped));
+    crate::clients::run_command(repo, report, None, extent);
+    let mut toolchains = Toolchains::default();
+    if extent == Extent::Short {
+        crate::swarms::run_short(repo, report, &mut toolchains);
+        return crate::emulated::run(repo, report);
+    }
+    crate::swarms::run(repo, report, &mut toolchains);
+    crate::size::run(repo, report, &mut toolchains, false);
+    crate::faults::run(repo, report, &mut toolchains);
+    crate::emulated::run(repo, report);
+    crate::emulated::run_ten(repo, report);
+    crate::device::run(repo, report);
+    crate::example::run(repo, report);
     let mut peers = repo.cargo_in("tests/peers", &["test", "--locked"]);
     report.part("same results as peers", || counted(&mut peers, ""));
     let fuzz = ["test", "--locked", "--no-default-features"];
     let mut fuzz = repo.cargo_in("tests/fuzz", &fuzz);
     report.part("fuzz targets on random bytes", || counted(&mut fuzz, ""));
-    crate::clients::run_command(repo, report, None);
-    crate::device::run(repo, report);
-    crate::example::run(repo, report);
-    let mut toolchains = Toolchains::default();
-    crate::swarms::run(repo, report, &mut toolchains);
-    crate::size::run(repo, report, &mut toolchains, false);
-    crate::faults::run(repo, report, &mut toolchains);
-    crate::emulated::run(repo, report);
 }
 
 /// Runs test programs and adds up their closing lines. A program that ends without one (it
