@@ -4,7 +4,8 @@ use anyhow::{Result, bail};
 use clap::{Args, Subcommand, ValueEnum};
 use serde::Serialize;
 use staya_console::{Ended, Global, print, print_json};
-use staya_papers::cli::params::NormArg;
+use staya_controller::grid::Norm;
+use staya_papers::options;
 use staya_plot::terrain::{draw, scale_for};
 use staya_sim::terrain::generate::{ByMetrics, Plan, by_metrics, natural, uniform};
 use staya_sim::terrain::metrics::{Metrics, obstacles_of_entropy};
@@ -68,8 +69,8 @@ struct Generate {
     #[arg(long, default_value_t = 70)]
     obstacles: u32,
     /// natural: how distances are measured.
-    #[arg(long, value_enum, default_value = "euclidean")]
-    norm: NormArg,
+    #[arg(long, default_value = "euclidean", value_parser = options::norm())]
+    norm: Norm,
     /// entropy: the wanted configuration entropy S, 0 to ln(classes).
     #[arg(long, required_if_eq("kind", "entropy"))]
     entropy: Option<f64>,
@@ -232,7 +233,7 @@ impl Generate {
         };
         let terrain = match (self.kind, self.entropy, self.total_edge) {
             (Kind::Uniform, _, _) => uniform(&plan)?,
-            (Kind::Natural, _, _) => natural(&plan, self.obstacles, self.norm.into())?,
+            (Kind::Natural, _, _) => natural(&plan, self.obstacles, self.norm)?,
             (Kind::Entropy, Some(entropy), Some(total_edge)) => by_metrics(
                 &plan,
                 &ByMetrics {

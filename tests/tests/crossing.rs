@@ -1,6 +1,7 @@
 //! Golden tables of swaps and doorways, as the commands print them.
 
 use staya_papers::crossing::{Conditions, doorway, swap};
+use staya_papers::experiment::Experiment as _;
 use staya_sim::scenario::SafetyName;
 use staya_tests::golden;
 
@@ -10,7 +11,7 @@ fn golden_swap() {
         robots: vec![2, 3, 4, 8, 12, 16, 24, 32],
         ..swap::Plan::default()
     };
-    golden("swap", &plan.run(&|_| true).to_string());
+    golden("swap", &plan.measure().expect("a sound plan").to_string());
 }
 
 #[test]
@@ -26,7 +27,10 @@ fn golden_swap_by_template_with_noise_and_losses() {
         },
         ..swap::Plan::default()
     };
-    golden("swap-template", &plan.run(&|_| true).to_string());
+    golden(
+        "swap-template",
+        &plan.measure().expect("a sound plan").to_string(),
+    );
 }
 
 #[test]
@@ -36,5 +40,8 @@ fn golden_doorway() {
         robots: 6,
         ..doorway::Plan::default()
     };
-    golden("doorway-experiment", &plan.run(&|_| true).to_string());
+    golden(
+        "doorway-experiment",
+        &plan.measure().expect("a sound plan").to_string(),
+    );
 }

@@ -1,6 +1,7 @@
 //! What the experiments with flocks give, small, as tables that any change of behaviour breaks. `cargo xtask bless golden`
 //! rewrites them.
 
+use staya_papers::experiment::Experiment as _;
 use staya_papers::flock::closing::Closing;
 use staya_papers::flock::{Case, Plan};
 use staya_papers::goals;
@@ -20,8 +21,7 @@ fn golden_experiment_flock() {
             safety,
             ..Plan::default()
         };
-        let results = plan.carry_out(|_| true).expect("a sound plan");
-        let report = results.report();
+        let report = plan.measure().expect("a sound plan");
         writeln!(text, "safety {}", report.safety).expect("memory");
         for case in &report.cases {
             let run = &case.each[0];
@@ -52,7 +52,7 @@ fn golden_experiment_closing() {
         runs: 2,
         ..Closing::default()
     };
-    let (report, _) = plan.carry_out(|_| true).expect("a sound plan");
+    let report = plan.measure().expect("a sound plan");
     let mut text = String::new();
     for line in &report.lines {
         writeln!(
@@ -85,8 +85,7 @@ fn golden_experiment_goals() {
             moves_goal: true,
             ..goals::Plan::default()
         };
-        let results = plan.carry_out(|_| true).expect("a sound plan");
-        let report = results.report();
+        let report = plan.measure().expect("a sound plan");
         writeln!(text, "safety {}", report.safety).expect("memory");
         for point in &report.points {
             let of = |value: Option<f64>| value.unwrap_or(f64::NAN);

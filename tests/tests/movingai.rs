@@ -2,16 +2,20 @@
 //! paper's window the numbers of robots that arrive are pinned.
 
 use staya_controller::cost::Gain;
-use staya_papers::movingai::{Answer, Benchmark, Memory, Report, Robots, Sight};
+use staya_papers::experiment::Experiment as _;
+use staya_papers::movingai::{Answer, Benchmark, Memory, Plan, Report, Robots, Sight};
 use std::path::{Path, PathBuf};
 
 /// Largest deviation from an optimal length, percent. sqrt 2 as 99/70 is off by 0.005 %.
 const TOLERANCE_PERCENT: f64 = 0.1;
 
 fn answers(scen: &Path, robots: &Robots) -> (Report, Vec<Answer>) {
-    let benchmark = Benchmark::load(scen, None).unwrap();
-    let answers = benchmark.answer(robots, |_| true).unwrap();
-    (Report::of(&benchmark, robots, &answers), answers)
+    let plan = Plan {
+        benchmark: Benchmark::load(scen, None).unwrap(),
+        robots: *robots,
+    };
+    let answers = plan.carry_out(|_| true).unwrap();
+    (plan.report(&answers), answers.concat())
 }
 
 /// Every query is priced and walked at the optimal length.

@@ -4,14 +4,16 @@
 //! small one the question is how many robots get out of the dead ends that they cannot see, and how late. What gets them out
 //! is the price of earlier visits, as far as they are remembered: a2 and [`Memory`].
 
-use super::in_parallel;
-use super::walk::{Task, Walker, holds};
+use crate::experiment::{Experiment, GoesOn, in_parallel};
 use crate::stats::Summary;
+use crate::walk::{Task, Walker, holds};
+use anyhow::{Context as _, Result, ensure};
 use serde::Serialize;
 use staya_controller::grid::UNIT;
 use staya_controller::route::{Replan, RouteParams};
 use staya_sim::terrain::movingai::{Query, parse_map, parse_scen};
-use staya_sim::terrain::{Terrain, TerrainError, read};
+use staya_sim::terrain::{Terrain, read};
+use std::fmt::{self, Display, Formatter};
 use std::path::{Path, PathBuf};
 
 /// Cells of the largest search, border included: 255 x 255, as many as 16-bit numbers can tell apart.
@@ -88,152 +90,72 @@ pub struct Benchmark {
     pub queries: Vec<Query>,
 }
 
-/// Why a benchmark cannot be run.
-#[derive(Debug, thiserror::Error)]
-pub enum BenchmarkError {
-    /// The map or the scenario cannot be read.
-    #[error(transparent)]
-    Terrain(#[from] TerrainError),
-    /// The scenario has no queries.
-    #[error("{}: no queries; each line after the first one is a query", .0.display())]
-    Empty(PathBuf),
-    /// The map is not beside the scenario.
-    #[error(
-        "{}: its map {named} is not beside it ({} does not exist); put it there, or name it by --map", .scen.display(), .looked_for.display()
-    )]
-    NoMap {
-        /// The scenario.
-        scen: PathBuf,
-        /// The map by the scenario's words.
-        named: String,
-        /// The file that would be it.
-        looked_for: PathBuf,
-    },
-    /// Queries for another map.
-    #[error(
-        "{}: query {query} is for a map of {} x {} cells, but {} has {} x {}; name the right one by --map", .scen.display(), .wanted[0], .wanted[1], .map.display(), .found[0], .found[1]
-    )]
-    Size {
-        /// The scenario.
-        scen: PathBuf,
-        /// Number of the query, from 1.
-        query: usize,
-        /// Columns and rows that the query expects.
-        wanted: [u16; 2],
-        /// The map.
-        map: PathBuf,
-        /// Its columns and rows.
-        found: [u16; 2],
-    },
-    /// A start or goal in a wall.
-    #[error(
-        "{}: query {query} starts or ends in a wall of {}; name the right map by --map", .scen.display(), .map.display()
-    )]
-    Blocked {
-        /// The scenario.
-        scen: PathBuf,
-        /// Number of the query, from 1.
-        query: usize,
-        /// The map.
-        map: PathBuf,
-    },
-    /// The whole map is too much for one search.
-    #[error(
-        "a map of {width} x {height} cells is more than the controller can see at once: no side over 256, and at most {CELLS} cells with a border of one around them; choose a radius"
-    )]
-    TooLarge {
-        /// Columns.
-        width: u16,
-        /// Rows.
-        height: u16,
-    },
-}
-
 impl Benchmark {
     /// Reads a scenario and its map, by default the one beside it that it names.
     ///
     /// # Errors
-    /// [`BenchmarkError`], naming file and remedy.
-    pub fn load(scen: &Path, map: Option<&Path>) -> Result<Self, BenchmarkError> {
+    /// A file that cannot be read, a scenario without queries or for another map; naming file and remedy.
+    pub fn load(scen: &Path, map: Option<&Path>) -> Result<Self> {
+        let at = scen.display();
         let queries = parse_scen(&read(scen)?, scen)?;
-        let first = queries
-            .first()
-            .ok_or_else(|| BenchmarkError::Empty(scen.to_owned()))?;
+        let first = queries.first().with_context(|| {
+            format!("{at}: no queries; each line after the first one is a query")
+        })?;
         let beside = scen.with_file_name(Path::new(&first.map).file_name().unwrap_or_default());
         let map = map.map_or(beside.clone(), Path::to_owned);
-        if map == beside && !map.is_file() {
-            return Err(BenchmarkError::NoMap {
-                scen: scen.to_owned(),
-                named: first.map.clone(),
-                looked_for: map,
-            });
-        }
+        ensure!(
+            map != beside || map.is_file(),
+            "{at}: its map {} is not beside it ({} does not exist); put it there, or name it by --map",
+            first.map,
+            map.display()
+        );
         let land = parse_map(&read(&map)?, &map, 1)?;
-        for (index, query) in queries.iter().enumerate() {
-            let (wanted, found) = ([query.width, query.height], [land.width(), land.height()]);
-            let (scen, map, query_number) = (scen.to_owned(), map.clone(), index + 1);
-            if wanted != found {
-                return Err(BenchmarkError::Size {
-                    scen,
-                    query: query_number,
-                    wanted,
-                    map,
-                    found,
-                });
-            }
-            if !(land.is_passable(query.start) && land.is_passable(query.goal)) {
-                return Err(BenchmarkError::Blocked {
-                    scen,
-                    query: query_number,
-                    map,
-                });
-            }
+        let name = map.display();
+        let (width, height) = (land.width(), land.height());
+        for (query, number) in queries.iter().zip(1..) {
+            ensure!(
+                (query.width, query.height) == (width, height),
+                "{at}: query {number} is for a map of {} x {} cells, but {name} has {width} x {height}; \
+                 name the right one by --map",
+                query.width,
+                query.height
+            );
+            ensure!(
+                land.is_passable(query.start) && land.is_passable(query.goal),
+                "{at}: query {number} starts or ends in a wall of {name}; name the right map by --map"
+            );
         }
         Ok(Self { map, land, queries })
     }
+}
 
-    /// Answers the queries in parallel; `progress` is told how many are done and says whether to go on.
-    ///
-    /// # Errors
-    /// [`BenchmarkError::TooLarge`]
-    pub fn answer(
-        &self,
-        robots: &Robots,
-        progress: impl FnMut(usize) -> bool,
-    ) -> Result<Vec<Answer>, BenchmarkError> {
-        match robots.memory {
-            Memory::Cells16 => self.answer_with::<16>(robots, progress),
-            Memory::Cells64 => self.answer_with::<64>(robots, progress),
-            Memory::Cells256 => self.answer_with::<256>(robots, progress),
-            Memory::Cells1024 => self.answer_with::<1024>(robots, progress),
-        }
-    }
+/// What to do: a benchmark's queries, answered by robots.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// Map and queries.
+    pub benchmark: Benchmark,
+    /// Who answers them.
+    pub robots: Robots,
+}
 
-    fn answer_with<const M: usize>(
-        &self,
-        robots: &Robots,
-        progress: impl FnMut(usize) -> bool,
-    ) -> Result<Vec<Answer>, BenchmarkError> {
+impl Plan {
+    fn params(&self) -> RouteParams {
         let default = RouteParams::default();
-        let params = RouteParams {
-            radius: match robots.sight {
+        RouteParams {
+            radius: match self.robots.sight {
                 Sight::Radius(radius) => radius,
                 Sight::Map => u8::MAX,
             },
             norm: default.norm,
             corner_cutting: default.corner_cutting,
-            ..robots.params
-        };
-        let land = &self.land;
-        // A window that reaches beyond the map holds no more than the map.
-        if !holds(CELLS, land) && (robots.sight == Sight::Map || params.radius > 126) {
-            return Err(BenchmarkError::TooLarge {
-                width: land.width(),
-                height: land.height(),
-            });
+            ..self.robots.params
         }
+    }
+
+    fn answer<const M: usize>(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Answer>> {
+        let (land, robots, params) = (&self.benchmark.land, &self.robots, self.params());
         let job = |walker: &mut Walker<CELLS, M>, index: usize| {
-            let query = &self.queries[index];
+            let query = &self.benchmark.queries[index];
             let task = Task {
                 land,
                 parked: &[],
@@ -252,7 +174,45 @@ impl Benchmark {
                 priced_cells: priced.map(cells),
             })
         };
-        in_parallel(self.queries.len(), 64, progress, job)
+        in_parallel(self.total(), 64, goes_on, job)
+    }
+}
+
+impl Experiment for Plan {
+    const UNIT: &'static str = "queries";
+    type Run = Answer;
+    type Report = Report;
+
+    fn check(&self) -> Result<()> {
+        let land = &self.benchmark.land;
+        // A window that reaches beyond the map holds no more than the map.
+        let sees_all = self.robots.sight == Sight::Map || self.params().radius > 126;
+        ensure!(
+            holds(CELLS, land) || !sees_all,
+            "a map of {} x {} cells is more than the controller can see at once: no side over 256, and at most \
+             {CELLS} cells with a border of one around them; choose a radius",
+            land.width(),
+            land.height()
+        );
+        Ok(())
+    }
+
+    fn total(&self) -> usize {
+        self.benchmark.queries.len()
+    }
+
+    fn perform(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Vec<Answer>>> {
+        let answers = match self.robots.memory {
+            Memory::Cells16 => self.answer::<16>(goes_on),
+            Memory::Cells64 => self.answer::<64>(goes_on),
+            Memory::Cells256 => self.answer::<256>(goes_on),
+            Memory::Cells1024 => self.answer::<1024>(goes_on),
+        };
+        Ok(vec![answers?])
+    }
+
+    fn report(&self, answers: &[Vec<Answer>]) -> Report {
+        Report::of(&self.benchmark, &self.robots, &answers.concat())
     }
 }
 
@@ -361,6 +321,38 @@ impl Report {
     }
 }
 
+impl Display for Report {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let (width, height) = (self.width, self.height);
+        writeln!(f, "{} ({width} x {height} cells)", self.map.display())?;
+        let radius = self
+            .radius
+            .map_or_else(|| String::from("the whole map"), |r| format!("radius {r}"));
+        writeln!(f, "  window                {radius}")?;
+        writeln!(f, "  visit memory          {} cells", self.visits)?;
+        let (answered, queries) = (self.answered, self.queries);
+        writeln!(f, "  queries answered      {answered} of {queries}")?;
+        writeln!(f, "  arrived               {}", self.arrived)?;
+        if let Some(loss) = &self.loss_percent {
+            writeln!(
+                f,
+                "  longer than optimal   {:.2} % on average, median {:.2} %, at most {:.2} %",
+                loss.mean, loss.median, loss.max
+            )?;
+        }
+        if let Some(error) = self.worst_price_error_percent {
+            writeln!(
+                f,
+                "  optimal lengths       met within {error:.4} % for every query with a way"
+            )?;
+        }
+        if let Some(without @ 1..) = self.without_price {
+            writeln!(f, "  no way found          {without}")?;
+        }
+        Ok(())
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -384,8 +376,7 @@ mod tests {
         let (_dir, scen) = files(rows);
         let benchmark = Benchmark::load(&scen, None).unwrap();
         let robots = Robots::new(sight);
-        let answers = benchmark.answer(&robots, |_| true).unwrap();
-        Report::of(&benchmark, &robots, &answers)
+        Plan { benchmark, robots }.measure().unwrap()
     }
 
     #[test]
@@ -438,8 +429,9 @@ mod tests {
             queries: vec![],
         };
         let answer = |width, height, sight| {
-            benchmark(width, height)
-                .answer(&Robots::new(sight), |_| true)
+            let (benchmark, robots) = (benchmark(width, height), Robots::new(sight));
+            Plan { benchmark, robots }
+                .carry_out(|_| true)
                 .map_err(|error| error.to_string())
         };
         assert!(answer(253, 253, Sight::Map).is_ok());

@@ -12,6 +12,10 @@ mod tests;
 
 pub use report::{Report, Row, Timing};
 
+use crate::experiment::{Experiment, GoesOn};
+use crate::options;
+use anyhow::{Result, ensure};
+use clap::Args;
 use rayon::prelude::*;
 use staya_controller::flock::boids::{BoidsParams, Torus};
 use staya_controller::geom::{Vec2, Vec3};
@@ -19,6 +23,7 @@ use staya_controller::neighbor::Nearby;
 use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;
 use staya_sim::nearby::{AllPairs, Cells, Found, Query, Search, Space, Tree};
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Purpose of the random numbers of boids' starts.
@@ -75,75 +80,61 @@ enum AnySearch {
     Tree(Tree<f32, 2>),
 }
 
-/// What to do.
-#[derive(Clone, Debug, PartialEq)]
+/// What to do: boids on a torus, three ways to find neighbours, equal flights, and what they cost (Starovoitova, section 2.3).
+///
+/// Lengths, turns and area are the paper's.
+#[derive(Args, Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// Numbers of boids.
+    /// Numbers of boids, one line of the table each.
+    #[arg(
+        long,
+        value_name = "N,N,...",
+        value_delimiter = ',',
+        default_value = "100,300,1000,3000,10000,30000,100000"
+    )]
     pub boids: Vec<u32>,
-    /// Steps that are timed for each, 1 or more. The hash is that of the last.
+    /// Steps to time for each search and number of boids. The hash is that of the last.
+    #[arg(long, default_value_t = 20)]
     pub steps: u32,
-    /// More boids than this are not searched by all pairs.
+    /// Skip the search of all pairs for more boids than this.
+    #[arg(long = "all-pairs-up-to", value_name = "N", default_value_t = MOST_BY_ALL_PAIRS)]
     pub most_by_all_pairs: u32,
-    /// Steps of the pictured flock.
-    pub picture_steps: u32,
-    /// Boids of the pictured flock.
+    /// Boids in the picture.
+    #[arg(long, value_name = "N", default_value_t = 200)]
     pub picture_boids: u32,
+    /// Steps until the last picture.
+    #[arg(long, value_name = "STEPS", default_value_t = 2000)]
+    pub picture_steps: u32,
     /// Area per boid: the paper's torus of 800 x 600 has 20 boids, and larger ones are like it.
+    #[arg(skip = 800.0 * 600.0 / 20.0)]
     pub area_per_boid: f32,
     /// Way of a boid in a step.
+    #[arg(skip = 2.0_f32)]
     pub speed: f32,
     /// Nearer than this, a boid turns away.
+    #[arg(skip = 30.0_f32)]
     pub crowded: f32,
     /// Up to this far, a neighbour counts.
+    #[arg(skip = 150.0_f32)]
     pub closest: f32,
     /// Largest turn to heading or middle, radians.
+    #[arg(skip = 0.05_f32)]
     pub max_turn: f32,
     /// Largest turn away, radians.
+    #[arg(skip = 0.02_f32)]
     pub max_turn_away: f32,
-    /// Equal seeds give equal flocks.
+    /// Equal seeds give equal flights.
+    #[arg(long, default_value_t = 1)]
     pub seed: u64,
+    /// Folder for pictures and table.
+    #[arg(long, value_name = "DIR", default_value = "out/experiment-boids")]
+    pub out: PathBuf,
 }
 
 impl Default for Plan {
-    /// STA's values.
     fn default() -> Self {
-        Self {
-            boids: vec![100, 300, 1000, 3000, 10_000, 30_000, 100_000],
-            steps: 20,
-            most_by_all_pairs: MOST_BY_ALL_PAIRS,
-            picture_steps: 2000,
-            picture_boids: 200,
-            area_per_boid: 800.0 * 600.0 / 20.0,
-            speed: 2.0,
-            crowded: 30.0,
-            closest: 150.0,
-            max_turn: 0.05,
-            max_turn_away: 0.02,
-            seed: 1,
-        }
+        options::defaults()
     }
-}
-
-/// Why a plan cannot be carried out.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum PlanError {
-    /// Nothing to run.
-    #[error("no numbers of boids; give one or more")]
-    NoBoids,
-    /// A number that cannot be run.
-    #[error("{0} boids; give 1 to 1000000")]
-    Boids(u32),
-    /// Nothing to time.
-    #[error("0 steps; give 1 or more")]
-    NoSteps,
-    /// A length that is none.
-    #[error("{name} = {value}; give a number above 0")]
-    Length {
-        /// Which.
-        name: &'static str,
-        /// Its value.
-        value: f32,
-    },
 }
 
 /// Boids on their torus.
@@ -160,34 +151,6 @@ pub struct Flock {
 }
 
 impl Plan {
-    /// Whether the plan can be carried out.
-    ///
-    /// # Errors
-    /// [`PlanError`]
-    pub fn check(&self) -> Result<(), PlanError> {
-        if self.boids.is_empty() {
-            return Err(PlanError::NoBoids);
-        }
-        let mut all = self.boids.iter().chain([&self.picture_boids]);
-        if let Some(&wrong) = all.find(|n| !(1..=1_000_000).contains(*n)) {
-            return Err(PlanError::Boids(wrong));
-        }
-        if self.steps == 0 {
-            return Err(PlanError::NoSteps);
-        }
-        let lengths = [
-            ("area per boid", self.area_per_boid),
-            ("speed", self.speed),
-            ("crowded", self.crowded),
-            ("closest", self.closest),
-        ];
-        let is_wrong = |(_, value): &&(_, f32)| !(*value > 0.0 && value.is_finite());
-        match lengths.iter().find(is_wrong) {
-            Some(&(name, value)) => Err(PlanError::Length { name, value }),
-            None => Ok(()),
-        }
-    }
-
     /// The start of `boids` boids: places and headings even over the torus, a function of seed and number of the boid.
     /// The torus has the paper's proportions, 4 to 3.
     #[must_use]
@@ -231,42 +194,20 @@ impl Plan {
         !matches!(method, Method::AllPairs) || boids <= self.most_by_all_pairs
     }
 
-    /// Runs and times everything, then the pictured flock. `progress` is told how many of [`Plan::total`] are
-    /// done; when it answers `false`, what is done so far is returned.
-    ///
-    /// # Errors
-    /// [`PlanError`]
-    pub fn carry_out(&self, mut progress: impl FnMut(usize) -> bool) -> Result<Report, PlanError> {
-        self.check()?;
-        let mut rows = Vec::new();
-        let mut done = 0;
-        'all: for &boids in &self.boids {
-            let mut row = Row::new(boids, self.steps);
-            for method in Method::ALL {
-                if !progress(done) {
-                    // An unfinished row compares nothing.
-                    break 'all;
-                }
-                if self.is_run(method, boids) {
-                    row.timings
-                        .push(self.time(method, boids, &mut row.mean_neighbours));
-                }
-                done += 1;
+    /// One line of the table; `None` when it was stopped, since an unfinished one compares nothing.
+    fn row(&self, boids: u32, goes_on: impl Fn() -> bool) -> Option<Row> {
+        let mut row = Row::new(boids, self.steps);
+        for method in Method::ALL {
+            if !goes_on() {
+                return None;
             }
-            row.parallel_us_per_boid = self.time_in_parallel(boids);
-            rows.push(row);
+            if self.is_run(method, boids) {
+                row.timings
+                    .push(self.time(method, boids, &mut row.mean_neighbours));
+            }
         }
-        let mut picture = Vec::new();
-        if progress(done) {
-            picture = self.picture();
-        }
-        Ok(Report::new(self, rows, picture))
-    }
-
-    /// How many runs there are.
-    #[must_use]
-    pub fn total(&self) -> usize {
-        self.boids.len() * Method::ALL.len() + 1
+        row.parallel_us_per_boid = self.time_in_parallel(boids);
+        Some(row)
     }
 
     fn time(&self, method: Method, boids: u32, mean_neighbours: &mut f64) -> Timing {
@@ -318,6 +259,76 @@ impl Plan {
             }
         }
         kept
+    }
+}
+
+impl Experiment for Plan {
+    const UNIT: &'static str = "lines";
+    const FILES: &'static str = "files";
+    type Run = Row;
+    type Report = Report;
+
+    fn check(&self) -> Result<()> {
+        ensure!(
+            !self.boids.is_empty(),
+            "no numbers of boids; give one or more"
+        );
+        for boids in self.boids.iter().chain([&self.picture_boids]) {
+            ensure!(
+                (1..=1_000_000).contains(boids),
+                "{boids} boids; give 1 to 1000000"
+            );
+        }
+        ensure!(self.steps > 0, "0 steps; give 1 or more");
+        for (name, value) in [
+            ("area per boid", self.area_per_boid),
+            ("speed", self.speed),
+            ("crowded", self.crowded),
+            ("closest", self.closest),
+        ] {
+            ensure!(
+                value > 0.0 && value.is_finite(),
+                "{name} = {value}; give a number above 0"
+            );
+        }
+        Ok(())
+    }
+
+    fn total(&self) -> usize {
+        self.boids.len()
+    }
+
+    /// One after the other: what is timed has the machine for itself.
+    fn perform(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Vec<Row>>> {
+        let lines = self.boids.iter().enumerate();
+        let rows = lines.map_while(|(done, &boids)| self.row(boids, || goes_on(done)));
+        Ok(vec![rows.collect()])
+    }
+
+    fn report(&self, rows: &[Vec<Row>]) -> Report {
+        let rows = rows.concat();
+        // Who stopped the timing does not wait for the picture.
+        let is_complete = rows.len() == self.boids.len();
+        let picture = if is_complete {
+            self.picture()
+        } else {
+            Vec::new()
+        };
+        Report::new(self, rows, picture)
+    }
+
+    fn draw(&self, _: &[Vec<Row>], report: &Report, dir: &Path) -> Result<Vec<PathBuf>> {
+        let mut files = vec![report.write_csv(dir)?];
+        files.extend(report.draw(dir)?);
+        Ok(files)
+    }
+
+    fn judge(report: &Report) -> Result<()> {
+        ensure!(
+            report.equal,
+            "the searches gave different flights: a defect, please report it"
+        );
+        Ok(())
     }
 }
 

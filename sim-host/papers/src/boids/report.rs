@@ -1,10 +1,11 @@
 //! The numbers of the boids experiment, ready to be printed or plotted.
 
-use super::{Flock, Plan};
+use super::{Flock, Method, Plan};
+use crate::experiment::Maybe;
 use serde::Serialize;
 use staya_sim::metrics::flock::polarisation;
 use staya_sim::record::{Error, write_atomically};
-use std::fmt::Write as _;
+use std::fmt::{self, Display, Formatter, Write as _};
 use std::path::{Path, PathBuf};
 
 /// One search over so many boids.
@@ -84,6 +85,8 @@ pub struct Report {
     pub closest: f32,
     /// Threads of the parallel column.
     pub threads: usize,
+    /// Whether all searches gave equal trajectories for every number of boids.
+    pub equal: bool,
     /// By rising number of boids as planned.
     pub rows: Vec<Row>,
     /// The pictured flock.
@@ -115,15 +118,10 @@ impl Report {
                     polarisation: order(flock),
                 })
                 .collect(),
+            equal: rows.iter().all(Row::is_equal),
             rows,
             flocks,
         }
-    }
-
-    /// Whether all searches gave equal trajectories for every number of boids.
-    #[must_use]
-    pub fn is_equal(&self) -> bool {
-        self.rows.iter().all(Row::is_equal)
     }
 
     /// Writes `boids.csv` into `dir`: a line per number of boids and search. Names the file.
@@ -152,5 +150,47 @@ impl Report {
         let path = dir.join("boids.csv");
         write_atomically(&path, text.as_bytes())?;
         Ok(path)
+    }
+}
+
+impl Display for Report {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "boids on a torus of {} square units a boid, neighbours up to {}, seed {}; microseconds a boid in the median step",
+            self.area_per_boid, self.closest, self.seed
+        )?;
+        write!(f, "{:>8}{:>7}{:>12}", "boids", "steps", "neighbours")?;
+        for method in Method::ALL {
+            write!(f, "{:>15}", method.name())?;
+        }
+        let parallel = format!("cells, {} threads", self.threads);
+        writeln!(f, "{parallel:>19}{:>9}  hash", "equal")?;
+        for row in &self.rows {
+            write!(
+                f,
+                "{:>8}{:>7}{:>12.2}",
+                row.boids, row.steps, row.mean_neighbours
+            )?;
+            for method in Method::ALL {
+                write!(f, "{:>15}", Maybe(row.us_per_boid(method.name()), 3))?;
+            }
+            let equal = if row.is_equal() { "yes" } else { "NO" };
+            let hash = row.timings.first().map_or("", |timing| &timing.hash);
+            writeln!(f, "{:>19.3}{equal:>9}  {hash}", row.parallel_us_per_boid)?;
+        }
+        writeln!(
+            f,
+            "-: not run; all pairs only up to {} boids, since a step costs their square",
+            self.most_by_all_pairs
+        )?;
+        for moment in &self.moments {
+            writeln!(
+                f,
+                "pictured flock after {} steps: group order {:.3}",
+                moment.step, moment.polarisation
+            )?;
+        }
+        Ok(())
     }
 }

@@ -1,42 +1,10 @@
 //! `staya experiment swap` and `staya experiment doorway`.
 
-use super::results::Work;
 use crate::crossing::{Conditions, doorway, swap};
-use anyhow::{Context as _, Result, bail};
-use clap::{Args, ValueEnum};
-use staya_console::{Ended, Global, Stop};
-use staya_plot::flock::Sheet;
-use staya_sim::record::{self, prepare_dir};
+use crate::options;
+use clap::Args;
 use staya_sim::scenario::SafetyName;
 use std::path::{Path, PathBuf};
-
-/// What keeps robots apart.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum SafetyArg {
-    Orca,
-    #[value(name = "template_2k")]
-    Template2k,
-    #[value(name = "template_8k")]
-    Template8k,
-    #[value(name = "template_16k")]
-    Template16k,
-    #[value(name = "template_64k")]
-    Template64k,
-    None,
-}
-
-impl From<SafetyArg> for SafetyName {
-    fn from(safety: SafetyArg) -> Self {
-        match safety {
-            SafetyArg::Orca => Self::Orca,
-            SafetyArg::Template2k => Self::Template2k,
-            SafetyArg::Template8k => Self::Template8k,
-            SafetyArg::Template16k => Self::Template16k,
-            SafetyArg::Template64k => Self::Template64k,
-            SafetyArg::None => Self::None,
-        }
-    }
-}
 
 /// What both experiments understand.
 #[derive(Args, Clone, Debug)]
@@ -63,34 +31,22 @@ struct Common {
     #[arg(long, value_name = "P", default_value_t = 0.0)]
     loss: f64,
     /// What keeps robots apart.
-    #[arg(long, value_enum, default_value = "orca")]
-    safety: SafetyArg,
+    #[arg(long, default_value = "orca", value_parser = options::crossing_safety())]
+    safety: SafetyName,
     /// Folder for the pictures [default: out/swap, out/doorway].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
 
 impl Common {
-    fn conditions(&self, range_m: f64) -> Result<Conditions> {
-        let range_m = self.range.unwrap_or(range_m);
-        for (name, value, low, high) in [
-            ("--noise", self.noise, 0.0, 100.0),
-            ("--step", self.step, 0.001, 10.0),
-            ("--speed", self.speed, 0.01, 32.0),
-            ("--range", range_m, 0.0, 1e6),
-            ("--loss", self.loss, 0.0, 1.0),
-        ] {
-            if !(low..=high).contains(&value) {
-                bail!("{name} {value} is out of range: give {low} to {high}");
-            }
-        }
-        Ok(Conditions {
+    fn conditions(&self, range_m: f64) -> Conditions {
+        Conditions {
             step_s: self.step,
             speed_mps: self.speed,
-            range_m,
+            range_m: self.range.unwrap_or(range_m),
             loss: self.loss,
-            safety: self.safety.into(),
-        })
+            safety: self.safety,
+        }
     }
 
     fn out(&self, name: &str) -> PathBuf {
@@ -162,104 +118,43 @@ fn numbers(text: &str) -> Result<Numbers, String> {
     Ok(Numbers(all))
 }
 
-fn write(sheet: &Sheet, stem: &Path) -> Result<Vec<PathBuf>, record::Error> {
-    sheet.draw().write(stem)
-}
-
 impl SwapArgs {
-    /// Runs the command.
-    ///
-    /// # Errors
-    /// A parameter out of range, pictures that cannot be written.
-    pub fn run(&self, global: &Global) -> Result<Ended> {
-        let plan = swap::Plan {
+    /// What is to be done.
+    pub fn plan(&self) -> swap::Plan {
+        swap::Plan {
             robots: self.robots.0.clone(),
             circle_m: self.circle,
             noise_m: self.common.noise,
             seeds: self.common.seeds,
             seed: self.common.seed,
             patience: self.patience,
-            conditions: self.common.conditions(3.0)?,
-        };
-        if !(0.1..=1000.0).contains(&self.patience) {
-            bail!(
-                "--patience {} is out of range: give 0.1 to 1000",
-                self.patience
-            );
+            conditions: self.common.conditions(3.0),
         }
-        if self
-            .circle
-            .is_some_and(|circle| !(0.01..=1e5).contains(&circle))
-        {
-            bail!("--circle is out of range: give 0.01 to 100000 metres");
-        }
-        let out = self.common.out("swap");
-        prepare_dir(&out).context("pictures have no place")?;
-        let stop = Stop::on_ctrl_c()?;
-        let work = Work::new("runs", plan.total(), &out);
-        let run = |told: &(dyn Fn(usize) -> bool + Sync)| anyhow::Ok(plan.run(told));
-        let (report, mut course) = work.carry_out(global, &stop, run, |r| r.runs.len())?;
-        if report.rows.len() > 1 {
-            course
-                .pictures
-                .extend(report.chart().write(&out.join("times"))?);
-        }
-        // Of all that can be told apart in a picture, the largest.
-        let drawn = report
-            .rows
-            .iter()
-            .rev()
-            .map(|row| row.robots)
-            .find(|&n| n <= 100);
-        if let Some(robots) = drawn.filter(|_| !stop.is_requested()) {
-            course
-                .pictures
-                .extend(write(&plan.picture(robots), &out.join("swap"))?);
-        }
-        course.tell(&report, |report| Ok(report.to_string()), global)?;
-        Ok(Ended::by(&stop))
+    }
+
+    /// Folder for the pictures.
+    pub fn out(&self) -> PathBuf {
+        self.common.out("swap")
     }
 }
 
 impl DoorwayArgs {
-    /// Runs the command.
-    ///
-    /// # Errors
-    /// A parameter out of range, pictures that cannot be written.
-    pub fn run(&self, global: &Global) -> Result<Ended> {
-        for width in &self.widths {
-            if !(0.0..=50.0).contains(width) {
-                bail!("--widths {width} is out of range: give 0 to 50 metres");
-            }
-        }
-        if !(0.1..=1e6).contains(&self.longest) {
-            bail!(
-                "--longest {} is out of range: give 0.1 to 1000000 seconds",
-                self.longest
-            );
-        }
-        let plan = doorway::Plan {
+    /// What is to be done.
+    pub fn plan(&self) -> doorway::Plan {
+        doorway::Plan {
             widths_m: self.widths.clone(),
             robots: self.robots,
             noise_m: self.common.noise,
             seeds: self.common.seeds,
             seed: self.common.seed,
             longest_s: self.longest,
-            conditions: self.common.conditions(6.0)?,
-        };
-        let out = self.common.out("doorway");
-        prepare_dir(&out).context("pictures have no place")?;
-        let stop = Stop::on_ctrl_c()?;
-        let work = Work::new("runs", plan.total(), &out);
-        let run = |told: &(dyn Fn(usize) -> bool + Sync)| anyhow::Ok(plan.run(told));
-        let (report, mut course) = work.carry_out(global, &stop, run, |r| r.runs.len())?;
-        if let Some(run) = report.runs.first().filter(|_| !stop.is_requested()) {
-            course
-                .pictures
-                .extend(write(&plan.picture(run.width_m), &out.join("doorway"))?);
+            conditions: self.common.conditions(6.0),
         }
-        course.tell(&report, |report| Ok(report.to_string()), global)?;
-        Ok(Ended::by(&stop))
+    }
+
+    /// Folder for the pictures.
+    pub fn out(&self) -> PathBuf {
+        self.common.out("doorway")
     }
 }
 

@@ -1,18 +1,11 @@
 //! `staya experiment route`.
 
-use super::params::NormArg;
-use super::params::{RouteOptions, gain};
-use super::results::{Work, number};
-use crate::route::{
-    Coefficient, Land, Loss, MAX_RADIUS, Means, Plan, Point, Report, Results, decimal,
-};
-use anyhow::Result;
+use crate::options::{self, RouteOptions, gain};
+use crate::route::{Coefficient, Land, MAX_RADIUS, Plan};
 use clap::{Args, ValueEnum};
-use staya_console::{Ended, Global, Stop};
 use staya_controller::cost::Gain;
+use staya_controller::grid::Norm;
 use staya_controller::route::RouteParams;
-use staya_sim::record::prepare_dir;
-use std::fmt::Write as _;
 use std::path::PathBuf;
 
 /// A kind of landscapes as a word.
@@ -77,8 +70,8 @@ pub struct RouteArgs {
     #[command(flatten)]
     route: RouteOptions,
     /// Length of a diagonal move.
-    #[arg(long, value_enum, default_value = "euclidean")]
-    norm: NormArg,
+    #[arg(long, default_value = "euclidean", value_parser = options::norm())]
+    norm: Norm,
     /// Let diagonal moves pass blocked orthogonal neighbours.
     #[arg(long)]
     corner_cutting: bool,
@@ -89,8 +82,8 @@ pub struct RouteArgs {
     #[arg(long, default_value_t = 9)]
     classes: u8,
     /// How the distance to an obstacle is measured.
-    #[arg(long, value_enum, default_value = "euclidean")]
-    hill_norm: NormArg,
+    #[arg(long, default_value = "euclidean", value_parser = options::norm())]
+    hill_norm: Norm,
     /// Other robots that stand in random cells of each landscape; a1 says how they are avoided.
     #[arg(long, value_name = "ROBOTS", default_value_t = 0)]
     parked: u32,
@@ -105,13 +98,14 @@ pub struct RouteArgs {
     values: Vec<Gain>,
     /// Folder for the pictures.
     #[arg(long, value_name = "DIR", default_value = "out/experiment-route")]
-    out: PathBuf,
+    pub out: PathBuf,
 }
 
 impl RouteArgs {
-    fn plan(&self) -> Plan {
+    /// What is to be done.
+    pub fn plan(&self) -> Plan {
         let params = RouteParams {
-            norm: self.norm.into(),
+            norm: self.norm,
             corner_cutting: self.corner_cutting,
             ..self.route.params(self.radius)
         };
@@ -141,189 +135,22 @@ impl RouteArgs {
             runs: self.runs,
             size: self.size,
             classes: self.classes,
-            hill_norm: self.hill_norm.into(),
+            hill_norm: self.hill_norm,
             parked: self.parked,
             seed: self.seed,
             params,
-            replan: self.route.replan(),
+            replan: self.route.replan,
             sweep: sweep.collect(),
         }
     }
-
-    /// Runs the command.
-    ///
-    /// # Errors
-    /// A parameter out of range, a picture that cannot be written.
-    pub fn run(&self, global: &Global) -> Result<Ended> {
-        let plan = self.plan();
-        plan.check()?;
-        self.carry_out(&plan, global, &Stop::on_ctrl_c()?)
-    }
-
-    fn carry_out(&self, plan: &Plan, global: &Global, stop: &Stop) -> Result<Ended> {
-        prepare_dir(&self.out)?;
-        let work = Work::new("landscapes", plan.total(), &self.out);
-        let (results, mut course) =
-            work.carry_out(global, stop, |told| plan.carry_out(told), Results::done)?;
-        let report = results.report();
-        course.pictures = report.draw(&results.example()?, &self.out)?;
-        let tables = |report: &Report| Ok(table(report)? + &sweep_tables(report, &plan.params)?);
-        course.tell(&report, tables, global)?;
-        Ok(Ended::by(stop))
-    }
-}
-
-fn table(report: &Report) -> Result<String, std::fmt::Error> {
-    let mut text = String::new();
-    writeln!(
-        text,
-        "{size} x {size} cells, {} classes, window radius {}, exit {}, a = ({}, {}, {}, {}), seed {}",
-        report.classes,
-        report.radius,
-        report.exit,
-        report.a0,
-        report.a1,
-        report.a2,
-        report.a3,
-        report.seed,
-        size = report.size,
-    )?;
-    writeln!(
-        text,
-        "{:<9}{:>5}{:>7}{:>9}{:>9}{:>8}{:>8}{:>9}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}",
-        "land",
-        "N",
-        "runs",
-        "arrived",
-        "dT %",
-        "+-",
-        "median",
-        "dL %",
-        "+-",
-        "median",
-        "S",
-        "TE",
-        "TED",
-        "N(S)"
-    )?;
-    for point in &report.points {
-        let column = |loss: Option<Loss>| {
-            let summary = loss.map(|loss| loss.summary);
-            [
-                number(summary.map(|s| s.mean), 2),
-                number(summary.and_then(|s| s.mean_error95), 2),
-                number(summary.map(|s| s.median), 2),
-            ]
-        };
-        let [t, te, tm] = column(point.time_loss_percent);
-        let [l, le, lm] = column(point.length_loss_percent);
-        writeln!(
-            text,
-            "{}{:>7}{:>9}{t:>9}{te:>8}{tm:>8}{l:>9}{le:>8}{lm:>8}{:>8.3}{:>8.0}{:>8.3}{:>8.1}",
-            row_name(point),
-            point.runs,
-            point.arrived,
-            point.entropy,
-            point.total_edge,
-            point.total_edge_density,
-            point.obstacles_of_entropy,
-        )?;
-    }
-    text.push_str("+-: half the 95 % interval of the mean. N(S): obstacles by entropy\n\n");
-    text.push_str("Travel time in ticks with its Norton-Rice law (m, alpha, beta) and the p-value of the chi-square test\n");
-    let names = ["mean", "m", "alpha", "beta", "p"];
-    write!(text, "{:<14}", "")?;
-    for group in ["by window", "fastest route"] {
-        write!(text, "  {group:<14}")?;
-        names
-            .iter()
-            .try_for_each(|name| write!(text, "{name:>8}"))?;
-    }
-    text.push('\n');
-    for point in &report.points {
-        text.push_str(&row_name(point));
-        for arrivals in [&point.arrivals, &point.optimal_arrivals] {
-            write!(text, "{:16}", "")?;
-            let arrivals = arrivals.as_ref();
-            let law = arrivals.and_then(|a| a.norton_rice);
-            let p = arrivals.and_then(|a| a.goodness).map(|g| g.p_value);
-            let values = [
-                number(arrivals.map(|a| a.mean_ticks), 1),
-                digits(law.map(|law| law.m())),
-                digits(law.map(|law| law.alpha())),
-                digits(law.map(|law| law.beta())),
-                number(p, 3),
-            ];
-            values
-                .iter()
-                .try_for_each(|value| write!(text, "{value:>8}"))?;
-        }
-        text.push('\n');
-    }
-    Ok(text)
-}
-
-/// About three digits, whatever the size; `-` for a missing value.
-fn digits(value: Option<f64>) -> String {
-    match value {
-        Some(x) if x < 0.01 => format!("{x:.0e}"),
-        Some(x) if x < 100.0 => format!("{x:.2}"),
-        _ => number(value, 1),
-    }
-}
-
-fn row_name(point: &Point) -> String {
-    let obstacles = point.obstacles.map_or(String::from("-"), |n| n.to_string());
-    format!("{:<9}{obstacles:>5}", point.land)
-}
-
-/// One table per coefficient: a line per value, a pair of columns per point.
-fn sweep_tables(report: &Report, own: &RouteParams) -> Result<String, std::fmt::Error> {
-    let mut text = String::new();
-    for responses in report.sweep.chunk_by(|a, b| a.coefficient == b.coefficient) {
-        let coefficient = responses[0].coefficient;
-        let name = coefficient.name();
-        writeln!(
-            text,
-            "\ndT % / dL % for other values of {name}, * = the value above; (n) = only n arrived"
-        )?;
-        write!(text, "{name:>8} ")?;
-        for point in &report.points {
-            let obstacles = point.obstacles.map_or(String::new(), |n| format!(" {n}"));
-            write!(text, "{:>20}", format!("{}{obstacles}", point.land))?;
-        }
-        text.push('\n');
-        for response in responses {
-            let is_own = decimal(coefficient.get(own)) == response.value;
-            write!(
-                text,
-                "{:>8}{}",
-                response.value,
-                if is_own { '*' } else { ' ' }
-            )?;
-            for (means, point) in response.points.iter().zip(&report.points) {
-                write!(text, "{:>20}", cell(means, point.runs))?;
-            }
-            text.push('\n');
-        }
-    }
-    Ok(text)
-}
-
-fn cell(means: &Means, runs: usize) -> String {
-    let (time, length) = (means.time_loss_percent, means.length_loss_percent);
-    let mut text = format!("{} / {}", number(time, 1), number(length, 1));
-    if means.arrived < runs {
-        text = format!("({}) {text}", means.arrived);
-    }
-    text
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::experiment::Experiment as _;
     use clap::Parser;
-    use staya_controller::grid::Norm;
+    use staya_console::{Ended, Global, Stop};
     use staya_controller::route::{ExitRule, Replan};
 
     #[derive(Debug, Parser)]
@@ -391,7 +218,7 @@ mod tests {
         assert!(message(&["--values", "1"]).contains("--sweep"));
         let refused = |words: &[&str]| {
             let args = read(words).unwrap();
-            args.run(&Global::default()).unwrap_err().to_string()
+            args.plan().check().unwrap_err().to_string()
         };
         assert!(refused(&["--runs", "0"]).contains("make 1 or more"));
         assert!(refused(&["--obstacles", "10001"]).contains("10001 obstacles on 10000 cells"));
@@ -411,11 +238,14 @@ mod tests {
             ..Global::default()
         };
         let stop = Stop::default();
-        let ended = args.carry_out(&args.plan(), &quiet, &stop).unwrap();
+        let ended = args.plan().command(Some(&args.out), &quiet, &stop).unwrap();
         assert_eq!(ended, Ended::Done);
         assert!(out.join("figure3.svg").is_file() && out.join("sweep-a2.png").is_file());
         stop.request();
-        let error = args.carry_out(&args.plan(), &quiet, &stop).unwrap_err();
+        let error = args
+            .plan()
+            .command(Some(&args.out), &quiet, &stop)
+            .unwrap_err();
         assert!(error.to_string().contains("before any of the landscapes"));
     }
 
@@ -432,11 +262,10 @@ mod tests {
             "a3",
         ];
         let plan = read(&words).unwrap().plan();
-        let report = plan.carry_out(|_| true).unwrap().report();
-        let text = table(&report).unwrap();
+        let text = plan.measure().unwrap().to_string();
         assert_eq!(text.matches("\nnatural ").count(), 4);
-        let text = sweep_tables(&report, &plan.params).unwrap();
-        assert_eq!(text.lines().count(), 3 + 12);
-        assert_eq!(text.matches("3*").count(), 1);
+        let (_, sweep) = text.split_once("\n\ndT %").unwrap();
+        assert_eq!(sweep.lines().count(), 2 + 12);
+        assert_eq!(sweep.matches("3*").count(), 1);
     }
 }

@@ -1,13 +1,15 @@
 //! Two crowds that want through one gap in a wall, in opposite directions.
 
-use super::{Conditions, gap, picture, run};
-use rayon::prelude::*;
+use super::{Conditions, gap, picture, run, whole};
+use crate::experiment::{Experiment, GoesOn, by_point, check_runs};
+use anyhow::{Result, ensure};
 use serde::Serialize;
 use staya_controller::rand::Rng;
 use staya_plot::flock::Sheet;
 use staya_sim::record::RobotRow;
 use staya_sim::scenario::{PlaneSetup, Scenario, Start, Target};
 use staya_sim::world::plane::Solid;
+use std::path::{Path, PathBuf};
 
 /// Radius of a robot, metres.
 pub const RADIUS_M: f64 = 0.3;
@@ -99,12 +101,6 @@ pub struct Report {
 }
 
 impl Plan {
-    /// Runs to do.
-    #[must_use]
-    pub fn total(&self) -> usize {
-        self.widths_m.len() * self.seeds as usize
-    }
-
     /// The scenario of one run: odd numbers start in the west, even ones in the east.
     #[must_use]
     pub fn scenario(&self, width_m: f64, seed: u64) -> Scenario {
@@ -143,38 +139,7 @@ impl Plan {
             .scenario("doorway", seed, self.longest_s, setup)
     }
 
-    /// Runs them all; see [`super::swap::Plan::run`].
-    pub fn run(&self, progress: &(dyn Fn(usize) -> bool + Sync)) -> Report {
-        let seeds = || (0..self.seeds).map(|i| self.seed + u64::from(i));
-        let jobs: Vec<(f64, u64)> = self
-            .widths_m
-            .iter()
-            .flat_map(|&width| seeds().map(move |seed| (width, seed)))
-            .collect();
-        let done = std::sync::atomic::AtomicUsize::new(0);
-        let count = |by| done.fetch_add(by, std::sync::atomic::Ordering::Relaxed) + by;
-        let runs = jobs
-            .par_iter()
-            .with_max_len(1)
-            .filter_map(|&(width, seed)| {
-                let passage = self.passage(width, seed, &|| progress(count(0)));
-                progress(count(1));
-                passage
-            })
-            .collect();
-        Report {
-            conditions: self.conditions,
-            noise_m: self.noise_m,
-            runs,
-        }
-    }
-
-    fn passage(
-        &self,
-        width_m: f64,
-        seed: u64,
-        goes_on: &(dyn Fn() -> bool + Sync),
-    ) -> Option<Passage> {
+    fn passage(&self, width_m: f64, seed: u64, goes_on: &GoesOn<'_>) -> Option<Passage> {
         let scenario = self.scenario(width_m, seed);
         let setup = scenario.plane.as_ref()?;
         let mut flow = Flow::new(setup.starts.iter().map(|start| start.position_m[0]));
@@ -209,6 +174,65 @@ impl Plan {
     #[must_use]
     pub fn picture(&self, width_m: f64) -> Sheet {
         picture(&self.scenario(width_m, self.seed))
+    }
+}
+
+impl Experiment for Plan {
+    const UNIT: &'static str = "runs";
+    type Run = Passage;
+    type Report = Report;
+
+    fn check(&self) -> Result<()> {
+        check_runs(self.seeds, "of each point")?;
+        self.conditions.check(self.noise_m)?;
+        for width in &self.widths_m {
+            ensure!(
+                (0.0..=50.0).contains(width),
+                "--widths {width} is out of range: give 0 to 50 metres"
+            );
+        }
+        let longest = self.longest_s;
+        ensure!(
+            (0.1..=1e6).contains(&longest),
+            "--longest {longest} is out of range: give 0.1 to 1000000 seconds"
+        );
+        Ok(())
+    }
+
+    fn total(&self) -> usize {
+        self.widths_m.len() * self.seeds as usize
+    }
+
+    fn perform(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Vec<Passage>>> {
+        let passage = |(): &mut (), point: usize, run| {
+            Ok(self.passage(self.widths_m[point], self.seed + u64::from(run), goes_on))
+        };
+        Ok(whole(by_point(
+            self.widths_m.len(),
+            self.seeds,
+            1,
+            goes_on,
+            passage,
+        )?))
+    }
+
+    fn report(&self, runs: &[Vec<Passage>]) -> Report {
+        Report {
+            conditions: self.conditions,
+            noise_m: self.noise_m,
+            runs: runs.concat(),
+        }
+    }
+
+    fn draw(&self, _: &[Vec<Passage>], report: &Report, dir: &Path) -> Result<Vec<PathBuf>> {
+        // Who stopped the runs does not wait for another one.
+        match report.runs.first() {
+            Some(run) if report.runs.len() == self.total() => Ok(self
+                .picture(run.width_m)
+                .draw()
+                .write(&dir.join("doorway"))?),
+            _ => Ok(Vec::new()),
+        }
     }
 }
 

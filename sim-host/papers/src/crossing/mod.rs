@@ -7,6 +7,8 @@ pub mod doorway;
 mod report;
 pub mod swap;
 
+use crate::experiment::GoesOn;
+use anyhow::{Result, ensure};
 use serde::Serialize;
 use staya_controller::grid::UNIT;
 use staya_plot::flock::Sheet;
@@ -47,6 +49,23 @@ impl Default for Conditions {
 }
 
 impl Conditions {
+    /// Whether robots can be run so, and start so far off.
+    fn check(&self, noise_m: f64) -> Result<()> {
+        for (name, value, low, high) in [
+            ("--noise", noise_m, 0.0, 100.0),
+            ("--step", self.step_s, 0.001, 10.0),
+            ("--speed", self.speed_mps, 0.01, 32.0),
+            ("--range", self.range_m, 0.0, 1e6),
+            ("--loss", self.loss, 0.0, 1.0),
+        ] {
+            ensure!(
+                (low..=high).contains(&value),
+                "{name} {value} is out of range: give {low} to {high}"
+            );
+        }
+        Ok(())
+    }
+
     fn abilities(&self) -> Abilities {
         Abilities {
             max_speed_mps: self.speed_mps,
@@ -82,13 +101,13 @@ impl Conditions {
 /// end.
 fn run(
     scenario: &Scenario,
-    goes_on: &(dyn Fn() -> bool + Sync),
+    goes_on: &GoesOn<'_>,
     mut see: impl FnMut(&mut dyn Iterator<Item = RobotRow>),
 ) -> Option<Outcome> {
     let mut stopped = false;
     let outcome = simulate(scenario, |_, robots| {
         see(robots);
-        if goes_on() {
+        if goes_on(0) {
             ControlFlow::Continue(())
         } else {
             stopped = true;
@@ -111,6 +130,13 @@ fn picture(scenario: &Scenario) -> Sheet {
     let history = recorder.finish().expect(in_memory);
     let setup = scenario.plane.as_ref().expect("it was made in the plane");
     motion_sheet(setup, &history)
+}
+
+/// Runs that came to their end.
+fn whole<T>(runs: Vec<Vec<Option<T>>>) -> Vec<Vec<T>> {
+    runs.into_iter()
+        .map(|runs| runs.into_iter().flatten().collect())
+        .collect()
 }
 
 /// Least gap of a run, metres; `None` when nobody came near.

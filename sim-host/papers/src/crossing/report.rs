@@ -1,18 +1,8 @@
 //! The tables of both experiments.
 
 use super::{Conditions, doorway, swap};
+use crate::experiment::Maybe;
 use std::fmt::{Display, Formatter, Result};
-
-/// A value with decimals, `-` for a missing one.
-struct Maybe(Option<f64>, usize);
-
-impl Display for Maybe {
-    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        let Self(value, decimals) = *self;
-        let text = value.map_or_else(|| String::from("-"), |x| format!("{x:.decimals$}"));
-        f.pad(&text)
-    }
-}
 
 /// Metres as millimetres.
 fn milli(gap_m: Option<f64>) -> Maybe {

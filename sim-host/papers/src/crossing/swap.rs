@@ -1,11 +1,13 @@
 //! Robots evenly on a circle, each bound for the opposite side: all ways cross in one point at one time.
 
-use super::{Conditions, gap, picture, run};
-use rayon::prelude::*;
+use super::{Conditions, gap, picture, run, whole};
+use crate::experiment::{Experiment, GoesOn, by_point, check_runs};
+use anyhow::{Result, ensure};
 use serde::Serialize;
 use staya_plot::flock::Sheet;
 use staya_plot::{Chart, Series};
 use staya_sim::scenario::{PlaneSetup, Scenario, circle_starts};
+use std::path::{Path, PathBuf};
 
 /// Radius of a robot, metres.
 pub const RADIUS_M: f64 = 0.15;
@@ -107,12 +109,6 @@ pub struct Report {
 }
 
 impl Plan {
-    /// Runs to do.
-    #[must_use]
-    pub fn total(&self) -> usize {
-        self.robots.len() * self.seeds as usize
-    }
-
     /// The scenario of one run.
     #[must_use]
     pub fn scenario(&self, robots: u32, seed: u64) -> Scenario {
@@ -124,35 +120,7 @@ impl Plan {
         self.conditions.scenario("swap", seed, longest_s, setup)
     }
 
-    /// Runs them all; `progress` is told how many are done and says whether to go on. Runs that were not over then are left
-    /// out.
-    pub fn run(&self, progress: &(dyn Fn(usize) -> bool + Sync)) -> Report {
-        let jobs: Vec<(u32, u64)> = self
-            .robots
-            .iter()
-            .flat_map(|&robots| (0..self.seeds).map(move |i| (robots, self.seed + u64::from(i))))
-            .collect();
-        let done = std::sync::atomic::AtomicUsize::new(0);
-        let count = |by| done.fetch_add(by, std::sync::atomic::Ordering::Relaxed) + by;
-        let runs: Vec<Swap> = jobs
-            .par_iter()
-            // The largest last ones would otherwise be one thread's.
-            .with_max_len(1)
-            .filter_map(|&(robots, seed)| {
-                let swap = self.swap(robots, seed, &|| progress(count(0)));
-                progress(count(1));
-                swap
-            })
-            .collect();
-        Report {
-            conditions: self.conditions,
-            noise_m: self.noise_m,
-            rows: self.robots.iter().filter_map(|&n| row(n, &runs)).collect(),
-            runs,
-        }
-    }
-
-    fn swap(&self, robots: u32, seed: u64, goes_on: &(dyn Fn() -> bool + Sync)) -> Option<Swap> {
+    fn swap(&self, robots: u32, seed: u64, goes_on: &GoesOn<'_>) -> Option<Swap> {
         let outcome = run(&self.scenario(robots, seed), goes_on, |_| ())?;
         let circle_m = self.circle_m.unwrap_or_else(|| circle_m(robots));
         let free_s = 2.0 * circle_m / self.conditions.speed_mps;
@@ -180,8 +148,76 @@ impl Plan {
     }
 }
 
-fn row(robots: u32, runs: &[Swap]) -> Option<Row> {
-    let mine: Vec<&Swap> = runs.iter().filter(|run| run.robots == robots).collect();
+impl Experiment for Plan {
+    const UNIT: &'static str = "runs";
+    type Run = Swap;
+    type Report = Report;
+
+    fn check(&self) -> Result<()> {
+        check_runs(self.seeds, "of each point")?;
+        self.conditions.check(self.noise_m)?;
+        let patience = self.patience;
+        ensure!(
+            (0.1..=1000.0).contains(&patience),
+            "--patience {patience} is out of range: give 0.1 to 1000"
+        );
+        ensure!(
+            self.circle_m
+                .is_none_or(|circle| (0.01..=1e5).contains(&circle)),
+            "--circle is out of range: give 0.01 to 100000 metres"
+        );
+        Ok(())
+    }
+
+    fn total(&self) -> usize {
+        self.robots.len() * self.seeds as usize
+    }
+
+    fn perform(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Vec<Swap>>> {
+        let swap = |(): &mut (), point: usize, run| {
+            Ok(self.swap(self.robots[point], self.seed + u64::from(run), goes_on))
+        };
+        Ok(whole(by_point(
+            self.robots.len(),
+            self.seeds,
+            1,
+            goes_on,
+            swap,
+        )?))
+    }
+
+    fn report(&self, runs: &[Vec<Swap>]) -> Report {
+        let points = self.robots.iter().zip(runs);
+        Report {
+            conditions: self.conditions,
+            noise_m: self.noise_m,
+            rows: points
+                .filter_map(|(&robots, runs)| row(robots, runs))
+                .collect(),
+            runs: runs.concat(),
+        }
+    }
+
+    fn draw(&self, _: &[Vec<Swap>], report: &Report, dir: &Path) -> Result<Vec<PathBuf>> {
+        let mut pictures = Vec::new();
+        if report.rows.len() > 1 {
+            pictures.extend(report.chart().write(&dir.join("times"))?);
+        }
+        // Of all that can be told apart in a picture, the largest. Who stopped the runs does not wait for another one.
+        let is_complete = report.runs.len() == self.total();
+        let drawn = report
+            .rows
+            .iter()
+            .rev()
+            .find(|row| is_complete && row.robots <= 100);
+        if let Some(row) = drawn {
+            pictures.extend(self.picture(row.robots).draw().write(&dir.join("swap"))?);
+        }
+        Ok(pictures)
+    }
+}
+
+fn row(robots: u32, mine: &[Swap]) -> Option<Row> {
     let first = mine.first()?;
     let least = mine.iter().filter_map(|run| run.least_gap_m);
     Some(Row {

@@ -1,8 +1,6 @@
 use super::*;
-
-fn go() -> bool {
-    true
-}
+use crate::experiment::Experiment as _;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 #[test]
 fn a_few_robots_swap_without_a_touch_and_are_measured() {
@@ -10,7 +8,7 @@ fn a_few_robots_swap_without_a_touch_and_are_measured() {
         robots: vec![2, 5, 12],
         ..swap::Plan::default()
     };
-    let report = plan.run(&|_| go());
+    let report = plan.measure().expect("a sound plan");
     assert_eq!(report.rows.len(), 3);
     for row in &report.rows {
         assert_eq!((row.runs, row.clean, row.overlaps), (1, 1, 0), "{row:?}");
@@ -33,17 +31,24 @@ fn without_a_safety_layer_they_go_through_each_other() {
         },
         ..swap::Plan::default()
     };
-    let report = plan.run(&|_| go());
+    let report = plan.measure().expect("a sound plan");
     assert!(report.rows[0].overlaps > 0 && report.rows[0].clean == 0);
     assert!(report.rows[0].least_gap_m.is_some_and(|gap| gap < -0.2));
 }
 
 #[test]
 fn a_run_that_is_stopped_is_left_out() {
-    let report = swap::Plan::default().run(&|_| false);
+    let plan = swap::Plan {
+        robots: vec![4],
+        ..swap::Plan::default()
+    };
+    let looks = AtomicUsize::new(0);
+    let runs = plan.carry_out(|_| looks.fetch_add(1, Ordering::Relaxed) < 20);
+    let report = plan.report(&runs.expect("a sound plan"));
     assert!(report.runs.is_empty() && report.rows.is_empty());
-    let report = doorway::Plan::default().run(&|_| false);
-    assert!(report.runs.is_empty());
+    let plan = doorway::Plan::default();
+    let runs = plan.carry_out(|_| false).expect("a sound plan");
+    assert!(plan.report(&runs).runs.is_empty());
 }
 
 #[test]
@@ -53,7 +58,7 @@ fn patience_ends() {
         patience: 0.5,
         ..swap::Plan::default()
     };
-    let report = plan.run(&|_| go());
+    let report = plan.measure().expect("a sound plan");
     assert_eq!(
         (report.runs[0].arrived, report.runs[0].time_ratio),
         (0, None)
@@ -68,7 +73,7 @@ fn two_crowds_pass_a_door_that_two_robots_do_not_fit_through() {
         robots: 4,
         ..doorway::Plan::default()
     };
-    let run = &plan.run(&|_| go()).runs[0];
+    let run = &plan.measure().expect("a sound plan").runs[0];
     assert_eq!(
         (run.arrived, run.robots, run.overlaps),
         (8, 8, 0),

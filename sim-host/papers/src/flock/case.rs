@@ -1,7 +1,9 @@
 //! The five simulations of the paper as scenarios.
 
-use super::{Plan, PlanError};
+use super::{Plan, Reference};
 use crate::arena::{Arena, FASTEST_MPS, normal, starts, uniform};
+use anyhow::{Context as _, Result};
+use clap::ValueEnum;
 use serde::Serialize;
 use staya_controller::flock::lattice::{Algorithm, Gain, LatticeParams};
 use staya_controller::rand::Rng;
@@ -14,18 +16,19 @@ const STARTS: u32 = 0x0046_0101;
 const UNITS: f64 = 7.0;
 
 /// Which of the paper's simulations (OLF section VIII).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
 #[serde(rename_all = "lowercase")]
+#[value(rename_all = "lower")]
 pub enum Case {
-    /// A: flocking in free space, algorithm 2 (figure 7).
+    /// A: 150 robots in free space, algorithm 2 (figure 7).
     Free,
-    /// B: algorithm 1 has no reference, and the group breaks up (figure 8).
+    /// B: 40 robots without a reference, algorithm 1: the group breaks up (figure 8).
     Fragment,
-    /// C: robots that fly meet by algorithm 2 (figure 9).
+    /// C: 50 robots meet in space, algorithm 2 (figure 9).
     Rendezvous3d,
-    /// D: through six obstacles that part the flock (figure 10).
+    /// D: 150 robots through six obstacles, algorithm 3 (figure 10).
     Split,
-    /// E: through the gap between two obstacles (figure 11).
+    /// E: 150 robots through a gap, algorithm 3 (figure 11).
     Squeeze,
 }
 
@@ -197,12 +200,12 @@ impl Plan {
     }
 
     /// One run of a case.
-    pub(super) fn scenario(&self, case: Case, run: u32) -> Result<Scenario, PlanError> {
+    pub(super) fn scenario(&self, case: Case, run: u32) -> Result<Scenario> {
         let setting = case.setting();
         let unit_m = self.spacing_m / UNITS;
         let metres = |vector: [f64; 3]| vector.map(|x| x * unit_m);
         let reference = match setting.fixed {
-            Some(fixed) if self.is_static => Some(fixed),
+            Some(fixed) if self.reference == Reference::Static => Some(fixed),
             _ => setting.moving,
         };
         let targets: Vec<Target> = reference
@@ -224,7 +227,7 @@ impl Plan {
                 (metres(place), metres(velocity))
             },
         )
-        .ok_or(PlanError::Robots(robots))?;
+        .with_context(|| format!("{robots} robots find no room; give fewer, or another spacing"))?;
         let arena = Arena {
             name: case.name(),
             seed: Rng::keyed(self.seed, STARTS, run, case as u32).next_u64(),
@@ -267,7 +270,7 @@ impl Plan {
                 gamma: gain(gamma),
                 ..LatticeParams::new(self.spacing_m as f32)
             },
-            !(self.is_static && setting.fixed.is_some()),
+            !(self.reference == Reference::Static && setting.fixed.is_some()),
         );
         setup.orca.horizon_s = self.horizon_s as f32;
         setup.orca.wall_horizon_s = self.horizon_s as f32;
@@ -277,6 +280,11 @@ impl Plan {
     /// c1 of alpha-, beta- and gamma-agents of a case.
     pub(super) fn gains(&self, case: Case) -> [f64; 3] {
         let own = case.setting().gains;
-        [0, 1, 2].map(|kind| self.gains[kind].unwrap_or(own[kind]))
+        let [alpha, beta, gamma] = own;
+        [
+            self.c_alpha.unwrap_or(alpha),
+            self.c_beta.unwrap_or(beta),
+            self.c_gamma.unwrap_or(gamma),
+        ]
     }
 }

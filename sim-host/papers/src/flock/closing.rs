@@ -4,9 +4,10 @@
 //! little off their common line) or two groups (three by three each) meet head on at a speed of so many spacings d per second,
 //! each side at half of it; their flocks want them where the other side comes from. Told are overlaps of bodies and the least distance.
 
-use super::PlanError;
+use super::check_spacing_and_step;
 use crate::arena::{Arena, FASTEST_MPS, uniform};
-use crate::in_parallel;
+use crate::experiment::{Experiment, GoesOn, by_point, check_runs};
+use anyhow::{Result, ensure};
 use serde::Serialize;
 use staya_controller::agent::BoidsSetup;
 use staya_controller::flock::goal::GoalParams;
@@ -16,6 +17,7 @@ use staya_sim::engine::simulate;
 use staya_sim::metrics::flock::gaps;
 use staya_sim::nearby::Space;
 use staya_sim::scenario::{GuidanceName, SafetyName, Scenario, Start, Target};
+use std::fmt::{self, Display, Formatter};
 use std::ops::ControlFlow;
 
 /// Purpose of the random numbers that put each side a little off.
@@ -117,38 +119,13 @@ pub struct ClosingReport {
 }
 
 /// Overlapping pairs summed over ticks, and the least distance of centres.
-type Met = (usize, f64);
+pub type Met = (usize, f64);
 
 impl Closing {
     /// Radius of a body, metres.
     #[must_use]
     pub fn radius_m(&self) -> f64 {
         self.spacing_m / 14.0
-    }
-
-    /// Whether it can be carried out.
-    ///
-    /// # Errors
-    /// [`PlanError`]
-    pub fn check(&self) -> Result<(), PlanError> {
-        match self.runs {
-            0 => return Err(PlanError::NoRuns),
-            runs if runs > crate::MAX_RUNS => return Err(PlanError::Runs(runs)),
-            _ => {}
-        }
-        if !(0.1..=50.0).contains(&self.spacing_m) {
-            return Err(PlanError::Spacing(self.spacing_m));
-        }
-        if !(0.001..=0.1).contains(&self.step_s) {
-            return Err(PlanError::Step(self.step_s));
-        }
-        let fastest = 2.0 * FASTEST_MPS / self.spacing_m;
-        let is_sound = |speed: &&f64| **speed > 0.0 && **speed <= fastest;
-        match self.speeds.iter().find(|speed| !is_sound(speed)) {
-            Some(&speed) => Err(PlanError::Speed { speed, fastest }),
-            None if self.speeds.is_empty() => Err(PlanError::NoCases),
-            None => Ok(()),
-        }
     }
 
     /// Flock, sides, speed of each line.
@@ -160,63 +137,6 @@ impl Closing {
             }
         }
         lines
-    }
-
-    /// Runs in all, each bare and with ORCA.
-    #[must_use]
-    pub fn total(&self) -> usize {
-        self.lines().len() * self.runs as usize
-    }
-
-    /// Does everything, in parallel. `progress` is told how many runs are done; when it answers `false`, what is done so
-    /// far is returned, with the number of runs.
-    ///
-    /// # Errors
-    /// [`PlanError`]
-    pub fn carry_out(
-        &self,
-        progress: impl FnMut(usize) -> bool,
-    ) -> Result<(ClosingReport, usize), PlanError> {
-        self.check()?;
-        let lines = self.lines();
-        let met = in_parallel(self.total(), 8, progress, |(): &mut (), job| {
-            let (flock, sides, speed) = lines[job % lines.len()];
-            let run = (job / lines.len()) as u32;
-            let meet = |safety| {
-                let scenario = self.scenario(flock, sides, speed, safety, run);
-                self.meet(&scenario)
-            };
-            Ok::<_, PlanError>([meet(SafetyName::None)?, meet(SafetyName::Orca)?])
-        })?;
-        let done = met.len();
-        let line = |(index, &(flock, sides, speed_over_d)): (usize, &(Flock, Sides, f64))| {
-            let runs: Vec<[Met; 2]> = (met.iter().skip(index))
-                .step_by(lines.len())
-                .copied()
-                .collect();
-            let meeting = |way: usize| Meeting {
-                runs_with_overlap: runs.iter().filter(|run| run[way].0 > 0).count(),
-                overlaps: runs.iter().map(|run| run[way].0).sum(),
-                least_pair_over_d: runs.iter().map(|run| run[way].1).fold(f64::MAX, f64::min)
-                    / self.spacing_m,
-            };
-            (!runs.is_empty()).then(|| Line {
-                flock,
-                sides,
-                speed_over_d,
-                runs: runs.len(),
-                bare: meeting(0),
-                orca: meeting(1),
-            })
-        };
-        let report = ClosingReport {
-            seed: self.seed,
-            spacing_m: self.spacing_m,
-            radius_m: self.radius_m(),
-            step_s: self.step_s,
-            lines: lines.iter().enumerate().filter_map(line).collect(),
-        };
-        Ok((report, done))
     }
 
     /// Both sides a gap apart, at speed; they have passed and gone twice as far when the run ends.
@@ -302,7 +222,7 @@ impl Closing {
         starts
     }
 
-    fn meet(&self, scenario: &Scenario) -> Result<Met, PlanError> {
+    fn meet(&self, scenario: &Scenario) -> Result<Met> {
         let radii = vec![self.radius_m(); scenario.robots.len()];
         let horizon_m = self.spacing_m;
         let (mut overlaps, mut least_m) = (0, f64::MAX);
@@ -316,5 +236,120 @@ impl Closing {
             ControlFlow::Continue(())
         })?;
         Ok((overlaps, least_m))
+    }
+}
+
+impl Experiment for Closing {
+    const UNIT: &'static str = "runs";
+    /// Bare, and with ORCA.
+    type Run = [Met; 2];
+    type Report = ClosingReport;
+
+    fn check(&self) -> Result<()> {
+        check_runs(self.runs, "of each case")?;
+        check_spacing_and_step(self.spacing_m, self.step_s)?;
+        ensure!(!self.speeds.is_empty(), "no cases; give one or more");
+        let fastest = 2.0 * FASTEST_MPS / self.spacing_m;
+        for &speed in &self.speeds {
+            ensure!(
+                speed > 0.0 && speed <= fastest,
+                "a closing speed of {speed} d/s; it must be more than 0 and at most {fastest:.2}"
+            );
+        }
+        Ok(())
+    }
+
+    fn total(&self) -> usize {
+        self.lines().len() * self.runs as usize
+    }
+
+    fn perform(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Vec<[Met; 2]>>> {
+        let lines = self.lines();
+        by_point(
+            lines.len(),
+            self.runs,
+            8,
+            goes_on,
+            |(): &mut (), line, run| {
+                let (flock, sides, speed) = lines[line];
+                let meet = |safety| self.meet(&self.scenario(flock, sides, speed, safety, run));
+                Ok([meet(SafetyName::None)?, meet(SafetyName::Orca)?])
+            },
+        )
+    }
+
+    fn report(&self, runs: &[Vec<[Met; 2]>]) -> ClosingReport {
+        let line = |((flock, sides, speed_over_d), runs): (_, &Vec<[Met; 2]>)| {
+            let meeting = |way: usize| Meeting {
+                runs_with_overlap: runs.iter().filter(|run| run[way].0 > 0).count(),
+                overlaps: runs.iter().map(|run| run[way].0).sum(),
+                least_pair_over_d: runs.iter().map(|run| run[way].1).fold(f64::MAX, f64::min)
+                    / self.spacing_m,
+            };
+            (!runs.is_empty()).then(|| Line {
+                flock,
+                sides,
+                speed_over_d,
+                runs: runs.len(),
+                bare: meeting(0),
+                orca: meeting(1),
+            })
+        };
+        ClosingReport {
+            seed: self.seed,
+            spacing_m: self.spacing_m,
+            radius_m: self.radius_m(),
+            step_s: self.step_s,
+            lines: self
+                .lines()
+                .into_iter()
+                .zip(runs)
+                .filter_map(line)
+                .collect(),
+        }
+    }
+}
+
+impl Display for ClosingReport {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "d = {} m, radius {:.3} m, step {} s, seed {}; each side goes at half the speed of closing",
+            self.spacing_m, self.radius_m, self.step_s, self.seed
+        )?;
+        writeln!(
+            f,
+            "{:<8}{:<8}{:>5}{:>6} |{:>12}{:>10}{:>8} |{:>12}{:>10}{:>8}",
+            "flock",
+            "who",
+            "d/s",
+            "runs",
+            "bare: runs",
+            "overlaps",
+            "pair/d",
+            "ORCA: runs",
+            "overlaps",
+            "pair/d"
+        )?;
+        for line in &self.lines {
+            let meeting = |m: &Meeting| {
+                format!(
+                    "{:>12}{:>10}{:>8.3}",
+                    m.runs_with_overlap, m.overlaps, m.least_pair_over_d
+                )
+            };
+            writeln!(
+                f,
+                "{:<8}{:<8}{:>5}{:>6} |{} |{}",
+                format!("{:?}", line.flock).to_lowercase(),
+                format!("{:?}", line.sides).to_lowercase(),
+                line.speed_over_d,
+                line.runs,
+                meeting(&line.bare),
+                meeting(&line.orca)
+            )?;
+        }
+        f.write_str("runs: with overlap; overlaps: pairs of bodies, over all ticks and runs; pair/d: least distance of centres (bodies touch at 0.143)\n")?;
+        Ok(())
     }
 }

@@ -19,182 +19,97 @@ mod report;
 mod watch;
 
 pub use case::Case;
-pub(super) use report::safety_name;
 pub use report::{CaseReport, Report, RunReport};
+pub use watch::Run;
 
-use super::{MAX_RUNS, in_parallel};
+use crate::experiment::{Experiment, GoesOn, by_point, check_runs};
+use crate::options;
+use anyhow::{Result, ensure};
+use clap::{Args, ValueEnum};
 use staya_sim::engine::simulate;
 use staya_sim::scenario::SafetyName;
-use staya_sim::world::Misplaced;
-use watch::{Run, Watch};
+use std::path::{Path, PathBuf};
+use watch::Watch;
 
 /// How far ahead ORCA looks behind a flock, seconds: bodies without inertia need no more than some steps.
 const HORIZON_S: f64 = 0.3;
 
-/// What to do.
-#[derive(Clone, Debug, PartialEq)]
+/// What to do: the five flocking simulations of Olfati-Saber 2006 (section VIII), each robot an agent that hears packets only.
+#[derive(Args, Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// Which simulations.
+    /// Which simulations [default: all].
+    #[arg(
+        long = "case",
+        value_enum,
+        value_delimiter = ',',
+        default_value = "free,fragment,rendezvous3d,split,squeeze",
+        hide_default_value = true
+    )]
     pub cases: Vec<Case>,
-    /// Runs of each, 1 or more.
+    /// Runs of each, with different starts.
+    #[arg(long = "seeds", default_value_t = 10)]
     pub runs: u32,
-    /// Robots, 2 to 2000; `None`: as many as the paper's.
+    /// Number of robots, instead of the paper's.
+    #[arg(long)]
     pub robots: Option<u32>,
-    /// What is behind the flock; [`SafetyName::Orca`] means [`SafetyName::Fly`] in space.
+    /// Safety layer behind the flock; in space "orca" means "fly".
+    #[arg(long, default_value = "none", value_parser = options::safety())]
     pub safety: SafetyName,
-    /// How far ahead ORCA looks, seconds, 0.01 to 60. Long ones keep a flock from closing up: its robots come in faster than
-    /// they may towards somebody who is d away, and swerve.
+    // Long ones keep a flock from closing up: its robots come in faster than they may towards somebody who is d away, and
+    // swerve.
+    /// How far ahead ORCA looks.
+    #[arg(long = "horizon", value_name = "SECONDS", default_value_t = HORIZON_S)]
     pub horizon_s: f64,
-    /// Distance of neighbours in the lattice (d), metres, 0.1 to 50.
+    /// Distance of neighbours in the lattice (d); bodies have a fourteenth of it as radius.
+    #[arg(long = "spacing", value_name = "METRES", default_value_t = 7.0)]
     pub spacing_m: f64,
-    /// Length of a tick, seconds, 0.001 to 0.1. The paper's are 0.01 to 0.03.
+    /// Length of a tick.
+    #[arg(long = "step", value_name = "SECONDS", default_value_t = 0.03)]
     pub step_s: f64,
-    /// How long each run is, seconds; `None`: the case's own.
+    /// Length of each run, instead of the case's own.
+    #[arg(long)]
     pub seconds: Option<f64>,
-    /// c1 of alpha-, beta- and gamma-agents instead of the case's own, 0 or more.
-    pub gains: [Option<f64>; 3],
-    /// Whether the reference of D and E is the paper's, which stands and has a velocity all the same.
-    pub is_static: bool,
+    /// Gain c1 on other robots, instead of the case's own.
+    #[arg(long, value_name = "C1")]
+    pub c_alpha: Option<f64>,
+    /// Gain c1 on obstacles, instead of the case's own.
+    #[arg(long, value_name = "C1")]
+    pub c_beta: Option<f64>,
+    /// Gain c1 on the reference, instead of the case's own.
+    #[arg(long, value_name = "C1")]
+    pub c_gamma: Option<f64>,
+    /// Where the reference of D and E is.
+    #[arg(long, value_enum, default_value = "moving")]
+    pub reference: Reference,
     /// Loss of packets, 0 to 1.
+    #[arg(long, default_value_t = 0.0)]
     pub loss: f64,
     /// Equal seeds give equal results.
+    #[arg(long, default_value_t = 1)]
     pub seed: u64,
+    /// Folder for the pictures and series.
+    #[arg(long, value_name = "DIR", default_value = "out/experiment-flock")]
+    pub out: PathBuf,
 }
 
 impl Default for Plan {
     /// All five, as the paper has them.
     fn default() -> Self {
-        Self {
-            cases: Case::ALL.to_vec(),
-            runs: 10,
-            robots: None,
-            safety: SafetyName::None,
-            horizon_s: HORIZON_S,
-            spacing_m: 7.0,
-            step_s: 0.03,
-            seconds: None,
-            gains: [None; 3],
-            is_static: false,
-            loss: 0.0,
-            seed: 1,
-        }
+        options::defaults()
     }
 }
 
-/// Why a plan cannot be carried out.
-#[derive(Debug, thiserror::Error)]
-pub enum PlanError {
-    /// Nothing to look at.
-    #[error("0 runs; make 1 or more of each case")]
-    NoRuns,
-    /// Their results would not fit the memory.
-    #[error("{0} runs; make at most {MAX_RUNS}")]
-    Runs(u32),
-    /// Nothing to run.
-    #[error("no cases; give one or more")]
-    NoCases,
-    /// No flock, or no room.
-    #[error("{0} robots; give 2 to 2000, and a spacing at which they find room")]
-    Robots(u32),
-    /// Beacons would not tell places well enough, or speeds at all.
-    #[error("a spacing of {0} m; it must be 0.1 to 50")]
-    Spacing(f64),
-    /// No robot decides so often, or the flock flies apart.
-    #[error("a step of {0} s; it must be 0.001 to 0.1")]
-    Step(f64),
-    /// ORCA would see nothing, or everything.
-    #[error("a horizon of {0} s; it must be 0.01 to 60")]
-    Horizon(f64),
-    /// No time, or too much memory for what is measured.
-    #[error("{0} s; a run has 1 to 1,000,000 steps")]
-    Time(f64),
-    /// No gain.
-    #[error("a gain of {0}; it must be 0 to 1,000,000")]
-    Gain(f64),
-    /// No probability.
-    #[error("a loss of {0}; it must be between 0 and 1")]
-    Loss(f64),
-    /// Nobody meets, or beacons cannot tell it.
-    #[error("a closing speed of {speed} d/s; it must be more than 0 and at most {fastest:.2}")]
-    Speed {
-        /// Wanted.
-        speed: f64,
-        /// For this spacing.
-        fastest: f64,
-    },
-    /// Another experiment's.
-    #[error("push-out comes with the goal flock; give orca, fly or none")]
-    PushOut,
-    /// The robots cannot start.
-    #[error(transparent)]
-    Start(#[from] Misplaced),
-}
-
-/// What was done so far.
-#[derive(Clone, Debug)]
-pub struct Results {
-    plan: Plan,
-    /// Case after case within each number of a run.
-    runs: Vec<Run>,
+/// Where the reference of D and E is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Reference {
+    /// It goes ahead of the flock.
+    Moving,
+    /// It stands behind the obstacles, and has a velocity all the same (the paper's).
+    Static,
 }
 
 impl Plan {
-    /// Whether the plan can be carried out.
-    ///
-    /// # Errors
-    /// [`PlanError`]
-    pub fn check(&self) -> Result<(), PlanError> {
-        match self.runs {
-            0 => return Err(PlanError::NoRuns),
-            runs if runs > MAX_RUNS => return Err(PlanError::Runs(runs)),
-            _ => {}
-        }
-        if self.cases.is_empty() {
-            return Err(PlanError::NoCases);
-        }
-        if let Some(robots) = self.robots.filter(|robots| !(2..=2000).contains(robots)) {
-            return Err(PlanError::Robots(robots));
-        }
-        if !(0.1..=50.0).contains(&self.spacing_m) {
-            return Err(PlanError::Spacing(self.spacing_m));
-        }
-        if !(0.001..=0.1).contains(&self.step_s) {
-            return Err(PlanError::Step(self.step_s));
-        }
-        if !(0.01..=60.0).contains(&self.horizon_s) {
-            return Err(PlanError::Horizon(self.horizon_s));
-        }
-        if let Some(seconds) = self.seconds {
-            let steps = seconds / self.step_s;
-            if !(1.0..=1e6).contains(&steps) {
-                return Err(PlanError::Time(seconds));
-            }
-        }
-        let gains = self.gains.iter().flatten();
-        for gain in gains {
-            if !(0.0..=1e6).contains(gain) {
-                return Err(PlanError::Gain(*gain));
-            }
-        }
-        if !(0.0..=1.0).contains(&self.loss) {
-            return Err(PlanError::Loss(self.loss));
-        }
-        if self.safety == SafetyName::PushOut {
-            return Err(PlanError::PushOut);
-        }
-        for &case in &self.cases {
-            self.scenario(case, 0)?;
-        }
-        Ok(())
-    }
-
-    /// Runs in all.
-    #[must_use]
-    pub fn total(&self) -> usize {
-        self.cases.len() * self.runs as usize
-    }
-
-    fn run(&self, case: Case, number: u32) -> Result<Run, PlanError> {
+    fn run(&self, case: Case, number: u32) -> Result<Run> {
         let scenario = self.scenario(case, number)?;
         let mut watch = Watch::new(self, case, &scenario, number == 0);
         let outcome = simulate(&scenario, |moment, robots| {
@@ -203,30 +118,91 @@ impl Plan {
         })?;
         Ok(watch.finish(outcome.trace_hash))
     }
-
-    /// Does everything, in parallel. `progress` is told how many runs are done; when it answers `false`, what is done so
-    /// far is returned.
-    ///
-    /// # Errors
-    /// [`PlanError`]
-    pub fn carry_out(&self, progress: impl FnMut(usize) -> bool) -> Result<Results, PlanError> {
-        self.check()?;
-        let cases = self.cases.len();
-        let runs = in_parallel(self.total(), 1, progress, |(): &mut (), job| {
-            self.run(self.cases[job % cases], (job / cases) as u32)
-        })?;
-        Ok(Results {
-            plan: self.clone(),
-            runs,
-        })
-    }
 }
 
-impl Results {
-    /// Runs done.
-    #[must_use]
-    pub fn done(&self) -> usize {
-        self.runs.len()
+/// A spacing at which beacons tell places well enough, and speeds at all; a step at which the flock does not fly apart.
+fn check_spacing_and_step(spacing_m: f64, step_s: f64) -> Result<()> {
+    ensure!(
+        (0.1..=50.0).contains(&spacing_m),
+        "a spacing of {spacing_m} m; it must be 0.1 to 50"
+    );
+    ensure!(
+        (0.001..=0.1).contains(&step_s),
+        "a step of {step_s} s; it must be 0.001 to 0.1"
+    );
+    Ok(())
+}
+
+impl Experiment for Plan {
+    const UNIT: &'static str = "runs";
+    type Run = Run;
+    type Report = Report;
+
+    fn check(&self) -> Result<()> {
+        check_runs(self.runs, "of each case")?;
+        ensure!(!self.cases.is_empty(), "no cases; give one or more");
+        if let Some(robots) = self.robots {
+            ensure!(
+                (2..=2000).contains(&robots),
+                "{robots} robots; give 2 to 2000"
+            );
+        }
+        check_spacing_and_step(self.spacing_m, self.step_s)?;
+        ensure!(
+            (0.01..=60.0).contains(&self.horizon_s),
+            "a horizon of {} s; it must be 0.01 to 60",
+            self.horizon_s
+        );
+        if let Some(seconds) = self.seconds {
+            ensure!(
+                (1.0..=1e6).contains(&(seconds / self.step_s)),
+                "{seconds} s; a run has 1 to 1,000,000 steps"
+            );
+        }
+        for gain in [self.c_alpha, self.c_beta, self.c_gamma]
+            .into_iter()
+            .flatten()
+        {
+            ensure!(
+                (0.0..=1e6).contains(&gain),
+                "a gain of {gain}; it must be 0 to 1,000,000"
+            );
+        }
+        ensure!(
+            (0.0..=1.0).contains(&self.loss),
+            "a loss of {}; it must be between 0 and 1",
+            self.loss
+        );
+        ensure!(
+            self.safety != SafetyName::PushOut,
+            "push-out comes with the goal flock; give orca, fly or none"
+        );
+        for &case in &self.cases {
+            self.scenario(case, 0)?;
+        }
+        Ok(())
+    }
+
+    fn total(&self) -> usize {
+        self.cases.len() * self.runs as usize
+    }
+
+    fn perform(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Vec<Run>>> {
+        by_point(
+            self.cases.len(),
+            self.runs,
+            1,
+            goes_on,
+            |(): &mut (), case, run| self.run(self.cases[case], run),
+        )
+    }
+
+    fn report(&self, runs: &[Vec<Run>]) -> Report {
+        Report::of(self, runs)
+    }
+
+    fn draw(&self, _: &[Vec<Run>], report: &Report, dir: &Path) -> Result<Vec<PathBuf>> {
+        Ok(report.draw(dir)?)
     }
 }
 

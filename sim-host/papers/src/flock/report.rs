@@ -1,11 +1,13 @@
 //! The numbers of the flocks.
 
 use super::watch::{Frame, Run};
-use super::{Case, Plan, Results};
+use super::{Case, Plan, Reference};
+use crate::experiment::Maybe;
+use crate::options::safety_name;
 use crate::stats::quantile;
 use serde::Serialize;
 use staya_sim::metrics::flock::{AlphaLimits, AlphaVerdict, FlockMeasure, alpha_flocking};
-use staya_sim::scenario::SafetyName;
+use std::fmt::{self, Display, Formatter};
 
 /// One run.
 #[derive(Clone, Debug, Serialize)]
@@ -106,26 +108,10 @@ pub struct Report {
     pub cases: Vec<CaseReport>,
 }
 
-/// A safety layer as the command line calls it.
-pub const fn safety_name(safety: SafetyName) -> &'static str {
-    match safety {
-        SafetyName::None => "none",
-        SafetyName::Orca => "orca",
-        SafetyName::Template2k => "template-2k",
-        SafetyName::Template8k => "template-8k",
-        SafetyName::Template16k => "template-16k",
-        SafetyName::Template64k => "template-64k",
-        SafetyName::Fly => "fly",
-        SafetyName::PushOut => "push-out",
-    }
-}
-
-impl Results {
-    /// The numbers.
-    #[must_use]
-    pub fn report(&self) -> Report {
-        let plan = &self.plan;
-        Report {
+impl Report {
+    pub(super) fn of(plan: &Plan, runs: &[Vec<Run>]) -> Self {
+        let cases = plan.cases.iter().zip(runs);
+        Self {
             seed: plan.seed,
             runs: plan.runs,
             spacing_m: plan.spacing_m,
@@ -134,23 +120,20 @@ impl Results {
             safety: safety_name(plan.safety),
             horizon_s: plan.horizon_s,
             loss: plan.loss,
-            static_reference: plan.is_static,
-            cases: (0..plan.cases.len())
-                .filter_map(|index| self.case(index))
+            static_reference: plan.reference == Reference::Static,
+            cases: cases
+                .filter_map(|(&case, runs)| CaseReport::of(plan, case, runs))
                 .collect(),
         }
     }
+}
 
-    fn case(&self, index: usize) -> Option<CaseReport> {
-        let plan = &self.plan;
-        let case = plan.cases[index];
-        let runs: Vec<&Run> = (self.runs.iter().skip(index))
-            .step_by(plan.cases.len())
-            .collect();
+impl CaseReport {
+    fn of(plan: &Plan, case: Case, runs: &[Run]) -> Option<Self> {
         let first = runs.first()?;
         let robots = first.trace.iter().flatten().next()?.robots;
         let each: Vec<RunReport> = (0..)
-            .zip(&runs)
+            .zip(runs)
             .map(|(number, run)| RunReport::of(plan, case, number, robots, run))
             .collect();
         let alphas: Vec<usize> = each.iter().filter_map(|r| r.alpha.alpha_flocking).collect();
@@ -159,7 +142,7 @@ impl Results {
         let most = |value: fn(&FlockMeasure) -> f64| ends.iter().map(value).fold(0.0, f64::max);
         let least =
             |value: fn(&RunReport) -> Option<f64>| each.iter().filter_map(value).reduce(f64::min);
-        Some(CaseReport {
+        Some(Self {
             case,
             robots,
             ticks: first.trace.len() - 1,
@@ -235,4 +218,79 @@ fn lattice_radius_m(plan: &Plan, case: Case, robots: usize) -> f64 {
         // d^2 sqrt 3 / 2 a robot.
         d * libm::sqrt(n * libm::sqrt(3.0) / (2.0 * std::f64::consts::PI))
     }
+}
+
+impl Display for Report {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "d = {} m, radius {:.3} m, step {} s, safety {}, loss {}, seed {}{}",
+            self.spacing_m,
+            self.radius_m,
+            self.step_s,
+            self.safety,
+            self.loss,
+            self.seed,
+            if self.static_reference {
+                ", static reference"
+            } else {
+                ""
+            }
+        )?;
+        writeln!(
+            f,
+            "{:<13}{:>7}{:>6}{:>7}{:>7}{:>6}{:>7}{:>8}{:>9}{:>9}{:>5}{:>7}{:>9}{:>8}{:>7}{:>11}",
+            "case",
+            "robots",
+            "runs",
+            "alpha",
+            "from",
+            "conn.",
+            "C",
+            "R (m)",
+            "E~",
+            "K~",
+            "one",
+            "pair/d",
+            "overlaps",
+            "clear/d",
+            "inside",
+            "past"
+        )?;
+        for case in &self.cases {
+            let past = case.past.map_or_else(
+                || String::from("-"),
+                |past| format!("{past}/{}", case.robots * case.runs),
+            );
+            writeln!(
+                f,
+                "{:<13}{:>7}{:>6}{:>7}{:>7}{:>6}{:>7.3}{:>8.1}{:>9.5}{:>9.5}{:>5}{:>7}{:>9}{:>8}{:>7}{:>11}",
+                case.case.name(),
+                case.robots,
+                case.runs,
+                case.alpha_flocking,
+                Maybe(case.alpha_from_median, 0),
+                count(case.connected_from_latest),
+                case.connectivity,
+                case.radius_m,
+                case.deviation_energy,
+                case.velocity_mismatch,
+                case.one_flock,
+                Maybe(case.least_pair_over_d, 3),
+                case.overlaps,
+                Maybe(case.least_clearance_over_d, 3),
+                case.inside,
+                past,
+            )?;
+        }
+        f.write_str("alpha: runs with alpha-flocking at their end (e0 = 0.2, e1 = 0.005, e2 = 0.001), from: iteration, median over them;\n")?;
+        f.write_str("conn.: iteration from which on all are connected in every run; C: mean at the end, R, E~, K~: largest at the end; one: runs that end as one flock;\n")?;
+        f.write_str("pair/d: least distance of centres after 2 s; overlaps: pairs of bodies, over all ticks; clear/d: least distance from an obstacle; inside: robots ever in one\n")?;
+        Ok(())
+    }
+}
+
+/// A whole number, or `-`.
+fn count(value: Option<usize>) -> String {
+    value.map_or_else(|| String::from("-"), |value| value.to_string())
 }

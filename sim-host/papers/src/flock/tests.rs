@@ -13,7 +13,7 @@ fn small(case: Case, robots: u32, seconds: f64) -> Plan {
 }
 
 fn report(plan: &Plan) -> CaseReport {
-    let mut report = plan.carry_out(|_| true).unwrap().report();
+    let mut report = plan.measure().unwrap();
     report.cases.remove(0)
 }
 
@@ -56,7 +56,7 @@ fn robots_meet_in_space_also_behind_orca() {
         };
         let case = report(&plan);
         assert_eq!((case.one_flock, case.overlaps), (2, 0), "{:?}", case.each);
-        let frames = plan.carry_out(|_| true).unwrap().runs[0].frames.clone();
+        let frames = plan.carry_out(|_| true).unwrap()[0][0].frames.clone();
         let heights = frames.last().unwrap().places_m.iter().map(|at| at[2]);
         let (low, high) = heights.fold((f64::MAX, f64::MIN), |(low, high), z| {
             (low.min(z), high.max(z))
@@ -104,13 +104,13 @@ fn threads_and_early_ends_change_nothing() {
             .num_threads(threads)
             .build()
             .unwrap();
-        pool.install(|| plan.carry_out(|_| true).unwrap().runs)
+        pool.install(|| plan.carry_out(|_| true).unwrap())
     };
     let all = on(1);
     assert_eq!(all, on(3));
-    assert_eq!(all.len(), 4);
+    assert_eq!(all.concat().len(), 4);
     let none = plan.carry_out(|_| false).unwrap();
-    assert!(none.report().cases.is_empty());
+    assert!(plan.report(&none).cases.is_empty());
 }
 
 #[test]
@@ -127,7 +127,7 @@ fn plans_that_cannot_be_carried_out_say_why() {
     assert!(refused(|p| p.horizon_s = 0.0).contains("0.01 to 60"));
     assert!(refused(|p| p.step_s = 0.2).contains("0.001 to 0.1"));
     assert!(refused(|p| p.seconds = Some(0.0)).contains("1 to 1,000,000 steps"));
-    assert!(refused(|p| p.gains[1] = Some(-1.0)).contains("a gain of -1"));
+    assert!(refused(|p| p.c_beta = Some(-1.0)).contains("a gain of -1"));
     assert!(refused(|p| p.loss = 1.5).contains("between 0 and 1"));
     assert!(refused(|p| p.safety = SafetyName::PushOut).contains("goal flock"));
     let closing = Closing {
@@ -145,7 +145,7 @@ fn pictures_and_series_are_written() {
         cases: vec![Case::Rendezvous3d, Case::Squeeze],
         ..small(Case::Free, 10, 3.0)
     };
-    let files = plan.carry_out(|_| true).unwrap().report().draw(dir.path());
+    let files = plan.measure().unwrap().draw(dir.path());
     let files = files.unwrap();
     assert_eq!(files.len(), 10);
     for file in &files {
@@ -164,8 +164,8 @@ fn closing_speeds_that_break_the_bare_flock_do_not_with_orca_behind_it() {
         runs: 4,
         ..Closing::default()
     };
-    let (report, done) = plan.carry_out(|_| true).unwrap();
-    assert_eq!((done, report.lines.len()), (plan.total(), 18));
+    let report = plan.measure().unwrap();
+    assert_eq!((plan.total(), report.lines.len()), (18 * 4, 18));
     for line in &report.lines {
         assert_eq!(line.orca.overlaps, 0, "{line:?}");
         assert!(line.orca.least_pair_over_d > 1.0 / 7.0 - 1e-6, "{line:?}");

@@ -12,7 +12,7 @@ const SETTLED_S: f64 = 2.0;
 
 /// What one run gave.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Run {
+pub struct Run {
     /// The flock before the first tick and after each.
     pub trace: Vec<Option<FlockMeasure>>,
     /// Least distance of two centres after [`SETTLED_S`], metres; infinite when none were within d.
@@ -33,14 +33,14 @@ pub(super) struct Run {
 
 /// All robots at a moment.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Frame {
+pub struct Frame {
     pub tick: u32,
     pub places_m: Vec<[f64; 3]>,
     pub velocities_mps: Vec<[f64; 3]>,
 }
 
 /// Measures a run as it goes.
-pub(super) struct Watch {
+pub struct Watch {
     spacing_m: f64,
     radius_m: f64,
     settled: u32,

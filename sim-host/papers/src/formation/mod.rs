@@ -9,7 +9,8 @@ mod report;
 
 pub use report::{Journey, Point, Report, Variants};
 
-use super::{MAX_RUNS, in_parallel};
+use crate::experiment::{Experiment, GoesOn, by_point, check_runs};
+use anyhow::{Result, anyhow, ensure};
 use staya_controller::agent::TEMPLATE;
 use staya_controller::formation::FormationParams;
 use staya_controller::grid::{Cell, Norm, UNIT};
@@ -25,6 +26,7 @@ use staya_sim::terrain::generate::{self, natural};
 use staya_sim::terrain::{Terrain, TerrainError};
 use staya_sim::world::{Misplaced, MoveRules};
 use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
 
 /// Purpose of the random numbers that give each run its landscape.
 const LANDSCAPES: u32 = 0x0045_0101;
@@ -96,57 +98,6 @@ impl Default for Plan {
     }
 }
 
-/// Why a plan cannot be carried out.
-#[derive(Debug, thiserror::Error)]
-pub enum PlanError {
-    /// Nothing to average.
-    #[error("0 runs; make 1 or more landscapes per point")]
-    NoRuns,
-    /// Their results would not fit the memory.
-    #[error("{0} runs; make at most {MAX_RUNS} landscapes per point")]
-    Runs(u32),
-    /// Nothing to run on.
-    #[error("no landscapes; give one number of obstacles or more")]
-    NoLands,
-    /// No time to run.
-    #[error("0 ticks; give the robots time to arrive, about 10000")]
-    NoTicks,
-    /// The formation would not fit twice, at start and at goal.
-    #[error("a landscape of {size} x {size} cells; its side must be {least}..=2000")]
-    Size {
-        /// Wanted.
-        size: u16,
-        /// For a formation of this spacing.
-        least: u16,
-    },
-    /// Robots would overlap or see nobody.
-    #[error("a spacing of {0} cells; it must be 1..=10")]
-    Spacing(u8),
-    /// No probability.
-    #[error("a loss of {0}; it must be between 0 and 1")]
-    Loss(f64),
-    /// The window would not fit the scratch memory.
-    #[error("a window of radius {0}; it must be 1..=16")]
-    Radius(u8),
-    /// Nobody would know of anybody.
-    #[error("a geodesic radius rho of 0; give 1, 2 or 3")]
-    NoRho,
-    /// The radius rho gives no template.
-    #[error("templates of geodesic radius {rho}: {error:?}; give 1, 2 or 3")]
-    Template {
-        /// Wanted.
-        rho: u8,
-        /// What is wrong.
-        error: TemplateError,
-    },
-    /// A landscape cannot be made.
-    #[error(transparent)]
-    Terrain(#[from] TerrainError),
-    /// The robots cannot start.
-    #[error(transparent)]
-    Start(#[from] Misplaced),
-}
-
 /// How the six cross a landscape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Way {
@@ -176,31 +127,26 @@ pub struct Crossing {
 }
 
 /// What one landscape gave: the crossings in the order of [`Plan::ways`].
-type Run = Vec<Crossing>;
-
-/// What was done so far.
-#[derive(Clone, Debug)]
-pub struct Results {
-    plan: Plan,
-    runs: Vec<Run>,
-}
+pub type Run = Vec<Crossing>;
 
 impl Plan {
     /// The formation of figure 5 with the plan's spacing, robot 1 in front: rows run west, columns south.
     ///
     /// # Errors
     /// A radius rho without a template.
-    fn graph(&self) -> Result<Formation, PlanError> {
+    fn graph(&self) -> Result<Formation> {
         let spacing = i16::from(self.spacing);
         let places: Vec<Cell> = (0..ROBOTS as i16)
             .map(|robot| Cell::new(-spacing * (robot % 3), -spacing * (robot / 3)))
             .collect();
         let templates = (0..ROBOTS)
             .map(|own| Template::<TEMPLATE>::from_graph(&places, &EDGES, own, self.rho))
-            .collect::<Result<_, _>>();
+            .collect::<Result<_, TemplateError>>();
         let rho = self.rho;
         Ok(Formation {
-            templates: templates.map_err(|error| PlanError::Template { rho, error })?,
+            templates: templates.map_err(|error: TemplateError| {
+                anyhow!("templates of geodesic radius {rho}: {error:?}; give 1, 2 or 3")
+            })?,
             places,
             edges: EDGES.to_vec(),
         })
@@ -210,53 +156,6 @@ impl Plan {
     #[must_use]
     pub fn least_size(&self) -> u16 {
         2 * u16::from(self.spacing) + 4
-    }
-
-    /// Whether the plan can be carried out.
-    ///
-    /// # Errors
-    /// [`PlanError`]
-    pub fn check(&self) -> Result<(), PlanError> {
-        if self.runs == 0 {
-            return Err(PlanError::NoRuns);
-        }
-        if self.runs > MAX_RUNS {
-            return Err(PlanError::Runs(self.runs));
-        }
-        if self.obstacles.is_empty() {
-            return Err(PlanError::NoLands);
-        }
-        if self.ticks == 0 {
-            return Err(PlanError::NoTicks);
-        }
-        if !(1..=10).contains(&self.spacing) {
-            return Err(PlanError::Spacing(self.spacing));
-        }
-        if !(1..=16).contains(&self.route.radius) {
-            return Err(PlanError::Radius(self.route.radius));
-        }
-        let (size, least) = (self.size, self.least_size());
-        if !(least..=2000).contains(&size) {
-            return Err(PlanError::Size { size, least });
-        }
-        let losses = std::iter::once(&self.loss).chain(&self.other_losses);
-        if let Some(&loss) = losses.into_iter().find(|loss| !(0.0..=1.0).contains(*loss)) {
-            return Err(PlanError::Loss(loss));
-        }
-        if self.rho == 0 {
-            return Err(PlanError::NoRho);
-        }
-        self.graph()?;
-        for &obstacles in &self.obstacles {
-            self.landscape(obstacles, 0)?;
-        }
-        Ok(())
-    }
-
-    /// Landscapes in all.
-    #[must_use]
-    pub fn total(&self) -> usize {
-        self.obstacles.len() * self.runs as usize
     }
 
     /// How the six cross each landscape: alone, as planned, with other eps, with other losses.
@@ -335,7 +234,7 @@ impl Plan {
         }
     }
 
-    fn run(&self, graph: &Formation, obstacles: u32, run: u32) -> Result<Run, PlanError> {
+    fn run(&self, graph: &Formation, obstacles: u32, run: u32) -> Result<Run> {
         let terrain = self.landscape(obstacles, run)?;
         let seed = Rng::keyed(self.seed, RUNS, obstacles, run).next_u64();
         let scenario =
@@ -351,35 +250,76 @@ impl Plan {
                     cross(&together)
                 }
             })
-            .collect::<Result<_, _>>()
-            .map_err(PlanError::from)
-    }
-
-    /// Does everything, in parallel. `progress` is told how many landscapes are done; when it answers `false`,
-    /// what is done so far is returned.
-    ///
-    /// # Errors
-    /// [`PlanError`]
-    pub fn carry_out(&self, progress: impl FnMut(usize) -> bool) -> Result<Results, PlanError> {
-        self.check()?;
-        let graph = self.graph()?;
-        let points = self.obstacles.len();
-        // All points advance together, so that an early end leaves something of each.
-        let runs = in_parallel(self.total(), 8, progress, |(): &mut (), job| {
-            self.run(&graph, self.obstacles[job % points], (job / points) as u32)
-        })?;
-        Ok(Results {
-            plan: self.clone(),
-            runs,
-        })
+            .map(|crossing| Ok(crossing?))
+            .collect()
     }
 }
 
-impl Results {
-    /// Landscapes done.
-    #[must_use]
-    pub fn done(&self) -> usize {
-        self.runs.len()
+impl Experiment for Plan {
+    const UNIT: &'static str = "landscapes";
+    type Run = Run;
+    type Report = Report;
+
+    fn check(&self) -> Result<()> {
+        check_runs(self.runs, "landscapes per point")?;
+        ensure!(
+            !self.obstacles.is_empty(),
+            "no landscapes; give one number of obstacles or more"
+        );
+        ensure!(
+            self.ticks > 0,
+            "0 ticks; give the robots time to arrive, about 10000"
+        );
+        ensure!(
+            (1..=10).contains(&self.spacing),
+            "a spacing of {} cells; it must be 1..=10",
+            self.spacing
+        );
+        let radius = self.route.radius;
+        ensure!(
+            (1..=16).contains(&radius),
+            "a window of radius {radius}; it must be 1..=16"
+        );
+        let (size, least) = (self.size, self.least_size());
+        ensure!(
+            (least..=2000).contains(&size),
+            "a landscape of {size} x {size} cells; its side must be {least}..=2000"
+        );
+        for loss in [self.loss].iter().chain(&self.other_losses) {
+            ensure!(
+                (0.0..=1.0).contains(loss),
+                "a loss of {loss}; it must be between 0 and 1"
+            );
+        }
+        ensure!(self.rho > 0, "a geodesic radius rho of 0; give 1, 2 or 3");
+        self.graph()?;
+        for &obstacles in &self.obstacles {
+            self.landscape(obstacles, 0)?;
+        }
+        Ok(())
+    }
+
+    fn total(&self) -> usize {
+        self.obstacles.len() * self.runs as usize
+    }
+
+    fn perform(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Vec<Run>>> {
+        let graph = self.graph()?;
+        by_point(
+            self.obstacles.len(),
+            self.runs,
+            8,
+            goes_on,
+            |(): &mut (), point, run| self.run(&graph, self.obstacles[point], run),
+        )
+    }
+
+    fn report(&self, runs: &[Vec<Run>]) -> Report {
+        Report::of(self, runs)
+    }
+
+    fn draw(&self, _: &[Vec<Run>], report: &Report, dir: &Path) -> Result<Vec<PathBuf>> {
+        Ok(report.draw(dir)?)
     }
 }
 

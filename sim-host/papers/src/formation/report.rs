@@ -1,9 +1,11 @@
 //! The numbers of the formation experiment, ready to be printed or plotted.
 
-use super::{Crossing, ROBOTS, Results, Way};
+use super::{Crossing, Plan, ROBOTS, Run, Way};
+use crate::experiment::Maybe;
 use crate::stats::{LogFit, Summary, mean};
 use serde::Serialize;
 use staya_controller::grid::UNIT;
+use std::fmt::{self, Display, Formatter};
 
 /// The six on all landscapes of a point, one way to cross them.
 #[derive(Clone, Debug, Serialize)]
@@ -110,20 +112,18 @@ pub struct Report {
     pub points: Vec<Point>,
 }
 
-impl Results {
-    /// The numbers. Points without a landscape are left out.
-    #[must_use]
-    pub fn report(&self) -> Report {
-        let plan = &self.plan;
-        let mut points: Vec<Point> = (0..plan.obstacles.len())
-            .filter_map(|index| self.point(index))
+impl Report {
+    pub(super) fn of(plan: &Plan, runs: &[Vec<Run>]) -> Self {
+        let by_point = plan.obstacles.iter().zip(runs);
+        let mut points: Vec<Point> = by_point
+            .filter_map(|(&obstacles, runs)| Point::of(plan, obstacles, runs))
             .collect();
         points.sort_by_key(|point| point.obstacles);
         let fitted: Vec<[f64; 2]> = points
             .iter()
             .map(|p| [f64::from(p.obstacles), p.formation.error_per_agent.mean])
             .collect();
-        Report {
+        Self {
             seed: plan.seed,
             runs: plan.runs,
             size: plan.size,
@@ -137,14 +137,10 @@ impl Results {
             points,
         }
     }
+}
 
-    fn point(&self, index: usize) -> Option<Point> {
-        let plan = &self.plan;
-        let obstacles = plan.obstacles[index];
-        let runs: Vec<&[Crossing]> = (self.runs.iter().skip(index))
-            .step_by(plan.obstacles.len())
-            .map(Vec::as_slice)
-            .collect();
+impl Point {
+    fn of(plan: &Plan, obstacles: u32, runs: &[Run]) -> Option<Self> {
         let alone: Vec<Option<f64>> = runs.iter().map(|run| run[0].time_ticks).collect();
         let alone_times: Vec<f64> = alone.iter().copied().flatten().collect();
         let mut journeys = plan
@@ -161,7 +157,7 @@ impl Results {
         let other_eps: Vec<Journey> = journeys.by_ref().take(plan.other_eps.len()).collect();
         let other_losses = journeys.collect();
         let paper = LogFit::PAPER.at(f64::from(obstacles));
-        Some(Point {
+        Some(Self {
             obstacles,
             runs: runs.len(),
             alone_arrived: alone_times.len(),
@@ -201,4 +197,118 @@ impl Journey {
             collisions: crossings.iter().map(|c| c.collisions).sum(),
         })
     }
+}
+
+impl Display for Report {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "six robots {} cells apart, {size} x {size} cells, {} classes, window radius {}, rho {}, r0 {:.2} cells, seed {}",
+            self.spacing,
+            self.classes,
+            self.radius,
+            self.rho,
+            self.halt_cells,
+            self.seed,
+            size = self.size,
+        )?;
+        writeln!(
+            f,
+            "{:>4}{:>6}{:>9}{:>8}{:>7}{:>8}{:>9}{:>10}{:>9}{:>8}{:>8}{:>7}{:>7}",
+            "N",
+            "runs",
+            "arrived",
+            "dPhi/6",
+            "+-",
+            "paper",
+            "of paper",
+            "best fit",
+            "dist",
+            "worst",
+            "alone",
+            "time",
+            "ratio"
+        )?;
+        for point in &self.points {
+            let journey = &point.formation;
+            writeln!(
+                f,
+                "{:>4}{:>6}{:>9}{:>8.3}{:>7}{:>8.3}{:>9}{:>10.3}{:>9.3}{:>8.2}{:>8}{:>7}{:>7}",
+                point.obstacles,
+                point.runs,
+                journey.arrived,
+                journey.error_per_agent.mean,
+                Maybe(journey.error_per_agent.mean_error95, 3),
+                point.paper_error_per_agent,
+                Maybe(point.error_over_paper, 2),
+                journey.best_fit_error_per_agent,
+                journey.graph_distance,
+                journey.worst_error,
+                Maybe(point.alone_time_ticks, 0),
+                Maybe(journey.time_ticks, 0),
+                Maybe(journey.time_ratio, 2),
+            )?;
+        }
+        f.write_str("dPhi/6: error per robot, cells; best fit: the same, graph placed by the best-fitting translation; dist: graph distance;\n")?;
+        f.write_str("worst: largest error per robot of any tick; alone, time: ticks until the last robot arrived without and in formation\n\n")?;
+        if let Some(fit) = self.fit {
+            writeln!(
+                f,
+                "fit:   dPhi/6 = {:.6} ln(N + 1) {:+.6}, R2 = {:.4}",
+                fit.a, fit.b, fit.r2
+            )?;
+        }
+        let paper = self.paper;
+        writeln!(
+            f,
+            "paper: dPhi/6 = {:.6} ln(N + 1) {:+.6}, R2 = {:.4}",
+            paper.a, paper.b, paper.r2
+        )?;
+        variants(f, self, Variants::Eps)?;
+        variants(f, self, Variants::Loss)
+    }
+}
+
+/// A line per value, a column per point.
+fn variants(f: &mut Formatter<'_>, report: &Report, kind: Variants) -> fmt::Result {
+    let Some(first) = report.points.first() else {
+        return Ok(());
+    };
+    let values = first.variants(kind);
+    if values.len() < 2 {
+        return Ok(());
+    }
+    let (name, value): (_, fn(&Journey) -> String) = match kind {
+        Variants::Eps => ("eps", |journey| journey.eps.to_string()),
+        Variants::Loss => ("loss %", |journey| format!("{:.0}", 100.0 * journey.loss)),
+    };
+    writeln!(
+        f,
+        "\ndPhi/6, travel time ratio and (worst error) for each {name}; [n] = only n landscapes were crossed by all"
+    )?;
+    write!(f, "{name:>8}")?;
+    for point in &report.points {
+        write!(f, "{:>20}", format!("N = {}", point.obstacles))?;
+    }
+    writeln!(f)?;
+    for (index, journey) in values.iter().enumerate() {
+        write!(f, "{:>8}", value(journey))?;
+        for point in &report.points {
+            let entry = point.variants(kind)[index];
+            let crossed = if entry.arrived < point.runs {
+                format!("[{}] ", entry.arrived)
+            } else {
+                String::new()
+            };
+            let entry = format!(
+                "{crossed}{:.2} {} ({:.1})",
+                entry.error_per_agent.mean,
+                Maybe(entry.time_ratio, 2),
+                entry.worst_error
+            );
+            write!(f, "{entry:>20}")?;
+        }
+        writeln!(f)?;
+    }
+    Ok(())
 }

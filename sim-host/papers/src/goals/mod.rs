@@ -18,17 +18,21 @@ mod report;
 mod watch;
 
 pub use report::{Point, Report};
+pub use watch::Run;
 
-use super::arena::{Arena, starts, ticks, uniform};
-use super::{MAX_RUNS, in_parallel};
+use crate::arena::{Arena, starts, ticks, uniform};
+use crate::experiment::{Experiment, GoesOn, by_point, check_runs};
+use crate::options;
+use anyhow::{Context as _, Result, ensure};
+use clap::Args;
 use staya_controller::flock::goal::GoalParams;
 use staya_controller::push_out::{Evasion, Model, PushOutParams};
 use staya_controller::rand::Rng;
 use staya_sim::engine::simulate;
 use staya_sim::scenario::{GuidanceName, Order, SafetyName, Scenario, Target};
-use staya_sim::world::Misplaced;
 use std::ops::ControlFlow;
-use watch::{Run, Watch};
+use std::path::{Path, PathBuf};
+use watch::Watch;
 
 /// Purpose of the random numbers that give each run its starts.
 const STARTS: u32 = 0x0047_0101;
@@ -39,105 +43,71 @@ const START_SIDE: f64 = 2.0;
 /// Where the first goal goes when it moves, in R_MinDist.
 const MOVED: [f64; 2] = [90.0, 20.0];
 
-/// What to do.
-#[derive(Clone, Debug, PartialEq)]
+/// What to do: the goal flock of Pavlovsky and Pavlovsky, 225 robots and three goals, group order over K1 / K2 and R_nbh.
+#[derive(Args, Clone, Debug, PartialEq)]
+#[command(allow_negative_numbers = true)]
 pub struct Plan {
-    /// Gains on the goal (K1), any finite number.
+    /// Gains of the pull to the goal.
+    #[arg(
+        long,
+        value_name = "K1,...",
+        value_delimiter = ',',
+        default_value = "0,5,15,30,50,100,150"
+    )]
     pub k1: Vec<f64>,
-    /// Gain on the middle of the neighbours (K2).
+    /// Gain of the pull to the middle of the neighbours.
+    #[arg(long, default_value_t = 50.0)]
     pub k2: f64,
-    /// Gain on robots that are too near (K3).
+    /// Gain of the push away from robots that are too near.
+    #[arg(long, default_value_t = 100.0)]
     pub k3: f64,
-    /// Neighbourhoods (R_nbh), metres, 2 R_MinDist or more.
+    /// How far neighbours are seen (R_nbh), two least distances or more; the nearest sixteen count.
+    #[arg(
+        long = "neighborhood",
+        value_name = "METRES,...",
+        value_delimiter = ',',
+        default_value = "20,40"
+    )]
     pub neighborhoods_m: Vec<f64>,
-    /// Least distance (R_MinDist), metres, 0.1 to 100. Bodies have 0.3 of it as radius.
+    /// Least distance of robots (R_MinDist); bodies have 0.3 of it as radius.
+    #[arg(long = "min-distance", value_name = "METRES", default_value_t = 10.0)]
     pub min_distance_m: f64,
-    /// Robots, 2 to 2000.
+    /// Number of robots.
+    #[arg(long, default_value_t = 225)]
     pub robots: u32,
-    /// Runs of each point, 1 or more.
+    /// Runs per point, with different starts.
+    #[arg(long = "seeds", default_value_t = 1)]
     pub runs: u32,
-    /// What is behind the flock.
+    /// Safety layer behind the flock; with none, robots overlap where they crowd around the goals.
+    #[arg(long, default_value = "orca", value_parser = options::safety())]
     pub safety: SafetyName,
-    /// For [`SafetyName::PushOut`]: what becomes of a step, and how many are evaded at once.
-    pub push_out: (Model, Evasion),
-    /// Length of a run, seconds.
+    /// What push-out makes of a step.
+    #[arg(long, default_value = "radial", value_parser = options::model())]
+    pub model: Model,
+    /// How many robots push-out evades at once.
+    #[arg(long, default_value = "multiple", value_parser = options::evasion())]
+    pub evasion: Evasion,
+    /// Length of each run.
+    #[arg(long, default_value_t = 240.0)]
     pub seconds: f64,
-    /// Length of a tick, seconds, 0.001 to 1.
+    /// Length of a tick.
+    #[arg(long = "step", value_name = "SECONDS", default_value_t = 0.1)]
     pub step_s: f64,
-    /// Whether the operator moves the first goal after a quarter of the time, when robots are under way.
+    /// The operator moves the first goal after a quarter of the time.
+    #[arg(long = "move-goal")]
     pub moves_goal: bool,
     /// Equal seeds give equal results.
+    #[arg(long, default_value_t = 1)]
     pub seed: u64,
+    /// Folder for the pictures.
+    #[arg(long, value_name = "DIR", default_value = "out/experiment-goals")]
+    pub out: PathBuf,
 }
 
 impl Default for Plan {
     fn default() -> Self {
-        Self {
-            k1: vec![0.0, 5.0, 15.0, 30.0, 50.0, 100.0, 150.0],
-            k2: 50.0,
-            k3: 100.0,
-            neighborhoods_m: vec![20.0, 40.0],
-            min_distance_m: 10.0,
-            robots: 225,
-            runs: 1,
-            safety: SafetyName::Orca,
-            push_out: (Model::Radial, Evasion::Multiple),
-            seconds: 240.0,
-            step_s: 0.1,
-            moves_goal: false,
-            seed: 1,
-        }
+        options::defaults()
     }
-}
-
-/// Why a plan cannot be carried out.
-#[derive(Debug, thiserror::Error)]
-pub enum PlanError {
-    /// Nothing to look at.
-    #[error("0 runs; make 1 or more of each point")]
-    NoRuns,
-    /// Their results would not fit the memory.
-    #[error("{0} runs; make at most {MAX_RUNS}")]
-    Runs(u32),
-    /// Nothing to run.
-    #[error("no points; give one K1 and one neighbourhood or more")]
-    NoPoints,
-    /// No flock, or no room.
-    #[error("{0} robots; give 2 to 2000")]
-    Robots(u32),
-    /// No gain.
-    #[error("a gain of {0}; give a number within +-1,000,000")]
-    Gain(f64),
-    /// Robots see nobody whom they should keep off.
-    #[error(
-        "a neighbourhood of {neighborhood_m} m; it must be {least_m} (two least distances) to 100,000"
-    )]
-    Neighborhood {
-        /// Wanted, metres.
-        neighborhood_m: f64,
-        /// The least one, metres.
-        least_m: f64,
-    },
-    /// Beacons would not tell it, or speeds.
-    #[error("a least distance of {0} m; it must be 0.1 to 30")]
-    MinDistance(f64),
-    /// Robots would go farther in a step than they should be apart.
-    #[error("a step of {0} s; it must be 0.001 to 0.5")]
-    Step(f64),
-    /// No time, or too much memory for what is measured.
-    #[error("{0} s; a run has 1 to 1,000,000 steps")]
-    Time(f64),
-    /// The robots cannot start.
-    #[error(transparent)]
-    Start(#[from] Misplaced),
-}
-
-/// What was done so far.
-#[derive(Clone, Debug)]
-pub struct Results {
-    plan: Plan,
-    /// Point after point within each number of a run.
-    runs: Vec<Run>,
 }
 
 impl Plan {
@@ -192,57 +162,7 @@ impl Plan {
         self.neighborhoods_m.iter().flat_map(over_k1).collect()
     }
 
-    /// Runs in all.
-    #[must_use]
-    pub fn total(&self) -> usize {
-        self.points().len() * self.runs as usize
-    }
-
-    /// Whether the plan can be carried out.
-    ///
-    /// # Errors
-    /// [`PlanError`]
-    pub fn check(&self) -> Result<(), PlanError> {
-        match self.runs {
-            0 => return Err(PlanError::NoRuns),
-            runs if runs > MAX_RUNS => return Err(PlanError::Runs(runs)),
-            _ => {}
-        }
-        if self.points().is_empty() {
-            return Err(PlanError::NoPoints);
-        }
-        if !(2..=2000).contains(&self.robots) {
-            return Err(PlanError::Robots(self.robots));
-        }
-        let gains = self.k1.iter().chain([&self.k2, &self.k3]);
-        for gain in gains {
-            if !(-1e6..=1e6).contains(gain) {
-                return Err(PlanError::Gain(*gain));
-            }
-        }
-        if !(0.1..=30.0).contains(&self.min_distance_m) {
-            return Err(PlanError::MinDistance(self.min_distance_m));
-        }
-        let least_m = 2.0 * self.min_distance_m;
-        for &neighborhood_m in &self.neighborhoods_m {
-            if !(least_m..=1e5).contains(&neighborhood_m) {
-                return Err(PlanError::Neighborhood {
-                    neighborhood_m,
-                    least_m,
-                });
-            }
-        }
-        if !(0.001..=0.5).contains(&self.step_s) {
-            return Err(PlanError::Step(self.step_s));
-        }
-        if !(1.0..=1e6).contains(&(self.seconds / self.step_s)) {
-            return Err(PlanError::Time(self.seconds));
-        }
-        self.scenario(0.0, least_m, 0)?;
-        Ok(())
-    }
-
-    fn scenario(&self, k1: f64, neighborhood_m: f64, run: u32) -> Result<Scenario, PlanError> {
+    fn scenario(&self, k1: f64, neighborhood_m: f64, run: u32) -> Result<Scenario> {
         let targets = self.goals_m().map(|position_m| Target {
             position_m,
             velocity_mps: [0.0; 3],
@@ -258,7 +178,7 @@ impl Plan {
                 (place, [0.0; 3])
             },
         )
-        .ok_or(PlanError::Robots(self.robots))?;
+        .with_context(|| format!("{} robots find no room; give fewer", self.robots))?;
         let speed_mps = self.speed_mps();
         let arena = Arena {
             name: "goals",
@@ -285,10 +205,9 @@ impl Plan {
         setup.goal_flock = (params, self.arrival_m() as f32);
         // Beacons are a step old.
         setup.orca.margin_m = (self.min_distance_m / 50.0) as f32;
-        let (model, evasion) = self.push_out;
         setup.push_out = PushOutParams {
-            model,
-            evasion,
+            model: self.model,
+            evasion: self.evasion,
             // A step more than bodies need.
             min_distance_m: (2.0 * self.radius_m() + speed_mps * self.step_s) as f32,
         };
@@ -305,7 +224,7 @@ impl Plan {
         Ok(arena.scenario(setup))
     }
 
-    fn run(&self, (k1, neighborhood_m): (f64, f64), number: u32) -> Result<Run, PlanError> {
+    fn run(&self, (k1, neighborhood_m): (f64, f64), number: u32) -> Result<Run> {
         let scenario = self.scenario(k1, neighborhood_m, number)?;
         let mut watch = Watch::new(self, &scenario, number == 0);
         let outcome = simulate(&scenario, |moment, robots| {
@@ -314,30 +233,78 @@ impl Plan {
         })?;
         Ok(watch.finish(outcome.trace_hash))
     }
-
-    /// Does everything, in parallel. `progress` is told how many runs are done; when it answers `false`, what is done so
-    /// far is returned.
-    ///
-    /// # Errors
-    /// [`PlanError`]
-    pub fn carry_out(&self, progress: impl FnMut(usize) -> bool) -> Result<Results, PlanError> {
-        self.check()?;
-        let points = self.points();
-        let runs = in_parallel(self.total(), 1, progress, |(): &mut (), job| {
-            self.run(points[job % points.len()], (job / points.len()) as u32)
-        })?;
-        Ok(Results {
-            plan: self.clone(),
-            runs,
-        })
-    }
 }
 
-impl Results {
-    /// Runs done.
-    #[must_use]
-    pub fn done(&self) -> usize {
-        self.runs.len()
+impl Experiment for Plan {
+    const UNIT: &'static str = "runs";
+    type Run = Run;
+    type Report = Report;
+
+    fn check(&self) -> Result<()> {
+        check_runs(self.runs, "of each point")?;
+        ensure!(
+            !self.points().is_empty(),
+            "no points; give one K1 and one neighbourhood or more"
+        );
+        ensure!(
+            (2..=2000).contains(&self.robots),
+            "{} robots; give 2 to 2000",
+            self.robots
+        );
+        for gain in self.k1.iter().chain([&self.k2, &self.k3]) {
+            ensure!(
+                (-1e6..=1e6).contains(gain),
+                "a gain of {gain}; give a number within +-1,000,000"
+            );
+        }
+        let distance_m = self.min_distance_m;
+        ensure!(
+            (0.1..=30.0).contains(&distance_m),
+            "a least distance of {distance_m} m; it must be 0.1 to 30"
+        );
+        let least_m = 2.0 * distance_m;
+        for wide_m in &self.neighborhoods_m {
+            ensure!(
+                (least_m..=1e5).contains(wide_m),
+                "a neighbourhood of {wide_m} m; it must be {least_m} (two least distances) to 100,000"
+            );
+        }
+        ensure!(
+            (0.001..=0.5).contains(&self.step_s),
+            "a step of {} s; it must be 0.001 to 0.5",
+            self.step_s
+        );
+        let steps = self.seconds / self.step_s;
+        ensure!(
+            (1.0..=1e6).contains(&steps),
+            "{} s; a run has 1 to 1,000,000 steps",
+            self.seconds
+        );
+        self.scenario(0.0, least_m, 0)?;
+        Ok(())
+    }
+
+    fn total(&self) -> usize {
+        self.points().len() * self.runs as usize
+    }
+
+    fn perform(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Vec<Run>>> {
+        let points = self.points();
+        by_point(
+            points.len(),
+            self.runs,
+            1,
+            goes_on,
+            |(): &mut (), point, run| self.run(points[point], run),
+        )
+    }
+
+    fn report(&self, runs: &[Vec<Run>]) -> Report {
+        Report::of(self, runs)
+    }
+
+    fn draw(&self, _: &[Vec<Run>], report: &Report, dir: &Path) -> Result<Vec<PathBuf>> {
+        Ok(report.draw(dir)?)
     }
 }
 

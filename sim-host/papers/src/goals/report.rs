@@ -1,12 +1,14 @@
 //! The numbers of the goal flock.
 
+use super::Plan;
 use super::watch::{Frame, Run};
-use super::{Plan, Results};
-use crate::flock::safety_name;
+use crate::experiment::Maybe;
+use crate::options::safety_name;
 use crate::stats::mean;
 use serde::Serialize;
 use staya_controller::push_out::{Evasion, Model};
 use staya_sim::scenario::SafetyName;
+use std::fmt::{self, Display, Formatter};
 
 /// One K1 and one R_nbh: means over the runs.
 #[derive(Clone, Debug, Serialize)]
@@ -74,13 +76,10 @@ pub struct Report {
     pub(super) plan: Plan,
 }
 
-impl Results {
-    /// The numbers.
-    #[must_use]
-    pub fn report(&self) -> Report {
-        let plan = &self.plan;
-        let points = plan.points();
-        Report {
+impl Report {
+    pub(super) fn of(plan: &Plan, runs: &[Vec<Run>]) -> Self {
+        let points = plan.points().into_iter().zip(runs);
+        Self {
             seed: plan.seed,
             robots: plan.robots,
             k2: plan.k2,
@@ -92,11 +91,8 @@ impl Results {
             seconds: plan.seconds,
             safety: safety(plan),
             moves_goal: plan.moves_goal,
-            points: (0..points.len())
-                .filter_map(|index| {
-                    let runs = self.runs.iter().skip(index).step_by(points.len());
-                    Point::of(plan, points[index], &runs.collect::<Vec<_>>())
-                })
+            points: points
+                .filter_map(|(point, runs)| Point::of(plan, point, runs))
                 .collect(),
             plan: plan.clone(),
         }
@@ -109,11 +105,11 @@ fn safety(plan: &Plan) -> String {
     if plan.safety != SafetyName::PushOut {
         return name.into();
     }
-    let model = match plan.push_out.0 {
+    let model = match plan.model {
         Model::Radial => "radial",
         Model::Tangential => "tangential",
     };
-    let evasion = match plan.push_out.1 {
+    let evasion = match plan.evasion {
         Evasion::Single => "single",
         Evasion::Multiple => "multiple",
     };
@@ -121,7 +117,7 @@ fn safety(plan: &Plan) -> String {
 }
 
 impl Point {
-    fn of(plan: &Plan, (k1, neighborhood_m): (f64, f64), runs: &[&Run]) -> Option<Self> {
+    fn of(plan: &Plan, (k1, neighborhood_m): (f64, f64), runs: &[Run]) -> Option<Self> {
         let first = runs.first()?;
         let robots = f64::from(plan.robots) * runs.len() as f64;
         let way = |value: fn(&super::watch::Way) -> f64| {
@@ -155,5 +151,66 @@ impl Point {
             trace_hash: format!("{:016x}", runs.iter().fold(0, |all, run| all ^ run.hash)),
             frames: first.frames.clone(),
         })
+    }
+}
+
+impl Display for Report {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "{} robots, 3 goals, R_MinDist {} m, radius {} m, K2 {}, K3 {}, {} s in steps of {} s, safety {}, seed {}",
+            self.robots,
+            self.min_distance_m,
+            self.radius_m,
+            self.k2,
+            self.k3,
+            self.seconds,
+            self.step_s,
+            self.safety,
+            self.seed
+        )?;
+        writeln!(
+            f,
+            "{:>6}{:>7}{:>8}{:>6}{:>7}{:>10}{:>8}{:>10}{:>8}{:>9}{:>20}{:>7}{:>9}",
+            "R_nbh",
+            "K1",
+            "K1/K2",
+            "runs",
+            "order",
+            "together",
+            "spread",
+            "gathered",
+            "half s",
+            "arrived",
+            "goals %",
+            "pair",
+            "overlaps"
+        )?;
+        for point in &self.points {
+            let goals = point
+                .goal_shares
+                .map(|share| format!("{:.0}", 100.0 * share));
+            writeln!(
+                f,
+                "{:>6}{:>7}{:>8}{:>6}{:>7}{:>10}{:>8}{:>10.3}{:>8}{:>9.3}{:>20}{:>7}{:>9}",
+                point.neighborhood_m,
+                point.k1,
+                Maybe(point.k1_over_k2, 2),
+                point.runs,
+                Maybe(point.polarisation, 3),
+                Maybe(point.together, 3),
+                Maybe(point.spread, 2),
+                point.gathered,
+                Maybe(point.half_gathered_s, 0),
+                point.arrived,
+                goals.join(" "),
+                Maybe(point.least_pair_over_min_distance, 3),
+                point.overlaps
+            )?;
+        }
+        f.write_str("on the way to the middle of the goals: order: polarisation; together: share of the largest group; spread: radius of the crowd over that at the start;\n")?;
+        f.write_str("gathered: share that came to the middle, half s: when half had; arrived: share at a goal at the end; goals: their shares of these;\n")?;
+        f.write_str("pair: least distance of centres over R_MinDist; overlaps: pairs of bodies, over all ticks\n")?;
+        Ok(())
     }
 }

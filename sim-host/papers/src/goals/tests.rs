@@ -13,7 +13,7 @@ fn small() -> Plan {
 }
 
 fn report(plan: &Plan) -> Report {
-    plan.carry_out(|_| true).unwrap().report()
+    plan.measure().unwrap()
 }
 
 #[test]
@@ -48,10 +48,11 @@ fn a_goal_that_is_moved_on_the_way_is_reached_where_it_is() {
 
 #[test]
 fn safety_layers_keep_bodies_apart_that_overlap_without() {
-    let plan = |safety, push_out| Plan {
+    let plan = |safety, (model, evasion)| Plan {
         k1: vec![150.0],
         safety,
-        push_out,
+        model,
+        evasion,
         ..small()
     };
     let multiple = (Model::Radial, Evasion::Multiple);
@@ -88,16 +89,11 @@ fn threads_and_early_ends_change_nothing() {
             .num_threads(threads)
             .build()
             .unwrap();
-        pool.install(|| plan.carry_out(|_| true).unwrap().runs)
+        pool.install(|| plan.carry_out(|_| true).unwrap())
     };
     assert_eq!(on(1), on(3));
-    assert!(
-        plan.carry_out(|_| false)
-            .unwrap()
-            .report()
-            .points
-            .is_empty()
-    );
+    let none = plan.carry_out(|_| false).unwrap();
+    assert!(plan.report(&none).points.is_empty());
 }
 
 #[test]

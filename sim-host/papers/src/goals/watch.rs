@@ -15,7 +15,7 @@ pub(super) const MOMENTS: [f64; 6] = [0.0, 0.125, 0.25, 0.375, 0.5, 1.0];
 
 /// What one run gave.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Run {
+pub struct Run {
     /// Means over the way; `None` when it was over before it was looked at.
     pub way: Option<Way>,
     /// Robots that were at the middle.
@@ -36,7 +36,7 @@ pub(super) struct Run {
 
 /// The crowd on its way, means over ticks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Way {
+pub struct Way {
     /// Of the robots that have not gathered yet.
     pub polarisation: f64,
     /// Share of all robots in the largest group.
@@ -47,14 +47,14 @@ pub(super) struct Way {
 
 /// All robots at a moment.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Frame {
+pub struct Frame {
     pub tick: u32,
     pub places_m: Vec<[f64; 2]>,
     pub velocities_mps: Vec<[f64; 2]>,
 }
 
 /// Measures a run as it goes.
-pub(super) struct Watch<'a> {
+pub struct Watch<'a> {
     plan: &'a Plan,
     /// Ticks to keep.
     wanted: Vec<u32>,

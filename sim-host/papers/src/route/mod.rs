@@ -19,9 +19,10 @@ mod report;
 
 pub use report::{Arrivals, Loss, Means, Point, Report, Response, decimal};
 
-use super::walk::{Task, Walk, Walker};
-use super::{MAX_RUNS, in_parallel};
+use crate::experiment::{Experiment, GoesOn, by_point, check_runs};
 use crate::optimal::Planner;
+use crate::walk::{Task, Walk, Walker};
+use anyhow::{Result, ensure};
 use serde::Serialize;
 use staya_controller::cost::Gain;
 use staya_controller::grid::{Cell, Norm, UNIT};
@@ -30,6 +31,7 @@ use staya_controller::route::{Replan, RouteParams};
 use staya_sim::terrain::generate::{self, natural, uniform};
 use staya_sim::terrain::metrics::Metrics;
 use staya_sim::terrain::{Terrain, TerrainError};
+use std::path::{Path, PathBuf};
 
 /// Purpose of the random numbers that give each run its landscape.
 const LANDSCAPES: u32 = 0x0045_0001;
@@ -181,40 +183,6 @@ impl Default for Plan {
     }
 }
 
-/// Why a plan cannot be carried out.
-#[derive(Debug, thiserror::Error)]
-pub enum PlanError {
-    /// Nothing to average.
-    #[error("0 runs; make 1 or more landscapes per point")]
-    NoRuns,
-    /// Their results would not fit the memory.
-    #[error("{0} runs; make at most {MAX_RUNS} landscapes per point")]
-    Runs(u32),
-    /// Nothing to run on.
-    #[error("no landscapes; give one number of obstacles or more")]
-    NoLands,
-    /// Start and target would coincide or lie outside.
-    #[error(
-        "a landscape of {0} x {0} cells; its side must be {min}..={max}",
-        min = SIZES.start(), max = SIZES.end()
-    )]
-    Size(u16),
-    /// The window would not fit the scratch memory, or hold no neighbour.
-    #[error("a window of radius {0}; it must be 1..={MAX_RADIUS}")]
-    Radius(u8),
-    /// Too many robots.
-    #[error("{parked} parked robots on {cells} cells; at most half of the cells can be taken")]
-    Parked {
-        /// Robots wanted.
-        parked: u32,
-        /// Cells of a landscape.
-        cells: u32,
-    },
-    /// A landscape cannot be made.
-    #[error(transparent)]
-    Terrain(#[from] TerrainError),
-}
-
 /// What one landscape gave.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
@@ -257,44 +225,6 @@ struct Scratch {
 }
 
 impl Plan {
-    /// Whether the plan can be carried out.
-    ///
-    /// # Errors
-    /// [`PlanError`]
-    pub fn check(&self) -> Result<(), PlanError> {
-        if self.runs == 0 {
-            return Err(PlanError::NoRuns);
-        }
-        if self.runs > MAX_RUNS {
-            return Err(PlanError::Runs(self.runs));
-        }
-        if self.lands.is_empty() {
-            return Err(PlanError::NoLands);
-        }
-        if !SIZES.contains(&self.size) {
-            return Err(PlanError::Size(self.size));
-        }
-        if !(1..=MAX_RADIUS).contains(&self.params.radius) {
-            return Err(PlanError::Radius(self.params.radius));
-        }
-        let cells = u32::from(self.size) * u32::from(self.size);
-        if self.parked > cells / 2 {
-            let parked = self.parked;
-            return Err(PlanError::Parked { parked, cells });
-        }
-        // The first landscape of each family says whether the family exists.
-        for land in &self.lands {
-            self.landscape(*land, 0)?;
-        }
-        Ok(())
-    }
-
-    /// Landscapes in all.
-    #[must_use]
-    pub fn total(&self) -> usize {
-        self.lands.len() * self.runs as usize
-    }
-
     /// Where robots start.
     #[must_use]
     pub const fn start(&self) -> Cell {
@@ -402,63 +332,22 @@ impl Plan {
         (run, cells)
     }
 
-    /// Carries out the plan in parallel.
-    ///
-    /// `progress` is told how many landscapes are done and answers whether to go on. Each point's landscapes
-    /// take turns, so that an early end leaves about equally many of each.
+    /// The run with the median time loss, made again, on the land with about as many obstacles as the paper shows (130); `None` without
+    /// runs.
     ///
     /// # Errors
-    /// [`PlanError`]
-    pub fn carry_out(&self, progress: impl FnMut(usize) -> bool) -> Result<Results, PlanError> {
-        self.check()?;
-        let points = self.lands.len();
-        let runs = in_parallel(self.total(), 64, progress, |scratch: &mut Scratch, job| {
-            self.run_one(scratch, self.lands[job % points], (job / points) as u32)
-        })?;
-        let mut by_land = vec![Vec::new(); points];
-        for (job, run) in runs.into_iter().enumerate() {
-            by_land[job % points].push(run);
-        }
-        Ok(Results {
-            plan: self.clone(),
-            runs: by_land,
-        })
-    }
-}
-
-/// What the runs gave.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Results {
-    /// What was asked for.
-    pub plan: Plan,
-    /// For each of the plan's lands, its runs in order; fewer than planned after an early end.
-    pub runs: Vec<Vec<Run>>,
-}
-
-impl Results {
-    /// Runs that are there.
-    #[must_use]
-    pub fn done(&self) -> usize {
-        self.runs.iter().map(Vec::len).sum()
-    }
-
-    /// The run with the median time loss, made again, on the land with about as many obstacles as the paper shows (130).
-    ///
-    /// # Errors
-    /// [`PlanError`]; there is no example without runs.
-    pub fn example(&self) -> Result<Example, PlanError> {
-        let plan = Plan {
+    /// A landscape cannot be made.
+    pub fn example(&self, runs: &[Vec<Run>]) -> Result<Option<Example>, TerrainError> {
+        let plan = Self {
             sweep: Vec::new(),
-            ..self.plan.clone()
+            ..self.clone()
         };
         let off = |land: Land| land.obstacles().map_or(u32::MAX, |n| n.abs_diff(SHOWN));
-        let (family, runs) = plan
-            .lands
-            .iter()
-            .zip(&self.runs)
-            .filter(|(_, runs)| !runs.is_empty())
-            .min_by_key(|(land, _)| off(**land))
-            .ok_or(PlanError::NoRuns)?;
+        let by_land = plan.lands.iter().zip(runs);
+        let filled = by_land.filter(|(_, runs)| !runs.is_empty());
+        let Some((family, runs)) = filled.min_by_key(|(land, _)| off(**land)) else {
+            return Ok(None);
+        };
         let loss = |run: &usize| {
             let run = &runs[*run];
             run.walks[0].cost as f64 / run.optimal_cost as f64
@@ -470,7 +359,7 @@ impl Results {
         let parked = plan.parked(*family, number);
         let mut scratch = Scratch::default();
         let (run, optimal) = plan.run_on(&mut scratch, &land, &parked);
-        Ok(Example {
+        Ok(Some(Example {
             family: *family,
             radius: plan.params.radius,
             land,
@@ -478,7 +367,67 @@ impl Results {
             optimal,
             parked,
             run,
-        })
+        }))
+    }
+}
+
+impl Experiment for Plan {
+    const UNIT: &'static str = "landscapes";
+    type Run = Run;
+    type Report = Report;
+
+    fn check(&self) -> Result<()> {
+        check_runs(self.runs, "landscapes per point")?;
+        ensure!(
+            !self.lands.is_empty(),
+            "no landscapes; give one number of obstacles or more"
+        );
+        let (size, least, most) = (self.size, SIZES.start(), SIZES.end());
+        ensure!(
+            SIZES.contains(&size),
+            "a landscape of {size} x {size} cells; its side must be {least}..={most}"
+        );
+        let radius = self.params.radius;
+        ensure!(
+            (1..=MAX_RADIUS).contains(&radius),
+            "a window of radius {radius}; it must be 1..={MAX_RADIUS}"
+        );
+        let (parked, cells) = (self.parked, u32::from(size) * u32::from(size));
+        ensure!(
+            parked <= cells / 2,
+            "{parked} parked robots on {cells} cells; at most half of the cells can be taken"
+        );
+        // The first landscape of each family says whether the family exists.
+        for land in &self.lands {
+            self.landscape(*land, 0)?;
+        }
+        Ok(())
+    }
+
+    fn total(&self) -> usize {
+        self.lands.len() * self.runs as usize
+    }
+
+    fn perform(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Vec<Run>>> {
+        by_point(
+            self.lands.len(),
+            self.runs,
+            64,
+            goes_on,
+            |scratch, land, run| Ok(self.run_one(scratch, self.lands[land], run)?),
+        )
+    }
+
+    /// The fits take up to a second per point and go in parallel.
+    fn report(&self, runs: &[Vec<Run>]) -> Report {
+        Report::of(self, runs)
+    }
+
+    fn draw(&self, runs: &[Vec<Run>], report: &Report, dir: &Path) -> Result<Vec<PathBuf>> {
+        match self.example(runs)? {
+            Some(example) => Ok(report.draw(&example, dir)?),
+            None => Ok(Vec::new()),
+        }
     }
 }
 

@@ -1,13 +1,15 @@
 //! The numbers of the route experiment, ready to be printed or plotted.
 
-use super::{Coefficient, Land, Results, Run, ticks};
+use super::{Coefficient, Land, Plan, Run, ticks};
+use crate::experiment::Maybe;
 use crate::stats::{Goodness, Histogram, NortonRice, Summary, mean};
 use rayon::prelude::*;
 use serde::Serialize;
 use staya_controller::cost::Gain;
 use staya_controller::grid::Norm;
-use staya_controller::route::{ExitRule, Replan};
+use staya_controller::route::{ExitRule, Replan, RouteParams};
 use staya_sim::terrain::metrics::obstacles_of_entropy;
+use std::fmt::{self, Display, Formatter};
 
 /// Bins of the histograms of arrival times.
 const BINS: usize = 30;
@@ -157,6 +159,9 @@ pub struct Report {
     pub points: Vec<Point>,
     /// How the losses respond to other coefficients.
     pub sweep: Vec<Response>,
+    /// What the coefficients were when they were not swept over.
+    #[serde(skip)]
+    pub(super) params: RouteParams,
 }
 
 /// A coefficient as a number.
@@ -165,16 +170,13 @@ pub fn decimal(gain: Gain) -> f64 {
     f64::from(gain.sixteenths()) / f64::from(Gain::ONE.sixteenths())
 }
 
-impl Results {
-    /// The statistics of the runs. The fits take up to a second per point and go in parallel.
-    #[must_use]
-    pub fn report(&self) -> Report {
-        let plan = &self.plan;
+impl Report {
+    pub(super) fn of(plan: &Plan, runs: &[Vec<Run>]) -> Self {
         let params = &plan.params;
         let filled: Vec<(Land, &[Run])> = plan
             .lands
             .iter()
-            .zip(&self.runs)
+            .zip(runs)
             .filter(|(_, runs)| !runs.is_empty())
             .map(|(land, runs)| (*land, runs.as_slice()))
             .collect();
@@ -200,7 +202,7 @@ impl Results {
                 })
                 .collect(),
         };
-        Report {
+        Self {
             experiment: "route",
             runs: plan.runs,
             size: plan.size,
@@ -225,6 +227,7 @@ impl Results {
             a3: decimal(params.a3),
             points,
             sweep: plan.sweep.iter().enumerate().map(response).collect(),
+            params: *params,
         }
     }
 }
@@ -278,4 +281,143 @@ fn point(land: Land, runs: &[Run], size: u16) -> Option<Point> {
         arrivals: Arrivals::of(&arrivals),
         optimal_arrivals: Arrivals::of(&optimal),
     })
+}
+
+impl Display for Report {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "{size} x {size} cells, {} classes, window radius {}, exit {}, a = ({}, {}, {}, {}), seed {}",
+            self.classes,
+            self.radius,
+            self.exit,
+            self.a0,
+            self.a1,
+            self.a2,
+            self.a3,
+            self.seed,
+            size = self.size,
+        )?;
+        writeln!(
+            f,
+            "{:<9}{:>5}{:>7}{:>9}{:>9}{:>8}{:>8}{:>9}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}",
+            "land",
+            "N",
+            "runs",
+            "arrived",
+            "dT %",
+            "+-",
+            "median",
+            "dL %",
+            "+-",
+            "median",
+            "S",
+            "TE",
+            "TED",
+            "N(S)"
+        )?;
+        for point in &self.points {
+            let column = |loss: Option<Loss>| {
+                let summary = loss.map(|loss| loss.summary);
+                [
+                    Maybe(summary.map(|s| s.mean), 2),
+                    Maybe(summary.and_then(|s| s.mean_error95), 2),
+                    Maybe(summary.map(|s| s.median), 2),
+                ]
+            };
+            let [t, te, tm] = column(point.time_loss_percent);
+            let [l, le, lm] = column(point.length_loss_percent);
+            writeln!(
+                f,
+                "{}{:>7}{:>9}{t:>9}{te:>8}{tm:>8}{l:>9}{le:>8}{lm:>8}{:>8.3}{:>8.0}{:>8.3}{:>8.1}",
+                row_name(point),
+                point.runs,
+                point.arrived,
+                point.entropy,
+                point.total_edge,
+                point.total_edge_density,
+                point.obstacles_of_entropy,
+            )?;
+        }
+        f.write_str("+-: half the 95 % interval of the mean. N(S): obstacles by entropy\n\n")?;
+        f.write_str("Travel time in ticks with its Norton-Rice law (m, alpha, beta) and the p-value of the chi-square test\n")?;
+        let names = ["mean", "m", "alpha", "beta", "p"];
+        write!(f, "{:<14}", "")?;
+        for group in ["by window", "fastest route"] {
+            write!(f, "  {group:<14}")?;
+            names.iter().try_for_each(|name| write!(f, "{name:>8}"))?;
+        }
+        writeln!(f)?;
+        for point in &self.points {
+            f.write_str(&row_name(point))?;
+            for arrivals in [&point.arrivals, &point.optimal_arrivals] {
+                write!(f, "{:16}", "")?;
+                let arrivals = arrivals.as_ref();
+                let law = arrivals.and_then(|a| a.norton_rice);
+                let p = arrivals.and_then(|a| a.goodness).map(|g| g.p_value);
+                let values = [
+                    Maybe(arrivals.map(|a| a.mean_ticks), 1).to_string(),
+                    digits(law.map(|law| law.m())),
+                    digits(law.map(|law| law.alpha())),
+                    digits(law.map(|law| law.beta())),
+                    Maybe(p, 3).to_string(),
+                ];
+                values
+                    .iter()
+                    .try_for_each(|value| write!(f, "{value:>8}"))?;
+            }
+            writeln!(f)?;
+        }
+        sweep_tables(f, self)
+    }
+}
+
+/// About three digits, whatever the size; `-` for a missing value.
+fn digits(value: Option<f64>) -> String {
+    match value {
+        Some(x) if x < 0.01 => format!("{x:.0e}"),
+        Some(x) if x < 100.0 => format!("{x:.2}"),
+        _ => Maybe(value, 1).to_string(),
+    }
+}
+
+fn row_name(point: &Point) -> String {
+    let obstacles = point.obstacles.map_or(String::from("-"), |n| n.to_string());
+    format!("{:<9}{obstacles:>5}", point.land)
+}
+
+/// One table per coefficient: a line per value, a pair of columns per point.
+fn sweep_tables(f: &mut Formatter<'_>, report: &Report) -> fmt::Result {
+    for responses in report.sweep.chunk_by(|a, b| a.coefficient == b.coefficient) {
+        let coefficient = responses[0].coefficient;
+        let name = coefficient.name();
+        writeln!(
+            f,
+            "\ndT % / dL % for other values of {name}, * = the value above; (n) = only n arrived"
+        )?;
+        write!(f, "{name:>8} ")?;
+        for point in &report.points {
+            let obstacles = point.obstacles.map_or(String::new(), |n| format!(" {n}"));
+            write!(f, "{:>20}", format!("{}{obstacles}", point.land))?;
+        }
+        writeln!(f)?;
+        for response in responses {
+            let is_own = decimal(coefficient.get(&report.params)) == response.value;
+            write!(f, "{:>8}{}", response.value, if is_own { '*' } else { ' ' })?;
+            for (means, point) in response.points.iter().zip(&report.points) {
+                write!(f, "{:>20}", cell(means, point.runs))?;
+            }
+            writeln!(f)?;
+        }
+    }
+    Ok(())
+}
+
+fn cell(means: &Means, runs: usize) -> String {
+    let (time, length) = (means.time_loss_percent, means.length_loss_percent);
+    let mut text = format!("{} / {}", Maybe(time, 1), Maybe(length, 1));
+    if means.arrived < runs {
+        text = format!("({}) {text}", means.arrived);
+    }
+    text
 }

@@ -25,12 +25,12 @@ fn plan() -> Plan {
     }
 }
 
-fn all(plan: &Plan) -> Results {
+fn all(plan: &Plan) -> Vec<Vec<Run>> {
     plan.carry_out(|_| true).unwrap()
 }
 
-fn mean_loss(results: &Results) -> f64 {
-    let runs = results.runs.iter().flatten();
+fn mean_loss(results: &[Vec<Run>]) -> f64 {
+    let runs = results.iter().flatten();
     let losses: Vec<f64> = runs
         .map(|run| run.walks[0].cost as f64 / run.optimal_cost as f64 - 1.0)
         .collect();
@@ -49,7 +49,7 @@ fn results_are_equal_on_one_thread_and_on_four() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         pool.unwrap().install(|| {
             let results = all(&plan);
-            let report = serde_json::to_string(&results.report()).unwrap();
+            let report = serde_json::to_string(&plan.report(&results)).unwrap();
             (results, report)
         })
     };
@@ -60,7 +60,6 @@ fn results_are_equal_on_one_thread_and_on_four() {
 fn small_experiment_is_the_pinned_one() {
     let results = all(&Plan { runs: 3, ..plan() });
     let numbers: Vec<_> = results
-        .runs
         .iter()
         .flatten()
         .map(|run| {
@@ -92,7 +91,7 @@ fn nobody_is_faster_than_the_optimum_though_some_ways_are_shorter() {
         ..plan()
     };
     let results = all(&plan);
-    let runs = || results.runs.iter().flatten();
+    let runs = || results.iter().flatten();
     // From (1, 1) to (38, 38) by diagonals.
     let shortest = 37 * u64::from(Dir::NorthEast.length(Norm::Euclidean));
     for run in runs() {
@@ -115,7 +114,7 @@ fn window_over_all_the_land_gives_the_optimum() {
             ..plan()
         };
         plan.params.radius = 29;
-        for run in all(&plan).runs.iter().flatten() {
+        for run in all(&plan).iter().flatten() {
             assert_eq!(run.walks[0].cost, run.optimal_cost);
         }
     }
@@ -152,16 +151,14 @@ fn early_end_keeps_a_beginning_of_every_point() {
         ..plan()
     };
     let some = plan.carry_out(|done| done < 100).unwrap();
-    assert!(some.done() > 0 && some.done() < plan.total());
     let full = all(&plan);
-    for (some, full) in some.runs.iter().zip(&full.runs) {
+    for (some, full) in some.iter().zip(&full) {
         assert_eq!(some[..], full[..some.len()]);
         assert_eq!(some.len(), 64);
     }
     let none = plan.carry_out(|_| false).unwrap();
-    assert_eq!(none.done(), 0);
-    assert!(none.report().points.is_empty());
-    assert!(matches!(none.example(), Err(PlanError::NoRuns)));
+    assert!(plan.report(&none).points.is_empty());
+    assert!(plan.example(&none).unwrap().is_none());
 }
 
 #[test]
@@ -175,7 +172,7 @@ fn sweep_walks_the_same_landscapes() {
         ..plan()
     };
     let results = all(&plan);
-    for run in results.runs.iter().flatten() {
+    for run in results.iter().flatten() {
         let [own, _, same, lonely] = run.walks[..] else {
             panic!("one walk per variant")
         };
@@ -184,12 +181,11 @@ fn sweep_walks_the_same_landscapes() {
     }
     assert!(
         results
-            .runs
             .iter()
             .flatten()
             .any(|run| run.walks[0] != run.walks[1])
     );
-    let report = results.report();
+    let report = plan.report(&results);
     assert_eq!(report.sweep[1].value, 3.0);
     let own = report.points[0].time_loss_percent.unwrap().summary.mean;
     assert_eq!(report.sweep[1].points[0].time_loss_percent, Some(own));
@@ -213,7 +209,7 @@ fn parked_robots_are_walked_round() {
         ..plan()
     };
     let results = all(&plan);
-    let example = results.example().unwrap();
+    let example = plan.example(&results).unwrap().unwrap();
     assert_eq!(example.parked.len(), 300);
     assert!(
         example
@@ -322,18 +318,15 @@ fn report_says_what_the_runs_say() {
             moves: 9,
         }],
     };
-    let results = Results {
-        plan: Plan {
-            lands: vec![Land::Natural(5)],
-            ..plan()
-        },
-        runs: vec![vec![
-            run(true, 10_500, 630),
-            run(true, 7000, 770),
-            run(false, 99_999, 9999),
-        ]],
+    let plan = Plan {
+        lands: vec![Land::Natural(5)],
+        ..plan()
     };
-    let report = results.report();
+    let report = plan.report(&[vec![
+        run(true, 10_500, 630),
+        run(true, 7000, 770),
+        run(false, 99_999, 9999),
+    ]]);
     let point = &report.points[0];
     assert_eq!((point.runs, point.arrived), (3, 2));
     let [time, length] = [point.time_loss_percent, point.length_loss_percent].map(Option::unwrap);
@@ -413,7 +406,7 @@ fn least_land_and_most_obstacles_work() {
         parked: 8,
         ..plan()
     };
-    let report = all(&plan).report();
+    let report = plan.measure().unwrap();
     assert_eq!(report.points.len(), 4);
     assert_eq!(report.points[1].entropy, 0.0);
 }
@@ -432,8 +425,9 @@ fn pictures_are_drawn_for_both_kinds_of_land() {
             ..plan()
         };
         let results = all(&plan);
-        let example = results.example().unwrap();
-        let files = results.report().draw(&example, dir.path()).unwrap();
+        let files = plan
+            .draw(&results, &plan.report(&results), dir.path())
+            .unwrap();
         let name =
             |file: &std::path::PathBuf| file.file_name().unwrap().to_str().unwrap().to_owned();
         assert!(

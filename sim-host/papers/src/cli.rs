@@ -1,22 +1,19 @@
-//! `staya experiment route | formation | movingai | swap | doorway | boids | flock | goals`: papers and benchmarks, run again.
+//! `staya experiment ...`: papers and benchmarks, run again; `staya orca ...`: what ORCA forbids.
 //!
-//! A further experiment is a module with a `clap::Args` struct and `run(&self, &Global) -> Result<Ended>`, and one
-//! line each in [`Experiment`] and [`ExperimentArgs::run`].
+//! Where a plan's fields are not its options one by one, a module here makes the plan of them.
 
-mod boids;
 mod crossing;
 mod flock;
 mod formation;
-mod goals;
 mod movingai;
 pub mod orca;
-pub mod params;
-mod results;
 mod route;
 
+use crate::experiment::Experiment as _;
+use crate::{boids, goals};
 use anyhow::Result;
 use clap::{Args, Subcommand};
-use staya_console::{Ended, Global};
+use staya_console::{Ended, Global, Stop};
 
 /// Rerun experiments from papers, and benchmarks.
 #[derive(Args, Clone, Debug)]
@@ -29,7 +26,7 @@ pub struct ExperimentArgs {
 enum Experiment {
     /// Windowed routing against the global optimum on random land (Kuznetsov, figures 2 to 4).
     Route(Box<route::RouteArgs>),
-    /// Six robots in formation on natural land: error, arrivals, travel time (Kuznetsov, figure 6).
+    /// Six robots in formation on natural land: error, arrivals, travel time (Kuznetsov, section 8, figure 6).
     Formation(Box<formation::FormationArgs>),
     /// Robots on a circle, each bound for the opposite side: who arrives, how late, how near they come.
     Swap(crossing::SwapArgs),
@@ -38,11 +35,11 @@ enum Experiment {
     /// The queries of a Moving AI benchmark: how many robots arrive, and how much longer they take.
     Movingai(movingai::MovingAiArgs),
     /// Boids on a torus: what three ways to find neighbours cost, with equal flights (Starovoitova, section 2.3).
-    Boids(boids::BoidsArgs),
+    Boids(Box<boids::Plan>),
     /// The five flocking simulations of Olfati-Saber 2006, and flocks driven at each other.
     Flock(Box<flock::FlockArgs>),
     /// 225 robots travel to three goals: how much of a group they stay (Pavlovsky and Pavlovsky).
-    Goals(Box<goals::GoalsArgs>),
+    Goals(Box<goals::Plan>),
 }
 
 impl ExperimentArgs {
@@ -51,15 +48,19 @@ impl ExperimentArgs {
     /// # Errors
     /// A parameter out of range, a file that cannot be read or written.
     pub fn run(&self, global: &Global) -> Result<Ended> {
+        let stop = Stop::on_ctrl_c()?;
         match &self.experiment {
-            Experiment::Route(args) => args.run(global),
-            Experiment::Formation(args) => args.run(global),
-            Experiment::Swap(args) => args.run(global),
-            Experiment::Doorway(args) => args.run(global),
-            Experiment::Movingai(args) => args.run(global),
-            Experiment::Boids(args) => args.run(global),
-            Experiment::Flock(args) => args.run(global),
-            Experiment::Goals(args) => args.run(global),
+            Experiment::Route(args) => args.plan().command(Some(&args.out), global, &stop),
+            Experiment::Formation(args) => args.plan()?.command(Some(&args.out), global, &stop),
+            Experiment::Swap(args) => args.plan().command(Some(&args.out()), global, &stop),
+            Experiment::Doorway(args) => args.plan().command(Some(&args.out()), global, &stop),
+            Experiment::Movingai(args) => args.plan()?.command(None, global, &stop),
+            Experiment::Boids(plan) => plan.command(Some(&plan.out), global, &stop),
+            Experiment::Flock(args) => match args.closing() {
+                Some(closing) => closing.command(None, global, &stop),
+                None => args.plan.command(Some(&args.plan.out), global, &stop),
+            },
+            Experiment::Goals(plan) => plan.command(Some(&plan.out), global, &stop),
         }
     }
 }

@@ -1,0 +1,260 @@
+//! What several experiments have on the command line: words and what they mean, parameters of routing, coefficients.
+
+use crate::movingai::Memory;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{Args, Command};
+use staya_controller::cost::Gain;
+use staya_controller::formation::{Prediction, Recovery};
+use staya_controller::grid::Norm;
+use staya_controller::push_out::{Evasion, Model};
+use staya_controller::route::{ExitRule, Replan, RouteParams};
+use staya_sim::scenario::SafetyName;
+
+/// A plan as the command line makes it without any option: every default is said once, in its arguments.
+///
+/// # Panics
+/// When an option has no default.
+pub(crate) fn defaults<P: Args>() -> P {
+    let line = P::augment_args(Command::new("defaults").no_binary_name(true));
+    let matches = line.get_matches_from([""; 0]);
+    P::from_arg_matches(&matches).expect("every option has a default")
+}
+
+/// A word of the command line, what `--help` says of it, and what it means.
+type Word<T> = (&'static str, &'static str, T);
+
+/// Takes one of these words.
+fn one_of<T: Clone + Send + Sync + 'static>(
+    words: &'static [Word<T>],
+) -> impl TypedValueParser<Value = T> {
+    let possible = words.iter().map(|(word, help, _)| {
+        let value = PossibleValue::new(*word);
+        if help.is_empty() {
+            value
+        } else {
+            value.help(*help)
+        }
+    });
+    PossibleValuesParser::new(possible).map(|given| {
+        let found = words.iter().find(|(word, ..)| *word == given);
+        found
+            .map(|(.., meaning)| meaning.clone())
+            .expect("one of the possible values")
+    })
+}
+
+/// The safety layer of robots in the plane or in space.
+pub(crate) fn safety() -> impl TypedValueParser<Value = SafetyName> {
+    one_of(&[
+        ("orca", "ORCA in the plane", SafetyName::Orca),
+        ("fly", "ORCA in space", SafetyName::Fly),
+        (
+            "push-out",
+            "Push-out; for the goal flock",
+            SafetyName::PushOut,
+        ),
+        ("none", "Nothing", SafetyName::None),
+    ])
+}
+
+/// The safety layer of robots that cross: ORCA, exact or looked up.
+pub(crate) fn crossing_safety() -> impl TypedValueParser<Value = SafetyName> {
+    one_of(&[
+        ("orca", "", SafetyName::Orca),
+        ("template_2k", "", SafetyName::Template2k),
+        ("template_8k", "", SafetyName::Template8k),
+        ("template_16k", "", SafetyName::Template16k),
+        ("template_64k", "", SafetyName::Template64k),
+        ("none", "", SafetyName::None),
+    ])
+}
+
+/// A safety layer as reports call it.
+pub(crate) const fn safety_name(safety: SafetyName) -> &'static str {
+    match safety {
+        SafetyName::None => "none",
+        SafetyName::Orca => "orca",
+        SafetyName::Template2k => "template-2k",
+        SafetyName::Template8k => "template-8k",
+        SafetyName::Template16k => "template-16k",
+        SafetyName::Template64k => "template-64k",
+        SafetyName::Fly => "fly",
+        SafetyName::PushOut => "push-out",
+    }
+}
+
+/// What push-out makes of a step.
+pub(crate) fn model() -> impl TypedValueParser<Value = Model> {
+    one_of(&[
+        ("radial", "1: along the radius", Model::Radial),
+        ("tangential", "2: turned aside", Model::Tangential),
+    ])
+}
+
+/// How many robots push-out evades at once.
+pub(crate) fn evasion() -> impl TypedValueParser<Value = Evasion> {
+    one_of(&[
+        ("single", "The nearest in the way", Evasion::Single),
+        ("multiple", "All", Evasion::Multiple),
+    ])
+}
+
+/// How robots of a formation foresee each other.
+pub(crate) fn prediction() -> impl TypedValueParser<Value = Prediction> {
+    one_of(&[
+        (
+            "constant",
+            "They go on as they announced",
+            Prediction::Constant,
+        ),
+        (
+            "reflexive",
+            "They do what the robot itself would do in their place",
+            Prediction::Reflexive,
+        ),
+    ])
+}
+
+/// What the top leader does while somebody is too far behind.
+pub(crate) fn recovery() -> impl TypedValueParser<Value = Recovery> {
+    one_of(&[
+        ("wait", "It stands", Recovery::Wait),
+        (
+            "def",
+            "It heads for where the others are off to (def)",
+            Recovery::Def,
+        ),
+    ])
+}
+
+/// How many visits a robot remembers.
+pub(crate) fn memory() -> impl TypedValueParser<Value = Memory> {
+    one_of(&[
+        ("16", "", Memory::Cells16),
+        ("64", "", Memory::Cells64),
+        ("256", "", Memory::Cells256),
+        ("1024", "", Memory::Cells1024),
+    ])
+}
+
+/// A norm of the plane.
+pub fn norm() -> impl TypedValueParser<Value = Norm> {
+    one_of(&[
+        (
+            "euclidean",
+            "A diagonal move is sqrt 2 long",
+            Norm::Euclidean,
+        ),
+        ("chebyshev", "A diagonal move is 1 long", Norm::Chebyshev),
+    ])
+}
+
+/// Which cells of a window's border end a route.
+fn exit() -> impl TypedValueParser<Value = ExitRule> {
+    one_of(&[
+        (
+            "best",
+            "Any border cell, by path cost and distance to the target (eq. 10)",
+            ExitRule::Best,
+        ),
+        (
+            "ray",
+            "Where the ray to the target crosses the border (algorithm 3)",
+            ExitRule::Ray,
+        ),
+    ])
+}
+
+/// When to search anew.
+fn replan() -> impl TypedValueParser<Value = Replan> {
+    one_of(&[
+        ("each-cell", "In each cell (algorithm 1)", Replan::EachCell),
+        (
+            "until-changed",
+            "At the end of the planned way or when something changed on it (KUZ section 3)",
+            Replan::UntilChanged,
+        ),
+    ])
+}
+
+/// Route parameters; what is not given is the controller's default.
+#[derive(Args, Clone, Debug)]
+pub struct RouteOptions {
+    /// Which cells of the window's border end a route.
+    #[arg(long, default_value = "best", value_parser = exit())]
+    exit: ExitRule,
+    /// When the robot searches its way anew.
+    #[arg(long, default_value = "each-cell", value_parser = replan())]
+    pub replan: Replan,
+    /// Weight of travel time; this and the others in steps of 1/16 (0.0625) [default: the controller's].
+    #[arg(long, value_name = "NUMBER", value_parser = gain)]
+    a0: Option<Gain>,
+    /// Ticks that a cell with another robot costs [default: the controller's].
+    #[arg(long, value_name = "TICKS", value_parser = gain)]
+    a1: Option<Gain>,
+    /// Ticks per earlier visit of a cell [default: the controller's].
+    #[arg(long, value_name = "TICKS", value_parser = gain)]
+    a2: Option<Gain>,
+    /// Ticks per cell between exit and target [default: the controller's].
+    #[arg(long, value_name = "TICKS", value_parser = gain)]
+    a3: Option<Gain>,
+}
+
+impl RouteOptions {
+    /// The parameters for a window of that radius, with the default moves (Euclidean, no corner cutting).
+    pub fn params(&self, radius: u8) -> RouteParams {
+        let default = RouteParams::default();
+        RouteParams {
+            radius,
+            exit: self.exit,
+            a0: self.a0.unwrap_or(default.a0),
+            a1: self.a1.unwrap_or(default.a1),
+            a2: self.a2.unwrap_or(default.a2),
+            a3: self.a3.unwrap_or(default.a3),
+            ..default
+        }
+    }
+}
+
+/// Reads a coefficient: a decimal number that is a whole number of sixteenths.
+pub fn gain(word: &str) -> Result<Gain, String> {
+    let value: f64 = word
+        .parse()
+        .map_err(|_| String::from("give a decimal number, such as 2.5"))?;
+    let one = f64::from(Gain::ONE.sixteenths());
+    let largest = f64::from(u16::MAX) / one;
+    if !(0.0..=largest).contains(&value) {
+        return Err(format!("give a number from 0 to {largest}"));
+    }
+    let sixteenths = value * one;
+    let below = libm::floor(sixteenths);
+    if sixteenths != below {
+        let (low, high) = (below / one, (below + 1.0) / one);
+        return Err(format!(
+            "coefficients are whole sixteenths; give {low} or {high}"
+        ));
+    }
+    Ok(Gain::from_sixteenths(sixteenths as u16))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coefficients_are_sixteenths_or_errors_with_the_neighbours() {
+        assert_eq!(gain("3"), Ok(Gain::from_int(3)));
+        assert_eq!(gain("2.5"), Ok(Gain::from_sixteenths(40)));
+        assert_eq!(gain("0.0625"), Ok(Gain::from_sixteenths(1)));
+        assert_eq!(gain("0"), Ok(Gain::ZERO));
+        assert_eq!(gain("4095.9375"), Ok(Gain::from_sixteenths(u16::MAX)));
+        assert!(gain("0.1").unwrap_err().ends_with("give 0.0625 or 0.125"));
+        for bad in ["-1", "4096", "NaN", "inf"] {
+            assert!(
+                gain(bad).unwrap_err().contains("from 0 to 4095.9375"),
+                "{bad}"
+            );
+        }
+        assert!(gain("three").unwrap_err().contains("decimal number"));
+    }
+}
