@@ -211,7 +211,7 @@ impl HilArgs {
         let mut progress = Progress::new(&scenario.name, scenario.ticks.into(), global);
         let count = scenario.robots.len();
         let mut pace = self.real_time.then(|| Pace::new(scenario.tick_s()));
-        let watch = |moment: &Moment<'_>, _: &mut dyn Iterator<Item = RobotRow>| {
+        let mut watch = |moment: &Moment<'_>, _: &mut dyn Iterator<Item = RobotRow>| {
             progress.set(moment.row.tick.into(), || {
                 format!("ticks, {} of {count} robots arrived", moment.arrived)
             });
@@ -223,7 +223,7 @@ impl HilArgs {
             }
             ControlFlow::Continue(())
         };
-        let outcome = simulate_with(scenario, Some(Box::new(devices)), watch);
+        let outcome = simulate_with(scenario, Some(Box::new(devices)), &mut watch);
         let outcome = outcome.context("the robots cannot be placed")?;
         progress.finish();
         let (trouble, interrupted) = (log.trouble(), stop.is_requested());

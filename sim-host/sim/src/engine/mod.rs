@@ -23,8 +23,7 @@ pub use grid::Grid;
 pub use ground::{Ground, Words};
 pub use operator::{Glance, Operated, operated};
 pub use plane::{PlaneGround, Senses};
-pub use simulate::WIDE;
-pub use simulate::{Moment, Outcome, simulate, simulate_with};
+pub use simulate::{Moment, Outcome, WIDE, Watch, simulate, simulate_with};
 
 use crate::metrics::{Arrivals, Keeping};
 use crate::radio::{Radio, Voice};

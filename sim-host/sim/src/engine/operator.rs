@@ -1,14 +1,12 @@
 //! A run that an operator watches and commands.
 
-use super::simulate::{WIDE, brains, formation, is_narrow, route};
-use super::{Engine, Grid, Ground, Outcome, PlaneGround, Status};
+use super::simulate::AnyEngine;
+use super::{Engine, Ground, Outcome, Status};
 use crate::radio::Voice;
 use crate::record::Motion;
 use crate::scenario::Scenario;
 use crate::world::Misplaced;
-use staya_controller::agent::{
-    CELLS, Commanded, Event, Guidance, Parameter, Safety, Unguarded, Wish,
-};
+use staya_controller::agent::{Commanded, Event, Guidance, Parameter, Safety, Wish};
 use staya_controller::robot::RobotId;
 use staya_controller::wire::{Header, Message, Wire as _};
 use staya_mavlink::frame::MAX_FRAME_LEN;
@@ -65,45 +63,22 @@ pub trait Operated: Send {
 /// # Errors
 /// See [`Grid::new`].
 pub fn operated(scenario: &Scenario) -> Result<Box<dyn Operated>, Misplaced> {
-    if let Some(setup) = &scenario.plane {
-        let ground = PlaneGround::new(scenario, setup);
-        let (speed, tolerance) = (setup.cruise_mps as f32, setup.tolerance_m as f32);
-        let brains = brains(scenario);
-        return Ok(boxed(scenario, ground, move |index| {
-            let (guidance, safety) = brains(index);
-            (Commanded::new(guidance, speed, tolerance), safety)
-        }));
-    }
-    match (&scenario.formation, is_narrow(scenario)) {
-        (None, true) => on_grid(scenario, route::<CELLS>(scenario)),
-        (None, false) => on_grid(scenario, route::<WIDE>(scenario)),
-        (Some(_), true) => on_grid(scenario, formation::<CELLS>(scenario)),
-        (Some(_), false) => on_grid(scenario, formation::<WIDE>(scenario)),
-    }
-}
-
-fn on_grid<G: Guidance<f32, Workspace: Default> + Send + 'static>(
-    scenario: &Scenario,
-    guidance: impl Fn(usize) -> G + Send + Sync + 'static,
-) -> Result<Box<dyn Operated>, Misplaced> {
-    let ground = Grid::new(scenario)?;
-    // Cell by cell there is neither speed nor distance.
-    Ok(boxed(scenario, ground, move |index| {
-        (Commanded::new(guidance(index), 0.0, 0.0), Unguarded)
-    }))
+    Ok(match AnyEngine::new(scenario)? {
+        AnyEngine::Plane(engine) => boxed(scenario, *engine),
+        AnyEngine::Narrow(engine) => boxed(scenario, *engine),
+        AnyEngine::Wide(engine) => boxed(scenario, *engine),
+    })
 }
 
 fn boxed<W, G, A>(
     scenario: &Scenario,
-    ground: W,
-    brains: impl Fn(usize) -> (Commanded<f32, G>, A) + Send + Sync + 'static,
+    mut engine: Engine<W, Commanded<f32, G>, A>,
 ) -> Box<dyn Operated>
 where
     W: Ground + 'static,
     G: Guidance<f32, Workspace: Default> + Send + 'static,
     A: Safety<f32> + Send + 'static,
 {
-    let mut engine = Engine::new(scenario, ground, brains);
     engine.keeps_events = true;
     let key = scenario.key.as_ref();
     let (wire, number) = Voice::operator(scenario.radio.format, key, 1);

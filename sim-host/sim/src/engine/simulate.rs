@@ -7,8 +7,7 @@ use crate::scenario::Scenario;
 use crate::world::Misplaced;
 use crate::world::plane::Clearance;
 use staya_controller::agent::{
-    AnyGuidance, AnySafety, CELLS, FormationGuidance, Guidance, HALF_PLANES, RouteGuidance, Safety,
-    TEMPLATE, Unguarded, VISITS,
+    AnyGuidance, AnySafety, CELLS, Commanded, Guidance, HALF_PLANES, Safety, TEMPLATE, VISITS,
 };
 use std::ops::ControlFlow;
 
@@ -52,54 +51,72 @@ pub struct Outcome {
     pub trace_hash: u64,
 }
 
+/// Looks at the swarm after each tick, and says whether to go on.
+pub type Watch<'a> =
+    dyn FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>) -> ControlFlow<()> + 'a;
+
 /// Runs a scenario until all robots have arrived, its ticks are used up or `watch` breaks. `watch`
 /// sees the start as tick 0, then each tick, with the robots' lines by rising number.
 ///
 /// # Errors
-/// See [`Engine::new`].
+/// See [`Grid::new`].
 pub fn simulate(
     scenario: &Scenario,
-    watch: impl FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>) -> ControlFlow<()>,
+    mut watch: impl FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>) -> ControlFlow<()>,
 ) -> Result<Outcome, Misplaced> {
-    simulate_with(scenario, None, watch)
+    simulate_with(scenario, None, &mut watch)
 }
 
 /// The same with some of the robots' controllers elsewhere.
 ///
 /// # Errors
-/// See [`Engine::new`].
+/// See [`Grid::new`].
 pub fn simulate_with(
     scenario: &Scenario,
     elsewhere: Option<Box<dyn Elsewhere>>,
-    watch: impl FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>) -> ControlFlow<()>,
+    watch: &mut Watch<'_>,
 ) -> Result<Outcome, Misplaced> {
-    if let Some(setup) = &scenario.plane {
-        let ground = PlaneGround::new(scenario, setup);
-        let engine = Engine::new(scenario, ground, brains(scenario));
-        return Ok(go(scenario, engine, elsewhere, watch));
-    }
-    match (&scenario.formation, is_narrow(scenario)) {
-        (None, true) => drive(scenario, route::<CELLS>(scenario), elsewhere, watch),
-        (None, false) => drive(scenario, route::<WIDE>(scenario), elsewhere, watch),
-        (Some(_), true) => drive(scenario, formation::<CELLS>(scenario), elsewhere, watch),
-        (Some(_), false) => drive(scenario, formation::<WIDE>(scenario), elsewhere, watch),
+    Ok(match AnyEngine::new(scenario)? {
+        AnyEngine::Plane(engine) => go(scenario, *engine, elsewhere, watch),
+        AnyEngine::Narrow(engine) => go(scenario, *engine, elsewhere, watch),
+        AnyEngine::Wide(engine) => go(scenario, *engine, elsewhere, watch),
+    })
+}
+
+/// What a robot's agent is made of: any guidance with searches of up to `C` cells, which an operator may take over, and any safety layer.
+pub(super) type GuidanceOf<const C: usize> = Commanded<f32, AnyGuidance<f32, C, VISITS, TEMPLATE>>;
+pub(super) type SafetyOf = AnySafety<f32, HALF_PLANES>;
+
+/// The engines that there are. Only here are they made of generic code, so that it is compiled once.
+pub(super) enum AnyEngine {
+    /// In the plane or in space.
+    Plane(Box<Engine<PlaneGround, GuidanceOf<WIDE>, SafetyOf>>),
+    /// Cell by cell, with searches of the default size.
+    Narrow(Box<Engine<Grid, GuidanceOf<CELLS>, SafetyOf>>),
+    /// Cell by cell, with larger ones.
+    Wide(Box<Engine<Grid, GuidanceOf<WIDE>, SafetyOf>>),
+}
+
+impl AnyEngine {
+    /// A scenario before its first tick.
+    pub(super) fn new(scenario: &Scenario) -> Result<Self, Misplaced> {
+        Ok(if let Some(setup) = &scenario.plane {
+            let ground = PlaneGround::new(scenario, setup);
+            Self::Plane(Box::new(Engine::new(scenario, ground, agents(scenario))))
+        } else if scenario.route.params.radius <= NARROW_RADIUS {
+            let ground = Grid::new(scenario)?;
+            Self::Narrow(Box::new(Engine::new(scenario, ground, agents(scenario))))
+        } else {
+            let ground = Grid::new(scenario)?;
+            Self::Wide(Box::new(Engine::new(scenario, ground, agents(scenario))))
+        })
     }
 }
 
-/// Whether searches of the default size are large enough.
-pub(super) const fn is_narrow(scenario: &Scenario) -> bool {
-    scenario.route.params.radius <= NARROW_RADIUS
-}
-
-pub(super) type Brain = (
-    AnyGuidance<f32, WIDE, VISITS, TEMPLATE>,
-    AnySafety<f32, HALF_PLANES>,
-);
-
-/// Guidance and safety layer of each robot in the plane.
-pub(super) fn brains(
+/// Guidance and safety layer of each robot.
+fn agents<const C: usize>(
     scenario: &Scenario,
-) -> impl Fn(usize) -> Brain + Send + Sync + 'static + use<> {
+) -> impl Fn(usize) -> (GuidanceOf<C>, SafetyOf) + Send + Sync + 'static + use<C> {
     // Only places in a formation differ from robot to robot.
     let kinds = match scenario.formation {
         Some(_) => scenario.robots.len(),
@@ -107,43 +124,17 @@ pub(super) fn brains(
     };
     let guidances: Vec<_> = (0..kinds).map(|index| scenario.guidance(index)).collect();
     let safety = scenario.safety();
-    move |index| (guidances[index % kinds].guidance(), safety.safety())
-}
-
-pub(super) fn route<const C: usize>(
-    scenario: &Scenario,
-) -> impl Fn(usize) -> RouteGuidance<C, VISITS> + use<C> {
-    let route = scenario.route;
-    move |_| {
-        RouteGuidance::new(route.params)
-            .replan(route.replan)
-            .sharpness(route.sharpness)
-    }
-}
-
-pub(super) fn formation<const C: usize>(
-    scenario: &Scenario,
-) -> impl Fn(usize) -> FormationGuidance<C, VISITS, TEMPLATE> + use<C> {
-    let (route, params) = (scenario.route, scenario.formation_params);
-    let templates = match &scenario.formation {
-        Some(formation) => formation.templates.clone(),
-        None => Vec::new(),
-    };
+    // Cell by cell there is neither speed nor distance.
+    let (speed_mps, tolerance_m) = scenario.plane.as_ref().map_or((0.0, 0.0), |setup| {
+        (setup.cruise_mps as f32, setup.tolerance_m as f32)
+    });
     move |index| {
-        let template = templates.get(index).cloned().unwrap_or_default();
-        FormationGuidance::new(route.params, params, template).sharpness(route.sharpness)
+        let guidance = guidances[index % kinds].guidance();
+        (
+            Commanded::new(guidance, speed_mps, tolerance_m),
+            safety.safety(),
+        )
     }
-}
-
-fn drive<G: Guidance<f32, Workspace: Default> + Send>(
-    scenario: &Scenario,
-    guidance: impl Fn(usize) -> G + Send + Sync + 'static,
-    elsewhere: Option<Box<dyn Elsewhere>>,
-    watch: impl FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>) -> ControlFlow<()>,
-) -> Result<Outcome, Misplaced> {
-    let ground = Grid::new(scenario)?;
-    let engine = Engine::new(scenario, ground, move |index| (guidance(index), Unguarded));
-    Ok(go(scenario, engine, elsewhere, watch))
 }
 
 /// Ticks until the end.
@@ -151,7 +142,7 @@ fn go<W, G, A>(
     scenario: &Scenario,
     mut engine: Engine<W, G, A>,
     elsewhere: Option<Box<dyn Elsewhere>>,
-    mut watch: impl FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>) -> ControlFlow<()>,
+    watch: &mut Watch<'_>,
 ) -> Outcome
 where
     W: Ground,

@@ -63,6 +63,10 @@ impl Guidance<f32> for Scout {
             ..Guided::default()
         })
     }
+
+    fn goes_to_cells(&self) -> bool {
+        true
+    }
 }
 
 /// What all scouts wrote down.

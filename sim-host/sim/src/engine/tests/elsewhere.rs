@@ -87,7 +87,7 @@ impl Elsewhere for Nearby {
 
 fn outcome(scenario: &Scenario, elsewhere: Option<Nearby>) -> Outcome {
     let boxed = elsewhere.map(|nearby| Box::new(nearby) as Box<dyn Elsewhere>);
-    simulate_with(scenario, boxed, |_, _| ControlFlow::Continue(())).expect("free starts")
+    simulate_with(scenario, boxed, &mut |_, _| ControlFlow::Continue(())).expect("free starts")
 }
 
 /// A scenario that comes with the project, cut short.
