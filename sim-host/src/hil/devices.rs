@@ -8,7 +8,7 @@ use staya_controller::time::Instant;
 use staya_runner::{
     Answer, Cause, Device, DeviceConfig, Fleet, LineFaults, Options, Reset, Statistics,
 };
-use staya_sim::engine::{Decision, Elsewhere, Status};
+use staya_sim::engine::{Decision, ExternalController, Status};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Which robots run where, and what is to happen to them.
@@ -143,7 +143,7 @@ impl OnDevices {
     }
 }
 
-impl Elsewhere for OnDevices {
+impl ExternalController for OnDevices {
     fn robots(&self) -> Vec<usize> {
         self.plan.devices.iter().map(|&(index, _)| index).collect()
     }

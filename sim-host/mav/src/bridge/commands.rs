@@ -9,9 +9,9 @@
 //!
 //! Parameters that a command does not use may be anything, NaN included.
 
-use super::craft::FlightMode;
+use super::model::FlightMode;
 use super::params::Meaning;
-use super::vehicle::{Deed, Out, Vehicle};
+use super::vehicle::{Action, Out, Vehicle};
 use crate::geo::Global;
 use staya_controller::agent::Parameter;
 use staya_mavlink::constants::*;
@@ -98,7 +98,7 @@ impl Vehicle {
         }));
         out.results.push(result);
         out.messages.append(&mut after.messages);
-        out.deeds.append(&mut after.deeds);
+        out.actions.append(&mut after.actions);
     }
 
     fn execute(&mut self, command: &Command, out: &mut Out) -> Result<(), Refusal> {
@@ -124,19 +124,19 @@ impl Vehicle {
                     frame,
                     None | Some(MAV_FRAME_GLOBAL_RELATIVE_ALT | MAV_FRAME_GLOBAL_RELATIVE_ALT_INT)
                 );
-                if self.craft.flies && !is_known {
+                if self.model.flies && !is_known {
                     return Err(MAV_RESULT_COMMAND_UNSUPPORTED_MAV_FRAME);
                 }
                 self.take_off(command.params[6], out)
             }
-            MAV_CMD_NAV_LAND if self.craft.flies => {
+            MAV_CMD_NAV_LAND if self.model.flies => {
                 self.needs_arms()?;
                 self.enter(FlightMode::Land, out);
                 Ok(())
             }
             MAV_CMD_NAV_RETURN_TO_LAUNCH => {
                 self.needs_arms()?;
-                self.set_mode(FlightMode::Return.number(self.craft.flies), out)
+                self.set_mode(FlightMode::Return.number(self.model.flies), out)
             }
             MAV_CMD_DO_REPOSITION => self.reposition(command, out),
             MAV_CMD_DO_CHANGE_SPEED => self.change_speed(second, out),
@@ -224,10 +224,10 @@ impl Vehicle {
     }
 
     fn set_mode(&mut self, number: u32, out: &mut Out) -> Result<(), Refusal> {
-        let mode = FlightMode::from_number(number, self.craft.flies);
+        let mode = FlightMode::from_number(number, self.model.flies);
         let mode = mode.ok_or(MAV_RESULT_DENIED)?;
         // Nobody leaves a formation by himself.
-        if mode == FlightMode::Return && self.craft.in_formation {
+        if mode == FlightMode::Return && self.model.in_formation {
             return Err(MAV_RESULT_DENIED);
         }
         // Who has a mission has it flown in this mode, as with ArduPilot.
@@ -252,7 +252,7 @@ impl Vehicle {
     }
 
     fn take_off(&mut self, height_m: f32, out: &mut Out) -> Result<(), Refusal> {
-        if !self.craft.flies {
+        if !self.model.flies {
             return Err(MAV_RESULT_UNSUPPORTED);
         }
         let is_sound = height_m > self.tolerance_m() && height_m <= HIGHEST_M;
@@ -263,7 +263,7 @@ impl Vehicle {
         if self.mode != FlightMode::Guided || self.is_in_air() {
             return Err(MAV_RESULT_TEMPORARILY_REJECTED);
         }
-        out.deeds.push(Deed::Wish(wish));
+        out.actions.push(Action::Wish(wish));
         Ok(())
     }
 
@@ -278,7 +278,7 @@ impl Vehicle {
             whole(flags, 255.0)?
         };
         let changes_mode = flags & MAV_DO_REPOSITION_FLAGS_CHANGE_MODE != 0;
-        if self.craft.in_formation {
+        if self.model.in_formation {
             return Err(MAV_RESULT_DENIED);
         }
         let wish = self.goal(place).ok_or(MAV_RESULT_DENIED)?;
@@ -293,7 +293,7 @@ impl Vehicle {
         if self.mode != FlightMode::Guided {
             self.enter(FlightMode::Guided, out);
         }
-        out.deeds.push(Deed::Wish(wish));
+        out.actions.push(Action::Wish(wish));
         Ok(())
     }
 
@@ -313,11 +313,11 @@ impl Vehicle {
         };
         let is_goto = current == 2 && item.command == MAV_CMD_NAV_WAYPOINT;
         let result = match self.item_place_of(spot) {
-            Some(_) if !is_goto || self.craft.in_formation => MAV_MISSION_UNSUPPORTED,
+            Some(_) if !is_goto || self.model.in_formation => MAV_MISSION_UNSUPPORTED,
             Some(_) if !self.is_armed || self.mode != FlightMode::Guided => MAV_MISSION_ERROR,
             Some(place) => match self.goal(place) {
                 Some(wish) => {
-                    out.deeds.push(Deed::Wish(wish));
+                    out.actions.push(Action::Wish(wish));
                     MAV_MISSION_ACCEPTED
                 }
                 None => MAV_MISSION_INVALID_PARAM5_X,
@@ -334,13 +334,13 @@ impl Vehicle {
         }
         let set = self.parameters.set_meaning(speed, speed_mps);
         set.map_err(|_| MAV_RESULT_DENIED)?;
-        out.deeds.push(Deed::Set(Parameter::Speed, speed_mps));
+        out.actions.push(Action::Set(Parameter::Speed, speed_mps));
         Ok(())
     }
 
     /// East, north, up of a place on the Earth.
     fn global_place(&self, spot: Spot) -> Result<[f64; 3], Refusal> {
-        let origin = &self.craft.origin;
+        let origin = &self.model.origin;
         // Heights above home are heights above the ground, which is at the origin's.
         let above_m = match spot.frame {
             MAV_FRAME_GLOBAL | MAV_FRAME_GLOBAL_INT => 0.0,
@@ -350,7 +350,7 @@ impl Vehicle {
             _ => return Err(MAV_RESULT_COMMAND_UNSUPPORTED_MAV_FRAME),
         };
         // Who does not fly has no use for a height, and may not know it.
-        let z = match (self.craft.flies, spot.z.is_nan()) {
+        let z = match (self.model.flies, spot.z.is_nan()) {
             (true, true) => return Err(MAV_RESULT_DENIED),
             (true, false) => f64::from(spot.z) + above_m,
             (false, _) => origin.place().altitude_m,
@@ -359,7 +359,7 @@ impl Vehicle {
         place.altitude_m = z;
         let place_m = origin.to_enu_m(&place).ok_or(MAV_RESULT_DENIED)?;
         let is_low = place_m[2] <= f64::from(HIGHEST_M);
-        let is_above_ground = !self.craft.flies || place_m[2] >= -0.001;
+        let is_above_ground = !self.model.flies || place_m[2] >= -0.001;
         if is_low && is_above_ground {
             Ok(place_m)
         } else {
@@ -380,7 +380,7 @@ impl Vehicle {
     fn item_place_of(&self, spot: Spot) -> Option<[f64; 3]> {
         if spot.frame == MAV_FRAME_LOCAL_NED {
             let [north, east] = [spot.x, spot.y].map(|x| f64::from(x) / 1e4);
-            let up = if self.craft.flies {
+            let up = if self.model.flies {
                 -f64::from(spot.z)
             } else {
                 0.0
@@ -397,8 +397,8 @@ impl Vehicle {
         let is_known = match item.command {
             MAV_CMD_NAV_WAYPOINT => true,
             MAV_CMD_NAV_RETURN_TO_LAUNCH => return MAV_MISSION_ACCEPTED,
-            MAV_CMD_NAV_LAND if self.craft.flies => return MAV_MISSION_ACCEPTED,
-            MAV_CMD_NAV_TAKEOFF => self.craft.flies,
+            MAV_CMD_NAV_LAND if self.model.flies => return MAV_MISSION_ACCEPTED,
+            MAV_CMD_NAV_TAKEOFF => self.model.flies,
             _ => false,
         };
         let is_frame = matches!(
@@ -411,10 +411,10 @@ impl Vehicle {
         );
         let [hold_s, ..] = item.params;
         match self.item_place(item) {
-            _ if !is_known || self.craft.in_formation => MAV_MISSION_UNSUPPORTED,
+            _ if !is_known || self.model.in_formation => MAV_MISSION_UNSUPPORTED,
             _ if !is_frame => MAV_MISSION_UNSUPPORTED_FRAME,
             _ if hold_s < 0.0 || hold_s == f32::INFINITY => MAV_MISSION_INVALID_PARAM1,
-            _ if self.craft.flies && item.z.is_nan() => MAV_MISSION_INVALID_PARAM7,
+            _ if self.model.flies && item.z.is_nan() => MAV_MISSION_INVALID_PARAM7,
             Some(place) if self.goal(place).is_some() => MAV_MISSION_ACCEPTED,
             _ => MAV_MISSION_INVALID_PARAM5_X,
         }
@@ -431,7 +431,7 @@ impl Vehicle {
         self.enter(FlightMode::Auto, out);
         self.is_on_mission = true;
         // Instead of the scenario's behaviour.
-        out.deeds.clear();
+        out.actions.clear();
         self.begin_item(out);
         Ok(())
     }

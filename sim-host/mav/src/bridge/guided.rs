@@ -1,8 +1,8 @@
 //! Setpoints, and what robots say to each other: nobody answers them.
 
-use super::craft::FlightMode;
+use super::model::FlightMode;
 use super::params::Meaning;
-use super::vehicle::{Deed, Kind, Out, Vehicle};
+use super::vehicle::{Action, Kind, Out, Vehicle};
 use crate::geo::{Global, enu};
 use staya_controller::agent::{Place, Wish};
 use staya_controller::geom::Vec3;
@@ -74,7 +74,7 @@ impl Vehicle {
             MAV_FRAME_BODY_NED | MAV_FRAME_BODY_OFFSET_NED => (true, true),
             _ => return self.refuse("setpoint: no such frame here", out),
         };
-        let used = match Used::new(target.type_mask, self.craft.flies) {
+        let used = match Used::new(target.type_mask, self.model.flies) {
             Ok(used) => used,
             Err(text) => return self.refuse(text, out),
         };
@@ -108,7 +108,7 @@ impl Vehicle {
         target: &SET_POSITION_TARGET_GLOBAL_INT_DATA,
         out: &mut Out,
     ) {
-        let origin = self.craft.origin;
+        let origin = self.model.origin;
         let ground_m = match target.coordinate_frame {
             MAV_FRAME_GLOBAL | MAV_FRAME_GLOBAL_INT => 0.0,
             MAV_FRAME_GLOBAL_RELATIVE_ALT | MAV_FRAME_GLOBAL_RELATIVE_ALT_INT => {
@@ -116,7 +116,7 @@ impl Vehicle {
             }
             _ => return self.refuse("setpoint: no such frame here", out),
         };
-        let used = match Used::new(target.type_mask, self.craft.flies) {
+        let used = match Used::new(target.type_mask, self.model.flies) {
             Ok(used) => used,
             Err(text) => return self.refuse(text, out),
         };
@@ -154,10 +154,10 @@ impl Vehicle {
         if !is_number(setpoint.place_m) || !is_number(setpoint.velocity_mps) {
             return self.refuse("setpoint: no number", out);
         }
-        if self.craft.in_formation {
+        if self.model.in_formation {
             return self.refuse("setpoint: in formation; send STAYA_GOAL", out);
         }
-        if self.craft.grid.is_some() && setpoint.velocity_mps.is_some() {
+        if self.model.grid.is_some() && setpoint.velocity_mps.is_some() {
             return self.refuse("setpoint: cell by cell there are no velocities", out);
         }
         let timeout_s = self.parameters.get(Meaning::SetpointTimeout).unwrap_or(0.0);
@@ -184,7 +184,7 @@ impl Vehicle {
             }),
         };
         match wish {
-            Some(wish) => out.deeds.push(Deed::Wish(wish)),
+            Some(wish) => out.actions.push(Action::Wish(wish)),
             None => self.refuse("setpoint: no room there", out),
         }
     }
@@ -199,7 +199,7 @@ impl Vehicle {
             sender: RobotId(from.system.into()),
             sequence,
         };
-        out.deeds.push(Deed::Tell(header, message));
+        out.actions.push(Action::Tell(header, message));
     }
 }
 

@@ -5,9 +5,9 @@
 //! it; nobody's state is changed from outside.
 
 mod commands;
-mod craft;
 mod guided;
 mod mission;
+mod model;
 mod params;
 mod swarm;
 mod telemetry;
@@ -15,8 +15,8 @@ mod telemetry;
 mod testing;
 mod vehicle;
 
-pub use craft::{Craft, FlightMode, Sample};
+pub use model::{FlightMode, Sample, VehicleModel};
 pub use params::{Meaning, NotSet, Parameters};
 pub use swarm::{BridgeError, LineReport, Options, Report, Swarm};
 pub use telemetry::Streams;
-pub use vehicle::{Deed, Out, Vehicle};
+pub use vehicle::{Action, Out, Vehicle};

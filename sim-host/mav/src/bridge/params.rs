@@ -1,6 +1,6 @@
 //! A vehicle's parameters: the controller's own, and how long a velocity setpoint holds.
 
-use super::craft::Craft;
+use super::model::VehicleModel;
 use staya_controller::agent::Parameter;
 use staya_mavlink::constants::MAV_PARAM_TYPE_REAL32;
 use staya_mavlink::dialect::PARAM_VALUE_DATA;
@@ -56,9 +56,9 @@ const fn name(parameter: Parameter) -> &'static str {
 impl Parameters {
     /// Those that a robot has: `value` says what they are.
     #[must_use]
-    pub fn new(craft: &Craft, value: impl Fn(Parameter) -> Option<f32>) -> Self {
+    pub fn new(model: &VehicleModel, value: impl Fn(Parameter) -> Option<f32>) -> Self {
         let own = Parameter::ALL.into_iter().filter_map(|parameter| {
-            let on_grid = craft.grid.is_some();
+            let on_grid = model.grid.is_some();
             let of_bodies = !matches!(parameter, Parameter::BeaconPeriod);
             if on_grid && of_bodies {
                 return None;
@@ -66,8 +66,8 @@ impl Parameters {
             let [mut least, mut greatest] = parameter.range();
             match parameter {
                 // Whoever thinks that he is smaller than he is hits others.
-                Parameter::Radius => least = craft.radius_m,
-                Parameter::Speed => greatest = craft.max_speed_mps,
+                Parameter::Radius => least = model.radius_m,
+                Parameter::Speed => greatest = model.max_speed_mps,
                 _ => {}
             }
             let value = value(parameter)?;
@@ -78,7 +78,7 @@ impl Parameters {
                 range: [least, greatest],
             })
         });
-        let timeout = craft.grid.is_none().then_some(Entry {
+        let timeout = model.grid.is_none().then_some(Entry {
             name: "SETPOINT_S",
             meaning: Meaning::SetpointTimeout,
             value: SETPOINT_TIMEOUT_S,
@@ -152,7 +152,7 @@ impl Parameters {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{craft, on_grid};
+    use super::super::testing::{model, on_grid};
     use super::*;
 
     fn padded(name: &str) -> [u8; 16] {
@@ -162,7 +162,7 @@ mod tests {
     }
 
     fn all() -> Parameters {
-        Parameters::new(&craft(), |parameter| Some(parameter.range()[1]))
+        Parameters::new(&model(), |parameter| Some(parameter.range()[1]))
     }
 
     #[test]
@@ -188,7 +188,7 @@ mod tests {
     fn what_is_out_of_its_range_changes_nothing() {
         let mut parameters = all();
         let speed = parameters.find(&padded("SPEED_MPS")).expect("it is there");
-        let limit = craft().max_speed_mps;
+        let limit = model().max_speed_mps;
         for bad in [-0.1, limit * 1.01, f32::NAN, f32::INFINITY] {
             let before = parameters.clone();
             assert_eq!(parameters.set(speed, bad), Err(NotSet::OutOf([0.0, limit])));
@@ -200,7 +200,7 @@ mod tests {
         let radius = Meaning::Controller(Parameter::Radius);
         assert!(
             parameters
-                .set_meaning(radius, craft().radius_m * 0.9)
+                .set_meaning(radius, model().radius_m * 0.9)
                 .is_err()
         );
         assert_eq!(parameters.set(99, 1.0), Err(NotSet::Unknown));

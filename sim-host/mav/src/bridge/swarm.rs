@@ -3,10 +3,10 @@
 //! A tick is done when its time has come. Between two ticks frames are taken in and what is due is sent, so that answers do not wait for
 //! ticks and rates are those of the clock on the wall, whatever `speed` the simulation has. Setpoints and missions count simulated time.
 
-use super::craft::{Craft, Sample};
+use super::model::{Sample, VehicleModel};
 use super::params::Parameters;
 use super::telemetry::Streams;
-use super::vehicle::{Deed, Out, Vehicle};
+use super::vehicle::{Action, Out, Vehicle};
 use crate::geo::Origin;
 use crate::{Counts, Endpoint, Lines, OpenError, Received, Tlog, TlogError};
 use serde::Serialize;
@@ -132,7 +132,7 @@ pub struct Swarm {
     boots: Vec<u8>,
     /// Frames of each vehicle; wraps.
     sequences: Vec<u8>,
-    craft: Arc<Craft>,
+    model: Arc<VehicleModel>,
     lines: Lines,
     options: Options,
     log: Option<Tlog>,
@@ -161,7 +161,7 @@ impl Swarm {
             return Err(BridgeError::Number(*number));
         }
         let mut engine = operated(scenario)?;
-        let craft = Arc::new(Craft::new(scenario, options.origin));
+        let model = Arc::new(VehicleModel::new(scenario, options.origin));
         let count = numbers.len();
         let mut vehicles = Vec::with_capacity(count);
         for (index, number) in numbers.into_iter().enumerate() {
@@ -169,13 +169,13 @@ impl Swarm {
             let vehicle = Vehicle::new(
                 // At most 254.
                 number as u8,
-                Arc::clone(&craft),
-                Parameters::new(&craft, |parameter| engine.parameter(index, parameter)),
+                Arc::clone(&model),
+                Parameters::new(&model, |parameter| engine.parameter(index, parameter)),
                 Streams::new(options.position_hz, index as f64 / count as f64),
                 sample,
                 options.starts_armed,
             );
-            if let Some(Deed::Wish(wish)) = vehicle.first_deed() {
+            if let Some(Action::Wish(wish)) = vehicle.first_deed() {
                 let _ = engine.command(index, wish);
             }
             vehicles.push(vehicle);
@@ -190,7 +190,7 @@ impl Swarm {
             sequences: vec![0; count],
             engine,
             vehicles,
-            craft,
+            model,
             lines,
             options,
             log,
@@ -321,7 +321,7 @@ impl Swarm {
                 self.boots[index] = glance.boot;
                 let engine = &self.engine;
                 let parameters =
-                    Parameters::new(&self.craft, |parameter| engine.parameter(index, parameter));
+                    Parameters::new(&self.model, |parameter| engine.parameter(index, parameter));
                 self.vehicles[index].restart(parameters, sample, &mut self.out);
             }
             let events = self.engine.events(index);
@@ -333,14 +333,14 @@ impl Swarm {
 
     /// What vehicle `index` wants done and sent.
     fn carry_out(&mut self, index: usize) -> Result<(), BridgeError> {
-        for deed in self.out.deeds.drain(..) {
-            match deed {
-                Deed::Tell(header, message) => self.engine.tell(index, header, &message),
+        for action in self.out.actions.drain(..) {
+            match action {
+                Action::Tell(header, message) => self.engine.tell(index, header, &message),
                 // The vehicle wishes only what its robot can do, and has looked at the range.
-                Deed::Wish(wish) => {
+                Action::Wish(wish) => {
                     let _ = self.engine.command(index, wish);
                 }
-                Deed::Set(parameter, value) => {
+                Action::Set(parameter, value) => {
                     let _ = self.engine.set_parameter(index, parameter, value);
                 }
             }

@@ -1,6 +1,6 @@
 //! What a vehicle says of itself, and how often.
 
-use super::craft::FlightMode;
+use super::model::FlightMode;
 use super::vehicle::Vehicle;
 use crate::geo::ned;
 use staya_controller::robot::Mode;
@@ -166,7 +166,7 @@ impl Vehicle {
         let heading = libm::round(f64::from(self.yaw).to_degrees() * 100.0) as i32;
         let heading = heading.rem_euclid(36_000) as u16;
         let place = |at_m: [f64; 3]| {
-            let global = self.craft.origin.to_global(at_m);
+            let global = self.model.origin.to_global(at_m);
             global.map(|global| global.to_e7())
         };
         let here = || place(sample.position_m);
@@ -249,7 +249,7 @@ impl Vehicle {
             VFR_HUD_DATA::ID => MavMessage::VFR_HUD(VFR_HUD_DATA {
                 airspeed: speed_mps as f32,
                 groundspeed: speed_mps as f32,
-                alt: (self.craft.origin.place().altitude_m + sample.position_m[2]) as f32,
+                alt: (self.model.origin.place().altitude_m + sample.position_m[2]) as f32,
                 climb: -vz,
                 heading: (heading / 100) as i16,
                 throttle: 0,
@@ -296,7 +296,7 @@ impl Vehicle {
     }
 
     fn heartbeat(&self) -> MavMessage {
-        let flies = self.craft.flies;
+        let flies = self.model.flies;
         let mut base_mode = MAV_MODE_FLAG_CUSTOM_MODE_ENABLED;
         for (flag, holds) in [
             (MAV_MODE_FLAG_SAFETY_ARMED, self.is_armed),

@@ -1,6 +1,6 @@
 //! Vehicles for tests.
 
-use super::craft::{Craft, Sample};
+use super::model::{Sample, VehicleModel};
 use super::params::Parameters;
 use super::telemetry::Streams;
 use super::vehicle::{Out, Vehicle};
@@ -30,8 +30,8 @@ pub(super) fn origin() -> Origin {
 }
 
 /// Discs in the plane.
-pub(super) fn craft() -> Craft {
-    Craft {
+pub(super) fn model() -> VehicleModel {
+    VehicleModel {
         flies: false,
         grid: None,
         in_formation: false,
@@ -43,15 +43,15 @@ pub(super) fn craft() -> Craft {
 }
 
 /// Robots on a grid of 10 x 10 cells of 2 m, with a wall at (4, 4).
-pub(super) fn on_grid() -> Craft {
+pub(super) fn on_grid() -> VehicleModel {
     let mut land = Terrain::flat(10, 10);
     land.cell_m = 2.0;
     land.set(Cell::new(4, 4), BLOCKED);
-    Craft {
+    VehicleModel {
         grid: Some(land),
         max_speed_mps: 0.0,
         radius_m: 0.0,
-        ..craft()
+        ..model()
     }
 }
 
@@ -75,7 +75,7 @@ pub(super) struct Bench {
 }
 
 impl Bench {
-    pub(super) fn new(craft: Craft) -> Self {
+    pub(super) fn new(model: VehicleModel) -> Self {
         let values = |parameter: Parameter| {
             Some(match parameter {
                 Parameter::Speed => 1.0,
@@ -83,11 +83,11 @@ impl Bench {
                 _ => parameter.range()[1],
             })
         };
-        let parameters = Parameters::new(&craft, values);
+        let parameters = Parameters::new(&model, values);
         let streams = Streams::new(10.0, 0.0);
         let sample = sample();
         Self {
-            vehicle: Vehicle::new(7, Arc::new(craft), parameters, streams, sample, true),
+            vehicle: Vehicle::new(7, Arc::new(model), parameters, streams, sample, true),
             sample,
             out: Out::default(),
         }
@@ -159,9 +159,9 @@ impl Bench {
 
     /// What the controller was told to wish at last.
     pub(super) fn wish(&self) -> Option<Wish<f32>> {
-        let mut deeds = self.out.deeds.iter().rev();
-        deeds.find_map(|deed| match deed {
-            super::vehicle::Deed::Wish(wish) => Some(*wish),
+        let mut actions = self.out.actions.iter().rev();
+        actions.find_map(|action| match action {
+            super::vehicle::Action::Wish(wish) => Some(*wish),
             _ => None,
         })
     }

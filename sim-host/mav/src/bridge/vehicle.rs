@@ -1,11 +1,11 @@
 //! One robot as a MAVLink vehicle: frames and moments in, answers and wishes out; no sockets, no clock. Read [`Vehicle::receive`]
 //! first.
 //!
-//! What a client says becomes a [`Deed`] for the robot's controller, or is refused. Commands are answered always
+//! What a client says becomes a [`Action`] for the robot's controller, or is refused. Commands are answered always
 //! (`commands`), setpoints never (`guided`), as the protocol has it; what was wrong with them is said as STATUSTEXT.
 
-use super::craft::{Craft, FlightMode, Sample};
 use super::mission::{Item, Mission};
+use super::model::{FlightMode, Sample, VehicleModel};
 use super::params::{Meaning, NotSet, Parameters};
 use super::telemetry::Streams;
 use crate::geo::FAR_M;
@@ -24,7 +24,7 @@ const TEXT_EVERY_US: u64 = 2_000_000;
 
 /// What is to be done to the robot.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Deed {
+pub enum Action {
     /// Its controller gets a wish.
     Wish(Wish<f32>),
     /// Its controller hears a message.
@@ -39,7 +39,7 @@ pub struct Out {
     /// To send, in this order.
     pub messages: Vec<MavMessage>,
     /// To do, in this order, before the next tick.
-    pub deeds: Vec<Deed>,
+    pub actions: Vec<Action>,
     /// How commands were answered.
     pub results: Vec<u8>,
 }
@@ -48,7 +48,7 @@ pub struct Out {
 #[derive(Clone, Debug)]
 pub struct Vehicle {
     pub(super) system: u8,
-    pub(super) craft: Arc<Craft>,
+    pub(super) model: Arc<VehicleModel>,
     pub(super) streams: Streams,
     pub(super) parameters: Parameters,
     pub(super) mission: Mission,
@@ -90,7 +90,7 @@ impl Vehicle {
     #[must_use]
     pub fn new(
         system: u8,
-        craft: Arc<Craft>,
+        model: Arc<VehicleModel>,
         parameters: Parameters,
         streams: Streams,
         sample: Sample,
@@ -118,7 +118,7 @@ impl Vehicle {
             there_since_us: None,
             texts: [None; Kind::COUNT],
             now_us: 0,
-            craft,
+            model,
         }
     }
 
@@ -130,11 +130,11 @@ impl Vehicle {
 
     /// What the robot must be told at its start.
     #[must_use]
-    pub const fn first_deed(&self) -> Option<Deed> {
+    pub const fn first_deed(&self) -> Option<Action> {
         if self.starts_armed {
             None
         } else {
-            Some(Deed::Wish(Wish::Off))
+            Some(Action::Wish(Wish::Off))
         }
     }
 
@@ -142,7 +142,7 @@ impl Vehicle {
     pub fn restart(&mut self, parameters: Parameters, sample: Sample, out: &mut Out) {
         let fresh = Self::new(
             self.system,
-            Arc::clone(&self.craft),
+            Arc::clone(&self.model),
             parameters,
             self.streams.clone(),
             sample,
@@ -151,7 +151,7 @@ impl Vehicle {
         let old = core::mem::replace(self, fresh);
         (self.mission, self.home_m) = (old.mission, old.home_m);
         (self.now_us, self.yaw) = (old.now_us, old.yaw);
-        out.deeds.extend(self.first_deed());
+        out.actions.extend(self.first_deed());
         self.text(out, Kind::News, MAV_SEVERITY_WARNING, "started anew");
     }
 
@@ -374,7 +374,7 @@ impl Vehicle {
         out.messages.extend(told.map(MavMessage::PARAM_VALUE));
         match set {
             Ok(Meaning::Controller(parameter)) => {
-                out.deeds.push(Deed::Set(parameter, wanted.param_value));
+                out.actions.push(Action::Set(parameter, wanted.param_value));
             }
             Ok(Meaning::SetpointTimeout) => {}
             Err(NotSet::OutOf([least, greatest])) => {
@@ -395,7 +395,7 @@ impl Vehicle {
     /// Whether it is off the ground.
     pub(super) fn is_in_air(&self) -> bool {
         let low_m = 0.02_f64.max(f64::from(self.tolerance_m()));
-        self.craft.flies && self.sample.position_m[2] > low_m
+        self.model.flies && self.sample.position_m[2] > low_m
     }
 
     /// How near is there, metres.
@@ -407,7 +407,7 @@ impl Vehicle {
     /// Changes the mode, whoever wants it, and does what the mode begins with.
     pub(super) fn enter(&mut self, mode: FlightMode, out: &mut Out) {
         if mode != self.mode {
-            let text = format!("mode {}", mode.name(self.craft.flies));
+            let text = format!("mode {}", mode.name(self.model.flies));
             self.text(out, Kind::News, MAV_SEVERITY_INFO, &text);
         }
         self.mode = mode;
@@ -430,7 +430,7 @@ impl Vehicle {
             }
             FlightMode::Land => self.goal([x, y, 0.0]).unwrap_or(Wish::Hold),
         };
-        out.deeds.push(Deed::Wish(wish));
+        out.actions.push(Action::Wish(wish));
     }
 
     /// The wish to be at a place; `None` for one that no number or no body has room for.
@@ -439,18 +439,18 @@ impl Vehicle {
         let place_m = [
             x,
             y,
-            if self.craft.flies {
+            if self.model.flies {
                 z
             } else {
                 self.sample.position_m[2]
             },
         ];
         let is_near = place_m.iter().all(|m| m.abs() <= FAR_M);
-        if !is_near || !self.craft.has_room(place_m) {
+        if !is_near || !self.model.has_room(place_m) {
             return None;
         }
-        if self.craft.grid.is_some() {
-            return Some(Wish::Cell(self.craft.cell(place_m)?));
+        if self.model.grid.is_some() {
+            return Some(Wish::Cell(self.model.cell(place_m)?));
         }
         Some(Wish::Place {
             place: Place::fixed(Position::from_metres(place_m)?),
@@ -460,13 +460,13 @@ impl Vehicle {
 
     /// Whether it is at a place, by what it knows of its own.
     fn is_at(&self, place_m: [f64; 3], near_m: f64) -> bool {
-        if self.craft.grid.is_some() {
-            return self.craft.cell(place_m) == Some(self.sample.cell);
+        if self.model.grid.is_some() {
+            return self.model.cell(place_m) == Some(self.sample.cell);
         }
         let off = [0, 1, 2].map(|axis| place_m[axis] - self.sample.position_m[axis]);
         let flat = off[0] * off[0] + off[1] * off[1];
         let all = flat
-            + if self.craft.flies {
+            + if self.model.flies {
                 off[2] * off[2]
             } else {
                 0.0
@@ -487,7 +487,7 @@ impl Vehicle {
                 self.begin(out);
                 self.text(out, Kind::News, MAV_SEVERITY_INFO, "landed, disarmed");
             }
-            FlightMode::Return if self.craft.flies => {
+            FlightMode::Return if self.model.flies => {
                 let [home_x, home_y, _] = self.home_m;
                 if self.is_at([home_x, home_y, z], 0.0) {
                     self.enter(FlightMode::Land, out);
@@ -509,7 +509,7 @@ impl Vehicle {
             MAV_CMD_NAV_RETURN_TO_LAUNCH => self.enter(FlightMode::Return, out),
             MAV_CMD_NAV_LAND => self.enter(FlightMode::Land, out),
             _ => match self.item_place(&item).and_then(|place| self.goal(place)) {
-                Some(wish) => out.deeds.push(Deed::Wish(wish)),
+                Some(wish) => out.actions.push(Action::Wish(wish)),
                 None => self.stop_mission(out),
             },
         }
@@ -540,14 +540,14 @@ impl Vehicle {
         } else {
             // It stays where it is.
             self.is_on_mission = false;
-            out.deeds.push(Deed::Wish(Wish::Hold));
+            out.actions.push(Action::Wish(Wish::Hold));
             self.text(out, Kind::News, MAV_SEVERITY_INFO, "mission done: holding");
         }
     }
 
     fn stop_mission(&mut self, out: &mut Out) {
         if core::mem::take(&mut self.is_on_mission) {
-            out.deeds.push(Deed::Wish(Wish::Hold));
+            out.actions.push(Action::Wish(Wish::Hold));
             self.text(
                 out,
                 Kind::News,

@@ -1,8 +1,8 @@
 //! What stands in `CONFIG.toml`: every field is documented here, and listed in docs/autopilots.md.
 
-use super::air::AirSetup;
-use super::duties::{Entry, Rules};
 use super::kind::Kind;
+use super::medium::MediumSetup;
+use super::offboard::{Entry, Rules};
 use crate::Endpoint;
 use crate::geo::{Global, Origin};
 use serde::Deserialize;
@@ -161,7 +161,7 @@ pub struct Config {
     /// Where that is.
     pub origin: Origin,
     /// How packets of other processes come and go.
-    pub air: AirSetup,
+    pub air: MediumSetup,
     /// Where the key of packets is.
     pub key: Option<PathBuf>,
     /// Where the key of links is.
@@ -305,7 +305,7 @@ fn address(source: &Source<'_>, field: &str, text: &str) -> Result<SocketAddr, S
     })
 }
 
-fn air(source: &Source<'_>, table: &AirTable) -> Result<AirSetup, ScenarioError> {
+fn air(source: &Source<'_>, table: &AirTable) -> Result<MediumSetup, ScenarioError> {
     let clash = |field: &str, remedy: &str| {
         Err(source.error(field, "it is not clear how packets go", remedy))
     };
@@ -313,13 +313,13 @@ fn air(source: &Source<'_>, table: &AirTable) -> Result<AirSetup, ScenarioError>
         return clash("air.peers", "give bind and peers together, or none of them");
     }
     match (&table.multicast, &table.bind, table.tunnel) {
-        (None, None, false) => Ok(AirSetup::Here),
-        (None, None, true) => Ok(AirSetup::Tunnel),
+        (None, None, false) => Ok(MediumSetup::Here),
+        (None, None, true) => Ok(MediumSetup::Tunnel),
         (Some(group), None, false) => {
             let given = address(source, "air.multicast", group)?;
             match given {
                 SocketAddr::V4(group) if group.ip().is_multicast() && group.port() > 0 => {
-                    Ok(AirSetup::Multicast {
+                    Ok(MediumSetup::Multicast {
                         group,
                         interface: table.interface.unwrap_or(Ipv4Addr::UNSPECIFIED),
                     })
@@ -336,7 +336,7 @@ fn air(source: &Source<'_>, table: &AirTable) -> Result<AirSetup, ScenarioError>
             let peers = table.peers.iter().enumerate();
             let peers = peers.map(|(i, peer)| address(source, &format!("air.peers[{i}]"), peer));
             let peers = peers.collect::<Result<Vec<_>, _>>()?;
-            Ok(AirSetup::Peers { bind, peers })
+            Ok(MediumSetup::Peers { bind, peers })
         }
         _ => clash("air", "give only one of multicast, peers and tunnel"),
     }

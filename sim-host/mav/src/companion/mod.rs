@@ -1,23 +1,25 @@
 //! The controller beside autopilots: one agent per vehicle, position and velocity from its telemetry, velocity setpoints to it.
 //!
 //! What the swarm does is a scenario in the plane, the same file that `staya run` simulates; [`Config`] adds where on the Earth that is, and which robot is
-//! which vehicle. [`Duties`] is what a companion owes its autopilot, [`Brain`] the agent beside it, [`Air`] carries packets
+//! which vehicle. [`OffboardStateMachine`] is what a companion owes its autopilot, [`Controller`] the agent beside it, [`Medium`] carries packets
 //! between companions, and [`run`] is the loop around all of them.
 
-mod air;
-mod brain;
 mod config;
-mod duties;
+mod controller;
 mod kind;
+mod medium;
+mod offboard;
 mod report;
 mod run;
-mod voice;
+mod wire;
 
-pub use air::{Air, AirError, AirSetup};
-pub use brain::{Body, Brain};
 pub use config::{Config, VehicleSetup};
-pub use duties::{AUTOPILOT, COMPONENT, Duties, Entry, Event, Fix, Rules, State, Tally};
+pub use controller::{Body, Controller};
 pub use kind::Kind;
+pub use medium::{Medium, MediumError, MediumSetup};
+pub use offboard::{
+    AUTOPILOT, COMPONENT, Entry, Event, Fix, OffboardStateMachine, Rules, State, Tally,
+};
 pub use report::{Report, VehicleReport};
 pub use run::{Options, RunError, run};
-pub use voice::{Seal, Voice, VoiceError};
+pub use wire::{CompanionWire, Seal, WireError};

@@ -1,7 +1,7 @@
 //! What came of it.
 
-use super::duties::{State, Tally};
 use super::kind::Kind;
+use super::offboard::{State, Tally};
 use crate::Counts;
 use serde::Serialize;
 use staya_controller::robot::Mode;

@@ -1,11 +1,11 @@
 //! The loop around companions: frames in, steps of agents and duties when they are due, frames out.
 
-use super::air::{Air, AirError, tunnel, tunnelled};
-use super::brain::{Body, Brain};
 use super::config::{Config, VehicleSetup};
-use super::duties::{AUTOPILOT, COMPONENT, Duties, Event, State, status_text};
+use super::controller::{Body, Controller};
+use super::medium::{Medium, MediumError, tunnel, tunnelled};
+use super::offboard::{AUTOPILOT, COMPONENT, Event, OffboardStateMachine, State, status_text};
 use super::report::{LineReport, Report, VehicleReport};
-use super::voice::{Seal, Voice, VoiceError};
+use super::wire::{CompanionWire, Seal, WireError};
 use crate::geo::{Origin, enu, ned};
 use crate::{Lines, OpenError, Peer, Received, Tlog, TlogError};
 use staya_controller::agent::Event as AgentEvent;
@@ -47,10 +47,10 @@ pub enum RunError {
     Line(#[from] OpenError),
     /// The LAN cannot be used.
     #[error(transparent)]
-    Air(#[from] AirError),
+    Medium(#[from] MediumError),
     /// The key of packets cannot be used.
     #[error(transparent)]
-    Voice(#[from] VoiceError),
+    CompanionWire(#[from] WireError),
     /// The key of links cannot be had.
     #[error(transparent)]
     Key(#[from] KeyError),
@@ -65,8 +65,8 @@ pub enum RunError {
 /// A vehicle and its companion.
 struct Vehicle {
     setup: VehicleSetup,
-    duties: Duties,
-    brain: Brain<Voice>,
+    offboard: OffboardStateMachine,
+    controller: Controller<CompanionWire>,
     /// Where its autopilot was heard.
     peer: Option<Peer>,
     sequence: u8,
@@ -84,11 +84,11 @@ struct Companions<'a> {
     reach_m: f64,
     tick: Duration,
     lines: Lines,
-    air: Air,
+    medium: Medium,
     vehicles: Vec<Vehicle>,
     /// One for each line, with a key for links.
     signing: Option<Vec<Signing>>,
-    voice: Voice,
+    wire: CompanionWire,
     options: &'a mut Options,
     began: Instant,
 }
@@ -120,14 +120,14 @@ pub fn run(
     });
     let vehicle = |setup: &VehicleSetup| Vehicle {
         setup: setup.clone(),
-        duties: Duties::new(setup.system, setup.kind, setup.rules),
-        brain: Brain::new(
+        offboard: OffboardStateMachine::new(setup.system, setup.kind, setup.rules),
+        controller: Controller::new(
             &config.scenario,
             &ground,
             setup.index,
             boot,
             config.lag_s,
-            Voice::new(config.scenario.radio.format, seal.as_ref()),
+            CompanionWire::new(config.scenario.radio.format, seal.as_ref()),
         ),
         peer: None,
         sequence: 0,
@@ -143,10 +143,10 @@ pub fn run(
         reach_m: config.reach_m,
         tick: Duration::from_micros(config.scenario.tick_us.into()),
         lines: Lines::open(&config.lines)?,
-        air: Air::open(&config.air)?,
+        medium: Medium::open(&config.air)?,
         vehicles: config.vehicles.iter().map(vehicle).collect(),
         signing,
-        voice: Voice::new(config.scenario.radio.format, None),
+        wire: CompanionWire::new(config.scenario.radio.format, None),
         options,
         began: Instant::now(),
     };
@@ -187,10 +187,10 @@ impl Companions<'_> {
     /// Waits for a frame until something is due, then does all that is.
     fn turn(&mut self) -> Result<(), RunError> {
         let now = self.now();
-        let due = |vehicle: &Vehicle| vehicle.next_step.min(vehicle.duties.due(now));
+        let due = |vehicle: &Vehicle| vehicle.next_step.min(vehicle.offboard.due(now));
         let due = self.vehicles.iter().map(due).min().unwrap_or_default();
         let [lan, else_] = GLANCES;
-        let glance = if self.air.is_lan() { lan } else { else_ };
+        let glance = if self.medium.is_lan() { lan } else { else_ };
         let mut wait = due.saturating_sub(now).min(glance);
         // What has come in meanwhile, but not what a flood would bring in.
         for _ in 0..1024 {
@@ -201,7 +201,7 @@ impl Companions<'_> {
             self.hear(&received)?;
         }
         let vehicles = &mut self.vehicles;
-        self.air.receive(|frames| {
+        self.medium.receive(|frames| {
             for vehicle in &mut *vehicles {
                 vehicle.listen(frames);
             }
@@ -257,7 +257,7 @@ impl Companions<'_> {
         });
         if let Some(vehicle) = found.filter(|_| sender.component == AUTOPILOT) {
             vehicle.peer = Some(received.peer);
-            vehicle.duties.hear(&message, now);
+            vehicle.offboard.hear(&message, now);
         }
         Ok(())
     }
@@ -274,7 +274,7 @@ impl Companions<'_> {
         let moment = vehicle.next_step + tick * u32::try_from(missed).unwrap_or(u32::MAX);
         vehicle.next_step = moment + tick;
         let body = vehicle.body(&self.origin, now);
-        let is_far = vehicle.duties.fix().is_some()
+        let is_far = vehicle.offboard.fix().is_some()
             && !body.is_some_and(|body| is_within(&body, self.reach_m));
         let is_news = is_far && !vehicle.is_far;
         vehicle.is_far = is_far;
@@ -290,16 +290,18 @@ impl Companions<'_> {
             vehicle.inbox.clear();
             return Ok(());
         };
-        let steers = vehicle.duties.state() == State::Steering && !is_far;
-        let out = vehicle.brain.step(&body, steers, &vehicle.inbox, moment);
+        let steers = vehicle.offboard.state() == State::Steering && !is_far;
+        let out = vehicle
+            .controller
+            .step(&body, steers, &vehicle.inbox, moment);
         vehicle.inbox.clear();
         vehicle.heard += u64::from(out.received);
         vehicle.refused += u64::from(out.rejected);
         let (said, events) = (out.outbox.clone(), out.events.clone());
         if steers {
-            let velocity = ned(vehicle.brain.velocity_mps());
-            vehicle.duties.steer(velocity, now);
-            let is_there = vehicle.brain.mode() == Mode::Arrived;
+            let velocity = ned(vehicle.controller.velocity_mps());
+            vehicle.offboard.steer(velocity, now);
+            let is_there = vehicle.controller.mode() == Mode::Arrived;
             if is_there && !vehicle.has_arrived {
                 self.tell(index, "arrived");
             }
@@ -322,10 +324,10 @@ impl Companions<'_> {
             }
         }
         if !self.options.dry_run {
-            self.air.send(said);
+            self.medium.send(said);
         }
-        if self.air.is_tunnel() {
-            for message in tunnel(&self.voice, said) {
+        if self.medium.is_tunnel() {
+            for message in tunnel(&self.wire, said) {
                 self.send(index, &message)?;
             }
         }
@@ -336,8 +338,8 @@ impl Companions<'_> {
     fn poll(&mut self, index: usize) -> Result<(), RunError> {
         let now = self.now();
         let mut messages = Vec::new();
-        self.vehicles[index].duties.poll(now, &mut messages);
-        while let Some(event) = self.vehicles[index].duties.event() {
+        self.vehicles[index].offboard.poll(now, &mut messages);
+        while let Some(event) = self.vehicles[index].offboard.event() {
             self.tell(index, &event.to_string());
             if let Event::State { to, .. } = event {
                 let text = format!("staya: {}", to.words());
@@ -402,7 +404,7 @@ impl Companions<'_> {
             AgentEvent::NoRoute => self.tell(index, "finds no way"),
             AgentEvent::ModeChanged {
                 to: Mode::Fault, ..
-            } if self.vehicles[index].duties.state() == State::Steering => {
+            } if self.vehicles[index].offboard.state() == State::Steering => {
                 self.tell(
                     index,
                     "stands: it is off the scenario's map, or has no goal",
@@ -418,7 +420,7 @@ impl Companions<'_> {
         for _ in 0..times {
             let now = self.now();
             for index in 0..self.vehicles.len() {
-                if let Some(message) = self.vehicles[index].duties.farewell(now) {
+                if let Some(message) = self.vehicles[index].offboard.farewell(now) {
                     self.send(index, &message)?;
                 }
             }
@@ -432,17 +434,17 @@ impl Companions<'_> {
             robot: vehicle.setup.robot.0,
             system: vehicle.setup.system,
             autopilot: vehicle.setup.kind,
-            state: vehicle.duties.state(),
-            agent: vehicle.brain.mode(),
+            state: vehicle.offboard.state(),
+            agent: vehicle.controller.mode(),
             has_arrived: vehicle.has_arrived,
             position_m: vehicle
-                .duties
+                .offboard
                 .fix()
                 .and_then(|fix| self.origin.to_enu_m(&fix.place)),
-            tally: vehicle.duties.tally(),
+            tally: vehicle.offboard.tally(),
             packets_heard: vehicle.heard,
             packets_refused: vehicle.refused,
-            neighbors: vehicle.brain.neighbors(),
+            neighbors: vehicle.controller.neighbors(),
         });
         let links = config.lines.iter().enumerate();
         let links = links.map(|(line, endpoint)| LineReport {
@@ -475,9 +477,9 @@ impl Vehicle {
 
     /// Where it is by now, and how fast; who was told to stop, or is not heard, is taken to stand where it was last.
     fn body(&self, origin: &Origin, now: Duration) -> Option<Body> {
-        let last = self.duties.fix()?;
+        let last = self.offboard.fix()?;
         let at = origin.to_enu_m(&last.place)?;
-        let Some(fix) = self.duties.fresh_fix(now) else {
+        let Some(fix) = self.offboard.fresh_fix(now) else {
             return Some(Body {
                 position_m: at,
                 velocity_mps: [0.0; 3],

@@ -1,6 +1,6 @@
 //! An attacker with a radio like the robots' own, but without their key.
 
-use crate::radio::Voice;
+use crate::radio::RobotWire;
 use crate::scenario::{Attack, AttackKind};
 use heapless::Vec as Bounded;
 use staya_controller::agent::OUTBOX;
@@ -17,7 +17,7 @@ const STARTS: u8 = u8::MAX;
 pub(super) struct Attacker {
     attack: Attack,
     cell_m: f64,
-    voice: Voice,
+    wire: RobotWire,
     /// Of its next frame.
     sequence: u16,
     version: u8,
@@ -34,7 +34,7 @@ impl Attacker {
         Self {
             attack: *attack,
             cell_m,
-            voice: Voice::new(format, key, STARTS),
+            wire: RobotWire::new(format, key, STARTS),
             sequence: 0,
             version: 0,
             heard: VecDeque::new(),
@@ -105,7 +105,7 @@ impl Attacker {
         };
         self.sequence = self.sequence.wrapping_add(1);
         let mut frame = Bounded::<u8, OUTBOX>::new();
-        self.voice
+        self.wire
             .encode(header, message, &mut frame)
             .expect("the scenario was checked for its number");
         self.outbox.extend_from_slice(&frame);

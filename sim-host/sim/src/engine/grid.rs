@@ -2,7 +2,7 @@
 
 use super::Status;
 use super::body::Kinematics;
-use super::ground::{Ground, Words};
+use super::ground::{Ground, StateWords};
 use super::hash::grid_words;
 use crate::metrics::{FormationMeter, Keeping};
 use crate::record::Motion;
@@ -111,7 +111,7 @@ impl Ground for Grid {
         self.world.count_collisions(tick)
     }
 
-    fn words(&self, index: usize, tick: u32, status: &Status) -> Words {
+    fn words(&self, index: usize, tick: u32, status: &Status) -> StateWords {
         let words = grid_words(tick, &self.world.bodies()[index], status.mode);
         words.into_iter().collect()
     }

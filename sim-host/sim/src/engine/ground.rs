@@ -29,7 +29,7 @@ pub trait Ground: Send + Sync {
     fn count_collisions(&mut self, tick: u32) -> u64;
 
     /// The state of a body after `tick`, for the fingerprint.
-    fn words(&self, index: usize, tick: u32, status: &Status) -> Words;
+    fn words(&self, index: usize, tick: u32, status: &Status) -> StateWords;
 
     /// When the body's journey was over, [`UNIT`](staya_controller::grid::UNIT)ths of a tick after the start;
     /// `None` when its robot is not where it should be.
@@ -70,4 +70,4 @@ pub trait Ground: Send + Sync {
 }
 
 /// A state in words of 64 bits.
-pub type Words = heapless::Vec<u64, 8>;
+pub type StateWords = heapless::Vec<u64, 8>;

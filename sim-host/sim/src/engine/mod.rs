@@ -10,7 +10,7 @@
 
 mod attacker;
 mod body;
-mod elsewhere;
+mod external;
 mod grid;
 mod ground;
 mod hash;
@@ -18,15 +18,15 @@ mod operator;
 mod plane;
 mod simulate;
 
-pub use elsewhere::{Decision, Elsewhere};
+pub use external::{Decision, ExternalController};
 pub use grid::Grid;
-pub use ground::{Ground, Words};
+pub use ground::{Ground, StateWords};
 pub use operator::{Glance, Operated, operated};
 pub use plane::{PlaneGround, Senses};
 pub use simulate::{Moment, Outcome, WIDE, Watch, simulate, simulate_with};
 
 use crate::metrics::{Arrivals, Keeping};
-use crate::radio::{Radio, Voice};
+use crate::radio::{Radio, RobotWire};
 use crate::record::{PacketCounts, RobotRow, TickRow};
 use crate::scenario::{Fault, Robot, Scenario};
 use attacker::Attacker;
@@ -49,7 +49,7 @@ const BATCH: usize = 64;
 #[derive(Debug)]
 struct Computer<G, A> {
     /// `None`: elsewhere.
-    agent: Option<Agent<f32, G, NEIGHBORS, A, Voice>>,
+    agent: Option<Agent<f32, G, NEIGHBORS, A, RobotWire>>,
     outbox: heapless::Vec<u8, OUTBOX>,
     /// Of the last step, if somebody wants to know.
     events: Vec<Event>,
@@ -131,8 +131,8 @@ impl<W: Ground> Tick<'_, W> {
 type Brains<G, A> = Box<dyn Fn(usize) -> (G, A) + Send + Sync>;
 
 /// The controllers that run elsewhere, and what they are made of.
-struct Outside {
-    controllers: Box<dyn Elsewhere>,
+struct External {
+    controllers: Box<dyn ExternalController>,
     /// By number, rising.
     robots: Vec<(usize, GuidanceSetup, SafetySetup)>,
 }
@@ -156,7 +156,7 @@ pub struct Engine<W, G, A> {
     /// Of the robots, then of the attackers.
     positions_m: Vec<[f64; 2]>,
     attackers: Vec<Attacker>,
-    outside: Option<Outside>,
+    external: Option<External>,
     keeps_events: bool,
     arrivals: Arrivals,
     collisions: u64,
@@ -202,7 +202,7 @@ where
             chains: robots.iter().map(|robot| Chain::new(robot.id)).collect(),
             positions_m,
             attackers,
-            outside: None,
+            external: None,
             keeps_events: false,
             arrivals: Arrivals::new(robots.len()),
             collisions: 0,
@@ -222,15 +222,19 @@ where
         engine
     }
 
-    /// The same with some of its robots' controllers elsewhere; before the first tick.
+    /// The same with some of its robots' controllers outside of this process; before the first tick.
     #[must_use]
-    pub fn with_elsewhere(mut self, scenario: &Scenario, controllers: Box<dyn Elsewhere>) -> Self {
+    pub fn with_external(
+        mut self,
+        scenario: &Scenario,
+        controllers: Box<dyn ExternalController>,
+    ) -> Self {
         let robots = controllers.robots().into_iter();
         let robots = robots.filter(|&index| index < self.robots.len());
         let robots = robots.map(|index| (index, scenario.guidance(index), scenario.safety()));
         let robots: Vec<_> = robots.collect();
         let indices: Vec<_> = robots.iter().map(|&(index, ..)| index).collect();
-        self.outside = Some(Outside {
+        self.external = Some(External {
             controllers,
             robots,
         });
@@ -254,7 +258,7 @@ where
     /// Computer number `index` with its own agent, started now.
     fn start(&self, index: usize, boot: u8) -> Computer<G, A> {
         let (guidance, safety) = (self.brains)(index);
-        let wire = Voice::new(self.format, self.key.as_ref(), boot);
+        let wire = RobotWire::new(self.format, self.key.as_ref(), boot);
         let mut agent = Agent::speaking(&self.config(index, boot), guidance, safety, wire);
         // A guidance that has no use for its task says so; the scenario was checked for that.
         let _ = agent.assign(&self.ground.task(index, self.tick));
@@ -263,7 +267,7 @@ where
 
     fn computer(
         &self,
-        agent: Option<Agent<f32, G, NEIGHBORS, A, Voice>>,
+        agent: Option<Agent<f32, G, NEIGHBORS, A, RobotWire>>,
         boot: u8,
     ) -> Computer<G, A> {
         Computer {
@@ -280,8 +284,8 @@ where
     /// Starts computer number `index` anew, here or elsewhere.
     fn restart(&mut self, index: usize, boot: u8) {
         let (config, task) = (self.config(index, boot), self.ground.task(index, self.tick));
-        let robots = self.outside.as_mut().and_then(|outside| {
-            let found = outside.robots.iter().find(|(robot, ..)| *robot == index);
+        let robots = self.external.as_mut().and_then(|external| {
+            let found = external.robots.iter().find(|(robot, ..)| *robot == index);
             let (_, guidance, safety) = found?;
             let setup = Setup {
                 agent: config,
@@ -289,7 +293,7 @@ where
                 safety: *safety,
                 format: self.format,
             };
-            outside.controllers.start(index, setup, task);
+            external.controllers.start(index, setup, task);
             Some(())
         });
         self.computers[index] = match robots {
@@ -350,13 +354,13 @@ where
         self.revive();
     }
 
-    /// Starts those anew whose controllers elsewhere have lost their state.
+    /// Starts those anew whose controllers outside of this process have lost their state.
     fn revive(&mut self) {
-        let Some(outside) = &mut self.outside else {
+        let Some(external) = &mut self.external else {
             return;
         };
-        let controllers = &mut outside.controllers;
-        let robots = outside.robots.iter().map(|&(index, ..)| index);
+        let controllers = &mut external.controllers;
+        let robots = external.robots.iter().map(|&(index, ..)| index);
         let lost: Vec<_> = robots
             .filter(|&index| controllers.has_restarted(index))
             .collect();
@@ -388,11 +392,11 @@ where
 
     /// Lets those begin whose controllers are elsewhere.
     fn send_out(&mut self) {
-        let Some(outside) = &mut self.outside else {
+        let Some(external) = &mut self.external else {
             return;
         };
         let (tick, mut senses, mut heard) = (self.tick, W::Scratch::default(), Vec::new());
-        for &(index, ..) in &outside.robots {
+        for &(index, ..) in &external.robots {
             let computer = &self.computers[index];
             if tick < computer.down_until {
                 continue;
@@ -404,22 +408,22 @@ where
             };
             let inputs = moment.inputs(index, computer, &mut senses, &mut heard);
             let now = computer.now(tick, self.tick_us);
-            outside.controllers.send(index, tick, now, &inputs);
+            external.controllers.send(index, tick, now, &inputs);
         }
     }
 
     /// Takes in what those decided. Returns how many frames they refused.
     fn collect(&mut self) -> u64 {
-        let Some(outside) = &mut self.outside else {
+        let Some(external) = &mut self.external else {
             return 0;
         };
         let mut rejected = 0;
-        for &(index, ..) in &outside.robots {
+        for &(index, ..) in &external.robots {
             let computer = &mut self.computers[index];
             if self.tick < computer.down_until {
                 continue;
             }
-            match outside.controllers.collect(index) {
+            match external.controllers.collect(index) {
                 Some(decision) => {
                     computer.outbox = decision.outbox;
                     self.commands[index] = decision.command;

@@ -2,7 +2,7 @@
 
 use super::simulate::AnyEngine;
 use super::{Engine, Ground, Outcome, Status};
-use crate::radio::Voice;
+use crate::radio::RobotWire;
 use crate::record::Motion;
 use crate::scenario::Scenario;
 use crate::world::Misplaced;
@@ -81,8 +81,8 @@ where
 {
     engine.keeps_events = true;
     let key = scenario.key.as_ref();
-    let (wire, number) = Voice::operator(scenario.radio.format, key, 1);
-    Box::new(Desk {
+    let (wire, number) = RobotWire::operator(scenario.radio.format, key, 1);
+    Box::new(OperatedEngine {
         engine,
         wire,
         number: key.map(|_| number),
@@ -91,22 +91,22 @@ where
 }
 
 /// A swarm, and what its operator speaks.
-struct Desk<W, G, A> {
+struct OperatedEngine<W, G, A> {
     engine: Engine<W, Commanded<f32, G>, A>,
-    wire: Voice,
+    wire: RobotWire,
     /// As whom it speaks if the robots have a key; otherwise as whom it is told to.
     number: Option<RobotId>,
     /// Of the next frame.
     sequence: u16,
 }
 
-impl<W, G, A> Desk<W, G, A> {
+impl<W, G, A> OperatedEngine<W, G, A> {
     fn is_up(&self, index: usize) -> bool {
         self.engine.tick >= self.engine.computers[index].down_until
     }
 }
 
-impl<W, G, A> Operated for Desk<W, G, A>
+impl<W, G, A> Operated for OperatedEngine<W, G, A>
 where
     W: Ground,
     G: Guidance<f32, Workspace: Default> + Send,

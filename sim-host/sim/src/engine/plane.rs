@@ -1,8 +1,8 @@
 //! The plane (or space) as ground of the engine.
 
 use super::Status;
-use super::ground::{Ground, Words};
-use crate::radio::Voice;
+use super::ground::{Ground, StateWords};
+use crate::radio::RobotWire;
 use crate::record::Motion;
 use crate::scenario::{Order, PlaneSetup, Robot, Scenario, Target};
 use crate::world::plane::{Clearance, Disc, Plane, narrow};
@@ -136,7 +136,7 @@ pub(super) fn frames(orders: &[Order], format: Format, key: Option<&Key>) -> Vec
     let mut frames = Vec::<(u32, Vec<u8>)>::new();
     // Each index counts by itself: what is newer may be at most half of all versions ahead.
     let mut versions = [0_u8; 256];
-    let (mut wire, sender) = Voice::operator(format, key, 0);
+    let (mut wire, sender) = RobotWire::operator(format, key, 0);
     let mut sequence = 0_u16;
     for order in orders {
         let version = &mut versions[usize::from(order.index)];
@@ -208,7 +208,7 @@ impl Ground for PlaneGround {
         Some(self.clearance)
     }
 
-    fn words(&self, index: usize, tick: u32, status: &Status) -> Words {
+    fn words(&self, index: usize, tick: u32, status: &Status) -> StateWords {
         let disc = &self.plane.discs()[index];
         let head = (u64::from(tick) << 8) | status.mode as u64;
         let numbers = disc.position_m.into_iter().chain(disc.velocity_mps);

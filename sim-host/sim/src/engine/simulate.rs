@@ -1,6 +1,6 @@
 //! A whole scenario with the guidance that it asks for.
 
-use super::{Elsewhere, Engine, Grid, Ground, PlaneGround};
+use super::{Engine, ExternalController, Grid, Ground, PlaneGround};
 use crate::metrics::Keeping;
 use crate::record::{PacketCounts, RobotRow, TickRow};
 use crate::scenario::Scenario;
@@ -67,19 +67,19 @@ pub fn simulate(
     simulate_with(scenario, None, &mut watch)
 }
 
-/// The same with some of the robots' controllers elsewhere.
+/// The same with some of the robots' controllers outside of this process.
 ///
 /// # Errors
 /// See [`Grid::new`].
 pub fn simulate_with(
     scenario: &Scenario,
-    elsewhere: Option<Box<dyn Elsewhere>>,
+    external: Option<Box<dyn ExternalController>>,
     watch: &mut Watch<'_>,
 ) -> Result<Outcome, Misplaced> {
     Ok(match AnyEngine::new(scenario)? {
-        AnyEngine::Plane(engine) => go(scenario, *engine, elsewhere, watch),
-        AnyEngine::Narrow(engine) => go(scenario, *engine, elsewhere, watch),
-        AnyEngine::Wide(engine) => go(scenario, *engine, elsewhere, watch),
+        AnyEngine::Plane(engine) => go(scenario, *engine, external, watch),
+        AnyEngine::Narrow(engine) => go(scenario, *engine, external, watch),
+        AnyEngine::Wide(engine) => go(scenario, *engine, external, watch),
     })
 }
 
@@ -141,7 +141,7 @@ fn agents<const C: usize>(
 fn go<W, G, A>(
     scenario: &Scenario,
     mut engine: Engine<W, G, A>,
-    elsewhere: Option<Box<dyn Elsewhere>>,
+    external: Option<Box<dyn ExternalController>>,
     watch: &mut Watch<'_>,
 ) -> Outcome
 where
@@ -149,8 +149,8 @@ where
     G: Guidance<f32, Workspace: Default> + Send,
     A: Safety<f32> + Send,
 {
-    if let Some(controllers) = elsewhere {
-        engine = engine.with_elsewhere(scenario, controllers);
+    if let Some(controllers) = external {
+        engine = engine.with_external(scenario, controllers);
     }
     let mut row = engine.first_row();
     loop {

@@ -353,6 +353,6 @@ proptest! {
 }
 
 mod attack;
-mod elsewhere;
+mod external;
 mod operator;
 mod plane;

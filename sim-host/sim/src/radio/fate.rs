@@ -1,6 +1,6 @@
 //! What happens to a packet on its way to one receiver.
 
-use super::air::Packet;
+use super::medium::Packet;
 use super::params::{Burst, RadioParams};
 use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;

@@ -5,16 +5,16 @@
 //! bandwidth do. Everything random about a packet is a function of (seed, tick, sender,
 //! number within the tick, receiver), so that neither threads nor the order of robots matter.
 
-mod air;
 mod fate;
+mod medium;
 mod params;
-mod voice;
+mod wire;
 
 pub use params::{Burst, RadioParams};
-pub use voice::{PEERS, Voice};
+pub use wire::{PEERS, RobotWire};
 
-use air::Air;
 use fate::{Fates, Verdict};
+use medium::Medium;
 use rayon::prelude::*;
 use serde::Serialize;
 use staya_controller::robot::RobotId;
@@ -84,7 +84,7 @@ struct Receiver {
 #[derive(Clone, Debug)]
 pub struct Radio {
     fates: Fates,
-    air: Air,
+    medium: Medium,
     receivers: Vec<Receiver>,
     /// Sum over all ticks.
     total: Counts,
@@ -108,7 +108,7 @@ impl Radio {
             .collect();
         Self {
             fates: Fates::new(params, seed, tick_us),
-            air: Air::new(params, seed, tick_us, receivers.len()),
+            medium: Medium::new(params, seed, tick_us, receivers.len()),
             receivers,
             total: Counts::default(),
         }
@@ -141,16 +141,16 @@ impl Radio {
         outbox: impl Fn(usize) -> &'a [u8],
     ) -> Counts {
         let ids = self.receivers.iter().map(|receiver| receiver.id);
-        let sent = self.air.fill(tick, ids, positions_m, outbox);
-        let (air, fates) = (&self.air, &self.fates);
+        let sent = self.medium.fill(tick, ids, positions_m, outbox);
+        let (medium, fates) = (&self.medium, &self.fates);
         let received = self
             .receivers
             .par_iter_mut()
             .with_min_len(64)
             .enumerate()
             .map_init(Vec::new, |heard, (index, receiver)| {
-                air.heard_at(positions_m[index], receiver.id, heard);
-                receiver.receive(tick, air, heard, fates)
+                medium.heard_at(positions_m[index], receiver.id, heard);
+                receiver.receive(tick, medium, heard, fates)
             })
             .reduce(Counts::default, Add::add);
         let counts = sent + received;
@@ -160,11 +160,11 @@ impl Radio {
 }
 
 impl Receiver {
-    fn receive(&mut self, tick: u32, air: &Air, heard: &[u32], fates: &Fates) -> Counts {
+    fn receive(&mut self, tick: u32, medium: &Medium, heard: &[u32], fates: &Fates) -> Counts {
         let mut counts = Counts::default();
         self.inbox.clear();
         for &at in heard {
-            let packet = air.packet(at);
+            let packet = medium.packet(at);
             let mut draws = fates.draws(packet, self.id, tick);
             let Verdict::Arrives { copies } = fates.judge(&mut draws, packet, self.id, tick) else {
                 counts.lost += 1;
@@ -178,7 +178,7 @@ impl Receiver {
                     Some(_) => &mut self.bytes,
                 };
                 let start = buffer.len();
-                buffer.extend_from_slice(air.bytes(packet));
+                buffer.extend_from_slice(medium.bytes(packet));
                 counts.delivered += 1;
                 counts.corrupted += u64::from(fates.damage(&mut draws, &mut buffer[start..]));
                 if let Some(due_us) = due_us {

@@ -4,7 +4,7 @@ use super::check::within;
 use super::source::Source;
 use super::{Attack, AttackKind, AttackTable, Robot, ScenarioError, ScenarioFile};
 use crate::key::{self, KeyFile};
-use crate::radio::{PEERS, Voice};
+use crate::radio::{PEERS, RobotWire};
 use staya_controller::auth::Key;
 use staya_controller::robot::RobotId;
 
@@ -53,7 +53,7 @@ pub(super) fn key(
         let remedy = format!("give at most {}, or leave this table out", PEERS - 2);
         return Err(source.error("authentication", problem, remedy));
     }
-    let most = Voice::max_robot(file.radio.format, true);
+    let most = RobotWire::max_robot(file.radio.format, true);
     if let Some(robot) = robots.iter().find(|robot| robot.id > most) {
         let problem = format!("robot {} has no number in frames with a tag", robot.id.0);
         let remedy = format!("give numbers up to {}", most.0);
@@ -120,7 +120,7 @@ fn attack(
     };
     let last = robots.last().map_or(RobotId(1), |robot| robot.id);
     let claims = table.claims.map_or(last, RobotId);
-    let most = Voice::max_robot(file.radio.format, true);
+    let most = RobotWire::max_robot(file.radio.format, true);
     if !claims.is_somebody() || claims > most {
         let remedy = format!("give 1 to {}", most.0);
         return Err(source.error(

@@ -1,4 +1,4 @@
-use super::super::testing::{Bench, GCS, craft, on_grid, origin};
+use super::super::testing::{Bench, GCS, model, on_grid, origin};
 use super::*;
 use staya_controller::geom::Vec3;
 use staya_controller::grid::Cell;
@@ -9,10 +9,10 @@ use staya_sim::world::plane::Solid;
 const NAN: f32 = f32::NAN;
 const NONE: [f32; 7] = [0.0; 7];
 
-fn flying() -> Craft {
-    Craft {
+fn flying() -> VehicleModel {
+    VehicleModel {
         flies: true,
-        ..craft()
+        ..model()
     }
 }
 
@@ -25,9 +25,9 @@ fn two(first: f32, second: f32) -> [f32; 7] {
 }
 
 /// In GUIDED.
-fn guided(craft: Craft) -> Bench {
-    let mut bench = Bench::new(craft);
-    let number = FlightMode::Guided.number(bench.vehicle.craft.flies);
+fn guided(model: VehicleModel) -> Bench {
+    let mut bench = Bench::new(model);
+    let number = FlightMode::Guided.number(bench.vehicle.model.flies);
     let result = bench.command(MAV_CMD_DO_SET_MODE, two(1.0, number as f32));
     assert_eq!(
         (result, bench.wish()),

@@ -28,7 +28,7 @@ fn what_is_left_out_is_cautious() {
     assert_eq!(vehicle.rules.entry, Entry::Wait);
     assert!(!vehicle.rules.arm && !vehicle.rules.takeoff);
     assert_eq!(vehicle.rules.stale, Duration::from_secs(1));
-    assert_eq!(config.air, AirSetup::Here);
+    assert_eq!(config.air, MediumSetup::Here);
 }
 
 #[test]
@@ -77,14 +77,14 @@ fn a_goal_on_the_earth_is_metres() {
 #[test]
 fn ways_to_other_companions() {
     let config = parse(&text("[air]\nmulticast = \"239.1.2.3:5000\"", "")).unwrap();
-    assert!(matches!(config.air, AirSetup::Multicast { .. }));
+    assert!(matches!(config.air, MediumSetup::Multicast { .. }));
     let config = parse(&text(
         "[air]\nbind = \"0.0.0.0:5000\"\npeers = [\"10.0.0.2:5000\"]",
         "",
     ));
-    assert!(matches!(config.unwrap().air, AirSetup::Peers { .. }));
+    assert!(matches!(config.unwrap().air, MediumSetup::Peers { .. }));
     let config = parse(&text("[air]\ntunnel = true", "")).unwrap();
-    assert_eq!(config.air, AirSetup::Tunnel);
+    assert_eq!(config.air, MediumSetup::Tunnel);
 }
 
 #[test]

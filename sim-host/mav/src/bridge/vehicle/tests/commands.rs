@@ -4,7 +4,7 @@ use super::*;
 
 #[test]
 fn arming_stands_and_releases_the_motors() {
-    let mut bench = Bench::new(craft());
+    let mut bench = Bench::new(model());
     let arm = MAV_CMD_COMPONENT_ARM_DISARM;
     assert_eq!(bench.command(arm, NONE), MAV_RESULT_ACCEPTED);
     assert_eq!(
@@ -37,7 +37,7 @@ fn nobody_disarms_in_the_air_or_on_the_way_unless_forced() {
         MAV_RESULT_ACCEPTED
     );
     assert_eq!(bench.wish(), Some(Wish::Off));
-    let mut bench = Bench::new(craft());
+    let mut bench = Bench::new(model());
     bench.tick(|sample| sample.velocity_mps = [0.0, -0.3, 0.0]);
     assert_eq!(bench.command(arm, NONE), MAV_RESULT_TEMPORARILY_REJECTED);
     bench.tick(|sample| sample.velocity_mps = [0.01, 0.0, 0.0]);
@@ -46,7 +46,7 @@ fn nobody_disarms_in_the_air_or_on_the_way_unless_forced() {
 
 #[test]
 fn modes_of_other_vehicles_are_denied_and_what_is_no_command_is_unsupported() {
-    let mut bench = Bench::new(craft());
+    let mut bench = Bench::new(model());
     let mode = MAV_CMD_DO_SET_MODE;
     // No such mode, a copter's landing, without the custom flag, no numbers.
     for bad in [
@@ -148,7 +148,7 @@ fn who_returns_lands_at_home() {
 
 #[test]
 fn messages_for_others_are_for_others() {
-    let mut bench = Bench::new(craft());
+    let mut bench = Bench::new(model());
     let command = |system, component| {
         MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
             command: MAV_CMD_COMPONENT_ARM_DISARM,
@@ -188,21 +188,21 @@ fn param_set(name: &str, value: f32) -> MavMessage {
 
 #[test]
 fn parameters_are_set_within_limits_and_told_either_way() {
-    let mut bench = Bench::new(craft());
+    let mut bench = Bench::new(model());
     let told = |out: &Out| match &out.messages[..] {
         [MavMessage::PARAM_VALUE(told), ..] => told.param_value,
         other => panic!("{other:?}"),
     };
     let out = bench.give(param_set("SPEED_MPS", 0.5));
     assert_eq!(told(out), 0.5);
-    assert_eq!(out.deeds, [Deed::Set(Parameter::Speed, 0.5)]);
+    assert_eq!(out.actions, [Action::Set(Parameter::Speed, 0.5)]);
     for bad in [2.1, -0.1, NAN] {
         let out = bench.give(param_set("SPEED_MPS", bad));
         assert_eq!(told(out), 0.5, "what it was");
-        assert!(out.deeds.is_empty());
+        assert!(out.actions.is_empty());
         assert_eq!(bench.texts(), ["SPEED_MPS: 0 to 2"]);
     }
-    assert!(bench.give(param_set("NO_SUCH", 1.0)).deeds.is_empty());
+    assert!(bench.give(param_set("NO_SUCH", 1.0)).actions.is_empty());
     assert_eq!(bench.texts(), ["no such parameter"]);
     let count = bench.vehicle.parameters.count();
     let list = MavMessage::PARAM_REQUEST_LIST(PARAM_REQUEST_LIST_DATA {
@@ -229,8 +229,8 @@ fn parameters_are_set_within_limits_and_told_either_way() {
     bench.give(read(count as i16));
     assert_eq!(bench.texts(), ["no such parameter"]);
     // The timeout of setpoints is the vehicle's own matter.
-    let mut bench = guided(craft());
-    assert!(bench.give(param_set("SETPOINT_S", 0.5)).deeds.is_empty());
+    let mut bench = guided(model());
+    assert!(bench.give(param_set("SETPOINT_S", 0.5)).actions.is_empty());
     let Some(Wish::Velocity { valid, .. }) = set(&mut bench, local(0xDC7, 1)) else {
         panic!("a velocity");
     };

@@ -4,7 +4,7 @@ use super::*;
 
 #[test]
 fn missions_are_gone_through_item_by_item() {
-    let mut bench = Bench::new(craft());
+    let mut bench = Bench::new(model());
     assert_eq!(
         bench.command(MAV_CMD_MISSION_START, NONE),
         MAV_RESULT_DENIED,
@@ -75,7 +75,7 @@ fn mission_items_that_cannot_be_are_refused() {
         (|item| item.x = i32::MAX, MAV_MISSION_INVALID_PARAM5_X),
         (|item| item.param1 = -1.0, MAV_MISSION_INVALID_PARAM1),
     ] {
-        let mut bench = Bench::new(craft());
+        let mut bench = Bench::new(model());
         let mut bad = item(1, 1.0, 1.0);
         change(&mut bad);
         assert_eq!(load(&mut bench, &[item(0, 0.0, 0.0), bad]), fault);
@@ -85,7 +85,7 @@ fn mission_items_that_cannot_be_are_refused() {
 
 #[test]
 fn an_old_client_goes_there_by_an_item_of_no_mission() {
-    let mut bench = guided(craft());
+    let mut bench = guided(model());
     let there = MISSION_ITEM_DATA {
         x: 50.0001,
         y: 8.0,
@@ -123,7 +123,7 @@ fn an_old_client_goes_there_by_an_item_of_no_mission() {
 
 #[test]
 fn orders_of_the_dialect_reach_the_controller() {
-    let mut bench = Bench::new(craft());
+    let mut bench = Bench::new(model());
     let goal = STAYA_GOAL_DATA {
         sequence: 4,
         target_x: 3,
@@ -133,8 +133,8 @@ fn orders_of_the_dialect_reach_the_controller() {
         version: 9,
     };
     let out = bench.give(MavMessage::STAYA_GOAL(goal));
-    let [Deed::Tell(header, Message::Goal(told))] = &out.deeds[..] else {
-        panic!("{:?}", out.deeds);
+    let [Action::Tell(header, Message::Goal(told))] = &out.actions[..] else {
+        panic!("{:?}", out.actions);
     };
     assert_eq!((header.boot, header.sender.0, header.sequence), (1, 255, 4));
     assert_eq!(
@@ -151,7 +151,7 @@ fn orders_of_the_dialect_reach_the_controller() {
     assert!(
         bench
             .give(MavMessage::STAYA_TEMPLATE(template.clone()))
-            .deeds
+            .actions
             .is_empty()
     );
     let template = STAYA_TEMPLATE_DATA {
@@ -161,8 +161,8 @@ fn orders_of_the_dialect_reach_the_controller() {
         ..template
     };
     let out = bench.give(MavMessage::STAYA_TEMPLATE(template));
-    let [Deed::Tell(_, Message::Template(told))] = &out.deeds[..] else {
-        panic!("{:?}", out.deeds);
+    let [Action::Tell(_, Message::Template(told))] = &out.actions[..] else {
+        panic!("{:?}", out.actions);
     };
     assert_eq!(
         (

@@ -4,7 +4,7 @@ use super::*;
 
 #[test]
 fn setpoints_of_each_frame_and_mask_become_wishes() {
-    let mut bench = guided(craft());
+    let mut bench = guided(model());
     let valid = Duration::from_millis(3000);
     // East is y, north is x; it stays on the ground, and at (3, 5).
     assert_eq!(
@@ -94,7 +94,7 @@ fn setpoints_in_space_have_heights() {
 
 #[test]
 fn setpoints_that_make_no_sense_are_not_followed_and_said_so() {
-    let mut bench = guided(craft());
+    let mut bench = guided(model());
     let mut refused = |change: &dyn Fn(&mut SET_POSITION_TARGET_LOCAL_NED_DATA)| {
         let mut target = local(0xDF8, 1);
         change(&mut target);
@@ -133,7 +133,7 @@ fn setpoints_that_make_no_sense_are_not_followed_and_said_so() {
 
 #[test]
 fn reposition_goes_there_or_says_why_not() {
-    let mut bench = Bench::new(craft());
+    let mut bench = Bench::new(model());
     let not_now = MAV_RESULT_TEMPORARILY_REJECTED;
     assert_eq!(
         bench.command_int(reposition(8.0, 2.0, 0.0)),
@@ -185,9 +185,9 @@ fn nobody_is_sent_into_a_wall() {
         center_m: [8.0, 2.0, 0.0],
         radius_m: 1.0,
     };
-    let mut bench = Bench::new(Craft {
+    let mut bench = Bench::new(VehicleModel {
         solids: vec![ball],
-        ..craft()
+        ..model()
     });
     assert_eq!(
         bench.command_int(reposition(8.5, 2.0, 1.0)),
@@ -227,7 +227,7 @@ fn on_the_grid_places_are_cells_and_velocities_none() {
         bench.command(MAV_CMD_DO_CHANGE_SPEED, two(0.0, 1.0)),
         MAV_RESULT_UNSUPPORTED
     );
-    let mut bench = guided(Craft {
+    let mut bench = guided(VehicleModel {
         in_formation: true,
         ..on_grid()
     });

@@ -20,7 +20,7 @@ fn count<D: MessageData>(messages: &[MavMessage]) -> usize {
 
 #[test]
 fn rates_are_those_that_were_asked_for() {
-    let mut bench = Bench::new(craft());
+    let mut bench = Bench::new(model());
     let messages = second(&mut bench, 0);
     assert_eq!(count::<HEARTBEAT_DATA>(&messages), 1);
     assert_eq!(count::<LOCAL_POSITION_NED_DATA>(&messages), 10);
@@ -74,7 +74,7 @@ fn rates_are_those_that_were_asked_for() {
 
 #[test]
 fn all_that_streams_can_be_requested() {
-    let mut bench = Bench::new(craft());
+    let mut bench = Bench::new(model());
     let request = MAV_CMD_REQUEST_MESSAGE;
     for id in [0, 1, 2, 24, 30, 32, 33, 42, 49, 74, 147, 148, 242, 245_u32] {
         assert_eq!(
@@ -124,7 +124,7 @@ fn positions_are_north_east_down_and_on_the_earth() {
 
 #[test]
 fn heartbeats_say_how_it_is() {
-    let mut bench = Bench::new(craft());
+    let mut bench = Bench::new(model());
     let heartbeat = |bench: &Bench| match bench.vehicle.telemetry(0) {
         Some(MavMessage::HEARTBEAT(heartbeat)) => heartbeat,
         other => panic!("{other:?}"),
@@ -150,7 +150,7 @@ fn heartbeats_say_how_it_is() {
 
 #[test]
 fn pings_times_and_files_are_answered_at_once() {
-    let mut bench = Bench::new(craft());
+    let mut bench = Bench::new(model());
     let ping = PING_DATA {
         time_usec: 77,
         seq: 3,
@@ -190,7 +190,7 @@ fn pings_times_and_files_are_answered_at_once() {
 
 #[test]
 fn who_is_down_is_silent_and_forgets_its_mode() {
-    let mut bench = guided(craft());
+    let mut bench = guided(model());
     assert_eq!(load(&mut bench, &[item(0, 0.0, 0.0), item(1, 1.0, 1.0)]), 0);
     bench.tick(|sample| sample.is_up = false);
     assert!(second(&mut bench, 0).is_empty());
@@ -209,7 +209,7 @@ fn who_is_down_is_silent_and_forgets_its_mode() {
 
 #[test]
 fn what_happens_is_said_and_a_setpoint_that_ran_out_too() {
-    let mut bench = guided(craft());
+    let mut bench = guided(model());
     bench.tick(|sample| {
         sample.wish = Wish::Velocity {
             velocity_mps: Vec3::ZERO,

@@ -31,12 +31,12 @@ struct Brake {
 
 /// What the scenario wants, unless the pilot has the vehicle.
 type Guided = Commanded<f32, AnyGuidance<f32, WIDE, VISITS, TEMPLATE>>;
-type Mind<W> = Agent<f32, Guided, NEIGHBORS, AnySafety<f32, HALF_PLANES>, W>;
+type ControllerAgent<W> = Agent<f32, Guided, NEIGHBORS, AnySafety<f32, HALF_PLANES>, W>;
 
 /// An agent with its land.
-pub struct Brain<W> {
+pub struct Controller<W> {
     ground: Arc<PlaneGround>,
-    agent: Box<Mind<W>>,
+    agent: Box<ControllerAgent<W>>,
     workspace: GridWorkspace<WIDE>,
     senses: Senses,
     out: Outputs<f32>,
@@ -48,7 +48,7 @@ pub struct Brain<W> {
     commanded_mps: Option<[f64; 3]>,
 }
 
-impl<W: Wire> Brain<W> {
+impl<W: Wire> Controller<W> {
     /// Of robot number `index` of the scenario, whose robots are on `ground`; `boot` differs from start to start.
     #[must_use]
     pub fn new(

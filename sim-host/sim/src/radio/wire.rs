@@ -16,7 +16,7 @@ pub const PEERS: usize = 1024;
 
 /// A wire format that is known only when the program runs, and authenticates if there is a key.
 #[derive(Clone, Debug)]
-pub enum Voice {
+pub enum RobotWire {
     /// Everybody is believed.
     Open(AnyWire),
     /// Postcard's frames with a tag.
@@ -27,16 +27,16 @@ pub enum Voice {
 
 /// Does `$do` with the format that is in it.
 macro_rules! each {
-    ($voice:expr, $wire:ident => $do:expr) => {
-        match $voice {
-            Voice::Open($wire) => $do,
-            Voice::Sealed($wire) => $do,
-            Voice::Signed($wire) => $do,
+    ($any:expr, $wire:ident => $do:expr) => {
+        match $any {
+            RobotWire::Open($wire) => $do,
+            RobotWire::Sealed($wire) => $do,
+            RobotWire::Signed($wire) => $do,
         }
     };
 }
 
-impl Voice {
+impl RobotWire {
     /// Without a past, at start number `starts` of its robot. By the rule of [`Sealed`], and that of [`Signing`] for robots without a clock: what
     /// was stored before each start is less than a minute of timestamps behind.
     #[must_use]
@@ -79,13 +79,13 @@ impl Voice {
     }
 }
 
-impl Serialize for Voice {
+impl Serialize for RobotWire {
     fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
         each!(self, wire => wire.serialize(serializer))
     }
 }
 
-impl Wire for Voice {
+impl Wire for RobotWire {
     fn beacon_len(&self) -> usize {
         each!(self, wire => wire.beacon_len())
     }

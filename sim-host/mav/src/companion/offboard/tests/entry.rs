@@ -80,7 +80,7 @@ fn a_refusal_is_told_once() {
             result,
             ..COMMAND_ACK_DATA::DEFAULT
         });
-        bench.duties.hear(&ack, bench.now);
+        bench.offboard.hear(&ack, bench.now);
     }
     let told = bench.events();
     assert_eq!(told.len(), 1);
@@ -133,11 +133,11 @@ fn what_flies_is_not_steered_on_the_ground() {
             ..EXTENDED_SYS_STATE_DATA::DEFAULT
         })
     };
-    bench.duties.hear(&landed(1), bench.now);
+    bench.offboard.hear(&landed(1), bench.now);
     bench.run(0.5);
     assert_eq!(bench.state(), State::Grounded);
     bench.above_home_m = 0.2;
-    bench.duties.hear(&landed(2), bench.now);
+    bench.offboard.hear(&landed(2), bench.now);
     bench.run(0.5);
     assert_eq!(bench.state(), State::Steering);
 }

@@ -33,9 +33,9 @@ const POSITION_CONTROL: u32 = 3 << 16;
 const ARMED: u8 = 0x81;
 const DISARMED: u8 = 0x01;
 
-/// Duties with an autopilot that says the same again and again.
+/// OffboardStateMachine with an autopilot that says the same again and again.
 struct Bench {
-    duties: Duties,
+    offboard: OffboardStateMachine,
     now: Duration,
     boot_ms: u32,
     mode: u32,
@@ -49,7 +49,7 @@ struct Bench {
 impl Bench {
     fn new(kind: Kind, rules: Rules, mode: u32, base: u8) -> Self {
         Self {
-            duties: Duties::new(7, kind, rules),
+            offboard: OffboardStateMachine::new(7, kind, rules),
             now: Duration::ZERO,
             boot_ms: 60_000,
             mode,
@@ -71,7 +71,7 @@ impl Bench {
             base_mode: self.base,
             ..HEARTBEAT_DATA::DEFAULT
         });
-        self.duties.hear(&beat, self.now);
+        self.offboard.hear(&beat, self.now);
     }
 
     fn fix(&mut self) {
@@ -84,7 +84,7 @@ impl Bench {
             vx: 100,
             ..GLOBAL_POSITION_INT_DATA::DEFAULT
         });
-        self.duties.hear(&fix, self.now);
+        self.offboard.hear(&fix, self.now);
     }
 
     /// Runs for so long in steps of 10 ms; returns what was sent meanwhile.
@@ -98,10 +98,10 @@ impl Bench {
             if self.fixes && ms.is_multiple_of(100) {
                 self.fix();
             }
-            if self.duties.state() == State::Steering {
-                self.duties.steer([1.0, 2.0, 0.0], self.now);
+            if self.offboard.state() == State::Steering {
+                self.offboard.steer([1.0, 2.0, 0.0], self.now);
             }
-            self.duties.poll(self.now, &mut self.sent);
+            self.offboard.poll(self.now, &mut self.sent);
             self.now += Duration::from_millis(10);
             self.boot_ms = self.boot_ms.wrapping_add(10);
         }
@@ -109,11 +109,11 @@ impl Bench {
     }
 
     fn state(&self) -> State {
-        self.duties.state()
+        self.offboard.state()
     }
 
     fn events(&mut self) -> Vec<Event> {
-        std::iter::from_fn(|| self.duties.event()).collect()
+        std::iter::from_fn(|| self.offboard.event()).collect()
     }
 }
 
@@ -208,10 +208,10 @@ fn a_position_is_stale_only_after_its_time_and_then_it_stops() {
     bench.fix();
     let (at, mut sent) = (bench.now, Vec::new());
     bench.beat();
-    bench.duties.poll(at + RULES.stale, &mut sent);
+    bench.offboard.poll(at + RULES.stale, &mut sent);
     assert_eq!(bench.state(), State::Steering);
     bench
-        .duties
+        .offboard
         .poll(at + RULES.stale + Duration::from_micros(1), &mut sent);
     assert_eq!(bench.state(), State::Stopped);
     assert!(stands(setpoints(&sent).last().unwrap()));
@@ -230,7 +230,7 @@ fn stale_telemetry_stops_and_fresh_one_goes_on() {
     bench.fixes = true;
     bench.run(0.2);
     assert_eq!(bench.state(), State::Steering);
-    assert_eq!(bench.duties.tally().stops, 1);
+    assert_eq!(bench.offboard.tally().stops, 1);
 }
 
 #[test]
@@ -240,11 +240,11 @@ fn a_lost_link_ends_setpoints_at_its_boundary() {
     (bench.beats, bench.fixes) = (false, false);
     bench.beat();
     let (at, mut sent) = (bench.now, Vec::new());
-    bench.duties.poll(at + RULES.link_lost, &mut sent);
+    bench.offboard.poll(at + RULES.link_lost, &mut sent);
     assert_eq!(bench.state(), State::Stopped);
     sent.clear();
     bench
-        .duties
+        .offboard
         .poll(at + RULES.link_lost + Duration::from_micros(1), &mut sent);
     assert_eq!(bench.state(), State::Silent);
     assert_eq!(setpoints(&sent).len(), 0);
@@ -278,7 +278,7 @@ fn the_pilot_gets_the_vehicle_with_the_very_heartbeat() {
             "it takes nothing back"
         );
         assert!(bench.events().contains(&Event::HandedOver(MANUAL)));
-        assert_eq!(bench.duties.tally().hand_overs, 1);
+        assert_eq!(bench.offboard.tally().hand_overs, 1);
         // The pilot gives it again.
         bench.mode = GUIDED;
         bench.run(1.5);
@@ -295,7 +295,7 @@ fn a_velocity_of_before_is_not_sent_after_an_interruption() {
     bench.mode = GUIDED;
     bench.beat();
     let mut sent = Vec::new();
-    bench.duties.poll(bench.now, &mut sent);
+    bench.offboard.poll(bench.now, &mut sent);
     assert!(stands(&setpoints(&sent)[0]), "the agent has not spoken yet");
 }
 
@@ -309,7 +309,7 @@ fn an_agent_that_is_silent_stands() {
         bench.boot_ms += 10;
         bench.fix();
         bench.beat();
-        bench.duties.poll(bench.now, &mut sent);
+        bench.offboard.poll(bench.now, &mut sent);
     }
     assert!(stands(setpoints(&sent).last().unwrap()));
 }
@@ -318,11 +318,11 @@ fn an_agent_that_is_silent_stands() {
 fn there_is_nothing_to_do_before_it_is_due() {
     let mut bench = Bench::rover(RULES);
     bench.run(2.0);
-    let due = bench.duties.due(bench.now);
+    let due = bench.offboard.due(bench.now);
     assert!(due >= bench.now && due <= bench.now + RULES.setpoint_every);
     bench.mode = MANUAL;
     bench.run(30.2);
-    assert!(bench.duties.due(bench.now) > bench.now + RULES.setpoint_every);
+    assert!(bench.offboard.due(bench.now) > bench.now + RULES.setpoint_every);
 }
 
 #[test]
@@ -334,7 +334,7 @@ fn a_restart_in_the_mode_is_no_permission() {
         let sent = bench.run(10.0);
         assert_eq!(bench.state(), State::Restarted);
         assert!(setpoints(&sent).len() <= 1);
-        assert_eq!(bench.duties.tally().restarts, 1);
+        assert_eq!(bench.offboard.tally().restarts, 1);
         bench.mode = MANUAL;
         bench.run(1.5);
         assert_eq!(bench.state(), State::Pilot);
@@ -365,27 +365,27 @@ fn overtaken_messages_are_left_out_and_clocks_may_wrap() {
     let mut bench = Bench::rover(RULES);
     bench.boot_ms = u32::MAX - 500;
     bench.run(2.0);
-    assert_eq!(bench.duties.tally().restarts, 0, "the clock wrapped");
-    let before = bench.duties.tally().positions;
+    assert_eq!(bench.offboard.tally().restarts, 0, "the clock wrapped");
+    let before = bench.offboard.tally().positions;
     bench.boot_ms -= 1000;
     bench.fix();
-    assert_eq!(bench.duties.tally().positions, before, "an old position");
+    assert_eq!(bench.offboard.tally().positions, before, "an old position");
     bench.boot_ms += 1000;
     // 2000 ms back is overtaken, 2001 a restart.
     bench.fix();
     bench.boot_ms = bench.boot_ms.wrapping_sub(2000);
     bench.fix();
-    assert_eq!(bench.duties.tally().restarts, 0);
+    assert_eq!(bench.offboard.tally().restarts, 0);
     bench.boot_ms = bench.boot_ms.wrapping_sub(1);
     bench.fix();
-    assert_eq!(bench.duties.tally().restarts, 1);
+    assert_eq!(bench.offboard.tally().restarts, 1);
     // An autopilot that had run for 30 days begins anew: seen as a jump ahead.
     bench.boot_ms = 30 * 86_400_000;
     bench.fix();
-    let restarts = bench.duties.tally().restarts;
+    let restarts = bench.offboard.tally().restarts;
     bench.boot_ms = 1000;
     bench.fix();
-    assert_eq!(bench.duties.tally().restarts, restarts + 1);
+    assert_eq!(bench.offboard.tally().restarts, restarts + 1);
 }
 
 #[test]
@@ -393,10 +393,10 @@ fn zero_zero_is_no_position() {
     let mut bench = Bench::rover(RULES);
     bench.fixes = false;
     let nowhere = MavMessage::GLOBAL_POSITION_INT(GLOBAL_POSITION_INT_DATA::DEFAULT);
-    bench.duties.hear(&nowhere, bench.now);
+    bench.offboard.hear(&nowhere, bench.now);
     bench.run(1.0);
     assert_eq!(bench.state(), State::NoPosition);
-    assert_eq!(bench.duties.fix(), None);
+    assert_eq!(bench.offboard.fix(), None);
 }
 
 #[test]
@@ -409,10 +409,10 @@ fn velocity_is_the_finer_one_while_it_is_fresh() {
             ..LOCAL_POSITION_NED_DATA::DEFAULT
         })
     };
-    bench.duties.hear(&local(0.123), bench.now);
-    bench.duties.hear(&local(f32::NAN), bench.now);
+    bench.offboard.hear(&local(0.123), bench.now);
+    bench.offboard.hear(&local(f32::NAN), bench.now);
     bench.fix();
-    let velocity = |bench: &Bench| bench.duties.fix().unwrap().velocity_ned_mps[0];
+    let velocity = |bench: &Bench| bench.offboard.fix().unwrap().velocity_ned_mps[0];
     assert!((velocity(&bench) - 0.123).abs() < 1e-6);
     bench.now += Duration::from_millis(201);
     bench.fix();
@@ -423,10 +423,10 @@ fn velocity_is_the_finer_one_while_it_is_fresh() {
 fn farewell_is_said_by_who_steers() {
     let mut bench = Bench::rover(RULES);
     bench.run(2.0);
-    assert!(bench.duties.farewell(bench.now).is_some());
+    assert!(bench.offboard.farewell(bench.now).is_some());
     bench.mode = MANUAL;
     bench.beat();
-    assert!(bench.duties.farewell(bench.now).is_none());
+    assert!(bench.offboard.farewell(bench.now).is_none());
 }
 
 #[test]

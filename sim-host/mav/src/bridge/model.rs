@@ -11,7 +11,7 @@ use staya_sim::world::plane::Solid;
 
 /// What all vehicles of a scenario have in common.
 #[derive(Clone, Debug)]
-pub struct Craft {
+pub struct VehicleModel {
     /// It can leave the ground, which is z = 0.
     pub flies: bool,
     /// It moves from cell to cell of this land, and knows no velocities.
@@ -28,7 +28,7 @@ pub struct Craft {
     pub solids: Vec<Solid>,
 }
 
-impl Craft {
+impl VehicleModel {
     /// The vehicles of a scenario.
     #[must_use]
     pub fn new(scenario: &Scenario, origin: Origin) -> Self {

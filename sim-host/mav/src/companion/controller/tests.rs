@@ -5,13 +5,13 @@ use std::path::Path;
 
 const TICK: Duration = Duration::from_millis(100);
 
-fn brains(count: usize) -> Vec<Brain<Postcard>> {
+fn brains(count: usize) -> Vec<Controller<Postcard>> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../companions/crossing.toml");
     let scenario = Scenario::load(&path, &Overrides::default()).unwrap();
     let plane = scenario.plane.as_ref().unwrap();
     let ground = Arc::new(PlaneGround::new(&scenario, plane));
-    let brain = |index| Brain::new(&scenario, &ground, index, 1, 0.5, Postcard);
-    (0..count).map(brain).collect()
+    let controller = |index| Controller::new(&scenario, &ground, index, 1, 0.5, Postcard);
+    (0..count).map(controller).collect()
 }
 
 fn at(x: f64, y: f64) -> Body {
@@ -23,43 +23,43 @@ fn at(x: f64, y: f64) -> Body {
 
 #[test]
 fn heads_for_its_goal_and_says_where_it_is() {
-    let mut brain = brains(1).remove(0);
+    let mut controller = brains(1).remove(0);
     let mut body = at(0.0, 0.0);
     for step in 0..50 {
-        let out = brain.step(&body, true, &[], TICK * step);
+        let out = controller.step(&body, true, &[], TICK * step);
         assert!(!out.outbox.is_empty());
-        body.velocity_mps = brain.velocity_mps();
+        body.velocity_mps = controller.velocity_mps();
         for axis in 0..3 {
             body.position_m[axis] += body.velocity_mps[axis] * 0.1;
         }
     }
-    let [x, y, z] = brain.velocity_mps();
+    let [x, y, z] = controller.velocity_mps();
     assert!(
         (x - 2.0).abs() < 1e-3 && y.abs() < 1e-3 && z == 0.0,
         "{x} {y} {z}"
     );
-    assert_eq!(brain.mode(), Mode::Cruise);
+    assert_eq!(controller.mode(), Mode::Cruise);
 }
 
 #[test]
 fn one_that_is_not_steered_is_passive_and_commands_nothing() {
-    let mut brain = brains(1).remove(0);
-    let _ = brain.step(&at(0.0, 0.0), true, &[], Duration::ZERO);
-    let out = brain.step(&at(1.0, 0.0), false, &[], TICK);
+    let mut controller = brains(1).remove(0);
+    let _ = controller.step(&at(0.0, 0.0), true, &[], Duration::ZERO);
+    let out = controller.step(&at(1.0, 0.0), false, &[], TICK);
     assert!(!out.outbox.is_empty(), "the others hear where it is");
-    assert_eq!(brain.mode(), Mode::Passive);
-    assert_eq!(brain.velocity_mps(), [0.0; 3]);
+    assert_eq!(controller.mode(), Mode::Passive);
+    assert_eq!(controller.velocity_mps(), [0.0; 3]);
 }
 
 /// A vehicle that follows velocities with a lag reaches its place and stays there.
 #[test]
 fn a_vehicle_that_lags_does_not_overshoot_its_tolerance() {
-    let mut brain = brains(1).remove(0);
+    let mut controller = brains(1).remove(0);
     let mut body = at(30.0, 0.0);
     let mut farthest = 0.0_f64;
     for step in 0..400 {
-        let _ = brain.step(&body, true, &[], TICK * step);
-        let wish = brain.velocity_mps();
+        let _ = controller.step(&body, true, &[], TICK * step);
+        let wish = controller.velocity_mps();
         for _ in 0..10 {
             for (axis, wish) in wish.into_iter().enumerate() {
                 let change = (wish - body.velocity_mps[axis]) / 0.5;
@@ -69,7 +69,7 @@ fn a_vehicle_that_lags_does_not_overshoot_its_tolerance() {
         }
         farthest = farthest.max(body.position_m[0]);
     }
-    assert_eq!(brain.mode(), Mode::Arrived);
+    assert_eq!(controller.mode(), Mode::Arrived);
     assert!(farthest < 51.0, "{farthest}");
     assert!((body.position_m[0] - 50.0).abs() < 1.0);
 }

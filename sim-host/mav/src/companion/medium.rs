@@ -16,7 +16,7 @@ const AT_A_TIME: usize = 256;
 
 /// How packets go to companions of other processes.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum AirSetup {
+pub enum MediumSetup {
     /// There are none.
     Here,
     /// To all who have joined a group.
@@ -40,7 +40,7 @@ pub enum AirSetup {
 /// Why packets cannot come and go.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot exchange packets with other companions over {over}: {source}")]
-pub struct AirError {
+pub struct MediumError {
     /// Group or own address.
     over: String,
     /// Why.
@@ -49,7 +49,7 @@ pub struct AirError {
 
 /// The way to other companions.
 #[derive(Debug)]
-pub struct Air {
+pub struct Medium {
     socket: Option<UdpSocket>,
     to: Vec<SocketAddr>,
     is_tunnel: bool,
@@ -57,39 +57,39 @@ pub struct Air {
     sent: VecDeque<Vec<u8>>,
 }
 
-impl Air {
+impl Medium {
     /// Opens it.
     ///
     /// # Errors
     /// When an address cannot be had.
-    pub fn open(setup: &AirSetup) -> Result<Self, AirError> {
-        let air = |socket, to| Self {
+    pub fn open(setup: &MediumSetup) -> Result<Self, MediumError> {
+        let medium = |socket, to| Self {
             socket,
             to,
             is_tunnel: false,
             sent: VecDeque::new(),
         };
         match setup {
-            AirSetup::Here => Ok(air(None, Vec::new())),
-            AirSetup::Tunnel => Ok(Self {
+            MediumSetup::Here => Ok(medium(None, Vec::new())),
+            MediumSetup::Tunnel => Ok(Self {
                 is_tunnel: true,
-                ..air(None, Vec::new())
+                ..medium(None, Vec::new())
             }),
-            AirSetup::Multicast { group, interface } => match join(*group, *interface) {
-                Ok(socket) => Ok(air(Some(socket), vec![SocketAddr::V4(*group)])),
-                Err(source) => Err(AirError {
+            MediumSetup::Multicast { group, interface } => match join(*group, *interface) {
+                Ok(socket) => Ok(medium(Some(socket), vec![SocketAddr::V4(*group)])),
+                Err(source) => Err(MediumError {
                     over: group.to_string(),
                     source,
                 }),
             },
-            AirSetup::Peers { bind, peers } => {
+            MediumSetup::Peers { bind, peers } => {
                 let socket = UdpSocket::bind(bind).and_then(|socket| {
                     socket.set_nonblocking(true)?;
                     Ok(socket)
                 });
                 match socket {
-                    Ok(socket) => Ok(air(Some(socket), peers.clone())),
-                    Err(source) => Err(AirError {
+                    Ok(socket) => Ok(medium(Some(socket), peers.clone())),
+                    Err(source) => Err(MediumError {
                         over: bind.to_string(),
                         source,
                     }),

@@ -4,12 +4,12 @@ use super::Status;
 use staya_controller::agent::{Command, Inputs, OUTBOX, Setup, Task};
 use staya_controller::time::Instant;
 
-/// Controllers outside of this process. Robots are numbered as in the scenario.
+/// Controllers external of this process. Robots are numbered as in the scenario.
 ///
-/// A tick has three calls: [`Elsewhere::send`] for each robot that is up, then the engine steps its own robots, then
-/// [`Elsewhere::collect`], so that all work at the same time. What goes wrong is the implementation's to keep and its
+/// A tick has three calls: [`ExternalController::send`] for each robot that is up, then the engine steps its own robots, then
+/// [`ExternalController::collect`], so that all work at the same time. What goes wrong is the implementation's to keep and its
 /// owner's to ask for: the swarm carries on without the robot.
-pub trait Elsewhere: Send {
+pub trait ExternalController: Send {
     /// The robots whose controllers run elsewhere, rising.
     fn robots(&self) -> Vec<usize>;
 

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 
 /// The format of packets between companions.
 #[derive(Clone, Debug, Serialize)]
-pub enum Voice {
+pub enum CompanionWire {
     /// The controller's own frames.
     Postcard(Postcard),
     /// The same with a seal.
@@ -31,15 +31,15 @@ pub enum Voice {
 macro_rules! each {
     ($any:expr, $wire:ident => $do:expr) => {
         match $any {
-            Voice::Postcard($wire) => $do,
-            Voice::Sealed($wire) => $do,
-            Voice::Mavlink($wire) => $do,
-            Voice::Signed($wire) => $do,
+            CompanionWire::Postcard($wire) => $do,
+            CompanionWire::Sealed($wire) => $do,
+            CompanionWire::Mavlink($wire) => $do,
+            CompanionWire::Signed($wire) => $do,
         }
     };
 }
 
-impl Wire for Voice {
+impl Wire for CompanionWire {
     fn beacon_len(&self) -> usize {
         each!(self, wire => wire.beacon_len())
     }
@@ -68,7 +68,7 @@ impl Wire for Voice {
 
 /// Why agents cannot speak with a key.
 #[derive(Debug, thiserror::Error)]
-pub enum VoiceError {
+pub enum WireError {
     /// The key cannot be had.
     #[error(transparent)]
     Key(#[from] KeyError),
@@ -112,8 +112,8 @@ impl Seal {
     /// Reads the key in `path`, and the number of starts in the file of the same name with `.starts` behind it, where the next one is left.
     ///
     /// # Errors
-    /// [`VoiceError`], naming the file and the remedy.
-    pub fn read(path: &Path) -> Result<Self, VoiceError> {
+    /// [`WireError`], naming the file and the remedy.
+    pub fn read(path: &Path) -> Result<Self, WireError> {
         let KeyFile { key, remark } = KeyFile::read(path)?;
         let mut name = path.as_os_str().to_owned();
         name.push(".starts");
@@ -121,14 +121,14 @@ impl Seal {
         let starts = match std::fs::read_to_string(&path) {
             Ok(text) => text.trim().parse::<u32>().ok(),
             Err(error) if error.kind() == ErrorKind::NotFound => Some(0),
-            Err(source) => return Err(VoiceError::Read { path, source }),
+            Err(source) => return Err(WireError::Read { path, source }),
         };
         let starts = starts.filter(|starts| Sealed::<1>::at_start(&key, *starts).is_some());
         let Some(starts) = starts else {
-            return Err(VoiceError::NoNumber { path });
+            return Err(WireError::NoNumber { path });
         };
         if let Err(source) = std::fs::write(&path, format!("{}\n", starts + 1)) {
-            return Err(VoiceError::Write { path, source });
+            return Err(WireError::Write { path, source });
         }
         Ok(Self {
             key,
@@ -138,7 +138,7 @@ impl Seal {
     }
 }
 
-impl Voice {
+impl CompanionWire {
     /// In a format, and so that only who has the key is heard, if there is one.
     #[must_use]
     pub fn new(format: Format, seal: Option<&Seal>) -> Self {
@@ -167,10 +167,10 @@ mod tests {
         sequence: 1,
     };
 
-    fn said(voice: &mut Voice) -> Vec<u8, 128> {
+    fn said(wire: &mut CompanionWire) -> Vec<u8, 128> {
         let mut out = Vec::new();
         let message = Message::Beacon(Default::default());
-        voice.encode(HEADER, &message, &mut out).unwrap();
+        wire.encode(HEADER, &message, &mut out).unwrap();
         out
     }
 
@@ -181,18 +181,18 @@ mod tests {
         std::fs::write(&path, "passphrase: one for all\n").unwrap();
         let seal = || Seal::read(&path).unwrap();
         for format in [Format::Postcard, Format::Mavlink] {
-            let mut speaker = Voice::new(format, Some(&seal()));
-            let mut listener = Voice::new(format, Some(&seal()));
+            let mut speaker = CompanionWire::new(format, Some(&seal()));
+            let mut listener = CompanionWire::new(format, Some(&seal()));
             let frame = said(&mut speaker);
             let mut rest = frame.as_slice();
             let frame = listener.next_frame(&mut rest).unwrap();
             assert_eq!(listener.decode(frame).unwrap().header, HEADER);
             assert!(listener.decode(frame).is_err(), "a replay");
-            let open = said(&mut Voice::new(format, None));
+            let open = said(&mut CompanionWire::new(format, None));
             let mut rest = open.as_slice();
             let frame = listener.next_frame(&mut rest).unwrap();
             assert!(listener.decode(frame).is_err(), "without the key");
-            let mut stranger = Voice::new(format, None);
+            let mut stranger = CompanionWire::new(format, None);
             assert!(stranger.decode(frame).is_ok(), "sound as it is");
         }
     }
@@ -212,7 +212,7 @@ mod tests {
         }
         std::fs::remove_file(&kept).unwrap();
         std::fs::create_dir(&kept).unwrap();
-        assert!(matches!(Seal::read(&path), Err(VoiceError::Read { .. })));
+        assert!(matches!(Seal::read(&path), Err(WireError::Read { .. })));
         let error = Seal::read(&folder.path().join("none")).expect_err("no key");
         assert!(error.to_string().contains("none"), "{error}");
     }

@@ -34,7 +34,7 @@ struct Buckets {
 
 /// A tick's packets, sorted into square cells as wide as the radio reaches.
 #[derive(Clone, Debug)]
-pub(super) struct Air {
+pub(super) struct Medium {
     /// Tells the packets in an outbox apart.
     wire: AnyWire,
     seed: u64,
@@ -59,7 +59,7 @@ struct Lattice {
     rows: usize,
 }
 
-impl Air {
+impl Medium {
     pub(super) fn new(params: &RadioParams, seed: u64, tick_us: u32, robots: usize) -> Self {
         let buckets = params.bandwidth_bytes_per_s.map(|bytes_per_s| {
             let capacity = u64::from(bytes_per_s).max(OUTBOX as u64) * 1_000_000;

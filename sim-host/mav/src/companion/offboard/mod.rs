@@ -1,5 +1,5 @@
 //! What a companion owes its autopilot, as a state machine without I/O and clock: telemetry and time in, messages out. Read
-//! [`Duties::poll`] first.
+//! [`OffboardStateMachine::poll`] first.
 //!
 //! It says that it is there once a second, asks for the telemetry that it needs, and sends velocities at a steady rate while, and only while,
 //! it may steer: the autopilot is heard, it is in the mode for outside control, armed (and in the air, if it flies), and its position is fresh.
@@ -152,7 +152,7 @@ pub struct Tally {
 
 /// One companion.
 #[derive(Clone, Debug)]
-pub struct Duties {
+pub struct OffboardStateMachine {
     system: u8,
     kind: Kind,
     rules: Rules,
@@ -180,7 +180,7 @@ pub struct Duties {
     tally: Tally,
 }
 
-impl Duties {
+impl OffboardStateMachine {
     /// Of the vehicle `system`, which has just been switched on for all it knows.
     #[must_use]
     pub fn new(system: u8, kind: Kind, rules: Rules) -> Self {

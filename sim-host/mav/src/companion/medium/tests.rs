@@ -52,10 +52,10 @@ fn tunnels_of_others_are_left_alone() {
     assert_eq!(tunnelled(&too_long), None);
 }
 
-fn heard(air: &mut Air) -> Vec<Vec<u8>> {
+fn heard(medium: &mut Medium) -> Vec<Vec<u8>> {
     let mut all = Vec::new();
     for _ in 0..100 {
-        air.receive(|bytes| all.push(bytes.to_vec()));
+        medium.receive(|bytes| all.push(bytes.to_vec()));
         if !all.is_empty() {
             break;
         }
@@ -72,7 +72,7 @@ fn peers_hear_each_other() {
     };
     let (a, b) = (free(), free());
     let open = |bind, peer| {
-        Air::open(&AirSetup::Peers {
+        Medium::open(&MediumSetup::Peers {
             bind,
             peers: vec![peer],
         })
@@ -88,11 +88,11 @@ fn peers_hear_each_other() {
 
 #[test]
 fn nobody_is_heard_where_there_is_nobody() {
-    for setup in [AirSetup::Here, AirSetup::Tunnel] {
-        let mut air = Air::open(&setup).unwrap();
-        air.send(b"nothing");
-        air.receive(|_| panic!("heard something"));
-        assert_eq!(air.is_tunnel(), setup == AirSetup::Tunnel);
+    for setup in [MediumSetup::Here, MediumSetup::Tunnel] {
+        let mut medium = Medium::open(&setup).unwrap();
+        medium.send(b"nothing");
+        medium.receive(|_| panic!("heard something"));
+        assert_eq!(medium.is_tunnel(), setup == MediumSetup::Tunnel);
     }
 }
 
@@ -103,11 +103,11 @@ fn a_group_does_not_give_back_what_was_sent() {
         .local_addr()
         .unwrap()
         .port();
-    let setup = AirSetup::Multicast {
+    let setup = MediumSetup::Multicast {
         group: SocketAddrV4::new(Ipv4Addr::new(239, 255, 77, 1), port),
         interface: Ipv4Addr::LOCALHOST,
     };
-    let (mut first, mut second) = (Air::open(&setup).unwrap(), Air::open(&setup).unwrap());
+    let (mut first, mut second) = (Medium::open(&setup).unwrap(), Medium::open(&setup).unwrap());
     first.send(b"one");
     second.send(b"two");
     assert_eq!(heard(&mut second), [b"one"]);

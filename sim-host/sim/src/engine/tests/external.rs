@@ -1,7 +1,7 @@
-//! Controllers outside of the engine.
+//! Controllers external of the engine.
 
 use super::*;
-use crate::engine::{Decision, Elsewhere, Status, simulate_with};
+use crate::engine::{Decision, ExternalController, Status, simulate_with};
 use staya_controller::agent::{
     AnyAgent, CELLS, GridWorkspace, HALF_PLANES, NEIGHBORS, Setup, Task, VISITS,
 };
@@ -35,7 +35,7 @@ impl Nearby {
     }
 }
 
-impl Elsewhere for Nearby {
+impl ExternalController for Nearby {
     fn robots(&self) -> Vec<usize> {
         self.agents.iter().map(|&(index, ..)| index).collect()
     }
@@ -86,7 +86,7 @@ impl Elsewhere for Nearby {
 }
 
 fn outcome(scenario: &Scenario, elsewhere: Option<Nearby>) -> Outcome {
-    let boxed = elsewhere.map(|nearby| Box::new(nearby) as Box<dyn Elsewhere>);
+    let boxed = elsewhere.map(|nearby| Box::new(nearby) as Box<dyn ExternalController>);
     simulate_with(scenario, boxed, &mut |_, _| ControlFlow::Continue(())).expect("free starts")
 }
 
