@@ -12,8 +12,8 @@ impl<R: Read, W: Write, F: Framing, const IN: usize, const OUT: usize>
     PacketLink<(R, W), F, IN, OUT>
 {
     /// Moves bytes both ways until it is cancelled: let it run beside the wait for the next step, for example
-    /// `select(ticker.next(), link.serve()).await`. Errors of the line are counted, what they spoiled is forgotten, and after
-    /// each one other tasks have their turn.
+    /// `select(ticker.next(), link.serve()).await`. Errors of the line are counted, what they spoiled is forgotten, and
+    /// after each one other tasks have their turn.
     ///
     /// Reading and writing must stand being cancelled without losing bytes, as buffered UARTs do (those with a ring
     /// that an interrupt or a DMA fills).

@@ -2,8 +2,8 @@
 
 use staya_controller::wire::{MAX_FRAME_LEN, Postcard, decode};
 
-/// How the frames of a wire format follow each other on a line. An agent and its link name the same format; frames that are
-/// sealed with a key are framed as [`Postcard`]'s, signed ones as MAVLink's.
+/// How the frames of a wire format follow each other on a line. An agent and its link name the same format; frames that
+/// are sealed with a key are framed as [`Postcard`]'s, signed ones as MAVLink's.
 pub trait Framing {
     /// The byte that ends each frame and occurs nowhere else, if the format has one.
     const DELIMITER: Option<u8>;
@@ -64,8 +64,8 @@ mod mavlink {
     use staya_mavlink::frame::{MAX_FRAME_LEN, Scan, next_frame, scan};
     use staya_mavlink::wire::{Mavlink, decode};
 
-    /// Nothing ends these frames: their headers say how long they are. MAVLink messages that are none of the swarm's are
-    /// [`Piece::Other`].
+    /// Nothing ends these frames: their headers say how long they are. MAVLink messages that are none of the swarm's
+    /// are [`Piece::Other`].
     impl Framing for Mavlink {
         const DELIMITER: Option<u8> = None;
         const LONGEST: usize = MAX_FRAME_LEN;

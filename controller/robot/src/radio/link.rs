@@ -7,14 +7,15 @@ use staya_controller::wire::Postcard;
 /// Bytes that one call moves at a time.
 pub(super) const PIECE: usize = 32;
 
-/// Frames of the wire format `F` over a line `U`. `IN` and `OUT`: bytes between two steps, and bytes that wait to be sent, `OUT` at
-/// least [`OUTBOX`](staya_controller::agent::OUTBOX).
+/// Frames of the wire format `F` over a line `U`. `IN` and `OUT`: bytes between two steps, and bytes that wait to be
+/// sent, `OUT` at least [`OUTBOX`](staya_controller::agent::OUTBOX).
 ///
 /// Call [`Self::take`] once for each step and [`Self::send`] after it. In between something has to move the bytes:
 ///
-/// - over a line that can say whether it is ready (`embedded-io`), [`Self::pump`], which never waits. Call it at least as often
-///   as the HAL's own buffer fills up (at 115,200 baud a byte comes every 87 µs);
-/// - over the two halves of an asynchronous line (`embedded-io-async`, feature `async`), `serve`, beside the wait for the next step.
+/// - over a line that can say whether it is ready (`embedded-io`), [`Self::pump`], which never waits. Call it at least
+///   as often as the HAL's own buffer fills up (at 115,200 baud a byte comes every 87 µs);
+/// - over the two halves of an asynchronous line (`embedded-io-async`, feature `async`), `serve`, beside the wait for
+///   the next step.
 ///
 /// HALs whose UART has neither use a [`Receiver`] and a [`Sender`] with what they have.
 #[derive(Clone, Debug)]
@@ -69,11 +70,12 @@ impl<U, F: Framing, const IN: usize, const OUT: usize> PacketLink<U, F, IN, OUT>
 where
     U: Read + ReadReady + Write + WriteReady,
 {
-    /// Moves what can be moved without waiting: in at most `IN` bytes (more would only push each other out), out what is there.
+    /// Moves what can be moved without waiting: in at most `IN` bytes (more would only push each other out), out what
+    /// is there.
     ///
     /// # Errors
-    /// The line's first one. It is counted, what it spoiled is forgotten, and the link goes on at the next call: a caller may
-    /// ignore it.
+    /// The line's first one. It is counted, what it spoiled is forgotten, and the link goes on at the next call: a
+    /// caller may ignore it.
     pub fn pump(&mut self) -> Result<(), U::Error> {
         let heard = self.hear();
         if heard.is_err() {

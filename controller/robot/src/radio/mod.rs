@@ -1,9 +1,10 @@
 //! Packets over a serial line: a UART, and behind it a radio modem or another robot's UART.
 //!
-//! The agent's packets are frames of its wire format: postcard's, which a zero byte ends ([`staya_controller::wire`]), or
-//! MAVLink's (feature `mavlink`). A [`Receiver`] makes frames of bytes, a [`Sender`] holds frames until the line takes them; neither knows
-//! any hardware, so that a radio with packets of its own (ESB, LoRa) feeds them too. [`PacketLink`] moves their bytes over
-//! `embedded-io` without ever waiting, or over `embedded-io-async` (feature `async`).
+//! The agent's packets are frames of its wire format: postcard's, which a zero byte ends ([`staya_controller::wire`]),
+//! or MAVLink's (feature `mavlink`). A [`Receiver`] makes frames of bytes, a [`Sender`] holds frames until the line
+//! takes them; neither knows any hardware, so that a radio with packets of its own (ESB, LoRa) feeds them too.
+//! [`PacketLink`] moves their bytes over `embedded-io` without ever waiting, or over `embedded-io-async` (feature
+//! `async`).
 //!
 //! When there is no room, the oldest frames go, whole ones only: of two beacons of a robot the later one is worth
 //! more, and who asked something asks again.

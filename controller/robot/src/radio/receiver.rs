@@ -6,10 +6,10 @@ use heapless::Vec;
 
 /// Collects the swarm's frames from a stream of bytes until the next step asks for them.
 ///
-/// Only sound frames are kept: noise, damaged pieces and other versions of the format are counted and forgotten, what is for
-/// others is passed over (the agent judges the rest: late, repeated, its own). When `N` bytes do not hold
-/// all frames between two steps and the one that is coming, the oldest ones go. `N` is at least [`Framing::LONGEST`]: 60 bytes of
-/// postcard, 280 of MAVLink. A beacon takes some 50, so that 1024 bytes hold the beacons of twenty robots.
+/// Only sound frames are kept: noise, damaged pieces and other versions of the format are counted and forgotten, what
+/// is for others is passed over (the agent judges the rest: late, repeated, its own). When `N` bytes do not hold all
+/// frames between two steps and the one that is coming, the oldest ones go. `N` is at least [`Framing::LONGEST`]: 60
+/// bytes of postcard, 280 of MAVLink. A beacon takes some 50, so that 1024 bytes hold the beacons of twenty robots.
 #[derive(Clone, Debug)]
 pub struct Receiver<F, const N: usize> {
     /// Whole frames, then what is coming.
@@ -72,8 +72,8 @@ impl<F: Framing, const N: usize> Receiver<F, N> {
         }
     }
 
-    /// A packet from a radio that has packets of its own: frames whose last delimiter may be missing. What was begun before
-    /// it has no end any more.
+    /// A packet from a radio that has packets of its own: frames whose last delimiter may be missing. What was begun
+    /// before it has no end any more.
     pub fn push_packet(&mut self, packet: &[u8]) {
         self.end();
         self.push(packet);

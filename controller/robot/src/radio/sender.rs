@@ -6,9 +6,9 @@ use heapless::Vec;
 
 /// Holds what steps want sent until the line takes it.
 ///
-/// When `N` bytes do not hold it all, the oldest frames go, but never the rest of one whose first bytes are on the line.
-/// Where frames have a delimiter, one goes before the first frame after a pause, so that what the receivers' idle lines picked up does
-/// not spoil it.
+/// When `N` bytes do not hold it all, the oldest frames go, but never the rest of one whose first bytes are on the
+/// line. Where frames have a delimiter, one goes before the first frame after a pause, so that what the receivers' idle
+/// lines picked up does not spoil it.
 #[derive(Clone, Debug)]
 pub struct Sender<F, const N: usize> {
     bytes: Vec<u8, N>,

@@ -1,13 +1,15 @@
 //! The same for every wire format, then what only one of them has.
 
+mod lines;
+
+use self::lines::*;
 use super::*;
-use embedded_io::{ErrorKind, ErrorType, Read, ReadReady, Write, WriteReady};
+use embedded_io::ErrorKind;
 use proptest::prelude::*;
 use staya_controller::robot::RobotId;
 use staya_controller::wire::{Ack, Header, Message, Postcard, Wire};
 #[cfg(feature = "mavlink")]
 use staya_mavlink::wire::Mavlink;
-use std::collections::VecDeque;
 use std::vec::Vec;
 
 /// A sound frame, its delimiter included; `sequence` tells it from others.
@@ -260,7 +262,8 @@ mod each {
         assert_eq!(sequences::<F>(peer.take()), [5]);
     }
 
-    /// Whatever comes, in whatever pieces: only sound frames come out, as many as were counted, and the next one is heard.
+    /// Whatever comes, in whatever pieces: only sound frames come out, as many as were counted, and the next one is
+    /// heard.
     pub fn any_bytes_leave_the_inbox_sound<F: Format>() {
         let piece = prop_oneof![
             2 => proptest::collection::vec(any::<u8>(), 0..40),
@@ -413,119 +416,3 @@ fn other_messages_on_the_line_are_passed_over() {
     let counts = receiver.counts();
     assert_eq!((counts.frames, counts.refused), (3, 0));
 }
-
-/// A UART of which the test says when it is ready and when it fails.
-#[derive(Default)]
-struct Uart {
-    inbound: VecDeque<u8>,
-    outbound: Vec<u8>,
-    /// Bytes that it takes before it is busy.
-    room: usize,
-    read_fails: bool,
-    write_fails: bool,
-    calls: usize,
-}
-
-impl ErrorType for Uart {
-    type Error = ErrorKind;
-}
-
-impl Read for Uart {
-    fn read(&mut self, buf: &mut [u8]) -> Result<usize, ErrorKind> {
-        assert!(!self.inbound.is_empty(), "would block");
-        self.calls += 1;
-        let len = buf.len().min(self.inbound.len()).min(5);
-        for (to, from) in buf.iter_mut().zip(self.inbound.drain(..len)) {
-            *to = from;
-        }
-        Ok(len)
-    }
-}
-
-impl ReadReady for Uart {
-    fn read_ready(&mut self) -> Result<bool, ErrorKind> {
-        if core::mem::take(&mut self.read_fails) {
-            return Err(ErrorKind::InvalidData);
-        }
-        Ok(!self.inbound.is_empty())
-    }
-}
-
-impl Write for Uart {
-    fn write(&mut self, buf: &[u8]) -> Result<usize, ErrorKind> {
-        assert!(self.room > 0, "would block");
-        let len = buf.len().min(self.room).min(3);
-        self.outbound.extend(&buf[..len]);
-        self.room -= len;
-        Ok(len)
-    }
-
-    fn flush(&mut self) -> Result<(), ErrorKind> {
-        panic!("would block")
-    }
-}
-
-impl WriteReady for Uart {
-    fn write_ready(&mut self) -> Result<bool, ErrorKind> {
-        if self.write_fails && self.room == 0 {
-            self.write_fails = false;
-            return Err(ErrorKind::BrokenPipe);
-        }
-        Ok(self.room > 0)
-    }
-}
-
-#[cfg(feature = "async")]
-mod halves {
-    use super::*;
-
-    /// Half of a line: ready as long as there is something, then pending.
-    pub struct Half {
-        script: VecDeque<Result<Vec<u8>, ErrorKind>>,
-        heard: Vec<u8>,
-    }
-
-    impl ErrorType for Half {
-        type Error = ErrorKind;
-    }
-
-    impl embedded_io_async::Read for Half {
-        async fn read(&mut self, buf: &mut [u8]) -> Result<usize, ErrorKind> {
-            match self.script.pop_front() {
-                None => core::future::pending().await,
-                Some(Err(error)) => Err(error),
-                Some(Ok(bytes)) => {
-                    buf[..bytes.len()].copy_from_slice(&bytes);
-                    Ok(bytes.len())
-                }
-            }
-        }
-    }
-
-    impl embedded_io_async::Write for Half {
-        async fn write(&mut self, buf: &[u8]) -> Result<usize, ErrorKind> {
-            match self.script.pop_front() {
-                None => core::future::pending().await,
-                Some(Err(error)) => Err(error),
-                Some(Ok(room)) => {
-                    let len = room.len().min(buf.len());
-                    self.heard.extend(&buf[..len]);
-                    Ok(len)
-                }
-            }
-        }
-
-        async fn flush(&mut self) -> Result<(), ErrorKind> {
-            core::future::pending().await
-        }
-    }
-
-    pub fn half(script: impl IntoIterator<Item = Result<Vec<u8>, ErrorKind>>) -> Half {
-        Half {
-            script: script.into_iter().collect(),
-            heard: Vec::new(),
-        }
-    }
-}
-#[cfg(feature = "async")]
-use halves::half;
