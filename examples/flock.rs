@@ -1,5 +1,5 @@
-//! Robots that are strewn about become one flock: equal distances, one velocity, a way between two discs (Olfati-Saber 2006,
-//! algorithm 3). Only the flock's law, no agents and no radio. Run it by `cargo run --example flock`.
+//! Robots that are strewn about become one flock: equal distances, one velocity, a way between two discs (Olfati-Saber
+//! 2006, algorithm 3). Only the flock's law, no agents and no radio. Run it by `cargo run --example flock`.
 
 use staya_controller::flock::lattice::{LatticeParams, Reference, acceleration};
 use staya_controller::obstacle::Obstacle;
@@ -54,7 +54,8 @@ fn main() {
     assert!(off_by < 0.02, "somebody does not follow");
 }
 
-/// What robot number `own` does to its velocity. It sees the others within the law's range, the discs and the reference.
+/// What robot number `own` does to its velocity. It sees the others within the law's range, the discs and the
+/// reference.
 fn decide(params: &LatticeParams<f64>, robots: &[Robot], own: usize, lead: &Robot) -> Vec3<f64> {
     let id = |index: usize| RobotId(index as u32 + 1);
     let robot = &robots[own];

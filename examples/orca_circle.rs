@@ -1,5 +1,5 @@
-//! Robots on a circle change places with those opposite: collision avoidance alone, without agents and radio, as RVO2's example
-//! `Circle` does it. Run it by `cargo run --example orca_circle`.
+//! Robots on a circle change places with those opposite: collision avoidance alone, without agents and radio, as RVO2's
+//! example `Circle` does it. Run it by `cargo run --example orca_circle`.
 
 use staya_controller::orca::{AvoidParams, Avoider};
 use staya_controller::scalar::Scalar;

@@ -1,5 +1,5 @@
-//! A robot finds its way over land of which it sees a window of 11 x 11 cells only: out of a dead end that is larger than
-//! what it sees, by remembering where it has been. Run it by `cargo run --example window_routing`.
+//! A robot finds its way over land of which it sees a window of 11 x 11 cells only: out of a dead end that is larger
+//! than what it sees, by remembering where it has been. Run it by `cargo run --example window_routing`.
 
 use staya_controller::cost::Gain;
 use staya_controller::grid::{BLOCKED, Cell, Window};

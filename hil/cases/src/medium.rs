@@ -1,4 +1,5 @@
-//! The radio medium between the robots of a case: what one said in a tick all others hear in the next, or what is left of it.
+//! The radio medium between the robots of a case: what one said in a tick all others hear in the next, or what is left
+//! of it.
 
 use heapless::Vec;
 use staya_controller::rand::Rng;
@@ -76,7 +77,8 @@ impl<W: Wire, const R: usize> Medium<W, R> {
         }
     }
 
-    /// Each packet, a frame of `len` bytes, draws as often as any other, so that the fate of one does not change the next one's.
+    /// Each packet, a frame of `len` bytes, draws as often as any other, so that the fate of one does not change the
+    /// next one's.
     fn carry(&self, len: usize, packet: &[u8], rng: &mut Rng, inbox: &mut Vec<u8, INBOX>) {
         let Faults {
             loss, flip, twice, ..

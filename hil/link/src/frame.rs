@@ -5,10 +5,11 @@
 //! content = version:u8 kind:u8 body:postcard crc:u32
 //! ```
 //!
-//! - Every version keeps COBS, the version in front and the CRC at the end, so that another version can be told from damage.
+//! - Every version keeps COBS, the version in front and the CRC at the end, so that another version can be told from
+//!   damage.
 //! - The zero in front ends whatever noise or text came before, so that it costs no frame.
-//! - CRC-32C (Castagnoli; iSCSI) covers everything before it and finds every 1 to 5 flipped bits in contents of up to 655 bytes,
-//!   every 1 to 3 beyond; of anything else 1 in 4 * 10^9 passes. Integers are little-endian.
+//! - CRC-32C (Castagnoli; iSCSI) covers everything before it and finds every 1 to 5 flipped bits in contents of up to
+//!   655 bytes, every 1 to 3 beyond; of anything else 1 in 4 * 10^9 passes. Integers are little-endian.
 //! - COBS (Cheshire, Baker 1999, "Consistent overhead byte stuffing", section 3) in blocks of 254, byte by byte in
 //!   both directions: no second buffer, and it visibly never panics. (The controller's own packets fit one block.)
 
@@ -49,24 +50,6 @@ pub enum FrameError {
     /// Sound, but of another version of the link.
     Version(u8),
 }
-
-impl core::fmt::Display for FrameError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::TooLong => "the frame has more content than there is room for",
-            Self::Cobs => "the frame's stuffing does not end where the frame ends",
-            Self::Crc => "the frame's CRC is wrong: damaged or cut",
-            Self::Version(version) => {
-                return write!(
-                    f,
-                    "the frame is of version {version} of the link, not {VERSION}"
-                );
-            }
-        })
-    }
-}
-
-impl core::error::Error for FrameError {}
 
 /// The body does not fit; the frame is empty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,9 +1,9 @@
 //! The contract between a host and a device that runs the controller, and nothing else. Read [`session`] first.
 //!
-//! The host knows the world; the device decides. In each tick the host sends [`message::Step`] (what the robot
-//! senses, what its radio received) and the device answers with [`message::Stepped`] (what the robot does and says, and a digest
-//! of its whole state). Both ends are state machines without I/O: [`session::Session`] on the device
-//! takes bytes and gives bytes, [`port::Port`] on the host also takes the time.
+//! The host knows the world; the device decides. In each tick the host sends [`message::Step`] (what the robot senses,
+//! what its radio received) and the device answers with [`message::Stepped`] (what the robot does and says, and a
+//! digest of its whole state). Both ends are state machines without I/O: [`session::Session`] on the device takes bytes
+//! and gives bytes, [`port::Port`] on the host also takes the time.
 //!
 //! ```text
 //! host                                   device
@@ -15,9 +15,9 @@
 //!                               <-       Stepped { seq + 1, outputs, digest, cost }
 //! ```
 //!
-//! One request is on its way at a time. The host resends it until it is answered; the device answers a repeated
-//! `seq` with the very same bytes and decides nothing a second time, so that a line that loses, repeats, delays, reorders or damages
-//! frames changes no result. What cannot go on is a [`message::Fault`] with its reason.
+//! One request is on its way at a time. The host resends it until it is answered; the device answers a repeated `seq`
+//! with the very same bytes and decides nothing a second time, so that a line that loses, repeats, delays, reorders or
+//! damages frames changes no result. What cannot go on is a [`message::Fault`] with its reason.
 #![no_std]
 // What may panic has no place on a robot (see Cargo.toml); tests may.
 #![cfg_attr(

@@ -1,7 +1,7 @@
 //! The host's end of the link: what to send, and when to look again. Read [`Port::poll`] and [`Port::receive`] first.
 //!
-//! One request is on its way at a time. It is resent until its answer is there or the attempts are used up: nothing waits
-//! forever. Time comes in as an argument, in microseconds of any clock that does not go back.
+//! One request is on its way at a time. It is resent until its answer is there or the attempts are used up: nothing
+//! waits forever. Time comes in as an argument, in microseconds of any clock that does not go back.
 
 use crate::frame::{Deframer, Frame, FrameError, TooLong, VERSION};
 use crate::message::{
@@ -170,8 +170,8 @@ struct Waiting {
 }
 
 impl<const N: usize> Port<N> {
-    /// Nothing is known of the device yet: the first thing is [`Port::greet`]. `run` tells this run of the host from others that have
-    /// talked to the same device.
+    /// Nothing is known of the device yet: the first thing is [`Port::greet`]. `run` tells this run of the host from
+    /// others that have talked to the same device.
     #[must_use]
     pub const fn new(run: u32, limits: Limits) -> Self {
         Self {
@@ -247,8 +247,8 @@ impl<const N: usize> Port<N> {
     /// Asks for a step. Replaces a request that is on its way, which the device will take for a gap: wait for answers.
     ///
     /// # Errors
-    /// [`TooLong`] for `N`; then nothing is on its way. [`Capacities::fit`](crate::capacities::Capacities::fit) sees to it that
-    /// [`Capacities::frame_bytes`](crate::capacities::Capacities::frame_bytes) suffice.
+    /// [`TooLong`] for `N`; then nothing is on its way. [`Capacities::fit`](crate::capacities::Capacities::fit) sees to
+    /// it that [`Capacities::frame_bytes`](crate::capacities::Capacities::frame_bytes) suffice.
     pub fn step(&mut self, inputs: &StepInputs<'_>, now_us: u64) -> Result<(), TooLong> {
         self.waiting = None;
         let seq = self.seq.wrapping_add(1);

@@ -34,7 +34,8 @@ use postcard::take_from_bytes;
 /// Bytes of a frame that is no decision, at most (a test fills one).
 const MAX_NOTE: usize = 128;
 
-/// `CONTENT` of a [`Session`] whose controller searches so many cells and sees so many obstacles, for an inbox of so many bytes.
+/// `CONTENT` of a [`Session`] whose controller searches so many cells and sees so many obstacles, for an inbox of so
+/// many bytes.
 #[must_use]
 pub const fn content_bytes(search_cells: usize, obstacles: usize, inbox_bytes: usize) -> usize {
     let step = capacities::step_bytes(search_cells, obstacles, inbox_bytes);
@@ -172,7 +173,8 @@ impl<C: Controller, const CONTENT: usize> Session<C, CONTENT> {
         self.core.counts
     }
 
-    /// Takes a byte of the line. Bounded work: O(1), at the end of a frame O(its bytes), and a step of the robot if it asks for one.
+    /// Takes a byte of the line. Bounded work: O(1), at the end of a frame O(its bytes), and a step of the robot if it
+    /// asks for one.
     pub fn receive(&mut self, byte: u8, meter: &mut impl Meter) -> Reaction<'_> {
         match self.deframer.push(byte) {
             None => Reaction::None,

@@ -23,8 +23,8 @@ pub enum OpenError {
 
 /// A line to a device, in both directions.
 pub struct Channel {
-    /// Bytes from the device. An error of the kinds `TimedOut`, `WouldBlock` and `Interrupted` means that there are none now; the end means that the
-    /// device is gone.
+    /// Bytes from the device. An error of the kinds `TimedOut`, `WouldBlock` and `Interrupted` means that there are
+    /// none now; the end means that the device is gone.
     pub read: Box<dyn Read + Send>,
     /// Bytes to the device.
     pub write: Box<dyn Write + Send>,
@@ -55,8 +55,8 @@ impl Channel {
         }
     }
 
-    /// Starts the emulator or opens the port. `firmware` is the folder that `cargo xtask firmware` writes to; an emulator's log goes
-    /// to the file `log`.
+    /// Starts the emulator or opens the port. `firmware` is the folder that `cargo xtask firmware` writes to; an
+    /// emulator's log goes to the file `log`.
     ///
     /// # Errors
     /// See [`OpenError`].

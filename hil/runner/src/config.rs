@@ -27,7 +27,8 @@ pub struct DeviceConfig {
 pub struct Reset {
     /// In place of this step.
     pub tick: u32,
-    /// For so many steps the robot stands; at least 1. How long the device really takes plays no part, so that runs repeat.
+    /// For so many steps the robot stands; at least 1. How long the device really takes plays no part, so that runs
+    /// repeat.
     pub down_ticks: u32,
 }
 
@@ -46,7 +47,8 @@ pub struct Options {
     pub start_limit: Duration,
     /// Tells this run from others that have talked to the same devices.
     pub run: u32,
-    /// When this becomes true, [`Fleet::collect`](crate::Fleet::collect) ends at once and all its answers are [`Cause::Stopped`](crate::Cause::Stopped).
+    /// When this becomes true, [`Fleet::collect`](crate::Fleet::collect) ends at once and all its answers are
+    /// [`Cause::Stopped`](crate::Cause::Stopped).
     pub stop: Arc<AtomicBool>,
 }
 

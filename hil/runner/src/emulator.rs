@@ -1,8 +1,9 @@
 //! An emulated part: one QEMU process, its UART on a socket.
 //!
-//! The socket is the process's standard input (`-chardev socket,fd=0`), so that no name in the file system and no port of
-//! the network is needed; semihosting, which carries the firmware's logs, has the standard output for itself. Unix sockets in pairs, named Unix
-//! sockets and FIFOs take the same time per byte: the emulator takes and hands out one byte at a time.
+//! The socket is the process's standard input (`-chardev socket,fd=0`), so that no name in the file system and no port
+//! of the network is needed; semihosting, which carries the firmware's logs, has the standard output for itself. Unix
+//! sockets in pairs, named Unix sockets and FIFOs take the same time per byte: the emulator takes and hands out one
+//! byte at a time.
 
 use crate::part::Part;
 use std::fs::File;
@@ -48,7 +49,8 @@ pub struct Emulator {
     complaints: Arc<Mutex<String>>,
 }
 
-/// The emulator `program` of a part with this firmware, as it is started. One instruction takes a nanosecond of the emulated clock.
+/// The emulator `program` of a part with this firmware, as it is started. One instruction takes a nanosecond of the
+/// emulated clock.
 pub fn command(part: Part, program: &Path, elf: &Path) -> Command {
     let (_, machine, _) = part.machine();
     // In its own process group, so that Ctrl-C in a terminal reaches the runner alone, which ends it in order.
@@ -109,8 +111,8 @@ pub fn start(
     Ok((Emulator { child, complaints }, ours))
 }
 
-/// The emulator of this name: on the path, or where `cargo xtask qemu` unpacks it, beside the folder that this program was built in
-/// (`target/release/staya`, `target/debug/deps/a-test`).
+/// The emulator of this name: on the path, or where `cargo xtask qemu` unpacks it, beside the folder that this program
+/// was built in (`target/release/staya`, `target/debug/deps/a-test`).
 #[must_use]
 pub fn find_emulator(program: &str) -> Option<PathBuf> {
     let path = std::env::var_os("PATH").unwrap_or_default();

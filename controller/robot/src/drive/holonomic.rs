@@ -16,8 +16,8 @@ pub struct Omni<S, const W: usize> {
 impl<S: Scalar, const W: usize> Omni<S, W> {
     const ENOUGH: () = assert!(W >= 3 && W <= 16, "fewer wheels cannot go any way");
 
-    /// The first wheel is at `first_rad` from the nose (counter-clockwise), all are `radius_m` from the centre; `None` unless
-    /// this is more than 0 and both are finite.
+    /// The first wheel is at `first_rad` from the nose (counter-clockwise), all are `radius_m` from the centre; `None`
+    /// unless this is more than 0 and both are finite.
     #[must_use]
     pub fn new(first_rad: S, radius_m: S) -> Option<Self> {
         let () = Self::ENOUGH;
@@ -73,7 +73,8 @@ pub struct Mecanum<S> {
 }
 
 impl<S: Scalar> Mecanum<S> {
-    /// `wheel_base_m`: between the axles; `track_m`: between left and right wheels; `None` unless their sum is more than 0 and finite.
+    /// `wheel_base_m`: between the axles; `track_m`: between left and right wheels; `None` unless their sum is more
+    /// than 0 and finite.
     #[must_use]
     pub fn new(wheel_base_m: S, track_m: S) -> Option<Self> {
         let arm_m = (wheel_base_m + track_m) * S::HALF;

@@ -8,7 +8,8 @@ use staya_controller::time::Duration;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Limits<S> {
-    /// Top rim speed, m/s: what the slowest motor does under load with an old battery, or the swarm's picture of the robot is wrong.
+    /// Top rim speed, m/s: what the slowest motor does under load with an old battery, or the swarm's picture of the
+    /// robot is wrong.
     pub speed_mps: S,
     /// How fast a rim may change its speed, m/s^2, before it slips or the supply gives in; [`Scalar::MAX`]: at once.
     pub acceleration_mps2: S,
@@ -16,8 +17,8 @@ pub struct Limits<S> {
 
 /// Keeps rim speeds within limits without bending the motion.
 ///
-/// - Too fast: all wheels slow down by the same factor, so that a robot that goes any way keeps its direction, and one that cannot keeps its
-///   curve.
+/// - Too fast: all wheels slow down by the same factor, so that a robot that goes any way keeps its direction, and one
+///   that cannot keeps its curve.
 /// - Too sudden: all wheels make the same part of their change, the largest that every one can make.
 /// - A motion that is not finite counts as standing still, which is reached within the acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,8 +44,8 @@ impl<S: Scalar, K: Kinematics<S, W>, const W: usize> Mixer<S, K, W> {
         })
     }
 
-    /// The rim speeds for the next `span`, m/s. Call it as often as the motors are set; a span of 0 or less changes nothing where acceleration
-    /// is limited. O(W).
+    /// The rim speeds for the next `span`, m/s. Call it as often as the motors are set; a span of 0 or less changes
+    /// nothing where acceleration is limited. O(W).
     #[must_use]
     pub fn mix(&mut self, twist: &Twist<S>, span: Duration) -> [S; W] {
         let wish = self.slowed(self.kinematics.wheels(twist));

@@ -40,7 +40,8 @@ impl<P: fmt::Debug, D: fmt::Debug> fmt::Display for MotorError<P, D> {
 
 impl<P: fmt::Debug, D: fmt::Debug> core::error::Error for MotorError<P, D> {}
 
-/// A PWM channel for the power and a pin for the direction (high: ahead), as on DRV8835 (PH/EN mode), TB9051, Cytron MDD.
+/// A PWM channel for the power and a pin for the direction (high: ahead), as on DRV8835 (PH/EN mode), TB9051, Cytron
+/// MDD.
 #[derive(Clone, Debug)]
 pub struct SignMagnitude<P, D> {
     pwm: P,
@@ -76,7 +77,8 @@ impl<P: SetDutyCycle, D: OutputPin> Motor for SignMagnitude<P, D> {
     }
 }
 
-/// A PWM channel for the power and two pins for the direction (high, low: ahead; both low: coast), as on L298N and TB6612.
+/// A PWM channel for the power and two pins for the direction (high, low: ahead; both low: coast), as on L298N and
+/// TB6612.
 #[derive(Clone, Debug)]
 pub struct TwoPins<P, A, B> {
     pwm: P,
@@ -106,8 +108,8 @@ impl<P: SetDutyCycle, A: OutputPin, B: OutputPin<Error = A::Error>> Motor for Tw
     }
 }
 
-/// A PWM channel for each direction, of one kind, as on DRV8833 and DRV8871 (IN/IN mode): the other one stays low, and between pulses the motor
-/// coasts.
+/// A PWM channel for each direction, of one kind, as on DRV8833 and DRV8871 (IN/IN mode): the other one stays low, and
+/// between pulses the motor coasts.
 #[derive(Clone, Debug)]
 pub struct HBridge<P> {
     ahead: P,

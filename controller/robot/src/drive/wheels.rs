@@ -5,13 +5,15 @@ use staya_controller::scalar::Scalar;
 
 /// What a motor's duty does to its rim, measured on the robot.
 ///
-/// duty = `dead_duty` + (1 - `dead_duty`) * speed / `full_mps`, with the sign of the speed; below `still_mps` none at all.
+/// duty = `dead_duty` + (1 - `dead_duty`) * speed / `full_mps`, with the sign of the speed; below `still_mps` none at
+/// all.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Calibration<S> {
     /// Rim speed at full duty under the robot's weight, m/s ([`rim_speed`]); more than 0.
     pub full_mps: S,
-    /// The largest part of the full duty, on [0, 1), at which the wheel does not turn yet. Too large: the robot jerks when it should creep.
+    /// The largest part of the full duty, on [0, 1), at which the wheel does not turn yet. Too large: the robot jerks
+    /// when it should creep.
     pub dead_duty: S,
     /// Speeds below are not worth a motor's noise, m/s: the dead band.
     pub still_mps: S,

@@ -1,8 +1,8 @@
 //! From a range sensor to what the controller wants to see: a window of terrain, and obstacles.
 //!
-//! A [`Scan`] is what a turning lidar or a ring of sonar or infrared sensors measured. [`LocalMap`] remembers it as cells for guidance on
-//! the grid; [`outline`] makes walls and balls of it at once, for collision avoidance in the plane. Both leave out what is
-//! known to be another robot, whose packets say more about it.
+//! A [`Scan`] is what a turning lidar or a ring of sonar or infrared sensors measured. [`LocalMap`] remembers it as
+//! cells for guidance on the grid; [`outline`] makes walls and balls of it at once, for collision avoidance in the
+//! plane. Both leave out what is known to be another robot, whose packets say more about it.
 
 mod local_map;
 mod outline;
@@ -23,8 +23,8 @@ pub struct Scan<'a, S> {
     pub first_rad: S,
     /// From one to the next; negative when the sensor turns clockwise.
     pub step_rad: S,
-    /// Metres. Those below [`Self::min_m`] and what is not a number are no measurement; those of [`Self::max_m`] or more (also infinite ones)
-    /// say that nothing is nearer than `max_m`.
+    /// Metres. Those below [`Self::min_m`] and what is not a number are no measurement; those of [`Self::max_m`] or
+    /// more (also infinite ones) say that nothing is nearer than `max_m`.
     pub ranges_m: &'a [S],
     /// The least range that means something.
     pub min_m: S,
@@ -58,7 +58,8 @@ impl<S: Scalar> Ray<S> {
 }
 
 impl<'a, S: Scalar> Scan<'a, S> {
-    /// What each range says, `None` for those that say nothing, of a robot at `heading_rad`. O(1) for each: one sine and cosine.
+    /// What each range says, `None` for those that say nothing, of a robot at `heading_rad`. O(1) for each: one sine
+    /// and cosine.
     pub fn rays(&self, heading_rad: S) -> impl Iterator<Item = Option<Ray<S>>> + 'a {
         let scan = *self;
         let (sin, cos) = heading_rad.sin_cos();
@@ -77,11 +78,12 @@ impl<'a, S: Scalar> Scan<'a, S> {
     }
 }
 
-/// Whether what is seen at `place_m`, relative to the robot at `own`, is one of the known neighbours: within `margin_m` of its ball, where its last
-/// packet leads it by `now`, gone on for at most `longest`. The margin covers how wrong that may be.
+/// Whether what is seen at `place_m`, relative to the robot at `own`, is one of the known neighbours: within `margin_m`
+/// of its ball, where its last packet leads it by `now`, gone on for at most `longest`. The margin covers how wrong
+/// that may be.
 ///
-/// For [`LocalMap::observe`] and [`outline`]: `|place| is_neighbor(agent.neighbors(), own, now, longest, place, margin)`.
-/// O(neighbours).
+/// For [`LocalMap::observe`] and [`outline`]: `|place| is_neighbor(agent.neighbors(), own, now, longest, place,
+/// margin)`. O(neighbours).
 #[must_use]
 pub fn is_neighbor<S: Scalar>(
     neighbors: &[Neighbor<S>],

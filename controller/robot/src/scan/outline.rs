@@ -1,8 +1,8 @@
 //! Walls and balls from one scan, for collision avoidance.
 //!
-//! Source: sleeve fitting, Z. Zhao, A. Saalfeld 1997, "Linear-time sleeve-fitting polyline simplification algorithms": from the first
-//! point of a wall the directions that pass all later points within the tolerance are an angle that only shrinks, so that each
-//! point costs the same.
+//! Source: sleeve fitting, Z. Zhao, A. Saalfeld 1997, "Linear-time sleeve-fitting polyline simplification algorithms":
+//! from the first point of a wall the directions that pass all later points within the tolerance are an angle that only
+//! shrinks, so that each point costs the same.
 
 use super::{Ray, Scan};
 use heapless::Vec;
@@ -14,19 +14,22 @@ use staya_controller::scalar::Scalar;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct OutlineParams<S> {
-    /// A wall may miss the hits that it stands for by so much, metres: some times the sensor's noise. Less: more walls for the same land.
+    /// A wall may miss the hits that it stands for by so much, metres: some times the sensor's noise. Less: more walls
+    /// for the same land.
     pub tolerance_m: S,
-    /// Hits of neighbouring beams that are farther apart are two things, metres. No more than what the robot fits through.
+    /// Hits of neighbouring beams that are farther apart are two things, metres. No more than what the robot fits
+    /// through.
     pub gap_m: S,
-    /// Radius of the ball for a hit that stands alone, metres: half the distance of beams at the range that matters. More than 0.
+    /// Radius of the ball for a hit that stands alone, metres: half the distance of beams at the range that matters.
+    /// More than 0.
     pub point_m: S,
 }
 
-/// What the scan shows as obstacles relative to the robot, the nearest first, at most `K`: the farthest are left out. Hits that
-/// `is_robot` (place relative to the robot, metres along the world's axes) names are left out too.
+/// What the scan shows as obstacles relative to the robot, the nearest first, at most `K`: the farthest are left out.
+/// Hits that `is_robot` (place relative to the robot, metres along the world's axes) names are left out too.
 ///
-/// The first and the last beam of a full turn are not joined. Bounded work: O(1) and one call of `is_robot` for each range, O(K) for
-/// each wall.
+/// The first and the last beam of a full turn are not joined. Bounded work: O(1) and one call of `is_robot` for each
+/// range, O(K) for each wall.
 #[must_use]
 pub fn outline<S: Scalar, const K: usize>(
     scan: &Scan<'_, S>,

@@ -278,7 +278,8 @@ fn a_gap_parts_two_walls_and_a_lone_hit_is_a_ball() {
 
 #[test]
 fn a_wall_does_not_leave_out_what_its_end_came_back_from() {
-    // Beams a fifth of a degree apart, almost along a wall: the second hit lies 25 cm behind the first, the third 15 cm before it.
+    // Beams a fifth of a degree apart, almost along a wall: the second hit lies 25 cm behind the first, the third 15 cm
+    // before it.
     let ranges = [1.0, 1.25, 1.1];
     let scan = scan(0.0, 0.0035, &ranges);
     let found = outline::<_, 8>(&scan, 0.0, &OUTLINE, |_| false);

@@ -1,5 +1,5 @@
-//! Goes wrong on purpose, one way per start: a panic, then an exception of the processor. At the third start it ends the
-//! emulator. `cargo xtask test` reads from the line what it said.
+//! Goes wrong on purpose, one way per start: a panic, then an exception of the processor. At the third start it ends
+//! the emulator. `cargo xtask test` reads from the line what it said.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 staya_firmware::entry!(program::run);

@@ -1,5 +1,5 @@
-//! Links only if no panic is reachable from `staya-robot`: from packets over a line, wheels, odometry and range scans, in `f32` and in
-//! Q16.16. Works as `nopanic` does, which has the steps of the controller; it is not meant to be run.
+//! Links only if no panic is reachable from `staya-robot`: from packets over a line, wheels, odometry and range scans,
+//! in `f32` and in Q16.16. Works as `nopanic` does, which has the steps of the controller; it is not meant to be run.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 staya_firmware::entry!(program::run);

@@ -107,7 +107,8 @@ fn uart0() {
     unsafe { NVIC::unmask(Interrupt::UART0) };
 }
 
-/// Wakes [`send`], which looks at the event itself, and takes what the receiver's FIFO holds. The event goes first: a byte that comes meanwhile sets it again.
+/// Wakes [`send`], which looks at the event itself, and takes what the receiver's FIFO holds. The event goes first: a
+/// byte that comes meanwhile sets it again.
 // SAFETY: the name that nrf-pac's interrupt table has for it; a handler without arguments.
 #[unsafe(export_name = "UART0")]
 extern "C" fn on_uart() {
@@ -119,8 +120,8 @@ extern "C" fn on_uart() {
             break;
         }
         if !RECEIVED.has_room() {
-            // The emulator's line has no pace of its own: it fills the FIFO as fast as it is read, and the main loop would not
-            // get a word in. What stays in the FIFO is taken once the main loop has caught up.
+            // The emulator's line has no pace of its own: it fills the FIFO as fast as it is read, and the main loop
+            // would not get a word in. What stays in the FIFO is taken once the main loop has caught up.
             UART0.intenclr().write(|int| int.set_rxdrdy(true));
             break;
         }
