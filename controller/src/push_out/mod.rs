@@ -34,6 +34,7 @@ use zone::{Side, Zone};
 
 /// What becomes of a step that leads too near.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Model {
     /// Model 1: it ends where the radius through it leaves the zone; straight at the centre: sideways, as
     /// long. It slides along and slows down there.
@@ -46,6 +47,7 @@ pub enum Model {
 
 /// How many robots are evaded at once. Obstacles all are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Evasion {
     /// The nearest of those in the way only: the evading step may lead too near to another one.
     Single,
@@ -57,6 +59,7 @@ pub enum Evasion {
 
 /// Parameters of push-out.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PushOutParams<S> {
     /// What becomes of a step that leads too near.
     pub model: Model,
