@@ -6,6 +6,7 @@ use crate::scalar::Scalar;
 
 /// The own body right now.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Body<S> {
     /// Own number.
     pub id: RobotId,

@@ -61,6 +61,7 @@ impl Gain {
 /// What each of the eight moves costs at best: for a route, the least T over the routes that begin
 /// with it and do not return to the robot's cell (KUZ eq. 8).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Weights([Cost; 8]);
 
 impl Weights {

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 /// A vector in the plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Vec2<S> {
     /// East.
     pub x: S,
@@ -16,6 +17,7 @@ pub struct Vec2<S> {
 
 /// A vector in space.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Vec3<S> {
     /// East.
     pub x: S,
@@ -286,6 +288,7 @@ impl<S: Scalar> Vec3<S> {
 /// Integers, because a float of 32 bits knows a place 1000 km from the origin to 6 cm only, and fixed
 /// point ends at 32 km. Everything else is computed from differences, which are small.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Position {
     /// East, north, up; millimetres.
     pub mm: [i32; 3],

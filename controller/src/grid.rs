@@ -197,6 +197,7 @@ impl Dir {
 /// `cells` holds the impassability of each cell, row by row from the south-west corner:
 /// 1..=255 ticks to cross, or [`BLOCKED`]. Cells outside the rectangle are unknown.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Window<'a> {
     cells: &'a [u8],
     origin: Cell,
@@ -281,6 +282,7 @@ impl<'a> Window<'a> {
 
 /// Where the grid lies in the world: the one place that converts between cells and metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct GridFrame<S> {
     /// World position of the south-west corner of cell (0, 0), metres.
     pub origin_m: Vec2<S>,

@@ -24,6 +24,7 @@ const fn mix(mut z: u64) -> u64 {
 ///
 /// Not `Copy`: two copies would silently repeat each other.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Rng {
     state: u64,
 }

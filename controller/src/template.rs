@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 /// A robot's place in the formation and where its neighbours there should be (KUZ section 3), at
 /// most `F` of them.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Template<const F: usize> {
     /// The robot's place in the formation.
     pub slot: u8,
@@ -21,6 +22,7 @@ pub struct Template<const F: usize> {
 
 /// Where a neighbour in the formation should be, relative to oneself (KUZ section 3: template).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct TemplateEntry {
     /// Wanted cell difference, neighbour minus self.
     #[serde(with = "fixint")]

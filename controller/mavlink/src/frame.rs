@@ -23,6 +23,7 @@ pub(crate) static CRC: Crc<u16, Table<1>> = Crc::<u16, Table<1>>::new(&CRC_16_MC
 
 /// Who sends a frame, and which of its frames it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Sender {
     /// System, 1 to 255 (255: a ground station).
     pub system: u8,
@@ -34,6 +35,7 @@ pub struct Sender {
 
 /// There is no room for the frame; nothing was written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Full;
 
 /// One whole frame, of MAVLink 1 or 2, whose length is right and whose checksum is right if the message is known.

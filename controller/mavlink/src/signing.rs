@@ -24,6 +24,7 @@ const HEADER: usize = 10;
 
 /// Why a frame was not signed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum SignError {
     /// It is no whole MAVLink 2 frame without a signature.
     NotAFrame,
@@ -33,6 +34,7 @@ pub enum SignError {
 
 /// What a frame is worth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Verdict {
     /// Signed with the key, and not seen before.
     Authentic,
@@ -58,6 +60,7 @@ impl Verdict {
 
 /// How many frames were what; counts stay at their end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Counts {
     /// [`Verdict::Authentic`].
     pub authentic: u32,

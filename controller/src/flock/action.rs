@@ -15,6 +15,7 @@ pub fn epsilon<S: Scalar>() -> S {
 /// A length in the sigma norm: sigma = (sqrt(1 + e z^2) - 1) / e, and its slope n = z / sqrt(1 + e z^2), which is
 /// the length of n_ij.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SigmaNorm<S> {
     /// ||z||_sigma.
     pub sigma: S,
@@ -81,6 +82,7 @@ pub fn sigmoid_shift<S: Scalar>(a: S, b: S) -> Option<S> {
 
 /// What robots do to each other: phi_alpha(z) = rho_h(z / r_alpha) phi(z - d_alpha). Negative: apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PhiAlpha<S> {
     /// ||r||_sigma of the interaction range.
     pub r_alpha: S,
@@ -117,6 +119,7 @@ impl<S: Scalar> PhiAlpha<S> {
 
 /// What obstacles do: phi_beta(z) = rho_h(z / d_beta) (sigma_1(z - d_beta) - 1), from -2 to 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PhiBeta<S> {
     /// ||d'||_sigma of the distance kept from obstacles.
     pub d_beta: S,

@@ -6,6 +6,7 @@ use crate::scalar::Scalar;
 
 /// The virtual robot on an obstacle's border nearest to a robot, seen from there.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct BetaAgent<S> {
     /// Unit vector out of the obstacle at the beta-agent: q^ - q is this times minus [`Self::distance_m`].
     pub normal: Vec3<S>,

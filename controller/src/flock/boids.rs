@@ -75,6 +75,7 @@ impl<S: Scalar> Turn<S> {
 
 /// Parameters of boids, made by [`BoidsParams::new`], which computes what a step would compute again and again.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct BoidsParams<S> {
     crowded: u64,
     closest: u64,
@@ -211,6 +212,7 @@ fn sound_heading<S: Scalar>(heading: Vec2<S>) -> Vec2<S> {
 
 /// A plane without edges: who leaves on one side comes in on the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Torus<S> {
     /// Size along x and y, metres. What is not above 0 does not wrap.
     pub size_m: [S; 2],

@@ -22,6 +22,7 @@ use serde::{Deserialize, Serialize};
 /// Parameters of the goal flock. Only the ratios of the three gains matter once their sum is longer than 1. Any
 /// of them may be 0, or negative: away from the goal, away from the neighbours, towards the nearest.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct GoalParams<S> {
     /// Pull of the goal (K1). Far above [`Self::center_gain`]: each for itself, the group is lost.
     pub goal_gain: S,
@@ -156,6 +157,7 @@ fn repulsion<S: Scalar>(params: &GoalParams<S>, distance_m: S) -> S {
 
 /// Where a robot with goals is on its way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Stage {
     /// To the middle of all goals.
     #[default]
@@ -171,6 +173,7 @@ pub struct Full;
 
 /// Up to `N` goals of a robot: first it goes to the middle of all; there it draws one of them (eq. 3).
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Goals<const N: usize> {
     places: Vec<Position, N>,
     stage: Stage,

@@ -33,6 +33,7 @@ use serde::{Deserialize, Serialize};
 
 /// Which terms act.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Algorithm {
     /// Only the others: the group breaks up unless it starts as one.
     One,
@@ -45,6 +46,7 @@ pub enum Algorithm {
 
 /// The two gains of one kind of agent.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Gain<S> {
     /// On positions (c1), 1/s^2 in the paper's units; at least 0.
     pub position: S,
@@ -88,6 +90,7 @@ impl<S: Scalar> Gain<S> {
 
 /// Parameters of the alpha flock.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct LatticeParams<S> {
     /// Which terms act.
     pub algorithm: Algorithm,
@@ -168,6 +171,7 @@ impl<S: Scalar> LatticeParams<S> {
 /// A static one has the same place and velocity for ever, and its velocity need not be zero: the paper's obstacle
 /// courses pull the flock past a fixed point. A moving one is where its velocity has taken it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Reference<S> {
     /// Its place minus the own one (q_r - q), metres.
     pub offset_m: Vec3<S>,

@@ -48,6 +48,7 @@ pub fn graph_distance<const F: usize>(cell: Cell, found: &Found<F>) -> GraphDist
 /// For whoever knows every cell, such as a ground station that hears all beacons: no robot can say of
 /// itself where the whole formation should be. In integers, so that every observer says the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct FormationError {
     sum: u64,
     count: u32,

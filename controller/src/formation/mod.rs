@@ -69,6 +69,7 @@ pub enum Recovery {
 
 /// Parameters of formation keeping.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct FormationParams {
     /// How far from its place a neighbour may be and still counts as found, cells (eps of
     /// algorithm 5). Small values lose sight of who strays, so that nobody waits for him.

@@ -7,6 +7,7 @@ use heapless::Vec;
 
 /// Another robot as the formation sees it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Seen {
     /// Who it is.
     pub id: RobotId,
@@ -24,6 +25,7 @@ pub struct Seen {
 
 /// A neighbour of the template that was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Member {
     /// The robot.
     pub seen: Seen,
@@ -35,6 +37,7 @@ pub struct Member {
 
 /// What became of a template's entries.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Found<const F: usize> {
     /// Who is there, in the order of the template.
     pub members: Vec<Member, F>,

@@ -8,6 +8,7 @@ use serde::Serialize;
 
 /// Somebody beside whom one has a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Anchor {
     /// Where that robot will be.
     pub predicted: Cell,
@@ -127,6 +128,7 @@ pub fn def(cell: Cell, members: &[Member]) -> Dir {
 
 /// Whether the top leader waits: hysteresis around r0 (KUZ algorithm 2).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Pace {
     waits: bool,
 }

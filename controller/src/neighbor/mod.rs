@@ -24,6 +24,7 @@ pub use tie::tie;
 
 /// One robot as last heard.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Neighbor<S> {
     /// Who it is.
     pub id: RobotId,
@@ -71,6 +72,7 @@ impl<S: Scalar> Neighbor<S> {
 
 /// How old news may be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Ages {
     /// Older than this is [`Knowledge::Stale`]: a few beacon periods. Too short: a lossy radio makes
     /// everybody stale; too long: robots trust positions that are no longer true.
@@ -81,6 +83,7 @@ pub struct Ages {
 
 /// What is known of one robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Knowledge<'a, S> {
     /// Heard a short while ago.
     Fresh(&'a Neighbor<S>),

@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 /// A robot near by, as it should be right now.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Nearby<S> {
     /// Who it is.
     pub id: RobotId,
@@ -26,6 +27,7 @@ pub struct Nearby<S> {
 
 /// How the ball around a silent robot grows with the age of the news.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct StalenessInflation<S> {
     /// Speed at which a stale neighbour's ball grows, m/s: how fast it might have gone since. 0: never.
     pub growth_mps: S,

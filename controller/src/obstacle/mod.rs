@@ -9,6 +9,7 @@ use crate::scalar::Scalar;
 
 /// An obstacle relative to the robot's centre, metres, so that 1000 km from the origin changes nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Obstacle<S> {
     /// An upright wall of no thickness between two points; polygons, convex or not, are several walls.
     Wall([Vec2<S>; 2]),

@@ -10,6 +10,7 @@ use crate::scalar::Scalar;
 /// distance to its line, from the vector to the neighbour, without an angle. Eq. 13 has the disc's centre
 /// at -(p_B - p_A) / tau; it is at +(p_B - p_A) / tau, as in the paper's figure 4. Eq. 3 is headed Pr1 and means Pr3.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct VelocityObstacle<S> {
     /// Unit vector to the neighbour.
     ahead: Vec2<S>,

@@ -10,6 +10,7 @@ use crate::scalar::Scalar;
 
 /// Which way around.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Side {
     /// By the rule of the model: where the step goes already.
     Rule,
@@ -67,6 +68,7 @@ impl<S: Scalar> Otherwise<S> {
 
 /// A place that a robot's centre should not come into.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Zone<S> {
     shape: Shape<S>,
     /// Of all heights, as walls are: only the horizontal part of a step matters.

@@ -37,6 +37,7 @@ pub enum ExitRule {
 
 /// Parameters of the route cost T(r) = a0 sum |d| u + a1 #occupied + a2 sum visits + a3 |exit - target|.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct RouteParams {
     /// Radius r of the window in cells (KUZ: 5). A larger one sees dead ends earlier and costs
     /// O(r^2) time and memory; 1 is plain greedy descent.

@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 ///
 /// `atan2` of components beyond 1e18 is NaN, and of vectors shorter than 1e-18 it is 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[serde(transparent)]
 pub struct Fast32(pub f32);
 

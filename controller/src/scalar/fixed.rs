@@ -112,6 +112,13 @@ impl MulAssign for Q16 {
     }
 }
 
+#[cfg(feature = "defmt")]
+impl defmt::Format for Q16 {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "{}", self.to_f32());
+    }
+}
+
 impl sealed::Sealed for Q16 {}
 
 impl Scalar for Q16 {

@@ -128,6 +128,7 @@ const _: () = assert!(MAX_CONTENT <= 253);
 
 /// Who says it, and which of its frames this is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Header {
     /// Changes with each start of the sender, so that its sequence may start anew.
     pub boot: u8,

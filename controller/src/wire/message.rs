@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 
 /// What a robot says of itself, periodically. Everything that others may rely on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Beacon {
     /// Sender's clock when it sampled its state.
     #[serde(with = "fixint")]
@@ -47,6 +48,7 @@ pub struct Beacon {
 
 /// The beacon for radios that carry 30 bytes: what collision avoidance and flocking need, in the plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct CompactBeacon {
     /// Sender's clock when it sampled its state, ms (wraps after 65 s).
     #[serde(with = "fixint")]
@@ -77,6 +79,7 @@ pub enum RequestKind {
 
 /// A request to one robot; resent until acknowledged, given up after its expiry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Request {
     /// Whom it asks.
     pub to: RobotId,
@@ -93,6 +96,7 @@ pub struct Request {
 
 /// "I have your request", whatever became of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Ack {
     /// The robot that asked.
     pub to: RobotId,
@@ -113,6 +117,7 @@ pub const TEMPLATE_PART: usize = 2;
 /// single part of a template without neighbours is empty. See [`TemplateAssignment::split`] and
 /// [`TemplateAssembler`](super::TemplateAssembler).
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct TemplateAssignment {
     /// Who it is for.
     pub to: RobotId,
@@ -134,6 +139,7 @@ pub struct TemplateAssignment {
 /// A new goal for one robot, or for all. Nobody acknowledges it: its sender says it again, with the same
 /// version, for as long as somebody may have missed it. The same holds for [`TemplateAssignment`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct GoalAssignment {
     /// Who it is for; nobody = everybody.
     pub to: RobotId,
@@ -148,6 +154,7 @@ pub struct GoalAssignment {
 /// A place to go to for one robot, or for all, in the plane or in space; it may move. Nobody acknowledges it: see
 /// [`GoalAssignment`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PlaceAssignment {
     /// Who it is for; nobody = everybody.
     pub to: RobotId,
@@ -165,6 +172,7 @@ pub struct PlaceAssignment {
 
 /// Everything that a frame can carry.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Message {
     /// Periodic state.
     Beacon(Beacon),

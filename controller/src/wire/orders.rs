@@ -15,6 +15,7 @@ const LATE: u8 = 32;
 
 /// What to do about a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[must_use = "an unacknowledged request is sent again"]
 pub struct Answer {
     /// To be sent back.

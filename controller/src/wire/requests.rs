@@ -24,6 +24,7 @@ impl RequestKind {
 
 /// How often and when a request is sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Retry {
     /// Sends in all, the first included; 0 counts as 1. With a loss of p per packet, request or
     /// acknowledgement fails in all of them with probability (1 - (1 - p)^2)^attempts: 4 % at
@@ -55,6 +56,7 @@ pub enum AskError {
 
 /// What [`Requests::poll`] wants done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[must_use = "a request that is not sent counts as one lost in the air"]
 pub enum Due {
     /// Send this now. One that does not fit the outbox counts as lost in the air.
