@@ -7,8 +7,8 @@
 use core::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use staya_controller::agent::{
-    AgentConfig, CELLS, CellState, FormationAgent, FormationGuidance, GridWorkspace, Inputs, Pose,
-    RouteAgent, RouteGuidance,
+    AgentConfig, CELLS, CellState, FormationAgent, FormationGuidance, GridWorkspace, Inputs,
+    KinematicState, OnGrid, RouteAgent, RouteGuidance, Unguarded,
 };
 use staya_controller::formation::{FormationParams, Prediction};
 use staya_controller::grid::{Cell, Dir, Window};
@@ -17,7 +17,7 @@ use staya_controller::robot::{Mode, RobotId};
 use staya_controller::route::RouteParams;
 use staya_controller::template::Template;
 use staya_controller::time::{Duration, Instant};
-use staya_controller::wire::{Beacon, Header, Message, encode};
+use staya_controller::wire::{Beacon, Header, Message, Postcard, encode};
 
 /// Rows 1 2 3, 4 5 6, 7 8 9, robot 1 in front.
 const PLACES: [Cell; 9] = [
@@ -87,22 +87,26 @@ fn agent_step(c: &mut Criterion) {
         .map(|_| (0..121).map(|_| 1 + rng.below(9) as u8).collect())
         .collect();
     let inboxes = inboxes();
-    let config = AgentConfig::new(RobotId(OWN as u32 + 1), 1, TICK);
+    let config = AgentConfig {
+        seed: 1,
+        ..AgentConfig::new(RobotId(OWN as u32 + 1), 0.0, TICK)
+    };
     let goal = Cell::new(98, 98) + PLACES[OWN];
     let cell = TOP + PLACES[OWN];
     let inputs = |step: usize| Inputs {
-        pose: Pose::default(),
-        cell: Some(CellState {
-            cell,
-            busy: Duration::ZERO,
-        }),
-        window: Window::new(
-            &landscapes[step % LANDSCAPES],
-            cell - Cell::new(5, 5),
-            11,
-            11,
-        ),
-        surroundings: None,
+        state: KinematicState::default(),
+        surroundings: OnGrid {
+            cell: CellState {
+                cell,
+                busy: Duration::ZERO,
+            },
+            window: Window::new(
+                &landscapes[step % LANDSCAPES],
+                cell - Cell::new(5, 5),
+                11,
+                11,
+            ),
+        },
         inbox: &inboxes[step % inboxes.len()],
     };
     let now = |step: usize| Instant::from_micros(step as u32 * TICK.as_micros().cast_unsigned());
@@ -118,7 +122,7 @@ fn agent_step(c: &mut Criterion) {
         };
         let template = Template::from_graph(&PLACES, &EDGES, OWN, 2).unwrap();
         let guidance = FormationGuidance::new(RouteParams::default(), formation, template);
-        let mut agent = FormationAgent::new(&config, guidance);
+        let mut agent = FormationAgent::new(&config, guidance, Unguarded, Postcard);
         agent.assign_goal(goal);
         let mut step = 0;
         group.bench_function(name, |bencher| {
@@ -130,7 +134,8 @@ fn agent_step(c: &mut Criterion) {
         // Not when another benchmark was asked for.
         assert!(step == 0 || agent.neighbors().len() == 8);
     }
-    let mut alone = RouteAgent::new(&config, RouteGuidance::new(RouteParams::default()));
+    let law = RouteGuidance::new(RouteParams::default());
+    let mut alone = RouteAgent::new(&config, law, Unguarded, Postcard);
     alone.assign_goal(goal);
     let mut step = 0;
     group.bench_function("route_only", |bencher| {

@@ -5,8 +5,8 @@ use staya_controller::robot::{Mode, RobotId};
 use staya_controller::template::TemplateEntry;
 use staya_controller::time::Instant;
 use staya_controller::wire::{
-    Ack, Beacon, CompactBeacon, Frame, GoalAssignment, Header, Message, PlaceAssignment, Request,
-    RequestKind, TemplateAssignment,
+    Ack, Beacon, CompactBeacon, Frame, GoalAssignment, Header, Message, Request, RequestKind,
+    TemplateAssignment, WaypointAssignment,
 };
 use staya_mavlink::wire::{decode, encode};
 use std::fmt::Write as _;
@@ -69,7 +69,7 @@ fn messages() -> [(&'static str, Message, &'static str); 8] {
         version: 0,
         target: Cell::new(24, -21),
     };
-    let place = PlaceAssignment {
+    let place = WaypointAssignment {
         to: RobotId::NOBODY,
         version: 1,
         index: 2,
@@ -116,7 +116,7 @@ fn messages() -> [(&'static str, Message, &'static str); 8] {
         ),
         (
             "STAYA_PLACE",
-            Message::Place(place),
+            Message::Waypoint(place),
             "target_system=0 version=1 index=2 x_mm=1 y_mm=-2 z_mm=3 vx_mmps=-4 vy_mmps=5 vz_mmps=-6",
         ),
     ]

@@ -21,7 +21,7 @@ use staya_controller::template::TemplateEntry;
 use staya_controller::time::Instant;
 use staya_controller::wire::{
     Ack, Beacon, CompactBeacon, DecodeError, EncodeError, Frame, GoalAssignment, Header, Message,
-    PlaceAssignment, Request, RequestKind, TEMPLATE_PART, TemplateAssignment, Wire,
+    Request, RequestKind, TEMPLATE_PART, TemplateAssignment, WaypointAssignment, Wire,
 };
 
 /// The component that robots speak as: an onboard computer (`MAV_COMP_ID_ONBOARD_COMPUTER`).
@@ -185,7 +185,7 @@ pub fn encode<const N: usize>(
             };
             frame::encode(sender, &data, out)
         }
-        Message::Place(place) => {
+        Message::Waypoint(place) => {
             let [x_mm, y_mm, z_mm] = place.position_mm;
             let [vx_mmps, vy_mmps, vz_mmps] = place.velocity_mmps;
             let data = STAYA_PLACE_DATA {
@@ -237,14 +237,14 @@ pub fn decode(bytes: &[u8]) -> Result<Frame, DecodeError> {
         }
         STAYA_PLACE_DATA::ID => {
             let data: STAYA_PLACE_DATA = body(&raw)?;
-            let place = PlaceAssignment {
+            let place = WaypointAssignment {
                 to: robot(data.target_system),
                 version: data.version,
                 index: data.index,
                 position_mm: [data.x_mm, data.y_mm, data.z_mm],
                 velocity_mmps: [data.vx_mmps, data.vy_mmps, data.vz_mmps],
             };
-            (data.boot, data.sequence, Message::Place(place))
+            (data.boot, data.sequence, Message::Waypoint(place))
         }
         _ => return Err(DecodeError::Foreign),
     };

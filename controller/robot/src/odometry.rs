@@ -1,7 +1,7 @@
 //! Where the robot is, reckoned from its wheels.
 
 use crate::drive::{Twist, wrap_angle};
-use staya_controller::agent::Pose;
+use staya_controller::agent::KinematicState;
 use staya_controller::geom::{Position, Vec2};
 use staya_controller::scalar::Scalar;
 use staya_controller::time::Duration;
@@ -125,10 +125,10 @@ impl<S: Scalar> Odometry<S> {
 
     /// Place and velocity of the robot's middle in the world.
     #[must_use]
-    pub fn pose(&self) -> Pose<S> {
+    pub fn state(&self) -> KinematicState<S> {
         let (sin, cos) = self.heading_rad.sin_cos();
         let velocity = Vec2::new(self.twist.forward_mps, self.twist.left_mps).rotate(cos, sin);
-        Pose {
+        KinematicState {
             position: self.position,
             velocity_mps: velocity.extend(S::ZERO),
         }
@@ -202,7 +202,7 @@ mod tests {
             for _ in 0..400 {
                 odometry.advance(&step, SPAN);
             }
-            let [x, y, z] = odometry.pose().position.mm;
+            let [x, y, z] = odometry.state().position.mm;
             assert!(
                 (x - 5).abs() <= tolerance_mm && (y - 6).abs() <= tolerance_mm && z == 7,
                 "{x} {y}"
@@ -220,8 +220,8 @@ mod tests {
         for _ in 0..1000 {
             odometry.advance(&way(0.0001, 0.0), SPAN);
         }
-        assert_eq!(odometry.pose().position.mm, [100, 0, 0]);
-        let velocity = odometry.pose().velocity_mps;
+        assert_eq!(odometry.state().position.mm, [100, 0, 0]);
+        let velocity = odometry.state().velocity_mps;
         assert!((velocity.x - 0.002).abs() < 1e-6 && velocity.y == 0.0);
     }
 
@@ -239,7 +239,7 @@ mod tests {
             odometry.advance(&bad_way, SPAN);
             odometry.correct(before.position, bad);
         }
-        assert_eq!(odometry.pose().position, before.pose().position);
+        assert_eq!(odometry.state().position, before.state().position);
         assert_eq!(odometry.heading_rad(), before.heading_rad());
         odometry.advance(&way(0.0, 0.0), Duration::ZERO);
         assert_eq!(
@@ -255,10 +255,10 @@ mod tests {
         let mut odometry = Odometry::new(Position::ORIGIN, 0.0f32).unwrap();
         odometry.advance(&way(0.0004, 0.3), SPAN);
         odometry.correct(Position::from_mm([9, 9, 9]), 7.0);
-        assert_eq!(odometry.pose().position.mm, [9, 9, 9]);
+        assert_eq!(odometry.state().position.mm, [9, 9, 9]);
         assert!((odometry.heading_rad() - (7.0 - core::f32::consts::TAU)).abs() < 1e-6);
         odometry.advance(&way(0.0, 0.0), SPAN);
-        assert_eq!(odometry.pose().position.mm, [9, 9, 9]);
+        assert_eq!(odometry.state().position.mm, [9, 9, 9]);
     }
 
     proptest! {
@@ -271,7 +271,7 @@ mod tests {
             for step in there.chain(back) {
                 odometry.advance(&two.twist(&two.wheels(&step)), SPAN);
             }
-            prop_assert!(odometry.pose().position.mm.iter().all(|mm| mm.abs() <= 1));
+            prop_assert!(odometry.state().position.mm.iter().all(|mm| mm.abs() <= 1));
             prop_assert!((odometry.heading_rad() - 0.3).abs() < 1e-9);
         }
     }

@@ -10,7 +10,7 @@ mod common;
 use core::convert::Infallible;
 use embedded_hal::digital::{ErrorType as PinError, OutputPin};
 use staya_controller::agent::{
-    Agent, AgentConfig, Inputs, OrcaSafety, Place, Surroundings, WaypointGuidance,
+    Agent, AgentConfig, InPlane, Inputs, OrcaSafety, Waypoint, WaypointGuidance,
 };
 use staya_controller::geom::{Position, Vec2};
 use staya_controller::neighbor::StalenessInflation;
@@ -18,6 +18,7 @@ use staya_controller::orca::AvoidParams;
 use staya_controller::robot::{Mode, RobotId};
 use staya_controller::scalar::{Q16, Scalar};
 use staya_controller::time::{Duration, Instant};
+use staya_controller::wire::Postcard;
 use staya_robot::drive::{
     Calibration, Kinematics, Limits, Mixer, Omni, SignMagnitude, Twist, Wheels, wished_velocity,
 };
@@ -79,9 +80,8 @@ fn an_omni_robot_in_fixed_point_arrives_while_it_spins() {
     let mut odometry = Odometry::new(Position::ORIGIN, q(heading)).unwrap();
     let max_speed_mps = q(0.4);
     let config = AgentConfig {
-        radius_m: q(0.15),
         max_acceleration_mps2: q(1.0),
-        ..AgentConfig::new(RobotId(1), 1, TICK)
+        ..AgentConfig::new(RobotId(1), q(0.15), TICK)
     };
     let inflation = StalenessInflation {
         growth_mps: Q16::ZERO,
@@ -89,10 +89,10 @@ fn an_omni_robot_in_fixed_point_arrives_while_it_spins() {
     };
     let safety = OrcaSafety::<Q16, 16>::new(AvoidParams::default(), inflation);
     let guidance = WaypointGuidance::new(max_speed_mps, q(0.02));
-    let mut agent = Agent::<Q16, _, 8, _>::guarded(&config, guidance, safety);
+    let mut agent = Agent::<Q16, _, 8, _>::new(&config, guidance, safety, Postcard);
     let goal = Vec2::new(-1.5, 2.0);
     let there = Position::from_metres([goal.x, goal.y, 0.0]).unwrap();
-    assert!(agent.assign_place(0, &Place::fixed(there)));
+    assert!(agent.assign_waypoint(0, &Waypoint::fixed(there)));
 
     let mut turned = 0.0;
     let mut now = Instant::from_micros(0);
@@ -107,16 +107,12 @@ fn an_omni_robot_in_fixed_point_arrives_while_it_spins() {
             .each_mut()
             .map(|encoder| encoder.travelled(counts.next().unwrap()));
         odometry.advance(&mixer.kinematics().twist(&rims), TICK);
-        let surroundings = Surroundings {
-            max_speed_mps,
-            obstacles: &[],
-            in_cell: None,
-        };
         let inputs = Inputs {
-            pose: odometry.pose(),
-            cell: None,
-            window: None,
-            surroundings: Some(surroundings),
+            state: odometry.state(),
+            surroundings: InPlane {
+                max_speed_mps,
+                obstacles: &[],
+            },
             inbox: &[],
         };
         let out = agent.step(&inputs, now, &mut ());

@@ -16,9 +16,9 @@ mod common;
 use core::convert::Infallible;
 use embedded_io::{ErrorType, Read, ReadReady, Write, WriteReady};
 use staya_controller::agent::{
-    Agent, AgentConfig, CELLS, CellState, GridWorkspace, Guidance, HALF_PLANES, InCell, InPlane,
-    Inputs, NEIGHBORS, OrcaAgent, OrcaSafety, Place, RouteGuidance, Surroundings, VISITS,
-    WaypointGuidance,
+    Agent, AgentConfig, CELLS, CellFollower, CellState, GridWorkspace, Guidance, HALF_PLANES,
+    InCell, InCells, InPlane, Inputs, NEIGHBORS, OnGrid, OrcaAgent, OrcaSafety, RouteGuidance,
+    VISITS, Waypoint, WaypointGuidance,
 };
 use staya_controller::geom::{Position, Vec2};
 use staya_controller::grid::{Cell, GridFrame};
@@ -30,6 +30,7 @@ use staya_controller::robot::{Mode, RobotId};
 use staya_controller::route::RouteParams;
 use staya_controller::scalar::Scalar;
 use staya_controller::time::{Duration, Instant};
+use staya_controller::wire::Postcard;
 use staya_robot::drive::{
     Calibration, Differential, HBridge, Kinematics, Limits, LookAhead, Mixer, Wheels,
     wished_velocity,
@@ -231,16 +232,19 @@ const LIMITS: Limits<f32> = Limits {
 const AHEAD_M: f32 = 0.06;
 const RADIUS_M: f32 = BODY_M as f32 + AHEAD_M + 0.02;
 
-impl<G: Guidance<f32>> Firmware<G> {
+impl<G> Firmware<G>
+where
+    G: for<'a> Guidance<f32, Input<'a>: From<InCells<'a, f32>>>,
+{
     fn new(id: u32, guidance: impl FnOnce(f32) -> G, workspace: G::Workspace, body: &Body) -> Self {
         let track = TRACK_M as f32;
         let ahead = LookAhead::new(AHEAD_M).unwrap();
         let max_speed_mps = ahead.max_speed(LIMITS.speed_mps, track);
         let config = AgentConfig {
-            radius_m: RADIUS_M,
+            seed: 5,
             max_acceleration_mps2: ahead.max_speed(LIMITS.acceleration_mps2, track),
             latency: Duration::from_millis(25),
-            ..AgentConfig::new(RobotId(id), 5, TICK)
+            ..AgentConfig::new(RobotId(id), RADIUS_M, TICK)
         };
         let inflation = StalenessInflation {
             growth_mps: 0.1,
@@ -262,7 +266,7 @@ impl<G: Guidance<f32>> Firmware<G> {
         let encoder = |mirrored| Encoder::new(WHEEL_M as f32, TICKS_PER_TURN, mirrored).unwrap();
         let start = Position::from_metres([body.axle.x, body.axle.y, 0.0]).unwrap();
         Self {
-            agent: Agent::guarded(&config, guidance(max_speed_mps), safety),
+            agent: Agent::new(&config, guidance(max_speed_mps), safety, Postcard),
             workspace,
             radio: PacketLink::new(body.uart.clone()),
             wheels: Wheels::new([(bridge(left), motor), (bridge(right), mirrored)]),
@@ -282,8 +286,8 @@ impl<G: Guidance<f32>> Firmware<G> {
             .advance(&self.mixer.kinematics().twist(&rims), TICK);
         let heading = self.odometry.heading_rad();
         let turn = self.odometry.twist().turn_radps;
-        let pose = self.ahead.pose(&self.odometry.pose(), heading, turn);
-        let place = pose.position.since::<f32>(Position::ORIGIN).xy();
+        let state = self.ahead.state(&self.odometry.state(), heading, turn);
+        let place = state.position.since::<f32>(Position::ORIGIN).xy();
         let scan = Scan {
             first_rad: 0.0,
             step_rad: core::f32::consts::TAU / BEAMS as f32,
@@ -296,7 +300,7 @@ impl<G: Guidance<f32>> Firmware<G> {
         let is_robot = |place| {
             is_neighbor(
                 neighbors,
-                pose.position,
+                state.position,
                 now,
                 TICK.saturating_mul(4),
                 place,
@@ -315,19 +319,23 @@ impl<G: Guidance<f32>> Firmware<G> {
         let obstacles = outline::<_, 16>(&scan, heading, &params, is_robot);
         let cell = FRAME.cell(place).unwrap();
         let inputs = Inputs {
-            pose,
-            cell: Some(CellState {
-                cell,
-                busy: Duration::ZERO,
-            }),
-            window: self.map.window(),
-            surroundings: Some(Surroundings {
-                max_speed_mps: self.max_speed_mps,
-                obstacles: &obstacles,
-                in_cell: Some(InCell {
+            state,
+            surroundings: G::Input::from(InCells {
+                grid: OnGrid {
+                    cell: CellState {
+                        cell,
+                        busy: Duration::ZERO,
+                    },
+                    window: self.map.window(),
+                },
+                plane: InPlane {
+                    max_speed_mps: self.max_speed_mps,
+                    obstacles: &obstacles,
+                },
+                in_cell: InCell {
                     offset_m: place - FRAME.center(cell),
                     cell_m: FRAME.cell_m,
-                }),
+                },
             }),
             inbox: self.radio.take(),
         };
@@ -363,7 +371,7 @@ fn carry(bodies: &[Body], rng: &mut Rng) {
 }
 
 /// Runs robots until all have arrived; the time that it took. After each moment the world is shown to `check`.
-fn run<G: Guidance<f32>>(
+fn run<G: for<'a> Guidance<f32, Input<'a>: From<InCells<'a, f32>>>>(
     bodies: &mut [Body],
     robots: &mut [Firmware<G>],
     walls: &[[Vec2<f64>; 2]],
@@ -413,7 +421,7 @@ fn a_robot_finds_its_way_round_a_wall_that_it_knows_only_by_ranges() {
     ];
     let mut bodies = [Body::at(v(1.0, 1.0), 0.0)];
     let guidance = |speed| {
-        InPlane::new(
+        CellFollower::new(
             RouteGuidance::<CELLS, VISITS>::new(RouteParams::default()),
             speed,
         )
@@ -449,7 +457,7 @@ fn two_robots_with_two_wheels_each_change_places_over_a_bad_wire() {
     let goals = [v(3.5, 1.0), v(0.5, 1.0)];
     for (robot, goal) in robots.iter_mut().zip(goals) {
         let place = Position::from_metres([goal.x, goal.y, 0.0]).unwrap();
-        assert!(robot.agent.assign_place(0, &Place::fixed(place)));
+        assert!(robot.agent.assign_waypoint(0, &Waypoint::fixed(place)));
     }
     let mut least = f64::MAX;
     let time = run(&mut bodies, &mut robots, &[], |bodies| {

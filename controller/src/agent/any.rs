@@ -1,16 +1,16 @@
-//! Guidance and safety layer chosen at run time: for the simulator and for firmware that is told by its host. A firmware that
+//! Guidance law and safety layer chosen at run time: for the simulator and for firmware that is told by its host. A firmware that
 //! knows what it wants names the types and pays for nothing else.
 
-use super::Parameter;
+use super::cell_follower::CellFollower;
 use super::flock_guidance::{BoidsGuidance, GoalFlockGuidance, LatticeGuidance};
 use super::formation_guidance::FormationGuidance;
-use super::guidance::{BadInput, Guidance, Guided, Place, View};
-use super::in_plane::InPlane;
+use super::guidance::{BadInput, Decision, Guidance, GuidanceInput, Teamwork};
 use super::orca_safety::{FlySafety, OrcaSafety};
 use super::other_safety::PushOutSafety;
 use super::route_guidance::{GridWorkspace, RouteGuidance};
-use super::safety::{Safety, Sight, Unguarded};
+use super::safety::{Safety, SafetyInput, Unguarded};
 use super::waypoint_guidance::WaypointGuidance;
+use super::{AnySurroundings, Parameter, Surroundings, Waypoint};
 use crate::geom::{Vec2, Vec3};
 use crate::grid::Cell;
 use crate::neighbor::StalenessInflation;
@@ -21,7 +21,7 @@ use crate::scalar::Scalar;
 use crate::wire::TemplateAssignment;
 use serde::{Deserialize, Serialize};
 
-/// Any guidance, on the grid, in the plane or in space.
+/// Any guidance law, on the grid, in the plane or in space.
 #[derive(Clone, Debug, Serialize)]
 #[expect(missing_docs, reason = "each variant's type says it")]
 pub enum AnyGuidance<S, const CELLS: usize, const M: usize, const F: usize> {
@@ -29,8 +29,8 @@ pub enum AnyGuidance<S, const CELLS: usize, const M: usize, const F: usize> {
     Lattice(LatticeGuidance<S>),
     GoalFlock(GoalFlockGuidance<S>),
     Boids(BoidsGuidance<S>),
-    Route(InPlane<S, RouteGuidance<CELLS, M>>),
-    Formation(InPlane<S, FormationGuidance<CELLS, M, F>>),
+    Route(CellFollower<S, RouteGuidance<CELLS, M>>),
+    Formation(CellFollower<S, FormationGuidance<CELLS, M, F>>),
     RouteOnGrid(RouteGuidance<CELLS, M>),
     FormationOnGrid(FormationGuidance<CELLS, M, F>),
 }
@@ -51,67 +51,82 @@ macro_rules! each {
     };
 }
 
+impl<S, const CELLS: usize, const M: usize, const F: usize> Teamwork
+    for AnyGuidance<S, CELLS, M, F>
+{
+    fn redirect(&mut self) {
+        each!(self, law => law.redirect());
+    }
+
+    fn assign_template(&mut self, part: &TemplateAssignment, is_anew: bool) -> bool {
+        each!(self, law => law.assign_template(part, is_anew))
+    }
+
+    fn goal_offset(&self) -> Cell {
+        each!(self, law => law.goal_offset())
+    }
+
+    fn needs(&self, id: RobotId) -> bool {
+        each!(self, law => law.needs(id))
+    }
+}
+
 impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
     for AnyGuidance<S, CELLS, M, F>
 {
+    type Input<'a> = AnySurroundings<'a, S>;
     type Workspace = GridWorkspace<CELLS>;
 
     fn decide(
         &mut self,
-        view: &View<'_, S>,
+        input: &GuidanceInput<'_, S>,
+        here: &AnySurroundings<'_, S>,
         rng: &mut Rng,
         workspace: &mut Self::Workspace,
-    ) -> Result<Guided<S>, BadInput> {
+    ) -> Result<Decision<S>, BadInput> {
+        let plane = || here.in_plane().ok_or(BadInput);
+        let grid = || match here {
+            AnySurroundings::OnGrid(grid) => Ok(grid),
+            AnySurroundings::InPlane(_) | AnySurroundings::InCells(_) => Err(BadInput),
+        };
+        let cells = || match here {
+            AnySurroundings::InCells(cells) => Ok(cells),
+            AnySurroundings::OnGrid(_) | AnySurroundings::InPlane(_) => Err(BadInput),
+        };
         match self {
-            Self::Waypoint(guidance) => guidance.decide(view, rng, &mut ()),
-            Self::Lattice(guidance) => guidance.decide(view, rng, &mut ()),
-            Self::GoalFlock(guidance) => guidance.decide(view, rng, &mut ()),
-            Self::Boids(guidance) => guidance.decide(view, rng, &mut ()),
-            Self::Route(guidance) => guidance.decide(view, rng, workspace),
-            Self::Formation(guidance) => guidance.decide(view, rng, workspace),
-            Self::RouteOnGrid(guidance) => guidance.decide(view, rng, workspace),
-            Self::FormationOnGrid(guidance) => guidance.decide(view, rng, workspace),
+            Self::Waypoint(law) => law.decide(input, &plane()?, rng, &mut ()),
+            Self::Lattice(law) => law.decide(input, &plane()?, rng, &mut ()),
+            Self::GoalFlock(law) => law.decide(input, &plane()?, rng, &mut ()),
+            Self::Boids(law) => law.decide(input, &plane()?, rng, &mut ()),
+            Self::Route(law) => law.decide(input, cells()?, rng, workspace),
+            Self::Formation(law) => law.decide(input, cells()?, rng, workspace),
+            Self::RouteOnGrid(law) => law.decide(input, grid()?, rng, workspace),
+            Self::FormationOnGrid(law) => law.decide(input, grid()?, rng, workspace),
         }
     }
 
-    fn redirect(&mut self) {
-        each!(self, guidance => Guidance::<S>::redirect(guidance));
-    }
-
-    fn assign_template(&mut self, part: &TemplateAssignment, is_anew: bool) -> bool {
-        each!(self, guidance => Guidance::<S>::assign_template(guidance, part, is_anew))
-    }
-
-    fn assign_place(&mut self, index: u8, place: &Place<S>) -> bool {
-        each!(self, guidance => guidance.assign_place(index, place))
-    }
-
     fn goes_to_cells(&self) -> bool {
-        each!(self, guidance => Guidance::<S>::goes_to_cells(guidance))
+        each!(self, law => Guidance::<S>::goes_to_cells(law))
     }
 
     fn goes_by_velocity(&self) -> bool {
-        each!(self, guidance => Guidance::<S>::goes_by_velocity(guidance))
+        each!(self, law => Guidance::<S>::goes_by_velocity(law))
     }
 
     fn has_own_goal(&self) -> bool {
-        each!(self, guidance => Guidance::<S>::has_own_goal(guidance))
+        each!(self, law => Guidance::<S>::has_own_goal(law))
     }
 
-    fn goal_offset(&self) -> Cell {
-        each!(self, guidance => Guidance::<S>::goal_offset(guidance))
-    }
-
-    fn needs(&self, id: RobotId) -> bool {
-        each!(self, guidance => Guidance::<S>::needs(guidance, id))
+    fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool {
+        each!(self, law => law.assign_waypoint(index, waypoint))
     }
 
     fn parameter(&self, parameter: Parameter) -> Option<S> {
-        each!(self, guidance => guidance.parameter(parameter))
+        each!(self, law => law.parameter(parameter))
     }
 
     fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        each!(self, guidance => guidance.tune(parameter, value))
+        each!(self, law => law.tune(parameter, value))
     }
 }
 
@@ -158,12 +173,12 @@ pub enum AnySafety<S: Scalar, const K: usize> {
 }
 
 impl<S: Scalar, const K: usize> Safety<S> for AnySafety<S, K> {
-    fn keep_clear(&mut self, sight: &Sight<'_, S>, rng: &mut Rng) -> Vec3<S> {
+    fn keep_clear(&mut self, input: &SafetyInput<'_, S>, rng: &mut Rng) -> Vec3<S> {
         match self {
-            Self::Unguarded(safety) => safety.keep_clear(sight, rng),
-            Self::Orca(safety) => safety.keep_clear(sight, rng),
-            Self::Fly(safety) => safety.keep_clear(sight, rng),
-            Self::PushOut(safety) => safety.keep_clear(sight, rng),
+            Self::Unguarded(safety) => safety.keep_clear(input, rng),
+            Self::Orca(safety) => safety.keep_clear(input, rng),
+            Self::Fly(safety) => safety.keep_clear(input, rng),
+            Self::PushOut(safety) => safety.keep_clear(input, rng),
         }
     }
 

@@ -1,8 +1,10 @@
 //! A robot that an operator may take over for a while.
 
-use super::guidance::{BadInput, Guidance, Guided, Place, View};
-use super::parameter::Parameter;
+use super::guidance::{
+    Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells, ToWaypoints,
+};
 use super::waypoint_guidance::WaypointGuidance;
+use super::{Parameter, Surroundings, Waypoint, WrongTask};
 use crate::geom::Vec3;
 use crate::grid::Cell;
 use crate::rand::Rng;
@@ -30,34 +32,21 @@ pub enum Wish<S> {
         /// How long it stands unless it is renewed; at most 35 minutes.
         valid: Duration,
     },
-    /// To go to a place and stay there, as [`WaypointGuidance`] does. A place that moves is followed for so long at most, from when it was
+    /// To go to a waypoint and stay there, as [`WaypointGuidance`] does. One that moves is followed for so long at most, from when it was
     /// said on; then to hold.
-    Place {
-        /// The place when it was said, and how it moves.
-        place: Place<S>,
+    Waypoint {
+        /// The waypoint when it was said, and how it moves.
+        waypoint: Waypoint<S>,
         /// How long it stands unless it is renewed; `None`: until another wish.
         valid: Option<Duration>,
     },
-    /// On the grid: to go to a cell, as the own guidance would.
+    /// On the grid: to go to a cell, as the own guidance law would.
     Cell(Cell),
 }
 
-/// A task that means nothing to the guidance: it goes to other things, or by other means.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct WrongTask;
-
-impl core::fmt::Display for WrongTask {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str("the guidance has no use for the task")
-    }
-}
-
-impl core::error::Error for WrongTask {}
-
-/// Guidance `G` until an operator wishes something else, and again when he wishes no more.
+/// Guidance law `G` until an operator wishes something else, and again when he wishes no more.
 ///
-/// It only wishes, as any guidance does: the safety layer behind it keeps the robot clear of others whatever the
+/// It only wishes, as any guidance law does: the safety layer behind it keeps the robot clear of others whatever the
 /// operator wants. Robots that follow this one see by its beacon that it left its formation.
 #[derive(Clone, Debug, Serialize)]
 pub struct Commanded<S, G> {
@@ -69,7 +58,7 @@ pub struct Commanded<S, G> {
 }
 
 impl<S: Scalar, G> Commanded<S, G> {
-    /// `inside`, and for [`Wish::Place`] a cruising speed in m/s and how near is there, metres.
+    /// `inside`, and for [`Wish::Waypoint`] a cruising speed in m/s and how near is there, metres.
     #[must_use]
     pub const fn new(inside: G, speed_mps: S, tolerance_m: S) -> Self {
         Self {
@@ -83,7 +72,7 @@ impl<S: Scalar, G> Commanded<S, G> {
     /// The operator's wish from the next step on.
     ///
     /// # Errors
-    /// [`WrongTask`] for a velocity or a place where the guidance inside moves cell by cell, for a cell where it does not go to cells, and
+    /// [`WrongTask`] for a velocity or a waypoint where the law inside moves cell by cell, for a cell where it does not go to cells, and
     /// for a velocity that is no number. The wish that held before goes on.
     pub fn command(&mut self, wish: Wish<S>) -> Result<(), WrongTask>
     where
@@ -94,7 +83,7 @@ impl<S: Scalar, G> Commanded<S, G> {
             Wish::Velocity { velocity_mps, .. } => {
                 self.inside.goes_by_velocity() && velocity_mps.is_finite()
             }
-            Wish::Place { .. } => self.inside.goes_by_velocity(),
+            Wish::Waypoint { .. } => self.inside.goes_by_velocity(),
             Wish::Cell(_) => self.inside.goes_to_cells(),
         };
         if !is_possible {
@@ -111,27 +100,24 @@ impl<S: Scalar, G> Commanded<S, G> {
         &self.wish
     }
 
-    /// The guidance inside.
+    /// The guidance law inside.
     #[must_use]
     pub const fn inside(&self) -> &G {
         &self.inside
     }
 
     /// Takes the wish in, and lets it run out.
-    fn renew(&mut self, now: Instant)
-    where
-        S: Scalar,
-    {
+    fn renew(&mut self, now: Instant) {
         let valid = match &mut self.wish {
             Wish::Velocity { valid, .. } => Some(*valid),
-            Wish::Place { valid, .. } => *valid,
+            Wish::Waypoint { valid, .. } => *valid,
             _ => None,
         };
         let Some(since) = self.since else {
             self.since = Some(now);
-            if let Wish::Place { place, .. } = &mut self.wish {
-                place.at = now;
-                let _ = Guidance::assign_place(&mut self.straight, 0, place);
+            if let Wish::Waypoint { waypoint, .. } = &mut self.wish {
+                waypoint.at = now;
+                let _ = self.straight.assign_waypoint(0, waypoint);
             }
             return;
         };
@@ -142,53 +128,27 @@ impl<S: Scalar, G> Commanded<S, G> {
     }
 }
 
-/// Stays, whoever asks it to go on.
-fn standing<S: Scalar>(view: &View<'_, S>) -> Guided<S> {
-    Guided {
-        target: view.goal,
-        waits: true,
-        ..Guided::default()
+/// Does `action`, whoever asks it to go on or to stop.
+fn on_order<S>(action: Action<S>, goal: Cell) -> Decision<S> {
+    let stays = matches!(action, Action::Stay);
+    Decision {
+        action,
+        status: Status {
+            waits: stays,
+            recovers: !stays,
+            ..Status::default()
+        },
+        target: goal,
+        leader: RobotId::NOBODY,
+        slot: 0,
+        asks: heapless::Vec::new(),
     }
 }
 
-impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
-    type Workspace = G::Workspace;
+impl<S, G: ToCells> ToCells for Commanded<S, G> {}
+impl<S, G: ToWaypoints> ToWaypoints for Commanded<S, G> {}
 
-    fn decide(
-        &mut self,
-        view: &View<'_, S>,
-        rng: &mut Rng,
-        workspace: &mut Self::Workspace,
-    ) -> Result<Guided<S>, BadInput> {
-        self.renew(view.now);
-        match self.wish {
-            Wish::Own => self.inside.decide(view, rng, workspace),
-            Wish::Off => Ok(Guided {
-                is_passive: true,
-                ..standing(view)
-            }),
-            Wish::Hold => Ok(standing(view)),
-            Wish::Velocity { velocity_mps, .. } => {
-                view.can_go()?;
-                Ok(Guided {
-                    velocity_mps: velocity_mps.clamp_norm(view.body.max_speed_mps),
-                    target: view.goal,
-                    recovers: true,
-                    ..Guided::default()
-                })
-            }
-            Wish::Place { .. } => Ok(Guided {
-                target: view.goal,
-                recovers: true,
-                ..self.straight.decide(view, rng, &mut ())?
-            }),
-            Wish::Cell(goal) => {
-                let view = View { goal, ..*view };
-                self.inside.decide(&view, rng, workspace)
-            }
-        }
-    }
-
+impl<S, G: Teamwork> Teamwork for Commanded<S, G> {
     fn redirect(&mut self) {
         self.inside.redirect();
     }
@@ -197,8 +157,51 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
         self.inside.assign_template(part, is_anew)
     }
 
-    fn assign_place(&mut self, index: u8, place: &Place<S>) -> bool {
-        self.inside.assign_place(index, place)
+    fn goal_offset(&self) -> Cell {
+        self.inside.goal_offset()
+    }
+
+    fn needs(&self, id: RobotId) -> bool {
+        self.inside.needs(id)
+    }
+}
+
+impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
+    type Input<'a> = G::Input<'a>;
+    type Workspace = G::Workspace;
+
+    fn decide(
+        &mut self,
+        input: &GuidanceInput<'_, S>,
+        here: &Self::Input<'_>,
+        rng: &mut Rng,
+        workspace: &mut Self::Workspace,
+    ) -> Result<Decision<S>, BadInput> {
+        self.renew(input.now);
+        match self.wish {
+            Wish::Own => self.inside.decide(input, here, rng, workspace),
+            Wish::Off => Ok(on_order(Action::Release, input.goal)),
+            Wish::Hold => Ok(on_order(Action::Stay, input.goal)),
+            Wish::Velocity { velocity_mps, .. } => {
+                input.can_go()?;
+                let action = Action::Velocity {
+                    wish_mps: velocity_mps.clamp_norm(input.body.max_speed_mps),
+                    way_m: None,
+                };
+                Ok(on_order(action, input.goal))
+            }
+            Wish::Waypoint { .. } => {
+                let plane = here.in_plane().ok_or(BadInput)?;
+                let mut decision = self.straight.decide(input, &plane, rng, &mut ())?;
+                decision.target = input.goal;
+                decision.status.recovers = true;
+                Ok(decision)
+            }
+            Wish::Cell(goal) => {
+                let input = GuidanceInput { goal, ..*input };
+                self.inside.decide(&input, here, rng, workspace)
+            }
+        }
     }
 
     fn goes_to_cells(&self) -> bool {
@@ -213,12 +216,8 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
         self.wish != Wish::Own || self.inside.has_own_goal()
     }
 
-    fn goal_offset(&self) -> Cell {
-        self.inside.goal_offset()
-    }
-
-    fn needs(&self, id: RobotId) -> bool {
-        self.inside.needs(id)
+    fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool {
+        self.inside.assign_waypoint(index, waypoint)
     }
 
     fn parameter(&self, parameter: Parameter) -> Option<S> {
@@ -227,7 +226,7 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
             .or_else(|| self.straight.parameter(parameter))
     }
 
-    /// Speed and tolerance also hold for [`Wish::Place`].
+    /// Speed and tolerance also hold for [`Wish::Waypoint`].
     fn tune(&mut self, parameter: Parameter, value: S) -> bool {
         self.inside.tune(parameter, value) | self.straight.tune(parameter, value)
     }

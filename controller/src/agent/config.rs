@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 pub struct AgentConfig<S> {
     /// Own number, 1 or more.
     pub id: RobotId,
-    /// Seed of what the robot draws at random.
+    /// Seed of what the robot draws at random, together with its number.
     pub seed: u64,
     /// Changes with each start (counted in lasting memory, or drawn at random): with the old one a robot that has restarted is not heard
     /// until the others have forgotten it; see [`crate::wire::SequenceWindow`].
@@ -56,18 +56,21 @@ impl<S: Scalar> AgentConfig<S> {
         }
     }
 
-    /// A beacon each tick, news stale after 4 and forgotten after 30 ticks, requests resent every
-    /// 3 ticks, stops for 12 ticks, a radius of 0, no inertia, no latency. Robots that go by velocities need at least their
-    /// [`radius_m`](Self::radius_m) besides, and on real radios their [`latency`](Self::latency).
+    /// What no robot can do without; `tick` and `radius_m` as the fields say. On the grid, where a body is its cell, the radius counts for
+    /// nothing and may be 0.
+    ///
+    /// The rest: seed 0, a beacon each tick, news stale after 4 and forgotten after 30 ticks, requests resent every
+    /// 3 ticks, stops for 12 ticks, no inertia, no latency. Robots that go by velocities on real radios need their
+    /// [`latency`](Self::latency) besides.
     #[must_use]
-    pub fn new(id: RobotId, seed: u64, tick: Duration) -> Self {
+    pub const fn new(id: RobotId, radius_m: S, tick: Duration) -> Self {
         Self {
             id,
-            seed,
+            seed: 0,
             boot: 0,
             tick,
             beacon_period: tick,
-            radius_m: S::ZERO,
+            radius_m,
             max_acceleration_mps2: S::MAX,
             latency: Duration::ZERO,
             ages: Ages {

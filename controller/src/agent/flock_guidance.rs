@@ -1,6 +1,9 @@
-//! The three flocks as guidances.
+//! The three flocks as guidance laws.
 
-use super::guidance::{BadInput, Guidance, Guided, Place, View};
+use super::guidance::{
+    Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToWaypoints,
+};
+use super::{InPlane, Waypoint};
 use crate::flock::boids::BoidsParams;
 use crate::flock::goal::{GoalParams, Goals, Stage, wish};
 use crate::flock::lattice::{LatticeParams, Reference, acceleration};
@@ -12,11 +15,11 @@ use serde::Serialize;
 /// Goals that a robot of a goal flock has room for.
 pub const GOALS: usize = 4;
 
-/// The alpha flock (OLF): robots at equal distances that follow a reference, if they are given one as place 0.
+/// The alpha flock (OLF): robots at equal distances that follow a reference, if they are given one as waypoint 0.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct LatticeGuidance<S> {
     params: LatticeParams<S>,
-    place: Option<Place<S>>,
+    reference: Option<Waypoint<S>>,
     moves: bool,
 }
 
@@ -27,53 +30,60 @@ impl<S: Scalar> LatticeGuidance<S> {
     pub const fn new(params: LatticeParams<S>, moves: bool) -> Self {
         Self {
             params,
-            place: None,
+            reference: None,
             moves,
         }
     }
 }
 
+impl<S> Teamwork for LatticeGuidance<S> {}
+impl<S> ToWaypoints for LatticeGuidance<S> {}
+
 impl<S: Scalar> Guidance<S> for LatticeGuidance<S> {
+    type Input<'a> = InPlane<'a, S>;
     type Workspace = ();
 
     fn decide(
         &mut self,
-        view: &View<'_, S>,
+        input: &GuidanceInput<'_, S>,
+        here: &InPlane<'_, S>,
         _: &mut Rng,
         (): &mut (),
-    ) -> Result<Guided<S>, BadInput> {
-        view.can_go()?;
+    ) -> Result<Decision<S>, BadInput> {
+        input.can_go()?;
         let moves = self.moves;
-        let reference = self.place.as_mut().map(|place| Reference {
+        let reference = self.reference.as_mut().map(|waypoint| Reference {
             offset_m: if moves {
-                place.way(view.pose.position, view.now)
+                waypoint.way(input.state.position, input.now)
             } else {
-                place.position.since(view.pose.position)
+                waypoint.position.since(input.state.position)
             },
-            velocity_mps: place.velocity_mps,
+            velocity_mps: waypoint.velocity_mps,
         });
-        let body = &view.body;
+        let body = &input.body;
         let change = acceleration(
             &self.params,
             body,
-            view.nearby,
-            view.obstacles,
+            input.nearby,
+            here.obstacles,
             reference.as_ref(),
         );
-        let velocity_mps = body.velocity_mps + change * body.step_s;
-        if !velocity_mps.is_finite() {
+        let wish_mps = body.velocity_mps + change * body.step_s;
+        if !wish_mps.is_finite() {
             return Err(BadInput);
         }
-        Ok(Guided {
-            velocity_mps,
-            way_m: reference.map(|reference| reference.offset_m),
-            ..Guided::default()
+        Ok(Decision {
+            action: Action::Velocity {
+                wish_mps,
+                way_m: reference.map(|reference| reference.offset_m),
+            },
+            ..Decision::default()
         })
     }
 
-    fn assign_place(&mut self, index: u8, place: &Place<S>) -> bool {
+    fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool {
         if index == 0 {
-            self.place = Some(*place);
+            self.reference = Some(*waypoint);
         }
         index == 0
     }
@@ -84,7 +94,7 @@ impl<S: Scalar> Guidance<S> for LatticeGuidance<S> {
 }
 
 /// The goal flock (PAV): to the middle of the goals together, there each robot draws one of them. Goals stay where they are until
-/// they are given anew: the velocity of a [`Place`] counts for nothing here.
+/// they are given anew: the velocity of a [`Waypoint`] counts for nothing here.
 #[derive(Clone, Debug, Serialize)]
 pub struct GoalFlockGuidance<S> {
     params: GoalParams<S>,
@@ -122,33 +132,40 @@ impl<S: Scalar> GoalFlockGuidance<S> {
     }
 }
 
+impl<S> Teamwork for GoalFlockGuidance<S> {}
+impl<S> ToWaypoints for GoalFlockGuidance<S> {}
+
 impl<S: Scalar> Guidance<S> for GoalFlockGuidance<S> {
+    type Input<'a> = InPlane<'a, S>;
     type Workspace = ();
 
     fn decide(
         &mut self,
-        view: &View<'_, S>,
+        input: &GuidanceInput<'_, S>,
+        _: &InPlane<'_, S>,
         _: &mut Rng,
         (): &mut (),
-    ) -> Result<Guided<S>, BadInput> {
-        view.can_go()?;
-        let own = view.pose.position;
-        let _ = self.goals.update(own, self.arrival_m, self.seed, view.id);
+    ) -> Result<Decision<S>, BadInput> {
+        input.can_go()?;
+        let own = input.state.position;
+        let _ = self.goals.update(own, self.arrival_m, self.seed, input.id);
         let goal = self.goals.current();
-        let velocity_mps = wish(&self.params, &view.body, own, goal, view.nearby);
+        let wish_mps = wish(&self.params, &input.body, own, goal, input.nearby);
         let way_m = goal.map(|goal| goal.since(own));
-        Ok(Guided {
-            velocity_mps,
-            way_m,
-            is_at_goal: self.is_there(own, way_m, velocity_mps),
-            ..Guided::default()
+        Ok(Decision {
+            action: Action::Velocity { wish_mps, way_m },
+            status: Status {
+                is_at_goal: self.is_there(own, way_m, wish_mps),
+                ..Status::default()
+            },
+            ..Decision::default()
         })
     }
 
-    fn assign_place(&mut self, index: u8, place: &Place<S>) -> bool {
-        let index = usize::from(index);
-        self.goals.set_goal(index, place.position)
-            || (index == self.goals.as_slice().len() && self.goals.push(place.position).is_ok())
+    fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool {
+        let (index, position) = (usize::from(index), waypoint.position);
+        self.goals.set_goal(index, position)
+            || (index == self.goals.as_slice().len() && self.goals.push(position).is_ok())
     }
 
     fn has_own_goal(&self) -> bool {
@@ -177,30 +194,36 @@ impl<S: Scalar> BoidsGuidance<S> {
     }
 }
 
+impl<S> Teamwork for BoidsGuidance<S> {}
+
 impl<S: Scalar> Guidance<S> for BoidsGuidance<S> {
+    type Input<'a> = InPlane<'a, S>;
     type Workspace = ();
 
     fn decide(
         &mut self,
-        view: &View<'_, S>,
+        input: &GuidanceInput<'_, S>,
+        _: &InPlane<'_, S>,
         rng: &mut Rng,
         (): &mut (),
-    ) -> Result<Guided<S>, BadInput> {
-        view.can_go()?;
+    ) -> Result<Decision<S>, BadInput> {
+        input.can_go()?;
         let mut draw = || {
             let turn = S::from_ratio(rng.below(20_000).cast_signed() - 10_000, 10_000);
             let (sin, cos) = (turn * S::PI).sin_cos();
             Vec2::new(cos, sin)
         };
         // Where a safety layer has turned the body, there it looks.
-        let moving = view.body.velocity_mps.xy().normalized();
+        let moving = input.body.velocity_mps.xy().normalized();
         let heading = moving.or(self.heading).unwrap_or_else(&mut draw);
-        let heading = self.params.steer(view.id, heading, view.nearby);
+        let heading = self.params.steer(input.id, heading, input.nearby);
         self.heading = Some(heading);
-        let velocity_mps: Vec3<S> = (heading * self.speed_mps).extend(S::ZERO);
-        Ok(Guided {
-            velocity_mps,
-            ..Guided::default()
+        Ok(Decision {
+            action: Action::Velocity {
+                wish_mps: (heading * self.speed_mps).extend(S::ZERO),
+                way_m: None,
+            },
+            ..Decision::default()
         })
     }
 

@@ -1,7 +1,10 @@
 //! Travelling in formation (KUZ algorithm 2): the top leader chooses the way for all, the others keep
 //! their places beside it. See [`crate::formation`] for what differs from the paper and why.
 
-use super::guidance::{Ask, BadInput, Guidance, Guided, View};
+use super::OnGrid;
+use super::guidance::{
+    Action, Ask, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells,
+};
 use super::route_guidance::GridWorkspace;
 use super::travel::{PATIENCE, Travel, on_grid, reachable_goal};
 use crate::cost::{Gain, Weights};
@@ -30,7 +33,7 @@ const ALTERNATIVES: usize = 2;
 /// Cells by which old news may be carried forward.
 const MAX_FORESIGHT: i16 = 3;
 
-/// Guidance in formation; remembers visits of `M` cells and a template of `F` neighbours.
+/// Travelling in formation; remembers visits of `M` cells and a template of `F` neighbours.
 ///
 /// Without a template the robot travels alone.
 #[derive(Clone, Debug, Serialize)]
@@ -120,20 +123,20 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
     #[inline(never)]
     fn seen<S>(
         &self,
-        view: &View<'_, S>,
+        input: &GuidanceInput<'_, S>,
         window: &Window<'_>,
         field: &mut CostField<CELLS>,
         all: &mut Vec<Seen, 32>,
     ) {
-        let top = self.top(view);
+        let top = self.top(input);
         for wanted in [true, false] {
-            let others = view.neighbors.iter().filter(|other| {
+            let others = input.neighbors.iter().filter(|other| {
                 let is_top = top.is_some_and(|(top, _)| top == other.id);
                 (is_top || self.concerns(other.id)) == wanted
             });
             for other in others {
                 // The rest has no room.
-                let _ = all.push(seen_at(other, self.foresee(view, window, other)));
+                let _ = all.push(seen_at(other, self.foresee(input, window, other)));
             }
         }
         if self.formation.prediction == Prediction::Reflexive {
@@ -146,7 +149,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
                     Some(leader.cell + offset + entry.offset)
                 });
                 if let Some(seen) = all.get(index).copied() {
-                    let choice = self.choice_of(view, window, field, &seen, place);
+                    let choice = self.choice_of(input, window, field, &seen, place);
                     if let (Some(choice), Some(seen)) = (choice, all.get_mut(index)) {
                         seen.predicted = choice;
                     }
@@ -157,14 +160,19 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
 
     /// Where a robot will be after the time of the next move if it goes on as it announced
     /// (constant velocity on the land in sight). At most [`MAX_FORESIGHT`] cells.
-    fn foresee<S>(&self, view: &View<'_, S>, window: &Window<'_>, other: &Neighbor<S>) -> Cell {
+    fn foresee<S>(
+        &self,
+        input: &GuidanceInput<'_, S>,
+        window: &Window<'_>,
+        other: &Neighbor<S>,
+    ) -> Cell {
         let mut cell = other.cell;
         if !matches!(other.mode, Mode::Cruise | Mode::Forming) || other.heading == Dir::Stay {
             return cell;
         }
         let step = other.heading.offset();
         let length = other.heading.length(self.route.norm).cast_signed();
-        let mut left = (view.now + view.tick).since(other.busy_until);
+        let mut left = (input.now + input.tick).since(other.busy_until);
         for _ in 0..MAX_FORESIGHT {
             if left < Duration::ZERO {
                 break;
@@ -178,7 +186,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
             };
             cell = next;
             let ticks = i32::from(u).saturating_mul(length);
-            let micros = i64::from(view.tick.as_micros()) * i64::from(ticks);
+            let micros = i64::from(input.tick.as_micros()) * i64::from(ticks);
             let crossing = micros
                 .checked_div(i64::from(crate::grid::UNIT))
                 .unwrap_or(0);
@@ -192,14 +200,14 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
     /// surroundings are not in sight or it is not free to move.
     fn choice_of<S>(
         &self,
-        view: &View<'_, S>,
+        input: &GuidanceInput<'_, S>,
         window: &Window<'_>,
         field: &mut CostField<CELLS>,
         other: &Seen,
         place: Option<Cell>,
     ) -> Option<Cell> {
-        let neighbor = view.neighbor(other.id)?;
-        let is_free = (view.now + view.tick).since(neighbor.busy_until) >= Duration::ZERO;
+        let neighbor = input.neighbor(other.id)?;
+        let is_free = (input.now + input.tick).since(neighbor.busy_until) >= Duration::ZERO;
         let is_in_sight = Dir::MOVES
             .iter()
             .all(|dir| window.get(other.cell + dir.offset()).is_some());
@@ -225,8 +233,8 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
 
     /// The robot farthest up the leader chain whose place is known, and one's own place relative to its
     /// place: the top leader if it was heard, else a leader that the template names.
-    fn top<S>(&self, view: &View<'_, S>) -> Option<(RobotId, Cell)> {
-        let heard = |id: RobotId| view.neighbor(id);
+    fn top<S>(&self, input: &GuidanceInput<'_, S>) -> Option<(RobotId, Cell)> {
+        let heard = |id: RobotId| input.neighbor(id);
         let first = heard(self.leader)?;
         // Numbers fall along the chain, so that it ends; a wrong beacon cannot make it a circle.
         let chain = successors(Some(first), |robot| {
@@ -247,9 +255,9 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
 
     /// Whom to follow: once found, the leader stays while it is heard, however far it is (the paper
     /// looks for it at t = 0 only).
-    fn choose_leader<S>(&mut self, view: &View<'_, S>, found: &Found<F>) {
-        let leader = find_leader(view.id, &found.members);
-        if leader.is_somebody() || view.neighbor(self.leader).is_none() {
+    fn choose_leader<S>(&mut self, input: &GuidanceInput<'_, S>, found: &Found<F>) {
+        let leader = find_leader(input.id, &found.members);
+        if leader.is_somebody() || input.neighbor(self.leader).is_none() {
             self.leader = leader;
         }
         // In a place for anyone the template does not tell whose place it is.
@@ -263,7 +271,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
     #[inline(never)]
     fn lead<S>(
         &mut self,
-        view: &View<'_, S>,
+        input: &GuidanceInput<'_, S>,
         window: &Window<'_>,
         (cell, target): (Cell, Cell),
         found: &Found<F>,
@@ -277,7 +285,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
             blended(window, around, &self.template.entries, share, land)
         };
         let shown = shown.as_ref().unwrap_or(window);
-        let others = view.neighbors.iter().map(|neighbor| neighbor.cell);
+        let others = input.neighbors.iter().map(|neighbor| neighbor.cell);
         self.router
             .weights(&self.route, field, shown, cell, target, others)
             .ok()
@@ -287,7 +295,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
     #[inline(never)]
     fn follow<S>(
         &self,
-        view: &View<'_, S>,
+        input: &GuidanceInput<'_, S>,
         window: &Window<'_>,
         (cell, target): (Cell, Cell),
         guide: &Guide,
@@ -308,7 +316,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
         // the same cells for good reasons.
         let is_in_sight = window.get(place).is_some();
         let visits = (!is_in_sight).then_some(self.router.visits());
-        let others = view.neighbors.iter().map(|neighbor| neighbor.cell);
+        let others = input.neighbors.iter().map(|neighbor| neighbor.cell);
         let weights = workspace
             .field
             .weights(&self.route, window, cell, place, others, visits)
@@ -317,8 +325,8 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
     }
 
     /// The top leader seen by a follower.
-    fn guide<S>(&self, view: &View<'_, S>, cell: Cell, seen: &[Seen]) -> Option<Guide> {
-        let (top, offset) = self.top(view)?;
+    fn guide<S>(&self, input: &GuidanceInput<'_, S>, cell: Cell, seen: &[Seen]) -> Option<Guide> {
+        let (top, offset) = self.top(input)?;
         let seen = seen.iter().find(|seen| seen.id == top)?;
         let off = cell - (seen.cell + offset);
         Some(Guide {
@@ -375,99 +383,14 @@ fn seen_at<S>(other: &Neighbor<S>, predicted: Cell) -> Seen {
     }
 }
 
-impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
+impl<const CELLS: usize, const M: usize, const F: usize> ToCells
     for FormationGuidance<CELLS, M, F>
 {
-    type Workspace = GridWorkspace<CELLS>;
+}
 
-    fn decide(
-        &mut self,
-        view: &View<'_, S>,
-        rng: &mut Rng,
-        workspace: &mut Self::Workspace,
-    ) -> Result<Guided<S>, BadInput> {
-        let (cell, window) = on_grid(view)?;
-        let target = reachable_goal(&window, view.goal);
-        self.router.observe(&self.route, cell, target);
-
-        let mut seen = Vec::new();
-        self.seen(view, &window, &mut workspace.field, &mut seen);
-        let found = find_neighbors(
-            &self.template,
-            cell,
-            self.formation.eps,
-            seen.iter().copied(),
-        );
-        self.choose_leader(view, &found);
-        let leader = self.leader;
-        let guide = self.guide(view, cell, &seen);
-        let mut guided = Guided {
-            target,
-            leader,
-            slot: self.template.slot,
-            is_at_goal: cell == target,
-            makes_way: self.travel.take_redirection(),
-            ..Guided::default()
-        };
-        let mut stays = false;
-        let weights = if let Some(guide) = &guide {
-            list::extend(&mut guided.asks, self.ask_pace(leader, guide.lag));
-            guided.is_off_place = self.pace.waits();
-            // The goal counts when the formation is there.
-            guided.is_at_goal &= guide.has_arrived;
-            let weights = self.follow(view, &window, (cell, target), guide, &found, workspace);
-            if let (Some(first), false) = (weights.and_then(|w| w.best()), guide.has_arrived) {
-                // By the place that it should have, be it in a wall.
-                stays = should_stay(cell, aim(&guide.anchor, self.formation.lead), first);
-            }
-            weights
-        } else {
-            // Who says that he cannot go on is not waited for, nor who has arrived: a part of the formation that lost the rest
-            // on the way would wait for ever for those who are at the goal before it.
-            let goes_on = |mode: Mode| mode.gives_way() && mode != Mode::Arrived;
-            let able = found.members.iter();
-            let able = able.filter(|member| goes_on(member.seen.mode));
-            let behind = able.map(|member| {
-                let off = member.seen.cell - (cell + member.offset);
-                lag(off, self.travel.choice())
-            });
-            guided.waits = self.pace.update(&self.formation, behind.max().unwrap_or(0));
-            self.lead(view, &window, (cell, target), &found, workspace)
-        };
-        guided.is_stuck = weights.is_none() && !guided.is_at_goal;
-        let mut weights = weights.unwrap_or(Weights::CLOSED);
-        if guided.makes_way {
-            weights = self.travel.without_last(weights);
-            stays = false;
-        }
-        guided.moves = Travel::order(&weights, self.sharpness, ALTERNATIVES, rng);
-        if guided.waits && self.formation.recovery == Recovery::Def {
-            let towards = def(cell, &found.members);
-            guided.recovers = towards != Dir::Stay;
-            guided.waits = !guided.recovers;
-            guided.moves = list::collect(guided.recovers.then_some(towards));
-        }
-        if stays {
-            guided.moves.clear();
-        }
-        let choice = guided.moves.first().copied().unwrap_or_default();
-        let blocked = self.travel.note(view, cell, choice);
-        if !guided.waits && !guided.is_at_goal {
-            // Asks hold three: for the pace, and these two.
-            list::extend(&mut guided.asks, blocked);
-            list::extend(&mut guided.asks, self.ask_surplus(&found));
-        }
-        Ok(guided)
-    }
-
-    fn goes_to_cells(&self) -> bool {
-        true
-    }
-
-    fn goes_by_velocity(&self) -> bool {
-        false
-    }
-
+impl<const CELLS: usize, const M: usize, const F: usize> Teamwork
+    for FormationGuidance<CELLS, M, F>
+{
     fn redirect(&mut self) {
         self.travel.redirect();
     }
@@ -494,5 +417,106 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
 
     fn needs(&self, id: RobotId) -> bool {
         self.template.entries.iter().any(|entry| entry.id == id)
+    }
+}
+
+impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
+    for FormationGuidance<CELLS, M, F>
+{
+    type Input<'a> = OnGrid<'a>;
+    type Workspace = GridWorkspace<CELLS>;
+
+    fn decide(
+        &mut self,
+        input: &GuidanceInput<'_, S>,
+        here: &OnGrid<'_>,
+        rng: &mut Rng,
+        workspace: &mut Self::Workspace,
+    ) -> Result<Decision<S>, BadInput> {
+        let (cell, window) = on_grid(here)?;
+        let target = reachable_goal(&window, input.goal);
+        self.router.observe(&self.route, cell, target);
+
+        let mut seen = Vec::new();
+        self.seen(input, &window, &mut workspace.field, &mut seen);
+        let found = find_neighbors(
+            &self.template,
+            cell,
+            self.formation.eps,
+            seen.iter().copied(),
+        );
+        self.choose_leader(input, &found);
+        let leader = self.leader;
+        let guide = self.guide(input, cell, &seen);
+        let mut status = Status {
+            is_at_goal: cell == target,
+            makes_way: self.travel.take_redirection(),
+            ..Status::default()
+        };
+        let mut asks = Vec::new();
+        let mut stays = false;
+        let weights = if let Some(guide) = &guide {
+            list::extend(&mut asks, self.ask_pace(leader, guide.lag));
+            status.is_off_place = self.pace.waits();
+            // The goal counts when the formation is there.
+            status.is_at_goal &= guide.has_arrived;
+            let weights = self.follow(input, &window, (cell, target), guide, &found, workspace);
+            if let (Some(first), false) = (weights.and_then(|w| w.best()), guide.has_arrived) {
+                // By the place that it should have, be it in a wall.
+                stays = should_stay(cell, aim(&guide.anchor, self.formation.lead), first);
+            }
+            weights
+        } else {
+            // Who says that he cannot go on is not waited for, nor who has arrived: a part of the formation that lost the rest
+            // on the way would wait for ever for those who are at the goal before it.
+            let goes_on = |mode: Mode| mode.gives_way() && mode != Mode::Arrived;
+            let able = found.members.iter();
+            let able = able.filter(|member| goes_on(member.seen.mode));
+            let behind = able.map(|member| {
+                let off = member.seen.cell - (cell + member.offset);
+                lag(off, self.travel.choice())
+            });
+            status.waits = self.pace.update(&self.formation, behind.max().unwrap_or(0));
+            self.lead(input, &window, (cell, target), &found, workspace)
+        };
+        status.is_stuck = weights.is_none() && !status.is_at_goal;
+        let mut weights = weights.unwrap_or(Weights::CLOSED);
+        if status.makes_way {
+            weights = self.travel.without_last(weights);
+            stays = false;
+        }
+        let mut moves = Travel::order(&weights, self.sharpness, ALTERNATIVES, rng);
+        if status.waits && self.formation.recovery == Recovery::Def {
+            let towards = def(cell, &found.members);
+            status.recovers = towards != Dir::Stay;
+            status.waits = !status.recovers;
+            moves = list::collect(status.recovers.then_some(towards));
+        }
+        if stays {
+            moves.clear();
+        }
+        let choice = moves.first().copied().unwrap_or_default();
+        let blocked = self.travel.note(input, cell, choice);
+        if !status.waits && !status.is_at_goal {
+            // Asks hold three: for the pace, and these two.
+            list::extend(&mut asks, blocked);
+            list::extend(&mut asks, self.ask_surplus(&found));
+        }
+        Ok(Decision {
+            action: Action::Moves(moves),
+            status,
+            target,
+            leader,
+            slot: self.template.slot,
+            asks,
+        })
+    }
+
+    fn goes_to_cells(&self) -> bool {
+        true
+    }
+
+    fn goes_by_velocity(&self) -> bool {
+        false
     }
 }

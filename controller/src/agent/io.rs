@@ -1,10 +1,11 @@
 //! What goes into a step and what comes out of it.
 
-use crate::geom::{Position, Vec2, Vec3};
-use crate::grid::{Cell, Dir, Window};
-use crate::obstacle::Obstacle;
+use super::AnySurroundings;
+use crate::geom::{Position, Vec3};
+use crate::grid::{Cell, Dir};
 use crate::robot::{Mode, RobotId};
-use crate::time::{Duration, Instant};
+use crate::scalar::Scalar;
+use crate::time::Instant;
 use crate::wire::{DecodeError, RequestKind};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
@@ -16,59 +17,39 @@ pub const EVENTS: usize = 8;
 
 /// The robot's own state, from its sensors or its autopilot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Pose<S> {
+pub struct KinematicState<S> {
     /// World position.
     pub position: Position,
     /// World velocity, metres per second.
     pub velocity_mps: Vec3<S>,
 }
 
-/// The robot's state on the grid, for guidance that moves cell by cell.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct CellState {
-    /// The cell it occupies.
-    pub cell: Cell,
-    /// Time until it may leave; zero or less: free now (KUZ eq. 6).
-    pub busy: Duration,
-}
-
-/// The robot's surroundings in the plane or in space, for guidance that moves by velocities.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Surroundings<'a, S> {
-    /// How fast the body can go where it is, m/s: rough land slows it down. More than 0.
-    pub max_speed_mps: S,
-    /// What it sees that does not move. Walls of a terrain window come from
-    /// [`grid_walls`](crate::obstacle::grid_walls).
-    pub obstacles: &'a [Obstacle<S>],
-    /// Where in its cell of the window the robot is; `None` without a window.
-    pub in_cell: Option<InCell<S>>,
-}
-
-/// A place within a cell.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct InCell<S> {
-    /// The place minus the cell's centre, metres.
-    pub offset_m: Vec2<S>,
-    /// Side of a cell, metres; more than 0.
-    pub cell_m: S,
-}
-
-/// What one step gets.
+/// What one step gets; `I` is what the guidance law must be told: [`OnGrid`](super::OnGrid), [`InPlane`](super::InPlane),
+/// [`InCells`](super::InCells) or [`AnySurroundings`](super::AnySurroundings).
 #[derive(Clone, Copy, Debug)]
-pub struct Inputs<'a, S> {
+pub struct Inputs<'a, S, I> {
     /// Own state.
-    pub pose: Pose<S>,
-    /// Own state on the grid, also for [`InPlane`](super::InPlane); `None` for guidance without one.
-    pub cell: Option<CellState>,
-    /// The terrain that the robot can see, its own cell included (without it, or with `None`, a robot on
-    /// the grid is in [`Mode::Fault`] and stands). Of any size: routes are searched within the
-    /// radius of [`RouteParams`](crate::route::RouteParams) in it.
-    pub window: Option<Window<'a>>,
-    /// The robot's surroundings in the plane or in space; `None` for robots that move cell by cell.
-    pub surroundings: Option<Surroundings<'a, S>>,
-    /// What the radio delivered since the last step: COBS frames, each ended by a zero byte, in
-    /// order of arrival. Damaged, foreign and partial frames are recognised and counted.
+    pub state: KinematicState<S>,
+    /// What is around.
+    pub surroundings: I,
+    /// What the radio delivered since the last step: frames of the agent's wire format, in order of arrival. Damaged, foreign
+    /// and partial ones are recognised and counted.
     pub inbox: &'a [u8],
+}
+
+/// What a robot gets whose guidance law is known only at run time.
+pub type AnyInputs<'a, S> = Inputs<'a, S, AnySurroundings<'a, S>>;
+
+impl<'a, S: Scalar, I: Into<AnySurroundings<'a, S>>> Inputs<'a, S, I> {
+    /// The same for a law that is known only at run time.
+    #[must_use]
+    pub fn any(self) -> AnyInputs<'a, S> {
+        Inputs {
+            state: self.state,
+            surroundings: self.surroundings.into(),
+            inbox: self.inbox,
+        }
+    }
 }
 
 /// What the body should do until the next step.

@@ -1,8 +1,7 @@
 //! The agent's end of the radio: bytes to news, and what is to be said to bytes.
 
-use super::guidance::Place;
-use super::io::{Event, Inputs, OUTBOX, Outputs};
-use super::{AgentConfig, Last};
+use super::io::{Event, KinematicState, OUTBOX, Outputs};
+use super::{AgentConfig, CellState, Last, Waypoint};
 use crate::geom::{Position, Vec3};
 use crate::grid::Cell;
 use crate::neighbor::{Ages, Neighbor, NeighborTable, Put};
@@ -18,8 +17,8 @@ use serde::Serialize;
 
 /// Requests to others on their way at a time.
 const PENDING: usize = 4;
-/// Places to go to that a robot can be given.
-const PLACES: usize = 4;
+/// Waypoints that a robot can be given.
+const WAYPOINTS: usize = 4;
 /// Matters of others that are remembered.
 const ORDERS: usize = 8;
 
@@ -40,11 +39,11 @@ pub(super) enum News<S> {
     },
     /// A goal for the top leader of this robot's formation.
     Goal(Cell),
-    /// A place to go to, number `index` of several; once it is taken, [`Link::placed`] wants to know.
-    Place {
+    /// A waypoint, number `index` of several; once it is taken, [`Link::placed`] wants to know.
+    Waypoint {
         index: u8,
         version: u8,
-        place: Place<S>,
+        waypoint: Waypoint<S>,
     },
 }
 
@@ -60,8 +59,8 @@ pub(super) struct Link<S, const N: usize, W> {
     requests: Requests<PENDING>,
     orders: Orders<ORDERS>,
     goal: Newest,
-    places: [Newest; PLACES],
-    /// Who gave the last goal, the last template and the last place, each with its boot.
+    waypoints: [Newest; WAYPOINTS],
+    /// Who gave the last goal, the last template and the last waypoint, each with its boot.
     commanders: [Option<(RobotId, u8)>; 3],
     beacon_due: Instant,
     has_sent: bool,
@@ -88,7 +87,7 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
             requests: Requests::new(id, boot, retry),
             orders: Orders::new(ages.expire_after),
             goal: Newest::new(),
-            places: [Newest::new(); PLACES],
+            waypoints: [Newest::new(); WAYPOINTS],
             commanders: [None; 3],
             beacon_due: Instant::from_micros(0),
             has_sent: false,
@@ -211,19 +210,19 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
                     return Some(News::Goal(goal.target));
                 }
             }
-            Message::Place(place) if is_mine(place.to) || !place.to.is_somebody() => {
+            Message::Waypoint(said) if is_mine(said.to) || !said.to.is_somebody() => {
                 let [_, _, commander] = &mut self.commanders;
                 if is_another(commander, frame.header) {
-                    self.places = [Newest::new(); PLACES];
+                    self.waypoints = [Newest::new(); WAYPOINTS];
                 }
-                let newest = self.places.get(usize::from(place.index))?;
-                if newest.is_news(place.version) {
-                    return Some(News::Place {
-                        index: place.index,
-                        version: place.version,
-                        place: Place {
-                            position: Position::from_mm(place.position_mm),
-                            velocity_mps: Vec3::from_milli(place.velocity_mmps.map(i32::from)),
+                let newest = self.waypoints.get(usize::from(said.index))?;
+                if newest.is_news(said.version) {
+                    return Some(News::Waypoint {
+                        index: said.index,
+                        version: said.version,
+                        waypoint: Waypoint {
+                            position: Position::from_mm(said.position_mm),
+                            velocity_mps: Vec3::from_milli(said.velocity_mmps.map(i32::from)),
                             at: listener.heard_at,
                         },
                     });
@@ -259,9 +258,9 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
         }
     }
 
-    /// Takes note that a place was of use. One that was not is news when it comes again: what it needed may be there then.
+    /// Takes note that a waypoint was of use. One that was not is news when it comes again: what it needed may be there then.
     pub(super) fn placed(&mut self, index: u8, version: u8) {
-        if let Some(newest) = self.places.get_mut(usize::from(index)) {
+        if let Some(newest) = self.waypoints.get_mut(usize::from(index)) {
             let _ = newest.admit(version);
         }
     }
@@ -357,23 +356,22 @@ pub(super) fn beacon<S: Scalar>(
     config: &AgentConfig<S>,
     last: &Last,
     mode: Mode,
-    inputs: &Inputs<'_, S>,
+    state: &KinematicState<S>,
+    on_grid: CellState,
     v: Vec3<S>,
     now: Instant,
 ) -> Beacon {
     let milli = |value: S| value.to_milli().unwrap_or(0);
     let narrow = |value: S| milli(value).clamp(i16::MIN.into(), i16::MAX.into()) as i16;
-    let position = inputs.pose.position;
-    let state = inputs.cell.unwrap_or_default();
-    let busy_ms = i64::from(state.busy.as_micros().max(0))
+    let busy_ms = i64::from(on_grid.busy.as_micros().max(0))
         .checked_div(1000)
         .unwrap_or(0);
     Beacon {
         time: now,
-        position_mm: position.mm,
+        position_mm: state.position.mm,
         velocity_mmps: [narrow(v.x), narrow(v.y), narrow(v.z)],
         radius_mm: u16::try_from(milli(config.radius_m).max(0)).unwrap_or(u16::MAX),
-        cell: state.cell,
+        cell: on_grid.cell,
         heading: last.heading,
         busy_ms: u16::try_from(busy_ms).unwrap_or(u16::MAX),
         leader: last.leader,

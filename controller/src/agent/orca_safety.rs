@@ -1,7 +1,7 @@
 //! Optimal reciprocal collision avoidance as a safety layer.
 
 use super::Parameter;
-use super::safety::{Safety, Sight};
+use super::safety::{Safety, SafetyInput};
 use crate::geom::Vec3;
 use crate::neighbor::StalenessInflation;
 use crate::orca::{Analytic, AvoidParams, Avoider, Dimension, HalfSpaces, InSpace};
@@ -52,16 +52,16 @@ impl<S: Scalar, const K: usize, P: HalfSpaces<S>> OrcaSafety<S, K, P> {
 
 impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Safety<S> for OrcaSafety<S, K, P> {
     #[inline(never)]
-    fn keep_clear(&mut self, sight: &Sight<'_, S>, rng: &mut Rng) -> Vec3<S> {
+    fn keep_clear(&mut self, input: &SafetyInput<'_, S>, rng: &mut Rng) -> Vec3<S> {
         let solution = self.avoider.velocity(
-            &sight.body,
-            sight.wish_mps.into(),
-            sight.way_m.map(Into::into),
-            sight.nearby,
-            sight.obstacles,
+            &input.body,
+            input.wish_mps.into(),
+            input.way_m.map(Into::into),
+            input.nearby,
+            input.obstacles,
             rng,
         );
-        solution.velocity_mps.at_height(sight.wish_mps.z)
+        solution.velocity_mps.at_height(input.wish_mps.z)
     }
 
     fn inflation(&self) -> StalenessInflation<S> {

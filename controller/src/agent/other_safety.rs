@@ -1,6 +1,6 @@
 //! Push-out as a safety layer.
 
-use super::safety::{Safety, Sight};
+use super::safety::{Safety, SafetyInput};
 use crate::geom::Vec3;
 use crate::push_out::{PushOutParams, push_out};
 use crate::rand::Rng;
@@ -22,13 +22,13 @@ impl<S: Scalar> PushOutSafety<S> {
 }
 
 impl<S: Scalar> Safety<S> for PushOutSafety<S> {
-    fn keep_clear(&mut self, sight: &Sight<'_, S>, _: &mut Rng) -> Vec3<S> {
+    fn keep_clear(&mut self, input: &SafetyInput<'_, S>, _: &mut Rng) -> Vec3<S> {
         push_out(
             &self.params,
-            &sight.body,
-            sight.wish_mps,
-            sight.nearby,
-            sight.obstacles,
+            &input.body,
+            input.wish_mps,
+            input.nearby,
+            input.obstacles,
         )
     }
 }

@@ -90,7 +90,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         true
     }
 
-    /// The guidance, to be told something between two steps.
+    /// The guidance law, to be told something between two steps.
     pub const fn guidance_mut(&mut self) -> &mut G {
         &mut self.guidance
     }

@@ -1,18 +1,20 @@
 //! Every robot for itself, to its own goal (KUZ algorithm 1).
 
-use super::guidance::{BadInput, Guidance, Guided, View};
+use super::OnGrid;
+use super::guidance::{
+    Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells,
+};
 use super::travel::{Travel, on_grid, reachable_goal};
-use crate::grid::{Cell, Dir};
+use crate::grid::{Cell, Dir, Window};
 use crate::list;
 use crate::rand::Rng;
-use crate::robot::RobotId;
 use crate::route::{CostField, Replan, RouteParams, Router};
 use crate::scalar::Scalar;
 use crate::shuffle::Sharpness;
 use heapless::Vec;
 use serde::Serialize;
 
-/// Scratch memory of the guidances on the grid; `CELLS` as for [`CostField`].
+/// Scratch memory of the guidance laws on the grid; `CELLS` as for [`CostField`].
 #[derive(Clone, Debug)]
 pub struct GridWorkspace<const CELLS: usize> {
     /// The search.
@@ -78,16 +80,16 @@ impl<const CELLS: usize, const M: usize> RouteGuidance<CELLS, M> {
     /// The moves to try towards `target`; `None` when there is no way.
     fn moves<S>(
         &mut self,
-        view: &View<'_, S>,
+        input: &GuidanceInput<'_, S>,
+        window: &Window<'_>,
         (cell, target): (Cell, Cell),
         is_redirected: bool,
         rng: &mut Rng,
         workspace: &mut GridWorkspace<CELLS>,
     ) -> Option<Vec<Dir, 8>> {
-        let window = &view.window?;
         let params = &self.params;
         let field = &mut workspace.field;
-        let others = view.neighbors.iter().map(|neighbor| neighbor.cell);
+        let others = input.neighbors.iter().map(|neighbor| neighbor.cell);
         if self.replan == Replan::UntilChanged && !is_redirected {
             let dir = self
                 .router
@@ -106,35 +108,48 @@ impl<const CELLS: usize, const M: usize> RouteGuidance<CELLS, M> {
     }
 }
 
+impl<const CELLS: usize, const M: usize> ToCells for RouteGuidance<CELLS, M> {}
+
+impl<const CELLS: usize, const M: usize> Teamwork for RouteGuidance<CELLS, M> {
+    fn redirect(&mut self) {
+        self.travel.redirect();
+    }
+}
+
 impl<S: Scalar, const CELLS: usize, const M: usize> Guidance<S> for RouteGuidance<CELLS, M> {
+    type Input<'a> = OnGrid<'a>;
     type Workspace = GridWorkspace<CELLS>;
 
     fn decide(
         &mut self,
-        view: &View<'_, S>,
+        input: &GuidanceInput<'_, S>,
+        here: &OnGrid<'_>,
         rng: &mut Rng,
         workspace: &mut Self::Workspace,
-    ) -> Result<Guided<S>, BadInput> {
-        let (cell, window) = on_grid(view)?;
-        let target = reachable_goal(&window, view.goal);
+    ) -> Result<Decision<S>, BadInput> {
+        let (cell, window) = on_grid(here)?;
+        let target = reachable_goal(&window, input.goal);
         self.router.observe(&self.params, cell, target);
         let makes_way = self.travel.take_redirection();
-        let is_at_goal = cell == target;
-        let mut guided = Guided {
-            target,
-            leader: RobotId::NOBODY,
-            is_at_goal,
+        let mut status = Status {
+            is_at_goal: cell == target,
             makes_way,
-            ..Guided::default()
+            ..Status::default()
         };
-        if !is_at_goal || makes_way {
-            let moves = self.moves(view, (cell, target), makes_way, rng, workspace);
-            guided.is_stuck = moves.is_none();
-            guided.moves = moves.unwrap_or_default();
+        let mut moves = Vec::new();
+        if !status.is_at_goal || makes_way {
+            let open = self.moves(input, &window, (cell, target), makes_way, rng, workspace);
+            status.is_stuck = open.is_none();
+            moves = open.unwrap_or_default();
         }
-        let choice = guided.moves.first().copied().unwrap_or_default();
-        list::extend(&mut guided.asks, self.travel.note(view, cell, choice));
-        Ok(guided)
+        let choice = moves.first().copied().unwrap_or_default();
+        Ok(Decision {
+            action: Action::Moves(moves),
+            status,
+            target,
+            asks: list::collect(self.travel.note(input, cell, choice)),
+            ..Decision::default()
+        })
     }
 
     fn goes_to_cells(&self) -> bool {
@@ -143,9 +158,5 @@ impl<S: Scalar, const CELLS: usize, const M: usize> Guidance<S> for RouteGuidanc
 
     fn goes_by_velocity(&self) -> bool {
         false
-    }
-
-    fn redirect(&mut self) {
-        self.travel.redirect();
     }
 }

@@ -1,4 +1,4 @@
-//! The last layer before the body: from the velocity that the guidance wishes to one that is safe.
+//! The last layer before the body: from the velocity that the guidance law wishes to one that is safe.
 
 use super::Parameter;
 use crate::body::Body;
@@ -11,10 +11,10 @@ use serde::Serialize;
 
 /// What a safety layer may know.
 #[derive(Clone, Copy, Debug)]
-pub struct Sight<'a, S> {
+pub struct SafetyInput<'a, S> {
     /// Own body.
     pub body: Body<S>,
-    /// The velocity that the guidance wishes, m/s: finite, and zero when the robot should stand.
+    /// The velocity that the guidance law wishes, m/s: finite, and zero when the robot should stand.
     pub wish_mps: Vec3<S>,
     /// Where the robot goes, relative to its own place, metres; `None` when it only roams or should stand.
     pub way_m: Option<Vec3<S>>,
@@ -28,7 +28,7 @@ pub struct Sight<'a, S> {
 /// its giving way.
 pub trait Safety<S: Scalar> {
     /// A safe velocity near the wished one, m/s. The agent sees to it that the body can have it ([`Body::reach`]).
-    fn keep_clear(&mut self, sight: &Sight<'_, S>, rng: &mut Rng) -> Vec3<S>;
+    fn keep_clear(&mut self, input: &SafetyInput<'_, S>, rng: &mut Rng) -> Vec3<S>;
 
     /// How neighbours that have fallen silent are to be seen.
     fn inflation(&self) -> StalenessInflation<S> {
@@ -54,7 +54,7 @@ pub trait Safety<S: Scalar> {
 pub struct Unguarded;
 
 impl<S: Scalar> Safety<S> for Unguarded {
-    fn keep_clear(&mut self, sight: &Sight<'_, S>, _: &mut Rng) -> Vec3<S> {
-        sight.wish_mps
+    fn keep_clear(&mut self, input: &SafetyInput<'_, S>, _: &mut Rng) -> Vec3<S> {
+        input.wish_mps
     }
 }

@@ -3,16 +3,15 @@
 //! Numbers are `f32` here whatever the robot computes with, so that host and robot need not agree on a kind of number.
 
 use super::any::{AnyGuidance, AnyHalfPlanes, AnySafety};
+use super::cell_follower::CellFollower;
 use super::flock_guidance::{BoidsGuidance, GOALS, GoalFlockGuidance, LatticeGuidance};
 use super::formation_guidance::FormationGuidance;
-use super::guidance::Place;
-use super::in_plane::InPlane;
 use super::orca_safety::{FlySafety, OrcaSafety};
 use super::other_safety::PushOutSafety;
 use super::route_guidance::RouteGuidance;
 use super::safety::Unguarded;
 use super::waypoint_guidance::WaypointGuidance;
-use super::{Agent, AgentConfig, TEMPLATE};
+use super::{Agent, AgentConfig, TEMPLATE, Waypoint};
 use crate::flock::boids::BoidsParams;
 use crate::flock::goal::GoalParams;
 use crate::flock::lattice::LatticeParams;
@@ -29,8 +28,8 @@ use crate::wire::{Format, FromFormat, Postcard, Wire};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-/// Places that a [`Task`] has room for.
-pub const PLACES: usize = GOALS;
+/// Waypoints that a [`Task`] has room for.
+pub const WAYPOINTS: usize = GOALS;
 
 /// An agent that can be anything: `CELLS` of a search, `M` remembered visits, `N` neighbours, `K` half-planes, wire format `W`.
 pub type AnyAgent<
@@ -100,12 +99,9 @@ impl BoidsSetup {
     }
 }
 
-/// A guidance with its parameters. Speeds in m/s, lengths in metres.
+/// A guidance law with its parameters. Speeds in m/s, lengths in metres.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[expect(
-    missing_docs,
-    reason = "the constructors of the guidances document them"
-)]
+#[expect(missing_docs, reason = "the constructors of the laws document them")]
 pub enum GuidanceSetup {
     Waypoint {
         speed_mps: f32,
@@ -162,8 +158,8 @@ pub enum SafetySetup {
 pub enum Task {
     /// Go to this cell, or keep the formation whose top leader does.
     Cell(Cell),
-    /// Go to these places, by their numbers.
-    Places(Vec<(u8, Place<f32>), PLACES>),
+    /// Go to these waypoints, by their numbers.
+    Waypoints(Vec<(u8, Waypoint<f32>), WAYPOINTS>),
 }
 
 impl Setup {
@@ -195,7 +191,7 @@ impl Setup {
         &self,
         wire: W,
     ) -> AnyAgent<S, CELLS, M, N, K, W> {
-        Agent::speaking(
+        Agent::new(
             &self.agent.cast(),
             self.guidance.guidance(),
             self.safety.safety(),
@@ -218,7 +214,7 @@ impl Setup {
 }
 
 impl GuidanceSetup {
-    /// The guidance, just started.
+    /// The guidance law, just started.
     #[must_use]
     pub fn guidance<S: Scalar, const CELLS: usize, const M: usize>(
         &self,
@@ -246,7 +242,7 @@ impl GuidanceSetup {
             Self::Route { route, speed_mps } => {
                 let guidance = route.guidance();
                 match speed_mps {
-                    Some(speed) => AnyGuidance::Route(InPlane::new(guidance, cast(*speed))),
+                    Some(speed) => AnyGuidance::Route(CellFollower::new(guidance, cast(*speed))),
                     None => AnyGuidance::RouteOnGrid(guidance),
                 }
             }
@@ -259,7 +255,9 @@ impl GuidanceSetup {
                 let guidance = FormationGuidance::new(route.params, *formation, template.clone())
                     .sharpness(route.sharpness);
                 match speed_mps {
-                    Some(speed) => AnyGuidance::Formation(InPlane::new(guidance, cast(*speed))),
+                    Some(speed) => {
+                        AnyGuidance::Formation(CellFollower::new(guidance, cast(*speed)))
+                    }
                     None => AnyGuidance::FormationOnGrid(guidance),
                 }
             }
@@ -268,7 +266,7 @@ impl GuidanceSetup {
 }
 
 impl RouteSetup {
-    /// The guidance on the grid, just started.
+    /// The guidance law on the grid, just started.
     #[must_use]
     pub const fn guidance<const CELLS: usize, const M: usize>(&self) -> RouteGuidance<CELLS, M> {
         RouteGuidance::new(self.params)

@@ -51,7 +51,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         self.link.table.get(id, now)
     }
 
-    /// The guidance, for what it can tell of itself.
+    /// The guidance law, for what it can tell of itself.
     #[must_use]
     pub const fn guidance(&self) -> &G {
         &self.guidance

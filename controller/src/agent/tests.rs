@@ -1,9 +1,13 @@
 use super::*;
+use crate::body::Body;
 use crate::formation::FormationParams;
 use crate::geom::Vec3;
 use crate::grid::{BLOCKED, Window};
+use crate::neighbor::Nearby;
+use crate::rand::Rng;
 use crate::route::RouteParams;
 use crate::template::Template;
+use crate::time::{Duration, Instant};
 use crate::wire::{
     Beacon, Frame, GoalAssignment, Header, Message, Request, RequestKind, TemplateAssignment,
     decode, encode, frames,
@@ -20,11 +24,15 @@ fn tick(n: u32) -> Instant {
 }
 
 fn config(id: u32) -> AgentConfig<f32> {
-    AgentConfig::new(RobotId(id), 1, Duration::from_micros(TICK))
+    AgentConfig {
+        seed: 1,
+        ..AgentConfig::new(RobotId(id), 0.0, Duration::from_micros(TICK))
+    }
 }
 
 fn route_agent(id: u32) -> RouteAgent {
-    RouteAgent::new(&config(id), RouteGuidance::new(RouteParams::default()))
+    let law = RouteGuidance::new(RouteParams::default());
+    RouteAgent::new(&config(id), law, Unguarded, Postcard)
 }
 
 /// A member of a column of robots three cells apart, robot 1 in front.
@@ -33,20 +41,21 @@ fn formation_agent(id: u32) -> FormationAgent {
     let template = Template::from_graph(&places, &[(0, 1), (1, 2)], id as usize - 1, 2).unwrap();
     let guidance =
         FormationGuidance::new(RouteParams::default(), FormationParams::default(), template);
-    FormationAgent::new(&config(id), guidance)
+    FormationAgent::new(&config(id), guidance, Unguarded, Postcard)
 }
 
 /// Flat land around `at`, and what the radio delivered.
-fn inputs<'a>(cells: &'a [u8], at: Cell, inbox: &'a [u8]) -> Inputs<'a, f32> {
+fn inputs<'a>(cells: &'a [u8], at: Cell, inbox: &'a [u8]) -> Inputs<'a, f32, OnGrid<'a>> {
     let origin = at - Cell::new(5, 5);
     Inputs {
-        pose: Pose::default(),
-        cell: Some(CellState {
-            cell: at,
-            busy: Duration::ZERO,
-        }),
-        window: Window::new(cells, origin, 11, 11),
-        surroundings: None,
+        state: KinematicState::default(),
+        surroundings: OnGrid {
+            cell: CellState {
+                cell: at,
+                busy: Duration::ZERO,
+            },
+            window: Window::new(cells, origin, 11, 11),
+        },
         inbox,
     }
 }
@@ -119,10 +128,10 @@ fn while_it_crosses_a_cell_it_neither_decides_nor_changes_its_mode() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
     agent.assign_goal(Cell::new(9, 5));
     let mut busy = inputs(&FLAT, Cell::new(9, 5), &[]);
-    busy.cell = Some(CellState {
+    busy.surroundings.cell = CellState {
         cell: Cell::new(9, 5),
         busy: Duration::from_micros(1),
-    });
+    };
     let out = agent.step(&busy, tick(0), &mut ws);
     assert_eq!((out.command, agent.mode()), (Command::Hold, Mode::Cruise));
     assert_eq!(out.call_again, tick(0) + Duration::from_micros(1));
@@ -137,7 +146,8 @@ fn missing_terrain_is_a_fault_and_heals() {
     let mut modes = Vec::new();
     for (n, has_window) in [true, false, false, true, true].into_iter().enumerate() {
         let mut inputs = inputs(&FLAT, Cell::new(5, 5), &[]);
-        inputs.window = inputs.window.filter(|_| has_window);
+        let seen = &mut inputs.surroundings.window;
+        *seen = seen.filter(|_| has_window);
         let out = agent.step(&inputs, tick(n as u32), &mut ws);
         assert_eq!(out.command == Command::Hold, agent.mode() != Mode::Cruise);
         modes.push(agent.mode());
@@ -495,10 +505,10 @@ fn time_may_wrap() {
     assert_eq!(beacons, 6);
 }
 
+mod cell_follower;
 mod commanded;
 mod faults;
 mod flocks;
-mod in_plane;
 mod nonsense;
 mod nonsense_in_plane;
 mod plane;

@@ -1,7 +1,8 @@
-//! What the guidances on the grid have in common: the last choice, who is in the way, walls at the
+//! What the guidance laws on the grid have in common: the last choice, who is in the way, walls at the
 //! goal.
 
-use super::guidance::{Ask, BadInput, View};
+use super::OnGrid;
+use super::guidance::{Ask, BadInput, GuidanceInput};
 use crate::cost::Weights;
 use crate::grid::{BLOCKED, Cell, Dir, Window};
 use crate::rand::Rng;
@@ -71,7 +72,12 @@ impl Travel {
 
     /// Takes note of what was chosen in `cell`, and returns the request to whoever has stood in the
     /// way for too long.
-    pub(super) fn note<S>(&mut self, view: &View<'_, S>, cell: Cell, choice: Dir) -> Option<Ask> {
+    pub(super) fn note<S>(
+        &mut self,
+        input: &GuidanceInput<'_, S>,
+        cell: Cell,
+        choice: Dir,
+    ) -> Option<Ask> {
         let is_waiting = self.cell == Some(cell) && choice != Dir::Stay;
         self.attempts = if is_waiting {
             self.attempts.saturating_add(1)
@@ -84,7 +90,7 @@ impl Travel {
             return None;
         }
         let wanted = cell + choice.offset();
-        let to = occupant(view, wanted)?;
+        let to = occupant(input, wanted)?;
         self.attempts = 0;
         Some(Ask {
             to,
@@ -94,8 +100,9 @@ impl Travel {
 }
 
 /// Who was last heard in a cell.
-fn occupant<S>(view: &View<'_, S>, cell: Cell) -> Option<RobotId> {
-    view.neighbors
+fn occupant<S>(input: &GuidanceInput<'_, S>, cell: Cell) -> Option<RobotId> {
+    input
+        .neighbors
         .iter()
         .find(|neighbor| neighbor.cell == cell)
         .map(|neighbor| neighbor.id)
@@ -104,10 +111,10 @@ fn occupant<S>(view: &View<'_, S>, cell: Cell) -> Option<RobotId> {
 /// The cell of a robot on the grid, and the land that it sees.
 ///
 /// # Errors
-/// [`BadInput`] when one is missing, or the window does not show the cell.
-pub(super) fn on_grid<'a, S>(view: &View<'a, S>) -> Result<(Cell, Window<'a>), BadInput> {
-    let cell = view.cell.ok_or(BadInput)?.cell;
-    let window = view.window.ok_or(BadInput)?;
+/// [`BadInput`] when it sees none, or the window does not show the cell.
+pub(super) fn on_grid<'a>(here: &OnGrid<'a>) -> Result<(Cell, Window<'a>), BadInput> {
+    let cell = here.cell.cell;
+    let window = here.window.ok_or(BadInput)?;
     let is_in_sight = window.get(cell).is_some();
     is_in_sight.then_some((cell, window)).ok_or(BadInput)
 }

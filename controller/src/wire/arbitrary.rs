@@ -135,7 +135,7 @@ pub fn message() -> impl Strategy<Value = Message> {
     });
     let place = (robot(), any::<[u8; 2]>(), any::<([i32; 3], [i16; 3])>());
     let place = place.prop_map(|(to, [version, index], (position_mm, velocity_mmps))| {
-        Message::Place(PlaceAssignment {
+        Message::Waypoint(WaypointAssignment {
             to,
             version,
             index,

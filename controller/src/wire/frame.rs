@@ -31,8 +31,8 @@
 //! Cortex-M0 (`opt-level = "s"`, one link-time unit), and no panic is reachable from them.
 
 use super::message::{
-    Ack, Beacon, CompactBeacon, GoalAssignment, Message, PlaceAssignment, Request, TEMPLATE_PART,
-    TemplateAssignment,
+    Ack, Beacon, CompactBeacon, GoalAssignment, Message, Request, TEMPLATE_PART,
+    TemplateAssignment, WaypointAssignment,
 };
 use crate::robot::RobotId;
 use crc::{CRC_16_IBM_SDLC, Crc, Table};
@@ -89,7 +89,7 @@ impl GoalAssignment {
     pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 1 + CELL;
 }
 
-impl PlaceAssignment {
+impl WaypointAssignment {
     /// Bytes of a frame that carries one, at most: tag and delimiter included.
     pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 1 + 1 + 3 * 4 + 3 * 2;
 }
@@ -103,7 +103,7 @@ pub const MAX_FRAME_LEN: usize = {
         Ack::MAX_FRAME_LEN,
         TemplateAssignment::MAX_FRAME_LEN,
         GoalAssignment::MAX_FRAME_LEN,
-        PlaceAssignment::MAX_FRAME_LEN,
+        WaypointAssignment::MAX_FRAME_LEN,
     ];
     let mut max = 0;
     let mut rest = lens.as_slice();

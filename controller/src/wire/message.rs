@@ -155,7 +155,7 @@ pub struct GoalAssignment {
 /// [`GoalAssignment`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct PlaceAssignment {
+pub struct WaypointAssignment {
     /// Who it is for; nobody = everybody.
     pub to: RobotId,
     /// Counts places of this sender and index, wraps.
@@ -187,5 +187,5 @@ pub enum Message {
     /// A goal.
     Goal(GoalAssignment),
     /// A place.
-    Place(PlaceAssignment),
+    Waypoint(WaypointAssignment),
 }

@@ -19,8 +19,8 @@ pub use frame::{
     decode, decode_verified, encode, encode_tagged, frames,
 };
 pub use message::{
-    Ack, Beacon, CompactBeacon, GoalAssignment, Message, PlaceAssignment, Request, RequestKind,
-    TEMPLATE_PART, TemplateAssignment,
+    Ack, Beacon, CompactBeacon, GoalAssignment, Message, Request, RequestKind, TEMPLATE_PART,
+    TemplateAssignment, WaypointAssignment,
 };
 pub use newest::Newest;
 pub use orders::{Answer, Orders};

@@ -1,5 +1,5 @@
 //! A robot with two driven wheels on an STM32F405: a radio modem on USART1 (PA9, PA10), encoders on TIM3 (PA6, PA7)
-//! and TIM4 (PB6, PB7), two motors behind a DRV8833 on TIM8 (PC6 to PC9). It goes to a place, keeping clear of others.
+//! and TIM4 (PB6, PB7), two motors behind a DRV8833 on TIM8 (PC6 to PC9). It goes to a waypoint, keeping clear of others.
 #![no_std]
 #![no_main]
 
@@ -12,7 +12,8 @@ use embassy_stm32::{rcc::*, rng, time::Hertz, wdg::IndependentWatchdog};
 use embassy_time::{Instant as Clock, Ticker};
 use staya_controller::agent::*;
 use staya_controller::time::{Duration, Instant};
-use staya_controller::{geom::Position, neighbor::StalenessInflation, orca::AvoidParams, robot::RobotId};
+use staya_controller::{geom::Position, neighbor::StalenessInflation, orca::AvoidParams};
+use staya_controller::{robot::RobotId, wire::Postcard};
 use staya_robot::odometry::{Encoder, Odometry};
 use staya_robot::{drive::*, radio::PacketLink};
 
@@ -53,14 +54,14 @@ async fn robot(p: Peripherals) -> Option<()> {
     let limits = Limits { speed_mps: 0.5, acceleration_mps2: 1.0 };
     let mut mixer = Mixer::new(Differential::new(TRACK_M)?, limits)?;
     let mut odometry = Odometry::new(Position::ORIGIN, 0.0)?;
-    let mut config = AgentConfig::new(RobotId(1), 1, TICK);
+    let mut config = AgentConfig::new(RobotId(1), ahead.radius(BODY_M) + 0.02, TICK);
     config.boot = rng::Rng::new(p.RNG, Irqs).next_u32() as u8;
-    config.radius_m = ahead.radius(BODY_M) + 0.02;
     config.max_acceleration_mps2 = ahead.max_speed(limits.acceleration_mps2, TRACK_M);
     let max_speed_mps = ahead.max_speed(limits.speed_mps, TRACK_M);
     let safety = OrcaSafety::new(AvoidParams::default(), StalenessInflation { growth_mps: 0.1, max_m: 0.2 });
-    let mut agent = OrcaAgent::guarded(&config, WaypointGuidance::new(max_speed_mps, 0.02), safety);
-    agent.assign_place(0, &Place::fixed(Position::from_mm([2000, 1000, 0])));
+    let law = WaypointGuidance::new(max_speed_mps, 0.02);
+    let mut agent = OrcaAgent::new(&config, law, safety, Postcard);
+    agent.assign_waypoint(0, &Waypoint::fixed(Position::from_mm([2000, 1000, 0])));
 
     let mut ticker = Ticker::every(embassy_time::Duration::from_micros(TICK.as_micros() as u64));
     let mut watchdog = IndependentWatchdog::new(p.IWDG, 200_000);
@@ -71,9 +72,9 @@ async fn robot(p: Peripherals) -> Option<()> {
         let rims = [left_rim.travelled(left.count()), right_rim.travelled(right.count())];
         odometry.advance(&mixer.kinematics().twist(&rims), TICK);
         let heading = odometry.heading_rad();
-        let pose = ahead.pose(&odometry.pose(), heading, odometry.twist().turn_radps);
-        let surroundings = Some(Surroundings { max_speed_mps, obstacles: &[], in_cell: None });
-        let inputs = Inputs { pose, cell: None, window: None, surroundings, inbox: radio.take() };
+        let state = ahead.state(&odometry.state(), heading, odometry.twist().turn_radps);
+        let surroundings = InPlane { max_speed_mps, obstacles: &[] };
+        let inputs = Inputs { state, surroundings, inbox: radio.take() };
         let now = Instant::from_micros(Clock::now().as_micros() as u32);
         let out = agent.step(&inputs, now, &mut ());
         radio.send(&out.outbox);

@@ -7,8 +7,8 @@ use crate::{Probe, Summary};
 use heapless::Vec;
 use serde::Serialize;
 use staya_controller::agent::{
-    Agent, CELLS, CellState, Command, FormationGuidance, GridWorkspace, Guidance, Inputs, Pose,
-    RouteGuidance, Unguarded,
+    Agent, CELLS, CellState, Command, FormationGuidance, GridWorkspace, Guidance, Inputs,
+    KinematicState, OnGrid, RouteGuidance, Unguarded,
 };
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::grid::{BLOCKED, Cell, Norm, UNIT};
@@ -65,7 +65,7 @@ pub(crate) fn run<S, G, W, P>(
 ) -> Summary
 where
     S: Scalar,
-    G: Guidance<S, Workspace = GridWorkspace<CELLS>>,
+    G: for<'a> Guidance<S, Input<'a> = OnGrid<'a>, Workspace = GridWorkspace<CELLS>>,
     GridAgent<S, G, W>: Serialize,
     W: Wire,
     P: Probe<S>,
@@ -128,7 +128,7 @@ fn step<S, G, W, P>(
 ) -> staya_controller::agent::Outputs<S>
 where
     S: Scalar,
-    G: Guidance<S>,
+    G: for<'a> Guidance<S, Input<'a> = OnGrid<'a>>,
     W: Wire,
     P: Probe<S>,
 {
@@ -137,16 +137,17 @@ where
     let now_ms = tick.saturating_mul(UNIT);
     let busy_ms = walker.free_at_ms.saturating_sub(now_ms);
     let inputs = Inputs {
-        pose: Pose {
+        state: KinematicState {
             position: Position::from_mm([i32::from(x) * 1000, i32::from(y) * 1000, 0]),
             velocity_mps: Vec3::ZERO,
         },
-        cell: Some(CellState {
-            cell: walker.cell,
-            busy: Duration::from_millis(busy_ms.cast_signed()),
-        }),
-        window: scene.land.window(walker.cell, &mut cells),
-        surroundings: None,
+        surroundings: OnGrid {
+            cell: CellState {
+                cell: walker.cell,
+                busy: Duration::from_millis(busy_ms.cast_signed()),
+            },
+            window: scene.land.window(walker.cell, &mut cells),
+        },
         inbox,
     };
     probe.step(&mut walker.agent, &inputs, instant(tick), workspace)

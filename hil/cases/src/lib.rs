@@ -35,7 +35,7 @@ pub trait Probe<S: Scalar> {
     fn step<G: Guidance<S>, A: Safety<S>, W: Wire, const N: usize>(
         &mut self,
         agent: &mut Agent<S, G, N, A, W>,
-        inputs: &Inputs<'_, S>,
+        inputs: &Inputs<'_, S, G::Input<'_>>,
         now: Instant,
         workspace: &mut G::Workspace,
     ) -> Outputs<S>;
@@ -49,7 +49,7 @@ impl<S: Scalar> Probe<S> for Unmeasured {
     fn step<G: Guidance<S>, A: Safety<S>, W: Wire, const N: usize>(
         &mut self,
         agent: &mut Agent<S, G, N, A, W>,
-        inputs: &Inputs<'_, S>,
+        inputs: &Inputs<'_, S, G::Input<'_>>,
         now: Instant,
         workspace: &mut G::Workspace,
     ) -> Outputs<S> {

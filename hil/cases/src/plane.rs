@@ -8,7 +8,8 @@ use crate::{Probe, Summary};
 use heapless::Vec;
 use serde::Serialize;
 use staya_controller::agent::{
-    Agent, CellState, Command, Guidance, InCell, Inputs, Outputs, Pose, Safety, Surroundings,
+    Agent, CellState, Command, Guidance, InCell, InCells, InPlane, Inputs, KinematicState, OnGrid,
+    Outputs, Safety,
 };
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::GridFrame;
@@ -48,7 +49,7 @@ pub(crate) enum Solid {
 /// What does not change during a case.
 pub(crate) struct Scene<S> {
     pub(crate) solids: &'static [Solid],
-    /// Cells with walls, for guidances that need a grid.
+    /// Cells with walls, for guidance laws that need a grid.
     pub(crate) land: Option<Land>,
     pub(crate) max_speed_mps: S,
     /// Two centres nearer than this overlap, millimetres.
@@ -72,7 +73,7 @@ pub(crate) fn run<S, G, A, P, const R: usize>(
 ) -> Summary
 where
     S: Scalar,
-    G: Guidance<S>,
+    G: for<'a> Guidance<S, Input<'a>: From<InCells<'a, S>>>,
     A: Safety<S>,
     PlaneAgent<S, G, A>: Serialize,
     P: Probe<S>,
@@ -126,7 +127,7 @@ fn step<S, G, A, P>(
 ) -> Outputs<S>
 where
     S: Scalar,
-    G: Guidance<S>,
+    G: for<'a> Guidance<S, Input<'a>: From<InCells<'a, S>>>,
     A: Safety<S>,
     P: Probe<S>,
 {
@@ -141,30 +142,33 @@ where
         cell_m: S::from_milli(CELL_MM),
     };
     let place_m = mover.position.since::<S>(Position::ORIGIN).xy();
-    let on_land = scene
-        .land
-        .and_then(|land| Some((land, frame.cell(place_m)?)));
-    let window = on_land.and_then(|(land, cell)| land.window(cell, &mut cells));
+    // Scenes lie around the origin: no place is beyond all cells.
+    let cell = frame.cell(place_m).unwrap_or_default();
+    let window = scene.land.and_then(|land| land.window(cell, &mut cells));
     if let Some(window) = &window {
         obstacles = grid_walls(window, &frame, place_m, S::from_i32(3));
     }
     let inputs = Inputs {
-        pose: Pose {
+        state: KinematicState {
             position: mover.position,
             velocity_mps: mover.velocity_mps,
         },
-        cell: on_land.map(|(_, cell)| CellState {
-            cell,
-            busy: Duration::ZERO,
-        }),
-        window,
-        surroundings: Some(Surroundings {
-            max_speed_mps: scene.max_speed_mps,
-            obstacles: &obstacles,
-            in_cell: on_land.map(|(_, cell)| InCell {
+        surroundings: G::Input::from(InCells {
+            grid: OnGrid {
+                cell: CellState {
+                    cell,
+                    busy: Duration::ZERO,
+                },
+                window,
+            },
+            plane: InPlane {
+                max_speed_mps: scene.max_speed_mps,
+                obstacles: &obstacles,
+            },
+            in_cell: InCell {
                 offset_m: place_m - frame.center(cell),
                 cell_m: frame.cell_m,
-            }),
+            },
         }),
         inbox,
     };

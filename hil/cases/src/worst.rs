@@ -9,9 +9,9 @@ use heapless::Vec;
 use serde::Serialize;
 use staya_controller::agent::{
     Agent, AgentConfig, BoidsGuidance, CELLS, CellState, FlySafety, FormationGuidance,
-    GoalFlockGuidance, GridWorkspace, Guidance, Inputs, LatticeGuidance, OrcaSafety, Place, Pose,
-    PushOutSafety, RouteGuidance, Safety, Surroundings, TEMPLATE, Unguarded, VISITS,
-    WaypointGuidance,
+    GoalFlockGuidance, GridWorkspace, Guidance, InPlane, Inputs, KinematicState, LatticeGuidance,
+    OnGrid, OrcaSafety, PushOutSafety, RouteGuidance, Safety, TEMPLATE, ToCells, Unguarded, VISITS,
+    Waypoint, WaypointGuidance,
 };
 use staya_controller::flock::boids::BoidsParams;
 use staya_controller::flock::goal::GoalParams;
@@ -32,7 +32,7 @@ use staya_controller::route::RouteParams;
 use staya_controller::scalar::Scalar;
 use staya_controller::template::Template;
 use staya_controller::time::{Duration, Instant};
-use staya_controller::wire::{Beacon, Header, Message, encode};
+use staya_controller::wire::{Beacon, Header, Message, Postcard, encode};
 
 /// Steps of each, in other company each time.
 const STEPS: u32 = 64;
@@ -204,21 +204,22 @@ fn say<const N: usize>(
 }
 
 #[inline(never)]
-fn in_crowd<S, G, A, P, const N: usize>(guidance: G, safety: A, probe: &mut P) -> Summary
+fn in_crowd<S, G, A, P, const N: usize>(mut law: G, safety: A, probe: &mut P) -> Summary
 where
     S: Scalar,
-    G: Guidance<S, Workspace = ()>,
+    G: for<'a> Guidance<S, Input<'a> = InPlane<'a, S>, Workspace = ()>,
     A: Safety<S>,
     Agent<S, G, N, A>: Serialize,
     P: Probe<S>,
 {
     let config = AgentConfig {
-        radius_m: S::from_milli(RADIUS_MM),
+        seed: 1,
         latency: STEP,
-        ..AgentConfig::new(OWN, 1, STEP)
+        ..AgentConfig::new(OWN, S::from_milli(RADIUS_MM), STEP)
     };
-    let mut agent = Agent::<S, G, N, A>::guarded(&config, guidance, safety);
-    let _ = agent.assign_place(0, &Place::fixed(Position::from_mm([9000, 500, 0])));
+    // Boids roam.
+    let _ = law.assign_waypoint(0, &Waypoint::fixed(Position::from_mm([9000, 500, 0])));
+    let mut agent = Agent::<S, G, N, A>::new(&config, law, safety, Postcard);
     let mut summary = Summary::of::<Agent<S, G, N, A>, ()>();
     let (mut hash, mut inbox) = (Hash::new(), Inbox::new());
     for step in 0..STEPS {
@@ -240,17 +241,14 @@ where
             let _ = obstacles.push(Obstacle::Wall([end, other]));
         }
         let inputs = Inputs {
-            pose: Pose {
+            state: KinematicState {
                 position: Position::ORIGIN,
                 velocity_mps,
             },
-            cell: None,
-            window: None,
-            surroundings: Some(Surroundings {
+            surroundings: InPlane {
                 max_speed_mps: S::ONE,
                 obstacles: &obstacles,
-                in_cell: None,
-            }),
+            },
             inbox: &inbox,
         };
         let now = Instant::from_micros(0) + STEP.saturating_mul(step.cast_signed());
@@ -308,12 +306,15 @@ fn formation(prediction: Prediction) -> FormationGuidance<CELLS, VISITS, TEMPLAT
 fn on_grid<S, G, P, const N: usize>(guidance: G, probe: &mut P) -> Summary
 where
     S: Scalar,
-    G: Guidance<S, Workspace = GridWorkspace<CELLS>>,
+    G: ToCells + for<'a> Guidance<S, Input<'a> = OnGrid<'a>, Workspace = GridWorkspace<CELLS>>,
     Agent<S, G, N>: Serialize,
     P: Probe<S>,
 {
-    let config = AgentConfig::new(OWN, 1, STEP);
-    let mut agent = Agent::<S, G, N>::new(&config, guidance);
+    let config = AgentConfig {
+        seed: 1,
+        ..AgentConfig::new(OWN, S::ZERO, STEP)
+    };
+    let mut agent = Agent::<S, G, N>::new(&config, guidance, Unguarded, Postcard);
     let cell = TOP + PLACES.get(MIDDLE).copied().unwrap_or_default();
     agent.assign_goal(GOAL + (cell - TOP));
     let mut workspace = GridWorkspace::new();
@@ -340,13 +341,14 @@ where
             }
         });
         let inputs = Inputs {
-            pose: Pose::default(),
-            cell: Some(CellState {
-                cell,
-                busy: Duration::ZERO,
-            }),
-            window: Window::new(&land, cell - Cell::new(5, 5), 11, 11),
-            surroundings: None,
+            state: KinematicState::default(),
+            surroundings: OnGrid {
+                cell: CellState {
+                    cell,
+                    busy: Duration::ZERO,
+                },
+                window: Window::new(&land, cell - Cell::new(5, 5), 11, 11),
+            },
             inbox: &inbox,
         };
         let now = Instant::from_micros(0) + STEP.saturating_mul(step.cast_signed());

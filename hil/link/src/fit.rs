@@ -3,7 +3,7 @@
 use crate::capacities::{Capacities, window_cells};
 use crate::message::StepInputs;
 use crate::surroundings::{OBSTACLE_BYTES, PackedSurroundings, TerrainWindow, pack};
-use staya_controller::agent::Inputs;
+use staya_controller::agent::{AnyInputs, AnySurroundings};
 use staya_controller::obstacle::Obstacle;
 use staya_controller::scalar::Scalar;
 use staya_controller::time::Instant;
@@ -54,11 +54,16 @@ impl Capacities {
         &self,
         tick: u32,
         now: Instant,
-        inputs: &Inputs<'a, f32>,
+        inputs: &AnyInputs<'a, f32>,
         wire: &impl Wire,
         packed: &'a mut [u8],
     ) -> Result<(StepInputs<'a>, Cut), WindowTooLarge> {
-        let window = inputs.window.map(TerrainWindow::from);
+        let (grid, plane, in_cell) = match inputs.surroundings {
+            AnySurroundings::OnGrid(grid) => (Some(grid), None, None),
+            AnySurroundings::InPlane(plane) => (None, Some(plane), None),
+            AnySurroundings::InCells(all) => (Some(all.grid), Some(all.plane), Some(all.in_cell)),
+        };
+        let window = grid.and_then(|grid| grid.window).map(TerrainWindow::from);
         let cells = window.map_or(0, |window| window.cells.len());
         let room = window_cells(self.search_cells.into());
         if cells > room {
@@ -69,22 +74,22 @@ impl Capacities {
             inbox_bytes: inputs.inbox.len() - inbox.len(),
             obstacles: 0,
         };
-        let surroundings = inputs.surroundings.map(|seen| {
+        let surroundings = plane.map(|seen| {
             let len = self.pack(seen.obstacles, packed);
             let obstacles = packed.get(..len).unwrap_or(&[]);
             let (kept, _) = obstacles.as_chunks::<OBSTACLE_BYTES>();
             cut.obstacles = seen.obstacles.len() - kept.len();
             PackedSurroundings {
                 max_speed_mps: seen.max_speed_mps,
-                in_cell: seen.in_cell,
+                in_cell,
                 obstacles,
             }
         });
         let step = StepInputs {
             tick,
             now,
-            pose: inputs.pose,
-            cell: inputs.cell,
+            state: inputs.state,
+            cell: grid.map(|grid| grid.cell),
             window,
             surroundings,
             inbox,

@@ -9,7 +9,7 @@ use crate::capacities::Capacities;
 use crate::surroundings::{PackedSurroundings, TerrainWindow};
 use heapless::String;
 use serde::{Deserialize, Serialize};
-use staya_controller::agent::{CellState, Outputs, Pose, Setup, Task};
+use staya_controller::agent::{CellState, KinematicState, Outputs, Setup, Task};
 use staya_controller::grid::Cell;
 use staya_controller::robot::{Mode, RobotId};
 use staya_controller::time::Instant;
@@ -92,7 +92,7 @@ pub struct StepInputs<'a> {
     /// The time of the step.
     pub now: Instant,
     /// Own state.
-    pub pose: Pose<f32>,
+    pub state: KinematicState<f32>,
     /// Own state on the grid.
     pub cell: Option<CellState>,
     /// Terrain in sight.

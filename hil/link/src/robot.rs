@@ -4,10 +4,10 @@ use crate::capacities::Capacities;
 use crate::message::{NumberFormat, StepInputs, StepResult};
 use core::fmt;
 use heapless::Vec;
-use staya_controller::agent::InCell;
 use staya_controller::agent::{
-    AnyAgent, CELLS, Command, GridWorkspace, HALF_PLANES, Inputs, NEIGHBORS, Outputs, Pose,
-    Refused, Setup, Surroundings, Task, VISITS,
+    AnyAgent, AnySurroundings, CELLS, Command, GridWorkspace, HALF_PLANES, InCell, InCells,
+    InPlane, Inputs, KinematicState, NEIGHBORS, OnGrid, Outputs, Refused, Setup, Task, VISITS,
+    WrongTask,
 };
 use staya_controller::obstacle::Obstacle;
 use staya_controller::robot::RobotId;
@@ -34,7 +34,7 @@ pub enum Refusal {
     Nobody,
     /// It does not speak this format.
     Format(Format),
-    /// The guidance has no use for the task.
+    /// The guidance law has no use for the task.
     Task,
     /// A search of so many cells.
     Search {
@@ -48,7 +48,7 @@ pub enum Refusal {
         /// Obstacles that fit.
         room: usize,
     },
-    /// A window whose cells are not as many as its sides say, or an obstacle of no known shape.
+    /// A window whose cells are not as many as its sides say, an obstacle of no known shape, or neither a cell nor surroundings.
     Nonsense,
 }
 
@@ -60,12 +60,12 @@ impl fmt::Display for Refusal {
             Self::Format(format) => {
                 write!(f, "this firmware was built without {}", format.name())
             }
-            Self::Task => f.write_str("the guidance has no use for the task"),
+            Self::Task => fmt::Display::fmt(&WrongTask, f),
             Self::Search { needs, room } => {
                 write!(f, "a search of {needs} cells, and room for {room}")
             }
             Self::Obstacles { room } => write!(f, "more than {room} obstacles"),
-            Self::Nonsense => f.write_str("terrain or obstacles that make no sense"),
+            Self::Nonsense => f.write_str("terrain or surroundings that make no sense"),
         }
     }
 }
@@ -213,7 +213,7 @@ impl<
         self.outputs = Outputs::default();
         let wire = W::from_format(setup.format).ok_or(Refusal::Format(setup.format))?;
         let agent = self.agent.insert(setup.speaking(wire));
-        if task.is_none_or(|task| agent.assign(task)) {
+        if task.is_none_or(|task| agent.assign(task).is_ok()) {
             return Ok(agent.digest());
         }
         self.agent = None;
@@ -237,21 +237,30 @@ impl<
         if inputs.surroundings.is_some_and(|packed| !packed.is_whole()) {
             return Err(Refusal::Nonsense);
         }
-        let surroundings = inputs.surroundings.map(|packed| Surroundings {
+        let grid = inputs.cell.map(|cell| OnGrid { cell, window });
+        let plane = inputs.surroundings.map(|packed| InPlane {
             max_speed_mps: cast(packed.max_speed_mps),
             obstacles: self.obstacles.as_slice(),
-            in_cell: packed.in_cell.map(|place| InCell {
-                offset_m: place.offset_m.cast(),
-                cell_m: cast(place.cell_m),
-            }),
         });
+        let place = inputs.surroundings.and_then(|packed| packed.in_cell);
+        let surroundings = match (grid, plane, place) {
+            (Some(grid), None, _) => AnySurroundings::OnGrid(grid),
+            (None, Some(plane), None) => AnySurroundings::InPlane(plane),
+            (Some(grid), Some(plane), Some(place)) => AnySurroundings::InCells(InCells {
+                grid,
+                plane,
+                in_cell: InCell {
+                    offset_m: place.offset_m.cast(),
+                    cell_m: cast(place.cell_m),
+                },
+            }),
+            _ => return Err(Refusal::Nonsense),
+        };
         let own = Inputs {
-            pose: Pose {
-                position: inputs.pose.position,
-                velocity_mps: inputs.pose.velocity_mps.cast(),
+            state: KinematicState {
+                position: inputs.state.position,
+                velocity_mps: inputs.state.velocity_mps.cast(),
             },
-            cell: inputs.cell,
-            window,
             surroundings,
             inbox: inputs.inbox,
         };

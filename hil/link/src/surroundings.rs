@@ -42,7 +42,7 @@ impl<'a> TerrainWindow<'a> {
     }
 }
 
-/// [`Surroundings`](staya_controller::agent::Surroundings) with packed obstacles.
+/// [`InPlane`](staya_controller::agent::InPlane) with packed obstacles, and what [`InCells`](staya_controller::agent::InCells) says besides.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PackedSurroundings<'a> {
     /// How fast the body can go where it is, m/s.

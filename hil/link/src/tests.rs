@@ -44,9 +44,9 @@ pub fn small() -> Session<Small, SMALL> {
 pub fn in_plane() -> Setup {
     Setup {
         agent: AgentConfig {
-            radius_m: 0.25,
+            seed: 7,
             max_acceleration_mps2: 2.0,
-            ..AgentConfig::new(RobotId(1), 7, Duration::from_millis(100))
+            ..AgentConfig::new(RobotId(1), 0.25, Duration::from_millis(100))
         },
         guidance: GuidanceSetup::Waypoint {
             speed_mps: 1.0,
@@ -71,7 +71,10 @@ pub fn on_grid(radius: u8) -> (Setup, Task) {
         ..RouteParams::default()
     };
     let setup = Setup {
-        agent: AgentConfig::new(RobotId(1), 7, Duration::from_millis(100)),
+        agent: AgentConfig {
+            seed: 7,
+            ..AgentConfig::new(RobotId(1), 0.0, Duration::from_millis(100))
+        },
         guidance: GuidanceSetup::Route {
             route: RouteSetup {
                 params,

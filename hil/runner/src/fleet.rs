@@ -10,7 +10,7 @@ use crate::device::Device;
 use crate::line::micros;
 use crate::statistics::Statistics;
 use crate::unit::Unit;
-use staya_controller::agent::{Inputs, Setup, Task};
+use staya_controller::agent::{AnyInputs, Setup, Task};
 use staya_controller::time::Instant;
 use std::io::{ErrorKind, Read};
 use std::sync::Arc;
@@ -127,7 +127,7 @@ impl Fleet {
     /// cut as [`Capacities::fit`](staya_link::capacities::Capacities::fit) says, for both alike, and counted.
     ///
     /// What is wrong shows in [`Fleet::collect`]. A number that there is none of is ignored.
-    pub fn send(&mut self, index: usize, tick: u32, now: Instant, inputs: &Inputs<'_, f32>) {
+    pub fn send(&mut self, index: usize, tick: u32, now: Instant, inputs: &AnyInputs<'_, f32>) {
         let now_us = self.now_us();
         if let Some(unit) = self.units.get_mut(index) {
             unit.send(tick, now, inputs, now_us);

@@ -4,9 +4,10 @@
 //! ```no_run
 //! use staya_runner::{Answer, Fleet, Options, DeviceConfig};
 //! # fn configs() -> Vec<DeviceConfig> { Vec::new() }
-//! # use staya_controller::agent::{Inputs, Pose};
-//! # fn inputs(_: usize) -> Inputs<'static, f32> {
-//! #     Inputs { pose: Pose::default(), cell: None, window: None, surroundings: None, inbox: &[] }
+//! # use staya_controller::agent::{AnyInputs, InPlane, Inputs, KinematicState};
+//! # fn inputs(_: usize) -> AnyInputs<'static, f32> {
+//! #     let plane = InPlane { max_speed_mps: 1.0, obstacles: &[] };
+//! #     Inputs { state: KinematicState::default(), surroundings: plane.into(), inbox: &[] }
 //! # }
 //! # fn main() -> Result<(), staya_runner::FleetError> {
 //! let mut fleet = Fleet::start(configs(), Options::new("target/firmware".into()))?;

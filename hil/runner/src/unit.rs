@@ -6,7 +6,7 @@ use crate::config::{DeviceConfig, Options};
 use crate::line::{Line, micros};
 use crate::mismatch::Mismatch;
 use crate::statistics::{Spread, Statistics, Tally};
-use staya_controller::agent::{Inputs, Setup, Task};
+use staya_controller::agent::{AnyInputs, Setup, Task};
 use staya_controller::time::Instant;
 use staya_link::capacities::Capacities;
 use staya_link::frame::TooLong;
@@ -135,7 +135,7 @@ impl Unit {
     }
 
     /// Asks for a step; the shadow decides at once.
-    pub fn send(&mut self, tick: u32, now: Instant, inputs: &Inputs<'_, f32>, now_us: u64) {
+    pub fn send(&mut self, tick: u32, now: Instant, inputs: &AnyInputs<'_, f32>, now_us: u64) {
         if matches!(self.phase, Phase::Failed) {
             self.answer = Some(self.failed(Cause::GivenUp));
             return;
@@ -167,7 +167,7 @@ impl Unit {
         &mut self,
         tick: u32,
         now: Instant,
-        inputs: &Inputs<'_, f32>,
+        inputs: &AnyInputs<'_, f32>,
         now_us: u64,
     ) -> Result<(), Cause> {
         let (Some(hello), Some(shadow)) = (&self.hello, &mut self.shadow) else {

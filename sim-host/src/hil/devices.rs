@@ -3,7 +3,7 @@
 //! [`OnDevices`] is what the engine sees; [`firmware`](super::firmware) finds what the devices run. The devices themselves, their line and
 //! the comparison with their shadows are `staya-runner`'s.
 
-use staya_controller::agent::{Inputs, Setup, Task};
+use staya_controller::agent::{AnyInputs, Setup, Task};
 use staya_controller::time::Instant;
 use staya_runner::{
     Answer, Cause, Device, DeviceConfig, Fleet, LineFaults, Options, Reset, Statistics,
@@ -175,7 +175,7 @@ impl ExternalController for OnDevices {
         self.lost[at] && !fleet.is_down(at) && std::mem::take(&mut self.lost[at])
     }
 
-    fn send(&mut self, index: usize, tick: u32, now: Instant, inputs: &Inputs<'_, f32>) {
+    fn send(&mut self, index: usize, tick: u32, now: Instant, inputs: &AnyInputs<'_, f32>) {
         self.begin();
         if let (Some(at), Some(fleet)) = (self.at(index), &mut self.fleet) {
             self.asked.push(at);

@@ -143,7 +143,7 @@ fn any_message() -> impl Strategy<Value = Message> {
     });
     let place = (id(), any::<[u8; 2]>(), motion());
     let place = place.prop_map(|(to, [version, index], (position_mm, velocity_mmps))| {
-        Message::Place(PlaceAssignment {
+        Message::Waypoint(WaypointAssignment {
             to,
             version,
             index,

@@ -1,7 +1,7 @@
 //! Two driven wheels on one axle, and how they follow a velocity that points anywhere.
 
 use super::twist::{Kinematics, Twist};
-use staya_controller::agent::Pose;
+use staya_controller::agent::KinematicState;
 use staya_controller::geom::{Vec2, Vec3};
 use staya_controller::scalar::Scalar;
 
@@ -91,14 +91,19 @@ impl<S: Scalar> LookAhead<S> {
         }
     }
 
-    /// The point's pose, for the controller, from the axle's: it turns at `turn_radps`. A place that is not a number
+    /// The point's state, for the controller, from the axle's: it turns at `turn_radps`. A place that is not a number
     /// stays the axle's.
     #[must_use]
-    pub fn pose(&self, axle: &Pose<S>, heading_rad: S, turn_radps: S) -> Pose<S> {
+    pub fn state(
+        &self,
+        axle: &KinematicState<S>,
+        heading_rad: S,
+        turn_radps: S,
+    ) -> KinematicState<S> {
         let (sin, cos) = heading_rad.sin_cos();
         let way = Vec2::new(cos, sin) * self.ahead_m;
         let swing = way.perp() * turn_radps;
-        Pose {
+        KinematicState {
             position: axle
                 .position
                 .moved(way.extend(S::ZERO))

@@ -1,6 +1,6 @@
 use super::*;
 use proptest::prelude::*;
-use staya_controller::agent::{Command, Pose};
+use staya_controller::agent::{Command, KinematicState};
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::scalar::{Q16, Scalar};
 use staya_controller::time::Duration;
@@ -165,14 +165,14 @@ fn a_robot_sent_sideways_turns_and_one_sent_back_reverses() {
 #[test]
 fn the_point_ahead_swings_when_the_robot_turns() {
     let ahead = LookAhead::new(0.5f64).unwrap();
-    let axle = Pose {
+    let axle = KinematicState {
         position: Position::from_mm([1000, 2000, 3]),
         velocity_mps: Vec3::new(0.1, 0.0, 0.0),
     };
-    let point = ahead.pose(&axle, 0.0, 2.0);
+    let point = ahead.state(&axle, 0.0, 2.0);
     assert_eq!(point.position.mm, [1500, 2000, 3]);
     assert_eq!(point.velocity_mps, Vec3::new(0.1, 1.0, 0.0));
-    assert_eq!(ahead.pose(&axle, f64::NAN, 0.0).position, axle.position);
+    assert_eq!(ahead.state(&axle, f64::NAN, 0.0).position, axle.position);
 }
 
 #[test]
@@ -301,11 +301,11 @@ proptest! {
         let rims = mixer.mix(&ahead.twist(wish, heading), SPAN);
         let body = mixer.kinematics().twist(&rims);
         let (sin, cos) = Scalar::sin_cos(heading);
-        let axle = Pose {
+        let axle = KinematicState {
             position: Position::ORIGIN,
             velocity_mps: Vec3::new(cos, sin, 0.0) * body.forward_mps,
         };
-        let point = ahead.pose(&axle, heading, body.turn_radps).velocity_mps.xy();
+        let point = ahead.state(&axle, heading, body.turn_radps).velocity_mps.xy();
         prop_assert!((point - wish).norm() < 1e-9, "{point:?} {wish:?}");
     }
 

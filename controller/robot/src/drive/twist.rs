@@ -39,8 +39,8 @@ impl<S: Scalar> Twist<S> {
 
 /// The world velocity that a command asks for, m/s: zero for [`Command::Hold`].
 ///
-/// Also zero for [`Command::Move`], which names cells; robots with wheels let a guidance on the grid go by velocities with
-/// [`InPlane`](staya_controller::agent::InPlane).
+/// Also zero for [`Command::Move`], which names cells; robots with wheels let a guidance law of the grid go by velocities with
+/// [`CellFollower`](staya_controller::agent::CellFollower).
 #[must_use]
 pub fn wished_velocity<S: Scalar>(command: &Command<S>) -> Vec2<S> {
     match command {

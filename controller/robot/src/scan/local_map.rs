@@ -180,7 +180,7 @@ impl<const SIDE: usize> LocalMap<SIDE> {
         self.show();
     }
 
-    /// For [`Inputs::window`](staya_controller::agent::Inputs::window), and for walls
+    /// For [`OnGrid::window`](staya_controller::agent::OnGrid::window), and for walls
     /// [`grid_walls`](staya_controller::obstacle::grid_walls). The robot's own cell is passable whatever the sensors say: it is there.
     #[must_use]
     pub fn window(&self) -> Option<Window<'_>> {

@@ -25,8 +25,8 @@ fn east(millis: i32) -> Wish<f32> {
 fn without_a_wish_nothing_differs() {
     let mut plain = Robot::new(&in_plane::<f32>(1), waypoint(), orca(), [0.0; 2]);
     let mut wrapped = robot([0.0; 2]);
-    plain.agent.assign_place(0, &place(2000, 500));
-    wrapped.agent.assign_place(0, &place(2000, 500));
+    plain.agent.assign_waypoint(0, &place(2000, 500));
+    wrapped.agent.assign_waypoint(0, &place(2000, 500));
     for n in 0..40 {
         let now = step_number(n);
         let other = bytes(
@@ -88,12 +88,12 @@ fn a_velocity_beyond_the_body_is_cut_and_one_that_is_no_number_refused() {
 fn it_goes_where_the_operator_wants_and_then_its_own_way() {
     fn check<S: Scalar>() {
         let mut robot = robot::<S>([0.0; 2]);
-        robot.agent.assign_place(0, &place(-1000, 0));
+        robot.agent.assign_waypoint(0, &place(-1000, 0));
         robot
             .agent
             .guidance_mut()
-            .command(Wish::Place {
-                place: Place::fixed(Position::from_mm([1000, 0, 0])),
+            .command(Wish::Waypoint {
+                waypoint: Waypoint::fixed(Position::from_mm([1000, 0, 0])),
                 valid: None,
             })
             .unwrap();
@@ -121,8 +121,8 @@ fn a_place_that_moves_is_followed_until_its_time_is_over() {
     robot
         .agent
         .guidance_mut()
-        .command(Wish::Place {
-            place: moving,
+        .command(Wish::Waypoint {
+            waypoint: moving,
             valid: Some(Duration::from_millis(1000)),
         })
         .unwrap();
@@ -185,12 +185,12 @@ fn a_stop_of_others_does_not_stop_the_operator() {
 /// On the grid.
 #[test]
 fn cells_take_the_place_of_the_own_goal_and_velocities_are_refused() {
-    type OnGrid = Agent<f32, Commanded<f32, RouteGuidance<CELLS, VISITS>>, NEIGHBORS>;
+    type GridAgent = Agent<f32, Commanded<f32, RouteGuidance<CELLS, VISITS>>, NEIGHBORS>;
     let guidance = Commanded::new(RouteGuidance::new(RouteParams::default()), 0.0, 0.0);
-    let mut agent = OnGrid::new(&config(1), guidance);
+    let mut agent = GridAgent::new(&config(1), guidance, Unguarded, Postcard);
     agent.assign_goal(Cell::new(9, 5));
     let mut workspace = workspace();
-    let mut heading = |agent: &mut OnGrid, n: u32| {
+    let mut heading = |agent: &mut GridAgent, n: u32| {
         let out = agent.step(
             &inputs(&FLAT, Cell::new(5, 5), &[]),
             tick(n),
@@ -210,8 +210,8 @@ fn cells_take_the_place_of_the_own_goal_and_velocities_are_refused() {
     assert_eq!(heading(&mut agent, 1), Some(Dir::North));
     assert_eq!(agent.target(), Some(Cell::new(5, 9)));
     // What it has no use for is an error, and changes nothing.
-    let there = Wish::Place {
-        place: place(1000, 0),
+    let there = Wish::Waypoint {
+        waypoint: place(1000, 0),
         valid: None,
     };
     for wrong in [east(1000), there] {
@@ -225,7 +225,7 @@ fn cells_take_the_place_of_the_own_goal_and_velocities_are_refused() {
 #[test]
 fn a_cell_is_refused_by_who_goes_to_places() {
     let mut robot = robot::<f32>([0.0; 2]);
-    robot.agent.assign_place(0, &place(1000, 0));
+    robot.agent.assign_waypoint(0, &place(1000, 0));
     let cell = Wish::Cell(Cell::new(3, 4));
     assert_eq!(robot.agent.guidance_mut().command(cell), Err(WrongTask));
     let _ = robot.step(step_number(0), &[]);
@@ -238,7 +238,7 @@ fn out_of_passive_the_way_leads_through_idle() {
     for has_place in [false, true] {
         let mut robot = robot::<f32>([0.0; 2]);
         if has_place {
-            robot.agent.assign_place(0, &place(1000, 0));
+            robot.agent.assign_waypoint(0, &place(1000, 0));
         }
         let mut modes = Vec::new();
         for (n, wish) in [Wish::Off, Wish::Own, Wish::Own].into_iter().enumerate() {
@@ -281,7 +281,7 @@ fn parameters_are_what_was_set_and_nothing_out_of_range_is() {
 #[test]
 fn a_new_speed_and_beacon_period_hold_from_the_next_step() {
     let mut robot = robot::<f32>([0.0; 2]);
-    robot.agent.assign_place(0, &place(9000, 0));
+    robot.agent.assign_waypoint(0, &place(9000, 0));
     let _ = robot.step(step_number(0), &[]);
     assert_eq!(robot.velocity_mps, [1.0, 0.0]);
     assert!(robot.agent.set_parameter(Parameter::Speed, 0.25));

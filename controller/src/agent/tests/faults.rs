@@ -302,7 +302,7 @@ fn windows_without_the_robot_are_a_fault_and_tiny_ones_a_dead_end() {
         let (mut agent, mut ws) = (formation_agent(1), workspace());
         agent.assign_goal(Cell::new(60, 5));
         let mut inputs = inputs(&FLAT, Cell::new(5, 5), &[]);
-        inputs.window = Window::new(&cells[..count], origin, width, height);
+        inputs.surroundings.window = Window::new(&cells[..count], origin, width, height);
         let out = agent.step(&inputs, tick(0), &mut ws);
         assert_eq!(out.command, Command::Hold);
         agent.mode()
@@ -439,13 +439,13 @@ fn the_whole_formation_s_land_counts_in_windows_of_any_size() {
             ..FormationParams::default()
         };
         let guidance = FormationGuidance::new(RouteParams::default(), formation, template);
-        let mut agent = FormationAgent::new(&config(1), guidance);
+        let mut agent = FormationAgent::new(&config(1), guidance, Unguarded, Postcard);
         agent.assign_goal(Cell::new(40, 0));
         let mut inputs = inputs(&FLAT, at, &[]);
         let inbox = bytes(2, 0, 0, &[Message::Beacon(beacon_at(0, -3))]);
         inputs.inbox = &inbox;
         let (corner, side) = (at - Cell::new(radius, radius), side as u16);
-        inputs.window = Window::new(&cells, corner, side, side);
+        inputs.surroundings.window = Window::new(&cells, corner, side, side);
         match agent.step(&inputs, tick(0), &mut workspace()).command {
             Command::Move(moves) => moves[0],
             Command::Hold | Command::Velocity(_) => Dir::Stay,

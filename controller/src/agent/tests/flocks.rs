@@ -8,10 +8,10 @@ use crate::flock::lattice::{Gain, LatticeParams};
 use core::ops::Range;
 
 /// Robots that all hear each other.
-fn run<G: Guidance<f32, Workspace = ()>>(
-    robots: &mut [Robot<f32, G, Unguarded>],
-    steps: Range<i32>,
-) {
+fn run<G>(robots: &mut [Robot<f32, G, Unguarded>], steps: Range<i32>)
+where
+    G: for<'a> Guidance<f32, Input<'a> = InPlane<'a, f32>, Workspace = ()>,
+{
     let mut said: Vec<Vec<u8>> = vec![Vec::new(); robots.len()];
     for n in steps {
         let mut next = Vec::new();
@@ -39,12 +39,12 @@ fn an_alpha_flock_takes_its_distance_and_follows_its_reference() {
         };
         let guidance = LatticeGuidance::new(params, true);
         let mut robot = Robot::new(&one_step_late(id), guidance, Unguarded, at_m);
-        let reference = Place {
+        let reference = Waypoint {
             velocity_mps: crate::geom::Vec3::new(0.25, 0.0, 0.0),
             ..place(1000, 0)
         };
-        assert!(robot.agent.assign_place(0, &reference));
-        assert!(!robot.agent.assign_place(1, &reference), "there is one");
+        assert!(robot.agent.assign_waypoint(0, &reference));
+        assert!(!robot.agent.assign_waypoint(1, &reference), "there is one");
         robot
     };
     let mut robots = [new(1, [0.0, 0.0]), new(2, [0.0, 0.6]), new(3, [0.5, 0.3])];
@@ -67,7 +67,7 @@ fn an_alpha_flock_at_a_senseless_speed_stays_within_its_own() {
     let guidance = LatticeGuidance::new(LatticeParams::<f32>::new(1.0), true);
     let mut robot = Robot::new(&one_step_late(1), guidance, Unguarded, [0.0; 2]);
     robot.velocity_mps = [f64::MAX, 0.0];
-    let _ = robot.agent.assign_place(0, &place(1000, 0));
+    let _ = robot.agent.assign_waypoint(0, &place(1000, 0));
     let out = robot.step(step_number(0), &[]);
     let is_sane = match out.command {
         Command::Velocity(v) => v.norm() <= 1.001,
@@ -83,11 +83,11 @@ fn a_goal_flock_goes_to_the_middle_and_then_to_goals_of_its_own() {
         let guidance = GoalFlockGuidance::new(params, 1.0, 7);
         let mut robot = Robot::new(&one_step_late(id), guidance, Unguarded, at_m);
         assert!(
-            !robot.agent.assign_place(1, &place(0, 0)),
+            !robot.agent.assign_waypoint(1, &place(0, 0)),
             "not before number 0"
         );
-        assert!(robot.agent.assign_place(0, &place(20_000, 8_000)));
-        assert!(robot.agent.assign_place(1, &place(20_000, -8_000)));
+        assert!(robot.agent.assign_waypoint(0, &place(20_000, 8_000)));
+        assert!(robot.agent.assign_waypoint(1, &place(20_000, -8_000)));
         robot
     };
     let mut robots = [new(1, [0.0, 0.0]), new(2, [0.0, 1.0]), new(3, [1.0, 0.5])];

@@ -48,7 +48,7 @@ pub(super) fn frame() -> impl Strategy<Value = (Header, Message)> {
                     (entry.offset, entry.id) = (there, who);
                 }
             }
-            Message::Place(place) => place.to = to,
+            Message::Waypoint(waypoint) => waypoint.to = to,
             Message::Compact(_) => {}
         }
         let header = Header {
@@ -66,7 +66,7 @@ struct Step {
     now: Instant,
     frames: Vec<(Header, Message)>,
     noise: Vec<u8>,
-    own: Option<CellState>,
+    own: CellState,
     /// South-west corner, size and content of the window.
     window: Option<(Cell, u16, u16, Vec<u8>)>,
     pose: [u32; 6],
@@ -76,9 +76,7 @@ impl Step {
     /// Whether the robot can decide with this.
     fn makes_sense(&self) -> bool {
         let land = self.land();
-        self.own
-            .zip(land)
-            .is_some_and(|(own, land)| land.get(own.cell).is_some())
+        land.is_some_and(|land| land.get(self.own.cell).is_some())
     }
 
     fn land(&self) -> Option<Window<'_>> {
@@ -122,13 +120,12 @@ fn window() -> impl Strategy<Value = Option<(Cell, u16, u16, Vec<u8>)>> {
     prop_oneof![1 => Just(None), 9 => land.prop_map(Some)]
 }
 
-fn own() -> impl Strategy<Value = Option<CellState>> {
+fn own() -> impl Strategy<Value = CellState> {
     let busy = prop_oneof![4 => Just(0), 1 => 0..3 * TICK, 1 => any::<i32>()];
-    let state = (cell(), busy).prop_map(|(cell, busy)| CellState {
+    (cell(), busy).prop_map(|(cell, busy)| CellState {
         cell,
         busy: Duration::from_micros(busy),
-    });
-    prop_oneof![1 => Just(None), 9 => state.prop_map(Some)]
+    })
 }
 
 /// Steps that follow each other by a tick, or by anything.
@@ -222,13 +219,12 @@ fn template() -> impl Strategy<Value = Template<TEMPLATE>> {
 }
 
 /// What holds after each step, whatever went in.
-fn survives<G: Guidance<f32, Workspace = GridWorkspace<CELLS>>>(
-    guidance: G,
-    goal: Option<Cell>,
-    steps: &[Step],
-) -> Result<(), TestCaseError> {
+fn survives<G>(law: G, goal: Option<Cell>, steps: &[Step]) -> Result<(), TestCaseError>
+where
+    G: ToCells + for<'a> Guidance<f32, Input<'a> = OnGrid<'a>, Workspace = GridWorkspace<CELLS>>,
+{
     let config = config(OWN.0);
-    let mut agent = Agent::<f32, G, NEIGHBORS>::new(&config, guidance);
+    let mut agent = Agent::<f32, G, NEIGHBORS>::new(&config, law, Unguarded, Postcard);
     let mut ws = workspace();
     if let Some(goal) = goal {
         agent.assign_goal(goal);
@@ -238,13 +234,14 @@ fn survives<G: Guidance<f32, Workspace = GridWorkspace<CELLS>>>(
         let [x, y, z] = [step.pose[0], step.pose[1], step.pose[2]].map(u32::cast_signed);
         let [vx, vy, vz] = [step.pose[3], step.pose[4], step.pose[5]].map(f32::from_bits);
         let inputs = Inputs {
-            pose: Pose {
+            state: KinematicState {
                 position: crate::geom::Position::from_mm([x, y, z]),
                 velocity_mps: crate::geom::Vec3::new(vx, vy, vz),
             },
-            cell: step.own,
-            window: step.land(),
-            surroundings: None,
+            surroundings: OnGrid {
+                cell: step.own,
+                window: step.land(),
+            },
             inbox: &inbox,
         };
         let out = agent.step(&inputs, step.now, &mut ws);
@@ -267,7 +264,7 @@ fn survives<G: Guidance<f32, Workspace = GridWorkspace<CELLS>>>(
             pause
         );
 
-        let is_free = step.own.is_none_or(|own| own.busy <= Duration::ZERO);
+        let is_free = step.own.busy <= Duration::ZERO;
         if is_free && agent.target().is_some() {
             prop_assert_eq!(agent.mode() == Mode::Fault, !step.makes_sense());
         }

@@ -10,7 +10,7 @@ use crate::neighbor::StalenessInflation;
 use crate::obstacle::Obstacle;
 use crate::orca::AvoidParams;
 use crate::push_out::PushOutParams;
-use crate::wire::PlaceAssignment;
+use crate::wire::WaypointAssignment;
 use proptest::collection::vec;
 use proptest::prelude::*;
 
@@ -61,7 +61,7 @@ fn near() -> impl Strategy<Value = (Header, Message)> {
     );
     let message = numbers.prop_map(|(position_mm, velocity, (radius, is_place, index))| {
         if is_place {
-            Message::Place(PlaceAssignment {
+            Message::Waypoint(WaypointAssignment {
                 to: RobotId::NOBODY,
                 version: radius as u8,
                 index: index % 6,
@@ -146,14 +146,14 @@ fn guidance(which: u8, speed: f32, length: f32) -> AnyGuidance<f32, CELLS, VISIT
         }
         4 => {
             let inside = RouteGuidance::new(RouteParams::default());
-            AnyGuidance::Route(InPlane::new(inside, speed))
+            AnyGuidance::Route(CellFollower::new(inside, speed))
         }
         _ => {
             let template =
                 Template::from_graph(&[Cell::new(0, 0), Cell::new(-3, 0)], &[(0, 1)], 1, 2);
             let (route, keeping) = (RouteParams::default(), FormationParams::default());
             let inside = FormationGuidance::new(route, keeping, template.unwrap());
-            AnyGuidance::Formation(InPlane::new(inside, speed))
+            AnyGuidance::Formation(CellFollower::new(inside, speed))
         }
     }
 }
@@ -192,24 +192,31 @@ proptest! {
     ) {
         let (radius_m, max_acceleration_mps2) = body;
         let tick = Duration::from_micros(tick_us);
-        let config = AgentConfig { radius_m, max_acceleration_mps2, ..AgentConfig::new(RobotId(9), 1, tick) };
+        let config = AgentConfig { seed: 1, max_acceleration_mps2, ..AgentConfig::new(RobotId(9), radius_m, tick) };
         let (speed, length) = size;
-        let mut agent = Any::guarded(&config, guidance(which.0, speed, length), safety(which.1, length, speed));
-        let _ = agent.assign_goal(Cell::new(7, 7)) | agent.assign_place(0, &Place::fixed(Position::from_mm([9000, 9000, 0])));
+        let mut agent = Any::new(&config, guidance(which.0, speed, length), safety(which.1, length, speed), Postcard);
+        let there = (0, Waypoint::fixed(Position::from_mm([9000, 9000, 0])));
+        let tasks = [Task::Cell(Cell::new(7, 7)), Task::Waypoints(heapless::Vec::from_array([there]))];
+        // Roaming boids have a use for neither.
+        prop_assert!(tasks.iter().filter(|task| agent.assign(task).is_ok()).count() <= 1);
         let mut ws = workspace();
         for step in &steps {
+            let plane = InPlane { max_speed_mps: step.max_speed_mps, obstacles: &step.obstacles };
+            let mut grid = inputs(&FLAT, Cell::new(5, 5), &[]).surroundings;
+            grid.window = grid.window.filter(|_| step.has_land);
             let inputs = Inputs {
-                pose: Pose {
+                state: KinematicState {
                     position: Position::from_mm(step.at_mm),
                     velocity_mps: step.velocity_mps,
                 },
-                surroundings: Some(Surroundings {
-                    max_speed_mps: step.max_speed_mps,
-                    obstacles: &step.obstacles,
-                    in_cell: step.in_cell.map(|(x, y, cell_m)| InCell { offset_m: Vec2::new(x, y), cell_m }),
-                }),
-                window: inputs(&FLAT, Cell::new(5, 5), &[]).window.filter(|_| step.has_land),
-                ..inputs(&FLAT, Cell::new(5, 5), &step.inbox)
+                surroundings: match step.in_cell {
+                    None => AnySurroundings::InPlane(plane),
+                    Some((x, y, cell_m)) => {
+                        let in_cell = InCell { offset_m: Vec2::new(x, y), cell_m };
+                        AnySurroundings::InCells(InCells { grid, plane, in_cell })
+                    }
+                },
+                inbox: &step.inbox,
             };
             let out = agent.step(&inputs, step.now, &mut ws);
             let Command::Velocity(v) = out.command else {

@@ -5,7 +5,7 @@ use crate::geom::{Position, Vec2, Vec3};
 use crate::neighbor::StalenessInflation;
 use crate::orca::AvoidParams;
 use crate::scalar::Q16;
-use crate::wire::{GoalAssignment, PlaceAssignment};
+use crate::wire::{GoalAssignment, WaypointAssignment};
 
 pub(super) const STEP: Duration = Duration::from_millis(100);
 pub(super) const RADIUS_MM: i32 = 200;
@@ -16,8 +16,8 @@ pub(super) fn step_number(n: i32) -> Instant {
 
 pub(super) fn in_plane<S: Scalar>(id: u32) -> AgentConfig<S> {
     AgentConfig {
-        radius_m: S::from_milli(RADIUS_MM),
-        ..AgentConfig::new(RobotId(id), 1, STEP)
+        seed: 1,
+        ..AgentConfig::new(RobotId(id), S::from_milli(RADIUS_MM), STEP)
     }
 }
 
@@ -41,8 +41,8 @@ pub(super) fn waypoint<S: Scalar>() -> WaypointGuidance<S> {
     WaypointGuidance::new(S::ONE, S::from_milli(10))
 }
 
-pub(super) fn place<S: Scalar>(x_mm: i32, y_mm: i32) -> Place<S> {
-    Place::fixed(Position::from_mm([x_mm, y_mm, 0]))
+pub(super) fn place<S: Scalar>(x_mm: i32, y_mm: i32) -> Waypoint<S> {
+    Waypoint::fixed(Position::from_mm([x_mm, y_mm, 0]))
 }
 
 pub(super) fn length([x, y]: [f64; 2]) -> f64 {
@@ -56,10 +56,13 @@ pub(super) struct Robot<S: Scalar, G, A> {
     pub(super) velocity_mps: [f64; 2],
 }
 
-impl<S: Scalar, G: Guidance<S, Workspace = ()>, A: Safety<S>> Robot<S, G, A> {
+impl<S: Scalar, G, A: Safety<S>> Robot<S, G, A>
+where
+    G: for<'a> Guidance<S, Input<'a> = InPlane<'a, S>, Workspace = ()>,
+{
     pub(super) fn new(config: &AgentConfig<S>, guidance: G, safety: A, at_m: [f64; 2]) -> Self {
         Self {
-            agent: Agent::guarded(config, guidance, safety),
+            agent: Agent::new(config, guidance, safety, Postcard),
             at_m,
             velocity_mps: [0.0; 2],
         }
@@ -71,17 +74,14 @@ impl<S: Scalar, G: Guidance<S, Workspace = ()>, A: Safety<S>> Robot<S, G, A> {
         let [vx, vy] = self.velocity_mps.map(number);
         let [x, y] = self.at_m;
         let inputs = Inputs {
-            pose: Pose {
+            state: KinematicState {
                 position: Position::from_metres([x, y, 0.0]).unwrap(),
                 velocity_mps: Vec3::new(vx, vy, S::ZERO),
             },
-            cell: None,
-            window: None,
-            surroundings: Some(Surroundings {
+            surroundings: InPlane {
                 max_speed_mps: S::ONE,
                 obstacles: &[],
-                in_cell: None,
-            }),
+            },
             inbox,
         };
         let out = self.agent.step(&inputs, now, &mut ());
@@ -108,20 +108,24 @@ struct Onlooker {
     is_broken: bool,
 }
 
+impl Teamwork for Onlooker {}
+
 impl Guidance<f32> for Onlooker {
+    type Input<'a> = InPlane<'a, f32>;
     type Workspace = ();
 
     fn decide(
         &mut self,
-        view: &View<'_, f32>,
+        input: &GuidanceInput<'_, f32>,
+        _: &InPlane<'_, f32>,
         _: &mut Rng,
         (): &mut (),
-    ) -> Result<Guided<f32>, BadInput> {
-        self.seen = view.nearby.to_vec();
+    ) -> Result<Decision<f32>, BadInput> {
+        self.seen = input.nearby.to_vec();
         if self.is_broken {
             return Err(BadInput);
         }
-        Ok(Guided::default())
+        Ok(Decision::default())
     }
 
     fn has_own_goal(&self) -> bool {
@@ -162,7 +166,7 @@ fn without_a_place_it_is_idle_and_says_where_it_is() {
 #[test]
 fn it_goes_straight_to_its_place_and_stands_there() {
     let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), [0.0; 2]);
-    assert!(robot.agent.assign_place(0, &place(3000, 4000)));
+    assert!(robot.agent.assign_waypoint(0, &place(3000, 4000)));
     for n in 0..50 {
         let _ = robot.step(step_number(n), &[]);
         assert!((robot.speed() - 1.0).abs() < 1e-5, "step {n}");
@@ -182,9 +186,9 @@ fn it_goes_straight_to_its_place_and_stands_there() {
 #[test]
 fn with_a_place_that_moves_it_goes_on_without_losing_it() {
     let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), [1.0, 0.0]);
-    let _ = robot.agent.assign_place(
+    let _ = robot.agent.assign_waypoint(
         0,
-        &Place {
+        &Waypoint {
             velocity_mps: Vec3::new(0.3, 0.1, 0.0),
             ..place(1000, 0)
         },
@@ -202,7 +206,7 @@ fn with_a_place_that_moves_it_goes_on_without_losing_it() {
 #[test]
 fn beacons_carry_what_it_does_from_now_on() {
     let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), [0.0; 2]);
-    let _ = robot.agent.assign_place(0, &place(-6000, 8000));
+    let _ = robot.agent.assign_waypoint(0, &place(-6000, 8000));
     let beacon = said(&robot.step(step_number(0), &[]));
     assert_eq!(beacon.velocity_mmps, [-600, 800, 0]);
 }
@@ -237,9 +241,9 @@ fn evades(mode: Mode) -> bool {
     let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), own);
     let mut inbox = inbox;
     match mode {
-        Mode::Arrived => drop(robot.agent.assign_place(0, &place(0, 0))),
+        Mode::Arrived => drop(robot.agent.assign_waypoint(0, &place(0, 0))),
         Mode::Hold => {
-            let _ = robot.agent.assign_place(0, &place(0, 9000));
+            let _ = robot.agent.assign_waypoint(0, &place(0, 9000));
             inbox = bytes(2, 0, 0, &[coming, stop(2, 1, 0, RequestKind::Stop)]);
         }
         _ => {}
@@ -320,7 +324,7 @@ fn a_silent_neighbour_goes_on_then_stands_and_widens_then_is_forgotten() {
 
 /// "Go to `x_mm`", with nothing but a version to tell it from others.
 fn order(to: u32, version: u8, index: u8, x_mm: i32) -> Message {
-    Message::Place(PlaceAssignment {
+    Message::Waypoint(WaypointAssignment {
         to: RobotId(to),
         version,
         index,
@@ -389,7 +393,7 @@ fn a_place_that_found_no_room_is_taken_when_it_comes_again() {
         GoalFlockGuidance::<f32>::new(params, 1.0, 1)
     };
     let goal = |index, position_mm| {
-        Message::Place(PlaceAssignment {
+        Message::Waypoint(WaypointAssignment {
             to: RobotId(1),
             version: index,
             index,
@@ -414,7 +418,7 @@ fn a_place_that_found_no_room_is_taken_when_it_comes_again() {
 fn a_place_moves_on_however_often_the_clock_runs_round() {
     fn check<S: Scalar>(tolerance: f64) {
         let velocity_mps = Vec3::new(S::from_milli(-50), S::from_milli(125), S::ZERO);
-        let mut place = Place {
+        let mut place = Waypoint {
             velocity_mps,
             ..place::<S>(1000, 2000)
         };
@@ -439,7 +443,7 @@ fn a_place_moves_on_however_often_the_clock_runs_round() {
 
 #[test]
 fn a_place_that_will_be_there_in_a_moment_is_on_its_way() {
-    let mut place = Place {
+    let mut place = Waypoint {
         velocity_mps: Vec3::new(1.0, 0.0, 0.0),
         at: step_number(10),
         ..place::<f32>(0, 0)
@@ -457,8 +461,8 @@ fn a_place_that_will_be_there_in_a_moment_is_on_its_way() {
 fn swap<S: Scalar>() -> Vec<[[f64; 2]; 2]> {
     let mut one = Robot::new(&one_step_late(1), waypoint::<S>(), orca(), [-2.0, 0.0]);
     let mut two = Robot::new(&one_step_late(2), waypoint::<S>(), orca(), [2.0, 0.0]);
-    let _ = one.agent.assign_place(0, &place(2000, 0));
-    let _ = two.agent.assign_place(0, &place(-2000, 0));
+    let _ = one.agent.assign_waypoint(0, &place(2000, 0));
+    let _ = two.agent.assign_waypoint(0, &place(-2000, 0));
     let mut heard = [Vec::new(), Vec::new()];
     let mut track = Vec::new();
     for n in 0..80 {
@@ -492,18 +496,23 @@ fn head_on_they_swap_places_alike_in_all_kinds_of_numbers() {
 #[test]
 fn a_wish_that_is_no_number_is_no_wish() {
     struct Mad;
+    impl Teamwork for Mad {}
     impl Guidance<f32> for Mad {
+        type Input<'a> = InPlane<'a, f32>;
         type Workspace = ();
         fn decide(
             &mut self,
-            _: &View<'_, f32>,
+            _: &GuidanceInput<'_, f32>,
+            _: &InPlane<'_, f32>,
             _: &mut Rng,
             (): &mut (),
-        ) -> Result<Guided<f32>, BadInput> {
-            Ok(Guided {
-                velocity_mps: Vec2::new(f32::NAN, 1.0).extend(0.0),
-                way_m: Some(Vec3::new(f32::NAN, 1.0, 0.0)),
-                ..Guided::default()
+        ) -> Result<Decision<f32>, BadInput> {
+            Ok(Decision {
+                action: Action::Velocity {
+                    wish_mps: Vec2::new(f32::NAN, 1.0).extend(0.0),
+                    way_m: Some(Vec3::new(f32::NAN, 1.0, 0.0)),
+                },
+                ..Decision::default()
             })
         }
         fn has_own_goal(&self) -> bool {
@@ -527,7 +536,10 @@ fn a_goal_on_the_grid_changes_nothing_for_who_goes_to_places() {
     let after_three = |is_told: bool, hears: &[Message]| {
         let mut robot = Robot::new(&in_plane::<f32>(1), waypoint(), orca(), [0.0; 2]);
         if is_told {
-            assert!(!robot.agent.assign(&Task::Cell(Cell::new(3, 4))));
+            assert_eq!(
+                robot.agent.assign(&Task::Cell(Cell::new(3, 4))),
+                Err(WrongTask)
+            );
         }
         for n in 0..3 {
             let _ = robot.step(step_number(n), &bytes(2, 0, 2 * n as u16, hears));
@@ -541,18 +553,23 @@ fn a_goal_on_the_grid_changes_nothing_for_who_goes_to_places() {
     assert_eq!(after_three(false, &[crowding, goal]), idle);
 }
 
-/// Each guidance that goes by velocities, with something to do but no surroundings.
+/// Each guidance law that goes by velocities, with something to do on a body that cannot move.
 #[test]
-fn without_surroundings_a_robot_is_in_fault_and_stands() {
+fn without_a_speed_a_robot_is_in_fault_and_stands() {
     use crate::flock::{boids::BoidsParams, goal::GoalParams, lattice::LatticeParams};
-    fn check(guidance: impl Guidance<f32, Workspace = ()>) {
-        let mut agent = Agent::<f32, _, NEIGHBORS>::new(&one_step_late(1), guidance);
-        agent.assign_place(0, &place(1000, 0));
+    fn check<G>(mut law: G)
+    where
+        G: for<'a> Guidance<f32, Input<'a> = InPlane<'a, f32>, Workspace = ()>,
+    {
+        let _ = law.assign_waypoint(0, &place(1000, 0));
+        let config = one_step_late(1);
+        let mut agent = Agent::<f32, _, NEIGHBORS, _, _>::new(&config, law, orca(), Postcard);
         let inputs = Inputs {
-            pose: Pose::default(),
-            cell: None,
-            window: None,
-            surroundings: None,
+            state: KinematicState::default(),
+            surroundings: InPlane {
+                max_speed_mps: 0.0,
+                obstacles: &[],
+            },
             inbox: &[],
         };
         let out = agent.step(&inputs, step_number(0), &mut ());
@@ -565,4 +582,58 @@ fn without_surroundings_a_robot_is_in_fault_and_stands() {
         BoidsParams::new(0.3, 1.5, 0.05, 0.02),
         0.5,
     ));
+}
+
+/// Where the law is chosen at run time, what it is told can be another one's input.
+#[test]
+fn any_law_with_the_input_of_another_one_is_a_fault() {
+    type Any = AnyGuidance<f32, CELLS, VISITS, TEMPLATE>;
+    let route = || RouteGuidance::new(RouteParams::default());
+    let plane = InPlane {
+        max_speed_mps: 1.0,
+        obstacles: &[],
+    };
+    let grid = inputs(&FLAT, Cell::new(5, 5), &[]).surroundings;
+    let in_cell = InCell {
+        offset_m: Vec2::ZERO,
+        cell_m: 1.0,
+    };
+    let cells = InCells {
+        grid,
+        plane,
+        in_cell,
+    };
+    let surroundings = [
+        AnySurroundings::OnGrid(grid),
+        AnySurroundings::InPlane(plane),
+        AnySurroundings::InCells(cells),
+    ];
+    let modes = |law: Any, task: Task| {
+        surroundings.map(|surroundings| {
+            let config = in_plane(1);
+            let mut agent =
+                Agent::<f32, _, NEIGHBORS, _, _>::new(&config, law.clone(), Unguarded, Postcard);
+            agent.assign(&task).unwrap();
+            let inputs = Inputs {
+                state: KinematicState::default(),
+                surroundings,
+                inbox: &[],
+            };
+            let _ = agent.step(&inputs, step_number(0), &mut workspace());
+            agent.mode()
+        })
+    };
+    let east = heapless::Vec::from_array([(0, place(9000, 0))]);
+    use Mode::{Cruise, Fault};
+    assert_eq!(
+        modes(Any::Waypoint(waypoint()), Task::Waypoints(east)),
+        [Fault, Cruise, Cruise]
+    );
+    let goal = || Task::Cell(Cell::new(9, 5));
+    assert_eq!(
+        modes(Any::RouteOnGrid(route()), goal()),
+        [Cruise, Fault, Fault]
+    );
+    let follower = CellFollower::new(route(), 1.0);
+    assert_eq!(modes(Any::Route(follower), goal()), [Fault, Fault, Cruise]);
 }

@@ -32,7 +32,7 @@ fn said<W: Wire>(by: &mut W, sequence: u16, message: &Message) -> Vec<u8> {
 #[test]
 fn only_fresh_frames_of_who_has_the_key_are_obeyed_and_the_others_are_counted() {
     let guidance = RouteGuidance::new(RouteParams::default());
-    let mut agent = SealedAgent::speaking(&config(1), guidance, Unguarded, wire(b"swarm"));
+    let mut agent = SealedAgent::new(&config(1), guidance, Unguarded, wire(b"swarm"));
     let mut friend = wire(b"swarm");
     let first = said(&mut friend, 0, &goal(20));
     let attacks = [

@@ -11,7 +11,9 @@ use crate::push_out::PushOutParams;
 use crate::route::{Replan, RouteParams};
 use crate::scalar::{Q16, Scalar};
 use crate::shuffle::Sharpness;
+use crate::time::{Duration, Instant};
 use crate::wire::{Beacon, Format, Header, Message, encode};
+use heapless::Vec;
 
 const TICK: Duration = Duration::from_millis(50);
 
@@ -82,7 +84,10 @@ fn safeties() -> [SafetySetup; 4] {
 fn setups() -> impl Iterator<Item = Setup> {
     guidances().into_iter().flat_map(|guidance| {
         safeties().into_iter().map(move |safety| Setup {
-            agent: AgentConfig::new(RobotId(3), 7, TICK),
+            agent: AgentConfig {
+                seed: 7,
+                ..AgentConfig::new(RobotId(3), 0.0, TICK)
+            },
             guidance: guidance.clone(),
             safety,
             format: Format::Postcard,
@@ -94,15 +99,15 @@ fn setups() -> impl Iterator<Item = Setup> {
 fn lived<S: Scalar>(setup: &Setup, steps: u32) -> std::vec::Vec<u64> {
     let agent = setup.agent::<S, CELLS, VISITS, NEIGHBORS, HALF_PLANES, Postcard>();
     let mut agent = agent.unwrap();
-    let place = Place::fixed(Position::from_mm([4000, 1000, 0]));
+    let place = Waypoint::fixed(Position::from_mm([4000, 1000, 0]));
     let task = match setup.guidance {
         GuidanceSetup::Route { .. } | GuidanceSetup::Formation { .. } => {
             Task::Cell(Cell::new(9, 5))
         }
-        GuidanceSetup::Boids { .. } => Task::Places(Vec::new()),
-        _ => Task::Places(Vec::from_array([(0, place)])),
+        GuidanceSetup::Boids { .. } => Task::Waypoints(Vec::new()),
+        _ => Task::Waypoints(Vec::from_array([(0, place)])),
     };
-    assert!(agent.assign(&task));
+    agent.assign(&task).unwrap();
     let land = [1; 121];
     let mut workspace = GridWorkspace::new();
     let mut digests = std::vec![agent.digest()];
@@ -122,24 +127,32 @@ fn lived<S: Scalar>(setup: &Setup, steps: u32) -> std::vec::Vec<u64> {
         };
         let mut inbox = Vec::<u8, 64>::new();
         encode(header, &Message::Beacon(beacon), &mut inbox).unwrap();
+        let grid = OnGrid {
+            cell: CellState {
+                cell: Cell::new(5, 5),
+                busy: Duration::ZERO,
+            },
+            window: crate::grid::Window::new(&land, Cell::new(0, 0), 11, 11),
+        };
         let inputs = Inputs {
-            pose: Pose {
+            state: KinematicState {
                 position: Position::from_mm([step as i32 * 10, 0, 0]),
                 velocity_mps: Vec3::new(S::from_ratio(1, 5), S::ZERO, S::ZERO),
             },
-            cell: Some(CellState {
-                cell: Cell::new(5, 5),
-                busy: Duration::ZERO,
-            }),
-            window: crate::grid::Window::new(&land, Cell::new(0, 0), 11, 11),
-            surroundings: Some(Surroundings {
-                max_speed_mps: S::ONE,
-                obstacles: &[],
-                in_cell: Some(InCell {
-                    offset_m: crate::geom::Vec2::ZERO,
-                    cell_m: S::ONE,
+            surroundings: match setup.guidance {
+                GuidanceSetup::Route { .. } => AnySurroundings::OnGrid(grid),
+                _ => AnySurroundings::InCells(InCells {
+                    grid,
+                    plane: InPlane {
+                        max_speed_mps: S::ONE,
+                        obstacles: &[],
+                    },
+                    in_cell: InCell {
+                        offset_m: crate::geom::Vec2::ZERO,
+                        cell_m: S::ONE,
+                    },
                 }),
-            }),
+            },
             inbox: &inbox,
         };
         let _ = agent.step(&inputs, now, &mut workspace);

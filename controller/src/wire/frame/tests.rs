@@ -108,14 +108,14 @@ fn longest() -> [(Message, usize); 7] {
             GoalAssignment::MAX_FRAME_LEN,
         ),
         (
-            Message::Place(PlaceAssignment {
+            Message::Waypoint(WaypointAssignment {
                 to: LAST,
                 version: 0,
                 index: 0,
                 position_mm: [i32::MIN; 3],
                 velocity_mmps: [i16::MIN; 3],
             }),
-            PlaceAssignment::MAX_FRAME_LEN,
+            WaypointAssignment::MAX_FRAME_LEN,
         ),
     ]
 }
@@ -128,7 +128,7 @@ fn bound(message: &Message) -> usize {
         Message::Ack(_) => Ack::MAX_FRAME_LEN,
         Message::Template(_) => TemplateAssignment::MAX_FRAME_LEN,
         Message::Goal(_) => GoalAssignment::MAX_FRAME_LEN,
-        Message::Place(_) => PlaceAssignment::MAX_FRAME_LEN,
+        Message::Waypoint(_) => WaypointAssignment::MAX_FRAME_LEN,
     }
 }
 

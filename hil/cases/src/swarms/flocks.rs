@@ -5,7 +5,7 @@ use crate::medium::Faults;
 use crate::plane::{Scene, Solid, run};
 use crate::{Probe, Summary};
 use staya_controller::agent::{
-    BoidsGuidance, GoalFlockGuidance, LatticeGuidance, Place, PushOutSafety, Unguarded,
+    BoidsGuidance, GoalFlockGuidance, LatticeGuidance, PushOutSafety, Unguarded, Waypoint,
 };
 use staya_controller::flock::boids::BoidsParams;
 use staya_controller::flock::goal::GoalParams;
@@ -47,12 +47,12 @@ pub(super) fn lattice<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
         ..LatticeParams::new(S::ONE)
     };
     let mut movers = movers(&CROWD, |_| LatticeGuidance::new(params, true), || Unguarded);
-    let reference = Place {
+    let reference = Waypoint {
         velocity_mps: Vec3::new(S::from_ratio(1, 4), S::ZERO, S::ZERO),
-        ..Place::fixed(Position::from_mm([1000, 0, 0]))
+        ..Waypoint::fixed(Position::from_mm([1000, 0, 0]))
     };
     for mover in &mut movers {
-        let _ = mover.agent.assign_place(0, &reference);
+        let _ = mover.agent.assign_waypoint(0, &reference);
     }
     run(&scene(&BALL, 400), &mut movers, &mut (), probe)
 }
@@ -67,8 +67,8 @@ pub(super) fn goals<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     );
     for mover in &mut movers {
         for (index, goal) in (0..).zip([[9000, 4000, 0], [9000, -4000, 0]]) {
-            let place = Place::fixed(Position::from_mm(goal));
-            let _ = mover.agent.assign_place(index, &place);
+            let waypoint = Waypoint::fixed(Position::from_mm(goal));
+            let _ = mover.agent.assign_waypoint(index, &waypoint);
         }
     }
     run(&scene(&[], 400), &mut movers, &mut (), probe)

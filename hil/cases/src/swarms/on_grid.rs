@@ -37,7 +37,10 @@ const START: Cell = Cell::new(5, 5);
 const GOAL: Cell = Cell::new(24, 21);
 
 fn config<S: Scalar>(index: usize) -> AgentConfig<S> {
-    AgentConfig::new(RobotId(index as u32 + 1), 7, TICK)
+    AgentConfig {
+        seed: 7,
+        ..AgentConfig::new(RobotId(index as u32 + 1), S::ZERO, TICK)
+    }
 }
 
 #[inline(never)]
@@ -61,7 +64,7 @@ fn travellers<S: Scalar>() -> Vec<Walker<S, Route>, ROBOTS> {
         .enumerate()
     {
         let guidance = Route::new(RouteParams::default());
-        let mut agent = GridAgent::new(&config(index), guidance);
+        let mut agent = GridAgent::new(&config(index), guidance, Unguarded, Postcard);
         agent.assign_goal(goal);
         // As many places as robots.
         let _ = walkers.push(Walker {
@@ -98,7 +101,7 @@ fn members<S: Scalar, W: Wire>(
     for (index, place) in PLACES.into_iter().enumerate() {
         let guidance = Formation::new(RouteParams::default(), params, template(index));
         let _ = walkers.push(Walker {
-            agent: GridAgent::speaking(&config(index), guidance, Unguarded, wire.clone()),
+            agent: GridAgent::new(&config(index), guidance, Unguarded, wire.clone()),
             cell: START + place,
             free_at_ms: 0,
         });

@@ -8,8 +8,8 @@ use crate::{Probe, Summary};
 use heapless::Vec;
 use serde::Serialize;
 use staya_controller::agent::{
-    AgentConfig, FlySafety, GridWorkspace, Guidance, InPlane, OrcaSafety, Place, PushOutSafety,
-    Safety, WaypointGuidance,
+    AgentConfig, CellFollower, FlySafety, GridWorkspace, Guidance, OrcaSafety, PushOutSafety,
+    Safety, Waypoint, WaypointGuidance,
 };
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::grid::Cell;
@@ -19,6 +19,7 @@ use staya_controller::push_out::PushOutParams;
 use staya_controller::robot::RobotId;
 use staya_controller::route::RouteParams;
 use staya_controller::scalar::Scalar;
+use staya_controller::wire::Postcard;
 
 const RADIUS_MM: i32 = 150;
 /// Half-planes that a robot reckons with.
@@ -35,10 +36,10 @@ const PENTAGON: [[i32; 3]; 5] = [
 
 pub(super) fn config<S: Scalar>(index: usize) -> AgentConfig<S> {
     AgentConfig {
-        radius_m: S::from_milli(RADIUS_MM),
+        seed: 11,
         // What others say was said a step ago.
         latency: STEP,
-        ..AgentConfig::new(RobotId(index as u32 + 1), 11, STEP)
+        ..AgentConfig::new(RobotId(index as u32 + 1), S::from_milli(RADIUS_MM), STEP)
     }
 }
 
@@ -60,7 +61,7 @@ pub(super) fn movers<S: Scalar, G: Guidance<S>, A: Safety<S>, const R: usize>(
     for (index, start) in starts.iter().enumerate() {
         // As many places as robots.
         let _ = movers.push(Mover {
-            agent: PlaneAgent::guarded(&config(index), guidance(index), safety()),
+            agent: PlaneAgent::new(&config(index), guidance(index), safety(), Postcard),
             position: Position::from_mm(*start),
             velocity_mps: Vec3::ZERO,
         });
@@ -93,9 +94,9 @@ fn to_places<S: Scalar, A: Safety<S> + Serialize, P: Probe<S>, const R: usize>(
 ) -> Summary {
     let mut movers = movers(starts, |_| waypoint(), safety);
     for (mover, goal) in movers.iter_mut().zip(goals) {
-        let place = Place::fixed(Position::from_mm(*goal));
-        // A waypoint has a place of number 0.
-        let _ = mover.agent.assign_place(0, &place);
+        let waypoint = Waypoint::fixed(Position::from_mm(*goal));
+        // There is room for one, number 0.
+        let _ = mover.agent.assign_waypoint(0, &waypoint);
     }
     run(scene, &mut movers, &mut (), probe)
 }
@@ -177,7 +178,7 @@ pub(super) fn route_in_plane<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     };
     let starts = [[3500, 3500, 0], [12_500, 3500, 0], [3500, 12_500, 0]];
     let goals = [Cell::new(12, 11), Cell::new(3, 12), Cell::new(12, 4)];
-    let guidance = |_| InPlane::new(Route::new(RouteParams::default()), S::HALF);
+    let guidance = |_| CellFollower::new(Route::new(RouteParams::default()), S::HALF);
     let safety =
         || OrcaSafety::<S, PLANES>::with_source(AvoidParams::default(), inflation(), Analytic);
     let mut movers = movers(&starts, guidance, safety);

@@ -100,7 +100,7 @@ mod program {
         fn step<G: Guidance<S>, A: Safety<S>, W: Wire, const N: usize>(
             &mut self,
             agent: &mut Agent<S, G, N, A, W>,
-            inputs: &Inputs<'_, S>,
+            inputs: &Inputs<'_, S, G::Input<'_>>,
             now: Instant,
             workspace: &mut G::Workspace,
         ) -> Outputs<S> {
@@ -112,7 +112,7 @@ mod program {
     #[inline(never)]
     fn step<S: Scalar, G: Guidance<S>, A: Safety<S>, W: Wire, const N: usize>(
         agent: &mut Agent<S, G, N, A, W>,
-        inputs: &Inputs<'_, S>,
+        inputs: &Inputs<'_, S, G::Input<'_>>,
         now: Instant,
         workspace: &mut G::Workspace,
     ) -> Outputs<S> {

@@ -29,7 +29,7 @@ fn thousand_steps<B: Controller + Default>(
     faults: Faults,
     seed: u64,
     (setup, task): (&Setup, Option<&Task>),
-    mut plain: impl FnMut(&Inputs<'_, f32>, &StepInputs<'_>) -> (Command<f32>, u64),
+    mut plain: impl FnMut(&AnyInputs<'_, f32>, &StepInputs<'_>) -> (Command<f32>, u64),
 ) -> Bench<B> {
     let mut bench = Bench::<B>::new(faults, seed);
     bench.configure(setup, task);
@@ -75,8 +75,8 @@ const BAD: Faults = Faults {
 };
 
 fn to_the_east() -> Task {
-    let place = Place::fixed(Position::from_mm([30_000, 500, 0]));
-    Task::Places([(0, place)].into_iter().collect())
+    let waypoint = Waypoint::fixed(Position::from_mm([30_000, 500, 0]));
+    Task::Waypoints([(0, waypoint)].into_iter().collect())
 }
 
 #[test]
@@ -87,7 +87,7 @@ fn steps_over_a_bad_line_are_those_of_a_plain_agent() {
         for (faults, seed) in [(Faults::default(), 1), (BAD, 2), (BAD, 3)] {
             let agent: Option<AnyAgent<f32, CELLS, VISITS, NEIGHBORS, HALF_PLANES>> = setup.agent();
             let mut agent = agent.expect("postcard");
-            assert!(agent.assign(&task));
+            agent.assign(&task).expect("a task for it");
             let mut workspace = GridWorkspace::new();
             let bench =
                 thousand_steps::<Large>(faults, seed, (&setup, Some(&task)), |inputs, step| {
@@ -142,7 +142,7 @@ fn device_that_resets_is_noticed_and_rejoins() {
             let step = StepInputs {
                 tick,
                 now: Instant::from_micros(tick * 100_000),
-                pose: Pose::default(),
+                state: KinematicState::default(),
                 cell: None,
                 window: None,
                 surroundings: Some(PackedSurroundings {
@@ -210,8 +210,8 @@ fn silent_device_is_given_up_with_what_was_asked_and_for_how_long() {
     let inputs = StepInputs {
         tick: 77,
         now: Instant::from_micros(0),
-        pose: Pose::default(),
-        cell: None,
+        state: KinematicState::default(),
+        cell: Some(CellState::default()),
         window: None,
         surroundings: None,
         inbox: &[],
@@ -297,7 +297,7 @@ proptest! {
             let inbox = inbox(tick, now);
             let surroundings = Some(PackedSurroundings { max_speed_mps: 1.0, in_cell: None, obstacles: &[] });
             let step = StepInputs {
-                tick, now, pose: Pose::default(), cell: None, window: None, surroundings, inbox: &inbox,
+                tick, now, state: KinematicState::default(), cell: None, window: None, surroundings, inbox: &inbox,
             };
             let result = bench.step(&step).expect("no reset");
             prop_assert!(result.is_identical(&decide(&mut shadow, &step)));

@@ -6,7 +6,9 @@ use crate::robot::{Controller, Small};
 use crate::surroundings::OBSTACLE_BYTES;
 use proptest::collection::vec;
 use proptest::prelude::*;
-use staya_controller::agent::{Inputs, Pose, Surroundings};
+use staya_controller::agent::{
+    AnyInputs, AnySurroundings, CellState, InPlane, Inputs, KinematicState, OnGrid,
+};
 use staya_controller::geom::{Vec2, Vec3};
 use staya_controller::grid::{Cell, Window};
 use staya_controller::obstacle::Obstacle;
@@ -26,15 +28,12 @@ fn room(obstacles: u16, inbox_bytes: u16) -> Capacities {
     }
 }
 
-fn inputs<'a>(inbox: &'a [u8], obstacles: &'a [Obstacle<f32>]) -> Inputs<'a, f32> {
+fn inputs<'a>(inbox: &'a [u8], obstacles: &'a [Obstacle<f32>]) -> AnyInputs<'a, f32> {
     Inputs {
-        pose: Pose::default(),
-        cell: None,
-        window: None,
-        surroundings: Some(Surroundings {
+        state: KinematicState::default(),
+        surroundings: AnySurroundings::InPlane(InPlane {
             max_speed_mps: 1.0,
             obstacles,
-            in_cell: None,
         }),
         inbox,
     }
@@ -114,8 +113,12 @@ fn land_is_never_cut() {
     for (side, fits) in [(11, true), (12, false)] {
         let land = &cells[..side * side];
         let window = Window::new(land, Cell::default(), side as u16, side as u16);
-        let inputs = Inputs {
+        let grid = OnGrid {
+            cell: CellState::default(),
             window,
+        };
+        let inputs = Inputs {
+            surroundings: AnySurroundings::OnGrid(grid),
             ..inputs(&[], &[])
         };
         let fitted = room(0, 0)

@@ -138,16 +138,16 @@ fn longest_setup_fits() {
         safety: super::in_plane().safety,
         format: Format::Mavlink,
     };
-    let place = Place {
+    let waypoint = Waypoint {
         position: Position::from_mm([i32::MIN; 3]),
         velocity_mps: Vec3::new(1.0, 2.0, 3.0),
         at: LAST,
     };
-    let places = core::iter::repeat_n((u8::MAX, place), PLACES).collect();
+    let waypoints = core::iter::repeat_n((u8::MAX, waypoint), WAYPOINTS).collect();
     let configure = Configure {
         seq: u16::MAX,
         setup,
-        task: Some(Task::Places(places)),
+        task: Some(Task::Waypoints(waypoints)),
     };
     let bytes = frame(kind::CONFIGURE, &configure);
     let len = content(&bytes);
@@ -171,7 +171,7 @@ fn longest_step_fits_its_buffer() {
     let inputs = StepInputs {
         tick: u32::MAX,
         now: LAST,
-        pose: Pose {
+        state: KinematicState {
             position: Position::from_mm([i32::MIN; 3]),
             velocity_mps: Vec3::new(1.0, 2.0, 3.0),
         },
@@ -281,7 +281,7 @@ proptest! {
         let inputs = StepInputs {
             tick,
             now: Instant::from_micros(now),
-            pose: Pose { position: Position::from_mm(mm), velocity_mps: Vec3::new(x, y, z) },
+            state: KinematicState { position: Position::from_mm(mm), velocity_mps: Vec3::new(x, y, z) },
             cell: cell.map(|([x, y], busy)| CellState {
                 cell: Cell::new(x, y),
                 busy: Duration::from_micros(busy),

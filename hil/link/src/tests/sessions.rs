@@ -8,7 +8,7 @@ use crate::session::{About, Meter, Reaction, Session};
 use crate::surroundings::{OBSTACLE_BYTES, PackedSurroundings, TerrainWindow};
 use proptest::collection::vec;
 use proptest::prelude::*;
-use staya_controller::agent::{Pose, Task};
+use staya_controller::agent::{CellState, KinematicState, Task, Waypoint};
 use staya_controller::time::Instant;
 use std::string::ToString;
 use std::vec::Vec;
@@ -25,8 +25,8 @@ fn step(seq: u16) -> Vec<u8> {
     let inputs = StepInputs {
         tick: seq.into(),
         now: Instant::from_micros(u32::from(seq).wrapping_mul(100_000)),
-        pose: Pose::default(),
-        cell: None,
+        state: KinematicState::default(),
+        cell: Some(CellState::default()),
         window: None,
         surroundings: None,
         inbox: &[],
@@ -109,12 +109,15 @@ fn setups_that_do_not_fit_are_refused_with_the_reason() {
     let (kind, ..) = fault(&answers(&mut session, &configure(8, setup, None)));
     assert_eq!(kind, FaultKind::Setup);
     let (routing, _) = on_grid(5);
-    let place = staya_controller::agent::Place::fixed(staya_controller::geom::Position::ORIGIN);
-    let places = Task::Places([(0, place)].into_iter().collect());
-    let (kind, _, text) = fault(&answers(&mut session, &configure(9, routing, Some(places))));
+    let waypoint = Waypoint::fixed(staya_controller::geom::Position::ORIGIN);
+    let waypoints = Task::Waypoints([(0, waypoint)].into_iter().collect());
+    let (kind, _, text) = fault(&answers(
+        &mut session,
+        &configure(9, routing, Some(waypoints)),
+    ));
     assert_eq!(
         (kind, text.as_str()),
-        (FaultKind::Setup, "the guidance has no use for the task")
+        (FaultKind::Setup, "the guidance law has no use for the task")
     );
 }
 
@@ -132,7 +135,7 @@ fn too_many_obstacles_and_nonsense_are_refused_and_the_robot_goes_on() {
         let inputs = StepInputs {
             tick: 1,
             now: Instant::from_micros(0),
-            pose: Pose::default(),
+            state: KinematicState::default(),
             cell: None,
             window: Some(TerrainWindow {
                 origin: staya_controller::grid::Cell::default(),

@@ -2,8 +2,8 @@
 #![allow(dead_code, reason = "each test program uses its own part")]
 
 use staya_controller::agent::{
-    AgentConfig, AnyHalfPlanes, CellState, GuidanceSetup, Inputs, Place, Pose, RouteSetup,
-    SafetySetup, Setup, Surroundings, Task,
+    AgentConfig, AnyHalfPlanes, AnyInputs, AnySurroundings, CellState, GuidanceSetup, InPlane,
+    Inputs, KinematicState, OnGrid, RouteSetup, SafetySetup, Setup, Task, Waypoint,
 };
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Cell, Window};
@@ -25,11 +25,11 @@ use std::os::unix::net::UnixStream;
 /// A robot in the plane behind ORCA, or (every other number) one on the grid.
 pub fn config(robot: u32, device: &str) -> DeviceConfig {
     let agent = AgentConfig {
-        radius_m: 0.25,
+        seed: 7,
         max_acceleration_mps2: 2.0,
-        ..AgentConfig::new(RobotId(robot), 7, Duration::from_millis(100))
+        ..AgentConfig::new(RobotId(robot), 0.25, Duration::from_millis(100))
     };
-    let place = Place::fixed(Position::from_mm([30_000, 500, 0]));
+    let waypoint = Waypoint::fixed(Position::from_mm([30_000, 500, 0]));
     let (guidance, safety, task) = if robot.is_multiple_of(2) {
         let route = RouteSetup {
             params: RouteParams::default(),
@@ -54,8 +54,8 @@ pub fn config(robot: u32, device: &str) -> DeviceConfig {
             },
             source: AnyHalfPlanes::Analytic,
         };
-        let places = [(0, place)].into_iter().collect();
-        (guidance, safety, Task::Places(places))
+        let waypoints = [(0, waypoint)].into_iter().collect();
+        (guidance, safety, Task::Waypoints(waypoints))
     };
     DeviceConfig {
         device: device.to_owned(),
@@ -149,24 +149,25 @@ impl Scene {
         });
     }
 
-    pub fn inputs(&self) -> Inputs<'_, f32> {
+    pub fn inputs(&self) -> AnyInputs<'_, f32> {
         let cell = CellState {
             cell: self.cell,
             busy: Duration::ZERO,
         };
         Inputs {
-            pose: Pose {
+            state: KinematicState {
                 position: self.position,
                 velocity_mps: Vec3::new(0.5, 0.0, 0.0),
             },
-            cell: self.on_grid.then_some(cell),
-            window: Window::new(&self.land, self.cell - Cell::new(5, 5), 11, 11)
-                .filter(|_| self.on_grid),
-            surroundings: (!self.on_grid).then_some(Surroundings {
-                max_speed_mps: 1.0,
-                obstacles: &self.obstacles,
-                in_cell: None,
-            }),
+            surroundings: if self.on_grid {
+                let window = Window::new(&self.land, self.cell - Cell::new(5, 5), 11, 11);
+                AnySurroundings::OnGrid(OnGrid { cell, window })
+            } else {
+                AnySurroundings::InPlane(InPlane {
+                    max_speed_mps: 1.0,
+                    obstacles: &self.obstacles,
+                })
+            },
             inbox: &self.inbox,
         }
     }

@@ -4,14 +4,14 @@ use super::model::FlightMode;
 use super::params::Meaning;
 use super::vehicle::{Action, Kind, Out, Vehicle};
 use crate::geo::{Global, enu};
-use staya_controller::agent::{Place, Wish};
+use staya_controller::agent::{Waypoint, Wish};
 use staya_controller::geom::Vec3;
 use staya_controller::grid::Cell;
 use staya_controller::robot::RobotId;
 use staya_controller::template::TemplateEntry;
 use staya_controller::time::Duration;
 use staya_controller::wire::{
-    GoalAssignment, Header, Message, PlaceAssignment, TEMPLATE_PART, TemplateAssignment,
+    GoalAssignment, Header, Message, TEMPLATE_PART, TemplateAssignment, WaypointAssignment,
 };
 use staya_mavlink::constants::*;
 use staya_mavlink::dialect::*;
@@ -173,10 +173,10 @@ impl Vehicle {
                 valid,
             }),
             (Some(place_m), velocity) => self.goal(place_m).map(|wish| match (wish, velocity) {
-                (Wish::Place { place, .. }, Some(velocity_mps)) => Wish::Place {
-                    place: Place {
+                (Wish::Waypoint { waypoint, .. }, Some(velocity_mps)) => Wish::Waypoint {
+                    waypoint: Waypoint {
                         velocity_mps,
-                        ..place
+                        ..waypoint
                     },
                     valid: Some(valid),
                 },
@@ -216,7 +216,7 @@ fn order(message: &MavMessage) -> Option<(u8, u16, Message)> {
             (goal.boot, goal.sequence, message)
         }
         MavMessage::STAYA_PLACE(place) => {
-            let message = Message::Place(PlaceAssignment {
+            let message = Message::Waypoint(WaypointAssignment {
                 to: to(place.target_system),
                 version: place.version,
                 index: place.index,

@@ -9,7 +9,7 @@ use super::model::{FlightMode, Sample, VehicleModel};
 use super::params::{Meaning, NotSet, Parameters};
 use super::telemetry::Streams;
 use crate::geo::FAR_M;
-use staya_controller::agent::{Event, Parameter, Place, Wish};
+use staya_controller::agent::{Event, Parameter, Waypoint, Wish};
 use staya_controller::geom::Position;
 use staya_controller::robot::Mode;
 use staya_controller::wire::{Header, Message};
@@ -166,7 +166,7 @@ impl Vehicle {
         if east * east + north * north > 1e-6 {
             self.yaw = libm::atan2(east, north) as f32;
         }
-        if matches!(before.wish, Wish::Velocity { .. } | Wish::Place { .. })
+        if matches!(before.wish, Wish::Velocity { .. } | Wish::Waypoint { .. })
             && sample.wish == Wish::Hold
             && self.mode == FlightMode::Guided
         {
@@ -452,8 +452,8 @@ impl Vehicle {
         if self.model.grid.is_some() {
             return Some(Wish::Cell(self.model.cell(place_m)?));
         }
-        Some(Wish::Place {
-            place: Place::fixed(Position::from_metres(place_m)?),
+        Some(Wish::Waypoint {
+            waypoint: Waypoint::fixed(Position::from_metres(place_m)?),
             valid: None,
         })
     }

@@ -1,8 +1,8 @@
 //! The agent beside an autopilot: what it senses comes from telemetry and the scenario's land, what it commands is a velocity.
 
 use staya_controller::agent::{
-    Agent, AgentConfig, AnyGuidance, AnySafety, Command, Commanded, GridWorkspace, HALF_PLANES,
-    NEIGHBORS, Outputs, TEMPLATE, VISITS, Wish,
+    Agent, AgentConfig, AnyGuidance, AnySafety, AnySurroundings, Command, Commanded, GridWorkspace,
+    HALF_PLANES, InCells, NEIGHBORS, Outputs, TEMPLATE, VISITS, Wish,
 };
 use staya_controller::geom::Vec3;
 use staya_controller::robot::Mode;
@@ -61,20 +61,20 @@ impl<W: Wire> Controller<W> {
     ) -> Self {
         let robot = scenario.robots.get(index).map(|robot| robot.id);
         let tick = time::Duration::from_micros(i32::try_from(scenario.tick_us).unwrap_or(i32::MAX));
-        let mut config = AgentConfig {
+        let config = AgentConfig {
             boot,
-            ..AgentConfig::new(robot.unwrap_or_default(), scenario.seed, tick)
+            seed: scenario.seed,
+            ..ground.config(robot.unwrap_or_default(), tick)
         };
-        ground.configure(&mut config);
         // Nobody wishes places here, so neither speed nor tolerance counts.
         let guidance = Commanded::new(scenario.guidance(index).guidance(), 0.0, 0.0);
-        let mut agent = Box::new(Agent::speaking(
+        let mut agent = Box::new(Agent::new(
             &config,
             guidance,
             scenario.safety().safety(),
             wire,
         ));
-        // A guidance that has no use for its task says so; the scenario was checked for that.
+        // A law that has no use for its task says so; the scenario was checked for that.
         let _ = agent.assign(&ground.task(index, 0));
         let plane = scenario.plane.as_ref();
         let places = plane.filter(|plane| !plane.guidance.is_on_grid());
@@ -131,9 +131,15 @@ impl<W: Wire> Controller<W> {
             // Both are possible for any guidance.
             let _ = self.agent.guidance_mut().command(wish);
         }
-        if let (Some(around), Some(brake)) = (&mut inputs.surroundings, self.brake) {
+        let plane = match &mut inputs.surroundings {
+            AnySurroundings::InPlane(plane) | AnySurroundings::InCells(InCells { plane, .. }) => {
+                Some(plane)
+            }
+            AnySurroundings::OnGrid(_) => None,
+        };
+        if let (Some(plane), Some(brake)) = (plane, self.brake) {
             let limit = speed_before(&brake, position_m, self.max_acceleration_mps2, self.lag_s);
-            around.max_speed_mps = around.max_speed_mps.min(limit as f32);
+            plane.max_speed_mps = plane.max_speed_mps.min(limit as f32);
         }
         // The robot's clock wraps; steps are far closer to each other.
         let now = Instant::from_micros(now.as_micros() as u32);

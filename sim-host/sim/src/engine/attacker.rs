@@ -7,7 +7,7 @@ use staya_controller::agent::OUTBOX;
 use staya_controller::auth::Key;
 use staya_controller::grid::Cell;
 use staya_controller::robot::RobotId;
-use staya_controller::wire::{Format, GoalAssignment, Header, Message, PlaceAssignment, Wire};
+use staya_controller::wire::{Format, GoalAssignment, Header, Message, WaypointAssignment, Wire};
 use std::collections::VecDeque;
 
 /// The start number that it claims to be at: so high that only the missing key gives it away.
@@ -88,7 +88,7 @@ impl Attacker {
             version: self.version,
             target: Cell::new(cell(x_m), cell(y_m)),
         }));
-        self.say(&Message::Place(PlaceAssignment {
+        self.say(&Message::Waypoint(WaypointAssignment {
             to: RobotId::NOBODY,
             version: self.version,
             index: 0,

@@ -2,7 +2,7 @@
 
 use crate::terrain::Terrain;
 use crate::world::{Body, World};
-use staya_controller::agent;
+use staya_controller::agent::KinematicState;
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Dir, GridFrame, UNIT};
 
@@ -20,7 +20,7 @@ pub(super) struct Pose {
     pub(super) velocity_mps: [f64; 2],
 }
 
-impl From<Pose> for agent::Pose<f32> {
+impl From<Pose> for KinematicState<f32> {
     fn from(pose: Pose) -> Self {
         let [x, y] = pose.position_m;
         let [vx, vy] = pose.velocity_mps;

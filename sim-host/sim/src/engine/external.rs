@@ -1,7 +1,7 @@
 //! Robots whose controllers run elsewhere: on emulated parts, or on boards.
 
 use super::Status;
-use staya_controller::agent::{Command, Inputs, OUTBOX, Setup, Task};
+use staya_controller::agent::{AnyInputs, Command, OUTBOX, Setup, Task};
 use staya_controller::time::Instant;
 
 /// Controllers external of this process. Robots are numbered as in the scenario.
@@ -21,7 +21,7 @@ pub trait ExternalController: Send {
     fn has_restarted(&mut self, index: usize) -> bool;
 
     /// Lets robot `index` begin its step.
-    fn send(&mut self, index: usize, tick: u32, now: Instant, inputs: &Inputs<'_, f32>);
+    fn send(&mut self, index: usize, tick: u32, now: Instant, inputs: &AnyInputs<'_, f32>);
 
     /// What the robot decided that was sent last; `None` when its controller is not there.
     fn collect(&mut self, index: usize) -> Option<Decision>;

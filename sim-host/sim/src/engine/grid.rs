@@ -8,9 +8,12 @@ use crate::metrics::{FormationMeter, Keeping};
 use crate::record::Motion;
 use crate::scenario::{Robot, Scenario};
 use crate::world::{Misplaced, World};
-use staya_controller::agent::{AgentConfig, CellState, Command, Inputs, Task};
+use staya_controller::agent::{
+    AgentConfig, AnyInputs, AnySurroundings, CellState, Command, Inputs, OnGrid, Task,
+};
 use staya_controller::grid::UNIT;
 use staya_controller::robot::Mode;
+use staya_controller::robot::RobotId;
 use staya_controller::time::Duration;
 
 /// Bodies that hold a cell each.
@@ -77,16 +80,17 @@ impl Ground for Grid {
         index: usize,
         tick: u32,
         cells: &'a mut Self::Scratch,
-    ) -> Inputs<'a, f32> {
+    ) -> AnyInputs<'a, f32> {
         let body = &self.world.bodies()[index];
         Inputs {
-            pose: self.kinematics.pose(&self.world, body, units(tick)).into(),
-            cell: Some(CellState {
-                cell: body.cell,
-                busy: busy(body.free_at, units(tick), self.tick_us),
+            state: self.kinematics.pose(&self.world, body, units(tick)).into(),
+            surroundings: AnySurroundings::OnGrid(OnGrid {
+                cell: CellState {
+                    cell: body.cell,
+                    busy: busy(body.free_at, units(tick), self.tick_us),
+                },
+                window: self.world.window(body.cell, self.radius, cells),
             }),
-            window: self.world.window(body.cell, self.radius, cells),
-            surroundings: None,
             inbox: &[],
         }
     }
@@ -122,7 +126,9 @@ impl Ground for Grid {
         is_there.then_some(body.free_at)
     }
 
-    fn configure(&self, _: &mut AgentConfig<f32>) {}
+    fn config(&self, id: RobotId, tick: Duration) -> AgentConfig<f32> {
+        AgentConfig::new(id, 0.0, tick)
+    }
 
     fn task(&self, index: usize, _: u32) -> Task {
         Task::Cell(self.robots[index].goal)

@@ -4,7 +4,9 @@ use super::Status;
 use crate::metrics::Keeping;
 use crate::record::Motion;
 use crate::world::plane::Clearance;
-use staya_controller::agent::{AgentConfig, Command, Inputs, Task};
+use staya_controller::agent::{AgentConfig, AnyInputs, AnySurroundings, Command, Guidance, Task};
+use staya_controller::robot::RobotId;
+use staya_controller::time::Duration;
 
 /// A world with bodies, as the engine needs it. Bodies are numbered as the robots of the scenario.
 pub trait Ground: Send + Sync {
@@ -17,7 +19,7 @@ pub trait Ground: Send + Sync {
         index: usize,
         tick: u32,
         scratch: &'a mut Self::Scratch,
-    ) -> Inputs<'a, f32>;
+    ) -> AnyInputs<'a, f32>;
 
     /// How the body moves at the start of `tick`.
     fn motion(&self, index: usize, tick: u32) -> Motion;
@@ -35,8 +37,8 @@ pub trait Ground: Send + Sync {
     /// `None` when its robot is not where it should be.
     fn arrival(&self, index: usize, tick: u32, status: &Status) -> Option<u64>;
 
-    /// What the robot of body `index` must know of its body.
-    fn configure(&self, config: &mut AgentConfig<f32>);
+    /// What a robot must know of its body and its radio.
+    fn config(&self, id: RobotId, tick: Duration) -> AgentConfig<f32>;
 
     /// What the robot of body `index` has to do if it starts at `tick`.
     fn task(&self, index: usize, tick: u32) -> Task;
@@ -67,6 +69,17 @@ pub trait Ground: Send + Sync {
     fn orders(&self, _tick: u32) -> Option<&[u8]> {
         None
     }
+}
+
+/// A guidance law as a host has it: it is told whatever its world senses, and threads have it in turn.
+pub trait HostLaw:
+    for<'a> Guidance<f32, Input<'a> = AnySurroundings<'a, f32>, Workspace: Default> + Send
+{
+}
+
+impl<G> HostLaw for G where
+    G: for<'a> Guidance<f32, Input<'a> = AnySurroundings<'a, f32>, Workspace: Default> + Send
+{
 }
 
 /// A state in words of 64 bits.

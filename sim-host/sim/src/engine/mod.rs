@@ -6,7 +6,7 @@
 //! reach another one in the next tick at the earliest, and neither the number of threads nor the
 //! order of robots matters.
 //!
-//! [`simulate`] runs a whole scenario with the guidance that it asks for.
+//! [`simulate`] runs a whole scenario with the guidance law that it asks for.
 
 mod attacker;
 mod body;
@@ -20,7 +20,7 @@ mod simulate;
 
 pub use external::{Decision, ExternalController};
 pub use grid::Grid;
-pub use ground::{Ground, StateWords};
+pub use ground::{Ground, HostLaw, StateWords};
 pub use operator::{Glance, Operated, operated};
 pub use plane::{PlaneGround, Senses};
 pub use simulate::{Moment, Outcome, WIDE, Watch, simulate, simulate_with};
@@ -33,8 +33,8 @@ use attacker::Attacker;
 use hash::Chain;
 use rayon::prelude::*;
 use staya_controller::agent::{
-    Agent, AgentConfig, Command, Event, Guidance, GuidanceSetup, Inputs, NEIGHBORS, OUTBOX, Safety,
-    SafetySetup, Setup,
+    Agent, AgentConfig, AnyInputs, Command, Event, GuidanceSetup, Inputs, NEIGHBORS, OUTBOX,
+    Safety, SafetySetup, Setup,
 };
 use staya_controller::auth::Key;
 use staya_controller::grid::Cell;
@@ -103,7 +103,7 @@ impl<W: Ground> Tick<'_, W> {
         computer: &Computer<G, A>,
         senses: &'b mut W::Scratch,
         heard: &'b mut Vec<u8>,
-    ) -> Inputs<'b, f32> {
+    ) -> AnyInputs<'b, f32> {
         // What arrived while it was down, it never heard.
         let has_just_restarted = computer.boot > 0 && computer.epoch == self.tick;
         let delivered = match has_just_restarted {
@@ -127,7 +127,7 @@ impl<W: Ground> Tick<'_, W> {
     }
 }
 
-/// Makes the guidance and the safety layer of a robot by its number in [`Scenario::robots`].
+/// Makes the guidance law and the safety layer of a robot by its number in [`Scenario::robots`].
 type Brains<G, A> = Box<dyn Fn(usize) -> (G, A) + Send + Sync>;
 
 /// The controllers that run elsewhere, and what they are made of.
@@ -137,7 +137,7 @@ struct External {
     robots: Vec<(usize, GuidanceSetup, SafetySetup)>,
 }
 
-/// A scenario in motion on ground `W`. `G` is the guidance of all its robots, `A` their safety layer.
+/// A scenario in motion on ground `W`. `G` is the guidance law of all its robots, `A` their safety layer.
 pub struct Engine<W, G, A> {
     seed: u64,
     format: Format,
@@ -167,10 +167,10 @@ pub struct Engine<W, G, A> {
 impl<W, G, A> Engine<W, G, A>
 where
     W: Ground,
-    G: Guidance<f32, Workspace: Default> + Send,
+    G: HostLaw,
     A: Safety<f32> + Send,
 {
-    /// The scenario before its first tick, on `ground`. `brains(i)` makes guidance and safety layer of robot number `i` in
+    /// The scenario before its first tick, on `ground`. `brains(i)` makes guidance law and safety layer of robot number `i` in
     /// [`Scenario::robots`], at its first start and at each restart.
     pub fn new(
         scenario: &Scenario,
@@ -247,20 +247,19 @@ where
     /// What the computer of robot `index` must know at its start number `boot`.
     fn config(&self, index: usize, boot: u8) -> AgentConfig<f32> {
         let tick = Duration::from_micros(i32::try_from(self.tick_us).unwrap_or(i32::MAX));
-        let mut config = AgentConfig {
+        AgentConfig {
             boot,
-            ..AgentConfig::new(self.robots[index].id, self.seed, tick)
-        };
-        self.ground.configure(&mut config);
-        config
+            seed: self.seed,
+            ..self.ground.config(self.robots[index].id, tick)
+        }
     }
 
     /// Computer number `index` with its own agent, started now.
     fn start(&self, index: usize, boot: u8) -> Computer<G, A> {
         let (guidance, safety) = (self.brains)(index);
         let wire = RobotWire::new(self.format, self.key.as_ref(), boot);
-        let mut agent = Agent::speaking(&self.config(index, boot), guidance, safety, wire);
-        // A guidance that has no use for its task says so; the scenario was checked for that.
+        let mut agent = Agent::new(&self.config(index, boot), guidance, safety, wire);
+        // A law that has no use for its task says so; the scenario was checked for that.
         let _ = agent.assign(&self.ground.task(index, self.tick));
         self.computer(Some(agent), boot)
     }

@@ -1,12 +1,12 @@
 //! A run that an operator watches and commands.
 
 use super::simulate::AnyEngine;
-use super::{Engine, Ground, Outcome, Status};
+use super::{Engine, Ground, HostLaw, Outcome, Status};
 use crate::radio::RobotWire;
 use crate::record::Motion;
 use crate::scenario::Scenario;
 use crate::world::Misplaced;
-use staya_controller::agent::{Commanded, Event, Guidance, Parameter, Safety, Wish};
+use staya_controller::agent::{Commanded, Event, Parameter, Safety, Wish};
 use staya_controller::robot::RobotId;
 use staya_controller::wire::{Header, Message, Wire as _};
 use staya_mavlink::frame::MAX_FRAME_LEN;
@@ -76,7 +76,7 @@ fn boxed<W, G, A>(
 ) -> Box<dyn Operated>
 where
     W: Ground + 'static,
-    G: Guidance<f32, Workspace: Default> + Send + 'static,
+    G: HostLaw + 'static,
     A: Safety<f32> + Send + 'static,
 {
     engine.keeps_events = true;
@@ -109,7 +109,7 @@ impl<W, G, A> OperatedEngine<W, G, A> {
 impl<W, G, A> Operated for OperatedEngine<W, G, A>
 where
     W: Ground,
-    G: Guidance<f32, Workspace: Default> + Send,
+    G: HostLaw,
     A: Safety<f32> + Send,
 {
     fn advance(&mut self) {

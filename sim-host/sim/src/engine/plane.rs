@@ -8,7 +8,8 @@ use crate::scenario::{Order, PlaneSetup, Robot, Scenario, Target};
 use crate::world::plane::{Clearance, Disc, Plane, narrow};
 use crate::world::window;
 use staya_controller::agent::{
-    AgentConfig, CellState, Command, InCell, Inputs, PLACES, Place, Pose, Surroundings, Task,
+    AgentConfig, AnyInputs, AnySurroundings, CellState, Command, InCell, InCells, InPlane, Inputs,
+    KinematicState, OnGrid, Task, WAYPOINTS, Waypoint,
 };
 use staya_controller::auth::Key;
 use staya_controller::geom::{Position, Vec2, Vec3};
@@ -16,7 +17,7 @@ use staya_controller::grid::{Cell, GridFrame, UNIT};
 use staya_controller::obstacle::{Obstacle, grid_walls};
 use staya_controller::robot::{Mode, RobotId};
 use staya_controller::time::{Duration, Instant};
-use staya_controller::wire::{Format, Header, Message, PlaceAssignment, Wire};
+use staya_controller::wire::{Format, Header, Message, WaypointAssignment, Wire};
 
 /// Walls of the land that a robot sees at a time.
 const WALLS: usize = 16;
@@ -71,7 +72,7 @@ impl PlaneGround {
         position_m: [f64; 3],
         velocity_mps: [f64; 3],
         senses: &'a mut Senses,
-    ) -> Inputs<'a, f32> {
+    ) -> AnyInputs<'a, f32> {
         let Senses { cells, obstacles } = senses;
         let sight_m = self.setup.sight_m + self.setup.radius_m;
         obstacles.clear();
@@ -95,26 +96,34 @@ impl PlaneGround {
             let walls = grid_walls::<f32, WALLS>(window, &frame, Vec2::ZERO, sight_m as f32);
             obstacles.extend(walls);
         }
+        let plane = InPlane {
+            max_speed_mps: self.plane.max_speed_mps(position_m) as f32,
+            obstacles,
+        };
         let [vx, vy, vz] = velocity_mps.map(|v| v as f32);
         Inputs {
-            pose: Pose {
+            state: KinematicState {
                 // The world's numbers are finite.
                 position: Position::from_metres(position_m).unwrap_or_default(),
                 velocity_mps: Vec3::new(vx, vy, vz),
             },
-            cell: place.map(|(cell, _, _)| CellState {
-                cell,
-                busy: Duration::ZERO,
-            }),
-            window,
-            surroundings: Some(Surroundings {
-                max_speed_mps: self.plane.max_speed_mps(position_m) as f32,
-                obstacles,
-                in_cell: place.map(|(_, off, cell_m)| InCell {
-                    offset_m: Vec2::new(off[0] as f32, off[1] as f32),
-                    cell_m: cell_m as f32,
+            surroundings: match place {
+                None => AnySurroundings::InPlane(plane),
+                Some((cell, off, cell_m)) => AnySurroundings::InCells(InCells {
+                    grid: OnGrid {
+                        cell: CellState {
+                            cell,
+                            busy: Duration::ZERO,
+                        },
+                        window,
+                    },
+                    plane,
+                    in_cell: InCell {
+                        offset_m: Vec2::new(off[0] as f32, off[1] as f32),
+                        cell_m: cell_m as f32,
+                    },
                 }),
-            }),
+            },
             inbox: &[],
         }
     }
@@ -142,7 +151,7 @@ pub(super) fn frames(orders: &[Order], format: Format, key: Option<&Key>) -> Vec
         let version = &mut versions[usize::from(order.index)];
         *version = version.wrapping_add(1);
         let milli = |x: f64| libm::round(x * 1000.0);
-        let place = PlaceAssignment {
+        let place = WaypointAssignment {
             to: RobotId::NOBODY,
             version: *version,
             index: order.index,
@@ -156,7 +165,7 @@ pub(super) fn frames(orders: &[Order], format: Format, key: Option<&Key>) -> Vec
         };
         sequence = sequence.wrapping_add(1);
         let mut bytes = heapless::Vec::<u8, 64>::new();
-        wire.encode(header, &Message::Place(place), &mut bytes)
+        wire.encode(header, &Message::Waypoint(place), &mut bytes)
             .expect("a frame has at most 60 bytes");
         match frames.last_mut() {
             Some((tick, frame)) if *tick == order.tick => frame.extend_from_slice(&bytes),
@@ -176,7 +185,7 @@ pub struct Senses {
 impl Ground for PlaneGround {
     type Scratch = Senses;
 
-    fn sense<'a>(&'a self, index: usize, _: u32, senses: &'a mut Senses) -> Inputs<'a, f32> {
+    fn sense<'a>(&'a self, index: usize, _: u32, senses: &'a mut Senses) -> AnyInputs<'a, f32> {
         let disc = &self.plane.discs()[index];
         self.sense_at(disc.position_m, disc.velocity_mps, senses)
     }
@@ -226,13 +235,15 @@ impl Ground for PlaneGround {
         is_there.then(|| (u64::from(tick) + 1) * u64::from(UNIT))
     }
 
-    fn configure(&self, config: &mut AgentConfig<f32>) {
-        config.radius_m = self.setup.radius_m as f32;
-        config.max_acceleration_mps2 = self.setup.abilities.max_acceleration_mps2 as f32;
+    fn config(&self, id: RobotId, tick: Duration) -> AgentConfig<f32> {
         // What is sent in a tick is heard in the next one, or in the first one that does not begin before the delay is over.
         let ticks = self.delay_us.div_ceil(self.tick_us.max(1)).max(1);
         let micros = i32::try_from(ticks * self.tick_us).unwrap_or(i32::MAX);
-        config.latency = Duration::from_micros(micros);
+        AgentConfig {
+            max_acceleration_mps2: self.setup.abilities.max_acceleration_mps2 as f32,
+            latency: Duration::from_micros(micros),
+            ..AgentConfig::new(id, self.setup.radius_m as f32, tick)
+        }
     }
 
     fn task(&self, index: usize, tick: u32) -> Task {
@@ -245,17 +256,17 @@ impl Ground for PlaneGround {
         let orders = self.setup.orders.iter();
         let orders = orders.take_while(|order| order.tick < tick);
         let later = orders.map(|order| (order.index, order.tick, &order.target));
-        let mut places = heapless::Vec::<(u8, Place<f32>), PLACES>::new();
+        let mut waypoints = heapless::Vec::<(u8, Waypoint<f32>), WAYPOINTS>::new();
         for (number, since, target) in first.chain(later) {
             let age_s = f64::from(tick - since) * f64::from(self.tick_us) / 1e6;
-            let place = place(target, age_s);
-            match places.iter_mut().find(|(known, _)| *known == number) {
-                Some((_, known)) => *known = place,
+            let waypoint = waypoint(target, age_s);
+            match waypoints.iter_mut().find(|(known, _)| *known == number) {
+                Some((_, known)) => *known = waypoint,
                 // The scenario was checked for having no more.
-                None => drop(places.push((number, place))),
+                None => drop(waypoints.push((number, waypoint))),
             }
         }
-        Task::Places(places)
+        Task::Waypoints(waypoints)
     }
 
     fn orders(&self, tick: u32) -> Option<&[u8]> {
@@ -268,13 +279,13 @@ impl Ground for PlaneGround {
 }
 
 /// A target as it is `age_s` after it was set, at the start of a robot's clock.
-fn place(target: &Target, age_s: f64) -> Place<f32> {
+fn waypoint(target: &Target, age_s: f64) -> Waypoint<f32> {
     let mut at = target.position_m;
     for (at, v) in at.iter_mut().zip(target.velocity_mps) {
         *at += v * age_s;
     }
     let [vx, vy, vz] = target.velocity_mps.map(|v| v as f32);
-    Place {
+    Waypoint {
         position: Position::from_metres(at).unwrap_or_default(),
         velocity_mps: Vec3::new(vx, vy, vz),
         at: Instant::from_micros(0),

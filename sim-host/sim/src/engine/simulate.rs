@@ -1,13 +1,13 @@
 //! A whole scenario with the guidance that it asks for.
 
-use super::{Engine, ExternalController, Grid, Ground, PlaneGround};
+use super::{Engine, ExternalController, Grid, Ground, HostLaw, PlaneGround};
 use crate::metrics::Keeping;
 use crate::record::{PacketCounts, RobotRow, TickRow};
 use crate::scenario::Scenario;
 use crate::world::Misplaced;
 use crate::world::plane::Clearance;
 use staya_controller::agent::{
-    AnyGuidance, AnySafety, CELLS, Commanded, Guidance, HALF_PLANES, Safety, TEMPLATE, VISITS,
+    AnyGuidance, AnySafety, CELLS, Commanded, HALF_PLANES, Safety, TEMPLATE, VISITS,
 };
 use std::ops::ControlFlow;
 
@@ -146,7 +146,7 @@ fn go<W, G, A>(
 ) -> Outcome
 where
     W: Ground,
-    G: Guidance<f32, Workspace: Default> + Send,
+    G: HostLaw,
     A: Safety<f32> + Send,
 {
     if let Some(controllers) = external {

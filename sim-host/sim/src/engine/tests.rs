@@ -1,7 +1,10 @@
 use super::*;
 use crate::scenario::Overrides;
 use proptest::prelude::*;
-use staya_controller::agent::{BadInput, Guided, Unguarded, View};
+use staya_controller::agent::{
+    Action, AnySurroundings, BadInput, Decision, Guidance, GuidanceInput, Status as Standing,
+    Surroundings as _, Teamwork, Unguarded,
+};
 use staya_controller::grid::Dir;
 use staya_controller::rand::Rng;
 use std::ops::ControlFlow;
@@ -36,31 +39,39 @@ struct Known {
 /// Goes east, and writes down what it knew.
 struct Scout(Arc<Mutex<Vec<Known>>>);
 
+impl Teamwork for Scout {}
+
 impl Guidance<f32> for Scout {
+    type Input<'a> = AnySurroundings<'a, f32>;
     type Workspace = ();
 
     fn decide(
         &mut self,
-        view: &View<'_, f32>,
+        input: &GuidanceInput<'_, f32>,
+        here: &AnySurroundings<'_, f32>,
         _: &mut Rng,
         (): &mut (),
-    ) -> Result<Guided<f32>, BadInput> {
-        let cell = view.cell.ok_or(BadInput)?.cell;
-        let window = view.window.ok_or(BadInput)?;
-        let position = view.pose.position;
+    ) -> Result<Decision<f32>, BadInput> {
+        let grid = here.on_grid().ok_or(BadInput)?;
+        let cell = grid.cell.cell;
+        let window = grid.window.ok_or(BadInput)?;
+        let position = input.state.position;
         self.0.lock().expect("no test panics").push(Known {
-            id: view.id.0,
-            now_us: view.now.as_micros(),
+            id: input.id.0,
+            now_us: input.now.as_micros(),
             cell,
             position_mm: position.mm,
             window: (window.origin(), window.width(), window.height()),
-            others: view.neighbors.iter().map(|n| (n.id.0, n.cell)).collect(),
+            others: input.neighbors.iter().map(|n| (n.id.0, n.cell)).collect(),
         });
-        Ok(Guided {
-            moves: [Dir::East].into_iter().collect(),
-            target: view.goal,
-            is_at_goal: cell == view.goal,
-            ..Guided::default()
+        Ok(Decision {
+            action: Action::Moves([Dir::East].into_iter().collect()),
+            status: Standing {
+                is_at_goal: cell == input.goal,
+                ..Standing::default()
+            },
+            target: input.goal,
+            ..Decision::default()
         })
     }
 

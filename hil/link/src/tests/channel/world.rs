@@ -98,27 +98,25 @@ impl World {
 }
 
 impl Scene {
-    pub fn inputs(&self, world: &World, plane: bool) -> Inputs<'_, f32> {
+    pub fn inputs(&self, world: &World, plane: bool) -> AnyInputs<'_, f32> {
         let cell = CellState {
             cell: world.cell,
             busy: Duration::ZERO,
         };
         Inputs {
-            pose: Pose {
+            state: KinematicState {
                 position: world.position,
                 velocity_mps: world.velocity,
             },
-            cell: (!plane).then_some(cell),
-            window: if plane {
-                None
+            surroundings: if plane {
+                AnySurroundings::InPlane(InPlane {
+                    max_speed_mps: 1.0,
+                    obstacles: &self.obstacles,
+                })
             } else {
-                Window::new(&self.land, self.origin, 11, 11)
+                let window = Window::new(&self.land, self.origin, 11, 11);
+                AnySurroundings::OnGrid(OnGrid { cell, window })
             },
-            surroundings: plane.then_some(Surroundings {
-                max_speed_mps: 1.0,
-                obstacles: &self.obstacles,
-                in_cell: None,
-            }),
             inbox: &self.inbox,
         }
     }

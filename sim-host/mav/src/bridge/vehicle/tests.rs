@@ -59,7 +59,7 @@ fn set(bench: &mut Bench, target: SET_POSITION_TARGET_LOCAL_NED_DATA) -> Option<
 
 fn place_mm(wish: Option<Wish<f32>>) -> [i32; 3] {
     match wish {
-        Some(Wish::Place { place, .. }) => place.position.mm,
+        Some(Wish::Waypoint { waypoint, .. }) => waypoint.position.mm,
         other => panic!("{other:?}"),
     }
 }

@@ -3,7 +3,7 @@
 use super::*;
 use crate::engine::{Decision, ExternalController, Status, simulate_with};
 use staya_controller::agent::{
-    AnyAgent, CELLS, GridWorkspace, HALF_PLANES, NEIGHBORS, Setup, Task, VISITS,
+    AnyAgent, AnyInputs, CELLS, GridWorkspace, HALF_PLANES, NEIGHBORS, Setup, Task, VISITS,
 };
 
 type Remote = AnyAgent<f32, CELLS, VISITS, NEIGHBORS, HALF_PLANES>;
@@ -47,7 +47,7 @@ impl ExternalController for Nearby {
             .expect("no test panics")
             .push((index, setup.agent.boot));
         let mut agent = setup.agent().expect("postcard");
-        assert!(agent.assign(&task));
+        agent.assign(&task).expect("a task for it");
         self.slot(index).1 = Some(agent);
     }
 
@@ -57,7 +57,7 @@ impl ExternalController for Nearby {
             .is_some_and(|(robot, at)| robot == index && tick == at + 2)
     }
 
-    fn send(&mut self, index: usize, tick: u32, now: Instant, inputs: &Inputs<'_, f32>) {
+    fn send(&mut self, index: usize, tick: u32, now: Instant, inputs: &AnyInputs<'_, f32>) {
         self.tick = tick;
         let is_lost = self
             .restarts

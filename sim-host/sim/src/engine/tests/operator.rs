@@ -1,7 +1,7 @@
 //! Runs that somebody commands.
 
 use super::*;
-use staya_controller::agent::{Parameter, Place, Wish};
+use staya_controller::agent::{Parameter, Waypoint, Wish};
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::wire::{GoalAssignment, Header, Message};
 
@@ -51,8 +51,8 @@ fn a_run_without_commands_is_the_run_without_an_operator() {
 fn who_is_commanded_goes_elsewhere_and_nobody_is_hit() {
     let scenario = discs();
     let mut swarm = operated(&scenario).expect("they can be placed");
-    let meeting = Wish::Place {
-        place: Place::fixed(Position::from_mm([2000, 1000, 0])),
+    let meeting = Wish::Waypoint {
+        waypoint: Waypoint::fixed(Position::from_mm([2000, 1000, 0])),
         valid: None,
     };
     for robot in 0..2 {
@@ -157,12 +157,12 @@ fn no_whim_of_the_operator_makes_robots_collide() {
                         valid: Duration::from_millis(700),
                     },
                     // All to one place.
-                    4 => Wish::Place {
-                        place: Place::fixed(Position::ORIGIN),
+                    4 => Wish::Waypoint {
+                        waypoint: Waypoint::fixed(Position::ORIGIN),
                         valid: None,
                     },
-                    _ => Wish::Place {
-                        place: Place::fixed(Position::from_mm([x, y, 0])),
+                    _ => Wish::Waypoint {
+                        waypoint: Waypoint::fixed(Position::from_mm([x, y, 0])),
                         valid: None,
                     },
                 };

@@ -2,7 +2,6 @@
 
 use super::*;
 use crate::scenario::{Order, Target};
-use staya_controller::agent::AgentConfig;
 use staya_controller::wire::{Format, Message, decode, frames};
 
 /// Robots of 0.2 m that go 1 m/s and decide ten times a second.
@@ -108,12 +107,12 @@ fn versions_of_orders_count_up_for_each_goal_by_itself() {
     for (_, bytes) in &sent {
         assert_eq!(frames(bytes).count(), 2);
         for frame in frames(bytes) {
-            let Message::Place(place) = decode(frame).expect("a sound frame").message else {
-                panic!("a place")
+            let Message::Waypoint(waypoint) = decode(frame).expect("a sound frame").message else {
+                panic!("a waypoint")
             };
-            let version = &mut last[usize::from(place.index)];
+            let version = &mut last[usize::from(waypoint.index)];
             *version = version.wrapping_add(1);
-            assert_eq!(place.version, *version);
+            assert_eq!(waypoint.version, *version);
         }
     }
 }
@@ -133,8 +132,7 @@ fn robots_know_how_old_news_is() {
         let scenario = in_plane(robots, &format!("[radio]\ndelay_ms = {delay_ms}"));
         let setup = scenario.plane.as_ref().expect("robots in the plane");
         let ground = PlaneGround::new(&scenario, setup);
-        let mut config = AgentConfig::new(RobotId(1), 0, Duration::from_millis(100));
-        ground.configure(&mut config);
+        let config = ground.config(RobotId(1), Duration::from_millis(100));
         assert_eq!(
             config.latency,
             Duration::from_millis(100 * ticks),

@@ -25,15 +25,15 @@ fn setpoints_of_each_frame_and_mask_become_wishes() {
     // MAVSDK's mask.
     assert_eq!(set(&mut bench, local(2503, 1)), velocity(0.5, 1.0));
     let both = set(&mut bench, local(0xDC0, 1));
-    let Some(Wish::Place {
-        place,
+    let Some(Wish::Waypoint {
+        waypoint,
         valid: Some(until),
     }) = both
     else {
         panic!("{both:?}");
     };
     assert_eq!(
-        (place.velocity_mps, until),
+        (waypoint.velocity_mps, until),
         (Vec3::new(0.5, 1.0, 0.0), valid)
     );
     // It goes east: forward is east, right is south.

@@ -1,0 +1,146 @@
+//! A guidance law made for the grid, on a body that moves in the plane.
+
+use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Teamwork, ToCells};
+use super::{InCells, OnGrid, Parameter};
+use crate::geom::Vec2;
+use crate::grid::{Cell, Dir};
+use crate::rand::Rng;
+use crate::robot::RobotId;
+use crate::scalar::Scalar;
+use crate::time::Instant;
+use crate::wire::TemplateAssignment;
+use serde::Serialize;
+
+/// Goes towards the centre of the cell that a guidance law `G` of the grid would move to.
+///
+/// The law decides anew when the robot has come into another cell, and otherwise as often as it would on the grid:
+/// once in the time that the robot needs to cross a cell of its land at cruising speed. It sees other robots by their
+/// cells as ever; that they may share a cell now is the safety layer's business.
+#[derive(Clone, Debug, Serialize)]
+pub struct CellFollower<S, G> {
+    law: G,
+    speed_mps: S,
+    last: Option<Last<S>>,
+}
+
+/// What the law decided last.
+#[derive(Clone, Debug, Serialize)]
+struct Last<S> {
+    cell: Cell,
+    at: Instant,
+    decision: Decision<S>,
+}
+
+impl<S: Scalar, G> CellFollower<S, G> {
+    /// `law` in the plane, cruising at `speed_mps` (the body's own limit holds too).
+    #[must_use]
+    pub const fn new(law: G, speed_mps: S) -> Self {
+        Self {
+            law,
+            speed_mps,
+            last: None,
+        }
+    }
+
+    /// The law of the grid, for what it can tell of itself.
+    #[must_use]
+    pub const fn inside(&self) -> &G {
+        &self.law
+    }
+}
+
+impl<S, G: ToCells> ToCells for CellFollower<S, G> {}
+
+impl<S, G: Teamwork> Teamwork for CellFollower<S, G> {
+    fn redirect(&mut self) {
+        self.law.redirect();
+        self.last = None;
+    }
+
+    fn assign_template(&mut self, part: &TemplateAssignment, is_anew: bool) -> bool {
+        self.law.assign_template(part, is_anew)
+    }
+
+    fn goal_offset(&self) -> Cell {
+        self.law.goal_offset()
+    }
+
+    fn needs(&self, id: RobotId) -> bool {
+        self.law.needs(id)
+    }
+}
+
+impl<S: Scalar, G> Guidance<S> for CellFollower<S, G>
+where
+    G: for<'a> Guidance<S, Input<'a> = OnGrid<'a>>,
+{
+    type Input<'a> = InCells<'a, S>;
+    type Workspace = G::Workspace;
+
+    #[inline(never)]
+    fn decide(
+        &mut self,
+        input: &GuidanceInput<'_, S>,
+        here: &InCells<'_, S>,
+        rng: &mut Rng,
+        workspace: &mut Self::Workspace,
+    ) -> Result<Decision<S>, BadInput> {
+        let (cell, place) = (here.grid.cell.cell, here.in_cell);
+        let speed = self.speed_mps.min(input.body.max_speed_mps);
+        let crossing_s = place.cell_m.checked_div(speed);
+        let crossing_s = crossing_s.filter(|span| *span > S::ZERO).ok_or(BadInput)?;
+        let is_due = |last: &Last<S>| {
+            let age_s = S::from_micro(input.now.since(last.at).as_micros());
+            last.cell != cell || age_s < S::ZERO || age_s >= crossing_s
+        };
+        let mut decision = match &self.last {
+            Some(last) if !is_due(last) => Decision {
+                asks: heapless::Vec::new(),
+                ..last.decision.clone()
+            },
+            _ => {
+                self.last = None;
+                let decision = self.law.decide(input, &here.grid, rng, workspace)?;
+                self.last = Some(Last {
+                    cell,
+                    at: input.now,
+                    decision: decision.clone(),
+                });
+                decision
+            }
+        };
+        let to_center = |cells: Cell| {
+            let along = |cells: i16, offset: S| S::from_i32(cells.into()) * place.cell_m - offset;
+            Vec2::new(
+                along(cells.x, place.offset_m.x),
+                along(cells.y, place.offset_m.y),
+            )
+        };
+        let dir = decision.action.moves().first().copied();
+        let way = to_center(dir.unwrap_or(Dir::Stay).offset());
+        // On the last step no farther than the centre.
+        let needed = way.norm().checked_div(input.body.step_s).unwrap_or(speed);
+        let ahead = way.normalized().unwrap_or_default();
+        decision.action = Action::Velocity {
+            wish_mps: (ahead * needed.min(speed)).extend(S::ZERO),
+            way_m: Some(to_center(decision.target - cell).extend(S::ZERO)),
+        };
+        Ok(decision)
+    }
+
+    fn goes_to_cells(&self) -> bool {
+        self.law.goes_to_cells()
+    }
+
+    fn parameter(&self, parameter: Parameter) -> Option<S> {
+        (parameter == Parameter::Speed).then_some(self.speed_mps)
+    }
+
+    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
+        if parameter == Parameter::Speed {
+            // Without a speed it could not decide.
+            self.speed_mps = value.max(S::from_milli(1));
+        }
+        parameter == Parameter::Speed
+    }
+}

@@ -1,0 +1,315 @@
+//! The composer of behaviours. Read [`Agent::step_into`] first.
+
+use super::link::{Listener, News, beacon, report};
+use super::{
+    Action, Agent, CellState, Command, Decision, Event, Goal, Guidance, GuidanceInput, Inputs,
+    Outputs, Safety, SafetyInput, Surroundings,
+};
+use crate::body::Body;
+use crate::geom::Vec3;
+use crate::grid::{Cell, Dir};
+use crate::neighbor::{Nearby, nearest};
+use crate::rand::Rng;
+use crate::scalar::Scalar;
+use crate::supervisor::{moves, next_mode};
+use crate::time::{Duration, Instant};
+use crate::wire::Wire;
+use heapless::Vec;
+
+/// Keeps the agent's draws apart from other uses of randomness.
+const PURPOSE: u32 = u32::from_be_bytes(*b"step");
+
+impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, G, N, A, W> {
+    /// One step: hear, decide, speak. A pure function of the agent, `inputs` and `now`.
+    ///
+    /// Bounded work: O(frames of the inbox * N) to hear; the guidance law's decision when the robot is
+    /// free to move (for the grid: one search of the window, O((2r + 1)^2), with
+    /// [`Prediction::Reflexive`](crate::formation::Prediction) one more per entry of the template;
+    /// in the plane O(N) and the obstacles in sight) and its safety layer's (see there);
+    /// at most [`OUTBOX`] bytes to send.
+    pub fn step(
+        &mut self,
+        inputs: &Inputs<'_, S, G::Input<'_>>,
+        now: Instant,
+        workspace: &mut G::Workspace,
+    ) -> Outputs<S> {
+        let mut out = Outputs::default();
+        self.step_into(inputs, now, workspace, &mut out);
+        out
+    }
+
+    /// [`Agent::step`] into outputs that the caller keeps, whatever was in them: some 500 bytes less on the stack.
+    ///
+    /// The phases are not inlined, so that each gives its stack back before the next one.
+    pub fn step_into(
+        &mut self,
+        inputs: &Inputs<'_, S, G::Input<'_>>,
+        now: Instant,
+        workspace: &mut G::Workspace,
+        out: &mut Outputs<S>,
+    ) {
+        out.clear();
+        self.hear(inputs, now, out);
+        let nearby = self.look(inputs, now);
+        let mut rng = Rng::keyed(self.config.seed, PURPOSE, self.config.id.0, self.decisions);
+        let decision = self.decide(inputs, &nearby, now, &mut rng, workspace, out);
+        self.supervise(decision.as_ref(), out);
+        self.keep_clear(inputs, decision.as_ref(), &nearby, &mut rng, out);
+        self.speak(inputs, now, out);
+    }
+
+    /// Who is near by, for robots that do not move cell by cell.
+    #[inline(never)]
+    fn look(&self, inputs: &Inputs<'_, S, G::Input<'_>>, now: Instant) -> Vec<Nearby<S>, N> {
+        if inputs.surroundings.in_plane().is_none() {
+            return Vec::new();
+        }
+        let (config, inflation) = (&self.config, self.safety.inflation());
+        nearest(
+            self.link.table.as_slice(),
+            inputs.state.position,
+            config.radius_m,
+            now,
+            &config.ages,
+            &inflation,
+        )
+    }
+
+    fn body(&self, inputs: &Inputs<'_, S, G::Input<'_>>) -> Body<S> {
+        let plane = inputs.surroundings.in_plane();
+        Body {
+            id: self.config.id,
+            velocity_mps: inputs.state.velocity_mps,
+            radius_m: self.config.radius_m,
+            max_speed_mps: plane.map_or(S::ZERO, |plane| plane.max_speed_mps),
+            max_acceleration_mps2: self.config.max_acceleration_mps2,
+            step_s: S::from_micro(self.config.tick.as_micros()),
+        }
+    }
+
+    #[inline(never)]
+    fn hear(&mut self, inputs: &Inputs<'_, S, G::Input<'_>>, now: Instant, out: &mut Outputs<S>) {
+        let Self {
+            config,
+            guidance,
+            link,
+            goal,
+            last,
+            ..
+        } = self;
+        let leader = last.leader;
+        let mut pass_on = Vec::<_, 4>::new();
+        let heard_at = now - config.latency;
+        link.expire(now, out);
+        let mut inbox = inputs.inbox;
+        while let Some(bytes) = link.next_frame(&mut inbox) {
+            let listener = Listener {
+                position: inputs.state.position,
+                heard_at,
+                needs: &|id| id == leader || guidance.needs(id),
+            };
+            match link.hear(bytes, now, &listener, out) {
+                None => {}
+                Some(News::Redirect) => guidance.redirect(),
+                // To a robot that goes elsewhere it means nothing.
+                Some(News::Goal(_)) if !guidance.goes_to_cells() => {}
+                Some(News::Goal(top)) => {
+                    *goal = Some(Goal::Formation(top));
+                    last.target = top + guidance.goal_offset();
+                }
+                // One that is refused is of no use, and its sender will not hear of it.
+                Some(News::Template { part, is_anew }) => {
+                    let _ = guidance.assign_template(&part, is_anew);
+                }
+                Some(News::Waypoint {
+                    index,
+                    version,
+                    waypoint,
+                }) => {
+                    let is_of_use = guidance.assign_waypoint(index, &waypoint);
+                    if is_of_use {
+                        link.placed(index, version);
+                    }
+                }
+                // One without room is lost: a stop is asked for again, an old one expires.
+                Some(News::PassOn(request)) => drop(pass_on.push(request)),
+            }
+        }
+        // At the end, so that what was acknowledged in this step has made room.
+        for request in &pass_on {
+            if leader.is_somebody() && leader != request.origin {
+                let valid = Duration::from_millis(request.valid_ms.into());
+                link.ask(leader, request.origin, request.kind, valid, now);
+            }
+        }
+    }
+
+    /// The own goal in the world.
+    fn goal_cell(&self) -> Option<Cell> {
+        Some(match self.goal? {
+            Goal::Own(cell) => cell,
+            Goal::Formation(top) => top + self.guidance.goal_offset(),
+        })
+    }
+
+    /// Asks the guidance law when the robot is free to move; `None` otherwise.
+    #[inline(never)]
+    fn decide(
+        &mut self,
+        inputs: &Inputs<'_, S, G::Input<'_>>,
+        nearby: &[Nearby<S>],
+        now: Instant,
+        rng: &mut Rng,
+        workspace: &mut G::Workspace,
+        out: &mut Outputs<S>,
+    ) -> Option<Decision<S>> {
+        // Asked in each step, so that its clock never goes half round unnoticed.
+        let is_stopped = self.link.is_stopped(now);
+        let own_goal = self.guidance.has_own_goal();
+        let goal = self.goal_cell().or(own_goal.then_some(Cell::default()));
+        let situation = &mut self.last.situation;
+        situation.has_goal = goal.is_some();
+        let Some(goal) = goal else {
+            // Nothing was asked, so nothing is missing.
+            (situation.is_passive, situation.has_fault) = (false, false);
+            return None;
+        };
+        let on_grid = inputs.surroundings.on_grid();
+        if on_grid.is_some_and(|grid| grid.cell.busy > Duration::ZERO) {
+            return None;
+        }
+        let input = GuidanceInput {
+            id: self.config.id,
+            now,
+            tick: self.config.tick,
+            state: inputs.state,
+            goal,
+            body: self.body(inputs),
+            nearby,
+            neighbors: self.link.table.as_slice(),
+            ages: self.config.ages,
+        };
+        self.decisions = self.decisions.wrapping_add(1);
+        let here = &inputs.surroundings;
+        let decision = self.guidance.decide(&input, here, rng, workspace);
+        let situation = &mut self.last.situation;
+        situation.has_fault = decision.is_err();
+        let decision = decision.ok()?;
+        for ask in &decision.asks {
+            let (valid, own) = (self.config.stop_valid, self.config.id);
+            self.link.ask(ask.to, own, ask.kind, valid, now);
+        }
+        if !own_goal && decision.target != goal && decision.target != self.last.target {
+            let (from, to) = (goal, decision.target);
+            report(out, Event::TargetMoved { from, to });
+        }
+        let status = decision.status;
+        if status.is_stuck && !situation.is_stuck {
+            report(out, Event::NoRoute);
+        }
+        let leads = !decision.leader.is_somebody();
+        situation.is_passive = matches!(decision.action, Action::Release);
+        situation.is_at_goal = status.is_at_goal;
+        situation.is_stuck = status.is_stuck;
+        situation.is_off_place = status.is_off_place;
+        situation.is_stopped = status.waits || (leads && is_stopped && !status.recovers);
+        self.last.target = decision.target;
+        self.last.leader = decision.leader;
+        self.last.slot = decision.slot;
+        Some(decision)
+    }
+
+    /// The mode, and what it makes of the guidance law's wishes.
+    #[inline(never)]
+    fn supervise(&mut self, decision: Option<&Decision<S>>, out: &mut Outputs<S>) {
+        let to = next_mode(self.mode, self.last.situation);
+        if to != self.mode {
+            let from = core::mem::replace(&mut self.mode, to);
+            report(out, Event::ModeChanged { from, to });
+        }
+        let Some(decision) = decision else { return };
+        let goes = moves(to) || (decision.status.makes_way && to.gives_way());
+        self.last.heading = Dir::Stay;
+        match &decision.action {
+            Action::Velocity { wish_mps, .. } if goes => out.command = Command::Velocity(*wish_mps),
+            Action::Moves(moves) if goes && !moves.is_empty() => {
+                self.last.heading = moves.first().copied().unwrap_or_default();
+                out.command = Command::Move(moves.clone());
+            }
+            _ => {}
+        }
+    }
+
+    /// What the safety layer makes of the wished velocity. Who stands gives way too, unless its mode says that it does not
+    /// ([`Mode::gives_way`]).
+    #[inline(never)]
+    fn keep_clear(
+        &mut self,
+        inputs: &Inputs<'_, S, G::Input<'_>>,
+        decision: Option<&Decision<S>>,
+        nearby: &[Nearby<S>],
+        rng: &mut Rng,
+        out: &mut Outputs<S>,
+    ) {
+        let Some(plane) = inputs.surroundings.in_plane() else {
+            return;
+        };
+        if !self.mode.gives_way() {
+            out.command = Command::Hold;
+            return;
+        }
+        let action = decision.map(|decision| &decision.action);
+        let (wish_mps, way_m) = match (&out.command, action) {
+            (Command::Velocity(wish), Some(Action::Velocity { way_m, .. })) if wish.is_finite() => {
+                (*wish, *way_m)
+            }
+            _ => (Vec3::ZERO, None),
+        };
+        let body = self.body(inputs);
+        let input = SafetyInput {
+            body,
+            wish_mps,
+            way_m,
+            nearby,
+            obstacles: plane.obstacles,
+        };
+        let safe = self.safety.keep_clear(&input, rng);
+        out.command = Command::Velocity(body.reach(safe));
+    }
+
+    #[inline(never)]
+    fn speak(&mut self, inputs: &Inputs<'_, S, G::Input<'_>>, now: Instant, out: &mut Outputs<S>) {
+        let Self { config, last, .. } = self;
+        let mode = self.mode;
+        // What it does from now on is of more use to others than what it did.
+        let velocity_mps = match out.command {
+            Command::Velocity(velocity_mps) => velocity_mps,
+            Command::Hold | Command::Move(_) => inputs.state.velocity_mps,
+        };
+        let on_grid = inputs.surroundings.on_grid();
+        let on_grid = on_grid.map_or_else(CellState::default, |grid| grid.cell);
+        let beacon = || {
+            beacon(
+                config,
+                last,
+                mode,
+                &inputs.state,
+                on_grid,
+                velocity_mps,
+                now,
+            )
+        };
+        self.link.speak(now, config.beacon_period, beacon, out);
+        // A robot that is free decides anew after a tick at the latest.
+        let busy = on_grid.busy;
+        let decision = now
+            + if busy > Duration::ZERO {
+                busy
+            } else {
+                config.tick
+            };
+        if decision.is_before(out.call_again) {
+            out.call_again = decision;
+        }
+    }
+}
