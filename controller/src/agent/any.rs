@@ -4,7 +4,7 @@
 use super::cell_follower::CellFollower;
 use super::flock_guidance::{BoidsGuidance, GoalFlockGuidance, LatticeGuidance};
 use super::formation_guidance::FormationGuidance;
-use super::guidance::{BadInput, Decision, Guidance, GuidanceInput, Teamwork};
+use super::guidance::{BadInput, Decision, Guidance, GuidanceInput, Teamwork, ToAny};
 use super::orca_safety::{FlySafety, OrcaSafety};
 use super::other_safety::PushOutSafety;
 use super::route_guidance::{GridWorkspace, RouteGuidance};
@@ -75,6 +75,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
     for AnyGuidance<S, CELLS, M, F>
 {
     type Input<'a> = AnySurroundings<'a, S>;
+    type Destination = ToAny;
     type Workspace = GridWorkspace<CELLS>;
 
     fn decide(

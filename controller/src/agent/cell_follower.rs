@@ -1,6 +1,6 @@
 //! A guidance law made for the grid, on a body that moves in the plane.
 
-use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Teamwork, ToCells};
+use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Teamwork};
 use super::{InCells, OnGrid, Parameter};
 use crate::geom::Vec2;
 use crate::grid::{Cell, Dir};
@@ -49,8 +49,6 @@ impl<S: Scalar, G> CellFollower<S, G> {
     }
 }
 
-impl<S, G: ToCells> ToCells for CellFollower<S, G> {}
-
 impl<S, G: Teamwork> Teamwork for CellFollower<S, G> {
     fn redirect(&mut self) {
         self.law.redirect();
@@ -75,6 +73,7 @@ where
     G: for<'a> Guidance<S, Input<'a> = OnGrid<'a>>,
 {
     type Input<'a> = InCells<'a, S>;
+    type Destination = G::Destination;
     type Workspace = G::Workspace;
 
     #[inline(never)]
@@ -126,10 +125,6 @@ where
             way_m: Some(to_center(decision.target - cell).extend(S::ZERO)),
         };
         Ok(decision)
-    }
-
-    fn goes_to_cells(&self) -> bool {
-        self.law.goes_to_cells()
     }
 
     fn parameter(&self, parameter: Parameter) -> Option<S> {

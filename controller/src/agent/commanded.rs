@@ -1,8 +1,6 @@
 //! A robot that an operator may take over for a while.
 
-use super::guidance::{
-    Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells, ToWaypoints,
-};
+use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork};
 use super::waypoint_guidance::WaypointGuidance;
 use super::{Parameter, Surroundings, Waypoint, WrongTask};
 use crate::geom::Vec3;
@@ -145,9 +143,6 @@ fn on_order<S>(action: Action<S>, goal: Cell) -> Decision<S> {
     }
 }
 
-impl<S, G: ToCells> ToCells for Commanded<S, G> {}
-impl<S, G: ToWaypoints> ToWaypoints for Commanded<S, G> {}
-
 impl<S, G: Teamwork> Teamwork for Commanded<S, G> {
     fn redirect(&mut self) {
         self.inside.redirect();
@@ -168,6 +163,7 @@ impl<S, G: Teamwork> Teamwork for Commanded<S, G> {
 
 impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
     type Input<'a> = G::Input<'a>;
+    type Destination = G::Destination;
     type Workspace = G::Workspace;
 
     fn decide(

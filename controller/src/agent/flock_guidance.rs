@@ -1,7 +1,7 @@
 //! The three flocks as guidance laws.
 
 use super::guidance::{
-    Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToWaypoints,
+    Action, BadInput, Decision, Guidance, GuidanceInput, Roams, Status, Teamwork, ToWaypoints,
 };
 use super::{InPlane, Waypoint};
 use crate::flock::boids::BoidsParams;
@@ -37,10 +37,10 @@ impl<S: Scalar> LatticeGuidance<S> {
 }
 
 impl<S> Teamwork for LatticeGuidance<S> {}
-impl<S> ToWaypoints for LatticeGuidance<S> {}
 
 impl<S: Scalar> Guidance<S> for LatticeGuidance<S> {
     type Input<'a> = InPlane<'a, S>;
+    type Destination = ToWaypoints;
     type Workspace = ();
 
     fn decide(
@@ -133,10 +133,10 @@ impl<S: Scalar> GoalFlockGuidance<S> {
 }
 
 impl<S> Teamwork for GoalFlockGuidance<S> {}
-impl<S> ToWaypoints for GoalFlockGuidance<S> {}
 
 impl<S: Scalar> Guidance<S> for GoalFlockGuidance<S> {
     type Input<'a> = InPlane<'a, S>;
+    type Destination = ToWaypoints;
     type Workspace = ();
 
     fn decide(
@@ -198,6 +198,7 @@ impl<S> Teamwork for BoidsGuidance<S> {}
 
 impl<S: Scalar> Guidance<S> for BoidsGuidance<S> {
     type Input<'a> = InPlane<'a, S>;
+    type Destination = Roams;
     type Workspace = ();
 
     fn decide(

@@ -383,11 +383,6 @@ fn seen_at<S>(other: &Neighbor<S>, predicted: Cell) -> Seen {
     }
 }
 
-impl<const CELLS: usize, const M: usize, const F: usize> ToCells
-    for FormationGuidance<CELLS, M, F>
-{
-}
-
 impl<const CELLS: usize, const M: usize, const F: usize> Teamwork
     for FormationGuidance<CELLS, M, F>
 {
@@ -424,6 +419,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
     for FormationGuidance<CELLS, M, F>
 {
     type Input<'a> = OnGrid<'a>;
+    type Destination = ToCells;
     type Workspace = GridWorkspace<CELLS>;
 
     fn decide(
@@ -510,10 +506,6 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
             slot: self.template.slot,
             asks,
         })
-    }
-
-    fn goes_to_cells(&self) -> bool {
-        true
     }
 
     fn goes_by_velocity(&self) -> bool {

@@ -71,6 +71,9 @@ pub trait Guidance<S: Scalar>: Teamwork {
     /// [`InCells`](super::InCells).
     type Input<'a>: Surroundings<S>;
 
+    /// Where it can be sent.
+    type Destination: Destination;
+
     /// Scratch memory; holds nothing between calls, so that many robots can share one.
     type Workspace;
 
@@ -86,9 +89,9 @@ pub trait Guidance<S: Scalar>: Teamwork {
         workspace: &mut Self::Workspace,
     ) -> Result<Decision<S>, BadInput>;
 
-    /// Whether a cell of the grid is what it goes to. Says what [`ToCells`] says of a type, where the type does not.
+    /// Whether a cell of the grid is what it goes to; where the type does not tell, it must say so.
     fn goes_to_cells(&self) -> bool {
-        false
+        Self::Destination::IS_CELL
     }
 
     /// Whether it decides on velocities, not on moves from cell to cell.
@@ -140,11 +143,43 @@ pub trait Teamwork {
     }
 }
 
-/// A guidance law whose goal is a cell of the grid: its agents have [`Agent::assign_goal`](super::Agent::assign_goal).
-pub trait ToCells {}
+/// Where a guidance law can be sent: one of [`ToCells`], [`ToWaypoints`], [`Roams`] and [`ToAny`].
+pub trait Destination {
+    /// Whether it is a cell of the grid.
+    const IS_CELL: bool;
+}
 
-/// A guidance law that goes to waypoints: its agents have [`Agent::assign_waypoint`](super::Agent::assign_waypoint).
-pub trait ToWaypoints {}
+/// To a cell of the grid: agents have [`Agent::assign_goal`](super::Agent::assign_goal).
+#[derive(Clone, Copy, Debug)]
+pub enum ToCells {}
+
+/// To waypoints: agents have [`Agent::assign_waypoint`](super::Agent::assign_waypoint).
+#[derive(Clone, Copy, Debug)]
+pub enum ToWaypoints {}
+
+/// Nowhere.
+#[derive(Clone, Copy, Debug)]
+pub enum Roams {}
+
+/// That is known only at run time: agents have [`Agent::assign`](super::Agent::assign), as all have.
+#[derive(Clone, Copy, Debug)]
+pub enum ToAny {}
+
+impl Destination for ToCells {
+    const IS_CELL: bool = true;
+}
+
+impl Destination for ToWaypoints {
+    const IS_CELL: bool = false;
+}
+
+impl Destination for Roams {
+    const IS_CELL: bool = false;
+}
+
+impl Destination for ToAny {
+    const IS_CELL: bool = false;
+}
 
 /// What any guidance law may know at a decision.
 #[derive(Clone, Copy, Debug)]

@@ -2,7 +2,7 @@
 //!
 //! A step hears (`link`), decides (a [`Guidance`] law, then the [`crate::supervisor`]), keeps clear (a
 //! [`Safety`] layer) and speaks. The laws compose the behaviours of the layer below. A law's type says what a robot must be told
-//! ([`Guidance::Input`]), where it can be sent ([`ToCells`], [`ToWaypoints`]), and so what does not compile:
+//! ([`Guidance::Input`]), where it can be sent ([`Guidance::Destination`]), and so what does not compile:
 //!
 //! | guidance law | told besides own state and inbox | where to go | command |
 //! | --- | --- | --- | --- |
@@ -123,8 +123,8 @@ pub use config::AgentConfig;
 pub use flock_guidance::{BoidsGuidance, GOALS, GoalFlockGuidance, LatticeGuidance};
 pub use formation_guidance::FormationGuidance;
 pub use guidance::{
-    Action, Ask, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells,
-    ToWaypoints,
+    Action, Ask, BadInput, Decision, Destination, Guidance, GuidanceInput, Roams, Status, Teamwork,
+    ToAny, ToCells, ToWaypoints,
 };
 pub use io::{AnyInputs, Command, EVENTS, Event, Inputs, KinematicState, OUTBOX, Outputs, Refused};
 pub use orca_safety::{FlySafety, OrcaSafety};

@@ -108,8 +108,6 @@ impl<const CELLS: usize, const M: usize> RouteGuidance<CELLS, M> {
     }
 }
 
-impl<const CELLS: usize, const M: usize> ToCells for RouteGuidance<CELLS, M> {}
-
 impl<const CELLS: usize, const M: usize> Teamwork for RouteGuidance<CELLS, M> {
     fn redirect(&mut self) {
         self.travel.redirect();
@@ -118,6 +116,7 @@ impl<const CELLS: usize, const M: usize> Teamwork for RouteGuidance<CELLS, M> {
 
 impl<S: Scalar, const CELLS: usize, const M: usize> Guidance<S> for RouteGuidance<CELLS, M> {
     type Input<'a> = OnGrid<'a>;
+    type Destination = ToCells;
     type Workspace = GridWorkspace<CELLS>;
 
     fn decide(
@@ -150,10 +149,6 @@ impl<S: Scalar, const CELLS: usize, const M: usize> Guidance<S> for RouteGuidanc
             asks: list::collect(self.travel.note(input, cell, choice)),
             ..Decision::default()
         })
-    }
-
-    fn goes_to_cells(&self) -> bool {
-        true
     }
 
     fn goes_by_velocity(&self) -> bool {

@@ -23,7 +23,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
     /// comes as a [`GoalAssignment`](crate::wire::GoalAssignment) is the formation's and moves).
     pub const fn assign_goal(&mut self, goal: Cell)
     where
-        G: ToCells,
+        G: Guidance<S, Destination = ToCells>,
     {
         self.goal = Some(Goal::Own(goal));
         self.last.target = goal;
@@ -32,7 +32,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
     /// Gives the robot a waypoint, number `index` of those that its guidance law has room for; whether it has.
     pub fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool
     where
-        G: ToWaypoints,
+        G: Guidance<S, Destination = ToWaypoints>,
     {
         self.guidance.assign_waypoint(index, waypoint)
     }

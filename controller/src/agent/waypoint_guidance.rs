@@ -33,10 +33,10 @@ impl<S: Scalar> WaypointGuidance<S> {
 }
 
 impl<S> Teamwork for WaypointGuidance<S> {}
-impl<S> ToWaypoints for WaypointGuidance<S> {}
 
 impl<S: Scalar> Guidance<S> for WaypointGuidance<S> {
     type Input<'a> = InPlane<'a, S>;
+    type Destination = ToWaypoints;
     type Workspace = ();
 
     fn decide(

@@ -306,7 +306,12 @@ fn formation(prediction: Prediction) -> FormationGuidance<CELLS, VISITS, TEMPLAT
 fn on_grid<S, G, P, const N: usize>(guidance: G, probe: &mut P) -> Summary
 where
     S: Scalar,
-    G: ToCells + for<'a> Guidance<S, Input<'a> = OnGrid<'a>, Workspace = GridWorkspace<CELLS>>,
+    G: for<'a> Guidance<
+            S,
+            Input<'a> = OnGrid<'a>,
+            Destination = ToCells,
+            Workspace = GridWorkspace<CELLS>,
+        >,
     Agent<S, G, N>: Serialize,
     P: Probe<S>,
 {

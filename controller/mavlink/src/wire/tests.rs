@@ -255,7 +255,7 @@ fn fields_without_meaning_are_refused() {
     let beacon = STAYA_BEACON_DATA::DEFAULT;
     let bodies = [
         raw(&STAYA_BEACON_DATA {
-            mode: 6,
+            mode: 7,
             ..beacon.clone()
         }),
         raw(&STAYA_BEACON_DATA {

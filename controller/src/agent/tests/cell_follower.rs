@@ -35,6 +35,7 @@ impl Teamwork for Counting {
 
 impl Guidance<f32> for Counting {
     type Input<'a> = OnGrid<'a>;
+    type Destination = ToCells;
     type Workspace = ();
 
     fn decide(
@@ -185,6 +186,7 @@ impl Teamwork for Stays {}
 
 impl Guidance<f32> for Stays {
     type Input<'a> = OnGrid<'a>;
+    type Destination = ToCells;
     type Workspace = ();
 
     fn decide(

@@ -221,7 +221,12 @@ fn template() -> impl Strategy<Value = Template<TEMPLATE>> {
 /// What holds after each step, whatever went in.
 fn survives<G>(law: G, goal: Option<Cell>, steps: &[Step]) -> Result<(), TestCaseError>
 where
-    G: ToCells + for<'a> Guidance<f32, Input<'a> = OnGrid<'a>, Workspace = GridWorkspace<CELLS>>,
+    G: for<'a> Guidance<
+            f32,
+            Input<'a> = OnGrid<'a>,
+            Destination = ToCells,
+            Workspace = GridWorkspace<CELLS>,
+        >,
 {
     let config = config(OWN.0);
     let mut agent = Agent::<f32, G, NEIGHBORS>::new(&config, law, Unguarded, Postcard);

@@ -112,6 +112,7 @@ impl Teamwork for Onlooker {}
 
 impl Guidance<f32> for Onlooker {
     type Input<'a> = InPlane<'a, f32>;
+    type Destination = Roams;
     type Workspace = ();
 
     fn decide(
@@ -499,6 +500,7 @@ fn a_wish_that_is_no_number_is_no_wish() {
     impl Teamwork for Mad {}
     impl Guidance<f32> for Mad {
         type Input<'a> = InPlane<'a, f32>;
+        type Destination = Roams;
         type Workspace = ();
         fn decide(
             &mut self,

@@ -3,7 +3,7 @@ use crate::scenario::Overrides;
 use proptest::prelude::*;
 use staya_controller::agent::{
     Action, AnySurroundings, BadInput, Decision, Guidance, GuidanceInput, Status as Standing,
-    Surroundings as _, Teamwork, Unguarded,
+    Surroundings as _, Teamwork, ToCells, Unguarded,
 };
 use staya_controller::grid::Dir;
 use staya_controller::rand::Rng;
@@ -43,6 +43,7 @@ impl Teamwork for Scout {}
 
 impl Guidance<f32> for Scout {
     type Input<'a> = AnySurroundings<'a, f32>;
+    type Destination = ToCells;
     type Workspace = ();
 
     fn decide(
