@@ -11,8 +11,10 @@ pub mod geo;
 mod lines;
 mod stream;
 mod tlog;
+mod traffic;
 mod udp;
 
 pub use endpoint::{Endpoint, EndpointError};
-pub use lines::{Counts, Lines, OpenError, Peer, Received};
+pub use lines::{Lines, OpenError};
 pub use tlog::{Tlog, TlogError};
+pub use traffic::{Counts, Peer, Received};

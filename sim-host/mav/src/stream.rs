@@ -1,6 +1,6 @@
 //! Lines of bytes: TCP and serial ports.
 
-use super::lines::{GLANCE, Outgoing, Peer, Shared};
+use super::traffic::{GLANCE, Outgoing, Peer, Shared};
 use staya_serial::SerialPort;
 use std::collections::HashMap;
 use std::io::{self, ErrorKind, Read, Write};

@@ -1,6 +1,6 @@
 //! Lines of datagrams.
 
-use super::lines::{GLANCE, Outgoing, Peer, Shared};
+use super::traffic::{GLANCE, Outgoing, Peer, Shared};
 use std::collections::HashMap;
 use std::io;
 use std::net::{SocketAddr, UdpSocket};

@@ -64,3 +64,14 @@ impl ExperimentArgs {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arguments_of_all_experiments_agree_with_each_other() {
+        ExperimentArgs::augment_args(clap::Command::new("experiment")).debug_assert();
+        orca::OrcaArgs::augment_args(clap::Command::new("orca")).debug_assert();
+    }
+}

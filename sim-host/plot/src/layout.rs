@@ -4,8 +4,9 @@ use super::canvas::{Anchor, Canvas, Stroke, Text};
 use super::chart::{Chart, Data};
 use super::colour::{GRID, INK, MUTED};
 use super::font;
+use super::look::{Look, looks};
 use super::scale::{Axes, Axis};
-use super::series::{self, Look};
+use super::series;
 
 const TITLE: f64 = 15.0;
 const HEADLINE: f64 = 18.0;
@@ -47,7 +48,7 @@ pub fn heading(canvas: &mut Canvas, title: &str, size: f64, at: [f64; 2], room: 
 /// Where a chart's plotting area begins, from its left edge.
 pub fn left_margin(chart: &Chart) -> f64 {
     // Labels depend a little on the height left for the axis: assume all of it.
-    let axes = Axes::new(chart, &series::looks(chart), [chart.size[0], chart.size[1]]);
+    let axes = Axes::new(chart, &looks(chart), [chart.size[0], chart.size[1]]);
     PAD + label_room(&chart.y_label) + axes.y.widest_label(SMALL) * OTHER_FONTS + 10.0
 }
 
@@ -58,7 +59,7 @@ fn label_room(label: &str) -> f64 {
 /// Draws a chart into left, top, width, height of a picture, its plotting area `left` from the left.
 pub fn draw(chart: &Chart, canvas: &mut Canvas, area: [f64; 4], left: f64) {
     let [x, y, width, height] = area;
-    let looks = series::looks(chart);
+    let looks = looks(chart);
     let mut top = y + PAD;
     if !chart.title.is_empty() {
         top += TITLE;

@@ -13,8 +13,10 @@ mod crowd;
 pub mod flock;
 mod font;
 mod layout;
+mod look;
 mod map;
 mod motion;
+mod panels;
 mod raster;
 mod run;
 mod scale;
@@ -23,9 +25,11 @@ mod svg;
 pub mod terrain;
 pub mod ticks;
 mod trajectories;
+mod write;
 
-pub use chart::{Chart, Panels, Series};
+pub use chart::{Chart, Series};
 pub use motion::{motion_pictures, motion_sheet};
+pub use panels::Panels;
 pub use run::run_pictures;
 
 #[cfg(test)]

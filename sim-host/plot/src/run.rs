@@ -1,7 +1,8 @@
 //! The pictures of one run.
 
-use super::chart::{Chart, Panels, Series};
+use super::chart::{Chart, Series};
 use super::colour::{self, Colour, WHITE};
+use super::panels::Panels;
 use super::{ticks, trajectories};
 use staya_sim::record::{self, Error, History, PacketCounts, SeriesPoint};
 use staya_sim::terrain::Terrain;

@@ -2,7 +2,7 @@
 
 use super::chart::{Chart, Data};
 use super::font;
-use super::series::Look;
+use super::look::Look;
 use super::ticks::{self, Tick};
 
 /// Font size by which marks are spaced.

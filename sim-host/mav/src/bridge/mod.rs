@@ -9,6 +9,7 @@ mod guided;
 mod mission;
 mod model;
 mod params;
+mod streams;
 mod swarm;
 mod telemetry;
 #[cfg(test)]
@@ -17,6 +18,6 @@ mod vehicle;
 
 pub use model::{FlightMode, Sample, VehicleModel};
 pub use params::{Meaning, NotSet, Parameters};
+pub use streams::Streams;
 pub use swarm::{BridgeError, LineReport, Options, Report, Swarm};
-pub use telemetry::Streams;
 pub use vehicle::{Action, Out, Vehicle};

@@ -5,7 +5,7 @@
 
 use super::model::{Sample, VehicleModel};
 use super::params::Parameters;
-use super::telemetry::Streams;
+use super::streams::Streams;
 use super::vehicle::{Action, Out, Vehicle};
 use crate::geo::Origin;
 use crate::{Counts, Endpoint, Lines, OpenError, Received, Tlog, TlogError};

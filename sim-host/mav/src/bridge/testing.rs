@@ -2,7 +2,7 @@
 
 use super::model::{Sample, VehicleModel};
 use super::params::Parameters;
-use super::telemetry::Streams;
+use super::streams::Streams;
 use super::vehicle::{Out, Vehicle};
 use crate::geo::{Global, Origin};
 use staya_controller::agent::{Parameter, Wish};

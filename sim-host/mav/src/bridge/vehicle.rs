@@ -7,7 +7,7 @@
 use super::mission::{Item, Mission};
 use super::model::{FlightMode, Sample, VehicleModel};
 use super::params::{Meaning, NotSet, Parameters};
-use super::telemetry::Streams;
+use super::streams::Streams;
 use crate::geo::FAR_M;
 use staya_controller::agent::{Event, Parameter, Waypoint, Wish};
 use staya_controller::geom::Position;

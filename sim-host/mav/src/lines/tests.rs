@@ -1,4 +1,5 @@
 use super::*;
+use crate::traffic::GLANCE;
 use staya_mavlink::dialect::STAYA_GOAL_DATA;
 use staya_mavlink::frame::{RawFrame, Sender, encode};
 use std::io::Write as _;

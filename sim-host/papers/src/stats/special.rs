@@ -1,4 +1,6 @@
 //! Special functions: incomplete gamma and beta, Student's t, the modified Bessel function.
+//!
+//! By hand: on `libm` alone they give the same bits on every machine, which crates on std's float functions do not.
 
 use libm::{exp, fabs, lgamma, log, log1p, sqrt};
 use std::f64::consts::TAU;

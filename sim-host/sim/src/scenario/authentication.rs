@@ -1,6 +1,6 @@
 //! `[authentication]` and `[[attack]]`: the key, and attackers without it.
 
-use super::check::within;
+use super::ranges::within;
 use super::source::Source;
 use super::{Attack, AttackKind, AttackTable, Robot, ScenarioError, ScenarioFile};
 use crate::key::{self, KeyFile};

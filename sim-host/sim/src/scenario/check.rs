@@ -1,17 +1,13 @@
 //! The checks that need more than the type of a field.
 
 use super::params::ReplanName;
+use super::ranges::within;
 use super::source::Source;
 use super::{Fault, Robot, ScenarioError, ScenarioFile};
 use crate::terrain::generate::{self, Plan};
 use crate::terrain::{Terrain, TerrainError};
 use staya_controller::robot::RobotId;
 use staya_mavlink::any::max_robot;
-
-/// Seconds as whole microseconds, rounded.
-pub(super) fn micros(seconds: f64) -> u32 {
-    libm::round(seconds * 1e6) as u32
-}
 
 pub(super) fn general(source: &Source<'_>, file: &ScenarioFile) -> Result<(), ScenarioError> {
     let allowed = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
@@ -111,29 +107,6 @@ fn probability(source: &Source<'_>, field: &str, value: f64) -> Result<(), Scena
     }
     let what = format!("{value} is no probability");
     Err(source.error(field, what, "give a number from 0 to 1"))
-}
-
-/// A number that must lie between two others, both allowed.
-///
-/// # Errors
-/// The place and the range, when it does not.
-pub fn within(
-    source: &Source<'_>,
-    field: &str,
-    value: f64,
-    low: f64,
-    high: f64,
-    unit: &str,
-) -> Result<(), ScenarioError> {
-    if (low..=high).contains(&value) {
-        return Ok(());
-    }
-    let what = format!("{value} is out of range");
-    Err(source.error(
-        field,
-        what,
-        format!("give {low} to {high} {unit}").trim_end(),
-    ))
 }
 
 pub(super) fn terrain(source: &Source<'_>, file: &ScenarioFile) -> Result<Terrain, ScenarioError> {

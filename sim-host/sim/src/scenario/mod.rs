@@ -7,25 +7,27 @@ mod authentication;
 mod check;
 mod params;
 mod plane;
+mod ranges;
 mod robots;
 mod schema;
 mod setup;
 mod source;
 
-pub use check::within;
 pub use params::{
-    ExitName, FormationTable, PredictionName, RecoveryName, ReplanName, RouteTable, Routing,
+    ExitName, FormationTable, GridTable, PredictionName, RecoveryName, ReplanName, RouteTable,
+    Routing,
 };
 pub use plane::{
     BallEntry, BoidsTable, CircleEntry, CloudEntry, GoalFlockTable, GuidanceName, HalfSpaceEntry,
     LatticeTable, ModelName, OrcaTable, Order, OrderEntry, Place, PlaneRobotEntry, PlaneRobots,
     PlaneSetup, PlaneTable, PushOutTable, SafetyName, Start, Target, WallEntry, circle_starts,
 };
+pub use ranges::within;
 pub use robots::{Formation, Robot};
 pub use schema::{
     AttackKind, AttackTable, AuthenticationTable, Crop, EntropyTable, FaultTable, FormationEntry,
-    GridTable, NaturalTable, RobotEntry, RobotsTable, ScatteredEntry, ScenEntry, ScenarioFile,
-    TerrainTable, UniformTable,
+    NaturalTable, RobotEntry, RobotsTable, ScatteredEntry, ScenEntry, ScenarioFile, TerrainTable,
+    UniformTable,
 };
 pub use source::ScenarioError;
 pub use source::Source;
@@ -179,7 +181,7 @@ impl Scenario {
             name: file.name,
             seed: file.seed,
             ticks: file.ticks,
-            tick_us: check::micros(file.tick_s),
+            tick_us: ranges::micros(file.tick_s),
             terrain,
             rules: MoveRules {
                 norm: file.grid.norm,

@@ -2,15 +2,24 @@
 //! defaults are the controller's, as listed in scenarios/README.md (which a test compares).
 
 use super::ScenarioError;
-use super::check::within;
-use super::schema::GridTable;
+use super::ranges::within;
 use super::source::Source;
 use serde::Deserialize;
 use staya_controller::cost::Gain;
 use staya_controller::formation::{FormationParams, Prediction, Recovery};
-use staya_controller::grid::UNIT;
+use staya_controller::grid::{Norm, UNIT};
 use staya_controller::route::{ExitRule, Replan, RouteParams};
 use staya_controller::shuffle::Sharpness;
+
+/// `[grid]`.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct GridTable {
+    /// `"euclidean"` (a diagonal move is sqrt 2 long; the default) or `"chebyshev"` (1).
+    pub norm: Norm,
+    /// Whether a diagonal move may pass a blocked orthogonal neighbour. Default: false.
+    pub corner_cutting: bool,
+}
 
 /// The largest window radius that the simulator has memory for.
 const MAX_RADIUS: u8 = 16;

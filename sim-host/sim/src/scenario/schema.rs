@@ -3,7 +3,7 @@
 //! Cells are `[x, y]` from the south-west corner of the (cropped) map, x east and y north. Times are
 //! simulated. File names are relative to the scenario file.
 
-use super::params::{FormationTable, RouteTable};
+use super::params::{FormationTable, GridTable, RouteTable};
 use super::plane::PlaneTable;
 use crate::radio::RadioParams;
 use crate::terrain::LoadOptions;
@@ -167,16 +167,6 @@ pub struct Crop {
     pub y: u16,
     pub width: u16,
     pub height: u16,
-}
-
-/// `[grid]`.
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct GridTable {
-    /// `"euclidean"` (a diagonal move is sqrt 2 long; the default) or `"chebyshev"` (1).
-    pub norm: Norm,
-    /// Whether a diagonal move may pass a blocked orthogonal neighbour. Default: false.
-    pub corner_cutting: bool,
 }
 
 /// `[robots]`: exactly one of these.

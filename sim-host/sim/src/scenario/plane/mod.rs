@@ -11,7 +11,7 @@ mod tests;
 pub use starts::{Start, Target, circle_starts};
 pub use table::*;
 
-use super::check::within;
+use super::ranges::within;
 use super::source::Source;
 use super::{Robot, Routing, Scenario, ScenarioError, ScenarioFile};
 use crate::radio::RadioParams;
@@ -137,7 +137,7 @@ impl Scenario {
             name: name.to_owned(),
             seed,
             ticks,
-            tick_us: super::check::micros(setup.abilities.step_s),
+            tick_us: super::ranges::micros(setup.abilities.step_s),
             terrain: Terrain::flat(1, 1),
             rules: MoveRules::default(),
             radio,
@@ -232,7 +232,7 @@ pub(super) fn build(
         abilities: Abilities {
             max_speed_mps: table.max_speed_mps,
             max_acceleration_mps2: table.max_acceleration_mps2,
-            step_s: f64::from(super::check::micros(file.tick_s)) / 1e6,
+            step_s: f64::from(super::ranges::micros(file.tick_s)) / 1e6,
         },
         radius_m: table.radius_m,
         cruise_mps,

@@ -1,4 +1,6 @@
 //! The YAML file of a `map_server` map: flat `key: value` lines, which is all that such files hold.
+//!
+//! By hand: a serde YAML crate brings six to twenty others, and does not tell the line of a value that is YAML but no sense.
 
 use super::super::error::{Place, TerrainError, format_error};
 use super::super::text::{finite, lines, quoted, text};

@@ -1,0 +1,31 @@
+//! What the checks of several tables share.
+
+use super::source::{ScenarioError, Source};
+
+/// Seconds as whole microseconds, rounded.
+pub(super) fn micros(seconds: f64) -> u32 {
+    libm::round(seconds * 1e6) as u32
+}
+
+/// A number that must lie between two others, both allowed.
+///
+/// # Errors
+/// The place and the range, when it does not.
+pub fn within(
+    source: &Source<'_>,
+    field: &str,
+    value: f64,
+    low: f64,
+    high: f64,
+    unit: &str,
+) -> Result<(), ScenarioError> {
+    if (low..=high).contains(&value) {
+        return Ok(());
+    }
+    let what = format!("{value} is out of range");
+    Err(source.error(
+        field,
+        what,
+        format!("give {low} to {high} {unit}").trim_end(),
+    ))
+}
