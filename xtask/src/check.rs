@@ -9,6 +9,9 @@ const OTHERS: [(&str, &[&str]); 2] = [
     ("tests/fuzz", &["--no-default-features"]),
 ];
 
+/// What a user's own firmware depends on.
+const PACKAGES: [&str; 3] = ["staya-controller", "staya-mavlink", "staya-robot"];
+
 /// Formatting, layers, lints, documentation; the quick ones first.
 pub fn run(repo: &Repo, report: &mut Report) {
     if has(repo, "fmt", "rustfmt", report) {
@@ -22,6 +25,9 @@ pub fn run(repo: &Repo, report: &mut Report) {
     }
     report.step("layers of the controller", || {
         crate::layers::check(&repo.root.join("controller/src"))
+    });
+    report.step("no circles between modules", || {
+        crate::circles::check(&repo.root)
     });
     report.step("what the documentation names", || {
         crate::documents::check(&repo.root)
@@ -40,6 +46,10 @@ pub fn run(repo: &Repo, report: &mut Report) {
             report.command(&name, repo.cargo_in(folder, &clippy));
         }
     }
+    crate::device::check_features(repo, report);
+    let mut package = repo.cargo(&["package", "--locked", "--allow-dirty"]);
+    package.args(PACKAGES.iter().flat_map(|name| ["--package", name]));
+    report.command("packages that users depend on", package);
     let mut doc = repo.cargo(&["doc", "--locked", "--workspace", "--no-deps"]);
     doc.env("RUSTDOCFLAGS", "-D warnings");
     report.command("rustdoc", doc);

@@ -1,9 +1,9 @@
 //! `cargo xtask clients`: real MAVLink clients against `staya`, from Python.
 
 use crate::apt;
+use crate::extent::{Extent, LONG};
 use crate::repo::{Repo, output_of, run, run_reading};
 use crate::report::{Counts, Report};
-use crate::test::{Extent, LONG};
 use std::path::PathBuf;
 
 const NAME: &str = "MAVLink clients";
@@ -122,7 +122,7 @@ fn closing_line(line: &str) -> Option<Counts> {
         match what {
             "passed" => sum.passed += number,
             "failed" | "error" | "errors" | "xpassed" => sum.failed += number,
-            "skipped" | "xfailed" => sum.skipped += number,
+            "skipped" | "deselected" | "xfailed" => sum.skipped += number,
             _ => {}
         }
     }

@@ -1,7 +1,7 @@
 //! The controller built for microcontrollers, with whatever toolchain there is.
 
 use crate::debian;
-use crate::firmware::PARTS;
+use crate::part::PARTS;
 use crate::repo::{Repo, output_of};
 use crate::report::Report;
 use std::path::{Path, PathBuf};
@@ -41,6 +41,43 @@ pub fn run(repo: &Repo, report: &mut Report) {
             }
         }
     }
+}
+
+/// Checks the controller with each set of features that its manifest lists, on the parts with Cortex-M4F and Cortex-M0.
+pub fn check_features(repo: &Repo, report: &mut Report) {
+    let manifest = std::fs::read_to_string(repo.root.join("controller/Cargo.toml"));
+    let sets = feature_sets(&manifest.unwrap_or_default());
+    let mut toolchains = Toolchains::default();
+    for part in PARTS.iter().filter(|part| part.target.starts_with("thumb")) {
+        let name = format!("feature sets of the controller for {}", part.target);
+        match toolchains.find(repo, part.target) {
+            Ok(toolchain) => {
+                report.step(&name, || {
+                    sets.iter().try_for_each(|features| {
+                        let mut check = toolchain.cargo(repo, part.target, "check");
+                        check.args(["--locked", "--package", "staya-controller"]);
+                        check.args(["--no-default-features", "--features", features]);
+                        crate::repo::run(&mut check)
+                            .map_err(|reason| format!("`{features}`: {reason}"))
+                    })
+                });
+            }
+            Err(reason) => report.skip(&name, &reason),
+        }
+    }
+}
+
+/// The list `feature-sets` in a manifest's metadata, and the set without any feature.
+fn feature_sets(manifest: &str) -> Vec<String> {
+    let manifest: Option<toml::Table> = manifest.parse().ok();
+    let sets = manifest.as_ref().and_then(|manifest| {
+        let metadata = manifest.get("package")?.get("metadata")?.get("staya")?;
+        metadata.get("feature-sets")?.as_array()
+    });
+    let names = sets.into_iter().flatten().filter_map(toml::Value::as_str);
+    let mut names: Vec<String> = std::iter::once("").chain(names).map(String::from).collect();
+    names.dedup();
+    names
 }
 
 impl Toolchains {
@@ -95,4 +132,17 @@ fn has_target(repo: &Repo, target: &str) -> bool {
     let mut question = repo.command(rustc);
     question.args(["--print", "target-libdir", "--target", target]);
     output_of(&mut question).is_some_and(|folder| Path::new(&folder).is_dir())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn feature_sets_are_those_of_the_manifest_and_the_empty_one() {
+        let manifest =
+            "[package.metadata.staya]\nfeature-sets = [\"\", \"orca\", \"orca,fixed\"]\n";
+        assert_eq!(feature_sets(manifest), ["", "orca", "orca,fixed"]);
+        assert_eq!(feature_sets("[package]\n"), [""]);
+    }
 }

@@ -1,6 +1,6 @@
 //! A program of the firmware in the emulator of its part, from its start to its end.
 
-use crate::firmware::Part;
+use crate::part::Part;
 use crate::qemu;
 use crate::repo::{Repo, shown};
 use std::io::Read;

@@ -1,10 +1,11 @@
 //! Fleets of emulated parts: the runner's tests that need the firmware and both emulators.
 
 use crate::emulate;
-use crate::firmware::{PARTS, Profile};
+use crate::firmware::Profile;
+use crate::part::PARTS;
 use crate::repo::{Repo, run_reading};
 use crate::report::Report;
-use crate::test::counted;
+use crate::report::counted;
 use std::process::Command;
 
 /// Runs the tests with the firmware that was built before, or says why not.

@@ -2,15 +2,30 @@
 
 use crate::device::Toolchains;
 use crate::emulate;
-use crate::firmware::{self, PARTS, Part, Profile};
+use crate::firmware::{self, Profile};
+use crate::part::{PARTS, Part};
 use crate::repo::Repo;
 use crate::report::Report;
 
+/// The program.
+const BIN: &str = "faults";
+
 /// One step per part.
 pub fn run(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains) {
-    for part in &PARTS {
+    run_on(repo, report, toolchains, &PARTS.each_ref());
+}
+
+/// The command: these parts, or all if none is named.
+pub fn run_command(repo: &Repo, report: &mut Report, parts: &[&Part]) {
+    let all = PARTS.each_ref();
+    let parts = if parts.is_empty() { &all } else { parts };
+    run_on(repo, report, &mut Toolchains::default(), parts);
+}
+
+fn run_on(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains, parts: &[&Part]) {
+    for part in parts {
         let name = format!("faults on the {}", part.name);
-        if !firmware::build_step(repo, report, toolchains, part, Profile::Firmware) {
+        if !firmware::build_some(repo, report, toolchains, part, Profile::Firmware, &[BIN]) {
             report.skip(&name, "there is no firmware");
             continue;
         }
@@ -18,7 +33,7 @@ pub fn run(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains) {
             Err(reason) => report.skip(&name, &reason),
             Ok(()) => {
                 report.step(&name, || {
-                    let elf = Profile::Firmware.elf(repo, part, "faults");
+                    let elf = Profile::Firmware.elf(repo, part, BIN);
                     // The program ends with 0 only at its third start.
                     let said = emulate::run_on_line(repo, part, &elf, "stdio")?;
                     misses(part, &said).map_or(Ok(()), |text| Err(format!("nothing of `{text}`")))

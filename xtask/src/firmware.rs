@@ -1,44 +1,11 @@
 //! `cargo xtask firmware`: the ELF files of the parts, with whatever toolchain there is.
 
 use crate::device::{Toolchain, Toolchains};
+use crate::part::{PARTS, Part, part};
 use crate::repo::{Repo, run};
 use crate::report::Report;
 use std::fs;
 use std::path::{Path, PathBuf};
-
-/// A microcontroller that there is firmware for.
-pub struct Part {
-    /// As in `hil/firmware` and on the command line.
-    pub name: &'static str,
-    /// What its code is compiled for.
-    pub target: &'static str,
-    /// The emulator that runs it.
-    pub emulator: &'static str,
-}
-
-/// Every part.
-pub const PARTS: [Part; 3] = [
-    Part {
-        name: "stm32f405",
-        target: "thumbv7em-none-eabihf",
-        emulator: "qemu-system-arm",
-    },
-    Part {
-        name: "nrf51",
-        target: "thumbv6m-none-eabi",
-        emulator: "qemu-system-arm",
-    },
-    Part {
-        name: "riscv32",
-        target: "riscv32imac-unknown-none-elf",
-        emulator: "qemu-system-riscv32",
-    },
-];
-
-/// The part of this name.
-pub fn part(name: &str) -> Option<&'static Part> {
-    PARTS.iter().find(|part| part.name == name)
-}
 
 /// Cargo's profile for what goes on a part, and the one to debug with.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -320,16 +287,5 @@ mod tests {
         for wrong in [&["z80"][..], &["--bin"], &["--binary", "lockstep"]] {
             assert!(Request::read(wrong).is_none(), "{wrong:?}");
         }
-    }
-
-    #[test]
-    fn every_part_is_found_by_its_name() {
-        for wanted in &PARTS {
-            assert_eq!(
-                part(wanted.name).map(|found| found.target),
-                Some(wanted.target)
-            );
-        }
-        assert!(part("stm32").is_none());
     }
 }

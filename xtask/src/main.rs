@@ -4,9 +4,11 @@
 //! started) and [`report`] (what passed, and the closing line).
 
 mod apt;
+mod bare;
 mod bench;
 mod bless;
 mod check;
+mod circles;
 mod clients;
 mod debian;
 mod device;
@@ -14,10 +16,12 @@ mod documents;
 mod emulate;
 mod emulated;
 mod example;
+mod extent;
 mod faults;
 mod firmware;
 mod fuzz;
 mod layers;
+mod part;
 mod qemu;
 mod repo;
 mod report;
@@ -26,10 +30,10 @@ mod swarms;
 mod test;
 
 use device::Toolchains;
+use extent::Extent;
 use repo::Repo;
 use report::Report;
 use std::process::ExitCode;
-use test::Extent;
 
 const HELP: &str = "\
 The project's own commands.
@@ -40,11 +44,14 @@ Usage: cargo xtask COMMAND
   test [--all]    the tests: on the host, by MAVLink clients, on emulated parts; with --all also the long proofs: each program
                   on each part, debug builds, budgets, ten parts for 1000 steps, peers, fuzz targets on random bytes
   ci              check, then test --all
+  bare            emulators, compiler and emulated parts in a bare Debian of its own; needs root
   bench [NAME]    benchmarks, also beside peer crates (those whose name contains NAME): medians, ratios, goals
   bless [NAME]    rewrite golden files by running the tests whose name contains NAME (default: golden)
   fuzz [--seconds N]
                   each fuzz target for N seconds (default: 60), if nightly Rust and cargo-fuzz are there
   clients [NAME]  MAVLink clients (pymavlink, MAVSDK, MAVProxy, tshark) against staya, from Python: all tests or those whose names contain NAME
+  faults [PART...]
+                  firmware that goes wrong on purpose says why and starts anew, on each part (default: all)
   example         the example firmware of examples/stm32f4
   firmware [--debug] [--bin NAME] [PART...]
                   the programs of hil/firmware, or one of them, for stm32f405, nrf51, riscv32 (default: all): target/firmware/PART/BIN
@@ -80,6 +87,7 @@ fn main() -> ExitCode {
             check::run(&repo, &mut report);
             test::run(&repo, &mut report, Extent::All);
         }
+        ["bare"] => bare::run_command(&repo, &mut report),
         ["bench"] => bench::run(&repo, &mut report, None),
         ["bench", name] if !name.starts_with('-') => bench::run(&repo, &mut report, Some(name)),
         ["bless"] => bless::run(&repo, &mut report, "golden"),
@@ -92,6 +100,10 @@ fn main() -> ExitCode {
         ["fuzz"] => fuzz::run(&repo, &mut report, fuzz::SECONDS),
         ["fuzz", "--seconds", n] if n.parse().is_ok_and(|n: u32| n > 0) => {
             fuzz::run(&repo, &mut report, n);
+        }
+        ["faults", names @ ..] if names.iter().all(|name| part::part(name).is_some()) => {
+            let parts: Vec<_> = names.iter().filter_map(|name| part::part(name)).collect();
+            faults::run_command(&repo, &mut report, &parts);
         }
         ["firmware", arguments @ ..] => match firmware::Request::read(arguments) {
             Some(request) => firmware::run_command(&repo, &mut report, &request),

@@ -1,7 +1,7 @@
 //! `cargo xtask qemu`: the emulators of the parts.
 
 use crate::apt;
-use crate::firmware::PARTS;
+use crate::part::PARTS;
 use crate::repo::{Repo, output_of};
 use crate::report::Report;
 

@@ -1,5 +1,6 @@
 //! What passed, what failed, what was skipped and why.
 
+use crate::repo::run_reading;
 use std::process::{Command, ExitCode};
 use std::time::{Duration, Instant};
 
@@ -157,7 +158,7 @@ impl Report {
 
 /// The counts in one line of a test program's output, if it is its closing line. What the command
 /// line filtered out was skipped.
-pub fn parse_test_result(line: &str) -> Option<Counts> {
+fn parse_test_result(line: &str) -> Option<Counts> {
     let rest = line.strip_prefix("test result: ")?;
     let (_, counts) = rest.split_once(". ")?;
     let mut sum = Counts::default();
@@ -174,6 +175,30 @@ pub fn parse_test_result(line: &str) -> Option<Counts> {
         }
     }
     Some(sum)
+}
+
+/// Runs test programs and adds up their closing lines. A program that ends without one (it
+/// crashed, or did not compile) is one failure. `why_skipped` is the note if anything was.
+pub fn counted(tests: &mut Command, why_skipped: &str) -> (Counts, String) {
+    let mut sum = Counts::default();
+    let ended = run_reading(tests, |line| {
+        if let Some(counts) = parse_test_result(line) {
+            sum += counts;
+        }
+    });
+    let mut notes = Vec::new();
+    match ended {
+        Err(reason) if sum.failed == 0 => {
+            sum.failed = 1;
+            notes.push(format!("cargo test: {reason}"));
+        }
+        Err(_) => notes.push(String::from("see above")),
+        Ok(()) => {}
+    }
+    if sum.skipped > 0 && !why_skipped.is_empty() {
+        notes.push(why_skipped.to_string());
+    }
+    (sum, notes.join("; "))
 }
 
 #[cfg(test)]
@@ -239,5 +264,55 @@ mod tests {
         assert_eq!((part.counts.failed, part.counts.skipped), (1, 0));
         assert!(part.note.contains("no emulator"));
         assert_eq!(report.close(), ExitCode::FAILURE);
+    }
+
+    fn shell(script: &str) -> Command {
+        let mut command = Command::new("sh");
+        command.args(["-c", script]);
+        command
+    }
+
+    #[test]
+    fn closing_lines_add_up() {
+        let line = "test result: ok. 2 passed; 0 failed; 1 ignored; 0 measured; 0 filtered out";
+        let (counts, note) = counted(&mut shell(&format!("echo '{line}'; echo '{line}'")), "why");
+        assert_eq!(
+            counts,
+            Counts {
+                passed: 4,
+                failed: 0,
+                skipped: 2
+            }
+        );
+        assert_eq!(note, "why");
+    }
+
+    #[test]
+    fn crash_without_a_closing_line_is_a_failure() {
+        let (counts, note) = counted(&mut shell("echo running 3 tests; exit 101"), "");
+        assert_eq!(counts.failed, 1);
+        assert!(note.contains("101"), "{note}");
+    }
+
+    #[test]
+    fn failure_does_not_hide_why_something_was_skipped() {
+        let line = "test result: FAILED. 2 passed; 1 failed; 0 ignored; 0 measured; 3 filtered out";
+        let (counts, note) = counted(&mut shell(&format!("echo '{line}'; exit 101")), "why");
+        assert_eq!((counts.failed, counts.skipped), (1, 3));
+        assert_eq!(note, "see above; why");
+    }
+
+    #[test]
+    fn failure_is_counted_once() {
+        let line = "test result: FAILED. 2 passed; 1 failed; 0 ignored; 0 measured";
+        let (counts, _) = counted(&mut shell(&format!("echo '{line}'; exit 101")), "");
+        assert_eq!(
+            counts,
+            Counts {
+                passed: 2,
+                failed: 1,
+                skipped: 0
+            }
+        );
     }
 }

@@ -6,7 +6,8 @@ mod reach;
 
 use crate::device::Toolchains;
 use crate::emulate;
-use crate::firmware::{self, PARTS, Part, Profile, Sections};
+use crate::firmware::{self, Profile, Sections};
+use crate::part::{PARTS, Part};
 use crate::repo::Repo;
 use crate::report::Report;
 use bench::Row;

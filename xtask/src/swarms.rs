@@ -2,7 +2,8 @@
 
 use crate::device::Toolchains;
 use crate::emulate;
-use crate::firmware::{self, PARTS, Part, Profile};
+use crate::firmware::{self, Profile};
+use crate::part::{PARTS, Part, part};
 use crate::repo::{Repo, output_of, run as run_command, shown};
 use crate::report::Report;
 use std::fs;
@@ -122,7 +123,7 @@ fn differences(wanted: &[&str], got: &[&str]) -> Vec<String> {
 /// That `nopanic` links was seen when the firmware was built. That it would not with a panic is seen here.
 fn panics(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains) {
     let name = "firmware with a panic does not link";
-    let Some(part) = firmware::part("stm32f405") else {
+    let Some(part) = part("stm32f405") else {
         return;
     };
     let toolchain = match toolchains.find(repo, part.target) {
@@ -165,7 +166,7 @@ mod tests {
 
     #[test]
     fn the_small_part_computes_in_fixed_point_only() {
-        let [large, small] = ["stm32f405", "nrf51"].map(|name| firmware::part(name).unwrap());
+        let [large, small] = ["stm32f405", "nrf51"].map(|name| part(name).unwrap());
         for (row, is_small) in [
             ("route f32 0 1", false),
             ("route Q16 0 1", true),
