@@ -7,8 +7,8 @@ use crate::robot::RobotId;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-/// A robot's place in the formation and where its neighbours there should be (KUZ section 3), at
-/// most `F` of them.
+/// A robot's place in the formation and where its neighbours there should be (A. V. Kuznetsov 2017, KUZ,
+/// section 3), at most `F` of them.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Template<const F: usize> {

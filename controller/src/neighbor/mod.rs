@@ -30,7 +30,7 @@ pub struct Neighbor<S> {
     pub id: RobotId,
     /// When it was heard, own clock.
     pub heard: Instant,
-    /// When it is free to leave its cell, own clock (KUZ eq. 6).
+    /// When it is free to leave its cell, own clock (A. V. Kuznetsov 2017, KUZ, eq. 6).
     pub busy_until: Instant,
     /// World position when heard.
     pub position: Position,

@@ -65,7 +65,7 @@ pub struct CompactBeacon {
     pub mode: Mode,
 }
 
-/// What one robot asks of another (KUZ section 7: requests go hop by hop up the leader chain).
+/// What one robot asks of another (A. V. Kuznetsov 2017, KUZ, section 7: up the leader chain, hop by hop).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum RequestKind {

@@ -1,6 +1,6 @@
 //! Asking: requests that are resent until acknowledged, replaced or given up.
 //!
-//! The other side is [`Orders`](super::Orders). Source: KUZ section 7 (requests go up the leader
+//! The other side is [`Orders`](super::Orders). Source: A. V. Kuznetsov 2017 (KUZ), section 7 (up the leader
 //! chain); the papers' requests are never lost, ours are small datagrams over a lossy radio.
 
 use super::{Ack, Request, RequestKind};
