@@ -1,8 +1,6 @@
 //! One whole step of the robot in the middle of a formation of nine: it hears eight beacons, searches
 //! its window of radius 5 (once; with reflexive prediction once more per neighbour in sight) and says its
 //! own beacon. It is free to move in every step, so that every step decides.
-#![allow(clippy::unwrap_used, clippy::indexing_slicing)]
-#![allow(clippy::integer_division_remainder_used)]
 
 use core::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};

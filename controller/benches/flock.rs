@@ -1,6 +1,5 @@
 //! One decision of each flock, and of push-out behind it, among ten neighbours. Different neighbourhoods in turn, so that no branch
 //! predictor learns one by heart.
-#![allow(clippy::unwrap_used)]
 
 use core::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};

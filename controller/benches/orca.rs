@@ -1,6 +1,4 @@
 //! Half-planes by formula and by template, in floats and in fixed point, and what is left of ten of them.
-#![allow(clippy::unwrap_used, clippy::indexing_slicing)]
-#![allow(clippy::integer_division_remainder_used)]
 
 use core::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};

@@ -1,6 +1,5 @@
 //! The weights of the eight moves in a window of radius 5 over land of impassability 1 to 9. Larger
 //! windows, beside another crate, are in `tests/peers`.
-#![allow(clippy::unwrap_used)]
 
 use core::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};

@@ -1,5 +1,4 @@
 //! Encoding and decoding one frame of each kind of message, longest form.
-#![allow(clippy::unwrap_used)]
 
 use core::hint::black_box;
 use core::time::Duration;

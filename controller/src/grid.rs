@@ -315,7 +315,6 @@ impl<S: Scalar> GridFrame<S> {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 

@@ -1,5 +1,4 @@
 //! Saying and hearing one beacon in each wire format: to hear is to find the frame in the inbox, and to read it.
-#![allow(clippy::unwrap_used)]
 
 use core::hint::black_box;
 use core::time::Duration;

@@ -3,17 +3,25 @@
 //! [`wire`] is the wire format of a robot that speaks MAVLink, [`any`] all of them in one. [`frame`] finds and makes frames in bytes. [`dialect`] is made by `mavlink-bindgen` from `messages/staya.xml` (Staya's own messages) and `messages/common.xml` (the part of the public ones that Staya speaks).
 
 #![no_std]
-// Tests may fail loudly.
+// What may panic has no place on a robot; tests may.
 #![cfg_attr(
-    test,
-    allow(
-        clippy::indexing_slicing,
-        clippy::unwrap_used,
+    not(test),
+    deny(
         clippy::expect_used,
+        clippy::indexing_slicing,
+        clippy::integer_division_remainder_used,
         clippy::panic,
-        clippy::integer_division_remainder_used
+        clippy::std_instead_of_alloc,
+        clippy::std_instead_of_core,
+        clippy::string_slice,
+        clippy::todo,
+        clippy::unimplemented,
+        clippy::unreachable,
+        clippy::unwrap_used
     )
 )]
+// The generated code asks for features that it does not need.
+#![allow(unexpected_cfgs)]
 
 #[cfg(test)]
 extern crate std;

@@ -1,16 +1,20 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
-// What may panic has no place on a robot (see Cargo.toml); tests may.
+// What may panic has no place on a robot; tests may.
 #![cfg_attr(
-    test,
-    allow(
-        clippy::indexing_slicing,
-        clippy::unwrap_used,
+    not(test),
+    deny(
         clippy::expect_used,
-        clippy::panic,
+        clippy::indexing_slicing,
         clippy::integer_division_remainder_used,
+        clippy::panic,
         clippy::std_instead_of_alloc,
-        clippy::std_instead_of_core
+        clippy::std_instead_of_core,
+        clippy::string_slice,
+        clippy::todo,
+        clippy::unimplemented,
+        clippy::unreachable,
+        clippy::unwrap_used
     )
 )]
 

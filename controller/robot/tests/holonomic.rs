@@ -1,9 +1,4 @@
 //! A robot on three omni wheels, with the numbers of a part without an FPU, goes to its place while it spins: ticks in, duties out.
-#![allow(
-    clippy::unwrap_used,
-    clippy::std_instead_of_alloc,
-    clippy::std_instead_of_core
-)]
 
 mod common;
 

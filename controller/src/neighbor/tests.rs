@@ -1,9 +1,3 @@
-#![allow(
-    clippy::unwrap_used,
-    clippy::indexing_slicing,
-    clippy::std_instead_of_alloc
-)]
-
 use super::*;
 use crate::wire::{Beacon, CompactBeacon};
 use proptest::prelude::*;

@@ -1,5 +1,3 @@
-#![allow(clippy::std_instead_of_alloc)]
-
 use super::*;
 use crate::cost::{Cost, EXCLUDED, TICK, Weights};
 use crate::grid::{BLOCKED, Cell, DIAGONAL, Dir, Window};

@@ -1,10 +1,3 @@
-#![allow(
-    clippy::unwrap_used,
-    clippy::indexing_slicing,
-    clippy::std_instead_of_alloc,
-    clippy::integer_division_remainder_used
-)]
-
 use super::*;
 use crate::wire::arbitrary::{cell, robot};
 use proptest::collection::vec;

@@ -1,9 +1,3 @@
-#![allow(
-    clippy::unwrap_used,
-    clippy::indexing_slicing,
-    clippy::std_instead_of_alloc
-)]
-
 use super::*;
 use crate::rand::Rng;
 use crate::wire::{Due, Requests, Retry};

@@ -1,5 +1,3 @@
-#![allow(clippy::unwrap_used, clippy::std_instead_of_alloc)]
-
 use super::*;
 use RequestKind::{Redirect, Resume, Stop};
 use std::vec::Vec as StdVec;

@@ -1,5 +1,3 @@
-#![allow(clippy::std_instead_of_alloc)]
-
 use super::*;
 use crate::robot::RobotId;
 use proptest::collection::vec;
