@@ -62,3 +62,18 @@ pub mod template;
 pub mod time;
 #[cfg(feature = "wire")]
 pub mod wire;
+
+/// Every public error is a [`core::error::Error`].
+const _: () = {
+    const fn is_error<E: core::error::Error>() {}
+    is_error::<template::TemplateError>();
+    #[cfg(feature = "wire")]
+    {
+        is_error::<wire::AskError>();
+        is_error::<wire::DecodeError>();
+        is_error::<wire::EncodeError>();
+        is_error::<wire::PartError>();
+    }
+    #[cfg(feature = "agent")]
+    is_error::<agent::WrongTask>();
+};

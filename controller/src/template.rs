@@ -46,6 +46,18 @@ pub enum TemplateError {
     TooMany,
 }
 
+impl core::fmt::Display for TemplateError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::NoSuchPlace => "the graph has no such place, or more than 255",
+            Self::BadEdge => "an edge names a place that does not exist, or joins a place to itself",
+            Self::TooMany => "more neighbours than the template holds; give it a smaller geodesic radius or a larger F",
+        })
+    }
+}
+
+impl core::error::Error for TemplateError {}
+
 impl<const F: usize> Template<F> {
     /// The template of the robot at place `own` of a formation graph (KUZ section 2: Phi): everybody
     /// within the geodesic radius `rho`, nearest first, then by place.

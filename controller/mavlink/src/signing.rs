@@ -32,6 +32,17 @@ pub enum SignError {
     Exhausted,
 }
 
+impl core::fmt::Display for SignError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::NotAFrame => "no whole MAVLink 2 frame without a signature",
+            Self::Exhausted => "no timestamp is left to sign with; give the link a new key",
+        })
+    }
+}
+
+impl core::error::Error for SignError {}
+
 /// What a frame is worth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

@@ -39,6 +39,24 @@ pub enum PartError {
     Contradiction,
 }
 
+impl core::fmt::Display for PartError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::Number => "the number of the part is not below the number of parts",
+            Self::Length => "a part before the last is not full, or the last of several is empty",
+            Self::TooLarge => {
+                "the template has more entries than fit; give it a smaller geodesic radius"
+            }
+            Self::NoHops => "an entry is 0 hops away, but no robot is its own neighbour",
+            Self::Contradiction => {
+                "the part contradicts an earlier one; each change needs a new version"
+            }
+        })
+    }
+}
+
+impl core::error::Error for PartError {}
+
 impl TemplateAssignment {
     /// The parts of a template, for one frame each; send them in any order.
     ///

@@ -35,6 +35,7 @@ use super::message::{
     TemplateAssignment, WaypointAssignment,
 };
 use crate::robot::RobotId;
+use core::fmt;
 use crc::{CRC_16_IBM_SDLC, Crc, Table};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
@@ -164,6 +165,27 @@ pub enum EncodeError {
     Exhausted,
 }
 
+impl fmt::Display for EncodeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Full => f.write_str("the outbox has less room than the frame needs"),
+            Self::NoSender => {
+                f.write_str("the sender in the header is nobody: robots' numbers begin at 1")
+            }
+            Self::Robot(id) => write!(
+                f,
+                "robot number {} is too large for the format; give the robot a smaller one",
+                id.0
+            ),
+            Self::Exhausted => f.write_str(
+                "the format's counter has ended; start the robot anew, or give the swarm a new key",
+            ),
+        }
+    }
+}
+
+impl core::error::Error for EncodeError {}
+
 /// Why a frame was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -195,6 +217,39 @@ pub enum DecodeError {
     /// Sound, but none of the swarm's messages: somebody else's, on a band that is shared with others.
     Foreign,
 }
+
+impl fmt::Display for DecodeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Empty => "the frame has no bytes",
+            Self::TooLong => {
+                return write!(
+                    f,
+                    "the frame has more than {} bytes before its delimiter",
+                    MAX_FRAME_LEN - 1
+                );
+            }
+            Self::Cobs => "the frame's stuffing does not end with it, or a zero lies within",
+            Self::Crc => "the frame's CRC is wrong: damaged or cut",
+            Self::Version(version) => {
+                return write!(
+                    f,
+                    "the frame is of version {version}, not {VERSION}; update the older side"
+                );
+            }
+            Self::Unsigned => "the frame has no tag or signature; give its sender the key",
+            Self::Forged => "the frame's tag or signature is not of this key",
+            Self::Replayed => "the frame was recorded: seen before, or older than what was",
+            Self::NoRoom => "the frame is authentic, but there is no room to remember its sender",
+            Self::Body => "the frame is sound, but has no header and message that are known",
+            Self::Trailing => "bytes follow the message in the frame",
+            Self::NoSender => "the frame is sound, but its sender is nobody",
+            Self::Foreign => "the frame is sound, but none of the swarm's messages",
+        })
+    }
+}
+
+impl core::error::Error for DecodeError {}
 
 /// Appends one frame without a tag to `out` and returns its length.
 ///

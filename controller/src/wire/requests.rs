@@ -54,6 +54,19 @@ pub enum AskError {
     Nobody,
 }
 
+impl core::fmt::Display for AskError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::Full => {
+                "too many requests are on their way; wait until some are acknowledged or expire"
+            }
+            Self::Nobody => "a request to nobody: robots' numbers begin at 1",
+        })
+    }
+}
+
+impl core::error::Error for AskError {}
+
 /// What [`Requests::poll`] wants done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

@@ -51,6 +51,24 @@ pub enum FrameError {
     Version(u8),
 }
 
+impl core::fmt::Display for FrameError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::TooLong => "the frame has more content than there is room for",
+            Self::Cobs => "the frame's stuffing does not end where the frame ends",
+            Self::Crc => "the frame's CRC is wrong: damaged or cut",
+            Self::Version(version) => {
+                return write!(
+                    f,
+                    "the frame is of version {version} of the link, not {VERSION}"
+                );
+            }
+        })
+    }
+}
+
+impl core::error::Error for FrameError {}
+
 /// The body does not fit; the frame is empty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TooLong;

@@ -70,6 +70,8 @@ impl fmt::Display for Refusal {
     }
 }
 
+impl core::error::Error for Refusal {}
+
 /// The part of a device that decides. Object-safe, so that a host can hold the shadows of different parts.
 pub trait Controller {
     /// What it computes with.

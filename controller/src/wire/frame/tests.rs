@@ -503,3 +503,17 @@ proptest! {
         prop_assert_eq!(stuffed, content);
     }
 }
+
+#[test]
+fn errors_name_the_number_and_the_remedy() {
+    let text = std::format!("{}", DecodeError::Version(7));
+    assert_eq!(
+        text,
+        std::format!("the frame is of version 7, not {VERSION}; update the older side")
+    );
+    let text = std::format!("{}", EncodeError::Robot(RobotId(70_000)));
+    assert!(
+        text.contains("70000") && text.contains("give the robot a smaller one"),
+        "{text}"
+    );
+}
