@@ -75,5 +75,8 @@ const _: () = {
         is_error::<wire::PartError>();
     }
     #[cfg(feature = "agent")]
-    is_error::<agent::WrongTask>();
+    {
+        is_error::<agent::BadInput>();
+        is_error::<agent::WrongTask>();
+    }
 };

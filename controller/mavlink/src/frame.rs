@@ -38,6 +38,14 @@ pub struct Sender {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Full;
 
+impl core::fmt::Display for Full {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str("there is no room for the frame")
+    }
+}
+
+impl core::error::Error for Full {}
+
 /// One whole frame, of MAVLink 1 or 2, whose length is right and whose checksum is right if the message is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RawFrame<'a> {

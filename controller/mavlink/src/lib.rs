@@ -56,3 +56,10 @@ pub mod constants;
 
 pub use generated::dialect;
 pub use mavlink_core;
+
+/// Every public error is a [`core::error::Error`].
+const _: () = {
+    const fn is_error<E: core::error::Error>() {}
+    is_error::<frame::Full>();
+    is_error::<signing::SignError>();
+};

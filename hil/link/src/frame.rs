@@ -73,6 +73,14 @@ impl core::error::Error for FrameError {}
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TooLong;
 
+impl core::fmt::Display for TooLong {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str("the body does not fit into the frame")
+    }
+}
+
+impl core::error::Error for TooLong {}
+
 /// A frame ready to be sent, of at most `N` bytes.
 #[derive(Clone, Debug, Default)]
 pub struct Frame<const N: usize> {
