@@ -26,7 +26,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
     /// free to move (for the grid: one search of the window, O((2r + 1)^2), with
     /// [`Prediction::Reflexive`](crate::formation::Prediction) one more per entry of the template;
     /// in the plane O(N) and the obstacles in sight) and its safety layer's (see there);
-    /// at most [`OUTBOX`] bytes to send.
+    /// at most [`OUTBOX`](super::OUTBOX) bytes to send.
     pub fn step(
         &mut self,
         inputs: &Inputs<'_, S, G::Input<'_>>,
