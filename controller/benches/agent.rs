@@ -5,8 +5,8 @@
 use core::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use staya_controller::agent::{
-    AgentConfig, CELLS, CellState, FormationAgent, FormationGuidance, GridWorkspace, Inputs,
-    KinematicState, OnGrid, RouteAgent, RouteGuidance, Unguarded,
+    AgentConfig, CELLS, CellState, FormationAgent, FormationGuidance, GridWorkspace, Inputs, KinematicState, OnGrid,
+    RouteAgent, RouteGuidance, Unguarded,
 };
 use staya_controller::formation::{FormationParams, Prediction};
 use staya_controller::grid::{Cell, Dir, Window};
@@ -29,20 +29,8 @@ const PLACES: [Cell; 9] = [
     Cell::new(-3, -6),
     Cell::new(-6, -6),
 ];
-const EDGES: [(u16, u16); 12] = [
-    (0, 1),
-    (1, 2),
-    (3, 4),
-    (4, 5),
-    (6, 7),
-    (7, 8),
-    (0, 3),
-    (1, 4),
-    (2, 5),
-    (3, 6),
-    (4, 7),
-    (5, 8),
-];
+const EDGES: [(u16, u16); 12] =
+    [(0, 1), (1, 2), (3, 4), (4, 5), (6, 7), (7, 8), (0, 3), (1, 4), (2, 5), (3, 6), (4, 7), (5, 8)];
 const LEADERS: [u32; 9] = [0, 1, 2, 1, 2, 3, 4, 5, 6];
 /// Robot 5, in the middle: eight neighbours within two steps of the graph.
 const OWN: usize = 4;
@@ -67,11 +55,7 @@ fn inboxes() -> Vec<Vec<u8>> {
         .map(|sequence| {
             let mut bytes = heapless::Vec::<u8, 512>::new();
             for robot in (0..PLACES.len()).filter(|&robot| robot != OWN) {
-                let header = Header {
-                    boot: 0,
-                    sender: RobotId(robot as u32 + 1),
-                    sequence,
-                };
+                let header = Header { boot: 0, sender: RobotId(robot as u32 + 1), sequence };
                 encode(header, &Message::Beacon(beacon(robot)), &mut bytes).unwrap();
             }
             bytes.to_vec()
@@ -81,43 +65,25 @@ fn inboxes() -> Vec<Vec<u8>> {
 
 fn agent_step(c: &mut Criterion) {
     let mut rng = Rng::new(1);
-    let landscapes: Vec<Vec<u8>> = (0..LANDSCAPES)
-        .map(|_| (0..121).map(|_| 1 + rng.below(9) as u8).collect())
-        .collect();
+    let landscapes: Vec<Vec<u8>> =
+        (0..LANDSCAPES).map(|_| (0..121).map(|_| 1 + rng.below(9) as u8).collect()).collect();
     let inboxes = inboxes();
-    let config = AgentConfig {
-        seed: 1,
-        ..AgentConfig::new(RobotId(OWN as u32 + 1), 0.0, TICK)
-    };
+    let config = AgentConfig { seed: 1, ..AgentConfig::new(RobotId(OWN as u32 + 1), 0.0, TICK) };
     let goal = Cell::new(98, 98) + PLACES[OWN];
     let cell = TOP + PLACES[OWN];
     let inputs = |step: usize| Inputs {
         state: KinematicState::default(),
         surroundings: OnGrid {
-            cell: CellState {
-                cell,
-                busy: Duration::ZERO,
-            },
-            window: Window::new(
-                &landscapes[step % LANDSCAPES],
-                cell - Cell::new(5, 5),
-                11,
-                11,
-            ),
+            cell: CellState { cell, busy: Duration::ZERO },
+            window: Window::new(&landscapes[step % LANDSCAPES], cell - Cell::new(5, 5), 11, 11),
         },
         inbox: &inboxes[step % inboxes.len()],
     };
     let now = |step: usize| Instant::from_micros(step as u32 * TICK.as_micros().cast_unsigned());
     let mut workspace = GridWorkspace::<CELLS>::new();
     let mut group = c.benchmark_group("agent_step");
-    for (name, prediction) in [
-        ("constant_velocity", Prediction::Constant),
-        ("reflexive", Prediction::Reflexive),
-    ] {
-        let formation = FormationParams {
-            prediction,
-            ..FormationParams::default()
-        };
+    for (name, prediction) in [("constant_velocity", Prediction::Constant), ("reflexive", Prediction::Reflexive)] {
+        let formation = FormationParams { prediction, ..FormationParams::default() };
         let template = Template::from_graph(&PLACES, &EDGES, OWN, 2).unwrap();
         let guidance = FormationGuidance::new(RouteParams::default(), formation, template);
         let mut agent = FormationAgent::new(&config, guidance, Unguarded, Postcard);

@@ -54,14 +54,8 @@ fn flock(c: &mut Criterion) {
     let mut group = c.benchmark_group("flock_10_neighbors");
 
     let lattice = LatticeParams::new(0.5);
-    let reference = Reference {
-        offset_m: Vec3::new(9.0, 2.0, 0.0),
-        velocity_mps: Vec3::new(0.3, 0.0, 0.0),
-    };
-    let obstacles = [Obstacle::Ball {
-        center_m: Vec3::new(0.6, 0.1, 0.0),
-        radius_m: 0.4,
-    }];
+    let reference = Reference { offset_m: Vec3::new(9.0, 2.0, 0.0), velocity_mps: Vec3::new(0.3, 0.0, 0.0) };
+    let obstacles = [Obstacle::Ball { center_m: Vec3::new(0.6, 0.1, 0.0), radius_m: 0.4 }];
     let mut turn = cases.iter().cycle();
     group.bench_function("lattice", |bencher| {
         bencher.iter(|| {
@@ -95,14 +89,8 @@ fn flock(c: &mut Criterion) {
         });
     });
 
-    for (name, model) in [
-        ("push_out_radial", Model::Radial),
-        ("push_out_tangential", Model::Tangential),
-    ] {
-        let params = PushOutParams {
-            model,
-            ..PushOutParams::new(0.2)
-        };
+    for (name, model) in [("push_out_radial", Model::Radial), ("push_out_tangential", Model::Tangential)] {
+        let params = PushOutParams { model, ..PushOutParams::new(0.2) };
         group.bench_function(name, |bencher| {
             bencher.iter(|| {
                 let nearby = black_box(turn.next().unwrap());

@@ -11,10 +11,7 @@ use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::Beacon;
 
 const ROBOTS: u32 = 16;
-const AGES: Ages = Ages {
-    stale_after: Duration::from_millis(500),
-    expire_after: Duration::from_millis(5_000),
-};
+const AGES: Ages = Ages { stale_after: Duration::from_millis(500), expire_after: Duration::from_millis(5_000) };
 
 type Table = NeighborTable<f32, { ROBOTS as usize }>;
 
@@ -54,16 +51,10 @@ fn neighbor_table(c: &mut Criterion) {
         let others = |id: RobotId| !strangers.iter().any(|stranger| stranger.id == id);
         let _ = full.put(strangers[0], here, now, |_| false);
         turn.next();
-        bencher.iter(|| {
-            turn.next()
-                .map(|stranger| full.put(black_box(*stranger), here, now, others))
-        });
+        bencher.iter(|| turn.next().map(|stranger| full.put(black_box(*stranger), here, now, others)));
     });
     group.bench_function("nearest_8", |bencher| {
-        let inflation = StalenessInflation {
-            growth_mps: 0.5,
-            max_m: 1.0,
-        };
+        let inflation = StalenessInflation { growth_mps: 0.5, max_m: 1.0 };
         bencher.iter(|| {
             let known = table.as_slice();
             nearest::<f32, 8>(known, black_box(here), 0.15, now, &AGES, &inflation)

@@ -4,8 +4,8 @@ use core::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use staya_controller::geom::{Vec2, Vec3};
 use staya_controller::orca::{
-    Analytic, HalfPlane, HalfSpaces, MovingBall, Params, VoxelTable2k, VoxelTable8k, VoxelTable16k,
-    VoxelTable64k, half_space, solve,
+    Analytic, HalfPlane, HalfSpaces, MovingBall, Params, VoxelTable2k, VoxelTable8k, VoxelTable16k, VoxelTable64k,
+    half_space, solve,
 };
 use staya_controller::rand::Rng;
 use staya_controller::scalar::{Q16, Scalar};
@@ -25,11 +25,7 @@ fn vector<S: Scalar>(rng: &mut Rng, most: f64) -> Vec2<S> {
 }
 
 fn params<S: Scalar>() -> Params<S> {
-    Params {
-        horizon_s: S::TWO,
-        separation_s: S::from_milli(50),
-        share: S::HALF,
-    }
+    Params { horizon_s: S::TWO, separation_s: S::from_milli(50), share: S::HALF }
 }
 
 /// Own velocity and a robot of the same radius 0.3 m within 5 m that does not overlap.
@@ -39,12 +35,7 @@ fn pair<S: Scalar>(rng: &mut Rng) -> (Vec2<S>, MovingBall<Vec2<S>>) {
     while offset_m.norm() <= radii_m {
         offset_m = vector(rng, 5.0);
     }
-    let other = MovingBall {
-        offset_m,
-        velocity_mps: vector(rng, 1.5),
-        radii_m,
-        tie: Vec2::ZERO,
-    };
+    let other = MovingBall { offset_m, velocity_mps: vector(rng, 1.5), radii_m, tie: Vec2::ZERO };
     (vector(rng, 1.5), other)
 }
 
@@ -84,9 +75,7 @@ fn what_is_left(c: &mut Criterion) {
     for _ in 0..SCENES {
         let own: Vec2<f32> = vector(&mut rng, 1.0);
         let others: Vec<MovingBall<Vec2<f32>>> = (0..NEIGHBORS).map(|_| pair(&mut rng).1).collect();
-        let in_plane = others
-            .iter()
-            .filter_map(|other| Analytic.half_space(own, other, &params()));
+        let in_plane = others.iter().filter_map(|other| Analytic.half_space(own, other, &params()));
         planes.push((in_plane.collect::<Vec<_>>(), vector::<f32>(&mut rng, 1.0)));
         let up = |rng: &mut Rng| within::<f32>(rng, 1.0);
         let own = own.extend(up(&mut rng));

@@ -26,18 +26,13 @@ fn cost_field(c: &mut Criterion) {
         ("best_exit", outside, ExitRule::Best),
         ("ray_exit", outside, ExitRule::Ray),
     ] {
-        let params = RouteParams {
-            exit,
-            ..RouteParams::default()
-        };
+        let params = RouteParams { exit, ..RouteParams::default() };
         let mut turn = landscapes.iter().cycle();
         group.bench_function(name, |bencher| {
             bencher.iter(|| {
                 let cells = turn.next().unwrap();
                 let window = Window::new(cells, Cell::default(), SIDE, SIDE).unwrap();
-                field
-                    .weights(&params, black_box(&window), from, target, [], none)
-                    .unwrap()
+                field.weights(&params, black_box(&window), from, target, [], none).unwrap()
             });
         });
     }

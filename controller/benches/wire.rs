@@ -10,19 +10,15 @@ use staya_controller::robot::{Mode, RobotId};
 use staya_controller::template::TemplateEntry;
 use staya_controller::time::Instant;
 use staya_controller::wire::{
-    Ack, Beacon, CompactBeacon, GoalAssignment, Header, MAX_FRAME_LEN, Message, Request,
-    RequestKind, Sealed, TEMPLATE_PART, TemplateAssignment, Wire, decode, encode,
+    Ack, Beacon, CompactBeacon, GoalAssignment, Header, MAX_FRAME_LEN, Message, Request, RequestKind, Sealed,
+    TEMPLATE_PART, TemplateAssignment, Wire, decode, encode,
 };
 
 const TO: RobotId = RobotId(70_000);
 const CELL: Cell = Cell::new(98, -98);
 
 fn messages() -> [(&'static str, Message); 6] {
-    let entry = TemplateEntry {
-        offset: CELL,
-        id: TO,
-        hops: 1,
-    };
+    let entry = TemplateEntry { offset: CELL, id: TO, hops: 1 };
     [
         (
             "beacon",
@@ -52,23 +48,9 @@ fn messages() -> [(&'static str, Message); 6] {
         ),
         (
             "request",
-            Message::Request(Request {
-                to: TO,
-                origin: TO,
-                number: 9,
-                kind: RequestKind::Stop,
-                valid_ms: 2_000,
-            }),
+            Message::Request(Request { to: TO, origin: TO, number: 9, kind: RequestKind::Stop, valid_ms: 2_000 }),
         ),
-        (
-            "ack",
-            Message::Ack(Ack {
-                to: TO,
-                boot: 1,
-                number: 9,
-                accepted: true,
-            }),
-        ),
+        ("ack", Message::Ack(Ack { to: TO, boot: 1, number: 9, accepted: true })),
         (
             "template",
             Message::Template(TemplateAssignment {
@@ -81,23 +63,12 @@ fn messages() -> [(&'static str, Message); 6] {
                 entries: [entry; TEMPLATE_PART].into(),
             }),
         ),
-        (
-            "goal",
-            Message::Goal(GoalAssignment {
-                to: RobotId::NOBODY,
-                version: 1,
-                target: CELL,
-            }),
-        ),
+        ("goal", Message::Goal(GoalAssignment { to: RobotId::NOBODY, version: 1, target: CELL })),
     ]
 }
 
 fn wire(c: &mut Criterion) {
-    let header = Header {
-        boot: 1,
-        sender: TO,
-        sequence: 4_711,
-    };
+    let header = Header { boot: 1, sender: TO, sequence: 4_711 };
     let mut out = Vec::<u8, MAX_FRAME_LEN>::new();
     let mut group = c.benchmark_group("encode");
     for (name, message) in messages() {
@@ -122,11 +93,7 @@ fn wire(c: &mut Criterion) {
 
 /// What a tag adds to a beacon: to make it, and to check it.
 fn sealed(c: &mut Criterion) {
-    let header = Header {
-        boot: 1,
-        sender: TO,
-        sequence: 4_711,
-    };
+    let header = Header { boot: 1, sender: TO, sequence: 4_711 };
     let [(_, beacon), ..] = messages();
     let key = Key::of_passphrase(b"bench");
     let mut sender = Sealed::<4>::at_start(&key, 1).unwrap();
@@ -150,9 +117,7 @@ fn sealed(c: &mut Criterion) {
 
 /// Fourteen benchmarks of tens of nanoseconds need no five seconds each.
 fn short() -> Criterion {
-    Criterion::default()
-        .warm_up_time(Duration::from_millis(500))
-        .measurement_time(Duration::from_secs(2))
+    Criterion::default().warm_up_time(Duration::from_millis(500)).measurement_time(Duration::from_secs(2))
 }
 
 criterion_group!(name = benches; config = short(); targets = wire, sealed);

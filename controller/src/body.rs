@@ -85,15 +85,7 @@ mod tests {
         assert_eq!(body.reach(Vec3::new(-2.0, 0.0, 0.0)).x, 0.5);
         assert_eq!(body.reach(Vec3::new(1.25, 0.0, 0.0)).x, 1.25);
         // Too fast for where it is now.
-        assert_eq!(
-            Body {
-                max_speed_mps: 0.25,
-                ..body
-            }
-            .reach(Vec3::ZERO)
-            .x,
-            0.5
-        );
+        assert_eq!(Body { max_speed_mps: 0.25, ..body }.reach(Vec3::ZERO).x, 0.5);
     }
 
     proptest! {

@@ -32,11 +32,7 @@ impl Gain {
     /// The whole number `value`, saturating at 4095.
     #[must_use]
     pub const fn from_int(value: u16) -> Self {
-        Self(if value > 4095 {
-            u16::MAX
-        } else {
-            value << Self::FRACTION_BITS
-        })
+        Self(if value > 4095 { u16::MAX } else { value << Self::FRACTION_BITS })
     }
 
     /// The number `sixteenths / 16`.
@@ -90,10 +86,7 @@ impl Weights {
     /// The cheapest move, the first of equals in the order of [`Dir::MOVES`]; `None` if all are closed.
     #[must_use]
     pub fn best(&self) -> Option<Dir> {
-        self.iter()
-            .filter(|&(_, cost)| cost != EXCLUDED)
-            .min_by_key(|&(_, cost)| cost)
-            .map(|(dir, _)| dir)
+        self.iter().filter(|&(_, cost)| cost != EXCLUDED).min_by_key(|&(_, cost)| cost).map(|(dir, _)| dir)
     }
 
     /// The sum of both for each move; a move that is closed in one of them stays closed.

@@ -100,20 +100,12 @@ impl ser::Serializer for &mut Digest {
     }
 
     fn serialize_f32(self, value: f32) -> Result<(), NotWalked> {
-        self.mix(if value.is_nan() {
-            0x7FC0_0000
-        } else {
-            value.to_bits()
-        });
+        self.mix(if value.is_nan() { 0x7FC0_0000 } else { value.to_bits() });
         Ok(())
     }
 
     fn serialize_f64(self, value: f64) -> Result<(), NotWalked> {
-        self.mix_wide(if value.is_nan() {
-            0x7FF8_0000_0000_0000
-        } else {
-            value.to_bits()
-        });
+        self.mix_wide(if value.is_nan() { 0x7FF8_0000_0000_0000 } else { value.to_bits() });
         Ok(())
     }
 
@@ -143,21 +135,12 @@ impl ser::Serializer for &mut Digest {
         Ok(())
     }
 
-    fn serialize_unit_variant(
-        self,
-        _: &'static str,
-        variant: u32,
-        _: &'static str,
-    ) -> Result<(), NotWalked> {
+    fn serialize_unit_variant(self, _: &'static str, variant: u32, _: &'static str) -> Result<(), NotWalked> {
         self.mix(variant);
         Ok(())
     }
 
-    fn serialize_newtype_struct<T: Serialize + ?Sized>(
-        self,
-        _: &'static str,
-        value: &T,
-    ) -> Result<(), NotWalked> {
+    fn serialize_newtype_struct<T: Serialize + ?Sized>(self, _: &'static str, value: &T) -> Result<(), NotWalked> {
         value.serialize(self)
     }
 
@@ -300,14 +283,8 @@ mod tests {
             digest(&Sample::One(0.0_f32)),
             digest(&Sample::One(-0.0_f32)),
             digest(&Sample::One(1.0_f32)),
-            digest(&Sample::Pair {
-                x: 1.0_f32,
-                y: None,
-            }),
-            digest(&Sample::Pair {
-                x: 1.0_f32,
-                y: Some(0),
-            }),
+            digest(&Sample::Pair { x: 1.0_f32, y: None }),
+            digest(&Sample::Pair { x: 1.0_f32, y: Some(0) }),
             list(&[], true),
             list(&[], false),
             list(&[0], false),

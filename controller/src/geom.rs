@@ -217,10 +217,7 @@ impl<S: Scalar> Vec2<S> {
     /// The same in another kind of number.
     #[must_use]
     pub fn cast<T: Scalar>(&self) -> Vec2<T> {
-        Vec2 {
-            x: cast(self.x),
-            y: cast(self.y),
-        }
+        Vec2 { x: cast(self.x), y: cast(self.y) }
     }
 
     /// Determinant of the columns `self`, `other`: positive when `other` points to the left.
@@ -252,11 +249,7 @@ impl<S: Scalar> Vec3<S> {
     /// The same in another kind of number.
     #[must_use]
     pub fn cast<T: Scalar>(&self) -> Vec3<T> {
-        Vec3 {
-            x: cast(self.x),
-            y: cast(self.y),
-            z: cast(self.z),
-        }
+        Vec3 { x: cast(self.x), y: cast(self.y), z: cast(self.z) }
     }
 
     /// The vector of so many thousandths: metres from millimetres.
@@ -325,11 +318,7 @@ impl Position {
     pub fn moved<S: Scalar>(self, way_m: Vec3<S>) -> Option<Self> {
         let [x, y, z] = self.mm;
         let go = |from: i32, way: S| way.to_milli().map(|mm| from.saturating_add(mm));
-        Some(Self::from_mm([
-            go(x, way_m.x)?,
-            go(y, way_m.y)?,
-            go(z, way_m.z)?,
-        ]))
+        Some(Self::from_mm([go(x, way_m.x)?, go(y, way_m.y)?, go(z, way_m.z)?]))
     }
 }
 
@@ -403,10 +392,7 @@ mod tests {
             let here = Position::from_mm([1_000_000_000, -1_000_000_000, 7]);
             let there = Position::from_mm([1_000_000_001, -1_000_002_000, 7]);
             let way = there.since::<S>(here);
-            assert_eq!(
-                [way.x, way.y, way.z].map(S::to_milli),
-                [Some(1), Some(-2000), Some(0)]
-            );
+            assert_eq!([way.x, way.y, way.z].map(S::to_milli), [Some(1), Some(-2000), Some(0)]);
             assert_eq!(here.moved(way), Some(there));
         }
         check::<f32>();
@@ -438,10 +424,7 @@ mod tests {
         let [a, b] = [p, q].map(|v| Vec2::new(v.x.to_f64(), v.y.to_f64()));
         let near = |got: S, exact: f64, scale: f64| {
             let error = (got.to_f64() - exact).abs();
-            prop_assert!(
-                error <= tolerance * scale.max(1.0),
-                "{got:?} {exact} {error:e}"
-            );
+            prop_assert!(error <= tolerance * scale.max(1.0), "{got:?} {exact} {error:e}");
             Ok(())
         };
         let (long, wide) = (a.norm(), b.norm());
@@ -465,11 +448,7 @@ mod tests {
         near(p.perp().dot(p), 0.0, long * long)?;
         let (p3, q3) = (p.extend(S::ONE), q.extend(-S::ONE));
         let cross = p3.cross(q3);
-        near(
-            cross.dot(p3),
-            0.0,
-            (long + 1.0) * (long + 1.0) * (wide + 1.0),
-        )
+        near(cross.dot(p3), 0.0, (long + 1.0) * (long + 1.0) * (wide + 1.0))
     }
 
     proptest! {

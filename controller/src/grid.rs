@@ -20,9 +20,7 @@ pub const DIAGONAL: u32 = 99;
 pub const BLOCKED: u8 = 0;
 
 /// A cell of the grid, or the difference of two cells.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
-)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Cell {
     /// Column, growing east.
@@ -60,9 +58,7 @@ impl Cell {
         match norm {
             Norm::Chebyshev => self.chebyshev(other) * UNIT,
             // At most 65535 * sqrt 2 cells * 70 < 2^23.
-            Norm::Euclidean => {
-                (self.distance_squared(other) * u64::from(UNIT * UNIT)).isqrt() as u32
-            }
+            Norm::Euclidean => (self.distance_squared(other) * u64::from(UNIT * UNIT)).isqrt() as u32,
         }
     }
 }
@@ -71,10 +67,7 @@ impl Add for Cell {
     type Output = Self;
     /// Saturates at the edges of the coordinate range.
     fn add(self, other: Self) -> Self {
-        Self::new(
-            self.x.saturating_add(other.x),
-            self.y.saturating_add(other.y),
-        )
+        Self::new(self.x.saturating_add(other.x), self.y.saturating_add(other.y))
     }
 }
 
@@ -82,10 +75,7 @@ impl Sub for Cell {
     type Output = Self;
     /// Saturates at the edges of the coordinate range.
     fn sub(self, other: Self) -> Self {
-        Self::new(
-            self.x.saturating_sub(other.x),
-            self.y.saturating_sub(other.y),
-        )
+        Self::new(self.x.saturating_sub(other.x), self.y.saturating_sub(other.y))
     }
 }
 
@@ -141,10 +131,7 @@ impl Dir {
     /// The move with that number; anything above 7 is `Stay`.
     #[must_use]
     pub fn from_index(index: u8) -> Self {
-        Self::MOVES
-            .get(usize::from(index))
-            .copied()
-            .unwrap_or(Self::Stay)
+        Self::MOVES.get(usize::from(index)).copied().unwrap_or(Self::Stay)
     }
 
     /// The cell difference of the move.
@@ -167,19 +154,13 @@ impl Dir {
     #[must_use]
     pub fn between(from: Cell, to: Cell) -> Option<Self> {
         let step = to - from;
-        Self::MOVES
-            .into_iter()
-            .chain([Self::Stay])
-            .find(|dir| dir.offset() == step)
+        Self::MOVES.into_iter().chain([Self::Stay]).find(|dir| dir.offset() == step)
     }
 
     /// Whether the move changes both coordinates.
     #[must_use]
     pub const fn is_diagonal(self) -> bool {
-        matches!(
-            self,
-            Self::NorthEast | Self::NorthWest | Self::SouthWest | Self::SouthEast
-        )
+        matches!(self, Self::NorthEast | Self::NorthWest | Self::SouthWest | Self::SouthEast)
     }
 
     /// Length of the move in [`UNIT`]s; `Stay` counts as one cell, the price of waiting.
@@ -210,12 +191,7 @@ impl<'a> Window<'a> {
     #[must_use]
     pub fn new(cells: &'a [u8], origin: Cell, width: u16, height: u16) -> Option<Self> {
         let fits = cells.len() == usize::from(width) * usize::from(height);
-        fits.then_some(Self {
-            cells,
-            origin,
-            width,
-            height,
-        })
+        fits.then_some(Self { cells, origin, width, height })
     }
 
     /// The south-west cell.
@@ -307,10 +283,7 @@ impl<S: Scalar> GridFrame<S> {
         let index = |at: S, origin: S| -> Option<i16> {
             i16::try_from(((at - origin).checked_div(self.cell_m)?).floor_to_i32()?).ok()
         };
-        Some(Cell::new(
-            index(position_m.x, self.origin_m.x)?,
-            index(position_m.y, self.origin_m.y)?,
-        ))
+        Some(Cell::new(index(position_m.x, self.origin_m.x)?, index(position_m.y, self.origin_m.y)?))
     }
 }
 
@@ -341,10 +314,7 @@ mod tests {
         let (a, b) = (Cell::new(i16::MIN, i16::MIN), Cell::new(i16::MAX, i16::MAX));
         assert_eq!(a.chebyshev(b), 65_535);
         assert_eq!(a.distance(b, Norm::Euclidean), 6_487_634);
-        assert_eq!(
-            Cell::new(0, 0).distance(Cell::new(3, 4), Norm::Euclidean),
-            5 * UNIT
-        );
+        assert_eq!(Cell::new(0, 0).distance(Cell::new(3, 4), Norm::Euclidean), 5 * UNIT);
     }
 
     #[test]

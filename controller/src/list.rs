@@ -4,10 +4,7 @@
 use heapless::{LenType, Vec};
 
 /// Adds items as long as there is room; what has none is dropped.
-pub(crate) fn extend<T, L: LenType, const N: usize>(
-    list: &mut Vec<T, N, L>,
-    items: impl IntoIterator<Item = T>,
-) {
+pub(crate) fn extend<T, L: LenType, const N: usize>(list: &mut Vec<T, N, L>, items: impl IntoIterator<Item = T>) {
     for item in items {
         if list.push(item).is_err() {
             break;

@@ -109,11 +109,7 @@ mod tests {
         // Reference outputs of SplitMix64.
         let mut rng = Rng::new(1_234_567);
         let drawn: Vec<u64> = (0..3).map(|_| rng.next_u64()).collect();
-        let expected = [
-            6_457_827_717_110_365_317,
-            3_203_168_211_198_807_973,
-            9_817_491_932_198_370_423,
-        ];
+        let expected = [6_457_827_717_110_365_317, 3_203_168_211_198_807_973, 9_817_491_932_198_370_423];
         assert_eq!(drawn, expected);
         assert_eq!(Rng::new(0).next_u32(), 0xE220_A839);
     }
@@ -126,27 +122,19 @@ mod tests {
         };
         assert_eq!(golden(0, 0, 0, 0), [556_823_690, 4, 26214]);
         assert_eq!(golden(1, 2, 3, 4), [1_663_603_925, 27, 12336]);
-        assert_eq!(
-            golden(u64::MAX, u32::MAX, u32::MAX, u32::MAX),
-            [519_683_194, 32, 31381]
-        );
+        assert_eq!(golden(u64::MAX, u32::MAX, u32::MAX, u32::MAX), [519_683_194, 32, 31381]);
     }
 
     #[test]
     fn each_bit_of_the_key_changes_half_of_the_output() {
-        let first = |seed, who: u64, tick| {
-            Rng::keyed(seed, (who >> 32) as u32, who as u32, tick).next_u64()
-        };
+        let first = |seed, who: u64, tick| Rng::keyed(seed, (who >> 32) as u32, who as u32, tick).next_u64();
         let mut flipped = 0;
         let keys = 200u64;
         for k in 0..keys {
             let (seed, who, tick) = (k * 7, (k << 32) | (k + 1), k as u32 * 3);
             let base = first(seed, who, tick);
             for bit in 0..64 {
-                for other in [
-                    first(seed ^ (1 << bit), who, tick),
-                    first(seed, who ^ (1 << bit), tick),
-                ] {
+                for other in [first(seed ^ (1 << bit), who, tick), first(seed, who ^ (1 << bit), tick)] {
                     let distance = (base ^ other).count_ones();
                     assert!((8..=56).contains(&distance), "{distance} bits differ");
                     flipped += distance;
@@ -184,16 +172,11 @@ mod tests {
             for _ in 0..n * 2_000 {
                 counts[rng.below(n) as usize] += 1;
             }
-            let chi_square: f64 = counts
-                .iter()
-                .map(|&c| (f64::from(c) - per_bin) * (f64::from(c) - per_bin) / per_bin)
-                .sum();
+            let chi_square: f64 =
+                counts.iter().map(|&c| (f64::from(c) - per_bin) * (f64::from(c) - per_bin) / per_bin).sum();
             // Mean n - 1, deviation sqrt(2 (n - 1)): five deviations.
             let freedom = f64::from(n - 1);
-            assert!(
-                chi_square <= freedom + 5.0 * (2.0 * freedom).sqrt(),
-                "n {n}: {chi_square}"
-            );
+            assert!(chi_square <= freedom + 5.0 * (2.0 * freedom).sqrt(), "n {n}: {chi_square}");
         }
     }
 
@@ -209,9 +192,7 @@ mod tests {
     #[test]
     fn chance_follows_its_probability() {
         let mut rng = Rng::new(11);
-        let hits = (0..100_000)
-            .filter(|_| rng.chance_q32(u32::MAX / 10 * 3))
-            .count();
+        let hits = (0..100_000).filter(|_| rng.chance_q32(u32::MAX / 10 * 3)).count();
         assert!((29_300..30_700).contains(&hits), "{hits}");
         assert!((0..1000).all(|_| !rng.chance_q32(0)));
         assert!((0..1000).all(|_| rng.chance_q32(u32::MAX)));
@@ -221,16 +202,7 @@ mod tests {
     fn logarithm_agrees_with_libm() {
         let mut rng = Rng::new(5);
         let mut worst: f64 = 0.0;
-        let ends = [
-            1,
-            2,
-            3,
-            u64::MAX,
-            u64::MAX - 1,
-            1 << 63,
-            (1 << 63) - 1,
-            1 << 32,
-        ];
+        let ends = [1, 2, 3, u64::MAX, u64::MAX - 1, 1 << 63, (1 << 63) - 1, 1 << 32];
         let random = (0..200_000).map(|i| (rng.next_u64() >> (i % 64)).max(1));
         for k in random.chain(ends) {
             let exact = -libm::log(k as f64 / 18_446_744_073_709_551_616.0);
@@ -251,19 +223,14 @@ mod tests {
     fn exponential_has_mean_and_variance_one() {
         let mut rng = Rng::new(9);
         let n = 200_000u32;
-        let samples: Vec<f64> = (0..n)
-            .map(|_| f64::from(rng.exponential_q16()) / 65_536.0)
-            .collect();
+        let samples: Vec<f64> = (0..n).map(|_| f64::from(rng.exponential_q16()) / 65_536.0).collect();
         let mean = samples.iter().sum::<f64>() / f64::from(n);
         let variance = samples.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / f64::from(n);
         assert!(samples.iter().all(|&x| x > 0.0));
         assert!((mean - 1.0).abs() < 0.01, "mean {mean}");
         assert!((variance - 1.0).abs() < 0.03, "variance {variance}");
         // The median is ln 2.
-        let below = samples
-            .iter()
-            .filter(|&&x| x < core::f64::consts::LN_2)
-            .count();
+        let below = samples.iter().filter(|&&x| x < core::f64::consts::LN_2).count();
         assert!((99_000..101_000).contains(&below), "{below}");
     }
 }

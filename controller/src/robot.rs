@@ -6,9 +6,7 @@ use serde::{Deserialize, Serialize};
 ///
 /// 32 bits, because a simulated swarm has up to a million robots; small numbers stay small on the
 /// wire (varint).
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
-)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[serde(transparent)]
 pub struct RobotId(pub u32);

@@ -72,16 +72,7 @@ mod tests {
     use super::*;
     use crate::cost::TICK;
 
-    const TWO: Weights = Weights::new([
-        3 * TICK,
-        EXCLUDED,
-        EXCLUDED,
-        TICK,
-        EXCLUDED,
-        EXCLUDED,
-        EXCLUDED,
-        EXCLUDED,
-    ]);
+    const TWO: Weights = Weights::new([3 * TICK, EXCLUDED, EXCLUDED, TICK, EXCLUDED, EXCLUDED, EXCLUDED, EXCLUDED]);
 
     #[test]
     fn greedy_sorts_by_cost_and_leaves_out_what_is_excluded() {
@@ -98,9 +89,7 @@ mod tests {
         // Two ticks more at one halving per tick: priorities 1 and 1/4, so first in 1 of 5 cases.
         let sharpness = Sharpness::HalvedPer(Gain::ONE);
         let mut rng = Rng::new(2);
-        let firsts = (0..20_000)
-            .filter(|_| weighted_shuffle(&TWO, sharpness, &mut rng)[0] == Dir::East)
-            .count();
+        let firsts = (0..20_000).filter(|_| weighted_shuffle(&TWO, sharpness, &mut rng)[0] == Dir::East).count();
         // Five standard deviations of a binomial(20000, 0.2) are 283.
         assert!(firsts.abs_diff(4_000) < 283, "{firsts}");
     }

@@ -62,15 +62,8 @@ pub const fn moves(mode: Mode) -> bool {
 mod tests {
     use super::*;
 
-    const MODES: [Mode; 7] = [
-        Mode::Idle,
-        Mode::Forming,
-        Mode::Cruise,
-        Mode::Hold,
-        Mode::Arrived,
-        Mode::Fault,
-        Mode::Passive,
-    ];
+    const MODES: [Mode; 7] =
+        [Mode::Idle, Mode::Forming, Mode::Cruise, Mode::Hold, Mode::Arrived, Mode::Fault, Mode::Passive];
 
     fn situations() -> impl Iterator<Item = Situation> {
         (0..128_u8).map(|bits| {
@@ -101,10 +94,7 @@ mod tests {
                     (Mode::Fault, s.has_fault && !s.is_passive),
                     (Mode::Idle, sound && (!from.gives_way() || !s.has_goal)),
                     (Mode::Arrived, settled && s.has_goal && s.is_at_goal),
-                    (
-                        Mode::Hold,
-                        settled && s.has_goal && !s.is_at_goal && (s.is_stopped || s.is_stuck),
-                    ),
+                    (Mode::Hold, settled && s.has_goal && !s.is_at_goal && (s.is_stopped || s.is_stuck)),
                     (Mode::Forming, settled && goes && s.is_off_place),
                     (Mode::Cruise, settled && goes && !s.is_off_place),
                 ];
@@ -118,8 +108,7 @@ mod tests {
     #[test]
     fn every_mode_is_reached_from_every_other_that_is_steered() {
         for from in MODES {
-            let reached: std::collections::HashSet<Mode> =
-                situations().map(|s| next_mode(from, s)).collect();
+            let reached: std::collections::HashSet<Mode> = situations().map(|s| next_mode(from, s)).collect();
             // From the two others the way leads through one step of standing.
             let modes = if from.gives_way() { 7 } else { 3 };
             assert_eq!(reached.len(), modes, "{from:?}");

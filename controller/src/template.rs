@@ -67,20 +67,11 @@ impl<const F: usize> Template<F> {
     ///
     /// # Errors
     /// See [`TemplateError`].
-    pub fn from_graph(
-        places: &[Cell],
-        edges: &[(u16, u16)],
-        own: usize,
-        rho: u8,
-    ) -> Result<Self, TemplateError> {
+    pub fn from_graph(places: &[Cell], edges: &[(u16, u16)], own: usize, rho: u8) -> Result<Self, TemplateError> {
         let place = |index: usize| places.get(index).copied();
         let (top, here) = place(0).zip(place(own)).ok_or(TemplateError::NoSuchPlace)?;
         let slot = u8::try_from(own).map_err(|_| TemplateError::NoSuchPlace)?;
-        let mut template = Self {
-            slot,
-            offset: here - top,
-            entries: Vec::new(),
-        };
+        let mut template = Self { slot, offset: here - top, entries: Vec::new() };
         for hops in 1..=rho {
             let before = template.entries.len();
             for &(a, b) in edges {
@@ -90,19 +81,11 @@ impl<const F: usize> Template<F> {
                 }
                 for (from, to) in [(a, b), (b, a)] {
                     let there = place(to).ok_or(TemplateError::BadEdge)?;
-                    let is_reached = if hops == 1 {
-                        from == own
-                    } else {
-                        template.hops_to(from) == Some(hops - 1)
-                    };
+                    let is_reached = if hops == 1 { from == own } else { template.hops_to(from) == Some(hops - 1) };
                     if !is_reached || to == own || template.hops_to(to).is_some() {
                         continue;
                     }
-                    let entry = TemplateEntry {
-                        offset: there - here,
-                        id: number(to),
-                        hops,
-                    };
+                    let entry = TemplateEntry { offset: there - here, id: number(to), hops };
                     let full = template.entries.push(entry).is_err();
                     if full {
                         return Err(TemplateError::TooMany);
@@ -120,10 +103,7 @@ impl<const F: usize> Template<F> {
 
     fn hops_to(&self, place: usize) -> Option<u8> {
         let id = number(place);
-        self.entries
-            .iter()
-            .find(|entry| entry.id == id)
-            .map(|entry| entry.hops)
+        self.entries.iter().find(|entry| entry.id == id).map(|entry| entry.hops)
     }
 
     /// The same formation turned: what was ahead for a robot heading east lies in direction
@@ -161,9 +141,7 @@ pub fn rotated(offset: Cell, heading: Dir) -> Cell {
             // Divided by sqrt 2 = DIAGONAL / UNIT, rounded to nearest, away from 0 at one half.
             let (unit, diagonal) = (UNIT.cast_signed(), DIAGONAL.cast_signed());
             let half = if value < 0 { -diagonal } else { diagonal };
-            (2 * value * unit + half)
-                .checked_div(2 * diagonal)
-                .unwrap_or(0)
+            (2 * value * unit + half).checked_div(2 * diagonal).unwrap_or(0)
         } else {
             value
         }

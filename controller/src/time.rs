@@ -132,9 +132,6 @@ mod tests {
     #[test]
     fn spans_saturate() {
         assert_eq!(Duration::from_millis(i32::MAX), Duration::MAX);
-        assert_eq!(
-            Duration::from_millis(3).saturating_mul(i32::MAX),
-            Duration::MAX
-        );
+        assert_eq!(Duration::from_millis(3).saturating_mul(i32::MAX), Duration::MAX);
     }
 }

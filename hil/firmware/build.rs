@@ -14,10 +14,7 @@ fn main() {
     number("STAYA_BAUD", BAUD, 1200..=2_000_000);
     // The PLL divides the crystal down to 1 MHz, so whole megahertz only.
     let hse_hz = number("STAYA_HSE_HZ", HSE_HZ, 4_000_000..=26_000_000);
-    assert!(
-        hse_hz.is_multiple_of(1_000_000),
-        "STAYA_HSE_HZ is not in whole megahertz"
-    );
+    assert!(hse_hz.is_multiple_of(1_000_000), "STAYA_HSE_HZ is not in whole megahertz");
 
     let target = env::var("TARGET").unwrap_or_default();
     let (part, scripts): (&str, &[&str]) = match target.as_str() {
@@ -59,21 +56,15 @@ fn main() {
 
 /// The programs: each file in src/bin is one.
 fn bins(here: &Path) -> Vec<String> {
-    let entries = std::fs::read_dir(here.join("src/bin"))
-        .into_iter()
-        .flatten();
-    entries
-        .filter_map(|entry| Some(entry.ok()?.path().file_stem()?.to_str()?.to_string()))
-        .collect()
+    let entries = std::fs::read_dir(here.join("src/bin")).into_iter().flatten();
+    entries.filter_map(|entry| Some(entry.ok()?.path().file_stem()?.to_str()?.to_string())).collect()
 }
 
 /// A number from the environment or the default, handed on to the crate as an environment variable.
 fn number(name: &str, default: u32, range: std::ops::RangeInclusive<u32>) -> u32 {
     println!("cargo:rerun-if-env-changed={name}");
     let value = match env::var(name) {
-        Ok(text) => text
-            .parse()
-            .unwrap_or_else(|_| panic!("{name} is not a number: {text}")),
+        Ok(text) => text.parse().unwrap_or_else(|_| panic!("{name} is not a number: {text}")),
         Err(_) => default,
     };
     assert!(range.contains(&value), "{name} is outside {range:?}");

@@ -54,9 +54,7 @@ pub struct BridgeArgs {
 /// A number within limits.
 fn within(text: &str, least: f64, most: f64) -> Result<f64, String> {
     let value: Option<f64> = text.parse().ok();
-    value
-        .filter(|value| (least..=most).contains(value))
-        .ok_or_else(|| format!("a number from {least} to {most}"))
+    value.filter(|value| (least..=most).contains(value)).ok_or_else(|| format!("a number from {least} to {most}"))
 }
 
 fn speed(text: &str) -> Result<f64, String> {
@@ -74,26 +72,17 @@ fn rate(text: &str) -> Result<f64, String> {
 fn origin(text: &str) -> Result<Origin, String> {
     let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
     let place = match numbers.as_deref() {
-        Ok(&[latitude_deg, longitude_deg, altitude_m]) => Some(Place {
-            latitude_deg,
-            longitude_deg,
-            altitude_m,
-        }),
+        Ok(&[latitude_deg, longitude_deg, altitude_m]) => Some(Place { latitude_deg, longitude_deg, altitude_m }),
         _ => None,
     };
-    place
-        .and_then(Origin::new)
-        .ok_or_else(|| "three numbers: -90 to 90, -180 to 180, metres".into())
+    place.and_then(Origin::new).ok_or_else(|| "three numbers: -90 to 90, -180 to 180, metres".into())
 }
 
 /// The lines as they were given, and where those are that listen.
 fn lines(swarm: &Swarm, endpoints: &[Endpoint]) -> String {
     let named = endpoints.iter().enumerate().map(|(line, endpoint)| {
         let local = swarm.lines().local(line);
-        local.map_or_else(
-            || endpoint.to_string(),
-            |local| format!("{endpoint} (here {local})"),
-        )
+        local.map_or_else(|| endpoint.to_string(), |local| format!("{endpoint} (here {local})"))
     });
     named.collect::<Vec<_>>().join(", ")
 }
@@ -112,10 +101,7 @@ impl BridgeArgs {
     /// # Errors
     /// A scenario or key that cannot be read or is wrong, too many robots, a line that cannot be opened, a log that cannot be written.
     pub fn run(&self, global: &Global) -> Result<Ended> {
-        let overrides = Overrides {
-            seed: self.seed,
-            ticks: None,
-        };
+        let overrides = Overrides { seed: self.seed, ticks: None };
         let scenario = Scenario::load(&self.scenario, &overrides)?;
         say(scenario.key_remark.as_deref());
         let ticks = match (self.ticks, self.seconds) {
@@ -156,9 +142,7 @@ impl BridgeArgs {
                 && shown != Some(ticks)
             {
                 shown = Some(ticks);
-                progress.set(ticks.into(), || {
-                    format!("ticks, {count} vehicles at {lines}")
-                });
+                progress.set(ticks.into(), || format!("ticks, {count} vehicles at {lines}"));
             }
             stop.is_requested()
         })?;
@@ -186,22 +170,14 @@ fn table(name: &str, report: &Report) -> Result<String, std::fmt::Error> {
     line("vehicles", report.vehicles.to_string())?;
     line(
         "simulated",
-        format!(
-            "{} s in {} ticks, {:.1} s on the wall",
-            report.sim_seconds, report.ticks, report.wall_seconds
-        ),
+        format!("{} s in {} ticks, {:.1} s on the wall", report.sim_seconds, report.ticks, report.wall_seconds),
     )?;
     line(
         "deadlines",
-        format!(
-            "{} of {} missed, slowest tick {:.4} s",
-            report.deadlines_missed, report.ticks, report.slowest_seconds
-        ),
+        format!("{} of {} missed, slowest tick {:.4} s", report.deadlines_missed, report.ticks, report.slowest_seconds),
     )?;
     let commands = report.commands.iter();
-    let commands: Vec<_> = commands
-        .map(|(result, count)| format!("{count} {result}"))
-        .collect();
+    let commands: Vec<_> = commands.map(|(result, count)| format!("{count} {result}")).collect();
     let commands = match commands.is_empty() {
         true => "none".into(),
         false => commands.join(", "),
@@ -209,10 +185,7 @@ fn table(name: &str, report: &Report) -> Result<String, std::fmt::Error> {
     line("commands", commands)?;
     line(
         "frames dropped",
-        format!(
-            "{} for nobody here, {} without a good signature",
-            report.frames_ignored, report.frames_refused
-        ),
+        format!("{} for nobody here, {} without a good signature", report.frames_ignored, report.frames_refused),
     )?;
     line("collisions", report.collisions.to_string())?;
     line("trace hash", report.trace_hash.clone())?;
@@ -245,9 +218,7 @@ mod tests {
     fn origins_are_places_on_the_earth() {
         let zurich = origin("47.4, 8.5,488").expect("a place").place();
         assert_eq!((zurich.latitude_deg, zurich.altitude_m), (47.4, 488.0));
-        for bad in [
-            "", "1,2", "1,2,3,4", "91,0,0", "0,181,0", "a,b,c", "nan,0,0",
-        ] {
+        for bad in ["", "1,2", "1,2,3,4", "91,0,0", "0,181,0", "a,b,c", "nan,0,0"] {
             assert!(origin(bad).is_err(), "{bad}");
         }
     }

@@ -42,10 +42,7 @@ impl CompanionArgs {
     /// A configuration that cannot be read or is wrong, links that cannot be opened, a log that cannot be written.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         let mut config = Config::load(&self.config)?;
-        for (given, kept) in [
-            (&self.key, &mut config.key),
-            (&self.link_key, &mut config.link_key),
-        ] {
+        for (given, kept) in [(&self.key, &mut config.key), (&self.link_key, &mut config.link_key)] {
             if given.is_some() {
                 kept.clone_from(given);
             }

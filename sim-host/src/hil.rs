@@ -23,11 +23,9 @@ use std::time::{Duration, Instant};
 /// The other robots run in this process. For every robot on a device a shadow runs here too: the first step at which both differ
 /// by a bit ends the run and is printed. Exit code 1 if that happens, or a device falls silent.
 #[derive(Args, Clone, Debug)]
-#[command(
-    after_help = "Examples:\n  staya hil scenarios/six-robots.toml --device qemu:stm32f405 --devices 4\n  \
+#[command(after_help = "Examples:\n  staya hil scenarios/six-robots.toml --device qemu:stm32f405 --devices 4\n  \
     staya hil scenarios/swap-circle.toml --device qemu:stm32f405 --device qemu:microbit --devices 6\n  \
-    staya hil scenarios/six-robots.toml --device serial:/dev/ttyACM0,baud=115200 --real-time"
-)]
+    staya hil scenarios/six-robots.toml --device serial:/dev/ttyACM0,baud=115200 --real-time")]
 pub struct HilArgs {
     #[command(flatten)]
     scenario: ScenarioArgs,
@@ -66,9 +64,7 @@ pub struct HilArgs {
 
 fn probability(text: &str) -> Result<f64, String> {
     let value: Option<f64> = text.parse().ok();
-    value
-        .filter(|value| (0.0..1.0).contains(value))
-        .ok_or_else(|| String::from("a number from 0 to less than 1"))
+    value.filter(|value| (0.0..1.0).contains(value)).ok_or_else(|| String::from("a number from 0 to less than 1"))
 }
 
 /// The figures of a run, as with `--json`.
@@ -157,10 +153,7 @@ impl HilArgs {
             bail!("--devices {count}: {} has {robots} robots", scenario.name);
         }
         if count < self.kinds.len() {
-            bail!(
-                "--devices {count}: fewer than the {} given with --device",
-                self.kinds.len()
-            );
+            bail!("--devices {count}: fewer than the {} given with --device", self.kinds.len());
         }
         let mut devices: Vec<(usize, Device)> = Vec::new();
         // A port has one board; emulators there are as many as anybody wants.
@@ -168,10 +161,9 @@ impl HilArgs {
         for index in 0..count {
             let device = match self.kinds.get(index) {
                 Some(device) => device,
-                None if emulated.is_empty() => bail!(
-                    "--devices {count}: a port has one board, and {} are given with --device",
-                    self.kinds.len()
-                ),
+                None if emulated.is_empty() => {
+                    bail!("--devices {count}: a port has one board, and {} are given with --device", self.kinds.len())
+                }
                 None => emulated[(index - self.kinds.len()) % emulated.len()],
             };
             if !is_emulated(device) && devices.iter().any(|(_, other)| other == device) {
@@ -187,14 +179,7 @@ impl HilArgs {
                 delay: Duration::from_millis(self.delay),
                 seed: scenario.seed,
             },
-            resets: self
-                .reset
-                .iter()
-                .map(|&tick| Reset {
-                    tick,
-                    down_ticks: self.down,
-                })
-                .collect(),
+            resets: self.reset.iter().map(|&tick| Reset { tick, down_ticks: self.down }).collect(),
         })
     }
 
@@ -212,9 +197,7 @@ impl HilArgs {
         let count = scenario.robots.len();
         let mut pace = self.real_time.then(|| Pace::new(scenario.tick_s()));
         let mut watch = |moment: &Moment<'_>, _: &mut dyn Iterator<Item = RobotRow>| {
-            progress.set(moment.row.tick.into(), || {
-                format!("ticks, {} of {count} robots arrived", moment.arrived)
-            });
+            progress.set(moment.row.tick.into(), || format!("ticks, {} of {count} robots arrived", moment.arrived));
             if stop.is_requested() || log.trouble().is_some() {
                 return ControlFlow::Break(());
             }
@@ -267,14 +250,7 @@ struct Pace {
 
 impl Pace {
     const fn new(tick_seconds: f64) -> Self {
-        Self {
-            report: RealTime {
-                tick_seconds,
-                deadlines_missed: 0,
-                slowest_seconds: 0.0,
-            },
-            began: None,
-        }
+        Self { report: RealTime { tick_seconds, deadlines_missed: 0, slowest_seconds: 0.0 }, began: None }
     }
 
     /// Waits until the tick after `ticks` ticks is due. Those that came late are not made up for: the clock starts anew with them.
@@ -313,15 +289,9 @@ impl Summary {
         let stopped = if self.interrupted { ", stopped" } else { "" };
         writeln!(text, "{} (seed {}{stopped})", self.scenario, self.seed)?;
         let mut line = |name: &str, value: String| writeln!(text, "  {name:<16}{value}");
-        line(
-            "simulated",
-            format!("{} s in {} ticks", self.sim_seconds, self.ticks),
-        )?;
+        line("simulated", format!("{} s in {} ticks", self.sim_seconds, self.ticks))?;
         line("took", format!("{:.2} s", self.wall_seconds))?;
-        line(
-            "arrived",
-            format!("{} of {} robots", self.arrived, self.robots),
-        )?;
+        line("arrived", format!("{} of {} robots", self.arrived, self.robots))?;
         line("collisions", self.collisions.to_string())?;
         line("trace hash", self.trace_hash.clone())?;
         if let Some(hash) = &self.trace_hash_without_devices {
@@ -344,15 +314,7 @@ impl Summary {
         writeln!(
             text,
             "\n{:>6}  {:<24}{:>7}{:>11}{:>16}{:>21}{:>8}{:>8}{:>7}",
-            "robot",
-            "device",
-            "steps",
-            "mismatches",
-            "round trip ms",
-            "instructions",
-            "stack",
-            "resent",
-            "resets"
+            "robot", "device", "steps", "mismatches", "round trip ms", "instructions", "stack", "resent", "resets"
         )?;
         for device in &self.devices {
             let of = |spread: Option<Spread>, show: &dyn Fn(Spread) -> String| {
@@ -366,15 +328,8 @@ impl Summary {
                 device.device,
                 device.steps,
                 device.mismatches,
-                of(device.round_trip_us, &|s| format!(
-                    "{:.1} / {:.1}",
-                    ms(s.median),
-                    ms(s.p99)
-                )),
-                of(device.instructions.or(device.ticks), &|s| format!(
-                    "{} / {}",
-                    s.median, s.max
-                )),
+                of(device.round_trip_us, &|s| format!("{:.1} / {:.1}", ms(s.median), ms(s.p99))),
+                of(device.instructions.or(device.ticks), &|s| format!("{} / {}", s.median, s.max)),
                 device.stack_bytes,
                 device.resent,
                 device.resets
@@ -405,14 +360,9 @@ mod tests {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
         let path = path.join("../scenarios/six-robots.toml");
         let scenario = Scenario::load(&path, &Overrides::default()).expect("a good scenario");
-        let plan = line
-            .hil
-            .plan(&scenario)
-            .map_err(|error| error.to_string())?;
+        let plan = line.hil.plan(&scenario).map_err(|error| error.to_string())?;
         let devices = plan.devices.into_iter();
-        Ok(devices
-            .map(|(at, device)| (at, device.to_string()))
-            .collect())
+        Ok(devices.map(|(at, device)| (at, device.to_string())).collect())
     }
 
     #[test]
@@ -427,9 +377,7 @@ mod tests {
         };
         assert_eq!(names("--device qemu:microbit"), "qemu:microbit");
         assert_eq!(
-            names(
-                "--device qemu:stm32f405 --device serial:/dev/x --device qemu:riscv32 --devices 6"
-            ),
+            names("--device qemu:stm32f405 --device serial:/dev/x --device qemu:riscv32 --devices 6"),
             "qemu:stm32f405 serial:/dev/x,baud=115200 qemu:riscv32 qemu:stm32f405 qemu:riscv32 qemu:stm32f405"
         );
     }
@@ -440,14 +388,8 @@ mod tests {
             ("--device qemu:z80", "no part `z80`"),
             ("--device qemu:stm32f405 --devices 7", "has 6 robots"),
             ("--device serial:/dev/x --devices 2", "a port has one board"),
-            (
-                "--device serial:/dev/x --device serial:/dev/x",
-                "given twice",
-            ),
-            (
-                "--device qemu:microbit --device qemu:riscv32 --devices 1",
-                "fewer than the 2",
-            ),
+            ("--device serial:/dev/x --device serial:/dev/x", "given twice"),
+            ("--device qemu:microbit --device qemu:riscv32 --devices 1", "fewer than the 2"),
             ("--device qemu:microbit --loss 1", "less than 1"),
             ("", "--device"),
         ] {

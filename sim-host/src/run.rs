@@ -33,10 +33,7 @@ impl ScenarioArgs {
     /// # Errors
     /// It cannot be read, or is wrong.
     pub fn load(&self) -> Result<Scenario> {
-        let overrides = Overrides {
-            seed: self.seed,
-            ticks: self.ticks,
-        };
+        let overrides = Overrides { seed: self.seed, ticks: self.ticks };
         let scenario = Scenario::load(&self.scenario, &overrides)?;
         if let Some(remark) = &scenario.key_remark {
             eprintln!("{remark}");
@@ -103,10 +100,7 @@ impl RunArgs {
     /// A scenario that cannot be read or is wrong, results that cannot be written.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         let scenario = self.scenario.load()?;
-        let out = self
-            .out
-            .clone()
-            .unwrap_or_else(|| Path::new("out").join(&scenario.name));
+        let out = self.out.clone().unwrap_or_else(|| Path::new("out").join(&scenario.name));
         let stop = Stop::on_ctrl_c()?;
         let summary = run(&scenario, &out, &stop, global)?;
         if global.json {
@@ -132,13 +126,7 @@ fn run(scenario: &Scenario, out: &Path, stop: &Stop, global: &Global) -> Result<
         }
         None => Vec::new(),
     };
-    let names = [
-        "summary.json",
-        "series.csv",
-        "series.schema.json",
-        "trace.csv",
-        "trace.schema.json",
-    ];
+    let names = ["summary.json", "series.csv", "series.schema.json", "trace.csv", "trace.schema.json"];
     let mut files: Vec<_> = names.iter().map(|name| out.join(name)).collect();
     files.extend(match &scenario.plane {
         None => run_pictures(&scenario.terrain, &history, &edges, out)?,
@@ -165,14 +153,8 @@ fn simulate_recorded(
             failed = Some(error);
             return ControlFlow::Break(());
         }
-        progress.set(moment.row.tick.into(), || {
-            format!("ticks, {} of {count} robots arrived", moment.arrived)
-        });
-        if stop.is_requested() {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
+        progress.set(moment.row.tick.into(), || format!("ticks, {} of {count} robots arrived", moment.arrived));
+        if stop.is_requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let outcome = simulate(scenario, watch).context("the robots cannot be placed")?;
     progress.finish();
@@ -226,23 +208,11 @@ impl Summary {
         let stopped = if self.interrupted { ", stopped" } else { "" };
         writeln!(text, "{} (seed {}{stopped})", self.scenario, self.seed)?;
         let mut line = |name: &str, value: String| writeln!(text, "  {name:<22}{value}");
-        line(
-            "simulated",
-            format!("{} s in {} ticks", self.sim_seconds, self.ticks),
-        )?;
-        line(
-            "took",
-            format!(
-                "{:.2} s, {cost_us:.2} us per robot and tick",
-                self.wall_seconds
-            ),
-        )?;
+        line("simulated", format!("{} s in {} ticks", self.sim_seconds, self.ticks))?;
+        line("took", format!("{:.2} s, {cost_us:.2} us per robot and tick", self.wall_seconds))?;
         let mut arrived = format!("{} of {} robots", self.arrived, self.robots);
         if let (Some(mean), Some(last)) = (self.arrival_mean_seconds, self.arrival_last_seconds) {
-            write!(
-                arrived,
-                ", on average after {mean:.1} s, the last after {last:.1} s"
-            )?;
+            write!(arrived, ", on average after {mean:.1} s, the last after {last:.1} s")?;
         }
         line("arrived", arrived)?;
         line("collisions", self.collisions.to_string())?;
@@ -252,15 +222,10 @@ impl Summary {
         if let Some(gap) = self.least_obstacle_gap_m {
             line("", format!("{gap:.4} m to an obstacle"))?;
         }
-        if let (Some(error), Some(best_fit), Some(distance)) = (
-            self.formation_error_per_agent,
-            self.formation_error_per_agent_best_fit,
-            self.graph_distance_mean,
-        ) {
-            line(
-                "formation error",
-                format!("{error:.3} cells per robot ({best_fit:.3} by best fit)"),
-            )?;
+        if let (Some(error), Some(best_fit), Some(distance)) =
+            (self.formation_error_per_agent, self.formation_error_per_agent_best_fit, self.graph_distance_mean)
+        {
+            line("formation error", format!("{error:.3} cells per robot ({best_fit:.3} by best fit)"))?;
             line("graph distance", format!("{distance:.3}"))?;
         }
         let packets = &self.packets;
@@ -279,27 +244,13 @@ impl Summary {
         )?;
         line(
             "receptions",
-            format!(
-                "{} delivered, {} lost{}",
-                packets.delivered,
-                packets.lost,
-                share(packets.lost, receptions)
-            ),
+            format!("{} delivered, {} lost{}", packets.delivered, packets.lost, share(packets.lost, receptions)),
         )?;
-        line(
-            "bad frames",
-            format!(
-                "{} damaged, {} refused",
-                packets.corrupted, packets.rejected
-            ),
-        )?;
+        line("bad frames", format!("{} damaged, {} refused", packets.corrupted, packets.rejected))?;
         if self.is_authenticated {
             line(
                 "of them, by the key",
-                format!(
-                    "{} unsigned, {} forged, {} replayed",
-                    packets.unsigned, packets.forged, packets.replayed
-                ),
+                format!("{} unsigned, {} forged, {} replayed", packets.unsigned, packets.forged, packets.replayed),
             )?;
         }
         line("trace hash", self.trace_hash.clone())?;

@@ -98,13 +98,7 @@ struct Source {
     /// .map (Moving AI), .asc (ESRI heights) or .yaml (ROS map with a .pgm).
     file: PathBuf,
     /// Only a part of the map: column and row of its south-west cell, width, height.
-    #[arg(
-        long,
-        value_name = "X,Y,W,H",
-        value_delimiter = ',',
-        num_args = 1,
-        allow_hyphen_values = true
-    )]
+    #[arg(long, value_name = "X,Y,W,H", value_delimiter = ',', num_args = 1, allow_hyphen_values = true)]
     crop: Option<Vec<u16>>,
     /// .asc: the steepest passable slope, rise over run.
     #[arg(long, value_name = "SLOPE", default_value_t = SlopeRule::default().max_slope)]
@@ -120,10 +114,7 @@ struct Source {
 impl Source {
     fn load(&self) -> Result<Terrain> {
         let options = LoadOptions {
-            slope: SlopeRule {
-                classes: self.slope_classes,
-                max_slope: self.max_slope,
-            },
+            slope: SlopeRule { classes: self.slope_classes, max_slope: self.max_slope },
             downsample: self.downsample,
             ..LoadOptions::default()
         };
@@ -170,24 +161,12 @@ impl Report {
         let mut text = String::new();
         let share = 100.0 * m.blocked as f64 / m.cells as f64;
         writeln!(text, "{}", self.file.display())?;
-        writeln!(
-            text,
-            "  size                  {} x {} cells of {} m",
-            self.width, self.height, self.cell_m
-        )?;
-        writeln!(
-            text,
-            "  classes               {}, blocked {share:.1} %",
-            m.classes
-        )?;
+        writeln!(text, "  size                  {} x {} cells of {} m", self.width, self.height, self.cell_m)?;
+        writeln!(text, "  classes               {}, blocked {share:.1} %", m.classes)?;
         writeln!(text, "  entropy S             {:.4}", m.entropy)?;
         writeln!(text, "  total edge TE         {}", m.total_edge)?;
         writeln!(text, "  edge density TED      {:.4}", m.total_edge_density)?;
-        writeln!(
-            text,
-            "  obstacles by N(S)     {:.1}",
-            self.equivalent_obstacles
-        )?;
+        writeln!(text, "  obstacles by N(S)     {:.1}", self.equivalent_obstacles)?;
         print(&text)
     }
 }
@@ -215,22 +194,14 @@ impl TerrainArgs {
 
 impl Generate {
     fn run(&self, global: &Global) -> Result<()> {
-        let extension = self
-            .out
-            .extension()
-            .and_then(|extension| extension.to_str());
+        let extension = self.out.extension().and_then(|extension| extension.to_str());
         if !matches!(extension, Some("yaml" | "yml")) {
             bail!(
                 "--out {}: landscapes are written as ROS maps; choose a name that ends in .yaml (the picture goes into a .pgm beside it)",
                 self.out.display()
             );
         }
-        let plan = Plan {
-            width: self.width,
-            height: self.height,
-            classes: self.classes,
-            seed: self.seed,
-        };
+        let plan = Plan { width: self.width, height: self.height, classes: self.classes, seed: self.seed };
         let terrain = match (self.kind, self.entropy, self.total_edge) {
             (Kind::Uniform, _, _) => uniform(&plan)?,
             (Kind::Natural, _, _) => natural(&plan, self.obstacles, self.norm)?,
@@ -263,10 +234,7 @@ mod tests {
 
     fn run(words: &[&str]) -> Result<Ended> {
         let line = Line::try_parse_from([&["terrain"], words].concat())?;
-        let global = Global {
-            json: true,
-            ..Global::default()
-        };
+        let global = Global { json: true, ..Global::default() };
         line.terrain.run(&global)
     }
 
@@ -278,22 +246,8 @@ mod tests {
         let size = ["--width", "30", "--height", "20"];
         let kinds: [&[&str]; 3] = [
             &["--kind", "uniform"],
-            &[
-                "--kind",
-                "natural",
-                "--obstacles",
-                "7",
-                "--norm",
-                "chebyshev",
-            ],
-            &[
-                "--kind",
-                "entropy",
-                "--entropy",
-                "1.2",
-                "--total-edge",
-                "300",
-            ],
+            &["--kind", "natural", "--obstacles", "7", "--norm", "chebyshev"],
+            &["--kind", "entropy", "--entropy", "1.2", "--total-edge", "300"],
         ];
         for kind in kinds {
             let words = [&["generate", "--out", &land], kind, &size].concat();
@@ -304,10 +258,7 @@ mod tests {
         let metrics = Metrics::of(&Terrain::load(land.as_ref()).unwrap());
         assert!(metrics.total_edge.abs_diff(300) <= 2);
         assert_eq!(run(&["metrics", &land]).unwrap(), Ended::Done);
-        run(&[
-            "draw", &land, "--out", &picture, "--crop", "1,2,10,5", "--scale", "3",
-        ])
-        .unwrap();
+        run(&["draw", &land, "--out", &picture, "--crop", "1,2,10,5", "--scale", "3"]).unwrap();
         assert!(std::fs::metadata(&picture).unwrap().len() > 0);
     }
 
@@ -315,17 +266,13 @@ mod tests {
     fn wrong_usage_names_the_remedy() {
         let message = |words: &[&str]| run(words).unwrap_err().to_string();
         assert!(message(&["generate", "--out", "a.asc"]).contains("ends in .yaml"));
-        assert!(
-            message(&["generate", "--kind", "entropy", "--out", "a.yaml"]).contains("--total-edge")
-        );
+        assert!(message(&["generate", "--kind", "entropy", "--out", "a.yaml"]).contains("--total-edge"));
         assert!(message(&["metrics", "a.tif"]).contains("unknown kind of terrain file"));
         let dir = tempfile::tempdir().unwrap();
         let land = dir.path().join("a.yaml");
         ros::save(&Terrain::flat(3, 3), &land).unwrap();
         let land = land.to_str().unwrap();
         assert!(message(&["metrics", land, "--crop", "1,2"]).contains("X,Y,WIDTH,HEIGHT"));
-        assert!(
-            message(&["metrics", land, "--crop", "1,2,9,9"]).contains("leaves the map of 3 x 3")
-        );
+        assert!(message(&["metrics", land, "--crop", "1,2,9,9"]).contains("leaves the map of 3 x 3"));
     }
 }

@@ -14,11 +14,7 @@ fn staya(arguments: &[&str]) -> Command {
 
 fn scenario(name: &str) -> String {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
-    folder
-        .join(name)
-        .to_str()
-        .expect("a path in UTF-8")
-        .to_owned()
+    folder.join(name).to_str().expect("a path in UTF-8").to_owned()
 }
 
 /// The maps that come with Staya.
@@ -36,11 +32,7 @@ fn text(bytes: &[u8]) -> String {
 
 /// Standard error of a run that must fail with one line.
 fn refusal(arguments: &[&str]) -> String {
-    let Output {
-        status,
-        stdout,
-        stderr,
-    } = staya(arguments).output().expect("staya starts");
+    let Output { status, stdout, stderr } = staya(arguments).output().expect("staya starts");
     let stderr = text(&stderr);
     assert_eq!(status.code(), Some(1), "{stderr}");
     assert!(stdout.is_empty(), "{}", text(&stdout));
@@ -51,95 +43,45 @@ fn refusal(arguments: &[&str]) -> String {
 #[test]
 fn json_is_one_object_with_every_promised_key() {
     let (_dir, out) = folder();
-    let arguments = [
-        "run",
-        &scenario("figure-5.toml"),
-        "--json",
-        "--quiet",
-        "--out",
-        &out,
-    ];
-    let Output {
-        status,
-        stdout,
-        stderr,
-    } = staya(&arguments).output().expect("staya starts");
+    let arguments = ["run", &scenario("figure-5.toml"), "--json", "--quiet", "--out", &out];
+    let Output { status, stdout, stderr } = staya(&arguments).output().expect("staya starts");
     assert!(status.success(), "{}", text(&stderr));
     assert!(stderr.is_empty(), "{}", text(&stderr));
     let json: Value = serde_json::from_slice(&stdout).expect("one JSON object");
     assert_eq!(json["scenario"], "figure-5");
     assert_eq!((&json["seed"], &json["robots"]), (&1.into(), &6.into()));
-    assert_eq!(
-        (&json["arrived"], &json["collisions"]),
-        (&6.into(), &0.into())
-    );
-    for key in [
-        "ticks",
-        "sim_seconds",
-        "wall_seconds",
-        "formation_error_per_agent",
-        "graph_distance_mean",
-    ] {
-        assert!(
-            json[key].as_f64().is_some_and(|value| value > 0.0),
-            "{key}: {}",
-            json[key]
-        );
+    assert_eq!((&json["arrived"], &json["collisions"]), (&6.into(), &0.into()));
+    for key in ["ticks", "sim_seconds", "wall_seconds", "formation_error_per_agent", "graph_distance_mean"] {
+        assert!(json[key].as_f64().is_some_and(|value| value > 0.0), "{key}: {}", json[key]);
     }
     for key in ["sent", "delivered", "lost", "corrupted", "rejected"] {
         assert!(json["packets"][key].is_u64(), "packets.{key}");
     }
     let hash = json["trace_hash"].as_str().expect("a string");
-    assert!(
-        hash.len() == 16 && hash.chars().all(|c| c.is_ascii_hexdigit()),
-        "{hash}"
-    );
+    assert!(hash.len() == 16 && hash.chars().all(|c| c.is_ascii_hexdigit()), "{hash}");
 
-    let written: Value = serde_json::from_str(
-        &fs::read_to_string(Path::new(&out).join("summary.json")).expect("summary.json"),
-    )
-    .expect("JSON");
+    let written: Value =
+        serde_json::from_str(&fs::read_to_string(Path::new(&out).join("summary.json")).expect("summary.json"))
+            .expect("JSON");
     assert_eq!(written, json);
     let files = json["files"].as_array().expect("a list");
     for file in files {
         let path = PathBuf::from(file.as_str().expect("a name"));
-        assert!(
-            fs::metadata(&path).is_ok_and(|m| m.len() > 0),
-            "{}",
-            path.display()
-        );
+        assert!(fs::metadata(&path).is_ok_and(|m| m.len() > 0), "{}", path.display());
     }
-    for name in [
-        "summary.json",
-        "trace.csv",
-        "series.csv",
-        "trace.schema.json",
-    ] {
-        assert!(
-            files
-                .iter()
-                .any(|f| f.as_str().is_some_and(|f| f.ends_with(name))),
-            "{name}"
-        );
+    for name in ["summary.json", "trace.csv", "series.csv", "trace.schema.json"] {
+        assert!(files.iter().any(|f| f.as_str().is_some_and(|f| f.ends_with(name))), "{name}");
     }
-    assert!(
-        files
-            .iter()
-            .any(|f| f.as_str().is_some_and(|f| f.ends_with(".png")))
-    );
+    assert!(files.iter().any(|f| f.as_str().is_some_and(|f| f.ends_with(".png"))));
 }
 
 #[test]
 fn a_formationless_run_says_null_and_the_command_line_overrides_the_file() {
     let (_dir, out) = folder();
     let path = scenario("moving-ai-20.toml");
-    let base = [
-        "run", &path, "--json", "--quiet", "--out", &out, "--ticks", "7",
-    ];
+    let base = ["run", &path, "--json", "--quiet", "--out", &out, "--ticks", "7"];
     let run = |more: &[&str]| -> Value {
-        let Output { stdout, .. } = staya(&[&base, more].concat())
-            .output()
-            .expect("staya starts");
+        let Output { stdout, .. } = staya(&[&base, more].concat()).output().expect("staya starts");
         serde_json::from_slice(&stdout).expect("one JSON object")
     };
     let first = run(&["--seed", "5"]);
@@ -158,14 +100,7 @@ fn the_table_names_what_was_written() {
     let Output { status, stdout, .. } = staya(&arguments).output().expect("staya starts");
     assert!(status.success());
     let table = text(&stdout);
-    for part in [
-        "6 of 6 robots",
-        "collisions",
-        "trace hash",
-        "written to",
-        "trace.csv",
-        ".svg",
-    ] {
+    for part in ["6 of 6 robots", "collisions", "trace hash", "written to", "trace.csv", ".svg"] {
         assert!(table.contains(part), "{part} is missing in\n{table}");
     }
 }
@@ -174,10 +109,7 @@ fn the_table_names_what_was_written() {
 fn results_go_to_a_folder_of_the_scenarios_name() {
     let (dir, _) = folder();
     let arguments = ["run", &scenario("figure-5.toml"), "--quiet", "--ticks", "2"];
-    let ended = staya(&arguments)
-        .current_dir(dir.path())
-        .output()
-        .expect("staya starts");
+    let ended = staya(&arguments).current_dir(dir.path()).output().expect("staya starts");
     assert!(ended.status.success());
     assert!(dir.path().join("out/figure-5/summary.json").is_file());
 }
@@ -190,19 +122,10 @@ fn errors_are_one_line_with_the_place_and_the_remedy() {
 
     let wrong = dir.path().join("wrong.toml");
     let good = fs::read_to_string(scenario("figure-6.toml")).expect("readable");
-    fs::write(
-        &wrong,
-        good.replace("range_m = 150", "range_m = 150\nloss = 60"),
-    )
-    .expect("write");
+    fs::write(&wrong, good.replace("range_m = 150", "range_m = 150\nloss = 60")).expect("write");
     let wrong = refusal(&["run", wrong.to_str().expect("UTF-8"), "--out", &out]);
-    let line = good
-        .lines()
-        .position(|l| l == "range_m = 150")
-        .expect("the line")
-        + 2;
-    let place =
-        format!("wrong.toml:{line}: radio.loss: 60 is no probability; give a number from 0 to 1");
+    let line = good.lines().position(|l| l == "range_m = 150").expect("the line") + 2;
+    let place = format!("wrong.toml:{line}: radio.loss: 60 is no probability; give a number from 0 to 1");
     assert!(wrong.contains(&place), "{wrong}");
     assert!(!Path::new(&out).exists(), "nothing was begun");
 
@@ -210,14 +133,8 @@ fn errors_are_one_line_with_the_place_and_the_remedy() {
     fs::write(&in_the_way, "mine").expect("write");
     let way = in_the_way.to_str().expect("UTF-8");
     let unwritable = refusal(&["run", &scenario("figure-5.toml"), "--quiet", "--out", way]);
-    assert!(
-        unwritable.contains(way) && unwritable.contains("choose another output directory"),
-        "{unwritable}"
-    );
-    assert_eq!(
-        fs::read_to_string(&in_the_way).expect("still there"),
-        "mine"
-    );
+    assert!(unwritable.contains(way) && unwritable.contains("choose another output directory"), "{unwritable}");
+    assert_eq!(fs::read_to_string(&in_the_way).expect("still there"), "mine");
 }
 
 #[test]
@@ -250,15 +167,9 @@ fn wrong_usage_is_told_from_failure() {
 fn numbers_out_of_range_end_with_what_to_give() {
     for (arguments, expected) in [
         (&["route", "--runs", "0"][..], "make 1 or more"),
-        (
-            &["route", "--runs", "4294967295"],
-            "4294967295 runs; make at most",
-        ),
+        (&["route", "--runs", "4294967295"], "4294967295 runs; make at most"),
         (&["formation", "--runs", "4294967295"], "make at most"),
-        (
-            &["route", "--obstacles", "99999999"],
-            "give fewer obstacles",
-        ),
+        (&["route", "--obstacles", "99999999"], "give fewer obstacles"),
         (&["route", "--size", "65535"], "its side must be 4..=2000"),
         (&["formation", "--loss", "-1"], "a loss of -1; it must be"),
         (&["formation", "--loss", "nan"], "a loss of NaN; it must be"),
@@ -311,10 +222,7 @@ fn experiments_find_out_before_the_work_that_results_cannot_be_kept() {
         // With so many runs, hours would pass first.
         let most = ["experiment", experiment, "--runs", "1000000", "--out", way];
         let refused = refusal(&most);
-        assert!(
-            refused.contains(way) && refused.contains("choose another output directory"),
-            "{refused}"
-        );
+        assert!(refused.contains(way) && refused.contains("choose another output directory"), "{refused}");
         assert_eq!(refused.matches("os error").count(), 1, "{refused}");
     }
     let land = format!("{way}/land.yaml");
@@ -329,16 +237,7 @@ fn every_command_that_offers_json_prints_one_object_and_leaves_no_probe() {
     let path = |name: &str| dir.path().join(name).to_str().expect("UTF-8").to_owned();
     let (land, picture) = (path("land.yaml"), path("land.png"));
     let scen = format!("{MAPS}random-32-32-20-random-1.scen");
-    let small = [
-        "--runs",
-        "2",
-        "--obstacles",
-        "5",
-        "--size",
-        "30",
-        "--out",
-        &out,
-    ];
+    let small = ["--runs", "2", "--obstacles", "5", "--size", "30", "--out", &out];
     let commands: [Vec<&str>; 6] = [
         vec!["terrain", "generate", "--out", &land],
         vec!["terrain", "metrics", &land],
@@ -367,17 +266,8 @@ fn a_full_disk_ends_the_run_with_the_files_name() {
     let (_dir, out) = folder();
     fs::create_dir(&out).expect("folder");
     std::os::unix::fs::symlink("/dev/full", Path::new(&out).join("trace.csv")).expect("link");
-    let full = refusal(&[
-        "run",
-        &scenario("scale-small.toml"),
-        "--quiet",
-        "--out",
-        &out,
-    ]);
-    assert!(
-        full.contains("trace.csv") && full.contains("free some space"),
-        "{full}"
-    );
+    let full = refusal(&["run", &scenario("scale-small.toml"), "--quiet", "--out", &out]);
+    assert!(full.contains("trace.csv") && full.contains("free some space"), "{full}");
 }
 
 /// One robot that never gets out of its room, for as long as it takes.
@@ -392,38 +282,24 @@ fn ctrl_c_ends_a_run_cleanly_and_keeps_what_it_has() {
     fs::write(&path, PRISON).expect("write");
     let map = "type octile\nheight 1\nwidth 5\nmap\n..@..\n";
     fs::write(dir.path().join("prison.map"), map).expect("write");
-    let mut child = staya(&[
-        "run",
-        path.to_str().expect("UTF-8"),
-        "--json",
-        "--out",
-        &out,
-    ])
-    .stdout(Stdio::piped())
-    .stderr(Stdio::null())
-    .spawn()
-    .expect("staya starts");
+    let mut child = staya(&["run", path.to_str().expect("UTF-8"), "--json", "--out", &out])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("staya starts");
     let series = Path::new(&out).join("series.csv");
     let patience = Instant::now() + Duration::from_secs(120);
     while fs::metadata(&series).map_or(0, |m| m.len()) < 10_000 {
         assert!(Instant::now() < patience, "nothing is written");
-        assert!(
-            child.try_wait().expect("a child").is_none(),
-            "it ended by itself"
-        );
+        assert!(child.try_wait().expect("a child").is_none(), "it ended by itself");
         thread::sleep(Duration::from_millis(10));
     }
-    let sent = Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
-        .status();
+    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
     assert!(sent.expect("kill starts").success());
     let Output { status, stdout, .. } = child.wait_with_output().expect("it ends");
     assert_eq!(status.code(), Some(130));
     let json: Value = serde_json::from_slice(&stdout).expect("one JSON object");
-    assert_eq!(
-        (&json["interrupted"], &json["arrived"]),
-        (&true.into(), &0.into())
-    );
+    assert_eq!((&json["interrupted"], &json["arrived"]), (&true.into(), &0.into()));
     let ticks = json["ticks"].as_u64().expect("a number");
     let series = fs::read_to_string(series).expect("readable");
     let last = series.lines().last().expect("a line");
@@ -441,10 +317,7 @@ fn robots_in_the_plane_swap_places_from_end_to_end() {
     let summary = fs::read(Path::new(&out).join("summary.json")).expect("summary.json");
     let json: Value = serde_json::from_slice(&summary).expect("JSON");
     assert_eq!(json["scenario"], "swap-circle");
-    assert_eq!(
-        (&json["arrived"], &json["collisions"]),
-        (&16.into(), &0.into())
-    );
+    assert_eq!((&json["arrived"], &json["collisions"]), (&16.into(), &0.into()));
     let gap_m = json["least_gap_m"].as_f64().expect("a number");
     assert!(gap_m > 0.0 && gap_m < 0.1, "{gap_m}");
     let files = json["files"].as_array().expect("a list");
@@ -452,10 +325,7 @@ fn robots_in_the_plane_swap_places_from_end_to_end() {
         let names = files.iter().filter_map(|file| file.as_str());
         names.filter(|name| name.ends_with(kind)).count()
     };
-    assert!(
-        of_kind(".png") > 0 && of_kind(".png") == of_kind(".svg"),
-        "{files:?}"
-    );
+    assert!(of_kind(".png") > 0 && of_kind(".png") == of_kind(".svg"), "{files:?}");
     for file in files {
         let path = PathBuf::from(file.as_str().expect("a name"));
         let length = fs::metadata(&path).map(|m| m.len());
@@ -488,19 +358,10 @@ fn experiments_with_flocks_tell_tables_json_and_leave_pictures() {
     assert_eq!(report["points"][0]["k1_over_k2"], 1.0);
     assert!(dir.path().join("out/order.png").exists());
 
-    let table = staya(&[
-        "experiment",
-        "goals",
-        "--k1",
-        "5",
-        "--robots",
-        "5",
-        "--seconds",
-        "1",
-    ])
-    .args(["--out", &out, "--quiet"])
-    .output()
-    .expect("staya starts");
+    let table = staya(&["experiment", "goals", "--k1", "5", "--robots", "5", "--seconds", "1"])
+        .args(["--out", &out, "--quiet"])
+        .output()
+        .expect("staya starts");
     assert!(text(&table.stdout).contains("R_nbh     K1   K1/K2"));
     let refused = refusal(&["experiment", "flock", "--spacing", "0"]);
     assert!(refused.contains("0.1 to 50"), "{refused}");

@@ -35,19 +35,14 @@ fn a_swap_is_run_drawn_and_told() {
     }
     let table = staya(&["experiment", "swap", "--robots", "2", "--out", folder]);
     let table = String::from_utf8(table.stdout).expect("UTF-8");
-    assert!(
-        table.contains("dt 0.05 s") && table.contains("2/2"),
-        "{table}"
-    );
+    assert!(table.contains("dt 0.05 s") && table.contains("2/2"), "{table}");
 }
 
 #[test]
 fn a_doorway_is_run_drawn_and_told() {
     let dir = tempfile::tempdir().expect("temporary folder");
     let folder = dir.path().to_str().expect("UTF-8");
-    let told = json(&[
-        "doorway", "--widths", "0.8,2", "--robots", "1", "--out", folder,
-    ]);
+    let told = json(&["doorway", "--widths", "0.8,2", "--robots", "1", "--out", folder]);
     for run in told["runs"].as_array().expect("runs") {
         assert_eq!((&run["arrived"], &run["overlaps"]), (&2.into(), &0.into()));
         assert_eq!(run["through"], serde_json::json!([1, 1]));
@@ -59,22 +54,13 @@ fn a_doorway_is_run_drawn_and_told() {
 fn parameters_out_of_range_are_refused_in_one_line() {
     for (arguments, remedy) in [
         (&["swap", "--robots", "0"][..], "2..64"),
-        (
-            &["swap", "--step", "0"],
-            "--step 0 is out of range: give 0.001 to 10",
-        ),
+        (&["swap", "--step", "0"], "--step 0 is out of range: give 0.001 to 10"),
         (&["swap", "--loss", "1.5"], "--loss 1.5 is out of range"),
         (&["swap", "--speed", "nan"], "--speed NaN is out of range"),
         (&["swap", "--circle", "-1"], "--circle is out of range"),
-        (
-            &["doorway", "--widths", "-1"],
-            "--widths -1 is out of range",
-        ),
+        (&["doorway", "--widths", "-1"], "--widths -1 is out of range"),
         (&["doorway", "--robots", "0"], "1..=1000"),
-        (
-            &["doorway", "--out", "/dev/null/x"],
-            "pictures have no place",
-        ),
+        (&["doorway", "--out", "/dev/null/x"], "pictures have no place"),
     ] {
         let ended = staya(&[&["experiment"], arguments].concat());
         let error = String::from_utf8_lossy(&ended.stderr);

@@ -23,8 +23,7 @@ fn draw_leaves_four_pictures_of_the_papers_example() {
     let out = dir.path().join("a/b");
     let folder = out.to_str().expect("UTF-8");
     let drawn = json(&["orca", "draw", "--out", folder]);
-    let near =
-        |value: &Value, wanted: f64| (value.as_f64().expect("a number") - wanted).abs() < 1e-6;
+    let near = |value: &Value, wanted: f64| (value.as_f64().expect("a number") - wanted).abs() < 1e-6;
     assert!(near(&drawn["change_mps"], 0.292893));
     assert!(near(&drawn["point_mps"][0], 1.707107) && near(&drawn["point_mps"][1], 0.792893));
     let half = std::f64::consts::FRAC_1_SQRT_2;
@@ -34,21 +33,9 @@ fn draw_leaves_four_pictures_of_the_papers_example() {
         let png = fs::read(out.join(format!("{name}.png"))).expect("a picture");
         assert!(png.starts_with(b"\x89PNG"), "{name}");
         let svg = fs::read_to_string(out.join(format!("{name}.svg"))).expect("a picture");
-        assert!(
-            svg.starts_with("<svg") || svg.starts_with("<?xml"),
-            "{name}"
-        );
+        assert!(svg.starts_with("<svg") || svg.starts_with("<?xml"), "{name}");
     }
-    let free = json(&[
-        "orca",
-        "draw",
-        "--velocity-a",
-        "-3,-3",
-        "--share",
-        "0.5",
-        "--out",
-        folder,
-    ]);
+    let free = json(&["orca", "draw", "--velocity-a", "-3,-3", "--share", "0.5", "--out", folder]);
     assert!(free["change_mps"].as_f64().expect("a number") < 0.0);
 }
 
@@ -67,10 +54,7 @@ fn scenes_without_sense_and_folders_in_the_way_are_refused_in_one_line() {
         let ended = staya(&[&["orca", "draw"], &arguments[..]].concat());
         let error = String::from_utf8_lossy(&ended.stderr).into_owned();
         assert_eq!(ended.status.code(), Some(1), "{error}");
-        assert!(
-            ended.stdout.is_empty() && error.lines().count() == 1,
-            "{error}"
-        );
+        assert!(ended.stdout.is_empty() && error.lines().count() == 1, "{error}");
         assert!(error.contains(remedy), "{error}");
     }
 }
@@ -87,8 +71,5 @@ fn table_says_the_same_twice_and_for_people() {
         assert!(size["bytes"].as_u64().expect("bytes") <= limit);
     }
     let shown = String::from_utf8(staya(&arguments).stdout).expect("UTF-8");
-    assert!(
-        shown.contains("500 pairs, seed 7") && shown.lines().count() == 7,
-        "{shown}"
-    );
+    assert!(shown.contains("500 pairs, seed 7") && shown.lines().count() == 7, "{shown}");
 }

@@ -52,13 +52,9 @@ pub fn golden(name: &str, actual: &str) {
         fs::write(&path, actual).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         return;
     }
-    let wanted = fs::read_to_string(&path).unwrap_or_else(|error| {
-        panic!("{}: {error}; `cargo xtask bless` writes it", path.display())
-    });
-    let first = wanted
-        .lines()
-        .zip(actual.lines())
-        .position(|(wanted, actual)| wanted != actual);
+    let wanted = fs::read_to_string(&path)
+        .unwrap_or_else(|error| panic!("{}: {error}; `cargo xtask bless` writes it", path.display()));
+    let first = wanted.lines().zip(actual.lines()).position(|(wanted, actual)| wanted != actual);
     let at = first.unwrap_or(wanted.lines().count().min(actual.lines().count()));
     assert!(
         wanted == actual,

@@ -11,9 +11,7 @@ type Rows = [(TickRow, Vec<RobotRow>)];
 /// The formation error at its best within some ticks, cells per robot.
 fn best_error(rows: &Rows, ticks: std::ops::Range<u32>) -> f64 {
     let within = rows.iter().filter(|(row, _)| ticks.contains(&row.tick));
-    within
-        .map(|(row, _)| row.formation_error_per_agent)
-        .fold(f64::INFINITY, f64::min)
+    within.map(|(row, _)| row.formation_error_per_agent).fold(f64::INFINITY, f64::min)
 }
 
 fn assert_all_arrive(scenario: &Scenario, outcome: &Outcome) {
@@ -62,17 +60,11 @@ fn any_robot_may_reboot_in_the_middle() {
     for robot in 1..=6 {
         for down in [0, 15, 40] {
             let mut scenario = scenario("figure-6", None);
-            scenario.faults = vec![Fault {
-                robot: RobotId(robot),
-                from_tick: 120,
-                to_tick: 120 + down,
-            }];
+            scenario.faults = vec![Fault { robot: RobotId(robot), from_tick: 120, to_tick: 120 + down }];
             let (outcome, rows) = run(&scenario);
             let who = format!("robot {robot}, {down} ticks");
             assert_eq!((outcome.arrived, outcome.collisions), (6, 0), "{who}");
-            let modes = rows
-                .iter()
-                .map(|(_, robots)| robots[robot as usize - 1].mode);
+            let modes = rows.iter().map(|(_, robots)| robots[robot as usize - 1].mode);
             let faulty = modes.filter(|&mode| mode == Mode::Fault).count();
             assert_eq!(faulty, down as usize, "{who}");
             let after = best_error(&rows, 120 + down..120 + down + 100);
@@ -85,11 +77,7 @@ fn any_robot_may_reboot_in_the_middle() {
 fn a_robot_that_stays_down_does_not_hold_up_those_who_do_not_follow_it() {
     // Robot 6 leads nobody. It is down for good.
     let mut scenario = scenario("figure-6", Some(900));
-    scenario.faults = vec![Fault {
-        robot: RobotId(6),
-        from_tick: 100,
-        to_tick: u32::MAX,
-    }];
+    scenario.faults = vec![Fault { robot: RobotId(6), from_tick: 100, to_tick: u32::MAX }];
     let (outcome, _) = run(&scenario);
     assert_eq!(outcome.arrived, 5);
     assert_eq!(outcome.arrival_times[5], None);

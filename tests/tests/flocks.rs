@@ -47,11 +47,7 @@ fn golden_experiment_flock() {
 
 #[test]
 fn golden_experiment_closing() {
-    let plan = Closing {
-        speeds: vec![2.0, 8.0],
-        runs: 2,
-        ..Closing::default()
-    };
+    let plan = Closing { speeds: vec![2.0, 8.0], runs: 2, ..Closing::default() };
     let report = plan.measure().expect("a sound plan");
     let mut text = String::new();
     for line in &report.lines {

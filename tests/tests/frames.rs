@@ -5,8 +5,8 @@ use staya_controller::robot::{Mode, RobotId};
 use staya_controller::template::TemplateEntry;
 use staya_controller::time::Instant;
 use staya_controller::wire::{
-    Ack, Beacon, CompactBeacon, Frame, GoalAssignment, Header, Message, Request, RequestKind,
-    TemplateAssignment, WaypointAssignment,
+    Ack, Beacon, CompactBeacon, Frame, GoalAssignment, Header, Message, Request, RequestKind, TemplateAssignment,
+    WaypointAssignment,
 };
 use staya_mavlink::wire::{decode, encode};
 use std::fmt::Write as _;
@@ -15,11 +15,7 @@ const TO: RobotId = RobotId(254);
 
 /// Name, message, and its fields as the dialect has them.
 fn messages() -> [(&'static str, Message, &'static str); 8] {
-    let entry = |x, id, hops| TemplateEntry {
-        offset: Cell::new(x, -x),
-        id: RobotId(id),
-        hops,
-    };
+    let entry = |x, id, hops| TemplateEntry { offset: Cell::new(x, -x), id: RobotId(id), hops };
     let template = |entries: &[TemplateEntry]| {
         Message::Template(TemplateAssignment {
             to: TO,
@@ -51,24 +47,9 @@ fn messages() -> [(&'static str, Message, &'static str); 8] {
         radius_cm: 15,
         mode: Mode::Cruise,
     };
-    let request = Request {
-        to: TO,
-        origin: RobotId(9),
-        number: 7,
-        kind: RequestKind::Redirect,
-        valid_ms: 2_000,
-    };
-    let ack = Ack {
-        to: TO,
-        boot: 3,
-        number: 7,
-        accepted: true,
-    };
-    let goal = GoalAssignment {
-        to: RobotId::NOBODY,
-        version: 0,
-        target: Cell::new(24, -21),
-    };
+    let request = Request { to: TO, origin: RobotId(9), number: 7, kind: RequestKind::Redirect, valid_ms: 2_000 };
+    let ack = Ack { to: TO, boot: 3, number: 7, accepted: true };
+    let goal = GoalAssignment { to: RobotId::NOBODY, version: 0, target: Cell::new(24, -21) };
     let place = WaypointAssignment {
         to: RobotId::NOBODY,
         version: 1,
@@ -88,16 +69,8 @@ fn messages() -> [(&'static str, Message, &'static str); 8] {
             Message::Compact(compact),
             "time_ms=65535 x_mm=-1 y_mm=678901 vx_mmps=-250 vy_mmps=3 radius_cm=15 mode=2",
         ),
-        (
-            "STAYA_REQUEST",
-            Message::Request(request),
-            "target_system=254 origin=9 number=7 kind=2 valid_ms=2000",
-        ),
-        (
-            "STAYA_ACK",
-            Message::Ack(ack),
-            "target_system=254 request_boot=3 number=7 accepted=1",
-        ),
+        ("STAYA_REQUEST", Message::Request(request), "target_system=254 origin=9 number=7 kind=2 valid_ms=2000"),
+        ("STAYA_ACK", Message::Ack(ack), "target_system=254 request_boot=3 number=7 accepted=1"),
         (
             "STAYA_TEMPLATE",
             template(&[entry(-3, 2, 1), entry(5, 0, 255)]),
@@ -109,11 +82,7 @@ fn messages() -> [(&'static str, Message, &'static str); 8] {
             template(&[]),
             "target_system=254 count=0 entry_x=0,0 entry_y=0,0 entry_id=0,0 entry_hops=0,0",
         ),
-        (
-            "STAYA_GOAL",
-            Message::Goal(goal),
-            "target_system=0 version=0 target_x=24 target_y=-21",
-        ),
+        ("STAYA_GOAL", Message::Goal(goal), "target_system=0 version=0 target_x=24 target_y=-21"),
         (
             "STAYA_PLACE",
             Message::Waypoint(place),
@@ -125,23 +94,12 @@ fn messages() -> [(&'static str, Message, &'static str); 8] {
 #[test]
 fn golden_mavlink_frames() {
     let mut table = String::from("# system 42, boot 3, sequence 777: message, frame, fields\n");
-    let header = Header {
-        boot: 3,
-        sender: RobotId(42),
-        sequence: 777,
-    };
+    let header = Header { boot: 3, sender: RobotId(42), sequence: 777 };
     for (name, message, fields) in messages() {
         let mut bytes = heapless::Vec::<u8, 280>::new();
         encode(header, &message, &mut bytes).expect("fits");
         let tag = None;
-        assert_eq!(
-            decode(&bytes),
-            Ok(Frame {
-                header,
-                message,
-                tag
-            })
-        );
+        assert_eq!(decode(&bytes), Ok(Frame { header, message, tag }));
         let hex: String = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
         writeln!(table, "{name} {hex} {fields}").expect("strings take everything");
     }

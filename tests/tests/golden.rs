@@ -12,11 +12,7 @@ use std::fmt::Write as _;
 /// Robots whose cells fit into a line.
 const SHOWN: usize = 6;
 
-fn table(
-    scenario: &Scenario,
-    outcome: &Outcome,
-    rows: &[(TickRow, Vec<RobotRow>)],
-) -> Result<String, std::fmt::Error> {
+fn table(scenario: &Scenario, outcome: &Outcome, rows: &[(TickRow, Vec<RobotRow>)]) -> Result<String, std::fmt::Error> {
     let mut text = String::new();
     let packets = outcome.packets;
     writeln!(text, "scenario   {}, seed {}", scenario.name, scenario.seed)?;
@@ -41,11 +37,7 @@ fn table(
     writeln!(
         text,
         " tick arrived  delivered  error  graph  first robots: {}, mode",
-        if scenario.plane.is_some() {
-            "place (m)"
-        } else {
-            "cell"
-        }
+        if scenario.plane.is_some() { "place (m)" } else { "cell" }
     )?;
     let every = (outcome.ticks / 24).max(1);
     let last = rows.len() - 1;
@@ -70,11 +62,7 @@ fn table(
                 write!(text, " {x:8.3},{y:<8.3} {mode:<7}")?;
                 continue;
             }
-            write!(
-                text,
-                " {:3},{:<3} {mode:<7}",
-                robot.motion.cell.x, robot.motion.cell.y
-            )?;
+            write!(text, " {:3},{:<3} {mode:<7}", robot.motion.cell.x, robot.motion.cell.y)?;
         }
         text.truncate(text.trim_end().len());
         text.push('\n');
@@ -132,10 +120,7 @@ fn golden_scale_in_its_first_ticks() {
 /// What `staya orca table` prints for fewer pairs: how far half-planes from the templates are off the exact ones.
 #[test]
 fn golden_orca_table() {
-    let sample = Sample {
-        pairs: 20_000,
-        seed: 1,
-    };
+    let sample = Sample { pairs: 20_000, seed: 1 };
     golden("orca-table", &sample.report().to_string());
 }
 

@@ -10,10 +10,7 @@ use std::path::{Path, PathBuf};
 const TOLERANCE_PERCENT: f64 = 0.1;
 
 fn answers(scen: &Path, robots: &Robots) -> (Report, Vec<Answer>) {
-    let plan = Plan {
-        benchmark: Benchmark::load(scen, None).unwrap(),
-        robots: *robots,
-    };
+    let plan = Plan { benchmark: Benchmark::load(scen, None).unwrap(), robots: *robots };
     let answers = plan.carry_out(|_| true).unwrap();
     (plan.report(&answers), answers.concat())
 }
@@ -42,11 +39,7 @@ fn pocket_is_left_by_a_robot_that_sees_two_cells() {
     let scen = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pocket.map.scen");
     let (report, answers) = answers(&scen, &Robots::new(Sight::Radius(2)));
     assert_eq!(report.arrived, 6);
-    assert!(
-        answers
-            .iter()
-            .all(|answer| answer.loss_percent() > -TOLERANCE_PERCENT)
-    );
+    assert!(answers.iter().all(|answer| answer.loss_percent() > -TOLERANCE_PERCENT));
     assert!(report.loss_percent.unwrap().max > 10.0, "{report:?}");
 }
 
@@ -61,10 +54,7 @@ mod needs_shared {
         if scen.is_file() {
             return Some(scen);
         }
-        println!(
-            "skipped: {} is not there; STAYA_SHARED names another folder",
-            scen.display()
-        );
+        println!("skipped: {} is not there; STAYA_SHARED names another folder", scen.display());
         None
     }
 
@@ -86,11 +76,9 @@ mod needs_shared {
     fn robots_that_see_five_cells_arrive_as_pinned() {
         // The wings of den312d are larger than the window: out of them robots get by what they remember, at a price.
         let (usual, more) = ((Memory::Cells64, 3), (Memory::Cells256, 30));
-        for (name, (memory, a2), arrived) in [
-            ("arena.map.scen", usual, 160),
-            ("den312d.map.scen", usual, 206),
-            ("den312d.map.scen", more, 320),
-        ] {
+        for (name, (memory, a2), arrived) in
+            [("arena.map.scen", usual, 160), ("den312d.map.scen", usual, 206), ("den312d.map.scen", more, 320)]
+        {
             if let Some(scen) = shared(name) {
                 let mut robots = Robots::new(Sight::Radius(5));
                 robots.memory = memory;

@@ -17,10 +17,7 @@ fn same_on_any_number(name: &str, ticks: Option<u32>) {
     for threads in [2, 8] {
         let other = on_threads(name, ticks, threads);
         assert_eq!(other.0, one.0, "{name} on {threads} threads");
-        assert!(
-            other.1 == one.1,
-            "{name} on {threads} threads: traces differ"
-        );
+        assert!(other.1 == one.1, "{name} on {threads} threads: traces differ");
     }
 }
 

@@ -26,9 +26,7 @@ pub fn unpack(repo: &Repo, packages: &[&str], programs: &[&str]) -> Result<(), S
     let home = home(repo);
     let (root, archives) = (home.join("root"), home.join("archives"));
     make(&archives)?;
-    run(apt_get(repo, &["download"])
-        .args(&plan.missing)
-        .current_dir(&archives))?;
+    run(apt_get(repo, &["download"]).args(&plan.missing).current_dir(&archives))?;
     for archive in files(&archives)? {
         let mut unpack = repo.command("dpkg-deb");
         let unpack = unpack.arg("-x").arg(&archive).arg(&root);
@@ -38,9 +36,7 @@ pub fn unpack(repo: &Repo, packages: &[&str], programs: &[&str]) -> Result<(), S
     println!("Unpacked into {}", root.display());
     // The scripts come last: what has one is complete.
     make(&repo.tools())?;
-    programs
-        .iter()
-        .try_for_each(|name| write_script(repo, &root, name))
+    programs.iter().try_for_each(|name| write_script(repo, &root, name))
 }
 
 /// Installs packages, as root, if nothing that is installed has to go or change for it. The error says why not.
@@ -101,10 +97,7 @@ fn write_script(repo: &Repo, root: &Path, name: &str) -> Result<(), String> {
     let places = ["usr/bin", "usr/sbin"].map(|folder| root.join(folder).join(name));
     let program = places.iter().find(|place| place.exists());
     let program = program.ok_or_else(|| format!("the packages hold no {name}"))?;
-    let libraries: Vec<String> = libraries(root)
-        .iter()
-        .map(|folder| folder.display().to_string())
-        .collect();
+    let libraries: Vec<String> = libraries(root).iter().map(|folder| folder.display().to_string()).collect();
     let text = format!(
         "#!/bin/sh\n\
          # Starts a program that `cargo xtask` unpacked, with its libraries.\n\
@@ -137,9 +130,7 @@ fn libraries(root: &Path) -> Vec<PathBuf> {
         found
     };
     let is_of_machine = |folder: &PathBuf| folder.to_string_lossy().contains("-linux-");
-    let machine = ["usr/lib", "lib"]
-        .iter()
-        .flat_map(|lib| folders(&root.join(lib)));
+    let machine = ["usr/lib", "lib"].iter().flat_map(|lib| folders(&root.join(lib)));
     let machine: Vec<PathBuf> = machine.filter(is_of_machine).collect();
     let inner: Vec<PathBuf> = machine.iter().flat_map(|folder| folders(folder)).collect();
     machine.into_iter().chain(inner).collect()
@@ -192,10 +183,7 @@ mod tests {
             Inst libssl3 [3.0.16-1] (3.0.17-1 Debian-Security:12/oldstable-security [amd64]) []\n\
             Conf libfdt1 (1.6.1-4+b1 Debian:12.15/oldstable [amd64])\n";
         let expected = Plan {
-            missing: vec![
-                String::from("libfdt1=1.6.1-4+b1"),
-                String::from("libssl3=3.0.17-1"),
-            ],
+            missing: vec![String::from("libfdt1=1.6.1-4+b1"), String::from("libssl3=3.0.17-1")],
             in_the_way: vec![String::from("qemu-utils"), String::from("libssl3")],
         };
         assert_eq!(read(said), expected);

@@ -35,11 +35,7 @@ exec chroot "$BARE" env --ignore-environment CI=true HOME=/root CARGO_HOME=/carg
 /// What must work there: parts with both emulators.
 const COMMANDS: [&str; 2] = ["qemu", "faults nrf51 riscv32"];
 /// Lists what is installed.
-const INSTALLED: [&str; 3] = [
-    "dpkg-query",
-    "--show",
-    "--showformat=${Package} ${Version}\\n",
-];
+const INSTALLED: [&str; 3] = ["dpkg-query", "--show", "--showformat=${Package} ${Version}\\n"];
 
 /// Makes the root and runs the commands in it.
 pub fn run_command(repo: &Repo, report: &mut Report) {
@@ -85,16 +81,13 @@ impl Bare {
             return Err(String::from("chroot needs root"));
         }
         let release = fs::read_to_string("/etc/os-release").unwrap_or_default();
-        let codename = release
-            .lines()
-            .find_map(|line| line.strip_prefix("VERSION_CODENAME="))
-            .ok_or("no Debian")?;
+        let codename = release.lines().find_map(|line| line.strip_prefix("VERSION_CODENAME=")).ok_or("no Debian")?;
         let format = ["--format", "$(REPO_URI) $(RELEASE) $(COMPONENT) $(ORIGIN)"];
         let mut targets = repo.command("apt-get");
         let targets = targets.arg("indextargets").args(format);
         let targets = output_of(targets.arg("Created-By: Packages")).ok_or("no apt-get here")?;
-        let (mirror, sources) = read(&targets, codename)
-            .ok_or_else(|| format!("apt has no source of Debian {codename}"))?;
+        let (mirror, sources) =
+            read(&targets, codename).ok_or_else(|| format!("apt has no source of Debian {codename}"))?;
         if debootstrap(repo).is_none() {
             apt::unpack(repo, &["debootstrap"], &["debootstrap"])
                 .map_err(|reason| format!("no debootstrap ({reason})"))?;
@@ -122,11 +115,7 @@ impl Bare {
         make.args(["--variant=minbase", "--include", PREREQUISITES]);
         run(make.arg(&self.codename).arg(&self.root).arg(&self.mirror))?;
         self.write("etc/apt/sources.list", &self.sources)?;
-        for file in [
-            "/etc/resolv.conf",
-            "/etc/hosts",
-            "/etc/ssl/certs/ca-certificates.crt",
-        ] {
+        for file in ["/etc/resolv.conf", "/etc/hosts", "/etc/ssl/certs/ca-certificates.crt"] {
             // Not every machine has each.
             let _ = fs::copy(file, self.root.join(file.trim_start_matches('/')));
         }
@@ -136,10 +125,7 @@ impl Bare {
         }
         self.write(SCRIPT, SCRIPT_TEXT)?;
         self.write("in-the-way/DEBIAN/control", IN_THE_WAY)?;
-        run(&mut self.inside(
-            repo,
-            "dpkg-deb --build /in-the-way && dpkg --install /in-the-way.deb",
-        ))
+        run(&mut self.inside(repo, "dpkg-deb --build /in-the-way && dpkg --install /in-the-way.deb"))
     }
 
     fn write(&self, file: &str, text: &str) -> Result<(), String> {
@@ -163,11 +149,7 @@ impl Bare {
     /// What is installed there.
     fn installed(&self, repo: &Repo) -> Option<String> {
         let [program, show, format] = INSTALLED;
-        output_of(
-            repo.command("chroot")
-                .arg(&self.root)
-                .args([program, show, format]),
-        )
+        output_of(repo.command("chroot").arg(&self.root).args([program, show, format]))
     }
 }
 

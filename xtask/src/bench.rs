@@ -22,14 +22,8 @@ enum Goal {
 
 /// Benchmarks with a goal; the others are listed without one.
 const GOALS: [(&str, Goal); 7] = [
-    (
-        "cost_field_16x16/staya",
-        Goal::Faster(5.0, "cost_field_16x16/pathfinding"),
-    ),
-    (
-        "cost_field_32x32/staya",
-        Goal::Faster(5.0, "cost_field_32x32/pathfinding"),
-    ),
+    ("cost_field_16x16/staya", Goal::Faster(5.0, "cost_field_16x16/pathfinding")),
+    ("cost_field_32x32/staya", Goal::Faster(5.0, "cost_field_32x32/pathfinding")),
     ("orca_10/staya", Goal::Faster(1.0, "orca_10/dodgy_2d")),
     // 0.75 microseconds a robot.
     ("orca_step_1000/staya", Goal::Under(750_000.0)),
@@ -89,24 +83,12 @@ fn criterion(repo: &Repo, report: &mut Report, name: Option<&str>) {
 
 /// Prints each median beside its goal and counts the goals.
 fn judge(medians: &[(String, f64)]) -> (Counts, String) {
-    let of = |name: &str| {
-        medians
-            .iter()
-            .find(|(known, _)| known == name)
-            .map(|&(_, ns)| ns)
-    };
-    let width = medians
-        .iter()
-        .map(|(name, _)| name.len())
-        .max()
-        .unwrap_or(0);
+    let of = |name: &str| medians.iter().find(|(known, _)| known == name).map(|&(_, ns)| ns);
+    let width = medians.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     let mut counts = Counts::default();
     println!("{:width$}  {:>10}  goal", "benchmark", "median");
     for (name, median) in medians {
-        let goal = GOALS
-            .iter()
-            .find(|(known, _)| known == name)
-            .map(|(_, goal)| goal);
+        let goal = GOALS.iter().find(|(known, _)| known == name).map(|(_, goal)| goal);
         let (met, what) = match goal {
             None => (None, String::new()),
             Some(Goal::Under(limit)) => (Some(median < limit), format!("under {}", shown(*limit))),
@@ -130,11 +112,7 @@ fn judge(medians: &[(String, f64)]) -> (Counts, String) {
     }
     let ran = counts.passed + counts.failed;
     counts.skipped = (GOALS.len() as u64).saturating_sub(ran);
-    let note = if counts.skipped > 0 {
-        "skipped: goals of benchmarks that did not run"
-    } else {
-        ""
-    };
+    let note = if counts.skipped > 0 { "skipped: goals of benchmarks that did not run" } else { "" };
     (counts, note.to_string())
 }
 

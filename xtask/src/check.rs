@@ -4,10 +4,7 @@ use crate::repo::{Repo, output_of};
 use crate::report::Report;
 
 /// Workspaces of their own, and how to leave out what needs more than a stable compiler.
-const OTHERS: [(&str, &[&str]); 2] = [
-    ("tests/peers", &[]),
-    ("tests/fuzz", &["--no-default-features"]),
-];
+const OTHERS: [(&str, &[&str]); 2] = [("tests/peers", &[]), ("tests/fuzz", &["--no-default-features"])];
 
 /// What a user's own firmware depends on.
 const PACKAGES: [&str; 3] = ["staya-controller", "staya-mavlink", "staya-robot"];
@@ -23,19 +20,12 @@ pub fn run(repo: &Repo, report: &mut Report) {
             report.command(&name, repo.cargo_in(folder, &check));
         }
     }
-    report.step("layers of the controller", || {
-        crate::layers::check(&repo.root.join("controller/src"))
-    });
-    report.step("no circles between modules", || {
-        crate::circles::check(&repo.root)
-    });
-    report.step("what the documentation names", || {
-        crate::documents::check(&repo.root)
-    });
+    report.step("layers of the controller", || crate::layers::check(&repo.root.join("controller/src")));
+    report.step("no circles between modules", || crate::circles::check(&repo.root));
+    report.step("what the documentation names", || crate::documents::check(&repo.root));
     if has(repo, "clippy", "clippy", report) {
         let deny = ["--", "-D", "warnings"];
-        let arguments =
-            |arguments: &[&'static str]| [&["clippy", "--locked"], arguments, &deny].concat();
+        let arguments = |arguments: &[&'static str]| [&["clippy", "--locked"], arguments, &deny].concat();
         let own = ["--workspace", "--all-targets"];
         report.command("clippy", repo.cargo(&arguments(&own)));
         let defmt = ["--workspace", "--features", "staya-controller/defmt"];

@@ -20,42 +20,25 @@ type Uses = BTreeMap<String, BTreeSet<String>>;
 
 /// Reads every crate of the workspace. The error counts the circles, which are printed with their folder.
 pub fn check(root: &Path) -> Result<(), String> {
-    let manifest =
-        fs::read_to_string(root.join("Cargo.toml")).map_err(|error| error.to_string())?;
+    let manifest = fs::read_to_string(root.join("Cargo.toml")).map_err(|error| error.to_string())?;
     let manifest: toml::Table = manifest.parse().map_err(|error| format!("{error}"))?;
-    let members = manifest
-        .get("workspace")
-        .and_then(|workspace| workspace.get("members"));
-    let members = members
-        .and_then(toml::Value::as_array)
-        .into_iter()
-        .flatten();
+    let members = manifest.get("workspace").and_then(|workspace| workspace.get("members"));
+    let members = members.and_then(toml::Value::as_array).into_iter().flatten();
     let mut found = BTreeSet::new();
     for member in members.filter_map(toml::Value::as_str) {
         let source = root.join(member).join("src");
         let mut modules = BTreeMap::new();
         if source.is_dir() {
-            read(&source, &mut Vec::new(), &mut modules)
-                .map_err(|error| format!("{member}: {error}"))?;
+            read(&source, &mut Vec::new(), &mut modules).map_err(|error| format!("{member}: {error}"))?;
         }
         for (folder, uses) in uses(&modules) {
-            let place = [member, "src"]
-                .into_iter()
-                .chain(folder.iter().map(String::as_str));
+            let place = [member, "src"].into_iter().chain(folder.iter().map(String::as_str));
             let place = place.collect::<Vec<_>>().join("/");
-            found.extend(
-                circles(&uses)
-                    .into_iter()
-                    .map(|circle| (place.clone(), circle)),
-            );
+            found.extend(circles(&uses).into_iter().map(|circle| (place.clone(), circle)));
         }
     }
-    let known: BTreeSet<_> = KNOWN
-        .map(|(place, circle)| (place.to_string(), circle.to_string()))
-        .into();
-    let fresh = found
-        .difference(&known)
-        .map(|(place, circle)| format!("{place}: {circle} use each other in a circle"));
+    let known: BTreeSet<_> = KNOWN.map(|(place, circle)| (place.to_string(), circle.to_string())).into();
+    let fresh = found.difference(&known).map(|(place, circle)| format!("{place}: {circle} use each other in a circle"));
     let gone = known.difference(&found).map(|(place, circle)| {
         format!("{place}: {circle} are no circle any more; delete them from xtask/src/circles.rs")
     });
@@ -65,18 +48,10 @@ pub fn check(root: &Path) -> Result<(), String> {
 }
 
 /// Each module below a folder with the paths that it names, tests left out.
-fn read(
-    folder: &Path,
-    above: &mut Module,
-    modules: &mut BTreeMap<Module, Vec<Module>>,
-) -> std::io::Result<()> {
+fn read(folder: &Path, above: &mut Module, modules: &mut BTreeMap<Module, Vec<Module>>) -> std::io::Result<()> {
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();
-        let name = path
-            .file_stem()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into_owned();
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         if path.is_dir() && name != "bin" {
             above.push(name);
             read(&path, above, modules)?;
@@ -96,9 +71,7 @@ fn read(
 /// What a file names by paths from `crate`, `super` and `self`, from the crate's root down.
 fn named(text: &str, module: &Module) -> Vec<Module> {
     let text = text.split("#[cfg(test)]").next().unwrap_or_default();
-    let lines = text
-        .lines()
-        .map(|line| line.split("//").next().unwrap_or_default());
+    let lines = text.lines().map(|line| line.split("//").next().unwrap_or_default());
     let code = lines.collect::<Vec<_>>().join("\n");
     let mut found = Vec::new();
     for start in ["crate::", "super::", "self::"] {
@@ -110,10 +83,7 @@ fn named(text: &str, module: &Module) -> Vec<Module> {
             }
         }
     }
-    found
-        .into_iter()
-        .map(|path| absolute(&path, module))
-        .collect()
+    found.into_iter().map(|path| absolute(&path, module)).collect()
 }
 
 /// Adds the paths that begin here: `a::b`, `a::{b, c::d}`. Returns what comes behind them.
@@ -171,10 +141,8 @@ fn uses(modules: &BTreeMap<Module, Vec<Module>>) -> BTreeMap<Module, Uses> {
             let (Some(above), Some(below)) = (user.get(common), used.get(common)) else {
                 continue; // a module uses what it is in, or what is in it
             };
-            let is_module = modules.keys().any(|module| {
-                used.get(..=common)
-                    .is_some_and(|used| module.starts_with(used))
-            });
+            let is_module =
+                modules.keys().any(|module| used.get(..=common).is_some_and(|used| module.starts_with(used)));
             if is_module {
                 let folder = user.iter().take(common).cloned().collect();
                 let uses = all.entry(folder).or_default();
@@ -195,10 +163,7 @@ fn circles(uses: &Uses) -> BTreeSet<String> {
         }
         seen
     };
-    let reach: BTreeMap<&String, BTreeSet<String>> = uses
-        .keys()
-        .map(|module| (module, reached(module)))
-        .collect();
+    let reach: BTreeMap<&String, BTreeSet<String>> = uses.keys().map(|module| (module, reached(module))).collect();
     let circle = |start: &String| {
         let mut members = reach.get(start)?.clone();
         members.retain(|member| reach.get(member).is_some_and(|back| back.contains(start)));
@@ -212,32 +177,21 @@ mod tests {
     use super::*;
 
     fn module(path: &str) -> Module {
-        path.split('/')
-            .filter(|name| !name.is_empty())
-            .map(String::from)
-            .collect()
+        path.split('/').filter(|name| !name.is_empty()).map(String::from).collect()
     }
 
     fn of(files: &[(&str, &str)]) -> Vec<(String, String)> {
-        let modules = files
-            .iter()
-            .map(|(path, text)| (module(path), named(text, &module(path))));
+        let modules = files.iter().map(|(path, text)| (module(path), named(text, &module(path))));
         let found = uses(&modules.collect());
-        let all = found.iter().flat_map(|(folder, uses)| {
-            circles(uses)
-                .into_iter()
-                .map(|circle| (folder.join("/"), circle))
-        });
+        let all =
+            found.iter().flat_map(|(folder, uses)| circles(uses).into_iter().map(|circle| (folder.join("/"), circle)));
         all.collect()
     }
 
     #[test]
     fn circles_of_any_length_and_depth_are_found() {
         let circle = |folder: &str, modules: &str| vec![(folder.to_string(), modules.to_string())];
-        assert_eq!(
-            of(&[("a", "use crate::b;"), ("b", "use crate::a::T;")]),
-            circle("", "a, b")
-        );
+        assert_eq!(of(&[("a", "use crate::b;"), ("b", "use crate::a::T;")]), circle("", "a, b"));
         let three = [
             ("x/a", "use super::b;"),
             ("x/b", "fn f(_: crate::x::c::T) {}"),
@@ -246,38 +200,16 @@ mod tests {
         ];
         assert_eq!(of(&three), circle("x", "a, b, c"));
         assert_eq!(
-            of(&[
-                ("a/i", "use crate::{b::{c, d}, e};"),
-                ("b", ""),
-                ("e/f", "use crate::a;")
-            ]),
+            of(&[("a/i", "use crate::{b::{c, d}, e};"), ("b", ""), ("e/f", "use crate::a;")]),
             circle("", "a, e")
         );
     }
 
     #[test]
     fn parents_comments_tests_and_strangers_make_no_circle() {
-        assert_eq!(
-            of(&[
-                ("a", "pub use b::T; use self::b::U;"),
-                ("a/b", "use super::V; use crate::a::W;")
-            ]),
-            []
-        );
-        assert_eq!(
-            of(&[
-                ("a", "use crate::b;"),
-                ("b", "// crate::a\n#[cfg(test)] use crate::a;")
-            ]),
-            []
-        );
-        assert_eq!(
-            of(&[
-                ("a", "use crate::b;"),
-                ("b", "use other_crate::a; use $crate::a; use crate::A;")
-            ]),
-            []
-        );
+        assert_eq!(of(&[("a", "pub use b::T; use self::b::U;"), ("a/b", "use super::V; use crate::a::W;")]), []);
+        assert_eq!(of(&[("a", "use crate::b;"), ("b", "// crate::a\n#[cfg(test)] use crate::a;")]), []);
+        assert_eq!(of(&[("a", "use crate::b;"), ("b", "use other_crate::a; use $crate::a; use crate::A;")]), []);
     }
 
     #[test]

@@ -43,15 +43,11 @@ pub fn run_command(repo: &Repo, report: &mut Report, only: Option<&str>, extent:
             counts = closing_line(line).or(counts);
         });
         match (ended, counts) {
-            (Ok(()), Some(counts)) if counts.skipped > 0 && extent == Extent::Short => {
-                (counts, String::from(LONG))
-            }
+            (Ok(()), Some(counts)) if counts.skipped > 0 && extent == Extent::Short => (counts, String::from(LONG)),
             (Ok(()), Some(counts)) => (counts, String::new()),
             (Err(_), Some(counts)) if counts.failed > 0 => (counts, String::from("see above")),
             (ended, counts) => {
-                let reason = ended
-                    .err()
-                    .unwrap_or_else(|| String::from("no closing line"));
+                let reason = ended.err().unwrap_or_else(|| String::from("no closing line"));
                 let mut counts = counts.unwrap_or_default();
                 counts.failed += 1;
                 (counts, format!("pytest: {reason}"))
@@ -64,15 +60,9 @@ pub fn run_command(repo: &Repo, report: &mut Report, only: Option<&str>, extent:
 pub fn prepare(repo: &Repo) -> Result<PathBuf, String> {
     let folder = repo.target.join("python");
     let python = folder.join("bin/python");
-    let system_python = || {
-        output_of(
-            repo.command("python3")
-                .args(["-c", "import venv, ensurepip"]),
-        )
-    };
+    let system_python = || output_of(repo.command("python3").args(["-c", "import venv, ensurepip"]));
     if system_python().is_none() {
-        apt::install(repo, &PYTHON)
-            .map_err(|reason| format!("no Python 3 with venv ({reason}); {REMEDY}"))?;
+        apt::install(repo, &PYTHON).map_err(|reason| format!("no Python 3 with venv ({reason}); {REMEDY}"))?;
     }
     if output_of(repo.command(TSHARK).arg("--version")).is_none() {
         // Without it one test is skipped.
@@ -85,23 +75,12 @@ pub fn prepare(repo: &Repo) -> Result<PathBuf, String> {
         run(venv.args(["-m", "venv", "--clear"]).arg(&folder))
             .map_err(|reason| format!("no environment for Python ({reason}); {REMEDY}"))?;
     }
-    for (list, options) in [
-        ("requirements.txt", &[][..]),
-        ("mavproxy.txt", &["--no-deps"]),
-    ] {
+    for (list, options) in [("requirements.txt", &[][..]), ("mavproxy.txt", &["--no-deps"])] {
         let mut pip = repo.command(&python);
-        pip.args([
-            "-m",
-            "pip",
-            "install",
-            "--quiet",
-            "--disable-pip-version-check",
-        ]);
+        pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]);
         pip.args(options);
         pip.args(["--requirement", &format!("{TESTS}/{list}")]);
-        run(&mut pip).map_err(|reason| {
-            format!("pip could not install tests/python/{list} ({reason}); {REMEDY}")
-        })?;
+        run(&mut pip).map_err(|reason| format!("pip could not install tests/python/{list} ({reason}); {REMEDY}"))?;
     }
     let mut dialect = repo.command(&python);
     run(dialect.arg(format!("{TESTS}/dialect.py")))
@@ -136,16 +115,9 @@ mod tests {
     #[test]
     fn closing_line_is_counted() {
         let line = "==== 1 failed, 12 passed, 2 skipped, 1 error in 63.21s (0:01:03) ====";
-        let counts = Counts {
-            passed: 12,
-            failed: 2,
-            skipped: 2,
-        };
+        let counts = Counts { passed: 12, failed: 2, skipped: 2 };
         assert_eq!(closing_line(line), Some(counts));
-        assert_eq!(
-            closing_line("3 passed in 0.12s").map(|counts| counts.passed),
-            Some(3)
-        );
+        assert_eq!(closing_line("3 passed in 0.12s").map(|counts| counts.passed), Some(3));
     }
 
     #[test]

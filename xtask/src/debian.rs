@@ -57,15 +57,9 @@ impl Rust {
 
     /// Whether compiler, cargo, linker and the sources of `core` are all there.
     fn is_complete(&self, repo: &Repo) -> bool {
-        let sysroot = output_of(
-            repo.command(self.bin.join("rustc"))
-                .args(["--print", "sysroot"]),
-        );
-        let sources = sysroot
-            .map(|root| Path::new(&root).join("lib/rustlib/src/rust/library/core/src/lib.rs"));
-        let programs = PROGRAMS
-            .iter()
-            .all(|program| self.bin.join(program).is_file());
+        let sysroot = output_of(repo.command(self.bin.join("rustc")).args(["--print", "sysroot"]));
+        let sources = sysroot.map(|root| Path::new(&root).join("lib/rustlib/src/rust/library/core/src/lib.rs"));
+        let programs = PROGRAMS.iter().all(|program| self.bin.join(program).is_file());
         programs && sources.is_some_and(|sources| sources.is_file())
     }
 }
@@ -77,13 +71,8 @@ pub fn target_folder(repo: &Repo) -> PathBuf {
 
 /// Whether an environment variable chooses a compiler, its flags or its libraries.
 fn names_a_toolchain(variable: &str) -> bool {
-    const NAMES: [&str; 5] = [
-        "CARGO",
-        "CARGO_ENCODED_RUSTFLAGS",
-        "CARGO_BUILD_RUSTFLAGS",
-        "CARGO_BUILD_TARGET",
-        "LD_LIBRARY_PATH",
-    ];
+    const NAMES: [&str; 5] =
+        ["CARGO", "CARGO_ENCODED_RUSTFLAGS", "CARGO_BUILD_RUSTFLAGS", "CARGO_BUILD_TARGET", "LD_LIBRARY_PATH"];
     const BEGINNINGS: [&str; 4] = ["RUST", "CARGO_BUILD_RUSTC", "CARGO_PKG_", "CARGO_MANIFEST_"];
     NAMES.contains(&variable) || BEGINNINGS.iter().any(|start| variable.starts_with(start))
 }
@@ -94,22 +83,10 @@ mod tests {
 
     #[test]
     fn toolchain_of_the_parent_does_not_leak() {
-        for name in [
-            "RUSTC",
-            "RUSTUP_TOOLCHAIN",
-            "RUSTC_WRAPPER",
-            "CARGO",
-            "CARGO_BUILD_RUSTC_WRAPPER",
-        ] {
+        for name in ["RUSTC", "RUSTUP_TOOLCHAIN", "RUSTC_WRAPPER", "CARGO", "CARGO_BUILD_RUSTC_WRAPPER"] {
             assert!(names_a_toolchain(name), "{name}");
         }
-        for name in [
-            "PATH",
-            "HOME",
-            "CARGO_HOME",
-            "CARGO_BUILD_JOBS",
-            "CARGO_HTTP_PROXY",
-        ] {
+        for name in ["PATH", "HOME", "CARGO_HOME", "CARGO_BUILD_JOBS", "CARGO_HTTP_PROXY"] {
             assert!(!names_a_toolchain(name), "{name}");
         }
     }

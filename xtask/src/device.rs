@@ -57,8 +57,7 @@ pub fn check_features(repo: &Repo, report: &mut Report) {
                         let mut check = toolchain.cargo(repo, part.target, "check");
                         check.args(["--locked", "--package", "staya-controller"]);
                         check.args(["--no-default-features", "--features", features]);
-                        crate::repo::run(&mut check)
-                            .map_err(|reason| format!("`{features}`: {reason}"))
+                        crate::repo::run(&mut check).map_err(|reason| format!("`{features}`: {reason}"))
                     })
                 });
             }
@@ -140,8 +139,7 @@ mod tests {
 
     #[test]
     fn feature_sets_are_those_of_the_manifest_and_the_empty_one() {
-        let manifest =
-            "[package.metadata.staya]\nfeature-sets = [\"\", \"orca\", \"orca,fixed\"]\n";
+        let manifest = "[package.metadata.staya]\nfeature-sets = [\"\", \"orca\", \"orca,fixed\"]\n";
         assert_eq!(feature_sets(manifest), ["", "orca", "orca,fixed"]);
         assert_eq!(feature_sets("[package]\n"), [""]);
     }

@@ -18,40 +18,21 @@ pub fn check(root: &Path) -> Result<(), String> {
         let text = read(file)?;
         let shown = file.strip_prefix(root).unwrap_or(file);
         if shown != Path::new(HISTORY) {
-            let document = Document {
-                root,
-                file,
-                folders: &folders,
-            };
-            faults.extend(
-                document
-                    .faults(&text)
-                    .map(|(line, fault)| format!("{}:{line}: {fault}", shown.display())),
-            );
+            let document = Document { root, file, folders: &folders };
+            faults.extend(document.faults(&text).map(|(line, fault)| format!("{}:{line}: {fault}", shown.display())));
         }
     }
     let mut examples = Vec::new();
     list(&root.join("examples"), "rs", &mut examples)?;
-    let examples = examples
-        .iter()
-        .map(|file| read(file))
-        .collect::<Result<Vec<_>, _>>()?;
+    let examples = examples.iter().map(|file| read(file)).collect::<Result<Vec<_>, _>>()?;
     let readme = read(&root.join("README.md"))?;
     let quotes = quotes(&readme);
-    let strange = quotes
-        .iter()
-        .filter(|quote| !examples.iter().any(|example| is_in(quote, example)));
-    faults.extend(
-        strange.map(|quote| format!("README.md: in no file of examples/: {}", quote.join(" "))),
-    );
+    let strange = quotes.iter().filter(|quote| !examples.iter().any(|example| is_in(quote, example)));
+    faults.extend(strange.map(|quote| format!("README.md: in no file of examples/: {}", quote.join(" "))));
     for fault in &faults {
         println!("{fault}");
     }
-    if faults.is_empty() {
-        Ok(())
-    } else {
-        Err(format!("{} names of what is not there", faults.len()))
-    }
+    if faults.is_empty() { Ok(()) } else { Err(format!("{} names of what is not there", faults.len())) }
 }
 
 /// A Markdown file and what it may refer to.
@@ -66,29 +47,15 @@ impl Document<'_> {
     /// Each name of what does not exist, with its line.
     fn faults(&self, text: &str) -> impl Iterator<Item = (usize, String)> {
         text.lines().zip(1..).flat_map(|(line, number)| {
-            let links = self
-                .broken_links(line)
-                .into_iter()
-                .map(|link| format!("the link {link} leads nowhere"));
-            let paths = self
-                .missing_paths(line)
-                .into_iter()
-                .map(|path| format!("{path} does not exist"));
-            links
-                .chain(paths)
-                .map(move |fault| (number, fault))
-                .collect::<Vec<_>>()
+            let links = self.broken_links(line).into_iter().map(|link| format!("the link {link} leads nowhere"));
+            let paths = self.missing_paths(line).into_iter().map(|path| format!("{path} does not exist"));
+            links.chain(paths).map(move |fault| (number, fault)).collect::<Vec<_>>()
         })
     }
 
     fn broken_links<'t>(&self, line: &'t str) -> Vec<&'t str> {
-        let targets = line
-            .split("](")
-            .skip(1)
-            .filter_map(|rest| rest.split(')').next());
-        targets
-            .filter(|target| !target.contains("://") && !self.leads_somewhere(target))
-            .collect()
+        let targets = line.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+        targets.filter(|target| !target.contains("://") && !self.leads_somewhere(target)).collect()
     }
 
     fn leads_somewhere(&self, target: &str) -> bool {
@@ -98,10 +65,8 @@ impl Document<'_> {
             path => self.here().join(path),
         };
         heading.is_empty() && file.exists()
-            || fs::read_to_string(file).is_ok_and(|text| {
-                text.lines()
-                    .any(|line| anchor(line).as_deref() == Some(heading))
-            })
+            || fs::read_to_string(file)
+                .is_ok_and(|text| text.lines().any(|line| anchor(line).as_deref() == Some(heading)))
     }
 
     /// Words that begin with a top folder, and in backticks files and folders beside, below or above the last of those
@@ -119,11 +84,7 @@ impl Document<'_> {
                     if !is_placeholder && !path.exists() && !self.here().join(word).exists() {
                         missing.push(word);
                     }
-                    near.extend(
-                        path.ancestors()
-                            .take_while(|at| *at != self.root)
-                            .map(Path::to_path_buf),
-                    );
+                    near.extend(path.ancestors().take_while(|at| *at != self.root).map(Path::to_path_buf));
                 } else if is_code
                     && word == span
                     && (word.ends_with(".rs") || word.ends_with('/') && word != "/")
@@ -144,40 +105,26 @@ impl Document<'_> {
 /// Whether a part of a path stands for others, as in `scenarios/NAME.toml` or `scenarios/*.toml`.
 fn is_placeholder(part: &str) -> bool {
     let stem = part.split('.').next().unwrap_or_default();
-    part.contains('*')
-        || !stem.is_empty()
-            && stem != "README"
-            && stem.chars().all(|c| c.is_uppercase() || c == '_')
+    part.contains('*') || !stem.is_empty() && stem != "README" && stem.chars().all(|c| c.is_uppercase() || c == '_')
 }
 
 /// What a link to a heading names it by; `None` for other lines.
 fn anchor(line: &str) -> Option<String> {
-    let heading = line
-        .trim_start_matches('#')
-        .strip_prefix(' ')
-        .filter(|_| line.starts_with('#'))?;
-    let kept = heading
-        .trim()
-        .chars()
-        .filter(|c| c.is_alphanumeric() || " -_".contains(*c));
+    let heading = line.trim_start_matches('#').strip_prefix(' ').filter(|_| line.starts_with('#'))?;
+    let kept = heading.trim().chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c));
     Some(kept.collect::<String>().to_lowercase().replace(' ', "-"))
 }
 
 /// The blocks of Rust, as lines without indentation.
 fn quotes(text: &str) -> Vec<Vec<&str>> {
     let blocks = text.split("\n```rust\n").skip(1);
-    blocks
-        .filter_map(|rest| rest.split("\n```").next())
-        .map(|block| block.lines().map(str::trim).collect())
-        .collect()
+    blocks.filter_map(|rest| rest.split("\n```").next()).map(|block| block.lines().map(str::trim).collect()).collect()
 }
 
 /// Whether these lines follow each other in the text, however indented.
 fn is_in(quote: &[&str], text: &str) -> bool {
     let lines: Vec<&str> = text.lines().map(str::trim).collect();
-    lines
-        .windows(quote.len().max(1))
-        .any(|window| window == quote)
+    lines.windows(quote.len().max(1)).any(|window| window == quote)
 }
 
 /// The folders at the top that are the repository's own.
@@ -190,10 +137,7 @@ fn folders(root: &Path) -> Result<Vec<String>, String> {
 /// Collects the files with this extension.
 fn list(folder: &Path, extension: &str, files: &mut Vec<PathBuf>) -> Result<(), String> {
     for path in entries(folder)? {
-        let name = path
-            .file_name()
-            .and_then(|name| name.to_str())
-            .unwrap_or_default();
+        let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
         if path.is_dir() && !is_foreign(name) {
             list(&path, extension, files)?;
         } else if path.extension().is_some_and(|e| e == extension) {
@@ -209,10 +153,8 @@ fn is_foreign(name: &str) -> bool {
 }
 
 fn entries(folder: &Path) -> Result<Vec<PathBuf>, String> {
-    let entries =
-        fs::read_dir(folder).and_then(|entries| entries.map(|e| e.map(|e| e.path())).collect());
-    let mut paths: Vec<PathBuf> =
-        entries.map_err(|error| format!("{}: {error}", folder.display()))?;
+    let entries = fs::read_dir(folder).and_then(|entries| entries.map(|e| e.map(|e| e.path())).collect());
+    let mut paths: Vec<PathBuf> = entries.map_err(|error| format!("{}: {error}", folder.display()))?;
     paths.sort();
     Ok(paths)
 }
@@ -230,11 +172,7 @@ mod tests {
         let root = Repo::find().root;
         let file = root.join("xtask/README.md");
         let folders = folders(&root).expect("the repository");
-        let document = Document {
-            root: &root,
-            file: &file,
-            folders: &folders,
-        };
+        let document = Document { root: &root, file: &file, folders: &folders };
         document.faults(line).map(|(_, fault)| fault).collect()
     }
 
@@ -257,20 +195,14 @@ mod tests {
     #[test]
     fn what_does_not_exist_is_named() {
         for (line, path) in [
-            (
-                "cargo run -- run scenarios/nowhere.toml.",
-                "scenarios/nowhere.toml",
-            ),
+            ("cargo run -- run scenarios/nowhere.toml.", "scenarios/nowhere.toml"),
             ("`xtask/src/main.rs` and `nowhere.rs`", "nowhere.rs"),
             ("`nowhere/`", "nowhere/"),
         ] {
             assert_eq!(missing(line), [format!("{path} does not exist")]);
         }
         for link in ["../nowhere.md", "../ARCHITECTURE.md#nowhere", "#nowhere"] {
-            assert_eq!(
-                missing(&format!("[x]({link})")),
-                [format!("the link {link} leads nowhere")]
-            );
+            assert_eq!(missing(&format!("[x]({link})")), [format!("the link {link} leads nowhere")]);
         }
     }
 
@@ -278,19 +210,13 @@ mod tests {
     fn quotes_are_found_however_indented() {
         let quotes = quotes("text\n```rust\nlet a = 1;\nif a {\n}\n```\nmore");
         assert_eq!(quotes, [["let a = 1;", "if a {", "}"]]);
-        assert!(is_in(
-            &quotes[0],
-            "fn main() {\n    let a = 1;\n    if a {\n    }\n}"
-        ));
+        assert!(is_in(&quotes[0], "fn main() {\n    let a = 1;\n    if a {\n    }\n}"));
         assert!(!is_in(&quotes[0], "let a = 1;\nlet b = 2;\nif a {\n}"));
     }
 
     #[test]
     fn headings_are_linked_as_browsers_do() {
-        assert_eq!(
-            anchor("## To change X, look in Y").as_deref(),
-            Some("to-change-x-look-in-y")
-        );
+        assert_eq!(anchor("## To change X, look in Y").as_deref(), Some("to-change-x-look-in-y"));
         assert_eq!(anchor("#define"), None);
     }
 }

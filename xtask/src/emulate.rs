@@ -46,9 +46,7 @@ pub fn run_on_line(repo: &Repo, part: &Part, elf: &Path, line: &str) -> Result<S
         .stdout(Stdio::piped())
         .stderr(Stdio::piped());
     println!("$ {}", shown(&command));
-    let mut child = command
-        .spawn()
-        .map_err(|error| format!("cannot start {}: {error}", part.emulator))?;
+    let mut child = command.spawn().map_err(|error| format!("cannot start {}: {error}", part.emulator))?;
     let output = reader(child.stdout.take());
     let complaints = reader(child.stderr.take());
     let ended = wait(&mut child);

@@ -61,11 +61,7 @@ impl<'a> Request<'a> {
         if parts.is_empty() {
             parts.extend(&PARTS);
         }
-        Some(Self {
-            parts,
-            profile,
-            bins,
-        })
+        Some(Self { parts, profile, bins })
     }
 }
 
@@ -116,22 +112,13 @@ pub fn build_some(
 }
 
 /// Builds every program for a part, or those that are named, and copies the ELF files to where they are looked for.
-fn build(
-    repo: &Repo,
-    toolchain: &Toolchain,
-    part: &Part,
-    profile: Profile,
-    only: &[&str],
-) -> Result<(), String> {
+fn build(repo: &Repo, toolchain: &Toolchain, part: &Part, profile: Profile, only: &[&str]) -> Result<(), String> {
     let (profile_name, folder) = profile.names();
     let mut cargo = toolchain.cargo(repo, part.target, "build");
     cargo.args(["--locked", "--profile", profile_name]);
     cargo.args(["--package", "staya-firmware"]);
     let mut bins = bins(repo, profile)?;
-    if let Some(unknown) = only
-        .iter()
-        .find(|&&name| !bins.iter().any(|bin| bin == name))
-    {
+    if let Some(unknown) = only.iter().find(|&&name| !bins.iter().any(|bin| bin == name)) {
         return Err(format!("no program {unknown} in hil/firmware"));
     }
     bins.retain(|bin| only.is_empty() || only.contains(&bin.as_str()));
@@ -159,8 +146,7 @@ fn build(
 /// The names of the programs: each file in `src/bin` is one.
 fn bins(repo: &Repo, profile: Profile) -> Result<Vec<String>, String> {
     let folder = repo.root.join("hil/firmware/src/bin");
-    let entries =
-        fs::read_dir(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let entries = fs::read_dir(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let mut bins: Vec<String> = entries
         .filter_map(|entry| Some(entry.ok()?.path().file_stem()?.to_str()?.to_string()))
         .filter(|bin| profile == Profile::Firmware || !bin.starts_with(ONLY_OPTIMISED))
@@ -241,13 +227,7 @@ mod tests {
     fn contents_are_flash_and_writable_sections_are_ram() {
         // Header, names, five sections: text, data, bss, stack, and one that is not loaded.
         let names = b"\0.text\0.data\0.bss\0.stack\0.debug\0";
-        let sections = [
-            (1, 1, 6, 100),
-            (7, 1, 3, 8),
-            (13, 8, 3, 200),
-            (18, 8, 3, 4000),
-            (25, 1, 0, 50),
-        ];
+        let sections = [(1, 1, 6, 100), (7, 1, 3, 8), (13, 8, 3, 200), (18, 8, 3, 4000), (25, 1, 0, 50)];
         let mut elf = vec![0u8; 52];
         elf[..6].copy_from_slice(b"\x7fELF\x01\x01");
         elf.extend(names);
@@ -265,12 +245,7 @@ mod tests {
             section(name, kind, flags, 0, bytes);
         }
         section(0, 3, 0, 52, names.len() as u32);
-        let sum = Sections {
-            text: 100,
-            rodata: 0,
-            flash: 108,
-            ram: 208,
-        };
+        let sum = Sections { text: 100, rodata: 0, flash: 108, ram: 208 };
         assert_eq!(sizes(&elf), Some(sum));
         assert_eq!(sizes(&elf[..elf.len() - 200]), None);
         elf[4] = 2; // 64 bits

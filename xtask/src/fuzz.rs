@@ -11,18 +11,9 @@ pub const SECONDS: &str = "60";
 
 /// What the fuzzer needs: the question whether it is there, and what to do if not.
 const NEEDS: [(&[&str], &str); 3] = [
-    (
-        &["rustup", "run", "nightly", "cargo", "--version"],
-        "no nightly Rust; run `rustup toolchain install nightly`",
-    ),
-    (
-        &["rustup", "run", "nightly", "cargo", "fuzz", "--version"],
-        "no cargo-fuzz; run `cargo install cargo-fuzz`",
-    ),
-    (
-        &["c++", "--version"],
-        "no C++ compiler, which libFuzzer needs; on Debian run, as root, `apt-get install g++`",
-    ),
+    (&["rustup", "run", "nightly", "cargo", "--version"], "no nightly Rust; run `rustup toolchain install nightly`"),
+    (&["rustup", "run", "nightly", "cargo", "fuzz", "--version"], "no cargo-fuzz; run `cargo install cargo-fuzz`"),
+    (&["c++", "--version"], "no C++ compiler, which libFuzzer needs; on Debian run, as root, `apt-get install g++`"),
 ];
 
 /// Runs each target for some seconds. New inputs stay in `tests/fuzz/corpus`, those that break

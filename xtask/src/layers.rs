@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 /// [`APART`] says not.
 const LAYERS: [&[&str]; 4] = [
     &[
-        "scalar", "digest", "geom", "time", "rand", "grid", "cost", "shuffle", "list", "fixint",
-        "obstacle", "robot", "auth",
+        "scalar", "digest", "geom", "time", "rand", "grid", "cost", "shuffle", "list", "fixint", "obstacle", "robot",
+        "auth",
     ],
     &["body", "neighbor", "template", "wire"],
     &["route", "formation", "orca", "flock", "push_out"],
@@ -29,8 +29,7 @@ pub fn check(source: &Path) -> Result<(), String> {
         let Some(module) = module_of(file.strip_prefix(source).unwrap_or(file)) else {
             continue; // lib.rs names every module
         };
-        let text =
-            fs::read_to_string(file).map_err(|error| format!("{}: {error}", file.display()))?;
+        let text = fs::read_to_string(file).map_err(|error| format!("{}: {error}", file.display()))?;
         for (line, used) in imports(&text) {
             if let Some(fault) = fault(&module, used) {
                 let _ = writeln!(faults, "{}:{line}: {fault}", file.display());
@@ -41,10 +40,7 @@ pub fn check(source: &Path) -> Result<(), String> {
         return Ok(());
     }
     print!("{faults}");
-    Err(format!(
-        "{} imports against the layers",
-        faults.lines().count()
-    ))
+    Err(format!("{} imports against the layers", faults.lines().count()))
 }
 
 /// The top-level module that a file belongs to; `None` for the crate's root.
@@ -79,16 +75,12 @@ fn fault(user: &str, used: &str) -> Option<String> {
     }
     let (Some(above), Some(below)) = (layer(user), layer(used)) else {
         let stranger = if layer(user).is_none() { user } else { used };
-        return Some(format!(
-            "`{stranger}` has no layer; give it one in xtask/src/layers.rs"
-        ));
+        return Some(format!("`{stranger}` has no layer; give it one in xtask/src/layers.rs"));
     };
     if above < below {
         Some(format!("`{user}` uses `{used}`, which is above it"))
     } else if above == below && above == APART {
-        Some(format!(
-            "`{user}` uses `{used}`: behaviours do not know each other"
-        ))
+        Some(format!("`{user}` uses `{used}`: behaviours do not know each other"))
     } else {
         None
     }
@@ -132,10 +124,7 @@ mod tests {
 
     #[test]
     fn a_file_belongs_to_its_top_module() {
-        assert_eq!(
-            module_of(Path::new("route/exits.rs")).as_deref(),
-            Some("route")
-        );
+        assert_eq!(module_of(Path::new("route/exits.rs")).as_deref(), Some("route"));
         assert_eq!(module_of(Path::new("grid.rs")).as_deref(), Some("grid"));
         assert_eq!(module_of(Path::new("lib.rs")), None);
     }

@@ -121,10 +121,7 @@ fn main() -> ExitCode {
             return ExitCode::from(2);
         }
         _ => {
-            eprint!(
-                "xtask: cannot understand `{}`\n\n{HELP}",
-                arguments.join(" ")
-            );
+            eprint!("xtask: cannot understand `{}`\n\n{HELP}", arguments.join(" "));
             return ExitCode::from(2);
         }
     }

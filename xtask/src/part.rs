@@ -12,21 +12,9 @@ pub struct Part {
 
 /// Every part.
 pub const PARTS: [Part; 3] = [
-    Part {
-        name: "stm32f405",
-        target: "thumbv7em-none-eabihf",
-        emulator: "qemu-system-arm",
-    },
-    Part {
-        name: "nrf51",
-        target: "thumbv6m-none-eabi",
-        emulator: "qemu-system-arm",
-    },
-    Part {
-        name: "riscv32",
-        target: "riscv32imac-unknown-none-elf",
-        emulator: "qemu-system-riscv32",
-    },
+    Part { name: "stm32f405", target: "thumbv7em-none-eabihf", emulator: "qemu-system-arm" },
+    Part { name: "nrf51", target: "thumbv6m-none-eabi", emulator: "qemu-system-arm" },
+    Part { name: "riscv32", target: "riscv32imac-unknown-none-elf", emulator: "qemu-system-riscv32" },
 ];
 
 /// The part of this name.
@@ -41,10 +29,7 @@ mod tests {
     #[test]
     fn every_part_is_found_by_its_name() {
         for wanted in &PARTS {
-            assert_eq!(
-                part(wanted.name).map(|found| found.target),
-                Some(wanted.target)
-            );
+            assert_eq!(part(wanted.name).map(|found| found.target), Some(wanted.target));
         }
         assert!(part("stm32").is_none());
     }

@@ -37,7 +37,6 @@ pub fn prepare(repo: &Repo, emulator: &str) -> Result<String, String> {
     if let Some(version) = version() {
         return Ok(version);
     }
-    apt::unpack(repo, &PACKAGES, &PROGRAMS)
-        .map_err(|reason| format!("no {emulator} ({reason}); {REMEDY}"))?;
+    apt::unpack(repo, &PACKAGES, &PROGRAMS).map_err(|reason| format!("no {emulator} ({reason}); {REMEDY}"))?;
     version().ok_or_else(|| format!("no {emulator}; {REMEDY}"))
 }

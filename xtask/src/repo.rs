@@ -21,9 +21,7 @@ impl Repo {
     pub fn find() -> Self {
         let here = std::env::var_os("CARGO_MANIFEST_DIR")
             .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")), PathBuf::from);
-        let root = here
-            .parent()
-            .map_or_else(|| here.clone(), Path::to_path_buf);
+        let root = here.parent().map_or_else(|| here.clone(), Path::to_path_buf);
         let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(
             || root.join("target"),
             // Cargo reads a relative one from where it was started, as does `absolute`.
@@ -57,36 +55,27 @@ impl Repo {
     pub fn cargo(&self, arguments: &[&str]) -> Command {
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let mut command = self.command(cargo);
-        command
-            .args(arguments)
-            .env("CARGO_TARGET_DIR", &self.target);
+        command.args(arguments).env("CARGO_TARGET_DIR", &self.target);
         command
     }
 
     /// The same for a workspace of its own inside the repository, which builds apart.
     pub fn cargo_in(&self, folder: &str, arguments: &[&str]) -> Command {
         let mut command = self.cargo(arguments);
-        command
-            .current_dir(self.root.join(folder))
-            .env("CARGO_TARGET_DIR", self.target_of(folder));
+        command.current_dir(self.root.join(folder)).env("CARGO_TARGET_DIR", self.target_of(folder));
         command
     }
 
     /// Where a workspace of its own builds: `tests/peers` in `target/peers`.
     pub fn target_of(&self, folder: &str) -> PathBuf {
-        self.target
-            .join(Path::new(folder).file_name().unwrap_or_default())
+        self.target.join(Path::new(folder).file_name().unwrap_or_default())
     }
 }
 
 /// The command line as a person would type it, without folders in front of the program's name.
 pub fn shown(command: &Command) -> String {
     let program = Path::new(command.get_program());
-    let mut line = program
-        .file_name()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned();
+    let mut line = program.file_name().unwrap_or_default().to_string_lossy().into_owned();
     for argument in command.get_args() {
         line.push(' ');
         line.push_str(&argument.to_string_lossy());
@@ -104,10 +93,7 @@ pub fn run(command: &mut Command) -> Result<(), String> {
 /// `seen`. The error says why it did not succeed.
 pub fn run_reading(command: &mut Command, mut seen: impl FnMut(&str)) -> Result<(), String> {
     println!("$ {}", shown(command));
-    let mut child = command
-        .stdout(Stdio::piped())
-        .spawn()
-        .map_err(|error| format!("cannot start: {error}"))?;
+    let mut child = command.stdout(Stdio::piped()).spawn().map_err(|error| format!("cannot start: {error}"))?;
     if let Some(output) = child.stdout.take() {
         let mut output = BufReader::new(output);
         let mut line = Vec::new();
@@ -125,11 +111,7 @@ pub fn run_reading(command: &mut Command, mut seen: impl FnMut(&str)) -> Result<
 /// What a quiet command prints; `None` unless it succeeds.
 pub fn output_of(command: &mut Command) -> Option<String> {
     let output = command.stderr(Stdio::null()).output().ok()?;
-    output.status.success().then(|| {
-        String::from_utf8_lossy(&output.stdout)
-            .trim_end()
-            .to_string()
-    })
+    output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim_end().to_string())
 }
 
 fn ended(status: std::io::Result<std::process::ExitStatus>) -> Result<(), String> {

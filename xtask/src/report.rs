@@ -25,11 +25,7 @@ impl std::ops::AddAssign for Counts {
 
 impl std::fmt::Display for Counts {
     fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self {
-            passed,
-            failed,
-            skipped,
-        } = self;
+        let Self { passed, failed, skipped } = self;
         write!(out, "{passed} passed, {failed} failed, {skipped} skipped")
     }
 }
@@ -54,10 +50,7 @@ pub struct Report {
 impl Report {
     /// Under `CI=true` all that is skipped is a failure: a machine that lacks something must not look like one that passes.
     pub fn new() -> Self {
-        Self {
-            is_strict: std::env::var_os("CI").is_some_and(|value| value == "true"),
-            ..Self::default()
-        }
+        Self { is_strict: std::env::var_os("CI").is_some_and(|value| value == "true"), ..Self::default() }
     }
 
     /// Runs one part that counts by itself; announces it first. `work` returns its counts and a
@@ -70,34 +63,17 @@ impl Report {
             counts.failed += std::mem::take(&mut counts.skipped);
             note = format!("with CI=true nothing may be skipped: {note}");
         }
-        self.parts.push(Part {
-            name: name.to_string(),
-            counts,
-            took: start.elapsed(),
-            note,
-        });
+        self.parts.push(Part { name: name.to_string(), counts, took: start.elapsed(), note });
         counts
     }
 
     /// Runs one part that either succeeds or fails. Returns whether it succeeded.
     pub fn step(&mut self, name: &str, work: impl FnOnce() -> Result<(), String>) -> bool {
         let counts = self.part(name, || match work() {
-            Ok(()) => (
-                Counts {
-                    passed: 1,
-                    ..Counts::default()
-                },
-                String::new(),
-            ),
+            Ok(()) => (Counts { passed: 1, ..Counts::default() }, String::new()),
             Err(reason) => {
                 println!("failed: {reason}");
-                (
-                    Counts {
-                        failed: 1,
-                        ..Counts::default()
-                    },
-                    reason,
-                )
+                (Counts { failed: 1, ..Counts::default() }, reason)
             }
         });
         counts.failed == 0
@@ -112,42 +88,20 @@ impl Report {
     pub fn skip(&mut self, name: &str, reason: &str) {
         self.part(name, || {
             println!("skipped: {reason}");
-            (
-                Counts {
-                    skipped: 1,
-                    ..Counts::default()
-                },
-                reason.to_string(),
-            )
+            (Counts { skipped: 1, ..Counts::default() }, reason.to_string())
         });
     }
 
     /// Prints the table and the closing line.
     pub fn close(self) -> ExitCode {
         let mut total = Counts::default();
-        let widest = self
-            .parts
-            .iter()
-            .map(|part| part.name.chars().count())
-            .max();
+        let widest = self.parts.iter().map(|part| part.name.chars().count()).max();
         let width = widest.unwrap_or(0);
         println!("\n{:width$}  passed  failed  skipped  seconds", "part");
-        for Part {
-            name,
-            counts,
-            took,
-            note,
-        } in &self.parts
-        {
-            let Counts {
-                passed,
-                failed,
-                skipped,
-            } = counts;
+        for Part { name, counts, took, note } in &self.parts {
+            let Counts { passed, failed, skipped } = counts;
             let seconds = took.as_secs_f64();
-            let row = format!(
-                "{name:width$}  {passed:>6}  {failed:>6}  {skipped:>7}  {seconds:>7.1}  {note}"
-            );
+            let row = format!("{name:width$}  {passed:>6}  {failed:>6}  {skipped:>7}  {seconds:>7.1}  {note}");
             println!("{}", row.trim_end());
             total += *counts;
         }
@@ -210,35 +164,19 @@ mod tests {
         let line = "test result: FAILED. 12 passed; 3 failed; 1 ignored; 0 measured; \
                     4 filtered out; finished in 0.02s";
         let counts = parse_test_result(line).unwrap();
-        assert_eq!(
-            counts,
-            Counts {
-                passed: 12,
-                failed: 3,
-                skipped: 5
-            }
-        );
+        assert_eq!(counts, Counts { passed: 12, failed: 3, skipped: 5 });
     }
 
     #[test]
     fn other_lines_are_not_counted() {
-        for line in [
-            "",
-            "running 3 tests",
-            "test a::b ... ok",
-            "  test result: ok. 1 passed;",
-        ] {
+        for line in ["", "running 3 tests", "test a::b ... ok", "  test result: ok. 1 passed;"] {
             assert_eq!(parse_test_result(line), None, "{line:?}");
         }
     }
 
     #[test]
     fn closing_line_is_plain() {
-        let counts = Counts {
-            passed: 7,
-            failed: 0,
-            skipped: 2,
-        };
+        let counts = Counts { passed: 7, failed: 0, skipped: 2 };
         assert_eq!(counts.to_string(), "7 passed, 0 failed, 2 skipped");
     }
 
@@ -255,10 +193,7 @@ mod tests {
 
     #[test]
     fn what_is_skipped_has_failed_where_it_must_run() {
-        let mut report = Report {
-            is_strict: true,
-            ..Report::default()
-        };
+        let mut report = Report { is_strict: true, ..Report::default() };
         report.skip("a", "no emulator");
         let part = &report.parts[0];
         assert_eq!((part.counts.failed, part.counts.skipped), (1, 0));
@@ -276,14 +211,7 @@ mod tests {
     fn closing_lines_add_up() {
         let line = "test result: ok. 2 passed; 0 failed; 1 ignored; 0 measured; 0 filtered out";
         let (counts, note) = counted(&mut shell(&format!("echo '{line}'; echo '{line}'")), "why");
-        assert_eq!(
-            counts,
-            Counts {
-                passed: 4,
-                failed: 0,
-                skipped: 2
-            }
-        );
+        assert_eq!(counts, Counts { passed: 4, failed: 0, skipped: 2 });
         assert_eq!(note, "why");
     }
 
@@ -306,13 +234,6 @@ mod tests {
     fn failure_is_counted_once() {
         let line = "test result: FAILED. 2 passed; 1 failed; 0 ignored; 0 measured";
         let (counts, _) = counted(&mut shell(&format!("echo '{line}'; exit 101")), "");
-        assert_eq!(
-            counts,
-            Counts {
-                passed: 2,
-                failed: 1,
-                skipped: 0
-            }
-        );
+        assert_eq!(counts, Counts { passed: 2, failed: 1, skipped: 0 });
     }
 }

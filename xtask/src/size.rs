@@ -76,10 +76,7 @@ fn measure(repo: &Repo, part: &'static Part) -> Result<Measured, String> {
     let program = reach::Program::read(&bytes)?;
     Ok(Measured {
         part: part.name,
-        programs: programs
-            .iter()
-            .map(sections)
-            .collect::<Result<_, String>>()?,
+        programs: programs.iter().map(sections).collect::<Result<_, String>>()?,
         rows,
         steps: reach::steps(&program),
         formats: reach::formats(&program),
@@ -95,29 +92,14 @@ fn read(repo: &Repo, part: &Part) -> Result<Budget, String> {
 impl Measured {
     /// For people.
     fn table(&self) -> String {
-        let mut text = format!(
-            "\n{:<24} {:>8} {:>8} {:>8} {:>8}\n",
-            self.part, "text", "rodata", "flash", "RAM"
-        );
+        let mut text = format!("\n{:<24} {:>8} {:>8} {:>8} {:>8}\n", self.part, "text", "rodata", "flash", "RAM");
         for (program, sections) in &self.programs {
-            let Sections {
-                text: code,
-                rodata,
-                flash,
-                ram,
-            } = sections;
+            let Sections { text: code, rodata, flash, ram } = sections;
             text += &format!("{program:<24} {code:>8} {rodata:>8} {flash:>8} {ram:>8}\n");
         }
         text += &format!(
             "\n{:<26} {:>6} {:>6} {:>9} {:>9} {:>6} {:>6} {:>9}\n",
-            "bytes, instructions",
-            "number",
-            "steps",
-            "median",
-            "worst",
-            "stack",
-            "agent",
-            "workspace"
+            "bytes, instructions", "number", "steps", "median", "worst", "stack", "agent", "workspace"
         );
         for row in &self.rows {
             text += &format!("{row}\n");
@@ -129,10 +111,7 @@ impl Measured {
         for reach::Step { behaviour, reach } in &self.steps {
             text += &format!("{:>8} {:>8}  {behaviour}\n", reach.text, reach.rodata);
         }
-        text += &format!(
-            "\n{:>8} {:>8}  one frame of a wire format\n",
-            "text", "rodata"
-        );
+        text += &format!("\n{:>8} {:>8}  one frame of a wire format\n", "text", "rodata");
         for reach::Step { behaviour, reach } in &self.formats {
             text += &format!("{:>8} {:>8}  {behaviour}\n", reach.text, reach.rodata);
         }

@@ -16,8 +16,7 @@ pub fn run(repo: &Repo, report: &mut Report, extent: Extent) {
         Extent::Short => why_skipped.push(String::from(LONG)),
         Extent::All => options.push("--include-ignored"),
     }
-    let shared = std::env::var_os("STAYA_SHARED")
-        .map_or_else(|| repo.root.join("../shared"), std::path::PathBuf::from);
+    let shared = std::env::var_os("STAYA_SHARED").map_or_else(|| repo.root.join("../shared"), std::path::PathBuf::from);
     if !shared.is_dir() {
         options.extend(["--skip", NEEDS_SHARED]);
         let folder = shared.display();

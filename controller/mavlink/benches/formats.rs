@@ -27,11 +27,7 @@ fn beacon() -> Message {
 }
 
 fn format<W: Wire>(c: &mut Criterion, name: &str, mut wire: W) {
-    let mut header = Header {
-        boot: 1,
-        sender: RobotId(7),
-        sequence: 0,
-    };
+    let mut header = Header { boot: 1, sender: RobotId(7), sequence: 0 };
     let (message, mut out) = (beacon(), Vec::<u8, 256>::new());
     c.bench_function(&format!("beacon/encode/{name}"), |bencher| {
         bencher.iter(|| {
@@ -59,9 +55,7 @@ fn formats(c: &mut Criterion) {
 
 /// Benchmarks of tens of nanoseconds need no five seconds each.
 fn short() -> Criterion {
-    Criterion::default()
-        .warm_up_time(Duration::from_millis(500))
-        .measurement_time(Duration::from_secs(2))
+    Criterion::default().warm_up_time(Duration::from_millis(500)).measurement_time(Duration::from_secs(2))
 }
 
 criterion_group!(name = benches; config = short(); targets = formats);

@@ -4,9 +4,7 @@ use crate::wire::Mavlink;
 use heapless::Vec;
 use serde::{Serialize, Serializer};
 use staya_controller::robot::RobotId;
-use staya_controller::wire::{
-    DecodeError, EncodeError, Format, Frame, FromFormat, Header, Message, Postcard, Wire,
-};
+use staya_controller::wire::{DecodeError, EncodeError, Format, Frame, FromFormat, Header, Message, Postcard, Wire};
 
 /// A wire format that is known only when the program runs.
 ///

@@ -124,11 +124,7 @@ fn parse(bytes: &[u8]) -> Result<RawFrame<'_>, Fault> {
     let (frame, checked, payload, checksum) = match bytes {
         [START_V1, rest @ ..] => {
             let &[len, sequence, system, component, id] = rest.first_chunk().ok_or(Fault::Short)?;
-            let sender = Sender {
-                system,
-                component,
-                sequence,
-            };
+            let sender = Sender { system, component, sequence };
             let (payload, checksum, end) = body(bytes, 6, len, false)?;
             let frame = RawFrame {
                 bytes: bytes.get(..end).ok_or(Fault::Short)?,
@@ -142,27 +138,14 @@ fn parse(bytes: &[u8]) -> Result<RawFrame<'_>, Fault> {
             (frame, bytes.get(1..6), payload, checksum)
         }
         [START_V2, rest @ ..] => {
-            let &[
-                len,
-                incompatible,
-                _compatible,
-                sequence,
-                system,
-                component,
-                a,
-                b,
-                c,
-            ] = rest.first_chunk().ok_or(Fault::Short)?;
+            let &[len, incompatible, _compatible, sequence, system, component, a, b, c] =
+                rest.first_chunk().ok_or(Fault::Short)?;
             // Whoever does not know a flag must drop the frame.
             if incompatible & !SIGNED != 0 {
                 return Err(Fault::Bad);
             }
             let is_signed = incompatible & SIGNED != 0;
-            let sender = Sender {
-                system,
-                component,
-                sequence,
-            };
+            let sender = Sender { system, component, sequence };
             let (payload, checksum, end) = body(bytes, 10, len, is_signed)?;
             let frame = RawFrame {
                 bytes: bytes.get(..end).ok_or(Fault::Short)?,
@@ -180,27 +163,15 @@ fn parse(bytes: &[u8]) -> Result<RawFrame<'_>, Fault> {
     let Some(extra) = extra_crc(frame.message_id) else {
         let follows = bytes.get(frame.bytes.len());
         return match follows {
-            None | Some(&(START_V1 | START_V2)) => Ok(RawFrame {
-                is_known: false,
-                ..frame
-            }),
+            None | Some(&(START_V1 | START_V2)) => Ok(RawFrame { is_known: false, ..frame }),
             Some(_) => Err(Fault::Bad),
         };
     };
-    if checksum_of(checked.ok_or(Fault::Short)?, payload, extra) == checksum {
-        Ok(frame)
-    } else {
-        Err(Fault::Bad)
-    }
+    if checksum_of(checked.ok_or(Fault::Short)?, payload, extra) == checksum { Ok(frame) } else { Err(Fault::Bad) }
 }
 
 /// Payload, checksum and the frame's length.
-fn body(
-    bytes: &[u8],
-    header: usize,
-    len: u8,
-    is_signed: bool,
-) -> Result<(&[u8], u16, usize), Fault> {
+fn body(bytes: &[u8], header: usize, len: u8, is_signed: bool) -> Result<(&[u8], u16, usize), Fault> {
     let end = header + usize::from(len);
     let payload = bytes.get(header..end).ok_or(Fault::Short)?;
     let rest = bytes.get(end..).ok_or(Fault::Short)?;
@@ -231,9 +202,7 @@ impl<'a> RawFrame<'a> {
     /// The frame that `bytes` are, no byte more or less.
     #[must_use]
     pub fn new(bytes: &'a [u8]) -> Option<Self> {
-        parse(bytes)
-            .ok()
-            .filter(|frame| frame.bytes.len() == bytes.len())
+        parse(bytes).ok().filter(|frame| frame.bytes.len() == bytes.len())
     }
 
     /// All of it.
@@ -297,11 +266,7 @@ impl<'a> RawFrame<'a> {
     }
 
     const fn mavlink_version(&self) -> MavlinkVersion {
-        if self.version == 1 {
-            MavlinkVersion::V1
-        } else {
-            MavlinkVersion::V2
-        }
+        if self.version == 1 { MavlinkVersion::V1 } else { MavlinkVersion::V2 }
     }
 }
 
@@ -311,11 +276,7 @@ impl<'a> RawFrame<'a> {
 /// [`Full`] when it does not fit.
 ///
 /// Bounded work: O(payload).
-pub fn encode<D: MessageData, const N: usize>(
-    sender: Sender,
-    data: &D,
-    out: &mut Vec<u8, N>,
-) -> Result<usize, Full> {
+pub fn encode<D: MessageData, const N: usize>(sender: Sender, data: &D, out: &mut Vec<u8, N>) -> Result<usize, Full> {
     let mut payload = [0; 255];
     let len = data.ser(MavlinkVersion::V2, &mut payload);
     write(sender, D::ID, D::EXTRA_CRC, &payload, len, out)
@@ -347,18 +308,7 @@ fn write<const N: usize>(
     let payload = payload.get(..len).ok_or(Full)?;
     let len = u8::try_from(len).map_err(|_| Full)?;
     let [a, b, c, _] = id.to_le_bytes();
-    let header = [
-        START_V2,
-        len,
-        0,
-        0,
-        sender.sequence,
-        sender.system,
-        sender.component,
-        a,
-        b,
-        c,
-    ];
+    let header = [START_V2, len, 0, 0, sender.sequence, sender.system, sender.component, a, b, c];
     let [_, checked @ ..] = &header;
     let checksum = checksum_of(checked, payload, extra).to_le_bytes();
     let total = header.len() + payload.len() + checksum.len();

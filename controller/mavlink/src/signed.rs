@@ -58,8 +58,7 @@ impl<const N: usize> Wire for Signed<N> {
             })
         };
         let signature = signed.inspect_err(|_| out.truncate(before))?;
-        out.extend_from_slice(&signature)
-            .map_err(|_| EncodeError::Full)?;
+        out.extend_from_slice(&signature).map_err(|_| EncodeError::Full)?;
         Ok(len + SIGNATURE_LEN)
     }
 

@@ -91,10 +91,7 @@ impl Counts {
     /// Frames that were to be dropped.
     #[must_use]
     pub const fn refused(&self) -> u32 {
-        self.refused_unsigned
-            .saturating_add(self.forged)
-            .saturating_add(self.replayed)
-            .saturating_add(self.no_room)
+        self.refused_unsigned.saturating_add(self.forged).saturating_add(self.replayed).saturating_add(self.no_room)
     }
 
     fn count(&mut self, verdict: Verdict) {
@@ -152,14 +149,7 @@ impl<const N: usize> Signing<N> {
             timestamp,
             streams: ReplayGuard::new(),
             may_be_unsigned: &[],
-            counts: Counts {
-                authentic: 0,
-                unsigned: 0,
-                refused_unsigned: 0,
-                forged: 0,
-                replayed: 0,
-                no_room: 0,
-            },
+            counts: Counts { authentic: 0, unsigned: 0, refused_unsigned: 0, forged: 0, replayed: 0, no_room: 0 },
         }
     }
 
@@ -227,10 +217,9 @@ impl<const N: usize> Signing<N> {
     }
 
     fn judge(&mut self, frame: &RawFrame<'_>) -> Verdict {
-        let (Some(signature), Some((signed, _))) = (
-            frame.signature(),
-            frame.bytes().split_last_chunk::<SIGNATURE_LEN>(),
-        ) else {
+        let (Some(signature), Some((signed, _))) =
+            (frame.signature(), frame.bytes().split_last_chunk::<SIGNATURE_LEN>())
+        else {
             return if self.may_be_unsigned.contains(&frame.message_id()) {
                 Verdict::Unsigned
             } else {

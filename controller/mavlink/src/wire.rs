@@ -8,8 +8,8 @@
 //! damage. Everything else between frames comes out of [`Wire::next_frame`] as one piece, which [`Wire::decode`] refuses, so that it counts.
 
 use crate::dialect::{
-    STAYA_ACK_DATA, STAYA_BEACON_DATA, STAYA_COMPACT_DATA, STAYA_GOAL_DATA, STAYA_PLACE_DATA,
-    STAYA_REQUEST_DATA, STAYA_TEMPLATE_DATA,
+    STAYA_ACK_DATA, STAYA_BEACON_DATA, STAYA_COMPACT_DATA, STAYA_GOAL_DATA, STAYA_PLACE_DATA, STAYA_REQUEST_DATA,
+    STAYA_TEMPLATE_DATA,
 };
 use crate::frame::{self, Full, RawFrame, Scan, Sender, scan};
 use heapless::Vec;
@@ -20,8 +20,8 @@ use staya_controller::robot::{Mode, RobotId};
 use staya_controller::template::TemplateEntry;
 use staya_controller::time::Instant;
 use staya_controller::wire::{
-    Ack, Beacon, CompactBeacon, DecodeError, EncodeError, Frame, GoalAssignment, Header, Message,
-    Request, RequestKind, TEMPLATE_PART, TemplateAssignment, WaypointAssignment, Wire,
+    Ack, Beacon, CompactBeacon, DecodeError, EncodeError, Frame, GoalAssignment, Header, Message, Request, RequestKind,
+    TEMPLATE_PART, TemplateAssignment, WaypointAssignment, Wire,
 };
 
 /// The component that robots speak as: an onboard computer (`MAV_COMP_ID_ONBOARD_COMPUTER`).
@@ -85,11 +85,7 @@ pub fn next_frame<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
 /// [`EncodeError::Full`] when the frame does not fit. Nothing is written then.
 ///
 /// Bounded work: O(bytes of the frame).
-pub fn encode<const N: usize>(
-    header: Header,
-    message: &Message,
-    out: &mut Vec<u8, N>,
-) -> Result<usize, EncodeError> {
+pub fn encode<const N: usize>(header: Header, message: &Message, out: &mut Vec<u8, N>) -> Result<usize, EncodeError> {
     if !header.sender.is_somebody() {
         return Err(EncodeError::NoSender);
     }
@@ -248,19 +244,11 @@ pub fn decode(bytes: &[u8]) -> Result<Frame, DecodeError> {
         }
         _ => return Err(DecodeError::Foreign),
     };
-    let header = Header {
-        boot,
-        sender: robot(raw.sender().system),
-        sequence,
-    };
+    let header = Header { boot, sender: robot(raw.sender().system), sequence };
     if !header.sender.is_somebody() {
         return Err(DecodeError::NoSender);
     }
-    Ok(Frame {
-        header,
-        message,
-        tag: None,
-    })
+    Ok(Frame { header, message, tag: None })
 }
 
 /// Boot, sequence and message.
@@ -328,11 +316,7 @@ fn ack(data: &STAYA_ACK_DATA) -> Parts {
     Ok((data.boot, data.sequence, Message::Ack(ack)))
 }
 
-fn template(
-    part: &TemplateAssignment,
-    boot: u8,
-    sequence: u16,
-) -> Result<STAYA_TEMPLATE_DATA, EncodeError> {
+fn template(part: &TemplateAssignment, boot: u8, sequence: u16) -> Result<STAYA_TEMPLATE_DATA, EncodeError> {
     let mut data = STAYA_TEMPLATE_DATA {
         sequence,
         offset_x: part.offset.x,
@@ -367,11 +351,7 @@ fn template_part(data: &STAYA_TEMPLATE_DATA) -> Parts {
     let others = data.entry_id.iter().zip(&data.entry_hops);
     let mut entries = Vec::new();
     for ((x, y), (id, hops)) in places.zip(others).take(count) {
-        let entry = TemplateEntry {
-            offset: Cell::new(*x, *y),
-            id: robot(*id),
-            hops: *hops,
-        };
+        let entry = TemplateEntry { offset: Cell::new(*x, *y), id: robot(*id), hops: *hops };
         entries.push(entry).map_err(|_| DecodeError::Body)?;
     }
     let part = TemplateAssignment {
@@ -412,15 +392,8 @@ fn dir(heading: u8) -> Option<Dir> {
 }
 
 fn mode(number: u8) -> Option<Mode> {
-    const MODES: [Mode; 7] = [
-        Mode::Idle,
-        Mode::Forming,
-        Mode::Cruise,
-        Mode::Hold,
-        Mode::Arrived,
-        Mode::Fault,
-        Mode::Passive,
-    ];
+    const MODES: [Mode; 7] =
+        [Mode::Idle, Mode::Forming, Mode::Cruise, Mode::Hold, Mode::Arrived, Mode::Fault, Mode::Passive];
     MODES.get(usize::from(number)).copied()
 }
 

@@ -128,10 +128,7 @@ impl<S: Scalar> Odometry<S> {
     pub fn state(&self) -> KinematicState<S> {
         let (sin, cos) = self.heading_rad.sin_cos();
         let velocity = Vec2::new(self.twist.forward_mps, self.twist.left_mps).rotate(cos, sin);
-        KinematicState {
-            position: self.position,
-            velocity_mps: velocity.extend(S::ZERO),
-        }
+        KinematicState { position: self.position, velocity_mps: velocity.extend(S::ZERO) }
     }
 
     /// Counter-clockwise from east, on (-pi, pi].
@@ -157,11 +154,7 @@ mod tests {
     const SPAN: Duration = Duration::from_millis(50);
 
     fn way<S: Scalar>(forward: f64, turn: f64) -> Twist<S> {
-        Twist {
-            forward_mps: S::from_f64(forward).unwrap(),
-            left_mps: S::ZERO,
-            turn_radps: S::from_f64(turn).unwrap(),
-        }
+        Twist { forward_mps: S::from_f64(forward).unwrap(), left_mps: S::ZERO, turn_radps: S::from_f64(turn).unwrap() }
     }
 
     #[test]
@@ -203,10 +196,7 @@ mod tests {
                 odometry.advance(&step, SPAN);
             }
             let [x, y, z] = odometry.state().position.mm;
-            assert!(
-                (x - 5).abs() <= tolerance_mm && (y - 6).abs() <= tolerance_mm && z == 7,
-                "{x} {y}"
-            );
+            assert!((x - 5).abs() <= tolerance_mm && (y - 6).abs() <= tolerance_mm && z == 7, "{x} {y}");
             assert!((odometry.heading_rad().to_f64() - 1.0).abs() < 0.01);
         }
         check::<f64>(1);
@@ -242,11 +232,7 @@ mod tests {
         assert_eq!(odometry.state().position, before.state().position);
         assert_eq!(odometry.heading_rad(), before.heading_rad());
         odometry.advance(&way(0.0, 0.0), Duration::ZERO);
-        assert_eq!(
-            odometry.twist(),
-            before.twist(),
-            "no time, no news of the speed"
-        );
+        assert_eq!(odometry.twist(), before.twist(), "no time, no news of the speed");
         assert!(Odometry::new(Position::ORIGIN, f32::NAN).is_none());
     }
 

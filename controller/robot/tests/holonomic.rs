@@ -4,9 +4,7 @@ mod common;
 
 use core::convert::Infallible;
 use embedded_hal::digital::{ErrorType as PinError, OutputPin};
-use staya_controller::agent::{
-    Agent, AgentConfig, InPlane, Inputs, OrcaSafety, Waypoint, WaypointGuidance,
-};
+use staya_controller::agent::{Agent, AgentConfig, InPlane, Inputs, OrcaSafety, Waypoint, WaypointGuidance};
 use staya_controller::geom::{Position, Vec2};
 use staya_controller::neighbor::StalenessInflation;
 use staya_controller::orca::AvoidParams;
@@ -14,9 +12,7 @@ use staya_controller::robot::{Mode, RobotId};
 use staya_controller::scalar::{Q16, Scalar};
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::Postcard;
-use staya_robot::drive::{
-    Calibration, Kinematics, Limits, Mixer, Omni, SignMagnitude, Twist, Wheels, wished_velocity,
-};
+use staya_robot::drive::{Calibration, Kinematics, Limits, Mixer, Omni, SignMagnitude, Twist, Wheels, wished_velocity};
 use staya_robot::odometry::{Encoder, Odometry};
 use std::cell::Cell;
 use std::rc::Rc;
@@ -62,26 +58,16 @@ fn an_omni_robot_in_fixed_point_arrives_while_it_spins() {
     let wheels = Omni::<f64, 3>::new(0.3, ARM_M).unwrap();
     let (mut place, mut heading, mut ways) = (Vec2::new(0.0, 0.0), 1.0f64, [0.0f64; 3]);
     // The robot.
-    let limits = Limits {
-        speed_mps: q(0.6),
-        acceleration_mps2: q(2.0),
-    };
+    let limits = Limits { speed_mps: q(0.6), acceleration_mps2: q(2.0) };
     let mut mixer = Mixer::new(Omni::<Q16, 3>::new(q(0.3), q(ARM_M)).unwrap(), limits).unwrap();
     let linear = Calibration::linear(q(FULL_MPS));
     let motors = pins.clone();
-    let mut motors =
-        Wheels::new(motors.map(|(power, ahead)| (SignMagnitude::new(power, ahead), linear)));
+    let mut motors = Wheels::new(motors.map(|(power, ahead)| (SignMagnitude::new(power, ahead), linear)));
     let mut encoders = [(); 3].map(|()| Encoder::new(q(WHEEL_M), TICKS_PER_TURN, false).unwrap());
     let mut odometry = Odometry::new(Position::ORIGIN, q(heading)).unwrap();
     let max_speed_mps = q(0.4);
-    let config = AgentConfig {
-        max_acceleration_mps2: q(1.0),
-        ..AgentConfig::new(RobotId(1), q(0.15), TICK)
-    };
-    let inflation = StalenessInflation {
-        growth_mps: Q16::ZERO,
-        max_m: Q16::ZERO,
-    };
+    let config = AgentConfig { max_acceleration_mps2: q(1.0), ..AgentConfig::new(RobotId(1), q(0.15), TICK) };
+    let inflation = StalenessInflation { growth_mps: Q16::ZERO, max_m: Q16::ZERO };
     let safety = OrcaSafety::<Q16, 16>::new(AvoidParams::default(), inflation);
     let guidance = WaypointGuidance::new(max_speed_mps, q(0.02));
     let mut agent = Agent::<Q16, _, 8, _>::new(&config, guidance, safety, Postcard);
@@ -98,18 +84,10 @@ fn an_omni_robot_in_fixed_point_arrives_while_it_spins() {
         let turn = core::f64::consts::TAU * WHEEL_M;
         let count = |way: f64| (way / turn * f64::from(TICKS_PER_TURN)).floor() as i64 as u16;
         let mut counts = ways.iter().map(|way| count(*way));
-        let rims = encoders
-            .each_mut()
-            .map(|encoder| encoder.travelled(counts.next().unwrap()));
+        let rims = encoders.each_mut().map(|encoder| encoder.travelled(counts.next().unwrap()));
         odometry.advance(&mixer.kinematics().twist(&rims), TICK);
-        let inputs = Inputs {
-            state: odometry.state(),
-            surroundings: InPlane {
-                max_speed_mps,
-                obstacles: &[],
-            },
-            inbox: &[],
-        };
+        let inputs =
+            Inputs { state: odometry.state(), surroundings: InPlane { max_speed_mps, obstacles: &[] }, inbox: &[] };
         let out = agent.step(&inputs, now, &mut ());
         let wish = wished_velocity(&out.command);
         let twist = Twist::holonomic(wish, odometry.heading_rad(), q(1.0));

@@ -16,9 +16,8 @@ mod common;
 use core::convert::Infallible;
 use embedded_io::{ErrorType, Read, ReadReady, Write, WriteReady};
 use staya_controller::agent::{
-    Agent, AgentConfig, CELLS, CellFollower, CellState, GridWorkspace, Guidance, HALF_PLANES,
-    InCell, InCells, InPlane, Inputs, NEIGHBORS, OnGrid, OrcaAgent, OrcaSafety, RouteGuidance,
-    VISITS, Waypoint, WaypointGuidance,
+    Agent, AgentConfig, CELLS, CellFollower, CellState, GridWorkspace, Guidance, HALF_PLANES, InCell, InCells, InPlane,
+    Inputs, NEIGHBORS, OnGrid, OrcaAgent, OrcaSafety, RouteGuidance, VISITS, Waypoint, WaypointGuidance,
 };
 use staya_controller::geom::{Position, Vec2};
 use staya_controller::grid::{Cell, GridFrame};
@@ -32,8 +31,7 @@ use staya_controller::scalar::Scalar;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::Postcard;
 use staya_robot::drive::{
-    Calibration, Differential, HBridge, Kinematics, Limits, LookAhead, Mixer, Wheels,
-    wished_velocity,
+    Calibration, Differential, HBridge, Kinematics, Limits, LookAhead, Mixer, Wheels, wished_velocity,
 };
 use staya_robot::odometry::{Encoder, Odometry};
 use staya_robot::radio::PacketLink;
@@ -56,10 +54,7 @@ const DEAD: f64 = 0.12;
 const MAX_DUTY: u16 = 999;
 const BEAMS: usize = 90;
 const RANGE_M: f64 = 2.0;
-const FRAME: GridFrame<f32> = GridFrame {
-    origin_m: Vec2::new(0.0, 0.0),
-    cell_m: 0.4,
-};
+const FRAME: GridFrame<f32> = GridFrame { origin_m: Vec2::new(0.0, 0.0), cell_m: 0.4 };
 
 type Channel = common::Channel<MAX_DUTY>;
 
@@ -82,9 +77,7 @@ impl Read for Uart {
         let mut heard = self.heard.borrow_mut();
         assert!(!heard.is_empty(), "a read that would block");
         let len = buf.len().min(heard.len());
-        buf.iter_mut()
-            .zip(heard.drain(..len))
-            .for_each(|(to, from)| *to = from);
+        buf.iter_mut().zip(heard.drain(..len)).for_each(|(to, from)| *to = from);
         Ok(len)
     }
 }
@@ -128,14 +121,7 @@ struct Body {
 
 impl Body {
     fn at(axle: Vec2<f64>, heading: f64) -> Self {
-        Self {
-            axle,
-            heading,
-            rims: [0.0; 2],
-            ways: [0.0; 2],
-            channels: Default::default(),
-            uart: Uart::default(),
-        }
+        Self { axle, heading, rims: [0.0; 2], ways: [0.0; 2], channels: Default::default(), uart: Uart::default() }
     }
 
     /// The motors follow their duties with a lag of 40 ms; the right one is mounted the other way round.
@@ -156,10 +142,8 @@ impl Body {
     }
 
     fn counts(&self) -> [u16; 2] {
-        let ticks = |way: f64| {
-            (way / (core::f64::consts::TAU * WHEEL_M) * f64::from(TICKS_PER_TURN)).floor() as i64
-                as u16
-        };
+        let ticks =
+            |way: f64| (way / (core::f64::consts::TAU * WHEEL_M) * f64::from(TICKS_PER_TURN)).floor() as i64 as u16;
         // The right one counts down.
         [ticks(self.ways[0]), ticks(-self.ways[1])]
     }
@@ -170,9 +154,7 @@ impl Body {
             let bearing = core::f64::consts::TAU * number as f64 / BEAMS as f64;
             let (sin, cos) = Scalar::sin_cos(self.heading + bearing);
             let ahead = Vec2::new(cos, sin);
-            let walls = walls
-                .iter()
-                .filter_map(|wall| crossing(self.axle, ahead, *wall));
+            let walls = walls.iter().filter_map(|wall| crossing(self.axle, ahead, *wall));
             let others = others.iter().filter_map(|other| {
                 let to = *other - self.axle;
                 let (along, aside) = (ahead.dot(to), ahead.det(to));
@@ -186,11 +168,7 @@ impl Body {
                 let noise = (f64::from(rng.below(2001)) - 1000.0) * 1e-5;
                 let range = beam(number);
                 let lost = rng.below(50) == 0;
-                if lost {
-                    f32::NAN
-                } else {
-                    (range + noise) as f32
-                }
+                if lost { f32::NAN } else { (range + noise) as f32 }
             })
             .collect()
     }
@@ -224,10 +202,7 @@ struct Firmware<G: Guidance<f32>> {
     max_speed_mps: f32,
 }
 
-const LIMITS: Limits<f32> = Limits {
-    speed_mps: 0.5,
-    acceleration_mps2: 1.5,
-};
+const LIMITS: Limits<f32> = Limits { speed_mps: 0.5, acceleration_mps2: 1.5 };
 /// The point ahead, and the disc around it that holds the body, with 2 cm to spare.
 const AHEAD_M: f32 = 0.06;
 const RADIUS_M: f32 = BODY_M as f32 + AHEAD_M + 0.02;
@@ -246,21 +221,11 @@ where
             latency: Duration::from_millis(25),
             ..AgentConfig::new(RobotId(id), RADIUS_M, TICK)
         };
-        let inflation = StalenessInflation {
-            growth_mps: 0.1,
-            max_m: 0.2,
-        };
+        let inflation = StalenessInflation { growth_mps: 0.1, max_m: 0.2 };
         let safety = OrcaSafety::new(AvoidParams::default(), inflation);
-        let motor = Calibration {
-            full_mps: FULL_MPS as f32,
-            dead_duty: DEAD as f32,
-            still_mps: 0.004,
-            is_inverted: false,
-        };
-        let mirrored = Calibration {
-            is_inverted: true,
-            ..motor
-        };
+        let motor =
+            Calibration { full_mps: FULL_MPS as f32, dead_duty: DEAD as f32, still_mps: 0.004, is_inverted: false };
+        let mirrored = Calibration { is_inverted: true, ..motor };
         let [left, right] = body.channels.clone();
         let bridge = |[ahead, back]: [Channel; 2]| HBridge::new(ahead, back);
         let encoder = |mirrored| Encoder::new(WHEEL_M as f32, TICKS_PER_TURN, mirrored).unwrap();
@@ -282,8 +247,7 @@ where
     fn tick(&mut self, counts: [u16; 2], ranges: &[f32], now: Instant) {
         let [left, right] = &mut self.encoders;
         let rims = [left.travelled(counts[0]), right.travelled(counts[1])];
-        self.odometry
-            .advance(&self.mixer.kinematics().twist(&rims), TICK);
+        self.odometry.advance(&self.mixer.kinematics().twist(&rims), TICK);
         let heading = self.odometry.heading_rad();
         let turn = self.odometry.twist().turn_radps;
         let state = self.ahead.state(&self.odometry.state(), heading, turn);
@@ -297,45 +261,17 @@ where
             mount_m: Vec2::new(-AHEAD_M, 0.0),
         };
         let neighbors = self.agent.neighbors();
-        let is_robot = |place| {
-            is_neighbor(
-                neighbors,
-                state.position,
-                now,
-                TICK.saturating_mul(4),
-                place,
-                0.05,
-            )
-        };
-        assert!(
-            self.map
-                .observe(&FRAME, place, heading, &scan, now, is_robot)
-        );
-        let params = OutlineParams {
-            tolerance_m: 0.03,
-            gap_m: 0.3,
-            point_m: 0.03,
-        };
+        let is_robot = |place| is_neighbor(neighbors, state.position, now, TICK.saturating_mul(4), place, 0.05);
+        assert!(self.map.observe(&FRAME, place, heading, &scan, now, is_robot));
+        let params = OutlineParams { tolerance_m: 0.03, gap_m: 0.3, point_m: 0.03 };
         let obstacles = outline::<_, 16>(&scan, heading, &params, is_robot);
         let cell = FRAME.cell(place).unwrap();
         let inputs = Inputs {
             state,
             surroundings: G::Input::from(InCells {
-                grid: OnGrid {
-                    cell: CellState {
-                        cell,
-                        busy: Duration::ZERO,
-                    },
-                    window: self.map.window(),
-                },
-                plane: InPlane {
-                    max_speed_mps: self.max_speed_mps,
-                    obstacles: &obstacles,
-                },
-                in_cell: InCell {
-                    offset_m: place - FRAME.center(cell),
-                    cell_m: FRAME.cell_m,
-                },
+                grid: OnGrid { cell: CellState { cell, busy: Duration::ZERO }, window: self.map.window() },
+                plane: InPlane { max_speed_mps: self.max_speed_mps, obstacles: &obstacles },
+                in_cell: InCell { offset_m: place - FRAME.center(cell), cell_m: FRAME.cell_m },
             }),
             inbox: self.radio.take(),
         };
@@ -356,11 +292,7 @@ fn carry(bodies: &[Body], rng: &mut Rng) {
             }
             let mut heard = listener.uart.heard.borrow_mut();
             for byte in &said {
-                let flip = if rng.below(1000) == 0 {
-                    1 << rng.below(8)
-                } else {
-                    0
-                };
+                let flip = if rng.below(1000) == 0 { 1 << rng.below(8) } else { 0 };
                 heard.push_back(byte ^ flip);
             }
             if rng.below(40) == 0 {
@@ -402,10 +334,7 @@ fn run<G: for<'a> Guidance<f32, Input<'a>: From<InCells<'a, f32>>>>(
         bodies.iter_mut().for_each(Body::roll);
         check(bodies);
     }
-    panic!(
-        "nobody arrives: {:?}",
-        bodies.iter().map(|b| b.axle).collect::<Vec<_>>()
-    );
+    panic!("nobody arrives: {:?}", bodies.iter().map(|b| b.axle).collect::<Vec<_>>());
 }
 
 #[test]
@@ -420,12 +349,7 @@ fn a_robot_finds_its_way_round_a_wall_that_it_knows_only_by_ranges() {
         [v(0.0, 4.0), v(4.0, 4.0)],
     ];
     let mut bodies = [Body::at(v(1.0, 1.0), 0.0)];
-    let guidance = |speed| {
-        CellFollower::new(
-            RouteGuidance::<CELLS, VISITS>::new(RouteParams::default()),
-            speed,
-        )
-    };
+    let guidance = |speed| CellFollower::new(RouteGuidance::<CELLS, VISITS>::new(RouteParams::default()), speed);
     let mut robots = [Firmware::new(1, guidance, GridWorkspace::new(), &bodies[0])];
     let goal = Cell::new(7, 2);
     robots[0].agent.assign_goal(goal);
@@ -448,10 +372,7 @@ fn a_robot_finds_its_way_round_a_wall_that_it_knows_only_by_ranges() {
 #[test]
 fn two_robots_with_two_wheels_each_change_places_over_a_bad_wire() {
     let v = Vec2::new;
-    let mut bodies = [
-        Body::at(v(0.5, 1.0), 0.0),
-        Body::at(v(3.5, 1.0), core::f64::consts::PI),
-    ];
+    let mut bodies = [Body::at(v(0.5, 1.0), 0.0), Body::at(v(3.5, 1.0), core::f64::consts::PI)];
     let guidance = |speed| WaypointGuidance::new(speed, 0.02);
     let mut robots = [1, 2].map(|id| Firmware::new(id, guidance, (), &bodies[id as usize - 1]));
     let goals = [v(3.5, 1.0), v(0.5, 1.0)];
@@ -475,10 +396,7 @@ fn two_robots_with_two_wheels_each_change_places_over_a_bad_wire() {
         assert_eq!((heard.dropped, said.dropped), (0, 0));
     }
     // Straight it would take 3 m at the speed that is left for going any way.
-    assert!(
-        time < 2.0 * 3.0 / f64::from(robots[0].max_speed_mps),
-        "{time}"
-    );
+    assert!(time < 2.0 * 3.0 / f64::from(robots[0].max_speed_mps), "{time}");
 }
 
 /// The types that the README names are these.

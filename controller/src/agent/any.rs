@@ -51,9 +51,7 @@ macro_rules! each {
     };
 }
 
-impl<S, const CELLS: usize, const M: usize, const F: usize> Teamwork
-    for AnyGuidance<S, CELLS, M, F>
-{
+impl<S, const CELLS: usize, const M: usize, const F: usize> Teamwork for AnyGuidance<S, CELLS, M, F> {
     fn redirect(&mut self) {
         each!(self, law => law.redirect());
     }
@@ -71,9 +69,7 @@ impl<S, const CELLS: usize, const M: usize, const F: usize> Teamwork
     }
 }
 
-impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
-    for AnyGuidance<S, CELLS, M, F>
-{
+impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S> for AnyGuidance<S, CELLS, M, F> {
     type Input<'a> = AnySurroundings<'a, S>;
     type Destination = ToAny;
     type Workspace = GridWorkspace<CELLS>;

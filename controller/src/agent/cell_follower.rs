@@ -35,11 +35,7 @@ impl<S: Scalar, G> CellFollower<S, G> {
     /// `law` in the plane, cruising at `speed_mps` (the body's own limit holds too).
     #[must_use]
     pub const fn new(law: G, speed_mps: S) -> Self {
-        Self {
-            law,
-            speed_mps,
-            last: None,
-        }
+        Self { law, speed_mps, last: None }
     }
 
     /// The law of the grid, for what it can tell of itself.
@@ -93,27 +89,17 @@ where
             last.cell != cell || age_s < S::ZERO || age_s >= crossing_s
         };
         let mut decision = match &self.last {
-            Some(last) if !is_due(last) => Decision {
-                asks: heapless::Vec::new(),
-                ..last.decision.clone()
-            },
+            Some(last) if !is_due(last) => Decision { asks: heapless::Vec::new(), ..last.decision.clone() },
             _ => {
                 self.last = None;
                 let decision = self.law.decide(input, &here.grid, rng, workspace)?;
-                self.last = Some(Last {
-                    cell,
-                    at: input.now,
-                    decision: decision.clone(),
-                });
+                self.last = Some(Last { cell, at: input.now, decision: decision.clone() });
                 decision
             }
         };
         let to_center = |cells: Cell| {
             let along = |cells: i16, offset: S| S::from_i32(cells.into()) * place.cell_m - offset;
-            Vec2::new(
-                along(cells.x, place.offset_m.x),
-                along(cells.y, place.offset_m.y),
-            )
+            Vec2::new(along(cells.x, place.offset_m.x), along(cells.y, place.offset_m.y))
         };
         let dir = decision.action.moves().first().copied();
         let way = to_center(dir.unwrap_or(Dir::Stay).offset());

@@ -59,12 +59,7 @@ impl<S: Scalar, G> Commanded<S, G> {
     /// `inside`, and for [`Wish::Waypoint`] a cruising speed in m/s and how near is there, metres.
     #[must_use]
     pub const fn new(inside: G, speed_mps: S, tolerance_m: S) -> Self {
-        Self {
-            inside,
-            wish: Wish::Own,
-            since: None,
-            straight: WaypointGuidance::new(speed_mps, tolerance_m),
-        }
+        Self { inside, wish: Wish::Own, since: None, straight: WaypointGuidance::new(speed_mps, tolerance_m) }
     }
 
     /// The operator's wish from the next step on.
@@ -78,9 +73,7 @@ impl<S: Scalar, G> Commanded<S, G> {
     {
         let is_possible = match &wish {
             Wish::Own | Wish::Off | Wish::Hold => true,
-            Wish::Velocity { velocity_mps, .. } => {
-                self.inside.goes_by_velocity() && velocity_mps.is_finite()
-            }
+            Wish::Velocity { velocity_mps, .. } => self.inside.goes_by_velocity() && velocity_mps.is_finite(),
             Wish::Waypoint { .. } => self.inside.goes_by_velocity(),
             Wish::Cell(_) => self.inside.goes_to_cells(),
         };
@@ -131,11 +124,7 @@ fn on_order<S>(action: Action<S>, goal: Cell) -> Decision<S> {
     let stays = matches!(action, Action::Stay);
     Decision {
         action,
-        status: Status {
-            waits: stays,
-            recovers: !stays,
-            ..Status::default()
-        },
+        status: Status { waits: stays, recovers: !stays, ..Status::default() },
         target: goal,
         leader: RobotId::NOBODY,
         slot: 0,
@@ -180,10 +169,8 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
             Wish::Hold => Ok(on_order(Action::Stay, input.goal)),
             Wish::Velocity { velocity_mps, .. } => {
                 input.can_go()?;
-                let action = Action::Velocity {
-                    wish_mps: velocity_mps.clamp_norm(input.body.max_speed_mps),
-                    way_m: None,
-                };
+                let action =
+                    Action::Velocity { wish_mps: velocity_mps.clamp_norm(input.body.max_speed_mps), way_m: None };
                 Ok(on_order(action, input.goal))
             }
             Wish::Waypoint { .. } => {
@@ -217,9 +204,7 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
     }
 
     fn parameter(&self, parameter: Parameter) -> Option<S> {
-        self.inside
-            .parameter(parameter)
-            .or_else(|| self.straight.parameter(parameter))
+        self.inside.parameter(parameter).or_else(|| self.straight.parameter(parameter))
     }
 
     /// Speed and tolerance also hold for [`Wish::Waypoint`].

@@ -73,14 +73,8 @@ impl<S: Scalar> AgentConfig<S> {
             radius_m,
             max_acceleration_mps2: S::MAX,
             latency: Duration::ZERO,
-            ages: Ages {
-                stale_after: tick.saturating_mul(4),
-                expire_after: tick.saturating_mul(30),
-            },
-            retry: Retry {
-                attempts: 5,
-                interval: tick.saturating_mul(3),
-            },
+            ages: Ages { stale_after: tick.saturating_mul(4), expire_after: tick.saturating_mul(30) },
+            retry: Retry { attempts: 5, interval: tick.saturating_mul(3) },
             stop_valid: tick.saturating_mul(12),
         }
     }

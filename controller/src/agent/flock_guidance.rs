@@ -1,8 +1,6 @@
 //! The three flocks as guidance laws.
 
-use super::guidance::{
-    Action, BadInput, Decision, Guidance, GuidanceInput, Roams, Status, Teamwork, ToWaypoints,
-};
+use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Roams, Status, Teamwork, ToWaypoints};
 use super::{InPlane, Waypoint};
 use crate::flock::boids::BoidsParams;
 use crate::flock::goal::{GoalParams, Goals, Stage, wish};
@@ -28,11 +26,7 @@ impl<S: Scalar> LatticeGuidance<S> {
     /// all the same (a static one, as in the paper's obstacle courses).
     #[must_use]
     pub const fn new(params: LatticeParams<S>, moves: bool) -> Self {
-        Self {
-            params,
-            reference: None,
-            moves,
-        }
+        Self { params, reference: None, moves }
     }
 }
 
@@ -61,22 +55,13 @@ impl<S: Scalar> Guidance<S> for LatticeGuidance<S> {
             velocity_mps: waypoint.velocity_mps,
         });
         let body = &input.body;
-        let change = acceleration(
-            &self.params,
-            body,
-            input.nearby,
-            here.obstacles,
-            reference.as_ref(),
-        );
+        let change = acceleration(&self.params, body, input.nearby, here.obstacles, reference.as_ref());
         let wish_mps = body.velocity_mps + change * body.step_s;
         if !wish_mps.is_finite() {
             return Err(BadInput);
         }
         Ok(Decision {
-            action: Action::Velocity {
-                wish_mps,
-                way_m: reference.map(|reference| reference.offset_m),
-            },
+            action: Action::Velocity { wish_mps, way_m: reference.map(|reference| reference.offset_m) },
             ..Decision::default()
         })
     }
@@ -107,12 +92,7 @@ impl<S: Scalar> GoalFlockGuidance<S> {
     /// `arrival_m`: how near counts as being there; a crowd needs room, so about the neighbourhood. `seed`: of the draws.
     #[must_use]
     pub const fn new(params: GoalParams<S>, arrival_m: S, seed: u64) -> Self {
-        Self {
-            params,
-            arrival_m,
-            seed,
-            goals: Goals::new(),
-        }
+        Self { params, arrival_m, seed, goals: Goals::new() }
     }
 
     /// Where the robot is on its way.
@@ -154,10 +134,7 @@ impl<S: Scalar> Guidance<S> for GoalFlockGuidance<S> {
         let way_m = goal.map(|goal| goal.since(own));
         Ok(Decision {
             action: Action::Velocity { wish_mps, way_m },
-            status: Status {
-                is_at_goal: self.is_there(own, way_m, wish_mps),
-                ..Status::default()
-            },
+            status: Status { is_at_goal: self.is_there(own, way_m, wish_mps), ..Status::default() },
             ..Decision::default()
         })
     }
@@ -186,11 +163,7 @@ impl<S: Scalar> BoidsGuidance<S> {
     /// At `speed_mps`; the first heading is that of the body, or drawn if it stands.
     #[must_use]
     pub const fn new(params: BoidsParams<S>, speed_mps: S) -> Self {
-        Self {
-            params,
-            speed_mps,
-            heading: None,
-        }
+        Self { params, speed_mps, heading: None }
     }
 }
 
@@ -220,10 +193,7 @@ impl<S: Scalar> Guidance<S> for BoidsGuidance<S> {
         let heading = self.params.steer(input.id, heading, input.nearby);
         self.heading = Some(heading);
         Ok(Decision {
-            action: Action::Velocity {
-                wish_mps: (heading * self.speed_mps).extend(S::ZERO),
-                way_m: None,
-            },
+            action: Action::Velocity { wish_mps: (heading * self.speed_mps).extend(S::ZERO), way_m: None },
             ..Decision::default()
         })
     }

@@ -2,15 +2,13 @@
 //! their places beside it. See [`crate::formation`] for what differs from the paper and why.
 
 use super::OnGrid;
-use super::guidance::{
-    Action, Ask, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells,
-};
+use super::guidance::{Action, Ask, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
 use super::route_guidance::GridWorkspace;
 use super::travel::{PATIENCE, Travel, on_grid, reachable_goal};
 use crate::cost::{Gain, Weights};
 use crate::formation::{
-    Anchor, FormationParams, Found, GraphDistance, Member, Pace, Prediction, Recovery, Seen, aim,
-    blended, def, distances, find_leader, find_neighbors, graph_distance, lag, should_stay,
+    Anchor, FormationParams, Found, GraphDistance, Member, Pace, Prediction, Recovery, Seen, aim, blended, def,
+    distances, find_leader, find_neighbors, graph_distance, lag, should_stay,
 };
 use crate::grid::{BLOCKED, Cell, Dir, Window};
 use crate::list;
@@ -68,11 +66,7 @@ struct Guide {
 impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS, M, F> {
     /// With these parameters and this place in the formation.
     #[must_use]
-    pub const fn new(
-        route: RouteParams,
-        formation: FormationParams,
-        template: Template<F>,
-    ) -> Self {
+    pub const fn new(route: RouteParams, formation: FormationParams, template: Template<F>) -> Self {
         Self {
             route,
             formation,
@@ -141,8 +135,8 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
         }
         if self.formation.prediction == Prediction::Reflexive {
             for index in 0..all.len() {
-                let own = (self.template.entries.iter())
-                    .find(|entry| all.get(index).is_some_and(|seen| seen.id == entry.id));
+                let own =
+                    (self.template.entries.iter()).find(|entry| all.get(index).is_some_and(|seen| seen.id == entry.id));
                 let Some(entry) = own else { continue };
                 let place = top.and_then(|(top, offset)| {
                     let leader = all.iter().find(|seen| seen.id == top)?;
@@ -160,12 +154,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
 
     /// Where a robot will be after the time of the next move if it goes on as it announced
     /// (constant velocity on the land in sight). At most [`MAX_FORESIGHT`] cells.
-    fn foresee<S>(
-        &self,
-        input: &GuidanceInput<'_, S>,
-        window: &Window<'_>,
-        other: &Neighbor<S>,
-    ) -> Cell {
+    fn foresee<S>(&self, input: &GuidanceInput<'_, S>, window: &Window<'_>, other: &Neighbor<S>) -> Cell {
         let mut cell = other.cell;
         if !matches!(other.mode, Mode::Cruise | Mode::Forming) || other.heading == Dir::Stay {
             return cell;
@@ -187,9 +176,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
             cell = next;
             let ticks = i32::from(u).saturating_mul(length);
             let micros = i64::from(input.tick.as_micros()) * i64::from(ticks);
-            let crossing = micros
-                .checked_div(i64::from(crate::grid::UNIT))
-                .unwrap_or(0);
+            let crossing = micros.checked_div(i64::from(crate::grid::UNIT)).unwrap_or(0);
             let crossing = i32::try_from(crossing).unwrap_or(i32::MAX);
             left = Duration::from_micros(left.as_micros().saturating_sub(crossing));
         }
@@ -208,9 +195,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
     ) -> Option<Cell> {
         let neighbor = input.neighbor(other.id)?;
         let is_free = (input.now + input.tick).since(neighbor.busy_until) >= Duration::ZERO;
-        let is_in_sight = Dir::MOVES
-            .iter()
-            .all(|dir| window.get(other.cell + dir.offset()).is_some());
+        let is_in_sight = Dir::MOVES.iter().all(|dir| window.get(other.cell + dir.offset()).is_some());
         if !is_free || !is_in_sight {
             return None;
         }
@@ -218,14 +203,9 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
         if target == other.cell {
             return Some(other.cell);
         }
-        let params = RouteParams {
-            a2: Gain::ZERO,
-            ..self.route
-        };
+        let params = RouteParams { a2: Gain::ZERO, ..self.route };
         let nobody = core::iter::empty();
-        let weights = field
-            .weights::<0>(&params, window, other.cell, target, nobody, None)
-            .ok()?;
+        let weights = field.weights::<0>(&params, window, other.cell, target, nobody, None).ok()?;
         let price = distances(&self.formation, other.cell, place, &[]);
         let dir = weights.plus(&price).best()?;
         Some(other.cell + dir.offset())
@@ -237,9 +217,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
         let heard = |id: RobotId| input.neighbor(id);
         let first = heard(self.leader)?;
         // Numbers fall along the chain, so that it ends; a wrong beacon cannot make it a circle.
-        let chain = successors(Some(first), |robot| {
-            heard(robot.leader).filter(|next| next.id < robot.id)
-        });
+        let chain = successors(Some(first), |robot| heard(robot.leader).filter(|next| next.id < robot.id));
         let placed = chain.filter_map(|robot| {
             let named = self.template.entries.iter().find(|e| e.id == robot.id);
             let offset = match named {
@@ -286,9 +264,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
         };
         let shown = shown.as_ref().unwrap_or(window);
         let others = input.neighbors.iter().map(|neighbor| neighbor.cell);
-        self.router
-            .weights(&self.route, field, shown, cell, target, others)
-            .ok()
+        self.router.weights(&self.route, field, shown, cell, target, others).ok()
     }
 
     /// The way of a follower to its place.
@@ -302,11 +278,8 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
         found: &Found<F>,
         workspace: &mut GridWorkspace<CELLS>,
     ) -> Option<Weights> {
-        let (place, members): (Cell, &[Member]) = if guide.has_arrived {
-            (target, &[])
-        } else {
-            (aim(&guide.anchor, self.formation.lead), &found.members)
-        };
+        let (place, members): (Cell, &[Member]) =
+            if guide.has_arrived { (target, &[]) } else { (aim(&guide.anchor, self.formation.lead), &found.members) };
         let place = reachable_goal(window, place);
         let price = distances(&self.formation, cell, Some(place), members);
         if place == cell {
@@ -317,10 +290,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
         let is_in_sight = window.get(place).is_some();
         let visits = (!is_in_sight).then_some(self.router.visits());
         let others = input.neighbors.iter().map(|neighbor| neighbor.cell);
-        let weights = workspace
-            .field
-            .weights(&self.route, window, cell, place, others, visits)
-            .ok()?;
+        let weights = workspace.field.weights(&self.route, window, cell, place, others, visits).ok()?;
         Some(weights.plus(&price))
     }
 
@@ -330,11 +300,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
         let seen = seen.iter().find(|seen| seen.id == top)?;
         let off = cell - (seen.cell + offset);
         Some(Guide {
-            anchor: Anchor {
-                predicted: seen.predicted,
-                offset,
-                heading: seen.heading,
-            },
+            anchor: Anchor { predicted: seen.predicted, offset, heading: seen.heading },
             lag: lag(off, seen.heading),
             has_arrived: seen.mode == Mode::Arrived,
         })
@@ -352,10 +318,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
             return None;
         }
         self.crowded = 0;
-        Some(Ask {
-            to: found.surplus,
-            kind: RequestKind::Redirect,
-        })
+        Some(Ask { to: found.surplus, kind: RequestKind::Redirect })
     }
 
     /// Asks the leader to stop when too far behind, and to resume when near again.
@@ -373,19 +336,10 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
 
 /// A neighbour as the formation sees it.
 fn seen_at<S>(other: &Neighbor<S>, predicted: Cell) -> Seen {
-    Seen {
-        id: other.id,
-        cell: other.cell,
-        predicted,
-        heading: other.heading,
-        leader: other.leader,
-        mode: other.mode,
-    }
+    Seen { id: other.id, cell: other.cell, predicted, heading: other.heading, leader: other.leader, mode: other.mode }
 }
 
-impl<const CELLS: usize, const M: usize, const F: usize> Teamwork
-    for FormationGuidance<CELLS, M, F>
-{
+impl<const CELLS: usize, const M: usize, const F: usize> Teamwork for FormationGuidance<CELLS, M, F> {
     fn redirect(&mut self) {
         self.travel.redirect();
     }
@@ -415,9 +369,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> Teamwork
     }
 }
 
-impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
-    for FormationGuidance<CELLS, M, F>
-{
+impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S> for FormationGuidance<CELLS, M, F> {
     type Input<'a> = OnGrid<'a>;
     type Destination = ToCells;
     type Workspace = GridWorkspace<CELLS>;
@@ -435,20 +387,12 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
 
         let mut seen = Vec::new();
         self.seen(input, &window, &mut workspace.field, &mut seen);
-        let found = find_neighbors(
-            &self.template,
-            cell,
-            self.formation.eps,
-            seen.iter().copied(),
-        );
+        let found = find_neighbors(&self.template, cell, self.formation.eps, seen.iter().copied());
         self.choose_leader(input, &found);
         let leader = self.leader;
         let guide = self.guide(input, cell, &seen);
-        let mut status = Status {
-            is_at_goal: cell == target,
-            makes_way: self.travel.take_redirection(),
-            ..Status::default()
-        };
+        let mut status =
+            Status { is_at_goal: cell == target, makes_way: self.travel.take_redirection(), ..Status::default() };
         let mut asks = Vec::new();
         let mut stays = false;
         let weights = if let Some(guide) = &guide {
@@ -498,14 +442,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S>
             list::extend(&mut asks, blocked);
             list::extend(&mut asks, self.ask_surplus(&found));
         }
-        Ok(Decision {
-            action: Action::Moves(moves),
-            status,
-            target,
-            leader,
-            slot: self.template.slot,
-            asks,
-        })
+        Ok(Decision { action: Action::Moves(moves), status, target, leader, slot: self.template.slot, asks })
     }
 
     fn goes_by_velocity(&self) -> bool {

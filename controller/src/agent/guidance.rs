@@ -210,11 +210,7 @@ impl<S: Scalar> GuidanceInput<'_, S> {
     /// # Errors
     /// [`BadInput`] when [`InPlane::max_speed_mps`](super::InPlane::max_speed_mps) says that it cannot move.
     pub fn can_go(&self) -> Result<(), BadInput> {
-        if self.body.max_speed_mps > S::ZERO {
-            Ok(())
-        } else {
-            Err(BadInput)
-        }
+        if self.body.max_speed_mps > S::ZERO { Ok(()) } else { Err(BadInput) }
     }
 }
 

@@ -44,11 +44,7 @@ impl<'a, S: Scalar, I: Into<AnySurroundings<'a, S>>> Inputs<'a, S, I> {
     /// The same for a law that is known only at run time.
     #[must_use]
     pub fn any(self) -> AnyInputs<'a, S> {
-        Inputs {
-            state: self.state,
-            surroundings: self.surroundings.into(),
-            inbox: self.inbox,
-        }
+        Inputs { state: self.state, surroundings: self.surroundings.into(), inbox: self.inbox }
     }
 }
 

@@ -9,8 +9,8 @@ use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 use crate::wire::{
-    Arrival, Beacon, DecodeError, Due, Frame, Header, Message, Newest, Orders, Request,
-    RequestKind, Requests, Retry, SequenceWindow, TemplateAssignment, Wire,
+    Arrival, Beacon, DecodeError, Due, Frame, Header, Message, Newest, Orders, Request, RequestKind, Requests, Retry,
+    SequenceWindow, TemplateAssignment, Wire,
 };
 use heapless::Vec;
 use serde::Serialize;
@@ -33,18 +33,11 @@ pub(super) enum News<S> {
     PassOn(Request),
     /// A part of a template for this robot; `is_anew` when its sender is another one than before or
     /// has started anew, so that versions count from anywhere.
-    Template {
-        part: TemplateAssignment,
-        is_anew: bool,
-    },
+    Template { part: TemplateAssignment, is_anew: bool },
     /// A goal for the top leader of this robot's formation.
     Goal(Cell),
     /// A waypoint, number `index` of several; once it is taken, [`Link::placed`] wants to know.
-    Waypoint {
-        index: u8,
-        version: u8,
-        waypoint: Waypoint<S>,
-    },
+    Waypoint { index: u8, version: u8, waypoint: Waypoint<S> },
 }
 
 /// What the link keeps between steps.
@@ -77,11 +70,7 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
     pub(super) const fn new(id: RobotId, boot: u8, ages: Ages, retry: Retry, wire: W) -> Self {
         Self {
             wire,
-            header: Header {
-                boot,
-                sender: id,
-                sequence: 0,
-            },
+            header: Header { boot, sender: id, sequence: 0 },
             table: NeighborTable::new(ages),
             windows: Vec::new(),
             requests: Requests::new(id, boot, retry),
@@ -129,11 +118,7 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
             let arrival = self.arrival(frame.header, out)?;
             Some((frame, arrival))
         });
-        let count = if frame.is_some() {
-            &mut out.received
-        } else {
-            &mut out.rejected
-        };
+        let count = if frame.is_some() { &mut out.received } else { &mut out.rejected };
         *count = count.saturating_add(1);
         let (frame, arrival) = frame?;
         self.take(frame, arrival, now, listener, out)
@@ -242,9 +227,7 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
         listener: &Listener<'_>,
         out: &mut Outputs<S>,
     ) {
-        let put = self
-            .table
-            .put(neighbor, listener.position, now, listener.needs);
+        let put = self.table.put(neighbor, listener.position, now, listener.needs);
         if let Put::Evicted(evicted) = put {
             self.windows.retain(|(id, _)| *id != evicted);
             report(out, Event::NeighborEvicted(evicted));
@@ -266,14 +249,7 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
     }
 
     /// Takes on a request; one that finds no room is dropped, its reason will come again.
-    pub(super) fn ask(
-        &mut self,
-        to: RobotId,
-        origin: RobotId,
-        kind: RequestKind,
-        valid: Duration,
-        now: Instant,
-    ) {
+    pub(super) fn ask(&mut self, to: RobotId, origin: RobotId, kind: RequestKind, valid: Duration, now: Instant) {
         let millis = valid.as_micros().max(0).checked_div(1000).unwrap_or(0);
         let millis = u16::try_from(millis).unwrap_or(u16::MAX);
         let _ = self.requests.ask(to, origin, kind, millis, now);
@@ -363,9 +339,7 @@ pub(super) fn beacon<S: Scalar>(
 ) -> Beacon {
     let milli = |value: S| value.to_milli().unwrap_or(0);
     let narrow = |value: S| milli(value).clamp(i16::MIN.into(), i16::MAX.into()) as i16;
-    let busy_ms = i64::from(on_grid.busy.as_micros().max(0))
-        .checked_div(1000)
-        .unwrap_or(0);
+    let busy_ms = i64::from(on_grid.busy.as_micros().max(0)).checked_div(1000).unwrap_or(0);
     Beacon {
         time: now,
         position_mm: state.position.mm,

@@ -123,8 +123,8 @@ pub use config::AgentConfig;
 pub use flock_guidance::{BoidsGuidance, GOALS, GoalFlockGuidance, LatticeGuidance};
 pub use formation_guidance::FormationGuidance;
 pub use guidance::{
-    Action, Ask, BadInput, Decision, Destination, Guidance, GuidanceInput, Roams, Status, Teamwork,
-    ToAny, ToCells, ToWaypoints,
+    Action, Ask, BadInput, Decision, Destination, Guidance, GuidanceInput, Roams, Status, Teamwork, ToAny, ToCells,
+    ToWaypoints,
 };
 pub use io::{AnyInputs, Command, EVENTS, Event, Inputs, KinematicState, OUTBOX, Outputs, Refused};
 pub use orca_safety::{FlySafety, OrcaSafety};
@@ -132,12 +132,8 @@ pub use other_safety::PushOutSafety;
 pub use parameter::Parameter;
 pub use route_guidance::{GridWorkspace, RouteGuidance};
 pub use safety::{Safety, SafetyInput, Unguarded};
-pub use setup::{
-    AnyAgent, BoidsSetup, GuidanceSetup, RouteSetup, SafetySetup, Setup, Task, WAYPOINTS,
-};
-pub use surroundings::{
-    AnySurroundings, CellState, InCell, InCells, InPlane, OnGrid, Surroundings,
-};
+pub use setup::{AnyAgent, BoidsSetup, GuidanceSetup, RouteSetup, SafetySetup, Setup, Task, WAYPOINTS};
+pub use surroundings::{AnySurroundings, CellState, InCell, InCells, InPlane, OnGrid, Surroundings};
 pub use task::WrongTask;
 pub use waypoint::Waypoint;
 pub use waypoint_guidance::WaypointGuidance;
@@ -171,12 +167,8 @@ pub type OrcaAgent = Agent<f32, WaypointGuidance<f32>, NEIGHBORS, OrcaSafety<f32
 
 // What a firmware pays: one agent, and one workspace for all agents of a processor. A change here is
 // news for everybody's memory map.
-const BYTES: [usize; 4] = [
-    size_of::<RouteAgent>(),
-    size_of::<FormationAgent>(),
-    size_of::<OrcaAgent>(),
-    size_of::<GridWorkspace<CELLS>>(),
-];
+const BYTES: [usize; 4] =
+    [size_of::<RouteAgent>(), size_of::<FormationAgent>(), size_of::<OrcaAgent>(), size_of::<GridWorkspace<CELLS>>()];
 #[cfg(target_pointer_width = "32")]
 const _: () = assert!(matches!(BYTES, [2032, 2288, 1632, 2704]));
 #[cfg(target_pointer_width = "64")]

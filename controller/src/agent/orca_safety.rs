@@ -38,15 +38,8 @@ impl<S: Scalar, const K: usize> FlySafety<S, K> {
 impl<S: Scalar, const K: usize, P: HalfSpaces<S>> OrcaSafety<S, K, P> {
     /// With constraints from `source`.
     #[must_use]
-    pub const fn with_source(
-        params: AvoidParams<S>,
-        inflation: StalenessInflation<S>,
-        source: P,
-    ) -> Self {
-        Self {
-            avoider: Avoider::with_source(params, source),
-            inflation,
-        }
+    pub const fn with_source(params: AvoidParams<S>, inflation: StalenessInflation<S>, source: P) -> Self {
+        Self { avoider: Avoider::with_source(params, source), inflation }
     }
 }
 

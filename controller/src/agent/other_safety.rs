@@ -23,12 +23,6 @@ impl<S: Scalar> PushOutSafety<S> {
 
 impl<S: Scalar> Safety<S> for PushOutSafety<S> {
     fn keep_clear(&mut self, input: &SafetyInput<'_, S>, _: &mut Rng) -> Vec3<S> {
-        push_out(
-            &self.params,
-            &input.body,
-            input.wish_mps,
-            input.nearby,
-            input.obstacles,
-        )
+        push_out(&self.params, &input.body, input.wish_mps, input.nearby, input.obstacles)
     }
 }

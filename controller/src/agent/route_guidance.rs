@@ -1,9 +1,7 @@
 //! Every robot for itself, to its own goal (KUZ algorithm 1).
 
 use super::OnGrid;
-use super::guidance::{
-    Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells,
-};
+use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
 use super::travel::{Travel, on_grid, reachable_goal};
 use crate::grid::{Cell, Dir, Window};
 use crate::list;
@@ -33,10 +31,7 @@ impl<const CELLS: usize> GridWorkspace<CELLS> {
     /// Ready for use.
     #[must_use]
     pub const fn new() -> Self {
-        Self {
-            field: CostField::new(),
-            land: [0; CELLS],
-        }
+        Self { field: CostField::new(), land: [0; CELLS] }
     }
 }
 
@@ -91,15 +86,10 @@ impl<const CELLS: usize, const M: usize> RouteGuidance<CELLS, M> {
         let field = &mut workspace.field;
         let others = input.neighbors.iter().map(|neighbor| neighbor.cell);
         if self.replan == Replan::UntilChanged && !is_redirected {
-            let dir = self
-                .router
-                .follow(params, field, window, cell, target, others)
-                .ok()?;
+            let dir = self.router.follow(params, field, window, cell, target, others).ok()?;
             return Some(list::collect([dir]));
         }
-        let weights = self
-            .router
-            .weights(params, field, window, cell, target, others);
+        let weights = self.router.weights(params, field, window, cell, target, others);
         let mut weights = weights.ok()?;
         if is_redirected {
             weights = self.travel.without_last(weights);
@@ -130,11 +120,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize> Guidance<S> for RouteGuidanc
         let target = reachable_goal(&window, input.goal);
         self.router.observe(&self.params, cell, target);
         let makes_way = self.travel.take_redirection();
-        let mut status = Status {
-            is_at_goal: cell == target,
-            makes_way,
-            ..Status::default()
-        };
+        let mut status = Status { is_at_goal: cell == target, makes_way, ..Status::default() };
         let mut moves = Vec::new();
         if !status.is_at_goal || makes_way {
             let open = self.moves(input, &window, (cell, target), makes_way, rng, workspace);

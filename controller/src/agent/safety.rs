@@ -32,10 +32,7 @@ pub trait Safety<S: Scalar> {
 
     /// How neighbours that have fallen silent are to be seen.
     fn inflation(&self) -> StalenessInflation<S> {
-        StalenessInflation {
-            growth_mps: S::ZERO,
-            max_m: S::ZERO,
-        }
+        StalenessInflation { growth_mps: S::ZERO, max_m: S::ZERO }
     }
 
     /// What a parameter is now; `None` when it has no such one.

@@ -32,14 +32,8 @@ use serde::{Deserialize, Serialize};
 pub const WAYPOINTS: usize = GOALS;
 
 /// An agent that can be anything: `CELLS` of a search, `M` remembered visits, `N` neighbours, `K` half-planes, wire format `W`.
-pub type AnyAgent<
-    S,
-    const CELLS: usize,
-    const M: usize,
-    const N: usize,
-    const K: usize,
-    W = Postcard,
-> = Agent<S, AnyGuidance<S, CELLS, M, TEMPLATE>, N, AnySafety<S, K>, W>;
+pub type AnyAgent<S, const CELLS: usize, const M: usize, const N: usize, const K: usize, W = Postcard> =
+    Agent<S, AnyGuidance<S, CELLS, M, TEMPLATE>, N, AnySafety<S, K>, W>;
 
 /// All that makes a robot what it is before it has sensed anything.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -80,22 +74,12 @@ pub struct BoidsSetup {
 
 impl BoidsSetup {
     /// The paper's values at a scale of one metre: 30, 150, 0.05, 0.02.
-    pub const PAPER: Self = Self {
-        crowded_m: 30.0,
-        closest_m: 150.0,
-        max_turn: 0.05,
-        max_turn_away: 0.02,
-    };
+    pub const PAPER: Self = Self { crowded_m: 30.0, closest_m: 150.0, max_turn: 0.05, max_turn_away: 0.02 };
 
     /// The parameters in a kind of number.
     #[must_use]
     pub fn params<S: Scalar>(&self) -> BoidsParams<S> {
-        BoidsParams::new(
-            cast(self.crowded_m),
-            cast(self.closest_m),
-            cast(self.max_turn),
-            cast(self.max_turn_away),
-        )
+        BoidsParams::new(cast(self.crowded_m), cast(self.closest_m), cast(self.max_turn), cast(self.max_turn_away))
     }
 }
 
@@ -139,18 +123,9 @@ pub enum GuidanceSetup {
 #[expect(missing_docs, reason = "the safety layers document them")]
 pub enum SafetySetup {
     None,
-    Orca {
-        params: AvoidParams<f32>,
-        inflation: StalenessInflation<f32>,
-        source: AnyHalfPlanes,
-    },
-    Fly {
-        params: AvoidParams<f32>,
-        inflation: StalenessInflation<f32>,
-    },
-    PushOut {
-        params: PushOutParams<f32>,
-    },
+    Orca { params: AvoidParams<f32>, inflation: StalenessInflation<f32>, source: AnyHalfPlanes },
+    Fly { params: AvoidParams<f32>, inflation: StalenessInflation<f32> },
+    PushOut { params: PushOutParams<f32> },
 }
 
 /// What a robot has to do.
@@ -165,14 +140,7 @@ pub enum Task {
 impl Setup {
     /// The robot, just started; `None` unless `W` is, or can be, the format that it is to speak.
     #[must_use]
-    pub fn agent<
-        S: Scalar,
-        const CELLS: usize,
-        const M: usize,
-        const N: usize,
-        const K: usize,
-        W: FromFormat,
-    >(
+    pub fn agent<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usize, W: FromFormat>(
         &self,
     ) -> Option<AnyAgent<S, CELLS, M, N, K, W>> {
         Some(self.speaking(W::from_format(self.format)?))
@@ -180,23 +148,11 @@ impl Setup {
 
     /// The robot, just started, that speaks `wire` whatever [`Setup::format`] says.
     #[must_use]
-    pub fn speaking<
-        S: Scalar,
-        const CELLS: usize,
-        const M: usize,
-        const N: usize,
-        const K: usize,
-        W: Wire,
-    >(
+    pub fn speaking<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usize, W: Wire>(
         &self,
         wire: W,
     ) -> AnyAgent<S, CELLS, M, N, K, W> {
-        Agent::new(
-            &self.agent.cast(),
-            self.guidance.guidance(),
-            self.safety.safety(),
-            wire,
-        )
+        Agent::new(&self.agent.cast(), self.guidance.guidance(), self.safety.safety(), wire)
     }
 
     /// The largest search that the robot makes, in cells of a [`CostField`](crate::route::CostField): what `CELLS` must be at
@@ -216,26 +172,15 @@ impl Setup {
 impl GuidanceSetup {
     /// The guidance law, just started.
     #[must_use]
-    pub fn guidance<S: Scalar, const CELLS: usize, const M: usize>(
-        &self,
-    ) -> AnyGuidance<S, CELLS, M, TEMPLATE> {
+    pub fn guidance<S: Scalar, const CELLS: usize, const M: usize>(&self) -> AnyGuidance<S, CELLS, M, TEMPLATE> {
         match self {
-            Self::Waypoint {
-                speed_mps,
-                tolerance_m,
-            } => AnyGuidance::Waypoint(WaypointGuidance::new(cast(*speed_mps), cast(*tolerance_m))),
-            Self::Lattice { params, moves } => {
-                AnyGuidance::Lattice(LatticeGuidance::new(params.cast(), *moves))
+            Self::Waypoint { speed_mps, tolerance_m } => {
+                AnyGuidance::Waypoint(WaypointGuidance::new(cast(*speed_mps), cast(*tolerance_m)))
             }
-            Self::GoalFlock {
-                params,
-                arrival_m,
-                seed,
-            } => AnyGuidance::GoalFlock(GoalFlockGuidance::new(
-                params.cast(),
-                cast(*arrival_m),
-                *seed,
-            )),
+            Self::Lattice { params, moves } => AnyGuidance::Lattice(LatticeGuidance::new(params.cast(), *moves)),
+            Self::GoalFlock { params, arrival_m, seed } => {
+                AnyGuidance::GoalFlock(GoalFlockGuidance::new(params.cast(), cast(*arrival_m), *seed))
+            }
             Self::Boids { params, speed_mps } => {
                 AnyGuidance::Boids(BoidsGuidance::new(params.params(), cast(*speed_mps)))
             }
@@ -246,18 +191,11 @@ impl GuidanceSetup {
                     None => AnyGuidance::RouteOnGrid(guidance),
                 }
             }
-            Self::Formation {
-                route,
-                formation,
-                template,
-                speed_mps,
-            } => {
-                let guidance = FormationGuidance::new(route.params, *formation, template.clone())
-                    .sharpness(route.sharpness);
+            Self::Formation { route, formation, template, speed_mps } => {
+                let guidance =
+                    FormationGuidance::new(route.params, *formation, template.clone()).sharpness(route.sharpness);
                 match speed_mps {
-                    Some(speed) => {
-                        AnyGuidance::Formation(CellFollower::new(guidance, cast(*speed)))
-                    }
+                    Some(speed) => AnyGuidance::Formation(CellFollower::new(guidance, cast(*speed))),
                     None => AnyGuidance::FormationOnGrid(guidance),
                 }
             }
@@ -269,9 +207,7 @@ impl RouteSetup {
     /// The guidance law on the grid, just started.
     #[must_use]
     pub const fn guidance<const CELLS: usize, const M: usize>(&self) -> RouteGuidance<CELLS, M> {
-        RouteGuidance::new(self.params)
-            .replan(self.replan)
-            .sharpness(self.sharpness)
+        RouteGuidance::new(self.params).replan(self.replan).sharpness(self.sharpness)
     }
 }
 
@@ -281,18 +217,10 @@ impl SafetySetup {
     pub fn safety<S: Scalar, const K: usize>(&self) -> AnySafety<S, K> {
         match self {
             Self::None => AnySafety::Unguarded(Unguarded),
-            Self::Orca {
-                params,
-                inflation,
-                source,
-            } => AnySafety::Orca(OrcaSafety::with_source(
-                params.cast(),
-                inflation.cast(),
-                *source,
-            )),
-            Self::Fly { params, inflation } => {
-                AnySafety::Fly(FlySafety::in_space(params.cast(), inflation.cast()))
+            Self::Orca { params, inflation, source } => {
+                AnySafety::Orca(OrcaSafety::with_source(params.cast(), inflation.cast(), *source))
             }
+            Self::Fly { params, inflation } => AnySafety::Fly(FlySafety::in_space(params.cast(), inflation.cast())),
             Self::PushOut { params } => AnySafety::PushOut(PushOutSafety::new(params.cast())),
         }
     }

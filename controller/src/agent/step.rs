@@ -2,8 +2,8 @@
 
 use super::link::{Listener, News, beacon, report};
 use super::{
-    Action, Agent, CellState, Command, Decision, Event, Goal, Guidance, GuidanceInput, Inputs,
-    Outputs, Safety, SafetyInput, Surroundings,
+    Action, Agent, CellState, Command, Decision, Event, Goal, Guidance, GuidanceInput, Inputs, Outputs, Safety,
+    SafetyInput, Surroundings,
 };
 use crate::body::Body;
 use crate::geom::Vec3;
@@ -65,14 +65,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
             return Vec::new();
         }
         let (config, inflation) = (&self.config, self.safety.inflation());
-        nearest(
-            self.link.table.as_slice(),
-            inputs.state.position,
-            config.radius_m,
-            now,
-            &config.ages,
-            &inflation,
-        )
+        nearest(self.link.table.as_slice(), inputs.state.position, config.radius_m, now, &config.ages, &inflation)
     }
 
     fn body(&self, inputs: &Inputs<'_, S, G::Input<'_>>) -> Body<S> {
@@ -89,25 +82,15 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
 
     #[inline(never)]
     fn hear(&mut self, inputs: &Inputs<'_, S, G::Input<'_>>, now: Instant, out: &mut Outputs<S>) {
-        let Self {
-            config,
-            guidance,
-            link,
-            goal,
-            last,
-            ..
-        } = self;
+        let Self { config, guidance, link, goal, last, .. } = self;
         let leader = last.leader;
         let mut pass_on = Vec::<_, 4>::new();
         let heard_at = now - config.latency;
         link.expire(now, out);
         let mut inbox = inputs.inbox;
         while let Some(bytes) = link.next_frame(&mut inbox) {
-            let listener = Listener {
-                position: inputs.state.position,
-                heard_at,
-                needs: &|id| id == leader || guidance.needs(id),
-            };
+            let listener =
+                Listener { position: inputs.state.position, heard_at, needs: &|id| id == leader || guidance.needs(id) };
             match link.hear(bytes, now, &listener, out) {
                 None => {}
                 Some(News::Redirect) => guidance.redirect(),
@@ -121,11 +104,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
                 Some(News::Template { part, is_anew }) => {
                     let _ = guidance.assign_template(&part, is_anew);
                 }
-                Some(News::Waypoint {
-                    index,
-                    version,
-                    waypoint,
-                }) => {
+                Some(News::Waypoint { index, version, waypoint }) => {
                     let is_of_use = guidance.assign_waypoint(index, &waypoint);
                     if is_of_use {
                         link.placed(index, version);
@@ -260,19 +239,11 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         }
         let action = decision.map(|decision| &decision.action);
         let (wish_mps, way_m) = match (&out.command, action) {
-            (Command::Velocity(wish), Some(Action::Velocity { way_m, .. })) if wish.is_finite() => {
-                (*wish, *way_m)
-            }
+            (Command::Velocity(wish), Some(Action::Velocity { way_m, .. })) if wish.is_finite() => (*wish, *way_m),
             _ => (Vec3::ZERO, None),
         };
         let body = self.body(inputs);
-        let input = SafetyInput {
-            body,
-            wish_mps,
-            way_m,
-            nearby,
-            obstacles: plane.obstacles,
-        };
+        let input = SafetyInput { body, wish_mps, way_m, nearby, obstacles: plane.obstacles };
         let safe = self.safety.keep_clear(&input, rng);
         out.command = Command::Velocity(body.reach(safe));
     }
@@ -288,26 +259,11 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         };
         let on_grid = inputs.surroundings.on_grid();
         let on_grid = on_grid.map_or_else(CellState::default, |grid| grid.cell);
-        let beacon = || {
-            beacon(
-                config,
-                last,
-                mode,
-                &inputs.state,
-                on_grid,
-                velocity_mps,
-                now,
-            )
-        };
+        let beacon = || beacon(config, last, mode, &inputs.state, on_grid, velocity_mps, now);
         self.link.speak(now, config.beacon_period, beacon, out);
         // A robot that is free decides anew after a tick at the latest.
         let busy = on_grid.busy;
-        let decision = now
-            + if busy > Duration::ZERO {
-                busy
-            } else {
-                config.tick
-            };
+        let decision = now + if busy > Duration::ZERO { busy } else { config.tick };
         if decision.is_before(out.call_again) {
             out.call_again = decision;
         }

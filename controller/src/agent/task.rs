@@ -52,13 +52,9 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
                 goes_there
             }
             Task::Waypoints(waypoints) => {
-                let assign = |(index, waypoint): &(u8, Waypoint<f32>)| {
-                    self.guidance.assign_waypoint(*index, &waypoint.cast())
-                };
-                waypoints
-                    .iter()
-                    .map(assign)
-                    .fold(true, |all, one| all & one)
+                let assign =
+                    |(index, waypoint): &(u8, Waypoint<f32>)| self.guidance.assign_waypoint(*index, &waypoint.cast());
+                waypoints.iter().map(assign).fold(true, |all, one| all & one)
             }
         };
         is_of_use.then_some(()).ok_or(WrongTask)

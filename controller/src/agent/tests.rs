@@ -9,8 +9,7 @@ use crate::route::RouteParams;
 use crate::template::Template;
 use crate::time::{Duration, Instant};
 use crate::wire::{
-    Beacon, Frame, GoalAssignment, Header, Message, Request, RequestKind, TemplateAssignment,
-    decode, encode, frames,
+    Beacon, Frame, GoalAssignment, Header, Message, Request, RequestKind, TemplateAssignment, decode, encode, frames,
 };
 use std::boxed::Box;
 use std::vec;
@@ -24,10 +23,7 @@ fn tick(n: u32) -> Instant {
 }
 
 fn config(id: u32) -> AgentConfig<f32> {
-    AgentConfig {
-        seed: 1,
-        ..AgentConfig::new(RobotId(id), 0.0, Duration::from_micros(TICK))
-    }
+    AgentConfig { seed: 1, ..AgentConfig::new(RobotId(id), 0.0, Duration::from_micros(TICK)) }
 }
 
 fn route_agent(id: u32) -> RouteAgent {
@@ -39,8 +35,7 @@ fn route_agent(id: u32) -> RouteAgent {
 fn formation_agent(id: u32) -> FormationAgent {
     let places: Vec<Cell> = (0..3).map(|i| Cell::new(-3 * i, 0)).collect();
     let template = Template::from_graph(&places, &[(0, 1), (1, 2)], id as usize - 1, 2).unwrap();
-    let guidance =
-        FormationGuidance::new(RouteParams::default(), FormationParams::default(), template);
+    let guidance = FormationGuidance::new(RouteParams::default(), FormationParams::default(), template);
     FormationAgent::new(&config(id), guidance, Unguarded, Postcard)
 }
 
@@ -50,10 +45,7 @@ fn inputs<'a>(cells: &'a [u8], at: Cell, inbox: &'a [u8]) -> Inputs<'a, f32, OnG
     Inputs {
         state: KinematicState::default(),
         surroundings: OnGrid {
-            cell: CellState {
-                cell: at,
-                busy: Duration::ZERO,
-            },
+            cell: CellState { cell: at, busy: Duration::ZERO },
             window: Window::new(cells, origin, 11, 11),
         },
         inbox,
@@ -67,44 +59,26 @@ fn workspace() -> Box<GridWorkspace<CELLS>> {
 fn bytes(sender: u32, boot: u8, sequence: u16, messages: &[Message]) -> Vec<u8> {
     let mut out = heapless::Vec::<u8, 1024>::new();
     for (message, sequence) in messages.iter().zip(sequence..) {
-        let header = Header {
-            boot,
-            sender: RobotId(sender),
-            sequence,
-        };
+        let header = Header { boot, sender: RobotId(sender), sequence };
         encode(header, message, &mut out).unwrap();
     }
     out.to_vec()
 }
 
 fn sent(outputs: &Outputs<f32>) -> Vec<Frame> {
-    frames(&outputs.outbox)
-        .map(|f| decode(f).unwrap())
-        .collect()
+    frames(&outputs.outbox).map(|f| decode(f).unwrap()).collect()
 }
 
 fn beacon_at(x: i16, y: i16) -> Beacon {
-    Beacon {
-        cell: Cell::new(x, y),
-        mode: Mode::Cruise,
-        ..Beacon::default()
-    }
+    Beacon { cell: Cell::new(x, y), mode: Mode::Cruise, ..Beacon::default() }
 }
 
 #[test]
 fn without_a_goal_it_is_idle_and_still_says_so() {
-    let out = route_agent(1).step(
-        &inputs(&FLAT, Cell::new(5, 5), &[]),
-        tick(0),
-        &mut workspace(),
-    );
+    let out = route_agent(1).step(&inputs(&FLAT, Cell::new(5, 5), &[]), tick(0), &mut workspace());
     assert_eq!(out.command, Command::Hold);
-    let [frame] = &sent(&out)[..] else {
-        panic!("one frame")
-    };
-    assert!(
-        matches!(&frame.message, Message::Beacon(b) if b.mode == Mode::Idle && b.cell == Cell::new(5, 5))
-    );
+    let [frame] = &sent(&out)[..] else { panic!("one frame") };
+    assert!(matches!(&frame.message, Message::Beacon(b) if b.mode == Mode::Idle && b.cell == Cell::new(5, 5)));
 }
 
 #[test]
@@ -128,10 +102,7 @@ fn while_it_crosses_a_cell_it_neither_decides_nor_changes_its_mode() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
     agent.assign_goal(Cell::new(9, 5));
     let mut busy = inputs(&FLAT, Cell::new(9, 5), &[]);
-    busy.surroundings.cell = CellState {
-        cell: Cell::new(9, 5),
-        busy: Duration::from_micros(1),
-    };
+    busy.surroundings.cell = CellState { cell: Cell::new(9, 5), busy: Duration::from_micros(1) };
     let out = agent.step(&busy, tick(0), &mut ws);
     assert_eq!((out.command, agent.mode()), (Command::Hold, Mode::Cruise));
     assert_eq!(out.call_again, tick(0) + Duration::from_micros(1));
@@ -152,13 +123,7 @@ fn missing_terrain_is_a_fault_and_heals() {
         assert_eq!(out.command == Command::Hold, agent.mode() != Mode::Cruise);
         modes.push(agent.mode());
     }
-    let expected = [
-        Mode::Cruise,
-        Mode::Fault,
-        Mode::Fault,
-        Mode::Idle,
-        Mode::Cruise,
-    ];
+    let expected = [Mode::Cruise, Mode::Fault, Mode::Fault, Mode::Idle, Mode::Cruise];
     assert_eq!(modes, expected);
 }
 
@@ -168,13 +133,8 @@ fn walled_in_it_holds_and_reports_once() {
     agent.assign_goal(Cell::new(50, 5));
     let mut cells = [BLOCKED; 121];
     cells[60] = 1;
-    let events: Vec<Event> = (0..3)
-        .flat_map(|n| {
-            agent
-                .step(&inputs(&cells, Cell::new(5, 5), &[]), tick(n), &mut ws)
-                .events
-        })
-        .collect();
+    let events: Vec<Event> =
+        (0..3).flat_map(|n| agent.step(&inputs(&cells, Cell::new(5, 5), &[]), tick(n), &mut ws).events).collect();
     assert_eq!(agent.mode(), Mode::Hold);
     assert_eq!(events.iter().filter(|e| **e == Event::NoRoute).count(), 1);
 }
@@ -215,28 +175,12 @@ fn repeated_replayed_and_own_frames_are_refused() {
     };
     let beacon = |x| Message::Beacon(beacon_at(x, 3));
     assert_eq!(hear(&bytes(2, 0, 7, &[beacon(1)]), 0), (1, 0));
-    assert_eq!(
-        hear(&bytes(2, 0, 7, &[beacon(2)]), 1),
-        (0, 1),
-        "a duplicate"
-    );
+    assert_eq!(hear(&bytes(2, 0, 7, &[beacon(2)]), 1), (0, 1), "a duplicate");
     assert_eq!(hear(&bytes(2, 0, 9, &[beacon(3)]), 2), (1, 0));
-    assert_eq!(
-        hear(&bytes(2, 0, 8, &[beacon(4)]), 3),
-        (1, 0),
-        "late, but not seen yet"
-    );
+    assert_eq!(hear(&bytes(2, 0, 8, &[beacon(4)]), 3), (1, 0), "late, but not seen yet");
     assert_eq!(hear(&bytes(1, 0, 1, &[beacon(5)]), 4), (0, 1), "its own");
-    assert_eq!(
-        hear(&bytes(2, 1, 0, &[beacon(6)]), 5),
-        (1, 0),
-        "it started anew"
-    );
-    assert_eq!(
-        hear(&bytes(2, 0, 10, &[beacon(7)]), 6),
-        (0, 1),
-        "from before its start"
-    );
+    assert_eq!(hear(&bytes(2, 1, 0, &[beacon(6)]), 5), (1, 0), "it started anew");
+    assert_eq!(hear(&bytes(2, 0, 10, &[beacon(7)]), 6), (0, 1), "from before its start");
     // A late beacon does not replace a newer one.
     assert_eq!(agent.neighbors()[0].cell, Cell::new(6, 3));
 }
@@ -250,11 +194,7 @@ fn neighbours_come_go_and_are_pushed_out() {
         let inbox = bytes(id, 0, 0, &[Message::Beacon(beacon)]);
         let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(0), &mut ws);
         let expected = (id < 18).then_some(Event::NeighborFound(RobotId(id)));
-        assert_eq!(
-            out.events.first(),
-            expected.as_ref(),
-            "the farthest finds no room"
-        );
+        assert_eq!(out.events.first(), expected.as_ref(), "the farthest finds no room");
     }
     let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &[]), tick(31), &mut ws);
     assert_eq!(out.events[0], Event::NeighborLost(RobotId(2)));
@@ -264,20 +204,8 @@ fn neighbours_come_go_and_are_pushed_out() {
 #[test]
 fn goals_are_assigned_by_packet_and_older_ones_ignored() {
     let (mut agent, mut ws) = (formation_agent(2), workspace());
-    let goal = |to, version, x| {
-        Message::Goal(GoalAssignment {
-            to: RobotId(to),
-            version,
-            target: Cell::new(x, 0),
-        })
-    };
-    let orders = [
-        goal(0, 5, 40),
-        goal(2, 4, 50),
-        goal(3, 6, 60),
-        goal(2, 7, 70),
-        goal(2, 7, 80),
-    ];
+    let goal = |to, version, x| Message::Goal(GoalAssignment { to: RobotId(to), version, target: Cell::new(x, 0) });
+    let orders = [goal(0, 5, 40), goal(2, 4, 50), goal(3, 6, 60), goal(2, 7, 70), goal(2, 7, 80)];
     let inbox = bytes(99, 0, 0, &orders);
     let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(0), &mut ws);
     // Robot 2's place is three cells behind the top leader's.
@@ -288,11 +216,7 @@ fn goals_are_assigned_by_packet_and_older_ones_ignored() {
 fn a_commander_that_started_anew_is_obeyed_whatever_it_counts() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
     let mut target_after = |boot, version, x| {
-        let goal = Message::Goal(GoalAssignment {
-            to: RobotId(1),
-            version,
-            target: Cell::new(x, 5),
-        });
+        let goal = Message::Goal(GoalAssignment { to: RobotId(1), version, target: Cell::new(x, 5) });
         let inbox = bytes(99, boot, 0, &[goal]);
         let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(0), &mut ws);
         agent.target().map(|cell| cell.x)
@@ -307,27 +231,17 @@ fn a_commander_that_started_anew_is_obeyed_whatever_it_counts() {
 fn templates_are_assigned_by_packet() {
     let (mut agent, mut ws) = (formation_agent(1), workspace());
     let entries = formation_agent(3).guidance.template().entries.clone();
-    let parts: Vec<Message> =
-        TemplateAssignment::split(RobotId(1), 1, 2, Cell::new(-6, 0), &entries)
-            .unwrap()
-            .map(Message::Template)
-            .collect();
+    let parts: Vec<Message> = TemplateAssignment::split(RobotId(1), 1, 2, Cell::new(-6, 0), &entries)
+        .unwrap()
+        .map(Message::Template)
+        .collect();
     let inbox = bytes(99, 0, 0, &parts);
     let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(0), &mut ws);
-    assert_eq!(
-        agent.guidance.template(),
-        formation_agent(3).guidance.template()
-    );
+    assert_eq!(agent.guidance.template(), formation_agent(3).guidance.template());
 }
 
 fn stop(from: u32, to: u32, number: u8, kind: RequestKind) -> Message {
-    Message::Request(Request {
-        to: RobotId(to),
-        origin: RobotId(from),
-        number,
-        kind,
-        valid_ms: 12_000,
-    })
+    Message::Request(Request { to: RobotId(to), origin: RobotId(from), number, kind, valid_ms: 12_000 })
 }
 
 #[test]
@@ -336,15 +250,8 @@ fn a_stop_stands_until_it_is_lifted_or_expires() {
     agent.assign_goal(Cell::new(60, 5));
     let mut mode_after = |inbox: &[u8], n| {
         let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), inbox), tick(n), &mut ws);
-        let acks = sent(&out)
-            .iter()
-            .filter(|f| matches!(f.message, Message::Ack(_)))
-            .count();
-        assert_eq!(
-            acks,
-            usize::from(!inbox.is_empty()),
-            "every request is acknowledged"
-        );
+        let acks = sent(&out).iter().filter(|f| matches!(f.message, Message::Ack(_))).count();
+        assert_eq!(acks, usize::from(!inbox.is_empty()), "every request is acknowledged");
         agent.mode()
     };
     let ask = |sequence, number, kind| bytes(2, 0, sequence, &[stop(2, 1, number, kind)]);
@@ -353,11 +260,7 @@ fn a_stop_stands_until_it_is_lifted_or_expires() {
     assert_eq!(mode_after(&ask(1, 1, RequestKind::Resume), 2), Mode::Cruise);
     assert_eq!(mode_after(&ask(2, 2, RequestKind::Stop), 3), Mode::Hold);
     assert_eq!(mode_after(&[], 14), Mode::Hold);
-    assert_eq!(
-        mode_after(&[], 16),
-        Mode::Cruise,
-        "the lost resume costs 12 ticks"
-    );
+    assert_eq!(mode_after(&[], 16), Mode::Cruise, "the lost resume costs 12 ticks");
 }
 
 #[test]
@@ -374,10 +277,7 @@ fn stops_go_up_the_leader_chain_hop_by_hop() {
         _ => None,
     });
     let request = passed_on.expect("a request to the leader");
-    assert_eq!(
-        (request.to, request.origin, request.kind),
-        (RobotId(1), RobotId(3), RequestKind::Stop)
-    );
+    assert_eq!((request.to, request.origin, request.kind), (RobotId(1), RobotId(3), RequestKind::Stop));
     assert_ne!(agent.mode(), Mode::Hold, "who follows goes on following");
 }
 
@@ -392,11 +292,7 @@ fn who_falls_behind_asks_to_stop_and_later_to_resume() {
         beacon.heading = Dir::East;
         let inbox = bytes(1, 0, n as u16, &[Message::Beacon(beacon)]);
         // Far enough apart in time for the first request to be acknowledged or given up.
-        let out = agent.step(
-            &inputs(&FLAT, Cell::new(own_x, 5), &inbox),
-            tick(20 * n as u32),
-            &mut ws,
-        );
+        let out = agent.step(&inputs(&FLAT, Cell::new(own_x, 5), &inbox), tick(20 * n as u32), &mut ws);
         asked.extend(sent(&out).into_iter().filter_map(|f| match f.message {
             Message::Request(request) => Some(request.kind),
             _ => None,
@@ -436,11 +332,7 @@ fn who_is_blocked_for_long_asks_whoever_stands_there() {
     let mut asked = None;
     for n in 0..8 {
         let inbox = bytes(2, 0, n, &[Message::Beacon(beacon_at(6, 5))]);
-        let out = agent.step(
-            &inputs(&cells, Cell::new(5, 5), &inbox),
-            tick(n.into()),
-            &mut ws,
-        );
+        let out = agent.step(&inputs(&cells, Cell::new(5, 5), &inbox), tick(n.into()), &mut ws);
         asked = asked.or(sent(&out).into_iter().find_map(|f| match f.message {
             Message::Request(request) => Some((n, request.to, request.kind)),
             _ => None,
@@ -454,14 +346,9 @@ fn outboxes_hold_whole_frames_and_the_beacon_whatever_comes() {
     let (mut agent, mut ws) = (formation_agent(1), workspace());
     agent.assign_goal(Cell::new(60, 5));
     for n in 0..40_u16 {
-        let crowd: Vec<u8> = (2..60)
-            .flat_map(|id| bytes(id, 0, n, &[stop(id, 1, n as u8, RequestKind::Stop)]))
-            .collect();
-        let out = agent.step(
-            &inputs(&FLAT, Cell::new(5, 5), &crowd),
-            tick(n.into()),
-            &mut ws,
-        );
+        let crowd: Vec<u8> =
+            (2..60).flat_map(|id| bytes(id, 0, n, &[stop(id, 1, n as u8, RequestKind::Stop)])).collect();
+        let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &crowd), tick(n.into()), &mut ws);
         let frames = sent(&out);
         assert!(frames.len() > 1);
         assert!(matches!(frames.last().unwrap().message, Message::Beacon(_)));

@@ -30,12 +30,7 @@ pub(super) struct Travel {
 
 impl Travel {
     pub(super) const fn new() -> Self {
-        Self {
-            cell: None,
-            choice: Dir::Stay,
-            attempts: 0,
-            redirected: false,
-        }
+        Self { cell: None, choice: Dir::Stay, attempts: 0, redirected: false }
     }
 
     /// What it wanted most at its last decision.
@@ -59,12 +54,7 @@ impl Travel {
     }
 
     /// The moves in the order in which to try them, at most `alternatives` of them.
-    pub(super) fn order(
-        weights: &Weights,
-        sharpness: Sharpness,
-        alternatives: usize,
-        rng: &mut Rng,
-    ) -> Vec<Dir, 8> {
+    pub(super) fn order(weights: &Weights, sharpness: Sharpness, alternatives: usize, rng: &mut Rng) -> Vec<Dir, 8> {
         let mut moves = weighted_shuffle(weights, sharpness, rng);
         moves.truncate(alternatives);
         moves
@@ -72,18 +62,9 @@ impl Travel {
 
     /// Takes note of what was chosen in `cell`, and returns the request to whoever has stood in the
     /// way for too long.
-    pub(super) fn note<S>(
-        &mut self,
-        input: &GuidanceInput<'_, S>,
-        cell: Cell,
-        choice: Dir,
-    ) -> Option<Ask> {
+    pub(super) fn note<S>(&mut self, input: &GuidanceInput<'_, S>, cell: Cell, choice: Dir) -> Option<Ask> {
         let is_waiting = self.cell == Some(cell) && choice != Dir::Stay;
-        self.attempts = if is_waiting {
-            self.attempts.saturating_add(1)
-        } else {
-            0
-        };
+        self.attempts = if is_waiting { self.attempts.saturating_add(1) } else { 0 };
         self.cell = Some(cell);
         self.choice = choice;
         if self.attempts < PATIENCE {
@@ -92,20 +73,13 @@ impl Travel {
         let wanted = cell + choice.offset();
         let to = occupant(input, wanted)?;
         self.attempts = 0;
-        Some(Ask {
-            to,
-            kind: RequestKind::Redirect,
-        })
+        Some(Ask { to, kind: RequestKind::Redirect })
     }
 }
 
 /// Who was last heard in a cell.
 fn occupant<S>(input: &GuidanceInput<'_, S>, cell: Cell) -> Option<RobotId> {
-    input
-        .neighbors
-        .iter()
-        .find(|neighbor| neighbor.cell == cell)
-        .map(|neighbor| neighbor.id)
+    input.neighbors.iter().find(|neighbor| neighbor.cell == cell).map(|neighbor| neighbor.id)
 }
 
 /// The cell of a robot on the grid, and the land that it sees.

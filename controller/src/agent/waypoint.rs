@@ -23,21 +23,13 @@ impl<S: Scalar> Waypoint<S> {
     /// The same in another kind of number.
     #[must_use]
     pub fn cast<T: Scalar>(&self) -> Waypoint<T> {
-        Waypoint {
-            position: self.position,
-            velocity_mps: self.velocity_mps.cast(),
-            at: self.at,
-        }
+        Waypoint { position: self.position, velocity_mps: self.velocity_mps.cast(), at: self.at }
     }
 
     /// One that stays where it is.
     #[must_use]
     pub const fn fixed(position: Position) -> Self {
-        Self {
-            position,
-            velocity_mps: Vec3::ZERO,
-            at: Instant::from_micros(0),
-        }
+        Self { position, velocity_mps: Vec3::ZERO, at: Instant::from_micros(0) }
     }
 
     /// The way there from `from` at `now`, metres. Call it at least every half hour: what moves is taken note of

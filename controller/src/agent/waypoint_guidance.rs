@@ -1,8 +1,6 @@
 //! Straight to a waypoint.
 
-use super::guidance::{
-    Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToWaypoints,
-};
+use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToWaypoints};
 use super::{InPlane, Parameter, Waypoint};
 use crate::geom::Vec3;
 use crate::rand::Rng;
@@ -24,11 +22,7 @@ impl<S: Scalar> WaypointGuidance<S> {
     /// waypoints are rounded to them; `speed_mps`: how fast it wants to go.
     #[must_use]
     pub const fn new(speed_mps: S, tolerance_m: S) -> Self {
-        Self {
-            waypoint: None,
-            tolerance_m,
-            speed_mps,
-        }
+        Self { waypoint: None, tolerance_m, speed_mps }
     }
 }
 
@@ -56,10 +50,7 @@ impl<S: Scalar> Guidance<S> for WaypointGuidance<S> {
         let ahead = way.normalized().unwrap_or_default();
         let is_at_goal = distance <= self.tolerance_m;
         Ok(Decision {
-            action: Action::Velocity {
-                wish_mps: waypoint.velocity_mps + ahead * needed.min(speed),
-                way_m: Some(way),
-            },
+            action: Action::Velocity { wish_mps: waypoint.velocity_mps + ahead * needed.min(speed), way_m: Some(way) },
             status: Status {
                 is_at_goal,
                 // Who stood when it is there would lose a waypoint that moves.

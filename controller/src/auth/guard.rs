@@ -60,10 +60,7 @@ impl<const N: usize> ReplayGuard<N> {
     /// One that knows nobody.
     #[must_use]
     pub const fn new() -> Self {
-        Self {
-            peers: Vec::new(),
-            floor: 0,
-        }
+        Self { peers: Vec::new(), floor: 0 }
     }
 
     /// Judges an authenticated frame and remembers it. O(log N), for a new sender O(N).
@@ -128,17 +125,11 @@ impl<const N: usize> ReplayGuard<N> {
     }
 
     fn insert(&mut self, sender: u32, newest: u64, seen: u32) -> Freshness {
-        let peer = Peer {
-            newest,
-            seen,
-            sender,
-        };
+        let peer = Peer { newest, seen, sender };
         if self.peers.push(peer).is_err() {
             return Freshness::NoRoom;
         }
-        crate::list::sink_last(&mut self.peers, |before, after| {
-            before.sender > after.sender
-        });
+        crate::list::sink_last(&mut self.peers, |before, after| before.sender > after.sender);
         Freshness::New
     }
 }

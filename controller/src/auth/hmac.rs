@@ -15,10 +15,7 @@ impl Mac {
     /// For this key. Two blocks of SHA-256.
     #[must_use]
     pub fn new(key: &Key) -> Self {
-        Self {
-            inner: keyed(key, 0x36),
-            outer: keyed(key, 0x5C),
-        }
+        Self { inner: keyed(key, 0x36), outer: keyed(key, 0x5C) }
     }
 
     /// The code of a message, given in parts. Two blocks of SHA-256 up to 55 bytes, and one for each 64 more.

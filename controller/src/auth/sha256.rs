@@ -6,16 +6,8 @@ use sha2::block_api::compress256;
 pub(super) const BLOCK: usize = 64;
 
 /// FIPS 180-4, section 5.3.3.
-const START: [u32; 8] = [
-    0x6A09_E667,
-    0xBB67_AE85,
-    0x3C6E_F372,
-    0xA54F_F53A,
-    0x510E_527F,
-    0x9B05_688C,
-    0x1F83_D9AB,
-    0x5BE0_CD19,
-];
+const START: [u32; 8] =
+    [0x6A09_E667, 0xBB67_AE85, 0x3C6E_F372, 0xA54F_F53A, 0x510E_527F, 0x9B05_688C, 0x1F83_D9AB, 0x5BE0_CD19];
 
 /// A hash in the making; 104 bytes.
 #[derive(Clone)]
@@ -35,11 +27,7 @@ impl Sha256 {
 
     /// Goes on after `blocks` whole blocks that led to `state`.
     pub(super) const fn from_state(state: [u32; 8], blocks: u64) -> Self {
-        Self {
-            state,
-            block: [0; BLOCK],
-            len: blocks * BLOCK as u64,
-        }
+        Self { state, block: [0; BLOCK], len: blocks * BLOCK as u64 }
     }
 
     /// What [`Self::from_state`] wants; only at a whole number of blocks.

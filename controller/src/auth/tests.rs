@@ -19,39 +19,18 @@ fn sha256(message: &[u8]) -> String {
 /// FIPS 180-4's examples, and the lengths at which the padding takes another block (checked by Python's `hashlib`).
 #[test]
 fn hashes_are_those_of_the_standard() {
-    assert_eq!(
-        sha256(b""),
-        "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855"
-    );
-    assert_eq!(
-        sha256(b"abc"),
-        "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
-    );
+    assert_eq!(sha256(b""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+    assert_eq!(sha256(b"abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
     assert_eq!(
         sha256(b"abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"),
         "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1"
     );
     for (len, want) in [
-        (
-            55,
-            "9f4390f8d30c2dd92ec9f095b65e2b9ae9b0a925a5258e241c9f1e910f734318",
-        ),
-        (
-            56,
-            "b35439a4ac6f0948b6d6f9e3c6af0f5f590ce20f1bde7090ef7970686ec6738a",
-        ),
-        (
-            63,
-            "7d3e74a05d7db15bce4ad9ec0658ea98e3f06eeecf16b4c6fff2da457ddc2f34",
-        ),
-        (
-            64,
-            "ffe054fe7ae0cb6dc65c3af9b61d5209f439851db43d0ba5997337df154668eb",
-        ),
-        (
-            65,
-            "635361c48bb9eab14198e76ea8ab7f1a41685d6ad62aa9146d301d4f17eb0ae0",
-        ),
+        (55, "9f4390f8d30c2dd92ec9f095b65e2b9ae9b0a925a5258e241c9f1e910f734318"),
+        (56, "b35439a4ac6f0948b6d6f9e3c6af0f5f590ce20f1bde7090ef7970686ec6738a"),
+        (63, "7d3e74a05d7db15bce4ad9ec0658ea98e3f06eeecf16b4c6fff2da457ddc2f34"),
+        (64, "ffe054fe7ae0cb6dc65c3af9b61d5209f439851db43d0ba5997337df154668eb"),
+        (65, "635361c48bb9eab14198e76ea8ab7f1a41685d6ad62aa9146d301d4f17eb0ae0"),
     ] {
         assert_eq!(sha256(&[b'a'; 65][..len]), want, "{len}");
     }
@@ -67,26 +46,14 @@ fn codes_are_those_of_the_rfc() {
     };
     let counting: Vec<u8> = (1..=25).collect();
     for (mac, message, want) in [
-        (
-            key(&[0x0B; 20]),
-            &b"Hi There"[..],
-            "b0344c61d8db38535ca8afceaf0bf12b881dc200c9833da726e9376c2e32cff7",
-        ),
+        (key(&[0x0B; 20]), &b"Hi There"[..], "b0344c61d8db38535ca8afceaf0bf12b881dc200c9833da726e9376c2e32cff7"),
         (
             key(b"Jefe"),
             b"what do ya want for nothing?",
             "5bdcc146bf60754e6a042426089575c75a003f089d2739839dec58b964ec3843",
         ),
-        (
-            key(&[0xAA; 20]),
-            &[0xDD; 50],
-            "773ea91e36800e46854db8ebd09181a72959098b3ef8c122d9635514ced565fe",
-        ),
-        (
-            key(&counting),
-            &[0xCD; 50],
-            "82558a389a443c0ea4cc819899f2083a85f0faa3e578f8077a2e3ff46729665b",
-        ),
+        (key(&[0xAA; 20]), &[0xDD; 50], "773ea91e36800e46854db8ebd09181a72959098b3ef8c122d9635514ced565fe"),
+        (key(&counting), &[0xCD; 50], "82558a389a443c0ea4cc819899f2083a85f0faa3e578f8077a2e3ff46729665b"),
     ] {
         assert_eq!(hex(&mac.of(&[message])), want);
         let (front, back) = message.split_at(7);
@@ -98,10 +65,7 @@ fn codes_are_those_of_the_rfc() {
 fn a_key_is_not_printed() {
     let key = Key::of_passphrase(b"abc");
     assert_eq!(hex(key.as_bytes()), sha256(b"abc"));
-    assert_eq!(
-        format!("{key:?} {:?}", Mac::new(&key)),
-        "Key(secret) Mac(secret)"
-    );
+    assert_eq!(format!("{key:?} {:?}", Mac::new(&key)), "Key(secret) Mac(secret)");
 }
 
 #[test]

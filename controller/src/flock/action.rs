@@ -57,9 +57,7 @@ pub fn sigma_1<S: Scalar>(z: S) -> S {
         return z.checked_div((S::ONE + z * z).sqrt()).unwrap_or(S::ZERO);
     }
     let inverse = S::ONE.checked_div(z).unwrap_or(S::ZERO);
-    let magnitude = S::ONE
-        .checked_div((S::ONE + inverse * inverse).sqrt())
-        .unwrap_or(S::ONE);
+    let magnitude = S::ONE.checked_div((S::ONE + inverse * inverse).sqrt()).unwrap_or(S::ONE);
     if z < S::ZERO { -magnitude } else { magnitude }
 }
 
@@ -75,9 +73,7 @@ pub fn phi<S: Scalar>(z: S, a: S, b: S, c: S) -> S {
 pub fn sigmoid_shift<S: Scalar>(a: S, b: S) -> Option<S> {
     let is_sound = a > S::ZERO && b >= a && b.is_finite();
     // Two roots: in fixed point the product might not fit.
-    is_sound
-        .then(|| (b - a).checked_div(S::TWO * a.sqrt() * b.sqrt()))
-        .flatten()
+    is_sound.then(|| (b - a).checked_div(S::TWO * a.sqrt() * b.sqrt())).flatten()
 }
 
 /// What robots do to each other: phi_alpha(z) = rho_h(z / r_alpha) phi(z - d_alpha). Negative: apart.

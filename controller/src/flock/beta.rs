@@ -26,10 +26,7 @@ pub struct BetaAgent<S> {
 ///
 /// `None` when the obstacle is not finite, a normal is zero or a radius negative. Constant work.
 #[must_use]
-pub fn beta_agent<S: Scalar>(
-    obstacle: &Obstacle<S>,
-    own_velocity_mps: Vec3<S>,
-) -> Option<BetaAgent<S>> {
+pub fn beta_agent<S: Scalar>(obstacle: &Obstacle<S>, own_velocity_mps: Vec3<S>) -> Option<BetaAgent<S>> {
     let v = own_velocity_mps;
     // P p.
     let along = |normal: Vec3<S>| v - normal * v.dot(normal);
@@ -37,11 +34,7 @@ pub fn beta_agent<S: Scalar>(
     match *obstacle {
         Obstacle::Plane { normal, distance_m } => {
             let normal = normal.normalized()?;
-            distance_m.is_finite().then(|| BetaAgent {
-                normal,
-                distance_m,
-                velocity_mps: along(normal),
-            })
+            distance_m.is_finite().then(|| BetaAgent { normal, distance_m, velocity_mps: along(normal) })
         }
         Obstacle::Ball { center_m, radius_m } => {
             let distance = center_m.norm();
@@ -52,11 +45,7 @@ pub fn beta_agent<S: Scalar>(
             let normal = (-center_m).normalized().or_else(|| (-v).normalized());
             let normal = normal.unwrap_or(east);
             let mu = radius_m.checked_div(distance).unwrap_or(S::ONE).min(S::ONE);
-            Some(BetaAgent {
-                normal,
-                distance_m: distance - radius_m,
-                velocity_mps: along(normal) * mu,
-            })
+            Some(BetaAgent { normal, distance_m: distance - radius_m, velocity_mps: along(normal) * mu })
         }
         Obstacle::Wall([a, b]) => {
             let length = (b - a).norm();
@@ -73,11 +62,7 @@ pub fn beta_agent<S: Scalar>(
             Some(BetaAgent {
                 normal,
                 distance_m: foot.norm(),
-                velocity_mps: if is_beside {
-                    along(normal)
-                } else {
-                    Vec3::new(S::ZERO, S::ZERO, v.z)
-                },
+                velocity_mps: if is_beside { along(normal) } else { Vec3::new(S::ZERO, S::ZERO, v.z) },
             })
         }
     }

@@ -33,17 +33,9 @@ struct Turn<S> {
 impl<S: Scalar> Turn<S> {
     /// Nonsense turns nothing; half a turn reaches everywhere.
     fn new(angle: S) -> Self {
-        let angle = if angle > S::ZERO {
-            angle.min(S::PI)
-        } else {
-            S::ZERO
-        };
+        let angle = if angle > S::ZERO { angle.min(S::PI) } else { S::ZERO };
         let (sin, cos) = angle.sin_cos();
-        Self {
-            cos,
-            sin: sin.max(S::ZERO),
-            is_wide: angle > S::PI * S::HALF,
-        }
+        Self { cos, sin: sin.max(S::ZERO), is_wide: angle > S::PI * S::HALF }
     }
 
     fn left(&self, heading: Vec2<S>) -> Vec2<S> {
@@ -58,11 +50,7 @@ impl<S: Scalar> Turn<S> {
     fn towards(&self, heading: Vec2<S>, target: Vec2<S>) -> Vec2<S> {
         let (det, dot) = (heading.det(target), heading.dot(target));
         // Small angles are told by the sine, which is precise where the cosine is flat.
-        let is_near = if self.is_wide {
-            dot >= self.cos
-        } else {
-            dot > S::ZERO && det.abs() <= self.sin
-        };
+        let is_near = if self.is_wide { dot >= self.cos } else { dot > S::ZERO && det.abs() <= self.sin };
         if is_near {
             target
         } else if det >= S::ZERO {
@@ -109,12 +97,7 @@ impl<S: Scalar> BoidsParams<S> {
     /// The paper's values, at a scale of `unit_m` metres: 30, 150, 0.05, 0.02.
     #[must_use]
     pub fn paper(unit_m: S) -> Self {
-        Self::new(
-            S::from_i32(30) * unit_m,
-            S::from_i32(150) * unit_m,
-            S::from_ratio(1, 20),
-            S::from_ratio(1, 50),
-        )
+        Self::new(S::from_i32(30) * unit_m, S::from_i32(150) * unit_m, S::from_ratio(1, 20), S::from_ratio(1, 50))
     }
 
     /// The heading of boid `own` one step later; headings are unit vectors.
@@ -156,11 +139,7 @@ impl<S: Scalar> BoidsParams<S> {
     /// [`Self::steer`] with the heading as an angle on (-pi, pi], radians.
     #[must_use]
     pub fn turn(&self, own: RobotId, heading: S, nearby: &[Nearby<S>]) -> S {
-        let (sin, cos) = if heading.is_finite() {
-            heading.sin_cos()
-        } else {
-            (S::ZERO, S::ONE)
-        };
+        let (sin, cos) = if heading.is_finite() { heading.sin_cos() } else { (S::ZERO, S::ONE) };
         let next = self.steer(own, Vec2::new(cos, sin), nearby);
         let angle = next.y.atan2(next.x);
         if angle <= -S::PI { S::PI } else { angle }
@@ -168,9 +147,7 @@ impl<S: Scalar> BoidsParams<S> {
 
     fn towards(&self, heading: Vec2<S>, target: Vec2<S>) -> Vec2<S> {
         // Opposite neighbours cancel: there is nothing to turn to.
-        target
-            .normalized()
-            .map_or(heading, |target| self.turn.towards(heading, target))
+        target.normalized().map_or(heading, |target| self.turn.towards(heading, target))
     }
 
     /// Away from the heading of `other`: to the right when it flies to the left of the own heading.
@@ -184,20 +161,12 @@ impl<S: Scalar> BoidsParams<S> {
             true
         } else {
             let place = other.offset_m.xy();
-            let place = if place == Vec2::ZERO {
-                tie(other.id, own)
-            } else {
-                place
-            };
+            let place = if place == Vec2::ZERO { tie(other.id, own) } else { place };
             // Straight ahead and straight behind turn opposite ways too.
             let side = heading.det(place);
             side > S::ZERO || (side == S::ZERO && heading.dot(place) > S::ZERO)
         };
-        if is_left {
-            self.turn_away.right(heading)
-        } else {
-            self.turn_away.left(heading)
-        }
+        if is_left { self.turn_away.right(heading) } else { self.turn_away.left(heading) }
     }
 }
 
@@ -241,9 +210,7 @@ impl<S: Scalar> Torus<S> {
         let [width, height] = self.size_m;
         let wrap = |mm: i32, size: S| {
             let size_mm = size.to_milli().filter(|size_mm| *size_mm > 0);
-            size_mm
-                .and_then(|size_mm| mm.checked_rem_euclid(size_mm))
-                .unwrap_or(mm)
+            size_mm.and_then(|size_mm| mm.checked_rem_euclid(size_mm)).unwrap_or(mm)
         };
         Position::from_mm([wrap(x, width), wrap(y, height), z])
     }
@@ -256,11 +223,7 @@ fn wrap<S: Scalar>(x: S, size: S) -> S {
     }
     let wrapped = x - size * turns(x, size);
     // Rounding may put what lies just below 0 onto the far edge.
-    if wrapped >= S::ZERO && wrapped < size {
-        wrapped
-    } else {
-        S::ZERO
-    }
+    if wrapped >= S::ZERO && wrapped < size { wrapped } else { S::ZERO }
 }
 
 fn shortest<S: Scalar>(x: S, size: S) -> S {
@@ -275,11 +238,7 @@ fn shortest<S: Scalar>(x: S, size: S) -> S {
         return near;
     }
     let from_edge = wrap(x, size);
-    if from_edge > half {
-        from_edge - size
-    } else {
-        from_edge
-    }
+    if from_edge > half { from_edge - size } else { from_edge }
 }
 
 /// Whole turns in `x`, rounded down; 0 when they cannot be counted.

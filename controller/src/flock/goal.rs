@@ -110,22 +110,12 @@ pub fn wish<S: Scalar>(
 /// r1 = K1 unit(goal - x), eq. 2; on the last step no longer than what is left.
 fn to_goal<S: Scalar>(gain: S, way_m: Vec3<S>, step_m: S) -> Vec3<S> {
     let distance = way_m.norm();
-    let left = if distance < step_m {
-        distance.checked_div(step_m).unwrap_or(S::ONE)
-    } else {
-        S::MAX
-    };
-    way_m
-        .normalized()
-        .map_or(Vec3::ZERO, |unit| unit * gain.min(left))
+    let left = if distance < step_m { distance.checked_div(step_m).unwrap_or(S::ONE) } else { S::MAX };
+    way_m.normalized().map_or(Vec3::ZERO, |unit| unit * gain.min(left))
 }
 
 /// r2 = K2 unit(mean of the neighbours - x), eq. 5, and r3, eq. 8.
-fn among_neighbors<S: Scalar>(
-    params: &GoalParams<S>,
-    own: RobotId,
-    nearby: &[Nearby<S>],
-) -> (Vec3<S>, Vec3<S>) {
+fn among_neighbors<S: Scalar>(params: &GoalParams<S>, own: RobotId, nearby: &[Nearby<S>]) -> (Vec3<S>, Vec3<S>) {
     let (mut sum, mut r3) = (Vec3::ZERO, Vec3::ZERO);
     for other in nearby {
         let distance = other.offset_m.norm();
@@ -141,9 +131,7 @@ fn among_neighbors<S: Scalar>(
         let towards = other.offset_m.normalized().unwrap_or_else(apart);
         r3 -= towards * force;
     }
-    let r2 = sum
-        .normalized()
-        .map_or(Vec3::ZERO, |unit| unit * params.center_gain);
+    let r2 = sum.normalized().map_or(Vec3::ZERO, |unit| unit * params.center_gain);
     (r2, r3)
 }
 
@@ -187,11 +175,7 @@ impl<const N: usize> Goals<N> {
     /// No goals yet.
     #[must_use]
     pub const fn new() -> Self {
-        Self {
-            places: Vec::new(),
-            stage: Stage::Gather,
-            round: 0,
-        }
+        Self { places: Vec::new(), stage: Stage::Gather, round: 0 }
     }
 
     /// One more goal. [`Full`] when there are `N`; nothing changes then.
@@ -203,10 +187,7 @@ impl<const N: usize> Goals<N> {
     /// goal.
     #[must_use]
     pub fn set_goal(&mut self, index: usize, goal: Position) -> bool {
-        self.places
-            .get_mut(index)
-            .map(|place| *place = goal)
-            .is_some()
+        self.places.get_mut(index).map(|place| *place = goal).is_some()
     }
 
     /// All goals.
@@ -256,19 +237,12 @@ impl<const N: usize> Goals<N> {
     /// the neighbourhood, or only the first ones ever reach the middle.
     #[must_use]
     pub fn has_arrived<S: Scalar>(&self, own: Position, arrival_m: S) -> bool {
-        self.current()
-            .is_some_and(|goal| goal.since::<S>(own).norm() <= arrival_m)
+        self.current().is_some_and(|goal| goal.since::<S>(own).norm() <= arrival_m)
     }
 
     /// Draws a goal if the robot at `own` has come within `arrival_m` of the middle: uniform over the goals, a function of
     /// seed, robot and round. The index drawn, if one was.
-    pub fn update<S: Scalar>(
-        &mut self,
-        own: Position,
-        arrival_m: S,
-        seed: u64,
-        robot: RobotId,
-    ) -> Option<usize> {
+    pub fn update<S: Scalar>(&mut self, own: Position, arrival_m: S, seed: u64, robot: RobotId) -> Option<usize> {
         if self.stage != Stage::Gather || !self.has_arrived(own, arrival_m) {
             return None;
         }

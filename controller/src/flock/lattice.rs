@@ -58,28 +58,19 @@ impl<S: Scalar> Gain<S> {
     /// The same in another kind of number.
     #[must_use]
     pub fn cast<T: Scalar>(&self) -> Gain<T> {
-        Gain {
-            position: cast(self.position),
-            velocity: cast(self.velocity),
-        }
+        Gain { position: cast(self.position), velocity: cast(self.velocity) }
     }
 
     /// 1 and 1: algorithm 1 as it stands in the paper.
     #[must_use]
     pub fn one() -> Self {
-        Self {
-            position: S::ONE,
-            velocity: S::ONE,
-        }
+        Self { position: S::ONE, velocity: S::ONE }
     }
 
     /// c2 = 2 sqrt(c1): critical damping, as in the paper's simulations.
     #[must_use]
     pub fn critical(position: S) -> Self {
-        Self {
-            position,
-            velocity: S::TWO * position.sqrt(),
-        }
+        Self { position, velocity: S::TWO * position.sqrt() }
     }
 
     fn is_sound(&self) -> bool {
@@ -246,9 +237,7 @@ impl<'a, S: Scalar> Law<'a, S> {
             && range_ratio <= S::from_i32(4)
             && obstacle_ratio > S::ZERO
             && obstacle_ratio <= S::from_i32(4)
-            && [params.alpha, params.beta, params.gamma]
-                .iter()
-                .all(Gain::is_sound);
+            && [params.alpha, params.beta, params.gamma].iter().all(Gain::is_sound);
         let (a, b) = (params.attraction, params.repulsion);
         let c = sigmoid_shift(a, b).filter(|_| is_sound)?;
         let range = spacing * range_ratio;
@@ -267,9 +256,7 @@ impl<'a, S: Scalar> Law<'a, S> {
                 b,
                 c,
             },
-            phi_beta: PhiBeta {
-                d_beta: sigma_norm(obstacle_distance * obstacle_distance).sigma,
-            },
+            phi_beta: PhiBeta { d_beta: sigma_norm(obstacle_distance * obstacle_distance).sigma },
         })
     }
 
@@ -298,11 +285,7 @@ impl<'a, S: Scalar> Law<'a, S> {
     /// c1 phi_beta(||q^ - q||_sigma) n^ + c2 b (p^ - p) of one obstacle, m/s^2.
     fn beta(&self, body: &Body<S>, obstacle: &Obstacle<S>) -> Vec3<S> {
         let own_velocity = body.velocity_mps;
-        let known_velocity = if own_velocity.is_finite() {
-            own_velocity
-        } else {
-            Vec3::ZERO
-        };
+        let known_velocity = if own_velocity.is_finite() { own_velocity } else { Vec3::ZERO };
         let Some(agent) = beta_agent(obstacle, known_velocity) else {
             return Vec3::ZERO;
         };
@@ -316,11 +299,7 @@ impl<'a, S: Scalar> Law<'a, S> {
         let SigmaNorm { sigma, slope } = sigma_norm(outside * outside);
         let adjacency = self.phi_beta.adjacency(sigma);
         // The length of n^; inside as one unit in front of the border.
-        let length = if is_inside {
-            sigma_norm(S::ONE).slope
-        } else {
-            outside * slope
-        };
+        let length = if is_inside { sigma_norm(S::ONE).slope } else { outside * slope };
         // phi_beta is negative, and n^ is against the normal.
         let push = -(self.params.beta.position * self.phi_beta.at(sigma, adjacency)) * length;
         let gain = self.params.beta.velocity * adjacency;

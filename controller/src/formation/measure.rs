@@ -23,9 +23,7 @@ impl GraphDistance {
     pub fn units(&self, diameter: u32) -> u32 {
         let whole = self.less.saturating_add(self.more);
         let offsets = self.offsets.checked_div(diameter.max(1)).unwrap_or(0);
-        whole
-            .saturating_mul(crate::grid::UNIT)
-            .saturating_add(offsets)
+        whole.saturating_mul(crate::grid::UNIT).saturating_add(offsets)
     }
 }
 
@@ -36,11 +34,7 @@ pub fn graph_distance<const F: usize>(cell: Cell, found: &Found<F>) -> GraphDist
         let off = (cell + member.offset).distance(member.seen.cell, Norm::Euclidean);
         sum.saturating_add(off)
     });
-    GraphDistance {
-        less: found.less.into(),
-        more: found.more.into(),
-        offsets,
-    }
+    GraphDistance { less: found.less.into(), more: found.more.into(), offsets }
 }
 
 /// The formation error dPhi: a sum over ticks of distances between desired and actual cells.

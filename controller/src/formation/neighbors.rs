@@ -80,11 +80,7 @@ pub fn find_neighbors<const F: usize>(
         match seen {
             Some(seen) => {
                 // As many places as entries.
-                let _ = found.members.push(Member {
-                    seen,
-                    offset: entry.offset,
-                    hops: entry.hops,
-                });
+                let _ = found.members.push(Member { seen, offset: entry.offset, hops: entry.hops });
             }
             None => {
                 found.less = found.less.saturating_add(1);

@@ -47,20 +47,14 @@ pub fn deviation(cell: Cell, other: Cell, offset: Cell) -> u32 {
 ///
 /// The paper sums over all neighbours; the mean keeps the scale independent of their number.
 #[must_use]
-pub fn distances(
-    params: &FormationParams,
-    cell: Cell,
-    top: Option<Cell>,
-    members: &[Member],
-) -> Weights {
+pub fn distances(params: &FormationParams, cell: Cell, top: Option<Cell>, members: &[Member]) -> Weights {
     let direct = || members.iter().filter(|member| member.hops == 1);
     let count = u32::try_from(direct().count()).unwrap_or(u32::MAX);
     let price = |dir: Dir| -> Cost {
         let there = cell + dir.offset();
         let by_top = top.map(|place| there.distance(place, Norm::Euclidean));
-        let sum = direct().fold(0_u32, |sum, member| {
-            sum.saturating_add(deviation(there, member.seen.predicted, member.offset))
-        });
+        let sum = direct()
+            .fold(0_u32, |sum, member| sum.saturating_add(deviation(there, member.seen.predicted, member.offset)));
         let length = match (by_top, sum.checked_div(count)) {
             (Some(top), Some(mean)) => (top >> 1).saturating_add(mean >> 1),
             (Some(only), None) | (None, Some(only)) => only,
@@ -104,24 +98,13 @@ pub fn lag(off: Cell, heading: Dir) -> u32 {
 pub fn def(cell: Cell, members: &[Member]) -> Dir {
     let (x, y) = members.iter().fold((0_i32, 0_i32), |(x, y), member| {
         let off = member.seen.cell - (cell + member.offset);
-        (
-            x.saturating_add(off.x.into()),
-            y.saturating_add(off.y.into()),
-        )
+        (x.saturating_add(off.x.into()), y.saturating_add(off.y.into()))
     });
     // tan 22.5 degrees = sqrt 2 - 1 = 29/70.
     const TAN: i64 = (DIAGONAL - UNIT) as i64;
     let (ax, ay) = (i64::from(x).abs(), i64::from(y).abs());
-    let dx = if ax * (UNIT as i64) > ay * TAN {
-        x.signum()
-    } else {
-        0
-    };
-    let dy = if ay * (UNIT as i64) > ax * TAN {
-        y.signum()
-    } else {
-        0
-    };
+    let dx = if ax * (UNIT as i64) > ay * TAN { x.signum() } else { 0 };
+    let dy = if ay * (UNIT as i64) > ax * TAN { y.signum() } else { 0 };
     let step = Cell::new(dx as i16, dy as i16);
     Dir::between(Cell::default(), step).unwrap_or(Dir::Stay)
 }
@@ -143,11 +126,7 @@ impl Pace {
     /// Takes note of the largest lag, [`UNIT`]s, and tells whether to wait: from more than
     /// `halt_lag` until at most `resume_lag`.
     pub fn update(&mut self, params: &FormationParams, lag: u32) -> bool {
-        let limit = if self.waits {
-            params.resume_lag.min(params.halt_lag)
-        } else {
-            params.halt_lag
-        };
+        let limit = if self.waits { params.resume_lag.min(params.halt_lag) } else { params.halt_lag };
         self.waits = lag > u32::from(limit);
         self.waits
     }
@@ -181,11 +160,9 @@ pub fn blended<'a>(
         let cell = origin + Cell::new(x.cast_signed(), y.cast_signed());
         let own = window.get(cell).unwrap_or(BLOCKED);
         let (sum, count) =
-            entries.iter().fold((0_u32, 0_u32), |(sum, count), entry| {
-                match window.get(cell + entry.offset) {
-                    Some(u) if u != BLOCKED => (sum + u32::from(u), count + 1),
-                    _ => (sum, count),
-                }
+            entries.iter().fold((0_u32, 0_u32), |(sum, count), entry| match window.get(cell + entry.offset) {
+                Some(u) if u != BLOCKED => (sum + u32::from(u), count + 1),
+                _ => (sum, count),
             });
         *price = match (sum * share).checked_div(count) {
             Some(others) if own != BLOCKED => {

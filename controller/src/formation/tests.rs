@@ -6,14 +6,8 @@ use proptest::prelude::*;
 use std::vec::Vec;
 
 /// Figure 5: rows 1 2 3 and 4 5 6, three cells apart, robot 1 in front.
-const PLACES: [Cell; 6] = [
-    Cell::new(0, 0),
-    Cell::new(-3, 0),
-    Cell::new(-6, 0),
-    Cell::new(0, -3),
-    Cell::new(-3, -3),
-    Cell::new(-6, -3),
-];
+const PLACES: [Cell; 6] =
+    [Cell::new(0, 0), Cell::new(-3, 0), Cell::new(-6, 0), Cell::new(0, -3), Cell::new(-3, -3), Cell::new(-6, -3)];
 const EDGES: [(u16, u16); 7] = [(0, 1), (1, 2), (3, 4), (4, 5), (0, 3), (1, 4), (2, 5)];
 
 fn template(robot: usize, rho: u8) -> Template<8> {
@@ -22,29 +16,16 @@ fn template(robot: usize, rho: u8) -> Template<8> {
 
 fn seen(id: u32, x: i16, y: i16) -> Seen {
     let cell = Cell::new(x, y);
-    Seen {
-        id: RobotId(id),
-        cell,
-        predicted: cell,
-        heading: Dir::Stay,
-        leader: RobotId::NOBODY,
-        mode: Mode::Cruise,
-    }
+    Seen { id: RobotId(id), cell, predicted: cell, heading: Dir::Stay, leader: RobotId::NOBODY, mode: Mode::Cruise }
 }
 
 /// Everybody in place, robot 1 at `top`.
 fn in_place(top: Cell) -> Vec<Seen> {
-    (1..)
-        .zip(PLACES)
-        .map(|(id, place)| seen(id, top.x + place.x, top.y + place.y))
-        .collect()
+    (1..).zip(PLACES).map(|(id, place)| seen(id, top.x + place.x, top.y + place.y)).collect()
 }
 
 fn found(robot: usize, rho: u8, eps: u8, robots: &[Seen]) -> Found<8> {
-    let own = robots
-        .iter()
-        .find(|r| r.id == RobotId(robot as u32))
-        .unwrap();
+    let own = robots.iter().find(|r| r.id == RobotId(robot as u32)).unwrap();
     let others = robots.iter().copied().filter(|r| r.id != own.id);
     find_neighbors(&template(robot, rho), own.cell, eps, others)
 }
@@ -52,15 +33,11 @@ fn found(robot: usize, rho: u8, eps: u8, robots: &[Seen]) -> Found<8> {
 #[test]
 fn leaders_of_figure_5_are_those_of_the_paper() {
     let robots = in_place(Cell::new(10, 10));
-    let leaders: Vec<u32> = (1..=6)
-        .map(|id| find_leader(RobotId(id), &found(id as usize, 1, 2, &robots).members).0)
-        .collect();
+    let leaders: Vec<u32> =
+        (1..=6).map(|id| find_leader(RobotId(id), &found(id as usize, 1, 2, &robots).members).0).collect();
     assert_eq!(leaders, [0, 1, 2, 1, 2, 3]);
     // Farther neighbours of a larger radius do not become leaders.
-    assert_eq!(
-        find_leader(RobotId(6), &found(6, 3, 2, &robots).members).0,
-        3
-    );
+    assert_eq!(find_leader(RobotId(6), &found(6, 3, 2, &robots).members).0, 3);
 }
 
 #[test]
@@ -104,17 +81,11 @@ fn straying_beyond_eps_counts_as_missing_and_a_stranger_in_the_place_as_surplus(
 
 #[test]
 fn a_place_for_anyone_takes_the_nearest_that_nobody_named() {
-    let entry = |x, id| TemplateEntry {
-        offset: Cell::new(x, 0),
-        id: RobotId(id),
-        hops: 1,
-    };
+    let entry = |x, id| TemplateEntry { offset: Cell::new(x, 0), id: RobotId(id), hops: 1 };
     let anyone = Template::<3> {
         slot: 0,
         offset: Cell::default(),
-        entries: [entry(2, 7), entry(2, 0), entry(3, 0)]
-            .into_iter()
-            .collect(),
+        entries: [entry(2, 7), entry(2, 0), entry(3, 0)].into_iter().collect(),
     };
     let robots = [seen(5, 4, 0), seen(7, 2, 0), seen(8, 3, 0)];
     let found = find_neighbors(&anyone, Cell::default(), 3, robots.into_iter());
@@ -142,16 +113,9 @@ fn costs_restart_for_each_direction_and_point_to_the_place() {
 
 #[test]
 fn places_out_of_reach_close_no_move() {
-    let params = FormationParams {
-        gain: crate::cost::Gain::from_sixteenths(u16::MAX),
-        ..FormationParams::default()
-    };
+    let params = FormationParams { gain: crate::cost::Gain::from_sixteenths(u16::MAX), ..FormationParams::default() };
     let far = Cell::new(i16::MAX, i16::MIN);
-    assert!(
-        distances(&params, Cell::default(), Some(far), &[])
-            .best()
-            .is_some()
-    );
+    assert!(distances(&params, Cell::default(), Some(far), &[]).best().is_some());
 }
 
 #[test]
@@ -169,11 +133,7 @@ fn lag_counts_what_is_behind_in_full_and_the_rest_by_half() {
 
 #[test]
 fn waiting_has_hysteresis() {
-    let params = FormationParams {
-        halt_lag: 300,
-        resume_lag: 200,
-        ..FormationParams::default()
-    };
+    let params = FormationParams { halt_lag: 300, resume_lag: 200, ..FormationParams::default() };
     let mut pace = Pace::new();
     let waits = [300, 301, 250, 201, 200, 250].map(|lag| pace.update(&params, lag));
     assert_eq!(waits, [false, true, true, true, false, false]);
@@ -200,18 +160,10 @@ fn land_is_priced_for_all_who_would_cross_it() {
     // Columns of impassability 1, 1, 9, 9; somebody two cells to the east; a wall at the end.
     let cells = [1, 1, 9, BLOCKED];
     let window = Window::new(&cells, Cell::new(20, 5), 4, 1).unwrap();
-    let entry = TemplateEntry {
-        offset: Cell::new(2, 0),
-        id: RobotId(2),
-        hops: 1,
-    };
+    let entry = TemplateEntry { offset: Cell::new(2, 0), id: RobotId(2), hops: 1 };
     let mut out = [0; 4];
-    let mut price = |share| {
-        blended(&window, (Cell::new(20, 5), 3), &[entry], share, &mut out)
-            .unwrap()
-            .cells()
-            .to_vec()
-    };
+    let mut price =
+        |share| blended(&window, (Cell::new(20, 5), 3), &[entry], share, &mut out).unwrap().cells().to_vec();
     assert_eq!(price(0), cells);
     // West cell: half of 1 and 9. Second: the wall behind counts not. Walls stay.
     assert_eq!(price(8), [5, 1, 9, BLOCKED]);
@@ -221,10 +173,7 @@ fn land_is_priced_for_all_who_would_cross_it() {
     // A larger window than the search needs: only its part is priced, all of it is looked at.
     let mut near = [0; 2];
     let near = blended(&window, around, &[entry], 16, &mut near).unwrap();
-    assert_eq!(
-        (near.origin(), near.cells()),
-        (Cell::new(20, 5), &[9, 1][..])
-    );
+    assert_eq!((near.origin(), near.cells()), (Cell::new(20, 5), &[9, 1][..]));
 }
 
 #[test]
@@ -232,10 +181,7 @@ fn a_robot_near_its_place_stands_rather_than_leave_it() {
     let place = Cell::new(3, 3);
     assert!(should_stay(Cell::new(3, 3), place, Dir::East));
     assert!(!should_stay(Cell::new(2, 3), place, Dir::East));
-    assert!(
-        !should_stay(Cell::new(1, 3), place, Dir::West),
-        "too far off to rest"
-    );
+    assert!(!should_stay(Cell::new(1, 3), place, Dir::West), "too far off to rest");
 }
 
 #[test]

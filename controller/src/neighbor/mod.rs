@@ -141,10 +141,7 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
     /// An empty table.
     #[must_use]
     pub const fn new(ages: Ages) -> Self {
-        Self {
-            entries: Vec::new(),
-            ages,
-        }
+        Self { entries: Vec::new(), ages }
     }
 
     /// The ages that it was built with.
@@ -205,9 +202,8 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
         let candidates = || self.entries.iter().filter(|entry| !protect(entry.id));
         // An age beyond half the clock's range is older than any that can be told.
         let age = |entry: &Neighbor<S>| entry.age(now).unwrap_or(Duration::MAX);
-        let stalest = candidates()
-            .filter(|entry| age(entry) > self.ages.expire_after)
-            .max_by_key(|entry| (age(entry), entry.id));
+        let stalest =
+            candidates().filter(|entry| age(entry) > self.ages.expire_after).max_by_key(|entry| (age(entry), entry.id));
         if let Some(stalest) = stalest {
             return Some(stalest.id);
         }
@@ -244,9 +240,7 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
     }
 
     fn place(&self, id: RobotId) -> Option<usize> {
-        self.entries
-            .binary_search_by_key(&id, |entry| entry.id)
-            .ok()
+        self.entries.binary_search_by_key(&id, |entry| entry.id).ok()
     }
 
     /// How far an entry of this table can be trusted at `now`.

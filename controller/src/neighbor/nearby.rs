@@ -39,10 +39,7 @@ impl<S: Scalar> StalenessInflation<S> {
     /// The same in another kind of number.
     #[must_use]
     pub fn cast<T: Scalar>(&self) -> StalenessInflation<T> {
-        StalenessInflation {
-            growth_mps: cast(self.growth_mps),
-            max_m: cast(self.max_m),
-        }
+        StalenessInflation { growth_mps: cast(self.growth_mps), max_m: cast(self.max_m) }
     }
 }
 

@@ -3,10 +3,7 @@ use crate::wire::{Beacon, CompactBeacon};
 use proptest::prelude::*;
 use std::vec::Vec as StdVec;
 
-const AGES: Ages = Ages {
-    stale_after: Duration::from_millis(1_000),
-    expire_after: Duration::from_millis(5_000),
-};
+const AGES: Ages = Ages { stale_after: Duration::from_millis(1_000), expire_after: Duration::from_millis(5_000) };
 
 fn at(micros: u32) -> Instant {
     Instant::from_micros(micros)
@@ -28,18 +25,12 @@ fn place(x: f32, y: f32) -> Option<Position> {
 }
 
 /// Who is near by, nearest first.
-fn nearest_ids<const N: usize, const K: usize>(
-    table: &NeighborTable<f32, N>,
-    own: Position,
-) -> StdVec<u32> {
+fn nearest_ids<const N: usize, const K: usize>(table: &NeighborTable<f32, N>, own: Position) -> StdVec<u32> {
     let nearest = nearest::<f32, K>(table.as_slice(), own, 0.0, at(0), &AGES, &INFLATION);
     nearest.iter().map(|near| near.id.0).collect()
 }
 
-const INFLATION: StalenessInflation<f32> = StalenessInflation {
-    growth_mps: 0.5,
-    max_m: 1.0,
-};
+const INFLATION: StalenessInflation<f32> = StalenessInflation { growth_mps: 0.5, max_m: 1.0 };
 
 fn put<const N: usize>(table: &mut NeighborTable<f32, N>, n: Neighbor<f32>, now: Instant) -> Put {
     table.put(n, Position::ORIGIN, now, |_| false)
@@ -59,10 +50,7 @@ fn expired<const N: usize>(table: &mut NeighborTable<f32, N>, now: Instant) -> S
 fn full<const N: usize>(now: Instant) -> NeighborTable<f32, N> {
     let mut table = NeighborTable::new(AGES);
     for i in 1..=N as u32 {
-        assert_eq!(
-            put(&mut table, standing(i, i as f32, now), now),
-            Put::Inserted
-        );
+        assert_eq!(put(&mut table, standing(i, i as f32, now), now), Put::Inserted);
     }
     table
 }
@@ -70,44 +58,29 @@ fn full<const N: usize>(now: Instant) -> NeighborTable<f32, N> {
 #[test]
 fn table_without_room_refuses() {
     let mut table = NeighborTable::<f32, 0>::new(AGES);
-    assert_eq!(
-        put(&mut table, standing(1, 0.0, at(0)), at(0)),
-        Put::Refused
-    );
+    assert_eq!(put(&mut table, standing(1, 0.0, at(0)), at(0)), Put::Refused);
     assert!(table.is_empty() && nearest_ids::<0, 4>(&table, Position::ORIGIN).is_empty());
 }
 
 #[test]
 fn table_of_one_keeps_the_nearer_of_two() {
     let mut table = full::<1>(at(0));
-    assert_eq!(
-        put(&mut table, standing(2, 0.5, at(0)), at(0)),
-        Put::Evicted(RobotId(1))
-    );
-    assert_eq!(
-        put(&mut table, standing(1, 1.0, at(0)), at(0)),
-        Put::Refused
-    );
+    assert_eq!(put(&mut table, standing(2, 0.5, at(0)), at(0)), Put::Evicted(RobotId(1)));
+    assert_eq!(put(&mut table, standing(1, 1.0, at(0)), at(0)), Put::Refused);
     assert_eq!(ids(&table), [2]);
 }
 
 #[test]
 fn nobody_is_refused() {
     let mut table = NeighborTable::<f32, 4>::new(AGES);
-    assert_eq!(
-        put(&mut table, standing(0, 1.0, at(0)), at(0)),
-        Put::Refused
-    );
+    assert_eq!(put(&mut table, standing(0, 1.0, at(0)), at(0)), Put::Refused);
     assert_eq!(table.get(RobotId::NOBODY, at(0)), Knowledge::Unknown);
 }
 
 #[test]
 fn known_robot_is_updated_in_a_full_table() {
     let mut table = full::<4>(at(0));
-    assert_eq!(
-        put(&mut table, standing(3, 99.0, at(7)), at(7)),
-        Put::Updated
-    );
+    assert_eq!(put(&mut table, standing(3, 99.0, at(7)), at(7)), Put::Updated);
     assert_eq!(table.len(), 4);
     let known = table.get(RobotId(3), at(7)).fresh().unwrap();
     assert_eq!((known.position.mm[0], known.heard), (99_000, at(7)));
@@ -120,37 +93,19 @@ fn full_table_evicts_the_stalest_expired_one_even_for_a_far_newcomer() {
     let _ = put(&mut table, standing(4, 4.0, at(9_000_000)), at(9_000_000));
     let now = at(9_000_000);
     // 1 and 3 are equally old: the larger id goes.
-    assert_eq!(
-        put(&mut table, standing(8, 800.0, now), now),
-        Put::Evicted(RobotId(3))
-    );
-    assert_eq!(
-        put(&mut table, standing(9, 900.0, now), now),
-        Put::Evicted(RobotId(1))
-    );
-    assert_eq!(
-        put(&mut table, standing(7, 700.0, now), now),
-        Put::Evicted(RobotId(2))
-    );
+    assert_eq!(put(&mut table, standing(8, 800.0, now), now), Put::Evicted(RobotId(3)));
+    assert_eq!(put(&mut table, standing(9, 900.0, now), now), Put::Evicted(RobotId(1)));
+    assert_eq!(put(&mut table, standing(7, 700.0, now), now), Put::Evicted(RobotId(2)));
     assert_eq!(ids(&table), [4, 7, 8, 9]);
 }
 
 #[test]
 fn full_table_evicts_the_farthest_for_a_nearer_one_only() {
     let mut table = full::<4>(at(0));
-    assert_eq!(
-        put(&mut table, standing(9, 4.5, at(0)), at(0)),
-        Put::Refused
-    );
+    assert_eq!(put(&mut table, standing(9, 4.5, at(0)), at(0)), Put::Refused);
     // Equally far: the smaller id stays.
-    assert_eq!(
-        put(&mut table, standing(9, -4.0, at(0)), at(0)),
-        Put::Refused
-    );
-    assert_eq!(
-        put(&mut table, standing(9, -3.5, at(0)), at(0)),
-        Put::Evicted(RobotId(4))
-    );
+    assert_eq!(put(&mut table, standing(9, -4.0, at(0)), at(0)), Put::Refused);
+    assert_eq!(put(&mut table, standing(9, -3.5, at(0)), at(0)), Put::Evicted(RobotId(4)));
     assert_eq!(ids(&table), [1, 2, 3, 9]);
 }
 
@@ -158,10 +113,7 @@ fn full_table_evicts_the_farthest_for_a_nearer_one_only() {
 fn distance_counts_from_the_own_position() {
     let mut table = full::<4>(at(0));
     let own = Position::from_mm([5_000, 0, 0]);
-    assert_eq!(
-        table.put(standing(9, 6.0, at(0)), own, at(0), |_| false),
-        Put::Evicted(RobotId(1))
-    );
+    assert_eq!(table.put(standing(9, 6.0, at(0)), own, at(0), |_| false), Put::Evicted(RobotId(1)));
 }
 
 #[test]
@@ -171,18 +123,9 @@ fn protected_robots_stay_and_come_in() {
     let far = |id| standing(id, 1000.0, old);
     let protect = |id: RobotId| id.0 >= 3;
     // All are expired, yet the protected 3 stays; then nobody may go.
-    assert_eq!(
-        table.put(far(4), Position::ORIGIN, old, protect),
-        Put::Evicted(RobotId(2))
-    );
-    assert_eq!(
-        table.put(far(5), Position::ORIGIN, old, protect),
-        Put::Evicted(RobotId(1))
-    );
-    assert_eq!(
-        table.put(far(6), Position::ORIGIN, old, protect),
-        Put::Refused
-    );
+    assert_eq!(table.put(far(4), Position::ORIGIN, old, protect), Put::Evicted(RobotId(2)));
+    assert_eq!(table.put(far(5), Position::ORIGIN, old, protect), Put::Evicted(RobotId(1)));
+    assert_eq!(table.put(far(6), Position::ORIGIN, old, protect), Put::Refused);
     assert_eq!(ids(&table), [3, 4, 5]);
 }
 
@@ -190,24 +133,15 @@ fn protected_robots_stay_and_come_in() {
 fn protected_newcomer_displaces_a_nearer_one() {
     let mut table = full::<2>(at(0));
     let far = standing(9, 1000.0, at(0));
-    assert_eq!(
-        table.put(far, Position::ORIGIN, at(0), |id| id.0 == 9),
-        Put::Evicted(RobotId(2))
-    );
+    assert_eq!(table.put(far, Position::ORIGIN, at(0), |id| id.0 == 9), Put::Evicted(RobotId(2)));
 }
 
 #[test]
 fn unknown_distance_is_the_largest() {
     let mut table = full::<2>(at(0));
-    assert_eq!(
-        put(&mut table, standing(3, f32::NAN, at(0)), at(0)),
-        Put::Refused
-    );
+    assert_eq!(put(&mut table, standing(3, f32::NAN, at(0)), at(0)), Put::Refused);
     let _ = put(&mut table, standing(1, f32::NAN, at(0)), at(0));
-    assert_eq!(
-        put(&mut table, standing(3, 1e9, at(0)), at(0)),
-        Put::Evicted(RobotId(1))
-    );
+    assert_eq!(put(&mut table, standing(3, 1e9, at(0)), at(0)), Put::Evicted(RobotId(1)));
 
     let _ = put(&mut table, standing(2, f32::NAN, at(0)), at(0));
     assert_eq!(nearest_ids::<2, 2>(&table, Position::ORIGIN), [3, 2]);
@@ -228,16 +162,8 @@ fn a_silent_neighbour_widens_then_expires() {
     robot.radius_m = 0.25;
     let look = |millis: i32, own_radius_m: f32| {
         let now = at(0) + Duration::from_millis(millis);
-        let seen = nearest::<_, 1>(
-            &[robot],
-            Position::ORIGIN,
-            own_radius_m,
-            now,
-            &AGES,
-            &INFLATION,
-        );
-        seen.first()
-            .map(|n| (n.offset_m.x, n.velocity_mps.x, n.radius_m, n.gives_way))
+        let seen = nearest::<_, 1>(&[robot], Position::ORIGIN, own_radius_m, now, &AGES, &INFLATION);
+        seen.first().map(|n| (n.offset_m.x, n.velocity_mps.x, n.radius_m, n.gives_way))
     };
     assert_eq!(look(0, 0.5), Some((10.0, -2.0, 0.25, true)));
     assert_eq!(look(1_000, 0.5), Some((8.0, -2.0, 0.25, true)));
@@ -346,10 +272,7 @@ fn compact_beacon_becomes_a_neighbour_in_the_plane() {
     assert_eq!(n.position, Position::from_mm([i32::MIN, 250, 0]));
     assert_eq!(n.velocity_mps, Vec3::new(-0.25, 0.125, 0.0));
     assert_eq!((n.radius_m, n.mode), (2.55, Mode::Hold));
-    assert_eq!(
-        (n.cell, n.target, n.busy_until),
-        (Cell::new(4, 2), Cell::new(4, 2), at(10))
-    );
+    assert_eq!((n.cell, n.target, n.busy_until), (Cell::new(4, 2), Cell::new(4, 2), at(10)));
 }
 
 /// A robot per id, at small whole distances so that ties occur.
@@ -422,12 +345,7 @@ proptest! {
     }
 }
 
-fn put_from(
-    table: &mut NeighborTable<f32, 5>,
-    newcomer: Neighbor<f32>,
-    own: f32,
-    now: Instant,
-) -> Put {
+fn put_from(table: &mut NeighborTable<f32, 5>, newcomer: Neighbor<f32>, own: f32, now: Instant) -> Put {
     let own = place(own, 0.0).unwrap_or_default();
     table.put(newcomer, own, now, |id| id.0 < 1 << 30)
 }

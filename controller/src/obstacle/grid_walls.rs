@@ -51,12 +51,7 @@ struct Walls<S, const K: usize> {
 }
 
 impl<S: Scalar, const K: usize> Walls<S, K> {
-    fn around(
-        window: &Window<'_>,
-        frame: &GridFrame<S>,
-        place_m: Vec2<S>,
-        reach_m: S,
-    ) -> Option<Self> {
+    fn around(window: &Window<'_>, frame: &GridFrame<S>, place_m: Vec2<S>, reach_m: S) -> Option<Self> {
         let own = frame.cell(place_m)?;
         let half = frame.cell_m * S::HALF;
         let mut walls = Self {
@@ -89,12 +84,7 @@ impl<S: Scalar, const K: usize> Walls<S, K> {
     }
 
     /// Adds what is one wall along a line of the grid; `corner` is the corner before a side.
-    fn join(
-        &mut self,
-        (first, last): (i16, i16),
-        is_side: impl Fn(i16) -> bool,
-        corner: impl Fn(i16) -> Cell,
-    ) {
+    fn join(&mut self, (first, last): (i16, i16), is_side: impl Fn(i16) -> bool, corner: impl Fn(i16) -> Cell) {
         let mut begin = None;
         for at in first..=last {
             match (is_side(at), begin) {
@@ -150,16 +140,12 @@ mod tests {
     use proptest::prelude::*;
     use std::vec::Vec as List;
 
-    const FRAME: GridFrame<f64> = GridFrame {
-        origin_m: Vec2::new(100.0, -50.0),
-        cell_m: 2.0,
-    };
+    const FRAME: GridFrame<f64> = GridFrame { origin_m: Vec2::new(100.0, -50.0), cell_m: 2.0 };
 
     /// A window from rows of `#` and `.`, the northernmost first, with its south-west cell at (10, 20).
     fn cells(rows: &[&str]) -> List<u8> {
         let rows = rows.iter().rev();
-        rows.flat_map(|row| row.bytes().map(|b| if b == b'#' { BLOCKED } else { 1 }))
-            .collect()
+        rows.flat_map(|row| row.bytes().map(|b| if b == b'#' { BLOCKED } else { 1 })).collect()
     }
 
     fn window<'a>(cells: &'a [u8], rows: &[&str]) -> Window<'a> {
@@ -193,10 +179,7 @@ mod tests {
         assert_eq!(seen::<8>(&rows, (1.5, 0.5), 1.0), [south, west]);
         // In front of the corner both are equally far: the one that runs north first.
         assert_eq!(seen::<8>(&rows, (0.5, 0.5), 1.0), [west, south]);
-        assert_eq!(
-            seen::<8>(&rows, (0.75, 1.5), 9.0),
-            [west, south, north, east]
-        );
+        assert_eq!(seen::<8>(&rows, (0.75, 1.5), 9.0), [west, south, north, east]);
     }
 
     #[test]
@@ -207,10 +190,7 @@ mod tests {
         assert_eq!(seen::<8>(&rows, (2.5, 1.75), 9.0), [walls[1], walls[0]]);
         // In reach of neither, and of one only.
         assert!(seen::<8>(&rows, (2.5, 1.25), 0.2).is_empty());
-        assert_eq!(
-            seen::<8>(&rows, (2.5, 1.25), 0.3),
-            [walls[0]].map(|[_, y, _, w]| [1.0, y, 4.0, w])
-        );
+        assert_eq!(seen::<8>(&rows, (2.5, 1.25), 0.3), [walls[0]].map(|[_, y, _, w]| [1.0, y, 4.0, w]));
     }
 
     #[test]
@@ -243,18 +223,13 @@ mod tests {
         let bytes = cells(&rows);
         let window = window(&bytes, &rows);
         let place = Vec2::new(121.0, -9.0);
-        let walls = |frame: GridFrame<f64>, place, reach| {
-            grid_walls::<_, 4>(&window, &frame, place, reach).len()
-        };
+        let walls = |frame: GridFrame<f64>, place, reach| grid_walls::<_, 4>(&window, &frame, place, reach).len();
         assert_eq!(walls(FRAME, place, 5.0), 2);
         for bad in [f64::NAN, f64::INFINITY, -1.0] {
             assert_eq!(walls(FRAME, place, bad), 0, "{bad}");
         }
         assert_eq!(walls(FRAME, Vec2::new(f64::NAN, 0.0), 5.0), 0);
-        let flat = GridFrame {
-            cell_m: 0.0,
-            ..FRAME
-        };
+        let flat = GridFrame { cell_m: 0.0, ..FRAME };
         assert_eq!(walls(flat, place, 5.0), 0);
     }
 

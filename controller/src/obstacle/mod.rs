@@ -42,8 +42,7 @@ impl<S: Scalar> Obstacle<S> {
                     Some(unit) => a + unit * (-a).dot(unit).clamp(S::ZERO, length),
                     None => a,
                 };
-                foot.is_finite()
-                    .then(|| (foot.extend(S::ZERO), foot.norm()))
+                foot.is_finite().then(|| (foot.extend(S::ZERO), foot.norm()))
             }
             Self::Ball { center_m, radius_m } => {
                 let ahead = center_m.normalized()?;
@@ -67,37 +66,16 @@ mod tests {
         let wall = Obstacle::Wall([Vec2::new(1.0, -1.0), Vec2::new(1.0, 3.0)]);
         assert_eq!(wall.nearest_point(), Some((Vec3::new(1.0, 0.0, 0.0), 1.0)));
         let beyond = Obstacle::Wall([Vec2::new(3.0, 4.0), Vec2::new(6.0, 8.0)]);
-        assert_eq!(
-            beyond.nearest_point(),
-            Some((Vec3::new(3.0, 4.0, 0.0), 5.0))
-        );
+        assert_eq!(beyond.nearest_point(), Some((Vec3::new(3.0, 4.0, 0.0), 5.0)));
         let point = Obstacle::Wall([Vec2::new(0.0, 2.0), Vec2::new(0.0, 2.0)]);
         assert_eq!(point.nearest_point(), Some((Vec3::new(0.0, 2.0, 0.0), 2.0)));
-        let ball = |x, radius_m| Obstacle::Ball {
-            center_m: Vec3::new(x, 0.0, 0.0),
-            radius_m,
-        };
-        assert_eq!(
-            ball(5.0, 2.0).nearest_point(),
-            Some((Vec3::new(3.0, 0.0, 0.0), 3.0))
-        );
-        assert_eq!(
-            ball(1.0, 2.0).nearest_point(),
-            Some((Vec3::new(-1.0, 0.0, 0.0), -1.0))
-        );
+        let ball = |x, radius_m| Obstacle::Ball { center_m: Vec3::new(x, 0.0, 0.0), radius_m };
+        assert_eq!(ball(5.0, 2.0).nearest_point(), Some((Vec3::new(3.0, 0.0, 0.0), 3.0)));
+        assert_eq!(ball(1.0, 2.0).nearest_point(), Some((Vec3::new(-1.0, 0.0, 0.0), -1.0)));
         assert_eq!(ball(0.0, 2.0).nearest_point(), None);
-        let floor = Obstacle::Plane {
-            normal: Vec3::new(0.0, 0.0, 1.0),
-            distance_m: 2.0,
-        };
-        assert_eq!(
-            floor.nearest_point(),
-            Some((Vec3::new(0.0, 0.0, -2.0), 2.0))
-        );
+        let floor = Obstacle::Plane { normal: Vec3::new(0.0, 0.0, 1.0), distance_m: 2.0 };
+        assert_eq!(floor.nearest_point(), Some((Vec3::new(0.0, 0.0, -2.0), 2.0)));
         assert_eq!(ball(f64::NAN, 2.0).nearest_point(), None);
-        assert_eq!(
-            Obstacle::Wall([Vec2::new(f64::NAN, 0.0); 2]).nearest_point(),
-            None
-        );
+        assert_eq!(Obstacle::Wall([Vec2::new(f64::NAN, 0.0); 2]).nearest_point(), None);
     }
 }

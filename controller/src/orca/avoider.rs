@@ -110,11 +110,7 @@ impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Avoider<S, K, P> {
     /// An avoider whose constraints of moving neighbours come from `source`.
     #[must_use]
     pub const fn with_source(params: AvoidParams<S>, source: P) -> Self {
-        Self {
-            params,
-            source,
-            memory: P::Velocity::FRESH,
-        }
+        Self { params, source, memory: P::Velocity::FRESH }
     }
 
     /// The parameters.
@@ -182,12 +178,7 @@ impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Avoider<S, K, P> {
 
     /// What robots forbid, as many as there is room for. Not inlined, so that its stack is free again for the solver.
     #[inline(never)]
-    fn robots(
-        &self,
-        body: &Body<S>,
-        nearby: &[Nearby<S>],
-        constraints: &mut Vec<HalfSpace<P::Velocity>, K>,
-    ) {
+    fn robots(&self, body: &Body<S>, nearby: &[Nearby<S>], constraints: &mut Vec<HalfSpace<P::Velocity>, K>) {
         let own = own_velocity(body);
         for other in nearby {
             let tie = if body.id < other.id { -S::ONE } else { S::ONE };
@@ -200,11 +191,7 @@ impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Avoider<S, K, P> {
             let params = Params {
                 horizon_s: self.params.horizon_s,
                 separation_s: body.step_s,
-                share: if other.gives_way {
-                    self.params.share
-                } else {
-                    S::ONE
-                },
+                share: if other.gives_way { self.params.share } else { S::ONE },
             };
             if let Some(constraint) = self.source.half_space(own, &ball, &params)
                 && constraints.push(constraint).is_err()
@@ -241,9 +228,7 @@ fn nearest_obstacles<V: Dimension, const K: usize>(
             continue;
         };
         if nearest.len() >= room {
-            let is_nearer = nearest
-                .last()
-                .is_some_and(|(farthest, _)| distance < *farthest);
+            let is_nearer = nearest.last().is_some_and(|(farthest, _)| distance < *farthest);
             if !is_nearer {
                 continue;
             }
@@ -253,10 +238,7 @@ fn nearest_obstacles<V: Dimension, const K: usize>(
             sink_last(&mut nearest, |before, after| after.0 < before.0);
         }
     }
-    list::extend(
-        constraints,
-        nearest.iter().map(|(_, constraint)| *constraint),
-    );
+    list::extend(constraints, nearest.iter().map(|(_, constraint)| *constraint));
 }
 
 /// What an obstacle forbids: it does nothing to avoid, so the whole correction is the robot's.
@@ -272,10 +254,7 @@ fn static_obstacle<V: Dimension>(
         Obstacle::Wall(ends_m) => {
             let own = own.at_height(zero).xy();
             let plane = wall(own, ends_m, body.radius_m + params.margin_m, horizon_s)?;
-            Some(HalfSpace {
-                point: plane.point.extend(zero).into(),
-                normal: plane.normal.extend(zero).into(),
-            })
+            Some(HalfSpace { point: plane.point.extend(zero).into(), normal: plane.normal.extend(zero).into() })
         }
         Obstacle::Ball { center_m, radius_m } => {
             let ball = MovingBall {
@@ -285,11 +264,7 @@ fn static_obstacle<V: Dimension>(
                 // Out of its very centre: up, in the plane east.
                 tie: Vec3::new(zero, zero, V::Scalar::ONE).into(),
             };
-            let params = Params {
-                horizon_s,
-                separation_s: body.step_s,
-                share: V::Scalar::ONE,
-            };
+            let params = Params { horizon_s, separation_s: body.step_s, share: V::Scalar::ONE };
             V::half_space(own, &ball, &params)
         }
         Obstacle::Plane { normal, distance_m } => {
@@ -327,8 +302,5 @@ fn reachable<V: Dimension, const K: usize>(
     let solved = solve::<V, K>(constraints, hard, wish - own, change);
     let velocity = body.reach((own + solved.velocity_mps).at_height(V::Scalar::ZERO));
     let velocity = V::from(velocity);
-    Solution {
-        velocity_mps: velocity,
-        ..Solution::of(velocity - own, constraints)
-    }
+    Solution { velocity_mps: velocity, ..Solution::of(velocity - own, constraints) }
 }

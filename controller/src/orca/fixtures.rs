@@ -17,21 +17,12 @@ pub fn scalar<S: Scalar>(value: f64) -> S {
 }
 
 pub fn params<S: Scalar>(horizon_s: f64, share: f64) -> Params<S> {
-    Params {
-        horizon_s: scalar(horizon_s),
-        separation_s: scalar(STEP_S),
-        share: scalar(share),
-    }
+    Params { horizon_s: scalar(horizon_s), separation_s: scalar(STEP_S), share: scalar(share) }
 }
 
 /// A neighbour that has no preference when it is in the same place.
 pub fn ball<V: Vector>(offset_m: V, velocity_mps: V, radii_m: V::Scalar) -> MovingBall<V> {
-    MovingBall {
-        offset_m,
-        velocity_mps,
-        radii_m,
-        tie: V::ZERO,
-    }
+    MovingBall { offset_m, velocity_mps, radii_m, tie: V::ZERO }
 }
 
 /// How far a velocity is on the wrong side of the constraint that it violates most; 0 when it violates none.
@@ -53,11 +44,7 @@ pub fn body<S: Scalar, const D: usize>(id: u32, velocity_mps: [f64; D]) -> Body<
 }
 
 /// A robot that gives way.
-pub fn robot<S: Scalar, const D: usize>(
-    id: u32,
-    offset_m: [f64; D],
-    velocity_mps: [f64; D],
-) -> Nearby<S> {
+pub fn robot<S: Scalar, const D: usize>(id: u32, offset_m: [f64; D], velocity_mps: [f64; D]) -> Nearby<S> {
     Nearby {
         id: RobotId(id),
         offset_m: vector(offset_m),

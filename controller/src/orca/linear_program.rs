@@ -23,10 +23,7 @@ impl<V: Dimension> Solution<V> {
     /// A velocity, and what it violates.
     pub(super) fn of(velocity_mps: V, constraints: &[HalfSpace<V>]) -> Self {
         let depths = constraints.iter().map(|one| one.penetration(velocity_mps));
-        Self {
-            velocity_mps,
-            penetration_mps: depths.fold(V::Scalar::ZERO, V::Scalar::max),
-        }
+        Self { velocity_mps, penetration_mps: depths.fold(V::Scalar::ZERO, V::Scalar::max) }
     }
 }
 
@@ -46,16 +43,9 @@ pub fn solve<V: Dimension, const N: usize>(
     max_speed_mps: V::Scalar,
 ) -> Solution<V> {
     let constraints = constraints.get(..N).unwrap_or(constraints);
-    let goal = if preferred_mps.is_finite() {
-        preferred_mps
-    } else {
-        V::ZERO
-    };
+    let goal = if preferred_mps.is_finite() { preferred_mps } else { V::ZERO };
     match optimum(constraints, max_speed_mps, Aim::Near(goal)) {
-        (velocity_mps, None) => Solution {
-            velocity_mps,
-            penetration_mps: V::Scalar::ZERO,
-        },
+        (velocity_mps, None) => Solution { velocity_mps, penetration_mps: V::Scalar::ZERO },
         (start, Some(from)) => {
             let is_torn = from < hard && V::SHARES_CONTRADICTIONS;
             let hard = if is_torn { 0 } else { hard };
@@ -67,11 +57,7 @@ pub fn solve<V: Dimension, const N: usize>(
 
 /// The best velocity that all constraints and the speed permit, or the best for those before the first one that
 /// leaves nothing, with that one's index.
-fn optimum<V: Dimension>(
-    constraints: &[HalfSpace<V>],
-    speed: V::Scalar,
-    aim: Aim<V>,
-) -> (V, Option<usize>) {
+fn optimum<V: Dimension>(constraints: &[HalfSpace<V>], speed: V::Scalar, aim: Aim<V>) -> (V, Option<usize>) {
     let mut best = match aim {
         Aim::Near(goal) => goal.clamp_norm(speed),
         Aim::Along(way) => way * speed,
@@ -106,11 +92,7 @@ fn least_penetration<V: Dimension, const N: usize>(
         // Velocities that violate this one no more than another lie on one side of their bisector.
         let mut bisectors = Vec::<HalfSpace<V>, N>::new();
         for (other_index, other) in constraints.iter().enumerate().take(index) {
-            let bisector = if other_index < hard {
-                Some(*other)
-            } else {
-                bisector(constraint, other)
-            };
+            let bisector = if other_index < hard { Some(*other) } else { bisector(constraint, other) };
             if let Some(bisector) = bisector {
                 // As many places as constraints.
                 let _ = bisectors.push(bisector);
@@ -132,8 +114,5 @@ fn bisector<V: Dimension>(one: &HalfSpace<V>, other: &HalfSpace<V>) -> Option<Ha
     let normal = difference.normalized()?;
     let offset = other.point.dot(other.normal) - one.point.dot(one.normal);
     let distance = offset.checked_div(difference.norm())?;
-    Some(HalfSpace {
-        point: normal * distance,
-        normal,
-    })
+    Some(HalfSpace { point: normal * distance, normal })
 }

@@ -18,11 +18,7 @@ impl<S: Scalar> Dimension for Vec2<S> {
     }
 
     #[inline]
-    fn half_space(
-        own_velocity_mps: Self,
-        ball: &MovingBall<Self>,
-        params: &Params<S>,
-    ) -> Option<HalfSpace<Self>> {
+    fn half_space(own_velocity_mps: Self, ball: &MovingBall<Self>, params: &Params<S>) -> Option<HalfSpace<Self>> {
         half_plane(own_velocity_mps, ball, params)
     }
 
@@ -63,12 +59,7 @@ pub fn half_plane<S: Scalar>(
     disc: &MovingBall<Vec2<S>>,
     params: &Params<S>,
 ) -> Option<HalfPlane<S>> {
-    let MovingBall {
-        offset_m: p,
-        velocity_mps,
-        radii_m: r,
-        tie,
-    } = *disc;
+    let MovingBall { offset_m: p, velocity_mps, radii_m: r, tie } = *disc;
     let v = own_velocity_mps - velocity_mps;
     if r <= S::ZERO {
         return None;
@@ -87,10 +78,7 @@ pub fn half_plane<S: Scalar>(
             _ => {
                 // Overlapping: apart again after the separation time, straight away from each other if
                 // nothing else says where to.
-                let tip = Vec2::new(
-                    p.x.checked_div(params.separation_s)?,
-                    p.y.checked_div(params.separation_s)?,
-                );
+                let tip = Vec2::new(p.x.checked_div(params.separation_s)?, p.y.checked_div(params.separation_s)?);
                 let away = (-p).normalized().or_else(|| tie.normalized());
                 let away = away.unwrap_or(Vec2::new(S::ONE, S::ZERO));
                 leave_ball(v - tip, r.checked_div(params.separation_s)?, away)
@@ -107,13 +95,7 @@ pub fn half_plane<S: Scalar>(
 /// One root and one reciprocal, and choices instead of branches: whether the disc or a leg is nearer, and which leg, no
 /// branch predictor can know. Squares must be as precise as lengths.
 #[inline(always)]
-fn leave_cone<S: Scalar>(
-    v: Vec2<S>,
-    p: Vec2<S>,
-    squared: S,
-    r: S,
-    rate: S,
-) -> Option<(S, Vec2<S>)> {
+fn leave_cone<S: Scalar>(v: Vec2<S>, p: Vec2<S>, squared: S, r: S, rate: S) -> Option<(S, Vec2<S>)> {
     let w = v - p * rate;
     let (w_squared, towards) = (w.norm_squared(), w.dot(p));
     // Project on cut-off disc: w points back by more than the angle to the legs.
@@ -123,10 +105,7 @@ fn leave_cone<S: Scalar>(
     let root = choose(w_squared, squared - r * r).sqrt();
     // Project on left leg or on right leg: the tangent is p turned by the angle with this sine and cosine.
     let signed = if p.det(w) > S::ZERO { root } else { -root };
-    let across = Vec2::new(
-        choose(w.x, -(p.y * signed + p.x * r)),
-        choose(w.y, p.x * signed - p.y * r),
-    );
+    let across = Vec2::new(choose(w.x, -(p.y * signed + p.x * r)), choose(w.y, p.x * signed - p.y * r));
     let scale = S::ONE.checked_div(choose(root, squared))?;
     let normal = across * scale;
     Some((choose(r * rate - root, -(v.dot(normal))), normal))
@@ -139,13 +118,7 @@ fn tiny<S: Scalar>() -> S {
 }
 
 /// The same for numbers whose squares lose precision: by unit vectors and angles.
-fn leave_cone_by_angle<S: Scalar>(
-    v: Vec2<S>,
-    p: Vec2<S>,
-    ahead: Vec2<S>,
-    r: S,
-    horizon_s: S,
-) -> Option<(S, Vec2<S>)> {
+fn leave_cone_by_angle<S: Scalar>(v: Vec2<S>, p: Vec2<S>, ahead: Vec2<S>, r: S, horizon_s: S) -> Option<(S, Vec2<S>)> {
     let tip = Vec2::new(p.x.checked_div(horizon_s)?, p.y.checked_div(horizon_s)?);
     let w = v - tip;
     let sin = r.checked_div(p.norm())?;
@@ -153,11 +126,7 @@ fn leave_cone_by_angle<S: Scalar>(
         return Some(leave_ball(w, r.checked_div(horizon_s)?, -ahead));
     }
     let cos = (S::ONE - sin * sin).sqrt();
-    let normal = if ahead.det(w) > S::ZERO {
-        ahead.rotate(cos, sin).perp()
-    } else {
-        -ahead.rotate(cos, -sin).perp()
-    };
+    let normal = if ahead.det(w) > S::ZERO { ahead.rotate(cos, sin).perp() } else { -ahead.rotate(cos, -sin).perp() };
     Some((-(v.dot(normal)), normal))
 }
 
@@ -189,16 +158,8 @@ fn best_on_line<S: Scalar>(
         // half-plane (walls that share a corner) is not nothing.
         is_shut |= !is_crossed & (gap > rounding(speed, other));
         let rises = slope > S::ZERO;
-        low = if is_crossed & rises & (t > low) {
-            t
-        } else {
-            low
-        };
-        high = if is_crossed & !rises & (t < high) {
-            t
-        } else {
-            high
-        };
+        low = if is_crossed & rises & (t > low) { t } else { low };
+        high = if is_crossed & !rises & (t < high) { t } else { high };
     }
     if is_shut || low > high {
         return None;

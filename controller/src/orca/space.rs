@@ -25,11 +25,7 @@ impl<S: Scalar> Dimension for Vec3<S> {
         self
     }
 
-    fn half_space(
-        own_velocity_mps: Self,
-        ball: &MovingBall<Self>,
-        params: &Params<S>,
-    ) -> Option<HalfSpace<Self>> {
+    fn half_space(own_velocity_mps: Self, ball: &MovingBall<Self>, params: &Params<S>) -> Option<HalfSpace<Self>> {
         half_space(own_velocity_mps, ball, params)
     }
 
@@ -63,12 +59,7 @@ pub fn half_space<S: Scalar>(
     ball: &MovingBall<Vec3<S>>,
     params: &Params<S>,
 ) -> Option<HalfSpace<Vec3<S>>> {
-    let MovingBall {
-        offset_m: p,
-        velocity_mps,
-        radii_m: r,
-        tie,
-    } = *ball;
+    let MovingBall { offset_m: p, velocity_mps, radii_m: r, tie } = *ball;
     let v = own_velocity_mps - velocity_mps;
     let times_are_sound = params.horizon_s > S::ZERO && params.separation_s > S::ZERO;
     if !(p.is_finite() && v.is_finite() && r > S::ZERO && times_are_sound) {
@@ -105,11 +96,7 @@ pub fn half_space<S: Scalar>(
 }
 
 fn divided<S: Scalar>(v: Vec3<S>, by: S) -> Option<Vec3<S>> {
-    Some(Vec3::new(
-        v.x.checked_div(by)?,
-        v.y.checked_div(by)?,
-        v.z.checked_div(by)?,
-    ))
+    Some(Vec3::new(v.x.checked_div(by)?, v.y.checked_div(by)?, v.z.checked_div(by)?))
 }
 
 /// A unit vector square to `ahead`; that of `-ahead` is the opposite one. To the right where there is a right.
@@ -203,10 +190,7 @@ fn half_width<S: Scalar>(foot: Vec3<S>, speed: S) -> Option<S> {
 }
 
 /// Where two borders meet; `None` when they are parallel.
-fn intersection<S: Scalar>(
-    space: &HalfSpace<Vec3<S>>,
-    other: &HalfSpace<Vec3<S>>,
-) -> Option<Line<S>> {
+fn intersection<S: Scalar>(space: &HalfSpace<Vec3<S>>, other: &HalfSpace<Vec3<S>>) -> Option<Line<S>> {
     let cross = space.normal.cross(other.normal);
     // Nearly parallel borders meet along a line whose direction is rounding.
     if cross.norm_squared() <= S::EPSILON {
@@ -216,12 +200,7 @@ fn intersection<S: Scalar>(
     // On the one border, square to the line, until the other one.
     let across = direction.cross(space.normal);
     let foot = foot(space);
-    let t = other
-        .penetration(foot)
-        .checked_div(across.dot(other.normal))?;
+    let t = other.penetration(foot).checked_div(across.dot(other.normal))?;
     let point = foot + across * t;
-    Some(Line {
-        foot: point - direction * point.dot(direction),
-        direction,
-    })
+    Some(Line { foot: point - direction * point.dot(direction), direction })
 }

@@ -36,10 +36,7 @@ impl<S: Scalar> VelocityObstacle<S> {
         let sin = radii_m.checked_div(distance)?;
         Some(Self {
             ahead: offset_m.normalized()?,
-            tip_mps: Vec2::new(
-                offset_m.x.checked_div(horizon_s)?,
-                offset_m.y.checked_div(horizon_s)?,
-            ),
+            tip_mps: Vec2::new(offset_m.x.checked_div(horizon_s)?, offset_m.y.checked_div(horizon_s)?),
             radius_mps: radii_m.checked_div(horizon_s)?,
             sin,
             cos: (S::ONE - sin * sin).sqrt(),
@@ -61,10 +58,7 @@ impl<S: Scalar> VelocityObstacle<S> {
     /// Unit vectors along the left and the right leg, away from the origin.
     #[must_use]
     pub fn legs(&self) -> [Vec2<S>; 2] {
-        [
-            self.ahead.rotate(self.cos, self.sin),
-            self.ahead.rotate(self.cos, -self.sin),
-        ]
+        [self.ahead.rotate(self.cos, self.sin), self.ahead.rotate(self.cos, -self.sin)]
     }
 
     /// Pr1, Pr2 (right of the left leg, left of the right one), Pr3, Pr4 (beyond the perpendiculars from the disc's

@@ -28,9 +28,7 @@ mod table;
 #[cfg(all(test, feature = "fixed"))]
 mod tests;
 
-pub use table::{
-    VelocityObstacleTable, VoxelTable, VoxelTable2k, VoxelTable8k, VoxelTable16k, VoxelTable64k,
-};
+pub use table::{VelocityObstacleTable, VoxelTable, VoxelTable2k, VoxelTable8k, VoxelTable16k, VoxelTable64k};
 
 use super::avoider::HalfSpaces;
 use super::{HalfPlane, MovingBall, Params, half_plane};
@@ -78,11 +76,7 @@ fn from_table<S: Scalar>(
         return analytic();
     };
     // On the axis to the right, as the analytic form.
-    let side = if across > S::ZERO {
-        normal.y
-    } else {
-        -normal.y
-    };
+    let side = if across > S::ZERO { normal.y } else { -normal.y };
     let normal = ahead.rotate(normal.x, side);
     let u = r * rate - w.dot(normal);
     let point = own_velocity_mps + normal * (u * params.share);
@@ -141,9 +135,7 @@ impl VelocityObstacleTable {
         let share = before.checked_div(before + w.y).unwrap_or(S::ZERO);
         let last = i32::try_from(self.directions).ok()?.saturating_sub(1);
         let steps = share * S::from_i32(last);
-        let node = steps
-            .floor_to_i32()?
-            .clamp(0, last.saturating_sub(1).max(0));
+        let node = steps.floor_to_i32()?.clamp(0, last.saturating_sub(1).max(0));
         Some((usize::try_from(node).ok()?, steps - S::from_i32(node)))
     }
 
@@ -166,7 +158,6 @@ fn unit<S: Scalar>(v: Vec2<S>) -> Option<Vec2<S>> {
         return v.normalized();
     }
     // (1 - short)^(-1/2) by its series; what is left out is below 3e-7.
-    let cube =
-        S::from_ratio(3, 8) + short * (S::from_ratio(5, 16) + short * S::from_ratio(35, 128));
+    let cube = S::from_ratio(3, 8) + short * (S::from_ratio(5, 16) + short * S::from_ratio(35, 128));
     Some(v * (S::ONE + short * (S::HALF + short * cube)))
 }

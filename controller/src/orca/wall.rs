@@ -41,10 +41,7 @@ pub fn wall<S: Scalar>(
         // Touching. In the wall's middle line: across it, to its left.
         let normal = (-foot).normalized().or_else(|| (b - a).perp().normalized());
         let normal = normal.unwrap_or(Vec2::new(S::ONE, S::ZERO));
-        return Some(HalfPlane {
-            point: Vec2::ZERO,
-            normal,
-        });
+        return Some(HalfPlane { point: Vec2::ZERO, normal });
     }
     // Seen from the robot, `left` is the end on the left.
     let (left, right) = if a.det(b) > S::ZERO { (b, a) } else { (a, b) };
@@ -58,11 +55,7 @@ pub fn wall<S: Scalar>(
         cap(v, near_right, near_left, reach),
         side(v, near_left, near_right, reach),
     ];
-    pieces
-        .into_iter()
-        .flatten()
-        .min_by(|one, other| one.distance.order(other.distance))
-        .map(|nearest| nearest.plane)
+    pieces.into_iter().flatten().min_by(|one, other| one.distance.order(other.distance)).map(|nearest| nearest.plane)
 }
 
 /// The point of a segment nearest to `at`.
@@ -79,10 +72,7 @@ fn nearest_on_segment<S: Scalar>(at: Vec2<S>, a: Vec2<S>, b: Vec2<S>) -> Vec2<S>
 /// the normal points back towards the origin.
 fn near_side<S: Scalar>(v: Vec2<S>, point: Vec2<S>, normal: Vec2<S>) -> Option<Nearest<S>> {
     let is_near = normal.dot(point) <= S::ZERO;
-    is_near.then(|| Nearest {
-        distance: (v - point).norm(),
-        plane: HalfPlane { point, normal },
-    })
+    is_near.then(|| Nearest { distance: (v - point).norm(), plane: HalfPlane { point, normal } })
 }
 
 /// The half-circle around `end` of the segment from `other` to `end`.
@@ -91,35 +81,21 @@ fn cap<S: Scalar>(v: Vec2<S>, end: Vec2<S>, other: Vec2<S>, reach: S) -> Option<
     let normal = (v - end).normalized().or_else(|| (-end).normalized())?;
     // Both caps may claim what rounding leaves between cap and side.
     let is_beyond = normal.dot(end - other) >= -(S::EPSILON * reach);
-    is_beyond
-        .then(|| near_side(v, end + normal * reach, normal))
-        .flatten()
+    is_beyond.then(|| near_side(v, end + normal * reach, normal)).flatten()
 }
 
 /// The straight side that faces the robot.
 fn side<S: Scalar>(v: Vec2<S>, left: Vec2<S>, right: Vec2<S>, reach: S) -> Option<Nearest<S>> {
     let along = (left - right).normalized()?;
     let across = along.perp();
-    let normal = if across.dot(left) > S::ZERO {
-        -across
-    } else {
-        across
-    };
+    let normal = if across.dot(left) > S::ZERO { -across } else { across };
     let t = (v - right).dot(along);
     let is_beside = t >= S::ZERO && t <= (left - right).norm();
-    is_beside
-        .then(|| near_side(v, right + along * t + normal * reach, normal))
-        .flatten()
+    is_beside.then(|| near_side(v, right + along * t + normal * reach, normal)).flatten()
 }
 
 /// One of the two tangents from the origin to the capsule, beyond where it leaves the capsule's near side.
-fn leg<S: Scalar>(
-    v: Vec2<S>,
-    [left, right]: [Vec2<S>; 2],
-    radius: S,
-    rate: S,
-    is_left: bool,
-) -> Option<Nearest<S>> {
+fn leg<S: Scalar>(v: Vec2<S>, [left, right]: [Vec2<S>; 2], radius: S, rate: S, is_left: bool) -> Option<Nearest<S>> {
     // The outermost tangent of the two end discs: seen from outside, one disc may hide the other.
     let tangent = |end: Vec2<S>| {
         let sin = radius.checked_div(end.norm())?;
@@ -134,15 +110,8 @@ fn leg<S: Scalar>(
     let (direction, start) = if is_outside == is_left { other } else { one };
     let along = v.dot(direction).max(start);
     let point = direction * along;
-    let normal = if is_left {
-        direction.perp()
-    } else {
-        -direction.perp()
-    };
-    Some(Nearest {
-        distance: (v - point).norm(),
-        plane: HalfPlane { point, normal },
-    })
+    let normal = if is_left { direction.perp() } else { -direction.perp() };
+    Some(Nearest { distance: (v - point).norm(), plane: HalfPlane { point, normal } })
 }
 
 #[cfg(all(test, feature = "fixed"))]

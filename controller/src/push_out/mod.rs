@@ -75,21 +75,13 @@ impl<S: Scalar> PushOutParams<S> {
     /// The same in another kind of number.
     #[must_use]
     pub fn cast<T: Scalar>(&self) -> PushOutParams<T> {
-        PushOutParams {
-            model: self.model,
-            evasion: self.evasion,
-            min_distance_m: cast(self.min_distance_m),
-        }
+        PushOutParams { model: self.model, evasion: self.evasion, min_distance_m: cast(self.min_distance_m) }
     }
 
     /// Model 1 for all who are in the way.
     #[must_use]
     pub fn new(min_distance_m: S) -> Self {
-        Self {
-            model: Model::Radial,
-            evasion: Evasion::Multiple,
-            min_distance_m,
-        }
+        Self { model: Model::Radial, evasion: Evasion::Multiple, min_distance_m }
     }
 }
 
@@ -116,20 +108,13 @@ pub fn push_out<S: Scalar>(
     nearby: &[Nearby<S>],
     obstacles: &[Obstacle<S>],
 ) -> Vec3<S> {
-    let is_sound = params.min_distance_m > S::ZERO
-        && params.min_distance_m.is_finite()
-        && body.step_s > S::ZERO;
+    let is_sound = params.min_distance_m > S::ZERO && params.min_distance_m.is_finite() && body.step_s > S::ZERO;
     let wish = wish_mps.clamp_norm(body.max_speed_mps);
     let step = wish * body.step_s;
     if !is_sound || !step.is_finite() {
         return Vec3::ZERO;
     }
-    let mut scene = Scene {
-        params,
-        body,
-        nearby,
-        obstacles,
-    };
+    let mut scene = Scene { params, body, nearby, obstacles };
     if scene.depth(step) <= S::ZERO {
         return wish;
     }
@@ -162,26 +147,17 @@ impl<'a, S: Scalar> Scene<'a, S> {
     fn depth(&self, step: Vec3<S>) -> S {
         let depths = self.zones(step).map(|zone| zone.depth(step));
         let deepest = depths.fold(S::ZERO, S::max);
-        if deepest > S::from_milli(TOLERANCE_MM) {
-            deepest
-        } else {
-            S::ZERO
-        }
+        if deepest > S::from_milli(TOLERANCE_MM) { deepest } else { S::ZERO }
     }
 
     /// The nearest robot that the step leads too near to, alone; nobody if there is none. Ties by number.
     fn nearest_in_the_way(&self, step: Vec3<S>) -> &'a [Nearby<S>] {
         let tolerance = S::from_milli(TOLERANCE_MM);
         let in_the_way = self.nearby.chunks(1).filter(|one| {
-            let zone = one
-                .first()
-                .and_then(|other| Zone::of_robot(other, self.body, self.params.min_distance_m));
+            let zone = one.first().and_then(|other| Zone::of_robot(other, self.body, self.params.min_distance_m));
             zone.is_some_and(|zone| zone.depth(step) > tolerance)
         });
-        let key = |one: &&[Nearby<S>]| {
-            one.first()
-                .map(|other| (other.offset_m.length_key(), other.id))
-        };
+        let key = |one: &&[Nearby<S>]| one.first().map(|other| (other.offset_m.length_key(), other.id));
         in_the_way.min_by_key(key).unwrap_or(&[])
     }
 
@@ -243,11 +219,7 @@ impl<S: Scalar> Best<S> {
     fn consider(&mut self, evading: Vec3<S>, depth: S, wish: Vec3<S>) {
         let change = (evading - wish).length_key();
         if depth < self.depth || (depth == self.depth && change < self.change) {
-            *self = Self {
-                depth,
-                change,
-                step: evading,
-            };
+            *self = Self { depth, change, step: evading };
         }
     }
 }

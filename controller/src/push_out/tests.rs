@@ -23,11 +23,7 @@ fn vec3<S: Scalar>(v: V) -> Vec3<S> {
 }
 
 fn params(model: Model, evasion: Evasion) -> PushOutParams<f64> {
-    PushOutParams {
-        model,
-        evasion,
-        min_distance_m: 2.0,
-    }
+    PushOutParams { model, evasion, min_distance_m: 2.0 }
 }
 
 /// A point that goes up to 100 m in a step of 1 s, so that velocities are steps.
@@ -43,13 +39,7 @@ fn body<S: Scalar>() -> Body<S> {
 }
 
 fn robot<S: Scalar>(id: u32, place: V) -> Nearby<S> {
-    Nearby {
-        id: RobotId(id),
-        offset_m: vec3(place),
-        velocity_mps: Vec3::ZERO,
-        radius_m: S::ZERO,
-        gives_way: true,
-    }
+    Nearby { id: RobotId(id), offset_m: vec3(place), velocity_mps: Vec3::ZERO, radius_m: S::ZERO, gives_way: true }
 }
 
 fn ball(center_m: V, radius_m: f64) -> Obstacle<f64> {
@@ -58,13 +48,7 @@ fn ball(center_m: V, radius_m: f64) -> Obstacle<f64> {
 
 /// The step of a robot among these.
 fn stepped(model: Model, wish: V, nearby: &[Nearby<f64>], obstacles: &[Obstacle<f64>]) -> V {
-    push_out(
-        &params(model, Evasion::Multiple),
-        &body(),
-        wish,
-        nearby,
-        obstacles,
-    )
+    push_out(&params(model, Evasion::Multiple), &body(), wish, nearby, obstacles)
 }
 
 fn assert_close(got: V, expected: V) {
@@ -76,21 +60,12 @@ fn what_is_in_nobodys_way_is_the_wish() {
     let around = [ball(v(10.0, 0.0), 3.0), ball(v(0.0, 9.0), 3.0)];
     let robots = [robot(2, v(-3.0, 0.0))];
     for model in MODELS {
-        for wish in [
-            v(5.0, 0.0),
-            v(0.0, 4.0),
-            v(-1.0, 0.0),
-            v(1.0, -80.0),
-            V::ZERO,
-        ] {
+        for wish in [v(5.0, 0.0), v(0.0, 4.0), v(-1.0, 0.0), v(1.0, -80.0), V::ZERO] {
             assert_eq!(stepped(model, wish, &robots, &around), wish);
         }
         assert_eq!(stepped(model, v(3.0, 4.0), &[], &[]), v(3.0, 4.0));
         // Faster than the body.
-        assert_close(
-            stepped(model, v(0.0, -300.0), &robots, &around),
-            v(0.0, -100.0),
-        );
+        assert_close(stepped(model, v(0.0, -300.0), &robots, &around), v(0.0, -100.0));
     }
 }
 
@@ -109,28 +84,13 @@ fn model_1_pushes_the_step_out_along_the_radius() {
 #[test]
 fn model_1_steps_sideways_when_it_leads_straight_at_the_centre() {
     let around = [ball(v(10.0, 0.0), 3.0)];
-    assert_close(
-        stepped(Model::Radial, v(6.0, 0.0), &[], &around),
-        v(0.0, 6.0),
-    );
-    assert_close(
-        stepped(Model::Radial, v(6.0, 0.05), &[], &around),
-        v(-0.05, 6.0),
-    );
-    let plane = Obstacle::Plane {
-        normal: v(0.0, -1.0),
-        distance_m: 3.0,
-    };
-    assert_close(
-        stepped(Model::Radial, v(0.0, 4.0), &[], &[plane]),
-        v(-4.0, 0.0),
-    );
+    assert_close(stepped(Model::Radial, v(6.0, 0.0), &[], &around), v(0.0, 6.0));
+    assert_close(stepped(Model::Radial, v(6.0, 0.05), &[], &around), v(-0.05, 6.0));
+    let plane = Obstacle::Plane { normal: v(0.0, -1.0), distance_m: 3.0 };
+    assert_close(stepped(Model::Radial, v(0.0, 4.0), &[], &[plane]), v(-4.0, 0.0));
     // Straight up at a ball: to the east.
     let above = [ball(V::new(0.0, 0.0, 10.0), 3.0)];
-    assert_close(
-        stepped(Model::Radial, V::new(0.0, 0.0, 6.0), &[], &above),
-        v(6.0, 0.0),
-    );
+    assert_close(stepped(Model::Radial, V::new(0.0, 0.0, 6.0), &[], &above), v(6.0, 0.0));
 }
 
 #[test]
@@ -138,18 +98,9 @@ fn model_2_turns_the_step_to_the_border_by_the_smaller_angle() {
     // 37 + 100 - 25 = 2 * 10 * 5.6.
     let around = [ball(v(10.0, 0.0), 3.0)];
     let height = (37.0 - 5.6 * 5.6_f64).sqrt();
-    assert_close(
-        stepped(Model::Tangential, v(6.0, 1.0), &[], &around),
-        v(5.6, height),
-    );
-    assert_close(
-        stepped(Model::Tangential, v(6.0, -1.0), &[], &around),
-        v(5.6, -height),
-    );
-    assert_close(
-        stepped(Model::Tangential, v(37f64.sqrt(), 0.0), &[], &around),
-        v(5.6, height),
-    );
+    assert_close(stepped(Model::Tangential, v(6.0, 1.0), &[], &around), v(5.6, height));
+    assert_close(stepped(Model::Tangential, v(6.0, -1.0), &[], &around), v(5.6, -height));
+    assert_close(stepped(Model::Tangential, v(37f64.sqrt(), 0.0), &[], &around), v(5.6, height));
     // Longer than the way to the tangent point: along the tangent, with sine 1/2.
     let got = stepped(Model::Tangential, v(20.0, 0.1), &[], &around);
     let length = v(20.0, 0.1).norm();
@@ -158,16 +109,10 @@ fn model_2_turns_the_step_to_the_border_by_the_smaller_angle() {
 
 #[test]
 fn planes_and_walls_are_slid_along() {
-    let plane = Obstacle::Plane {
-        normal: v(0.0, -1.0),
-        distance_m: 3.0,
-    };
+    let plane = Obstacle::Plane { normal: v(0.0, -1.0), distance_m: 3.0 };
     let wall = Obstacle::Wall([Vec2::new(-9.0, 3.0), Vec2::new(9.0, 3.0)]);
     for obstacle in [plane, wall] {
-        assert_close(
-            stepped(Model::Radial, v(3.0, 4.0), &[], &[obstacle]),
-            v(3.0, 1.0),
-        );
+        assert_close(stepped(Model::Radial, v(3.0, 4.0), &[], &[obstacle]), v(3.0, 1.0));
         let got = stepped(Model::Tangential, v(3.0, 4.0), &[], &[obstacle]);
         assert_close(got, v(24f64.sqrt(), 1.0));
     }
@@ -188,21 +133,12 @@ fn planes_and_walls_are_slid_along() {
 
 #[test]
 fn bodies_may_need_more_than_the_least_distance() {
-    let own = Body {
-        radius_m: 1.5,
-        ..body()
-    };
-    let other = Nearby {
-        radius_m: 2.0,
-        ..robot(2, v(10.0, 0.0))
-    };
+    let own = Body { radius_m: 1.5, ..body() };
+    let other = Nearby { radius_m: 2.0, ..robot(2, v(10.0, 0.0)) };
     let p = params(Model::Radial, Evasion::Multiple);
     assert_eq!(push_out(&p, &own, v(6.4, 0.0), &[other], &[]), v(6.4, 0.0));
     assert_close(push_out(&p, &own, v(6.6, 0.0), &[other], &[]), v(0.0, 6.6));
-    let large = Body {
-        radius_m: 4.0,
-        ..own
-    };
+    let large = Body { radius_m: 4.0, ..own };
     let around = [ball(v(10.0, 0.0), 3.0)];
     assert_eq!(push_out(&p, &large, v(2.9, 0.0), &[], &around), v(2.9, 0.0));
     assert_close(push_out(&p, &large, v(3.1, 0.0), &[], &around), v(0.0, 3.1));
@@ -210,22 +146,12 @@ fn bodies_may_need_more_than_the_least_distance() {
 
 #[test]
 fn whoever_is_too_near_is_pushed_out_as_fast_as_it_can_go() {
-    let slow = Body {
-        velocity_mps: v(0.1, 0.0),
-        max_speed_mps: 0.5,
-        ..body()
-    };
+    let slow = Body { velocity_mps: v(0.1, 0.0), max_speed_mps: 0.5, ..body() };
     let p = |model| params(model, Evasion::Multiple);
     let other = [robot(2, v(1.0, 0.0))];
     // Model 1 also moves one that wishes to stand, model 2 keeps its length of 0.
-    assert_close(
-        push_out(&p(Model::Radial), &slow, V::ZERO, &other, &[]),
-        v(-0.5, 0.0),
-    );
-    assert_eq!(
-        push_out(&p(Model::Tangential), &slow, V::ZERO, &other, &[]),
-        V::ZERO
-    );
+    assert_close(push_out(&p(Model::Radial), &slow, V::ZERO, &other, &[]), v(-0.5, 0.0));
+    assert_eq!(push_out(&p(Model::Tangential), &slow, V::ZERO, &other, &[]), V::ZERO);
     for model in MODELS {
         let got = push_out(&p(model), &slow, v(0.3, 0.1), &other, &[]);
         assert!(got.x < 0.0, "{model:?} {got:?}");
@@ -241,10 +167,7 @@ fn whoever_is_too_near_is_pushed_out_as_fast_as_it_can_go() {
 fn robots_in_one_place_go_opposite_ways() {
     for model in MODELS {
         let step = |own: u32, other: u32| {
-            let own = Body {
-                id: RobotId(own),
-                ..body()
-            };
+            let own = Body { id: RobotId(own), ..body() };
             let p = params(model, Evasion::Multiple);
             push_out(&p, &own, v(1.0, 0.5), &[robot(other, V::ZERO)], &[])
         };
@@ -267,19 +190,13 @@ fn single_evasion_sees_the_nearest_and_multiple_all() {
             let (single, multiple) = (step(Evasion::Single), step(Evasion::Multiple));
             let first = usize::from(robots[1].id.0 == 2);
             assert!(clear(single, first), "{model:?} {single:?}");
-            assert!(
-                clear(multiple, 0) && clear(multiple, 1),
-                "{model:?} {multiple:?}"
-            );
+            assert!(clear(multiple, 0) && clear(multiple, 1), "{model:?} {multiple:?}");
             assert!(multiple != V::ZERO);
         }
     }
     let single = params(Model::Tangential, Evasion::Single);
     let got = push_out(&single, &body(), wish, &robots, &[]);
-    assert!(
-        (robots[1].offset_m - got).norm() < 2.0,
-        "the second was not looked at"
-    );
+    assert!((robots[1].offset_m - got).norm() < 2.0, "the second was not looked at");
 }
 
 #[test]
@@ -311,29 +228,17 @@ fn senseless_input_counts_as_absent() {
                 ball(v(3.0, 0.0), bad),
                 ball(v(3.0, 0.0), -9.0),
                 Obstacle::Wall([Vec2::new(bad, 0.0), Vec2::new(3.0, 0.0)]),
-                Obstacle::Plane {
-                    normal: v(bad, 0.0),
-                    distance_m: 0.0,
-                },
-                Obstacle::Plane {
-                    normal: v(1.0, 0.0),
-                    distance_m: bad,
-                },
+                Obstacle::Plane { normal: v(bad, 0.0), distance_m: 0.0 },
+                Obstacle::Plane { normal: v(1.0, 0.0), distance_m: bad },
             ];
             let wish = v(2.0, 1.0);
             assert_eq!(push_out(&p, &body(), wish, &lost, &obstacles), wish);
             assert_eq!(push_out(&p, &body(), v(bad, 1.0), &[], &[]), V::ZERO);
-            let fat = Body {
-                radius_m: bad,
-                ..body()
-            };
+            let fat = Body { radius_m: bad, ..body() };
             let expected = push_out(&p, &body(), wish, &robots, &[]);
             assert_eq!(push_out(&p, &fat, wish, &robots, &[]), expected);
             for least in [bad, 0.0, -1.0] {
-                let p = PushOutParams {
-                    min_distance_m: least,
-                    ..p
-                };
+                let p = PushOutParams { min_distance_m: least, ..p };
                 assert_eq!(push_out(&p, &body(), wish, &[], &[]), V::ZERO);
             }
             for step_s in [bad, 0.0, -1.0] {
@@ -347,12 +252,7 @@ fn senseless_input_counts_as_absent() {
 /// Robots walk to their goals with `model`; the least distance of two, and all that arrive.
 fn walk(model: Model, robots: &mut [(V, V)], obstacles: &[(V, f64)], steps: u32) -> (f64, usize) {
     let (speed, step_s) = (1.0, 0.1);
-    let own = |i: usize| Body {
-        id: RobotId(i as u32 + 1),
-        max_speed_mps: speed,
-        step_s,
-        ..body()
-    };
+    let own = |i: usize| Body { id: RobotId(i as u32 + 1), max_speed_mps: speed, step_s, ..body() };
     let mut least = f64::MAX;
     for _ in 0..steps {
         let before: Vec<_> = robots.to_vec();
@@ -361,10 +261,7 @@ fn walk(model: Model, robots: &mut [(V, V)], obstacles: &[(V, f64)], steps: u32)
                 .filter(|j| *j != i && (before[*j].0 - *place).norm() < 6.0)
                 .map(|j| robot(j as u32 + 1, before[j].0 - *place))
                 .collect();
-            let around: Vec<_> = obstacles
-                .iter()
-                .map(|(c, r)| ball(*c - *place, *r))
-                .collect();
+            let around: Vec<_> = obstacles.iter().map(|(c, r)| ball(*c - *place, *r)).collect();
             let wish = ((*goal - *place) * (1.0 / step_s)).clamp_norm(speed);
             let p = params(model, Evasion::Multiple);
             *place += push_out(&p, &own(i), wish, &nearby, &around) * step_s;
@@ -379,9 +276,7 @@ fn walk(model: Model, robots: &mut [(V, V)], obstacles: &[(V, f64)], steps: u32)
             }
         }
     }
-    let arrived = robots
-        .iter()
-        .filter(|(place, goal)| (*place - *goal).norm() < 0.01);
+    let arrived = robots.iter().filter(|(place, goal)| (*place - *goal).norm() < 0.01);
     (least, arrived.count())
 }
 
@@ -389,11 +284,7 @@ fn walk(model: Model, robots: &mut [(V, V)], obstacles: &[(V, f64)], steps: u32)
 fn lone_robots_go_round_obstacles_straight_ahead_and_in_rows() {
     for model in MODELS {
         for y in [0.0, 0.3, -2.0] {
-            let obstacles = [
-                (v(10.0, 0.0), 3.0),
-                (v(22.0, 1.0), 4.0),
-                (v(22.0, -12.0), 3.0),
-            ];
+            let obstacles = [(v(10.0, 0.0), 3.0), (v(22.0, 1.0), 4.0), (v(22.0, -12.0), 3.0)];
             let mut robots = [(v(0.0, y), v(40.0, y))];
             let (_, arrived) = walk(model, &mut robots, &obstacles, 1000);
             assert_eq!(arrived, 1, "{model:?} {y} {robots:?}");
@@ -428,19 +319,9 @@ fn trespass(step: V, places: &[V]) -> f64 {
 }
 
 fn answer<S: Scalar>(model: Model, wish: V, places: &[V]) -> V {
-    let params = PushOutParams {
-        model,
-        evasion: Evasion::Multiple,
-        min_distance_m: S::TWO,
-    };
-    let body = Body {
-        max_speed_mps: S::from_i32(5),
-        ..body()
-    };
-    let robots: Vec<_> = (2..)
-        .zip(places)
-        .map(|(id, place)| robot::<S>(id, *place))
-        .collect();
+    let params = PushOutParams { model, evasion: Evasion::Multiple, min_distance_m: S::TWO };
+    let body = Body { max_speed_mps: S::from_i32(5), ..body() };
+    let robots: Vec<_> = (2..).zip(places).map(|(id, place)| robot::<S>(id, *place)).collect();
     let got = push_out(&params, &body, vec3(wish), &robots, &[]);
     V::new(got.x.to_f64(), got.y.to_f64(), got.z.to_f64())
 }

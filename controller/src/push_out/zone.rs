@@ -27,11 +27,7 @@ pub const SIDES: [Side; 3] = [Side::Rule, Side::Left, Side::Right];
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Shape<S> {
     /// Around a robot, a ball or the end of a wall.
-    Ball {
-        center: Vec3<S>,
-        radius: S,
-        otherwise: Otherwise<S>,
-    },
+    Ball { center: Vec3<S>, radius: S, otherwise: Otherwise<S> },
     /// Behind a plane: a half-space or the side of a wall.
     Half {
         normal: Vec3<S>,
@@ -94,12 +90,7 @@ impl<S: Scalar> Zone<S> {
     /// Around what is nearest of an obstacle to `step`: `min_distance_m` from its border, at least the own radius.
     /// `None` when it is not finite.
     #[must_use]
-    pub fn of_obstacle(
-        obstacle: &Obstacle<S>,
-        body: &Body<S>,
-        min_distance_m: S,
-        step: Vec3<S>,
-    ) -> Option<Self> {
+    pub fn of_obstacle(obstacle: &Obstacle<S>, body: &Body<S>, min_distance_m: S, step: Vec3<S>) -> Option<Self> {
         let margin = at_least(min_distance_m, body.radius_m);
         let (shape, is_upright) = match *obstacle {
             Obstacle::Ball { center_m, radius_m } => {
@@ -112,10 +103,7 @@ impl<S: Scalar> Zone<S> {
                 (is_sound.then_some(shape)?, false)
             }
             Obstacle::Plane { normal, distance_m } => {
-                let shape = Shape::Half {
-                    normal: normal.normalized()?,
-                    room: distance_m - margin,
-                };
+                let shape = Shape::Half { normal: normal.normalized()?, room: distance_m - margin };
                 (distance_m.is_finite().then_some(shape)?, false)
             }
             Obstacle::Wall(ends) => (wall(ends, margin, step.xy())?, true),
@@ -132,9 +120,7 @@ impl<S: Scalar> Zone<S> {
         let step = self.part(step);
         match self.shape {
             Shape::Half { normal, room } => -(room + step.dot(normal)),
-            Shape::Ball { center, radius, .. } => {
-                radius - (center - deepest(center, radius, step)).norm()
-            }
+            Shape::Ball { center, radius, .. } => radius - (center - deepest(center, radius, step)).norm(),
         }
     }
 
@@ -154,21 +140,13 @@ impl<S: Scalar> Zone<S> {
 
     /// The part of a step that matters.
     fn part(&self, step: Vec3<S>) -> Vec3<S> {
-        if self.is_upright {
-            step.xy().extend(S::ZERO)
-        } else {
-            step
-        }
+        if self.is_upright { step.xy().extend(S::ZERO) } else { step }
     }
 }
 
 /// `distance`, or what bodies need if that is more and known.
 fn at_least<S: Scalar>(distance: S, bodies: S) -> S {
-    if bodies > distance && bodies.is_finite() {
-        bodies
-    } else {
-        distance
-    }
+    if bodies > distance && bodies.is_finite() { bodies } else { distance }
 }
 
 /// A wall is a half-space beside it and a post at its ends: whichever the step comes nearest to.
@@ -185,24 +163,13 @@ fn wall<S: Scalar>([a, b]: [Vec2<S>; 2], margin: S, step: Vec2<S>) -> Option<Sha
     let room = (-a).dot(normal);
     let after = room + step.dot(normal);
     // Where the step ends, or where it crosses the wall's line.
-    let part = if after < S::ZERO {
-        room.checked_div(room - after).unwrap_or(S::ZERO)
-    } else {
-        S::ONE
-    };
+    let part = if after < S::ZERO { room.checked_div(room - after).unwrap_or(S::ZERO) } else { S::ONE };
     let at = (step * part - a).dot(along);
     if at >= S::ZERO && at <= (b - a).norm() {
-        return Some(Shape::Half {
-            normal: normal.extend(S::ZERO),
-            room: room - margin,
-        });
+        return Some(Shape::Half { normal: normal.extend(S::ZERO), room: room - margin });
     }
     let end = if at < S::ZERO { a } else { b };
-    Some(Shape::Ball {
-        center: end.extend(S::ZERO),
-        radius: margin,
-        otherwise: Otherwise::Way(normal.extend(S::ZERO)),
-    })
+    Some(Shape::Ball { center: end.extend(S::ZERO), radius: margin, otherwise: Otherwise::Way(normal.extend(S::ZERO)) })
 }
 
 /// The point of the step that counts for a ball: the nearest to the centre, or the end when the robot is inside already
@@ -213,11 +180,7 @@ fn deepest<S: Scalar>(center: Vec3<S>, radius: S, step: Vec3<S>) -> Vec3<S> {
     };
     let along = center.dot(direction).clamp(S::ZERO, step.norm());
     let goes_deeper = along > S::ZERO;
-    if !goes_deeper && center.norm() < radius {
-        step
-    } else {
-        direction * along
-    }
+    if !goes_deeper && center.norm() < radius { step } else { direction * along }
 }
 
 /// A step of the same length to the left in the plane; east for one that goes straight up or down.
@@ -245,11 +208,7 @@ fn push_radially<S: Scalar>(shape: Shape<S>, step: Vec3<S>) -> Vec3<S> {
             }
             step - normal * (room + inwards)
         }
-        Shape::Ball {
-            center,
-            radius,
-            otherwise,
-        } => {
+        Shape::Ball { center, radius, otherwise } => {
             let Some(ahead) = center.normalized() else {
                 return otherwise.way() * radius;
             };
@@ -287,11 +246,7 @@ fn turn<S: Scalar>(shape: Shape<S>, step: Vec3<S>, is_smaller: bool) -> Option<V
     // The part of the new step along `axis`, and the axis.
     let (axis, along) = match shape {
         Shape::Half { normal, room } => (normal, (-room).clamp(-length, length)),
-        Shape::Ball {
-            center,
-            radius,
-            otherwise,
-        } => {
+        Shape::Ball { center, radius, otherwise } => {
             let axis = center.normalized().unwrap_or_else(|| -otherwise.way());
             (axis, length * cosine(center.norm(), radius, length))
         }

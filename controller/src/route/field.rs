@@ -123,19 +123,9 @@ impl<const CELLS: usize> CostField<CELLS> {
 
     /// [`Self::weights`] on the window that was loaded. Not inlined: firmware pays for it once.
     #[inline(never)]
-    fn solve(
-        &mut self,
-        params: &RouteParams,
-        from: Cell,
-        target: Cell,
-    ) -> Result<Weights, Unreachable> {
+    fn solve(&mut self, params: &RouteParams, from: Cell, target: Cell) -> Result<Weights, Unreachable> {
         let from_index = self.index(from).ok_or(Unreachable)?;
-        let query = Query {
-            params,
-            from: from_index,
-            from_cell: from,
-            target,
-        };
+        let query = Query { params, from: from_index, from_cell: from, target };
         if let Some(inside) = self.index(target) {
             self.search_from(&query, Some(inside));
             let weights = self.outgoing(&query);
@@ -151,14 +141,10 @@ impl<const CELLS: usize> CostField<CELLS> {
             }
             ExitRule::Ray => {
                 let exit = ray_exit(params.radius, from, target);
-                let at = self
-                    .index(exit)
-                    .filter(|&at| self.is_passable(at) && at != from_index);
+                let at = self.index(exit).filter(|&at| self.is_passable(at) && at != from_index);
                 self.search_from(&query, at);
                 if self.outgoing(&query).best().is_none() {
-                    let nearest = self
-                        .nearest_reachable_border(&query, exit)
-                        .ok_or(Unreachable)?;
+                    let nearest = self.nearest_reachable_border(&query, exit).ok_or(Unreachable)?;
                     self.search_from(&query, Some(nearest));
                 }
             }
@@ -179,9 +165,7 @@ impl<const CELLS: usize> CostField<CELLS> {
     #[must_use]
     pub fn cost(&self, cell: Cell) -> Option<Cost> {
         let cost = *self.cost.get(self.index(cell)?)?;
-        let open = self
-            .index(cell)
-            .is_some_and(|at| self.is_passable(at) && at != self.closed);
+        let open = self.index(cell).is_some_and(|at| self.is_passable(at) && at != self.closed);
         let is_final = self.occupied == 0 || cost >> self.shift < self.at;
         (open && is_final && cost != EXCLUDED).then_some(cost)
     }
@@ -192,12 +176,7 @@ impl<const CELLS: usize> CostField<CELLS> {
     pub fn descend(&self, params: &RouteParams, cell: Cell) -> Option<Dir> {
         let here = self.cost(cell)?;
         let at = self.index(cell)?;
-        let weights = self.outgoing(&Query {
-            params,
-            from: at,
-            from_cell: cell,
-            target: cell,
-        });
+        let weights = self.outgoing(&Query { params, from: at, from_cell: cell, target: cell });
         let dir = weights.best()?;
         // An exit's own price may undercut every way on from it.
         (weights.get(dir) <= here).then_some(dir)
@@ -221,16 +200,9 @@ impl<const CELLS: usize> CostField<CELLS> {
         let (origin, width, height) = window.cut(from, params.radius);
         self.origin = origin;
         self.stride = usize::from(width) + 2;
-        let rows = CELLS
-            .checked_div(self.stride)
-            .unwrap_or(0)
-            .saturating_sub(2);
+        let rows = CELLS.checked_div(self.stride).unwrap_or(0).saturating_sub(2);
         self.width = if height == 0 { 0 } else { width };
-        self.height = if width == 0 {
-            0
-        } else {
-            height.min(rows.min(usize::from(u16::MAX)) as u16)
-        };
+        self.height = if width == 0 { 0 } else { height.min(rows.min(usize::from(u16::MAX)) as u16) };
 
         let used = (usize::from(self.height) + 2) * self.stride;
         for at in self.impassability.iter_mut().take(used) {
@@ -245,9 +217,7 @@ impl<const CELLS: usize> CostField<CELLS> {
                 .index(self.origin + Cell::new(0, row.cast_signed()))
                 .and_then(|start| window.cells().get(start..start + usize::from(self.width)));
             let start = (usize::from(row) + 1) * self.stride + 1;
-            let sink = self
-                .impassability
-                .get_mut(start..start + usize::from(self.width));
+            let sink = self.impassability.get_mut(start..start + usize::from(self.width));
             let (Some(source), Some(sink)) = (source, sink) else {
                 continue;
             };
@@ -255,11 +225,7 @@ impl<const CELLS: usize> CostField<CELLS> {
             for (sink, u) in sink.iter_mut().zip(source) {
                 *sink = *u;
             }
-            least = source
-                .iter()
-                .copied()
-                .filter(|&u| u != BLOCKED)
-                .fold(least, u8::min);
+            least = source.iter().copied().filter(|&u| u != BLOCKED).fold(least, u8::min);
         }
         let cheapest = params.a0.of(u32::from(least) * UNIT);
         self.shift = cheapest.checked_ilog2().unwrap_or(0);
@@ -275,13 +241,7 @@ impl<const CELLS: usize> CostField<CELLS> {
     #[inline(never)]
     fn begin(&mut self, query: &Query<'_>) {
         let used = (usize::from(self.height) + 2) * self.stride;
-        for ((cost, &u), bucket) in self
-            .cost
-            .iter_mut()
-            .zip(&self.impassability)
-            .zip(&mut self.bucket)
-            .take(used)
-        {
+        for ((cost, &u), bucket) in self.cost.iter_mut().zip(&self.impassability).zip(&mut self.bucket).take(used) {
             *cost = if u == BLOCKED { 0 } else { EXCLUDED };
             *bucket = RING as u8;
         }
@@ -367,10 +327,7 @@ impl<const CELLS: usize> CostField<CELLS> {
         let heads = self.heads.iter().copied().filter(|&head| head != NIL);
         let chain = heads.flat_map(|head| {
             core::iter::successors(Some(head), |&cell| {
-                self.next
-                    .get(usize::from(cell))
-                    .copied()
-                    .filter(|&next| next != NIL)
+                self.next.get(usize::from(cell)).copied().filter(|&next| next != NIL)
             })
         });
         let costs = chain.filter_map(|cell| self.cost.get(usize::from(cell)).copied());
@@ -416,10 +373,7 @@ impl<const CELLS: usize> CostField<CELLS> {
         if cost < *known {
             *known = cost;
             self.unlink(cell);
-            self.link(
-                cell,
-                (cost >> self.shift).clamp(at, at.saturating_add(RING - 1)),
-            );
+            self.link(cell, (cost >> self.shift).clamp(at, at.saturating_add(RING - 1)));
         }
     }
 
@@ -442,11 +396,8 @@ impl<const CELLS: usize> CostField<CELLS> {
         // Where prices would leave the range of costs, all are less by the least of them.
         let size = u32::from(self.width) + u32::from(self.height);
         let farthest = (query.from_cell.chebyshev(target) + size) * DIAGONAL;
-        let base = if params.a3.of(farthest) < EXCLUDED >> 1 {
-            0
-        } else {
-            self.border().map(distance).min().unwrap_or(0)
-        };
+        let base =
+            if params.a3.of(farthest) < EXCLUDED >> 1 { 0 } else { self.border().map(distance).min().unwrap_or(0) };
         for cell in self.border() {
             if let Some(at) = self.index(cell) {
                 self.offer(at, params.a3.of(distance(cell) - base));
@@ -456,15 +407,10 @@ impl<const CELLS: usize> CostField<CELLS> {
 
     /// The cells of the window's outermost ring.
     fn border(&self) -> impl Iterator<Item = Cell> + use<CELLS> {
-        let (origin, width, height) = (
-            self.origin,
-            self.width.cast_signed(),
-            self.height.cast_signed(),
-        );
+        let (origin, width, height) = (self.origin, self.width.cast_signed(), self.height.cast_signed());
         let rows = (0..width).flat_map(move |x| [(x, 0), (x, height - 1)]);
         let columns = (1..height - 1).flat_map(move |y| [(0, y), (width - 1, y)]);
-        rows.chain(columns)
-            .map(move |(x, y)| origin + Cell::new(x, y))
+        rows.chain(columns).map(move |(x, y)| origin + Cell::new(x, y))
     }
 
     /// The border cell nearest to `exit` (then in the order of [`Cell`]) that the robot can reach.
@@ -489,41 +435,28 @@ impl<const CELLS: usize> CostField<CELLS> {
 
     /// Weights of the moves out of the query's cell.
     fn outgoing(&self, query: &Query<'_>) -> Weights {
-        self.outgoing_with(query, |at| {
-            self.cost.get(at).copied().filter(|&cost| cost != EXCLUDED)
-        })
+        self.outgoing_with(query, |at| self.cost.get(at).copied().filter(|&cost| cost != EXCLUDED))
     }
 
     fn outgoing_with(&self, query: &Query<'_>, rest: impl Fn(usize) -> Option<Cost>) -> Weights {
         let params = query.params;
         let step = |dir: Dir| {
             let next = self.index(query.from_cell + dir.offset())?;
-            let u = self
-                .impassability
-                .get(next)
-                .copied()
-                .filter(|&u| u != BLOCKED)?;
+            let u = self.impassability.get(next).copied().filter(|&u| u != BLOCKED)?;
             if next == self.closed {
                 return None;
             }
             if dir.is_diagonal() && !params.corner_cutting {
                 let beside = dir.offset();
-                let open = |dx, dy| {
-                    self.index(query.from_cell + Cell::new(dx, dy))
-                        .is_some_and(|at| self.is_passable(at))
-                };
+                let open =
+                    |dx, dy| self.index(query.from_cell + Cell::new(dx, dy)).is_some_and(|at| self.is_passable(at));
                 if !(open(beside.x, 0) && open(0, beside.y)) {
                     return None;
                 }
             }
             let enter = params.a0.of(dir.length(params.norm) * u32::from(u));
             let extra = self.extra.get(next).copied()?;
-            Some(
-                rest(next)?
-                    .saturating_add(enter)
-                    .saturating_add(extra)
-                    .min(EXCLUDED - 1),
-            )
+            Some(rest(next)?.saturating_add(enter).saturating_add(extra).min(EXCLUDED - 1))
         };
         Weights::new(Dir::MOVES.map(|dir| step(dir).unwrap_or(EXCLUDED)))
     }
@@ -581,11 +514,7 @@ impl<const CELLS: usize> CostField<CELLS> {
 
     #[inline]
     fn pop(&mut self, slot: u32) -> Option<usize> {
-        let head = self
-            .heads
-            .get(slot as usize)
-            .copied()
-            .filter(|&head| head != NIL)?;
+        let head = self.heads.get(slot as usize).copied().filter(|&head| head != NIL)?;
         self.unlink(usize::from(head));
         Some(usize::from(head))
     }

@@ -85,17 +85,12 @@ impl Default for RouteParams {
 
 /// The cell where the ray from `from` to `target` crosses the border of the square of that radius.
 fn ray_exit(radius: u8, from: Cell, target: Cell) -> Cell {
-    let (dx, dy) = (
-        i64::from(target.x) - i64::from(from.x),
-        i64::from(target.y) - i64::from(from.y),
-    );
+    let (dx, dy) = (i64::from(target.x) - i64::from(from.x), i64::from(target.y) - i64::from(from.y));
     let longest = dx.abs().max(dy.abs());
     let scale = |d: i64| {
         // Rounded to nearest, away from 0 at one half.
         let half = if d < 0 { -longest } else { longest };
-        (2 * d * i64::from(radius) + half)
-            .checked_div(2 * longest)
-            .unwrap_or(0)
+        (2 * d * i64::from(radius) + half).checked_div(2 * longest).unwrap_or(0)
     };
     // At most the radius in each coordinate.
     from + Cell::new(scale(dx) as i16, scale(dy) as i16)

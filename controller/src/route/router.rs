@@ -35,12 +35,7 @@ impl<const M: usize> Router<M> {
     /// Knows nothing yet.
     #[must_use]
     pub const fn new() -> Self {
-        Self {
-            visits: VisitMemory::new(),
-            here: None,
-            target: None,
-            plan: Vec::new(),
-        }
+        Self { visits: VisitMemory::new(), here: None, target: None, plan: Vec::new() }
     }
 
     /// What the robot remembers of its way.
@@ -58,10 +53,7 @@ impl<const M: usize> Router<M> {
             self.here = Some(cell);
             self.visits.enter(cell);
         }
-        if self
-            .target
-            .is_some_and(|old| old.chebyshev(target) > u32::from(params.radius))
-        {
+        if self.target.is_some_and(|old| old.chebyshev(target) > u32::from(params.radius)) {
             self.visits.clear();
         }
         if self.target != Some(target) {
@@ -115,12 +107,7 @@ impl<const M: usize> Router<M> {
     }
 
     /// Whether the land on the chain is as planned, as far as the window shows it, and nobody is in the way.
-    fn plan_holds(
-        &self,
-        window: &Window<'_>,
-        from: Cell,
-        others: impl IntoIterator<Item = Cell> + Clone,
-    ) -> bool {
+    fn plan_holds(&self, window: &Window<'_>, from: Cell, others: impl IntoIterator<Item = Cell> + Clone) -> bool {
         let mut cell = from;
         !self.plan.is_empty()
             && self.plan.iter().rev().all(|&(dir, u)| {

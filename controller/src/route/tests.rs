@@ -9,49 +9,24 @@ const NO_VISITS: Option<&VisitMemory<0>> = None;
 /// Reads a picture, north up: digits are impassabilities, `#` is blocked.
 fn land(rows: &[&str]) -> (Vec<u8>, u16, u16) {
     let digit = |c: u8| if c == b'#' { BLOCKED } else { c - b'0' };
-    let cells = rows
-        .iter()
-        .rev()
-        .flat_map(|row| row.bytes().map(digit))
-        .collect();
+    let cells = rows.iter().rev().flat_map(|row| row.bytes().map(digit)).collect();
     (cells, rows[0].len() as u16, rows.len() as u16)
 }
 
-fn weights_on(
-    rows: &[&str],
-    params: &RouteParams,
-    from: (i16, i16),
-    to: (i16, i16),
-) -> Result<Weights, Unreachable> {
+fn weights_on(rows: &[&str], params: &RouteParams, from: (i16, i16), to: (i16, i16)) -> Result<Weights, Unreachable> {
     let (cells, width, height) = land(rows);
     let window = Window::new(&cells, Cell::default(), width, height).unwrap();
     let mut field = CostField::<400>::new();
-    field.weights(
-        params,
-        &window,
-        Cell::new(from.0, from.1),
-        Cell::new(to.0, to.1),
-        [],
-        NO_VISITS,
-    )
+    field.weights(params, &window, Cell::new(from.0, from.1), Cell::new(to.0, to.1), [], NO_VISITS)
 }
 
 #[test]
 fn cheapest_way_to_a_target_inside_avoids_bad_land() {
-    let params = RouteParams {
-        a3: Gain::ZERO,
-        ..RouteParams::default()
-    };
+    let params = RouteParams { a3: Gain::ZERO, ..RouteParams::default() };
     let weights = weights_on(&["11111", "19991", "11111"], &params, (0, 1), (4, 1)).unwrap();
     // Around: two diagonal and two axis moves; once on bad land, off it again by a diagonal.
-    assert_eq!(
-        weights.get(Dir::East),
-        10 * TICK + 2 * Gain::ONE.of(DIAGONAL)
-    );
-    assert_eq!(
-        weights.get(Dir::NorthEast),
-        2 * TICK + 2 * Gain::ONE.of(DIAGONAL)
-    );
+    assert_eq!(weights.get(Dir::East), 10 * TICK + 2 * Gain::ONE.of(DIAGONAL));
+    assert_eq!(weights.get(Dir::NorthEast), 2 * TICK + 2 * Gain::ONE.of(DIAGONAL));
     assert_eq!(weights.get(Dir::NorthEast), weights.get(Dir::SouthEast));
     assert_eq!(weights.best(), Some(Dir::NorthEast));
 }
@@ -60,34 +35,15 @@ fn cheapest_way_to_a_target_inside_avoids_bad_land() {
 fn corners_are_cut_only_when_allowed() {
     let rows = ["111", "1#1", "111"];
     let no = RouteParams::default();
-    let yes = RouteParams {
-        corner_cutting: true,
-        ..no
-    };
-    assert_eq!(
-        weights_on(&rows, &no, (1, 0), (2, 1))
-            .unwrap()
-            .get(Dir::NorthEast),
-        EXCLUDED
-    );
-    assert_eq!(
-        weights_on(&rows, &yes, (1, 0), (2, 1))
-            .unwrap()
-            .get(Dir::NorthEast),
-        Gain::ONE.of(DIAGONAL)
-    );
+    let yes = RouteParams { corner_cutting: true, ..no };
+    assert_eq!(weights_on(&rows, &no, (1, 0), (2, 1)).unwrap().get(Dir::NorthEast), EXCLUDED);
+    assert_eq!(weights_on(&rows, &yes, (1, 0), (2, 1)).unwrap().get(Dir::NorthEast), Gain::ONE.of(DIAGONAL));
 }
 
 #[test]
 fn weights_never_return_through_the_own_cell() {
     // The only way from the western pocket leads over the robot's own cell.
-    let weights = weights_on(
-        &["###", "111", "###"],
-        &RouteParams::default(),
-        (1, 1),
-        (2, 1),
-    )
-    .unwrap();
+    let weights = weights_on(&["###", "111", "###"], &RouteParams::default(), (1, 1), (2, 1)).unwrap();
     assert_eq!(weights.get(Dir::West), EXCLUDED);
     assert_eq!(weights.get(Dir::East), TICK);
 }
@@ -95,28 +51,14 @@ fn weights_never_return_through_the_own_cell() {
 #[test]
 fn closed_in_robot_is_told_so() {
     let params = RouteParams::default();
-    assert_eq!(
-        weights_on(&["###", "#1#", "###"], &params, (1, 1), (9, 9)),
-        Err(Unreachable)
-    );
-    assert_eq!(
-        weights_on(&["1"], &params, (0, 0), (0, 0)),
-        Err(Unreachable)
-    );
-    assert_eq!(
-        weights_on(&["1"], &params, (5, 5), (0, 0)),
-        Err(Unreachable),
-        "outside the window"
-    );
+    assert_eq!(weights_on(&["###", "#1#", "###"], &params, (1, 1), (9, 9)), Err(Unreachable));
+    assert_eq!(weights_on(&["1"], &params, (0, 0), (0, 0)), Err(Unreachable));
+    assert_eq!(weights_on(&["1"], &params, (5, 5), (0, 0)), Err(Unreachable), "outside the window");
 }
 
 #[test]
 fn best_exit_trades_path_against_distance() {
-    let params = RouteParams {
-        radius: 1,
-        a3: Gain::from_int(3),
-        ..RouteParams::default()
-    };
+    let params = RouteParams { radius: 1, a3: Gain::from_int(3), ..RouteParams::default() };
     let weights = weights_on(&["111", "119", "111"], &params, (1, 1), (11, 1)).unwrap();
     assert_eq!(weights.get(Dir::East), 9 * TICK + 3 * 9 * TICK);
     assert_eq!(weights.best(), Some(Dir::NorthEast));
@@ -124,11 +66,7 @@ fn best_exit_trades_path_against_distance() {
 
 #[test]
 fn ray_takes_the_single_exit_or_the_nearest_reachable_border_cell() {
-    let params = RouteParams {
-        radius: 2,
-        exit: ExitRule::Ray,
-        ..RouteParams::default()
-    };
+    let params = RouteParams { radius: 2, exit: ExitRule::Ray, ..RouteParams::default() };
     let open = ["11111", "11111", "11111", "11111", "11111"];
     let weights = weights_on(&open, &params, (2, 2), (20, 2)).unwrap();
     assert_eq!(weights.get(Dir::East), 2 * TICK);
@@ -154,16 +92,8 @@ fn visits_and_other_robots_cost_what_the_gains_say() {
     visits.enter(Cell::new(2, 1));
     visits.enter(Cell::new(0, 1));
     let mut field = CostField::<25>::new();
-    let weights = field
-        .weights(
-            &params,
-            &window,
-            Cell::new(1, 1),
-            Cell::new(9, 1),
-            [Cell::new(1, 0)],
-            Some(&visits),
-        )
-        .unwrap();
+    let weights =
+        field.weights(&params, &window, Cell::new(1, 1), Cell::new(9, 1), [Cell::new(1, 0)], Some(&visits)).unwrap();
     assert_eq!(weights.get(Dir::East), TICK + 2 * TICK);
     assert_eq!(weights.get(Dir::West), TICK + 4 * TICK);
     assert_eq!(weights.get(Dir::South), TICK + 5 * TICK);
@@ -176,36 +106,15 @@ fn window_larger_than_the_field_is_cut_and_never_panics() {
     let window = Window::new(&cells, Cell::default(), 11, 11).unwrap();
     let params = RouteParams::default();
     let mut field = CostField::<60>::new();
-    let weights = field.weights(
-        &params,
-        &window,
-        Cell::new(5, 1),
-        Cell::new(99, 1),
-        [],
-        NO_VISITS,
-    );
+    let weights = field.weights(&params, &window, Cell::new(5, 1), Cell::new(99, 1), [], NO_VISITS);
     assert!(weights.is_ok());
     let mut nothing = CostField::<0>::new();
-    assert_eq!(
-        nothing.weights(
-            &params,
-            &window,
-            Cell::new(5, 5),
-            Cell::new(9, 9),
-            [],
-            NO_VISITS
-        ),
-        Err(Unreachable)
-    );
+    assert_eq!(nothing.weights(&params, &window, Cell::new(5, 5), Cell::new(9, 9), [], NO_VISITS), Err(Unreachable));
 }
 
 #[test]
 fn plan_is_followed_until_something_changes_on_it() {
-    let params = RouteParams {
-        radius: 3,
-        a3: Gain::ONE,
-        ..RouteParams::default()
-    };
+    let params = RouteParams { radius: 3, a3: Gain::ONE, ..RouteParams::default() };
     let mut cells = [1; 49];
     let target = Cell::new(6, 3);
     let mut router = Router::<8>::new();
@@ -214,25 +123,13 @@ fn plan_is_followed_until_something_changes_on_it() {
     let mut follow = |router: &mut Router<8>, cells: &[u8], here, others: &[Cell]| {
         let window = Window::new(cells, Cell::default(), 7, 7).unwrap();
         router.observe(&params, here, target);
-        router
-            .follow(
-                &params,
-                &mut field,
-                &window,
-                here,
-                target,
-                others.iter().copied(),
-            )
-            .unwrap()
+        router.follow(&params, &mut field, &window, here, target, others.iter().copied()).unwrap()
     };
     assert_eq!(follow(&mut router, &cells, here, &[]), Dir::East);
     here = Cell::new(4, 3);
     // A cell beside the chain does not matter; one on it does.
     cells[0] = 9;
-    assert_eq!(
-        follow(&mut router, &cells, here, &[Cell::new(5, 5)]),
-        Dir::East
-    );
+    assert_eq!(follow(&mut router, &cells, here, &[Cell::new(5, 5)]), Dir::East);
     cells[3 * 7 + 5] = 9;
     assert_ne!(follow(&mut router, &cells, here, &[]), Dir::East);
 }
@@ -249,40 +146,14 @@ fn extreme_gains_neither_close_the_way_nor_take_for_ever() {
     let mut field = CostField::<169>::new();
     for a0 in [Gain::ZERO, Gain::from_sixteenths(1), Gain::ONE, most] {
         for a3 in [Gain::ZERO, Gain::ONE, most] {
-            let params = RouteParams {
-                a0,
-                a1: most,
-                a2: most,
-                a3,
-                ..RouteParams::default()
-            };
+            let params = RouteParams { a0, a1: most, a2: most, a3, ..RouteParams::default() };
             for target in [Cell::new(30_000, 0), Cell::new(i16::MAX, i16::MIN)] {
-                let found = field.weights(
-                    &params,
-                    &window,
-                    Cell::default(),
-                    target,
-                    others,
-                    Some(&visits),
-                );
+                let found = field.weights(&params, &window, Cell::default(), target, others, Some(&visits));
                 let best = found.unwrap().best().unwrap();
-                assert!(
-                    a3 == Gain::ZERO || best.offset().x >= 0,
-                    "{a0:?} {a3:?} {best:?}"
-                );
+                assert!(a3 == Gain::ZERO || best.offset().x >= 0, "{a0:?} {a3:?} {best:?}");
                 // A smaller window next, while the larger one's search is not complete.
-                let small = RouteParams {
-                    radius: 2,
-                    ..params
-                };
-                let found = field.weights(
-                    &small,
-                    &window,
-                    Cell::default(),
-                    target,
-                    others,
-                    Some(&visits),
-                );
+                let small = RouteParams { radius: 2, ..params };
+                let found = field.weights(&small, &window, Cell::default(), target, others, Some(&visits));
                 assert!(found.is_ok());
             }
         }
@@ -290,13 +161,7 @@ fn extreme_gains_neither_close_the_way_nor_take_for_ever() {
 }
 
 /// Reference: Bellman-Ford over the same moves.
-fn oracle(
-    cells: &[u8],
-    width: usize,
-    from: usize,
-    exits: &[(usize, Cost)],
-    params: &RouteParams,
-) -> Vec<u64> {
+fn oracle(cells: &[u8], width: usize, from: usize, exits: &[(usize, Cost)], params: &RouteParams) -> Vec<u64> {
     let height = cells.len() / width;
     let mut cost = std::vec![u64::MAX; cells.len()];
     for &(exit, price) in exits {
@@ -308,36 +173,20 @@ fn oracle(
     for _ in 0..cells.len() + 1 {
         for at in 0..cells.len() {
             for dir in Dir::MOVES {
-                let (x, y) = (
-                    (at % width) as i64 + i64::from(dir.offset().x),
-                    (at / width) as i64 + i64::from(dir.offset().y),
-                );
-                let inside =
-                    |x: i64, y: i64| x >= 0 && y >= 0 && x < width as i64 && y < height as i64;
+                let (x, y) =
+                    ((at % width) as i64 + i64::from(dir.offset().x), (at / width) as i64 + i64::from(dir.offset().y));
+                let inside = |x: i64, y: i64| x >= 0 && y >= 0 && x < width as i64 && y < height as i64;
                 if !inside(x, y) {
                     continue;
                 }
                 let next = y as usize * width + x as usize;
-                let free = |x: i64, y: i64| {
-                    inside(x, y) && cells[y as usize * width + x as usize] != BLOCKED
-                };
+                let free = |x: i64, y: i64| inside(x, y) && cells[y as usize * width + x as usize] != BLOCKED;
                 let (ax, ay) = ((at % width) as i64, (at / width) as i64);
-                let corner =
-                    !dir.is_diagonal() || params.corner_cutting || (free(x, ay) && free(ax, y));
-                if cells[next] == BLOCKED
-                    || next == from
-                    || !corner
-                    || cost[next] == u64::MAX
-                    || cells[at] == BLOCKED
-                {
+                let corner = !dir.is_diagonal() || params.corner_cutting || (free(x, ay) && free(ax, y));
+                if cells[next] == BLOCKED || next == from || !corner || cost[next] == u64::MAX || cells[at] == BLOCKED {
                     continue;
                 }
-                let total = cost[next]
-                    + u64::from(
-                        params
-                            .a0
-                            .of(dir.length(params.norm) * u32::from(cells[next])),
-                    );
+                let total = cost[next] + u64::from(params.a0.of(dir.length(params.norm) * u32::from(cells[next])));
                 if at == from {
                     moves[dir.index()] = total;
                 } else {

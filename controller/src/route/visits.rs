@@ -28,9 +28,7 @@ impl<const M: usize> VisitMemory<M> {
             to_end(&mut self.visits, at);
             self.visits.pop()
         });
-        let count = gone
-            .filter(|&(at, _)| at == cell)
-            .map_or(0, |(_, count)| count);
+        let count = gone.filter(|&(at, _)| at == cell).map_or(0, |(_, count)| count);
         // Fails only for M = 0, a memory that remembers nothing.
         let _ = self.visits.push((cell, count.saturating_add(1)));
     }
@@ -38,9 +36,7 @@ impl<const M: usize> VisitMemory<M> {
     /// Remembered entries into `cell`. O(M).
     #[must_use]
     pub fn count(&self, cell: Cell) -> u8 {
-        self.iter()
-            .find(|&(at, _)| at == cell)
-            .map_or(0, |(_, count)| count)
+        self.iter().find(|&(at, _)| at == cell).map_or(0, |(_, count)| count)
     }
 
     /// The remembered cells with their counts, oldest first.

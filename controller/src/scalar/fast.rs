@@ -138,11 +138,7 @@ impl Scalar for Fast32 {
             Self(self.0 * inverse_sqrt(self.0))
         } else {
             // Infinity and NaN stay, what is negative or too small to matter is 0.
-            Self(if self.0 < f32::MIN_POSITIVE {
-                0.0
-            } else {
-                self.0
-            })
+            Self(if self.0 < f32::MIN_POSITIVE { 0.0 } else { self.0 })
         }
     }
 

@@ -136,10 +136,8 @@ impl Scalar for Q16 {
     }
 
     fn from_ratio(numerator: i32, denominator: i32) -> Self {
-        quotient(numerator, denominator).map_or_else(
-            || Self::from_i32(numerator.saturating_mul(1 << 16)),
-            Self::saturating,
-        )
+        quotient(numerator, denominator)
+            .map_or_else(|| Self::from_i32(numerator.saturating_mul(1 << 16)), Self::saturating)
     }
 
     fn from_milli(milli: i32) -> Self {
@@ -222,16 +220,8 @@ impl Scalar for Q16 {
         };
         let ratio_q31 = (u64::from(dx.min(dy)) << 31) / longer;
         let octant = atan_unit(ratio_q31.cast_signed());
-        let quadrant = if dy > dx {
-            (PI_Q30 >> 1) - octant
-        } else {
-            octant
-        };
-        let half = if x.bits() < 0 {
-            PI_Q30 - quadrant
-        } else {
-            quadrant
-        };
+        let quadrant = if dy > dx { (PI_Q30 >> 1) - octant } else { octant };
+        let half = if x.bits() < 0 { PI_Q30 - quadrant } else { quadrant };
         let angle = Self::saturating((half + (1 << 13)) >> 14);
         if self.bits() < 0 { -angle } else { angle }
     }
@@ -271,10 +261,7 @@ impl Scalar for Q16 {
     fn unit(components: [Self; 3]) -> Option<[Self; 3]> {
         // All components shifted so that the longest one has 31 bits: their squares still fit, and
         // a vector of a few steps gets a direction as precise as a long one.
-        let all = components
-            .map(|c| c.bits().unsigned_abs())
-            .iter()
-            .fold(0, |a, b| a | b);
+        let all = components.map(|c| c.bits().unsigned_abs()).iter().fold(0, |a, b| a | b);
         let shift = all.leading_zeros();
         if all == 0 {
             return None;
@@ -308,14 +295,7 @@ fn sin_quarter(f_q30: i64) -> Q16 {
 /// atan(r) in Q30 for `r` in Q31, 0..=1; off by less than 5e-7.
 fn atan_unit(r_q31: i64) -> i64 {
     // r p(r^2), p interpolates at the Chebyshev nodes.
-    const P_Q30: [i64; 7] = [
-        1_073_740_992,
-        -357_831_743,
-        213_374_408,
-        -144_395_341,
-        89_256_349,
-        -39_041_715,
-        8_212_357,
-    ];
+    const P_Q30: [i64; 7] =
+        [1_073_740_992, -357_831_743, 213_374_408, -144_395_341, 89_256_349, -39_041_715, 8_212_357];
     (r_q31 * polynomial_q30(&P_Q30, (r_q31 * r_q31) >> 30)) >> 31
 }

@@ -58,11 +58,7 @@ macro_rules! impl_scalar {
 
             fn to_bits(self) -> u64 {
                 // The sign and payload of a computed NaN differ between processors.
-                if self.is_nan() {
-                    $nan_bits
-                } else {
-                    $float::to_bits(self).into()
-                }
+                if self.is_nan() { $nan_bits } else { $float::to_bits(self).into() }
             }
 
             fn is_finite(self) -> bool {
@@ -76,9 +72,7 @@ macro_rules! impl_scalar {
 
             fn floor_to_i32(self) -> Option<i32> {
                 let floor = libm::$floor(self);
-                (-2_147_483_648.0..2_147_483_648.0)
-                    .contains(&floor)
-                    .then_some(floor as i32)
+                (-2_147_483_648.0..2_147_483_648.0).contains(&floor).then_some(floor as i32)
             }
 
             fn sqrt(self) -> Self {
@@ -109,11 +103,7 @@ macro_rules! impl_scalar {
             fn length_key([x, y, z]: [Self; 3]) -> u64 {
                 let squared = x * x + y * y + z * z;
                 // The bits of non-negative floats have the order of their values.
-                if squared.is_nan() {
-                    u64::MAX
-                } else {
-                    $float::to_bits(squared).into()
-                }
+                if squared.is_nan() { u64::MAX } else { $float::to_bits(squared).into() }
             }
 
             fn unit([x, y, z]: [Self; 3]) -> Option<[Self; 3]> {
@@ -128,25 +118,5 @@ macro_rules! impl_scalar {
     };
 }
 
-impl_scalar!(
-    f32,
-    0x7FC0_0000,
-    floorf,
-    roundf,
-    sqrtf,
-    sincosf,
-    atan2f,
-    expf,
-    logf
-);
-impl_scalar!(
-    f64,
-    0x7FF8_0000_0000_0000,
-    floor,
-    round,
-    sqrt,
-    sincos,
-    atan2,
-    exp,
-    log
-);
+impl_scalar!(f32, 0x7FC0_0000, floorf, roundf, sqrtf, sincosf, atan2f, expf, logf);
+impl_scalar!(f64, 0x7FF8_0000_0000_0000, floor, round, sqrt, sincos, atan2, exp, log);

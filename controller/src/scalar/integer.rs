@@ -6,10 +6,7 @@ use core::num::NonZeroU64;
 ///
 /// Every partial sum must stay below 2 in magnitude.
 pub(super) fn polynomial_q30(coefficients: &[i64], x_q32: i64) -> i64 {
-    coefficients
-        .iter()
-        .rev()
-        .fold(0, |sum, c| c + ((sum * x_q32) >> 32))
+    coefficients.iter().rev().fold(0, |sum, c| c + ((sum * x_q32) >> 32))
 }
 
 /// x + x (1 - x) p(x) in Q32: exact at both ends, so that pieces join without a step.
@@ -21,13 +18,7 @@ pub(super) fn bow_q32(p_q30: &[i64], x_q32: i64) -> i64 {
 /// log2(k) in Q6.32, off by less than 8e-6; exact at the powers of two.
 pub(crate) fn log2_q32(k: NonZeroU64) -> u64 {
     // k = 2^e (1 + x), log2(k) = e + x + x (1 - x) p(x); p interpolates at the Chebyshev nodes.
-    const P_Q30: [i64; 5] = [
-        475_296_191,
-        -296_964_243,
-        197_676_760,
-        -104_369_674,
-        27_585_783,
-    ];
+    const P_Q30: [i64; 5] = [475_296_191, -296_964_243, 197_676_760, -104_369_674, 27_585_783];
     let zeros = k.leading_zeros();
     // The leading one drops out; the 32 bits below it are x.
     let x = ((k.get() << zeros << 1) >> 32) as i64;

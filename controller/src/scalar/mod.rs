@@ -175,21 +175,13 @@ pub trait Scalar:
     /// The smaller one; NaN if either is.
     #[must_use]
     fn min(self, other: Self) -> Self {
-        if is_nan(self) || self < other {
-            self
-        } else {
-            other
-        }
+        if is_nan(self) || self < other { self } else { other }
     }
 
     /// The larger one; NaN if either is.
     #[must_use]
     fn max(self, other: Self) -> Self {
-        if is_nan(self) || self > other {
-            self
-        } else {
-            other
-        }
+        if is_nan(self) || self > other { self } else { other }
     }
 
     /// The nearest number in [`low`, `high`]; `high` when the interval is empty, NaN for NaN.
@@ -202,8 +194,7 @@ pub trait Scalar:
     /// least.
     #[must_use]
     fn order(self, other: Self) -> Ordering {
-        self.partial_cmp(&other)
-            .unwrap_or_else(|| is_nan(self).cmp(&is_nan(other)))
+        self.partial_cmp(&other).unwrap_or_else(|| is_nan(self).cmp(&is_nan(other)))
     }
 }
 

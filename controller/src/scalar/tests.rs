@@ -49,10 +49,7 @@ const FAST: Tolerance = Tolerance {
 
 fn near(got: f64, exact: f64, absolute: f64, relative: f64) -> Result<(), TestCaseError> {
     let error = (got - exact).abs();
-    prop_assert!(
-        error <= absolute + relative * exact.abs(),
-        "got {got}, exact {exact}, error {error:e}"
-    );
+    prop_assert!(error <= absolute + relative * exact.abs(), "got {got}, exact {exact}, error {error:e}");
     Ok(())
 }
 
@@ -92,12 +89,7 @@ fn agrees_with_f64<S: Scalar>(a: f64, b: f64, t: &Tolerance) -> Result<(), TestC
 
     // Fixed point rounds roots down, hence two half steps.
     let root_step = 2.0 * t.step;
-    near(
-        p.abs().sqrt().to_f64(),
-        libm::sqrt(a.abs()),
-        root_step,
-        t.root,
-    )?;
+    near(p.abs().sqrt().to_f64(), libm::sqrt(a.abs()), root_step, t.root)?;
     let length = libm::sqrt(a * a + b * b + 1.0);
     if in_range(length) {
         let norm = S::norm([p, S::ONE, q]).to_f64();
@@ -270,12 +262,7 @@ fn corners_have_answers() {
 fn nan_fails_closed() {
     fn check<S: Scalar>(nan: S, infinity: S) {
         assert!(!nan.is_finite() && !infinity.is_finite());
-        for x in [
-            nan.min(S::ONE),
-            S::ONE.min(nan),
-            nan.max(S::ONE),
-            S::ONE.max(nan),
-        ] {
+        for x in [nan.min(S::ONE), S::ONE.min(nan), nan.max(S::ONE), S::ONE.max(nan)] {
             assert!(x.to_f64().is_nan());
         }
         assert!(nan.clamp(S::ZERO, S::ONE).to_f64().is_nan());
@@ -326,10 +313,7 @@ fn q16_direction_of_one_step_is_exact() {
     let [x, y, _] = Q16::unit([step, -step, Q16::ZERO]).unwrap();
     assert_eq!((x.bits(), y.bits()), (46_341, -46_341));
     let min = Q16::from_bits(i32::MIN);
-    assert_eq!(
-        Q16::unit([min, Q16::ZERO, step]),
-        Some([-Q16::ONE, Q16::ZERO, Q16::ZERO])
-    );
+    assert_eq!(Q16::unit([min, Q16::ZERO, step]), Some([-Q16::ONE, Q16::ZERO, Q16::ZERO]));
 }
 
 /// A hash of every function's bits over a sweep of all magnitudes.
@@ -338,10 +322,7 @@ fn sweep<S: Scalar>() -> u64 {
     let mut rng = crate::rand::Rng::new(1);
     let mut draw = || {
         let wide = rng.next_u64();
-        S::from_ratio(
-            (wide as i32) >> ((wide >> 32) & 31),
-            1 << ((wide >> 40) & 15),
-        )
+        S::from_ratio((wide as i32) >> ((wide >> 32) & 31), 1 << ((wide >> 40) & 15))
     };
     for _ in 0..10_000 {
         let (a, b) = (draw(), draw());
@@ -349,19 +330,7 @@ fn sweep<S: Scalar>() -> u64 {
         let [x, y, _] = S::unit([a, b, S::ONE]).unwrap();
         let quotient = a.checked_div(b).unwrap_or_default();
         let ln = a.ln().unwrap_or_default();
-        for result in [
-            a * b,
-            a + b,
-            quotient,
-            sin,
-            cos,
-            a.atan2(b),
-            a.exp(),
-            ln,
-            a.abs().sqrt(),
-            x,
-            y,
-        ] {
+        for result in [a * b, a + b, quotient, sin, cos, a.atan2(b), a.exp(), ln, a.abs().sqrt(), x, y] {
             hash = (hash ^ result.to_bits()).wrapping_mul(0x100_0000_01B3);
         }
     }
@@ -372,20 +341,8 @@ fn sweep<S: Scalar>() -> u64 {
 fn bits_are_pinned() {
     // The same on every target and with every version of the libraries, or recorded runs change.
     let (sin, cos) = Scalar::sin_cos(1f32);
-    let known = [
-        sin,
-        cos,
-        Scalar::exp(1f32),
-        Scalar::sqrt(2f32),
-        Scalar::atan2(1f32, 2.0),
-    ];
-    let bits = [
-        0x3F57_6AA4,
-        0x3F0A_5140,
-        0x402D_F854,
-        0x3FB5_04F3,
-        0x3EED_6338,
-    ];
+    let known = [sin, cos, Scalar::exp(1f32), Scalar::sqrt(2f32), Scalar::atan2(1f32, 2.0)];
+    let bits = [0x3F57_6AA4, 0x3F0A_5140, 0x402D_F854, 0x3FB5_04F3, 0x3EED_6338];
     assert_eq!(known.map(f32::to_bits), bits);
     assert_eq!(Scalar::ln(2f32).map(f32::to_bits), Some(0x3F31_7218));
     assert_eq!(sweep::<f32>(), 0x93A9_039E_72AC_6459);

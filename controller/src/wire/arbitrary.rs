@@ -21,11 +21,7 @@ pub fn cell() -> impl Strategy<Value = Cell> {
 }
 
 pub fn header() -> impl Strategy<Value = Header> {
-    (any::<u8>(), somebody(), any::<u16>()).prop_map(|(boot, sender, sequence)| Header {
-        boot,
-        sender,
-        sequence,
-    })
+    (any::<u8>(), somebody(), any::<u16>()).prop_map(|(boot, sender, sequence)| Header { boot, sender, sequence })
 }
 
 fn mode() -> impl Strategy<Value = Mode> {
@@ -41,11 +37,7 @@ fn mode() -> impl Strategy<Value = Mode> {
 }
 
 pub fn kind() -> impl Strategy<Value = RequestKind> {
-    prop_oneof![
-        Just(RequestKind::Stop),
-        Just(RequestKind::Resume),
-        Just(RequestKind::Redirect),
-    ]
+    prop_oneof![Just(RequestKind::Stop), Just(RequestKind::Resume), Just(RequestKind::Redirect),]
 }
 
 fn beacon() -> impl Strategy<Value = Message> {
@@ -76,13 +68,7 @@ fn compact() -> impl Strategy<Value = Message> {
     let motion = (any::<u16>(), any::<[i32; 2]>(), any::<[i16; 2]>());
     (motion, any::<u8>(), mode()).prop_map(|(motion, radius_cm, mode)| {
         let (time_ms, position_mm, velocity_mmps) = motion;
-        Message::Compact(CompactBeacon {
-            time_ms,
-            position_mm,
-            velocity_mmps,
-            radius_cm,
-            mode,
-        })
+        Message::Compact(CompactBeacon { time_ms, position_mm, velocity_mmps, radius_cm, mode })
     })
 }
 
@@ -109,39 +95,15 @@ fn template() -> impl Strategy<Value = Message> {
 pub fn message() -> impl Strategy<Value = Message> {
     let request = (robot(), robot(), any::<u8>(), kind(), any::<u16>());
     let request = request.prop_map(|(to, origin, number, kind, valid_ms)| {
-        Message::Request(Request {
-            to,
-            origin,
-            number,
-            kind,
-            valid_ms,
-        })
+        Message::Request(Request { to, origin, number, kind, valid_ms })
     });
-    let ack =
-        (robot(), any::<[u8; 2]>(), any::<bool>()).prop_map(|(to, [boot, number], accepted)| {
-            Message::Ack(Ack {
-                to,
-                boot,
-                number,
-                accepted,
-            })
-        });
-    let goal = (robot(), any::<u8>(), cell()).prop_map(|(to, version, target)| {
-        Message::Goal(GoalAssignment {
-            to,
-            version,
-            target,
-        })
-    });
+    let ack = (robot(), any::<[u8; 2]>(), any::<bool>())
+        .prop_map(|(to, [boot, number], accepted)| Message::Ack(Ack { to, boot, number, accepted }));
+    let goal = (robot(), any::<u8>(), cell())
+        .prop_map(|(to, version, target)| Message::Goal(GoalAssignment { to, version, target }));
     let place = (robot(), any::<[u8; 2]>(), any::<([i32; 3], [i16; 3])>());
     let place = place.prop_map(|(to, [version, index], (position_mm, velocity_mmps))| {
-        Message::Waypoint(WaypointAssignment {
-            to,
-            version,
-            index,
-            position_mm,
-            velocity_mmps,
-        })
+        Message::Waypoint(WaypointAssignment { to, version, index, position_mm, velocity_mmps })
     });
     prop_oneof![beacon(), compact(), request, ack, template(), goal, place]
 }

@@ -16,11 +16,7 @@ const MAX_PARTS: usize = u64::BITS as usize;
 pub const MAX_TEMPLATE: usize = MAX_PARTS * TEMPLATE_PART;
 
 /// What stands in a place that no part has filled.
-const NO_ENTRY: TemplateEntry = TemplateEntry {
-    offset: Cell::new(0, 0),
-    id: RobotId::NOBODY,
-    hops: 0,
-};
+const NO_ENTRY: TemplateEntry = TemplateEntry { offset: Cell::new(0, 0), id: RobotId::NOBODY, hops: 0 };
 
 /// Why a part was refused; what was collected before is as it was.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,13 +40,9 @@ impl core::fmt::Display for PartError {
         f.write_str(match self {
             Self::Number => "the number of the part is not below the number of parts",
             Self::Length => "a part before the last is not full, or the last of several is empty",
-            Self::TooLarge => {
-                "the template has more entries than fit; give it a smaller geodesic radius"
-            }
+            Self::TooLarge => "the template has more entries than fit; give it a smaller geodesic radius",
             Self::NoHops => "an entry is 0 hops away, but no robot is its own neighbour",
-            Self::Contradiction => {
-                "the part contradicts an earlier one; each change needs a new version"
-            }
+            Self::Contradiction => "the part contradicts an earlier one; each change needs a new version",
         })
     }
 }
@@ -113,11 +105,7 @@ impl TemplateAssignment {
     /// Whether this can be a part of a template of at most `capacity` entries.
     fn check(&self, capacity: usize) -> Result<(), PartError> {
         let len = self.entries.len();
-        let is_length_right = if self.is_last() {
-            len > 0 || self.parts == 1
-        } else {
-            len == TEMPLATE_PART
-        };
+        let is_length_right = if self.is_last() { len > 0 || self.parts == 1 } else { len == TEMPLATE_PART };
         if self.part >= self.parts {
             Err(PartError::Number)
         } else if !is_length_right {
@@ -153,10 +141,7 @@ pub struct TemplateAssembler<const F: usize> {
 }
 
 /// Arrays of any length are not serde's.
-fn as_slice<const F: usize, Z: Serializer>(
-    entries: &[TemplateEntry; F],
-    serializer: Z,
-) -> Result<Z::Ok, Z::Error> {
+fn as_slice<const F: usize, Z: Serializer>(entries: &[TemplateEntry; F], serializer: Z) -> Result<Z::Ok, Z::Error> {
     entries.as_slice().serialize(serializer)
 }
 
@@ -195,13 +180,8 @@ impl<const F: usize> TemplateAssembler<F> {
     pub fn put(&mut self, part: &TemplateAssignment) -> Result<Option<Template<F>>, PartError> {
         part.check(F)?;
         if self.newest.admit(part.version) {
-            *self = Self {
-                newest: self.newest,
-                parts: part.parts,
-                slot: part.slot,
-                offset: part.offset,
-                ..Self::new()
-            };
+            *self =
+                Self { newest: self.newest, parts: part.parts, slot: part.slot, offset: part.offset, ..Self::new() };
         } else if self.newest.version() != Some(part.version) {
             return Ok(None);
         }
@@ -211,20 +191,11 @@ impl<const F: usize> TemplateAssembler<F> {
         }
         let end = part.start() + part.entries.len();
         // `check` has seen that both are in range.
-        let bit = 1_u64
-            .checked_shl(part.part.into())
-            .ok_or(PartError::TooLarge)?;
-        let place = self
-            .entries
-            .get_mut(part.start()..end)
-            .ok_or(PartError::TooLarge)?;
+        let bit = 1_u64.checked_shl(part.part.into()).ok_or(PartError::TooLarge)?;
+        let place = self.entries.get_mut(part.start()..end).ok_or(PartError::TooLarge)?;
         if self.there & bit != 0 {
             let again = *place == *part.entries && (!part.is_last() || self.len == end);
-            return if again {
-                Ok(None)
-            } else {
-                Err(PartError::Contradiction)
-            };
+            return if again { Ok(None) } else { Err(PartError::Contradiction) };
         }
         for (place, entry) in place.iter_mut().zip(&part.entries) {
             *place = *entry;

@@ -31,8 +31,7 @@
 //! Cortex-M0 (`opt-level = "s"`, one link-time unit), and no panic is reachable from them.
 
 use super::message::{
-    Ack, Beacon, CompactBeacon, GoalAssignment, Message, Request, TEMPLATE_PART,
-    TemplateAssignment, WaypointAssignment,
+    Ack, Beacon, CompactBeacon, GoalAssignment, Message, Request, TEMPLATE_PART, TemplateAssignment, WaypointAssignment,
 };
 use crate::robot::RobotId;
 use core::fmt;
@@ -60,8 +59,7 @@ static CRC: Crc<u16, Table<1>> = Crc::<u16, Table<1>>::new(&CRC_16_IBM_SDLC);
 
 impl Beacon {
     /// Bytes of a frame that carries one, at most: tag and delimiter included.
-    pub const MAX_FRAME_LEN: usize =
-        OVERHEAD + 1 + 4 + 3 * 4 + 3 * 2 + 2 + CELL + 1 + 2 + ID + 1 + 1 + CELL;
+    pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + 4 + 3 * 4 + 3 * 2 + 2 + CELL + 1 + 2 + ID + 1 + 1 + CELL;
 }
 
 impl CompactBeacon {
@@ -81,8 +79,7 @@ impl Ack {
 
 impl TemplateAssignment {
     /// Bytes of a frame that carries one, at most: tag and delimiter included.
-    pub const MAX_FRAME_LEN: usize =
-        OVERHEAD + 1 + ID + 1 + 1 + 1 + 1 + CELL + 1 + TEMPLATE_PART * (CELL + ID + 1);
+    pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 1 + 1 + 1 + 1 + CELL + 1 + TEMPLATE_PART * (CELL + ID + 1);
 }
 
 impl GoalAssignment {
@@ -169,17 +166,13 @@ impl fmt::Display for EncodeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Full => f.write_str("the outbox has less room than the frame needs"),
-            Self::NoSender => {
-                f.write_str("the sender in the header is nobody: robots' numbers begin at 1")
+            Self::NoSender => f.write_str("the sender in the header is nobody: robots' numbers begin at 1"),
+            Self::Robot(id) => {
+                write!(f, "robot number {} is too large for the format; give the robot a smaller one", id.0)
             }
-            Self::Robot(id) => write!(
-                f,
-                "robot number {} is too large for the format; give the robot a smaller one",
-                id.0
-            ),
-            Self::Exhausted => f.write_str(
-                "the format's counter has ended; start the robot anew, or give the swarm a new key",
-            ),
+            Self::Exhausted => {
+                f.write_str("the format's counter has ended; start the robot anew, or give the swarm a new key")
+            }
         }
     }
 }
@@ -223,19 +216,12 @@ impl fmt::Display for DecodeError {
         f.write_str(match self {
             Self::Empty => "the frame has no bytes",
             Self::TooLong => {
-                return write!(
-                    f,
-                    "the frame has more than {} bytes before its delimiter",
-                    MAX_FRAME_LEN - 1
-                );
+                return write!(f, "the frame has more than {} bytes before its delimiter", MAX_FRAME_LEN - 1);
             }
             Self::Cobs => "the frame's stuffing does not end with it, or a zero lies within",
             Self::Crc => "the frame's CRC is wrong: damaged or cut",
             Self::Version(version) => {
-                return write!(
-                    f,
-                    "the frame is of version {version}, not {VERSION}; update the older side"
-                );
+                return write!(f, "the frame is of version {version}, not {VERSION}; update the older side");
             }
             Self::Unsigned => "the frame has no tag or signature; give its sender the key",
             Self::Forged => "the frame's tag or signature is not of this key",
@@ -258,11 +244,7 @@ impl core::error::Error for DecodeError {}
 /// [`EncodeError::NoSender`] when `header` names nobody.
 ///
 /// Bounded work: O([`MAX_FRAME_LEN`]).
-pub fn encode<const N: usize>(
-    header: Header,
-    message: &Message,
-    out: &mut Vec<u8, N>,
-) -> Result<usize, EncodeError> {
+pub fn encode<const N: usize>(header: Header, message: &Message, out: &mut Vec<u8, N>) -> Result<usize, EncodeError> {
     write(header, message, None::<fn(&[u8]) -> [u8; TAG_LEN]>, out)
 }
 
@@ -299,17 +281,13 @@ pub fn decode_verified(
 ) -> Result<Frame, DecodeError> {
     let (&first, stuffed) = frame.split_first().ok_or(DecodeError::Empty)?;
     let mut buffer = [0; MAX_CONTENT];
-    let content = buffer
-        .get_mut(..stuffed.len())
-        .ok_or(DecodeError::TooLong)?;
+    let content = buffer.get_mut(..stuffed.len()).ok_or(DecodeError::TooLong)?;
     if stuffed.contains(&0) {
         return Err(DecodeError::Cobs);
     }
     content.copy_from_slice(stuffed);
     unstuff(first, content).ok_or(DecodeError::Cobs)?;
-    let (checked, crc) = content
-        .split_last_chunk::<CRC_LEN>()
-        .ok_or(DecodeError::Crc)?;
+    let (checked, crc) = content.split_last_chunk::<CRC_LEN>().ok_or(DecodeError::Crc)?;
     if CRC.checksum(checked) != u16::from_le_bytes(*crc) {
         return Err(DecodeError::Crc);
     }
@@ -320,9 +298,7 @@ pub fn decode_verified(
     let (authenticated, tag) = if version & TAGGED == 0 {
         (checked, None)
     } else {
-        let (authenticated, tag) = checked
-            .split_last_chunk::<TAG_LEN>()
-            .ok_or(DecodeError::Body)?;
+        let (authenticated, tag) = checked.split_last_chunk::<TAG_LEN>().ok_or(DecodeError::Body)?;
         (authenticated, Some(*tag))
     };
     verify(authenticated, tag)?;
@@ -335,11 +311,7 @@ pub fn decode_verified(
     if !header.sender.is_somebody() {
         return Err(DecodeError::NoSender);
     }
-    Ok(Frame {
-        header,
-        message,
-        tag,
-    })
+    Ok(Frame { header, message, tag })
 }
 
 /// The frames of a byte stream, without their delimiters; empty pieces are left out.
@@ -349,9 +321,7 @@ pub fn decode_verified(
 /// that reads a serial line in pieces keeps the bytes after the last delimiter until the rest is
 /// there.
 pub fn frames(inbox: &[u8]) -> impl Iterator<Item = &[u8]> {
-    inbox
-        .split(|byte| *byte == 0)
-        .filter(|piece| !piece.is_empty())
+    inbox.split(|byte| *byte == 0).filter(|piece| !piece.is_empty())
 }
 
 fn write<const N: usize>(
@@ -380,8 +350,7 @@ fn write<const N: usize>(
     let content = content.get_mut(..len).ok_or(EncodeError::Full)?;
     *first = stuff(content);
     let frame = frame.get(..len + 2).ok_or(EncodeError::Full)?;
-    out.extend_from_slice(frame)
-        .map_err(|_| EncodeError::Full)?;
+    out.extend_from_slice(frame).map_err(|_| EncodeError::Full)?;
     Ok(frame.len())
 }
 
@@ -393,9 +362,7 @@ fn fill(
     content: &mut [u8],
 ) -> Option<usize> {
     let flag = if authenticate.is_some() { TAGGED } else { 0 };
-    let mut len = postcard::to_slice(&(VERSION | flag, header, message), content)
-        .ok()?
-        .len();
+    let mut len = postcard::to_slice(&(VERSION | flag, header, message), content).ok()?.len();
     if let Some(authenticate) = authenticate {
         let (authenticated, free) = content.split_at_mut_checked(len)?;
         *free.first_chunk_mut()? = authenticate(authenticated);

@@ -15,12 +15,12 @@ mod sequence;
 pub use assembly::{MAX_TEMPLATE, PartError, TemplateAssembler};
 pub use format::{Format, FromFormat, Postcard, Wire};
 pub use frame::{
-    DecodeError, EncodeError, Frame, Header, MAX_FRAME_LEN, MAX_TAGGED_ROBOT, TAG_LEN, VERSION,
-    decode, decode_verified, encode, encode_tagged, frames,
+    DecodeError, EncodeError, Frame, Header, MAX_FRAME_LEN, MAX_TAGGED_ROBOT, TAG_LEN, VERSION, decode,
+    decode_verified, encode, encode_tagged, frames,
 };
 pub use message::{
-    Ack, Beacon, CompactBeacon, GoalAssignment, Message, Request, RequestKind, TEMPLATE_PART,
-    TemplateAssignment, WaypointAssignment,
+    Ack, Beacon, CompactBeacon, GoalAssignment, Message, Request, RequestKind, TEMPLATE_PART, TemplateAssignment,
+    WaypointAssignment,
 };
 pub use newest::Newest;
 pub use orders::{Answer, Orders};

@@ -35,8 +35,7 @@ impl Newest {
     /// Whether [`Newest::admit`] would admit `version`; remembers nothing. For what may prove to be of no use. Constant work.
     #[must_use]
     pub fn is_news(self, version: u8) -> bool {
-        self.version
-            .is_none_or(|newest| version.wrapping_sub(newest).cast_signed() > 0)
+        self.version.is_none_or(|newest| version.wrapping_sub(newest).cast_signed() > 0)
     }
 
     /// The newest version so far; `None` before the first.

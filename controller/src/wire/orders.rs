@@ -80,10 +80,7 @@ impl<const S: usize> Orders<S> {
     /// again; less than it takes the asker to use 200 numbers.
     #[must_use]
     pub const fn new(memory: Duration) -> Self {
-        Self {
-            lines: Vec::new(),
-            memory,
-        }
+        Self { lines: Vec::new(), memory }
     }
 
     /// Judges a request to this robot that came in a frame with `header`. O(`S`).
@@ -99,12 +96,7 @@ impl<const S: usize> Orders<S> {
             until: now + Duration::from_millis(request.valid_ms.into()),
         };
         let answer = |accepted, is_new| Answer {
-            ack: Ack {
-                to: header.sender,
-                boot: header.boot,
-                number: request.number,
-                accepted,
-            },
+            ack: Ack { to: header.sender, boot: header.boot, number: request.number, accepted },
             is_new,
         };
         if let Some(line) = self.lines.iter_mut().find(|l| l.is_about(header, request)) {
@@ -157,12 +149,8 @@ impl<const S: usize> Orders<S> {
 
     /// Drops the line heard of longest ago that holds no stop.
     fn make_room(&mut self, now: Instant) {
-        let stalest = self
-            .lines
-            .iter()
-            .filter(|line| !line.is_stop_at(now))
-            .max_by_key(|line| now.since(line.heard))
-            .copied();
+        let stalest =
+            self.lines.iter().filter(|line| !line.is_stop_at(now)).max_by_key(|line| now.since(line.heard)).copied();
         self.lines.retain(|line| Some(*line) != stalest);
     }
 }

@@ -37,10 +37,7 @@ pub struct Retry {
 
 impl Default for Retry {
     fn default() -> Self {
-        Self {
-            attempts: 5,
-            interval: Duration::from_millis(200),
-        }
+        Self { attempts: 5, interval: Duration::from_millis(200) }
     }
 }
 
@@ -57,9 +54,7 @@ pub enum AskError {
 impl core::fmt::Display for AskError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(match self {
-            Self::Full => {
-                "too many requests are on their way; wait until some are acknowledged or expire"
-            }
+            Self::Full => "too many requests are on their way; wait until some are acknowledged or expire",
             Self::Nobody => "a request to nobody: robots' numbers begin at 1",
         })
     }
@@ -123,13 +118,7 @@ impl<const P: usize> Requests<P> {
     #[must_use]
     pub const fn new(own: RobotId, boot: u8, retry: Retry) -> Self {
         let () = Self::FITS;
-        Self {
-            pending: Vec::new(),
-            retry,
-            own,
-            boot,
-            next: 0,
-        }
+        Self { pending: Vec::new(), retry, own, boot, next: 0 }
     }
 
     /// Takes on a request to `to` and returns its number; the next [`Requests::poll`] sends it.
@@ -156,13 +145,7 @@ impl<const P: usize> Requests<P> {
         }
         let number = self.free_number();
         let new = Pending {
-            request: Request {
-                to,
-                origin,
-                number,
-                kind,
-                valid_ms,
-            },
+            request: Request { to, origin, number, kind, valid_ms },
             sent: 0,
             due: now,
             expiry: now + Duration::from_millis(valid_ms.into()),
@@ -184,10 +167,7 @@ impl<const P: usize> Requests<P> {
     /// (when [`Retry::interval`] is more than 0). O(`P`) each.
     pub fn poll(&mut self, now: Instant) -> Option<Due> {
         let retry = self.retry;
-        let pending = self
-            .pending
-            .iter_mut()
-            .find(|pending| pending.is_due(retry, now))?;
+        let pending = self.pending.iter_mut().find(|pending| pending.is_due(retry, now))?;
         let request = pending.request;
         let valid = Duration::from_millis(request.valid_ms.into());
         let is_over = pending.sent >= retry.attempts || now.has_reached(pending.expiry, valid);
@@ -197,11 +177,7 @@ impl<const P: usize> Requests<P> {
         }
         pending.sent = pending.sent.saturating_add(1);
         let again = now + retry.interval + jitter(retry, self.own, request, pending.sent);
-        pending.due = if again.is_before(pending.expiry) {
-            again
-        } else {
-            pending.expiry
-        };
+        pending.due = if again.is_before(pending.expiry) { again } else { pending.expiry };
         Some(Due::Send(request))
     }
 
@@ -222,9 +198,7 @@ impl<const P: usize> Requests<P> {
     /// Takes note of an acknowledgement by `from`, and returns the request it ends; `None` when
     /// there is none: it is meant for another robot or boot, or came twice, or too late. O(`P`).
     pub fn acknowledged(&mut self, from: RobotId, ack: &Ack) -> Option<Request> {
-        let &Ack {
-            to, boot, number, ..
-        } = ack;
+        let &Ack { to, boot, number, .. } = ack;
         if (to, boot) != (self.own, self.boot) {
             return None;
         }

@@ -57,12 +57,7 @@ impl<const N: usize> Sealed<N> {
     /// For a robot at its start number `starts`, counted in lasting memory from 0; `None` from 2^20 on.
     #[must_use]
     pub fn at_start(key: &Key, starts: u32) -> Option<Self> {
-        Some(Self {
-            mac: Mac::new(key),
-            epoch: epoch_of(starts)?,
-            last: 0,
-            guard: ReplayGuard::new(),
-        })
+        Some(Self { mac: Mac::new(key), epoch: epoch_of(starts)?, last: 0, guard: ReplayGuard::new() })
     }
 
     /// Refuses frames of unknown robots from before their start number `starts`. From 2^20 on nothing changes.
@@ -92,11 +87,7 @@ impl<const N: usize> Sealed<N> {
 
 /// The first epoch of a start.
 const fn epoch_of(starts: u32) -> Option<u32> {
-    if starts >> (u32::BITS - WRAP_BITS) == 0 {
-        Some(starts << WRAP_BITS)
-    } else {
-        None
-    }
+    if starts >> (u32::BITS - WRAP_BITS) == 0 { Some(starts << WRAP_BITS) } else { None }
 }
 
 /// What never comes twice.
@@ -137,15 +128,9 @@ impl<const N: usize> Wire for Sealed<N> {
             let [a, b, c, d, code @ ..] = tag.ok_or(DecodeError::Unsigned)?;
             let bytes = [a, b, c, d];
             epoch = u32::from_le_bytes(bytes);
-            if is_same(&self.code(content, bytes), &code) {
-                Ok(())
-            } else {
-                Err(DecodeError::Forged)
-            }
+            if is_same(&self.code(content, bytes), &code) { Ok(()) } else { Err(DecodeError::Forged) }
         })?;
-        let Header {
-            sender, sequence, ..
-        } = frame.header;
+        let Header { sender, sequence, .. } = frame.header;
         match self.guard.admit(sender.0, counter(epoch, sequence)) {
             Freshness::New | Freshness::Late => Ok(frame),
             Freshness::Replayed => Err(DecodeError::Replayed),

@@ -70,12 +70,7 @@ impl SequenceWindow {
     /// A window that has seen nothing.
     #[must_use]
     pub const fn new() -> Self {
-        Self {
-            seen: 0,
-            newest: 0,
-            boot: 0,
-            previous: 0,
-        }
+        Self { seen: 0, newest: 0, boot: 0, previous: 0 }
     }
 
     /// Judges a frame of this window's sender and remembers it. Constant work.
@@ -109,12 +104,7 @@ impl SequenceWindow {
     }
 
     fn restart(&mut self, header: Header, previous: u8) {
-        *self = Self {
-            seen: 1,
-            newest: header.sequence,
-            boot: header.boot,
-            previous,
-        };
+        *self = Self { seen: 1, newest: header.sequence, boot: header.boot, previous };
     }
 }
 

@@ -7,8 +7,8 @@ use crate::{Probe, Summary};
 use heapless::Vec;
 use serde::Serialize;
 use staya_controller::agent::{
-    Agent, CELLS, CellState, Command, FormationGuidance, GridWorkspace, Guidance, Inputs,
-    KinematicState, OnGrid, RouteGuidance, Unguarded,
+    Agent, CELLS, CellState, Command, FormationGuidance, GridWorkspace, Guidance, Inputs, KinematicState, OnGrid,
+    RouteGuidance, Unguarded,
 };
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::grid::{BLOCKED, Cell, Norm, UNIT};
@@ -142,10 +142,7 @@ where
             velocity_mps: Vec3::ZERO,
         },
         surroundings: OnGrid {
-            cell: CellState {
-                cell: walker.cell,
-                busy: Duration::from_millis(busy_ms.cast_signed()),
-            },
+            cell: CellState { cell: walker.cell, busy: Duration::from_millis(busy_ms.cast_signed()) },
             window: scene.land.window(walker.cell, &mut cells),
         },
         inbox,
@@ -184,11 +181,7 @@ fn advance<S, G, W>(
     {
         // Who goes on at the first tick after it became free carries the rest of that tick over (KUZ eq. 6).
         let is_going_on = now_ms.saturating_sub(walker.free_at_ms) < UNIT;
-        let start_ms = if is_going_on {
-            walker.free_at_ms
-        } else {
-            now_ms
-        };
+        let start_ms = if is_going_on { walker.free_at_ms } else { now_ms };
         walker.free_at_ms = start_ms.saturating_add(crossing_ms);
         walker.cell = to;
     }

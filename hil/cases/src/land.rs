@@ -23,8 +23,7 @@ impl Land {
     pub(crate) fn at(&self, cell: Cell) -> u8 {
         let Cell { x, y } = cell;
         let is_inside = x >= 0 && y >= 0 && x < self.size && y < self.size;
-        let is_wall =
-            |&(column, first, last): &(i16, i16, i16)| x == column && (first..=last).contains(&y);
+        let is_wall = |&(column, first, last): &(i16, i16, i16)| x == column && (first..=last).contains(&y);
         if !is_inside || self.walls.iter().any(is_wall) {
             return BLOCKED;
         }
@@ -38,11 +37,7 @@ impl Land {
     }
 
     /// What a robot in `cell` sees.
-    pub(crate) fn window<'a>(
-        &self,
-        cell: Cell,
-        cells: &'a mut Vec<u8, WINDOW>,
-    ) -> Option<Window<'a>> {
+    pub(crate) fn window<'a>(&self, cell: Cell, cells: &'a mut Vec<u8, WINDOW>) -> Option<Window<'a>> {
         cells.clear();
         let origin = cell - Cell::new(SIGHT, SIGHT);
         let side = 2 * SIGHT + 1;

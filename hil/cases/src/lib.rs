@@ -64,10 +64,7 @@ pub fn every(mut done: impl FnMut(&'static str, &'static str, &Summary)) {
     each::<Q16>("Q16", &mut done);
 }
 
-fn each<S: Scalar>(
-    number: &'static str,
-    done: &mut impl FnMut(&'static str, &'static str, &Summary),
-) {
+fn each<S: Scalar>(number: &'static str, done: &mut impl FnMut(&'static str, &'static str, &Summary)) {
     for &case in Case::ALL {
         done(case.name(), number, &case.run::<S, _>(&mut Unmeasured));
     }
@@ -79,14 +76,8 @@ fn each<S: Scalar>(
 }
 
 /// [`Case::Packets`] in each wire format: for each its hash, and then its course, which is the same for all.
-pub fn in_each_format<S: Scalar>(
-    number: &'static str,
-    done: &mut impl FnMut(&'static str, &'static str, &Summary),
-) {
-    let course = |summary: Summary| Summary {
-        hash: summary.course,
-        ..summary
-    };
+pub fn in_each_format<S: Scalar>(number: &'static str, done: &mut impl FnMut(&'static str, &'static str, &Summary)) {
+    let course = |summary: Summary| Summary { hash: summary.course, ..summary };
     let postcard = packets_over::<S, _, _>(Postcard, &mut Unmeasured);
     done("packets_course", number, &course(postcard));
     let mavlink = packets_over::<S, _, _>(Mavlink, &mut Unmeasured);
@@ -142,11 +133,7 @@ impl Summary {
     }
 
     fn finish(self, hash: hash::Hash, ticks: u32) -> Self {
-        Self {
-            hash: hash.value(),
-            ticks,
-            ..self
-        }
+        Self { hash: hash.value(), ticks, ..self }
     }
 
     fn count<S>(&mut self, out: &Outputs<S>) {

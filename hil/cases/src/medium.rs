@@ -35,12 +35,7 @@ pub(crate) struct Medium<W, const R: usize> {
 
 impl<W: Wire, const R: usize> Medium<W, R> {
     pub(crate) const fn new(wire: W, faults: Faults) -> Self {
-        Self {
-            wire,
-            said: [const { Vec::new() }; R],
-            next: [const { Vec::new() }; R],
-            faults,
-        }
+        Self { wire, said: [const { Vec::new() }; R], next: [const { Vec::new() }; R], faults }
     }
 
     /// Takes what `sender` says in this tick, frame by frame as long as there is room.
@@ -80,9 +75,7 @@ impl<W: Wire, const R: usize> Medium<W, R> {
     /// Each packet, a frame of `len` bytes, draws as often as any other, so that the fate of one does not change the
     /// next one's.
     fn carry(&self, len: usize, packet: &[u8], rng: &mut Rng, inbox: &mut Vec<u8, INBOX>) {
-        let Faults {
-            loss, flip, twice, ..
-        } = self.faults;
+        let Faults { loss, flip, twice, .. } = self.faults;
         let (is_lost, is_wrong) = (rng.chance_q32(loss), rng.chance_q32(flip));
         let (comes_twice, place) = (rng.chance_q32(twice), rng.below(8 * len as u32));
         if is_lost {

@@ -8,8 +8,7 @@ use crate::{Probe, Summary};
 use heapless::Vec;
 use serde::Serialize;
 use staya_controller::agent::{
-    Agent, CellState, Command, Guidance, InCell, InCells, InPlane, Inputs, KinematicState, OnGrid,
-    Outputs, Safety,
+    Agent, CellState, Command, Guidance, InCell, InCells, InPlane, Inputs, KinematicState, OnGrid, Outputs, Safety,
 };
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::GridFrame;
@@ -137,10 +136,7 @@ where
         // Scenes have no more than there is room for; a test says so.
         let _ = obstacles.push(seen(solid, mover.position));
     }
-    let frame = GridFrame {
-        origin_m: Vec2::ZERO,
-        cell_m: S::from_milli(CELL_MM),
-    };
+    let frame = GridFrame { origin_m: Vec2::ZERO, cell_m: S::from_milli(CELL_MM) };
     let place_m = mover.position.since::<S>(Position::ORIGIN).xy();
     // Scenes lie around the origin: no place is beyond all cells.
     let cell = frame.cell(place_m).unwrap_or_default();
@@ -149,26 +145,11 @@ where
         obstacles = grid_walls(window, &frame, place_m, S::from_i32(3));
     }
     let inputs = Inputs {
-        state: KinematicState {
-            position: mover.position,
-            velocity_mps: mover.velocity_mps,
-        },
+        state: KinematicState { position: mover.position, velocity_mps: mover.velocity_mps },
         surroundings: G::Input::from(InCells {
-            grid: OnGrid {
-                cell: CellState {
-                    cell,
-                    busy: Duration::ZERO,
-                },
-                window,
-            },
-            plane: InPlane {
-                max_speed_mps: scene.max_speed_mps,
-                obstacles: &obstacles,
-            },
-            in_cell: InCell {
-                offset_m: place_m - frame.center(cell),
-                cell_m: frame.cell_m,
-            },
+            grid: OnGrid { cell: CellState { cell, busy: Duration::ZERO }, window },
+            plane: InPlane { max_speed_mps: scene.max_speed_mps, obstacles: &obstacles },
+            in_cell: InCell { offset_m: place_m - frame.center(cell), cell_m: frame.cell_m },
         }),
         inbox,
     };
@@ -181,10 +162,9 @@ fn seen<S: Scalar>(solid: &Solid, from: Position) -> Obstacle<S> {
         Solid::Wall(ends_mm) => {
             Obstacle::Wall(ends_mm.map(|[x, y]| Position::from_mm([x, y, 0]).since::<S>(from).xy()))
         }
-        Solid::Ball(center_mm, radius_mm) => Obstacle::Ball {
-            center_m: Position::from_mm(center_mm).since(from),
-            radius_m: S::from_milli(radius_mm),
-        },
+        Solid::Ball(center_mm, radius_mm) => {
+            Obstacle::Ball { center_m: Position::from_mm(center_mm).since(from), radius_m: S::from_milli(radius_mm) }
+        }
         Solid::Floor(height_mm) => Obstacle::Plane {
             normal: Vec3::new(S::ZERO, S::ZERO, S::ONE),
             distance_m: from.since::<S>(Position::from_mm([0, 0, height_mm])).z,
@@ -195,9 +175,7 @@ fn seen<S: Scalar>(solid: &Solid, from: Position) -> Obstacle<S> {
 /// Pairs of bodies that overlap.
 fn overlaps<S, G, A>(scene: &Scene<S>, movers: &[Mover<S, G, A>]) -> u32 {
     let least = u64::from(scene.apart_mm.unsigned_abs());
-    pairs(movers)
-        .filter(|squared| *squared < least * least)
-        .count() as u32
+    pairs(movers).filter(|squared| *squared < least * least).count() as u32
 }
 
 /// Distances of the nearest and of the farthest pair, millimetres.

@@ -51,26 +51,17 @@ fn an_alpha_flock_ends_in_its_lattice_and_boids_stay_together() {
             let [nearest, farthest] = summary.apart_mm;
             // Five robots 1 m from their neighbours: as a row they would be 4 m long.
             assert!((800..1100).contains(&nearest), "{name}: {summary:?}");
-            assert!(
-                farthest < 2600 && summary.overlaps == 0,
-                "{name}: {summary:?}"
-            );
+            assert!(farthest < 2600 && summary.overlaps == 0, "{name}: {summary:?}");
         },
         &[Case::Lattice],
     );
     // Up to 127 degrees apart at first, which would take them 35 m apart in 40 s.
-    each(
-        |name, summary| assert!(summary.apart_mm[1] < 12_000, "{name}: {summary:?}"),
-        &[Case::Boids],
-    );
+    each(|name, summary| assert!(summary.apart_mm[1] < 12_000, "{name}: {summary:?}"), &[Case::Boids]);
 }
 
 #[test]
 fn a_bad_radio_costs_frames_and_a_good_one_none() {
-    each(
-        |name, summary| assert!(summary.rejected > 50, "{name}: {summary:?}"),
-        &[Case::Packets],
-    );
+    each(|name, summary| assert!(summary.rejected > 50, "{name}: {summary:?}"), &[Case::Packets]);
     each(
         |name, summary| assert_eq!(summary.rejected, 0, "{name}"),
         &[Case::Formation, Case::OrcaAnalytic, Case::Boids],
@@ -82,10 +73,7 @@ fn packets_in_mavlink_take_the_same_course_as_in_postcard() {
     fn check<S: Scalar>(number: &'static str) {
         let mut hashes = std::vec::Vec::new();
         in_each_format::<S>(number, &mut |name, _, summary| {
-            assert!(
-                summary.arrived == 4 && summary.rejected > 50,
-                "{name}: {summary:?}"
-            );
+            assert!(summary.arrived == 4 && summary.rejected > 50, "{name}: {summary:?}");
             hashes.push(summary.hash);
         });
         let [course, mavlink, mavlink_course] = hashes[..] else {

@@ -8,10 +8,9 @@ use crate::{Probe, Summary};
 use heapless::Vec;
 use serde::Serialize;
 use staya_controller::agent::{
-    Agent, AgentConfig, BoidsGuidance, CELLS, CellState, FlySafety, FormationGuidance,
-    GoalFlockGuidance, GridWorkspace, Guidance, InPlane, Inputs, KinematicState, LatticeGuidance,
-    OnGrid, OrcaSafety, PushOutSafety, RouteGuidance, Safety, TEMPLATE, ToCells, Unguarded, VISITS,
-    Waypoint, WaypointGuidance,
+    Agent, AgentConfig, BoidsGuidance, CELLS, CellState, FlySafety, FormationGuidance, GoalFlockGuidance,
+    GridWorkspace, Guidance, InPlane, Inputs, KinematicState, LatticeGuidance, OnGrid, OrcaSafety, PushOutSafety,
+    RouteGuidance, Safety, TEMPLATE, ToCells, Unguarded, VISITS, Waypoint, WaypointGuidance,
 };
 use staya_controller::flock::boids::BoidsParams;
 use staya_controller::flock::goal::GoalParams;
@@ -111,19 +110,11 @@ impl WorstCase {
     }
 
     /// Runs 64 steps with `N` neighbours in each and at most `K` half-planes; on the grid with eight neighbours at most.
-    pub fn run<S: Scalar, P: Probe<S>, const N: usize, const K: usize>(
-        self,
-        probe: &mut P,
-    ) -> Summary {
+    pub fn run<S: Scalar, P: Probe<S>, const N: usize, const K: usize>(self, probe: &mut P) -> Summary {
         match self {
-            Self::Route => on_grid::<S, _, P, N>(
-                RouteGuidance::<CELLS, VISITS>::new(RouteParams::default()),
-                probe,
-            ),
+            Self::Route => on_grid::<S, _, P, N>(RouteGuidance::<CELLS, VISITS>::new(RouteParams::default()), probe),
             Self::Formation => on_grid::<S, _, P, N>(formation(Prediction::Constant), probe),
-            Self::FormationReflexive => {
-                on_grid::<S, _, P, N>(formation(Prediction::Reflexive), probe)
-            }
+            Self::FormationReflexive => on_grid::<S, _, P, N>(formation(Prediction::Reflexive), probe),
             Self::OrcaAnalytic => orca::<S, _, P, N, K>(Analytic, probe),
             Self::OrcaTemplate2k => orca::<S, _, P, N, K>(VoxelTable2k, probe),
             #[cfg(feature = "large-tables")]
@@ -146,12 +137,8 @@ impl WorstCase {
                 in_crowd::<S, _, _, P, N>(guidance, Unguarded, probe)
             }
             Self::Boids => {
-                let params = BoidsParams::new(
-                    S::from_milli(50),
-                    S::from_i32(30),
-                    S::from_ratio(1, 20),
-                    S::from_ratio(1, 50),
-                );
+                let params =
+                    BoidsParams::new(S::from_milli(50), S::from_i32(30), S::from_ratio(1, 20), S::from_ratio(1, 50));
                 let guidance = BoidsGuidance::new(params, S::ONE);
                 in_crowd::<S, _, _, P, N>(guidance, Unguarded, probe)
             }
@@ -160,10 +147,7 @@ impl WorstCase {
 }
 
 fn inflation<S: Scalar>() -> StalenessInflation<S> {
-    StalenessInflation {
-        growth_mps: S::HALF,
-        max_m: S::from_milli(300),
-    }
+    StalenessInflation { growth_mps: S::HALF, max_m: S::from_milli(300) }
 }
 
 fn waypoint<S: Scalar>() -> WaypointGuidance<S> {
@@ -184,20 +168,12 @@ fn about(rng: &mut Rng, most: u32) -> i32 {
 }
 
 /// What `N` robots other than oneself say in this step.
-fn say<const N: usize>(
-    step: u32,
-    inbox: &mut Inbox,
-    mut beacon: impl FnMut(u32, &mut Rng) -> Beacon,
-) {
+fn say<const N: usize>(step: u32, inbox: &mut Inbox, mut beacon: impl FnMut(u32, &mut Rng) -> Beacon) {
     inbox.clear();
     let numbers = (1..).filter(|number| *number != OWN.0);
     for number in numbers.take(N) {
         let mut rng = Rng::keyed(2, PURPOSE, number, step);
-        let header = Header {
-            boot: 0,
-            sender: RobotId(number),
-            sequence: step as u16,
-        };
+        let header = Header { boot: 0, sender: RobotId(number), sequence: step as u16 };
         // There is room.
         let _ = encode(header, &Message::Beacon(beacon(number, &mut rng)), inbox);
     }
@@ -212,11 +188,7 @@ where
     Agent<S, G, N, A>: Serialize,
     P: Probe<S>,
 {
-    let config = AgentConfig {
-        seed: 1,
-        latency: STEP,
-        ..AgentConfig::new(OWN, S::from_milli(RADIUS_MM), STEP)
-    };
+    let config = AgentConfig { seed: 1, latency: STEP, ..AgentConfig::new(OWN, S::from_milli(RADIUS_MM), STEP) };
     // Boids roam.
     let _ = law.assign_waypoint(0, &Waypoint::fixed(Position::from_mm([9000, 500, 0])));
     let mut agent = Agent::<S, G, N, A>::new(&config, law, safety, Postcard);
@@ -241,14 +213,8 @@ where
             let _ = obstacles.push(Obstacle::Wall([end, other]));
         }
         let inputs = Inputs {
-            state: KinematicState {
-                position: Position::ORIGIN,
-                velocity_mps,
-            },
-            surroundings: InPlane {
-                max_speed_mps: S::ONE,
-                obstacles: &obstacles,
-            },
+            state: KinematicState { position: Position::ORIGIN, velocity_mps },
+            surroundings: InPlane { max_speed_mps: S::ONE, obstacles: &obstacles },
             inbox: &inbox,
         };
         let now = Instant::from_micros(0) + STEP.saturating_mul(step.cast_signed());
@@ -272,20 +238,8 @@ const PLACES: [Cell; 9] = [
     Cell::new(-3, -6),
     Cell::new(-6, -6),
 ];
-const EDGES: [(u16, u16); 12] = [
-    (0, 1),
-    (1, 2),
-    (3, 4),
-    (4, 5),
-    (6, 7),
-    (7, 8),
-    (0, 3),
-    (1, 4),
-    (2, 5),
-    (3, 6),
-    (4, 7),
-    (5, 8),
-];
+const EDGES: [(u16, u16); 12] =
+    [(0, 1), (1, 2), (3, 4), (4, 5), (6, 7), (7, 8), (0, 3), (1, 4), (2, 5), (3, 6), (4, 7), (5, 8)];
 const LEADERS: [u32; 9] = [0, 1, 2, 1, 2, 3, 4, 5, 6];
 const TOP: Cell = Cell::new(50, 50);
 const GOAL: Cell = Cell::new(98, 98);
@@ -293,10 +247,7 @@ const GOAL: Cell = Cell::new(98, 98);
 const MIDDLE: usize = 4;
 
 fn formation(prediction: Prediction) -> FormationGuidance<CELLS, VISITS, TEMPLATE> {
-    let params = FormationParams {
-        prediction,
-        ..FormationParams::default()
-    };
+    let params = FormationParams { prediction, ..FormationParams::default() };
     // The graph is sound: a test counts who is in it.
     let template = Template::from_graph(&PLACES, &EDGES, MIDDLE, 2).unwrap_or_default();
     FormationGuidance::new(RouteParams::default(), params, template)
@@ -306,19 +257,11 @@ fn formation(prediction: Prediction) -> FormationGuidance<CELLS, VISITS, TEMPLAT
 fn on_grid<S, G, P, const N: usize>(guidance: G, probe: &mut P) -> Summary
 where
     S: Scalar,
-    G: for<'a> Guidance<
-            S,
-            Input<'a> = OnGrid<'a>,
-            Destination = ToCells,
-            Workspace = GridWorkspace<CELLS>,
-        >,
+    G: for<'a> Guidance<S, Input<'a> = OnGrid<'a>, Destination = ToCells, Workspace = GridWorkspace<CELLS>>,
     Agent<S, G, N>: Serialize,
     P: Probe<S>,
 {
-    let config = AgentConfig {
-        seed: 1,
-        ..AgentConfig::new(OWN, S::ZERO, STEP)
-    };
+    let config = AgentConfig { seed: 1, ..AgentConfig::new(OWN, S::ZERO, STEP) };
     let mut agent = Agent::<S, G, N>::new(&config, guidance, Unguarded, Postcard);
     let cell = TOP + PLACES.get(MIDDLE).copied().unwrap_or_default();
     agent.assign_goal(GOAL + (cell - TOP));
@@ -348,10 +291,7 @@ where
         let inputs = Inputs {
             state: KinematicState::default(),
             surroundings: OnGrid {
-                cell: CellState {
-                    cell,
-                    busy: Duration::ZERO,
-                },
+                cell: CellState { cell, busy: Duration::ZERO },
                 window: Window::new(&land, cell - Cell::new(5, 5), 11, 11),
             },
             inbox: &inbox,

@@ -32,11 +32,7 @@ fn write(boots: u32, is_mute: u32) {
     let check = boots ^ is_mute ^ MAGIC;
     // SAFETY: as above. Called before interrupts are on, or right before a reset.
     unsafe {
-        addr_of_mut!(KEPT).cast::<Kept>().write_volatile(Kept {
-            boots,
-            is_mute,
-            check,
-        });
+        addr_of_mut!(KEPT).cast::<Kept>().write_volatile(Kept { boots, is_mute, check });
     }
 }
 

@@ -41,10 +41,7 @@ macro_rules! entry {
 
         #[cfg(not(target_os = "none"))]
         fn main() {
-            eprintln!(concat!(
-                env!("CARGO_BIN_NAME"),
-                " is firmware: `cargo xtask firmware` builds it for the parts."
-            ));
+            eprintln!(concat!(env!("CARGO_BIN_NAME"), " is firmware: `cargo xtask firmware` builds it for the parts."));
             std::process::exit(2);
         }
     };

@@ -100,10 +100,7 @@ pub struct Text {
 
 impl Text {
     pub const fn new() -> Self {
-        Self {
-            bytes: [0; 96],
-            used: 0,
-        }
+        Self { bytes: [0; 96], used: 0 }
     }
 
     fn add(&mut self, bytes: &[u8]) {

@@ -55,8 +55,7 @@ impl<const N: usize> Ring<N> {
             return None;
         }
         let byte = self.bytes.get(tail)?.load(Ordering::Relaxed);
-        self.tail
-            .store(tail.wrapping_add(1) & (N - 1), Ordering::Release);
+        self.tail.store(tail.wrapping_add(1) & (N - 1), Ordering::Release);
         Some(byte)
     }
 
@@ -128,9 +127,7 @@ mod tests {
         std::thread::scope(|scope| {
             scope.spawn(|| {
                 for n in 0..10_000u32 {
-                    while ring.tail.load(Ordering::Acquire)
-                        == (ring.head.load(Ordering::Relaxed) + 1) & 15
-                    {
+                    while ring.tail.load(Ordering::Acquire) == (ring.head.load(Ordering::Relaxed) + 1) & 15 {
                         std::thread::yield_now();
                     }
                     ring.push(n as u8);

@@ -28,13 +28,7 @@ pub fn start() -> Start {
     let boots = boots::count();
     let clocks = part::start();
     log::choose(part::is_emulated(), boots::is_mute());
-    Start {
-        part: part::NAME,
-        tick_hz: clocks.tick_hz,
-        clock_hz: clocks.clock_hz,
-        emulated: part::is_emulated(),
-        boots,
-    }
+    Start { part: part::NAME, tick_hz: clocks.tick_hz, clock_hz: clocks.clock_hz, emulated: part::is_emulated(), boots }
 }
 
 /// A counter that goes up by [`Start::tick_hz`] per second and wraps. Differences count: at

@@ -41,10 +41,6 @@ impl Capacities {
     /// Bytes of the longest frame from the host, delimiters included.
     #[must_use]
     pub const fn frame_bytes(&self) -> usize {
-        frame::frame_len(step_bytes(
-            self.search_cells as usize,
-            self.obstacles as usize,
-            self.inbox_bytes as usize,
-        ))
+        frame::frame_len(step_bytes(self.search_cells as usize, self.obstacles as usize, self.inbox_bytes as usize))
     }
 }

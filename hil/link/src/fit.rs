@@ -30,10 +30,7 @@ pub struct WindowTooLarge {
 impl core::fmt::Display for WindowTooLarge {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let Self { cells, room } = self;
-        write!(
-            f,
-            "a window of {cells} cells, and the device has room for {room}"
-        )
+        write!(f, "a window of {cells} cells, and the device has room for {room}")
     }
 }
 
@@ -70,20 +67,13 @@ impl Capacities {
             return Err(WindowTooLarge { cells, room });
         }
         let inbox = newest(inputs.inbox, self.inbox_bytes.into(), wire);
-        let mut cut = Cut {
-            inbox_bytes: inputs.inbox.len() - inbox.len(),
-            obstacles: 0,
-        };
+        let mut cut = Cut { inbox_bytes: inputs.inbox.len() - inbox.len(), obstacles: 0 };
         let surroundings = plane.map(|seen| {
             let len = self.pack(seen.obstacles, packed);
             let obstacles = packed.get(..len).unwrap_or(&[]);
             let (kept, _) = obstacles.as_chunks::<OBSTACLE_BYTES>();
             cut.obstacles = seen.obstacles.len() - kept.len();
-            PackedSurroundings {
-                max_speed_mps: seen.max_speed_mps,
-                in_cell,
-                obstacles,
-            }
+            PackedSurroundings { max_speed_mps: seen.max_speed_mps, in_cell, obstacles }
         });
         let step = StepInputs {
             tick,
@@ -102,10 +92,7 @@ impl Capacities {
         let (free, _) = packed.as_chunks_mut::<OBSTACLE_BYTES>();
         let room = free.len().min(self.obstacles.into());
         let has_room = obstacles.len() <= room;
-        let staying = obstacles
-            .iter()
-            .enumerate()
-            .filter(|(index, _)| has_room || rank(obstacles, *index) < room);
+        let staying = obstacles.iter().enumerate().filter(|(index, _)| has_room || rank(obstacles, *index) < room);
         let mut count = 0;
         for ((_, obstacle), to) in staying.zip(free) {
             *to = pack(obstacle);
@@ -123,14 +110,7 @@ fn rank(obstacles: &[Obstacle<f32>], index: usize) -> usize {
     };
     let own = obstacles.get(index).map_or(f32::NAN, distance);
     let others = obstacles.iter().enumerate();
-    others
-        .filter(|(other, obstacle)| {
-            distance(obstacle)
-                .order(own)
-                .then(other.cmp(&index))
-                .is_lt()
-        })
-        .count()
+    others.filter(|(other, obstacle)| distance(obstacle).order(own).then(other.cmp(&index)).is_lt()).count()
 }
 
 /// The newest whole frames of `inbox` that fit into `room` bytes.

@@ -58,10 +58,7 @@ impl core::fmt::Display for FrameError {
             Self::Cobs => "the frame's stuffing does not end where the frame ends",
             Self::Crc => "the frame's CRC is wrong: damaged or cut",
             Self::Version(version) => {
-                return write!(
-                    f,
-                    "the frame is of version {version} of the link, not {VERSION}"
-                );
+                return write!(f, "the frame is of version {version} of the link, not {VERSION}");
             }
         })
     }
@@ -129,12 +126,7 @@ struct Stuffer<'a, const N: usize> {
 impl<'a, const N: usize> Stuffer<'a, N> {
     fn new(out: &'a mut Vec<u8, N>) -> Option<Self> {
         out.extend_from_slice(&[0, 0]).ok()?;
-        Some(Self {
-            out,
-            code_at: 1,
-            code: 1,
-            crc: CRC.digest(),
-        })
+        Some(Self { out, code_at: 1, code: 1, crc: CRC.digest() })
     }
 
     /// Not inlined: every kind of message calls it for each of its fields.
@@ -172,8 +164,7 @@ impl<const N: usize> Flavor for Stuffer<'_, N> {
     type Output = ();
 
     fn try_push(&mut self, byte: u8) -> postcard::Result<()> {
-        self.check_and_stuff(byte)
-            .ok_or(postcard::Error::SerializeBufferFull)
+        self.check_and_stuff(byte).ok_or(postcard::Error::SerializeBufferFull)
     }
 
     fn finalize(self) -> postcard::Result<()> {
@@ -205,14 +196,7 @@ impl<const N: usize> Deframer<N> {
     /// Between two frames.
     #[must_use]
     pub const fn new() -> Self {
-        Self {
-            content: Vec::new(),
-            left: 0,
-            zero_follows: false,
-            has_begun: false,
-            is_too_long: false,
-            is_over: false,
-        }
+        Self { content: Vec::new(), left: 0, zero_follows: false, has_begun: false, is_too_long: false, is_over: false }
     }
 
     /// Takes a byte; at the end of a frame its kind and body, or what is wrong with it. O(1), at the end of a frame
@@ -258,10 +242,7 @@ impl<const N: usize> Deframer<N> {
         if self.left > 0 {
             return Err(FrameError::Cobs);
         }
-        let (checked, crc) = self
-            .content
-            .split_last_chunk::<CRC_LEN>()
-            .ok_or(FrameError::Crc)?;
+        let (checked, crc) = self.content.split_last_chunk::<CRC_LEN>().ok_or(FrameError::Crc)?;
         if CRC.checksum(checked) != u32::from_le_bytes(*crc) {
             return Err(FrameError::Crc);
         }

@@ -5,8 +5,7 @@
 
 use crate::frame::{Deframer, Frame, FrameError, TooLong, VERSION};
 use crate::message::{
-    Configured, Fault, FaultKind, Greeting, Hello, MAX_ANSWER, Restart, Step, StepInputs, Stepped,
-    Token, kind,
+    Configured, Fault, FaultKind, Greeting, Hello, MAX_ANSWER, Restart, Step, StepInputs, Stepped, Token, kind,
 };
 use core::fmt;
 use postcard::from_bytes;
@@ -74,16 +73,9 @@ pub enum PortError {
 impl fmt::Display for PortError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Silent {
-                asked,
-                attempts,
-                waited_us,
-            } => {
+            Self::Silent { asked, attempts, waited_us } => {
                 let millis = waited_us.checked_div(1000).unwrap_or(0);
-                write!(
-                    f,
-                    "no answer to {asked} within {millis} ms ({attempts} attempts)"
-                )
+                write!(f, "no answer to {asked} within {millis} ms ({attempts} attempts)")
             }
             Self::Version { device } => write!(
                 f,
@@ -116,10 +108,7 @@ pub enum Next<'a> {
 
 /// What came of the bytes.
 #[derive(Clone, Debug, PartialEq)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "there is no allocator, and it is taken apart at once"
-)]
+#[expect(clippy::large_enum_variant, reason = "there is no allocator, and it is taken apart at once")]
 pub enum Event {
     /// The answer to a greeting.
     Hello(Hello),
@@ -182,14 +171,7 @@ impl<const N: usize> Port<N> {
             seq: 0,
             boot: None,
             waiting: None,
-            counts: Counts {
-                sent: 0,
-                resent: 0,
-                sent_bytes: 0,
-                received_bytes: 0,
-                damaged: 0,
-                stale: 0,
-            },
+            counts: Counts { sent: 0, resent: 0, sent_bytes: 0, received_bytes: 0, damaged: 0, stale: 0 },
         }
     }
 
@@ -230,16 +212,10 @@ impl<const N: usize> Port<N> {
     ///
     /// # Errors
     /// [`TooLong`] for `N`; then nothing is on its way.
-    pub fn configure(
-        &mut self,
-        setup: &Setup,
-        task: Option<&Task>,
-        now_us: u64,
-    ) -> Result<(), TooLong> {
+    pub fn configure(&mut self, setup: &Setup, task: Option<&Task>, now_us: u64) -> Result<(), TooLong> {
         self.waiting = None;
         self.seq = self.seq.wrapping_add(1);
-        self.request
-            .fill(kind::CONFIGURE, &(self.seq, setup, task))?;
+        self.request.fill(kind::CONFIGURE, &(self.seq, setup, task))?;
         self.ask(Asked::Configure, now_us);
         Ok(())
     }
@@ -260,12 +236,7 @@ impl<const N: usize> Port<N> {
     }
 
     const fn ask(&mut self, asked: Asked, now_us: u64) {
-        self.waiting = Some(Waiting {
-            asked,
-            attempts: 0,
-            since_us: now_us,
-            due_us: now_us,
-        });
+        self.waiting = Some(Waiting { asked, attempts: 0, since_us: now_us, due_us: now_us });
     }
 
     /// What to do next: call it after each request, each event and when the time that it gave has come.
@@ -336,9 +307,7 @@ impl<const N: usize> Port<N> {
             Said::Configured(answer) if asked == Some(Asked::Configure) => {
                 (answer.seq == self.seq).then_some(Event::Configured(answer))
             }
-            Said::Stepped(answer) if is_step => {
-                (answer.seq == self.seq).then_some(Event::Stepped(answer))
-            }
+            Said::Stepped(answer) if is_step => (answer.seq == self.seq).then_some(Event::Stepped(answer)),
             Said::Fault(fault) => {
                 let is_answer = fault.seq == self.seq && asked.is_some();
                 match fault.kind {
@@ -358,19 +327,10 @@ impl<const N: usize> Port<N> {
         })
     }
 
-    fn understand_hello(
-        &mut self,
-        hello: Hello,
-        asked: Option<Asked>,
-        now_us: u64,
-    ) -> Option<Event> {
+    fn understand_hello(&mut self, hello: Hello, asked: Option<Asked>, now_us: u64) -> Option<Event> {
         if hello.token.is_some() {
             let is_answer = hello.token == Some(self.token) && asked == Some(Asked::Hello);
-            self.boot = if is_answer {
-                Some(hello.boot)
-            } else {
-                self.boot
-            };
+            self.boot = if is_answer { Some(hello.boot) } else { self.boot };
             return is_answer.then_some(Event::Hello(hello));
         }
         match (asked, &mut self.waiting) {
@@ -391,10 +351,7 @@ impl<const N: usize> Port<N> {
 }
 
 /// A message of the device.
-#[expect(
-    clippy::large_enum_variant,
-    reason = "there is no allocator, and it is taken apart at once"
-)]
+#[expect(clippy::large_enum_variant, reason = "there is no allocator, and it is taken apart at once")]
 enum Said {
     Hello(Hello),
     Configured(Configured),

@@ -5,9 +5,8 @@ use crate::message::{NumberFormat, StepInputs, StepResult};
 use core::fmt;
 use heapless::Vec;
 use staya_controller::agent::{
-    AnyAgent, AnySurroundings, CELLS, Command, GridWorkspace, HALF_PLANES, InCell, InCells,
-    InPlane, Inputs, KinematicState, NEIGHBORS, OnGrid, Outputs, Refused, Setup, Task, VISITS,
-    WrongTask,
+    AnyAgent, AnySurroundings, CELLS, Command, GridWorkspace, HALF_PLANES, InCell, InCells, InPlane, Inputs,
+    KinematicState, NEIGHBORS, OnGrid, Outputs, Refused, Setup, Task, VISITS, WrongTask,
 };
 use staya_controller::obstacle::Obstacle;
 use staya_controller::robot::RobotId;
@@ -117,15 +116,8 @@ pub struct Robot<
     outputs: Outputs<S>,
 }
 
-impl<
-    S: Scalar,
-    const CELLS: usize,
-    const M: usize,
-    const N: usize,
-    const K: usize,
-    const O: usize,
-    W: FromFormat,
-> Robot<S, CELLS, M, N, K, O, W>
+impl<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usize, const O: usize, W: FromFormat>
+    Robot<S, CELLS, M, N, K, O, W>
 {
     /// Nobody yet.
     #[must_use]
@@ -138,12 +130,7 @@ impl<
                 command: Command::Hold,
                 received: 0,
                 rejected: 0,
-                refused: Refused {
-                    unsigned: 0,
-                    forged: 0,
-                    replayed: 0,
-                    no_room: 0,
-                },
+                refused: Refused { unsigned: 0, forged: 0, replayed: 0, no_room: 0 },
                 outbox: Vec::new(),
                 events: Vec::new(),
                 call_again: Instant::from_micros(0),
@@ -158,37 +145,19 @@ impl<
     }
 }
 
-impl<
-    S: Scalar,
-    const CELLS: usize,
-    const M: usize,
-    const N: usize,
-    const K: usize,
-    const O: usize,
-    W: FromFormat,
-> Default for Robot<S, CELLS, M, N, K, O, W>
+impl<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usize, const O: usize, W: FromFormat>
+    Default for Robot<S, CELLS, M, N, K, O, W>
 {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl<
-    S: Scalar,
-    const CELLS: usize,
-    const M: usize,
-    const N: usize,
-    const K: usize,
-    const O: usize,
-    W: FromFormat,
-> Controller for Robot<S, CELLS, M, N, K, O, W>
+impl<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usize, const O: usize, W: FromFormat>
+    Controller for Robot<S, CELLS, M, N, K, O, W>
 {
     fn number(&self) -> NumberFormat {
-        if S::IS_FLOATING {
-            NumberFormat::F32
-        } else {
-            NumberFormat::Q16
-        }
+        if S::IS_FLOATING { NumberFormat::F32 } else { NumberFormat::Q16 }
     }
 
     fn capacities(&self) -> Capacities {
@@ -240,10 +209,9 @@ impl<
             return Err(Refusal::Nonsense);
         }
         let grid = inputs.cell.map(|cell| OnGrid { cell, window });
-        let plane = inputs.surroundings.map(|packed| InPlane {
-            max_speed_mps: cast(packed.max_speed_mps),
-            obstacles: self.obstacles.as_slice(),
-        });
+        let plane = inputs
+            .surroundings
+            .map(|packed| InPlane { max_speed_mps: cast(packed.max_speed_mps), obstacles: self.obstacles.as_slice() });
         let place = inputs.surroundings.and_then(|packed| packed.in_cell);
         let surroundings = match (grid, plane, place) {
             (Some(grid), None, _) => AnySurroundings::OnGrid(grid),
@@ -251,18 +219,12 @@ impl<
             (Some(grid), Some(plane), Some(place)) => AnySurroundings::InCells(InCells {
                 grid,
                 plane,
-                in_cell: InCell {
-                    offset_m: place.offset_m.cast(),
-                    cell_m: cast(place.cell_m),
-                },
+                in_cell: InCell { offset_m: place.offset_m.cast(), cell_m: cast(place.cell_m) },
             }),
             _ => return Err(Refusal::Nonsense),
         };
         let own = Inputs {
-            state: KinematicState {
-                position: inputs.state.position,
-                velocity_mps: inputs.state.velocity_mps.cast(),
-            },
+            state: KinematicState { position: inputs.state.position, velocity_mps: inputs.state.velocity_mps.cast() },
             surroundings,
             inbox: inputs.inbox,
         };

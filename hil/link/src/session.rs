@@ -23,8 +23,7 @@
 use crate::capacities::{self, Capacities};
 use crate::frame::{Deframer, Frame, FrameError, VERSION};
 use crate::message::{
-    Configured, Cost, Fault, FaultKind, Greeting, Hello, MAX_ANSWER, MAX_CONFIGURE, Restart,
-    StepInputs, Token, kind,
+    Configured, Cost, Fault, FaultKind, Greeting, Hello, MAX_ANSWER, MAX_CONFIGURE, Restart, StepInputs, Token, kind,
 };
 use crate::robot::{Controller, Refusal};
 use core::fmt::{Display, Write};
@@ -39,11 +38,7 @@ const MAX_NOTE: usize = 128;
 #[must_use]
 pub const fn content_bytes(search_cells: usize, obstacles: usize, inbox_bytes: usize) -> usize {
     let step = capacities::step_bytes(search_cells, obstacles, inbox_bytes);
-    if step > MAX_CONFIGURE {
-        step
-    } else {
-        MAX_CONFIGURE
-    }
+    if step > MAX_CONFIGURE { step } else { MAX_CONFIGURE }
 }
 
 /// Measures what a step costs.
@@ -186,12 +181,7 @@ impl<C: Controller, const CONTENT: usize> Session<C, CONTENT> {
 
 impl Counts {
     const fn default_const() -> Self {
-        Self {
-            steps: 0,
-            repeated: 0,
-            stale: 0,
-            damaged: 0,
-        }
+        Self { steps: 0, repeated: 0, stale: 0, damaged: 0 }
     }
 }
 
@@ -231,11 +221,7 @@ impl<C: Controller, const CONTENT: usize> Core<C, CONTENT> {
                 };
                 self.request(kind, seq, rest, meter)
             }
-            _ => self.fault(
-                0,
-                FaultKind::Malformed,
-                format_args!("no message has the number {kind}"),
-            ),
+            _ => self.fault(0, FaultKind::Malformed, format_args!("no message has the number {kind}")),
         }
     }
 
@@ -263,21 +249,11 @@ impl<C: Controller, const CONTENT: usize> Core<C, CONTENT> {
                 self.counts.stale = self.counts.stale.wrapping_add(1);
                 Reaction::None
             }
-            (Freshness::First | Freshness::Next | Freshness::Ahead, kind::CONFIGURE) => {
-                self.configure(seq, body)
-            }
-            (Freshness::First, _) => self.fault(
-                seq,
-                FaultKind::NotConfigured,
-                format_args!("a step, but no setup"),
-            ),
+            (Freshness::First | Freshness::Next | Freshness::Ahead, kind::CONFIGURE) => self.configure(seq, body),
+            (Freshness::First, _) => self.fault(seq, FaultKind::NotConfigured, format_args!("a step, but no setup")),
             (Freshness::Ahead, _) => {
                 let last = self.last.unwrap_or_default();
-                self.fault(
-                    seq,
-                    FaultKind::Gap,
-                    format_args!("request {seq} after {last}"),
-                )
+                self.fault(seq, FaultKind::Gap, format_args!("request {seq} after {last}"))
             }
             (Freshness::Next, _) => self.step(seq, body, meter),
         }
@@ -306,9 +282,7 @@ impl<C: Controller, const CONTENT: usize> Core<C, CONTENT> {
         match self.controller.configure(&setup, task.as_ref()) {
             Ok(digest) => {
                 // An answer has room for it.
-                let _ = self
-                    .answer
-                    .fill(kind::CONFIGURED, &Configured { seq, digest });
+                let _ = self.answer.fill(kind::CONFIGURED, &Configured { seq, digest });
                 self.last = Some(seq);
                 Reaction::Answer(self.answer.bytes())
             }
@@ -366,9 +340,7 @@ impl<C: Controller, const CONTENT: usize> Core<C, CONTENT> {
     }
 
     fn say_hello(&mut self) {
-        let Self {
-            about, controller, ..
-        } = self;
+        let Self { about, controller, .. } = self;
         let hello = Hello {
             token: self.token,
             boot: about.boot,
@@ -388,10 +360,7 @@ impl<C: Controller, const CONTENT: usize> Core<C, CONTENT> {
         let (cells, obstacles) = (capacities.search_cells, capacities.obstacles);
         let rest = capacities::step_bytes(cells.into(), obstacles.into(), 0);
         let inbox = CONTENT.saturating_sub(rest);
-        Capacities {
-            inbox_bytes: u16::try_from(inbox).unwrap_or(u16::MAX),
-            ..capacities
-        }
+        Capacities { inbox_bytes: u16::try_from(inbox).unwrap_or(u16::MAX), ..capacities }
     }
 }
 

@@ -25,12 +25,7 @@ pub struct TerrainWindow<'a> {
 
 impl<'a> From<Window<'a>> for TerrainWindow<'a> {
     fn from(window: Window<'a>) -> Self {
-        Self {
-            origin: window.origin(),
-            width: window.width(),
-            height: window.height(),
-            cells: window.cells(),
-        }
+        Self { origin: window.origin(), width: window.width(), height: window.height(), cells: window.cells() }
     }
 }
 
@@ -74,9 +69,7 @@ impl PackedSurroundings<'_> {
 pub fn pack(obstacle: &Obstacle<f32>) -> [u8; OBSTACLE_BYTES] {
     let (shape, numbers) = match *obstacle {
         Obstacle::Wall([a, b]) => (0, [a.x, a.y, b.x, b.y]),
-        Obstacle::Ball { center_m, radius_m } => {
-            (1, [center_m.x, center_m.y, center_m.z, radius_m])
-        }
+        Obstacle::Ball { center_m, radius_m } => (1, [center_m.x, center_m.y, center_m.z, radius_m]),
         Obstacle::Plane { normal, distance_m } => (2, [normal.x, normal.y, normal.z, distance_m]),
     };
     let [a, b, c, d] = numbers.map(f32::to_le_bytes);
@@ -101,14 +94,8 @@ pub fn unpack<S: Scalar>(packed: &[u8; OBSTACLE_BYTES]) -> Option<Obstacle<S>> {
     });
     match shape {
         0 => Some(Obstacle::Wall([Vec2::new(a, b), Vec2::new(c, d)])),
-        1 => Some(Obstacle::Ball {
-            center_m: Vec3::new(a, b, c),
-            radius_m: d,
-        }),
-        2 => Some(Obstacle::Plane {
-            normal: Vec3::new(a, b, c),
-            distance_m: d,
-        }),
+        1 => Some(Obstacle::Ball { center_m: Vec3::new(a, b, c), radius_m: d }),
+        2 => Some(Obstacle::Plane { normal: Vec3::new(a, b, c), distance_m: d }),
         _ => None,
     }
 }

@@ -9,9 +9,7 @@ mod sessions;
 use crate::message::{Hello, Stepped, kind};
 use crate::robot::{Large, Small};
 use crate::session::{About, Reaction, Session, content_bytes};
-use staya_controller::agent::{
-    AgentConfig, AnyHalfPlanes, CELLS, GuidanceSetup, RouteSetup, SafetySetup, Setup, Task,
-};
+use staya_controller::agent::{AgentConfig, AnyHalfPlanes, CELLS, GuidanceSetup, RouteSetup, SafetySetup, Setup, Task};
 use staya_controller::grid::Cell;
 use staya_controller::neighbor::StalenessInflation;
 use staya_controller::orca::AvoidParams;
@@ -24,12 +22,8 @@ use std::vec::Vec;
 
 pub const LARGE: usize = content_bytes(CELLS, 32, crate::robot::LARGE_INBOX);
 pub const SMALL: usize = content_bytes(CELLS, 16, crate::robot::SMALL_INBOX);
-pub const ABOUT: About = About {
-    part: "stm32f405",
-    firmware: "lockstep 0.1.0",
-    boot: 1,
-    ticks_per_second: 168_000_000,
-};
+pub const ABOUT: About =
+    About { part: "stm32f405", firmware: "lockstep 0.1.0", boot: 1, ticks_per_second: 168_000_000 };
 
 pub fn large() -> Session<Large, LARGE> {
     Session::new(Large::new(), ABOUT)
@@ -48,16 +42,10 @@ pub fn in_plane() -> Setup {
             max_acceleration_mps2: 2.0,
             ..AgentConfig::new(RobotId(1), 0.25, Duration::from_millis(100))
         },
-        guidance: GuidanceSetup::Waypoint {
-            speed_mps: 1.0,
-            tolerance_m: 0.05,
-        },
+        guidance: GuidanceSetup::Waypoint { speed_mps: 1.0, tolerance_m: 0.05 },
         safety: SafetySetup::Orca {
             params: AvoidParams::default(),
-            inflation: StalenessInflation {
-                growth_mps: 0.5,
-                max_m: 0.25,
-            },
+            inflation: StalenessInflation { growth_mps: 0.5, max_m: 0.25 },
             source: AnyHalfPlanes::Analytic,
         },
         format: Format::Postcard,
@@ -66,21 +54,11 @@ pub fn in_plane() -> Setup {
 
 /// A robot that goes cell by cell, searching so far.
 pub fn on_grid(radius: u8) -> (Setup, Task) {
-    let params = RouteParams {
-        radius,
-        ..RouteParams::default()
-    };
+    let params = RouteParams { radius, ..RouteParams::default() };
     let setup = Setup {
-        agent: AgentConfig {
-            seed: 7,
-            ..AgentConfig::new(RobotId(1), 0.0, Duration::from_millis(100))
-        },
+        agent: AgentConfig { seed: 7, ..AgentConfig::new(RobotId(1), 0.0, Duration::from_millis(100)) },
         guidance: GuidanceSetup::Route {
-            route: RouteSetup {
-                params,
-                replan: Replan::EachCell,
-                sharpness: Sharpness::Greedy,
-            },
+            route: RouteSetup { params, replan: Replan::EachCell, sharpness: Sharpness::Greedy },
             speed_mps: None,
         },
         safety: SafetySetup::None,
@@ -97,10 +75,7 @@ pub fn frame<T: serde::Serialize>(kind: u8, body: &T) -> Vec<u8> {
 }
 
 /// All that comes out of a session for these bytes.
-pub fn answers<B: crate::robot::Controller, const N: usize>(
-    session: &mut Session<B, N>,
-    bytes: &[u8],
-) -> Vec<Vec<u8>> {
+pub fn answers<B: crate::robot::Controller, const N: usize>(session: &mut Session<B, N>, bytes: &[u8]) -> Vec<Vec<u8>> {
     let mut answers = Vec::new();
     for byte in bytes {
         match session.receive(*byte, &mut ()) {

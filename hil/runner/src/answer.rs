@@ -48,17 +48,12 @@ pub enum Cause {
     #[error("{0}")]
     Gone(String),
     #[error("the firmware is for `{said}`, not for `{expected}`")]
-    OtherPart {
-        expected: &'static str,
-        said: String,
-    },
+    OtherPart { expected: &'static str, said: String },
     #[error(
         "no robot in this process has the numbers and capacities of {0:?}: build firmware and host from the same source"
     )]
     NoShadow(Box<Hello>),
-    #[error(
-        "after the same setup the device's state has the digest {device:016x}, that in this process {shadow:016x}"
-    )]
+    #[error("after the same setup the device's state has the digest {device:016x}, that in this process {shadow:016x}")]
     Setup { device: u64, shadow: u64 },
     #[error("the robot in this process refuses: {0}")]
     Shadow(String),

@@ -36,9 +36,7 @@ pub struct Channel {
 
 impl fmt::Debug for Channel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Channel")
-            .field("emulator", &self.emulator)
-            .finish_non_exhaustive()
+        f.debug_struct("Channel").field("emulator", &self.emulator).finish_non_exhaustive()
     }
 }
 
@@ -46,13 +44,7 @@ impl Channel {
     /// A line over anything that can be read and written, for instance a socket to a device on another machine.
     #[must_use]
     pub fn new(read: impl Read + Send + 'static, write: impl Write + Send + 'static) -> Self {
-        Self {
-            read: Box::new(read),
-            write: Box::new(write),
-            per_byte: Duration::ZERO,
-            emulator: None,
-            part: None,
-        }
+        Self { read: Box::new(read), write: Box::new(write), per_byte: Duration::ZERO, emulator: None, part: None }
     }
 
     /// Starts the emulator or opens the port. `firmware` is the folder that `cargo xtask firmware` writes to; an
@@ -64,10 +56,7 @@ impl Channel {
         match device {
             Device::Emulated(part) => {
                 let (emulator, socket) = emulator::start(*part, &part.elf(firmware), log)?;
-                let failed = |source| EmulatorError::Start {
-                    program: "the emulator",
-                    source,
-                };
+                let failed = |source| EmulatorError::Start { program: "the emulator", source };
                 socket.set_write_timeout(Some(PATIENCE)).map_err(failed)?;
                 let read = socket.try_clone().map_err(failed)?;
                 let mut channel = Self::new(read, socket);

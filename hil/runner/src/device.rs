@@ -28,17 +28,13 @@ impl FromStr for Device {
     type Err = DeviceError;
 
     fn from_str(text: &str) -> Result<Self, DeviceError> {
-        let error = |what: String| DeviceError {
-            text: text.to_owned(),
-            what,
-        };
+        let error = |what: String| DeviceError { text: text.to_owned(), what };
         let (kind, rest) = text.split_once(':').unwrap_or((text, ""));
         match kind {
             "qemu" => {
                 let part = Part::ALL.into_iter().find(|part| part.name() == rest);
                 part.map(Self::Emulated).ok_or_else(|| {
-                    let names: Vec<String> =
-                        Part::ALL.map(|part| format!("qemu:{}", part.name())).into();
+                    let names: Vec<String> = Part::ALL.map(|part| format!("qemu:{}", part.name())).into();
                     error(format!("no part `{rest}`; there are {}", names.join(", ")))
                 })
             }
@@ -46,9 +42,7 @@ impl FromStr for Device {
                 Ok(port) => Ok(Self::Serial(port)),
                 Err(reason) => Err(error(reason.to_string())),
             },
-            _ => Err(error(format!(
-                "`{kind}` is neither `qemu:PART` nor `serial:PORT[,baud=N]`"
-            ))),
+            _ => Err(error(format!("`{kind}` is neither `qemu:PART` nor `serial:PORT[,baud=N]`"))),
         }
     }
 }
@@ -68,12 +62,7 @@ mod tests {
 
     #[test]
     fn what_is_written_is_read_back() {
-        for text in [
-            "qemu:stm32f405",
-            "qemu:microbit",
-            "qemu:riscv32",
-            "serial:/dev/ttyACM0,baud=9600",
-        ] {
+        for text in ["qemu:stm32f405", "qemu:microbit", "qemu:riscv32", "serial:/dev/ttyACM0,baud=9600"] {
             let device: Device = text.parse().expect(text);
             assert_eq!(device.to_string(), text);
         }
@@ -84,10 +73,7 @@ mod tests {
     #[test]
     fn errors_name_the_wrong_piece_and_what_there_is() {
         for (text, pieces) in [
-            (
-                "qemu:avr",
-                ["`avr`", "qemu:stm32f405, qemu:microbit, qemu:riscv32"],
-            ),
+            ("qemu:avr", ["`avr`", "qemu:stm32f405, qemu:microbit, qemu:riscv32"]),
             ("qemu", ["``", "qemu:microbit"]),
             ("renode:x", ["`renode`", "serial:PORT"]),
             ("", ["``", "qemu:PART"]),
@@ -98,10 +84,7 @@ mod tests {
             for piece in pieces {
                 assert!(error.contains(piece), "{text}: {error}");
             }
-            assert!(
-                error.starts_with(&format!("`{text}` is no device")),
-                "{error}"
-            );
+            assert!(error.starts_with(&format!("`{text}` is no device")), "{error}");
         }
     }
 }

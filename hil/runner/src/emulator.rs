@@ -27,17 +27,11 @@ pub enum EmulatorError {
     #[error(
         "{program} is missing: on Debian run, as root, `apt-get install {package}`, or `cargo xtask qemu` in Staya's repository"
     )]
-    NoEmulator {
-        program: &'static str,
-        package: &'static str,
-    },
+    NoEmulator { program: &'static str, package: &'static str },
     #[error("no firmware in {}: `cargo xtask firmware {part}` makes it", .elf.display())]
     NoFirmware { elf: PathBuf, part: &'static str },
     #[error("cannot start {program}: {source}")]
-    Start {
-        program: &'static str,
-        source: io::Error,
-    },
+    Start { program: &'static str, source: io::Error },
     #[error("cannot write the log {}: {source}", .path.display())]
     Log { path: PathBuf, source: io::Error },
 }
@@ -67,18 +61,12 @@ pub fn command(part: Part, program: &Path, elf: &Path) -> Command {
     command.args(["-icount", "shift=0"]);
     command.args(["-semihosting-config", "enable=on,target=native"]);
     command.args(["-chardev", "socket,id=uart,fd=0"]);
-    command
-        .args(["-serial", "chardev:uart", "-kernel"])
-        .arg(elf);
+    command.args(["-serial", "chardev:uart", "-kernel"]).arg(elf);
     command
 }
 
 /// Starts the emulator of a part; its logs go to the file `log` or nowhere.
-pub fn start(
-    part: Part,
-    elf: &Path,
-    log: Option<&Path>,
-) -> Result<(Emulator, UnixStream), EmulatorError> {
+pub fn start(part: Part, elf: &Path, log: Option<&Path>) -> Result<(Emulator, UnixStream), EmulatorError> {
     let (program, _, package) = part.machine();
     if !elf.is_file() {
         let (elf, part) = (elf.to_owned(), part.firmware_name());
@@ -91,10 +79,7 @@ pub fn start(
     let (ours, theirs) = UnixStream::pair().map_err(failed)?;
     let log = match log {
         Some(path) => {
-            let file = File::create(path).map_err(|source| EmulatorError::Log {
-                path: path.to_owned(),
-                source,
-            })?;
+            let file = File::create(path).map_err(|source| EmulatorError::Log { path: path.to_owned(), source })?;
             Stdio::from(file)
         }
         None => Stdio::null(),
@@ -147,14 +132,8 @@ impl Emulator {
         // Its end of the socket closes a moment before it can be waited for.
         for _ in 0..50 {
             if let Ok(Some(status)) = self.child.try_wait() {
-                let complaints = self
-                    .complaints
-                    .lock()
-                    .unwrap_or_else(PoisonError::into_inner);
-                return Some(format!(
-                    "the emulator ended ({status}) {}",
-                    complaints.trim()
-                ));
+                let complaints = self.complaints.lock().unwrap_or_else(PoisonError::into_inner);
+                return Some(format!("the emulator ended ({status}) {}", complaints.trim()));
             }
             std::thread::sleep(std::time::Duration::from_millis(10));
         }
@@ -193,10 +172,7 @@ mod tests {
 
     #[test]
     fn each_part_has_its_machine_and_its_uart_on_the_socket() {
-        for (part, machine) in Part::ALL
-            .into_iter()
-            .zip(["netduinoplus2", "microbit", "virt"])
-        {
+        for (part, machine) in Part::ALL.into_iter().zip(["netduinoplus2", "microbit", "virt"]) {
             let command = command(part, Path::new("qemu"), Path::new("x.elf"));
             let arguments: Vec<_> = command.get_args().filter_map(|a| a.to_str()).collect();
             for expected in [machine, "shift=0", "socket,id=uart,fd=0", "x.elf"] {

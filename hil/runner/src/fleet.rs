@@ -38,9 +38,7 @@ pub struct Fleet {
 
 impl std::fmt::Debug for Fleet {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Fleet")
-            .field("devices", &self.units.len())
-            .finish_non_exhaustive()
+        f.debug_struct("Fleet").field("devices", &self.units.len()).finish_non_exhaustive()
     }
 }
 
@@ -86,15 +84,9 @@ impl Fleet {
             std::thread::Builder::new()
                 .name(format!("robot {}", robot.0))
                 .spawn(move || read(reader, index, epoch, &sender, &goes_on))
-                .map_err(|error| FleetError {
-                    robot,
-                    device,
-                    cause: Box::new(Cause::Thread(error)),
-                })?;
+                .map_err(|error| FleetError { robot, device, cause: Box::new(Cause::Thread(error)) })?;
             let now_us = fleet.now_us();
-            fleet
-                .units
-                .push(Unit::new(config, channel, &options, now_us));
+            fleet.units.push(Unit::new(config, channel, &options, now_us));
         }
         fleet.settle();
         for unit in &mut fleet.units {
@@ -215,10 +207,7 @@ impl Drop for Fleet {
 fn open(config: &DeviceConfig, options: &Options) -> Result<Channel, Cause> {
     let device: Device = config.device.parse()?;
     let robot = config.setup.agent.id.0;
-    let log = options
-        .logs
-        .as_ref()
-        .map(|folder| folder.join(format!("robot-{robot}.log")));
+    let log = options.logs.as_ref().map(|folder| folder.join(format!("robot-{robot}.log")));
     Ok(Channel::open(&device, &options.firmware, log.as_deref())?)
 }
 
@@ -241,11 +230,7 @@ fn read(
         };
         let is_over = bytes.is_empty();
         let at_us = micros(epoch.elapsed());
-        let arrival = Arrival {
-            index,
-            at_us,
-            bytes,
-        };
+        let arrival = Arrival { index, at_us, bytes };
         if sender.send(arrival).is_err() || is_over {
             return;
         }

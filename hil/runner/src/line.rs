@@ -60,22 +60,13 @@ impl Line {
                 continue;
             }
             let frame = std::mem::take(&mut self.open);
-            let frame = if frame.len() > 1 {
-                self.fate(frame)
-            } else {
-                Some(frame)
-            };
+            let frame = if frame.len() > 1 { self.fate(frame) } else { Some(frame) };
             self.on_the_way.extend(frame.map(|frame| (due_us, frame)));
         }
     }
 
     fn fate(&mut self, mut frame: Vec<u8>) -> Option<Vec<u8>> {
-        let LineFaults {
-            loss,
-            bit_errors,
-            seed,
-            ..
-        } = self.faults;
+        let LineFaults { loss, bit_errors, seed, .. } = self.faults;
         let mut rng = Rng::keyed(seed, self.purpose, self.robot, self.frames);
         self.frames = self.frames.wrapping_add(1);
         if rng.chance_q32(q32(loss)) {
@@ -140,29 +131,15 @@ mod tests {
 
     #[test]
     fn losses_and_flips_follow_their_probabilities_and_their_seed() {
-        let loss = LineFaults {
-            loss: 0.25,
-            seed: 3,
-            ..LineFaults::default()
-        };
+        let loss = LineFaults { loss: 0.25, seed: 3, ..LineFaults::default() };
         let frames = |faults| {
             let pieces = through(faults, 4000);
-            pieces
-                .into_iter()
-                .filter(|piece| piece.len() > 1)
-                .collect::<Vec<_>>()
+            pieces.into_iter().filter(|piece| piece.len() > 1).collect::<Vec<_>>()
         };
         let kept = frames(loss).len();
         assert!((2900..3100).contains(&kept), "{kept}");
-        let flips = LineFaults {
-            bit_errors: 0.01,
-            seed: 3,
-            ..LineFaults::default()
-        };
-        let damaged = frames(flips)
-            .iter()
-            .filter(|frame| **frame != [1, 2, 3, 0])
-            .count();
+        let flips = LineFaults { bit_errors: 0.01, seed: 3, ..LineFaults::default() };
+        let damaged = frames(flips).iter().filter(|frame| **frame != [1, 2, 3, 0]).count();
         // 1 - 0.99^32 of 4000.
         assert!((1000..1200).contains(&damaged), "{damaged}");
         assert_eq!(frames(flips), frames(flips));
@@ -172,14 +149,7 @@ mod tests {
     #[test]
     fn delayed_frames_arrive_late_and_in_order() {
         let delay = Duration::from_millis(2);
-        let mut line = Line::new(
-            LineFaults {
-                delay,
-                ..LineFaults::default()
-            },
-            1,
-            7,
-        );
+        let mut line = Line::new(LineFaults { delay, ..LineFaults::default() }, 1, 7);
         line.push(&[1, 0], 100);
         line.push(&[2, 0], 150);
         assert_eq!((line.next_us(), line.pop(2099)), (Some(2100), None));

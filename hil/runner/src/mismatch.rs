@@ -21,50 +21,22 @@ pub struct Mismatch {
 
 impl fmt::Display for Mismatch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            robot,
-            device,
-            tick,
-            on_device,
-            in_shadow,
-        } = self;
+        let Self { robot, device, tick, on_device, in_shadow } = self;
         writeln!(f, "robot {} on {device} differs at step {tick}:", robot.0)?;
         writeln!(f, "{:>10}  {:<38}  this host", "", "device")?;
         let (a, b) = (on_device, in_shadow);
         let rows = [
-            (
-                "digest",
-                format!("{:016x}", a.digest),
-                format!("{:016x}", b.digest),
-            ),
+            ("digest", format!("{:016x}", a.digest), format!("{:016x}", b.digest)),
             ("mode", format!("{:?}", a.mode), format!("{:?}", b.mode)),
             ("leader", a.leader.0.to_string(), b.leader.0.to_string()),
-            (
-                "target",
-                format!("{:?}", a.target),
-                format!("{:?}", b.target),
-            ),
-            (
-                "command",
-                format!("{:?}", a.outputs.command),
-                format!("{:?}", b.outputs.command),
-            ),
+            ("target", format!("{:?}", a.target), format!("{:?}", b.target)),
+            ("command", format!("{:?}", a.outputs.command), format!("{:?}", b.outputs.command)),
             (
                 "heard",
-                format!(
-                    "{} and {} refused, {:?}",
-                    a.outputs.received, a.outputs.rejected, a.outputs.refused
-                ),
-                format!(
-                    "{} and {} refused, {:?}",
-                    b.outputs.received, b.outputs.rejected, b.outputs.refused
-                ),
+                format!("{} and {} refused, {:?}", a.outputs.received, a.outputs.rejected, a.outputs.refused),
+                format!("{} and {} refused, {:?}", b.outputs.received, b.outputs.rejected, b.outputs.refused),
             ),
-            (
-                "events",
-                format!("{:?}", a.outputs.events),
-                format!("{:?}", b.outputs.events),
-            ),
+            ("events", format!("{:?}", a.outputs.events), format!("{:?}", b.outputs.events)),
             ("outbox", hex(&a.outputs.outbox), hex(&b.outputs.outbox)),
             (
                 "call again",
@@ -77,11 +49,7 @@ impl fmt::Display for Mismatch {
             if device.len() <= 38 {
                 writeln!(f, "{mark}{name:>9}  {device:<38}  {host}")?;
             } else {
-                writeln!(
-                    f,
-                    "{mark}{name:>9}  {device}\n{:>10}  {:<38}  {host}",
-                    "", ""
-                )?;
+                writeln!(f, "{mark}{name:>9}  {device}\n{:>10}  {:<38}  {host}", "", "")?;
             }
         }
         Ok(())

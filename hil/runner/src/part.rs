@@ -46,21 +46,9 @@ impl Part {
     /// The program that emulates it, the machine and what else that needs; the Debian package of the program.
     pub(crate) const fn machine(self) -> (&'static str, &'static [&'static str], &'static str) {
         match self {
-            Self::Stm32f405 => (
-                "qemu-system-arm",
-                &["-machine", "netduinoplus2"],
-                "qemu-system-arm",
-            ),
-            Self::Microbit => (
-                "qemu-system-arm",
-                &["-machine", "microbit"],
-                "qemu-system-arm",
-            ),
-            Self::Riscv32 => (
-                "qemu-system-riscv32",
-                &["-machine", "virt", "-bios", "none"],
-                "qemu-system-misc",
-            ),
+            Self::Stm32f405 => ("qemu-system-arm", &["-machine", "netduinoplus2"], "qemu-system-arm"),
+            Self::Microbit => ("qemu-system-arm", &["-machine", "microbit"], "qemu-system-arm"),
+            Self::Riscv32 => ("qemu-system-riscv32", &["-machine", "virt", "-bios", "none"], "qemu-system-misc"),
         }
     }
 

@@ -24,11 +24,7 @@ impl Spread {
             let rank = (sorted.len() * percent).div_ceil(100).max(1);
             sorted.get(rank - 1).copied().map(u64::from)
         };
-        Some(Self {
-            median: quantile(50)?,
-            p99: quantile(99)?,
-            max: quantile(100)?,
-        })
+        Some(Self { median: quantile(50)?, p99: quantile(99)?, max: quantile(100)? })
     }
 
     /// In another unit.
@@ -37,11 +33,7 @@ impl Spread {
             let scaled = u128::from(value) * u128::from(numerator) / u128::from(denominator.max(1));
             u64::try_from(scaled).unwrap_or(u64::MAX)
         };
-        Self {
-            median: scale(self.median),
-            p99: scale(self.p99),
-            max: scale(self.max),
-        }
+        Self { median: scale(self.median), p99: scale(self.p99), max: scale(self.max) }
     }
 }
 
@@ -115,27 +107,16 @@ mod tests {
     fn quantiles_are_values_that_were_there() {
         assert_eq!(Spread::of(&[]), None);
         let one = Spread::of(&[7]);
-        let all = Spread {
-            median: 7,
-            p99: 7,
-            max: 7,
-        };
+        let all = Spread { median: 7, p99: 7, max: 7 };
         assert_eq!(one, Some(all));
         let hundred: Vec<u32> = (1..=100).rev().collect();
-        let spread = Spread {
-            median: 50,
-            p99: 99,
-            max: 100,
-        };
+        let spread = Spread { median: 50, p99: 99, max: 100 };
         assert_eq!(Spread::of(&hundred), Some(spread));
     }
 
     #[test]
     fn ticks_of_168_mhz_become_instructions() {
-        let tally = Tally {
-            ticks: vec![168, 336, 16_800],
-            ..Tally::default()
-        };
+        let tally = Tally { ticks: vec![168, 336, 16_800], ..Tally::default() };
         let spread = tally.instructions(168_000_000).expect("three steps");
         assert_eq!((spread.median, spread.max), (2000, 100_000));
     }

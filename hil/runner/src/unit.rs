@@ -74,10 +74,7 @@ impl Unit {
         let robot = config.setup.agent.id.0;
         let faults = config.faults;
         let mut unit = Self {
-            port: Box::new(Port::new(
-                options.run,
-                limits(Duration::ZERO, Duration::ZERO),
-            )),
+            port: Box::new(Port::new(options.run, limits(Duration::ZERO, Duration::ZERO))),
             shadow: None,
             hello: None,
             there: Line::new(faults, 0, robot),
@@ -112,8 +109,7 @@ impl Unit {
     fn set_limits(&mut self, bytes: usize, limit: Duration) {
         let bytes = u32::try_from(bytes + MAX_ANSWER).unwrap_or(u32::MAX);
         let line = self.channel.per_byte.saturating_mul(bytes);
-        self.port
-            .set_limits(limits(self.resend_after + line, limit));
+        self.port.set_limits(limits(self.resend_after + line, limit));
     }
 
     fn greet(&mut self, now_us: u64) {
@@ -163,36 +159,20 @@ impl Unit {
         self.pump(now_us);
     }
 
-    fn ask(
-        &mut self,
-        tick: u32,
-        now: Instant,
-        inputs: &AnyInputs<'_, f32>,
-        now_us: u64,
-    ) -> Result<(), Cause> {
+    fn ask(&mut self, tick: u32, now: Instant, inputs: &AnyInputs<'_, f32>, now_us: u64) -> Result<(), Cause> {
         let (Some(hello), Some(shadow)) = (&self.hello, &mut self.shadow) else {
             return Err(Cause::NotReady);
         };
         let capacities = hello.capacities;
         let wire = AnyWire::new(self.config.setup.format);
-        let (step, cut) = capacities
-            .fit(tick, now, inputs, &wire, &mut self.packed)
-            .map_err(Cause::Window)?;
+        let (step, cut) = capacities.fit(tick, now, inputs, &wire, &mut self.packed).map_err(Cause::Window)?;
         self.tally.cut_inbox_bytes += cut.inbox_bytes as u64;
         self.tally.cut_obstacles += cut.obstacles as u64;
-        shadow
-            .step(&step)
-            .map_err(|refusal| Cause::Shadow(refusal.to_string()))?;
+        shadow.step(&step).map_err(|refusal| Cause::Shadow(refusal.to_string()))?;
         let result = shadow.result().ok_or(Cause::NotReady)?;
-        self.port
-            .step(&step, now_us)
-            .map_err(|TooLong| Cause::TooLong(REQUEST))?;
+        self.port.step(&step, now_us).map_err(|TooLong| Cause::TooLong(REQUEST))?;
         self.set_limits(capacities.frame_bytes(), self.step_limit);
-        self.phase = Phase::Stepping(Box::new(Expected {
-            tick,
-            result,
-            sent_us: now_us,
-        }));
+        self.phase = Phase::Stepping(Box::new(Expected { tick, result, sent_us: now_us }));
         Ok(())
     }
 
@@ -315,9 +295,7 @@ impl Unit {
         self.packed = vec![0; usize::from(hello.capacities.obstacles) * OBSTACLE_BYTES];
         self.hello = Some(hello);
         let (setup, task) = (&self.config.setup, self.config.task.as_ref());
-        self.port
-            .configure(setup, task, now_us)
-            .map_err(|TooLong| Cause::TooLong(REQUEST))?;
+        self.port.configure(setup, task, now_us).map_err(|TooLong| Cause::TooLong(REQUEST))?;
         self.set_limits(REQUEST / 16, self.start_limit);
         self.phase = Phase::Configuring;
         Ok(())
@@ -385,10 +363,7 @@ impl Unit {
         let tally = &self.tally;
         let counts = self.port.counts();
         let text = |of: fn(&Hello) -> &str| self.hello.as_ref().map_or("", of).to_owned();
-        let ticks_per_second = self
-            .hello
-            .as_ref()
-            .map_or(0, |hello| hello.ticks_per_second);
+        let ticks_per_second = self.hello.as_ref().map_or(0, |hello| hello.ticks_per_second);
         let is_emulated = self.channel.part.is_some();
         Statistics {
             robot: self.robot(),
@@ -400,9 +375,7 @@ impl Unit {
             round_trip_us: Spread::of(&tally.round_trip_us),
             ticks: Spread::of(&tally.ticks),
             ticks_per_second,
-            instructions: is_emulated
-                .then(|| tally.instructions(ticks_per_second))
-                .flatten(),
+            instructions: is_emulated.then(|| tally.instructions(ticks_per_second)).flatten(),
             stack_bytes: tally.stack_bytes,
             resent: counts.resent.into(),
             damaged: counts.damaged.into(),
@@ -419,25 +392,16 @@ impl Unit {
 fn limits(resend_after: Duration, limit: Duration) -> Limits {
     let resend_after_us = micros(resend_after).max(1);
     let attempts = micros(limit).div_ceil(resend_after_us).max(1);
-    Limits {
-        resend_after_us,
-        attempts: u32::try_from(attempts).unwrap_or(u32::MAX),
-    }
+    Limits { resend_after_us, attempts: u32::try_from(attempts).unwrap_or(u32::MAX) }
 }
 
 /// The robot in this process that computes as the device does: the same numbers, the same capacities.
 fn shadow(hello: &Hello) -> Option<Box<dyn Controller + Send>> {
     let is_same = |controller: &dyn Controller| {
         let inbox_bytes = hello.capacities.inbox_bytes;
-        let capacities = Capacities {
-            inbox_bytes,
-            ..controller.capacities()
-        };
+        let capacities = Capacities { inbox_bytes, ..controller.capacities() };
         controller.number() == hello.number && capacities == hello.capacities
     };
-    let candidates: [Box<dyn Controller + Send>; 2] =
-        [Box::new(Large::new()), Box::new(Small::new())];
-    candidates
-        .into_iter()
-        .find(|controller| is_same(controller.as_ref()))
+    let candidates: [Box<dyn Controller + Send>; 2] = [Box::new(Large::new()), Box::new(Small::new())];
+    candidates.into_iter().find(|controller| is_same(controller.as_ref()))
 }

@@ -23,11 +23,7 @@ fn firmware() -> PathBuf {
 }
 
 fn options() -> Options {
-    Options {
-        step_limit: Duration::from_secs(60),
-        start_limit: Duration::from_secs(60),
-        ..Options::new(firmware())
-    }
+    Options { step_limit: Duration::from_secs(60), start_limit: Duration::from_secs(60), ..Options::new(firmware()) }
 }
 
 fn send(fleet: &mut Fleet, tick: u32) {
@@ -58,15 +54,7 @@ fn run(fleet: &mut Fleet, ticks: u32) -> Vec<u32> {
 
 fn print(statistics: &Statistics) {
     let Statistics {
-        device,
-        round_trip_us,
-        instructions,
-        stack_bytes,
-        resent,
-        sent_bytes,
-        received_bytes,
-        steps,
-        ..
+        device, round_trip_us, instructions, stack_bytes, resent, sent_bytes, received_bytes, steps, ..
     } = statistics;
     println!(
         "{device}: {steps} steps, round trip {round_trip_us:?} us, instructions {instructions:?}, \
@@ -84,22 +72,13 @@ fn is_alive(process: u32) -> bool {
 #[test]
 fn every_part_decides_as_its_shadow() {
     let parts = Part::ALL.into_iter().cycle().take(6);
-    let configs = parts
-        .zip(1..)
-        .map(|(part, robot)| config(robot, &format!("qemu:{}", part.name())));
+    let configs = parts.zip(1..).map(|(part, robot)| config(robot, &format!("qemu:{}", part.name())));
     let mut fleet = Fleet::start(configs.collect(), options()).expect("they start");
     assert_eq!(run(&mut fleet, 100), [0; 6]);
     for statistics in fleet.statistics() {
         print(&statistics);
-        assert_eq!(
-            (statistics.steps, statistics.mismatches, statistics.resets),
-            (100, 0, 0)
-        );
-        assert!(
-            statistics
-                .instructions
-                .is_some_and(|spread| spread.median > 1000)
-        );
+        assert_eq!((statistics.steps, statistics.mismatches, statistics.resets), (100, 0, 0));
+        assert!(statistics.instructions.is_some_and(|spread| spread.median > 1000));
         assert!(statistics.stack_bytes > 100);
     }
 }
@@ -130,26 +109,15 @@ fn every_part_speaks_mavlink() {
 fn emulated_parts_restart_on_request_and_rejoin_over_a_bad_line() {
     let configs = Part::ALL.into_iter().zip(1..).map(|(part, robot)| {
         let mut config = config(robot, &format!("qemu:{}", part.name()));
-        config.faults = LineFaults {
-            loss: 0.05,
-            bit_errors: 1e-5,
-            delay: Duration::from_millis(1),
-            seed: 9,
-        };
-        config.resets = vec![Reset {
-            tick: 20,
-            down_ticks: 5,
-        }];
+        config.faults = LineFaults { loss: 0.05, bit_errors: 1e-5, delay: Duration::from_millis(1), seed: 9 };
+        config.resets = vec![Reset { tick: 20, down_ticks: 5 }];
         config
     });
     let mut fleet = Fleet::start(configs.collect(), options()).expect("they start");
     assert_eq!(run(&mut fleet, 60), [5; 3]);
     for statistics in fleet.statistics() {
         print(&statistics);
-        assert_eq!(
-            (statistics.steps, statistics.mismatches, statistics.resets),
-            (55, 0, 1)
-        );
+        assert_eq!((statistics.steps, statistics.mismatches, statistics.resets), (55, 0, 1));
     }
 }
 
@@ -179,9 +147,7 @@ fn emulator_that_is_killed_is_named() {
     let mut fleet = Fleet::start(configs, options()).expect("it starts");
     run(&mut fleet, 3);
     let process = fleet.processes()[0].to_string();
-    let killed = std::process::Command::new("kill")
-        .args(["-KILL", &process])
-        .status();
+    let killed = std::process::Command::new("kill").args(["-KILL", &process]).status();
     assert!(killed.is_ok_and(|status| status.success()));
     send(&mut fleet, 3);
     let answer = fleet.collect().pop();
@@ -189,10 +155,7 @@ fn emulator_that_is_killed_is_named() {
         panic!("{answer:?}");
     };
     let text = error.to_string();
-    assert!(
-        text.starts_with("robot 1 on qemu:microbit: the emulator ended"),
-        "{text}"
-    );
+    assert!(text.starts_with("robot 1 on qemu:microbit: the emulator ended"), "{text}");
 }
 
 #[test]

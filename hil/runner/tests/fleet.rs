@@ -26,10 +26,7 @@ fn small(mischief: Mischief) -> Channel {
 }
 
 fn options() -> Options {
-    Options {
-        resend_after: Duration::from_millis(20),
-        ..Options::new("nowhere".into())
-    }
+    Options { resend_after: Duration::from_millis(20), ..Options::new("nowhere".into()) }
 }
 
 fn one(config: DeviceConfig, channel: Channel) -> Fleet {
@@ -68,10 +65,7 @@ fn run(fleet: &mut Fleet, ticks: u32) -> Vec<Vec<u64>> {
     let digests = |t| {
         let answers = tick(fleet, t);
         assert_eq!(answers.len(), fleet.len());
-        answers
-            .into_iter()
-            .map(|answer| decided(answer).digest)
-            .collect()
+        answers.into_iter().map(|answer| decided(answer).digest).collect()
     };
     (0..ticks).map(digests).collect()
 }
@@ -84,10 +78,7 @@ fn devices_of_two_kinds_decide_as_their_shadows_and_are_counted() {
         assert_eq!((statistics.robot, statistics.steps), (robot, 200));
         assert_eq!((statistics.mismatches, statistics.resets), (0, 0));
         let part = if robot <= 2 { "stm32f405" } else { "nrf51" };
-        assert_eq!(
-            (statistics.part.as_str(), statistics.firmware.as_str()),
-            (part, "a thread")
-        );
+        assert_eq!((statistics.part.as_str(), statistics.firmware.as_str()), (part, "a thread"));
         let round_trip = statistics.round_trip_us.expect("200 of them");
         assert!(round_trip.median <= round_trip.p99 && round_trip.p99 <= round_trip.max);
         assert!(statistics.sent_bytes > 200 * 100 && statistics.received_bytes > 200 * 50);
@@ -101,10 +92,7 @@ fn robot_behind_a_serial_port_decides_as_its_shadow() {
     let (board, port) = serialport::TTYPort::pair().expect("pseudo-terminals");
     let device = format!("serial:{},baud=1000000", port.name().expect("a path"));
     let mut configs = vec![config(1, &device)];
-    configs[0].resets = vec![Reset {
-        tick: 20,
-        down_ticks: 2,
-    }];
+    configs[0].resets = vec![Reset { tick: 20, down_ticks: 2 }];
     std::thread::spawn(|| {
         live::<Large, LARGE>(Large::new, "stm32f405", Mischief::default(), board);
     });
@@ -127,12 +115,7 @@ fn robot_behind_a_serial_port_decides_as_its_shadow() {
 fn faults_of_the_line_change_no_decision() {
     let clean = run(&mut four(|_| {}), 100);
     let mut fleet = four(|config| {
-        config.faults = LineFaults {
-            loss: 0.1,
-            bit_errors: 2e-5,
-            delay: Duration::from_micros(300),
-            seed: 5,
-        };
+        config.faults = LineFaults { loss: 0.1, bit_errors: 2e-5, delay: Duration::from_micros(300), seed: 5 };
     });
     assert_eq!(run(&mut fleet, 100), clean);
     let resent: u64 = fleet.statistics().iter().map(|s| s.resent).sum();
@@ -173,10 +156,7 @@ fn ordered_reset_takes_so_many_steps_and_the_robot_rejoins() {
 
 #[test]
 fn device_that_resets_by_itself_is_down_for_a_step_and_rejoins() {
-    let mischief = Mischief {
-        resets_at: Some(30),
-        ..Mischief::default()
-    };
+    let mischief = Mischief { resets_at: Some(30), ..Mischief::default() };
     let mut fleet = one(config(1, "thread"), large(mischief));
     let mut down = Vec::new();
     for t in 0..60 {
@@ -231,10 +211,7 @@ impl Controller for Wrong {
 
 #[test]
 fn first_difference_is_found_and_both_sides_can_be_printed() {
-    let new = || Wrong {
-        controller: Large::new(),
-        steps: 0,
-    };
+    let new = || Wrong { controller: Large::new(), steps: 0 };
     let channel = device::<Wrong, LARGE>(new, "stm32f405", Mischief::default());
     let mut fleet = one(config(1, "qemu:stm32f405"), channel);
     run(&mut fleet, 49);
@@ -243,20 +220,14 @@ fn first_difference_is_found_and_both_sides_can_be_printed() {
     };
     assert_eq!(mismatch.tick, 49);
     let text = mismatch.to_string();
-    assert!(
-        text.starts_with("robot 1 on qemu:stm32f405 differs at step 49:"),
-        "{text}"
-    );
+    assert!(text.starts_with("robot 1 on qemu:stm32f405 differs at step 49:"), "{text}");
     let (device, host) = (&mismatch.on_device, &mismatch.in_shadow);
     for digest in [device.digest, host.digest] {
         assert!(text.contains(&format!("{digest:016x}")), "{text}");
     }
     let marked: Vec<&str> = text.lines().filter(|line| line.starts_with('*')).collect();
     assert_eq!(marked.len(), 2, "{text}");
-    assert!(
-        marked[0].contains("digest") && marked[1].contains("heard"),
-        "{text}"
-    );
+    assert!(marked[0].contains("digest") && marked[1].contains("heard"), "{text}");
     assert_eq!(fleet.statistics()[0].mismatches, 1);
 }
 
@@ -269,19 +240,10 @@ fn cause(answers: Vec<Answer>) -> String {
 
 #[test]
 fn silent_device_is_named_with_its_step_and_the_time() {
-    let mischief = Mischief {
-        silent_at: Some(7),
-        ..Mischief::default()
-    };
-    let options = Options {
-        step_limit: Duration::from_millis(100),
-        ..options()
-    };
+    let mischief = Mischief { silent_at: Some(7), ..Mischief::default() };
+    let options = Options { step_limit: Duration::from_millis(100), ..options() };
     let mut fleet = Fleet::over(
-        vec![
-            (config(1, "qemu:microbit"), small(mischief)),
-            (config(2, "thread"), large(Mischief::default())),
-        ],
+        vec![(config(1, "qemu:microbit"), small(mischief)), (config(2, "thread"), large(Mischief::default()))],
         options,
     )
     .expect("they start");
@@ -291,17 +253,11 @@ fn silent_device_is_named_with_its_step_and_the_time() {
     let _ = decided(answers.pop().expect("two"));
     let text = cause(answers);
     let known = "robot 1 on qemu:microbit: no answer to step 7 within ";
-    assert!(
-        text.starts_with(known) && text.ends_with("(5 attempts)"),
-        "{text}"
-    );
+    assert!(text.starts_with(known) && text.ends_with("(5 attempts)"), "{text}");
     // It stays out.
     let mut answers = tick(&mut fleet, 8);
     let _ = decided(answers.pop().expect("two"));
-    assert_eq!(
-        cause(answers),
-        "robot 1 on qemu:microbit: it was given up before"
-    );
+    assert_eq!(cause(answers), "robot 1 on qemu:microbit: it was given up before");
 }
 
 #[test]
@@ -312,18 +268,12 @@ fn second_step_before_the_first_is_collected_is_an_error() {
         fleet.send(0, t, now(t), &scene.inputs());
     }
     let text = cause(fleet.collect());
-    assert!(
-        text.ends_with("still busy with the last step: collect its answer first"),
-        "{text}"
-    );
+    assert!(text.ends_with("still busy with the last step: collect its answer first"), "{text}");
 }
 
 #[test]
 fn device_that_leaves_is_named() {
-    let mischief = Mischief {
-        leaves_at: Some(3),
-        ..Mischief::default()
-    };
+    let mischief = Mischief { leaves_at: Some(3), ..Mischief::default() };
     let mut fleet = one(config(5, "thread"), large(mischief));
     run(&mut fleet, 3);
     let text = cause(tick(&mut fleet, 3));
@@ -332,35 +282,21 @@ fn device_that_leaves_is_named() {
 
 #[test]
 fn device_that_never_answers_is_an_error_of_the_start() {
-    let mischief = Mischief {
-        silent_at: Some(0),
-        ..Mischief::default()
-    };
-    let options = Options {
-        start_limit: Duration::from_millis(60),
-        ..options()
-    };
+    let mischief = Mischief { silent_at: Some(0), ..Mischief::default() };
+    let options = Options { start_limit: Duration::from_millis(60), ..options() };
     let lines = vec![(config(1, "thread"), large(mischief))];
-    let error = Fleet::over(lines, options)
-        .expect_err("nobody answers")
-        .to_string();
-    assert!(
-        error.starts_with("robot 1 on thread: no answer to greeting within "),
-        "{error}"
-    );
+    let error = Fleet::over(lines, options).expect_err("nobody answers").to_string();
+    assert!(error.starts_with("robot 1 on thread: no answer to greeting within "), "{error}");
 }
 
 #[test]
 fn setup_that_does_not_fit_is_an_error_of_the_start() {
     let mut config = config(2, "thread");
-    if let staya_controller::agent::GuidanceSetup::Route { route, .. } = &mut config.setup.guidance
-    {
+    if let staya_controller::agent::GuidanceSetup::Route { route, .. } = &mut config.setup.guidance {
         route.params.radius = 6;
     }
     let lines = vec![(config, small(Mischief::default()))];
-    let error = Fleet::over(lines, options())
-        .expect_err("too far")
-        .to_string();
+    let error = Fleet::over(lines, options()).expect_err("too far").to_string();
     let text = "robot 2 on thread: the device answers to setup: Capacity: a search of 225 cells, and room for 169";
     assert_eq!(error, text);
 }
@@ -416,14 +352,8 @@ fn inputs_beyond_the_capacities_are_cut_for_both_alike_and_counted() {
 
 #[test]
 fn stop_ends_the_wait() {
-    let mischief = Mischief {
-        silent_at: Some(0),
-        ..Mischief::default()
-    };
-    let patient = Options {
-        start_limit: Duration::from_secs(3600),
-        ..options()
-    };
+    let mischief = Mischief { silent_at: Some(0), ..Mischief::default() };
+    let patient = Options { start_limit: Duration::from_secs(3600), ..options() };
     patient.stop.store(true, Ordering::Relaxed);
     let lines = vec![(config(1, "thread"), large(mischief))];
     let error = Fleet::over(lines, patient).expect_err("stopped");
@@ -434,25 +364,11 @@ fn stop_ends_the_wait() {
 fn unknown_devices_and_missing_firmware_are_errors_of_the_start() {
     for (device, pieces) in [
         ("qemu:z80", ["`qemu:z80` is no device", "qemu:riscv32"]),
-        (
-            "qemu:stm32f405",
-            [
-                "nowhere/stm32f405/lockstep",
-                "cargo xtask firmware stm32f405",
-            ],
-        ),
-        (
-            "serial:/dev/nothing-there",
-            ["cannot open /dev/nothing-there", "; "],
-        ),
+        ("qemu:stm32f405", ["nowhere/stm32f405/lockstep", "cargo xtask firmware stm32f405"]),
+        ("serial:/dev/nothing-there", ["cannot open /dev/nothing-there", "; "]),
     ] {
-        let error = Fleet::start(vec![config(3, device)], options())
-            .expect_err(device)
-            .to_string();
-        assert!(
-            error.starts_with(&format!("robot 3 on {device}: ")),
-            "{error}"
-        );
+        let error = Fleet::start(vec![config(3, device)], options()).expect_err(device).to_string();
+        assert!(error.starts_with(&format!("robot 3 on {device}: ")), "{error}");
         for piece in pieces {
             assert!(error.contains(piece), "{error}");
         }

@@ -66,11 +66,7 @@ impl SerialPort {
     pub fn open(&self, timeout: Duration) -> Result<(Reader, Writer), OpenError> {
         let failed = |source| {
             let found = serialport::available_ports().unwrap_or_default();
-            OpenError {
-                path: self.path.clone(),
-                source,
-                ports: found.into_iter().map(|port| port.port_name).collect(),
-            }
+            OpenError { path: self.path.clone(), source, ports: found.into_iter().map(|port| port.port_name).collect() }
         };
         let name = self.path.to_string_lossy();
         let port = serialport::new(name, self.baud).timeout(timeout).open();
@@ -156,10 +152,7 @@ mod tests {
             panic!("there is none");
         };
         let text = error.to_string();
-        assert!(
-            text.starts_with("cannot open /dev/no-such-port: "),
-            "{text}"
-        );
+        assert!(text.starts_with("cannot open /dev/no-such-port: "), "{text}");
         assert!(text.contains("; "), "{text}");
     }
 }

@@ -38,11 +38,7 @@ impl Ended {
     /// `Interrupted` when `stop` was requested.
     #[must_use]
     pub fn by(stop: &Stop) -> Self {
-        if stop.is_requested() {
-            Self::Interrupted
-        } else {
-            Self::Done
-        }
+        if stop.is_requested() { Self::Interrupted } else { Self::Done }
     }
 }
 
@@ -52,9 +48,7 @@ impl Ended {
 /// When standard output is closed or full.
 pub fn print(text: &str) -> Result<()> {
     let mut out = io::stdout().lock();
-    out.write_all(text.as_bytes())
-        .and_then(|()| out.flush())
-        .context("cannot write to standard output")
+    out.write_all(text.as_bytes()).and_then(|()| out.flush()).context("cannot write to standard output")
 }
 
 /// Writes one JSON object and a line feed to standard output.

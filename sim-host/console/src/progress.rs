@@ -74,10 +74,7 @@ impl Progress {
             bar.set_style(style.progress_chars("=> "));
         }
         bar.set_prefix(label.to_owned());
-        Self {
-            bar,
-            lines: (!terminal && !global.quiet).then(Instant::now),
-        }
+        Self { bar, lines: (!terminal && !global.quiet).then(Instant::now) }
     }
 
     /// `done` steps are behind; `message` says what is worth watching.
@@ -90,11 +87,7 @@ impl Progress {
             let (label, total) = (self.bar.prefix(), self.bar.length().unwrap_or(0));
             let left = self.bar.eta().as_secs();
             // A closed standard error must not stop the work.
-            let _ = writeln!(
-                io::stderr(),
-                "{label}: {done}/{total}{}, about {left} s to go",
-                spaced(&message())
-            );
+            let _ = writeln!(io::stderr(), "{label}: {done}/{total}{}, about {left} s to go", spaced(&message()));
         }
     }
 

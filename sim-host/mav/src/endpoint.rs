@@ -37,10 +37,7 @@ impl FromStr for Endpoint {
     type Err = EndpointError;
 
     fn from_str(text: &str) -> Result<Self, EndpointError> {
-        let error = |what: String| EndpointError {
-            text: text.to_owned(),
-            what,
-        };
+        let error = |what: String| EndpointError { text: text.to_owned(), what };
         let (kind, rest) = text.split_once(':').unwrap_or((text, ""));
         let make = match kind {
             "udpout" => Self::UdpOut,
@@ -49,15 +46,12 @@ impl FromStr for Endpoint {
             "tcpin" => Self::TcpIn,
             "serial" => {
                 let port: Result<SerialPort, _> = rest.parse();
-                return port
-                    .map(Self::Serial)
-                    .map_err(|reason| error(reason.to_string()));
+                return port.map(Self::Serial).map_err(|reason| error(reason.to_string()));
             }
             _ => return Err(error(format!("`{kind}` is no kind of line"))),
         };
-        let mut addresses = rest
-            .to_socket_addrs()
-            .map_err(|reason| error(format!("`{rest}` is no HOST:PORT ({reason})")))?;
+        let mut addresses =
+            rest.to_socket_addrs().map_err(|reason| error(format!("`{rest}` is no HOST:PORT ({reason})")))?;
         // Where a name has several addresses, most MAVLink programs listen on the one of IPv4.
         let first = addresses.next();
         let address = addresses

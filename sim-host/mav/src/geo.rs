@@ -52,9 +52,7 @@ impl Global {
     /// Whether the numbers are those of a place; altitudes are within 100 km.
     #[must_use]
     pub fn is_sound(&self) -> bool {
-        self.latitude_deg.abs() <= 90.0
-            && self.longitude_deg.abs() <= 180.0
-            && self.altitude_m.abs() <= 100_000.0
+        self.latitude_deg.abs() <= 90.0 && self.longitude_deg.abs() <= 180.0 && self.altitude_m.abs() <= 100_000.0
     }
 }
 
@@ -132,22 +130,14 @@ impl Origin {
     fn turned(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         let ([sin_lat, cos_lat], [sin_lon, cos_lon]) = (self.latitude, self.longitude);
         let outward = x * cos_lon + y * sin_lon;
-        [
-            y * cos_lon - x * sin_lon,
-            z * cos_lat - outward * sin_lat,
-            outward * cos_lat + z * sin_lat,
-        ]
+        [y * cos_lon - x * sin_lon, z * cos_lat - outward * sin_lat, outward * cos_lat + z * sin_lat]
     }
 
     /// From east, north, up to axes of the Earth.
     fn turned_back(&self, [east, north, up]: [f64; 3]) -> [f64; 3] {
         let ([sin_lat, cos_lat], [sin_lon, cos_lon]) = (self.latitude, self.longitude);
         let outward = up * cos_lat - north * sin_lat;
-        [
-            outward * cos_lon - east * sin_lon,
-            outward * sin_lon + east * cos_lon,
-            north * cos_lat + up * sin_lat,
-        ]
+        [outward * cos_lon - east * sin_lon, outward * sin_lon + east * cos_lon, north * cos_lat + up * sin_lat]
     }
 }
 
@@ -172,11 +162,7 @@ fn from_center_m(latitude: f64, longitude: f64, altitude_m: f64) -> [f64; 3] {
     let (sin, cos) = (libm::sin(latitude), libm::cos(latitude));
     let normal_m = A_M / (1.0 - E2 * sin * sin).sqrt();
     let outward = (normal_m + altitude_m) * cos;
-    [
-        outward * libm::cos(longitude),
-        outward * libm::sin(longitude),
-        (normal_m * (1.0 - E2) + altitude_m) * sin,
-    ]
+    [outward * libm::cos(longitude), outward * libm::sin(longitude), (normal_m * (1.0 - E2) + altitude_m) * sin]
 }
 
 /// Latitude and longitude in radians and altitude in metres: Bowring's formula, in two rounds.
@@ -187,14 +173,8 @@ fn geodetic([x, y, z]: [f64; 3]) -> (f64, f64, f64) {
     let mut latitude = 0.0;
     for _ in 0..2 {
         let (sin, cos) = (libm::sin(reduced), libm::cos(reduced));
-        latitude = libm::atan2(
-            z + E2 / (1.0 - E2) * b_m * sin * sin * sin,
-            outward - E2 * A_M * cos * cos * cos,
-        );
-        reduced = libm::atan2(
-            (1.0 - FLATTENING) * libm::sin(latitude),
-            libm::cos(latitude),
-        );
+        latitude = libm::atan2(z + E2 / (1.0 - E2) * b_m * sin * sin * sin, outward - E2 * A_M * cos * cos * cos);
+        reduced = libm::atan2((1.0 - FLATTENING) * libm::sin(latitude), libm::cos(latitude));
     }
     let (sin, cos) = (libm::sin(latitude), libm::cos(latitude));
     let altitude_m = outward * cos + z * sin - A_M * (1.0 - E2 * sin * sin).sqrt();

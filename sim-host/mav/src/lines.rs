@@ -43,17 +43,9 @@ impl Lines {
     /// The first one that cannot be opened. An absent peer is no error.
     pub fn open(endpoints: &[Endpoint]) -> Result<Self, OpenError> {
         let (sender, inbox) = sync_channel(INBOX);
-        let mut lines = Self {
-            lines: Vec::new(),
-            inbox,
-        };
+        let mut lines = Self { lines: Vec::new(), inbox };
         for (line, endpoint) in endpoints.iter().enumerate() {
-            let shared = Shared {
-                line,
-                inbox: sender.clone(),
-                tally: Arc::default(),
-                closed: Arc::default(),
-            };
+            let shared = Shared { line, inbox: sender.clone(), tally: Arc::default(), closed: Arc::default() };
             let opened = match endpoint {
                 Endpoint::UdpOut(address) => udp::open_out(*address, &shared),
                 Endpoint::UdpIn(address) => udp::open_in(*address, &shared),
@@ -66,12 +58,7 @@ impl Lines {
                 Ok(opened) => opened,
                 Err(source) => return Err(OpenError { endpoint, source }),
             };
-            lines.lines.push(Line {
-                endpoint,
-                outgoing,
-                shared,
-                threads,
-            });
+            lines.lines.push(Line { endpoint, outgoing, shared, threads });
         }
         Ok(lines)
     }

@@ -67,11 +67,7 @@ impl Outgoing for Stream {
 /// A connection to an address, again and again.
 pub(super) fn connect(to: SocketAddr, shared: &Shared) -> (Box<dyn Outgoing>, Threads) {
     let peers = Peers::default();
-    let stream = Stream {
-        peers: peers.clone(),
-        local: None,
-        shared: shared.clone(),
-    };
+    let stream = Stream { peers: peers.clone(), local: None, shared: shared.clone() };
     let shared = shared.clone();
     let work = move || {
         while !shared.is_closed() {
@@ -89,11 +85,7 @@ pub(super) fn listen(at: SocketAddr, shared: &Shared) -> Opened {
     let listener = TcpListener::bind(at)?;
     listener.set_nonblocking(true)?;
     let peers = Peers::default();
-    let stream = Stream {
-        peers: peers.clone(),
-        local: listener.local_addr().ok(),
-        shared: shared.clone(),
-    };
+    let stream = Stream { peers: peers.clone(), local: listener.local_addr().ok(), shared: shared.clone() };
     let shared = shared.clone();
     let work = move || {
         let mut threads = Threads::new();
@@ -122,11 +114,7 @@ pub(super) fn serial(port: &SerialPort, shared: &Shared) -> Opened {
     let open = move || port.open(PAUSE);
     let mut opened = Some(open().map_err(io::Error::other)?);
     let peers = Peers::default();
-    let stream = Stream {
-        peers: peers.clone(),
-        local: None,
-        shared: shared.clone(),
-    };
+    let stream = Stream { peers: peers.clone(), local: None, shared: shared.clone() };
     let shared = shared.clone();
     let work = move || {
         while !shared.is_closed() {
@@ -165,13 +153,7 @@ fn converse_tcp(socket: &TcpStream, peer: Peer, peers: &Peers, shared: &Shared) 
 }
 
 /// Reads and writes until either side ends.
-fn converse(
-    mut read: impl Read,
-    write: impl Write + Send,
-    peer: Peer,
-    peers: &Peers,
-    shared: &Shared,
-) {
+fn converse(mut read: impl Read, write: impl Write + Send, peer: Peer, peers: &Peers, shared: &Shared) {
     let (queue, frames) = sync_channel(QUEUE);
     peers.with(|peers| peers.insert(peer, queue));
     thread::scope(|scope| {
@@ -212,8 +194,5 @@ fn write_all(mut write: impl Write, frames: &Receiver<Vec<u8>>, shared: &Shared)
 
 /// Nothing came in for a while; or the port was interrupted.
 fn is_nothing(error: &io::Error) -> bool {
-    matches!(
-        error.kind(),
-        ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::Interrupted
-    )
+    matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::Interrupted)
 }

@@ -30,10 +30,7 @@ impl Tlog {
     pub fn create(path: &Path) -> Result<Self, TlogError> {
         let path = path.to_owned();
         match File::create(&path) {
-            Ok(file) => Ok(Self {
-                file: BufWriter::new(file),
-                path,
-            }),
+            Ok(file) => Ok(Self { file: BufWriter::new(file), path }),
             Err(source) => Err(TlogError { path, source }),
         }
     }
@@ -67,10 +64,7 @@ impl Tlog {
     }
 
     fn error(&self, source: io::Error) -> TlogError {
-        TlogError {
-            path: self.path.clone(),
-            source,
-        }
+        TlogError { path: self.path.clone(), source }
     }
 }
 

@@ -126,11 +126,7 @@ impl Shared {
     fn hand_on(&self, peer: Peer, frame: &[u8]) {
         add(&self.tally.frames_in, 1);
         add(&self.tally.bytes_in, frame.len());
-        let received = Received {
-            line: self.line,
-            peer,
-            frame: frame.to_vec(),
-        };
+        let received = Received { line: self.line, peer, frame: frame.to_vec() };
         if let Err(TrySendError::Full(_)) = self.inbox.try_send(received) {
             add(&self.tally.lost_in, 1);
         }

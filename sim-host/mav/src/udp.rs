@@ -39,9 +39,7 @@ pub(super) fn open_out(to: SocketAddr, shared: &Shared) -> Opened {
         SocketAddr::V6(_) => "[::1]:0",
     };
     let socket = UdpSocket::bind(local)?;
-    let reader = read(socket.try_clone()?, shared, move |from| {
-        from.ip() == to.ip()
-    })?;
+    let reader = read(socket.try_clone()?, shared, move |from| from.ip() == to.ip())?;
     let shared = shared.clone();
     Ok((Box::new(Out { socket, to, shared }), vec![reader]))
 }
@@ -62,11 +60,7 @@ pub(super) fn open_in(at: SocketAddr, shared: &Shared) -> Opened {
         true
     })?;
     let shared = shared.clone();
-    let line = In {
-        socket,
-        heard,
-        shared,
-    };
+    let line = In { socket, heard, shared };
     Ok((Box::new(line), vec![reader]))
 }
 
@@ -78,19 +72,17 @@ fn read(
 ) -> io::Result<JoinHandle<()>> {
     socket.set_read_timeout(Some(GLANCE))?;
     let shared = shared.clone();
-    thread::Builder::new()
-        .name(String::from("udp"))
-        .spawn(move || {
-            let mut buffer = vec![0; 65_536];
-            while !shared.is_closed() {
-                // Errors are those of datagrams that nobody took, or that none came: neither ends a line.
-                if let Ok((len, from)) = socket.recv_from(&mut buffer)
-                    && is_welcome(from)
-                {
-                    shared.take(Peer::Address(from), &buffer[..len], true);
-                }
+    thread::Builder::new().name(String::from("udp")).spawn(move || {
+        let mut buffer = vec![0; 65_536];
+        while !shared.is_closed() {
+            // Errors are those of datagrams that nobody took, or that none came: neither ends a line.
+            if let Ok((len, from)) = socket.recv_from(&mut buffer)
+                && is_welcome(from)
+            {
+                shared.take(Peer::Address(from), &buffer[..len], true);
             }
-        })
+        }
+    })
 }
 
 impl Out {

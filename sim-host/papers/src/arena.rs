@@ -29,11 +29,8 @@ pub(super) struct Arena {
 impl Arena {
     /// The part for the plane with robots that start so, with default parameters of guidance and safety layer.
     pub fn setup(&self, starts: Vec<Start>) -> PlaneSetup {
-        let abilities = Abilities {
-            max_speed_mps: self.max_speed_mps,
-            max_acceleration_mps2: f64::INFINITY,
-            step_s: self.step_s,
-        };
+        let abilities =
+            Abilities { max_speed_mps: self.max_speed_mps, max_acceleration_mps2: f64::INFINITY, step_s: self.step_s };
         PlaneSetup {
             sight_m: self.sight_m,
             guidance: self.guidance,
@@ -45,11 +42,7 @@ impl Arena {
 
     /// The scenario of robots 1, 2, ... as they are set up.
     pub fn scenario(&self, setup: PlaneSetup) -> Scenario {
-        let radio = RadioParams {
-            range_m: self.range_m,
-            loss: self.loss,
-            ..RadioParams::default()
-        };
+        let radio = RadioParams { range_m: self.range_m, loss: self.loss, ..RadioParams::default() };
         let ticks = ticks(self.seconds, self.step_s);
         Scenario::in_plane(self.name, self.seed, ticks, radio, setup)
     }
@@ -87,19 +80,9 @@ pub(super) fn starts(
     let mut starts: Vec<Start> = Vec::new();
     for robot in 0..count {
         let mut rng = rng(robot);
-        let is_free = |at: [f64; 3]| {
-            starts
-                .iter()
-                .all(|other| distance_m(other.position_m, at) >= apart_m)
-        };
-        let (position_m, velocity_mps) = (0..TRIES)
-            .map(|_| draw(&mut rng))
-            .find(|(at, _)| is_free(*at))?;
-        starts.push(Start {
-            position_m,
-            velocity_mps,
-            places: targets.to_vec(),
-        });
+        let is_free = |at: [f64; 3]| starts.iter().all(|other| distance_m(other.position_m, at) >= apart_m);
+        let (position_m, velocity_mps) = (0..TRIES).map(|_| draw(&mut rng)).find(|(at, _)| is_free(*at))?;
+        starts.push(Start { position_m, velocity_mps, places: targets.to_vec() });
     }
     Some(starts)
 }
@@ -126,12 +109,7 @@ mod tests {
 
     #[test]
     fn starts_are_apart_or_there_is_no_room() {
-        let square = |rng: &mut Rng| {
-            (
-                [uniform(rng, 0.0, 10.0), uniform(rng, 0.0, 10.0), 0.0],
-                [0.0; 3],
-            )
-        };
+        let square = |rng: &mut Rng| ([uniform(rng, 0.0, 10.0), uniform(rng, 0.0, 10.0), 0.0], [0.0; 3]);
         let keyed = |robot| Rng::keyed(1, 2, robot, 0);
         let some = starts(30, 1.0, &[], keyed, square).unwrap();
         for (i, a) in some.iter().enumerate() {

@@ -54,12 +54,7 @@ pub trait Experiment {
     ///
     /// # Errors
     /// A file cannot be written.
-    fn draw(
-        &self,
-        runs: &[Vec<Self::Run>],
-        report: &Self::Report,
-        dir: &Path,
-    ) -> Result<Vec<PathBuf>> {
+    fn draw(&self, runs: &[Vec<Self::Run>], report: &Self::Report, dir: &Path) -> Result<Vec<PathBuf>> {
         let _ = (runs, report, dir);
         Ok(Vec::new())
     }
@@ -300,9 +295,7 @@ mod tests {
         };
         let word = |course: &Course| {
             let mut text = String::new();
-            course
-                .last_word(&mut text, Some(Path::new("out/x")))
-                .unwrap();
+            course.last_word(&mut text, Some(Path::new("out/x"))).unwrap();
             text
         };
         let early = "\nstopped early, after 7 of 9: 7 landscapes in 1.2 s\n1 files in out/x\n";

@@ -70,12 +70,7 @@ impl Robots {
     /// Robots with the controller's defaults.
     #[must_use]
     pub fn new(sight: Sight) -> Self {
-        Self {
-            sight,
-            memory: Memory::default(),
-            params: RouteParams::default(),
-            replan: Replan::default(),
-        }
+        Self { sight, memory: Memory::default(), params: RouteParams::default(), replan: Replan::default() }
     }
 }
 
@@ -98,9 +93,8 @@ impl Benchmark {
     pub fn load(scen: &Path, map: Option<&Path>) -> Result<Self> {
         let at = scen.display();
         let queries = parse_scen(&read(scen)?, scen)?;
-        let first = queries.first().with_context(|| {
-            format!("{at}: no queries; each line after the first one is a query")
-        })?;
+        let first =
+            queries.first().with_context(|| format!("{at}: no queries; each line after the first one is a query"))?;
         let beside = scen.with_file_name(Path::new(&first.map).file_name().unwrap_or_default());
         let map = map.map_or(beside.clone(), Path::to_owned);
         ensure!(
@@ -156,12 +150,7 @@ impl Plan {
         let (land, robots, params) = (&self.benchmark.land, &self.robots, self.params());
         let job = |walker: &mut Walker<CELLS, M>, index: usize| {
             let query = &self.benchmark.queries[index];
-            let task = Task {
-                land,
-                parked: &[],
-                from: query.start,
-                to: query.goal,
-            };
+            let task = Task { land, parked: &[], from: query.start, to: query.goal };
             let walk = walker.walk(&task, &params, robots.replan);
             let priced = match robots.sight {
                 Sight::Map => walker.price(land, &params, query.start, query.goal),
@@ -289,11 +278,7 @@ impl Report {
     /// The statistics of the answers.
     #[must_use]
     pub fn of(benchmark: &Benchmark, robots: &Robots, answers: &[Answer]) -> Self {
-        let losses: Vec<f64> = answers
-            .iter()
-            .filter(|answer| answer.arrived)
-            .map(Answer::loss_percent)
-            .collect();
+        let losses: Vec<f64> = answers.iter().filter(|answer| answer.arrived).map(Answer::loss_percent).collect();
         let errors = answers.iter().filter_map(Answer::price_error_percent);
         let whole = robots.sight == Sight::Map;
         Self {
@@ -311,12 +296,7 @@ impl Report {
             arrived: losses.len(),
             loss_percent: Summary::of(&losses),
             worst_price_error_percent: errors.map(f64::abs).reduce(f64::max),
-            without_price: whole.then(|| {
-                answers
-                    .iter()
-                    .filter(|answer| answer.priced_cells.is_none())
-                    .count()
-            }),
+            without_price: whole.then(|| answers.iter().filter(|answer| answer.priced_cells.is_none()).count()),
         }
     }
 }
@@ -325,9 +305,7 @@ impl Display for Report {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let (width, height) = (self.width, self.height);
         writeln!(f, "{} ({width} x {height} cells)", self.map.display())?;
-        let radius = self
-            .radius
-            .map_or_else(|| String::from("the whole map"), |r| format!("radius {r}"));
+        let radius = self.radius.map_or_else(|| String::from("the whole map"), |r| format!("radius {r}"));
         writeln!(f, "  window                {radius}")?;
         writeln!(f, "  visit memory          {} cells", self.visits)?;
         let (answered, queries) = (self.answered, self.queries);
@@ -341,10 +319,7 @@ impl Display for Report {
             )?;
         }
         if let Some(error) = self.worst_price_error_percent {
-            writeln!(
-                f,
-                "  optimal lengths       met within {error:.4} % for every query with a way"
-            )?;
+            writeln!(f, "  optimal lengths       met within {error:.4} % for every query with a way")?;
         }
         if let Some(without @ 1..) = self.without_price {
             writeln!(f, "  no way found          {without}")?;
@@ -363,10 +338,7 @@ mod tests {
     fn files(rows: &[&str]) -> (tempfile::TempDir, PathBuf) {
         let dir = tempfile::tempdir().unwrap();
         let scen = dir.path().join("a.map.scen");
-        let queries: String = rows
-            .iter()
-            .map(|row| format!("0\tmaps/x/a.map\t{}\n", row.replace(' ', "\t")))
-            .collect();
+        let queries: String = rows.iter().map(|row| format!("0\tmaps/x/a.map\t{}\n", row.replace(' ', "\t"))).collect();
         std::fs::write(&scen, format!("version 1\n{queries}")).unwrap();
         std::fs::write(dir.path().join("a.map"), MAP).unwrap();
         (dir, scen)
@@ -384,10 +356,7 @@ mod tests {
         // Around the wall without cutting its corners; over swamp at the price of ground; not at all.
         let right = ["4 3 0 0 3 2 5", "4 3 0 2 3 2 3", "4 3 2 2 2 2 0"];
         let good = report(&right, Sight::Map);
-        assert_eq!(
-            (good.answered, good.arrived, good.without_price),
-            (3, 3, Some(0))
-        );
+        assert_eq!((good.answered, good.arrived, good.without_price), (3, 3, Some(0)));
         assert!(good.worst_price_error_percent.unwrap() < 1e-9);
         assert_eq!(good.loss_percent.unwrap().max, 0.0);
         for wrong in ["4 3 0 0 3 2 4.9", "4 3 0 0 3 2 5.1", "4 3 2 2 2 2 1"] {
@@ -401,8 +370,7 @@ mod tests {
 
     #[test]
     fn files_that_do_not_belong_together_are_named() {
-        let message =
-            |scen: &Path, map: Option<&Path>| Benchmark::load(scen, map).unwrap_err().to_string();
+        let message = |scen: &Path, map: Option<&Path>| Benchmark::load(scen, map).unwrap_err().to_string();
         let (dir, scen) = files(&["4 3 0 0 3 2 5", "4 4 0 0 3 2 5"]);
         let size = message(&scen, None);
         assert!(size.contains("query 2 is for a map of 4 x 4"), "{size}");
@@ -412,10 +380,7 @@ mod tests {
         assert!(message(&empty, None).contains("no queries"));
         std::fs::remove_file(dir.path().join("a.map")).unwrap();
         let missing = message(&scen, None);
-        assert!(
-            missing.contains("maps/x/a.map is not beside it"),
-            "{missing}"
-        );
+        assert!(missing.contains("maps/x/a.map is not beside it"), "{missing}");
         assert!(message(&dir.path().join("none.scen"), None).contains("none.scen"));
         let other = dir.path().join("other.map");
         assert!(message(&scen, Some(&other)).contains("other.map"));
@@ -423,16 +388,11 @@ mod tests {
 
     #[test]
     fn land_too_large_to_be_seen_at_once_is_refused() {
-        let benchmark = |width, height| Benchmark {
-            map: "a.map".into(),
-            land: Terrain::flat(width, height),
-            queries: vec![],
-        };
+        let benchmark =
+            |width, height| Benchmark { map: "a.map".into(), land: Terrain::flat(width, height), queries: vec![] };
         let answer = |width, height, sight| {
             let (benchmark, robots) = (benchmark(width, height), Robots::new(sight));
-            Plan { benchmark, robots }
-                .carry_out(|_| true)
-                .map_err(|error| error.to_string())
+            Plan { benchmark, robots }.carry_out(|_| true).map_err(|error| error.to_string())
         };
         assert!(answer(253, 253, Sight::Map).is_ok());
         assert!(answer(256, 250, Sight::Map).is_ok());

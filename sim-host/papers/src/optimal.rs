@@ -34,21 +34,12 @@ impl Route {
 #[must_use]
 pub fn length(cells: &[Cell], norm: Norm) -> u64 {
     let moves = cells.windows(2).filter(|pair| pair[0] != pair[1]);
-    moves
-        .filter_map(|pair| Dir::between(pair[0], pair[1]))
-        .map(|dir| u64::from(dir.length(norm)))
-        .sum()
+    moves.filter_map(|pair| Dir::between(pair[0], pair[1])).map(|dir| u64::from(dir.length(norm))).sum()
 }
 
 /// The cheapest route; see [`Planner::route`]. For many routes keep a [`Planner`].
 #[must_use]
-pub fn route(
-    terrain: &Terrain,
-    from: Cell,
-    to: Cell,
-    norm: Norm,
-    corner_cutting: bool,
-) -> Option<Route> {
+pub fn route(terrain: &Terrain, from: Cell, to: Cell, norm: Norm, corner_cutting: bool) -> Option<Route> {
     Planner::default().route(terrain, from, to, norm, corner_cutting)
 }
 
@@ -140,9 +131,7 @@ impl Planner {
             Step {
                 dir,
                 offset: isize::from(y) * stride + isize::from(x),
-                beside: dir
-                    .is_diagonal()
-                    .then(|| [isize::from(x), isize::from(y) * stride]),
+                beside: dir.is_diagonal().then(|| [isize::from(x), isize::from(y) * stride]),
                 length: u64::from(dir.length(norm)),
             }
         })
@@ -150,11 +139,8 @@ impl Planner {
 
     /// Whether a move cuts no corner.
     fn is_open(&self, at: usize, step: &Step) -> bool {
-        step.beside.is_none_or(|beside| {
-            beside
-                .iter()
-                .all(|offset| self.land[at.wrapping_add_signed(*offset)] != BLOCKED)
-        })
+        step.beside
+            .is_none_or(|beside| beside.iter().all(|offset| self.land[at.wrapping_add_signed(*offset)] != BLOCKED))
     }
 
     /// Settles cells in the order of their costs until the goal is settled or nothing is left.
@@ -204,10 +190,7 @@ mod tests {
 
     /// Relaxes every move until nothing changes.
     fn by_definition(land: &Terrain, from: Cell, norm: Norm, corner_cutting: bool) -> Vec<u64> {
-        let cells = || {
-            (0..land.height() as i16)
-                .flat_map(|y| (0..land.width() as i16).map(move |x| Cell::new(x, y)))
-        };
+        let cells = || (0..land.height() as i16).flat_map(|y| (0..land.width() as i16).map(move |x| Cell::new(x, y)));
         let mut costs = vec![UNKNOWN; land.cells().len()];
         if land.is_passable(from) {
             costs[land.index(from).unwrap()] = 0;
@@ -220,8 +203,7 @@ mod tests {
                     let known = costs[land.index(cell).unwrap()];
                     let Cell { x, y } = dir.offset();
                     let corners = [Cell::new(x, 0), Cell::new(0, y)];
-                    let open =
-                        corner_cutting || corners.iter().all(|c| land.is_passable(cell + *c));
+                    let open = corner_cutting || corners.iter().all(|c| land.is_passable(cell + *c));
                     if known != UNKNOWN && land.is_passable(next) && open {
                         let cost = known + u64::from(dir.length(norm)) * u64::from(land.get(next));
                         let slot = &mut costs[land.index(next).unwrap()];
@@ -271,31 +253,13 @@ mod tests {
         let big = Terrain::flat(30, 20);
         let mut small = Terrain::flat(3, 3);
         let (a, b) = (Cell::new(0, 0), Cell::new(2, 2));
-        assert_eq!(
-            planner
-                .route(&big, a, Cell::new(29, 0), Norm::Euclidean, false)
-                .unwrap()
-                .cost,
-            29 * 70
-        );
-        assert_eq!(
-            planner
-                .route(&small, a, b, Norm::Euclidean, false)
-                .unwrap()
-                .cost,
-            2 * 99
-        );
+        assert_eq!(planner.route(&big, a, Cell::new(29, 0), Norm::Euclidean, false).unwrap().cost, 29 * 70);
+        assert_eq!(planner.route(&small, a, b, Norm::Euclidean, false).unwrap().cost, 2 * 99);
         small.set(Cell::new(1, 0), BLOCKED);
         small.set(Cell::new(1, 1), BLOCKED);
         small.set(Cell::new(1, 2), BLOCKED);
         assert_eq!(planner.route(&small, a, b, Norm::Euclidean, true), None);
-        assert_eq!(
-            planner
-                .route(&big, a, b, Norm::Chebyshev, false)
-                .unwrap()
-                .cost,
-            2 * 70
-        );
+        assert_eq!(planner.route(&big, a, b, Norm::Chebyshev, false).unwrap().cost, 2 * 70);
     }
 
     #[test]
@@ -305,10 +269,7 @@ mod tests {
         assert_eq!(route(&land, at(0), at(3), Norm::Euclidean, false), None);
         assert_eq!(route(&land, at(-1), at(1), Norm::Euclidean, false), None);
         let stay = route(&land, at(1), at(1), Norm::Euclidean, false).unwrap();
-        assert_eq!(
-            (stay.cost, stay.cells.len(), stay.length(Norm::Euclidean)),
-            (0, 1, 0)
-        );
+        assert_eq!((stay.cost, stay.cells.len(), stay.length(Norm::Euclidean)), (0, 1, 0));
         land.set(at(2), BLOCKED);
         assert_eq!(route(&land, at(0), at(2), Norm::Euclidean, false), None);
     }
@@ -316,22 +277,10 @@ mod tests {
     #[test]
     fn cost_counts_the_cells_entered_and_length_the_moves() {
         let land = Terrain::from_cells(3, 1, vec![9, 2, 255]).unwrap();
-        let found = route(
-            &land,
-            Cell::new(0, 0),
-            Cell::new(2, 0),
-            Norm::Euclidean,
-            false,
-        )
-        .unwrap();
+        let found = route(&land, Cell::new(0, 0), Cell::new(2, 0), Norm::Euclidean, false).unwrap();
         assert_eq!(found.cost, 70 * 257);
         assert_eq!(found.length(Norm::Euclidean), 140);
-        let diagonal = [
-            Cell::new(0, 0),
-            Cell::new(1, 1),
-            Cell::new(1, 1),
-            Cell::new(1, 0),
-        ];
+        let diagonal = [Cell::new(0, 0), Cell::new(1, 1), Cell::new(1, 1), Cell::new(1, 0)];
         assert_eq!(length(&diagonal, Norm::Euclidean), 99 + 70);
         assert_eq!(length(&diagonal, Norm::Chebyshev), 140);
     }

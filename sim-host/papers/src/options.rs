@@ -24,22 +24,14 @@ pub(crate) fn defaults<P: Args>() -> P {
 type Word<T> = (&'static str, &'static str, T);
 
 /// Takes one of these words.
-fn one_of<T: Clone + Send + Sync + 'static>(
-    words: &'static [Word<T>],
-) -> impl TypedValueParser<Value = T> {
+fn one_of<T: Clone + Send + Sync + 'static>(words: &'static [Word<T>]) -> impl TypedValueParser<Value = T> {
     let possible = words.iter().map(|(word, help, _)| {
         let value = PossibleValue::new(*word);
-        if help.is_empty() {
-            value
-        } else {
-            value.help(*help)
-        }
+        if help.is_empty() { value } else { value.help(*help) }
     });
     PossibleValuesParser::new(possible).map(|given| {
         let found = words.iter().find(|(word, ..)| *word == given);
-        found
-            .map(|(.., meaning)| meaning.clone())
-            .expect("one of the possible values")
+        found.map(|(.., meaning)| meaning.clone()).expect("one of the possible values")
     })
 }
 
@@ -48,11 +40,7 @@ pub(crate) fn safety() -> impl TypedValueParser<Value = SafetyName> {
     one_of(&[
         ("orca", "ORCA in the plane", SafetyName::Orca),
         ("fly", "ORCA in space", SafetyName::Fly),
-        (
-            "push-out",
-            "Push-out; for the goal flock",
-            SafetyName::PushOut,
-        ),
+        ("push-out", "Push-out; for the goal flock", SafetyName::PushOut),
         ("none", "Nothing", SafetyName::None),
     ])
 }
@@ -85,33 +73,19 @@ pub(crate) const fn safety_name(safety: SafetyName) -> &'static str {
 
 /// What push-out makes of a step.
 pub(crate) fn model() -> impl TypedValueParser<Value = Model> {
-    one_of(&[
-        ("radial", "1: along the radius", Model::Radial),
-        ("tangential", "2: turned aside", Model::Tangential),
-    ])
+    one_of(&[("radial", "1: along the radius", Model::Radial), ("tangential", "2: turned aside", Model::Tangential)])
 }
 
 /// How many robots push-out evades at once.
 pub(crate) fn evasion() -> impl TypedValueParser<Value = Evasion> {
-    one_of(&[
-        ("single", "The nearest in the way", Evasion::Single),
-        ("multiple", "All", Evasion::Multiple),
-    ])
+    one_of(&[("single", "The nearest in the way", Evasion::Single), ("multiple", "All", Evasion::Multiple)])
 }
 
 /// How robots of a formation foresee each other.
 pub(crate) fn prediction() -> impl TypedValueParser<Value = Prediction> {
     one_of(&[
-        (
-            "constant",
-            "They go on as they announced",
-            Prediction::Constant,
-        ),
-        (
-            "reflexive",
-            "They do what the robot itself would do in their place",
-            Prediction::Reflexive,
-        ),
+        ("constant", "They go on as they announced", Prediction::Constant),
+        ("reflexive", "They do what the robot itself would do in their place", Prediction::Reflexive),
     ])
 }
 
@@ -119,11 +93,7 @@ pub(crate) fn prediction() -> impl TypedValueParser<Value = Prediction> {
 pub(crate) fn recovery() -> impl TypedValueParser<Value = Recovery> {
     one_of(&[
         ("wait", "It stands", Recovery::Wait),
-        (
-            "def",
-            "It heads for where the others are off to (def)",
-            Recovery::Def,
-        ),
+        ("def", "It heads for where the others are off to (def)", Recovery::Def),
     ])
 }
 
@@ -140,11 +110,7 @@ pub(crate) fn memory() -> impl TypedValueParser<Value = Memory> {
 /// A norm of the plane.
 pub fn norm() -> impl TypedValueParser<Value = Norm> {
     one_of(&[
-        (
-            "euclidean",
-            "A diagonal move is sqrt 2 long",
-            Norm::Euclidean,
-        ),
+        ("euclidean", "A diagonal move is sqrt 2 long", Norm::Euclidean),
         ("chebyshev", "A diagonal move is 1 long", Norm::Chebyshev),
     ])
 }
@@ -152,16 +118,8 @@ pub fn norm() -> impl TypedValueParser<Value = Norm> {
 /// Which cells of a window's border end a route.
 fn exit() -> impl TypedValueParser<Value = ExitRule> {
     one_of(&[
-        (
-            "best",
-            "Any border cell, by path cost and distance to the target (eq. 10)",
-            ExitRule::Best,
-        ),
-        (
-            "ray",
-            "Where the ray to the target crosses the border (algorithm 3)",
-            ExitRule::Ray,
-        ),
+        ("best", "Any border cell, by path cost and distance to the target (eq. 10)", ExitRule::Best),
+        ("ray", "Where the ray to the target crosses the border (algorithm 3)", ExitRule::Ray),
     ])
 }
 
@@ -218,9 +176,7 @@ impl RouteOptions {
 
 /// Reads a coefficient: a decimal number that is a whole number of sixteenths.
 pub fn gain(word: &str) -> Result<Gain, String> {
-    let value: f64 = word
-        .parse()
-        .map_err(|_| String::from("give a decimal number, such as 2.5"))?;
+    let value: f64 = word.parse().map_err(|_| String::from("give a decimal number, such as 2.5"))?;
     let one = f64::from(Gain::ONE.sixteenths());
     let largest = f64::from(u16::MAX) / one;
     if !(0.0..=largest).contains(&value) {
@@ -230,9 +186,7 @@ pub fn gain(word: &str) -> Result<Gain, String> {
     let below = libm::floor(sixteenths);
     if sixteenths != below {
         let (low, high) = (below / one, (below + 1.0) / one);
-        return Err(format!(
-            "coefficients are whole sixteenths; give {low} or {high}"
-        ));
+        return Err(format!("coefficients are whole sixteenths; give {low} or {high}"));
     }
     Ok(Gain::from_sixteenths(sixteenths as u16))
 }
@@ -250,10 +204,7 @@ mod tests {
         assert_eq!(gain("4095.9375"), Ok(Gain::from_sixteenths(u16::MAX)));
         assert!(gain("0.1").unwrap_err().ends_with("give 0.0625 or 0.125"));
         for bad in ["-1", "4096", "NaN", "inf"] {
-            assert!(
-                gain(bad).unwrap_err().contains("from 0 to 4095.9375"),
-                "{bad}"
-            );
+            assert!(gain(bad).unwrap_err().contains("from 0 to 4095.9375"), "{bad}");
         }
         assert!(gain("three").unwrap_err().contains("decimal number"));
     }

@@ -35,11 +35,7 @@ pub struct Walker<const CELLS: usize, const M: usize = VISITS> {
 
 impl<const CELLS: usize, const M: usize> Default for Walker<CELLS, M> {
     fn default() -> Self {
-        Self {
-            field: Box::new(CostField::new()),
-            path: Vec::new(),
-            walled: Vec::new(),
-        }
+        Self { field: Box::new(CostField::new()), path: Vec::new(), walled: Vec::new() }
     }
 }
 
@@ -90,10 +86,9 @@ impl<const CELLS: usize, const M: usize> Walker<CELLS, M> {
             let field = &mut self.field;
             let planned = match replan {
                 Replan::EachCell => None,
-                Replan::UntilChanged => router
-                    .follow(params, field, &window, here, to, others.clone())
-                    .ok()
-                    .filter(is_free),
+                Replan::UntilChanged => {
+                    router.follow(params, field, &window, here, to, others.clone()).ok().filter(is_free)
+                }
             };
             let dir = planned.or_else(|| {
                 let weights = router.weights(params, field, &window, here, to, others);
@@ -119,26 +114,14 @@ impl<const CELLS: usize, const M: usize> Walker<CELLS, M> {
     /// What the router takes the travel time of the whole way to be, in [`UNIT`](staya_controller::grid::UNIT)ths of
     /// a tick: least weight of the moves out of `from`, with a0 = 1. Exact when `CELLS` and the greatest radius (255) hold
     /// the whole map; see [`holds`]. `None` without a way.
-    pub fn price(
-        &mut self,
-        land: &Terrain,
-        params: &RouteParams,
-        from: Cell,
-        to: Cell,
-    ) -> Option<f64> {
+    pub fn price(&mut self, land: &Terrain, params: &RouteParams, from: Cell, to: Cell) -> Option<f64> {
         if from == to {
             return Some(0.0);
         }
-        let params = RouteParams {
-            radius: u8::MAX,
-            a0: Gain::ONE,
-            ..*params
-        };
+        let params = RouteParams { radius: u8::MAX, a0: Gain::ONE, ..*params };
         let window = Window::new(land.cells(), Cell::default(), land.width(), land.height())?;
         let router = Router::<0>::new();
-        let weights = router
-            .weights(&params, &mut self.field, &window, from, to, [])
-            .ok()?;
+        let weights = router.weights(&params, &mut self.field, &window, from, to, []).ok()?;
         let least = weights.best().map(|dir| weights.get(dir))?;
         Some(f64::from(least) / f64::from(Gain::ONE.sixteenths()))
     }
@@ -172,9 +155,7 @@ fn wall(walled: &mut Vec<u8>, land: &Terrain, margin: u16) {
 /// The cheapest open move into a free cell, the first of equals in the order of [`Dir::MOVES`].
 fn first_free(weights: &Weights, is_free: impl Fn(&Dir) -> bool) -> Option<Dir> {
     let open = weights.iter().filter(|&(_, cost)| cost != EXCLUDED);
-    open.filter(|(dir, _)| is_free(dir))
-        .min_by_key(|&(_, cost)| cost)
-        .map(|(dir, _)| dir)
+    open.filter(|(dir, _)| is_free(dir)).min_by_key(|&(_, cost)| cost).map(|(dir, _)| dir)
 }
 
 /// Whether a search in `cells` cells, border included, sees all of the land from anywhere on it.

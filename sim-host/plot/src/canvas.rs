@@ -24,20 +24,13 @@ impl Stroke {
     /// A solid line.
     #[must_use]
     pub const fn new(colour: Colour, width: f64) -> Self {
-        Self {
-            colour,
-            width,
-            dash: None,
-        }
+        Self { colour, width, dash: None }
     }
 
     /// The same line with dashes.
     #[must_use]
     pub const fn dashed(self, dash: f64, gap: f64) -> Self {
-        Self {
-            dash: Some([dash, gap]),
-            ..self
-        }
+        Self { dash: Some([dash, gap]), ..self }
     }
 }
 
@@ -164,12 +157,7 @@ impl Canvas {
     /// An empty white picture.
     #[must_use]
     pub fn new(width: f64, height: f64, title: impl Into<String>) -> Self {
-        Self {
-            width,
-            height,
-            title: title.into(),
-            shapes: Vec::new(),
-        }
+        Self { width, height, title: title.into(), shapes: Vec::new() }
     }
 
     /// Draws a line through points.
@@ -180,54 +168,24 @@ impl Canvas {
     /// Draws lines that look the same.
     pub fn lines(&mut self, lines: Vec<Vec<Point>>, stroke: Stroke) {
         if lines.iter().any(|line| !line.is_empty()) {
-            self.shapes.push(Shape::Path {
-                lines,
-                closed: false,
-                stroke: Some(stroke),
-                fill: None,
-            });
+            self.shapes.push(Shape::Path { lines, closed: false, stroke: Some(stroke), fill: None });
         }
     }
 
     /// Draws an area with or without outline.
     pub fn polygon(&mut self, points: Vec<Point>, fill: Option<Colour>, stroke: Option<Stroke>) {
-        self.shapes.push(Shape::Path {
-            lines: vec![points],
-            closed: true,
-            stroke,
-            fill,
-        });
+        self.shapes.push(Shape::Path { lines: vec![points], closed: true, stroke, fill });
     }
 
     /// Draws a rectangle: left, top, width, height.
-    pub fn rectangle(
-        &mut self,
-        [x, y, width, height]: [f64; 4],
-        fill: Option<Colour>,
-        stroke: Option<Stroke>,
-    ) {
+    pub fn rectangle(&mut self, [x, y, width, height]: [f64; 4], fill: Option<Colour>, stroke: Option<Stroke>) {
         let (right, bottom) = (x + width, y + height);
-        self.polygon(
-            vec![[x, y], [right, y], [right, bottom], [x, bottom]],
-            fill,
-            stroke,
-        );
+        self.polygon(vec![[x, y], [right, y], [right, bottom], [x, bottom]], fill, stroke);
     }
 
     /// Draws a circle.
-    pub fn circle(
-        &mut self,
-        centre: Point,
-        radius: f64,
-        fill: Option<Colour>,
-        stroke: Option<Stroke>,
-    ) {
-        self.shapes.push(Shape::Circle {
-            centre,
-            radius,
-            stroke,
-            fill,
-        });
+    pub fn circle(&mut self, centre: Point, radius: f64, fill: Option<Colour>, stroke: Option<Stroke>) {
+        self.shapes.push(Shape::Circle { centre, radius, stroke, fill });
     }
 
     /// Writes a line of text.

@@ -42,14 +42,7 @@ pub struct Series {
 
 impl Series {
     fn new(name: impl Into<String>, data: Data) -> Self {
-        Self {
-            name: name.into(),
-            data,
-            colour: None,
-            dashed: false,
-            joined: false,
-            like_previous: false,
-        }
+        Self { name: name.into(), data, colour: None, dashed: false, joined: false, like_previous: false }
     }
 
     /// A line through `[x, y]` in the given order. An empty name keeps it out of the legend.
@@ -85,37 +78,25 @@ impl Series {
     /// Joins the marks of [`Series::points`] and [`Series::intervals`] by a thin line.
     #[must_use]
     pub fn joined(self) -> Self {
-        Self {
-            joined: true,
-            ..self
-        }
+        Self { joined: true, ..self }
     }
 
     /// Dashes the line.
     #[must_use]
     pub fn dashed(self) -> Self {
-        Self {
-            dashed: true,
-            ..self
-        }
+        Self { dashed: true, ..self }
     }
 
     /// Takes this colour instead of the palette's next.
     #[must_use]
     pub fn colour(self, colour: Colour) -> Self {
-        Self {
-            colour: Some(colour),
-            ..self
-        }
+        Self { colour: Some(colour), ..self }
     }
 
     /// Takes the colour of the series before it, as a fit does of its data.
     #[must_use]
     pub fn like_previous(self) -> Self {
-        Self {
-            like_previous: true,
-            ..self
-        }
+        Self { like_previous: true, ..self }
     }
 }
 
@@ -137,11 +118,7 @@ pub struct Chart {
 impl Chart {
     /// A chart without data, 720 x 420 units (the PNG has twice as many pixels). Labels name the unit.
     #[must_use]
-    pub fn new(
-        title: impl Into<String>,
-        x_label: impl Into<String>,
-        y_label: impl Into<String>,
-    ) -> Self {
+    pub fn new(title: impl Into<String>, x_label: impl Into<String>, y_label: impl Into<String>) -> Self {
         Self {
             title: title.into(),
             note: String::new(),
@@ -166,57 +143,38 @@ impl Chart {
     /// A small line of text under the title.
     #[must_use]
     pub fn note(self, note: impl Into<String>) -> Self {
-        Self {
-            note: note.into(),
-            ..self
-        }
+        Self { note: note.into(), ..self }
     }
 
     /// Shows exactly this range of y. Without it: all data, and 0 where that costs little room.
     #[must_use]
     pub fn y_range(self, low: f64, high: f64) -> Self {
-        Self {
-            y_range: Some([low, high]),
-            ..self
-        }
+        Self { y_range: Some([low, high]), ..self }
     }
 
     /// Shows exactly this range of x. Without it: all data.
     #[must_use]
     pub fn x_range(self, low: f64, high: f64) -> Self {
-        Self {
-            x_range: Some([low, high]),
-            ..self
-        }
+        Self { x_range: Some([low, high]), ..self }
     }
 
     /// Makes the x axis logarithmic; values of 0 and less are left out.
     #[must_use]
     pub fn log_x(self) -> Self {
-        Self {
-            log_x: true,
-            ..self
-        }
+        Self { log_x: true, ..self }
     }
 
     /// Makes the y axis logarithmic; values of 0 and less are left out, and so are bars.
     #[must_use]
     pub fn log_y(self) -> Self {
-        Self {
-            log_y: true,
-            ..self
-        }
+        Self { log_y: true, ..self }
     }
 
     /// Width and height in units, at least 200 x 150 and at most 4000 x 4000.
     #[must_use]
     pub fn size(self, width: f64, height: f64) -> Self {
         let within = |side: f64, least: f64| {
-            if side.is_nan() {
-                least
-            } else {
-                side.clamp(least, 4000.0)
-            }
+            if side.is_nan() { least } else { side.clamp(least, 4000.0) }
         };
         let size = [within(width, 200.0), within(height, 150.0)];
         Self { size, ..self }

@@ -14,10 +14,7 @@ impl Colour {
     #[must_use]
     pub const fn hex(rgb: u32) -> Self {
         let [_, red, green, blue] = rgb.to_be_bytes();
-        Self {
-            rgb: [red, green, blue],
-            alpha: 255,
-        }
+        Self { rgb: [red, green, blue], alpha: 255 }
     }
 
     /// The same colour with another opacity.
@@ -33,10 +30,7 @@ impl Colour {
             let mixed = f64::from(a) + (f64::from(b) - f64::from(a)) * share.clamp(0.0, 1.0);
             mixed.round() as u8
         };
-        Self {
-            rgb: std::array::from_fn(|i| mix(self.rgb[i], other.rgb[i])),
-            alpha: mix(self.alpha, other.alpha),
-        }
+        Self { rgb: std::array::from_fn(|i| mix(self.rgb[i], other.rgb[i])), alpha: mix(self.alpha, other.alpha) }
     }
 }
 

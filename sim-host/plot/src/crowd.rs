@@ -13,11 +13,7 @@ const RAMP: [Colour; 3] = [
 
 /// The colour of `share`, 0 (entered once) to 1 (the busiest place).
 pub fn colour(share: f64) -> Colour {
-    if share < 0.5 {
-        RAMP[0].towards(RAMP[1], share * 2.0)
-    } else {
-        RAMP[1].towards(RAMP[2], share * 2.0 - 1.0)
-    }
+    if share < 0.5 { RAMP[0].towards(RAMP[1], share * 2.0) } else { RAMP[1].towards(RAMP[2], share * 2.0 - 1.0) }
 }
 
 /// How often robots entered each square of a map.
@@ -61,11 +57,7 @@ impl Density {
                 [rgb[0], rgb[1], rgb[2], alpha]
             }
         };
-        Pixels {
-            width: self.raster.columns,
-            height: self.raster.rows,
-            rgba: self.entered.iter().map(pixel).collect(),
-        }
+        Pixels { width: self.raster.columns, height: self.raster.rows, rgba: self.entered.iter().map(pixel).collect() }
     }
 }
 
@@ -100,9 +92,7 @@ mod tests {
             walk([0, 0], to, |square| seen.push(square));
             assert_eq!((seen.len(), seen[1], seen[3]), (4, middle, to));
         }
-        walk([3, 3], [3, 3], |_| {
-            panic!("a robot that stands enters nothing")
-        });
+        walk([3, 3], [3, 3], |_| panic!("a robot that stands enters nothing"));
     }
 
     #[test]

@@ -114,42 +114,24 @@ impl Snapshot {
     }
 
     fn sound_size(&self) -> [f64; 2] {
-        self.size.map(|side| {
-            if side.is_nan() {
-                400.0
-            } else {
-                side.clamp(160.0, 4000.0)
-            }
-        })
+        self.size.map(|side| if side.is_nan() { 400.0 } else { side.clamp(160.0, 4000.0) })
     }
 
     /// Least and greatest x and y of everything in it; `None` when there is nothing.
     fn extent(&self) -> Option<[[f64; 2]; 2]> {
         let disc = |[x, y]: [f64; 2], r: f64| [[x - r, y - r], [x + r, y + r]];
-        let robots = self
-            .positions_m
-            .iter()
-            .flat_map(|&at| disc(at, self.radius_m.max(0.0)));
+        let robots = self.positions_m.iter().flat_map(|&at| disc(at, self.radius_m.max(0.0)));
         let obstacles = self.obstacles.iter().flat_map(|obstacle| match obstacle {
             Obstacle::Polygon(corners) => corners.clone(),
             Obstacle::Disc { centre_m, radius_m } => disc(*centre_m, *radius_m).to_vec(),
             Obstacle::Segment(ends) => ends.to_vec(),
         });
         let trails = self.trails_m.iter().flatten().copied();
-        let all = robots
-            .chain(obstacles)
-            .chain(self.goals_m.iter().copied())
-            .chain(trails);
-        all.filter(|at| at.iter().all(|c| c.is_finite())).fold(
-            None,
-            |extent: Option<[[f64; 2]; 2]>, at| {
-                let [low, high] = extent.unwrap_or([at; 2]);
-                Some([
-                    [low[0].min(at[0]), low[1].min(at[1])],
-                    [high[0].max(at[0]), high[1].max(at[1])],
-                ])
-            },
-        )
+        let all = robots.chain(obstacles).chain(self.goals_m.iter().copied()).chain(trails);
+        all.filter(|at| at.iter().all(|c| c.is_finite())).fold(None, |extent: Option<[[f64; 2]; 2]>, at| {
+            let [low, high] = extent.unwrap_or([at; 2]);
+            Some([[low[0].min(at[0]), low[1].min(at[1])], [high[0].max(at[0]), high[1].max(at[1])]])
+        })
     }
 }
 
@@ -202,11 +184,7 @@ impl Sheet {
     /// No snapshots yet, `columns` (1 or more) in a row. The title may be empty.
     #[must_use]
     pub fn new(title: impl Into<String>, columns: usize) -> Self {
-        Self {
-            title: title.into(),
-            columns: columns.max(1),
-            snapshots: Vec::new(),
-        }
+        Self { title: title.into(), columns: columns.max(1), snapshots: Vec::new() }
     }
 
     /// Adds a snapshot; it keeps its size.
@@ -222,13 +200,9 @@ impl Sheet {
         let most = |sides: &mut dyn Iterator<Item = f64>| sides.fold(0.0, f64::max);
         let sizes: Vec<[f64; 2]> = self.snapshots.iter().map(Snapshot::sound_size).collect();
         let columns = self.columns.min(sizes.len().max(1));
-        let widths: Vec<f64> = (0..columns)
-            .map(|column| most(&mut sizes.iter().skip(column).step_by(columns).map(|s| s[0])))
-            .collect();
-        let heights: Vec<f64> = sizes
-            .chunks(columns)
-            .map(|row| most(&mut row.iter().map(|size| size[1])))
-            .collect();
+        let widths: Vec<f64> =
+            (0..columns).map(|column| most(&mut sizes.iter().skip(column).step_by(columns).map(|s| s[0]))).collect();
+        let heights: Vec<f64> = sizes.chunks(columns).map(|row| most(&mut row.iter().map(|size| size[1]))).collect();
         let top = layout::headline_height(&self.title);
         let width = widths.iter().sum::<f64>().max(200.0);
         let height = (top + heights.iter().sum::<f64>()).max(150.0);

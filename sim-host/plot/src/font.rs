@@ -17,10 +17,7 @@ static FACES: LazyLock<[Face<'static>; 2]> = LazyLock::new(|| {
 #[must_use]
 pub fn width(text: &str, size: f64, bold: bool) -> f64 {
     let face = &FACES[usize::from(bold)];
-    let units: u32 = text
-        .chars()
-        .map(|letter| u32::from(advance(face, letter)))
-        .sum();
+    let units: u32 = text.chars().map(|letter| u32::from(advance(face, letter))).sum();
     f64::from(units) * size / f64::from(face.units_per_em())
 }
 
@@ -33,11 +30,7 @@ fn advance(face: &Face<'_>, letter: char) -> u16 {
 #[must_use]
 pub fn outline(text: &str, size: f64, bold: bool) -> Option<Path> {
     let face = &FACES[usize::from(bold)];
-    let mut pen = Pen {
-        path: PathBuilder::new(),
-        scale: size as f32 / f32::from(face.units_per_em()),
-        x: 0.0,
-    };
+    let mut pen = Pen { path: PathBuilder::new(), scale: size as f32 / f32::from(face.units_per_em()), x: 0.0 };
     for letter in text.chars() {
         // An unknown letter becomes the font's empty box (glyph 0).
         let glyph = face.glyph_index(letter).unwrap_or_default();

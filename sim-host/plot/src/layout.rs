@@ -23,11 +23,7 @@ pub const OTHER_FONTS: f64 = 1.15;
 
 /// Height that the headline over several charts takes.
 pub fn headline_height(title: &str) -> f64 {
-    if title.is_empty() {
-        0.0
-    } else {
-        PAD + HEADLINE * 1.3
-    }
+    if title.is_empty() { 0.0 } else { PAD + HEADLINE * 1.3 }
 }
 
 /// Writes the headline over several charts.
@@ -39,10 +35,7 @@ pub fn headline(canvas: &mut Canvas, title: &str, width: f64) {
 /// Writes a bold title that fits into `room`.
 pub fn heading(canvas: &mut Canvas, title: &str, size: f64, at: [f64; 2], room: f64) {
     let (title, size) = font::fit(title, size, true, room / OTHER_FONTS);
-    canvas.text(Text {
-        bold: true,
-        ..Text::new(at, size, Anchor::Start, title)
-    });
+    canvas.text(Text { bold: true, ..Text::new(at, size, Anchor::Start, title) });
 }
 
 /// Where a chart's plotting area begins, from its left edge.
@@ -63,22 +56,13 @@ pub fn draw(chart: &Chart, canvas: &mut Canvas, area: [f64; 4], left: f64) {
     let mut top = y + PAD;
     if !chart.title.is_empty() {
         top += TITLE;
-        heading(
-            canvas,
-            &chart.title,
-            TITLE,
-            [x + PAD, top],
-            width - 2.0 * PAD,
-        );
+        heading(canvas, &chart.title, TITLE, [x + PAD, top], width - 2.0 * PAD);
         top += 7.0;
     }
     if !chart.note.is_empty() {
         top += SMALL;
         let (note, size) = font::fit(&chart.note, SMALL, false, (width - 2.0 * PAD) / OTHER_FONTS);
-        canvas.text(Text {
-            colour: MUTED,
-            ..Text::new([x + PAD, top], size, Anchor::Start, note)
-        });
+        canvas.text(Text { colour: MUTED, ..Text::new([x + PAD, top], size, Anchor::Start, note) });
         top += 7.0;
     }
     top = legend(&looks, canvas, [x + PAD, top], x + width - PAD) + 8.0;
@@ -95,33 +79,16 @@ pub fn draw(chart: &Chart, canvas: &mut Canvas, area: [f64; 4], left: f64) {
     frame(chart, &axes, canvas, plot, y + height - PAD - 1.0, x + PAD);
     if axes.empty {
         let middle = [plot[0] + plot[2] / 2.0, plot[1] + plot[3] / 2.0];
-        canvas.text(
-            Text {
-                colour: MUTED,
-                ..Text::new(middle, LABEL, Anchor::Middle, "no data")
-            }
-            .centred(),
-        );
+        canvas.text(Text { colour: MUTED, ..Text::new(middle, LABEL, Anchor::Middle, "no data") }.centred());
     }
     series::draw(&looks, &axes, canvas, plot);
 }
 
 /// Grid, marks, numbers and names of both axes.
-fn frame(
-    chart: &Chart,
-    axes: &Axes,
-    canvas: &mut Canvas,
-    plot: [f64; 4],
-    x_label_y: f64,
-    y_label_x: f64,
-) {
+fn frame(chart: &Chart, axes: &Axes, canvas: &mut Canvas, plot: [f64; 4], x_label_y: f64, y_label_x: f64) {
     let [left, top, width, height] = plot;
     let (right, bottom) = (left + width, top + height);
-    let (ticks_x, ticks_y) = if axes.empty {
-        (&[][..], &[][..])
-    } else {
-        (&axes.x.ticks[..], &axes.y.ticks[..])
-    };
+    let (ticks_x, ticks_y) = if axes.empty { (&[][..], &[][..]) } else { (&axes.x.ticks[..], &axes.y.ticks[..]) };
     let at_x = |axis: &Axis, value| left + width * axis.share(value);
     let at_y = |axis: &Axis, value| bottom - height * axis.share(value);
     let grid = ticks_x.iter().map(|tick| {
@@ -149,11 +116,7 @@ fn frame(
         let half = font::width(&tick.label, SMALL, false) / 2.0;
         let ends = [y_label_x + half, right + PAD + 10.0 - half];
         let x = at_x(&axes.x, tick.value).max(ends[0]).min(ends[1]);
-        canvas.text(number(
-            [x, bottom + 7.0 + SMALL],
-            Anchor::Middle,
-            &tick.label,
-        ));
+        canvas.text(number([x, bottom + 7.0 + SMALL], Anchor::Middle, &tick.label));
     }
     for tick in ticks_y {
         let at = [left - 8.0, at_y(&axes.y, tick.value)];
@@ -165,20 +128,12 @@ fn frame(
     let (label, size) = font::fit(&chart.y_label, LABEL, false, height * 1.15);
     canvas.text(Text {
         upwards: true,
-        ..Text::new(
-            [y_label_x + LABEL * 0.8, top + height / 2.0],
-            size,
-            Anchor::Middle,
-            label,
-        )
+        ..Text::new([y_label_x + LABEL * 0.8, top + height / 2.0], size, Anchor::Middle, label)
     });
 }
 
 fn number(at: [f64; 2], anchor: Anchor, label: &str) -> Text {
-    Text {
-        colour: MUTED,
-        ..Text::new(at, SMALL, anchor, label)
-    }
+    Text { colour: MUTED, ..Text::new(at, SMALL, anchor, label) }
 }
 
 /// Rows of samples and names from `at` to `right`; answers where they end.
@@ -213,10 +168,7 @@ fn sample(look: &Look<'_>, canvas: &mut Canvas, [x, y]: [f64; 2]) {
                 canvas.line(ends, look.joint());
             }
             if matches!(look.series.data, Data::Intervals(_)) {
-                canvas.lines(
-                    series::whisker(middle[0], y - 7.0, y + 7.0),
-                    look.whiskers(),
-                );
+                canvas.lines(series::whisker(middle[0], y - 7.0, y + 7.0), look.whiskers());
             }
             look.mark(canvas, middle);
         }

@@ -44,12 +44,7 @@ pub fn looks(chart: &Chart) -> Vec<Look<'_>> {
             shown += usize::from(is_own(series));
             shift = (shown as f64 - (own + 1) as f64 / 2.0) * DODGE;
         }
-        looks.push(Look {
-            series,
-            colour,
-            mark,
-            shift,
-        });
+        looks.push(Look { series, colour, mark, shift });
     }
     looks
 }
@@ -58,21 +53,13 @@ impl Look<'_> {
     /// The line of a line series.
     pub fn stroke(&self) -> Stroke {
         let stroke = Stroke::new(self.colour, 1.8);
-        if self.series.dashed {
-            stroke.dashed(6.0, 4.0)
-        } else {
-            stroke
-        }
+        if self.series.dashed { stroke.dashed(6.0, 4.0) } else { stroke }
     }
 
     /// The line between marks.
     pub fn joint(&self) -> Stroke {
         let stroke = Stroke::new(self.colour, 1.3);
-        if self.series.dashed {
-            stroke.dashed(5.0, 3.5)
-        } else {
-            stroke
-        }
+        if self.series.dashed { stroke.dashed(5.0, 3.5) } else { stroke }
     }
 
     /// The lines of error bars.
@@ -98,17 +85,8 @@ impl Look<'_> {
                 [x + m * 0.9, y + m * 0.9],
                 [x - m * 0.9, y + m * 0.9],
             ],
-            2 => vec![
-                [x, y - m * 1.2],
-                [x + m * 1.15, y + m * 0.9],
-                [x - m * 1.15, y + m * 0.9],
-            ],
-            _ => vec![
-                [x, y - m * 1.3],
-                [x + m * 1.3, y],
-                [x, y + m * 1.3],
-                [x - m * 1.3, y],
-            ],
+            2 => vec![[x, y - m * 1.2], [x + m * 1.15, y + m * 0.9], [x - m * 1.15, y + m * 0.9]],
+            _ => vec![[x, y - m * 1.3], [x + m * 1.3, y], [x, y + m * 1.3], [x - m * 1.3, y]],
         };
         canvas.polygon(corners, fill, edge);
     }
@@ -133,10 +111,7 @@ mod tests {
         assert_eq!(shifts(&[false]), [0.0]);
         assert_eq!(shifts(&[false, false]), [-half, half]);
         assert_eq!(shifts(&[false, true]), [0.0, 0.0]);
-        assert_eq!(
-            shifts(&[false, true, false, true]),
-            [-half, -half, half, half]
-        );
+        assert_eq!(shifts(&[false, true, false, true]), [-half, -half, half, half]);
         assert_eq!(shifts(&[false, false, false]), [-DODGE, 0.0, DODGE]);
     }
 }

@@ -26,10 +26,7 @@ fn land(brightness: u8) -> Colour {
         return WALL;
     }
     let grey = 255 - (u32::from(255 - brightness) * 5 / 9) as u8;
-    Colour {
-        rgb: [grey; 3],
-        alpha: 255,
-    }
+    Colour { rgb: [grey; 3], alpha: 255 }
 }
 
 /// How a map is divided into pixels.
@@ -47,11 +44,7 @@ impl Raster {
     fn new(terrain: &Terrain) -> Self {
         let [width, height] = [terrain.width(), terrain.height()].map(u32::from);
         let cells = width.max(height).div_ceil(MAX_PIXELS).max(1);
-        Self {
-            columns: width.div_ceil(cells),
-            rows: height.div_ceil(cells),
-            cells,
-        }
+        Self { columns: width.div_ceil(cells), rows: height.div_ceil(cells), cells }
     }
 }
 
@@ -72,18 +65,13 @@ impl<'a> Map<'a> {
         let cell = (ROOM[0] / sides[0]).min(ROOM[1] / sides[1]).min(MAX_CELL);
         // A map of one row over thousands of columns still shows as a line.
         let [width, height] = sides.map(|side| (side * cell).max(2.0));
-        Self {
-            terrain,
-            area: [left, top, width, height],
-            cell,
-        }
+        Self { terrain, area: [left, top, width, height], cell }
     }
 
     /// Where a place of the world lies, north up.
     pub fn place(&self, position_m: [f64; 2]) -> Point {
-        let cells: [f64; 2] = std::array::from_fn(|axis| {
-            (position_m[axis] - self.terrain.origin_m[axis]) / self.terrain.cell_m
-        });
+        let cells: [f64; 2] =
+            std::array::from_fn(|axis| (position_m[axis] - self.terrain.origin_m[axis]) / self.terrain.cell_m);
         self.place_cells(cells)
     }
 
@@ -157,17 +145,9 @@ impl<'a> Map<'a> {
         canvas.lines(lines, Stroke::new(INK, 1.4));
         let exact = metres / self.terrain.cell_m;
         let cells = (exact * 10.0).round() / 10.0;
-        let relation = if (cells - exact).abs() < 1e-9 {
-            "="
-        } else {
-            "≈"
-        };
+        let relation = if (cells - exact).abs() < 1e-9 { "=" } else { "≈" };
         let unit = if cells == 1.0 { "cell" } else { "cells" };
-        let distance = if metres < 1000.0 {
-            format!("{metres} m")
-        } else {
-            format!("{} km", metres / 1000.0)
-        };
+        let distance = if metres < 1000.0 { format!("{metres} m") } else { format!("{} km", metres / 1000.0) };
         let label = format!("{distance} {relation} {cells} {unit}");
         let at = left + length + 8.0;
         canvas.text(Text::new([at, y], SMALL, Anchor::Start, &label).centred());
@@ -204,11 +184,7 @@ impl<'a> Map<'a> {
 /// The land, a pixel per cell, or per square of cells on maps beyond [`MAX_PIXELS`].
 fn pixels(terrain: &Terrain) -> Pixels {
     let (width, height, brightness) = terrain::render(terrain, 1);
-    let Raster {
-        columns,
-        rows,
-        cells: square,
-    } = Raster::new(terrain);
+    let Raster { columns, rows, cells: square } = Raster::new(terrain);
     let mut rgba = Vec::with_capacity(columns as usize * rows as usize);
     for row in 0..rows {
         for column in 0..columns {
@@ -225,11 +201,7 @@ fn pixels(terrain: &Terrain) -> Pixels {
             rgba.push([red, green, blue, 255]);
         }
     }
-    Pixels {
-        width: columns,
-        height: rows,
-        rgba,
-    }
+    Pixels { width: columns, height: rows, rgba }
 }
 
 #[cfg(test)]

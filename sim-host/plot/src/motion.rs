@@ -26,15 +26,9 @@ const COLOURS: usize = 8;
 ///
 /// # Errors
 /// The directory or a file cannot be written.
-pub fn motion_pictures(
-    setup: &PlaneSetup,
-    history: &History,
-    out_dir: &Path,
-) -> Result<Vec<PathBuf>, Error> {
+pub fn motion_pictures(setup: &PlaneSetup, history: &History, out_dir: &Path) -> Result<Vec<PathBuf>, Error> {
     record::make_dir(out_dir)?;
-    let mut files = motion_sheet(setup, history)
-        .draw()
-        .write(&out_dir.join("motion"))?;
+    let mut files = motion_sheet(setup, history).draw().write(&out_dir.join("motion"))?;
     files.extend(packets(history).write(&out_dir.join("packets"))?);
     Ok(files)
 }
@@ -84,10 +78,7 @@ pub fn motion_sheet(setup: &PlaneSetup, history: &History) -> Sheet {
 fn drawn(solid: &Solid) -> Option<Obstacle> {
     match *solid {
         Solid::Wall(ends) => Some(Obstacle::Segment(ends)),
-        Solid::Ball { center_m, radius_m } => Some(Obstacle::Disc {
-            centre_m: [center_m[0], center_m[1]],
-            radius_m,
-        }),
+        Solid::Ball { center_m, radius_m } => Some(Obstacle::Disc { centre_m: [center_m[0], center_m[1]], radius_m }),
         // Its border is a line without ends.
         Solid::Plane { .. } => None,
     }

@@ -38,11 +38,7 @@ impl Panels {
     /// No charts yet, one per row. The title may be empty.
     #[must_use]
     pub fn new(title: impl Into<String>) -> Self {
-        Self {
-            title: title.into(),
-            columns: 1,
-            charts: Vec::new(),
-        }
+        Self { title: title.into(), columns: 1, charts: Vec::new() }
     }
 
     /// Adds a chart; it keeps its size, and the axes of a column begin at the same place.
@@ -55,10 +51,7 @@ impl Panels {
     /// Charts per row, 1 or more.
     #[must_use]
     pub fn columns(self, columns: usize) -> Self {
-        Self {
-            columns: columns.max(1),
-            ..self
-        }
+        Self { columns: columns.max(1), ..self }
     }
 
     /// Draws the charts.
@@ -67,21 +60,11 @@ impl Panels {
         let most = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
         let column = |index: usize| self.charts.iter().skip(index).step_by(self.columns);
         let columns = self.columns.min(self.charts.len());
-        let widths: Vec<f64> = (0..columns)
-            .map(|index| most(&mut column(index).map(|chart| chart.size[0])))
-            .collect();
-        let lefts: Vec<f64> = (0..columns)
-            .map(|index| most(&mut column(index).map(layout::left_margin)))
-            .collect();
+        let widths: Vec<f64> = (0..columns).map(|index| most(&mut column(index).map(|chart| chart.size[0]))).collect();
+        let lefts: Vec<f64> = (0..columns).map(|index| most(&mut column(index).map(layout::left_margin))).collect();
         let rows: Vec<&[Chart]> = self.charts.chunks(self.columns).collect();
-        let heights: Vec<f64> = rows
-            .iter()
-            .map(|row| most(&mut row.iter().map(|chart| chart.size[1])))
-            .collect();
-        let (width, top) = (
-            widths.iter().sum::<f64>().max(200.0),
-            layout::headline_height(&self.title),
-        );
+        let heights: Vec<f64> = rows.iter().map(|row| most(&mut row.iter().map(|chart| chart.size[1]))).collect();
+        let (width, top) = (widths.iter().sum::<f64>().max(200.0), layout::headline_height(&self.title));
         let height = (top + heights.iter().sum::<f64>()).max(150.0);
         let mut canvas = Canvas::new(width, height, &self.title);
         layout::headline(&mut canvas, &self.title, width);

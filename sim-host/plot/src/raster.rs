@@ -6,8 +6,8 @@ use super::font;
 use crate::terrain::encode_png;
 use std::io;
 use tiny_skia::{
-    FillRule, FilterQuality, LineCap, LineJoin, Mask, Paint, Path, PathBuilder, Pixmap,
-    PixmapPaint, PremultipliedColorU8, Rect, StrokeDash, Transform,
+    FillRule, FilterQuality, LineCap, LineJoin, Mask, Paint, Path, PathBuilder, Pixmap, PixmapPaint,
+    PremultipliedColorU8, Rect, StrokeDash, Transform,
 };
 
 /// PNG pixels per picture unit.
@@ -21,17 +21,8 @@ pub const HALO: f64 = 0.25;
 /// The picture has no pixels or too many.
 pub fn png(canvas: &Canvas) -> io::Result<Vec<u8>> {
     let pixmap = draw(canvas, SCALE, Some(WHITE))?;
-    let rgb: Vec<u8> = pixmap
-        .pixels()
-        .iter()
-        .flat_map(|pixel| [pixel.red(), pixel.green(), pixel.blue()])
-        .collect();
-    Ok(encode_png(
-        pixmap.width(),
-        pixmap.height(),
-        png::ColorType::Rgb,
-        &rgb,
-    )?)
+    let rgb: Vec<u8> = pixmap.pixels().iter().flat_map(|pixel| [pixel.red(), pixel.green(), pixel.blue()]).collect();
+    Ok(encode_png(pixmap.width(), pixmap.height(), png::ColorType::Rgb, &rgb)?)
 }
 
 /// The PNG file of a picture in a picture.
@@ -45,11 +36,7 @@ pub fn encode_rgba(pixels: &Pixels) -> io::Result<Vec<u8>> {
     } else {
         pixels.rgba.iter().flatten().copied().collect()
     };
-    let colour = if bytes.len() == pixels.rgba.len() * 3 {
-        png::ColorType::Rgb
-    } else {
-        png::ColorType::Rgba
-    };
+    let colour = if bytes.len() == pixels.rgba.len() * 3 { png::ColorType::Rgb } else { png::ColorType::Rgba };
     Ok(encode_png(pixels.width, pixels.height, colour, &bytes)?)
 }
 
@@ -67,29 +54,18 @@ pub fn layer(canvas: &Canvas, scale: f64) -> io::Result<Pixels> {
             [plain.red(), plain.green(), plain.blue(), plain.alpha()]
         })
         .collect();
-    Ok(Pixels {
-        width: pixmap.width(),
-        height: pixmap.height(),
-        rgba,
-    })
+    Ok(Pixels { width: pixmap.width(), height: pixmap.height(), rgba })
 }
 
 fn draw(canvas: &Canvas, scale: f64, ground: Option<Colour>) -> io::Result<Pixmap> {
     let [width, height] = [canvas.width, canvas.height].map(|side| libm::ceil(side * scale) as u32);
-    let mut pixmap = Pixmap::new(width, height).ok_or_else(|| {
-        io::Error::other(format!(
-            "a picture of {width} x {height} pixels is not possible"
-        ))
-    })?;
+    let mut pixmap = Pixmap::new(width, height)
+        .ok_or_else(|| io::Error::other(format!("a picture of {width} x {height} pixels is not possible")))?;
     if let Some(ground) = ground {
         pixmap.fill(plain(ground));
     }
     let scale = scale as f32;
-    let mut brush = Brush {
-        transform: Transform::from_scale(scale, scale),
-        pixmap,
-        mask: None,
-    };
+    let mut brush = Brush { transform: Transform::from_scale(scale, scale), pixmap, mask: None };
     for shape in &canvas.shapes {
         brush.shape(shape);
     }
@@ -105,24 +81,12 @@ struct Brush {
 impl Brush {
     fn shape(&mut self, shape: &Shape) {
         match shape {
-            Shape::Path {
-                lines,
-                closed,
-                stroke,
-                fill,
-            } => {
+            Shape::Path { lines, closed, stroke, fill } => {
                 let mut builder = PathBuilder::new();
-                lines
-                    .iter()
-                    .for_each(|line| add_line(&mut builder, line, *closed));
+                lines.iter().for_each(|line| add_line(&mut builder, line, *closed));
                 self.path(builder.finish(), *fill, *stroke, self.transform);
             }
-            Shape::Circle {
-                centre: [x, y],
-                radius,
-                stroke,
-                fill,
-            } => {
+            Shape::Circle { centre: [x, y], radius, stroke, fill } => {
                 let path = PathBuilder::from_circle(*x as f32, *y as f32, *radius as f32);
                 self.path(path, *fill, *stroke, self.transform);
             }
@@ -132,36 +96,24 @@ impl Brush {
         }
     }
 
-    fn path(
-        &mut self,
-        path: Option<Path>,
-        fill: Option<Colour>,
-        stroke: Option<Stroke>,
-        transform: Transform,
-    ) {
+    fn path(&mut self, path: Option<Path>, fill: Option<Colour>, stroke: Option<Stroke>, transform: Transform) {
         let Some(path) = path else { return };
         let mask = self.mask.as_ref();
         if let Some(fill) = fill {
             let paint = paint(fill);
-            self.pixmap
-                .fill_path(&path, &paint, FillRule::Winding, transform, mask);
+            self.pixmap.fill_path(&path, &paint, FillRule::Winding, transform, mask);
         }
         if let Some(stroke) = stroke {
             let dash = stroke.dash.map(|lengths| lengths.map(|l| l as f32));
             let pen = tiny_skia::Stroke {
                 width: stroke.width as f32,
-                line_cap: if dash.is_some() {
-                    LineCap::Butt
-                } else {
-                    LineCap::Round
-                },
+                line_cap: if dash.is_some() { LineCap::Butt } else { LineCap::Round },
                 line_join: LineJoin::Round,
                 dash: dash.and_then(|lengths| StrokeDash::new(lengths.to_vec(), 0.0)),
                 ..tiny_skia::Stroke::default()
             };
             let paint = paint(stroke.colour);
-            self.pixmap
-                .stroke_path(&path, &paint, &pen, transform, mask);
+            self.pixmap.stroke_path(&path, &paint, &pen, transform, mask);
         }
     }
 
@@ -192,23 +144,17 @@ impl Brush {
         };
         for (pixel, [r, g, b, a]) in image.pixels_mut().iter_mut().zip(&pixels.rgba) {
             let times = |value: u8| ((u32::from(value) * u32::from(*a) + 127) / 255) as u8;
-            if let Some(colour) =
-                PremultipliedColorU8::from_rgba(times(*r), times(*g), times(*b), *a)
-            {
+            if let Some(colour) = PremultipliedColorU8::from_rgba(times(*r), times(*g), times(*b), *a) {
                 *pixel = colour;
             }
         }
-        let transform = self.transform.pre_translate(x as f32, y as f32).pre_scale(
-            width as f32 / pixels.width as f32,
-            height as f32 / pixels.height as f32,
-        );
-        let paint = PixmapPaint {
-            quality: FilterQuality::Nearest,
-            ..PixmapPaint::default()
-        };
+        let transform = self
+            .transform
+            .pre_translate(x as f32, y as f32)
+            .pre_scale(width as f32 / pixels.width as f32, height as f32 / pixels.height as f32);
+        let paint = PixmapPaint { quality: FilterQuality::Nearest, ..PixmapPaint::default() };
         let mask = self.mask.as_ref();
-        self.pixmap
-            .draw_pixmap(0, 0, image.as_ref(), &paint, transform, mask);
+        self.pixmap.draw_pixmap(0, 0, image.as_ref(), &paint, transform, mask);
     }
 
     fn mask(&self, [x, y, width, height]: [f64; 4]) -> Option<Mask> {
@@ -243,10 +189,7 @@ fn plain(colour: Colour) -> tiny_skia::Color {
 }
 
 fn paint(colour: Colour) -> Paint<'static> {
-    let mut paint = Paint {
-        anti_alias: true,
-        ..Paint::default()
-    };
+    let mut paint = Paint { anti_alias: true, ..Paint::default() };
     paint.set_color(plain(colour));
     paint
 }

@@ -45,26 +45,15 @@ pub fn run_pictures(
 pub(super) fn formation(series: &[SeriesPoint]) -> Option<Panels> {
     let clock = Clock::new(series);
     let curve = |title: &str, label: &str, colour, value: fn(&SeriesPoint) -> f64| {
-        let points: Vec<[f64; 2]> = series
+        let points: Vec<[f64; 2]> = series.iter().map(|point| [clock.at(point), value(point)]).collect();
+        points
             .iter()
-            .map(|point| [clock.at(point), value(point)])
-            .collect();
-        points.iter().any(|[_, value]| value.is_finite()).then(|| {
-            with_mean(
-                Chart::new(title, clock.label, label),
-                points,
-                colour,
-                &clock,
-            )
-        })
+            .any(|[_, value]| value.is_finite())
+            .then(|| with_mean(Chart::new(title, clock.label, label), points, colour, &clock))
     };
     let charts = [
-        curve("Formation error per agent", "error (cells)", 0, |point| {
-            point.formation_error_per_agent
-        }),
-        curve("Graph distance", "graph distance", 1, |point| {
-            point.graph_distance
-        }),
+        curve("Formation error per agent", "error (cells)", 0, |point| point.formation_error_per_agent),
+        curve("Graph distance", "graph distance", 1, |point| point.graph_distance),
     ];
     let mut charts = charts.into_iter().flatten().peekable();
     charts.peek()?;
@@ -91,9 +80,7 @@ fn with_mean(chart: Chart, points: Vec<[f64; 2]>, index: usize, clock: &Clock) -
 fn mean(points: &[[f64; 2]]) -> Option<[f64; 2]> {
     let known: Vec<&[f64; 2]> = points.iter().filter(|[_, y]| y.is_finite()).collect();
     let count = known.len() as f64;
-    let sum = known.iter().fold([0.0; 2], |sum, point| {
-        [sum[0] + point[0], sum[1] + point[1]]
-    });
+    let sum = known.iter().fold([0.0; 2], |sum, point| [sum[0] + point[0], sum[1] + point[1]]);
     (!known.is_empty()).then(|| sum.map(|value| value / count))
 }
 
@@ -101,25 +88,16 @@ fn mean(points: &[[f64; 2]]) -> Option<[f64; 2]> {
 pub(super) fn packets(history: &History) -> Panels {
     let series = history.series();
     let clock = Clock::new(series);
-    let bins: Vec<(f64, f64, PacketCounts)> = series
-        .chunks(series.len().div_ceil(MEANS).max(1))
-        .map(|points| bin(points, &clock))
-        .collect();
+    let bins: Vec<(f64, f64, PacketCounts)> =
+        series.chunks(series.len().div_ceil(MEANS).max(1)).map(|points| bin(points, &clock)).collect();
     let line = |name: &str, index: usize, count: fn(&PacketCounts) -> u64| {
-        let points = bins
-            .iter()
-            .map(|(at, length, packets)| [*at, count(packets) as f64 / length]);
+        let points = bins.iter().map(|(at, length, packets)| [*at, count(packets) as f64 / length]);
         Series::line(name, points).colour(colour::nth(index))
     };
     let per = format!("packets per {}", clock.one);
-    let ends =
-        [series.first(), series.last()].map(|point| point.map_or(0.0, |point| clock.at(point)));
+    let ends = [series.first(), series.last()].map(|point| point.map_or(0.0, |point| clock.at(point)));
     // From the first tick, although the first mean is a little later.
-    let chart = |title| {
-        Chart::new(title, clock.label, &per)
-            .x_range(ends[0], ends[1])
-            .size(760.0, 300.0)
-    };
+    let chart = |title| Chart::new(title, clock.label, &per).x_range(ends[0], ends[1]).size(760.0, 300.0);
     let all = history.totals();
     let n = ticks::grouped;
     Panels::new("Packets over time")
@@ -182,29 +160,13 @@ impl Clock {
             _ => f64::NAN,
         };
         if per_tick.is_finite() && per_tick > 0.0 {
-            Self {
-                per_tick,
-                in_ticks: false,
-                label: "simulated time (s)",
-                unit: "s",
-                one: "second",
-            }
+            Self { per_tick, in_ticks: false, label: "simulated time (s)", unit: "s", one: "second" }
         } else {
-            Self {
-                per_tick: 1.0,
-                in_ticks: true,
-                label: "tick",
-                unit: "ticks",
-                one: "tick",
-            }
+            Self { per_tick: 1.0, in_ticks: true, label: "tick", unit: "ticks", one: "tick" }
         }
     }
 
     fn at(&self, point: &SeriesPoint) -> f64 {
-        if self.in_ticks {
-            f64::from(point.tick)
-        } else {
-            point.time_s
-        }
+        if self.in_ticks { f64::from(point.tick) } else { point.time_s }
     }
 }

@@ -24,11 +24,7 @@ impl Axis {
     /// Where a value lies: 0 at the beginning, 1 at the end, beyond outside.
     pub fn share(&self, value: f64) -> f64 {
         let at = |value: f64| {
-            if self.logarithmic {
-                libm::log10(value)
-            } else {
-                value
-            }
+            if self.logarithmic { libm::log10(value) } else { value }
         };
         let [low, high] = self.range.map(at);
         (at(value) - low) / (high - low)
@@ -36,10 +32,7 @@ impl Axis {
 
     /// Width of the widest number.
     pub fn widest_label(&self, size: f64) -> f64 {
-        self.ticks
-            .iter()
-            .map(|tick| font::width(&tick.label, size, false))
-            .fold(0.0, f64::max)
+        self.ticks.iter().map(|tick| font::width(&tick.label, size, false)).fold(0.0, f64::max)
     }
 
     /// Whether all numbers fit beside each other on `length` units.
@@ -50,9 +43,7 @@ impl Axis {
             [at - half, at + half]
         };
         let spans: Vec<[f64; 2]> = self.ticks.iter().map(span).collect();
-        let inside = spans
-            .iter()
-            .all(|[from, to]| *from >= -OVERHANG && *to <= length + OVERHANG);
+        let inside = spans.iter().all(|[from, to]| *from >= -OVERHANG && *to <= length + OVERHANG);
         inside && spans.windows(2).all(|pair| pair[0][1] + 14.0 <= pair[1][0])
     }
 }
@@ -84,11 +75,7 @@ impl Axes {
             },
         };
         let most = ((width / 50.0) as usize).clamp(2, 14);
-        let x = (2..=most)
-            .rev()
-            .map(axis)
-            .find(|axis| axis.labels_fit(width))
-            .unwrap_or_else(|| axis(2));
+        let x = (2..=most).rev().map(axis).find(|axis| axis.labels_fit(width)).unwrap_or_else(|| axis(2));
         let most = ((height / 36.0) as usize).clamp(2, 10);
         let y_range = y_range(chart, &extent, most);
         let y = Axis {
@@ -116,12 +103,7 @@ struct Extent {
 
 impl Extent {
     fn new(chart: &Chart, looks: &[Look<'_>]) -> Self {
-        let mut this = Self {
-            x: None,
-            y: None,
-            marks: false,
-            bars: false,
-        };
+        let mut this = Self { x: None, y: None, marks: false, bars: false };
         for look in looks {
             match &look.series.data {
                 Data::Line(points) => points.iter().for_each(|[x, y]| this.add(chart, *x, *y)),
@@ -132,9 +114,7 @@ impl Extent {
                 Data::Intervals(points) => {
                     this.marks = true;
                     for [x, y, low, high] in points {
-                        [y, low, high]
-                            .iter()
-                            .for_each(|value| this.add(chart, *x, **value));
+                        [y, low, high].iter().for_each(|value| this.add(chart, *x, **value));
                     }
                 }
                 Data::Bars(bars) => {
@@ -188,11 +168,7 @@ fn x_range(chart: &Chart, extent: &Extent) -> [f64; 2] {
 
 /// A positive range, at least a factor of 2 wide around a single value; with some room at its ends.
 fn log_range([low, high]: [f64; 2], room: bool) -> [f64; 2] {
-    let low = if low > 0.0 {
-        low
-    } else {
-        f64::MIN_POSITIVE.max(high / 1e3)
-    };
+    let low = if low > 0.0 { low } else { f64::MIN_POSITIVE.max(high / 1e3) };
     let (low, high) = (low.clamp(1e-150, 1e150), high.clamp(1e-150, 1e150));
     let factor = if high / low < 1.0 + 1e-9 {
         1.5

@@ -11,11 +11,7 @@ const POINTS_PER_UNIT: f64 = 4.0;
 
 /// The three lines of an error bar.
 pub fn whisker(x: f64, top: f64, bottom: f64) -> Vec<Vec<Point>> {
-    vec![
-        vec![[x, top], [x, bottom]],
-        vec![[x - 3.0, top], [x + 3.0, top]],
-        vec![[x - 3.0, bottom], [x + 3.0, bottom]],
-    ]
+    vec![vec![[x, top], [x, bottom]], vec![[x - 3.0, top], [x + 3.0, top]], vec![[x - 3.0, bottom], [x + 3.0, bottom]]]
 }
 
 /// Draws all series into a plotting area: bars lowest, then lines, then marks.
@@ -23,14 +19,9 @@ pub fn draw(looks: &[Look<'_>], axes: &Axes, canvas: &mut Canvas, plot: [f64; 4]
     let [left, top, width, height] = plot;
     let bottom = top + height;
     let place = |look: &Look<'_>, x: f64, y: f64| -> Option<Point> {
-        let at = [
-            left + width * axes.x.share(x) + look.shift,
-            bottom - height * axes.y.share(y),
-        ];
+        let at = [left + width * axes.x.share(x) + look.shift, bottom - height * axes.y.share(y)];
         // Far outside, coordinates would lose their precision in a reader.
-        at.iter()
-            .all(|value| value.is_finite() && value.abs() < 1e6)
-            .then_some(at)
+        at.iter().all(|value| value.is_finite() && value.abs() < 1e6).then_some(at)
     };
     // Lines at the edge keep their full width.
     canvas.clip(Some([left - 1.0, top - 1.0, width + 2.0, height + 2.0]));
@@ -67,19 +58,12 @@ pub fn draw(looks: &[Look<'_>], axes: &Axes, canvas: &mut Canvas, plot: [f64; 4]
         }
     }
     canvas.clip(None);
-    let inside = |[x, y]: &Point| {
-        (left - 0.5..=left + width + 0.5).contains(x) && (top - 0.5..=bottom + 0.5).contains(y)
-    };
+    let inside =
+        |[x, y]: &Point| (left - 0.5..=left + width + 0.5).contains(x) && (top - 0.5..=bottom + 0.5).contains(y);
     for look in looks {
         let points: Vec<Point> = match &look.series.data {
-            Data::Points(points) => points
-                .iter()
-                .filter_map(|[x, y]| place(look, *x, *y))
-                .collect(),
-            Data::Intervals(points) => points
-                .iter()
-                .filter_map(|[x, y, ..]| place(look, *x, *y))
-                .collect(),
+            Data::Points(points) => points.iter().filter_map(|[x, y]| place(look, *x, *y)).collect(),
+            Data::Intervals(points) => points.iter().filter_map(|[x, y, ..]| place(look, *x, *y)).collect(),
             Data::Line(_) | Data::Bars(_) => continue,
         };
         // Marks that would cover each other to half a unit are drawn once.
@@ -139,15 +123,11 @@ fn thin(line: Vec<Point>, most: usize) -> Vec<Point> {
     line.chunks(run)
         .flat_map(|points| {
             let by_y = |a: &usize, b: &usize| points[*a][1].total_cmp(&points[*b][1]);
-            let keep: BTreeSet<usize> = [
-                Some(0),
-                (0..points.len()).min_by(by_y),
-                (0..points.len()).max_by(by_y),
-                points.len().checked_sub(1),
-            ]
-            .into_iter()
-            .flatten()
-            .collect();
+            let keep: BTreeSet<usize> =
+                [Some(0), (0..points.len()).min_by(by_y), (0..points.len()).max_by(by_y), points.len().checked_sub(1)]
+                    .into_iter()
+                    .flatten()
+                    .collect();
             keep.into_iter().map(|index| points[index])
         })
         .collect()

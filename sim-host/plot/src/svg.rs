@@ -26,22 +26,12 @@ pub fn text(canvas: &Canvas) -> io::Result<String> {
     for shape in &canvas.shapes {
         // Writing to a string does not fail.
         let _ = match shape {
-            Shape::Path {
-                lines,
-                closed,
-                stroke,
-                fill,
-            } => {
+            Shape::Path { lines, closed, stroke, fill } => {
                 out.push_str("<path d=\"");
                 lines.iter().for_each(|line| path(&mut out, line, *closed));
                 writeln!(out, "\"{}/>", Paint(*stroke, *fill))
             }
-            Shape::Circle {
-                centre: [x, y],
-                radius,
-                stroke,
-                fill,
-            } => writeln!(
+            Shape::Circle { centre: [x, y], radius, stroke, fill } => writeln!(
                 out,
                 "<circle cx=\"{}\" cy=\"{}\" r=\"{}\"{}/>",
                 Number(*x),
@@ -112,9 +102,7 @@ fn element(out: &mut String, text: &Text) -> std::fmt::Result {
     if text.bold {
         out.push_str(" font-weight=\"bold\"");
     }
-    let stroke = text
-        .halo
-        .map(|halo| Stroke::new(halo, text.size * super::raster::HALO));
+    let stroke = text.halo.map(|halo| Stroke::new(halo, text.size * super::raster::HALO));
     write!(out, "{}", Paint(stroke, Some(text.colour)))?;
     if stroke.is_some() {
         out.push_str(" paint-order=\"stroke\"");
@@ -139,10 +127,7 @@ impl Display for Paint {
             if let Some([dash, gap]) = stroke.dash {
                 // Round ends would fill the gaps.
                 let (dash, gap) = (Number(dash), Number(gap));
-                write!(
-                    f,
-                    " stroke-dasharray=\"{dash} {gap}\" stroke-linecap=\"butt\""
-                )?;
+                write!(f, " stroke-dasharray=\"{dash} {gap}\" stroke-linecap=\"butt\"")?;
             }
         }
         Ok(())

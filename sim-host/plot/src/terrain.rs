@@ -43,10 +43,7 @@ pub fn render(terrain: &Terrain, scale: u32) -> (u32, u32, Vec<u8>) {
     let repeat = scale as usize;
     let mut pixels = Vec::with_capacity(terrain.cells().len() * repeat * repeat);
     for (_, row) in file_rows(terrain) {
-        let line: Vec<u8> = row
-            .iter()
-            .flat_map(|u| std::iter::repeat_n(shade(*u, classes), repeat))
-            .collect();
+        let line: Vec<u8> = row.iter().flat_map(|u| std::iter::repeat_n(shade(*u, classes), repeat)).collect();
         for _ in 0..scale {
             pixels.extend_from_slice(&line);
         }
@@ -73,9 +70,7 @@ pub fn draw(terrain: &Terrain, scale: u32, path: &Path) -> Result<(), TerrainErr
     if scale == 0 || longest * u64::from(scale) > u64::from(MAX_PIXELS) {
         return Err(parameter_error(
             format!("a picture of {longest} cells with {scale} pixels each"),
-            format!(
-                "choose a scale so that the longer side has 1 to {MAX_PIXELS} pixels, or a piece of the map"
-            ),
+            format!("choose a scale so that the longer side has 1 to {MAX_PIXELS} pixels, or a piece of the map"),
         ));
     }
     let extension = path.extension().and_then(|extension| extension.to_str());
@@ -183,11 +178,7 @@ mod tests {
         draw(&land, 4, &svg).unwrap();
         let text = std::fs::read_to_string(&svg).unwrap();
         assert_eq!(text.matches("<rect").count(), 2);
-        let message = |scale, name: &str| {
-            draw(&land, scale, &dir.path().join(name))
-                .unwrap_err()
-                .to_string()
-        };
+        let message = |scale, name: &str| draw(&land, scale, &dir.path().join(name)).unwrap_err().to_string();
         assert!(message(4, "a.gif").contains(".png or .svg"));
         assert!(message(4, "no/folder/a.png").contains("a.png: "));
         assert!(message(4, "no/folder/a.svg").contains("a.svg: "));

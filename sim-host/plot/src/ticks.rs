@@ -46,18 +46,13 @@ impl Step {
                 return step;
             }
         }
-        Self {
-            mantissa: 1,
-            exponent: exponent + 1,
-        }
+        Self { mantissa: 1, exponent: exponent + 1 }
     }
 
     /// The double next to `count` steps. Through decimals, so that 3 x 0.1 is 0.3.
     fn times(self, count: i64) -> f64 {
         let digits = count * self.mantissa;
-        format!("{digits}e{}", self.exponent)
-            .parse()
-            .unwrap_or(f64::NAN)
+        format!("{digits}e{}", self.exponent).parse().unwrap_or(f64::NAN)
     }
 
     fn index(self, value: f64, round: fn(f64) -> f64) -> i64 {
@@ -65,11 +60,7 @@ impl Step {
         // A value that is a multiple but for rounding counts as one.
         let whole = libm::round(near);
         let tolerance = 1e-9 + 4.0 * f64::EPSILON * whole.abs();
-        (if (near - whole).abs() < tolerance {
-            whole
-        } else {
-            round(near)
-        }) as i64
+        (if (near - whole).abs() < tolerance { whole } else { round(near) }) as i64
     }
 }
 
@@ -78,10 +69,7 @@ impl Step {
 pub fn enclosing(low: f64, high: f64, most: usize) -> [f64; 2] {
     let [low, high] = sound(low, high);
     let step = Step::new(high - low, most);
-    [
-        step.times(step.index(low, libm::floor)).min(low),
-        step.times(step.index(high, libm::ceil)).max(high),
-    ]
+    [step.times(step.index(low, libm::floor)).min(low), step.times(step.index(high, libm::ceil)).max(high)]
 }
 
 /// The greatest 1, 2 or 5 x 10^k that is no more than `value`; 1 if `value` is no positive number.
@@ -91,16 +79,11 @@ pub fn round_down(value: f64) -> f64 {
         return 1.0;
     }
     let exponent = libm::floor(libm::log10(value)) as i32;
-    [
-        (5, exponent),
-        (2, exponent),
-        (1, exponent),
-        (5, exponent - 1),
-    ]
-    .into_iter()
-    .map(|(mantissa, exponent)| Step { mantissa, exponent }.times(1))
-    .find(|step| *step <= value)
-    .unwrap_or(value)
+    [(5, exponent), (2, exponent), (1, exponent), (5, exponent - 1)]
+        .into_iter()
+        .map(|(mantissa, exponent)| Step { mantissa, exponent }.times(1))
+        .find(|step| *step <= value)
+        .unwrap_or(value)
 }
 
 /// Marks of an axis from `low` to `high`, both ends included, with at most `most` steps between.
@@ -113,10 +96,7 @@ pub fn linear(low: f64, high: f64, most: usize) -> Vec<Tick> {
     (first..=last)
         .map(|count| {
             let value = step.times(count);
-            Tick {
-                value: value.clamp(low, high),
-                label: label(value, step, largest),
-            }
+            Tick { value: value.clamp(low, high), label: label(value, step, largest) }
         })
         .collect()
 }
@@ -170,16 +150,9 @@ pub fn logarithmic(low: f64, high: f64, most: usize) -> Vec<Tick> {
     let fine = [marks(&[1, 2, 5], 1), marks(&[1], 1)];
     if let Some(fits) = fine.into_iter().find(|ticks| ticks.len() <= most + 1) {
         // Less than a decade may hold a single power of ten, or none.
-        return if fits.len() >= 2 {
-            fits
-        } else {
-            linear(low, high, most)
-        };
+        return if fits.len() >= 2 { fits } else { linear(low, high, most) };
     }
-    (2..)
-        .map(|every| marks(&[1], every))
-        .find(|ticks| ticks.len() <= most + 1)
-        .unwrap_or_default()
+    (2..).map(|every| marks(&[1], every)).find(|ticks| ticks.len() <= most + 1).unwrap_or_default()
 }
 
 /// A whole number with commas between thousands.

@@ -60,12 +60,7 @@ pub fn draw(terrain: &Terrain, history: &History, edges: &[(u32, u32)]) -> io::R
     let room = width - 2.0 * PAD;
     let mut canvas = Canvas::new(width, 0.0, &title);
     heading(&mut canvas, &title, 16.0, [PAD, PAD + 15.0], room);
-    let (note, size) = font::fit(
-        &note(terrain, &view, ways.len()),
-        SMALL,
-        false,
-        room / OTHER_FONTS,
-    );
+    let (note, size) = font::fit(&note(terrain, &view, ways.len()), SMALL, false, room / OTHER_FONTS);
     let mut line = Text::new([PAD, PAD + 34.0], size, Anchor::Start, note);
     line.colour = MUTED;
     canvas.text(line);
@@ -108,23 +103,14 @@ fn title(frames: &[Frame], robots: usize) -> String {
 }
 
 fn note(terrain: &Terrain, view: &Terrain, robots: usize) -> String {
-    let size = format!(
-        "{} × {} cells of {} m",
-        view.width(),
-        view.height(),
-        (view.cell_m * 100.0).round() / 100.0
-    );
+    let size = format!("{} × {} cells of {} m", view.width(), view.height(), (view.cell_m * 100.0).round() / 100.0);
     let all = (terrain.width(), terrain.height());
     let part = if (view.width(), view.height()) == all {
         String::new()
     } else {
         format!(", part of a map of {} × {}", all.0, all.1)
     };
-    let lanes = if (2..=NAMED).contains(&robots) {
-        "; ways through the same cells are drawn side by side"
-    } else {
-        ""
-    };
+    let lanes = if (2..=NAMED).contains(&robots) { "; ways through the same cells are drawn side by side" } else { "" };
     size + &part + lanes
 }
 
@@ -164,8 +150,7 @@ fn view<'a>(terrain: &'a Terrain, ways: &BTreeMap<u32, Way>) -> Cow<'a, Terrain>
         return Cow::Borrowed(terrain);
     }
     let margin = (reach * 0.2).max(6.0);
-    let first: [f64; 2] =
-        std::array::from_fn(|axis| libm::floor(low[axis] - margin).clamp(0.0, sides[axis] - 1.0));
+    let first: [f64; 2] = std::array::from_fn(|axis| libm::floor(low[axis] - margin).clamp(0.0, sides[axis] - 1.0));
     let size: [f64; 2] = std::array::from_fn(|axis| {
         (libm::ceil(high[axis] + margin) - first[axis]).clamp(1.0, sides[axis] - first[axis])
     });
@@ -173,18 +158,13 @@ fn view<'a>(terrain: &'a Terrain, ways: &BTreeMap<u32, Way>) -> Cow<'a, Terrain>
         return Cow::Borrowed(terrain);
     }
     let [x, y, width, height] = [first[0], first[1], size[0], size[1]].map(|value| value as u16);
-    terrain
-        .crop(x, y, width, height)
-        .map_or(Cow::Borrowed(terrain), Cow::Owned)
+    terrain.crop(x, y, width, height).map_or(Cow::Borrowed(terrain), Cow::Owned)
 }
 
 fn middle_m(terrain: &Terrain, cell: Cell) -> Option<[f64; 2]> {
     terrain.index(cell)?;
     let [x, y] = terrain.origin_m;
-    Some([
-        x + (f64::from(cell.x) + 0.5) * terrain.cell_m,
-        y + (f64::from(cell.y) + 0.5) * terrain.cell_m,
-    ])
+    Some([x + (f64::from(cell.x) + 0.5) * terrain.cell_m, y + (f64::from(cell.y) + 0.5) * terrain.cell_m])
 }
 
 /// Colour and dashes of the `index`-th of `robots`.
@@ -196,11 +176,7 @@ fn look(index: usize, robots: usize) -> Stroke {
     };
     let stroke = Stroke::new(colour::nth(index), width);
     // When colours come again, dashes keep them apart.
-    if robots <= NAMED && index >= colour::PALETTE.len() {
-        stroke.dashed(6.0, 3.0)
-    } else {
-        stroke
-    }
+    if robots <= NAMED && index >= colour::PALETTE.len() { stroke.dashed(6.0, 3.0) } else { stroke }
 }
 
 fn draw_ways(canvas: &mut Canvas, map: &Map<'_>, ways: &BTreeMap<u32, Way>) -> io::Result<()> {
@@ -227,10 +203,7 @@ fn draw_ways(canvas: &mut Canvas, map: &Map<'_>, ways: &BTreeMap<u32, Way>) -> i
         moved.collect()
     });
     draw_lines(&mut layer, lines.collect(), lane);
-    canvas.shapes.push(Shape::Image {
-        area: map.area,
-        pixels: raster::layer(&layer, raster::SCALE)?,
-    });
+    canvas.shapes.push(Shape::Image { area: map.area, pixels: raster::layer(&layer, raster::SCALE)? });
     Ok(())
 }
 
@@ -282,11 +255,7 @@ fn draw_lines(canvas: &mut Canvas, lines: Vec<Vec<Point>>, lane: f64) {
     }
     for (index, line) in lines.into_iter().enumerate() {
         let stroke = look(index, robots);
-        let width = if lane > 0.0 {
-            stroke.width.min(lane)
-        } else {
-            stroke.width
-        };
+        let width = if lane > 0.0 { stroke.width.min(lane) } else { stroke.width };
         canvas.line(line, Stroke { width, ..stroke });
     }
 }
@@ -299,27 +268,17 @@ fn draw_crowd_ends(canvas: &mut Canvas, map: &Map<'_>, ways: &BTreeMap<u32, Way>
         places.map(|place| vec![map.place(*place)]).collect()
     };
     let size = (map.cell * 0.6).clamp(1.2, 4.0);
-    for (key, dots) in CROWD_ENDS
-        .into_iter()
-        .zip([dots(&mut starts), dots(&mut targets)])
-    {
+    for (key, dots) in CROWD_ENDS.into_iter().zip([dots(&mut starts), dots(&mut targets)]) {
         canvas.lines(dots, Stroke::new(key.0, size));
     }
 }
 
 /// Colours of a crowd's starts and targets.
-const CROWD_ENDS: [(Colour, &str); 2] = [
-    (colour::PALETTE[2], "starts"),
-    (colour::PALETTE[1], "targets"),
-];
+const CROWD_ENDS: [(Colour, &str); 2] = [(colour::PALETTE[2], "starts"), (colour::PALETTE[1], "targets")];
 
 /// Starts as rings, targets as crosses.
 fn draw_ends(canvas: &mut Canvas, map: &Map<'_>, ways: &BTreeMap<u32, Way>) {
-    let size = if ways.len() <= NAMED {
-        5.0
-    } else {
-        (map.cell * 0.45).clamp(1.2, 4.0)
-    };
+    let size = if ways.len() <= NAMED { 5.0 } else { (map.cell * 0.45).clamp(1.2, 4.0) };
     for (index, way) in ways.values().enumerate() {
         let colour = look(index, ways.len()).colour;
         if let Some(start) = way.positions_m.first() {
@@ -338,10 +297,8 @@ fn ring(canvas: &mut Canvas, at: Point, radius: f64, colour: Colour) {
 }
 
 fn cross(canvas: &mut Canvas, [x, y]: Point, size: f64, colour: Colour) {
-    let lines = vec![
-        vec![[x - size, y - size], [x + size, y + size]],
-        vec![[x - size, y + size], [x + size, y - size]],
-    ];
+    let lines =
+        vec![vec![[x - size, y - size], [x + size, y + size]], vec![[x - size, y + size], [x + size, y - size]]];
     canvas.lines(lines.clone(), Stroke::new(WHITE, size * 0.8));
     canvas.lines(lines, Stroke::new(colour, size * 0.4));
 }
@@ -363,9 +320,7 @@ fn moments(frames: &[Frame]) -> Vec<(&Frame, f64)> {
         let since = |frame: &Frame| f64::from(frame.tick.wrapping_sub(first.tick));
         let at = frames.partition_point(|frame| since(frame) < share * span);
         if let Some(frame) = frames.get(at)
-            && chosen
-                .last()
-                .is_none_or(|(other, _)| other.tick != frame.tick)
+            && chosen.last().is_none_or(|(other, _)| other.tick != frame.tick)
         {
             chosen.push((frame, share));
         }
@@ -387,10 +342,8 @@ fn draw_formation(
             .filter(|sample| sample.position_m.iter().all(|value| value.is_finite()))
             .map(|sample| (sample.id, map.place(sample.position_m)))
             .collect();
-        let lines: Vec<Vec<Point>> = edges
-            .iter()
-            .filter_map(|(a, b)| Some(vec![*places.get(a)?, *places.get(b)?]))
-            .collect();
+        let lines: Vec<Vec<Point>> =
+            edges.iter().filter_map(|(a, b)| Some(vec![*places.get(a)?, *places.get(b)?])).collect();
         let colour = moment_colour(share);
         canvas.lines(lines.clone(), Stroke::new(WHITE.with_alpha(150), 2.6));
         canvas.lines(lines, Stroke::new(colour, 1.2));
@@ -423,11 +376,7 @@ fn keys(ways: &BTreeMap<u32, Way>, with_edges: bool) -> Vec<(Key, String)> {
     }
     if robots <= NAMED {
         for (index, id) in ways.keys().enumerate() {
-            let name = if index == 0 {
-                format!("robot {id}")
-            } else {
-                id.to_string()
-            };
+            let name = if index == 0 { format!("robot {id}") } else { id.to_string() };
             keys.push((Key::Way(look(index, robots)), name));
         }
     }
@@ -441,10 +390,7 @@ fn keys(ways: &BTreeMap<u32, Way>, with_edges: bool) -> Vec<(Key, String)> {
 
 fn crowd_keys(density: &Density, robots: usize) -> Vec<(Key, String)> {
     let most = ticks::grouped(density.most().into());
-    let mut keys = vec![(
-        Key::Density,
-        format!("times a cell was entered, 1 to {most}"),
-    )];
+    let mut keys = vec![(Key::Density, format!("times a cell was entered, 1 to {most}"))];
     if robots <= MAX_ENDS {
         let ends = CROWD_ENDS.map(|(colour, name)| (Key::Dot(colour), name.to_owned()));
         keys.extend(ends);

@@ -17,7 +17,8 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use thiserror::Error;
 
 /// What a key file must hold.
-const WANTED: &str = "write one line into it: 64 hexadecimal digits (openssl rand -hex 32), or \"passphrase: \" and words";
+const WANTED: &str =
+    "write one line into it: 64 hexadecimal digits (openssl rand -hex 32), or \"passphrase: \" and words";
 
 /// Why a key file is of no use. The file's content is never in it.
 #[derive(Debug, Error)]
@@ -57,15 +58,10 @@ impl KeyFile {
     /// # Errors
     /// See [`KeyError`].
     pub fn read(path: &Path) -> Result<Self, KeyError> {
-        let text = fs::read_to_string(path).map_err(|error| KeyError::Unreadable {
-            path: path.to_path_buf(),
-            error,
-        })?;
-        let key = parse(&text).map_err(|(line, problem)| KeyError::NoKey {
-            path: path.to_path_buf(),
-            line,
-            problem,
-        })?;
+        let text =
+            fs::read_to_string(path).map_err(|error| KeyError::Unreadable { path: path.to_path_buf(), error })?;
+        let key =
+            parse(&text).map_err(|(line, problem)| KeyError::NoKey { path: path.to_path_buf(), line, problem })?;
         let remark = is_open(path).then(|| {
             let path = path.display();
             format!("{path} can be read by others than its owner: chmod 600 {path}")
@@ -153,11 +149,7 @@ mod tests {
             ("# nothing\n".to_string(), 1, "there is no key"),
             (format!("{hex}\n\n{hex}"), 3, "there is a second key"),
             ("\npassphrase: ".into(), 2, "the passphrase is empty"),
-            (
-                format!("\n{hex}0"),
-                2,
-                "65 hexadecimal digits instead of 64",
-            ),
+            (format!("\n{hex}0"), 2, "65 hexadecimal digits instead of 64"),
             ("secret".into(), 1, "column 1 is no hexadecimal digit"),
             ("0é".into(), 1, "column 2 is no hexadecimal digit"),
         ] {
@@ -170,22 +162,13 @@ mod tests {
         let dir = tempfile::tempdir().expect("a directory");
         let path = dir.path().join("swarm.key");
         let error = KeyFile::read(&path).expect_err("no file").to_string();
-        assert!(
-            error.contains("swarm.key") && error.contains("check the name"),
-            "{error}"
-        );
+        assert!(error.contains("swarm.key") && error.contains("check the name"), "{error}");
         fs::write(&path, "abc\n").expect("written");
         let error = KeyFile::read(&path).expect_err("no key").to_string();
-        assert!(
-            error.contains("swarm.key, line 1: 3 hexadecimal digits"),
-            "{error}"
-        );
+        assert!(error.contains("swarm.key, line 1: 3 hexadecimal digits"), "{error}");
         assert!(error.contains("openssl rand -hex 32"), "{error}");
         fs::write(&path, "passphrase: abc\n").expect("written");
-        assert_eq!(
-            KeyFile::read(&path).expect("a key").key,
-            Key::of_passphrase(b"abc")
-        );
+        assert_eq!(KeyFile::read(&path).expect("a key").key, Key::of_passphrase(b"abc"));
     }
 
     #[cfg(unix)]
@@ -198,10 +181,7 @@ mod tests {
         for (mode, is_remarked) in [(0o600, false), (0o640, true), (0o604, true)] {
             fs::set_permissions(&path, fs::Permissions::from_mode(mode)).expect("mine");
             let remark = KeyFile::read(&path).expect("a key").remark;
-            assert_eq!(
-                remark.is_some_and(|remark| remark.contains("chmod 600")),
-                is_remarked
-            );
+            assert_eq!(remark.is_some_and(|remark| remark.contains("chmod 600")), is_remarked);
         }
     }
 

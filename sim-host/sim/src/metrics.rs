@@ -63,11 +63,7 @@ impl FormationMeter {
             eps: eps.into(),
             kappa: 1.0 / diagonal,
             ticks: 0,
-            sum: Keeping {
-                error_per_agent: 0.0,
-                best_fit_error_per_agent: 0.0,
-                graph_distance: 0.0,
-            },
+            sum: Keeping { error_per_agent: 0.0, best_fit_error_per_agent: 0.0, graph_distance: 0.0 },
             errors: Vec::new(),
             missing: Vec::new(),
         }
@@ -130,9 +126,7 @@ impl FormationMeter {
             (x - top[0]).unsigned_abs() <= self.eps && (y - top[1]).unsigned_abs() <= self.eps
         };
         let missing = self.missing.iter();
-        missing
-            .filter(|&&place| self.missing.iter().any(|&robot| is_near(place, robot)))
-            .count()
+        missing.filter(|&&place| self.missing.iter().any(|&robot| is_near(place, robot))).count()
     }
 
     /// Distance of each robot from its place when it was looked at last, cells, graph on the top leader.
@@ -155,10 +149,7 @@ impl FormationMeter {
 
 /// `cell - place` without saturation.
 fn offset(cell: Cell, place: Cell) -> [i32; 2] {
-    [
-        i32::from(cell.x) - i32::from(place.x),
-        i32::from(cell.y) - i32::from(place.y),
-    ]
+    [i32::from(cell.x) - i32::from(place.x), i32::from(cell.y) - i32::from(place.y)]
 }
 
 fn length([x, y]: [f64; 2]) -> f64 {
@@ -176,10 +167,7 @@ impl Arrivals {
     /// Nobody has arrived.
     #[must_use]
     pub fn new(robots: usize) -> Self {
-        Self {
-            at: vec![None; robots],
-            count: 0,
-        }
+        Self { at: vec![None; robots], count: 0 }
     }
 
     /// Takes note of whether robot number `index` stands at its target now; `free_at` is when its
@@ -221,12 +209,7 @@ mod tests {
     fn bodies(cells: &[(i16, i16)]) -> Vec<Body> {
         (1..)
             .zip(cells)
-            .map(|(id, &(x, y))| Body {
-                id: RobotId(id),
-                cell: Cell::new(x, y),
-                entered_by: Dir::Stay,
-                free_at: 0,
-            })
+            .map(|(id, &(x, y))| Body { id: RobotId(id), cell: Cell::new(x, y), entered_by: Dir::Stay, free_at: 0 })
             .collect()
     }
 
@@ -245,11 +228,7 @@ mod tests {
         let mut meter = meter(&[(0, 0), (-3, 0), (0, -3)], 2);
         for (x, y) in [(0, 0), (30, -7), (i16::MAX, i16::MAX)] {
             let now = meter.measure(&bodies(&[(x, y), (x - 3, y), (x, y - 3)]));
-            let none = Keeping {
-                error_per_agent: 0.0,
-                best_fit_error_per_agent: 0.0,
-                graph_distance: 0.0,
-            };
+            let none = Keeping { error_per_agent: 0.0, best_fit_error_per_agent: 0.0, graph_distance: 0.0 };
             assert_eq!(now, none);
             assert_eq!(meter.errors(), [0.0; 3]);
         }
@@ -262,10 +241,7 @@ mod tests {
         // Robot 2 is off by (3, 4), half of which a translation explains.
         let now = meter.measure(&bodies(&[(10, 10), (10, 14)]));
         assert_eq!(meter.errors(), [0.0, 5.0]);
-        assert_eq!(
-            (now.error_per_agent, now.best_fit_error_per_agent),
-            (2.5, 2.5)
-        );
+        assert_eq!((now.error_per_agent, now.best_fit_error_per_agent), (2.5, 2.5));
         assert_eq!(now.graph_distance, 1.0);
         meter.measure(&bodies(&[(10, 10), (7, 10)]));
         meter.look(&bodies(&[(10, 10), (90, 90)]));
@@ -300,16 +276,10 @@ mod tests {
         let mut arrivals = Arrivals::new(2);
         arrivals.note(0, true, 70);
         arrivals.note(0, true, 700);
-        assert_eq!(
-            (arrivals.count(), arrivals.times()),
-            (1, &[Some(70), None][..])
-        );
+        assert_eq!((arrivals.count(), arrivals.times()), (1, &[Some(70), None][..]));
         arrivals.note(0, false, 700);
         arrivals.note(1, true, 99);
-        assert_eq!(
-            (arrivals.count(), arrivals.times()),
-            (1, &[None, Some(99)][..])
-        );
+        assert_eq!((arrivals.count(), arrivals.times()), (1, &[None, Some(99)][..]));
         assert!(!arrivals.is_complete());
         arrivals.note(0, true, 800);
         assert!(arrivals.is_complete());

@@ -5,9 +5,7 @@
 
 use staya_controller::agent::{AnyInputs, Setup, Task};
 use staya_controller::time::Instant;
-use staya_runner::{
-    Answer, Cause, Device, DeviceConfig, Fleet, LineFaults, Options, Reset, Statistics,
-};
+use staya_runner::{Answer, Cause, Device, DeviceConfig, Fleet, LineFaults, Options, Reset, Statistics};
 use staya_sim::engine::{Decision, ExternalController, Status};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -87,9 +85,7 @@ impl OnDevices {
     /// The number in the plan of robot `index`.
     fn at(&self, index: usize) -> Option<usize> {
         let devices = &self.plan.devices;
-        devices
-            .binary_search_by_key(&index, |(robot, _)| *robot)
-            .ok()
+        devices.binary_search_by_key(&index, |(robot, _)| *robot).ok()
     }
 
     fn fail(&self, trouble: String) {
@@ -154,10 +150,8 @@ impl ExternalController for OnDevices {
             fleet.assign(at, setup, Some(task));
             return;
         }
-        let resets = self.plan.resets.iter().map(|reset| Reset {
-            tick: reset.tick.saturating_add(at as u32),
-            ..*reset
-        });
+        let resets =
+            self.plan.resets.iter().map(|reset| Reset { tick: reset.tick.saturating_add(at as u32), ..*reset });
         self.orders[at] = Some(DeviceConfig {
             device: self.plan.devices[at].1.to_string(),
             setup,

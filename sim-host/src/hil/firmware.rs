@@ -49,14 +49,9 @@ fn first_with_all(parts: &[Part], places: Vec<PathBuf>) -> Result<PathBuf> {
 /// program (`target/release/staya` has it in `target/firmware`), among the user's data.
 fn places() -> Vec<PathBuf> {
     let here = std::env::current_dir().unwrap_or_default();
-    let repository = here
-        .ancestors()
-        .find(|folder| is_repository(folder))
-        .map(target);
+    let repository = here.ancestors().find(|folder| is_repository(folder)).map(target);
     let program = std::env::current_exe().ok();
-    let beside = program
-        .as_deref()
-        .and_then(|program| program.ancestors().nth(2));
+    let beside = program.as_deref().and_then(|program| program.ancestors().nth(2));
     let data = std::env::var_os("XDG_DATA_HOME").map(PathBuf::from);
     let home = || Some(Path::new(&std::env::var_os("HOME")?).join(".local/share"));
     let data = data.or_else(home).map(|data| data.join("staya"));
@@ -82,10 +77,8 @@ fn is_repository(folder: &Path) -> bool {
 }
 
 fn target(root: &Path) -> PathBuf {
-    std::env::var_os("CARGO_TARGET_DIR").map_or_else(
-        || root.join("target"),
-        |folder| std::path::absolute(&folder).unwrap_or_else(|_| folder.into()),
-    )
+    std::env::var_os("CARGO_TARGET_DIR")
+        .map_or_else(|| root.join("target"), |folder| std::path::absolute(&folder).unwrap_or_else(|_| folder.into()))
 }
 
 /// Brings the repository's firmware for these parts up to date, and fetches the emulators.
@@ -96,19 +89,10 @@ fn prepare(root: &Path, parts: &[Part]) -> Result<()> {
     }
     let folder = target(root).join("firmware");
     if parts.iter().any(|part| !part.elf(&folder).is_file()) {
-        eprintln!(
-            "staya: building the firmware for {}; the first time takes some minutes",
-            names.join(", ")
-        );
+        eprintln!("staya: building the firmware for {}; the first time takes some minutes", names.join(", "));
     }
-    xtask(
-        root,
-        &[&["firmware", "--bin", "lockstep"], names.as_slice()].concat(),
-    )?;
-    if !parts
-        .iter()
-        .all(|part| find_emulator(part.emulator()).is_some())
-    {
+    xtask(root, &[&["firmware", "--bin", "lockstep"], names.as_slice()].concat())?;
+    if !parts.iter().all(|part| find_emulator(part.emulator()).is_some()) {
         eprintln!("staya: fetching the emulators; this takes a minute");
         xtask(root, &["qemu"])?;
     }
@@ -123,9 +107,8 @@ fn xtask(root: &Path, arguments: &[&str]) -> Result<()> {
     let mut command = Command::new(cargo);
     // What cargo told this program about its package is not true of the next one.
     for (name, _) in std::env::vars_os() {
-        let is_cargos = name.to_str().is_some_and(|name| {
-            name.starts_with("CARGO_PKG_") || name.starts_with("CARGO_MANIFEST_")
-        });
+        let is_cargos =
+            name.to_str().is_some_and(|name| name.starts_with("CARGO_PKG_") || name.starts_with("CARGO_MANIFEST_"));
         if is_cargos {
             command.env_remove(name);
         }
@@ -143,10 +126,7 @@ fn xtask(root: &Path, arguments: &[&str]) -> Result<()> {
         eprint!("{said}");
         bail!("`{line}` failed");
     }
-    for skipped in said
-        .lines()
-        .filter(|line| line.contains("no toolchain") || line.contains("no qemu"))
-    {
+    for skipped in said.lines().filter(|line| line.contains("no toolchain") || line.contains("no qemu")) {
         eprintln!("staya: {}", skipped.trim());
     }
     Ok(())
@@ -161,25 +141,15 @@ mod tests {
         let top = tempfile::tempdir().expect("a folder");
         let [one, two, both] = ["one", "two", "both"].map(|name| top.path().join(name));
         let parts = [Part::Stm32f405, Part::Microbit];
-        for (folder, part) in [
-            (&one, parts[0]),
-            (&two, parts[1]),
-            (&both, parts[0]),
-            (&both, parts[1]),
-        ] {
+        for (folder, part) in [(&one, parts[0]), (&two, parts[1]), (&both, parts[0]), (&both, parts[1])] {
             let elf = part.elf(folder);
             std::fs::create_dir_all(elf.parent().expect("a parent")).expect("a folder");
             std::fs::write(elf, "").expect("a file");
         }
         let places = vec![one.clone(), two.clone(), both.clone()];
         assert_eq!(first_with_all(&parts, places).expect("found"), both);
-        assert_eq!(
-            first_with_all(&parts[1..], vec![one.clone(), two.clone()]).expect("found"),
-            two
-        );
-        let error = first_with_all(&parts, vec![one.clone(), two.clone()])
-            .expect_err("not there")
-            .to_string();
+        assert_eq!(first_with_all(&parts[1..], vec![one.clone(), two.clone()]).expect("found"), two);
+        let error = first_with_all(&parts, vec![one.clone(), two.clone()]).expect_err("not there").to_string();
         for text in [
             parts[1].elf(&one).display().to_string(),
             parts[0].elf(&two).display().to_string(),

@@ -29,29 +29,15 @@ pub struct Row {
 
 impl Display for Row {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            case,
-            number,
-            steps,
-            median,
-            worst,
-            stack,
-            agent,
-            workspace,
-        } = self;
-        write!(
-            out,
-            "{case:<26} {number:>6} {steps:>6} {median:>9} {worst:>9} {stack:>6} {agent:>6} {workspace:>9}"
-        )
+        let Self { case, number, steps, median, worst, stack, agent, workspace } = self;
+        write!(out, "{case:<26} {number:>6} {steps:>6} {median:>9} {worst:>9} {stack:>6} {agent:>6} {workspace:>9}")
     }
 }
 
 /// All that it printed. The error names the first line that is none of its own.
 pub fn rows(output: &str) -> Result<Vec<Row>, String> {
-    let rows: Result<Vec<Row>, String> = output
-        .lines()
-        .map(|line| row(line).ok_or_else(|| format!("`bench` printed `{line}`")))
-        .collect();
+    let rows: Result<Vec<Row>, String> =
+        output.lines().map(|line| row(line).ok_or_else(|| format!("`bench` printed `{line}`"))).collect();
     match rows {
         Ok(rows) if rows.is_empty() => Err(String::from("`bench` printed nothing")),
         other => other,

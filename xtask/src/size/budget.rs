@@ -26,11 +26,8 @@ pub struct Budget {
 impl Budget {
     /// The limits of the part `name`.
     pub fn read(text: &str, name: &str) -> Result<Self, String> {
-        let mut parts: BTreeMap<String, Self> =
-            toml::from_str(text).map_err(|error| error.to_string())?;
-        parts
-            .remove(name)
-            .ok_or_else(|| format!("no limits for {name}"))
+        let mut parts: BTreeMap<String, Self> = toml::from_str(text).map_err(|error| error.to_string())?;
+        parts.remove(name).ok_or_else(|| format!("no limits for {name}"))
     }
 
     /// A line for each limit that is breached, or that nothing was measured for.
@@ -38,35 +35,16 @@ impl Budget {
         let is_limited = |row: &&Row| row.number == self.number || row.number == NO_NUMBER;
         let rows = || measured.rows.iter().filter(is_limited);
         let most = |value: fn(&Row) -> u64| rows().map(value).max();
-        let lockstep = measured
-            .programs
-            .iter()
-            .find(|(program, _)| program == "lockstep")
-            .map(|(_, sections)| sections);
+        let lockstep =
+            measured.programs.iter().find(|(program, _)| program == "lockstep").map(|(_, sections)| sections);
         let stack = most(|row| row.stack);
         let ram = lockstep.zip(stack).map(|(it, stack)| it.ram + stack);
         let mut checks = vec![
-            (
-                "text of lockstep",
-                self.lockstep_text,
-                lockstep.map(|it| it.text),
-            ),
-            (
-                "rodata of lockstep",
-                self.lockstep_rodata,
-                lockstep.map(|it| it.rodata),
-            ),
-            (
-                "RAM of lockstep",
-                self.lockstep_ram,
-                lockstep.map(|it| it.ram),
-            ),
+            ("text of lockstep", self.lockstep_text, lockstep.map(|it| it.text)),
+            ("rodata of lockstep", self.lockstep_rodata, lockstep.map(|it| it.rodata)),
+            ("RAM of lockstep", self.lockstep_ram, lockstep.map(|it| it.ram)),
             ("RAM of lockstep with the deepest step", self.ram, ram),
-            (
-                "agent and workspace",
-                self.agent_and_workspace,
-                most(|row| row.agent + row.workspace),
-            ),
+            ("agent and workspace", self.agent_and_workspace, most(|row| row.agent + row.workspace)),
             ("stack of a step", self.stack, stack),
         ];
         for (case, limit) in &self.instructions {
@@ -103,20 +81,11 @@ mod tests {
             agent: 1,
             workspace: 1,
         };
-        let sections = Sections {
-            text,
-            rodata: 0,
-            flash: 0,
-            ram,
-        };
+        let sections = Sections { text, rodata: 0, flash: 0, ram };
         Measured {
             part: "a",
             programs: vec![(String::from("lockstep"), sections)],
-            rows: vec![
-                row("route", "f32", worst),
-                row("fly", "f32", 1),
-                row("route", "Q16", 1000),
-            ],
+            rows: vec![row("route", "f32", worst), row("fly", "f32", 1), row("route", "Q16", 1000)],
             steps: Vec::new(),
             formats: Vec::new(),
         }
@@ -128,10 +97,7 @@ mod tests {
         assert!(budget.breaches(&measured(100, 50, 10, 7)).is_empty());
         assert_eq!(budget.breaches(&measured(101, 50, 10, 8)).len(), 2);
         let told = budget.breaches(&measured(100, 50, 11, 7));
-        assert_eq!(
-            told[0],
-            "RAM of lockstep with the deepest step: 61, at most 60"
-        );
+        assert_eq!(told[0], "RAM of lockstep with the deepest step: 61, at most 60");
         assert_eq!(told[1], "stack of a step: 11, at most 10");
     }
 

@@ -4,9 +4,7 @@
 //! pointers are followed where the pointer is stored. Constants without a name reach up to the next thing that somebody
 //! refers to.
 
-use object::{
-    Object as _, ObjectSection as _, ObjectSymbol as _, RelocationFlags, SymbolKind, elf,
-};
+use object::{Object as _, ObjectSection as _, ObjectSymbol as _, RelocationFlags, SymbolKind, elf};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Bytes that are reached.
@@ -32,11 +30,7 @@ impl Program {
     /// Reads an ELF file that was linked with its relocations.
     pub fn read(bytes: &[u8]) -> Result<Self, String> {
         let file = object::File::parse(bytes).map_err(|error| error.to_string())?;
-        let mut program = Self {
-            things: BTreeMap::new(),
-            names: Vec::new(),
-            references: BTreeMap::new(),
-        };
+        let mut program = Self { things: BTreeMap::new(), names: Vec::new(), references: BTreeMap::new() };
         let is_thumb = file.architecture() == object::Architecture::Arm;
         // The lowest bit of a Thumb function's address says that it is one.
         let plain = |address: u64| if is_thumb { address & !1 } else { address };
@@ -44,16 +38,10 @@ impl Program {
             let is_code = symbol.kind() == SymbolKind::Text;
             let is_named = is_code || symbol.kind() == SymbolKind::Data;
             if is_named && symbol.size() > 0 {
-                let address = if is_code {
-                    plain(symbol.address())
-                } else {
-                    symbol.address()
-                };
+                let address = if is_code { plain(symbol.address()) } else { symbol.address() };
                 program.things.insert(address, (symbol.size(), is_code));
                 if let (true, Ok(name)) = (is_code, symbol.name()) {
-                    program
-                        .names
-                        .push((format!("{:#}", rustc_demangle::demangle(name)), address));
+                    program.names.push((format!("{:#}", rustc_demangle::demangle(name)), address));
                 }
             }
         }
@@ -65,9 +53,7 @@ impl Program {
             for (place, relocation) in section.relocations() {
                 let at = |offset: u64| {
                     let from = usize::try_from(place.checked_sub(start)? + offset).ok()?;
-                    Some(u16::from_le_bytes(
-                        data.get(from..from + 2)?.try_into().ok()?,
-                    ))
+                    Some(u16::from_le_bytes(data.get(from..from + 2)?.try_into().ok()?))
                 };
                 let object::RelocationTarget::Symbol(index) = relocation.target() else {
                     continue;
@@ -81,9 +67,9 @@ impl Program {
                 let is_section = symbol.kind() == SymbolKind::Section;
                 let target = match r_type {
                     // The linker has written the sum of symbol and addend there.
-                    elf::R_ARM_ABS32 if is_thumb => at(0)
-                        .zip(at(2))
-                        .map(|(low, high)| u64::from(low) | u64::from(high) << 16),
+                    elf::R_ARM_ABS32 if is_thumb => {
+                        at(0).zip(at(2)).map(|(low, high)| u64::from(low) | u64::from(high) << 16)
+                    }
                     elf::R_ARM_THM_MOVW_ABS_NC if is_thumb && is_section => {
                         if let Some((register, half)) = at(0).zip(at(2)).map(move_wide) {
                             halves.insert(register, half);
@@ -103,17 +89,9 @@ impl Program {
             }
         }
         // Constants without a name end where the next thing begins.
-        for section in file
-            .sections()
-            .filter(|section| section.name() == Ok(".rodata"))
-        {
+        for section in file.sections().filter(|section| section.name() == Ok(".rodata")) {
             let end = section.address() + section.size();
-            constants.extend(
-                program
-                    .things
-                    .range(section.address()..end)
-                    .map(|(at, _)| *at),
-            );
+            constants.extend(program.things.range(section.address()..end).map(|(at, _)| *at));
             let inside: Vec<u64> = constants.range(section.address()..end).copied().collect();
             for (index, at) in inside.iter().enumerate() {
                 let next = inside.get(index + 1).copied().unwrap_or(end);
@@ -125,10 +103,7 @@ impl Program {
 
     /// The functions whose name holds `part`.
     pub fn functions<'a>(&'a self, part: &'a str) -> impl Iterator<Item = (&'a str, u64)> {
-        let named = self
-            .names
-            .iter()
-            .filter(move |(name, _)| name.contains(part));
+        let named = self.names.iter().filter(move |(name, _)| name.contains(part));
         named.map(|(name, at)| (name.as_str(), *at))
     }
 
@@ -149,11 +124,7 @@ impl Program {
             } else {
                 reach.rodata += size;
             }
-            open.extend(
-                self.references
-                    .range(at..at + size)
-                    .map(|(_, target)| *target),
-            );
+            open.extend(self.references.range(at..at + size).map(|(_, target)| *target));
         }
         reach
     }
@@ -184,15 +155,8 @@ pub fn steps(program: &Program) -> Vec<Step> {
     });
     let roots: Vec<_> = roots.collect();
     let most = roots.iter().map(|(neighbors, ..)| *neighbors).max();
-    let largest = roots
-        .into_iter()
-        .filter(|(neighbors, ..)| Some(*neighbors) == most);
-    let mut steps: Vec<Step> = largest
-        .map(|(_, behaviour, at)| Step {
-            behaviour,
-            reach: program.reach(at),
-        })
-        .collect();
+    let largest = roots.into_iter().filter(|(neighbors, ..)| Some(*neighbors) == most);
+    let mut steps: Vec<Step> = largest.map(|(_, behaviour, at)| Step { behaviour, reach: program.reach(at) }).collect();
     steps.sort_by(|one, other| one.behaviour.cmp(&other.behaviour));
     steps
 }
@@ -231,8 +195,7 @@ fn without_paths(name: &str) -> String {
 
 /// Register and immediate of MOVW and MOVT (encoding T3 and T1).
 fn move_wide((first, second): (u16, u16)) -> (u16, u64) {
-    let immediate =
-        (first & 0xF) << 12 | (first >> 10 & 1) << 11 | (second >> 12 & 7) << 8 | second & 0xFF;
+    let immediate = (first & 0xF) << 12 | (first >> 10 & 1) << 11 | (second >> 12 & 7) << 8 | second & 0xFF;
     (second >> 8 & 0xF, immediate.into())
 }
 
@@ -241,12 +204,7 @@ mod tests {
     use super::*;
 
     fn program(references: &[(u64, u64)]) -> Program {
-        let things = [
-            (0, (10, true)),
-            (10, (20, true)),
-            (30, (5, true)),
-            (100, (8, false)),
-        ];
+        let things = [(0, (10, true)), (10, (20, true)), (30, (5, true)), (100, (8, false))];
         Program {
             things: things.into_iter().collect(),
             names: vec![(String::from("a::step::<f32>"), 0)],
@@ -259,23 +217,14 @@ mod tests {
         let program = program(&[(4, 10), (12, 103), (14, 0), (16, 100), (18, 5000)]);
         let roots: Vec<u64> = program.functions("step").map(|(_, at)| at).collect();
         assert_eq!(roots, [0]);
-        assert_eq!(
-            program.reach(0),
-            Reach {
-                text: 30,
-                rodata: 8
-            }
-        );
+        assert_eq!(program.reach(0), Reach { text: 30, rodata: 8 });
         assert_eq!(program.reach(30), Reach { text: 5, rodata: 0 });
         assert_eq!(program.reach(50), Reach::default());
     }
 
     #[test]
     fn behaviours_are_named_without_their_paths() {
-        assert_eq!(
-            without_paths("f32, a::b::C<d::E_f, 3>, g::H, 16"),
-            "f32, C<E_f, 3>, H, 16"
-        );
+        assert_eq!(without_paths("f32, a::b::C<d::E_f, 3>, g::H, 16"), "f32, C<E_f, 3>, H, 16");
     }
 
     #[test]

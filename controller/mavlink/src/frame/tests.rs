@@ -4,21 +4,10 @@ use mavlink_core::{MAVLinkV1MessageRaw, MavHeader, MavlinkReader};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
-const SENDER: Sender = Sender {
-    system: 7,
-    component: 191,
-    sequence: 250,
-};
+const SENDER: Sender = Sender { system: 7, component: 191, sequence: 250 };
 
 fn goal(x: i16) -> STAYA_GOAL_DATA {
-    STAYA_GOAL_DATA {
-        sequence: 0xFDFD,
-        target_x: x,
-        target_y: -3,
-        boot: 1,
-        target_system: 9,
-        version: 4,
-    }
+    STAYA_GOAL_DATA { sequence: 0xFDFD, target_x: x, target_y: -3, boot: 1, target_system: 9, version: 4 }
 }
 
 fn framed(data: &impl MessageData) -> Vec<u8, MAX_FRAME_LEN> {
@@ -49,9 +38,7 @@ fn mavlink_core_reads_the_same() {
     let bytes = framed(&goal(-1));
     let mut reader = MavlinkReader::new(bytes.as_slice());
     let read = reader.read_message::<MavMessage>(MavlinkVersion::V2);
-    let Ok((header, message)) = read else {
-        panic!("not read")
-    };
+    let Ok((header, message)) = read else { panic!("not read") };
     assert_eq!(message, MavMessage::STAYA_GOAL(goal(-1)));
     assert_eq!((header.system_id, header.component_id), (7, 191));
 }
@@ -67,11 +54,7 @@ fn zeros_at_the_end_are_left_out_and_come_back() {
 #[test]
 fn mavlink_1_is_understood() {
     let mut raw = MAVLinkV1MessageRaw::new();
-    let header = MavHeader {
-        system_id: 3,
-        component_id: 1,
-        sequence: 8,
-    };
+    let header = MavHeader { system_id: 3, component_id: 1, sequence: 8 };
     raw.serialize_message(header, &MavMessage::HEARTBEAT(HEARTBEAT_DATA::DEFAULT));
     let frame = RawFrame::new(raw.raw_bytes()).unwrap();
     assert_eq!((frame.version(), frame.sender().system), (1, 3));
@@ -93,19 +76,11 @@ fn foreign() -> [u8; 15] {
 #[test]
 fn foreign_message_is_a_frame_before_another_one_or_nothing() {
     let mut bytes = std::vec::Vec::from(foreign());
-    assert!(
-        RawFrame::new(&bytes).is_some_and(|frame| !frame.is_known() && frame.message().is_none())
-    );
+    assert!(RawFrame::new(&bytes).is_some_and(|frame| !frame.is_known() && frame.message().is_none()));
     bytes.extend_from_slice(&framed(&goal(1)));
     let mut rest = bytes.as_slice();
-    assert_eq!(
-        next_frame(&mut rest).map(|frame| frame.is_known()),
-        Some(false)
-    );
-    assert_eq!(
-        next_frame(&mut rest).and_then(|frame| frame.get()),
-        Some(goal(1))
-    );
+    assert_eq!(next_frame(&mut rest).map(|frame| frame.is_known()), Some(false));
+    assert_eq!(next_frame(&mut rest).and_then(|frame| frame.get()), Some(goal(1)));
     assert_eq!((next_frame(&mut rest), rest.len()), (None, 0));
 }
 

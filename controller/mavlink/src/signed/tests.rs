@@ -11,11 +11,7 @@ fn wire(passphrase: &[u8], timestamp: u64) -> Signed<4> {
 }
 
 fn said<W: Wire>(by: &mut W, sender: u32, sequence: u16) -> std::vec::Vec<u8> {
-    let header = Header {
-        boot: 1,
-        sender: RobotId(sender),
-        sequence,
-    };
+    let header = Header { boot: 1, sender: RobotId(sender), sequence };
     let mut out = Vec::<u8, 256>::new();
     let len = by.encode(header, &Message::Beacon(Beacon::default()), &mut out);
     assert_eq!(len, Ok(out.len()));
@@ -42,11 +38,7 @@ fn who_has_the_key_is_heard_once_and_nobody_else_is() {
 #[test]
 fn without_room_for_the_signature_nothing_is_said() {
     let mut sender = wire(b"swarm", 10);
-    let header = Header {
-        boot: 1,
-        sender: RobotId(1),
-        sequence: 0,
-    };
+    let header = Header { boot: 1, sender: RobotId(1), sequence: 0 };
     let len = said(&mut sender, 1, 0).len();
     let mut out = Vec::<u8, 100>::new();
     for used in 0..=100 {
@@ -65,12 +57,7 @@ fn without_room_for_the_signature_nothing_is_said() {
 #[test]
 fn others_on_the_band_are_foreign_whether_they_sign_or_not() {
     let mut heartbeat = Vec::<u8, 64>::new();
-    encode(
-        Sender::default(),
-        &HEARTBEAT_DATA::default(),
-        &mut heartbeat,
-    )
-    .unwrap();
+    encode(Sender::default(), &HEARTBEAT_DATA::default(), &mut heartbeat).unwrap();
     let mut receiver = wire(b"swarm", 0);
     assert_eq!(receiver.decode(&heartbeat), Err(DecodeError::Foreign));
     let mut other = Signing::<1>::new(Key::of_passphrase(b"theirs"), 0, 5);

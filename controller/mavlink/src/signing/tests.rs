@@ -28,15 +28,8 @@ fn golden() -> impl Iterator<Item = (&'static str, Bytes)> {
 }
 
 fn heartbeat(system: u8, sequence: u8) -> Bytes {
-    let sender = Sender {
-        system,
-        component: 1,
-        sequence,
-    };
-    let data = HEARTBEAT_DATA {
-        custom_mode: sequence.into(),
-        ..HEARTBEAT_DATA::default()
-    };
+    let sender = Sender { system, component: 1, sequence };
+    let data = HEARTBEAT_DATA { custom_mode: sequence.into(), ..HEARTBEAT_DATA::default() };
     let mut frame = Bytes::new();
     encode(sender, &data, &mut frame).unwrap();
     frame
@@ -118,22 +111,13 @@ fn unsigned_frames_are_refused_except_those_named() {
     let mut other = strict.clone().with_unsigned(&[109]);
     assert_eq!(judged(&mut other, &frame), Verdict::RefusedUnsigned);
     assert!(Verdict::Unsigned.is_accepted() && !Verdict::RefusedUnsigned.is_accepted());
-    assert_eq!(
-        (lax.counts().unsigned, other.counts().refused_unsigned),
-        (1, 2)
-    );
+    assert_eq!((lax.counts().unsigned, other.counts().refused_unsigned), (1, 2));
 }
 
 #[test]
 fn a_new_stream_is_at_most_a_minute_old() {
-    for (timestamp, want) in [
-        (NOW - MINUTE - 1, Verdict::Replayed),
-        (NOW - MINUTE, Verdict::Authentic),
-    ] {
-        let frame = signed(
-            &mut Signing::<1>::new(key(), 0, timestamp),
-            &heartbeat(1, 0),
-        );
+    for (timestamp, want) in [(NOW - MINUTE - 1, Verdict::Replayed), (NOW - MINUTE, Verdict::Authentic)] {
+        let frame = signed(&mut Signing::<1>::new(key(), 0, timestamp), &heartbeat(1, 0));
         let mut receiver = Signing::<1>::new(key(), 0, NOW);
         assert_eq!(judged(&mut receiver, &frame), want);
     }
@@ -141,10 +125,7 @@ fn a_new_stream_is_at_most_a_minute_old() {
 
 #[test]
 fn timestamps_catch_up_with_those_received() {
-    let (mut old, mut young) = (
-        Signing::<2>::new(key(), 0, NOW),
-        Signing::<2>::new(key(), 0, 1),
-    );
+    let (mut old, mut young) = (Signing::<2>::new(key(), 0, NOW), Signing::<2>::new(key(), 0, 1));
     let refused = signed(&mut young, &heartbeat(2, 0));
     assert_eq!(judged(&mut old, &refused), Verdict::Replayed);
     let heard = signed(&mut old, &heartbeat(1, 0));
@@ -154,10 +135,7 @@ fn timestamps_catch_up_with_those_received() {
     // Not by who has another key.
     let mut liar = Signing::<2>::new(Key::of_passphrase(b"another"), 0, NOW + MINUTE);
     let before = young.timestamp();
-    assert_eq!(
-        judged(&mut young, &signed(&mut liar, &heartbeat(3, 0))),
-        Verdict::Forged
-    );
+    assert_eq!(judged(&mut young, &signed(&mut liar, &heartbeat(3, 0))), Verdict::Forged);
     assert_eq!(young.timestamp(), before);
 }
 
@@ -165,9 +143,7 @@ fn timestamps_catch_up_with_those_received() {
 fn a_sender_that_starts_anew_as_told_is_heard_and_its_old_frames_are_not() {
     let mut receiver = Signing::<2>::new(key(), 0, 0);
     let mut sender = Signing::<2>::new(key(), 0, 100);
-    let recorded: std::vec::Vec<_> = (0..40)
-        .map(|n| signed(&mut sender, &heartbeat(1, n)))
-        .collect();
+    let recorded: std::vec::Vec<_> = (0..40).map(|n| signed(&mut sender, &heartbeat(1, n))).collect();
     for frame in &recorded {
         assert_eq!(judged(&mut receiver, frame), Verdict::Authentic);
     }
@@ -197,10 +173,7 @@ fn links_and_components_are_streams_of_their_own_and_a_full_table_refuses_new_on
 fn the_state_does_not_hold_the_key() {
     let of = |key| staya_controller::digest::digest(&Signing::<2>::new(key, 1, 2));
     assert_eq!(of(key()), of(Key::of_passphrase(b"another")));
-    assert_ne!(
-        of(key()),
-        staya_controller::digest::digest(&Signing::<2>::new(key(), 1, 3))
-    );
+    assert_ne!(of(key()), staya_controller::digest::digest(&Signing::<2>::new(key(), 1, 3)));
 }
 
 proptest! {

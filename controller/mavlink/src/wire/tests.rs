@@ -8,11 +8,7 @@ use proptest::prelude::*;
 
 type Bytes = Vec<u8, MAX_FRAME_LEN>;
 
-const HEADER: Header = Header {
-    boot: 3,
-    sender: RobotId(7),
-    sequence: 0x1234,
-};
+const HEADER: Header = Header { boot: 3, sender: RobotId(7), sequence: 0x1234 };
 
 fn framed(header: Header, message: &Message) -> Bytes {
     let mut out = Vec::new();
@@ -23,11 +19,7 @@ fn framed(header: Header, message: &Message) -> Bytes {
 /// A frame of `data`, whatever it says.
 fn raw(data: &impl MessageData) -> Bytes {
     let mut out = Vec::new();
-    let sender = Sender {
-        system: 7,
-        component: COMPONENT,
-        sequence: 0,
-    };
+    let sender = Sender { system: 7, component: COMPONENT, sequence: 0 };
     frame::encode(sender, data, &mut out).unwrap();
     out
 }
@@ -58,14 +50,7 @@ fn motion() -> impl Strategy<Value = ([i32; 3], [i16; 3])> {
 
 fn any_message() -> impl Strategy<Value = Message> {
     let modes = (0..6_u8).prop_map(|number| mode(number).unwrap());
-    let beacon = (
-        any::<(u32, u16, u16, u8)>(),
-        motion(),
-        (cell(), cell()),
-        0..=8_u8,
-        id(),
-        modes.clone(),
-    );
+    let beacon = (any::<(u32, u16, u16, u8)>(), motion(), (cell(), cell()), 0..=8_u8, id(), modes.clone());
     let beacon = beacon.prop_map(|(numbers, motion, (cell, target), heading, leader, mode)| {
         let (time, radius_mm, busy_ms, slot) = numbers;
         Message::Beacon(Beacon {
@@ -84,45 +69,18 @@ fn any_message() -> impl Strategy<Value = Message> {
     });
     let compact = (any::<(u16, u8, [i32; 2], [i16; 2])>(), modes).prop_map(|(numbers, mode)| {
         let (time_ms, radius_cm, position_mm, velocity_mmps) = numbers;
-        Message::Compact(CompactBeacon {
-            time_ms,
-            position_mm,
-            velocity_mmps,
-            radius_cm,
-            mode,
-        })
+        Message::Compact(CompactBeacon { time_ms, position_mm, velocity_mmps, radius_cm, mode })
     });
-    let kinds = prop_oneof![
-        Just(RequestKind::Stop),
-        Just(RequestKind::Resume),
-        Just(RequestKind::Redirect)
-    ];
+    let kinds = prop_oneof![Just(RequestKind::Stop), Just(RequestKind::Resume), Just(RequestKind::Redirect)];
     let request = (id(), id(), any::<(u8, u16)>(), kinds);
     let request = request.prop_map(|(to, origin, (number, valid_ms), kind)| {
-        Message::Request(Request {
-            to,
-            origin,
-            number,
-            kind,
-            valid_ms,
-        })
+        Message::Request(Request { to, origin, number, kind, valid_ms })
     });
-    let ack = (id(), any::<(u8, u8, bool)>()).prop_map(|(to, (boot, number, accepted))| {
-        Message::Ack(Ack {
-            to,
-            boot,
-            number,
-            accepted,
-        })
-    });
+    let ack = (id(), any::<(u8, u8, bool)>())
+        .prop_map(|(to, (boot, number, accepted))| Message::Ack(Ack { to, boot, number, accepted }));
     let entry = (cell(), id(), any::<u8>());
     let entry = entry.prop_map(|(offset, id, hops)| TemplateEntry { offset, id, hops });
-    let template = (
-        id(),
-        uniform::<_, 4>(any::<u8>()),
-        cell(),
-        vec(entry, 0..=2),
-    );
+    let template = (id(), uniform::<_, 4>(any::<u8>()), cell(), vec(entry, 0..=2));
     let template = template.prop_map(|(to, [version, part, parts, slot], offset, entries)| {
         Message::Template(TemplateAssignment {
             to,
@@ -134,22 +92,11 @@ fn any_message() -> impl Strategy<Value = Message> {
             entries: entries.into_iter().collect(),
         })
     });
-    let goal = (id(), any::<u8>(), cell()).prop_map(|(to, version, target)| {
-        Message::Goal(GoalAssignment {
-            to,
-            version,
-            target,
-        })
-    });
+    let goal = (id(), any::<u8>(), cell())
+        .prop_map(|(to, version, target)| Message::Goal(GoalAssignment { to, version, target }));
     let place = (id(), any::<[u8; 2]>(), motion());
     let place = place.prop_map(|(to, [version, index], (position_mm, velocity_mmps))| {
-        Message::Waypoint(WaypointAssignment {
-            to,
-            version,
-            index,
-            position_mm,
-            velocity_mmps,
-        })
+        Message::Waypoint(WaypointAssignment { to, version, index, position_mm, velocity_mmps })
     });
     prop_oneof![beacon, compact, request, ack, template, goal, place]
 }
@@ -217,34 +164,21 @@ proptest! {
 }
 
 fn goal(to: u32) -> Message {
-    Message::Goal(GoalAssignment {
-        to: RobotId(to),
-        version: 1,
-        target: Cell::new(3, -4),
-    })
+    Message::Goal(GoalAssignment { to: RobotId(to), version: 1, target: Cell::new(3, -4) })
 }
 
 #[test]
 fn numbers_that_are_no_systems_are_refused_and_nothing_is_written() {
     let mut out = Bytes::new();
-    let from = |sender: u32| Header {
-        sender: RobotId(sender),
-        ..HEADER
-    };
+    let from = |sender: u32| Header { sender: RobotId(sender), ..HEADER };
     let mut refused = |header, message: &Message| {
         let answer = encode(header, message, &mut out).unwrap_err();
         assert!(out.is_empty());
         answer
     };
     assert_eq!(refused(from(0), &goal(1)), EncodeError::NoSender);
-    assert_eq!(
-        refused(from(256), &goal(1)),
-        EncodeError::Robot(RobotId(256))
-    );
-    assert_eq!(
-        refused(HEADER, &goal(70_000)),
-        EncodeError::Robot(RobotId(70_000))
-    );
+    assert_eq!(refused(from(256), &goal(1)), EncodeError::Robot(RobotId(256)));
+    assert_eq!(refused(HEADER, &goal(70_000)), EncodeError::Robot(RobotId(70_000)));
     let mut small = Vec::<u8, 12>::new();
     assert_eq!(encode(HEADER, &goal(1), &mut small), Err(EncodeError::Full));
     assert!(small.is_empty());
@@ -254,30 +188,12 @@ fn numbers_that_are_no_systems_are_refused_and_nothing_is_written() {
 fn fields_without_meaning_are_refused() {
     let beacon = STAYA_BEACON_DATA::DEFAULT;
     let bodies = [
-        raw(&STAYA_BEACON_DATA {
-            mode: 7,
-            ..beacon.clone()
-        }),
-        raw(&STAYA_BEACON_DATA {
-            heading: 9,
-            ..beacon
-        }),
-        raw(&STAYA_COMPACT_DATA {
-            mode: 255,
-            ..STAYA_COMPACT_DATA::DEFAULT
-        }),
-        raw(&STAYA_REQUEST_DATA {
-            kind: 3,
-            ..STAYA_REQUEST_DATA::DEFAULT
-        }),
-        raw(&STAYA_ACK_DATA {
-            accepted: 2,
-            ..STAYA_ACK_DATA::DEFAULT
-        }),
-        raw(&STAYA_TEMPLATE_DATA {
-            count: 3,
-            ..STAYA_TEMPLATE_DATA::DEFAULT
-        }),
+        raw(&STAYA_BEACON_DATA { mode: 7, ..beacon.clone() }),
+        raw(&STAYA_BEACON_DATA { heading: 9, ..beacon }),
+        raw(&STAYA_COMPACT_DATA { mode: 255, ..STAYA_COMPACT_DATA::DEFAULT }),
+        raw(&STAYA_REQUEST_DATA { kind: 3, ..STAYA_REQUEST_DATA::DEFAULT }),
+        raw(&STAYA_ACK_DATA { accepted: 2, ..STAYA_ACK_DATA::DEFAULT }),
+        raw(&STAYA_TEMPLATE_DATA { count: 3, ..STAYA_TEMPLATE_DATA::DEFAULT }),
     ];
     for bytes in bodies {
         assert_eq!(decode(&bytes), Err(DecodeError::Body));
@@ -301,18 +217,12 @@ fn what_others_say_is_foreign_and_what_is_no_frame_is_damage() {
 fn the_frames_sequence_is_the_low_byte_of_the_message_s() {
     let bytes = framed(HEADER, &goal(1));
     let sender = RawFrame::new(&bytes).unwrap().sender();
-    assert_eq!(
-        (sender.system, sender.component, sender.sequence),
-        (7, COMPONENT, 0x34)
-    );
+    assert_eq!((sender.system, sender.component, sender.sequence), (7, COMPONENT, 0x34));
 }
 
 #[test]
 fn a_beacon_has_at_most_its_length() {
-    let beacon = Beacon {
-        mode: Mode::Fault,
-        ..Beacon::default()
-    };
+    let beacon = Beacon { mode: Mode::Fault, ..Beacon::default() };
     assert_eq!(framed(HEADER, &Message::Beacon(beacon)).len(), BEACON_LEN);
     assert_eq!(Mavlink.beacon_len(), BEACON_LEN);
 }

@@ -18,10 +18,7 @@ impl<S: Scalar> Differential<S> {
     #[must_use]
     pub fn new(track_m: S) -> Option<Self> {
         let per_track = S::ONE.checked_div(track_m)?;
-        (track_m > S::ZERO && track_m.is_finite()).then_some(Self {
-            half_track_m: track_m * S::HALF,
-            per_track,
-        })
+        (track_m > S::ZERO && track_m.is_finite()).then_some(Self { half_track_m: track_m * S::HALF, per_track })
     }
 }
 
@@ -32,11 +29,7 @@ impl<S: Scalar> Kinematics<S, 2> for Differential<S> {
     }
 
     fn twist(&self, &[left, right]: &[S; 2]) -> Twist<S> {
-        Twist {
-            forward_mps: (left + right) * S::HALF,
-            left_mps: S::ZERO,
-            turn_radps: (right - left) * self.per_track,
-        }
+        Twist { forward_mps: (left + right) * S::HALF, left_mps: S::ZERO, turn_radps: (right - left) * self.per_track }
     }
 }
 
@@ -84,30 +77,18 @@ impl<S: Scalar> LookAhead<S> {
     #[must_use]
     pub fn twist(&self, velocity_mps: Vec2<S>, heading_rad: S) -> Twist<S> {
         let wish = Twist::holonomic(velocity_mps, heading_rad, S::ZERO);
-        Twist {
-            forward_mps: wish.forward_mps,
-            left_mps: S::ZERO,
-            turn_radps: wish.left_mps * self.per_ahead,
-        }
+        Twist { forward_mps: wish.forward_mps, left_mps: S::ZERO, turn_radps: wish.left_mps * self.per_ahead }
     }
 
     /// The point's state, for the controller, from the axle's: it turns at `turn_radps`. A place that is not a number
     /// stays the axle's.
     #[must_use]
-    pub fn state(
-        &self,
-        axle: &KinematicState<S>,
-        heading_rad: S,
-        turn_radps: S,
-    ) -> KinematicState<S> {
+    pub fn state(&self, axle: &KinematicState<S>, heading_rad: S, turn_radps: S) -> KinematicState<S> {
         let (sin, cos) = heading_rad.sin_cos();
         let way = Vec2::new(cos, sin) * self.ahead_m;
         let swing = way.perp() * turn_radps;
         KinematicState {
-            position: axle
-                .position
-                .moved(way.extend(S::ZERO))
-                .unwrap_or(axle.position),
+            position: axle.position.moved(way.extend(S::ZERO)).unwrap_or(axle.position),
             velocity_mps: axle.velocity_mps + Vec3::new(swing.x, swing.y, S::ZERO),
         }
     }

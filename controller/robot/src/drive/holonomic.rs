@@ -31,19 +31,14 @@ impl<S: Scalar, const W: usize> Omni<S, W> {
             let (sin, cos) = (first_rad + part * turn).sin_cos();
             (cos, sin)
         });
-        Some(Self {
-            places,
-            radius_m,
-            per_radius,
-        })
+        Some(Self { places, radius_m, per_radius })
     }
 }
 
 impl<S: Scalar, const W: usize> Kinematics<S, W> for Omni<S, W> {
     fn wheels(&self, twist: &Twist<S>) -> [S; W] {
         let turn = twist.turn_radps * self.radius_m;
-        self.places
-            .map(|(cos, sin)| twist.left_mps * cos - twist.forward_mps * sin + turn)
+        self.places.map(|(cos, sin)| twist.left_mps * cos - twist.forward_mps * sin + turn)
     }
 
     fn twist(&self, rims_mps: &[S; W]) -> Twist<S> {

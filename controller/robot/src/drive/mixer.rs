@@ -32,16 +32,9 @@ impl<S: Scalar, K: Kinematics<S, W>, const W: usize> Mixer<S, K, W> {
     /// A robot that stands; `None` unless both limits are more than 0 and the speed finite.
     #[must_use]
     pub fn new(kinematics: K, limits: Limits<S>) -> Option<Self> {
-        let Limits {
-            speed_mps: speed,
-            acceleration_mps2: acceleration,
-        } = limits;
+        let Limits { speed_mps: speed, acceleration_mps2: acceleration } = limits;
         let sensible = speed > S::ZERO && speed.is_finite() && acceleration > S::ZERO;
-        sensible.then_some(Self {
-            kinematics,
-            limits,
-            rims_mps: [S::ZERO; W],
-        })
+        sensible.then_some(Self { kinematics, limits, rims_mps: [S::ZERO; W] })
     }
 
     /// The rim speeds for the next `span`, m/s. Call it as often as the motors are set; a span of 0 or less changes
@@ -54,9 +47,7 @@ impl<S: Scalar, K: Kinematics<S, W>, const W: usize> Mixer<S, K, W> {
         let mut pairs = self.rims_mps.iter().zip(&wish);
         let change = pairs.try_fold(S::ZERO, |most, (now, wish)| finite_max(most, *wish - *now));
         let part = match change {
-            Some(change) if change > most && self.limits.acceleration_mps2 < S::MAX => {
-                most.checked_div(change)
-            }
+            Some(change) if change > most && self.limits.acceleration_mps2 < S::MAX => most.checked_div(change),
             _ => None,
         };
         for (now, wish) in self.rims_mps.iter_mut().zip(wish) {

@@ -70,9 +70,7 @@ impl<P: SetDutyCycle, D: OutputPin> Motor for SignMagnitude<P, D> {
         // Without power while the direction changes: half a period of the wrong one is a jerk.
         let pwm = |result: Result<(), P::Error>| result.map_err(MotorError::Pwm);
         pwm(self.pwm.set_duty_cycle(0))?;
-        self.direction
-            .set_state((duty >= 0).into())
-            .map_err(MotorError::Pin)?;
+        self.direction.set_state((duty >= 0).into()).map_err(MotorError::Pin)?;
         pwm(self.pwm.set_duty_cycle(power))
     }
 }
@@ -134,11 +132,7 @@ impl<P: SetDutyCycle> Motor for HBridge<P> {
     type Error = P::Error;
 
     fn set(&mut self, duty: i16) -> Result<(), P::Error> {
-        let (used, idle) = if duty < 0 {
-            (&mut self.back, &mut self.ahead)
-        } else {
-            (&mut self.ahead, &mut self.back)
-        };
+        let (used, idle) = if duty < 0 { (&mut self.back, &mut self.ahead) } else { (&mut self.ahead, &mut self.back) };
         // First off, then on: both on would brake with full current.
         idle.set_duty_cycle(0)?;
         let power = scaled(duty, used.max_duty_cycle());

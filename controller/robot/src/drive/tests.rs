@@ -9,26 +9,15 @@ const SPAN: Duration = Duration::from_millis(50);
 
 fn twist<S: Scalar>(parts: [f64; 3]) -> Twist<S> {
     let [forward_mps, left_mps, turn_radps] = parts.map(|part| S::from_f64(part).unwrap());
-    Twist {
-        forward_mps,
-        left_mps,
-        turn_radps,
-    }
+    Twist { forward_mps, left_mps, turn_radps }
 }
 
 fn at_once(speed_mps: f64) -> Limits<f64> {
-    Limits {
-        speed_mps,
-        acceleration_mps2: f64::MAX,
-    }
+    Limits { speed_mps, acceleration_mps2: f64::MAX }
 }
 
 fn near(a: &Twist<f64>, b: &Twist<f64>, tolerance: f64) -> bool {
-    let d = [
-        a.forward_mps - b.forward_mps,
-        a.left_mps - b.left_mps,
-        a.turn_radps - b.turn_radps,
-    ];
+    let d = [a.forward_mps - b.forward_mps, a.left_mps - b.left_mps, a.turn_radps - b.turn_radps];
     d.iter().all(|d| d.abs() <= tolerance)
 }
 
@@ -36,18 +25,11 @@ fn near(a: &Twist<f64>, b: &Twist<f64>, tolerance: f64) -> bool {
 fn wheels_turn_as_on_the_drawing() {
     let two = Differential::new(0.2).unwrap();
     assert_eq!(two.wheels(&twist([0.5, 0.0, 1.0])), [0.4, 0.6]);
-    assert_eq!(
-        two.wheels(&twist([0.0, 9.0, 0.0])),
-        [0.0, 0.0],
-        "it cannot go sideways"
-    );
+    assert_eq!(two.wheels(&twist([0.0, 9.0, 0.0])), [0.0, 0.0], "it cannot go sideways");
     let four = Mecanum::new(0.3, 0.2).unwrap();
     assert_eq!(four.wheels(&twist([1.0, 0.0, 0.0])), [1.0; 4]);
     assert_eq!(four.wheels(&twist([0.0, 1.0, 0.0])), [-1.0, 1.0, 1.0, -1.0]);
-    assert_eq!(
-        four.wheels(&twist([0.0, 0.0, 1.0])),
-        [-0.25, 0.25, -0.25, 0.25]
-    );
+    assert_eq!(four.wheels(&twist([0.0, 0.0, 1.0])), [-0.25, 0.25, -0.25, 0.25]);
     // The first of three at the nose: it turns the robot, and does nothing for going ahead.
     let three = Omni::<f64, 3>::new(0.0, 0.1).unwrap();
     let [nose, left, right] = three.wheels(&twist([1.0, 0.0, 0.0]));
@@ -62,10 +44,7 @@ fn wheels_turn_as_on_the_drawing() {
 fn senseless_measures_are_refused() {
     let two = Differential::new(0.2).unwrap();
     let mixer = |speed_mps, acceleration_mps2| {
-        let limits = Limits {
-            speed_mps,
-            acceleration_mps2,
-        };
+        let limits = Limits { speed_mps, acceleration_mps2 };
         Mixer::new(two, limits)
     };
     for bad in [0.0, -1.0, f32::NAN, f32::INFINITY] {
@@ -113,11 +92,7 @@ fn too_fast_keeps_the_curve_and_what_is_not_a_number_stands() {
     let mut mixer = Mixer::new(Differential::new(0.2).unwrap(), at_once(0.5)).unwrap();
     assert_eq!(mixer.mix(&twist([0.9, 0.0, 1.0]), SPAN), [0.4, 0.5]);
     for bad in [f64::NAN, f64::INFINITY, f64::MAX] {
-        let senseless = Twist {
-            forward_mps: bad,
-            turn_radps: bad,
-            left_mps: 0.0,
-        };
+        let senseless = Twist { forward_mps: bad, turn_radps: bad, left_mps: 0.0 };
         let rims = mixer.mix(&senseless, SPAN);
         assert!(rims.iter().all(|rim| rim.abs() <= 0.5), "{bad}: {rims:?}");
         assert!(bad == f64::MAX || rims == [0.0; 2], "{bad}: {rims:?}");
@@ -126,10 +101,7 @@ fn too_fast_keeps_the_curve_and_what_is_not_a_number_stands() {
 
 #[test]
 fn speed_builds_up_within_the_acceleration_and_the_emergency_stop_does_not_wait() {
-    let limits = Limits {
-        speed_mps: 1.0f32,
-        acceleration_mps2: 2.0,
-    };
+    let limits = Limits { speed_mps: 1.0f32, acceleration_mps2: 2.0 };
     let mut mixer = Mixer::new(Differential::new(0.2).unwrap(), limits).unwrap();
     let ahead = twist([1.0, 0.0, 0.0]);
     let tenth = Duration::from_millis(100);
@@ -139,10 +111,7 @@ fn speed_builds_up_within_the_acceleration_and_the_emergency_stop_does_not_wait(
     assert_eq!(mixer.mix(&ahead, Duration::MAX), [1.0, 1.0]);
     // What is not a number brakes as hard as it may.
     let nonsense = twist::<f32>([0.0; 3]);
-    let nonsense = Twist {
-        turn_radps: f32::NAN,
-        ..nonsense
-    };
+    let nonsense = Twist { turn_radps: f32::NAN, ..nonsense };
     let rims = mixer.mix(&nonsense, tenth);
     assert!(rims.iter().all(|rim| (rim - 0.8).abs() < 1e-6));
     mixer.stop();
@@ -165,10 +134,7 @@ fn a_robot_sent_sideways_turns_and_one_sent_back_reverses() {
 #[test]
 fn the_point_ahead_swings_when_the_robot_turns() {
     let ahead = LookAhead::new(0.5f64).unwrap();
-    let axle = KinematicState {
-        position: Position::from_mm([1000, 2000, 3]),
-        velocity_mps: Vec3::new(0.1, 0.0, 0.0),
-    };
+    let axle = KinematicState { position: Position::from_mm([1000, 2000, 3]), velocity_mps: Vec3::new(0.1, 0.0, 0.0) };
     let point = ahead.state(&axle, 0.0, 2.0);
     assert_eq!(point.position.mm, [1500, 2000, 3]);
     assert_eq!(point.velocity_mps, Vec3::new(0.1, 1.0, 0.0));
@@ -177,12 +143,7 @@ fn the_point_ahead_swings_when_the_robot_turns() {
 
 #[test]
 fn duties_skip_the_dead_band_and_round_symmetrically() {
-    let motor = Calibration {
-        full_mps: 0.5f32,
-        dead_duty: 0.2,
-        still_mps: 0.01,
-        is_inverted: false,
-    };
+    let motor = Calibration { full_mps: 0.5f32, dead_duty: 0.2, still_mps: 0.01, is_inverted: false };
     assert_eq!(motor.duty(0.5), FULL);
     assert_eq!(motor.duty(7.0), FULL);
     assert_eq!(motor.duty(0.25), 19660);
@@ -191,10 +152,7 @@ fn duties_skip_the_dead_band_and_round_symmetrically() {
     for bad in [0.0, -0.0, f32::NAN, f32::INFINITY] {
         assert_eq!(motor.duty(bad), 0);
     }
-    let other = Calibration {
-        is_inverted: true,
-        ..motor
-    };
+    let other = Calibration { is_inverted: true, ..motor };
     for speed in [0.5, 0.25, 0.02, -0.3, 1e30] {
         assert_eq!(motor.duty(-speed), -motor.duty(speed));
         assert_eq!(other.duty(speed), -motor.duty(speed));
@@ -342,10 +300,7 @@ mod pins {
 
     fn pwm(max: u16, duties: &[u16]) -> Pwm {
         let steps = duties.iter().map(|duty| PwmStep::set_duty_cycle(*duty));
-        let steps: Vec<_> = [PwmStep::max_duty_cycle(max)]
-            .into_iter()
-            .chain(steps)
-            .collect();
+        let steps: Vec<_> = [PwmStep::max_duty_cycle(max)].into_iter().chain(steps).collect();
         Pwm::new(&steps)
     }
 
@@ -384,10 +339,7 @@ mod pins {
             (-FULL, State::Low, State::High, u16::MAX),
             (0, State::Low, State::Low, 0),
         ] {
-            let (mut a, mut b) = (
-                Pin::new(&[PinStep::set(ahead)]),
-                Pin::new(&[PinStep::set(back)]),
-            );
+            let (mut a, mut b) = (Pin::new(&[PinStep::set(ahead)]), Pin::new(&[PinStep::set(back)]));
             let mut channel = pwm(u16::MAX, &[0, power]);
             let mut motor = TwoPins::new(channel.clone(), a.clone(), b.clone());
             motor.set(duty).unwrap();
@@ -420,10 +372,7 @@ mod pins {
         let max = || PwmStep::max_duty_cycle(100);
         let set = PwmStep::set_duty_cycle;
         // Left: turns, then stands. Right: fails, and fails again. Third: stands.
-        let left = HBridge::new(
-            steps(&[max(), set(50), max(), set(0)]),
-            steps(&[set(0), set(0)]),
-        );
+        let left = HBridge::new(steps(&[max(), set(50), max(), set(0)]), steps(&[set(0), set(0)]));
         let broken = || steps(&[set(0).with_error(failed()), set(0).with_error(failed())]);
         let right = HBridge::new(steps(&[]), broken());
         let third = HBridge::new(steps(&[max(), set(0)]), steps(&[set(0)]));

@@ -23,11 +23,7 @@ impl<S: Scalar> Twist<S> {
     pub fn holonomic(velocity_mps: Vec2<S>, heading_rad: S, turn_radps: S) -> Self {
         let (sin, cos) = heading_rad.sin_cos();
         let seen = velocity_mps.rotate(cos, -sin);
-        Self {
-            forward_mps: seen.x,
-            left_mps: seen.y,
-            turn_radps,
-        }
+        Self { forward_mps: seen.x, left_mps: seen.y, turn_radps }
     }
 
     /// No component is NaN or infinite.
@@ -62,11 +58,7 @@ pub fn wrap_angle<S: Scalar>(angle_rad: S) -> S {
         Some(turns) => {
             let wrapped = angle_rad + S::from_i32(turns) * turn;
             // Rounding may leave the interval by a bit.
-            if wrapped > -S::PI {
-                wrapped.min(S::PI)
-            } else {
-                S::PI
-            }
+            if wrapped > -S::PI { wrapped.min(S::PI) } else { S::PI }
         }
         None => angle_rad,
     }

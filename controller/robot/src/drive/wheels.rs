@@ -25,12 +25,7 @@ impl<S: Scalar> Calibration<S> {
     /// A motor that does `full_mps` at full duty, proportionally from 0 on.
     #[must_use]
     pub const fn linear(full_mps: S) -> Self {
-        Self {
-            full_mps,
-            dead_duty: S::ZERO,
-            still_mps: S::ZERO,
-            is_inverted: false,
-        }
+        Self { full_mps, dead_duty: S::ZERO, still_mps: S::ZERO, is_inverted: false }
     }
 
     /// The duty for a rim speed; 0 for what is not a number.

@@ -8,9 +8,7 @@ use embassy_futures::{select, yield_now};
 use embedded_io_async::{Read, Write};
 
 /// Over the two halves of an asynchronous line, for example `PacketLink::<_>::new((rx, tx))`.
-impl<R: Read, W: Write, F: Framing, const IN: usize, const OUT: usize>
-    PacketLink<(R, W), F, IN, OUT>
-{
+impl<R: Read, W: Write, F: Framing, const IN: usize, const OUT: usize> PacketLink<(R, W), F, IN, OUT> {
     /// Moves bytes both ways until it is cancelled: let it run beside the wait for the next step, for example
     /// `select(ticker.next(), link.serve()).await`. Errors of the line are counted, what they spoiled is forgotten, and
     /// after each one other tasks have their turn.
@@ -18,11 +16,7 @@ impl<R: Read, W: Write, F: Framing, const IN: usize, const OUT: usize>
     /// Reading and writing must stand being cancelled without losing bytes, as buffered UARTs do (those with a ring
     /// that an interrupt or a DMA fills).
     pub async fn serve(&mut self) -> Infallible {
-        let Self {
-            line: (reader, writer),
-            receiver,
-            sender,
-        } = self;
+        let Self { line: (reader, writer), receiver, sender } = self;
         let hear = async {
             let mut piece = [0; PIECE];
             loop {

@@ -29,11 +29,7 @@ impl<U, F: Framing, const IN: usize, const OUT: usize> PacketLink<U, F, IN, OUT>
     /// Over `line`, with nothing received and nothing to send.
     #[must_use]
     pub const fn new(line: U) -> Self {
-        Self {
-            line,
-            receiver: Receiver::new(),
-            sender: Sender::new(),
-        }
+        Self { line, receiver: Receiver::new(), sender: Sender::new() }
     }
 
     /// The frames since the last call, for [`Inputs::inbox`](staya_controller::agent::Inputs::inbox).

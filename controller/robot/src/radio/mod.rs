@@ -41,12 +41,7 @@ pub struct Counts {
 }
 
 impl Counts {
-    const NONE: Self = Self {
-        frames: 0,
-        refused: 0,
-        dropped: 0,
-        line_errors: 0,
-    };
+    const NONE: Self = Self { frames: 0, refused: 0, dropped: 0, line_errors: 0 };
 }
 
 /// So many more, up to the largest number.

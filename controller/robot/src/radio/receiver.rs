@@ -31,14 +31,7 @@ impl<F: Framing, const N: usize> Receiver<F, N> {
     #[must_use]
     pub const fn new() -> Self {
         let () = Self::FITS;
-        Self {
-            bytes: Vec::new(),
-            whole: 0,
-            given: 0,
-            is_skipping: false,
-            counts: Counts::NONE,
-            framing: PhantomData,
-        }
+        Self { bytes: Vec::new(), whole: 0, given: 0, is_skipping: false, counts: Counts::NONE, framing: PhantomData }
     }
 
     /// Takes bytes in as they come, cut anywhere. O(bytes x [`Framing::LONGEST`] + `N`).

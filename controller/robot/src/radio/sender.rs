@@ -27,13 +27,7 @@ impl<F: Framing, const N: usize> Sender<F, N> {
     /// With nothing to send.
     #[must_use]
     pub const fn new() -> Self {
-        Self {
-            bytes: Vec::new(),
-            begun: 0,
-            is_cut: false,
-            counts: Counts::NONE,
-            framing: PhantomData,
-        }
+        Self { bytes: Vec::new(), begun: 0, is_cut: false, counts: Counts::NONE, framing: PhantomData }
     }
 
     /// Queues the frames of [`Outputs::outbox`](staya_controller::agent::Outputs::outbox). O(outbox + `N`) per frame.

@@ -15,17 +15,8 @@ use std::vec::Vec;
 /// A sound frame, its delimiter included; `sequence` tells it from others.
 fn frame<F: Format>(sequence: u16) -> Vec<u8> {
     let mut out = heapless::Vec::<u8, 64>::new();
-    let header = Header {
-        boot: 1,
-        sender: RobotId(7),
-        sequence,
-    };
-    let message = Message::Ack(Ack {
-        to: RobotId(9),
-        boot: 1,
-        number: 3,
-        accepted: true,
-    });
+    let header = Header { boot: 1, sender: RobotId(7), sequence };
+    let message = Message::Ack(Ack { to: RobotId(9), boot: 1, number: 3, accepted: true });
     F::default().encode(header, &message, &mut out).unwrap();
     out.to_vec()
 }
@@ -123,10 +114,7 @@ mod each {
         let newest: Vec<u16> = (100 - kept.len() as u16..100).collect();
         assert_eq!(kept, newest);
         let counts = receiver.counts();
-        assert_eq!(
-            (counts.frames, counts.dropped as usize),
-            (100, 100 - kept.len())
-        );
+        assert_eq!((counts.frames, counts.dropped as usize), (100, 100 - kept.len()));
         // What was given makes room without a loss.
         receiver.push(&frame::<F>(100));
         assert_eq!(sequences::<F>(receiver.take()), [100]);
@@ -174,10 +162,7 @@ mod each {
         assert_eq!(sequences::<F>(&unsent[rest.len()..]), newest);
         sender.sent(unsent.len());
         let counts = sender.counts();
-        assert_eq!(
-            (counts.frames as usize, counts.dropped as usize),
-            (1 + room, 9 - 1 - room)
-        );
+        assert_eq!((counts.frames as usize, counts.dropped as usize), (1 + room, 9 - 1 - room));
         assert!(sender.unsent().is_empty());
     }
 
@@ -191,10 +176,7 @@ mod each {
         let mut receiver = Receiver::<F, 512>::new();
         receiver.push(&line);
         assert_eq!(sequences::<F>(receiver.take()), [2]);
-        assert_eq!(
-            (sender.counts().dropped, sender.counts().line_errors),
-            (1, 1)
-        );
+        assert_eq!((sender.counts().dropped, sender.counts().line_errors), (1, 1));
     }
 
     pub fn a_sender_without_room_drops_and_goes_on<F: Format>() {
@@ -224,10 +206,7 @@ mod each {
     }
 
     pub fn one_call_takes_no_more_than_its_buffer<F: Format>() {
-        let uart = Uart {
-            inbound: stream::<F>(0..100).into(),
-            ..Uart::default()
-        };
+        let uart = Uart { inbound: stream::<F>(0..100).into(), ..Uart::default() };
         let before = uart.inbound.len();
         let mut link = PacketLink::<Uart, F, 300>::new(uart);
         link.pump().unwrap();
@@ -237,11 +216,7 @@ mod each {
 
     pub fn errors_of_the_line_cost_one_frame_each_way_and_are_told<F: Format>() {
         let (whole, next) = (frame::<F>(1), stream::<F>([2, 3]));
-        let uart = Uart {
-            inbound: whole[..6].to_vec().into(),
-            room: 4,
-            ..Uart::default()
-        };
+        let uart = Uart { inbound: whole[..6].to_vec().into(), room: 4, ..Uart::default() };
         let mut link = PacketLink::<Uart, F, 512, 256>::new(uart);
         link.send(&stream::<F>([4, 5]));
         link.pump().unwrap();
@@ -401,11 +376,7 @@ fn zero_bytes_cost_no_frame_where_there_is_no_room() {
 fn other_messages_on_the_line_are_passed_over() {
     use staya_mavlink::{dialect::HEARTBEAT_DATA, frame};
     let mut heartbeat = heapless::Vec::<u8, 64>::new();
-    let sender = frame::Sender {
-        system: 1,
-        component: 1,
-        sequence: 0,
-    };
+    let sender = frame::Sender { system: 1, component: 1, sequence: 0 };
     frame::encode(sender, &HEARTBEAT_DATA::DEFAULT, &mut heartbeat).unwrap();
     let mut receiver = Receiver::<Mavlink, 512>::new();
     for sequence in 0..3 {

@@ -32,14 +32,7 @@ pub struct MapParams {
 impl Default for MapParams {
     /// HIMM's 3, 1 and 15; blocked by the second scan that says so; forgotten after 15 s unseen.
     fn default() -> Self {
-        Self {
-            hit: 3,
-            free: 1,
-            ceiling: 15,
-            blocked_at: 6,
-            fade_every: Duration::from_millis(1000),
-            ground: 1,
-        }
+        Self { hit: 3, free: 1, ceiling: 15, blocked_at: 6, fade_every: Duration::from_millis(1000), ground: 1 }
     }
 }
 
@@ -85,11 +78,7 @@ impl<const SIDE: usize> LocalMap<SIDE> {
     /// Around `own`, with nothing seen.
     #[must_use]
     pub const fn new(params: MapParams, own: Cell) -> Self {
-        let known = Known {
-            evidence: 0,
-            ground: params.ground,
-            news: News::None,
-        };
+        let known = Known { evidence: 0, ground: params.ground, news: News::None };
         Self {
             params,
             origin: Self::corner(own),
@@ -154,16 +143,9 @@ impl<const SIDE: usize> LocalMap<SIDE> {
         let origin = Self::corner(own);
         if origin != self.origin {
             let shift = |to: i16, from: i16| i32::from(to) - i32::from(from);
-            let (dx, dy) = (
-                shift(origin.x, self.origin.x),
-                shift(origin.y, self.origin.y),
-            );
+            let (dx, dy) = (shift(origin.x, self.origin.x), shift(origin.y, self.origin.y));
             let old = self.known;
-            let nothing = Known {
-                evidence: 0,
-                ground: self.params.ground,
-                news: News::None,
-            };
+            let nothing = Known { evidence: 0, ground: self.params.ground, news: News::None };
             let from = |at: usize, shift: i32| {
                 usize::try_from(i32::try_from(at).unwrap_or(i32::MAX).saturating_add(shift)).ok()
             };
@@ -258,11 +240,7 @@ impl<const SIDE: usize> LocalMap<SIDE> {
             return;
         }
         // After a long pause, or with a clock that was set back, time begins anew.
-        self.faded = Some(if loss == self.params.ceiling || loss == 0 {
-            now
-        } else {
-            last
-        });
+        self.faded = Some(if loss == self.params.ceiling || loss == 0 { now } else { last });
         for known in self.known.as_flattened_mut() {
             known.evidence = known.evidence.saturating_sub(loss);
         }
@@ -272,11 +250,7 @@ impl<const SIDE: usize> LocalMap<SIDE> {
         let blocked_at = self.params.blocked_at;
         let known = self.known.as_flattened().iter();
         for (shown, known) in self.window.as_flattened_mut().iter_mut().zip(known) {
-            *shown = if known.evidence >= blocked_at {
-                BLOCKED
-            } else {
-                known.ground
-            };
+            *shown = if known.evidence >= blocked_at { BLOCKED } else { known.ground };
         }
         let along = |at: i16, origin: i16| usize::try_from(i32::from(at) - i32::from(origin)).ok();
         let own = along(self.own.x, self.origin.x).zip(along(self.own.y, self.origin.y));

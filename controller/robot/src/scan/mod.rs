@@ -67,12 +67,8 @@ impl<'a, S: Scalar> Scan<'a, S> {
         scan.ranges_m.iter().zip(0..).map(move |(range, number)| {
             let bearing = scan.first_rad + scan.step_rad * S::from_i32(number);
             let (sin, cos) = (heading_rad + bearing).sin_cos();
-            let ray = Ray {
-                from_m,
-                ahead: Vec2::new(cos, sin),
-                free_m: range.min(scan.max_m),
-                is_hit: *range < scan.max_m,
-            };
+            let ray =
+                Ray { from_m, ahead: Vec2::new(cos, sin), free_m: range.min(scan.max_m), is_hit: *range < scan.max_m };
             (*range >= scan.min_m && ray.end_m().is_finite()).then_some(ray)
         })
     }

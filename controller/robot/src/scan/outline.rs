@@ -91,12 +91,7 @@ struct Sleeve<S> {
 
 impl<S: Scalar> Sleeve<S> {
     const fn at(first: Vec2<S>) -> Self {
-        Self {
-            first,
-            last: first,
-            bounds: None,
-            reach: S::ZERO,
-        }
+        Self { first, last: first, bounds: None, reach: S::ZERO }
     }
 
     /// Goes on to `point` if the wall to it passes all points between within `tolerance`; whether it did.
@@ -113,16 +108,8 @@ impl<S: Scalar> Sleeve<S> {
             }
             let [own_right, own_left] = own;
             own = [
-                if right.det(own_right) > S::ZERO {
-                    own_right
-                } else {
-                    right
-                },
-                if own_left.det(left) > S::ZERO {
-                    own_left
-                } else {
-                    left
-                },
+                if right.det(own_right) > S::ZERO { own_right } else { right },
+                if own_left.det(left) > S::ZERO { own_left } else { left },
             ];
         }
         // A point nearer than the tolerance bounds nothing.
@@ -136,10 +123,7 @@ impl<S: Scalar> Sleeve<S> {
 
     fn obstacle(&self, params: &OutlineParams<S>) -> Obstacle<S> {
         if self.first == self.last {
-            return Obstacle::Ball {
-                center_m: self.first.extend(S::ZERO),
-                radius_m: params.point_m,
-            };
+            return Obstacle::Ball { center_m: self.first.extend(S::ZERO), radius_m: params.point_m };
         }
         Obstacle::Wall([self.first, self.last])
     }

@@ -5,21 +5,11 @@ use staya_controller::obstacle::Obstacle;
 use staya_controller::scalar::Q16;
 use std::vec::Vec;
 
-const FRAME: GridFrame<f64> = GridFrame {
-    origin_m: Vec2::new(-10.0, 5.0),
-    cell_m: 0.5,
-};
+const FRAME: GridFrame<f64> = GridFrame { origin_m: Vec2::new(-10.0, 5.0), cell_m: 0.5 };
 const NOW: Instant = Instant::from_micros(u32::MAX - 500_000);
 
 fn scan(first_rad: f64, step_rad: f64, ranges_m: &[f64]) -> Scan<'_, f64> {
-    Scan {
-        first_rad,
-        step_rad,
-        ranges_m,
-        min_m: 0.05,
-        max_m: 4.0,
-        mount_m: Vec2::ZERO,
-    }
+    Scan { first_rad, step_rad, ranges_m, min_m: 0.05, max_m: 4.0, mount_m: Vec2::ZERO }
 }
 
 /// Around the robot's cell (10, 10), whose middle this is.
@@ -41,9 +31,7 @@ fn blocked<const SIDE: usize>(map: &LocalMap<SIDE>) -> Vec<(i16, i16)> {
     let cells = window.cells().iter().zip(0i16..);
     let blocked = cells.filter(|(cell, _)| **cell == BLOCKED);
     let side = SIDE as i16;
-    blocked
-        .map(|(_, at)| (at % side - side / 2, at / side - side / 2))
-        .collect()
+    blocked.map(|(_, at)| (at % side - side / 2, at / side - side / 2)).collect()
 }
 
 #[test]
@@ -135,11 +123,7 @@ fn other_robots_are_not_land() {
 fn what_is_known_stays_where_it_is_when_the_robot_goes() {
     let mut map = map();
     for _ in 0..2 {
-        look(
-            &mut map,
-            0.0,
-            &scan(0.0, core::f64::consts::PI, &[1.5, 2.4]),
-        );
+        look(&mut map, 0.0, &scan(0.0, core::f64::consts::PI, &[1.5, 2.4]));
     }
     assert_eq!(blocked(&map), [(-5, 0), (3, 0)]);
     map.follow(Cell::new(11, 9));
@@ -183,11 +167,7 @@ fn ground_is_what_other_sensors_say_and_ranges_do_not_change_it() {
     assert!(map.set_ground(Cell::new(10, 10), BLOCKED));
     let open = [f64::INFINITY; 4];
     for _ in 0..20 {
-        look(
-            &mut map,
-            0.0,
-            &scan(0.0, core::f64::consts::FRAC_PI_2, &open),
-        );
+        look(&mut map, 0.0, &scan(0.0, core::f64::consts::FRAC_PI_2, &open));
     }
     assert_eq!(blocked(&map), [(2, 0)], "a cliff; the own cell is passable");
     assert_eq!(map.window().unwrap().get(Cell::new(10, 12)), Some(7));
@@ -207,10 +187,7 @@ fn the_sensor_need_not_be_in_the_middle() {
 
 #[test]
 fn other_sides_and_scalars_work_too() {
-    let frame = GridFrame {
-        origin_m: Vec2::new(Q16::ZERO, Q16::ZERO),
-        cell_m: Q16::from_ratio(1, 10),
-    };
+    let frame = GridFrame { origin_m: Vec2::new(Q16::ZERO, Q16::ZERO), cell_m: Q16::from_ratio(1, 10) };
     let ranges = [Q16::from_ratio(3, 10)];
     let scan = Scan {
         first_rad: Q16::ZERO,
@@ -231,11 +208,7 @@ fn other_sides_and_scalars_work_too() {
     assert_eq!(one.window().unwrap().cells(), [1]);
 }
 
-const OUTLINE: OutlineParams<f64> = OutlineParams {
-    tolerance_m: 0.02,
-    gap_m: 0.3,
-    point_m: 0.03,
-};
+const OUTLINE: OutlineParams<f64> = OutlineParams { tolerance_m: 0.02, gap_m: 0.3, point_m: 0.03 };
 
 /// Ranges of a full turn of `N` beams in a room with walls at x = 2, y = 1, x = -2, y = -1.
 fn room<const N: usize>() -> [f64; N] {
@@ -267,9 +240,7 @@ fn a_gap_parts_two_walls_and_a_lone_hit_is_a_ball() {
     let scan = scan(-0.2, 0.1, &ranges);
     let found = outline::<_, 8>(&scan, 0.0, &OUTLINE, |_| false);
     assert_eq!(found.len(), 2);
-    let balls = found
-        .iter()
-        .filter(|o| matches!(o, Obstacle::Ball { radius_m, .. } if *radius_m == 0.03));
+    let balls = found.iter().filter(|o| matches!(o, Obstacle::Ball { radius_m, .. } if *radius_m == 0.03));
     assert_eq!(balls.count(), 1);
     let is_robot = |place: Vec2<f64>| place.y > 0.2;
     assert_eq!(outline::<_, 8>(&scan, 0.0, &OUTLINE, is_robot).len(), 1);
@@ -309,14 +280,7 @@ fn neighbours_are_where_their_last_word_leads_and_as_large_as_they_say() {
     assert!(seen(0, 2.24) && seen(0, 1.76) && !seen(0, 2.26) && !seen(0, 1.74));
     assert!(seen(200, 2.34) && !seen(200, 1.84));
     assert!(seen(9_000, 2.44) && !seen(9_000, 2.46), "not for ever");
-    assert!(!is_neighbor::<f32>(
-        &[],
-        own,
-        NOW,
-        Duration::ZERO,
-        Vec2::ZERO,
-        9.0
-    ));
+    assert!(!is_neighbor::<f32>(&[], own, NOW, Duration::ZERO, Vec2::ZERO, 9.0));
 }
 
 /// How far the hit is away that what was found misses most.

@@ -46,10 +46,7 @@ impl Guidance<f32> for Counting {
         (): &mut (),
     ) -> Result<Decision<f32>, BadInput> {
         self.decisions += 1;
-        let ask = Ask {
-            to: RobotId(9),
-            kind: Redirect,
-        };
+        let ask = Ask { to: RobotId(9), kind: Redirect };
         Ok(Decision {
             action: Action::Moves([Dir::NorthEast, Dir::South].into_iter().collect()),
             target: input.goal,
@@ -85,21 +82,9 @@ fn told(cell: Cell, offset_m: [f32; 2], max_speed_mps: f32, n: i32) -> Told {
         ages: config(1).ages,
     };
     let here = InCells {
-        grid: OnGrid {
-            cell: CellState {
-                cell,
-                busy: Duration::ZERO,
-            },
-            window: None,
-        },
-        plane: InPlane {
-            max_speed_mps,
-            obstacles: &[],
-        },
-        in_cell: InCell {
-            offset_m: Vec2::new(offset_m[0], offset_m[1]),
-            cell_m: 2.0,
-        },
+        grid: OnGrid { cell: CellState { cell, busy: Duration::ZERO }, window: None },
+        plane: InPlane { max_speed_mps, obstacles: &[] },
+        in_cell: InCell { offset_m: Vec2::new(offset_m[0], offset_m[1]), cell_m: 2.0 },
     };
     (input, here)
 }
@@ -173,10 +158,7 @@ fn it_goes_to_the_centre_of_the_next_cell_and_knows_its_whole_way() {
     // The centre is reached, not passed.
     let near = told(Cell::new(5, 5), [0.03, 0.04], 9.0, 0);
     let (v, _) = motion(&decide(&mut CellFollower::new(Stays, 1.0), &near).unwrap());
-    assert!(
-        (v.x + 0.3).abs() < 1e-6 && (v.y + 0.4).abs() < 1e-6,
-        "{v:?}"
-    );
+    assert!((v.x + 0.3).abs() < 1e-6 && (v.y + 0.4).abs() < 1e-6, "{v:?}");
 }
 
 /// Stays in its cell.
@@ -214,10 +196,7 @@ fn it_passes_on_what_it_is_told() {
     let inside = guidance.inside();
     assert_eq!((inside.redirections, inside.parts), (1, 2));
     assert_eq!(guidance.goal_offset(), Cell::new(-3, 2));
-    assert_eq!(
-        [76, 77].map(|id| guidance.needs(RobotId(id))),
-        [false, true]
-    );
+    assert_eq!([76, 77].map(|id| guidance.needs(RobotId(id))), [false, true]);
     assert!(!guidance.has_own_goal());
     let waypoint = Waypoint::fixed(crate::geom::Position::ORIGIN);
     assert!(!guidance.assign_waypoint(0, &waypoint));
@@ -251,21 +230,13 @@ fn it_walks_to_the_cell_of_its_goal() {
             state: KinematicState::default(),
             surroundings: InCells {
                 grid: inputs(&FLAT, cell, &[]).surroundings,
-                plane: InPlane {
-                    max_speed_mps: 1.0,
-                    obstacles: &[],
-                },
-                in_cell: InCell {
-                    offset_m: Vec2::new(at_m[0] - 2.0 * x - 1.0, at_m[1] - 2.0 * y - 1.0),
-                    cell_m: 2.0,
-                },
+                plane: InPlane { max_speed_mps: 1.0, obstacles: &[] },
+                in_cell: InCell { offset_m: Vec2::new(at_m[0] - 2.0 * x - 1.0, at_m[1] - 2.0 * y - 1.0), cell_m: 2.0 },
             },
             inbox: &[],
         };
         let now = Instant::from_micros(0) + STEP.saturating_mul(n);
-        let Command::Velocity(v) = agent.step(&inputs, now, &mut ws).command else {
-            panic!("it moves by velocities")
-        };
+        let Command::Velocity(v) = agent.step(&inputs, now, &mut ws).command else { panic!("it moves by velocities") };
         at_m = [at_m[0] + v.x * 0.1, at_m[1] + v.y * 0.1];
     }
     cells.dedup();

@@ -1,8 +1,6 @@
 //! Robots that an operator takes over, and what can be tuned while they run.
 
-use super::plane::{
-    RADIUS_MM, Robot, STEP, body_at, in_plane, length, orca, place, step_number, waypoint,
-};
+use super::plane::{RADIUS_MM, Robot, STEP, body_at, in_plane, length, orca, place, step_number, waypoint};
 use super::*;
 use crate::geom::Position;
 use crate::scalar::Q16;
@@ -15,10 +13,7 @@ fn robot<S: Scalar>(at_m: [f64; 2]) -> Operated<S> {
 }
 
 fn east(millis: i32) -> Wish<f32> {
-    Wish::Velocity {
-        velocity_mps: Vec3::new(0.5, 0.0, 0.0),
-        valid: Duration::from_millis(millis),
-    }
+    Wish::Velocity { velocity_mps: Vec3::new(0.5, 0.0, 0.0), valid: Duration::from_millis(millis) }
 }
 
 #[test]
@@ -29,17 +24,8 @@ fn without_a_wish_nothing_differs() {
     wrapped.agent.assign_waypoint(0, &place(2000, 500));
     for n in 0..40 {
         let now = step_number(n);
-        let other = bytes(
-            2,
-            0,
-            n as u16,
-            &[body_at([1000, 250], [0, 0], Mode::Cruise)],
-        );
-        assert_eq!(
-            plain.step(now, &other),
-            wrapped.step(now, &other),
-            "step {n}"
-        );
+        let other = bytes(2, 0, n as u16, &[body_at([1000, 250], [0, 0], Mode::Cruise)]);
+        assert_eq!(plain.step(now, &other), wrapped.step(now, &other), "step {n}");
     }
     assert!(length(wrapped.at_m) > 1.0);
 }
@@ -54,10 +40,7 @@ fn a_velocity_holds_until_its_time_is_over() {
         assert_eq!(robot.agent.mode(), Mode::Cruise);
     }
     let _ = robot.step(step_number(5), &[]);
-    assert_eq!(
-        (robot.velocity_mps, robot.agent.mode()),
-        ([0.0; 2], Mode::Hold)
-    );
+    assert_eq!((robot.velocity_mps, robot.agent.mode()), ([0.0; 2], Mode::Hold));
     assert_eq!(robot.agent.guidance().wish(), &Wish::Hold);
     // The same wish said again counts anew, however late.
     robot.agent.guidance_mut().command(east(500)).unwrap();
@@ -68,19 +51,13 @@ fn a_velocity_holds_until_its_time_is_over() {
 #[test]
 fn a_velocity_beyond_the_body_is_cut_and_one_that_is_no_number_refused() {
     let mut robot = robot([0.0; 2]);
-    let wish = |x: f32| Wish::Velocity {
-        velocity_mps: Vec3::new(x, 0.0, 0.0),
-        valid: Duration::MAX,
-    };
+    let wish = |x: f32| Wish::Velocity { velocity_mps: Vec3::new(x, 0.0, 0.0), valid: Duration::MAX };
     robot.agent.guidance_mut().command(wish(7.0)).unwrap();
     for (n, bad) in [f32::NAN, f32::INFINITY, 7.0].into_iter().enumerate() {
         let taken = robot.agent.guidance_mut().command(wish(bad));
         assert_eq!(taken, bad.is_finite().then_some(()).ok_or(WrongTask));
         let _ = robot.step(step_number(n as i32), &[]);
-        assert_eq!(
-            (robot.velocity_mps, robot.agent.mode()),
-            ([1.0, 0.0], Mode::Cruise)
-        );
+        assert_eq!((robot.velocity_mps, robot.agent.mode()), ([1.0, 0.0], Mode::Cruise));
     }
 }
 
@@ -92,10 +69,7 @@ fn it_goes_where_the_operator_wants_and_then_its_own_way() {
         robot
             .agent
             .guidance_mut()
-            .command(Wish::Waypoint {
-                waypoint: Waypoint::fixed(Position::from_mm([1000, 0, 0])),
-                valid: None,
-            })
+            .command(Wish::Waypoint { waypoint: Waypoint::fixed(Position::from_mm([1000, 0, 0])), valid: None })
             .unwrap();
         for n in 0..20 {
             let _ = robot.step(step_number(n), &[]);
@@ -121,10 +95,7 @@ fn a_place_that_moves_is_followed_until_its_time_is_over() {
     robot
         .agent
         .guidance_mut()
-        .command(Wish::Waypoint {
-            waypoint: moving,
-            valid: Some(Duration::from_millis(1000)),
-        })
+        .command(Wish::Waypoint { waypoint: moving, valid: Some(Duration::from_millis(1000)) })
         .unwrap();
     for n in 100..130 {
         let _ = robot.step(step_number(n), &[]);
@@ -141,17 +112,9 @@ fn who_is_off_stands_and_says_so_and_who_holds_gives_way() {
         let mut robot = robot::<f32>([0.0; 2]);
         robot.agent.guidance_mut().command(wish).unwrap();
         for n in 0..3 {
-            let out = robot.step(
-                step_number(n),
-                &bytes(2, 0, n as u16, std::slice::from_ref(&crowding)),
-            );
+            let out = robot.step(step_number(n), &bytes(2, 0, n as u16, std::slice::from_ref(&crowding)));
             let mode = match &sent(&out)[..] {
-                [
-                    Frame {
-                        message: Message::Beacon(beacon),
-                        ..
-                    },
-                ] => beacon.mode,
+                [Frame { message: Message::Beacon(beacon), .. }] => beacon.mode,
                 other => panic!("{other:?}"),
             };
             let expected = match wish {
@@ -191,11 +154,7 @@ fn cells_take_the_place_of_the_own_goal_and_velocities_are_refused() {
     agent.assign_goal(Cell::new(9, 5));
     let mut workspace = workspace();
     let mut heading = |agent: &mut GridAgent, n: u32| {
-        let out = agent.step(
-            &inputs(&FLAT, Cell::new(5, 5), &[]),
-            tick(n),
-            &mut workspace,
-        );
+        let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &[]), tick(n), &mut workspace);
         match out.command {
             Command::Move(moves) => moves.first().copied(),
             Command::Hold => None,
@@ -203,17 +162,11 @@ fn cells_take_the_place_of_the_own_goal_and_velocities_are_refused() {
         }
     };
     assert_eq!(heading(&mut agent, 0), Some(Dir::East));
-    agent
-        .guidance_mut()
-        .command(Wish::Cell(Cell::new(5, 9)))
-        .unwrap();
+    agent.guidance_mut().command(Wish::Cell(Cell::new(5, 9))).unwrap();
     assert_eq!(heading(&mut agent, 1), Some(Dir::North));
     assert_eq!(agent.target(), Some(Cell::new(5, 9)));
     // What it has no use for is an error, and changes nothing.
-    let there = Wish::Waypoint {
-        waypoint: place(1000, 0),
-        valid: None,
-    };
+    let there = Wish::Waypoint { waypoint: place(1000, 0), valid: None };
     for wrong in [east(1000), there] {
         assert_eq!(agent.guidance_mut().command(wrong), Err(WrongTask));
     }
@@ -265,10 +218,7 @@ fn parameters_are_what_was_set_and_nothing_out_of_range_is() {
         for good in [least, greatest, 0.5] {
             assert!(robot.agent.set_parameter(parameter, good), "{parameter:?}");
             let after = robot.agent.parameter(parameter).expect("still");
-            assert!(
-                (after - good).abs() <= 1e-6 * good.max(1.0),
-                "{parameter:?} {after}"
-            );
+            assert!((after - good).abs() <= 1e-6 * good.max(1.0), "{parameter:?} {after}");
         }
     }
     // On the grid there is no speed, and what is not there is not set.
@@ -292,8 +242,5 @@ fn a_new_speed_and_beacon_period_hold_from_the_next_step() {
         assert_eq!(robot.velocity_mps, [0.25, 0.0]);
         beacons += sent(&out).len();
     }
-    assert_eq!(
-        (beacons, STEP.saturating_mul(10)),
-        (2, Duration::from_millis(1000))
-    );
+    assert_eq!((beacons, STEP.saturating_mul(10)), (2, Duration::from_millis(1000)));
 }

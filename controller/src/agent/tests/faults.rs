@@ -6,55 +6,34 @@ use crate::template::TemplateEntry;
 use crate::wire::Ack;
 
 fn goal(version: u8, x: i16) -> Message {
-    Message::Goal(GoalAssignment {
-        to: RobotId::NOBODY,
-        version,
-        target: Cell::new(x, 5),
-    })
+    Message::Goal(GoalAssignment { to: RobotId::NOBODY, version, target: Cell::new(x, 5) })
 }
 
 /// The parts of a template whose robot stands `behind` cells west of the top leader, robot 1, and
 /// has `others` more neighbours than the leader.
 fn parts(to: u32, version: u8, behind: i16, others: u32) -> Vec<Message> {
     let neighbors = std::iter::once((1, behind)).chain((20..20 + others).map(|id| (id, 9)));
-    let entries: Vec<TemplateEntry> = neighbors
-        .map(|(id, x)| TemplateEntry {
-            offset: Cell::new(x, 0),
-            id: RobotId(id),
-            hops: 1,
-        })
-        .collect();
+    let entries: Vec<TemplateEntry> =
+        neighbors.map(|(id, x)| TemplateEntry { offset: Cell::new(x, 0), id: RobotId(id), hops: 1 }).collect();
     let offset = Cell::new(-behind, 0);
-    TemplateAssignment::split(RobotId(to), version, 1, offset, &entries)
-        .unwrap()
-        .map(Message::Template)
-        .collect()
+    TemplateAssignment::split(RobotId(to), version, 1, offset, &entries).unwrap().map(Message::Template).collect()
 }
 
 fn requests(out: &Outputs<f32>) -> Vec<Request> {
-    let requests = sent(out)
-        .into_iter()
-        .filter_map(|frame| match frame.message {
-            Message::Request(request) => Some(request),
-            _ => None,
-        });
+    let requests = sent(out).into_iter().filter_map(|frame| match frame.message {
+        Message::Request(request) => Some(request),
+        _ => None,
+    });
     requests.collect()
 }
 
 /// A leader waits for who falls behind, but not for who has failed, nor who has arrived: he will not come any nearer.
 #[test]
 fn who_has_failed_or_arrived_is_not_waited_for() {
-    for (mode, expected) in [
-        (Mode::Cruise, Mode::Hold),
-        (Mode::Fault, Mode::Cruise),
-        (Mode::Arrived, Mode::Cruise),
-    ] {
+    for (mode, expected) in [(Mode::Cruise, Mode::Hold), (Mode::Fault, Mode::Cruise), (Mode::Arrived, Mode::Cruise)] {
         let (mut agent, mut ws) = (formation_agent(1), workspace());
         agent.assign_goal(Cell::new(60, 5));
-        let behind = Beacon {
-            mode,
-            ..beacon_at(-5, 5)
-        };
+        let behind = Beacon { mode, ..beacon_at(-5, 5) };
         for n in 0..2 {
             let inbox = bytes(2, 0, n, &[Message::Beacon(behind)]);
             let inputs = inputs(&FLAT, Cell::new(5, 5), &inbox);
@@ -68,10 +47,7 @@ fn who_has_failed_or_arrived_is_not_waited_for() {
 #[test]
 fn a_template_arrives_whole_although_the_radio_repeats_its_parts() {
     let (mut agent, mut ws) = (formation_agent(2), workspace());
-    let repeated: Vec<Message> = parts(2, 1, 6, 7)
-        .into_iter()
-        .flat_map(|part| [part.clone(), part])
-        .collect();
+    let repeated: Vec<Message> = parts(2, 1, 6, 7).into_iter().flat_map(|part| [part.clone(), part]).collect();
     assert_eq!(repeated.len(), 8);
     let inbox = bytes(99, 0, 0, &repeated);
     let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(0), &mut ws);
@@ -85,11 +61,7 @@ fn a_new_template_moves_the_goal_that_was_given_to_the_formation() {
         let (mut agent, mut ws) = (formation_agent(2), workspace());
         for (n, order) in (0..).zip(orders) {
             let inbox = bytes(99, 0, 10 * n, order);
-            let _ = agent.step(
-                &inputs(&FLAT, Cell::new(5, 5), &inbox),
-                tick(n.into()),
-                &mut ws,
-            );
+            let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(n.into()), &mut ws);
         }
         agent.target()
     };
@@ -143,11 +115,7 @@ fn a_lost_leader_is_forgotten_and_followed_again_when_it_is_back() {
     for n in 0..100_u32 {
         let silent = (20..60).contains(&n);
         let beacon = Message::Beacon(beacon_at(8, 5));
-        let inbox = if silent {
-            vec![]
-        } else {
-            bytes(2, 0, n as u16, &[beacon])
-        };
+        let inbox = if silent { vec![] } else { bytes(2, 0, n as u16, &[beacon]) };
         let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(n), &mut ws);
         if leaders.last() != Some(&(agent.leader().0)) {
             leaders.push(agent.leader().0);
@@ -167,18 +135,11 @@ fn leader_chains_that_lie_end() {
         for n in 0..3 {
             let beacon = |x, leader| {
                 let leader = RobotId(leader);
-                Message::Beacon(Beacon {
-                    leader,
-                    ..beacon_at(x, 5)
-                })
+                Message::Beacon(Beacon { leader, ..beacon_at(x, 5) })
             };
             let mut inbox = bytes(2, 0, n, &[beacon(10, second)]);
             inbox.extend(bytes(1, 0, n, &[beacon(13, first)]));
-            let out = agent.step(
-                &inputs(&FLAT, Cell::new(5, 5), &inbox),
-                tick(n.into()),
-                &mut ws,
-            );
+            let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(n.into()), &mut ws);
             assert!(matches!(out.command, Command::Move(_)));
             assert_eq!(agent.leader(), RobotId(2));
         }
@@ -244,17 +205,10 @@ fn a_redirection_is_followed_once_however_often_it_comes() {
     let mut moved = vec![];
     for n in 0..4 {
         let inbox = bytes(2, 0, n, &[stop(2, 1, 0, RequestKind::Redirect)]);
-        let out = agent.step(
-            &inputs(&FLAT, Cell::new(5, 5), &inbox),
-            tick(n.into()),
-            &mut ws,
-        );
+        let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(n.into()), &mut ws);
         moved.push(out.command != Command::Hold);
         let ack = |frame: &Frame| matches!(frame.message, Message::Ack(Ack { accepted: true, .. }));
-        assert!(
-            sent(&out).iter().any(ack),
-            "a repeat says that the answer was lost"
-        );
+        assert!(sent(&out).iter().any(ack), "a repeat says that the answer was lost");
     }
     assert_eq!(moved, [true, false, false, false]);
 }
@@ -266,15 +220,8 @@ fn after_a_long_sleep_it_speaks_and_no_stop_stands() {
         let (mut agent, mut ws) = (formation_agent(2), workspace());
         agent.assign_goal(Cell::new(60, 5));
         let leader = Message::Beacon(beacon_at(13, 5));
-        let inbox = [
-            bytes(1, 0, 0, &[leader]),
-            bytes(3, 0, 0, &[stop(3, 2, 0, RequestKind::Stop)]),
-        ];
-        let out = agent.step(
-            &inputs(&FLAT, Cell::new(5, 5), &inbox.concat()),
-            tick(0),
-            &mut ws,
-        );
+        let inbox = [bytes(1, 0, 0, &[leader]), bytes(3, 0, 0, &[stop(3, 2, 0, RequestKind::Stop)])];
+        let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox.concat()), tick(0), &mut ws);
         assert!(!requests(&out).is_empty());
         let woken = tick(sleep);
         let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &[]), woken, &mut ws);
@@ -336,22 +283,11 @@ fn a_leader_that_recovers_heads_for_who_is_off() {
     let go = |recovery| {
         let mut agent = formation_agent(1);
         let template = agent.guidance.template().clone();
-        let formation = FormationParams {
-            recovery,
-            ..FormationParams::default()
-        };
+        let formation = FormationParams { recovery, ..FormationParams::default() };
         agent.guidance = FormationGuidance::new(RouteParams::default(), formation, template);
         let mut ws = workspace();
         agent.assign_goal(Cell::new(60, 5));
-        let inbox = bytes(
-            2,
-            0,
-            0,
-            &[
-                Message::Beacon(beacon_at(-5, 5)),
-                stop(2, 1, 0, RequestKind::Stop),
-            ],
-        );
+        let inbox = bytes(2, 0, 0, &[Message::Beacon(beacon_at(-5, 5)), stop(2, 1, 0, RequestKind::Stop)]);
         let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(0), &mut ws);
         out.command
     };
@@ -382,38 +318,21 @@ fn strangers_in_a_neighbour_s_place_are_asked_to_choose_another_direction() {
 #[test]
 fn anyone_may_lead_although_its_own_leader_is_not_heard() {
     let (mut agent, mut ws) = (formation_agent(3), workspace());
-    let anyone = [TemplateEntry {
-        offset: Cell::new(3, 0),
-        id: RobotId::NOBODY,
-        hops: 1,
-    }];
+    let anyone = [TemplateEntry { offset: Cell::new(3, 0), id: RobotId::NOBODY, hops: 1 }];
     let order = TemplateAssignment::split(RobotId(3), 1, 2, Cell::new(-6, 0), &anyone);
     let order: Vec<Message> = order.unwrap().map(Message::Template).collect();
     agent.assign_goal(Cell::new(5, 60));
     let mut at = Cell::new(5, 5);
     for n in 0..6_i16 {
-        let mut inbox = if n == 0 {
-            bytes(99, 0, 0, &order)
-        } else {
-            vec![]
-        };
-        let beacon = Beacon {
-            leader: RobotId(1),
-            heading: Dir::East,
-            ..beacon_at(9 + n, 5)
-        };
+        let mut inbox = if n == 0 { bytes(99, 0, 0, &order) } else { vec![] };
+        let beacon = Beacon { leader: RobotId(1), heading: Dir::East, ..beacon_at(9 + n, 5) };
         inbox.extend(bytes(2, 0, n as u16, &[Message::Beacon(beacon)]));
         let out = agent.step(&inputs(&FLAT, at, &inbox), tick(n as u32), &mut ws);
         assert_eq!(agent.leader(), RobotId(2));
-        let Command::Move(moves) = out.command else {
-            panic!("it follows")
-        };
+        let Command::Move(moves) = out.command else { panic!("it follows") };
         at = at + moves[0].offset();
     }
-    assert_eq!(
-        at.y, 5,
-        "beside its leader, not to its own goal in the north"
-    );
+    assert_eq!(at.y, 5, "beside its leader, not to its own goal in the north");
 }
 
 /// A window larger than the search: the land is still priced for everybody.
@@ -425,19 +344,10 @@ fn the_whole_formation_s_land_counts_in_windows_of_any_size() {
         // Mud from y = -2 down to -4 under robot 2's place, three cells south of the leader's.
         let cells: Vec<u8> = (-radius..=radius)
             .flat_map(|y| (-radius..=radius).map(move |x| (x, y)))
-            .map(|(x, y)| {
-                if x > 0 && (-4..=-2).contains(&y) {
-                    60
-                } else {
-                    1
-                }
-            })
+            .map(|(x, y)| if x > 0 && (-4..=-2).contains(&y) { 60 } else { 1 })
             .collect();
         let template = Template::from_graph(&[at, Cell::new(0, -3)], &[(0, 1)], 0, 1).unwrap();
-        let formation = FormationParams {
-            footprint: 16,
-            ..FormationParams::default()
-        };
+        let formation = FormationParams { footprint: 16, ..FormationParams::default() };
         let guidance = FormationGuidance::new(RouteParams::default(), formation, template);
         let mut agent = FormationAgent::new(&config(1), guidance, Unguarded, Postcard);
         agent.assign_goal(Cell::new(40, 0));

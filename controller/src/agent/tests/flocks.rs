@@ -32,17 +32,11 @@ fn distance([x, y]: [f64; 2], [other_x, other_y]: [f64; 2]) -> f64 {
 fn an_alpha_flock_takes_its_distance_and_follows_its_reference() {
     let new = |id, at_m| {
         // Gentle enough for ten decisions a second on news that is a tenth of a second old.
-        let params = LatticeParams {
-            alpha: Gain::critical(1.0),
-            gamma: Gain::critical(0.5),
-            ..LatticeParams::new(1.0)
-        };
+        let params =
+            LatticeParams { alpha: Gain::critical(1.0), gamma: Gain::critical(0.5), ..LatticeParams::new(1.0) };
         let guidance = LatticeGuidance::new(params, true);
         let mut robot = Robot::new(&one_step_late(id), guidance, Unguarded, at_m);
-        let reference = Waypoint {
-            velocity_mps: crate::geom::Vec3::new(0.25, 0.0, 0.0),
-            ..place(1000, 0)
-        };
+        let reference = Waypoint { velocity_mps: crate::geom::Vec3::new(0.25, 0.0, 0.0), ..place(1000, 0) };
         assert!(robot.agent.assign_waypoint(0, &reference));
         assert!(!robot.agent.assign_waypoint(1, &reference), "there is one");
         robot
@@ -82,10 +76,7 @@ fn a_goal_flock_goes_to_the_middle_and_then_to_goals_of_its_own() {
         let params = GoalParams::new(0.5, 1.0);
         let guidance = GoalFlockGuidance::new(params, 1.0, 7);
         let mut robot = Robot::new(&one_step_late(id), guidance, Unguarded, at_m);
-        assert!(
-            !robot.agent.assign_waypoint(1, &place(0, 0)),
-            "not before number 0"
-        );
+        assert!(!robot.agent.assign_waypoint(1, &place(0, 0)), "not before number 0");
         assert!(robot.agent.assign_waypoint(0, &place(20_000, 8_000)));
         assert!(robot.agent.assign_waypoint(1, &place(20_000, -8_000)));
         robot
@@ -116,11 +107,7 @@ fn boids_keep_their_speed_and_take_on_one_heading() {
         robot.velocity_mps = velocity_mps;
         robot
     };
-    let mut robots = [
-        new(1, [0.0, 0.0], [0.5, 0.0]),
-        new(2, [2.0, 0.0], [0.4, 0.3]),
-        new(3, [0.0, 2.0], [0.3, -0.4]),
-    ];
+    let mut robots = [new(1, [0.0, 0.0], [0.5, 0.0]), new(2, [2.0, 0.0], [0.4, 0.3]), new(3, [0.0, 2.0], [0.3, -0.4])];
     run(&mut robots, 0..600);
     for robot in &robots {
         let speed = distance(robot.velocity_mps, [0.0; 2]);
@@ -135,10 +122,7 @@ fn boids_keep_their_speed_and_take_on_one_heading() {
 fn a_boid_that_stands_sets_out_in_a_direction_of_its_own() {
     let heading = |id, seed| {
         let params = BoidsParams::new(0.3, 30.0, 0.05, 0.02);
-        let config = AgentConfig {
-            seed,
-            ..one_step_late(id)
-        };
+        let config = AgentConfig { seed, ..one_step_late(id) };
         let guidance = BoidsGuidance::<f32>::new(params, 0.5);
         let mut robots = [Robot::new(&config, guidance, Unguarded, [0.0; 2])];
         run(&mut robots, 0..1);

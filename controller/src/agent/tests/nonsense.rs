@@ -51,11 +51,7 @@ pub(super) fn frame() -> impl Strategy<Value = (Header, Message)> {
             Message::Waypoint(waypoint) => waypoint.to = to,
             Message::Compact(_) => {}
         }
-        let header = Header {
-            boot,
-            sender,
-            sequence,
-        };
+        let header = Header { boot, sender, sequence };
         (header, message)
     })
 }
@@ -107,11 +103,7 @@ fn window() -> impl Strategy<Value = Option<(Cell, u16, u16, Vec<u8>)>> {
         1 => Just((13, 40_000)),
     ];
     let origin = prop_oneof![3 => Just(Cell::new(-5, -5)), 1 => cell()];
-    let land = (
-        origin,
-        size,
-        vec(prop_oneof![Just(0), Just(1), any::<u8>()], 1..140),
-    );
+    let land = (origin, size, vec(prop_oneof![Just(0), Just(1), any::<u8>()], 1..140));
     let land = land.prop_map(|(origin, (width, height), pattern)| {
         let count = usize::from(width) * usize::from(height);
         let cells = pattern.iter().copied().cycle().take(count).collect();
@@ -122,10 +114,7 @@ fn window() -> impl Strategy<Value = Option<(Cell, u16, u16, Vec<u8>)>> {
 
 fn own() -> impl Strategy<Value = CellState> {
     let busy = prop_oneof![4 => Just(0), 1 => 0..3 * TICK, 1 => any::<i32>()];
-    (cell(), busy).prop_map(|(cell, busy)| CellState {
-        cell,
-        busy: Duration::from_micros(busy),
-    })
+    (cell(), busy).prop_map(|(cell, busy)| CellState { cell, busy: Duration::from_micros(busy) })
 }
 
 /// Steps that follow each other by a tick, or by anything.
@@ -134,19 +123,10 @@ fn steps() -> impl Strategy<Value = Vec<Step>> {
     let heard = (vec(frame(), 0..8), vec(any::<u8>(), 0..30));
     let step = (later, heard, own(), window(), any::<[u32; 6]>());
     (any::<u32>(), vec(step, 1..40)).prop_map(|(mut now, steps)| {
-        let steps = steps
-            .into_iter()
-            .map(|(later, (frames, noise), own, window, pose)| {
-                now = now.wrapping_add(later);
-                Step {
-                    now: Instant::from_micros(now),
-                    frames,
-                    noise,
-                    own,
-                    window,
-                    pose,
-                }
-            });
+        let steps = steps.into_iter().map(|(later, (frames, noise), own, window, pose)| {
+            now = now.wrapping_add(later);
+            Step { now: Instant::from_micros(now), frames, noise, own, window, pose }
+        });
         steps.collect()
     })
 }
@@ -161,29 +141,20 @@ fn gain() -> impl Strategy<Value = Gain> {
 fn route() -> impl Strategy<Value = RouteParams> {
     let shape = (0..12_u8, any::<[bool; 3]>());
     let gains = (gain(), gain(), gain(), gain());
-    (shape, gains).prop_map(
-        |((radius, [ray, chebyshev, corner_cutting]), (a0, a1, a2, a3))| RouteParams {
-            radius,
-            exit: if ray { ExitRule::Ray } else { ExitRule::Best },
-            norm: if chebyshev {
-                Norm::Chebyshev
-            } else {
-                Norm::Euclidean
-            },
-            corner_cutting,
-            a0,
-            a1,
-            a2,
-            a3,
-        },
-    )
+    (shape, gains).prop_map(|((radius, [ray, chebyshev, corner_cutting]), (a0, a1, a2, a3))| RouteParams {
+        radius,
+        exit: if ray { ExitRule::Ray } else { ExitRule::Best },
+        norm: if chebyshev { Norm::Chebyshev } else { Norm::Euclidean },
+        corner_cutting,
+        a0,
+        a1,
+        a2,
+        a3,
+    })
 }
 
 fn sharpness() -> impl Strategy<Value = Sharpness> {
-    prop_oneof![
-        Just(Sharpness::Greedy),
-        gain().prop_map(Sharpness::HalvedPer)
-    ]
+    prop_oneof![Just(Sharpness::Greedy), gain().prop_map(Sharpness::HalvedPer)]
 }
 
 fn formation() -> impl Strategy<Value = FormationParams> {
@@ -197,11 +168,7 @@ fn formation() -> impl Strategy<Value = FormationParams> {
             resume_lag,
             lead,
             footprint,
-            prediction: if reflexive {
-                Prediction::Reflexive
-            } else {
-                Prediction::Constant
-            },
+            prediction: if reflexive { Prediction::Reflexive } else { Prediction::Constant },
             recovery: if def { Recovery::Def } else { Recovery::Wait },
         }
     })
@@ -221,12 +188,7 @@ fn template() -> impl Strategy<Value = Template<TEMPLATE>> {
 /// What holds after each step, whatever went in.
 fn survives<G>(law: G, goal: Option<Cell>, steps: &[Step]) -> Result<(), TestCaseError>
 where
-    G: for<'a> Guidance<
-            f32,
-            Input<'a> = OnGrid<'a>,
-            Destination = ToCells,
-            Workspace = GridWorkspace<CELLS>,
-        >,
+    G: for<'a> Guidance<f32, Input<'a> = OnGrid<'a>, Destination = ToCells, Workspace = GridWorkspace<CELLS>>,
 {
     let config = config(OWN.0);
     let mut agent = Agent::<f32, G, NEIGHBORS>::new(&config, law, Unguarded, Postcard);
@@ -243,31 +205,21 @@ where
                 position: crate::geom::Position::from_mm([x, y, z]),
                 velocity_mps: crate::geom::Vec3::new(vx, vy, vz),
             },
-            surroundings: OnGrid {
-                cell: step.own,
-                window: step.land(),
-            },
+            surroundings: OnGrid { cell: step.own, window: step.land() },
             inbox: &inbox,
         };
         let out = agent.step(&inputs, step.now, &mut ws);
 
         for frame in frames(&out.outbox) {
             let frame = decode(frame);
-            prop_assert!(
-                frame.is_ok_and(|frame| frame.header.sender == OWN),
-                "whole frames"
-            );
+            prop_assert!(frame.is_ok_and(|frame| frame.header.sender == OWN), "whole frames");
         }
         prop_assert!(out.outbox.last().is_none_or(|&last| last == 0));
         let count = usize::from(out.received) + usize::from(out.rejected);
         prop_assert_eq!(count, frames(&inbox).count());
         // Neither now, which would keep the caller from sleeping, nor later than the next beacon.
         let pause = out.call_again.since(step.now);
-        prop_assert!(
-            Duration::ZERO < pause && pause <= config.beacon_period,
-            "{:?}",
-            pause
-        );
+        prop_assert!(Duration::ZERO < pause && pause <= config.beacon_period, "{:?}", pause);
 
         let is_free = step.own.busy <= Duration::ZERO;
         if is_free && agent.target().is_some() {

@@ -42,8 +42,7 @@ fn obstacle() -> impl Strategy<Value = Obstacle<f32>> {
         [number(), number(), number(), number()]
             .prop_map(|[a, b, c, d]| Obstacle::Wall([Vec2::new(a, b), Vec2::new(c, d)])),
         (vector(), number()).prop_map(|(center_m, radius_m)| Obstacle::Ball { center_m, radius_m }),
-        (vector(), number())
-            .prop_map(|(normal, distance_m)| Obstacle::Plane { normal, distance_m }),
+        (vector(), number()).prop_map(|(normal, distance_m)| Obstacle::Plane { normal, distance_m }),
     ]
 }
 
@@ -54,11 +53,7 @@ fn near() -> impl Strategy<Value = (Header, Message)> {
         sender: RobotId(sender),
         sequence,
     });
-    let numbers = (
-        [millimetres(), millimetres(), millimetres()],
-        any::<[i16; 3]>(),
-        any::<(u16, bool, u8)>(),
-    );
+    let numbers = ([millimetres(), millimetres(), millimetres()], any::<[i16; 3]>(), any::<(u16, bool, u8)>());
     let message = numbers.prop_map(|(position_mm, velocity, (radius, is_place, index))| {
         if is_place {
             Message::Waypoint(WaypointAssignment {
@@ -73,11 +68,7 @@ fn near() -> impl Strategy<Value = (Header, Message)> {
                 position_mm,
                 velocity_mmps: velocity.map(|v| v / 8),
                 radius_mm: radius / 64,
-                mode: if index > 200 {
-                    Mode::Fault
-                } else {
-                    Mode::Cruise
-                },
+                mode: if index > 200 { Mode::Fault } else { Mode::Cruise },
                 cell: Cell::new(i16::from(index % 9), 2),
                 ..Beacon::default()
             })
@@ -102,11 +93,7 @@ fn steps() -> impl Strategy<Value = Vec<Step>> {
     let later = prop_oneof![6 => Just(100_000), 1 => Just(0), 1 => any::<u32>()];
     let frames = vec(prop_oneof![4 => near(), 1 => frame()], 0..8);
     let heard = (frames, vec(any::<u8>(), 0..20));
-    let at = (
-        [millimetres(), millimetres(), millimetres()],
-        vector(),
-        prop_oneof![4 => 0.01..3.0_f32, 1 => number()],
-    );
+    let at = ([millimetres(), millimetres(), millimetres()], vector(), prop_oneof![4 => 0.01..3.0_f32, 1 => number()]);
     let cell = proptest::option::of((number(), number(), number()));
     let step = (later, heard, at, vec(obstacle(), 0..6), cell, any::<bool>());
     (any::<u32>(), vec(step, 1..20)).prop_map(|(mut now, steps)| {
@@ -132,10 +119,7 @@ fn steps() -> impl Strategy<Value = Vec<Step>> {
 fn guidance(which: u8, speed: f32, length: f32) -> AnyGuidance<f32, CELLS, VISITS, TEMPLATE> {
     match which % 6 {
         0 => AnyGuidance::Waypoint(WaypointGuidance::new(speed, length)),
-        1 => AnyGuidance::Lattice(LatticeGuidance::new(
-            LatticeParams::new(length),
-            which < 128,
-        )),
+        1 => AnyGuidance::Lattice(LatticeGuidance::new(LatticeParams::new(length), which < 128)),
         2 => {
             let params = GoalParams::new(length, speed);
             AnyGuidance::GoalFlock(GoalFlockGuidance::new(params, length, 5))
@@ -149,8 +133,7 @@ fn guidance(which: u8, speed: f32, length: f32) -> AnyGuidance<f32, CELLS, VISIT
             AnyGuidance::Route(CellFollower::new(inside, speed))
         }
         _ => {
-            let template =
-                Template::from_graph(&[Cell::new(0, 0), Cell::new(-3, 0)], &[(0, 1)], 1, 2);
+            let template = Template::from_graph(&[Cell::new(0, 0), Cell::new(-3, 0)], &[(0, 1)], 1, 2);
             let (route, keeping) = (RouteParams::default(), FormationParams::default());
             let inside = FormationGuidance::new(route, keeping, template.unwrap());
             AnyGuidance::Formation(CellFollower::new(inside, speed))
@@ -159,17 +142,8 @@ fn guidance(which: u8, speed: f32, length: f32) -> AnyGuidance<f32, CELLS, VISIT
 }
 
 fn safety(which: u8, length: f32, growth_mps: f32) -> AnySafety<f32, 16> {
-    let inflation = StalenessInflation {
-        growth_mps,
-        max_m: length,
-    };
-    let orca = |source| {
-        AnySafety::Orca(OrcaSafety::with_source(
-            AvoidParams::default(),
-            inflation,
-            source,
-        ))
-    };
+    let inflation = StalenessInflation { growth_mps, max_m: length };
+    let orca = |source| AnySafety::Orca(OrcaSafety::with_source(AvoidParams::default(), inflation, source));
     match which % 8 {
         0 => AnySafety::Unguarded(Unguarded),
         1 => AnySafety::Fly(FlySafety::in_space(AvoidParams::default(), inflation)),

@@ -15,25 +15,16 @@ pub(super) fn step_number(n: i32) -> Instant {
 }
 
 pub(super) fn in_plane<S: Scalar>(id: u32) -> AgentConfig<S> {
-    AgentConfig {
-        seed: 1,
-        ..AgentConfig::new(RobotId(id), S::from_milli(RADIUS_MM), STEP)
-    }
+    AgentConfig { seed: 1, ..AgentConfig::new(RobotId(id), S::from_milli(RADIUS_MM), STEP) }
 }
 
 /// One who knows that what others say was said a step ago.
 pub(super) fn one_step_late<S: Scalar>(id: u32) -> AgentConfig<S> {
-    AgentConfig {
-        latency: STEP,
-        ..in_plane(id)
-    }
+    AgentConfig { latency: STEP, ..in_plane(id) }
 }
 
 pub(super) fn orca<S: Scalar>() -> OrcaSafety<S, 16> {
-    let inflation = StalenessInflation {
-        growth_mps: S::HALF,
-        max_m: S::from_milli(300),
-    };
+    let inflation = StalenessInflation { growth_mps: S::HALF, max_m: S::from_milli(300) };
     OrcaSafety::new(AvoidParams::default(), inflation)
 }
 
@@ -61,11 +52,7 @@ where
     G: for<'a> Guidance<S, Input<'a> = InPlane<'a, S>, Workspace = ()>,
 {
     pub(super) fn new(config: &AgentConfig<S>, guidance: G, safety: A, at_m: [f64; 2]) -> Self {
-        Self {
-            agent: Agent::new(config, guidance, safety, Postcard),
-            at_m,
-            velocity_mps: [0.0; 2],
-        }
+        Self { agent: Agent::new(config, guidance, safety, Postcard), at_m, velocity_mps: [0.0; 2] }
     }
 
     /// One step at 1 m/s at most.
@@ -78,10 +65,7 @@ where
                 position: Position::from_metres([x, y, 0.0]).unwrap(),
                 velocity_mps: Vec3::new(vx, vy, S::ZERO),
             },
-            surroundings: InPlane {
-                max_speed_mps: S::ONE,
-                obstacles: &[],
-            },
+            surroundings: InPlane { max_speed_mps: S::ONE, obstacles: &[] },
             inbox,
         };
         let out = self.agent.step(&inputs, now, &mut ());
@@ -187,13 +171,7 @@ fn it_goes_straight_to_its_place_and_stands_there() {
 #[test]
 fn with_a_place_that_moves_it_goes_on_without_losing_it() {
     let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), [1.0, 0.0]);
-    let _ = robot.agent.assign_waypoint(
-        0,
-        &Waypoint {
-            velocity_mps: Vec3::new(0.3, 0.1, 0.0),
-            ..place(1000, 0)
-        },
-    );
+    let _ = robot.agent.assign_waypoint(0, &Waypoint { velocity_mps: Vec3::new(0.3, 0.1, 0.0), ..place(1000, 0) });
     for n in 0..100 {
         let _ = robot.step(step_number(n), &[]);
         let age_s = f64::from(n + 1) * 0.1;
@@ -215,10 +193,7 @@ fn beacons_carry_what_it_does_from_now_on() {
 #[test]
 fn a_body_of_no_sensible_size_is_told_as_one_without_size() {
     for radius_m in [-1.0, f32::NAN, f32::NEG_INFINITY] {
-        let config = AgentConfig {
-            radius_m,
-            ..in_plane(1)
-        };
+        let config = AgentConfig { radius_m, ..in_plane(1) };
         let mut robot = Robot::new(&config, waypoint::<f32>(), orca(), [0.0; 2]);
         assert_eq!(said(&robot.step(step_number(0), &[])).radius_mm, 0);
     }
@@ -226,10 +201,7 @@ fn a_body_of_no_sensible_size_is_told_as_one_without_size() {
 
 /// Whether a robot that stands in `mode` gets out of the way of one that comes.
 fn evades(mode: Mode) -> bool {
-    let guidance = Onlooker {
-        is_broken: mode == Mode::Fault,
-        ..Onlooker::default()
-    };
+    let guidance = Onlooker { is_broken: mode == Mode::Fault, ..Onlooker::default() };
     let coming = body_at([1000, 50], [-1000, 0], Mode::Cruise);
     let (now, own) = (step_number(0), [0.0; 2]);
     let inbox = bytes(2, 0, 0, core::slice::from_ref(&coming));
@@ -281,10 +253,7 @@ fn a_neighbour_that_does_not_give_way_gets_the_whole_correction() {
 #[test]
 fn neighbours_are_where_they_are_now_though_news_takes_time() {
     for (latency, x_m) in [(0, 5.0), (1, 4.9), (3, 4.7)] {
-        let config = AgentConfig {
-            latency: STEP.saturating_mul(latency),
-            ..in_plane(1)
-        };
+        let config = AgentConfig { latency: STEP.saturating_mul(latency), ..in_plane(1) };
         let mut robot = Robot::new(&config, Onlooker::default(), orca(), [0.0; 2]);
         let inbox = bytes(2, 0, 0, &[body_at([5000, 0], [-1000, 0], Mode::Cruise)]);
         let _ = robot.step(step_number(0), &inbox);
@@ -315,10 +284,7 @@ fn a_silent_neighbour_goes_on_then_stands_and_widens_then_is_forgotten() {
         let seen = sights[n].expect("not forgotten yet");
         assert!((seen.offset_m.x - x_m).abs() < 1e-5, "{n}: {seen:?}");
         assert!((seen.radius_m - radius_m).abs() < 1e-5, "{n}: {seen:?}");
-        assert_eq!(
-            (seen.gives_way, seen.velocity_mps == Vec3::ZERO),
-            (is_fresh, !is_fresh)
-        );
+        assert_eq!((seen.gives_way, seen.velocity_mps == Vec3::ZERO), (is_fresh, !is_fresh));
     }
     assert_eq!(sights[31], None);
 }
@@ -344,47 +310,15 @@ fn places_come_by_packet_and_older_ones_are_ignored() {
         let _ = robot.step(step_number(n), &bytes(sender, boot, n as u16, &[message]));
         (robot.speed() > 0.9).then_some(robot.velocity_mps[0] > 0.0)
     };
-    assert_eq!(
-        goes_east_after(99, 0, order(2, 9, 0, east)),
-        None,
-        "another's"
-    );
-    assert_eq!(
-        goes_east_after(99, 0, order(1, 0, 1, east)),
-        None,
-        "no room"
-    );
-    assert_eq!(
-        goes_east_after(99, 0, order(1, 0, 255, east)),
-        None,
-        "no such place"
-    );
+    assert_eq!(goes_east_after(99, 0, order(2, 9, 0, east)), None, "another's");
+    assert_eq!(goes_east_after(99, 0, order(1, 0, 1, east)), None, "no room");
+    assert_eq!(goes_east_after(99, 0, order(1, 0, 255, east)), None, "no such place");
     assert_eq!(goes_east_after(99, 0, order(1, 5, 0, east)), Some(true));
-    assert_eq!(
-        goes_east_after(99, 0, order(1, 4, 0, west)),
-        Some(true),
-        "older"
-    );
-    assert_eq!(
-        goes_east_after(99, 0, order(1, 5, 0, west)),
-        Some(true),
-        "again"
-    );
-    assert_eq!(
-        goes_east_after(99, 0, order(0, 6, 0, west)),
-        Some(false),
-        "to all"
-    );
-    assert_eq!(
-        goes_east_after(99, 1, order(1, 0, 0, east)),
-        Some(true),
-        "anew"
-    );
-    assert_eq!(
-        goes_east_after(98, 0, order(1, 0, 0, west)),
-        Some(false),
-        "another one"
-    );
+    assert_eq!(goes_east_after(99, 0, order(1, 4, 0, west)), Some(true), "older");
+    assert_eq!(goes_east_after(99, 0, order(1, 5, 0, west)), Some(true), "again");
+    assert_eq!(goes_east_after(99, 0, order(0, 6, 0, west)), Some(false), "to all");
+    assert_eq!(goes_east_after(99, 1, order(1, 0, 0, east)), Some(true), "anew");
+    assert_eq!(goes_east_after(98, 0, order(1, 0, 0, west)), Some(false), "another one");
 }
 
 #[test]
@@ -409,30 +343,20 @@ fn a_place_that_found_no_room_is_taken_when_it_comes_again() {
         let _ = robot.step(step_number(n as i32), &bytes(99, 0, n as u16, &[message]));
     }
     let [vx, vy] = robot.velocity_mps;
-    assert!(
-        vx > 0.1 && (vx - vy).abs() < 0.05,
-        "to the middle: {vx} {vy}"
-    );
+    assert!(vx > 0.1 && (vx - vy).abs() < 0.05, "to the middle: {vx} {vy}");
 }
 
 #[test]
 fn a_place_moves_on_however_often_the_clock_runs_round() {
     fn check<S: Scalar>(tolerance: f64) {
         let velocity_mps = Vec3::new(S::from_milli(-50), S::from_milli(125), S::ZERO);
-        let mut place = Waypoint {
-            velocity_mps,
-            ..place::<S>(1000, 2000)
-        };
+        let mut place = Waypoint { velocity_mps, ..place::<S>(1000, 2000) };
         // Four hours: the clock runs round three times, through half its range six times.
         for minute in 0..240 {
-            let now =
-                (0..minute).fold(step_number(0), |now, _| now + Duration::from_millis(60_000));
+            let now = (0..minute).fold(step_number(0), |now, _| now + Duration::from_millis(60_000));
             let way = place.way(Position::from_mm([1000, 0, 0]), now);
             let age_s = f64::from(minute) * 60.0;
-            let off = [
-                way.x.to_f64() + 0.05 * age_s,
-                way.y.to_f64() - 2.0 - 0.125 * age_s,
-            ];
+            let off = [way.x.to_f64() + 0.05 * age_s, way.y.to_f64() - 2.0 - 0.125 * age_s];
             assert!(length(off) < tolerance, "after {minute} min: {off:?} m");
         }
     }
@@ -444,17 +368,10 @@ fn a_place_moves_on_however_often_the_clock_runs_round() {
 
 #[test]
 fn a_place_that_will_be_there_in_a_moment_is_on_its_way() {
-    let mut place = Waypoint {
-        velocity_mps: Vec3::new(1.0, 0.0, 0.0),
-        at: step_number(10),
-        ..place::<f32>(0, 0)
-    };
+    let mut place = Waypoint { velocity_mps: Vec3::new(1.0, 0.0, 0.0), at: step_number(10), ..place::<f32>(0, 0) };
     for n in 0..20 {
         let way = place.way(Position::ORIGIN, step_number(n));
-        assert!(
-            (way.x - (n as f32 - 10.0) * 0.1).abs() < 2e-3,
-            "{n}: {way:?}"
-        );
+        assert!((way.x - (n as f32 - 10.0) * 0.1).abs() < 2e-3, "{n}: {way:?}");
     }
 }
 
@@ -530,18 +447,11 @@ fn a_wish_that_is_no_number_is_no_wish() {
 #[test]
 fn a_goal_on_the_grid_changes_nothing_for_who_goes_to_places() {
     let crowding = body_at([2 * RADIUS_MM + 60, 0], [-900, 0], Mode::Cruise);
-    let goal = Message::Goal(GoalAssignment {
-        to: RobotId::NOBODY,
-        version: 1,
-        target: Cell::new(3, 4),
-    });
+    let goal = Message::Goal(GoalAssignment { to: RobotId::NOBODY, version: 1, target: Cell::new(3, 4) });
     let after_three = |is_told: bool, hears: &[Message]| {
         let mut robot = Robot::new(&in_plane::<f32>(1), waypoint(), orca(), [0.0; 2]);
         if is_told {
-            assert_eq!(
-                robot.agent.assign(&Task::Cell(Cell::new(3, 4))),
-                Err(WrongTask)
-            );
+            assert_eq!(robot.agent.assign(&Task::Cell(Cell::new(3, 4))), Err(WrongTask));
         }
         for n in 0..3 {
             let _ = robot.step(step_number(n), &bytes(2, 0, 2 * n as u16, hears));
@@ -568,10 +478,7 @@ fn without_a_speed_a_robot_is_in_fault_and_stands() {
         let mut agent = Agent::<f32, _, NEIGHBORS, _, _>::new(&config, law, orca(), Postcard);
         let inputs = Inputs {
             state: KinematicState::default(),
-            surroundings: InPlane {
-                max_speed_mps: 0.0,
-                obstacles: &[],
-            },
+            surroundings: InPlane { max_speed_mps: 0.0, obstacles: &[] },
             inbox: &[],
         };
         let out = agent.step(&inputs, step_number(0), &mut ());
@@ -580,10 +487,7 @@ fn without_a_speed_a_robot_is_in_fault_and_stands() {
     check(WaypointGuidance::new(0.5, 0.02));
     check(LatticeGuidance::new(LatticeParams::new(1.0), true));
     check(GoalFlockGuidance::new(GoalParams::new(0.2, 0.5), 0.5, 1));
-    check(BoidsGuidance::new(
-        BoidsParams::new(0.3, 1.5, 0.05, 0.02),
-        0.5,
-    ));
+    check(BoidsGuidance::new(BoidsParams::new(0.3, 1.5, 0.05, 0.02), 0.5));
 }
 
 /// Where the law is chosen at run time, what it is told can be another one's input.
@@ -591,51 +495,27 @@ fn without_a_speed_a_robot_is_in_fault_and_stands() {
 fn any_law_with_the_input_of_another_one_is_a_fault() {
     type Any = AnyGuidance<f32, CELLS, VISITS, TEMPLATE>;
     let route = || RouteGuidance::new(RouteParams::default());
-    let plane = InPlane {
-        max_speed_mps: 1.0,
-        obstacles: &[],
-    };
+    let plane = InPlane { max_speed_mps: 1.0, obstacles: &[] };
     let grid = inputs(&FLAT, Cell::new(5, 5), &[]).surroundings;
-    let in_cell = InCell {
-        offset_m: Vec2::ZERO,
-        cell_m: 1.0,
-    };
-    let cells = InCells {
-        grid,
-        plane,
-        in_cell,
-    };
-    let surroundings = [
-        AnySurroundings::OnGrid(grid),
-        AnySurroundings::InPlane(plane),
-        AnySurroundings::InCells(cells),
-    ];
+    let in_cell = InCell { offset_m: Vec2::ZERO, cell_m: 1.0 };
+    let cells = InCells { grid, plane, in_cell };
+    let surroundings =
+        [AnySurroundings::OnGrid(grid), AnySurroundings::InPlane(plane), AnySurroundings::InCells(cells)];
     let modes = |law: Any, task: Task| {
         surroundings.map(|surroundings| {
             let config = in_plane(1);
-            let mut agent =
-                Agent::<f32, _, NEIGHBORS, _, _>::new(&config, law.clone(), Unguarded, Postcard);
+            let mut agent = Agent::<f32, _, NEIGHBORS, _, _>::new(&config, law.clone(), Unguarded, Postcard);
             agent.assign(&task).unwrap();
-            let inputs = Inputs {
-                state: KinematicState::default(),
-                surroundings,
-                inbox: &[],
-            };
+            let inputs = Inputs { state: KinematicState::default(), surroundings, inbox: &[] };
             let _ = agent.step(&inputs, step_number(0), &mut workspace());
             agent.mode()
         })
     };
     let east = heapless::Vec::from_array([(0, place(9000, 0))]);
     use Mode::{Cruise, Fault};
-    assert_eq!(
-        modes(Any::Waypoint(waypoint()), Task::Waypoints(east)),
-        [Fault, Cruise, Cruise]
-    );
+    assert_eq!(modes(Any::Waypoint(waypoint()), Task::Waypoints(east)), [Fault, Cruise, Cruise]);
     let goal = || Task::Cell(Cell::new(9, 5));
-    assert_eq!(
-        modes(Any::RouteOnGrid(route()), goal()),
-        [Cruise, Fault, Fault]
-    );
+    assert_eq!(modes(Any::RouteOnGrid(route()), goal()), [Cruise, Fault, Fault]);
     let follower = CellFollower::new(route(), 1.0);
     assert_eq!(modes(Any::Route(follower), goal()), [Fault, Fault, Cruise]);
 }

@@ -11,20 +11,12 @@ fn wire(passphrase: &[u8]) -> Sealed<4> {
 }
 
 fn goal(x: i16) -> Message {
-    Message::Goal(GoalAssignment {
-        to: RobotId::NOBODY,
-        version: x as u8,
-        target: Cell::new(x, 5),
-    })
+    Message::Goal(GoalAssignment { to: RobotId::NOBODY, version: x as u8, target: Cell::new(x, 5) })
 }
 
 fn said<W: Wire>(by: &mut W, sequence: u16, message: &Message) -> Vec<u8> {
     let mut out = heapless::Vec::<u8, 64>::new();
-    let header = Header {
-        boot: 0,
-        sender: RobotId(9),
-        sequence,
-    };
+    let header = Header { boot: 0, sender: RobotId(9), sequence };
     by.encode(header, message, &mut out).unwrap();
     out.to_vec()
 }
@@ -48,17 +40,9 @@ fn only_fresh_frames_of_who_has_the_key_are_obeyed_and_the_others_are_counted() 
     };
     let (out, target) = hear(&first, 0);
     assert_eq!((out.received, out.rejected), (1, 0));
-    assert_eq!(
-        (out.refused, target),
-        (Refused::default(), Some(Cell::new(20, 5)))
-    );
+    assert_eq!((out.refused, target), (Refused::default(), Some(Cell::new(20, 5))));
     let (out, target) = hear(&attacks.concat(), 1);
-    let refused = Refused {
-        unsigned: 1,
-        forged: 2,
-        replayed: 1,
-        no_room: 0,
-    };
+    let refused = Refused { unsigned: 1, forged: 2, replayed: 1, no_room: 0 };
     assert_eq!((out.received, out.rejected, out.refused), (0, 4, refused));
     assert_eq!(target, Some(Cell::new(20, 5)));
     let (out, target) = hear(&said(&mut friend, 1, &goal(40)), 2);

@@ -18,38 +18,16 @@ use heapless::Vec;
 const TICK: Duration = Duration::from_millis(50);
 
 fn guidances() -> [GuidanceSetup; 6] {
-    let route = RouteSetup {
-        params: RouteParams::default(),
-        replan: Replan::EachCell,
-        sharpness: Sharpness::Greedy,
-    };
+    let route = RouteSetup { params: RouteParams::default(), replan: Replan::EachCell, sharpness: Sharpness::Greedy };
     [
-        GuidanceSetup::Waypoint {
-            speed_mps: 0.5,
-            tolerance_m: 0.01,
-        },
-        GuidanceSetup::Lattice {
-            params: LatticeParams::new(1.0),
-            moves: true,
-        },
-        GuidanceSetup::GoalFlock {
-            params: GoalParams::new(0.5, 0.5),
-            arrival_m: 0.3,
-            seed: 9,
-        },
+        GuidanceSetup::Waypoint { speed_mps: 0.5, tolerance_m: 0.01 },
+        GuidanceSetup::Lattice { params: LatticeParams::new(1.0), moves: true },
+        GuidanceSetup::GoalFlock { params: GoalParams::new(0.5, 0.5), arrival_m: 0.3, seed: 9 },
         GuidanceSetup::Boids {
-            params: BoidsSetup {
-                crowded_m: 0.3,
-                closest_m: 1.5,
-                max_turn: 0.05,
-                max_turn_away: 0.02,
-            },
+            params: BoidsSetup { crowded_m: 0.3, closest_m: 1.5, max_turn: 0.05, max_turn_away: 0.02 },
             speed_mps: 0.5,
         },
-        GuidanceSetup::Route {
-            route,
-            speed_mps: None,
-        },
+        GuidanceSetup::Route { route, speed_mps: None },
         GuidanceSetup::Formation {
             route,
             formation: FormationParams::default(),
@@ -60,34 +38,19 @@ fn guidances() -> [GuidanceSetup; 6] {
 }
 
 fn safeties() -> [SafetySetup; 4] {
-    let inflation = StalenessInflation {
-        growth_mps: 0.25,
-        max_m: 0.3,
-    };
+    let inflation = StalenessInflation { growth_mps: 0.25, max_m: 0.3 };
     [
         SafetySetup::None,
-        SafetySetup::Orca {
-            params: AvoidParams::default(),
-            inflation,
-            source: AnyHalfPlanes::Template2k,
-        },
-        SafetySetup::Fly {
-            params: AvoidParams::default(),
-            inflation,
-        },
-        SafetySetup::PushOut {
-            params: PushOutParams::new(0.4),
-        },
+        SafetySetup::Orca { params: AvoidParams::default(), inflation, source: AnyHalfPlanes::Template2k },
+        SafetySetup::Fly { params: AvoidParams::default(), inflation },
+        SafetySetup::PushOut { params: PushOutParams::new(0.4) },
     ]
 }
 
 fn setups() -> impl Iterator<Item = Setup> {
     guidances().into_iter().flat_map(|guidance| {
         safeties().into_iter().map(move |safety| Setup {
-            agent: AgentConfig {
-                seed: 7,
-                ..AgentConfig::new(RobotId(3), 0.0, TICK)
-            },
+            agent: AgentConfig { seed: 7, ..AgentConfig::new(RobotId(3), 0.0, TICK) },
             guidance: guidance.clone(),
             safety,
             format: Format::Postcard,
@@ -101,9 +64,7 @@ fn lived<S: Scalar>(setup: &Setup, steps: u32) -> std::vec::Vec<u64> {
     let mut agent = agent.unwrap();
     let place = Waypoint::fixed(Position::from_mm([4000, 1000, 0]));
     let task = match setup.guidance {
-        GuidanceSetup::Route { .. } | GuidanceSetup::Formation { .. } => {
-            Task::Cell(Cell::new(9, 5))
-        }
+        GuidanceSetup::Route { .. } | GuidanceSetup::Formation { .. } => Task::Cell(Cell::new(9, 5)),
         GuidanceSetup::Boids { .. } => Task::Waypoints(Vec::new()),
         _ => Task::Waypoints(Vec::from_array([(0, place)])),
     };
@@ -120,18 +81,11 @@ fn lived<S: Scalar>(setup: &Setup, steps: u32) -> std::vec::Vec<u64> {
             radius_mm: 150,
             ..Beacon::default()
         };
-        let header = Header {
-            boot: 0,
-            sender: RobotId(4),
-            sequence: step as u16,
-        };
+        let header = Header { boot: 0, sender: RobotId(4), sequence: step as u16 };
         let mut inbox = Vec::<u8, 64>::new();
         encode(header, &Message::Beacon(beacon), &mut inbox).unwrap();
         let grid = OnGrid {
-            cell: CellState {
-                cell: Cell::new(5, 5),
-                busy: Duration::ZERO,
-            },
+            cell: CellState { cell: Cell::new(5, 5), busy: Duration::ZERO },
             window: crate::grid::Window::new(&land, Cell::new(0, 0), 11, 11),
         };
         let inputs = Inputs {
@@ -143,14 +97,8 @@ fn lived<S: Scalar>(setup: &Setup, steps: u32) -> std::vec::Vec<u64> {
                 GuidanceSetup::Route { .. } => AnySurroundings::OnGrid(grid),
                 _ => AnySurroundings::InCells(InCells {
                     grid,
-                    plane: InPlane {
-                        max_speed_mps: S::ONE,
-                        obstacles: &[],
-                    },
-                    in_cell: InCell {
-                        offset_m: crate::geom::Vec2::ZERO,
-                        cell_m: S::ONE,
-                    },
+                    plane: InPlane { max_speed_mps: S::ONE, obstacles: &[] },
+                    in_cell: InCell { offset_m: crate::geom::Vec2::ZERO, cell_m: S::ONE },
                 }),
             },
             inbox: &inbox,
@@ -205,10 +153,7 @@ fn the_whole_state_counts() {
 
 #[test]
 fn no_robot_speaks_a_format_that_its_type_has_not() {
-    let setup = Setup {
-        format: Format::Mavlink,
-        ..setups().next().unwrap()
-    };
+    let setup = Setup { format: Format::Mavlink, ..setups().next().unwrap() };
     let agent = setup.agent::<f32, CELLS, VISITS, NEIGHBORS, HALF_PLANES, Postcard>();
     assert!(agent.is_none());
 }
@@ -216,10 +161,7 @@ fn no_robot_speaks_a_format_that_its_type_has_not() {
 #[test]
 fn searches_need_the_room_that_they_say() {
     let cells = |guidance: &GuidanceSetup| {
-        let setup = Setup {
-            guidance: guidance.clone(),
-            ..setups().next().unwrap()
-        };
+        let setup = Setup { guidance: guidance.clone(), ..setups().next().unwrap() };
         setup.cells()
     };
     let [waypoint, _, _, _, route, formation] = guidances();

@@ -71,10 +71,7 @@ fn cohesion_turns_to_the_middle_and_not_away() {
     let right = [flying(2, 60.0, -100.0, 0.0), flying(3, -60.0, -50.0, 0.0)];
     assert!(is_close(paper().turn(OWN, 0.0, &right), -0.05));
     // Straight behind: to the left. In the middle of its neighbours: not at all.
-    assert!(is_close(
-        paper().turn(OWN, 0.0, &[flying(2, -50.0, 0.0, 0.0)]),
-        0.05
-    ));
+    assert!(is_close(paper().turn(OWN, 0.0, &[flying(2, -50.0, 0.0, 0.0)]), 0.05));
     let around = [flying(2, 50.0, 50.0, 0.0), flying(3, -50.0, -50.0, 0.0)];
     assert!(is_close(paper().turn(OWN, 0.0, &around), 0.0));
     // A neighbour that stands has no heading, but a place.
@@ -85,26 +82,14 @@ fn cohesion_turns_to_the_middle_and_not_away() {
 #[test]
 fn crowded_boids_turn_away_from_the_heading_of_the_nearest() {
     let far = flying(3, 0.0, 90.0, 2.0);
-    for order in [
-        [far, flying(2, 20.0, 0.0, 1.0)],
-        [flying(2, 20.0, 0.0, 1.0), far],
-    ] {
+    for order in [[far, flying(2, 20.0, 0.0, 1.0)], [flying(2, 20.0, 0.0, 1.0), far]] {
         assert!(is_close(paper().turn(OWN, 0.0, &order), -0.02));
     }
-    assert!(is_close(
-        paper().turn(OWN, 0.0, &[flying(2, 20.0, 0.0, -1.0)]),
-        0.02
-    ));
+    assert!(is_close(paper().turn(OWN, 0.0, &[flying(2, 20.0, 0.0, -1.0)]), 0.02));
     // Exactly at `crowded` is not crowded: it turns to the other.
-    assert!(is_close(
-        paper().turn(OWN, 0.0, &[flying(2, 30.0, 0.0, 1.0)]),
-        0.0
-    ));
+    assert!(is_close(paper().turn(OWN, 0.0, &[flying(2, 30.0, 0.0, 1.0)]), 0.0));
     // Head on: both to the right.
-    assert!(is_close(
-        paper().turn(OWN, 0.0, &[near(2, [9.0, 0.0, 0.0], [-2.0, 0.0, 0.0])]),
-        -0.02
-    ));
+    assert!(is_close(paper().turn(OWN, 0.0, &[near(2, [9.0, 0.0, 0.0], [-2.0, 0.0, 0.0])]), -0.02));
 }
 
 #[test]
@@ -132,32 +117,17 @@ fn senseless_input_counts_nothing_and_the_answer_is_a_heading() {
         let own = flying(1, 10.0, 0.0, 1.0);
         assert_eq!(paper().turn(OWN, 0.0, &[lost, wild, own, good]), expected);
         assert!(is_close(paper().turn(OWN, bad, &[]), 0.0));
-        assert_eq!(
-            paper().steer(OWN, Vec2::new(bad, 1.0), &[]),
-            Vec2::new(1.0, 0.0)
-        );
+        assert_eq!(paper().steer(OWN, Vec2::new(bad, 1.0), &[]), Vec2::new(1.0, 0.0));
     }
     assert_eq!(paper().steer(OWN, Vec2::ZERO, &[]), Vec2::new(1.0, 0.0));
-    assert_eq!(
-        paper().steer(OWN, Vec2::new(0.0, 9.0), &[]),
-        Vec2::new(0.0, 1.0)
-    );
+    assert_eq!(paper().steer(OWN, Vec2::new(0.0, 9.0), &[]), Vec2::new(0.0, 1.0));
     // Parameters that make no sense: nobody counts, nothing turns.
     for bad in [f64::NAN, -1.0, 0.0] {
         let params = BoidsParams::new(bad, bad, bad, bad);
-        assert!(is_close(
-            params.turn(OWN, 0.7, &[flying(2, 0.0, 0.0, 0.0)]),
-            0.7
-        ));
+        assert!(is_close(params.turn(OWN, 0.7, &[flying(2, 0.0, 0.0, 0.0)]), 0.7));
         let still = BoidsParams::new(30.0, 150.0, bad, bad);
-        assert!(is_close(
-            still.turn(OWN, 0.7, &[flying(2, 0.0, 99.0, 0.0)]),
-            0.7
-        ));
-        assert!(is_close(
-            still.turn(OWN, 0.7, &[flying(2, 0.0, 9.0, 0.0)]),
-            0.7
-        ));
+        assert!(is_close(still.turn(OWN, 0.7, &[flying(2, 0.0, 99.0, 0.0)]), 0.7));
+        assert!(is_close(still.turn(OWN, 0.7, &[flying(2, 0.0, 9.0, 0.0)]), 0.7));
     }
 }
 
@@ -169,20 +139,14 @@ fn wide_turns_reach_what_is_behind() {
         // Both heading and place are there: two turns of 2 reach it as well.
         let behind = [near(2, [90.0 * x, 90.0 * y, 0.0], [x, y, 0.0])];
         let got = params.turn(OWN, 0.0, &behind);
-        let twice = if limit < PI - 0.05 {
-            PI - 0.05
-        } else {
-            expected
-        };
+        let twice = if limit < PI - 0.05 { PI - 0.05 } else { expected };
         assert!((got - twice).abs() < 1e-9, "{limit} {got}");
     }
 }
 
 #[test]
 fn torus_has_no_edges() {
-    let torus = Torus {
-        size_m: [800.0_f64, 600.0],
-    };
+    let torus = Torus { size_m: [800.0_f64, 600.0] };
     let v = Vec2::new;
     for (place, expected) in [
         (v(0.0, 0.0), v(0.0, 0.0)),
@@ -207,10 +171,7 @@ fn torus_has_no_edges() {
     }
     let place = |x, y| Position::from_mm([x, y, 7]);
     assert_eq!(torus.wrap_position(place(-1, 600_000)), place(799_999, 0));
-    assert_eq!(
-        torus.wrap_position(place(i32::MIN, i32::MAX)),
-        place(516_352, 83_647)
-    );
+    assert_eq!(torus.wrap_position(place(i32::MIN, i32::MAX)), place(516_352, 83_647));
     for size in [0.0, -3.0, f64::NAN] {
         let plane = Torus { size_m: [size; 2] };
         assert_eq!(plane.wrap(v(-5.0, 1e9)), v(-5.0, 1e9));
@@ -226,14 +187,9 @@ fn by_angles(heading: f64, others: &[Nearby<f64>]) -> f64 {
         Scalar::atan2(sin, cos)
     };
     let angle = |v: Vec2<f64>| Scalar::atan2(v.y, v.x);
-    let towards =
-        |heading: f64, target: f64| heading + wrapped(target - heading).clamp(-0.05, 0.05);
-    let close: Vec<_> = others
-        .iter()
-        .filter(|o| o.offset_m.norm() <= 150.0)
-        .collect();
-    let by_distance =
-        |a: &&&Nearby<f64>, b: &&&Nearby<f64>| a.offset_m.norm().total_cmp(&b.offset_m.norm());
+    let towards = |heading: f64, target: f64| heading + wrapped(target - heading).clamp(-0.05, 0.05);
+    let close: Vec<_> = others.iter().filter(|o| o.offset_m.norm() <= 150.0).collect();
+    let by_distance = |a: &&&Nearby<f64>, b: &&&Nearby<f64>| a.offset_m.norm().total_cmp(&b.offset_m.norm());
     let Some(nearest) = close.iter().min_by(by_distance) else {
         return heading;
     };
@@ -252,9 +208,7 @@ fn by_angles(heading: f64, others: &[Nearby<f64>]) -> f64 {
 
 /// 60 boids on a small torus for 400 steps; the length of their mean heading at the end.
 fn order<S: Scalar>() -> f64 {
-    let torus = Torus {
-        size_m: [number::<S>(400.0), number(300.0)],
-    };
+    let torus = Torus { size_m: [number::<S>(400.0), number(300.0)] };
     let params = BoidsParams::<S>::new(number(10.0), number(80.0), number(0.05), number(0.02));
     let mut rng = Rng::new(3);
     let mut draw = |n: u32| f64::from(rng.below(n * 100)) / 100.0;
@@ -283,10 +237,7 @@ fn order<S: Scalar>() -> f64 {
     let mut sum = Vec2::ZERO;
     for (_, heading) in &boids {
         let heading = Vec2::new(heading.x.to_f64(), heading.y.to_f64());
-        assert!(
-            (heading.norm() - 1.0).abs() < 1e-4,
-            "headings stay unit vectors"
-        );
+        assert!((heading.norm() - 1.0).abs() < 1e-4, "headings stay unit vectors");
         sum += heading;
     }
     sum.norm() / 60.0
@@ -301,12 +252,8 @@ fn boids_come_to_fly_the_same_way_in_any_number_type() {
 
 fn others() -> impl Strategy<Value = Vec<Nearby<f64>>> {
     let other = (-160.0..160.0_f64, -160.0..160.0_f64, -3.1..3.1_f64);
-    let numbered = |all: Vec<(f64, f64, f64)>| {
-        (2..)
-            .zip(all)
-            .map(|(id, (x, y, heading))| flying(id, x, y, heading))
-            .collect()
-    };
+    let numbered =
+        |all: Vec<(f64, f64, f64)>| (2..).zip(all).map(|(id, (x, y, heading))| flying(id, x, y, heading)).collect();
     proptest::collection::vec(other, 0..10).prop_map(numbered)
 }
 

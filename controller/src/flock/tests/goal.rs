@@ -37,10 +37,7 @@ fn at(x: f64, y: f64) -> Nearby<f64> {
 
 fn assert_close(got: V, expected: [f64; 3]) {
     let [x, y, z] = expected;
-    assert!(
-        (got - V::new(x, y, z)).norm() < 1e-9,
-        "{got:?} {expected:?}"
-    );
+    assert!((got - V::new(x, y, z)).norm() < 1e-9, "{got:?} {expected:?}");
 }
 
 #[test]
@@ -49,10 +46,7 @@ fn goal_pulls_with_its_gain_cut_to_the_speed() {
     assert_close(wished([0.5, 0.0, 0.0], far, &[]), [0.6, 0.8, 0.0]);
     assert_close(wished([150.0, 0.0, 0.0], far, &[]), [1.2, 1.6, 0.0]);
     assert_close(wished([-0.5, 0.0, 0.0], far, &[]), [-0.6, -0.8, 0.0]);
-    assert_close(
-        wished([1.0, 0.0, 0.0], goal(0.0, 0.0, 9.0), &[]),
-        [0.0, 0.0, 2.0],
-    );
+    assert_close(wished([1.0, 0.0, 0.0], goal(0.0, 0.0, 9.0), &[]), [0.0, 0.0, 2.0]);
     assert_eq!(wished([1.0, 1.0, 1.0], None, &[]), V::ZERO);
     assert_eq!(wished([1.0, 1.0, 1.0], Some(HERE), &[]), V::ZERO);
 }
@@ -64,14 +58,8 @@ fn last_step_ends_on_the_goal() {
         let got = wished([gain, 0.0, 0.0], goal(0.01, 0.0, 0.0), &[]);
         assert_close(got * 0.02, [0.01, 0.0, 0.0]);
     }
-    assert_close(
-        wished([1.0, 0.0, 0.0], goal(0.04, 0.0, 0.0), &[]) * 0.02,
-        [0.04, 0.0, 0.0],
-    );
-    assert_close(
-        wished([0.1, 0.0, 0.0], goal(0.03, 0.0, 0.0), &[]) * 0.02,
-        [0.004, 0.0, 0.0],
-    );
+    assert_close(wished([1.0, 0.0, 0.0], goal(0.04, 0.0, 0.0), &[]) * 0.02, [0.04, 0.0, 0.0]);
+    assert_close(wished([0.1, 0.0, 0.0], goal(0.03, 0.0, 0.0), &[]) * 0.02, [0.004, 0.0, 0.0]);
 }
 
 #[test]
@@ -80,28 +68,16 @@ fn middle_of_the_neighbours_within_sight_pulls() {
     let seen = [at(30.0, 20.0), at(-6.0, 12.0), at(40.001, 0.0)];
     assert_close(wished([0.0, 0.5, 0.0], None, &seen), [0.6, 0.8, 0.0]);
     assert_close(wished([0.0, -0.5, 0.0], None, &seen), [-0.6, -0.8, 0.0]);
-    assert_close(
-        wished([0.0, 0.5, 0.0], None, &[at(40.0, 0.0)]),
-        [1.0, 0.0, 0.0],
-    );
-    assert_close(
-        wished([0.0, 0.5, 0.0], None, &[at(9.0, 0.0), at(-9.0, 0.0)]),
-        [0.0; 3],
-    );
+    assert_close(wished([0.0, 0.5, 0.0], None, &[at(40.0, 0.0)]), [1.0, 0.0, 0.0]);
+    assert_close(wished([0.0, 0.5, 0.0], None, &[at(9.0, 0.0), at(-9.0, 0.0)]), [0.0; 3]);
 }
 
 #[test]
 fn repulsion_grows_with_the_square_and_is_held_below_half_the_least_distance() {
     let push = |d: f64| -wished([0.0, 0.0, 0.1], None, &[at(d, 0.0)]).x / 2.0;
-    for (distance, expected) in [
-        (20.0, 0.0),
-        (20.1, 0.0),
-        (15.0, 0.025),
-        (10.0, 0.1),
-        (5.0, 0.225),
-        (4.999, 0.225),
-        (0.001, 0.225),
-    ] {
+    for (distance, expected) in
+        [(20.0, 0.0), (20.1, 0.0), (15.0, 0.025), (10.0, 0.1), (5.0, 0.225), (4.999, 0.225), (0.001, 0.225)]
+    {
         assert!((push(distance) - expected).abs() < 1e-9, "{distance}");
     }
     // Sums over neighbours; negative attracts.
@@ -113,18 +89,9 @@ fn repulsion_grows_with_the_square_and_is_held_below_half_the_least_distance() {
 #[test]
 fn robots_in_one_place_go_opposite_ways() {
     let push = |own: u32, other: u32| {
-        let own = Body {
-            id: RobotId(own),
-            ..body([0.0; 3])
-        };
+        let own = Body { id: RobotId(own), ..body([0.0; 3]) };
         let coincident = near(other, [0.0; 3], [0.0; 3]);
-        wish(
-            &params::<f64>([0.0, 1.0, 0.1]),
-            &own,
-            HERE,
-            None,
-            &[coincident],
-        )
+        wish(&params::<f64>([0.0, 1.0, 0.1]), &own, HERE, None, &[coincident])
     };
     assert_eq!(push(1, 2), -push(2, 1));
     assert!((push(1, 2).norm() - 0.45).abs() < 1e-9);
@@ -143,74 +110,32 @@ fn three_rules_add_up_before_the_cut() {
 fn senseless_input_moves_nobody() {
     let good = params::<f64>([1.0, 1.0, 1.0]);
     let bad = [
-        GoalParams {
-            goal_gain: f64::NAN,
-            ..good
-        },
-        GoalParams {
-            center_gain: f64::INFINITY,
-            ..good
-        },
-        GoalParams {
-            min_distance_m: 0.0,
-            ..good
-        },
-        GoalParams {
-            neighborhood_m: 19.9,
-            ..good
-        },
-        GoalParams {
-            neighborhood_m: f64::INFINITY,
-            ..good
-        },
-        GoalParams {
-            speed_mps: -1.0,
-            ..good
-        },
-        GoalParams {
-            speed_mps: f64::NAN,
-            ..good
-        },
+        GoalParams { goal_gain: f64::NAN, ..good },
+        GoalParams { center_gain: f64::INFINITY, ..good },
+        GoalParams { min_distance_m: 0.0, ..good },
+        GoalParams { neighborhood_m: 19.9, ..good },
+        GoalParams { neighborhood_m: f64::INFINITY, ..good },
+        GoalParams { speed_mps: -1.0, ..good },
+        GoalParams { speed_mps: f64::NAN, ..good },
     ];
     for params in bad {
         assert!(!params.is_sound());
-        assert_eq!(
-            wish(
-                &params,
-                &body([0.0; 3]),
-                HERE,
-                goal(9.0, 0.0, 0.0),
-                &[at(1.0, 1.0)]
-            ),
-            V::ZERO
-        );
+        assert_eq!(wish(&params, &body([0.0; 3]), HERE, goal(9.0, 0.0, 0.0), &[at(1.0, 1.0)]), V::ZERO);
     }
     assert!(good.is_sound());
     for speed in [0.0, -1.0, f64::NAN] {
-        let lame = Body {
-            max_speed_mps: speed,
-            ..body([0.0; 3])
-        };
+        let lame = Body { max_speed_mps: speed, ..body([0.0; 3]) };
         assert_eq!(wish(&good, &lame, HERE, goal(9.0, 0.0, 0.0), &[]), V::ZERO);
     }
-    let slow = Body {
-        max_speed_mps: 0.5,
-        ..body([0.0; 3])
-    };
-    assert_close(
-        wish(&good, &slow, HERE, goal(9.0, 0.0, 0.0), &[]),
-        [0.5, 0.0, 0.0],
-    );
+    let slow = Body { max_speed_mps: 0.5, ..body([0.0; 3]) };
+    assert_close(wish(&good, &slow, HERE, goal(9.0, 0.0, 0.0), &[]), [0.5, 0.0, 0.0]);
     let expected = wished([0.2, 0.2, 0.1], goal(9.0, 0.0, 0.0), &[at(3.0, 4.0)]);
     for bad in [f64::NAN, f64::INFINITY] {
         let mut lost = [at(1.0, 0.0), at(1.0, 0.0)];
         lost[0].offset_m.x = bad;
         lost[1].offset_m.y = -bad;
         let seen = [lost[0], at(3.0, 4.0), lost[1]];
-        assert_eq!(
-            wished([0.2, 0.2, 0.1], goal(9.0, 0.0, 0.0), &seen),
-            expected
-        );
+        assert_eq!(wished([0.2, 0.2, 0.1], goal(9.0, 0.0, 0.0), &seen), expected);
     }
 }
 
@@ -222,10 +147,7 @@ fn goals_are_full_at_their_capacity_and_empty_ones_lead_nowhere() {
     assert!(!none.has_arrived(HERE, 1e9));
     assert_eq!(none.update(HERE, 1e9, 1, RobotId(1)), None);
     let mut two = Goals::<2>::new();
-    assert_eq!(
-        (two.push(HERE), two.push(Position::ORIGIN)),
-        (Ok(()), Ok(()))
-    );
+    assert_eq!((two.push(HERE), two.push(Position::ORIGIN)), (Ok(()), Ok(())));
     assert_eq!(two.push(HERE), Err(Full));
     assert_eq!(two.as_slice(), [HERE, Position::ORIGIN]);
     assert!(!two.set_goal(2, HERE) && two.set_goal(1, HERE));
@@ -243,10 +165,7 @@ fn middle_of_the_goals_is_rounded_to_nearest_and_never_overflows() {
     assert_eq!(goals.centroid(), Some(place(i32::MAX, i32::MIN, 2)));
     assert!(goals.set_goal(0, place(0, 0, -6)));
     // (2 * 2147483647) / 3 = 1431655764.67, -(2^32) / 3 = -1431655765.33.
-    assert_eq!(
-        goals.centroid(),
-        Some(place(1_431_655_765, -1_431_655_765, -1))
-    );
+    assert_eq!(goals.centroid(), Some(place(1_431_655_765, -1_431_655_765, -1)));
 }
 
 #[test]
@@ -257,10 +176,7 @@ fn robot_goes_to_the_middle_then_to_the_goal_it_draws() {
     }
     let middle = Position::from_mm([3_000, 0, 0]);
     let robot = RobotId(7);
-    assert_eq!(
-        (goals.current(), goals.stage()),
-        (Some(middle), Stage::Gather)
-    );
+    assert_eq!((goals.current(), goals.stage()), (Some(middle), Stage::Gather));
     let off = Position::from_mm([3_000, 501, 0]);
     assert_eq!(goals.update(off, 0.5, 1, robot), None);
     let on_edge = Position::from_mm([3_000, 500, 0]);
@@ -288,10 +204,7 @@ fn robots_draw_equal_shares_and_draw_anew_after_a_restart() {
     for robot in 1..=3000 {
         let mut goals = all.clone();
         let first = goals.update(HERE, 1.0, 5, RobotId(robot)).unwrap();
-        assert_eq!(
-            all.clone().update(HERE, 1.0, 5, RobotId(robot)),
-            Some(first)
-        );
+        assert_eq!(all.clone().update(HERE, 1.0, 5, RobotId(robot)), Some(first));
         shares[first] += 1;
         goals.restart();
         changed += u32::from(goals.update(HERE, 1.0, 5, RobotId(robot)) != Some(first));
@@ -317,11 +230,7 @@ fn a_flock_gathers_in_the_middle_and_parts_to_its_three_goals() {
         for (i, (place, goals)) in robots.iter_mut().enumerate() {
             let robot = RobotId(i as u32 + 1);
             goals.update(*place, params.neighborhood_m, 1, robot);
-            let own = Body {
-                id: robot,
-                step_s: STEP_S,
-                ..body([0.0; 3])
-            };
+            let own = Body { id: robot, step_s: STEP_S, ..body([0.0; 3]) };
             let others = before.iter().zip(1..).filter(|(_, id)| *id != robot.0);
             let nearby: Vec<_> = others
                 .map(|((other, _), id)| {
@@ -340,10 +249,7 @@ fn a_flock_gathers_in_the_middle_and_parts_to_its_three_goals() {
             panic!("{place:?} never came to the middle");
         };
         shares[index] += 1;
-        assert!(
-            goals.has_arrived(*place, params.neighborhood_m),
-            "{place:?}"
-        );
+        assert!(goals.has_arrived(*place, params.neighborhood_m), "{place:?}");
     }
     assert!(shares.iter().all(|share| *share > 5), "{shares:?}");
     assert!(nearest > 0.2, "least distance {nearest}");
@@ -355,10 +261,7 @@ fn seen() -> impl Strategy<Value = Vec<[f64; 2]>> {
 
 fn answer<S: Scalar>(gains: [f64; 3], way: [f64; 2], seen: &[[f64; 2]]) -> V {
     let goal = HERE.moved(V::new(way[0], way[1], 0.0));
-    let nearby: Vec<_> = (2..)
-        .zip(seen)
-        .map(|(id, [x, y])| near::<S>(id, [*x, *y, 0.0], [0.0; 3]))
-        .collect();
+    let nearby: Vec<_> = (2..).zip(seen).map(|(id, [x, y])| near::<S>(id, [*x, *y, 0.0], [0.0; 3])).collect();
     exact(wish(&params(gains), &body([0.0; 3]), HERE, goal, &nearby))
 }
 

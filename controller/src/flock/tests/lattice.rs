@@ -17,13 +17,7 @@ const R_ALPHA: f64 = 18.383_093_559_370_867;
 const D_BETA: f64 = 6.625_281_952_496_325;
 
 fn phi_alpha() -> PhiAlpha<f64> {
-    PhiAlpha {
-        r_alpha: R_ALPHA,
-        d_alpha: D_ALPHA,
-        a: 5.0,
-        b: 5.0,
-        c: 0.0,
-    }
+    PhiAlpha { r_alpha: R_ALPHA, d_alpha: D_ALPHA, a: 5.0, b: 5.0, c: 0.0 }
 }
 
 fn is_close(got: f64, expected: f64) -> bool {
@@ -32,30 +26,15 @@ fn is_close(got: f64, expected: f64) -> bool {
 
 /// d = 7 and all gains 1, 1, so that forces are the bare formulas.
 fn bare(algorithm: Algorithm) -> LatticeParams<f64> {
-    LatticeParams {
-        algorithm,
-        alpha: Gain::one(),
-        beta: Gain::one(),
-        gamma: Gain::one(),
-        ..LatticeParams::new(7.0)
-    }
+    LatticeParams { algorithm, alpha: Gain::one(), beta: Gain::one(), gamma: Gain::one(), ..LatticeParams::new(7.0) }
 }
 
 fn pair(params: &LatticeParams<f64>, offset: [f64; 3]) -> V {
-    acceleration(
-        params,
-        &body([0.0; 3]),
-        &[near(2, offset, [0.0; 3])],
-        &[],
-        None,
-    )
+    acceleration(params, &body([0.0; 3]), &[near(2, offset, [0.0; 3])], &[], None)
 }
 
 fn ball(x: f64, radius_m: f64) -> Obstacle<f64> {
-    Obstacle::Ball {
-        center_m: Vec3::new(x, 0.0, 0.0),
-        radius_m,
-    }
+    Obstacle::Ball { center_m: Vec3::new(x, 0.0, 0.0), radius_m }
 }
 
 fn facing(params: &LatticeParams<f64>, velocity: [f64; 3], obstacle: Obstacle<f64>) -> V {
@@ -75,14 +54,7 @@ fn sigma_norm_of_the_lattice_distances_is_that_of_the_formula() {
 
 #[test]
 fn bump_is_one_then_falls_to_zero_and_stays() {
-    for (z, expected) in [
-        (0.0, 1.0),
-        (0.199, 1.0),
-        (0.2, 1.0),
-        (0.6, 0.5),
-        (1.0, 0.0),
-        (1.01, 0.0),
-    ] {
+    for (z, expected) in [(0.0, 1.0), (0.199, 1.0), (0.2, 1.0), (0.6, 0.5), (1.0, 0.0), (1.01, 0.0)] {
         assert!(is_close(bump(z, 0.2), expected), "{z}");
     }
     assert_eq!(bump(f64::NAN, 0.2), 0.0);
@@ -108,13 +80,7 @@ fn sigmoids_have_their_known_values_and_bounds() {
     assert!(is_close(phi(-2.0, 5.0, 10.0, c), -8.910_264_284_766_406));
     assert!((phi(-1e9, 5.0, 10.0, c) + 10.0).abs() < 1e-6);
     assert!((phi(1e9, 5.0, 10.0, c) - 5.0).abs() < 1e-6);
-    for (a, b) in [
-        (0.0, 1.0),
-        (2.0, 1.0),
-        (-1.0, 1.0),
-        (f64::NAN, 1.0),
-        (1.0, f64::INFINITY),
-    ] {
+    for (a, b) in [(0.0, 1.0), (2.0, 1.0), (-1.0, 1.0), (f64::NAN, 1.0), (1.0, f64::INFINITY)] {
         assert_eq!(sigmoid_shift(a, b), None);
     }
 }
@@ -135,16 +101,10 @@ fn action_functions_vanish_where_the_paper_says() {
 }
 
 /// Distances and c phi_alpha n_ij, c phi_beta n^ with c = 1: the paper's formulas, computed apart.
-const ALPHA_KNOWN: [(f64, f64); 3] = [
-    (1.0, -4.754_848_738_066_416),
-    (3.5, -11.462_445_668_060_493),
-    (7.7, 0.625_252_368_520_888),
-];
-const BETA_KNOWN: [(f64, f64); 3] = [
-    (1.0, 1.894_514_666_039_483_9),
-    (2.1, 3.459_209_653_230_905),
-    (4.1, 0.982_446_060_237_232_1),
-];
+const ALPHA_KNOWN: [(f64, f64); 3] =
+    [(1.0, -4.754_848_738_066_416), (3.5, -11.462_445_668_060_493), (7.7, 0.625_252_368_520_888)];
+const BETA_KNOWN: [(f64, f64); 3] =
+    [(1.0, 1.894_514_666_039_483_9), (2.1, 3.459_209_653_230_905), (4.1, 0.982_446_060_237_232_1)];
 
 #[test]
 fn force_between_two_robots_has_its_known_values() {
@@ -169,19 +129,12 @@ fn force_of_an_obstacle_has_its_known_values() {
     for (distance, expected) in BETA_KNOWN {
         let got = facing(&params, [0.0; 3], ball(distance + 3.0, 3.0));
         assert!((got.x + expected).abs() < 1e-8, "{distance}: {got:?}");
-        let plane = Obstacle::Plane {
-            normal: Vec3::new(-1.0, 0.0, 0.0),
-            distance_m: distance,
-        };
+        let plane = Obstacle::Plane { normal: Vec3::new(-1.0, 0.0, 0.0), distance_m: distance };
         assert!((facing(&params, [0.0; 3], plane).x + expected).abs() < 1e-8);
         let wall = Obstacle::Wall([Vec2::new(distance, -9.0), Vec2::new(distance, 1.0)]);
         assert!((facing(&params, [0.0; 3], wall).x + expected).abs() < 1e-8);
     }
-    assert_eq!(
-        facing(&params, [0.0; 3], ball(7.2, 3.0)),
-        V::ZERO,
-        "exactly at d'"
-    );
+    assert_eq!(facing(&params, [0.0; 3], ball(7.2, 3.0)), V::ZERO, "exactly at d'");
     // Algorithms 1 and 2 know no obstacles.
     for algorithm in [Algorithm::One, Algorithm::Two] {
         assert_eq!(facing(&bare(algorithm), [0.0; 3], ball(4.0, 3.0)), V::ZERO);
@@ -196,15 +149,9 @@ fn beta_agents_have_the_places_and_velocities_of_the_lemma() {
     assert_eq!(agent.normal, Vec3::new(-1.0, 0.0, 0.0));
     assert!(is_close(agent.distance_m, 3.0));
     assert!((agent.velocity_mps - Vec3::new(0.0, 1.2, 0.4)).norm() < 1e-12);
-    let plane = Obstacle::Plane {
-        normal: Vec3::new(0.0, 0.0, 1.0),
-        distance_m: 4.0,
-    };
+    let plane = Obstacle::Plane { normal: Vec3::new(0.0, 0.0, 1.0), distance_m: 4.0 };
     let agent = beta_agent(&plane, v).unwrap();
-    assert_eq!(
-        (agent.distance_m, agent.velocity_mps),
-        (4.0, Vec3::new(2.0, 3.0, 0.0))
-    );
+    assert_eq!((agent.distance_m, agent.velocity_mps), (4.0, Vec3::new(2.0, 3.0, 0.0)));
     // Beside a wall as at a plane, beyond its end as at a post.
     let wall = |y| Obstacle::Wall([Vec2::new(2.0, y), Vec2::new(2.0, y + 5.0)]);
     let agent = beta_agent(&wall(-1.0), v).unwrap();
@@ -220,14 +167,8 @@ fn whoever_is_inside_an_obstacle_is_pushed_out_along_its_normal() {
     // As hard as one unit in front of the border: 200 * 1.984 * 0.953.
     for depth in [0.0, 0.001, 1.0, 2.9] {
         let got = facing(&params, [0.0; 3], ball(3.0 - depth, 3.0));
-        assert!(
-            got.x < -350.0 && got.y == 0.0 && got.z == 0.0,
-            "{depth} {got:?}"
-        );
-        let plane = Obstacle::Plane {
-            normal: Vec3::new(0.0, 1.0, 0.0),
-            distance_m: -depth,
-        };
+        assert!(got.x < -350.0 && got.y == 0.0 && got.z == 0.0, "{depth} {got:?}");
+        let plane = Obstacle::Plane { normal: Vec3::new(0.0, 1.0, 0.0), distance_m: -depth };
         assert!(facing(&params, [0.0; 3], plane).y > 350.0);
     }
     // In the very centre: back where it came from.
@@ -246,14 +187,8 @@ fn a_robot_that_starts_inside_gets_out_and_stays_out() {
     let (mut place, mut velocity) = (V::new(-1.0, 0.5, 0.0), V::new(4.0, 0.0, 0.0));
     let mut steps = 0;
     for step in 0..1000 {
-        let obstacle = Obstacle::Ball {
-            center_m: -place,
-            radius_m: 10.0,
-        };
-        let own = Body {
-            velocity_mps: velocity,
-            ..body([0.0; 3])
-        };
+        let obstacle = Obstacle::Ball { center_m: -place, radius_m: 10.0 };
+        let own = Body { velocity_mps: velocity, ..body([0.0; 3]) };
         velocity += acceleration(&params, &own, &[], &[obstacle], None) * 0.02;
         place += velocity * 0.02;
         if place.norm() < 10.0 {
@@ -265,19 +200,8 @@ fn a_robot_that_starts_inside_gets_out_and_stays_out() {
 
 #[test]
 fn reference_pulls_without_bound_in_algorithm_two_and_with_bound_in_three() {
-    let reference = Reference {
-        offset_m: Vec3::new(30.0, 40.0, 0.0),
-        velocity_mps: Vec3::new(0.0, 0.0, 2.0),
-    };
-    let pull = |algorithm| {
-        acceleration(
-            &bare(algorithm),
-            &body([1.0, 0.0, 0.0]),
-            &[],
-            &[],
-            Some(&reference),
-        )
-    };
+    let reference = Reference { offset_m: Vec3::new(30.0, 40.0, 0.0), velocity_mps: Vec3::new(0.0, 0.0, 2.0) };
+    let pull = |algorithm| acceleration(&bare(algorithm), &body([1.0, 0.0, 0.0]), &[], &[], Some(&reference));
     assert_eq!(pull(Algorithm::One), V::ZERO);
     assert_eq!(pull(Algorithm::Two), Vec3::new(29.0, 40.0, 2.0));
     // sigma_1 along the vector: 50 / sqrt(2501), not of each component.
@@ -293,20 +217,13 @@ fn settled(params: &LatticeParams<f64>, start: f64) -> f64 {
     let mut velocities = [V::ZERO; 2];
     for _ in 0..1000 {
         let forces = [0, 1].map(|i: usize| {
-            let own = Body {
-                id: RobotId(i as u32 + 1),
-                velocity_mps: velocities[i],
-                ..body([0.0; 3])
-            };
+            let own = Body { id: RobotId(i as u32 + 1), velocity_mps: velocities[i], ..body([0.0; 3]) };
             let other = Nearby {
                 offset_m: places[1 - i] - places[i],
                 velocity_mps: velocities[1 - i],
                 ..near(2 - i as u32, [0.0; 3], [0.0; 3])
             };
-            let reference = Reference {
-                offset_m: -places[i],
-                velocity_mps: V::ZERO,
-            };
+            let reference = Reference { offset_m: -places[i], velocity_mps: V::ZERO };
             acceleration(params, &own, &[other], &[], Some(&reference))
         });
         for i in 0..2 {
@@ -321,10 +238,7 @@ fn settled(params: &LatticeParams<f64>, start: f64) -> f64 {
 fn two_robots_settle_at_the_distance_of_the_lattice_at_any_size() {
     for spacing in [0.05, 0.5, 7.0, 60.0] {
         let params = LatticeParams::new(spacing);
-        let alone = LatticeParams {
-            algorithm: Algorithm::One,
-            ..params
-        };
+        let alone = LatticeParams { algorithm: Algorithm::One, ..params };
         for start in [0.97, 1.05, 1.15] {
             let distance = settled(&alone, start);
             assert!((distance - 1.0).abs() < 1e-6, "{start} {distance}");
@@ -333,10 +247,7 @@ fn two_robots_settle_at_the_distance_of_the_lattice_at_any_size() {
         // its pull on both makes them a little closer.
         for start in [0.0, 0.3, 2.0] {
             let distance = settled(&params, start);
-            assert!(
-                (0.95..1.01).contains(&distance),
-                "{spacing} {start} {distance}"
-            );
+            assert!((0.95..1.01).contains(&distance), "{spacing} {start} {distance}");
         }
     }
 }
@@ -347,10 +258,7 @@ fn the_law_is_the_same_at_any_size() {
     let at = |scale: f64| {
         let params = LatticeParams::new(7.0 * scale);
         let s = |v: [f64; 3]| v.map(|c| c * scale);
-        let reference = Reference {
-            offset_m: vec3(s([90.0, 5.0, 0.0])),
-            velocity_mps: vec3(s([1.0, 0.0, 0.0])),
-        };
+        let reference = Reference { offset_m: vec3(s([90.0, 5.0, 0.0])), velocity_mps: vec3(s([1.0, 0.0, 0.0])) };
         let others = [near(2, s([3.0, 4.0, 0.0]), s([1.0, -1.0, 0.0]))];
         let obstacles = [ball(4.0 * scale, 3.0 * scale)];
         let own = body(s([0.5, 0.2, 0.0]));
@@ -366,10 +274,7 @@ fn the_law_is_the_same_at_any_size() {
 fn robots_in_one_place_go_opposite_ways() {
     let params = LatticeParams::new(0.5);
     let force = |own: u32, other: u32| {
-        let own = Body {
-            id: RobotId(own),
-            ..body([0.0; 3])
-        };
+        let own = Body { id: RobotId(own), ..body([0.0; 3]) };
         acceleration(&params, &own, &[near(other, [0.0; 3], [0.0; 3])], &[], None)
     };
     assert_eq!(force(1, 2), -force(2, 1));
@@ -397,34 +302,17 @@ fn what_is_not_a_number_contributes_nothing() {
             ball(1.0, -1.0),
             Obstacle::Wall([Vec2::new(bad, 0.0), Vec2::new(0.0, 3.0)]),
             Obstacle::Wall([Vec2::new(9.0, 9.0), Vec2::new(bad, 9.0)]),
-            Obstacle::Plane {
-                normal: Vec3::new(bad, 0.0, 0.0),
-                distance_m: 1.0,
-            },
-            Obstacle::Plane {
-                normal: Vec3::ZERO,
-                distance_m: 1.0,
-            },
-            Obstacle::Plane {
-                normal: Vec3::new(1.0, 0.0, 0.0),
-                distance_m: bad.abs(),
-            },
+            Obstacle::Plane { normal: Vec3::new(bad, 0.0, 0.0), distance_m: 1.0 },
+            Obstacle::Plane { normal: Vec3::ZERO, distance_m: 1.0 },
+            Obstacle::Plane { normal: Vec3::new(1.0, 0.0, 0.0), distance_m: bad.abs() },
         ];
         let got = acceleration(&params, &own, &others, &obstacles, None);
         assert_eq!(got, expected, "{bad}");
-        let reference = Reference {
-            offset_m: Vec3::new(f64::NAN, bad, 0.0),
-            velocity_mps: Vec3::new(f64::NAN, 0.0, 0.0),
-        };
+        let reference =
+            Reference { offset_m: Vec3::new(f64::NAN, bad, 0.0), velocity_mps: Vec3::new(f64::NAN, 0.0, 0.0) };
         for algorithm in [Algorithm::Two, Algorithm::Three] {
-            let params = LatticeParams {
-                algorithm,
-                ..params
-            };
-            assert_eq!(
-                acceleration(&params, &own, &[good], &[], Some(&reference)),
-                expected
-            );
+            let params = LatticeParams { algorithm, ..params };
+            assert_eq!(acceleration(&params, &own, &[good], &[], Some(&reference)), expected);
         }
         // Own or other velocity unknown: the places still count.
         let mut blind = own;
@@ -438,55 +326,25 @@ fn what_is_not_a_number_contributes_nothing() {
 fn senseless_parameters_give_no_force() {
     let good = LatticeParams::new(0.5);
     assert!(good.is_sound());
-    let negative = Gain {
-        position: -1.0,
-        velocity: 1.0,
-    };
+    let negative = Gain { position: -1.0, velocity: 1.0 };
     let bad = [
         LatticeParams::new(0.0),
         LatticeParams::new(-1.0),
         LatticeParams::new(f64::NAN),
         LatticeParams::new(f64::INFINITY),
-        LatticeParams {
-            range_ratio: 1.0,
-            ..good
-        },
-        LatticeParams {
-            range_ratio: f64::NAN,
-            ..good
-        },
-        LatticeParams {
-            obstacle_ratio: 0.0,
-            ..good
-        },
-        LatticeParams {
-            obstacle_ratio: 5.0,
-            ..good
-        },
-        LatticeParams {
-            attraction: 6.0,
-            ..good
-        },
-        LatticeParams {
-            repulsion: f64::NAN,
-            ..good
-        },
-        LatticeParams {
-            alpha: negative,
-            ..good
-        },
-        LatticeParams {
-            gamma: Gain::critical(f64::NAN),
-            ..good
-        },
+        LatticeParams { range_ratio: 1.0, ..good },
+        LatticeParams { range_ratio: f64::NAN, ..good },
+        LatticeParams { obstacle_ratio: 0.0, ..good },
+        LatticeParams { obstacle_ratio: 5.0, ..good },
+        LatticeParams { attraction: 6.0, ..good },
+        LatticeParams { repulsion: f64::NAN, ..good },
+        LatticeParams { alpha: negative, ..good },
+        LatticeParams { gamma: Gain::critical(f64::NAN), ..good },
     ];
     let others = [near(2, [0.1, 0.1, 0.0], [0.0; 3])];
     for params in bad {
         assert!(!params.is_sound(), "{params:?}");
-        assert_eq!(
-            acceleration(&params, &body([0.0; 3]), &others, &[], None),
-            V::ZERO
-        );
+        assert_eq!(acceleration(&params, &body([0.0; 3]), &others, &[], None), V::ZERO);
     }
     assert_eq!(Gain::critical(4.0).velocity, 4.0);
 }

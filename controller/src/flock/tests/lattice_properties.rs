@@ -23,18 +23,15 @@ struct Case {
 }
 
 fn case(height: f64) -> impl Strategy<Value = Case> {
-    let place = move |side: f64| {
-        (-side..side, -side..side, -1.0..1.0).prop_map(move |(x, y, z)| [x, y, z * side * height])
-    };
+    let place =
+        move |side: f64| (-side..side, -side..side, -1.0..1.0).prop_map(move |(x, y, z)| [x, y, z * side * height]);
     let other = (place(1.2), place(2.0));
     let others = proptest::collection::vec(other, 0..10);
-    (place(2.0), others, place(2.0), place(20.0)).prop_map(|(own, others, center, reference)| {
-        Case {
-            own,
-            others,
-            center,
-            reference,
-        }
+    (place(2.0), others, place(2.0), place(20.0)).prop_map(|(own, others, center, reference)| Case {
+        own,
+        others,
+        center,
+        reference,
     })
 }
 
@@ -42,26 +39,12 @@ fn case(height: f64) -> impl Strategy<Value = Case> {
 fn answer<S: Scalar>(spacing: f64, case: &Case, view: impl Fn([f64; 3]) -> [f64; 3]) -> V {
     let params = LatticeParams::new(number::<S>(spacing));
     let see = |v: [f64; 3]| view(v).map(|c| c * spacing);
-    let others: Vec<_> = (2..)
-        .zip(&case.others)
-        .map(|(id, (offset, velocity))| near::<S>(id, see(*offset), see(*velocity)))
-        .collect();
-    let obstacle = Obstacle::Ball {
-        center_m: vec3(see(case.center)),
-        radius_m: number(0.7 * spacing),
-    };
-    let reference = Reference {
-        offset_m: vec3(see(case.reference)),
-        velocity_mps: vec3(see([0.3, 0.0, 0.0])),
-    };
+    let others: Vec<_> =
+        (2..).zip(&case.others).map(|(id, (offset, velocity))| near::<S>(id, see(*offset), see(*velocity))).collect();
+    let obstacle = Obstacle::Ball { center_m: vec3(see(case.center)), radius_m: number(0.7 * spacing) };
+    let reference = Reference { offset_m: vec3(see(case.reference)), velocity_mps: vec3(see([0.3, 0.0, 0.0])) };
     let own = body(see(case.own));
-    exact(acceleration(
-        &params,
-        &own,
-        &others,
-        &[obstacle],
-        Some(&reference),
-    )) * (1.0 / spacing)
+    exact(acceleration(&params, &own, &others, &[obstacle], Some(&reference))) * (1.0 / spacing)
 }
 
 proptest! {

@@ -36,11 +36,5 @@ fn body<S: Scalar>(velocity: [f64; 3]) -> Body<S> {
 }
 
 fn near<S: Scalar>(id: u32, offset: [f64; 3], velocity: [f64; 3]) -> Nearby<S> {
-    Nearby {
-        id: RobotId(id),
-        offset_m: vec3(offset),
-        velocity_mps: vec3(velocity),
-        radius_m: S::ZERO,
-        gives_way: true,
-    }
+    Nearby { id: RobotId(id), offset_m: vec3(offset), velocity_mps: vec3(velocity), radius_m: S::ZERO, gives_way: true }
 }

@@ -43,10 +43,7 @@ fn places(count: usize, mut draw: impl FnMut() -> f64) -> Vec<V> {
 }
 
 fn balls(matrix: &[[f64; 3]]) -> Vec<Ball> {
-    let ball = |&[x, y, radius]: &[f64; 3]| Ball {
-        center: V::new(x, y, 0.0),
-        radius,
-    };
+    let ball = |&[x, y, radius]: &[f64; 3]| Ball { center: V::new(x, y, 0.0), radius };
     matrix.iter().map(ball).collect()
 }
 
@@ -93,28 +90,11 @@ impl Flock {
             for ball in &self.balls {
                 let clearance = (ball.center - own).norm() - ball.radius;
                 self.least_clearance = self.least_clearance.min(clearance);
-                obstacles.push(Obstacle::Ball {
-                    center_m: ball.center - own,
-                    radius_m: ball.radius,
-                });
+                obstacles.push(Obstacle::Ball { center_m: ball.center - own, radius_m: ball.radius });
             }
-            let reference = Reference {
-                offset_m: self.reference.0 - own,
-                velocity_mps: self.reference.1,
-            };
-            let body = Body {
-                id: RobotId(i as u32 + 1),
-                velocity_mps: self.velocities[i],
-                step_s,
-                ..body([0.0; 3])
-            };
-            forces.push(acceleration(
-                &self.params,
-                &body,
-                &nearby,
-                &obstacles,
-                Some(&reference),
-            ));
+            let reference = Reference { offset_m: self.reference.0 - own, velocity_mps: self.reference.1 };
+            let body = Body { id: RobotId(i as u32 + 1), velocity_mps: self.velocities[i], step_s, ..body([0.0; 3]) };
+            forces.push(acceleration(&self.params, &body, &nearby, &obstacles, Some(&reference)));
         }
         for (i, force) in forces.into_iter().enumerate() {
             self.velocities[i] += force * step_s;
@@ -132,10 +112,7 @@ impl Flock {
             for j in 0..i {
                 if (self.places[i] - self.places[j]).norm() < range && group[i] != group[j] {
                     let (from, to) = (group[i], group[j]);
-                    group
-                        .iter_mut()
-                        .filter(|g| **g == from)
-                        .for_each(|g| *g = to);
+                    group.iter_mut().filter(|g| **g == from).for_each(|g| *g = to);
                 }
             }
         }
@@ -277,11 +254,7 @@ fn fifty_robots_meet_in_space() {
     let mut rng = Rng::new(1);
     let mut draw = || normal(&mut rng, 30.0);
     let start = (0..50).map(|_| V::new(draw(), draw(), draw())).collect();
-    let params = LatticeParams {
-        algorithm: Algorithm::Two,
-        gamma: Gain::critical(0.2),
-        ..LatticeParams::new(7.0)
-    };
+    let params = LatticeParams { algorithm: Algorithm::Two, gamma: Gain::critical(0.2), ..LatticeParams::new(7.0) };
     let mut flock = Flock::new(params, start, (V::ZERO, V::new(1.0, 0.0, 1.0)));
     flock.reference_moves = true;
     assert!(flock.components(8.4) > 1);
@@ -290,11 +263,7 @@ fn fifty_robots_meet_in_space() {
     }
     assert_eq!(flock.components(8.4), 1);
     assert!(flock.mismatch() < 0.001, "K~ {}", flock.mismatch());
-    let (low, high) = flock
-        .places
-        .iter()
-        .fold((f64::MAX, f64::MIN), |(low, high), place| {
-            (low.min(place.z), high.max(place.z))
-        });
+    let (low, high) =
+        flock.places.iter().fold((f64::MAX, f64::MIN), |(low, high), place| (low.min(place.z), high.max(place.z)));
     assert!(high - low > 14.0, "a body in space, not a layer");
 }

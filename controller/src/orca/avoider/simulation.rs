@@ -94,9 +94,7 @@ impl Run {
     }
 
     fn step(&mut self, tick: u32) {
-        let commands: Vec<V> = (0..self.robots.len())
-            .map(|k| self.decide(k, tick))
-            .collect();
+        let commands: Vec<V> = (0..self.robots.len()).map(|k| self.decide(k, tick)).collect();
         self.time_s += self.step_s;
         for (robot, velocity) in self.robots.iter_mut().zip(commands) {
             let before = robot.at[0];
@@ -163,14 +161,7 @@ impl Run {
         let mut rng = rng_of(own as u32 + 1, tick);
         let wish = vector(way.map(|c| c * pace));
         let avoider = &mut self.robots[own].avoider;
-        let solution = avoider.velocity(
-            &body,
-            wish,
-            Some(vector(goal)),
-            &nearby,
-            &obstacles,
-            &mut rng,
-        );
+        let solution = avoider.velocity(&body, wish, Some(vector(goal)), &nearby, &obstacles, &mut rng);
         [solution.velocity_mps.x, solution.velocity_mps.y].map(f64::from)
     }
 }

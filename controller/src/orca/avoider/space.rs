@@ -17,17 +17,11 @@ fn xyz(at: V) -> [f64; 3] {
 
 /// A ball on the x axis.
 fn ball(x: f64, radius_m: f64) -> Obstacle<f64> {
-    Obstacle::Ball {
-        center_m: v(x, 0.0, 0.0),
-        radius_m,
-    }
+    Obstacle::Ball { center_m: v(x, 0.0, 0.0), radius_m }
 }
 
 fn floor(distance_m: f64) -> Obstacle<f64> {
-    Obstacle::Plane {
-        normal: v(0.0, 0.0, 1.0),
-        distance_m,
-    }
+    Obstacle::Plane { normal: v(0.0, 0.0, 1.0), distance_m }
 }
 
 /// One step with the usual parameters.
@@ -44,21 +38,9 @@ fn fly<const K: usize>(
 }
 
 /// What an obstacle forbids a robot of `radius_m` with this velocity.
-fn obstacle(
-    own: V,
-    obstacle: &Obstacle<f64>,
-    radius_m: f64,
-    horizon_s: f64,
-) -> Option<HalfSpace<V>> {
-    let params = AvoidParams {
-        wall_horizon_s: horizon_s,
-        margin_m: 0.0,
-        ..AvoidParams::default()
-    };
-    let body = Body {
-        radius_m,
-        ..body(1, [0.0; 3])
-    };
+fn obstacle(own: V, obstacle: &Obstacle<f64>, radius_m: f64, horizon_s: f64) -> Option<HalfSpace<V>> {
+    let params = AvoidParams { wall_horizon_s: horizon_s, margin_m: 0.0, ..AvoidParams::default() };
+    let body = Body { radius_m, ..body(1, [0.0; 3]) };
     static_obstacle(&params, &body, own, obstacle)
 }
 
@@ -69,11 +51,7 @@ fn swap(starts: &[V], most_s: f64) -> (Option<f64>, f64) {
     let (mut gap, mut time) = (f64::INFINITY, 0.0);
     let free_s = starts.iter().map(|s| s.norm()).fold(0.0, f64::max) * 2.0 / SPEED_MPS;
     while time < most_s {
-        if places
-            .iter()
-            .zip(&goals)
-            .all(|(&p, &g)| (g - p).norm() < 0.02)
-        {
+        if places.iter().zip(&goals).all(|(&p, &g)| (g - p).norm() < 0.02) {
             return (Some(time / free_s), gap);
         }
         let wishes: StdVec<_> = (0..places.len())
@@ -149,10 +127,7 @@ fn who_does_not_give_way_is_given_all_of_it() {
     // He comes from the left; nothing leans for him.
     let wish = v(0.5, 0.0, 0.0);
     let aside = |gives_way: bool| {
-        let other = Nearby {
-            gives_way,
-            ..robot(2, [0.5, 0.6], [0.0, -0.5])
-        };
+        let other = Nearby { gives_way, ..robot(2, [0.5, 0.6], [0.0, -0.5]) };
         (fly::<8>(&body(1, xyz(wish)), wish, None, &[other], &[]) - wish).norm()
     };
     assert!(aside(false) > aside(true));
@@ -172,10 +147,7 @@ fn floors_balls_and_walls_limit_the_speed_towards_them() {
     let down = v(0.0, 0.0, -3.0);
     // 2 m up with a radius of 0.5 m: at most 0.75 m/s down for 2 s.
     let above = obstacle(down, &floor(2.0), 0.5, 2.0).unwrap();
-    assert_eq!(
-        (above.point, above.normal),
-        (v(0.0, 0.0, -0.75), v(0.0, 0.0, 1.0))
-    );
+    assert_eq!((above.point, above.normal), (v(0.0, 0.0, -0.75), v(0.0, 0.0, 1.0)));
     // On the floor or in it: no lower.
     for distance in [0.5, 0.1, -3.0] {
         let on = obstacle(down, &floor(distance), 0.5, 2.0).unwrap();
@@ -201,13 +173,9 @@ fn of_many_obstacles_the_nearest_count() {
     // Full speed ahead; a ball 0.5 m ahead is the last of the slice, all others are behind and farther off.
     let east = v(SPEED_MPS, 0.0, 0.0);
     for (behind, others) in [(32, 0), (17, 16)] {
-        let mut obstacles: StdVec<_> = (0..behind)
-            .map(|k| ball(-1.0 - 0.01 * f64::from(k), 0.2))
-            .collect();
+        let mut obstacles: StdVec<_> = (0..behind).map(|k| ball(-1.0 - 0.01 * f64::from(k), 0.2)).collect();
         obstacles.push(ball(0.5, 0.2));
-        let nearby: StdVec<_> = (0..others)
-            .map(|k| robot(k + 2, [-3.0, f64::from(k)], [0.0; 2]))
-            .collect();
+        let nearby: StdVec<_> = (0..others).map(|k| robot(k + 2, [-3.0, f64::from(k)], [0.0; 2])).collect();
         let got = fly::<32>(&body(1, xyz(east)), east, None, &nearby, &obstacles);
         let gap = |step: i32| (got * (f64::from(step) / 100.0) - v(0.5, 0.0, 0.0)).norm() - 0.35;
         let least = (0..=100).map(gap).fold(f64::MAX, f64::min);
@@ -218,10 +186,7 @@ fn of_many_obstacles_the_nearest_count() {
 #[test]
 fn a_body_with_inertia_gets_the_best_that_it_can_reach() {
     let east = v(SPEED_MPS, 0.0, 0.0);
-    let heavy = Body {
-        max_acceleration_mps2: 1.0,
-        ..body(1, xyz(east))
-    };
+    let heavy = Body { max_acceleration_mps2: 1.0, ..body(1, xyz(east)) };
     let wall = Obstacle::Wall([Vec2::new(0.25, -1.0), Vec2::new(0.25, 1.0)]);
     let got = fly::<8>(&heavy, east, None, &[], &[wall]);
     assert!((got.x - 0.45).abs() < 1e-9, "{got:?}");
@@ -234,10 +199,7 @@ fn a_body_with_inertia_gets_the_best_that_it_can_reach() {
 
 #[test]
 fn the_margin_counts_towards_obstacles_too() {
-    let params = AvoidParams {
-        margin_m: 0.1,
-        ..AvoidParams::default()
-    };
+    let params = AvoidParams { margin_m: 0.1, ..AvoidParams::default() };
     let mut avoider = Avoider::<f64, 8, _>::in_space(params);
     let down = v(0.0, 0.0, -SPEED_MPS);
     let own = body(1, xyz(down));
@@ -289,10 +251,7 @@ fn flat_robots() -> impl Strategy<Value = StdVec<Nearby<f64>>> {
         let ids = 2..;
         let mut nearby: StdVec<_> = ids
             .zip(others)
-            .map(|(id, (offset, velocity, gives_way))| Nearby {
-                gives_way,
-                ..robot(id, offset, velocity)
-            })
+            .map(|(id, (offset, velocity, gives_way))| Nearby { gives_way, ..robot(id, offset, velocity) })
             .collect();
         nearby.sort_by_key(|other| other.offset_m.length_key());
         nearby
@@ -301,17 +260,14 @@ fn flat_robots() -> impl Strategy<Value = StdVec<Nearby<f64>>> {
 
 /// Balls and upright planes and walls at the own height.
 fn flat_obstacles(walls: usize) -> impl Strategy<Value = StdVec<Obstacle<f64>>> {
-    let ball = (flat(2.0), 0.05..0.4_f64).prop_map(|(center, radius_m)| Obstacle::Ball {
-        center_m: vector(center),
-        radius_m,
-    });
+    let ball =
+        (flat(2.0), 0.05..0.4_f64).prop_map(|(center, radius_m)| Obstacle::Ball { center_m: vector(center), radius_m });
     let plane = (0.0..6.2_f64, 0.0..2.0_f64).prop_map(|(angle, distance_m)| {
         let (sin, cos) = Scalar::sin_cos(angle);
         let normal = v(cos, sin, 0.0);
         Obstacle::Plane { normal, distance_m }
     });
-    let wall =
-        [flat(2.0), flat(2.0)].prop_map(|ends| Obstacle::Wall(ends.map(|end| vector(end).xy())));
+    let wall = [flat(2.0), flat(2.0)].prop_map(|ends| Obstacle::Wall(ends.map(|end| vector(end).xy())));
     let solids = proptest::collection::vec(prop_oneof![3 => ball, 1 => plane], 0..8);
     let walls = proptest::collection::vec(wall, 0..=walls);
     (solids, walls).prop_map(|(mut solids, walls)| {

@@ -49,18 +49,12 @@ fn who_does_not_give_way_is_given_all_the_way() {
     // Head-on: with share 1 the own half-plane lies twice as far off.
     let own = body(1, [0.5, 0.0]);
     let swerve = |gives_way| {
-        let other = Nearby {
-            gives_way,
-            ..robot(2, [1.2, -0.01], [-0.5, 0.0])
-        };
+        let other = Nearby { gives_way, ..robot(2, [1.2, -0.01], [-0.5, 0.0]) };
         let mut params = AvoidParams::default();
         params.deadlock.lean_rad = 0.0;
         let mut avoider = Avoider::<f32, 16>::new(params);
         let wish = Vec2::new(0.5, 0.0);
-        avoider
-            .velocity(&own, wish, None, &[other], &[], &mut rng())
-            .velocity_mps
-            .y
+        avoider.velocity(&own, wish, None, &[other], &[], &mut rng()).velocity_mps.y
     };
     let (half, all) = (swerve(true), swerve(false));
     assert!(half > 0.01 && all > 1.5 * half, "{half} {all}");
@@ -70,32 +64,17 @@ fn who_does_not_give_way_is_given_all_the_way() {
 fn walls_balls_and_planes_stop_a_robot_in_time() {
     let obstacles = [
         Obstacle::Wall([Vec2::new(0.4, -1.0), Vec2::new(0.4, 1.0)]),
-        Obstacle::Ball {
-            center_m: Vec3::new(1.4, 0.0, 0.0),
-            radius_m: 1.0,
-        },
-        Obstacle::Plane {
-            normal: Vec3::new(-1.0, 0.0, 0.0),
-            distance_m: 0.4,
-        },
+        Obstacle::Ball { center_m: Vec3::new(1.4, 0.0, 0.0), radius_m: 1.0 },
+        Obstacle::Plane { normal: Vec3::new(-1.0, 0.0, 0.0), distance_m: 0.4 },
     ];
     for obstacle in obstacles {
-        let solution = avoider().velocity(
-            &body(1, [0.5, 0.0]),
-            Vec2::new(0.5, 0.0),
-            None,
-            &[],
-            &[obstacle],
-            &mut rng(),
-        );
+        let solution =
+            avoider().velocity(&body(1, [0.5, 0.0]), Vec2::new(0.5, 0.0), None, &[], &[obstacle], &mut rng());
         // 0.25 m in one second.
         let ahead = solution.velocity_mps.x;
         assert!((0.2..0.2501).contains(&ahead), "{obstacle:?} {ahead}");
     }
-    let floor = Obstacle::Plane {
-        normal: Vec3::new(0.0, 0.0, 1.0),
-        distance_m: 0.0,
-    };
+    let floor = Obstacle::Plane { normal: Vec3::new(0.0, 0.0, 1.0), distance_m: 0.0 };
     let wish = Vec2::new(0.5, 0.0);
     let solution = avoider().velocity(&body(1, [0.5, 0.0]), wish, None, &[], &[floor], &mut rng());
     assert_eq!(solution.velocity_mps, wish);
@@ -103,22 +82,13 @@ fn walls_balls_and_planes_stop_a_robot_in_time() {
 
 #[test]
 fn a_body_with_inertia_gets_what_it_can_reach() {
-    let own = Body {
-        max_acceleration_mps2: 1.0,
-        ..body(1, [0.5, 0.0])
-    };
+    let own = Body { max_acceleration_mps2: 1.0, ..body(1, [0.5, 0.0]) };
     let wall = Obstacle::Wall([Vec2::new(0.25, -1.0), Vec2::new(0.25, 1.0)]);
     let wish = Vec2::new(0.5, 0.0);
     let solution = avoider().velocity(&own, wish, None, &[], &[wall], &mut rng());
     // 0.096 m/s are permitted (the margin is 4 mm), 0.45 are the least that it can have after 0.05 s.
-    assert!(
-        (solution.velocity_mps.x - 0.45).abs() < 1e-3,
-        "{solution:?}"
-    );
-    assert!(
-        (solution.penetration_mps - 0.354).abs() < 1e-3,
-        "{solution:?}"
-    );
+    assert!((solution.velocity_mps.x - 0.45).abs() < 1e-3, "{solution:?}");
+    assert!((solution.penetration_mps - 0.354).abs() < 1e-3, "{solution:?}");
 }
 
 #[test]
@@ -169,11 +139,8 @@ fn fixed_point_robots_avoid_too() {
 fn who_goes_the_same_way_or_away_is_no_reason_to_lean() {
     let own = body(1, [0.4, 0.0]);
     let wish = Vec2::new(0.4, 0.0);
-    let others = [
-        robot(2, [0.8, 0.0], [0.4, 0.0]),
-        robot(3, [0.5, 0.7], [0.5, 0.1]),
-        robot(4, [-0.6, 0.0], [0.4, 0.0]),
-    ];
+    let others =
+        [robot(2, [0.8, 0.0], [0.4, 0.0]), robot(3, [0.5, 0.7], [0.5, 0.1]), robot(4, [-0.6, 0.0], [0.4, 0.0])];
     let got = avoider().velocity(&own, wish, None, &others, &[], &mut rng());
     assert_eq!(got.velocity_mps, wish);
 }
@@ -188,11 +155,7 @@ fn a_robot_opposite_gets_its_turn_at_a_door() {
     let wish = Vec2::new(0.5, 0.0);
     let goal = Some(Vec2::new(4.0, 0.0));
     let goes = |avoider: &mut Avoider<f32, 16>, other: Nearby<f32>| {
-        avoider
-            .velocity(&own, wish, goal, &[other], &walls, &mut rng())
-            .velocity_mps
-            .x
-            > 0.05
+        avoider.velocity(&own, wish, goal, &[other], &walls, &mut rng()).velocity_mps.x > 0.05
     };
     // Equally far: the smaller number. Nearer: whatever the number.
     assert!(!goes(&mut avoider(), robot(4, [1.2, 0.0], [0.0, 0.0])));
@@ -202,10 +165,7 @@ fn a_robot_opposite_gets_its_turn_at_a_door() {
     // A turn that nobody takes passes on.
     let mut waiting = avoider();
     let first = (0..200).find(|_| goes(&mut waiting, robot(4, [1.2, 0.0], [0.0, 0.0])));
-    assert!(
-        first.is_some_and(|tick| (59..=121).contains(&tick)),
-        "{first:?}"
-    );
+    assert!(first.is_some_and(|tick| (59..=121).contains(&tick)), "{first:?}");
 }
 
 proptest! {

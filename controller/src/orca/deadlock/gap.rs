@@ -45,11 +45,7 @@ impl<S: Scalar> Gap<S> {
 
     /// The way from the robot to a place as [`Gap::place`] gives it; one in the gap counts as before it.
     pub(super) fn way(&self, place: Vec2<S>) -> Vec2<S> {
-        let depth = if place.x > S::ZERO {
-            self.depth
-        } else {
-            -self.depth
-        };
+        let depth = if place.x > S::ZERO { self.depth } else { -self.depth };
         self.middle + self.ahead * (place.x + depth) - self.ahead.perp() * place.y
     }
 
@@ -70,10 +66,7 @@ impl<S: Scalar> Gap<S> {
     /// Whether nothing stands in it: nothing is nearer to its middle than its sides are.
     fn is_clear(&self, obstacles: &[Obstacle<S>]) -> bool {
         let room = self.half - self.half * S::from_milli(1);
-        obstacles
-            .iter()
-            .filter_map(|obstacle| distance(obstacle, self.middle))
-            .all(|distance| distance >= room)
+        obstacles.iter().filter_map(|obstacle| distance(obstacle, self.middle)).all(|distance| distance >= room)
     }
 
     /// Joined with the other end of the same passage.
@@ -84,11 +77,7 @@ impl<S: Scalar> Gap<S> {
             return self;
         }
         let (low, high) = ((-self.depth).min(x), self.depth.max(x));
-        Self {
-            middle: self.middle + self.ahead * ((low + high) * S::HALF),
-            depth: (high - low) * S::HALF,
-            ..self
-        }
+        Self { middle: self.middle + self.ahead * ((low + high) * S::HALF), depth: (high - low) * S::HALF, ..self }
     }
 }
 
@@ -97,11 +86,7 @@ impl<S: Scalar> Gap<S> {
 ///
 /// The sides of a gap are ends of two walls with nothing else as near to their middle; gaps in line are the ends of one
 /// passage. O(walls^2), and O(obstacles) more for each pair of ends with the right distance.
-pub(super) fn gap_on_way<S: Scalar>(
-    obstacles: &[Obstacle<S>],
-    target: Vec2<S>,
-    wanted: &Wanted<S>,
-) -> Option<Gap<S>> {
+pub(super) fn gap_on_way<S: Scalar>(obstacles: &[Obstacle<S>], target: Vec2<S>, wanted: &Wanted<S>) -> Option<Gap<S>> {
     let mut best: Option<(S, Gap<S>)> = None;
     for_each_gap(obstacles, target, wanted, |gap| {
         let detour = gap.middle.norm() + (target - gap.middle).norm();
@@ -166,10 +151,9 @@ fn crosses<S: Scalar>(target: Vec2<S>, [a, b]: [Vec2<S>; 2]) -> bool {
 fn distance<S: Scalar>(obstacle: &Obstacle<S>, from: Vec2<S>) -> Option<S> {
     let moved = match *obstacle {
         Obstacle::Wall([a, b]) => Obstacle::Wall([a - from, b - from]),
-        Obstacle::Ball { center_m, radius_m } => Obstacle::Ball {
-            center_m: (center_m.xy() - from).extend(S::ZERO),
-            radius_m,
-        },
+        Obstacle::Ball { center_m, radius_m } => {
+            Obstacle::Ball { center_m: (center_m.xy() - from).extend(S::ZERO), radius_m }
+        }
         Obstacle::Plane { .. } => return None,
     };
     moved.nearest_point().map(|(_, distance)| distance)

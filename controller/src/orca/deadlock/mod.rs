@@ -23,14 +23,9 @@ use crate::neighbor::Nearby;
 use crate::scalar::Scalar;
 
 /// The wish, turned to the right while a robot is ahead, near, and comes nearer. O(nearby).
-pub(super) fn lean<S: Scalar>(
-    params: &DeadlockParams<S>,
-    situation: &Situation<'_, Vec2<S>>,
-) -> Vec2<S> {
+pub(super) fn lean<S: Scalar>(params: &DeadlockParams<S>, situation: &Situation<'_, Vec2<S>>) -> Vec2<S> {
     let wish = situation.wish;
-    let near_goal = situation
-        .goal
-        .is_some_and(|goal| goal.norm() < params.straight_within_m);
+    let near_goal = situation.goal.is_some_and(|goal| goal.norm() < params.straight_within_m);
     let is_in_the_way = |other: &Nearby<S>| {
         let offset = other.offset_m.xy();
         let gap = offset.norm() - situation.body.radius_m - other.radius_m;

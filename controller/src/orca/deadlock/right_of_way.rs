@@ -83,11 +83,7 @@ struct Traffic<S> {
 
 impl<S: Scalar> RightOfWay<S> {
     /// Of a robot that is at no gap.
-    pub(in crate::orca) const NEW: Self = Self {
-        last_went_ahead: None,
-        idle_s: None,
-        goes: false,
-    };
+    pub(in crate::orca) const NEW: Self = Self { last_went_ahead: None, idle_s: None, goes: false };
 
     /// The wish of a robot whose way leads through a gap, with others near by; `None` when it does not. An empty
     /// gap is left to others for `patience_s` to twice as long.
@@ -126,15 +122,8 @@ impl<S: Scalar> RightOfWay<S> {
         Some(way.normalized().map_or(Vec2::ZERO, |unit| unit * pace))
     }
 
-    fn may_go(
-        &self,
-        approach: &Approach<'_, S>,
-        traffic: &Traffic<S>,
-        has_lanes: bool,
-        is_impatient: bool,
-    ) -> bool {
-        let is_inside =
-            approach.own.x > -approach.radii(1_200) && approach.own.y.abs() < approach.gap.half;
+    fn may_go(&self, approach: &Approach<'_, S>, traffic: &Traffic<S>, has_lanes: bool, is_impatient: bool) -> bool {
+        let is_inside = approach.own.x > -approach.radii(1_200) && approach.own.y.abs() < approach.gap.half;
         if has_lanes {
             return traffic.rank == 0 || is_inside || is_impatient && !traffic.ahead;
         }
@@ -168,22 +157,14 @@ impl<'a, S: Scalar> Approach<'a, S> {
             return None;
         }
         let target = situation.goal.unwrap_or(ahead * radii(20_000));
-        let wanted = Wanted {
-            least_m: radii(2_020),
-            most_m: radii(WIDEST),
-            deepest_m: radii(DEEPEST),
-            past_m: radii(PAST),
-        };
+        let wanted =
+            Wanted { least_m: radii(2_020), most_m: radii(WIDEST), deepest_m: radii(DEEPEST), past_m: radii(PAST) };
         let gap = gap_on_way(situation.obstacles, target, &wanted)?;
         let own = gap.place(Vec2::ZERO);
         if own.norm() > radii(WITHIN) {
             return None;
         }
-        Some(Self {
-            gap,
-            situation,
-            own,
-        })
+        Some(Self { gap, situation, own })
     }
 
     /// A length in thousandths of the own radius.
@@ -199,11 +180,7 @@ impl<'a, S: Scalar> Approach<'a, S> {
 
     /// How far to the right of the gap's axis to go through it.
     fn lane(&self, has_lanes: bool) -> S {
-        if has_lanes {
-            self.gap.half * S::HALF
-        } else {
-            S::ZERO
-        }
+        if has_lanes { self.gap.half * S::HALF } else { S::ZERO }
     }
 
     fn traffic(&self) -> Traffic<S> {
@@ -224,8 +201,8 @@ impl<'a, S: Scalar> Approach<'a, S> {
             let place = self.gap.place(other.offset_m.xy());
             let speed_ahead = self.gap.turn(other.velocity_mps.xy()).x;
             let distance = place.norm();
-            let is_nearer = distance < own_distance - tie
-                || distance <= own_distance + tie && other.id < self.situation.body.id;
+            let is_nearer =
+                distance < own_distance - tie || distance <= own_distance + tie && other.id < self.situation.body.id;
             let is_beside_axis = place.y.abs();
             let reach = self.situation.body.radius_m + other.radius_m;
             traffic.largest = traffic.largest.max(other.radius_m);
@@ -236,9 +213,8 @@ impl<'a, S: Scalar> Approach<'a, S> {
             }
             if place.x < S::ZERO {
                 traffic.rank += i32::from(is_nearer && speed_ahead > -slow);
-                traffic.comes_out |= speed_ahead < -slow
-                    && place.x > -self.radii(YARD)
-                    && is_beside_axis < self.gap.half.max(reach);
+                traffic.comes_out |=
+                    speed_ahead < -slow && place.x > -self.radii(YARD) && is_beside_axis < self.gap.half.max(reach);
             } else if place.x > S::ZERO && distance < self.radii(YARD) && speed_ahead < slow {
                 traffic.opposite = true;
                 traffic.opposite_is_nearer |= is_nearer;
@@ -266,11 +242,7 @@ impl<'a, S: Scalar> Approach<'a, S> {
     fn place_to_wait(&self, rank: i32, has_lanes: bool) -> Option<Vec2<S>> {
         let radius = self.situation.body.radius_m;
         let own = self.own;
-        let side = if has_lanes || own.y >= S::ZERO {
-            S::ONE
-        } else {
-            -S::ONE
-        };
+        let side = if has_lanes || own.y >= S::ZERO { S::ONE } else { -S::ONE };
         let edge = self.gap.half.max(radius);
         let spot = Vec2::new(-self.radii(1_500), (edge + self.radii(1_200)) * side);
         let is_in_lane = own.y.abs() < edge + radius && own.x > -self.radii(YARD);

@@ -10,11 +10,7 @@ use crate::scalar::Scalar;
 ///
 /// That takes the symmetry out of ways that all cross in one point. O(nearby).
 pub fn spread<S: Scalar>(horizon_s: S, situation: &Situation<'_, Vec3<S>>) -> Vec3<S> {
-    if meets_somebody(horizon_s, situation) {
-        turned(situation.body.id, situation.wish)
-    } else {
-        situation.wish
-    }
+    if meets_somebody(horizon_s, situation) { turned(situation.body.id, situation.wish) } else { situation.wish }
 }
 
 /// Whether somebody is ahead, and nearer than the goal.
@@ -38,15 +34,10 @@ fn meets_somebody<S: Scalar>(horizon_s: S, situation: &Situation<'_, Vec3<S>>) -
 /// The wish turned by 25 degrees to the right as seen from above (straight up: to the east; straight down: to the
 /// west), and for each robot somewhat up or down of that, by its number.
 fn turned<S: Scalar>(own: RobotId, wish: Vec3<S>) -> Vec3<S> {
-    let (cos, sin) = (
-        S::from_ratio(90_631, 100_000),
-        S::from_ratio(42_262, 100_000),
-    );
+    let (cos, sin) = (S::from_ratio(90_631, 100_000), S::from_ratio(42_262, 100_000));
     let east = if wish.z > S::ZERO { S::ONE } else { -S::ONE };
     let right = wish.cross(Vec3::new(S::ZERO, S::ZERO, S::ONE));
-    let right = right
-        .normalized()
-        .unwrap_or(Vec3::new(east, S::ZERO, S::ZERO));
+    let right = right.normalized().unwrap_or(Vec3::new(east, S::ZERO, S::ZERO));
     let Some(above) = right.cross(wish).normalized() else {
         return wish;
     };

@@ -26,8 +26,7 @@ fn worked_example_of_the_paper_to_1e_6() {
 #[test]
 fn head_on_robots_are_sent_to_opposite_sides() {
     // Ahead 10 m, closing at 2 m/s, a little to the left: pass on the right.
-    let plane =
-        |offset: V, own: V| half_plane(own, &ball(offset, -own, 1.0), &params(20.0, 0.5)).unwrap();
+    let plane = |offset: V, own: V| half_plane(own, &ball(offset, -own, 1.0), &params(20.0, 0.5)).unwrap();
     let ours = plane(v(10.0, 0.1), v(1.0, 0.0));
     let theirs = plane(v(-10.0, -0.1), v(-1.0, 0.0));
     assert!(ours.normal.y < -0.9, "project on right leg {ours:?}");
@@ -44,10 +43,7 @@ fn overlapping_and_coincident_robots_are_sent_apart() {
     // 0.5 m of overlap in 0.05 s, half of it ours.
     assert!((overlapping.point.x + 5.0).abs() < 1e-9);
     let tied = |tie: V| {
-        let other = MovingBall {
-            tie,
-            ..ball(V::ZERO, V::ZERO, 1.0)
-        };
+        let other = MovingBall { tie, ..ball(V::ZERO, V::ZERO, 1.0) };
         half_plane(V::ZERO, &other, &p).unwrap().normal
     };
     assert_eq!(tied(v(0.0, 3.0)), -tied(v(0.0, -3.0)));
@@ -74,10 +70,7 @@ fn what_is_not_finite_gives_no_half_plane() {
 
 #[test]
 fn speed_limit_and_preference_alone() {
-    assert_eq!(
-        solve::<_, 4>(&[], 0, v(0.3, 0.4), 1.0).velocity_mps,
-        v(0.3, 0.4)
-    );
+    assert_eq!(solve::<_, 4>(&[], 0, v(0.3, 0.4), 1.0).velocity_mps, v(0.3, 0.4));
     let fast = solve::<_, 4>(&[], 0, v(3.0, 4.0), 1.0).velocity_mps;
     assert!((fast - v(0.6, 0.8)).norm() < 1e-12);
 }
@@ -90,10 +83,7 @@ fn copies_of_a_half_plane_change_nothing() {
         let (sin, cos) = Scalar::sin_cos(<f32 as Scalar>::from_ratio(k, 300));
         let normal = Vec2::new(cos, sin);
         let twin = normal.rotate(1.0, 1e-8).normalized().unwrap();
-        let plane = |normal: Vec2<f32>| HalfPlane {
-            point: normal * 0.08,
-            normal,
-        };
+        let plane = |normal: Vec2<f32>| HalfPlane { point: normal * 0.08, normal };
         let planes = [plane(normal), plane(twin), plane(normal)];
         let wish = Vec2::new(0.5, 0.01);
         let one = solve::<_, 4>(&planes[..1], 3, wish, 0.5);
@@ -105,10 +95,7 @@ fn copies_of_a_half_plane_change_nothing() {
 
 #[test]
 fn opposite_walls_are_met_halfway_and_hard_ones_not_at_all() {
-    let plane = |x: f64, nx: f64| HalfPlane {
-        point: v(x, 0.0),
-        normal: v(nx, 0.0),
-    };
+    let plane = |x: f64, nx: f64| HalfPlane { point: v(x, 0.0), normal: v(nx, 0.0) };
     // x >= 0.5 and x <= -0.3 contradict each other.
     let planes = [plane(0.5, 1.0), plane(-0.3, -1.0)];
     let soft = solve::<_, 4>(&planes, 0, V::ZERO, 1.0);

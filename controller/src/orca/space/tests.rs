@@ -40,9 +40,7 @@ fn robots_that_fly_exactly_at_each_other_turn_to_opposite_sides() {
         (v(0.0, 0.0, -10.0), v(-1.0, 0.0, 0.0)),
     ] {
         let own = offset * 0.1;
-        let space = |offset: V, own: V| {
-            half_space(own, &ball(offset, -own, 1.0), &params(20.0, 0.5)).unwrap()
-        };
+        let space = |offset: V, own: V| half_space(own, &ball(offset, -own, 1.0), &params(20.0, 0.5)).unwrap();
         let (ours, theirs) = (space(offset, own), space(-offset, -own));
         assert!(ours.normal.dot(side) > 0.9, "{ours:?}");
         assert!((ours.normal + theirs.normal).norm() < 1e-12, "reciprocal");
@@ -57,10 +55,7 @@ fn overlapping_and_coincident_robots_are_sent_apart() {
     // 0.5 m of overlap in 0.05 s, half of it ours.
     assert!((overlapping.point.z + 5.0).abs() < 1e-9);
     let tied = |tie: V| {
-        let other = MovingBall {
-            tie,
-            ..ball(V::ZERO, V::ZERO, 1.0)
-        };
+        let other = MovingBall { tie, ..ball(V::ZERO, V::ZERO, 1.0) };
         half_space(V::ZERO, &other, &p).unwrap().normal
     };
     assert_eq!(tied(v(0.0, 0.0, 3.0)), -tied(v(0.0, 0.0, -3.0)));
@@ -94,10 +89,7 @@ fn what_is_not_finite_gives_nothing_and_never_spreads() {
 
 #[test]
 fn opposite_half_spaces_are_met_halfway_and_hard_ones_not_at_all() {
-    let space = |z: f64, nz: f64| HalfSpace {
-        point: v(0.3, -0.7, z),
-        normal: v(0.0, 0.0, nz),
-    };
+    let space = |z: f64, nz: f64| HalfSpace { point: v(0.3, -0.7, z), normal: v(0.0, 0.0, nz) };
     let spaces = [space(0.5, 1.0), space(-0.3, -1.0)];
     let soft = solve::<_, 4>(&spaces, 0, V::ZERO, 1.0);
     assert!((soft.velocity_mps.z - 0.1).abs() < 1e-9, "{soft:?}");
@@ -140,8 +132,7 @@ fn nearest_permitted(spaces: &[HalfSpace<V>], preferred: V, speed: f64) -> Optio
     let onto_ball = |foot: V, flat: V| {
         let half = speed * speed - foot.norm_squared();
         let unit = flat.normalized();
-        unit.filter(|_| half >= 0.0)
-            .map(|unit| foot + unit * half.sqrt())
+        unit.filter(|_| half >= 0.0).map(|unit| foot + unit * half.sqrt())
     };
     for (i, one) in spaces.iter().enumerate() {
         let flat = |at: V| at - one.normal * one.normal.dot(at);
@@ -164,12 +155,8 @@ fn nearest_permitted(spaces: &[HalfSpace<V>], preferred: V, speed: f64) -> Optio
             }
         }
     }
-    let permitted = candidates
-        .into_iter()
-        .filter(|at| at.norm() <= speed + 1e-9 && worst(spaces, *at) < 1e-9);
-    permitted
-        .map(|at| (at - preferred).norm())
-        .min_by(f64::total_cmp)
+    let permitted = candidates.into_iter().filter(|at| at.norm() <= speed + 1e-9 && worst(spaces, *at) < 1e-9);
+    permitted.map(|at| (at - preferred).norm()).min_by(f64::total_cmp)
 }
 
 /// The least penetration over a grid of velocities in the ball.

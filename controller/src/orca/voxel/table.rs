@@ -105,15 +105,8 @@ const fn sines<const L: usize>(legs: &[[i16; 2]; L]) -> [u16; L] {
 }
 
 /// The outward normal at the border nearest to the points in each direction.
-#[expect(
-    clippy::indexing_slicing,
-    clippy::integer_division_remainder_used,
-    reason = "runs at compile time"
-)]
-const fn normals<const L: usize, const N: usize>(
-    legs: &[[i16; 2]; L],
-    directions: usize,
-) -> [[i16; 2]; N] {
+#[expect(clippy::indexing_slicing, clippy::integer_division_remainder_used, reason = "runs at compile time")]
+const fn normals<const L: usize, const N: usize>(legs: &[[i16; 2]; L], directions: usize) -> [[i16; 2]; N] {
     let mut normals = [[0; 2]; N];
     let mut at = 0;
     while at < N {
@@ -130,11 +123,7 @@ const fn normal(leg: [i16; 2], x: f64, y: f64) -> [i16; 2] {
     let scale = ONE as f64 / root(x * x + y * y);
     let found = [rounded(x * scale), rounded(y * scale)];
     // The disc is nearest before the leg's own normal; rounding must not turn one past the other.
-    if found[0] as i32 * leg[1] as i32 > found[1] as i32 * leg[0] as i32 {
-        found
-    } else {
-        leg
-    }
+    if found[0] as i32 * leg[1] as i32 > found[1] as i32 * leg[0] as i32 { found } else { leg }
 }
 
 const fn rounded(x: f64) -> i16 {

@@ -12,11 +12,7 @@ fn v(x: f64, y: f64) -> V {
     V::new(x, y)
 }
 
-const PARAMS: Params<f64> = Params {
-    horizon_s: 2.0,
-    separation_s: 0.05,
-    share: 1.0,
-};
+const PARAMS: Params<f64> = Params { horizon_s: 2.0, separation_s: 0.05, share: 1.0 };
 
 /// Robots of 0.1 to 0.5 m within 5 m, at up to 1.5 m/s.
 fn sample(rng: &mut Rng) -> (V, MovingBall<V>) {
@@ -45,10 +41,7 @@ impl Errors {
             let (own, other) = sample(&mut rng);
             let exact = half_plane(own, &other, &PARAMS).unwrap();
             let found = lookup(own, &other);
-            let angle = libm::atan2(
-                exact.normal.det(found.normal),
-                exact.normal.dot(found.normal),
-            );
+            let angle = libm::atan2(exact.normal.det(found.normal), exact.normal.dot(found.normal));
             angles.push(angle.to_degrees().abs());
             let unit = other.radii_m / PARAMS.horizon_s;
             changes.push((found.penetration(own) - exact.penetration(own)).abs() / unit);
@@ -61,11 +54,7 @@ impl Errors {
 
     fn mean_p99_max(values: &[f64]) -> [f64; 3] {
         let mean = values.iter().sum::<f64>() / values.len() as f64;
-        [
-            mean,
-            values[values.len() * 99 / 100],
-            values[values.len() - 1],
-        ]
+        [mean, values[values.len() * 99 / 100], values[values.len() - 1]]
     }
 }
 
@@ -86,10 +75,7 @@ fn single_node<T: VoxelTable>(own: V, other: &MovingBall<V>) -> HalfPlane<f64> {
     let normal = v(-f64::from(x), y.into()).normalized().unwrap();
     let side = if across > 0.0 { normal.y } else { -normal.y };
     let normal = ahead.rotate(normal.x, side);
-    HalfPlane {
-        point: own + normal * (other.radii_m * 0.5 - w.dot(normal)),
-        normal,
-    }
+    HalfPlane { point: own + normal * (other.radii_m * 0.5 - w.dot(normal)), normal }
 }
 
 /// Angle (degrees) and change ((R_A + R_B) / tau): mean, 99 of 100, greatest.
@@ -145,10 +131,7 @@ fn worked_example_of_the_paper_within_the_tables_error() {
 #[test]
 fn overlap_nonsense_and_the_discs_centre_are_as_in_the_analytic_form() {
     let both = |own: V, other: &MovingBall<V>, params: &Params<f64>| {
-        (
-            half_plane_from_table::<f64, VoxelTable2k>(own, other, params),
-            half_plane(own, other, params),
-        )
+        (half_plane_from_table::<f64, VoxelTable2k>(own, other, params), half_plane(own, other, params))
     };
     for other in [
         ball(v(0.5, 0.0), v(0.1, 0.0), 1.0),
@@ -162,10 +145,7 @@ fn overlap_nonsense_and_the_discs_centre_are_as_in_the_analytic_form() {
         let (found, exact) = both(v(0.2, 0.1), &other, &PARAMS);
         assert_eq!(found, exact, "{other:?}");
     }
-    let stopped = Params {
-        horizon_s: 0.0,
-        ..PARAMS
-    };
+    let stopped = Params { horizon_s: 0.0, ..PARAMS };
     let other = ball(v(3.0, 0.0), V::ZERO, 1.0);
     assert_eq!(both(V::ZERO, &other, &stopped), (None, None));
     // Straight to the disc's centre.
@@ -178,21 +158,14 @@ fn overlap_nonsense_and_the_discs_centre_are_as_in_the_analytic_form() {
 #[test]
 fn stored_normals_lie_between_backwards_and_the_leg() {
     fn check<T: VoxelTable>() {
-        let VelocityObstacleTable {
-            sines,
-            directions,
-            normals,
-        } = T::TABLE;
+        let VelocityObstacleTable { sines, directions, normals } = T::TABLE;
         assert_eq!(normals.len(), sines.len() * directions);
         assert!(sines.is_sorted_by(|a, b| a < b));
         assert_eq!((sines[0], i32::from(sines[sines.len() - 1])), (0, ONE));
         for (level, nodes) in normals.chunks(directions).enumerate() {
             for &[x, y] in nodes {
                 let length = v(x.into(), y.into()).norm();
-                assert!(
-                    (length - f64::from(ONE)).abs() < 1.0 && x >= 0 && y >= 0,
-                    "{x} {y}"
-                );
+                assert!((length - f64::from(ONE)).abs() < 1.0 && x >= 0 && y >= 0, "{x} {y}");
                 let sine = f64::from(sines[level]) / f64::from(ONE);
                 assert!(f64::from(x) / length >= sine);
             }

@@ -15,10 +15,7 @@ fn walls_ahead_beside_and_touching() {
     let forward = v(1.0, 0.0);
     // A wall 2 m ahead across the way, radius 0.5, 1 s: at most 1.5 m/s towards it.
     let ahead = wall(forward, [v(2.0, -5.0), v(2.0, 5.0)], 0.5, 1.0).unwrap();
-    assert!(
-        (ahead.point.dot(ahead.normal) + 1.5).abs() < 1e-9,
-        "{ahead:?}"
-    );
+    assert!((ahead.point.dot(ahead.normal) + 1.5).abs() < 1e-9, "{ahead:?}");
     assert!((ahead.normal - v(-1.0, 0.0)).norm() < 1e-9);
     // A wall along the way at 1 m to the left: sideways at most 0.5 m/s.
     let beside = wall(forward, [v(-50.0, 1.0), v(50.0, 1.0)], 0.5, 1.0).unwrap();

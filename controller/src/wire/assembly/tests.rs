@@ -11,27 +11,14 @@ type Assembler = TemplateAssembler<F>;
 
 /// A template whose every field says which one it is.
 fn template(mark: u8, len: usize) -> Template<F> {
-    let entry = |k: usize| TemplateEntry {
-        offset: Cell::new(k as i16, mark.into()),
-        id: RobotId(k as u32),
-        hops: 1 + k as u8,
-    };
-    Template {
-        slot: mark,
-        offset: Cell::new(-1, mark.into()),
-        entries: (0..len).map(entry).collect(),
-    }
+    let entry =
+        |k: usize| TemplateEntry { offset: Cell::new(k as i16, mark.into()), id: RobotId(k as u32), hops: 1 + k as u8 };
+    Template { slot: mark, offset: Cell::new(-1, mark.into()), entries: (0..len).map(entry).collect() }
 }
 
 fn parts(version: u8, template: &Template<F>) -> StdVec<TemplateAssignment> {
-    let Template {
-        slot,
-        offset,
-        entries,
-    } = template;
-    TemplateAssignment::split(TO, version, *slot, *offset, entries)
-        .unwrap()
-        .collect()
+    let Template { slot, offset, entries } = template;
+    TemplateAssignment::split(TO, version, *slot, *offset, entries).unwrap().collect()
 }
 
 /// Puts every part in and returns what came out.
@@ -39,10 +26,7 @@ fn put_all<'a>(
     assembler: &mut Assembler,
     parts: impl IntoIterator<Item = &'a TemplateAssignment>,
 ) -> StdVec<Template<F>> {
-    parts
-        .into_iter()
-        .filter_map(|part| assembler.put(part).unwrap())
-        .collect()
+    parts.into_iter().filter_map(|part| assembler.put(part).unwrap()).collect()
 }
 
 #[test]
@@ -62,13 +46,9 @@ fn templates_of_every_size_survive_splitting() {
 
 #[test]
 fn splitter_refuses_what_no_assembler_could_take() {
-    let entry = TemplateEntry {
-        hops: 1,
-        ..NO_ENTRY
-    };
-    let split = |entries: &[TemplateEntry]| {
-        TemplateAssignment::split(TO, 0, 0, Cell::default(), entries).map(Iterator::count)
-    };
+    let entry = TemplateEntry { hops: 1, ..NO_ENTRY };
+    let split =
+        |entries: &[TemplateEntry]| TemplateAssignment::split(TO, 0, 0, Cell::default(), entries).map(Iterator::count);
     assert_eq!(split(&[entry; MAX_TEMPLATE]), Ok(MAX_PARTS));
     assert_eq!(split(&[entry; MAX_TEMPLATE + 1]), Err(PartError::TooLarge));
     assert_eq!(split(&[entry, NO_ENTRY]), Err(PartError::NoHops));
@@ -76,18 +56,11 @@ fn splitter_refuses_what_no_assembler_could_take() {
 
 #[test]
 fn largest_template_of_all_comes_through() {
-    let entries: StdVec<_> = (0..MAX_TEMPLATE)
-        .map(|k| TemplateEntry {
-            offset: Cell::new(k as i16, 0),
-            id: RobotId(1),
-            hops: 1,
-        })
-        .collect();
+    let entries: StdVec<_> =
+        (0..MAX_TEMPLATE).map(|k| TemplateEntry { offset: Cell::new(k as i16, 0), id: RobotId(1), hops: 1 }).collect();
     let mut assembler = TemplateAssembler::<MAX_TEMPLATE>::new();
     let split = TemplateAssignment::split(TO, 0, 0, Cell::default(), &entries).unwrap();
-    let whole: StdVec<_> = split
-        .filter_map(|part| assembler.put(&part).unwrap())
-        .collect();
+    let whole: StdVec<_> = split.filter_map(|part| assembler.put(&part).unwrap()).collect();
     assert_eq!(whole.len(), 1);
     assert_eq!(whole[0].entries[..], entries[..]);
 }
@@ -106,10 +79,7 @@ fn template_one_larger_than_the_capacity_is_refused_by_its_every_part() {
 #[test]
 fn robot_without_neighbours_needs_no_capacity() {
     let parts = parts(1, &template(3, 0));
-    let whole = TemplateAssembler::<0>::new()
-        .put(&parts[0])
-        .unwrap()
-        .unwrap();
+    let whole = TemplateAssembler::<0>::new().put(&parts[0]).unwrap().unwrap();
     assert_eq!(whole.slot, 3);
     assert!(whole.entries.is_empty());
 }
@@ -129,36 +99,12 @@ fn impossible_parts_are_named_and_change_nothing() {
         assert_eq!(assembler, before);
     };
     for version in [1, 2] {
-        refuses(
-            &|p| (p.version, p.part) = (version, 3),
-            1,
-            PartError::Number,
-        );
-        refuses(
-            &|p| (p.version, p.parts) = (version, 1),
-            1,
-            PartError::Number,
-        );
-        refuses(
-            &|p| (p.version, p.parts) = (version, 0),
-            1,
-            PartError::Number,
-        );
-        refuses(
-            &|p| (p.version, p.part, p.parts) = (version, 0, 0),
-            1,
-            PartError::Number,
-        );
-        refuses(
-            &|p| (p.version, p.part, p.parts) = (version, 255, 255),
-            1,
-            PartError::Number,
-        );
-        refuses(
-            &|p| (p.version, p.parts) = (version, 255),
-            1,
-            PartError::TooLarge,
-        );
+        refuses(&|p| (p.version, p.part) = (version, 3), 1, PartError::Number);
+        refuses(&|p| (p.version, p.parts) = (version, 1), 1, PartError::Number);
+        refuses(&|p| (p.version, p.parts) = (version, 0), 1, PartError::Number);
+        refuses(&|p| (p.version, p.part, p.parts) = (version, 0, 0), 1, PartError::Number);
+        refuses(&|p| (p.version, p.part, p.parts) = (version, 255, 255), 1, PartError::Number);
+        refuses(&|p| (p.version, p.parts) = (version, 255), 1, PartError::TooLarge);
         refuses(
             &|p| {
                 p.version = version;

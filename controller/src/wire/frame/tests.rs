@@ -14,17 +14,13 @@ type Outbox = heapless::Vec<u8, 256>;
 
 const LAST: RobotId = MAX_TAGGED_ROBOT;
 const FAR: Cell = Cell::new(i16::MIN, i16::MAX);
-const HEADER: Header = Header {
-    boot: 7,
-    sender: RobotId(12),
-    sequence: 0x0102,
-};
+const HEADER: Header = Header { boot: 7, sender: RobotId(12), sequence: 0x0102 };
 
 /// [`beacon`] under [`HEADER`], packed, summed and stuffed by hand from the format's description.
 const GOLDEN_BEACON: [u8; 48] = [
-    0x06, 0x02, 0x07, 0x0C, 0x02, 0x01, 0x04, 0x40, 0x42, 0x0F, 0x03, 0x39, 0x30, 0x01, 0x05, 0x5A,
-    0xFD, 0xFF, 0xFF, 0x01, 0x01, 0x01, 0x02, 0xFA, 0x01, 0x01, 0x04, 0xFF, 0xFF, 0x96, 0x02, 0x03,
-    0x0A, 0xFE, 0xFF, 0x03, 0x90, 0x01, 0x01, 0x04, 0x02, 0x62, 0x02, 0x62, 0x03, 0xC2, 0x1E, 0x00,
+    0x06, 0x02, 0x07, 0x0C, 0x02, 0x01, 0x04, 0x40, 0x42, 0x0F, 0x03, 0x39, 0x30, 0x01, 0x05, 0x5A, 0xFD, 0xFF, 0xFF,
+    0x01, 0x01, 0x01, 0x02, 0xFA, 0x01, 0x01, 0x04, 0xFF, 0xFF, 0x96, 0x02, 0x03, 0x0A, 0xFE, 0xFF, 0x03, 0x90, 0x01,
+    0x01, 0x04, 0x02, 0x62, 0x02, 0x62, 0x03, 0xC2, 0x1E, 0x00,
 ];
 
 fn beacon() -> Message {
@@ -45,42 +41,15 @@ fn beacon() -> Message {
 
 /// The longest message of each kind with its bound.
 fn longest() -> [(Message, usize); 7] {
-    let entry = TemplateEntry {
-        offset: FAR,
-        id: LAST,
-        hops: u8::MAX,
-    };
+    let entry = TemplateEntry { offset: FAR, id: LAST, hops: u8::MAX };
     [
+        (Message::Beacon(Beacon { leader: LAST, ..Beacon::default() }), Beacon::MAX_FRAME_LEN),
+        (Message::Compact(CompactBeacon::default()), CompactBeacon::MAX_FRAME_LEN),
         (
-            Message::Beacon(Beacon {
-                leader: LAST,
-                ..Beacon::default()
-            }),
-            Beacon::MAX_FRAME_LEN,
-        ),
-        (
-            Message::Compact(CompactBeacon::default()),
-            CompactBeacon::MAX_FRAME_LEN,
-        ),
-        (
-            Message::Request(Request {
-                to: LAST,
-                origin: LAST,
-                number: 0,
-                kind: RequestKind::Stop,
-                valid_ms: 0,
-            }),
+            Message::Request(Request { to: LAST, origin: LAST, number: 0, kind: RequestKind::Stop, valid_ms: 0 }),
             Request::MAX_FRAME_LEN,
         ),
-        (
-            Message::Ack(Ack {
-                to: LAST,
-                boot: 0,
-                number: 0,
-                accepted: true,
-            }),
-            Ack::MAX_FRAME_LEN,
-        ),
+        (Message::Ack(Ack { to: LAST, boot: 0, number: 0, accepted: true }), Ack::MAX_FRAME_LEN),
         (
             Message::Template(TemplateAssignment {
                 to: LAST,
@@ -93,14 +62,7 @@ fn longest() -> [(Message, usize); 7] {
             }),
             TemplateAssignment::MAX_FRAME_LEN,
         ),
-        (
-            Message::Goal(GoalAssignment {
-                to: LAST,
-                version: 0,
-                target: FAR,
-            }),
-            GoalAssignment::MAX_FRAME_LEN,
-        ),
+        (Message::Goal(GoalAssignment { to: LAST, version: 0, target: FAR }), GoalAssignment::MAX_FRAME_LEN),
         (
             Message::Waypoint(WaypointAssignment {
                 to: LAST,
@@ -157,9 +119,7 @@ fn seal(content: &[u8]) -> StdVec<u8> {
 /// Version, header and message, without tag and CRC.
 fn content(version: u8, header: Header, message: &Message) -> StdVec<u8> {
     let mut buffer = [0; MAX_FRAME_LEN];
-    postcard::to_slice(&(version, header, message), &mut buffer)
-        .unwrap()
-        .to_vec()
+    postcard::to_slice(&(version, header, message), &mut buffer).unwrap().to_vec()
 }
 
 #[test]
@@ -175,10 +135,7 @@ fn the_crc_is_the_catalogue_s_x25() {
 
 #[test]
 fn the_longest_message_of_each_kind_reaches_its_bound() {
-    let header = Header {
-        sender: LAST,
-        ..HEADER
-    };
+    let header = Header { sender: LAST, ..HEADER };
     for (message, bound) in longest() {
         assert_eq!(encoded(header, &message, Some([0; TAG_LEN])).len(), bound);
         assert_eq!(encoded(header, &message, None).len(), bound - TAG_LEN);
@@ -219,10 +176,7 @@ fn an_outbox_without_room_stays_as_it_was() {
 
 #[test]
 fn nobody_can_neither_send_nor_be_heard() {
-    let header = Header {
-        sender: RobotId::NOBODY,
-        ..HEADER
-    };
+    let header = Header { sender: RobotId::NOBODY, ..HEADER };
     let mut out = Outbox::new();
     let result = encode(header, &beacon(), &mut out);
     assert_eq!(result, Err(EncodeError::NoSender));
@@ -244,10 +198,7 @@ fn each_fault_has_its_answer() {
     assert_eq!(decode(&[2, 9]), Err(DecodeError::Crc));
     assert_eq!(decode(&seal(&[])), Err(DecodeError::Body));
     assert_eq!(decode(&seal(&[VERSION])), Err(DecodeError::Body));
-    assert_eq!(
-        decode(&seal(&[VERSION | TAGGED, 1, 2])),
-        Err(DecodeError::Body)
-    );
+    assert_eq!(decode(&seal(&[VERSION | TAGGED, 1, 2])), Err(DecodeError::Body));
     let mut sound = content(VERSION, HEADER, &beacon());
     assert!(decode(&seal(&sound)).is_ok());
     sound.push(0);
@@ -266,12 +217,7 @@ fn every_foreign_version_is_named() {
 
 #[test]
 fn an_unknown_value_in_a_field_is_refused() {
-    let ack = Message::Ack(Ack {
-        to: RobotId(1),
-        boot: 4,
-        number: 9,
-        accepted: true,
-    });
+    let ack = Message::Ack(Ack { to: RobotId(1), boot: 4, number: 9, accepted: true });
     let sound = content(VERSION, HEADER, &ack);
     let tail = sound.len() - 1;
     assert_eq!(sound[tail - 4..], [3, 1, 4, 9, 1]);
@@ -298,9 +244,7 @@ fn the_tag_covers_everything_before_it_and_is_handed_out() {
     let bare = encoded(HEADER, &beacon(), None);
     let bare = &bare[..bare.len() - 1];
     assert_eq!(decode(bare).unwrap().tag, None);
-    let refused = decode_verified(bare, |_, found| {
-        found.map(|_| ()).ok_or(DecodeError::Unsigned)
-    });
+    let refused = decode_verified(bare, |_, found| found.map(|_| ()).ok_or(DecodeError::Unsigned));
     assert_eq!(refused, Err(DecodeError::Unsigned));
 }
 
@@ -308,9 +252,7 @@ fn the_tag_covers_everything_before_it_and_is_handed_out() {
 fn large_numbers_of_robots_are_refused_in_frames_with_a_tag() {
     let large = RobotId(MAX_TAGGED_ROBOT.0 + 1);
     let from = |sender| Header { sender, ..HEADER };
-    let Message::Beacon(known) = beacon() else {
-        panic!("a beacon")
-    };
+    let Message::Beacon(known) = beacon() else { panic!("a beacon") };
     let follower = |leader| Message::Beacon(Beacon { leader, ..known });
     let say = |sender, leader| {
         let (mut out, tag) = (Outbox::new(), [0; TAG_LEN]);
@@ -355,11 +297,7 @@ fn flip(bytes: &mut [u8], bit: usize) {
 
 /// Where COBS' own bytes and the delimiter are.
 fn links(frame: &[u8]) -> StdVec<usize> {
-    let next = |at: &usize| {
-        Some(usize::from(frame[*at]))
-            .filter(|step| *step != 0)
-            .map(|step| at + step)
-    };
+    let next = |at: &usize| Some(usize::from(frame[*at])).filter(|step| *step != 0).map(|step| at + step);
     core::iter::successors(Some(0), next).collect()
 }
 
@@ -408,10 +346,7 @@ fn of_noise_behind_the_crc_one_in_65536_passes_and_fewer_parse() {
     let mut accepted = 0;
     let mut passed = 0;
     for round in 0..400_000_u32 {
-        let header = Header {
-            sequence: round as u16,
-            ..HEADER
-        };
+        let header = Header { sequence: round as u16, ..HEADER };
         let mut out = Outbox::new();
         encode(header, &beacon(), &mut out).unwrap();
         let mut damaged = out.to_vec();
@@ -429,10 +364,7 @@ fn of_noise_behind_the_crc_one_in_65536_passes_and_fewer_parse() {
             Err(_) => passed += 1,
         }
     }
-    assert!(
-        accepted + passed <= 20,
-        "{accepted} accepted, {passed} passed"
-    );
+    assert!(accepted + passed <= 20, "{accepted} accepted, {passed} passed");
 }
 
 proptest! {
@@ -507,13 +439,7 @@ proptest! {
 #[test]
 fn errors_name_the_number_and_the_remedy() {
     let text = std::format!("{}", DecodeError::Version(7));
-    assert_eq!(
-        text,
-        std::format!("the frame is of version 7, not {VERSION}; update the older side")
-    );
+    assert_eq!(text, std::format!("the frame is of version 7, not {VERSION}; update the older side"));
     let text = std::format!("{}", EncodeError::Robot(RobotId(70_000)));
-    assert!(
-        text.contains("70000") && text.contains("give the robot a smaller one"),
-        "{text}"
-    );
+    assert!(text.contains("70000") && text.contains("give the robot a smaller one"), "{text}");
 }

@@ -17,21 +17,11 @@ fn after(millis: i32) -> Instant {
 }
 
 fn frame(sender: RobotId, boot: u8) -> Header {
-    Header {
-        boot,
-        sender,
-        sequence: 0,
-    }
+    Header { boot, sender, sequence: 0 }
 }
 
 fn request(origin: RobotId, number: u8, kind: RequestKind, valid_ms: u16) -> Request {
-    Request {
-        to: OWN,
-        origin,
-        number,
-        kind,
-        valid_ms,
-    }
+    Request { to: OWN, origin, number, kind, valid_ms }
 }
 
 /// Receives a request that its sender asks for itself; gives (accepted, new).
@@ -109,10 +99,7 @@ fn a_stop_that_comes_after_the_resume_sent_later_is_ignored() {
         assert!(!orders.is_stopped(after(10)));
         // Redirection is another matter.
         assert_eq!(receive(&mut orders, A, number, Redirect, after(10)), NEW);
-        assert_eq!(
-            receive(&mut orders, A, number, Redirect, after(20)),
-            REPEATED
-        );
+        assert_eq!(receive(&mut orders, A, number, Redirect, after(20)), REPEATED);
     }
 }
 
@@ -240,9 +227,7 @@ fn converse(mut radio: Radio, start: Instant) -> u32 {
             let number = requests.ask(OWN, A, kind, valid_ms, now).unwrap();
             if requests != older {
                 if kind.is_standing() && requests.len() == older.len() {
-                    let replaced = asked
-                        .iter_mut()
-                        .rfind(|a| a.kind.is_standing() && a.ends == 0);
+                    let replaced = asked.iter_mut().rfind(|a| a.kind.is_standing() && a.ends == 0);
                     replaced.unwrap().ends += 1;
                 }
                 places[usize::from(number)] = asked.len();
@@ -273,9 +258,8 @@ fn converse(mut radio: Radio, start: Instant) -> u32 {
         for (place, request) in Radio::arrived(&mut to_b, millis) {
             let answer = orders.receive(frame(A, 3), &request, now);
             let standing = request.kind.is_standing();
-            let is_latest = !asked[place + 1..]
-                .iter()
-                .any(|a| a.kind.is_standing() == standing && a.delivered.is_some());
+            let is_latest =
+                !asked[place + 1..].iter().any(|a| a.kind.is_standing() == standing && a.delivered.is_some());
             let first = asked[place].delivered.is_none();
             assert_eq!(answer.is_new, first && is_latest, "request {place}");
             assert_eq!(answer.ack.accepted, is_latest);

@@ -18,12 +18,7 @@ fn requests<const P: usize>() -> Requests<P> {
 
 /// An acknowledgement of request `number` of [`requests`].
 fn ack(number: u8) -> Ack {
-    Ack {
-        to: OWN,
-        boot: 0,
-        number,
-        accepted: true,
-    }
+    Ack { to: OWN, boot: 0, number, accepted: true }
 }
 
 fn poll<const P: usize>(requests: &mut Requests<P>, now: Instant) -> StdVec<Due> {
@@ -46,13 +41,7 @@ fn a_request_is_sent_at_once_and_then_once_per_interval() {
     assert_eq!(requests.poll_at(START), None);
     let number = requests.ask(A, OWN, Stop, 60_000, START).unwrap();
     assert_eq!(requests.poll_at(START), Some(START));
-    let expected = Request {
-        to: A,
-        origin: OWN,
-        number,
-        kind: Stop,
-        valid_ms: 60_000,
-    };
+    let expected = Request { to: A, origin: OWN, number, kind: Stop, valid_ms: 60_000 };
     assert_eq!(poll(&mut requests, START), [Due::Send(expected)]);
     for millis in 0..200 {
         assert_eq!(poll(&mut requests, after(millis)), []);
@@ -68,10 +57,7 @@ fn a_request_is_sent_at_once_and_then_once_per_interval() {
 #[test]
 fn an_unanswered_request_is_sent_as_often_as_allowed_and_then_expires() {
     for attempts in [0, 1, 2, 5] {
-        let retry = Retry {
-            attempts,
-            ..Retry::default()
-        };
+        let retry = Retry { attempts, ..Retry::default() };
         let mut requests = Requests::<1>::new(OWN, 0, retry);
         requests.ask(A, OWN, Redirect, u16::MAX, START).unwrap();
         let mut all = StdVec::new();
@@ -99,10 +85,7 @@ fn a_request_expires_with_its_validity_but_not_before_its_first_send() {
     assert_eq!(poll(&mut requests, START).len(), 1);
     assert_eq!(sent(&poll(&mut requests, after(250))).len(), 1);
     assert_eq!(requests.poll_at(after(250)), Some(after(300)));
-    assert!(matches!(
-        poll(&mut requests, after(300)).as_slice(),
-        [Due::Expired(_)]
-    ));
+    assert!(matches!(poll(&mut requests, after(300)).as_slice(), [Due::Expired(_)]));
 }
 
 #[test]
@@ -170,17 +153,8 @@ fn an_acknowledgement_for_another_boot_or_robot_ends_nothing() {
     for boot in [1, 0, u8::MAX] {
         let mut requests = Requests::<1>::new(OWN, boot, Retry::default());
         let number = requests.ask(A, OWN, Stop, 1, START).unwrap();
-        let right = Ack {
-            boot,
-            ..ack(number)
-        };
-        for wrong in [
-            Ack { to: B, ..right },
-            Ack {
-                boot: boot.wrapping_sub(1),
-                ..right
-            },
-        ] {
+        let right = Ack { boot, ..ack(number) };
+        for wrong in [Ack { to: B, ..right }, Ack { boot: boot.wrapping_sub(1), ..right }] {
             assert_eq!(requests.acknowledged(A, &wrong), None);
         }
         assert!(requests.acknowledged(A, &right).is_some());
@@ -190,9 +164,8 @@ fn an_acknowledgement_for_another_boot_or_robot_ends_nothing() {
 #[test]
 fn as_many_requests_as_there_can_be_have_different_numbers() {
     let mut requests = requests::<128>();
-    let mut numbers: StdVec<u8> = (1..=128)
-        .map(|to| requests.ask(RobotId(to), OWN, Stop, 1_000, START).unwrap())
-        .collect();
+    let mut numbers: StdVec<u8> =
+        (1..=128).map(|to| requests.ask(RobotId(to), OWN, Stop, 1_000, START).unwrap()).collect();
     numbers.sort_unstable();
     numbers.dedup();
     assert_eq!(numbers.len(), 128);
@@ -203,10 +176,7 @@ fn as_many_requests_as_there_can_be_have_different_numbers() {
 #[test]
 fn a_careless_retry_policy_still_ends() {
     for interval in [Duration::ZERO, Duration::from_micros(-5), Duration::MAX] {
-        let retry = Retry {
-            attempts: 255,
-            interval,
-        };
+        let retry = Retry { attempts: 255, interval };
         let mut requests = Requests::<1>::new(OWN, 0, retry);
         requests.ask(A, OWN, Stop, 1_000, START).unwrap();
         let sends = core::iter::from_fn(|| requests.poll(START)).count();

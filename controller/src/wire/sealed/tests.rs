@@ -19,19 +19,11 @@ fn sealed(starts: u32) -> Sealed<4> {
 }
 
 fn header(sender: u32, sequence: u16) -> Header {
-    Header {
-        boot: 3,
-        sender: RobotId(sender),
-        sequence,
-    }
+    Header { boot: 3, sender: RobotId(sender), sequence }
 }
 
 fn goal() -> Message {
-    Message::Goal(super::super::GoalAssignment {
-        to: RobotId(2),
-        version: 4,
-        target: crate::grid::Cell::new(-3, 8),
-    })
+    Message::Goal(super::super::GoalAssignment { to: RobotId(2), version: 4, target: crate::grid::Cell::new(-3, 8) })
 }
 
 /// A frame without its delimiter.
@@ -70,12 +62,7 @@ fn the_bytes_of_a_sealed_frame_are_these() {
     assert_eq!(X25.checksum(body).to_le_bytes(), crc);
     let (text, code) = body.split_at(body.len() - 4);
     // version | tagged, boot, sender, sequence, goal: kind, to, version, x, y (zigzag); epoch 5 << 12.
-    assert_eq!(
-        text,
-        [
-            0x82, 3, 12, 2, 1, 5, 2, 4, 0xFD, 0xFF, 8, 0, 0x00, 0x50, 0, 0
-        ]
-    );
+    assert_eq!(text, [0x82, 3, 12, 2, 1, 5, 2, 4, 0xFD, 0xFF, 8, 0, 0x00, 0x50, 0, 0]);
     assert_eq!(code, &Mac::new(&key()).of(&[text])[..4]);
     let plain = said(&mut Postcard, header(12, 0x0102));
     assert_eq!(frame.len(), plain.len() + TAG_LEN);
@@ -108,11 +95,7 @@ fn frames_that_overtake_each_other_are_heard_once_each() {
         assert!(receiver.decode(&frames[at]).is_ok(), "{at}");
     }
     for at in [7, 8, 9, 10, 38, 39] {
-        assert_eq!(
-            receiver.decode(&frames[at]),
-            Err(DecodeError::Replayed),
-            "{at}"
-        );
+        assert_eq!(receiver.decode(&frames[at]), Err(DecodeError::Replayed), "{at}");
     }
 }
 
@@ -137,9 +120,7 @@ fn a_start_has_so_many_frames_and_starts_end() {
     for _ in 1..1 << WRAP_BITS {
         for sequence in [1, 0] {
             out.clear();
-            sender
-                .encode(header(1, sequence), &goal(), &mut out)
-                .unwrap();
+            sender.encode(header(1, sequence), &goal(), &mut out).unwrap();
         }
     }
     out.clear();
@@ -160,9 +141,7 @@ fn a_start_has_so_many_frames_and_starts_end() {
 fn a_sender_that_starts_anew_is_heard_and_what_was_recorded_before_is_not() {
     let mut receiver = sealed(0);
     let mut sender = sealed(4);
-    let recorded: StdVec<_> = (100..110)
-        .map(|n| said(&mut sender, header(1, n)))
-        .collect();
+    let recorded: StdVec<_> = (100..110).map(|n| said(&mut sender, header(1, n))).collect();
     for frame in &recorded {
         assert!(receiver.decode(frame).is_ok());
     }
@@ -176,8 +155,7 @@ fn a_sender_that_starts_anew_is_heard_and_what_was_recorded_before_is_not() {
 }
 
 #[test]
-fn a_receiver_that_starts_anew_believes_recorded_frames_only_until_it_hears_the_sender_or_if_it_stored_nothing()
- {
+fn a_receiver_that_starts_anew_believes_recorded_frames_only_until_it_hears_the_sender_or_if_it_stored_nothing() {
     let mut sender = sealed(4);
     let recorded: StdVec<_> = (0..3).map(|n| said(&mut sender, header(1, n))).collect();
     let live = said(&mut sender, header(1, 100));
@@ -216,11 +194,7 @@ fn a_full_table_refuses_new_senders_and_an_attacker_cannot_fill_it() {
         assert_eq!(receiver.decode(&forged), Err(DecodeError::Forged));
     }
     for sender in 1..=4 {
-        assert!(
-            receiver
-                .decode(&said(&mut sealed(0), header(sender, 0)))
-                .is_ok()
-        );
+        assert!(receiver.decode(&said(&mut sealed(0), header(sender, 0))).is_ok());
     }
     let fifth = said(&mut sealed(0), header(5, 0));
     assert_eq!(receiver.decode(&fifth), Err(DecodeError::NoRoom));

@@ -5,11 +5,7 @@ use proptest::prelude::*;
 use std::collections::BTreeSet;
 
 fn frame(boot: u8, sequence: u16) -> Header {
-    Header {
-        boot,
-        sender: RobotId(1),
-        sequence,
-    }
+    Header { boot, sender: RobotId(1), sequence }
 }
 
 /// A window after these frames of boot 0.
@@ -51,11 +47,7 @@ fn a_jump_clears_what_it_leaves_behind_and_nothing_else() {
         let newest = 12 + jump;
         assert_eq!(window.check(frame(0, newest)), Arrival::New);
         for number in numbers {
-            let expected = if newest - number < SEQUENCE_SPAN {
-                Arrival::Duplicate
-            } else {
-                Arrival::TooOld
-            };
+            let expected = if newest - number < SEQUENCE_SPAN { Arrival::Duplicate } else { Arrival::TooOld };
             assert_eq!(window.check(frame(0, number)), expected, "jump {jump}");
         }
         if jump > 1 {

@@ -4,9 +4,7 @@ use super::waypoints::movers;
 use crate::medium::Faults;
 use crate::plane::{Scene, Solid, run};
 use crate::{Probe, Summary};
-use staya_controller::agent::{
-    BoidsGuidance, GoalFlockGuidance, LatticeGuidance, PushOutSafety, Unguarded, Waypoint,
-};
+use staya_controller::agent::{BoidsGuidance, GoalFlockGuidance, LatticeGuidance, PushOutSafety, Unguarded, Waypoint};
 use staya_controller::flock::boids::BoidsParams;
 use staya_controller::flock::goal::GoalParams;
 use staya_controller::flock::lattice::{Gain, LatticeParams};
@@ -15,13 +13,7 @@ use staya_controller::push_out::PushOutParams;
 use staya_controller::scalar::Scalar;
 
 /// A loose crowd.
-const CROWD: [[i32; 3]; 5] = [
-    [0, 0, 0],
-    [0, 700, 0],
-    [600, 300, 0],
-    [-500, -400, 0],
-    [700, -500, 0],
-];
+const CROWD: [[i32; 3]; 5] = [[0, 0, 0], [0, 700, 0], [600, 300, 0], [-500, -400, 0], [700, -500, 0]];
 
 fn scene<S: Scalar>(solids: &'static [Solid], ticks: u32) -> Scene<S> {
     Scene {
@@ -76,17 +68,8 @@ pub(super) fn goals<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
 
 #[inline(never)]
 pub(super) fn boids<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
-    let params = BoidsParams::new(
-        S::from_milli(300),
-        S::from_i32(30),
-        S::from_ratio(1, 20),
-        S::from_ratio(1, 50),
-    );
-    let mut movers = movers(
-        &CROWD,
-        |_| BoidsGuidance::new(params, S::HALF),
-        || Unguarded,
-    );
+    let params = BoidsParams::new(S::from_milli(300), S::from_i32(30), S::from_ratio(1, 20), S::from_ratio(1, 50));
+    let mut movers = movers(&CROWD, |_| BoidsGuidance::new(params, S::HALF), || Unguarded);
     // Half of a circle of directions; their speeds differ, which is put right in the first step.
     let ways = [[5, 0], [4, 3], [3, -4], [0, 5], [4, -3]];
     for (mover, [x, y]) in movers.iter_mut().zip(ways) {

@@ -17,39 +17,23 @@ use staya_controller::wire::{
 };
 
 /// Rough land with two walls to go around.
-const LAND: Land = Land {
-    size: 28,
-    roughness_log2: 2,
-    walls: &[(9, 7, 12), (18, 14, 19)],
-};
+const LAND: Land = Land { size: 28, roughness_log2: 2, walls: &[(9, 7, 12), (18, 14, 19)] };
 /// The operator's number.
 const OPERATOR: RobotId = RobotId(200);
 /// Rows 1 2 and 3 4, robot 1 in front.
-const PLACES: [Cell; ROBOTS] = [
-    Cell::new(0, 0),
-    Cell::new(-3, 0),
-    Cell::new(0, -3),
-    Cell::new(-3, -3),
-];
+const PLACES: [Cell; ROBOTS] = [Cell::new(0, 0), Cell::new(-3, 0), Cell::new(0, -3), Cell::new(-3, -3)];
 const EDGES: [(u16, u16); 4] = [(0, 1), (0, 2), (1, 3), (2, 3)];
 /// Robot 1 at the start, and its goal.
 const START: Cell = Cell::new(5, 5);
 const GOAL: Cell = Cell::new(24, 21);
 
 fn config<S: Scalar>(index: usize) -> AgentConfig<S> {
-    AgentConfig {
-        seed: 7,
-        ..AgentConfig::new(RobotId(index as u32 + 1), S::ZERO, TICK)
-    }
+    AgentConfig { seed: 7, ..AgentConfig::new(RobotId(index as u32 + 1), S::ZERO, TICK) }
 }
 
 #[inline(never)]
 pub(super) fn route<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
-    let scene = Scene {
-        land: LAND,
-        faults: Faults::default(),
-        ticks: 300,
-    };
+    let scene = Scene { land: LAND, faults: Faults::default(), ticks: 300 };
     run(&scene, &mut travellers(), Postcard, |_, _| {}, probe)
 }
 
@@ -58,20 +42,12 @@ pub(super) fn route<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
 fn travellers<S: Scalar>() -> Vec<Walker<S, Route>, ROBOTS> {
     let corners = [(4, 4), (23, 4), (4, 23), (23, 23)].map(|(x, y)| Cell::new(x, y));
     let mut walkers = Vec::new();
-    for (index, (cell, goal)) in corners
-        .into_iter()
-        .zip(corners.into_iter().rev())
-        .enumerate()
-    {
+    for (index, (cell, goal)) in corners.into_iter().zip(corners.into_iter().rev()).enumerate() {
         let guidance = Route::new(RouteParams::default());
         let mut agent = GridAgent::new(&config(index), guidance, Unguarded, Postcard);
         agent.assign_goal(goal);
         // As many places as robots.
-        let _ = walkers.push(Walker {
-            agent,
-            cell,
-            free_at_ms: 0,
-        });
+        let _ = walkers.push(Walker { agent, cell, free_at_ms: 0 });
     }
     walkers
 }
@@ -110,19 +86,12 @@ fn members<S: Scalar, W: Wire>(
 }
 
 fn in_formation<S: Scalar, P: Probe<S>>(prediction: Prediction, probe: &mut P) -> Summary {
-    let params = FormationParams {
-        prediction,
-        ..FormationParams::default()
-    };
+    let params = FormationParams { prediction, ..FormationParams::default() };
     let mut walkers = members(params, &Postcard, template);
     for (walker, place) in walkers.iter_mut().zip(PLACES) {
         walker.agent.assign_goal(GOAL + place);
     }
-    let scene = Scene {
-        land: LAND,
-        faults: Faults::default(),
-        ticks: 300,
-    };
+    let scene = Scene { land: LAND, faults: Faults::default(), ticks: 300 };
     run(&scene, &mut walkers, Postcard, |_, _| {}, probe)
 }
 
@@ -130,26 +99,12 @@ fn in_formation<S: Scalar, P: Probe<S>>(prediction: Prediction, probe: &mut P) -
 pub(crate) fn packets<S: Scalar, W: Wire, P: Probe<S>>(wire: W, probe: &mut P) -> Summary {
     let scene = Scene {
         land: LAND,
-        faults: Faults {
-            seed: 5,
-            loss: u32::MAX >> 3,
-            flip: u32::MAX >> 4,
-            twice: u32::MAX >> 3,
-        },
+        faults: Faults { seed: 5, loss: u32::MAX >> 3, flip: u32::MAX >> 4, twice: u32::MAX >> 3 },
         ticks: 400,
     };
     let mut walkers = members(FormationParams::default(), &wire, |_| Template::default());
-    let mut operator = Operator {
-        wire: wire.clone(),
-        sequence: 0,
-    };
-    run(
-        &scene,
-        &mut walkers,
-        wire,
-        |tick, out| operator.speak(tick, out),
-        probe,
-    )
+    let mut operator = Operator { wire: wire.clone(), sequence: 0 };
+    run(&scene, &mut walkers, wire, |tick, out| operator.speak(tick, out), probe)
 }
 
 /// Says again and again what the robots are to do, since nobody tells it who has heard.
@@ -166,11 +121,7 @@ impl<W: Wire> Operator<W> {
     fn speak(&mut self, tick: u32, out: &mut Vec<u8, INBOX>) {
         let index = (tick & 3) as usize;
         let to = RobotId(index as u32 + 1);
-        let Template {
-            slot,
-            offset,
-            entries,
-        } = template(index);
+        let Template { slot, offset, entries } = template(index);
         if let Ok(parts) = TemplateAssignment::split(to, 1, slot, offset, &entries) {
             // One part each time, in turn: a tick has not room for more.
             let turn = (tick >> 2) as usize;
@@ -178,20 +129,10 @@ impl<W: Wire> Operator<W> {
                 self.say(Message::Template(part), out);
             }
         }
-        let goal = GoalAssignment {
-            to: RobotId::NOBODY,
-            version: 1,
-            target: GOAL,
-        };
+        let goal = GoalAssignment { to: RobotId::NOBODY, version: 1, target: GOAL };
         self.say(Message::Goal(goal), out);
         let request = |number, kind| {
-            Message::Request(Request {
-                to: RobotId(1),
-                origin: OPERATOR,
-                number,
-                kind,
-                valid_ms: 30_000,
-            })
+            Message::Request(Request { to: RobotId(1), origin: OPERATOR, number, kind, valid_ms: 30_000 })
         };
         if Self::STOP.contains(&tick) {
             self.say(request(1, RequestKind::Stop), out);
@@ -202,11 +143,7 @@ impl<W: Wire> Operator<W> {
     }
 
     fn say(&mut self, message: Message, out: &mut Vec<u8, INBOX>) {
-        let header = Header {
-            boot: 0,
-            sender: OPERATOR,
-            sequence: self.sequence,
-        };
+        let header = Header { boot: 0, sender: OPERATOR, sequence: self.sequence };
         self.sequence = self.sequence.wrapping_add(1);
         // What has no room in this tick is said in a later one.
         let _ = self.wire.encode(header, &message, out);

@@ -8,8 +8,8 @@ use crate::{Probe, Summary};
 use heapless::Vec;
 use serde::Serialize;
 use staya_controller::agent::{
-    AgentConfig, CellFollower, FlySafety, GridWorkspace, Guidance, OrcaSafety, PushOutSafety,
-    Safety, Waypoint, WaypointGuidance,
+    AgentConfig, CellFollower, FlySafety, GridWorkspace, Guidance, OrcaSafety, PushOutSafety, Safety, Waypoint,
+    WaypointGuidance,
 };
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::grid::Cell;
@@ -26,13 +26,7 @@ const RADIUS_MM: i32 = 150;
 const PLANES: usize = 16;
 
 /// A pentagon with a radius of 1.5 m, not quite even, so that no symmetry helps.
-const PENTAGON: [[i32; 3]; 5] = [
-    [1500, 0, 0],
-    [464, 1427, 0],
-    [-1214, 882, 0],
-    [-1214, -885, 0],
-    [464, -1420, 0],
-];
+const PENTAGON: [[i32; 3]; 5] = [[1500, 0, 0], [464, 1427, 0], [-1214, 882, 0], [-1214, -885, 0], [464, -1420, 0]];
 
 pub(super) fn config<S: Scalar>(index: usize) -> AgentConfig<S> {
     AgentConfig {
@@ -44,10 +38,7 @@ pub(super) fn config<S: Scalar>(index: usize) -> AgentConfig<S> {
 }
 
 fn inflation<S: Scalar>() -> StalenessInflation<S> {
-    StalenessInflation {
-        growth_mps: S::HALF,
-        max_m: S::from_milli(300),
-    }
+    StalenessInflation { growth_mps: S::HALF, max_m: S::from_milli(300) }
 }
 
 /// One robot for each start, standing there.
@@ -70,14 +61,7 @@ pub(super) fn movers<S: Scalar, G: Guidance<S>, A: Safety<S>, const R: usize>(
 }
 
 fn scene<S: Scalar>(solids: &'static [Solid]) -> Scene<S> {
-    Scene {
-        solids,
-        land: None,
-        max_speed_mps: S::HALF,
-        apart_mm: 2 * RADIUS_MM,
-        faults: Faults::default(),
-        ticks: 400,
-    }
+    Scene { solids, land: None, max_speed_mps: S::HALF, apart_mm: 2 * RADIUS_MM, faults: Faults::default(), ticks: 400 }
 }
 
 fn waypoint<S: Scalar>() -> WaypointGuidance<S> {
@@ -102,10 +86,7 @@ fn to_places<S: Scalar, A: Safety<S> + Serialize, P: Probe<S>, const R: usize>(
 }
 
 #[inline(never)]
-pub(super) fn swap<S: Scalar, H: HalfSpaces<S> + Clone + Serialize, P: Probe<S>>(
-    source: H,
-    probe: &mut P,
-) -> Summary {
+pub(super) fn swap<S: Scalar, H: HalfSpaces<S> + Clone + Serialize, P: Probe<S>>(source: H, probe: &mut P) -> Summary {
     let params = AvoidParams::default();
     to_places(
         &scene(&[]),
@@ -119,22 +100,9 @@ pub(super) fn swap<S: Scalar, H: HalfSpaces<S> + Clone + Serialize, P: Probe<S>>
 #[inline(never)]
 pub(super) fn doorway<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     // A gap of 0.5 m between two rooms.
-    const WALLS: [Solid; 2] = [
-        Solid::Wall([[0, -9000], [0, -250]]),
-        Solid::Wall([[0, 250], [0, 9000]]),
-    ];
-    let starts = [
-        [-1500, 0, 0],
-        [-2500, 300, 0],
-        [1500, 100, 0],
-        [2500, -300, 0],
-    ];
-    let goals = [
-        [2500, 300, 0],
-        [1500, 0, 0],
-        [-2500, -300, 0],
-        [-1500, 100, 0],
-    ];
+    const WALLS: [Solid; 2] = [Solid::Wall([[0, -9000], [0, -250]]), Solid::Wall([[0, 250], [0, 9000]])];
+    let starts = [[-1500, 0, 0], [-2500, 300, 0], [1500, 100, 0], [2500, -300, 0]];
+    let goals = [[2500, 300, 0], [1500, 0, 0], [-2500, -300, 0], [-1500, 100, 0]];
     let safety = || OrcaSafety::<S, PLANES>::new(AvoidParams::default(), inflation());
     to_places(&scene(&WALLS), &starts, &goals, safety, probe)
 }
@@ -159,10 +127,7 @@ pub(super) fn fly<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
 
 #[inline(never)]
 pub(super) fn push_out<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
-    const SOLIDS: [Solid; 2] = [
-        Solid::Ball([0, 0, 0], 300),
-        Solid::Wall([[-3000, 1900], [3000, 1900]]),
-    ];
+    const SOLIDS: [Solid; 2] = [Solid::Ball([0, 0, 0], 300), Solid::Wall([[-3000, 1900], [3000, 1900]])];
     let starts = [[-2000, 150, 0], [2000, 900, 0], [-300, -2000, 0]];
     let goals = [[2000, 100, 0], [-2000, 1100, 0], [400, 1300, 0]];
     let safety = || PushOutSafety::new(PushOutParams::new(S::from_milli(400)));
@@ -171,24 +136,15 @@ pub(super) fn push_out<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
 
 #[inline(never)]
 pub(super) fn route_in_plane<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
-    let land = Land {
-        size: 16,
-        roughness_log2: 1,
-        walls: &[(7, 3, 10)],
-    };
+    let land = Land { size: 16, roughness_log2: 1, walls: &[(7, 3, 10)] };
     let starts = [[3500, 3500, 0], [12_500, 3500, 0], [3500, 12_500, 0]];
     let goals = [Cell::new(12, 11), Cell::new(3, 12), Cell::new(12, 4)];
     let guidance = |_| CellFollower::new(Route::new(RouteParams::default()), S::HALF);
-    let safety =
-        || OrcaSafety::<S, PLANES>::with_source(AvoidParams::default(), inflation(), Analytic);
+    let safety = || OrcaSafety::<S, PLANES>::with_source(AvoidParams::default(), inflation(), Analytic);
     let mut movers = movers(&starts, guidance, safety);
     for (mover, goal) in movers.iter_mut().zip(goals) {
         mover.agent.assign_goal(goal);
     }
-    let scene = Scene {
-        land: Some(land),
-        ticks: 700,
-        ..scene(&[])
-    };
+    let scene = Scene { land: Some(land), ticks: 700, ..scene(&[]) };
     run(&scene, &mut movers, &mut GridWorkspace::new(), probe)
 }

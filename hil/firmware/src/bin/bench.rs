@@ -18,9 +18,7 @@ mod program {
     use staya_controller::robot::{Mode, RobotId};
     use staya_controller::scalar::{Q16, Scalar};
     use staya_controller::time::Instant;
-    use staya_controller::wire::{
-        Beacon, DecodeError, EncodeError, Frame, Header, Message, Postcard, Wire,
-    };
+    use staya_controller::wire::{Beacon, DecodeError, EncodeError, Frame, Header, Message, Postcard, Wire};
     use staya_firmware::{runtime, stack};
     #[cfg(not(part = "nrf51"))]
     use {
@@ -50,14 +48,7 @@ mod program {
         fn new() -> Self {
             let before = runtime::ticks();
             let empty = runtime::ticks().wrapping_sub(before);
-            Self {
-                samples: Vec::new(),
-                stride: 1,
-                steps: 0,
-                most_ticks: 0,
-                deepest: 0,
-                empty,
-            }
+            Self { samples: Vec::new(), stride: 1, steps: 0, most_ticks: 0, deepest: 0, empty }
         }
 
         #[inline(always)]
@@ -143,12 +134,7 @@ mod program {
         };
         #[cfg(not(part = "nrf51"))]
         format(Mavlink, Mavlink, ["encode_mavlink", "decode_mavlink"], &row);
-        format(
-            Postcard,
-            Postcard,
-            ["encode_postcard", "decode_postcard"],
-            &row,
-        );
+        format(Postcard, Postcard, ["encode_postcard", "decode_postcard"], &row);
         #[cfg(not(part = "nrf51"))]
         {
             let names = ["encode_signed", "decode_signed"];
@@ -193,11 +179,7 @@ mod program {
     fn format<W: Wire>(mut own: W, mut other: W, names: [&str; 2], row: &impl Print) {
         let (mut saying, mut hearing) = (Meter::new(), Meter::new());
         for sequence in 0..64_u16 {
-            let header = Header {
-                boot: 1,
-                sender: RobotId(7),
-                sequence,
-            };
+            let header = Header { boot: 1, sender: RobotId(7), sequence };
             let beacon = Message::Beacon(Beacon {
                 time: Instant::from_micros(u32::from(sequence) * 100_000),
                 position_mm: [12_345 + i32::from(sequence), -678_901, 4_000],

@@ -11,11 +11,7 @@ mod program {
     use staya_firmware::runtime;
 
     /// The part has nothing there.
-    const NOWHERE: usize = if cfg!(part = "nrf51") {
-        0x7000_0000
-    } else {
-        0xF000_0000
-    };
+    const NOWHERE: usize = if cfg!(part = "nrf51") { 0x7000_0000 } else { 0xF000_0000 };
 
     pub fn run() -> ! {
         let start = runtime::start();

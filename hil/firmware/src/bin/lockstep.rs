@@ -26,15 +26,8 @@ mod program {
     const FIRMWARE: &str = concat!("lockstep ", env!("CARGO_PKG_VERSION"));
 
     /// Too large for a stack, so made where it stays; [`Start`] is known only later.
-    static mut SESSION: Session<Robot, CONTENT> = Session::new(
-        Robot::new(),
-        About {
-            part: "",
-            firmware: "",
-            boot: 0,
-            ticks_per_second: 0,
-        },
-    );
+    static mut SESSION: Session<Robot, CONTENT> =
+        Session::new(Robot::new(), About { part: "", firmware: "", boot: 0, ticks_per_second: 0 });
 
     pub fn run() -> ! {
         let start = runtime::start();
@@ -74,12 +67,7 @@ mod program {
     }
 
     fn about(start: &Start) -> About {
-        About {
-            part: start.part,
-            firmware: FIRMWARE,
-            boot: start.boots,
-            ticks_per_second: start.tick_hz,
-        }
+        About { part: start.part, firmware: FIRMWARE, boot: start.boots, ticks_per_second: start.tick_hz }
     }
 
     /// Ticks and stack of a step.
@@ -102,10 +90,7 @@ mod program {
                 // What lies below the stack is not to be trusted any more.
                 panic!("stack overflow: all of {} bytes used", stack::size());
             }
-            Cost {
-                ticks,
-                stack_bytes: painted.map_or(0, |painted| painted.deepest()),
-            }
+            Cost { ticks, stack_bytes: painted.map_or(0, |painted| painted.deepest()) }
         }
     }
 }

@@ -73,12 +73,7 @@ mod program {
     /// Any bytes from the line.
     fn link() {
         const CONTENT: usize = content_bytes(169, 32, SMALL_INBOX);
-        let about = About {
-            part: "nopanic",
-            firmware: "nopanic",
-            boot: 0,
-            ticks_per_second: 1,
-        };
+        let about = About { part: "nopanic", firmware: "nopanic", boot: 0, ticks_per_second: 1 };
         let mut session = Session::<Robot, CONTENT>::new(Robot::new(), black_box(about));
         black_box(session.hello());
         let mut meter = black_box(());
@@ -89,10 +84,7 @@ mod program {
         }
     }
 
-    fn hear<const CONTENT: usize>(
-        session: &mut Session<Robot, CONTENT>,
-        meter: &mut impl Meter,
-    ) -> bool {
+    fn hear<const CONTENT: usize>(session: &mut Session<Robot, CONTENT>, meter: &mut impl Meter) -> bool {
         match session.receive(black_box(0), meter) {
             Reaction::None => true,
             Reaction::Answer(frame) => !black_box(frame).is_empty(),

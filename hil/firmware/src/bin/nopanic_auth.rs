@@ -30,8 +30,7 @@ mod program {
             let mut signed = Signed::<8>::new(Signing::new(key(), black_box(0), black_box(1)));
             signed.signing_mut().advance_to(black_box(1));
             talk(&mut signed);
-            let mut signing =
-                Signing::<8>::new(key(), 0, black_box(1)).with_unsigned(black_box(&[109]));
+            let mut signing = Signing::<8>::new(key(), 0, black_box(1)).with_unsigned(black_box(&[109]));
             let mut bytes = [0; 300];
             black_box(signing.sign(black_box(&mut bytes)).is_ok());
             let mut rest = black_box(&bytes[..]);

@@ -19,8 +19,8 @@ mod program {
     use staya_controller::wire::Postcard;
     use staya_mavlink::wire::Mavlink;
     use staya_robot::drive::{
-        Calibration, Differential, HBridge, Kinematics, Limits, LookAhead, Mecanum, Mixer, Omni,
-        SignMagnitude, Twist, TwoPins, Wheels,
+        Calibration, Differential, HBridge, Kinematics, Limits, LookAhead, Mecanum, Mixer, Omni, SignMagnitude, Twist,
+        TwoPins, Wheels,
     };
     use staya_robot::odometry::{Encoder, Odometry};
     use staya_robot::radio::{Framing, PacketLink, Receiver};
@@ -135,10 +135,7 @@ mod program {
 
     fn wheels<S: Scalar>() -> Option<()> {
         let calibration = || black_box(Calibration::linear(any::<S>()));
-        let limits = Limits {
-            speed_mps: any(),
-            acceleration_mps2: any(),
-        };
+        let limits = Limits { speed_mps: any(), acceleration_mps2: any() };
         let mut two = Mixer::new(Differential::new(any())?, limits)?;
         let mut three = Mixer::new(Omni::<S, 3>::new(any(), any())?, limits)?;
         let mut four = Mixer::new(Mecanum::new(any(), any())?, limits)?;
@@ -152,9 +149,7 @@ mod program {
         let mut encoder = Encoder::new(any(), black_box(1), black_box(false))?;
         let mut odometry = Odometry::new(Position::from_mm(black_box([0; 3])), any())?;
         while black_box(true) {
-            let way = two
-                .kinematics()
-                .twist(&[encoder.travelled(black_box(1)), any()]);
+            let way = two.kinematics().twist(&[encoder.travelled(black_box(1)), any()]);
             odometry.advance(&way, span());
             let heading = odometry.heading_rad();
             black_box(ahead.pose(&odometry.pose(), heading, any()));
@@ -185,10 +180,7 @@ mod program {
                 max_m: any(),
                 mount_m: any_vec(),
             };
-            let frame = GridFrame {
-                origin_m: any_vec(),
-                cell_m: any(),
-            };
+            let frame = GridFrame { origin_m: any_vec(), cell_m: any() };
             let now = Instant::from_micros(black_box(1));
             let place = Position::from_mm(black_box([0; 3]));
             let is_robot = |seen| is_neighbor(neighbors, place, now, span(), seen, any());
@@ -196,11 +188,7 @@ mod program {
             black_box(map.observe(&frame, any_vec(), any(), &scan, now, is_robot));
             black_box(map.set_ground(own(), black_box(1)));
             black_box(map.window());
-            let params = OutlineParams {
-                tolerance_m: any(),
-                gap_m: any(),
-                point_m: any(),
-            };
+            let params = OutlineParams { tolerance_m: any(), gap_m: any(), point_m: any() };
             black_box(outline::<S, 16>(&scan, any(), &params, is_robot));
         }
     }

@@ -34,10 +34,7 @@ pub fn start() -> Clocks {
     let _ = (0..PATIENCE).any(|_| CLOCK.events_hfclkstarted().read() != 0);
     timer0();
     uart0();
-    Clocks {
-        clock_hz: HZ,
-        tick_hz: HZ,
-    }
+    Clocks { clock_hz: HZ, tick_hz: HZ }
 }
 
 /// QEMU has one constant device number, and one word further up than Nordic, whose numbers are random.
@@ -46,12 +43,8 @@ pub fn is_emulated() -> bool {
 }
 
 fn timer0() {
-    TIMER0
-        .mode()
-        .write(|mode| mode.set_mode(timer::vals::Mode::Timer));
-    TIMER0
-        .bitmode()
-        .write(|mode| mode.set_bitmode(timer::vals::Bitmode::_32bit));
+    TIMER0.mode().write(|mode| mode.set_mode(timer::vals::Mode::Timer));
+    TIMER0.bitmode().write(|mode| mode.set_bitmode(timer::vals::Bitmode::_32bit));
     TIMER0.prescaler().write(|by| by.set_prescaler(0));
     TIMER0.tasks_clear().write_value(1);
     TIMER0.cc(WAKE).write_value(WAKE_EVERY);
@@ -79,11 +72,9 @@ pub fn ticks() -> u32 {
 fn uart0() {
     // The line idles high, also before the UART takes the pin.
     GPIO.outset().write(|pins| pins.set_pin(TX_PIN, true));
-    GPIO.pin_cnf(TX_PIN)
-        .write(|pin| pin.set_dir(gpio::vals::Dir::Output));
+    GPIO.pin_cnf(TX_PIN).write(|pin| pin.set_dir(gpio::vals::Dir::Output));
     // An open input would read noise.
-    GPIO.pin_cnf(RX_PIN)
-        .write(|pin| pin.set_pull(gpio::vals::Pull::Pullup));
+    GPIO.pin_cnf(RX_PIN).write(|pin| pin.set_pull(gpio::vals::Pull::Pullup));
     UART0.pseltxd().write_value(TX_PIN as u32);
     UART0.pselrxd().write_value(RX_PIN as u32);
     UART0.baudrate().write(|baud| {
@@ -92,9 +83,7 @@ fn uart0() {
         let rounded = fraction.wrapping_add(0x800) & 0xFFFF_F000;
         baud.set_baudrate(uart::vals::Baudrate::from_bits(rounded));
     });
-    UART0
-        .enable()
-        .write(|enable| enable.set_enable(uart::vals::Enable::Enabled));
+    UART0.enable().write(|enable| enable.set_enable(uart::vals::Enable::Enabled));
     UART0.events_rxdrdy().write_value(0);
     UART0.events_txdrdy().write_value(0);
     UART0.intenset().write(|int| {

@@ -82,10 +82,7 @@ pub fn start() -> Clocks {
         mie::set_mext();
         mstatus::set_mie();
     }
-    Clocks {
-        clock_hz: TICK_HZ,
-        tick_hz: TICK_HZ,
-    }
+    Clocks { clock_hz: TICK_HZ, tick_hz: TICK_HZ }
 }
 
 pub fn is_emulated() -> bool {

@@ -29,11 +29,7 @@ static WRAPS: AtomicU32 = AtomicU32::new(0);
 
 pub fn start() -> Clocks {
     let clock_hz = clocks();
-    usart(if clock_hz == PLL_HZ {
-        PLL_HZ / 2
-    } else {
-        HSI_HZ
-    });
+    usart(if clock_hz == PLL_HZ { PLL_HZ / 2 } else { HSI_HZ });
     // SAFETY: the only place that takes the core's peripherals, once, at the start.
     let mut core = unsafe { cortex_m::Peripherals::steal() };
     core.SYST.set_clock_source(SystClkSource::Core);
@@ -90,11 +86,7 @@ fn clocks() -> u32 {
         cfgr.set_ppre2(rcc::vals::Ppre::DIV2); // 84 MHz at most
         cfgr.set_sw(rcc::vals::Sw::PLL1_P);
     });
-    if comes(|| RCC.cfgr().read().sws() == rcc::vals::Sw::PLL1_P) {
-        PLL_HZ
-    } else {
-        HSI_HZ
-    }
+    if comes(|| RCC.cfgr().read().sws() == rcc::vals::Sw::PLL1_P) { PLL_HZ } else { HSI_HZ }
 }
 
 /// Asks until it is so, a bounded number of times.
@@ -110,14 +102,10 @@ fn usart(bus_hz: u32) {
     let _ = RCC.apb2enr().read();
     for pin in [9, 10] {
         GPIOA.afr(1).modify(|afr| afr.set_afr(pin - 8, 7)); // AF7: USART1
-        GPIOA
-            .moder()
-            .modify(|moder| moder.set_moder(pin, gpio::vals::Moder::ALTERNATE));
+        GPIOA.moder().modify(|moder| moder.set_moder(pin, gpio::vals::Moder::ALTERNATE));
     }
     // An open input would read noise.
-    GPIOA
-        .pupdr()
-        .modify(|pupdr| pupdr.set_pupdr(10, gpio::vals::Pupdr::PULL_UP));
+    GPIOA.pupdr().modify(|pupdr| pupdr.set_pupdr(10, gpio::vals::Pupdr::PULL_UP));
     // Sixteen samples per bit: the register holds the ratio in sixteenths, so bus / baud.
     USART1.brr().write(|brr| brr.0 = (bus_hz + BAUD / 2) / BAUD);
     USART1.cr1().write(|cr1| {
@@ -149,10 +137,7 @@ extern "C" fn on_usart() {
 #[cortex_m_rt::exception]
 fn SysTick() {
     // One writer: a load and a store are enough.
-    WRAPS.store(
-        WRAPS.load(Ordering::Relaxed).wrapping_add(1),
-        Ordering::Relaxed,
-    );
+    WRAPS.store(WRAPS.load(Ordering::Relaxed).wrapping_add(1), Ordering::Relaxed);
 }
 
 pub fn ticks() -> u32 {

@@ -40,20 +40,10 @@ fn thousand_steps<B: Controller + Default>(
         let plane = matches!(setup.guidance, GuidanceSetup::Waypoint { .. });
         let inputs = scene.inputs(&world, plane);
         let capacities = Large::new().capacities();
-        let capacities = crate::capacities::Capacities {
-            inbox_bytes: 1024,
-            ..capacities
-        };
+        let capacities = crate::capacities::Capacities { inbox_bytes: 1024, ..capacities };
         let mut packed = [0; 64];
-        let (step, _) = capacities
-            .fit(
-                tick,
-                scene.now,
-                &inputs,
-                &AnyWire::new(setup.format),
-                &mut packed,
-            )
-            .expect("fits");
+        let (step, _) =
+            capacities.fit(tick, scene.now, &inputs, &AnyWire::new(setup.format), &mut packed).expect("fits");
         let result = bench.step(&step).expect("no reset");
         let (command, digest) = plain(&inputs, &step);
         assert_eq!(result.outputs.command, command, "step {tick}");
@@ -66,13 +56,7 @@ fn thousand_steps<B: Controller + Default>(
     bench
 }
 
-const BAD: Faults = Faults {
-    lost: 10,
-    repeated: 10,
-    flipped: 10,
-    cut: 5,
-    delay_us: 50_000,
-};
+const BAD: Faults = Faults { lost: 10, repeated: 10, flipped: 10, cut: 5, delay_us: 50_000 };
 
 fn to_the_east() -> Task {
     let waypoint = Waypoint::fixed(Position::from_mm([30_000, 500, 0]));
@@ -89,21 +73,17 @@ fn steps_over_a_bad_line_are_those_of_a_plain_agent() {
             let mut agent = agent.expect("postcard");
             agent.assign(&task).expect("a task for it");
             let mut workspace = GridWorkspace::new();
-            let bench =
-                thousand_steps::<Large>(faults, seed, (&setup, Some(&task)), |inputs, step| {
-                    let out = agent.step(inputs, step.now, &mut workspace);
-                    (out.command, agent.digest())
-                });
+            let bench = thousand_steps::<Large>(faults, seed, (&setup, Some(&task)), |inputs, step| {
+                let out = agent.step(inputs, step.now, &mut workspace);
+                (out.command, agent.digest())
+            });
             let (host, device) = (bench.port.counts(), bench.session.counts());
             assert_eq!(device.steps, 1000);
             if faults.lost == 0 {
                 // The first greeting crosses the device's own hello.
                 assert_eq!((host.resent, host.damaged, device.damaged), (1, 0, 0));
             } else {
-                assert!(
-                    host.resent > 100 && host.damaged > 20 && host.stale > 20,
-                    "{host:?}"
-                );
+                assert!(host.resent > 100 && host.damaged > 20 && host.stale > 20, "{host:?}");
                 let seen = [device.repeated, device.stale, device.damaged];
                 assert!(seen.iter().all(|count| *count > 20), "{device:?}");
             }
@@ -125,12 +105,7 @@ fn fixed_point_steps_over_a_bad_line_are_those_of_its_shadow() {
 #[test]
 fn device_that_resets_is_noticed_and_rejoins() {
     let (setup, task) = (in_plane(), to_the_east());
-    for (faults, by_host) in [
-        (Faults::default(), false),
-        (BAD, false),
-        (Faults::default(), true),
-        (BAD, true),
-    ] {
+    for (faults, by_host) in [(Faults::default(), false), (BAD, false), (Faults::default(), true), (BAD, true)] {
         let mut bench = Bench::<Large>::new(faults, 5);
         bench.configure(&setup, Some(&task));
         let (mut resets, mut done) = (0, 0);
@@ -145,11 +120,7 @@ fn device_that_resets_is_noticed_and_rejoins() {
                 state: KinematicState::default(),
                 cell: None,
                 window: None,
-                surroundings: Some(PackedSurroundings {
-                    max_speed_mps: 1.0,
-                    in_cell: None,
-                    obstacles: &packed,
-                }),
+                surroundings: Some(PackedSurroundings { max_speed_mps: 1.0, in_cell: None, obstacles: &packed }),
                 inbox: &inbox,
             };
             if tick % 100 == 50 {
@@ -169,10 +140,7 @@ fn device_that_resets_is_noticed_and_rejoins() {
                 continue;
             }
             let result = bench.step(&step).expect("no reset");
-            assert!(
-                result.is_identical(&decide(&mut shadow, &step)),
-                "step {tick}"
-            );
+            assert!(result.is_identical(&decide(&mut shadow, &step)), "step {tick}");
             done += 1;
         }
         assert_eq!((resets, done), (3, 297));
@@ -181,27 +149,14 @@ fn device_that_resets_is_noticed_and_rejoins() {
 
 #[test]
 fn silent_device_is_given_up_with_what_was_asked_and_for_how_long() {
-    let deaf = Faults {
-        lost: 100,
-        ..Faults::default()
-    };
+    let deaf = Faults { lost: 100, ..Faults::default() };
     let mut bench = Bench::<Small>::new(deaf, 1);
     bench.port.greet(0);
     let error = bench.wait().expect_err("nobody is there");
     let waited_us = u64::from(LIMITS.attempts) * LIMITS.resend_after_us;
     let (asked, attempts) = (Asked::Hello, LIMITS.attempts);
-    assert_eq!(
-        error,
-        PortError::Silent {
-            asked,
-            attempts,
-            waited_us
-        }
-    );
-    assert_eq!(
-        std::format!("{error}"),
-        "no answer to greeting within 1200 ms (60 attempts)"
-    );
+    assert_eq!(error, PortError::Silent { asked, attempts, waited_us });
+    assert_eq!(std::format!("{error}"), "no answer to greeting within 1200 ms (60 attempts)");
     assert_eq!(bench.port.poll(bench.now), Ok(Next::Idle));
     // In the middle of a run the step is named.
     let mut bench = Bench::<Small>::new(Faults::default(), 1);
@@ -218,10 +173,7 @@ fn silent_device_is_given_up_with_what_was_asked_and_for_how_long() {
     };
     bench.port.step(&inputs, bench.now).expect("fits");
     let error = bench.wait().expect_err("cut off");
-    assert_eq!(
-        std::format!("{error}"),
-        "no answer to step 77 within 1200 ms (60 attempts)"
-    );
+    assert_eq!(std::format!("{error}"), "no answer to step 77 within 1200 ms (60 attempts)");
 }
 
 #[test]
@@ -246,26 +198,17 @@ fn refusal_names_what_was_asked_and_why() {
     bench.port.greet(0);
     assert!(matches!(bench.wait(), Ok(Event::Hello(_))));
     let (setup, task) = on_grid(9);
-    bench
-        .port
-        .configure(&setup, Some(&task), bench.now)
-        .expect("fits");
+    bench.port.configure(&setup, Some(&task), bench.now).expect("fits");
     let error = bench.wait().expect_err("too far");
     let text = std::format!("{error}");
-    assert_eq!(
-        text,
-        "the device answers to setup: Capacity: a search of 441 cells, and room for 169"
-    );
+    assert_eq!(text, "the device answers to setup: Capacity: a search of 441 cells, and room for 169");
     let panic = crate::session::fault_frame(crate::message::FaultKind::Panic, "at main.rs:3");
     bench.port.configure(&setup, None, bench.now).expect("fits");
     let mut errors = Vec::new();
     for byte in panic.bytes() {
         errors.extend(bench.port.receive(*byte, 0).err());
     }
-    assert_eq!(
-        std::format!("{}", errors[0]),
-        "the device answers to setup: Panic: at main.rs:3"
-    );
+    assert_eq!(std::format!("{}", errors[0]), "the device answers to setup: Panic: at main.rs:3");
 }
 
 #[test]

@@ -6,9 +6,7 @@ use crate::robot::{Controller, Small};
 use crate::surroundings::OBSTACLE_BYTES;
 use proptest::collection::vec;
 use proptest::prelude::*;
-use staya_controller::agent::{
-    AnyInputs, AnySurroundings, CellState, InPlane, Inputs, KinematicState, OnGrid,
-};
+use staya_controller::agent::{AnyInputs, AnySurroundings, CellState, InPlane, Inputs, KinematicState, OnGrid};
 use staya_controller::geom::{Vec2, Vec3};
 use staya_controller::grid::{Cell, Window};
 use staya_controller::obstacle::Obstacle;
@@ -21,38 +19,26 @@ use std::vec::Vec;
 const NOW: Instant = Instant::from_micros(5);
 
 fn room(obstacles: u16, inbox_bytes: u16) -> Capacities {
-    Capacities {
-        obstacles,
-        inbox_bytes,
-        ..Small::new().capacities()
-    }
+    Capacities { obstacles, inbox_bytes, ..Small::new().capacities() }
 }
 
 fn inputs<'a>(inbox: &'a [u8], obstacles: &'a [Obstacle<f32>]) -> AnyInputs<'a, f32> {
     Inputs {
         state: KinematicState::default(),
-        surroundings: AnySurroundings::InPlane(InPlane {
-            max_speed_mps: 1.0,
-            obstacles,
-        }),
+        surroundings: AnySurroundings::InPlane(InPlane { max_speed_mps: 1.0, obstacles }),
         inbox,
     }
 }
 
 fn ball(x: f32) -> Obstacle<f32> {
-    Obstacle::Ball {
-        center_m: Vec3::new(x, 0.0, 0.0),
-        radius_m: 0.5,
-    }
+    Obstacle::Ball { center_m: Vec3::new(x, 0.0, 0.0), radius_m: 0.5 }
 }
 
 #[test]
 fn inbox_keeps_its_newest_whole_frames() {
     let inbox = [1, 1, 0, 2, 0, 3, 3, 3, 0];
     let kept = |bytes: u16| {
-        let (step, cut) = room(0, bytes)
-            .fit(1, NOW, &inputs(&inbox, &[]), &Postcard, &mut [])
-            .expect("no window");
+        let (step, cut) = room(0, bytes).fit(1, NOW, &inputs(&inbox, &[]), &Postcard, &mut []).expect("no window");
         assert_eq!(cut.inbox_bytes, inbox.len() - step.inbox.len());
         step.inbox.to_vec()
     };
@@ -69,14 +55,10 @@ fn nearest_obstacles_stay_in_their_order() {
     let far_first = [ball(9.0), ball(3.0), ball(-3.0), ball(1.0)];
     let kept = |count: u16| {
         let mut packed = [0; 4 * OBSTACLE_BYTES];
-        let (step, cut) = room(count, 0)
-            .fit(1, NOW, &inputs(&[], &far_first), &Postcard, &mut packed)
-            .expect("no window");
+        let (step, cut) =
+            room(count, 0).fit(1, NOW, &inputs(&[], &far_first), &Postcard, &mut packed).expect("no window");
         let surroundings = step.surroundings.expect("given");
-        let kept: Vec<Obstacle<f32>> = surroundings
-            .obstacles()
-            .map(|o| o.expect("known"))
-            .collect();
+        let kept: Vec<Obstacle<f32>> = surroundings.obstacles().map(|o| o.expect("known")).collect();
         assert_eq!(cut.obstacles, 4 - kept.len());
         kept
     };
@@ -93,50 +75,28 @@ fn an_obstacle_that_is_nowhere_goes_first() {
     let nowhere = Obstacle::Wall([Vec2::new(f32::NAN, 0.0); 2]);
     let obstacles = [nowhere, ball(4.0), ball(2.0)];
     let mut packed = [0; 3 * OBSTACLE_BYTES];
-    let (step, _) = room(2, 0)
-        .fit(1, NOW, &inputs(&[], &obstacles), &Postcard, &mut packed)
-        .expect("no window");
-    let kept = step
-        .surroundings
-        .map(|packed| packed.obstacles().flatten().collect::<Vec<_>>());
+    let (step, _) = room(2, 0).fit(1, NOW, &inputs(&[], &obstacles), &Postcard, &mut packed).expect("no window");
+    let kept = step.surroundings.map(|packed| packed.obstacles().flatten().collect::<Vec<_>>());
     assert_eq!(kept, Some(std::vec![ball(4.0), ball(2.0)]));
 }
 
 #[test]
 fn land_is_never_cut() {
     assert_eq!(window_cells(169), 121);
-    assert_eq!(
-        (window_cells(0), window_cells(8), window_cells(9)),
-        (0, 0, 1)
-    );
+    assert_eq!((window_cells(0), window_cells(8), window_cells(9)), (0, 0, 1));
     let cells = [1; 144];
     for (side, fits) in [(11, true), (12, false)] {
         let land = &cells[..side * side];
         let window = Window::new(land, Cell::default(), side as u16, side as u16);
-        let grid = OnGrid {
-            cell: CellState::default(),
-            window,
-        };
-        let inputs = Inputs {
-            surroundings: AnySurroundings::OnGrid(grid),
-            ..inputs(&[], &[])
-        };
-        let fitted = room(0, 0)
-            .fit(1, NOW, &inputs, &Postcard, &mut [])
-            .map(|(step, cut)| {
-                let same = step.window.and_then(|window| window.window());
-                assert_eq!(same.map(|w| w.cells()), Some(land));
-                cut
-            });
-        let too_large = WindowTooLarge {
-            cells: 144,
-            room: 121,
-        };
-        let expected = if fits {
-            Ok(Cut::default())
-        } else {
-            Err(too_large)
-        };
+        let grid = OnGrid { cell: CellState::default(), window };
+        let inputs = Inputs { surroundings: AnySurroundings::OnGrid(grid), ..inputs(&[], &[]) };
+        let fitted = room(0, 0).fit(1, NOW, &inputs, &Postcard, &mut []).map(|(step, cut)| {
+            let same = step.window.and_then(|window| window.window());
+            assert_eq!(same.map(|w| w.cells()), Some(land));
+            cut
+        });
+        let too_large = WindowTooLarge { cells: 144, room: 121 };
+        let expected = if fits { Ok(Cut::default()) } else { Err(too_large) };
         assert_eq!(fitted, expected);
     }
 }
@@ -160,14 +120,7 @@ proptest! {
 
 #[test]
 fn an_inbox_of_another_format_is_cut_at_its_frames() {
-    let (header, mut inbox) = (
-        Header {
-            boot: 0,
-            sender: RobotId(2),
-            sequence: 0,
-        },
-        heapless::Vec::<u8, 256>::new(),
-    );
+    let (header, mut inbox) = (Header { boot: 0, sender: RobotId(2), sequence: 0 }, heapless::Vec::<u8, 256>::new());
     let mut wire = AnyWire::new(Format::Mavlink);
     let message = Message::Beacon(Beacon::default());
     let len = wire.encode(header, &message, &mut inbox).expect("fits");
@@ -176,8 +129,5 @@ fn an_inbox_of_another_format_is_cut_at_its_frames() {
         let fitted = room(0, bytes as u16).fit(1, NOW, &inputs(&inbox, &[]), &wire, &mut []);
         fitted.expect("no window").0.inbox.len()
     };
-    assert_eq!(
-        [2 * len, 2 * len - 1, len, len - 1].map(kept),
-        [2 * len, len, len, 0]
-    );
+    assert_eq!([2 * len, 2 * len - 1, len, len - 1].map(kept), [2 * len, len, len, 0]);
 }

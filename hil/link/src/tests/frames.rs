@@ -40,9 +40,7 @@ fn raw(kind: u8, body: &[u8]) -> Vec<u8> {
 fn body() -> impl Strategy<Value = Vec<u8>> {
     let run = (prop_oneof![Just(0_u8), 1..=u8::MAX], 0_usize..520);
     vec(run, 0..4).prop_map(|runs| {
-        let bytes = runs
-            .iter()
-            .flat_map(|(byte, len)| std::iter::repeat_n(*byte, *len));
+        let bytes = runs.iter().flat_map(|(byte, len)| std::iter::repeat_n(*byte, *len));
         bytes.collect()
     })
 }
@@ -126,14 +124,8 @@ fn frames_of_other_versions_are_told_from_damage() {
 fn one_byte_more_than_there_is_room_for_is_too_long() {
     let body = [5; 100];
     let frame = raw(3, &body);
-    assert_eq!(
-        deframe::<{ 100 + OVERHEAD }>(&frame),
-        [Ok((3, body.to_vec()))]
-    );
-    assert_eq!(
-        deframe::<{ 99 + OVERHEAD }>(&frame),
-        [Err(FrameError::TooLong)]
-    );
+    assert_eq!(deframe::<{ 100 + OVERHEAD }>(&frame), [Ok((3, body.to_vec()))]);
+    assert_eq!(deframe::<{ 99 + OVERHEAD }>(&frame), [Err(FrameError::TooLong)]);
     let mut short = Frame::<{ frame_len(100 + OVERHEAD) - 2 }>::new();
     assert!(short.fill(3, &Raw(&body)).is_err() && short.bytes().is_empty());
     let mut frame = Frame::<{ frame_len(100 + OVERHEAD) }>::new();

@@ -44,12 +44,7 @@ fn longest_result() -> StepResult {
             command: Command::Velocity(Vec3::new(1.0, 2.0, 3.0)),
             received: u16::MAX,
             rejected: u16::MAX,
-            refused: Refused {
-                unsigned: u16::MAX,
-                forged: u16::MAX,
-                replayed: u16::MAX,
-                no_room: u16::MAX,
-            },
+            refused: Refused { unsigned: u16::MAX, forged: u16::MAX, replayed: u16::MAX, no_room: u16::MAX },
             outbox: core::iter::repeat_n(0xFF, OUTBOX).collect(),
             events: core::iter::repeat_n(event, EVENTS).collect(),
             call_again: LAST,
@@ -63,14 +58,8 @@ fn longest_result() -> StepResult {
 
 #[test]
 fn longest_answer_fits() {
-    let stepped = Stepped {
-        seq: u16::MAX,
-        result: longest_result(),
-        cost: Cost {
-            ticks: u32::MAX,
-            stack_bytes: u32::MAX,
-        },
-    };
+    let stepped =
+        Stepped { seq: u16::MAX, result: longest_result(), cost: Cost { ticks: u32::MAX, stack_bytes: u32::MAX } };
     let bytes = frame(kind::STEPPED, &stepped);
     assert!(bytes.len() <= MAX_ANSWER, "{}", bytes.len());
     assert_eq!(read::<Stepped>(kind::STEPPED, &bytes), stepped);
@@ -121,11 +110,7 @@ fn longest_setup_fits() {
     let GuidanceSetup::Route { route, .. } = routing.guidance else {
         panic!("a route");
     };
-    let entry = TemplateEntry {
-        offset: FAR,
-        id: HIGH,
-        hops: u8::MAX,
-    };
+    let entry = TemplateEntry { offset: FAR, id: HIGH, hops: u8::MAX };
     let entries: Vec<_, TEMPLATE> = core::iter::repeat_n(entry, TEMPLATE).collect();
     let setup = Setup {
         agent,
@@ -138,17 +123,10 @@ fn longest_setup_fits() {
         safety: super::in_plane().safety,
         format: Format::Mavlink,
     };
-    let waypoint = Waypoint {
-        position: Position::from_mm([i32::MIN; 3]),
-        velocity_mps: Vec3::new(1.0, 2.0, 3.0),
-        at: LAST,
-    };
+    let waypoint =
+        Waypoint { position: Position::from_mm([i32::MIN; 3]), velocity_mps: Vec3::new(1.0, 2.0, 3.0), at: LAST };
     let waypoints = core::iter::repeat_n((u8::MAX, waypoint), WAYPOINTS).collect();
-    let configure = Configure {
-        seq: u16::MAX,
-        setup,
-        task: Some(Task::Waypoints(waypoints)),
-    };
+    let configure = Configure { seq: u16::MAX, setup, task: Some(Task::Waypoints(waypoints)) };
     let bytes = frame(kind::CONFIGURE, &configure);
     let len = content(&bytes);
     // Room for parameters that take more bytes than their defaults.
@@ -157,11 +135,7 @@ fn longest_setup_fits() {
 }
 
 fn template(entries: Vec<TemplateEntry, TEMPLATE>) -> Template<TEMPLATE> {
-    Template {
-        slot: u8::MAX,
-        offset: FAR,
-        entries,
-    }
+    Template { slot: u8::MAX, offset: FAR, entries }
 }
 
 #[test]
@@ -171,26 +145,12 @@ fn longest_step_fits_its_buffer() {
     let inputs = StepInputs {
         tick: u32::MAX,
         now: LAST,
-        state: KinematicState {
-            position: Position::from_mm([i32::MIN; 3]),
-            velocity_mps: Vec3::new(1.0, 2.0, 3.0),
-        },
-        cell: Some(CellState {
-            cell: FAR,
-            busy: LATE,
-        }),
-        window: Some(TerrainWindow {
-            origin: FAR,
-            width: u16::MAX,
-            height: u16::MAX,
-            cells: &cells,
-        }),
+        state: KinematicState { position: Position::from_mm([i32::MIN; 3]), velocity_mps: Vec3::new(1.0, 2.0, 3.0) },
+        cell: Some(CellState { cell: FAR, busy: LATE }),
+        window: Some(TerrainWindow { origin: FAR, width: u16::MAX, height: u16::MAX, cells: &cells }),
         surroundings: Some(PackedSurroundings {
             max_speed_mps: 1.0,
-            in_cell: Some(InCell {
-                offset_m: Vec2::new(1.0, 2.0),
-                cell_m: 3.0,
-            }),
+            in_cell: Some(InCell { offset_m: Vec2::new(1.0, 2.0), cell_m: 3.0 }),
             obstacles: &obstacles,
         }),
         inbox: &inbox,
@@ -200,10 +160,7 @@ fn longest_step_fits_its_buffer() {
     assert!(content(&bytes) <= super::LARGE, "{}", content(&bytes));
     let mut session = super::large();
     let capacities = super::hello(session.hello()).capacities;
-    assert_eq!(
-        usize::from(capacities.inbox_bytes),
-        crate::robot::LARGE_INBOX
-    );
+    assert_eq!(usize::from(capacities.inbox_bytes), crate::robot::LARGE_INBOX);
     assert!(bytes.len() <= capacities.frame_bytes());
     // It is read and refused for what it says, not for its length.
     let answers = super::answers(&mut session, &bytes);
@@ -220,11 +177,7 @@ fn sessions_are_as_large_as_documented() {
     assert!(large <= 18 * 1024, "{large}");
     assert_eq!(Small::new().number(), NumberFormat::Q16);
     assert_eq!(Large::new().number(), NumberFormat::F32);
-    let Capacities {
-        neighbors,
-        obstacles,
-        ..
-    } = Small::new().capacities();
+    let Capacities { neighbors, obstacles, .. } = Small::new().capacities();
     assert_eq!((neighbors, obstacles), (8, 16));
 }
 
@@ -233,14 +186,8 @@ fn obstacle() -> impl Strategy<Value = Obstacle<f32>> {
     let numbers = [number(), number(), number(), number()];
     (0..3, numbers).prop_map(|(shape, [a, b, c, d])| match shape {
         0 => Obstacle::Wall([Vec2::new(a, b), Vec2::new(c, d)]),
-        1 => Obstacle::Ball {
-            center_m: Vec3::new(a, b, c),
-            radius_m: d,
-        },
-        _ => Obstacle::Plane {
-            normal: Vec3::new(a, b, c),
-            distance_m: d,
-        },
+        1 => Obstacle::Ball { center_m: Vec3::new(a, b, c), radius_m: d },
+        _ => Obstacle::Plane { normal: Vec3::new(a, b, c), distance_m: d },
     })
 }
 
@@ -373,10 +320,7 @@ fn unknown_shapes_are_refused() {
 
 #[test]
 fn robots_speak_any_format_and_one_that_was_built_for_one_says_so() {
-    let setup = |format| Setup {
-        format,
-        ..super::in_plane()
-    };
+    let setup = |format| Setup { format, ..super::in_plane() };
     let (mut large, mut small) = (Large::new(), Small::new());
     let mut lean = Robot::<Q16, CELLS, VISITS, 8, 16, 16, Postcard>::new();
     let postcard = large.configure(&setup(Format::Postcard), None);
@@ -386,9 +330,6 @@ fn robots_speak_any_format_and_one_that_was_built_for_one_says_so() {
     assert_eq!(lean.configure(&setup(Format::Postcard), None), in_small);
     assert!(postcard.is_ok() && in_small.is_ok());
     let refusal = lean.configure(&setup(Format::Mavlink), None).unwrap_err();
-    assert_eq!(
-        std::format!("{refusal}"),
-        "this firmware was built without mavlink"
-    );
+    assert_eq!(std::format!("{refusal}"), "this firmware was built without mavlink");
     assert!(lean.result().is_none());
 }

@@ -51,16 +51,10 @@ fn repeated_request_gets_the_very_same_answer_and_no_second_step() {
     for _ in 0..3 {
         assert_eq!(answers(&mut session, &step(10)), first);
     }
-    assert_eq!(
-        session.controller().agent().map(|agent| agent.digest()),
-        state
-    );
+    assert_eq!(session.controller().agent().map(|agent| agent.digest()), state);
     assert_eq!((session.counts().steps, session.counts().repeated), (1, 4));
     let second = answers(&mut session, &step(11));
-    assert_ne!(
-        stepped(&second[0]).result.digest,
-        stepped(&first[0]).result.digest
-    );
+    assert_ne!(stepped(&second[0]).result.digest, stepped(&first[0]).result.digest);
 }
 
 #[test]
@@ -111,24 +105,14 @@ fn setups_that_do_not_fit_are_refused_with_the_reason() {
     let (routing, _) = on_grid(5);
     let waypoint = Waypoint::fixed(staya_controller::geom::Position::ORIGIN);
     let waypoints = Task::Waypoints([(0, waypoint)].into_iter().collect());
-    let (kind, _, text) = fault(&answers(
-        &mut session,
-        &configure(9, routing, Some(waypoints)),
-    ));
-    assert_eq!(
-        (kind, text.as_str()),
-        (FaultKind::Setup, "the guidance law has no use for the task")
-    );
+    let (kind, _, text) = fault(&answers(&mut session, &configure(9, routing, Some(waypoints))));
+    assert_eq!((kind, text.as_str()), (FaultKind::Setup, "the guidance law has no use for the task"));
 }
 
 #[test]
 fn too_many_obstacles_and_nonsense_are_refused_and_the_robot_goes_on() {
     let mut session = small();
-    let request = Configure {
-        seq: 1,
-        setup: in_plane(),
-        task: None,
-    };
+    let request = Configure { seq: 1, setup: in_plane(), task: None };
     answers(&mut session, &frame(kind::CONFIGURE, &request));
     let mut with = |bytes: usize, shape: u8, cells: &[u8]| {
         let obstacles = std::vec![shape; bytes];
@@ -137,17 +121,8 @@ fn too_many_obstacles_and_nonsense_are_refused_and_the_robot_goes_on() {
             now: Instant::from_micros(0),
             state: KinematicState::default(),
             cell: None,
-            window: Some(TerrainWindow {
-                origin: staya_controller::grid::Cell::default(),
-                width: 2,
-                height: 2,
-                cells,
-            }),
-            surroundings: Some(PackedSurroundings {
-                max_speed_mps: 1.0,
-                in_cell: None,
-                obstacles: &obstacles,
-            }),
+            window: Some(TerrainWindow { origin: staya_controller::grid::Cell::default(), width: 2, height: 2, cells }),
+            surroundings: Some(PackedSurroundings { max_speed_mps: 1.0, in_cell: None, obstacles: &obstacles }),
             inbox: &[],
         };
         let request = frame(kind::STEP, &Step { seq: 2, inputs });
@@ -161,19 +136,10 @@ fn too_many_obstacles_and_nonsense_are_refused_and_the_robot_goes_on() {
         fault.map(|fault| fault.kind)
     };
     let land = [1; 4];
-    assert_eq!(
-        with(17 * OBSTACLE_BYTES, 0, &land),
-        Some(FaultKind::Capacity)
-    );
-    assert_eq!(
-        with(OBSTACLE_BYTES - 1, 0, &land),
-        Some(FaultKind::Malformed)
-    );
+    assert_eq!(with(17 * OBSTACLE_BYTES, 0, &land), Some(FaultKind::Capacity));
+    assert_eq!(with(OBSTACLE_BYTES - 1, 0, &land), Some(FaultKind::Malformed));
     assert_eq!(with(OBSTACLE_BYTES, 3, &land), Some(FaultKind::Malformed));
-    assert_eq!(
-        with(OBSTACLE_BYTES, 0, &land[1..]),
-        Some(FaultKind::Malformed)
-    );
+    assert_eq!(with(OBSTACLE_BYTES, 0, &land[1..]), Some(FaultKind::Malformed));
     assert_eq!(with(16 * OBSTACLE_BYTES, 0, &land), None);
 }
 
@@ -221,14 +187,9 @@ fn restarts_only_for_the_host_that_greeted_last() {
     let mut session = small();
     let restart = frame(kind::RESTART, &Restart { token: TOKEN });
     assert_eq!(hello(&answers(&mut session, &restart)[0]).token, None);
-    answers(
-        &mut session,
-        &frame(kind::GREETING, &Greeting { token: TOKEN }),
-    );
-    let reactions: Vec<bool> = restart
-        .iter()
-        .map(|byte| session.receive(*byte, &mut ()) == Reaction::Restart)
-        .collect();
+    answers(&mut session, &frame(kind::GREETING, &Greeting { token: TOKEN }));
+    let reactions: Vec<bool> =
+        restart.iter().map(|byte| session.receive(*byte, &mut ()) == Reaction::Restart).collect();
     assert_eq!(reactions.iter().filter(|restarts| **restarts).count(), 1);
     assert_eq!(reactions.last(), Some(&true));
 }
@@ -247,10 +208,7 @@ fn meter_runs_around_each_step_and_only_there() {
         }
         fn finish(&mut self) -> Cost {
             self.finished += 1;
-            Cost {
-                ticks: 100 + self.finished,
-                stack_bytes: 7,
-            }
+            Cost { ticks: 100 + self.finished, stack_bytes: 7 }
         }
     }
     let (mut session, mut meter) = (large(), Counting::default());
@@ -302,18 +260,10 @@ proptest! {
 
 #[test]
 fn part_and_numbers_are_said() {
-    let about = About {
-        part: "nrf51",
-        firmware: "lockstep",
-        boot: 3,
-        ticks_per_second: 16,
-    };
+    let about = About { part: "nrf51", firmware: "lockstep", boot: 3, ticks_per_second: 16 };
     let mut session = Session::<Small, { super::SMALL }>::new(Small::new(), about);
     let hello = hello(session.hello());
-    assert_eq!(
-        (hello.part.as_str(), hello.firmware.as_str()),
-        ("nrf51", "lockstep")
-    );
+    assert_eq!((hello.part.as_str(), hello.firmware.as_str()), ("nrf51", "lockstep"));
     assert_eq!((hello.boot, hello.ticks_per_second), (3, 16));
     assert_eq!(hello.number, NumberFormat::Q16);
     let controller = Small::new().capacities();
@@ -321,11 +271,5 @@ fn part_and_numbers_are_said() {
     // A micro:bit's buffer also holds what a setup needs.
     assert!(room >= crate::robot::SMALL_INBOX);
     let inbox_bytes = hello.capacities.inbox_bytes;
-    assert_eq!(
-        hello.capacities,
-        crate::capacities::Capacities {
-            inbox_bytes,
-            ..controller
-        }
-    );
+    assert_eq!(hello.capacities, crate::capacities::Capacities { inbox_bytes, ..controller });
 }

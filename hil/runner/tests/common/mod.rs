@@ -2,8 +2,8 @@
 #![allow(dead_code, reason = "each test program uses its own part")]
 
 use staya_controller::agent::{
-    AgentConfig, AnyHalfPlanes, AnyInputs, AnySurroundings, CellState, GuidanceSetup, InPlane,
-    Inputs, KinematicState, OnGrid, RouteSetup, SafetySetup, Setup, Task, Waypoint,
+    AgentConfig, AnyHalfPlanes, AnyInputs, AnySurroundings, CellState, GuidanceSetup, InPlane, Inputs, KinematicState,
+    OnGrid, RouteSetup, SafetySetup, Setup, Task, Waypoint,
 };
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Cell, Window};
@@ -31,27 +31,15 @@ pub fn config(robot: u32, device: &str) -> DeviceConfig {
     };
     let waypoint = Waypoint::fixed(Position::from_mm([30_000, 500, 0]));
     let (guidance, safety, task) = if robot.is_multiple_of(2) {
-        let route = RouteSetup {
-            params: RouteParams::default(),
-            replan: Replan::EachCell,
-            sharpness: Sharpness::Greedy,
-        };
-        let guidance = GuidanceSetup::Route {
-            route,
-            speed_mps: None,
-        };
+        let route =
+            RouteSetup { params: RouteParams::default(), replan: Replan::EachCell, sharpness: Sharpness::Greedy };
+        let guidance = GuidanceSetup::Route { route, speed_mps: None };
         (guidance, SafetySetup::None, Task::Cell(Cell::new(90, 40)))
     } else {
-        let guidance = GuidanceSetup::Waypoint {
-            speed_mps: 1.0,
-            tolerance_m: 0.05,
-        };
+        let guidance = GuidanceSetup::Waypoint { speed_mps: 1.0, tolerance_m: 0.05 };
         let safety = SafetySetup::Orca {
             params: AvoidParams::default(),
-            inflation: StalenessInflation {
-                growth_mps: 0.5,
-                max_m: 0.25,
-            },
+            inflation: StalenessInflation { growth_mps: 0.5, max_m: 0.25 },
             source: AnyHalfPlanes::Analytic,
         };
         let waypoints = [(0, waypoint)].into_iter().collect();
@@ -59,12 +47,7 @@ pub fn config(robot: u32, device: &str) -> DeviceConfig {
     };
     DeviceConfig {
         device: device.to_owned(),
-        setup: Setup {
-            agent,
-            guidance,
-            safety,
-            format: Format::Postcard,
-        },
+        setup: Setup { agent, guidance, safety, format: Format::Postcard },
         task: Some(task),
         faults: LineFaults::default(),
         resets: Vec::new(),
@@ -94,17 +77,12 @@ impl Scene {
         let mut scene = Self {
             wire: AnyWire::new(format),
             inbox: Vec::new(),
-            land: (0..121)
-                .map(|i: u32| (i * 31 + tick / 5) as u8 % 4)
-                .collect(),
+            land: (0..121).map(|i: u32| (i * 31 + tick / 5) as u8 % 4).collect(),
             cell,
             position: Position::from_mm(mm),
             obstacles: vec![
                 Obstacle::Wall([Vec2::new(4.0, -1.0), Vec2::new(4.0, 1.0)]),
-                Obstacle::Ball {
-                    center_m: Vec3::new(3.0, 2.5, 0.0),
-                    radius_m: 0.5,
-                },
+                Obstacle::Ball { center_m: Vec3::new(3.0, 2.5, 0.0), radius_m: 0.5 },
             ],
             on_grid: robot.is_multiple_of(2),
         };
@@ -127,11 +105,7 @@ impl Scene {
             mode: Mode::Cruise,
             ..Beacon::default()
         };
-        let header = Header {
-            boot: 0,
-            sender: RobotId(sender),
-            sequence: tick as u16,
-        };
+        let header = Header { boot: 0, sender: RobotId(sender), sequence: tick as u16 };
         let mut out = heapless::Vec::<u8, 128>::new();
         let beacon = Message::Beacon(beacon);
         self.wire.encode(header, &beacon, &mut out).expect("fits");
@@ -143,30 +117,18 @@ impl Scene {
 
     /// Adds a ball that is so far away.
     pub fn see(&mut self, distance_m: f32) {
-        self.obstacles.push(Obstacle::Ball {
-            center_m: Vec3::new(0.0, distance_m, 0.0),
-            radius_m: 0.1,
-        });
+        self.obstacles.push(Obstacle::Ball { center_m: Vec3::new(0.0, distance_m, 0.0), radius_m: 0.1 });
     }
 
     pub fn inputs(&self) -> AnyInputs<'_, f32> {
-        let cell = CellState {
-            cell: self.cell,
-            busy: Duration::ZERO,
-        };
+        let cell = CellState { cell: self.cell, busy: Duration::ZERO };
         Inputs {
-            state: KinematicState {
-                position: self.position,
-                velocity_mps: Vec3::new(0.5, 0.0, 0.0),
-            },
+            state: KinematicState { position: self.position, velocity_mps: Vec3::new(0.5, 0.0, 0.0) },
             surroundings: if self.on_grid {
                 let window = Window::new(&self.land, self.cell - Cell::new(5, 5), 11, 11);
                 AnySurroundings::OnGrid(OnGrid { cell, window })
             } else {
-                AnySurroundings::InPlane(InPlane {
-                    max_speed_mps: 1.0,
-                    obstacles: &self.obstacles,
-                })
+                AnySurroundings::InPlane(InPlane { max_speed_mps: 1.0, obstacles: &self.obstacles })
             },
             inbox: &self.inbox,
         }
@@ -206,12 +168,7 @@ pub fn live<B: Controller, const N: usize>(
     mischief: Mischief,
     mut line: impl Read + Write,
 ) {
-    let mut about = About {
-        part,
-        firmware: "a thread",
-        boot: 0,
-        ticks_per_second: 1_000_000_000,
-    };
+    let mut about = About { part, firmware: "a thread", boot: 0, ticks_per_second: 1_000_000_000 };
     let mut steps = 0;
     'boots: loop {
         about.boot += 1;

@@ -48,20 +48,14 @@ struct Command {
 /// A whole number that is needed.
 fn whole(x: f32, most: f32) -> Result<u32, Refusal> {
     let is_one = (0.0..=most).contains(&x) && libm::truncf(x) == x;
-    if is_one {
-        Ok(x as u32)
-    } else {
-        Err(MAV_RESULT_DENIED)
-    }
+    if is_one { Ok(x as u32) } else { Err(MAV_RESULT_DENIED) }
 }
 
 impl Vehicle {
     pub(super) fn command_long(&mut self, from: Sender, c: &COMMAND_LONG_DATA, out: &mut Out) {
         let command = Command {
             id: c.command,
-            params: [
-                c.param1, c.param2, c.param3, c.param4, c.param5, c.param6, c.param7,
-            ],
+            params: [c.param1, c.param2, c.param3, c.param4, c.param5, c.param6, c.param7],
             spot: None,
         };
         self.answer(from, &command, out);
@@ -70,15 +64,8 @@ impl Vehicle {
     pub(super) fn command_int(&mut self, from: Sender, c: &COMMAND_INT_DATA, out: &mut Out) {
         let command = Command {
             id: c.command,
-            params: [
-                c.param1, c.param2, c.param3, c.param4, c.x as f32, c.y as f32, c.z,
-            ],
-            spot: Some(Spot {
-                frame: c.frame,
-                x: c.x,
-                y: c.y,
-                z: c.z,
-            }),
+            params: [c.param1, c.param2, c.param3, c.param4, c.x as f32, c.y as f32, c.z],
+            spot: Some(Spot { frame: c.frame, x: c.x, y: c.y, z: c.z }),
         };
         self.answer(from, &command, out);
     }
@@ -120,10 +107,8 @@ impl Vehicle {
             MAV_CMD_NAV_TAKEOFF => {
                 // Heights are above the ground.
                 let frame = command.spot.map(|spot| spot.frame);
-                let is_known = matches!(
-                    frame,
-                    None | Some(MAV_FRAME_GLOBAL_RELATIVE_ALT | MAV_FRAME_GLOBAL_RELATIVE_ALT_INT)
-                );
+                let is_known =
+                    matches!(frame, None | Some(MAV_FRAME_GLOBAL_RELATIVE_ALT | MAV_FRAME_GLOBAL_RELATIVE_ALT_INT));
                 if self.model.flies && !is_known {
                     return Err(MAV_RESULT_COMMAND_UNSUPPORTED_MAV_FRAME);
                 }
@@ -151,29 +136,20 @@ impl Vehicle {
             MAV_CMD_SET_MESSAGE_INTERVAL => {
                 let id = self.stream_id(first)?;
                 let now_us = self.now_us;
-                if self.streams.set_interval(id, second, now_us) {
-                    Ok(())
-                } else {
-                    Err(MAV_RESULT_DENIED)
-                }
+                if self.streams.set_interval(id, second, now_us) { Ok(()) } else { Err(MAV_RESULT_DENIED) }
             }
             MAV_CMD_GET_MESSAGE_INTERVAL => {
                 let id = whole(first, 16_777_215.0)?;
                 let interval_us = self.streams.interval_us(id).unwrap_or(0);
                 out.messages
-                    .push(MavMessage::MESSAGE_INTERVAL(MESSAGE_INTERVAL_DATA {
-                        interval_us,
-                        message_id: id as u16,
-                    }));
+                    .push(MavMessage::MESSAGE_INTERVAL(MESSAGE_INTERVAL_DATA { interval_us, message_id: id as u16 }));
                 Ok(())
             }
             MAV_CMD_REQUEST_MESSAGE => {
                 let id = self.stream_id(first)?;
                 self.send_now(id, out)
             }
-            MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES => {
-                self.send_now(AUTOPILOT_VERSION_DATA::ID, out)
-            }
+            MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES => self.send_now(AUTOPILOT_VERSION_DATA::ID, out),
             MAV_CMD_GET_HOME_POSITION => self.send_now(HOME_POSITION_DATA::ID, out),
             _ => Err(MAV_RESULT_UNSUPPORTED),
         }
@@ -182,11 +158,7 @@ impl Vehicle {
     /// The number of a message that there is.
     fn stream_id(&self, number: f32) -> Result<u32, Refusal> {
         let id = whole(number, 16_777_215.0)?;
-        if self.streams.has(id) {
-            Ok(id)
-        } else {
-            Err(MAV_RESULT_UNSUPPORTED)
-        }
+        if self.streams.has(id) { Ok(id) } else { Err(MAV_RESULT_UNSUPPORTED) }
     }
 
     fn send_now(&self, id: u32, out: &mut Out) -> Result<(), Refusal> {
@@ -196,11 +168,7 @@ impl Vehicle {
     }
 
     const fn needs_arms(&self) -> Result<(), Refusal> {
-        if self.is_armed {
-            Ok(())
-        } else {
-            Err(MAV_RESULT_TEMPORARILY_REJECTED)
-        }
+        if self.is_armed { Ok(()) } else { Err(MAV_RESULT_TEMPORARILY_REJECTED) }
     }
 
     fn arm(&mut self, arms: bool, forced: bool, out: &mut Out) -> Result<(), Refusal> {
@@ -272,11 +240,7 @@ impl Vehicle {
         // Degrees as floats are off by a metre.
         let spot = command.spot.ok_or(MAV_RESULT_COMMAND_INT_ONLY)?;
         let place = self.global_place(spot)?;
-        let flags = if flags.is_nan() {
-            0
-        } else {
-            whole(flags, 255.0)?
-        };
+        let flags = if flags.is_nan() { 0 } else { whole(flags, 255.0)? };
         let changes_mode = flags & MAV_DO_REPOSITION_FLAGS_CHANGE_MODE != 0;
         if self.model.in_formation {
             return Err(MAV_RESULT_DENIED);
@@ -305,12 +269,7 @@ impl Vehicle {
         item: &super::mission::Item,
         out: &mut Out,
     ) -> MavMessage {
-        let spot = Spot {
-            frame: item.frame,
-            x: item.x,
-            y: item.y,
-            z: item.z,
-        };
+        let spot = Spot { frame: item.frame, x: item.x, y: item.y, z: item.z };
         let is_goto = current == 2 && item.command == MAV_CMD_NAV_WAYPOINT;
         let result = match self.item_place_of(spot) {
             Some(_) if !is_goto || self.model.in_formation => MAV_MISSION_UNSUPPORTED,
@@ -344,9 +303,7 @@ impl Vehicle {
         // Heights above home are heights above the ground, which is at the origin's.
         let above_m = match spot.frame {
             MAV_FRAME_GLOBAL | MAV_FRAME_GLOBAL_INT => 0.0,
-            MAV_FRAME_GLOBAL_RELATIVE_ALT | MAV_FRAME_GLOBAL_RELATIVE_ALT_INT => {
-                origin.place().altitude_m
-            }
+            MAV_FRAME_GLOBAL_RELATIVE_ALT | MAV_FRAME_GLOBAL_RELATIVE_ALT_INT => origin.place().altitude_m,
             _ => return Err(MAV_RESULT_COMMAND_UNSUPPORTED_MAV_FRAME),
         };
         // Who does not fly has no use for a height, and may not know it.
@@ -360,34 +317,19 @@ impl Vehicle {
         let place_m = origin.to_enu_m(&place).ok_or(MAV_RESULT_DENIED)?;
         let is_low = place_m[2] <= f64::from(HIGHEST_M);
         let is_above_ground = !self.model.flies || place_m[2] >= -0.001;
-        if is_low && is_above_ground {
-            Ok(place_m)
-        } else {
-            Err(MAV_RESULT_DENIED)
-        }
+        if is_low && is_above_ground { Ok(place_m) } else { Err(MAV_RESULT_DENIED) }
     }
 
     /// The place of a mission's item.
     pub(super) fn item_place(&self, item: &super::mission::Item) -> Option<[f64; 3]> {
-        self.item_place_of(Spot {
-            frame: item.frame,
-            x: item.x,
-            y: item.y,
-            z: item.z,
-        })
+        self.item_place_of(Spot { frame: item.frame, x: item.x, y: item.y, z: item.z })
     }
 
     fn item_place_of(&self, spot: Spot) -> Option<[f64; 3]> {
         if spot.frame == MAV_FRAME_LOCAL_NED {
             let [north, east] = [spot.x, spot.y].map(|x| f64::from(x) / 1e4);
-            let up = if self.model.flies {
-                -f64::from(spot.z)
-            } else {
-                0.0
-            };
-            return (0.0..=f64::from(HIGHEST_M))
-                .contains(&up)
-                .then_some([east, north, up]);
+            let up = if self.model.flies { -f64::from(spot.z) } else { 0.0 };
+            return (0.0..=f64::from(HIGHEST_M)).contains(&up).then_some([east, north, up]);
         }
         self.global_place(spot).ok()
     }

@@ -10,9 +10,7 @@ use staya_controller::grid::Cell;
 use staya_controller::robot::RobotId;
 use staya_controller::template::TemplateEntry;
 use staya_controller::time::Duration;
-use staya_controller::wire::{
-    GoalAssignment, Header, Message, TEMPLATE_PART, TemplateAssignment, WaypointAssignment,
-};
+use staya_controller::wire::{GoalAssignment, Header, Message, TEMPLATE_PART, TemplateAssignment, WaypointAssignment};
 use staya_mavlink::constants::*;
 use staya_mavlink::dialect::*;
 use staya_mavlink::frame::Sender;
@@ -54,20 +52,12 @@ impl Used {
             velocity: velocity == 0,
             velocity_z: flies && mask & POSITION_TARGET_TYPEMASK_VZ_IGNORE == 0,
         };
-        if used.place || used.velocity {
-            Ok(used)
-        } else {
-            Err("setpoint: neither place nor velocity")
-        }
+        if used.place || used.velocity { Ok(used) } else { Err("setpoint: neither place nor velocity") }
     }
 }
 
 impl Vehicle {
-    pub(super) fn target_local(
-        &mut self,
-        target: &SET_POSITION_TARGET_LOCAL_NED_DATA,
-        out: &mut Out,
-    ) {
+    pub(super) fn target_local(&mut self, target: &SET_POSITION_TARGET_LOCAL_NED_DATA, out: &mut Out) {
         let (is_offset, is_turned) = match target.coordinate_frame {
             MAV_FRAME_LOCAL_NED => (false, false),
             MAV_FRAME_LOCAL_OFFSET_NED => (true, false),
@@ -96,24 +86,15 @@ impl Vehicle {
             let [east, north, up] = turned([target.vx, target.vy, target.vz]);
             [east, north, if used.velocity_z { up } else { 0.0 }]
         });
-        let setpoint = Setpoint {
-            place_m,
-            velocity_mps,
-        };
+        let setpoint = Setpoint { place_m, velocity_mps };
         self.follow(setpoint, out);
     }
 
-    pub(super) fn target_global(
-        &mut self,
-        target: &SET_POSITION_TARGET_GLOBAL_INT_DATA,
-        out: &mut Out,
-    ) {
+    pub(super) fn target_global(&mut self, target: &SET_POSITION_TARGET_GLOBAL_INT_DATA, out: &mut Out) {
         let origin = self.model.origin;
         let ground_m = match target.coordinate_frame {
             MAV_FRAME_GLOBAL | MAV_FRAME_GLOBAL_INT => 0.0,
-            MAV_FRAME_GLOBAL_RELATIVE_ALT | MAV_FRAME_GLOBAL_RELATIVE_ALT_INT => {
-                origin.place().altitude_m
-            }
+            MAV_FRAME_GLOBAL_RELATIVE_ALT | MAV_FRAME_GLOBAL_RELATIVE_ALT_INT => origin.place().altitude_m,
             _ => return self.refuse("setpoint: no such frame here", out),
         };
         let used = match Used::new(target.type_mask, self.model.flies) {
@@ -135,10 +116,7 @@ impl Vehicle {
             let [east, north, up] = enu([target.vx, target.vy, target.vz].map(f64::from));
             [east, north, if used.velocity_z { up } else { 0.0 }]
         });
-        let setpoint = Setpoint {
-            place_m,
-            velocity_mps,
-        };
+        let setpoint = Setpoint { place_m, velocity_mps };
         self.follow(setpoint, out);
     }
 
@@ -168,18 +146,11 @@ impl Vehicle {
         });
         let wish = match (setpoint.place_m, velocity_mps) {
             (None, None) => None,
-            (None, Some(velocity_mps)) => Some(Wish::Velocity {
-                velocity_mps,
-                valid,
-            }),
+            (None, Some(velocity_mps)) => Some(Wish::Velocity { velocity_mps, valid }),
             (Some(place_m), velocity) => self.goal(place_m).map(|wish| match (wish, velocity) {
-                (Wish::Waypoint { waypoint, .. }, Some(velocity_mps)) => Wish::Waypoint {
-                    waypoint: Waypoint {
-                        velocity_mps,
-                        ..waypoint
-                    },
-                    valid: Some(valid),
-                },
+                (Wish::Waypoint { waypoint, .. }, Some(velocity_mps)) => {
+                    Wish::Waypoint { waypoint: Waypoint { velocity_mps, ..waypoint }, valid: Some(valid) }
+                }
                 _ => wish,
             }),
         };
@@ -194,11 +165,7 @@ impl Vehicle {
         let Some((boot, sequence, message)) = order(message) else {
             return;
         };
-        let header = Header {
-            boot,
-            sender: RobotId(from.system.into()),
-            sequence,
-        };
+        let header = Header { boot, sender: RobotId(from.system.into()), sequence };
         out.actions.push(Action::Tell(header, message));
     }
 }
@@ -232,13 +199,11 @@ fn order(message: &MavMessage) -> Option<(u8, u16, Message)> {
             }
             let places = template.entry_x.iter().zip(&template.entry_y);
             let robots = template.entry_id.iter().zip(&template.entry_hops);
-            let entries = places
-                .zip(robots)
-                .map(|((x, y), (id, hops))| TemplateEntry {
-                    offset: Cell::new(*x, *y),
-                    id: to(*id),
-                    hops: *hops,
-                });
+            let entries = places.zip(robots).map(|((x, y), (id, hops))| TemplateEntry {
+                offset: Cell::new(*x, *y),
+                id: to(*id),
+                hops: *hops,
+            });
             let message = Message::Template(TemplateAssignment {
                 to: to(template.target_system),
                 version: template.version,
@@ -260,29 +225,14 @@ mod tests {
 
     #[test]
     fn masks_of_clients_mean_what_they_do() {
-        let used = |place, velocity| Used {
-            place,
-            place_z: true,
-            velocity,
-            velocity_z: true,
-        };
-        for (mask, expected) in [
-            (0xDF8, used(true, false)),
-            (0xDC7, used(false, true)),
-            (0xDC0, used(true, true)),
-        ] {
+        let used = |place, velocity| Used { place, place_z: true, velocity, velocity_z: true };
+        for (mask, expected) in [(0xDF8, used(true, false)), (0xDC7, used(false, true)), (0xDC0, used(true, true))] {
             let found = Used::new(mask, true).expect("a good mask");
-            assert_eq!(
-                (found.place, found.velocity),
-                (expected.place, expected.velocity)
-            );
+            assert_eq!((found.place, found.velocity), (expected.place, expected.velocity));
         }
         // MAVSDK's velocity with a yaw.
         let found = Used::new(2503, false).expect("a good mask");
-        assert_eq!(
-            (found.velocity, found.place, found.velocity_z),
-            (true, false, false)
-        );
+        assert_eq!((found.velocity, found.place, found.velocity_z), (true, false, false));
         // Nothing, half a place, half a velocity, accelerations, forces.
         for mask in [0xDFF, 0xDFA, 0xDCF, 0xC38, 0xFF8] {
             assert!(Used::new(mask, true).is_err(), "{mask:#x}");

@@ -186,13 +186,7 @@ impl Mission {
         if told.count == 0 {
             return self.clear(from, MAV_MISSION_TYPE_MISSION);
         }
-        self.upload = Some(Upload {
-            from,
-            count: told.count,
-            items: Vec::new(),
-            asked_us: now_us,
-            tries: 1,
-        });
+        self.upload = Some(Upload { from, count: told.count, items: Vec::new(), asked_us: now_us, tries: 1 });
         request(from, 0)
     }
 
@@ -313,25 +307,14 @@ pub const fn ack(to: Sender, mission_type: u8, result: u8) -> MavMessage {
 mod tests {
     use super::*;
 
-    const GCS: Sender = Sender {
-        system: 255,
-        component: 190,
-        sequence: 0,
-    };
+    const GCS: Sender = Sender { system: 255, component: 190, sequence: 0 };
 
     fn count(count: u16) -> MISSION_COUNT_DATA {
-        MISSION_COUNT_DATA {
-            count,
-            ..MISSION_COUNT_DATA::DEFAULT
-        }
+        MISSION_COUNT_DATA { count, ..MISSION_COUNT_DATA::DEFAULT }
     }
 
     fn item(x: i32) -> Item {
-        Item {
-            command: MAV_CMD_NAV_WAYPOINT,
-            x,
-            ..Item::default()
-        }
+        Item { command: MAV_CMD_NAV_WAYPOINT, x, ..Item::default() }
     }
 
     /// The item that was asked for, or the negative of what ended the transfer.
@@ -367,10 +350,7 @@ mod tests {
             panic!("an item");
         };
         assert_eq!((told.x, told.seq, told.current), (2, 2, 0));
-        assert_eq!(
-            wanted(&mission.tell(GCS, 3, 0, true)),
-            ended(MAV_MISSION_INVALID_SEQUENCE)
-        );
+        assert_eq!(wanted(&mission.tell(GCS, 3, 0, true)), ended(MAV_MISSION_INVALID_SEQUENCE));
         assert!(mission.set_current(2) && !mission.set_current(3));
         let _ = mission.clear(GCS, 0);
         assert_eq!(mission, Mission::default());
@@ -395,10 +375,7 @@ mod tests {
     #[test]
     fn too_many_another_kind_another_client_and_bad_items_are_refused() {
         let mut mission = Mission::default();
-        let fences = MISSION_COUNT_DATA {
-            mission_type: 1,
-            ..count(2)
-        };
+        let fences = MISSION_COUNT_DATA { mission_type: 1, ..count(2) };
         let refused = ended(MAV_MISSION_UNSUPPORTED);
         assert_eq!(wanted(&mission.count(GCS, &fences, 0)), refused);
         let refused = ended(MAV_MISSION_NO_SPACE);
@@ -421,23 +398,13 @@ mod tests {
     #[test]
     fn items_of_the_older_message_are_the_same() {
         for (frame, x) in [(MAV_FRAME_GLOBAL, 12.5), (MAV_FRAME_LOCAL_NED, -3.25)] {
-            let float = MISSION_ITEM_DATA {
-                frame,
-                x,
-                y: 7.0,
-                z: 1.5,
-                seq: 4,
-                ..MISSION_ITEM_DATA::DEFAULT
-            };
+            let float = MISSION_ITEM_DATA { frame, x, y: 7.0, z: 1.5, seq: 4, ..MISSION_ITEM_DATA::DEFAULT };
             let kept = Item::from_float(&float);
             assert_eq!(kept.y, (7.0 * Item::scale(frame)) as i32);
             let back = kept.to_float(4, false, Sender::default());
             assert_eq!((back.x, back.y, back.z, back.seq), (x, 7.0, 1.5, 4));
         }
-        let nonsense = MISSION_ITEM_DATA {
-            x: f32::NAN,
-            ..MISSION_ITEM_DATA::DEFAULT
-        };
+        let nonsense = MISSION_ITEM_DATA { x: f32::NAN, ..MISSION_ITEM_DATA::DEFAULT };
         assert_eq!(Item::from_float(&nonsense).x, i32::MAX);
     }
 }

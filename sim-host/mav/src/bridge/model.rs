@@ -51,9 +51,7 @@ impl VehicleModel {
         let land = self.grid.as_ref()?;
         let at = |metres: f64, axis: usize| {
             let cells = libm::floor((metres - land.origin_m[axis]) / land.cell_m);
-            (0.0..f64::from(i16::MAX))
-                .contains(&cells)
-                .then_some(cells as i16)
+            (0.0..f64::from(i16::MAX)).contains(&cells).then_some(cells as i16)
         };
         let cell = Cell::new(at(x, 0)?, at(y, 1)?);
         land.index(cell)?;
@@ -67,9 +65,7 @@ impl VehicleModel {
             return self.cell(place_m).is_some();
         }
         let radius_m = f64::from(self.radius_m);
-        self.solids
-            .iter()
-            .all(|solid| solid.distance_m(place_m) >= radius_m)
+        self.solids.iter().all(|solid| solid.distance_m(place_m) >= radius_m)
     }
 }
 
@@ -90,13 +86,7 @@ pub enum FlightMode {
 }
 
 impl FlightMode {
-    const ALL: [Self; 5] = [
-        Self::Auto,
-        Self::Guided,
-        Self::Hold,
-        Self::Return,
-        Self::Land,
-    ];
+    const ALL: [Self; 5] = [Self::Auto, Self::Guided, Self::Hold, Self::Return, Self::Land];
 
     /// Its number.
     #[must_use]

@@ -174,10 +174,7 @@ mod tests {
             assert!(name.len() <= 16);
             assert_eq!(parameters.find(&padded(name)), Some(index), "{name}");
             let told = parameters.message(index).expect("it is there");
-            assert_eq!(
-                (*told.param_id, usize::from(told.param_index)),
-                (padded(name), index)
-            );
+            assert_eq!((*told.param_id, usize::from(told.param_index)), (padded(name), index));
         }
         assert_eq!(parameters.find(&padded("SPEED_MP")), None);
         assert_eq!(parameters.find(&padded("")), None);
@@ -198,11 +195,7 @@ mod tests {
         assert_eq!(parameters.set(speed, limit), Ok(meaning));
         assert_eq!(parameters.get(meaning), Some(limit));
         let radius = Meaning::Controller(Parameter::Radius);
-        assert!(
-            parameters
-                .set_meaning(radius, model().radius_m * 0.9)
-                .is_err()
-        );
+        assert!(parameters.set_meaning(radius, model().radius_m * 0.9).is_err());
         assert_eq!(parameters.set(99, 1.0), Err(NotSet::Unknown));
     }
 

@@ -22,11 +22,7 @@ pub struct Streams(Vec<Stream>);
 
 /// Microseconds between two messages at a rate, 0 for none.
 fn every(rate_hz: f64) -> u64 {
-    if rate_hz > 0.0 {
-        (1e6 / rate_hz) as u64
-    } else {
-        0
-    }
+    if rate_hz > 0.0 { (1e6 / rate_hz) as u64 } else { 0 }
 }
 
 impl Streams {
@@ -74,11 +70,7 @@ impl Streams {
             }
             send(stream.id);
             let next = stream.due_us + stream.every_us;
-            stream.due_us = if next > now_us {
-                next
-            } else {
-                now_us + stream.every_us
-            };
+            stream.due_us = if next > now_us { next } else { now_us + stream.every_us };
         }
     }
 
@@ -126,11 +118,7 @@ impl Streams {
                 GLOBAL_POSITION_INT_DATA::ID,
                 VFR_HUD_DATA::ID,
             ],
-            2 => &[
-                SYS_STATUS_DATA::ID,
-                GPS_RAW_INT_DATA::ID,
-                MISSION_CURRENT_DATA::ID,
-            ],
+            2 => &[SYS_STATUS_DATA::ID, GPS_RAW_INT_DATA::ID, MISSION_CURRENT_DATA::ID],
             6 => &[LOCAL_POSITION_NED_DATA::ID, GLOBAL_POSITION_INT_DATA::ID],
             10 => &[ATTITUDE_DATA::ID],
             11 => &[VFR_HUD_DATA::ID],

@@ -154,10 +154,7 @@ impl Swarm {
     /// [`BridgeError`].
     pub fn new(scenario: &Scenario, options: Options) -> Result<Self, BridgeError> {
         let numbers: Vec<u32> = scenario.robots.iter().map(|robot| robot.id.0).collect();
-        if let Some(number) = numbers
-            .iter()
-            .find(|&&number| number == 0 || number > LAST_SYSTEM)
-        {
+        if let Some(number) = numbers.iter().find(|&&number| number == 0 || number > LAST_SYSTEM) {
             return Err(BridgeError::Number(*number));
         }
         let mut engine = operated(scenario)?;
@@ -320,8 +317,7 @@ impl Swarm {
             if glance.is_up && glance.boot != self.boots[index] {
                 self.boots[index] = glance.boot;
                 let engine = &self.engine;
-                let parameters =
-                    Parameters::new(&self.model, |parameter| engine.parameter(index, parameter));
+                let parameters = Parameters::new(&self.model, |parameter| engine.parameter(index, parameter));
                 self.vehicles[index].restart(parameters, sample, &mut self.out);
             }
             let events = self.engine.events(index);
@@ -382,15 +378,8 @@ impl Swarm {
     fn report(&self) -> Report {
         let wall_seconds = self.began.elapsed().as_secs_f64();
         let line = |at: usize| {
-            let Counts {
-                frames_in,
-                bytes_in,
-                frames_out,
-                bytes_out,
-                junk_bytes,
-                lost_in,
-                lost_out,
-            } = self.lines.counts(at);
+            let Counts { frames_in, bytes_in, frames_out, bytes_out, junk_bytes, lost_in, lost_out } =
+                self.lines.counts(at);
             LineReport {
                 endpoint: self.options.endpoints[at].to_string(),
                 frames_in,

@@ -53,21 +53,11 @@ impl Vehicle {
                     ..GPS_RAW_INT_DATA::DEFAULT
                 })
             }
-            ATTITUDE_DATA::ID => MavMessage::ATTITUDE(ATTITUDE_DATA {
-                time_boot_ms,
-                yaw: self.yaw,
-                ..ATTITUDE_DATA::DEFAULT
-            }),
+            ATTITUDE_DATA::ID => {
+                MavMessage::ATTITUDE(ATTITUDE_DATA { time_boot_ms, yaw: self.yaw, ..ATTITUDE_DATA::DEFAULT })
+            }
             LOCAL_POSITION_NED_DATA::ID => {
-                MavMessage::LOCAL_POSITION_NED(LOCAL_POSITION_NED_DATA {
-                    time_boot_ms,
-                    x,
-                    y,
-                    z,
-                    vx,
-                    vy,
-                    vz,
-                })
+                MavMessage::LOCAL_POSITION_NED(LOCAL_POSITION_NED_DATA { time_boot_ms, x, y, z, vx, vy, vz })
             }
             GLOBAL_POSITION_INT_DATA::ID => {
                 let [lat, lon, alt] = here()?;
@@ -160,20 +150,13 @@ impl Vehicle {
         for (flag, holds) in [
             (MAV_MODE_FLAG_SAFETY_ARMED, self.is_armed),
             (MAV_MODE_FLAG_AUTO_ENABLED, self.mode == FlightMode::Auto),
-            (
-                MAV_MODE_FLAG_GUIDED_ENABLED,
-                matches!(self.mode, FlightMode::Guided | FlightMode::Auto),
-            ),
+            (MAV_MODE_FLAG_GUIDED_ENABLED, matches!(self.mode, FlightMode::Guided | FlightMode::Auto)),
         ] {
             base_mode |= if holds { flag } else { 0 };
         }
         MavMessage::HEARTBEAT(HEARTBEAT_DATA {
             custom_mode: self.mode.number(flies),
-            mavtype: if flies {
-                MAV_TYPE_QUADROTOR
-            } else {
-                MAV_TYPE_GROUND_ROVER
-            },
+            mavtype: if flies { MAV_TYPE_QUADROTOR } else { MAV_TYPE_GROUND_ROVER },
             // The modes are ArduPilot's: see `FlightMode`.
             autopilot: MAV_AUTOPILOT_ARDUPILOTMEGA,
             base_mode,
@@ -192,11 +175,7 @@ impl Vehicle {
             | MAV_SYS_STATUS_SENSOR_MOTOR_OUTPUTS
             | MAV_SYS_STATUS_PREARM_CHECK;
         let has_fault = self.sample.mode == Mode::Fault;
-        let unsound = if has_fault {
-            MAV_SYS_STATUS_SENSOR_XY_POSITION_CONTROL
-        } else {
-            0
-        };
+        let unsound = if has_fault { MAV_SYS_STATUS_SENSOR_XY_POSITION_CONTROL } else { 0 };
         MavMessage::SYS_STATUS(SYS_STATUS_DATA {
             onboard_control_sensors_present: present,
             onboard_control_sensors_enabled: present,
@@ -210,12 +189,9 @@ impl Vehicle {
 
     fn version(&self) -> AUTOPILOT_VERSION_DATA {
         let number = |text: &str| text.parse::<u32>().unwrap_or(0) & 0xFF;
-        let [major, minor, patch] = [
-            env!("CARGO_PKG_VERSION_MAJOR"),
-            env!("CARGO_PKG_VERSION_MINOR"),
-            env!("CARGO_PKG_VERSION_PATCH"),
-        ]
-        .map(number);
+        let [major, minor, patch] =
+            [env!("CARGO_PKG_VERSION_MAJOR"), env!("CARGO_PKG_VERSION_MINOR"), env!("CARGO_PKG_VERSION_PATCH")]
+                .map(number);
         AUTOPILOT_VERSION_DATA {
             capabilities: MAV_PROTOCOL_CAPABILITY_PARAM_FLOAT
                 | MAV_PROTOCOL_CAPABILITY_MISSION_INT

@@ -14,18 +14,10 @@ use staya_sim::terrain::Terrain;
 use std::sync::Arc;
 
 /// A ground station.
-pub(super) const GCS: Sender = Sender {
-    system: 255,
-    component: 190,
-    sequence: 0,
-};
+pub(super) const GCS: Sender = Sender { system: 255, component: 190, sequence: 0 };
 
 pub(super) fn origin() -> Origin {
-    let place = Global {
-        latitude_deg: 50.0,
-        longitude_deg: 8.0,
-        altitude_m: 100.0,
-    };
+    let place = Global { latitude_deg: 50.0, longitude_deg: 8.0, altitude_m: 100.0 };
     Origin::new(place).expect("a place")
 }
 
@@ -47,12 +39,7 @@ pub(super) fn on_grid() -> VehicleModel {
     let mut land = Terrain::flat(10, 10);
     land.cell_m = 2.0;
     land.set(Cell::new(4, 4), BLOCKED);
-    VehicleModel {
-        grid: Some(land),
-        max_speed_mps: 0.0,
-        radius_m: 0.0,
-        ..model()
-    }
+    VehicleModel { grid: Some(land), max_speed_mps: 0.0, radius_m: 0.0, ..model() }
 }
 
 pub(super) fn sample() -> Sample {
@@ -122,24 +109,16 @@ impl Bench {
 
     /// A command whose place is in whole numbers; its result.
     pub(super) fn command_int(&mut self, command: COMMAND_INT_DATA) -> u8 {
-        self.give(MavMessage::COMMAND_INT(COMMAND_INT_DATA {
-            target_system: 7,
-            target_component: 1,
-            ..command
-        }));
+        self.give(MavMessage::COMMAND_INT(COMMAND_INT_DATA { target_system: 7, target_component: 1, ..command }));
         self.result()
     }
 
     /// The result that was answered; there is exactly one answer, and it comes first.
     pub(super) fn result(&self) -> u8 {
-        let acks = self
-            .out
-            .messages
-            .iter()
-            .filter_map(|message| match message {
-                MavMessage::COMMAND_ACK(ack) => Some(ack.result),
-                _ => None,
-            });
+        let acks = self.out.messages.iter().filter_map(|message| match message {
+            MavMessage::COMMAND_ACK(ack) => Some(ack.result),
+            _ => None,
+        });
         let acks: Vec<u8> = acks.collect();
         assert_eq!(acks, self.out.results, "each command is answered once");
         assert!(matches!(self.out.messages[0], MavMessage::COMMAND_ACK(_)));
@@ -152,8 +131,7 @@ impl Bench {
         change(&mut self.sample);
         self.out = Out::default();
         let now_us = self.sample.time_us;
-        self.vehicle
-            .observe(self.sample, &[], now_us, &mut self.out);
+        self.vehicle.observe(self.sample, &[], now_us, &mut self.out);
         &self.out
     }
 
@@ -168,14 +146,10 @@ impl Bench {
 
     /// Texts that were sent.
     pub(super) fn texts(&self) -> Vec<String> {
-        let texts = self
-            .out
-            .messages
-            .iter()
-            .filter_map(|message| match message {
-                MavMessage::STATUSTEXT(text) => Some(text.text.to_str().unwrap_or("?").to_owned()),
-                _ => None,
-            });
+        let texts = self.out.messages.iter().filter_map(|message| match message {
+            MavMessage::STATUSTEXT(text) => Some(text.text.to_str().unwrap_or("?").to_owned()),
+            _ => None,
+        });
         texts.collect()
     }
 }

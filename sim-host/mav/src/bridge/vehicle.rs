@@ -107,11 +107,7 @@ impl Vehicle {
             home_m: [x, y, 0.0],
             sample,
             yaw: 0.0,
-            mode: if starts_armed {
-                FlightMode::Auto
-            } else {
-                FlightMode::Hold
-            },
+            mode: if starts_armed { FlightMode::Auto } else { FlightMode::Hold },
             is_armed: starts_armed,
             starts_armed,
             is_on_mission: false,
@@ -131,11 +127,7 @@ impl Vehicle {
     /// What the robot must be told at its start.
     #[must_use]
     pub const fn first_deed(&self) -> Option<Action> {
-        if self.starts_armed {
-            None
-        } else {
-            Some(Action::Wish(Wish::Off))
-        }
+        if self.starts_armed { None } else { Some(Action::Wish(Wish::Off)) }
     }
 
     /// Its computer has started anew: it has forgotten all but its mission.
@@ -182,14 +174,10 @@ impl Vehicle {
     fn report(&mut self, event: &Event, out: &mut Out) {
         use MAV_SEVERITY_INFO as INFO;
         match *event {
-            Event::ModeChanged {
-                to: Mode::Fault, ..
-            } => {
+            Event::ModeChanged { to: Mode::Fault, .. } => {
                 self.text(out, Kind::News, MAV_SEVERITY_ERROR, "fault: standing");
             }
-            Event::ModeChanged {
-                to: Mode::Arrived, ..
-            } => self.text(out, Kind::News, INFO, "arrived"),
+            Event::ModeChanged { to: Mode::Arrived, .. } => self.text(out, Kind::News, INFO, "arrived"),
             Event::NeighborLost(id) => {
                 let text = format!("robot {} is not heard any more", id.0);
                 self.text(out, Kind::Neighbor, INFO, &text);
@@ -303,23 +291,11 @@ impl Vehicle {
                 self.take_item(from, item.seq, Item::from_float(item))
             }
             // How clients of old say "go there now": an item of no mission.
-            MavMessage::MISSION_ITEM_INT(item) => {
-                self.guided_item(from, item.current, &Item::from_int(item), out)
-            }
-            MavMessage::MISSION_ITEM(item) => {
-                self.guided_item(from, item.current, &Item::from_float(item), out)
-            }
-            MavMessage::MISSION_REQUEST_LIST(wanted) => {
-                self.mission.list(from, wanted.mission_type)
-            }
-            MavMessage::MISSION_REQUEST_INT(wanted) => {
-                self.mission
-                    .tell(from, wanted.seq, wanted.mission_type, true)
-            }
-            MavMessage::MISSION_REQUEST(wanted) => {
-                self.mission
-                    .tell(from, wanted.seq, wanted.mission_type, false)
-            }
+            MavMessage::MISSION_ITEM_INT(item) => self.guided_item(from, item.current, &Item::from_int(item), out),
+            MavMessage::MISSION_ITEM(item) => self.guided_item(from, item.current, &Item::from_float(item), out),
+            MavMessage::MISSION_REQUEST_LIST(wanted) => self.mission.list(from, wanted.mission_type),
+            MavMessage::MISSION_REQUEST_INT(wanted) => self.mission.tell(from, wanted.seq, wanted.mission_type, true),
+            MavMessage::MISSION_REQUEST(wanted) => self.mission.tell(from, wanted.seq, wanted.mission_type, false),
             MavMessage::MISSION_CLEAR_ALL(wanted) => {
                 self.stop_mission(out);
                 self.mission.clear(from, wanted.mission_type)
@@ -356,12 +332,7 @@ impl Vehicle {
     }
 
     fn unknown_parameter(&mut self, out: &mut Out) {
-        self.text(
-            out,
-            Kind::Parameter,
-            MAV_SEVERITY_WARNING,
-            "no such parameter",
-        );
+        self.text(out, Kind::Parameter, MAV_SEVERITY_WARNING, "no such parameter");
     }
 
     fn set_parameter(&mut self, wanted: &PARAM_SET_DATA, out: &mut Out) {
@@ -436,15 +407,7 @@ impl Vehicle {
     /// The wish to be at a place; `None` for one that no number or no body has room for.
     pub(super) fn goal(&self, [x, y, z]: [f64; 3]) -> Option<Wish<f32>> {
         // Who does not fly keeps his height.
-        let place_m = [
-            x,
-            y,
-            if self.model.flies {
-                z
-            } else {
-                self.sample.position_m[2]
-            },
-        ];
+        let place_m = [x, y, if self.model.flies { z } else { self.sample.position_m[2] }];
         let is_near = place_m.iter().all(|m| m.abs() <= FAR_M);
         if !is_near || !self.model.has_room(place_m) {
             return None;
@@ -452,10 +415,7 @@ impl Vehicle {
         if self.model.grid.is_some() {
             return Some(Wish::Cell(self.model.cell(place_m)?));
         }
-        Some(Wish::Waypoint {
-            waypoint: Waypoint::fixed(Position::from_metres(place_m)?),
-            valid: None,
-        })
+        Some(Wish::Waypoint { waypoint: Waypoint::fixed(Position::from_metres(place_m)?), valid: None })
     }
 
     /// Whether it is at a place, by what it knows of its own.
@@ -465,12 +425,7 @@ impl Vehicle {
         }
         let off = [0, 1, 2].map(|axis| place_m[axis] - self.sample.position_m[axis]);
         let flat = off[0] * off[0] + off[1] * off[1];
-        let all = flat
-            + if self.model.flies {
-                off[2] * off[2]
-            } else {
-                0.0
-            };
+        let all = flat + if self.model.flies { off[2] * off[2] } else { 0.0 };
         let near_m = near_m.max(1.5 * f64::from(self.tolerance_m()));
         all <= near_m * near_m
     }
@@ -518,8 +473,7 @@ impl Vehicle {
     fn go_on_with_mission(&mut self, out: &mut Out) {
         let seq = self.mission.current();
         let item = self.mission.item(seq).copied();
-        let Some((item, place)) = item.and_then(|item| Some((item, self.item_place(&item)?)))
-        else {
+        let Some((item, place)) = item.and_then(|item| Some((item, self.item_place(&item)?))) else {
             return;
         };
         let [hold_s, near_m, ..] = item.params;
@@ -548,12 +502,7 @@ impl Vehicle {
     fn stop_mission(&mut self, out: &mut Out) {
         if core::mem::take(&mut self.is_on_mission) {
             out.actions.push(Action::Wish(Wish::Hold));
-            self.text(
-                out,
-                Kind::News,
-                MAV_SEVERITY_NOTICE,
-                "mission ended: holding",
-            );
+            self.text(out, Kind::News, MAV_SEVERITY_NOTICE, "mission ended: holding");
         }
     }
 
@@ -584,14 +533,12 @@ fn no_files(from: Sender, asked: &FILE_TRANSFER_PROTOCOL_DATA) -> Option<MavMess
     // Sequence, session, opcode, bytes of data, what was asked; the data begin at 12.
     payload[..6].copy_from_slice(&[low, high, session, NAK, 1, opcode]);
     payload[12] = FILE_NOT_FOUND;
-    Some(MavMessage::FILE_TRANSFER_PROTOCOL(
-        FILE_TRANSFER_PROTOCOL_DATA {
-            target_network: 0,
-            target_system: from.system,
-            target_component: from.component,
-            payload,
-        },
-    ))
+    Some(MavMessage::FILE_TRANSFER_PROTOCOL(FILE_TRANSFER_PROTOCOL_DATA {
+        target_network: 0,
+        target_system: from.system,
+        target_component: from.component,
+        payload,
+    }))
 }
 
 #[cfg(test)]

@@ -7,9 +7,7 @@ use crate::Endpoint;
 use crate::geo::{Global, Origin};
 use serde::Deserialize;
 use staya_controller::robot::RobotId;
-use staya_sim::scenario::{
-    GuidanceName, Overrides, PlaneSetup, Scenario, ScenarioError, Source, within,
-};
+use staya_sim::scenario::{GuidanceName, Overrides, PlaneSetup, Scenario, ScenarioError, Source, within};
 use std::net::{Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -182,10 +180,8 @@ impl Config {
     /// # Errors
     /// [`ScenarioError`], naming file, line, field and remedy.
     pub fn load(path: &Path) -> Result<Self, ScenarioError> {
-        let text = std::fs::read_to_string(path).map_err(|source| ScenarioError::Io {
-            path: path.to_owned(),
-            source,
-        })?;
+        let text =
+            std::fs::read_to_string(path).map_err(|source| ScenarioError::Io { path: path.to_owned(), source })?;
         Self::parse(&text, path)
     }
 
@@ -195,8 +191,7 @@ impl Config {
     /// See [`Config::load`].
     pub fn parse(text: &str, path: &Path) -> Result<Self, ScenarioError> {
         let source = Source::new(path, text)?;
-        let file: ConfigFile =
-            toml::from_str(source.text()).map_err(|error| source.serde_error(&error, LIST))?;
+        let file: ConfigFile = toml::from_str(source.text()).map_err(|error| source.serde_error(&error, LIST))?;
         let origin = Origin::new(Global {
             latitude_deg: file.origin.latitude_deg,
             longitude_deg: file.origin.longitude_deg,
@@ -207,8 +202,7 @@ impl Config {
             source.error("origin", "this is no place on the Earth", remedy)
         })?;
         check_rules(&source, &file.rules)?;
-        let mut scenario =
-            Scenario::load(&source.folder().join(&file.scenario), &Overrides::default())?;
+        let mut scenario = Scenario::load(&source.folder().join(&file.scenario), &Overrides::default())?;
         check_scenario(&source, &scenario)?;
         let air = air(&source, &file.air)?;
         let (lines, vehicles) = vehicles(&source, &file, &origin, &mut scenario)?;
@@ -242,18 +236,12 @@ fn check_scenario(source: &Source<'_>, scenario: &Scenario) -> Result<(), Scenar
     };
     let refused = |what: String, remedy: &str| Err(source.error("scenario", what, remedy));
     if scenario.tick_us > 500_000 {
-        let what = format!(
-            "its tick of {} s is too long for vehicles",
-            scenario.tick_s()
-        );
+        let what = format!("its tick of {} s is too long for vehicles", scenario.tick_s());
         return refused(what, "give it tick_s = 0.5 or less; 0.1 is good");
     }
     if !plane.orders.is_empty() {
         let what = String::from("[[plane.order]] has no meaning here");
-        return refused(
-            what,
-            "leave it out: orders come from an operator, as packets",
-        );
+        return refused(what, "leave it out: orders come from an operator, as packets");
     }
     if scenario.route.params.radius > RADIUS {
         let what = format!("route.radius {} is too large", scenario.route.params.radius);
@@ -266,13 +254,7 @@ fn check_rules(source: &Source<'_>, rules: &RulesTable) -> Result<(), ScenarioEr
     for (field, value, low, high, unit) in [
         ("stale_s", rules.stale_s, 0.1, 60.0, "seconds"),
         ("link_lost_s", rules.link_lost_s, 1.5, 60.0, "seconds"),
-        (
-            "setpoint_hz",
-            rules.setpoint_hz,
-            3.0,
-            100.0,
-            "Hz; PX4 needs more than 2",
-        ),
+        ("setpoint_hz", rules.setpoint_hz, 3.0, 100.0, "Hz; PX4 needs more than 2"),
         ("position_hz", rules.position_hz, 1.0, 100.0, "Hz"),
         ("lag_s", rules.lag_s, 0.0, 10.0, "seconds"),
         ("reach_m", rules.reach_m, 1.0, 500_000.0, "metres"),
@@ -281,19 +263,11 @@ fn check_rules(source: &Source<'_>, rules: &RulesTable) -> Result<(), ScenarioEr
     }
     if rules.arm && rules.entry != Entry::Once {
         let what = "with entry \"wait\" the pilot arms";
-        return Err(source.error(
-            "rules.arm",
-            what,
-            "give rules.entry = \"once\", or leave it out",
-        ));
+        return Err(source.error("rules.arm", what, "give rules.entry = \"once\", or leave it out"));
     }
     if rules.takeoff && !rules.arm {
         let what = "what is not armed does not take off";
-        return Err(source.error(
-            "rules.takeoff",
-            what,
-            "give rules.arm = true, or leave it out",
-        ));
+        return Err(source.error("rules.takeoff", what, "give rules.arm = true, or leave it out"));
     }
     Ok(())
 }
@@ -306,9 +280,7 @@ fn address(source: &Source<'_>, field: &str, text: &str) -> Result<SocketAddr, S
 }
 
 fn air(source: &Source<'_>, table: &AirTable) -> Result<MediumSetup, ScenarioError> {
-    let clash = |field: &str, remedy: &str| {
-        Err(source.error(field, "it is not clear how packets go", remedy))
-    };
+    let clash = |field: &str, remedy: &str| Err(source.error(field, "it is not clear how packets go", remedy));
     if table.bind.is_some() == table.peers.is_empty() {
         return clash("air.peers", "give bind and peers together, or none of them");
     }
@@ -319,10 +291,7 @@ fn air(source: &Source<'_>, table: &AirTable) -> Result<MediumSetup, ScenarioErr
             let given = address(source, "air.multicast", group)?;
             match given {
                 SocketAddr::V4(group) if group.ip().is_multicast() && group.port() > 0 => {
-                    Ok(MediumSetup::Multicast {
-                        group,
-                        interface: table.interface.unwrap_or(Ipv4Addr::UNSPECIFIED),
-                    })
+                    Ok(MediumSetup::Multicast { group, interface: table.interface.unwrap_or(Ipv4Addr::UNSPECIFIED) })
                 }
                 _ => {
                     let what = format!("`{group}` is no IPv4 multicast group");
@@ -347,10 +316,7 @@ fn rules(table: &RulesTable, vehicle: &VehicleTable) -> Rules {
         entry: table.entry,
         arm: table.arm,
         takeoff: table.takeoff && vehicle.autopilot.flies(),
-        altitude_m: vehicle
-            .altitude_m
-            .or(table.altitude_m)
-            .filter(|_| vehicle.autopilot.flies()),
+        altitude_m: vehicle.altitude_m.or(table.altitude_m).filter(|_| vehicle.autopilot.flies()),
         stale: Duration::from_secs_f64(table.stale_s),
         link_lost: Duration::from_secs_f64(table.link_lost_s),
         setpoint_every: Duration::from_secs_f64(1.0 / table.setpoint_hz),
@@ -368,9 +334,7 @@ fn vehicles(
     let (mut lines, mut vehicles) = (Vec::new(), Vec::<VehicleSetup>::new());
     for (number, table) in file.vehicle.iter().enumerate() {
         let field = |name: &str| format!("vehicle[{number}].{name}");
-        let found = scenario
-            .robots
-            .binary_search_by_key(&RobotId(table.robot), |r| r.id);
+        let found = scenario.robots.binary_search_by_key(&RobotId(table.robot), |r| r.id);
         let Ok(index) = found else {
             let what = format!("the scenario has no robot {}", table.robot);
             let remedy = format!("give the number of one of its {}", scenario.robots.len());
@@ -398,8 +362,7 @@ fn vehicles(
             }
             if (known.line, known.system) == (line, system) {
                 let what = format!("system {system} is there twice on this link");
-                let remedy =
-                    "give each vehicle its own (ArduPilot: SYSID_THISMAV, PX4: MAV_SYS_ID)";
+                let remedy = "give each vehicle its own (ArduPilot: SYSID_THISMAV, PX4: MAV_SYS_ID)";
                 return Err(source.error(&field("system"), what, remedy));
             }
         }
@@ -410,10 +373,7 @@ fn vehicles(
             };
             within(source, &name, altitude_m, 0.5, 1000.0, "metres")?;
         }
-        if file.rules.takeoff
-            && table.autopilot.flies()
-            && rules(&file.rules, table).altitude_m.is_none()
-        {
+        if file.rules.takeoff && table.autopilot.flies() && rules(&file.rules, table).altitude_m.is_none() {
             let what = "it is not said how high it takes off";
             return Err(source.error("rules.takeoff", what, "give altitude_m"));
         }
@@ -445,11 +405,7 @@ fn assign_goal(
     scenario: &mut Scenario,
     index: usize,
 ) -> Result<(), ScenarioError> {
-    let place = origin.to_enu_m(&Global {
-        latitude_deg,
-        longitude_deg,
-        altitude_m: origin.place().altitude_m,
-    });
+    let place = origin.to_enu_m(&Global { latitude_deg, longitude_deg, altitude_m: origin.place().altitude_m });
     let plane = scenario.plane.as_mut();
     let target = plane.filter(|plane| plane.guidance == GuidanceName::Waypoint);
     let target = target.and_then(|plane| plane.starts.get_mut(index)?.places.first_mut());

@@ -1,8 +1,8 @@
 //! The agent beside an autopilot: what it senses comes from telemetry and the scenario's land, what it commands is a velocity.
 
 use staya_controller::agent::{
-    Agent, AgentConfig, AnyGuidance, AnySafety, AnySurroundings, Command, Commanded, GridWorkspace,
-    HALF_PLANES, InCells, NEIGHBORS, Outputs, TEMPLATE, VISITS, Wish,
+    Agent, AgentConfig, AnyGuidance, AnySafety, AnySurroundings, Command, Commanded, GridWorkspace, HALF_PLANES,
+    InCells, NEIGHBORS, Outputs, TEMPLATE, VISITS, Wish,
 };
 use staya_controller::geom::Vec3;
 use staya_controller::robot::Mode;
@@ -51,38 +51,20 @@ pub struct Controller<W> {
 impl<W: Wire> Controller<W> {
     /// Of robot number `index` of the scenario, whose robots are on `ground`; `boot` differs from start to start.
     #[must_use]
-    pub fn new(
-        scenario: &Scenario,
-        ground: &Arc<PlaneGround>,
-        index: usize,
-        boot: u8,
-        lag_s: f64,
-        wire: W,
-    ) -> Self {
+    pub fn new(scenario: &Scenario, ground: &Arc<PlaneGround>, index: usize, boot: u8, lag_s: f64, wire: W) -> Self {
         let robot = scenario.robots.get(index).map(|robot| robot.id);
         let tick = time::Duration::from_micros(i32::try_from(scenario.tick_us).unwrap_or(i32::MAX));
-        let config = AgentConfig {
-            boot,
-            seed: scenario.seed,
-            ..ground.config(robot.unwrap_or_default(), tick)
-        };
+        let config = AgentConfig { boot, seed: scenario.seed, ..ground.config(robot.unwrap_or_default(), tick) };
         // Nobody wishes places here, so neither speed nor tolerance counts.
         let guidance = Commanded::new(scenario.guidance(index).guidance(), 0.0, 0.0);
-        let mut agent = Box::new(Agent::new(
-            &config,
-            guidance,
-            scenario.safety().safety(),
-            wire,
-        ));
+        let mut agent = Box::new(Agent::new(&config, guidance, scenario.safety().safety(), wire));
         // A law that has no use for its task says so; the scenario was checked for that.
         let _ = agent.assign(&ground.task(index, 0));
         let plane = scenario.plane.as_ref();
         let places = plane.filter(|plane| !plane.guidance.is_on_grid());
         let place = places.and_then(|plane| plane.starts.get(index)?.places.first());
-        let brake = plane.zip(place).map(|(plane, place)| Brake {
-            place_m: place.position_m,
-            tolerance_m: plane.tolerance_m,
-        });
+        let brake =
+            plane.zip(place).map(|(plane, place)| Brake { place_m: place.position_m, tolerance_m: plane.tolerance_m });
         let safety = plane.map(|plane| plane.safety);
         Self {
             ground: Arc::clone(ground),
@@ -111,20 +93,12 @@ impl<W: Wire> Controller<W> {
     }
 
     /// One step of the agent. One that does not steer (the pilot does, or telemetry is stale) says by its beacons where it is and that others must make way.
-    pub fn step(
-        &mut self,
-        body: &Body,
-        steers: bool,
-        inbox: &[u8],
-        now: Duration,
-    ) -> &Outputs<f32> {
+    pub fn step(&mut self, body: &Body, steers: bool, inbox: &[u8], now: Duration) -> &Outputs<f32> {
         let [x, y, z] = body.position_m;
         // In the plane heights are told apart by nobody, and altitudes differ by metres between two receivers.
         let position_m = [x, y, if self.is_in_space { z } else { 0.0 }];
         let velocity_mps = self.own_velocity(body.velocity_mps);
-        let mut inputs = self
-            .ground
-            .sense_at(position_m, velocity_mps, &mut self.senses);
+        let mut inputs = self.ground.sense_at(position_m, velocity_mps, &mut self.senses);
         inputs.inbox = inbox;
         let wish = if steers { Wish::Own } else { Wish::Off };
         if *self.agent.guidance().wish() != wish {
@@ -132,9 +106,7 @@ impl<W: Wire> Controller<W> {
             let _ = self.agent.guidance_mut().command(wish);
         }
         let plane = match &mut inputs.surroundings {
-            AnySurroundings::InPlane(plane) | AnySurroundings::InCells(InCells { plane, .. }) => {
-                Some(plane)
-            }
+            AnySurroundings::InPlane(plane) | AnySurroundings::InCells(InCells { plane, .. }) => Some(plane),
             AnySurroundings::OnGrid(_) => None,
         };
         if let (Some(plane), Some(brake)) = (plane, self.brake) {
@@ -143,8 +115,7 @@ impl<W: Wire> Controller<W> {
         }
         // The robot's clock wraps; steps are far closer to each other.
         let now = Instant::from_micros(now.as_micros() as u32);
-        self.agent
-            .step_into(&inputs, now, &mut self.workspace, &mut self.out);
+        self.agent.step_into(&inputs, now, &mut self.workspace, &mut self.out);
         self.commanded_mps = steers.then(|| self.velocity_mps());
         &self.out
     }

@@ -48,22 +48,14 @@ impl Kind {
     /// Whether a heartbeat's custom mode is that mode.
     #[must_use]
     pub const fn is_outside_control(self, custom_mode: u32) -> bool {
-        let mode = if self.needs_stream() {
-            (custom_mode >> 16) & 0xFF
-        } else {
-            custom_mode
-        };
+        let mode = if self.needs_stream() { (custom_mode >> 16) & 0xFF } else { custom_mode };
         mode == self.outside_control()
     }
 
     /// The mode's name.
     #[must_use]
     pub const fn mode_name(self) -> &'static str {
-        if self.needs_stream() {
-            "OFFBOARD"
-        } else {
-            "GUIDED"
-        }
+        if self.needs_stream() { "OFFBOARD" } else { "GUIDED" }
     }
 }
 

@@ -63,24 +63,13 @@ impl Medium {
     /// # Errors
     /// When an address cannot be had.
     pub fn open(setup: &MediumSetup) -> Result<Self, MediumError> {
-        let medium = |socket, to| Self {
-            socket,
-            to,
-            is_tunnel: false,
-            sent: VecDeque::new(),
-        };
+        let medium = |socket, to| Self { socket, to, is_tunnel: false, sent: VecDeque::new() };
         match setup {
             MediumSetup::Here => Ok(medium(None, Vec::new())),
-            MediumSetup::Tunnel => Ok(Self {
-                is_tunnel: true,
-                ..medium(None, Vec::new())
-            }),
+            MediumSetup::Tunnel => Ok(Self { is_tunnel: true, ..medium(None, Vec::new()) }),
             MediumSetup::Multicast { group, interface } => match join(*group, *interface) {
                 Ok(socket) => Ok(medium(Some(socket), vec![SocketAddr::V4(*group)])),
-                Err(source) => Err(MediumError {
-                    over: group.to_string(),
-                    source,
-                }),
+                Err(source) => Err(MediumError { over: group.to_string(), source }),
             },
             MediumSetup::Peers { bind, peers } => {
                 let socket = UdpSocket::bind(bind).and_then(|socket| {
@@ -89,10 +78,7 @@ impl Medium {
                 });
                 match socket {
                     Ok(socket) => Ok(medium(Some(socket), peers.clone())),
-                    Err(source) => Err(MediumError {
-                        over: bind.to_string(),
-                        source,
-                    }),
+                    Err(source) => Err(MediumError { over: bind.to_string(), source }),
                 }
             }
         }

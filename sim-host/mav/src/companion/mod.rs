@@ -17,9 +17,7 @@ pub use config::{Config, VehicleSetup};
 pub use controller::{Body, Controller};
 pub use kind::Kind;
 pub use medium::{Medium, MediumError, MediumSetup};
-pub use offboard::{
-    AUTOPILOT, COMPONENT, Entry, Event, Fix, OffboardStateMachine, Rules, State, Tally,
-};
+pub use offboard::{AUTOPILOT, COMPONENT, Entry, Event, Fix, OffboardStateMachine, Rules, State, Tally};
 pub use report::{Report, VehicleReport};
 pub use run::{Options, RunError, run};
 pub use wire::{CompanionWire, Seal, WireError};

@@ -94,12 +94,7 @@ impl fmt::Display for Report {
                 vehicle.packets_refused,
             )?;
         }
-        for LineReport {
-            link,
-            counts,
-            refused,
-        } in &self.links
-        {
+        for LineReport { link, counts, refused } in &self.links {
             writeln!(
                 f,
                 "  {link}: {} frames in, {} out, {} bytes of junk, {} lost, {refused} refused",

@@ -97,19 +97,13 @@ struct Companions<'a> {
 ///
 /// # Errors
 /// What cannot be opened or written; an autopilot that is not there is none.
-pub fn run(
-    config: &Config,
-    options: &mut Options,
-    is_wanted: impl Fn() -> bool,
-) -> Result<Report, RunError> {
+pub fn run(config: &Config, options: &mut Options, is_wanted: impl Fn() -> bool) -> Result<Report, RunError> {
     let ground = Arc::new(PlaneGround::new(&config.scenario, &config.plane));
     let boot = (micros_since_1970() >> 20) as u8;
     let seal = config.key.as_deref().map(Seal::read).transpose()?;
     let link_key = config.link_key.as_deref().map(KeyFile::read).transpose()?;
-    let remarks = [
-        seal.as_ref().and_then(|seal| seal.remark.as_ref()),
-        link_key.as_ref().and_then(|file| file.remark.as_ref()),
-    ];
+    let remarks =
+        [seal.as_ref().and_then(|seal| seal.remark.as_ref()), link_key.as_ref().and_then(|file| file.remark.as_ref())];
     for remark in remarks.into_iter().flatten() {
         // A closed standard error must not stop it.
         let _ = writeln!(io::stderr(), "staya: {remark}");
@@ -241,10 +235,7 @@ impl Companions<'_> {
         if let MavMessage::TUNNEL(tunnel) = &message {
             // What others say through the links. Own packets may come back.
             let is_own = sender.component == COMPONENT
-                && self
-                    .vehicles
-                    .iter()
-                    .any(|vehicle| vehicle.setup.system == sender.system);
+                && self.vehicles.iter().any(|vehicle| vehicle.setup.system == sender.system);
             if let Some(frames) = tunnelled(tunnel).filter(|_| !is_own) {
                 for vehicle in &mut self.vehicles {
                     vehicle.listen(frames);
@@ -252,9 +243,10 @@ impl Companions<'_> {
             }
             return Ok(());
         }
-        let found = self.vehicles.iter_mut().find(|vehicle| {
-            (vehicle.setup.line, vehicle.setup.system) == (received.line, sender.system)
-        });
+        let found = self
+            .vehicles
+            .iter_mut()
+            .find(|vehicle| (vehicle.setup.line, vehicle.setup.system) == (received.line, sender.system));
         if let Some(vehicle) = found.filter(|_| sender.component == AUTOPILOT) {
             vehicle.peer = Some(received.peer);
             vehicle.offboard.hear(&message, now);
@@ -274,15 +266,11 @@ impl Companions<'_> {
         let moment = vehicle.next_step + tick * u32::try_from(missed).unwrap_or(u32::MAX);
         vehicle.next_step = moment + tick;
         let body = vehicle.body(&self.origin, now);
-        let is_far = vehicle.offboard.fix().is_some()
-            && !body.is_some_and(|body| is_within(&body, self.reach_m));
+        let is_far = vehicle.offboard.fix().is_some() && !body.is_some_and(|body| is_within(&body, self.reach_m));
         let is_news = is_far && !vehicle.is_far;
         vehicle.is_far = is_far;
         if is_news {
-            self.tell(
-                index,
-                "is too far from the origin (rules.reach_m): not steered",
-            );
+            self.tell(index, "is too far from the origin (rules.reach_m): not steered");
         }
         let vehicle = &mut self.vehicles[index];
         // Who has no place in the swarm's world has nothing to say.
@@ -291,9 +279,7 @@ impl Companions<'_> {
             return Ok(());
         };
         let steers = vehicle.offboard.state() == State::Steering && !is_far;
-        let out = vehicle
-            .controller
-            .step(&body, steers, &vehicle.inbox, moment);
+        let out = vehicle.controller.step(&body, steers, &vehicle.inbox, moment);
         vehicle.inbox.clear();
         vehicle.heard += u64::from(out.received);
         vehicle.refused += u64::from(out.rejected);
@@ -355,15 +341,10 @@ impl Companions<'_> {
     /// Sends a message to a vehicle's autopilot, or shows it.
     fn send(&mut self, index: usize, message: &MavMessage) -> Result<(), RunError> {
         let vehicle = &mut self.vehicles[index];
-        let sender = Sender {
-            system: vehicle.setup.system,
-            component: COMPONENT,
-            sequence: vehicle.sequence,
-        };
+        let sender = Sender { system: vehicle.setup.system, component: COMPONENT, sequence: vehicle.sequence };
         if self.options.dry_run {
             let (at, robot) = (self.began.elapsed().as_secs_f64(), vehicle.setup.robot.0);
-            return writeln!(io::stdout(), "{at:9.3} robot {robot}: {message:?}")
-                .map_err(RunError::Output);
+            return writeln!(io::stdout(), "{at:9.3} robot {robot}: {message:?}").map_err(RunError::Output);
         }
         let mut frame = heapless::Vec::<u8, MAX_FRAME_LEN>::new();
         // A frame has room for any message.
@@ -402,13 +383,10 @@ impl Companions<'_> {
             AgentEvent::NeighborFound(id) => self.tell(index, &format!("hears robot {}", id.0)),
             AgentEvent::NeighborLost(id) => self.tell(index, &format!("has lost robot {}", id.0)),
             AgentEvent::NoRoute => self.tell(index, "finds no way"),
-            AgentEvent::ModeChanged {
-                to: Mode::Fault, ..
-            } if self.vehicles[index].offboard.state() == State::Steering => {
-                self.tell(
-                    index,
-                    "stands: it is off the scenario's map, or has no goal",
-                );
+            AgentEvent::ModeChanged { to: Mode::Fault, .. }
+                if self.vehicles[index].offboard.state() == State::Steering =>
+            {
+                self.tell(index, "stands: it is off the scenario's map, or has no goal");
             }
             _ => {}
         }
@@ -437,10 +415,7 @@ impl Companions<'_> {
             state: vehicle.offboard.state(),
             agent: vehicle.controller.mode(),
             has_arrived: vehicle.has_arrived,
-            position_m: vehicle
-                .offboard
-                .fix()
-                .and_then(|fix| self.origin.to_enu_m(&fix.place)),
+            position_m: vehicle.offboard.fix().and_then(|fix| self.origin.to_enu_m(&fix.place)),
             tally: vehicle.offboard.tally(),
             packets_heard: vehicle.heard,
             packets_refused: vehicle.refused,
@@ -480,16 +455,10 @@ impl Vehicle {
         let last = self.offboard.fix()?;
         let at = origin.to_enu_m(&last.place)?;
         let Some(fix) = self.offboard.fresh_fix(now) else {
-            return Some(Body {
-                position_m: at,
-                velocity_mps: [0.0; 3],
-            });
+            return Some(Body { position_m: at, velocity_mps: [0.0; 3] });
         };
         let velocity_mps = enu(fix.velocity_ned_mps);
         let age_s = now.saturating_sub(fix.at).as_secs_f64();
-        Some(Body {
-            position_m: [0, 1, 2].map(|axis| at[axis] + velocity_mps[axis] * age_s),
-            velocity_mps,
-        })
+        Some(Body { position_m: [0, 1, 2].map(|axis| at[axis] + velocity_mps[axis] * age_s), velocity_mps })
     }
 }

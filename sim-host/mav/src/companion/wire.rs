@@ -3,9 +3,7 @@
 use heapless::Vec;
 use serde::Serialize;
 use staya_controller::auth::Key;
-use staya_controller::wire::{
-    DecodeError, EncodeError, Format, Frame, Header, Message, Postcard, Sealed, Wire,
-};
+use staya_controller::wire::{DecodeError, EncodeError, Format, Frame, Header, Message, Postcard, Sealed, Wire};
 use staya_mavlink::signed::Signed;
 use staya_mavlink::signing::Signing;
 use staya_mavlink::wire::Mavlink;
@@ -130,11 +128,7 @@ impl Seal {
         if let Err(source) = std::fs::write(&path, format!("{}\n", starts + 1)) {
             return Err(WireError::Write { path, source });
         }
-        Ok(Self {
-            key,
-            starts,
-            remark,
-        })
+        Ok(Self { key, starts, remark })
     }
 }
 
@@ -161,11 +155,7 @@ mod tests {
     use super::*;
     use staya_controller::robot::RobotId;
 
-    const HEADER: Header = Header {
-        boot: 0,
-        sender: RobotId(3),
-        sequence: 1,
-    };
+    const HEADER: Header = Header { boot: 0, sender: RobotId(3), sequence: 1 };
 
     fn said(wire: &mut CompanionWire) -> Vec<u8, 128> {
         let mut out = Vec::new();

@@ -2,11 +2,7 @@ use super::*;
 use proptest::prelude::*;
 
 fn place(latitude_deg: f64, longitude_deg: f64, altitude_m: f64) -> Global {
-    Global {
-        latitude_deg,
-        longitude_deg,
-        altitude_m,
-    }
+    Global { latitude_deg, longitude_deg, altitude_m }
 }
 
 fn origin(latitude_deg: f64, longitude_deg: f64, altitude_m: f64) -> Origin {
@@ -26,26 +22,16 @@ fn tangent_plane_is_that_of_proj() {
         (moscow, 56.65, 36.12, [-92004.0552, 101204.7782]),
         (canberra, -35.362_262, 149.165_237, [0.0, 110.9574]),
         (canberra, -35.453_262, 149.325_237, [14526.4164, -9997.9783]),
-        (
-            canberra,
-            -34.463_262,
-            147.665_237,
-            [-137817.2371, 98806.0097],
-        ),
+        (canberra, -34.463_262, 147.665_237, [-137817.2371, 98806.0097]),
         (date_line, 0.0, -179.999, [111.3195, 0.0]),
         (date_line, -0.09, -179.84, [17811.0736, -9951.6808]),
         (date_line, 0.9, 178.5, [-166939.703, 99512.838]),
     ] {
         let origin = origin(from.0, from.1, from.2);
-        let found = origin
-            .to_enu_m(&place(latitude, longitude, from.2 + 7.5))
-            .unwrap();
+        let found = origin.to_enu_m(&place(latitude, longitude, from.2 + 7.5)).unwrap();
         assert!((found[0] - east).abs() < 1e-4, "{found:?} {east}");
         assert!((found[1] - north).abs() < 1e-4, "{found:?} {north}");
-        assert!(
-            (found[2] - 7.5).abs() < 1e-9,
-            "level flight keeps its height"
-        );
+        assert!((found[2] - 7.5).abs() < 1e-9, "level flight keeps its height");
     }
 }
 
@@ -74,23 +60,15 @@ proptest! {
 
 #[test]
 fn what_is_no_place_is_refused() {
-    for [latitude, longitude, altitude] in [
-        [90.1, 0.0, 0.0],
-        [0.0, -180.1, 0.0],
-        [f64::NAN, 0.0, 0.0],
-        [0.0, f64::INFINITY, 0.0],
-        [0.0, 0.0, 1e6],
-    ] {
+    for [latitude, longitude, altitude] in
+        [[90.1, 0.0, 0.0], [0.0, -180.1, 0.0], [f64::NAN, 0.0, 0.0], [0.0, f64::INFINITY, 0.0], [0.0, 0.0, 1e6]]
+    {
         let place = place(latitude, longitude, altitude);
         assert_eq!(Origin::new(place), None);
         assert_eq!(origin(0.0, 0.0, 0.0).to_enu_m(&place), None);
     }
     let here = origin(55.0, 37.0, 0.0);
-    assert_eq!(
-        here.to_enu_m(&place(-55.0, -143.0, 0.0)),
-        None,
-        "the other side"
-    );
+    assert_eq!(here.to_enu_m(&place(-55.0, -143.0, 0.0)), None, "the other side");
     assert_eq!(here.to_global([f64::NAN, 0.0, 0.0]), None);
     assert_eq!(here.to_global([0.0, FAR_M * 1.001, 0.0]), None);
     assert!(here.to_global([FAR_M, -FAR_M, 0.0]).is_some());

@@ -10,10 +10,7 @@ const PATIENCE: Duration = Duration::from_secs(10);
 
 fn framed(x: i16) -> Vec<u8> {
     let mut out = heapless::Vec::<u8, 64>::new();
-    let goal = STAYA_GOAL_DATA {
-        target_x: x,
-        ..STAYA_GOAL_DATA::DEFAULT
-    };
+    let goal = STAYA_GOAL_DATA { target_x: x, ..STAYA_GOAL_DATA::DEFAULT };
     encode(Sender::default(), &goal, &mut out).expect("room");
     out.to_vec()
 }
@@ -111,9 +108,7 @@ fn frames_come_out_of_pieces_and_junk() {
 fn everybody_who_was_heard_is_told() {
     let listening = open("udpin:127.0.0.1:0");
     let port = listening.local(0).expect("an address").port();
-    let callers: Vec<_> = (0..3)
-        .map(|_| open(&format!("udpout:127.0.0.1:{port}")))
-        .collect();
+    let callers: Vec<_> = (0..3).map(|_| open(&format!("udpout:127.0.0.1:{port}"))).collect();
     for (x, caller) in (0..).zip(&callers) {
         assert_eq!(goal(&arrives(caller, &listening, x)), x);
     }
@@ -161,8 +156,5 @@ fn taken_port_is_an_error_that_names_it() {
     let address = listening.local(0).expect("an address");
     let again = format!("udpin:{address}").parse().expect("a line");
     let error = Lines::open(&[again]).err().expect("taken").to_string();
-    assert!(
-        error.starts_with(&format!("cannot open udpin:{address}: ")),
-        "{error}"
-    );
+    assert!(error.starts_with(&format!("cannot open udpin:{address}: ")), "{error}");
 }

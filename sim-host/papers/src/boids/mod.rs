@@ -86,12 +86,7 @@ enum AnySearch {
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Plan {
     /// Numbers of boids, one line of the table each.
-    #[arg(
-        long,
-        value_name = "N,N,...",
-        value_delimiter = ',',
-        default_value = "100,300,1000,3000,10000,30000,100000"
-    )]
+    #[arg(long, value_name = "N,N,...", value_delimiter = ',', default_value = "100,300,1000,3000,10000,30000,100000")]
     pub boids: Vec<u32>,
     /// Steps to time for each search and number of boids. The hash is that of the last.
     #[arg(long, default_value_t = 20)]
@@ -174,12 +169,7 @@ impl Plan {
         Flock {
             space: Space::torus(sides).unwrap_or(Space::OPEN),
             torus: Torus { size_m: sides },
-            params: BoidsParams::new(
-                self.crowded,
-                self.closest,
-                self.max_turn,
-                self.max_turn_away,
-            ),
+            params: BoidsParams::new(self.crowded, self.closest, self.max_turn, self.max_turn_away),
             closest: self.closest,
             speed: self.speed,
             places,
@@ -202,8 +192,7 @@ impl Plan {
                 return None;
             }
             if self.is_run(method, boids) {
-                row.timings
-                    .push(self.time(method, boids, &mut row.mean_neighbours));
+                row.timings.push(self.time(method, boids, &mut row.mean_neighbours));
             }
         }
         row.parallel_us_per_boid = self.time_in_parallel(boids);
@@ -269,15 +258,9 @@ impl Experiment for Plan {
     type Report = Report;
 
     fn check(&self) -> Result<()> {
-        ensure!(
-            !self.boids.is_empty(),
-            "no numbers of boids; give one or more"
-        );
+        ensure!(!self.boids.is_empty(), "no numbers of boids; give one or more");
         for boids in self.boids.iter().chain([&self.picture_boids]) {
-            ensure!(
-                (1..=1_000_000).contains(boids),
-                "{boids} boids; give 1 to 1000000"
-            );
+            ensure!((1..=1_000_000).contains(boids), "{boids} boids; give 1 to 1000000");
         }
         ensure!(self.steps > 0, "0 steps; give 1 or more");
         for (name, value) in [
@@ -286,10 +269,7 @@ impl Experiment for Plan {
             ("crowded", self.crowded),
             ("closest", self.closest),
         ] {
-            ensure!(
-                value > 0.0 && value.is_finite(),
-                "{name} = {value}; give a number above 0"
-            );
+            ensure!(value > 0.0 && value.is_finite(), "{name} = {value}; give a number above 0");
         }
         Ok(())
     }
@@ -309,11 +289,7 @@ impl Experiment for Plan {
         let rows = rows.concat();
         // Who stopped the timing does not wait for the picture.
         let is_complete = rows.len() == self.boids.len();
-        let picture = if is_complete {
-            self.picture()
-        } else {
-            Vec::new()
-        };
+        let picture = if is_complete { self.picture() } else { Vec::new() };
         Report::new(self, rows, picture)
     }
 
@@ -324,10 +300,7 @@ impl Experiment for Plan {
     }
 
     fn judge(report: &Report) -> Result<()> {
-        ensure!(
-            report.equal,
-            "the searches gave different flights: a defect, please report it"
-        );
+        ensure!(report.equal, "the searches gave different flights: a defect, please report it");
         Ok(())
     }
 }
@@ -390,9 +363,7 @@ impl Flock {
         let turned: Vec<(u32, Vec2<f32>)> = order
             .par_iter()
             .with_min_len(PIECE)
-            .map_init(Scratch::default, |scratch, &boid| {
-                (boid, this.steer(cells, boid, scratch))
-            })
+            .map_init(Scratch::default, |scratch, &boid| (boid, this.steer(cells, boid, scratch)))
             .collect();
         for (boid, heading) in turned {
             self.next[boid as usize] = heading;
@@ -418,17 +389,11 @@ impl Flock {
         });
         scratch.nearby.extend(seen);
         let heading = self.headings[boid as usize];
-        self.params
-            .steer(RobotId(boid + 1), heading, &scratch.nearby)
+        self.params.steer(RobotId(boid + 1), heading, &scratch.nearby)
     }
 
     fn query(&self, boid: u32) -> Query<f32, 2> {
-        Query {
-            at: self.places[boid as usize],
-            radius: self.closest,
-            most: usize::MAX,
-            except: Some(boid),
-        }
+        Query { at: self.places[boid as usize], radius: self.closest, most: usize::MAX, except: Some(boid) }
     }
 
     fn advance(&mut self) {
@@ -458,10 +423,7 @@ impl Flock {
         let mut hash = 0xcbf2_9ce4_8422_2325_u64;
         let headings = self.headings.iter().flat_map(|h| [h.x, h.y]);
         let places = self.places.iter().copied().flatten();
-        for byte in places
-            .chain(headings)
-            .flat_map(|x| x.to_bits().to_le_bytes())
-        {
+        for byte in places.chain(headings).flat_map(|x| x.to_bits().to_le_bytes()) {
             hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
         }
         hash

@@ -23,10 +23,7 @@ impl Report {
     }
 
     fn flock(&self) -> Sheet {
-        let boids = self
-            .flocks
-            .first()
-            .map_or(0, |(_, flock)| flock.places().len());
+        let boids = self.flocks.first().map_or(0, |(_, flock)| flock.places().len());
         let title = format!("{boids} boids on a torus");
         let pairs = self.flocks.iter().zip(&self.moments);
         pairs.fold(Sheet::new(title, 3), |sheet, ((step, flock), moment)| {
@@ -34,11 +31,7 @@ impl Report {
             sheet.with(Snapshot {
                 title: format!("step {step}, group order {:.2}", moment.polarisation),
                 positions_m: flock.places().iter().map(|at| at.map(f64::from)).collect(),
-                velocities_mps: flock
-                    .headings()
-                    .iter()
-                    .map(|h| [h.x, h.y].map(f64::from))
-                    .collect(),
+                velocities_mps: flock.headings().iter().map(|h| [h.x, h.y].map(f64::from)).collect(),
                 view_m: Some([[0.0, width], [0.0, height]]),
                 labels: ["x".into(), "y".into()],
                 size: [440.0, 366.0],
@@ -48,14 +41,10 @@ impl Report {
     }
 
     fn cost(&self) -> Chart {
-        let chart = Chart::new(
-            "What a step of boids costs by each search",
-            "boids",
-            "microseconds per boid and step",
-        )
-        .note("median step on one thread, building the index included")
-        .log_x()
-        .log_y();
+        let chart = Chart::new("What a step of boids costs by each search", "boids", "microseconds per boid and step")
+            .note("median step on one thread, building the index included")
+            .log_x()
+            .log_y();
         Method::ALL.into_iter().fold(chart, |chart, method| {
             let points = self.rows.iter().filter_map(|row| {
                 let us = row.us_per_boid(method.name())?;

@@ -38,21 +38,13 @@ pub struct Row {
 
 impl Row {
     pub(super) const fn new(boids: u32, steps: u32) -> Self {
-        Self {
-            boids,
-            steps,
-            mean_neighbours: 0.0,
-            timings: Vec::new(),
-            parallel_us_per_boid: 0.0,
-        }
+        Self { boids, steps, mean_neighbours: 0.0, timings: Vec::new(), parallel_us_per_boid: 0.0 }
     }
 
     /// Whether all searches gave the same trajectories.
     #[must_use]
     pub fn is_equal(&self) -> bool {
-        self.timings
-            .windows(2)
-            .all(|pair| pair[0].hash == pair[1].hash)
+        self.timings.windows(2).all(|pair| pair[0].hash == pair[1].hash)
     }
 
     /// Microseconds per boid and step by this search; `None`: not run.
@@ -99,11 +91,7 @@ impl Report {
     pub(super) fn new(plan: &Plan, rows: Vec<Row>, flocks: Vec<(u32, Flock)>) -> Self {
         let order = |flock: &Flock| {
             let headings = flock.headings().iter();
-            polarisation::<2>(
-                &headings
-                    .map(|h| [h.x, h.y].map(f64::from))
-                    .collect::<Vec<_>>(),
-            )
+            polarisation::<2>(&headings.map(|h| [h.x, h.y].map(f64::from)).collect::<Vec<_>>())
         };
         Self {
             seed: plan.seed,
@@ -111,13 +99,7 @@ impl Report {
             area_per_boid: plan.area_per_boid,
             closest: plan.closest,
             threads: rayon::current_num_threads(),
-            moments: flocks
-                .iter()
-                .map(|(step, flock)| Moment {
-                    step: *step,
-                    polarisation: order(flock),
-                })
-                .collect(),
+            moments: flocks.iter().map(|(step, flock)| Moment { step: *step, polarisation: order(flock) }).collect(),
             equal: rows.iter().all(Row::is_equal),
             rows,
             flocks,
@@ -129,8 +111,7 @@ impl Report {
     /// # Errors
     /// It cannot be written.
     pub fn write_csv(&self, dir: &Path) -> Result<PathBuf, Error> {
-        let mut text =
-            String::from("boids,steps,mean_neighbours,search,us_per_boid,ms_per_step,hash\n");
+        let mut text = String::from("boids,steps,mean_neighbours,search,us_per_boid,ms_per_step,hash\n");
         for row in &self.rows {
             for timing in &row.timings {
                 // Writing to a string does not fail.
@@ -167,11 +148,7 @@ impl Display for Report {
         let parallel = format!("cells, {} threads", self.threads);
         writeln!(f, "{parallel:>19}{:>9}  hash", "equal")?;
         for row in &self.rows {
-            write!(
-                f,
-                "{:>8}{:>7}{:>12.2}",
-                row.boids, row.steps, row.mean_neighbours
-            )?;
+            write!(f, "{:>8}{:>7}{:>12.2}", row.boids, row.steps, row.mean_neighbours)?;
             for method in Method::ALL {
                 write!(f, "{:>15}", Maybe(row.us_per_boid(method.name()), 3))?;
             }
@@ -185,11 +162,7 @@ impl Display for Report {
             self.most_by_all_pairs
         )?;
         for moment in &self.moments {
-            writeln!(
-                f,
-                "pictured flock after {} steps: group order {:.3}",
-                moment.step, moment.polarisation
-            )?;
+            writeln!(f, "pictured flock after {} steps: group order {:.3}", moment.step, moment.polarisation)?;
         }
         Ok(())
     }

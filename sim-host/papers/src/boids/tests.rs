@@ -39,20 +39,12 @@ fn flocks_are_pinned() {
 
 #[test]
 fn boids_fly_more_alike_than_they_started_and_stay_on_the_torus() {
-    let plan = Plan {
-        picture_steps: 600,
-        ..small()
-    };
+    let plan = Plan { picture_steps: 600, ..small() };
     let report = plan.measure().expect("a plan");
     let steps: Vec<u32> = report.moments.iter().map(|moment| moment.step).collect();
     assert_eq!(steps, [0, 60, 600]);
     let order = |index: usize| report.moments[index].polarisation;
-    assert!(
-        order(0) < 0.4 && order(2) > 0.6,
-        "{} {}",
-        order(0),
-        order(2)
-    );
+    assert!(order(0) < 0.4 && order(2) > 0.6, "{} {}", order(0), order(2));
     let (_, last) = &report.flocks[2];
     let [width, height] = last.sides();
     let is_inside = |&[x, y]: &[f32; 2]| (0.0..width).contains(&x) && (0.0..height).contains(&y);
@@ -62,10 +54,7 @@ fn boids_fly_more_alike_than_they_started_and_stay_on_the_torus() {
 
 #[test]
 fn all_pairs_are_left_out_above_their_limit_and_an_early_end_keeps_whole_rows() {
-    let plan = Plan {
-        most_by_all_pairs: 2,
-        ..small()
-    };
+    let plan = Plan { most_by_all_pairs: 2, ..small() };
     let rows = plan.carry_out(|done| done < 2).expect("a plan");
     let report = plan.report(&rows);
     assert_eq!(plan.total(), 3);
@@ -80,31 +69,13 @@ fn all_pairs_are_left_out_above_their_limit_and_an_early_end_keeps_whole_rows() 
 #[test]
 fn plans_that_make_no_sense_are_refused() {
     let refused = |plan: Plan| plan.check().expect_err("refused").to_string();
-    let none = Plan {
-        boids: Vec::new(),
-        ..small()
-    };
+    let none = Plan { boids: Vec::new(), ..small() };
     assert!(refused(none).contains("one or more"));
-    let zero = Plan {
-        boids: vec![3, 0],
-        ..small()
-    };
+    let zero = Plan { boids: vec![3, 0], ..small() };
     assert!(refused(zero).contains("0 boids"));
-    assert!(
-        refused(Plan {
-            steps: 0,
-            ..small()
-        })
-        .contains("0 steps")
-    );
+    assert!(refused(Plan { steps: 0, ..small() }).contains("0 steps"));
     for value in [0.0, -1.0, f32::NAN, f32::INFINITY] {
-        assert!(
-            refused(Plan {
-                closest: value,
-                ..small()
-            })
-            .contains("closest")
-        );
+        assert!(refused(Plan { closest: value, ..small() }).contains("closest"));
     }
     Plan::default().check().expect("the paper's");
 }
@@ -116,21 +87,14 @@ fn pictures_and_table_are_left() {
     let files = report.draw(dir.path()).expect("drawn");
     assert_eq!(files.len(), 4);
     assert!(files.iter().all(|file| file.is_file()));
-    let csv =
-        std::fs::read_to_string(report.write_csv(dir.path()).expect("written")).expect("read");
+    let csv = std::fs::read_to_string(report.write_csv(dir.path()).expect("written")).expect("read");
     assert_eq!(csv.lines().count(), 1 + 9);
     assert!(csv.lines().all(|line| line.matches(',').count() == 6));
 }
 
 #[test]
 fn table_has_a_line_per_number_and_says_what_was_not_run() {
-    let plan = Plan {
-        boids: vec![4, 9],
-        steps: 2,
-        most_by_all_pairs: 5,
-        picture_steps: 2,
-        ..small()
-    };
+    let plan = Plan { boids: vec![4, 9], steps: 2, most_by_all_pairs: 5, picture_steps: 2, ..small() };
     let text = plan.measure().expect("a plan").to_string();
     assert_eq!(text.matches(" yes ").count(), 2);
     assert!(text.contains("only up to 5 boids") && text.contains("after 2 steps"));

@@ -20,13 +20,7 @@ pub struct FlockArgs {
     )]
     closing: bool,
     /// Closing speeds, spacings per second.
-    #[arg(
-        long,
-        value_name = "SPEED,...",
-        value_delimiter = ',',
-        default_value = "1,2,4,8",
-        requires = "closing"
-    )]
+    #[arg(long, value_name = "SPEED,...", value_delimiter = ',', default_value = "1,2,4,8", requires = "closing")]
     speeds: Vec<f64>,
 }
 

@@ -14,12 +14,7 @@ use std::path::PathBuf;
 #[command(allow_negative_numbers = true)]
 pub struct FormationArgs {
     /// Numbers of obstacles, one point of the figure each.
-    #[arg(
-        long,
-        value_name = "N,N,...",
-        value_delimiter = ',',
-        default_value = "0,10,20,40,70,100,130"
-    )]
+    #[arg(long, value_name = "N,N,...", value_delimiter = ',', default_value = "0,10,20,40,70,100,130")]
     obstacles: Vec<u32>,
     /// Landscapes per point.
     #[arg(long, default_value_t = 100)]
@@ -31,20 +26,10 @@ pub struct FormationArgs {
     #[arg(long, default_value_t = 0.0)]
     loss: f64,
     /// Other values of eps to try on the same landscapes.
-    #[arg(
-        long,
-        value_name = "CELLS,...",
-        value_delimiter = ',',
-        default_value = "1,2,3,5"
-    )]
+    #[arg(long, value_name = "CELLS,...", value_delimiter = ',', default_value = "1,2,3,5")]
     other_eps: Vec<u8>,
     /// Other losses to try on the same landscapes.
-    #[arg(
-        long,
-        value_name = "LOSS,...",
-        value_delimiter = ',',
-        default_value = "0.1,0.3,0.6"
-    )]
+    #[arg(long, value_name = "LOSS,...", value_delimiter = ',', default_value = "0.1,0.3,0.6")]
     other_losses: Vec<f64>,
     /// Do not try other values.
     #[arg(long, conflicts_with_all = ["other_eps", "other_losses"])]
@@ -110,10 +95,7 @@ impl FormationArgs {
         if let Some(cells) = self.halt {
             let units = cells * f64::from(UNIT);
             if !(0.0..=f64::from(u16::MAX)).contains(&units) {
-                bail!(
-                    "--halt {cells}; give 0 to {} cells",
-                    u32::from(u16::MAX) / UNIT
-                );
+                bail!("--halt {cells}; give 0 to {} cells", u32::from(u16::MAX) / UNIT);
             }
             formation.halt_lag = libm::round(units) as u16;
             formation.resume_lag = formation.halt_lag;
@@ -127,24 +109,11 @@ impl FormationArgs {
             hill_norm: self.hill_norm,
             spacing: self.spacing,
             rho: self.rho,
-            route: RouteParams {
-                radius: self.radius,
-                ..RouteParams::default()
-            },
+            route: RouteParams { radius: self.radius, ..RouteParams::default() },
             formation,
             loss: self.loss,
-            other_eps: self
-                .other_eps
-                .iter()
-                .copied()
-                .filter(|&eps| is_other(eps != self.eps))
-                .collect(),
-            other_losses: self
-                .other_losses
-                .iter()
-                .copied()
-                .filter(|&loss| is_other(loss != self.loss))
-                .collect(),
+            other_eps: self.other_eps.iter().copied().filter(|&eps| is_other(eps != self.eps)).collect(),
+            other_losses: self.other_losses.iter().copied().filter(|&loss| is_other(loss != self.loss)).collect(),
             ticks: self.ticks,
             seed: self.seed,
             ..Plan::default()

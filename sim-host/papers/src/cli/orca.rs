@@ -67,9 +67,8 @@ struct DrawArgs {
 
 /// Two numbers with a comma.
 fn vector(text: &str) -> Result<[f64; 2]> {
-    let (x, y) = text
-        .split_once(',')
-        .ok_or_else(|| anyhow!("two numbers with a comma between them are needed, like 1.5,-2"))?;
+    let (x, y) =
+        text.split_once(',').ok_or_else(|| anyhow!("two numbers with a comma between them are needed, like 1.5,-2"))?;
     let number = |text: &str| {
         let text = text.trim();
         text.parse().map_err(|_| anyhow!("`{text}` is no number"))
@@ -93,10 +92,7 @@ impl OrcaArgs {
 
 impl TableArgs {
     fn run(&self, global: &Global) -> Result<()> {
-        let sample = Sample {
-            pairs: self.pairs,
-            seed: self.seed,
-        };
+        let sample = Sample { pairs: self.pairs, seed: self.seed };
         let report = sample.report();
         if global.json {
             return print_json(&report);
@@ -141,22 +137,9 @@ impl DrawArgs {
         }
         let mut text = String::new();
         writeln!(text, "least change u     {:.6} m/s", drawing.change_mps)?;
-        writeln!(
-            text,
-            "half-plane through ({:.6}, {:.6}) m/s",
-            point.x, point.y
-        )?;
-        writeln!(
-            text,
-            "normal             ({:.6}, {:.6})",
-            normal.x, normal.y
-        )?;
-        writeln!(
-            text,
-            "{} pictures in {}",
-            pictures.len(),
-            self.out.display()
-        )?;
+        writeln!(text, "half-plane through ({:.6}, {:.6}) m/s", point.x, point.y)?;
+        writeln!(text, "normal             ({:.6}, {:.6})", normal.x, normal.y)?;
+        writeln!(text, "{} pictures in {}", pictures.len(), self.out.display())?;
         print(&text)
     }
 }

@@ -38,10 +38,7 @@ impl CoefficientArg {
             Self::A0 => (Coefficient::A0, &[0, 4, 8, 12, 16, 24, 32, 64]),
             Self::A1 => (Coefficient::A1, &[0, 16, 32, 64, 128]),
             Self::A2 => (Coefficient::A2, &[0, 8, 16, 32, 48, 64, 96, 160]),
-            Self::A3 => (
-                Coefficient::A3,
-                &[0, 16, 32, 40, 48, 56, 64, 72, 80, 96, 128, 192],
-            ),
+            Self::A3 => (Coefficient::A3, &[0, 16, 32, 40, 48, 56, 64, 72, 80, 96, 128, 192]),
         }
     }
 }
@@ -54,12 +51,7 @@ pub struct RouteArgs {
     #[arg(long, value_enum, default_value = "natural")]
     terrain: LandArg,
     /// Numbers of obstacles, one point of the figures each.
-    #[arg(
-        long,
-        value_name = "N,N,...",
-        value_delimiter = ',',
-        default_value = "10,40,70,100,130,160"
-    )]
+    #[arg(long, value_name = "N,N,...", value_delimiter = ',', default_value = "10,40,70,100,130,160")]
     obstacles: Vec<u32>,
     /// Landscapes per point.
     #[arg(long, default_value_t = 1000)]
@@ -104,11 +96,8 @@ pub struct RouteArgs {
 impl RouteArgs {
     /// What is to be done.
     pub fn plan(&self) -> Plan {
-        let params = RouteParams {
-            norm: self.norm,
-            corner_cutting: self.corner_cutting,
-            ..self.route.params(self.radius)
-        };
+        let params =
+            RouteParams { norm: self.norm, corner_cutting: self.corner_cutting, ..self.route.params(self.radius) };
         let mut lands: Vec<Land> = self
             .obstacles
             .iter()
@@ -123,11 +112,7 @@ impl RouteArgs {
         let sweep = self.sweep.iter().flat_map(|coefficient| {
             let (coefficient, usual) = coefficient.with_values();
             let usual = usual.iter().copied().map(Gain::from_sixteenths);
-            let values = if self.values.is_empty() {
-                usual.collect()
-            } else {
-                self.values.clone()
-            };
+            let values = if self.values.is_empty() { usual.collect() } else { self.values.clone() };
             values.into_iter().map(move |value| (coefficient, value))
         });
         Plan {
@@ -160,9 +145,7 @@ mod tests {
     }
 
     fn read(words: &[&str]) -> Result<RouteArgs, String> {
-        Line::try_parse_from([&["route"], words].concat())
-            .map(|line| line.route)
-            .map_err(|error| error.to_string())
+        Line::try_parse_from([&["route"], words].concat()).map(|line| line.route).map_err(|error| error.to_string())
     }
 
     #[test]
@@ -198,12 +181,7 @@ mod tests {
             seed: 9,
             params,
             replan: Replan::UntilChanged,
-            sweep: vec![
-                (Coefficient::A1, one),
-                (Coefficient::A1, two),
-                (Coefficient::A3, one),
-                (Coefficient::A3, two),
-            ],
+            sweep: vec![(Coefficient::A1, one), (Coefficient::A1, two), (Coefficient::A3, one), (Coefficient::A3, two)],
         };
         assert_eq!(plan, expected);
     }
@@ -229,38 +207,21 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let out = dir.path().join("a/b");
         let folder = out.to_str().unwrap();
-        let words = [
-            "--runs", "2", "--size", "30", "--sweep", "a2", "--out", folder,
-        ];
+        let words = ["--runs", "2", "--size", "30", "--sweep", "a2", "--out", folder];
         let args = read(&words).unwrap();
-        let quiet = Global {
-            quiet: true,
-            ..Global::default()
-        };
+        let quiet = Global { quiet: true, ..Global::default() };
         let stop = Stop::default();
         let ended = args.plan().command(Some(&args.out), &quiet, &stop).unwrap();
         assert_eq!(ended, Ended::Done);
         assert!(out.join("figure3.svg").is_file() && out.join("sweep-a2.png").is_file());
         stop.request();
-        let error = args
-            .plan()
-            .command(Some(&args.out), &quiet, &stop)
-            .unwrap_err();
+        let error = args.plan().command(Some(&args.out), &quiet, &stop).unwrap_err();
         assert!(error.to_string().contains("before any of the landscapes"));
     }
 
     #[test]
     fn tables_have_a_row_per_point_and_value() {
-        let words = [
-            "--runs",
-            "2",
-            "--size",
-            "30",
-            "--obstacles",
-            "3,4",
-            "--sweep",
-            "a3",
-        ];
+        let words = ["--runs", "2", "--size", "30", "--obstacles", "3,4", "--sweep", "a3"];
         let plan = read(&words).unwrap().plan();
         let text = plan.measure().unwrap().to_string();
         assert_eq!(text.matches("\nnatural ").count(), 4);

@@ -54,10 +54,7 @@ impl Default for Plan {
             seeds: 1,
             seed: 1,
             longest_s: 900.0,
-            conditions: Conditions {
-                range_m: 6.0,
-                ..Conditions::default()
-            },
+            conditions: Conditions { range_m: 6.0, ..Conditions::default() },
         }
     }
 }
@@ -121,22 +118,15 @@ impl Plan {
                 Start {
                     position_m: [side * x + noise(), y + noise(), 0.0],
                     velocity_mps: [0.0; 3],
-                    places: vec![Target {
-                        position_m: [-side * goal_x, goal_y, 0.0],
-                        velocity_mps: [0.0; 3],
-                    }],
+                    places: vec![Target { position_m: [-side * goal_x, goal_y, 0.0], velocity_mps: [0.0; 3] }],
                 }
             })
             .collect();
         let half = width_m / 2.0;
         let mut setup = PlaneSetup::new(self.conditions.abilities(), RADIUS_M, starts);
         setup.tolerance_m = 0.1;
-        setup.solids = vec![
-            Solid::Wall([[0.0, -WALL_M], [0.0, -half]]),
-            Solid::Wall([[0.0, half], [0.0, WALL_M]]),
-        ];
-        self.conditions
-            .scenario("doorway", seed, self.longest_s, setup)
+        setup.solids = vec![Solid::Wall([[0.0, -WALL_M], [0.0, -half]]), Solid::Wall([[0.0, half], [0.0, WALL_M]])];
+        self.conditions.scenario("doorway", seed, self.longest_s, setup)
     }
 
     fn passage(&self, width_m: f64, seed: u64, goes_on: &GoesOn<'_>) -> Option<Passage> {
@@ -186,16 +176,10 @@ impl Experiment for Plan {
         check_runs(self.seeds, "of each point")?;
         self.conditions.check(self.noise_m)?;
         for width in &self.widths_m {
-            ensure!(
-                (0.0..=50.0).contains(width),
-                "--widths {width} is out of range: give 0 to 50 metres"
-            );
+            ensure!((0.0..=50.0).contains(width), "--widths {width} is out of range: give 0 to 50 metres");
         }
         let longest = self.longest_s;
-        ensure!(
-            (0.1..=1e6).contains(&longest),
-            "--longest {longest} is out of range: give 0.1 to 1000000 seconds"
-        );
+        ensure!((0.1..=1e6).contains(&longest), "--longest {longest} is out of range: give 0.1 to 1000000 seconds");
         Ok(())
     }
 
@@ -207,30 +191,19 @@ impl Experiment for Plan {
         let passage = |(): &mut (), point: usize, run| {
             Ok(self.passage(self.widths_m[point], self.seed + u64::from(run), goes_on))
         };
-        Ok(whole(by_point(
-            self.widths_m.len(),
-            self.seeds,
-            1,
-            goes_on,
-            passage,
-        )?))
+        Ok(whole(by_point(self.widths_m.len(), self.seeds, 1, goes_on, passage)?))
     }
 
     fn report(&self, runs: &[Vec<Passage>]) -> Report {
-        Report {
-            conditions: self.conditions,
-            noise_m: self.noise_m,
-            runs: runs.concat(),
-        }
+        Report { conditions: self.conditions, noise_m: self.noise_m, runs: runs.concat() }
     }
 
     fn draw(&self, _: &[Vec<Passage>], report: &Report, dir: &Path) -> Result<Vec<PathBuf>> {
         // Who stopped the runs does not wait for another one.
         match report.runs.first() {
-            Some(run) if report.runs.len() == self.total() => Ok(self
-                .picture(run.width_m)
-                .draw()
-                .write(&dir.join("doorway"))?),
+            Some(run) if report.runs.len() == self.total() => {
+                Ok(self.picture(run.width_m).draw().write(&dir.join("doorway"))?)
+            }
             _ => Ok(Vec::new()),
         }
     }
@@ -250,12 +223,7 @@ struct Flow {
 impl Flow {
     fn new(xs: impl Iterator<Item = f64>) -> Self {
         let sides: Vec<f64> = xs.map(f64::signum).collect();
-        Self {
-            crossed: vec![false; sides.len()],
-            sides,
-            last: 0.0,
-            turns: 0,
-        }
+        Self { crossed: vec![false; sides.len()], sides, last: 0.0, turns: 0 }
     }
 
     fn see(&mut self, robots: &mut dyn Iterator<Item = RobotRow>) {
@@ -275,8 +243,7 @@ impl Flow {
     fn through(&self) -> [usize; 2] {
         let count = |from: f64| {
             let mine = self.sides.iter().zip(&self.crossed);
-            mine.filter(|&(&side, &crossed)| side == from && crossed)
-                .count()
+            mine.filter(|&(&side, &crossed)| side == from && crossed).count()
         };
         [count(-1.0), count(1.0)]
     }

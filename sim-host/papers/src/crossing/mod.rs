@@ -38,13 +38,7 @@ pub struct Conditions {
 impl Default for Conditions {
     /// 0.05 s, 0.5 m/s, 3 m, no losses, ORCA.
     fn default() -> Self {
-        Self {
-            step_s: 0.05,
-            speed_mps: 0.5,
-            range_m: 3.0,
-            loss: 0.0,
-            safety: SafetyName::Orca,
-        }
+        Self { step_s: 0.05, speed_mps: 0.5, range_m: 3.0, loss: 0.0, safety: SafetyName::Orca }
     }
 }
 
@@ -58,34 +52,20 @@ impl Conditions {
             ("--range", self.range_m, 0.0, 1e6),
             ("--loss", self.loss, 0.0, 1.0),
         ] {
-            ensure!(
-                (low..=high).contains(&value),
-                "{name} {value} is out of range: give {low} to {high}"
-            );
+            ensure!((low..=high).contains(&value), "{name} {value} is out of range: give {low} to {high}");
         }
         Ok(())
     }
 
     fn abilities(&self) -> Abilities {
-        Abilities {
-            max_speed_mps: self.speed_mps,
-            max_acceleration_mps2: f64::INFINITY,
-            step_s: self.step_s,
-        }
+        Abilities { max_speed_mps: self.speed_mps, max_acceleration_mps2: f64::INFINITY, step_s: self.step_s }
     }
 
     /// The scenario of one run that is given `longest_s` seconds.
     fn scenario(&self, name: &str, seed: u64, longest_s: f64, setup: PlaneSetup) -> Scenario {
-        let radio = RadioParams {
-            range_m: self.range_m,
-            loss: self.loss,
-            ..RadioParams::default()
-        };
+        let radio = RadioParams { range_m: self.range_m, loss: self.loss, ..RadioParams::default() };
         let ticks = libm::ceil(longest_s / self.step_s) as u32;
-        let setup = PlaneSetup {
-            safety: self.safety,
-            ..setup
-        };
+        let setup = PlaneSetup { safety: self.safety, ..setup };
         Scenario::in_plane(name, seed, ticks.max(1), radio, setup)
     }
 
@@ -134,9 +114,7 @@ fn picture(scenario: &Scenario) -> Sheet {
 
 /// Runs that came to their end.
 fn whole<T>(runs: Vec<Vec<Option<T>>>) -> Vec<Vec<T>> {
-    runs.into_iter()
-        .map(|runs| runs.into_iter().flatten().collect())
-        .collect()
+    runs.into_iter().map(|runs| runs.into_iter().flatten().collect()).collect()
 }
 
 /// Least gap of a run, metres; `None` when nobody came near.

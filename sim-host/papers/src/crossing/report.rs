@@ -10,13 +10,7 @@ fn milli(gap_m: Option<f64>) -> Maybe {
 }
 
 fn headline(f: &mut Formatter<'_>, what: &str, conditions: &Conditions, noise_m: f64) -> Result {
-    let Conditions {
-        step_s,
-        speed_mps,
-        range_m,
-        loss,
-        safety,
-    } = conditions;
+    let Conditions { step_s, speed_mps, range_m, loss, safety } = conditions;
     writeln!(
         f,
         "{what}: dt {step_s} s, {speed_mps} m/s, starts off by up to {noise_m} m, radio {range_m} m with {:.0} % lost, safety {safety:?}",
@@ -27,10 +21,7 @@ fn headline(f: &mut Formatter<'_>, what: &str, conditions: &Conditions, noise_m:
 impl Display for swap::Report {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         headline(f, "swap over a circle", &self.conditions, self.noise_m)?;
-        writeln!(
-            f,
-            "robots  circle (m)  clean runs   arrived  worst time / free  least gap (mm)  overlaps"
-        )?;
+        writeln!(f, "robots  circle (m)  clean runs   arrived  worst time / free  least gap (mm)  overlaps")?;
         for row in &self.rows {
             let all = row.robots as usize * row.runs;
             writeln!(

@@ -134,8 +134,7 @@ impl Plan {
             seed,
             arrived: there.len(),
             time_ratio: (there.len() == times.len()).then_some(last / free_s),
-            mean_time_ratio: (!there.is_empty())
-                .then(|| there.iter().sum::<f64>() / there.len() as f64 / free_s),
+            mean_time_ratio: (!there.is_empty()).then(|| there.iter().sum::<f64>() / there.len() as f64 / free_s),
             least_gap_m: gap(clearance.bodies_m),
             overlaps: clearance.overlaps,
         })
@@ -157,13 +156,9 @@ impl Experiment for Plan {
         check_runs(self.seeds, "of each point")?;
         self.conditions.check(self.noise_m)?;
         let patience = self.patience;
+        ensure!((0.1..=1000.0).contains(&patience), "--patience {patience} is out of range: give 0.1 to 1000");
         ensure!(
-            (0.1..=1000.0).contains(&patience),
-            "--patience {patience} is out of range: give 0.1 to 1000"
-        );
-        ensure!(
-            self.circle_m
-                .is_none_or(|circle| (0.01..=1e5).contains(&circle)),
+            self.circle_m.is_none_or(|circle| (0.01..=1e5).contains(&circle)),
             "--circle is out of range: give 0.01 to 100000 metres"
         );
         Ok(())
@@ -174,16 +169,9 @@ impl Experiment for Plan {
     }
 
     fn perform(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Vec<Swap>>> {
-        let swap = |(): &mut (), point: usize, run| {
-            Ok(self.swap(self.robots[point], self.seed + u64::from(run), goes_on))
-        };
-        Ok(whole(by_point(
-            self.robots.len(),
-            self.seeds,
-            1,
-            goes_on,
-            swap,
-        )?))
+        let swap =
+            |(): &mut (), point: usize, run| Ok(self.swap(self.robots[point], self.seed + u64::from(run), goes_on));
+        Ok(whole(by_point(self.robots.len(), self.seeds, 1, goes_on, swap)?))
     }
 
     fn report(&self, runs: &[Vec<Swap>]) -> Report {
@@ -191,9 +179,7 @@ impl Experiment for Plan {
         Report {
             conditions: self.conditions,
             noise_m: self.noise_m,
-            rows: points
-                .filter_map(|(&robots, runs)| row(robots, runs))
-                .collect(),
+            rows: points.filter_map(|(&robots, runs)| row(robots, runs)).collect(),
             runs: runs.concat(),
         }
     }
@@ -205,11 +191,7 @@ impl Experiment for Plan {
         }
         // Of all that can be told apart in a picture, the largest. Who stopped the runs does not wait for another one.
         let is_complete = report.runs.len() == self.total();
-        let drawn = report
-            .rows
-            .iter()
-            .rev()
-            .find(|row| is_complete && row.robots <= 100);
+        let drawn = report.rows.iter().rev().find(|row| is_complete && row.robots <= 100);
         if let Some(row) = drawn {
             pictures.extend(self.picture(row.robots).draw().write(&dir.join("swap"))?);
         }
@@ -224,10 +206,7 @@ fn row(robots: u32, mine: &[Swap]) -> Option<Row> {
         robots,
         circle_m: first.circle_m,
         runs: mine.len(),
-        clean: mine
-            .iter()
-            .filter(|run| run.time_ratio.is_some() && run.overlaps == 0)
-            .count(),
+        clean: mine.iter().filter(|run| run.time_ratio.is_some() && run.overlaps == 0).count(),
         arrived: mine.iter().map(|run| run.arrived).sum(),
         worst_time_ratio: mine
             .iter()
@@ -242,18 +221,11 @@ impl Report {
     /// Time over free time by the number of robots.
     #[must_use]
     pub fn chart(&self) -> Chart {
-        let points = self
-            .rows
-            .iter()
-            .filter_map(|row| Some([f64::from(row.robots), row.worst_time_ratio?]));
+        let points = self.rows.iter().filter_map(|row| Some([f64::from(row.robots), row.worst_time_ratio?]));
         let ends = [self.rows.first(), self.rows.last()];
         let ends = ends.map(|row| row.map_or(0.0, |row| f64::from(row.robots)));
-        Chart::new(
-            "Swap over a circle: time of the last robot",
-            "robots",
-            "time / free time",
-        )
-        .with(Series::points("worst of all runs", points))
-        .with(Series::reference("1.5", ends.map(|x| [x, 1.5])))
+        Chart::new("Swap over a circle: time of the last robot", "robots", "time / free time")
+            .with(Series::points("worst of all runs", points))
+            .with(Series::reference("1.5", ends.map(|x| [x, 1.5])))
     }
 }

@@ -4,10 +4,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 #[test]
 fn a_few_robots_swap_without_a_touch_and_are_measured() {
-    let plan = swap::Plan {
-        robots: vec![2, 5, 12],
-        ..swap::Plan::default()
-    };
+    let plan = swap::Plan { robots: vec![2, 5, 12], ..swap::Plan::default() };
     let report = plan.measure().expect("a sound plan");
     assert_eq!(report.rows.len(), 3);
     for row in &report.rows {
@@ -25,10 +22,7 @@ fn a_few_robots_swap_without_a_touch_and_are_measured() {
 fn without_a_safety_layer_they_go_through_each_other() {
     let plan = swap::Plan {
         robots: vec![4],
-        conditions: Conditions {
-            safety: SafetyName::None,
-            ..Conditions::default()
-        },
+        conditions: Conditions { safety: SafetyName::None, ..Conditions::default() },
         ..swap::Plan::default()
     };
     let report = plan.measure().expect("a sound plan");
@@ -38,10 +32,7 @@ fn without_a_safety_layer_they_go_through_each_other() {
 
 #[test]
 fn a_run_that_is_stopped_is_left_out() {
-    let plan = swap::Plan {
-        robots: vec![4],
-        ..swap::Plan::default()
-    };
+    let plan = swap::Plan { robots: vec![4], ..swap::Plan::default() };
     let looks = AtomicUsize::new(0);
     let runs = plan.carry_out(|_| looks.fetch_add(1, Ordering::Relaxed) < 20);
     let report = plan.report(&runs.expect("a sound plan"));
@@ -53,32 +44,17 @@ fn a_run_that_is_stopped_is_left_out() {
 
 #[test]
 fn patience_ends() {
-    let plan = swap::Plan {
-        robots: vec![2],
-        patience: 0.5,
-        ..swap::Plan::default()
-    };
+    let plan = swap::Plan { robots: vec![2], patience: 0.5, ..swap::Plan::default() };
     let report = plan.measure().expect("a sound plan");
-    assert_eq!(
-        (report.runs[0].arrived, report.runs[0].time_ratio),
-        (0, None)
-    );
+    assert_eq!((report.runs[0].arrived, report.runs[0].time_ratio), (0, None));
     assert_eq!(report.rows[0].worst_time_ratio, None);
 }
 
 #[test]
 fn two_crowds_pass_a_door_that_two_robots_do_not_fit_through() {
-    let plan = doorway::Plan {
-        widths_m: vec![0.8],
-        robots: 4,
-        ..doorway::Plan::default()
-    };
+    let plan = doorway::Plan { widths_m: vec![0.8], robots: 4, ..doorway::Plan::default() };
     let run = &plan.measure().expect("a sound plan").runs[0];
-    assert_eq!(
-        (run.arrived, run.robots, run.overlaps),
-        (8, 8, 0),
-        "{run:?}"
-    );
+    assert_eq!((run.arrived, run.robots, run.overlaps), (8, 8, 0), "{run:?}");
     assert_eq!(run.through, [4, 4]);
     assert!(run.turns >= 1 && run.last_s.is_some(), "{run:?}");
     assert!(run.least_wall_gap_m.is_some_and(|gap| gap > 0.0), "{run:?}");

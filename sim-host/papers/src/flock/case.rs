@@ -34,13 +34,7 @@ pub enum Case {
 
 impl Case {
     /// All, in the paper's order.
-    pub const ALL: [Self; 5] = [
-        Self::Free,
-        Self::Fragment,
-        Self::Rendezvous3d,
-        Self::Split,
-        Self::Squeeze,
-    ];
+    pub const ALL: [Self; 5] = [Self::Free, Self::Fragment, Self::Rendezvous3d, Self::Split, Self::Squeeze];
 
     /// As the command line and files call it.
     #[must_use]
@@ -210,10 +204,7 @@ impl Plan {
         };
         let targets: Vec<Target> = reference
             .iter()
-            .map(|&(place, velocity)| Target {
-                position_m: metres(place),
-                velocity_mps: metres(velocity),
-            })
+            .map(|&(place, velocity)| Target { position_m: metres(place), velocity_mps: metres(velocity) })
             .collect();
         let robots = self.robots.unwrap_or(setting.robots);
         let radius_m = self.radius_m();
@@ -256,10 +247,7 @@ impl Plan {
         let gain = |c1: f64| Gain::critical(c1 as f32);
         // Algorithm 1 stands in the paper without gains.
         let alpha = match setting.algorithm {
-            Algorithm::One => Gain {
-                position: alpha as f32,
-                velocity: alpha as f32,
-            },
+            Algorithm::One => Gain { position: alpha as f32, velocity: alpha as f32 },
             Algorithm::Two | Algorithm::Three => gain(alpha),
         };
         setup.lattice = (
@@ -281,10 +269,6 @@ impl Plan {
     pub(super) fn gains(&self, case: Case) -> [f64; 3] {
         let own = case.setting().gains;
         let [alpha, beta, gamma] = own;
-        [
-            self.c_alpha.unwrap_or(alpha),
-            self.c_beta.unwrap_or(beta),
-            self.c_gamma.unwrap_or(gamma),
-        ]
+        [self.c_alpha.unwrap_or(alpha), self.c_beta.unwrap_or(beta), self.c_gamma.unwrap_or(gamma)]
     }
 }

@@ -65,13 +65,7 @@ pub struct Closing {
 impl Default for Closing {
     /// 1, 2, 4, 8 d/s at d = 7 m; 8 d/s is nearly what beacons can tell.
     fn default() -> Self {
-        Self {
-            speeds: vec![1.0, 2.0, 4.0, 8.0],
-            runs: 10,
-            spacing_m: 7.0,
-            step_s: 0.03,
-            seed: 1,
-        }
+        Self { speeds: vec![1.0, 2.0, 4.0, 8.0], runs: 10, spacing_m: 7.0, step_s: 0.03, seed: 1 }
     }
 }
 
@@ -140,14 +134,7 @@ impl Closing {
     }
 
     /// Both sides a gap apart, at speed; they have passed and gone twice as far when the run ends.
-    fn scenario(
-        &self,
-        flock: Flock,
-        sides: Sides,
-        speed: f64,
-        safety: SafetyName,
-        run: u32,
-    ) -> Scenario {
+    fn scenario(&self, flock: Flock, sides: Sides, speed: f64, safety: SafetyName, run: u32) -> Scenario {
         let d = self.spacing_m;
         let side_mps = speed * d / 2.0;
         let guidance = match flock {
@@ -173,11 +160,7 @@ impl Closing {
         setup.lattice = (LatticeParams::new(d as f32), true);
         setup.goal_flock = (GoalParams::new((d / 2.0) as f32, side_mps as f32), d as f32);
         // Crowded below d, seen up to 4 d.
-        setup.boids = BoidsSetup {
-            crowded_m: d as f32,
-            closest_m: (4.0 * d) as f32,
-            ..BoidsSetup::PAPER
-        };
+        setup.boids = BoidsSetup { crowded_m: d as f32, closest_m: (4.0 * d) as f32, ..BoidsSetup::PAPER };
         // Beacons are a step old; at these speeds a step is a body's radius.
         setup.orca.margin_m = (d / 100.0) as f32;
         arena.scenario(setup)
@@ -196,14 +179,12 @@ impl Closing {
         for (way, off_m) in [(1.0, 0.0), (-1.0, off_m)] {
             let target = match flock {
                 // The reference goes along, straight through the other side.
-                Flock::Alpha => Target {
-                    position_m: [-way * GAP * d / 2.0, off_m, 0.0],
-                    velocity_mps: [way * side_mps, 0.0, 0.0],
-                },
-                Flock::Goal | Flock::Boids => Target {
-                    position_m: [way * 100.0 * d, off_m, 0.0],
-                    velocity_mps: [0.0; 3],
-                },
+                Flock::Alpha => {
+                    Target { position_m: [-way * GAP * d / 2.0, off_m, 0.0], velocity_mps: [way * side_mps, 0.0, 0.0] }
+                }
+                Flock::Goal | Flock::Boids => {
+                    Target { position_m: [way * 100.0 * d, off_m, 0.0], velocity_mps: [0.0; 3] }
+                }
             };
             for place in 0..rows * rows {
                 let [back, up] = [place / rows, place % rows].map(|n| f64::from(n) * d);
@@ -265,17 +246,11 @@ impl Experiment for Closing {
 
     fn perform(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Vec<[Met; 2]>>> {
         let lines = self.lines();
-        by_point(
-            lines.len(),
-            self.runs,
-            8,
-            goes_on,
-            |(): &mut (), line, run| {
-                let (flock, sides, speed) = lines[line];
-                let meet = |safety| self.meet(&self.scenario(flock, sides, speed, safety, run));
-                Ok([meet(SafetyName::None)?, meet(SafetyName::Orca)?])
-            },
-        )
+        by_point(lines.len(), self.runs, 8, goes_on, |(): &mut (), line, run| {
+            let (flock, sides, speed) = lines[line];
+            let meet = |safety| self.meet(&self.scenario(flock, sides, speed, safety, run));
+            Ok([meet(SafetyName::None)?, meet(SafetyName::Orca)?])
+        })
     }
 
     fn report(&self, runs: &[Vec<[Met; 2]>]) -> ClosingReport {
@@ -283,8 +258,7 @@ impl Experiment for Closing {
             let meeting = |way: usize| Meeting {
                 runs_with_overlap: runs.iter().filter(|run| run[way].0 > 0).count(),
                 overlaps: runs.iter().map(|run| run[way].0).sum(),
-                least_pair_over_d: runs.iter().map(|run| run[way].1).fold(f64::MAX, f64::min)
-                    / self.spacing_m,
+                least_pair_over_d: runs.iter().map(|run| run[way].1).fold(f64::MAX, f64::min) / self.spacing_m,
             };
             (!runs.is_empty()).then(|| Line {
                 flock,
@@ -300,12 +274,7 @@ impl Experiment for Closing {
             spacing_m: self.spacing_m,
             radius_m: self.radius_m(),
             step_s: self.step_s,
-            lines: self
-                .lines()
-                .into_iter()
-                .zip(runs)
-                .filter_map(line)
-                .collect(),
+            lines: self.lines().into_iter().zip(runs).filter_map(line).collect(),
         }
     }
 }
@@ -320,24 +289,11 @@ impl Display for ClosingReport {
         writeln!(
             f,
             "{:<8}{:<8}{:>5}{:>6} |{:>12}{:>10}{:>8} |{:>12}{:>10}{:>8}",
-            "flock",
-            "who",
-            "d/s",
-            "runs",
-            "bare: runs",
-            "overlaps",
-            "pair/d",
-            "ORCA: runs",
-            "overlaps",
-            "pair/d"
+            "flock", "who", "d/s", "runs", "bare: runs", "overlaps", "pair/d", "ORCA: runs", "overlaps", "pair/d"
         )?;
         for line in &self.lines {
-            let meeting = |m: &Meeting| {
-                format!(
-                    "{:>12}{:>10}{:>8.3}",
-                    m.runs_with_overlap, m.overlaps, m.least_pair_over_d
-                )
-            };
+            let meeting =
+                |m: &Meeting| format!("{:>12}{:>10}{:>8.3}", m.runs_with_overlap, m.overlaps, m.least_pair_over_d);
             writeln!(
                 f,
                 "{:<8}{:<8}{:>5}{:>6} |{} |{}",

@@ -122,14 +122,8 @@ impl Plan {
 
 /// A spacing at which beacons tell places well enough, and speeds at all; a step at which the flock does not fly apart.
 fn check_spacing_and_step(spacing_m: f64, step_s: f64) -> Result<()> {
-    ensure!(
-        (0.1..=50.0).contains(&spacing_m),
-        "a spacing of {spacing_m} m; it must be 0.1 to 50"
-    );
-    ensure!(
-        (0.001..=0.1).contains(&step_s),
-        "a step of {step_s} s; it must be 0.001 to 0.1"
-    );
+    ensure!((0.1..=50.0).contains(&spacing_m), "a spacing of {spacing_m} m; it must be 0.1 to 50");
+    ensure!((0.001..=0.1).contains(&step_s), "a step of {step_s} s; it must be 0.001 to 0.1");
     Ok(())
 }
 
@@ -142,41 +136,18 @@ impl Experiment for Plan {
         check_runs(self.runs, "of each case")?;
         ensure!(!self.cases.is_empty(), "no cases; give one or more");
         if let Some(robots) = self.robots {
-            ensure!(
-                (2..=2000).contains(&robots),
-                "{robots} robots; give 2 to 2000"
-            );
+            ensure!((2..=2000).contains(&robots), "{robots} robots; give 2 to 2000");
         }
         check_spacing_and_step(self.spacing_m, self.step_s)?;
-        ensure!(
-            (0.01..=60.0).contains(&self.horizon_s),
-            "a horizon of {} s; it must be 0.01 to 60",
-            self.horizon_s
-        );
+        ensure!((0.01..=60.0).contains(&self.horizon_s), "a horizon of {} s; it must be 0.01 to 60", self.horizon_s);
         if let Some(seconds) = self.seconds {
-            ensure!(
-                (1.0..=1e6).contains(&(seconds / self.step_s)),
-                "{seconds} s; a run has 1 to 1,000,000 steps"
-            );
+            ensure!((1.0..=1e6).contains(&(seconds / self.step_s)), "{seconds} s; a run has 1 to 1,000,000 steps");
         }
-        for gain in [self.c_alpha, self.c_beta, self.c_gamma]
-            .into_iter()
-            .flatten()
-        {
-            ensure!(
-                (0.0..=1e6).contains(&gain),
-                "a gain of {gain}; it must be 0 to 1,000,000"
-            );
+        for gain in [self.c_alpha, self.c_beta, self.c_gamma].into_iter().flatten() {
+            ensure!((0.0..=1e6).contains(&gain), "a gain of {gain}; it must be 0 to 1,000,000");
         }
-        ensure!(
-            (0.0..=1.0).contains(&self.loss),
-            "a loss of {}; it must be between 0 and 1",
-            self.loss
-        );
-        ensure!(
-            self.safety != SafetyName::PushOut,
-            "push-out comes with the goal flock; give orca, fly or none"
-        );
+        ensure!((0.0..=1.0).contains(&self.loss), "a loss of {}; it must be between 0 and 1", self.loss);
+        ensure!(self.safety != SafetyName::PushOut, "push-out comes with the goal flock; give orca, fly or none");
         for &case in &self.cases {
             self.scenario(case, 0)?;
         }
@@ -188,13 +159,7 @@ impl Experiment for Plan {
     }
 
     fn perform(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Vec<Run>>> {
-        by_point(
-            self.cases.len(),
-            self.runs,
-            1,
-            goes_on,
-            |(): &mut (), case, run| self.run(self.cases[case], run),
-        )
+        by_point(self.cases.len(), self.runs, 1, goes_on, |(): &mut (), case, run| self.run(self.cases[case], run))
     }
 
     fn report(&self, runs: &[Vec<Run>]) -> Report {

@@ -36,22 +36,13 @@ impl Report {
 
     /// Moments of the first run; in space three from above and three from the south.
     fn sheet(&self, case: &CaseReport) -> Sheet {
-        let title = format!(
-            "{}: {} robots, d = {} m, safety {}",
-            case.case.title(),
-            case.robots,
-            self.spacing_m,
-            self.safety
-        );
+        let title =
+            format!("{}: {} robots, d = {} m, safety {}", case.case.title(), case.robots, self.spacing_m, self.safety);
         let moments = case.case.setting().moments;
         let mut sheet = Sheet::new(title, 3);
         for (number, share) in (0..).zip(moments) {
             let tick = libm::round(share * case.ticks as f64) as u32;
-            let view = if case.case == Case::Rendezvous3d && number >= 3 {
-                View::Elevation
-            } else {
-                View::Plan
-            };
+            let view = if case.case == Case::Rendezvous3d && number >= 3 { View::Elevation } else { View::Plan };
             if let Some(frame) = case.frames.iter().find(|frame| frame.tick == tick) {
                 sheet = sheet.with(self.snapshot(case, frame, view));
             }
@@ -63,36 +54,21 @@ impl Report {
         let seen = |vectors: &[[f64; 3]]| vectors.iter().map(|&v| view.of(v)).collect::<Vec<_>>();
         let positions_m = seen(&frame.places_m);
         let disc = |solid: &Solid| match *solid {
-            Solid::Ball { center_m, radius_m } => Some(Obstacle::Disc {
-                centre_m: view.of(center_m),
-                radius_m,
-            }),
+            Solid::Ball { center_m, radius_m } => Some(Obstacle::Disc { centre_m: view.of(center_m), radius_m }),
             Solid::Wall(_) | Solid::Plane { .. } => None,
         };
         let solids = case.case.solids(self.spacing_m);
         let (is_flat, range_m) = (case.case != Case::Rendezvous3d, 1.2 * self.spacing_m);
-        let axis = if view == View::Plan {
-            ""
-        } else {
-            ", from the south"
-        };
+        let axis = if view == View::Plan { "" } else { ", from the south" };
         Snapshot {
-            title: format!(
-                "t = {:.1} s, iteration {}{axis}",
-                f64::from(frame.tick) * self.step_s,
-                frame.tick
-            ),
+            title: format!("t = {:.1} s, iteration {}{axis}", f64::from(frame.tick) * self.step_s, frame.tick),
             view_m: around(&positions_m, self.spacing_m),
             positions_m,
             velocities_mps: seen(&frame.velocities_mps),
             // In space, darts throughout.
             radius_m: if is_flat { self.radius_m } else { 0.0 },
             edges_within_m: is_flat.then_some(range_m),
-            trails_m: if is_flat {
-                Vec::new()
-            } else {
-                edges(&frame.places_m, range_m, view)
-            },
+            trails_m: if is_flat { Vec::new() } else { edges(&frame.places_m, range_m, view) },
             obstacles: solids.iter().filter_map(disc).collect(),
             labels: view.labels(),
             size: [380.0, 360.0],
@@ -108,8 +84,7 @@ impl Report {
         // Of 0 there is none, and the chart leaves it out.
         let log = |value: f64| libm::log10(value);
         let chart = |title: &str, label: &str, value: &dyn Fn(&FlockMeasure) -> f64| {
-            let mut chart = Chart::new(title, format!("iteration ({} s)", self.step_s), label)
-                .size(560.0, 300.0);
+            let mut chart = Chart::new(title, format!("iteration ({} s)", self.step_s), label).size(560.0, 300.0);
             for (name, points) in curves(case, value) {
                 let series = Series::line(name, points);
                 chart = chart.with(match name {
@@ -122,17 +97,10 @@ impl Report {
         let radius_label = "R (m)";
         let energy = chart("Deviation energy", "log10 E~", &|m| log(m.deviation_energy))
             .with(Series::reference("e1 = 0.005", ends(log(0.005))));
-        let mismatch = chart("Velocity mismatch", "log10 K~", &|m| {
-            log(m.velocity_mismatch)
-        })
-        .with(Series::reference("e2", ends(still)));
-        let title = format!(
-            "{}: {} runs of {} robots, safety {}",
-            case.case.title(),
-            case.runs,
-            case.robots,
-            self.safety
-        );
+        let mismatch = chart("Velocity mismatch", "log10 K~", &|m| log(m.velocity_mismatch))
+            .with(Series::reference("e2", ends(still)));
+        let title =
+            format!("{}: {} runs of {} robots, safety {}", case.case.title(), case.runs, case.robots, self.safety);
         Panels::new(title)
             .columns(2)
             .with(chart("Relative connectivity", "C", &|m| m.connectivity).y_range(0.0, 1.05))
@@ -175,13 +143,9 @@ fn thinned(trace: &[Option<FlockMeasure>]) -> impl Iterator<Item = (usize, &Opti
 }
 
 /// A measure of the first run, and the least and the greatest of all runs if there are more.
-fn curves(
-    case: &CaseReport,
-    value: &dyn Fn(&FlockMeasure) -> f64,
-) -> Vec<(&'static str, Vec<[f64; 2]>)> {
-    let first: Vec<[f64; 2]> = thinned(&case.traces[0])
-        .filter_map(|(at, moment)| Some([at as f64, value(moment.as_ref()?)]))
-        .collect();
+fn curves(case: &CaseReport, value: &dyn Fn(&FlockMeasure) -> f64) -> Vec<(&'static str, Vec<[f64; 2]>)> {
+    let first: Vec<[f64; 2]> =
+        thinned(&case.traces[0]).filter_map(|(at, moment)| Some([at as f64, value(moment.as_ref()?)])).collect();
     if case.traces.len() < 2 {
         return vec![("first run", first)];
     }
@@ -193,11 +157,7 @@ fn curves(
             })
             .collect()
     };
-    vec![
-        ("first run", first),
-        ("least and greatest of all runs", over(f64::min)),
-        ("", over(f64::max)),
-    ]
+    vec![("first run", first), ("least and greatest of all runs", over(f64::min)), ("", over(f64::max))]
 }
 
 /// Lines between robots in space that are within range: how far apart they are is not to be seen in the picture.

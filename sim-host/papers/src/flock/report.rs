@@ -121,9 +121,7 @@ impl Report {
             horizon_s: plan.horizon_s,
             loss: plan.loss,
             static_reference: plan.reference == Reference::Static,
-            cases: cases
-                .filter_map(|(&case, runs)| CaseReport::of(plan, case, runs))
-                .collect(),
+            cases: cases.filter_map(|(&case, runs)| CaseReport::of(plan, case, runs)).collect(),
         }
     }
 }
@@ -132,16 +130,13 @@ impl CaseReport {
     fn of(plan: &Plan, case: Case, runs: &[Run]) -> Option<Self> {
         let first = runs.first()?;
         let robots = first.trace.iter().flatten().next()?.robots;
-        let each: Vec<RunReport> = (0..)
-            .zip(runs)
-            .map(|(number, run)| RunReport::of(plan, case, number, robots, run))
-            .collect();
+        let each: Vec<RunReport> =
+            (0..).zip(runs).map(|(number, run)| RunReport::of(plan, case, number, robots, run)).collect();
         let alphas: Vec<usize> = each.iter().filter_map(|r| r.alpha.alpha_flocking).collect();
         let from: Vec<f64> = alphas.iter().map(|&from| from as f64).collect();
         let ends: Vec<FlockMeasure> = each.iter().filter_map(|run| run.end).collect();
         let most = |value: fn(&FlockMeasure) -> f64| ends.iter().map(value).fold(0.0, f64::max);
-        let least =
-            |value: fn(&RunReport) -> Option<f64>| each.iter().filter_map(value).reduce(f64::min);
+        let least = |value: fn(&RunReport) -> Option<f64>| each.iter().filter_map(value).reduce(f64::min);
         Some(Self {
             case,
             robots,
@@ -191,13 +186,7 @@ impl RunReport {
             run: number,
             alpha: alpha_flocking(&run.trace, &limits),
             end: run.trace.last().copied().flatten(),
-            most_parts: run
-                .trace
-                .iter()
-                .flatten()
-                .map(|m| m.components)
-                .max()
-                .unwrap_or(0),
+            most_parts: run.trace.iter().flatten().map(|m| m.components).max().unwrap_or(0),
             least_pair_over_d: over_d(run.least_pair_m),
             overlaps: run.overlaps,
             least_clearance_over_d: over_d(run.least_clearance_m),
@@ -231,11 +220,7 @@ impl Display for Report {
             self.safety,
             self.loss,
             self.seed,
-            if self.static_reference {
-                ", static reference"
-            } else {
-                ""
-            }
+            if self.static_reference { ", static reference" } else { "" }
         )?;
         writeln!(
             f,
@@ -258,10 +243,8 @@ impl Display for Report {
             "past"
         )?;
         for case in &self.cases {
-            let past = case.past.map_or_else(
-                || String::from("-"),
-                |past| format!("{past}/{}", case.robots * case.runs),
-            );
+            let past =
+                case.past.map_or_else(|| String::from("-"), |past| format!("{past}/{}", case.robots * case.runs));
             writeln!(
                 f,
                 "{:<13}{:>7}{:>6}{:>7}{:>7}{:>6}{:>7.3}{:>8.1}{:>9.5}{:>9.5}{:>5}{:>7}{:>9}{:>8}{:>7}{:>11}",

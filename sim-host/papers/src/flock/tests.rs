@@ -3,13 +3,7 @@ use super::*;
 
 /// Small enough for a test, large enough to show something.
 fn small(case: Case, robots: u32, seconds: f64) -> Plan {
-    Plan {
-        cases: vec![case],
-        runs: 2,
-        robots: Some(robots),
-        seconds: Some(seconds),
-        ..Plan::default()
-    }
+    Plan { cases: vec![case], runs: 2, robots: Some(robots), seconds: Some(seconds), ..Plan::default() }
 }
 
 fn report(plan: &Plan) -> CaseReport {
@@ -21,19 +15,11 @@ fn report(plan: &Plan) -> CaseReport {
 fn free_flock_comes_together_and_its_verdict_says_when() {
     let case = report(&small(Case::Free, 30, 15.0));
     assert_eq!((case.robots, case.runs, case.ticks), (30, 2, 500));
-    assert_eq!(
-        (case.one_flock, case.alpha_flocking),
-        (2, 2),
-        "{:?}",
-        case.each
-    );
+    assert_eq!((case.one_flock, case.alpha_flocking), (2, 2), "{:?}", case.each);
     assert!(case.deviation_energy < 0.005 && case.velocity_mismatch < 0.001);
     assert!(case.connected_from_latest.unwrap() < 250);
     assert!(case.alpha_from_latest.unwrap() > case.connected_from_latest.unwrap());
-    assert_eq!(
-        (case.overlaps, case.past, case.least_clearance_over_d),
-        (0, None, None)
-    );
+    assert_eq!((case.overlaps, case.past, case.least_clearance_over_d), (0, None, None));
 }
 
 #[test]
@@ -50,17 +36,12 @@ fn without_a_reference_the_group_breaks_up() {
 #[test]
 fn robots_meet_in_space_also_behind_orca() {
     for safety in [SafetyName::None, SafetyName::Orca] {
-        let plan = Plan {
-            safety,
-            ..small(Case::Rendezvous3d, 20, 30.0)
-        };
+        let plan = Plan { safety, ..small(Case::Rendezvous3d, 20, 30.0) };
         let case = report(&plan);
         assert_eq!((case.one_flock, case.overlaps), (2, 0), "{:?}", case.each);
         let frames = plan.carry_out(|_| true).unwrap()[0][0].frames.clone();
         let heights = frames.last().unwrap().places_m.iter().map(|at| at[2]);
-        let (low, high) = heights.fold((f64::MAX, f64::MIN), |(low, high), z| {
-            (low.min(z), high.max(z))
-        });
+        let (low, high) = heights.fold((f64::MAX, f64::MIN), |(low, high), z| (low.min(z), high.max(z)));
         assert!(high - low > plan.spacing_m, "a body in space, not a layer");
     }
 }
@@ -70,11 +51,7 @@ fn obstacles_are_passed_unharmed() {
     for case in [Case::Split, Case::Squeeze] {
         let case = report(&small(case, 25, 100.0));
         assert_eq!((case.past, case.inside), (Some(50), 0), "{:?}", case.each);
-        assert!(
-            case.least_clearance_over_d.unwrap() > 0.4,
-            "{:?}",
-            case.each
-        );
+        assert!(case.least_clearance_over_d.unwrap() > 0.4, "{:?}", case.each);
         assert_eq!(case.overlaps, 0);
     }
 }
@@ -82,10 +59,7 @@ fn obstacles_are_passed_unharmed() {
 #[test]
 fn any_spacing_gives_the_same_in_proportion() {
     let large = report(&small(Case::Split, 25, 30.0));
-    let plan = Plan {
-        spacing_m: 0.7,
-        ..small(Case::Split, 25, 30.0)
-    };
+    let plan = Plan { spacing_m: 0.7, ..small(Case::Split, 25, 30.0) };
     let little = report(&plan);
     let ratio = large.radius_m / little.radius_m;
     assert!((ratio - 10.0).abs() < 0.5, "{ratio}");
@@ -95,15 +69,9 @@ fn any_spacing_gives_the_same_in_proportion() {
 
 #[test]
 fn threads_and_early_ends_change_nothing() {
-    let plan = Plan {
-        cases: vec![Case::Free, Case::Squeeze],
-        ..small(Case::Free, 10, 3.0)
-    };
+    let plan = Plan { cases: vec![Case::Free, Case::Squeeze], ..small(Case::Free, 10, 3.0) };
     let on = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| plan.carry_out(|_| true).unwrap())
     };
     let all = on(1);
@@ -130,10 +98,7 @@ fn plans_that_cannot_be_carried_out_say_why() {
     assert!(refused(|p| p.c_beta = Some(-1.0)).contains("a gain of -1"));
     assert!(refused(|p| p.loss = 1.5).contains("between 0 and 1"));
     assert!(refused(|p| p.safety = SafetyName::PushOut).contains("goal flock"));
-    let closing = Closing {
-        speeds: vec![10.0],
-        ..Closing::default()
-    };
+    let closing = Closing { speeds: vec![10.0], ..Closing::default() };
     let error = closing.check().unwrap_err().to_string();
     assert!(error.contains("at most 9.14"), "{error}");
 }
@@ -141,10 +106,7 @@ fn plans_that_cannot_be_carried_out_say_why() {
 #[test]
 fn pictures_and_series_are_written() {
     let dir = tempfile::tempdir().unwrap();
-    let plan = Plan {
-        cases: vec![Case::Rendezvous3d, Case::Squeeze],
-        ..small(Case::Free, 10, 3.0)
-    };
+    let plan = Plan { cases: vec![Case::Rendezvous3d, Case::Squeeze], ..small(Case::Free, 10, 3.0) };
     let files = plan.measure().unwrap().draw(dir.path());
     let files = files.unwrap();
     assert_eq!(files.len(), 10);
@@ -159,11 +121,7 @@ fn pictures_and_series_are_written() {
 
 #[test]
 fn closing_speeds_that_break_the_bare_flock_do_not_with_orca_behind_it() {
-    let plan = Closing {
-        speeds: vec![1.0, 4.0, 8.0],
-        runs: 4,
-        ..Closing::default()
-    };
+    let plan = Closing { speeds: vec![1.0, 4.0, 8.0], runs: 4, ..Closing::default() };
     let report = plan.measure().unwrap();
     assert_eq!((plan.total(), report.lines.len()), (18 * 4, 18));
     for line in &report.lines {
@@ -171,9 +129,7 @@ fn closing_speeds_that_break_the_bare_flock_do_not_with_orca_behind_it() {
         assert!(line.orca.least_pair_over_d > 1.0 / 7.0 - 1e-6, "{line:?}");
     }
     let breaks = |flock, sides, speed: f64| {
-        let wanted = |line: &&closing::Line| {
-            (line.flock, line.sides) == (flock, sides) && line.speed_over_d == speed
-        };
+        let wanted = |line: &&closing::Line| (line.flock, line.sides) == (flock, sides) && line.speed_over_d == speed;
         report.lines.iter().find(wanted).unwrap().bare.overlaps > 0
     };
     assert!(!breaks(Flock::Alpha, Sides::Groups, 1.0));

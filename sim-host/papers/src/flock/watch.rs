@@ -68,11 +68,7 @@ impl Watch {
             behind_m: case.behind_m(spacing_m),
             solids: case.solids(spacing_m),
             meter: FlockMeter::new(spacing_m, 1.2 * spacing_m, Space::OPEN),
-            wanted: if draws {
-                moments.map(at).to_vec()
-            } else {
-                Vec::new()
-            },
+            wanted: if draws { moments.map(at).to_vec() } else { Vec::new() },
             places_m: Vec::new(),
             velocities_mps: Vec::new(),
             was_inside: vec![false; scenario.robots.len()],

@@ -136,9 +136,8 @@ impl Plan {
     /// A radius rho without a template.
     fn graph(&self) -> Result<Formation> {
         let spacing = i16::from(self.spacing);
-        let places: Vec<Cell> = (0..ROBOTS as i16)
-            .map(|robot| Cell::new(-spacing * (robot % 3), -spacing * (robot / 3)))
-            .collect();
+        let places: Vec<Cell> =
+            (0..ROBOTS as i16).map(|robot| Cell::new(-spacing * (robot % 3), -spacing * (robot / 3))).collect();
         let templates = (0..ROBOTS)
             .map(|own| Template::<TEMPLATE>::from_graph(&places, &EDGES, own, self.rho))
             .collect::<Result<_, TemplateError>>();
@@ -161,18 +160,9 @@ impl Plan {
     /// How the six cross each landscape: alone, as planned, with other eps, with other losses.
     fn ways(&self) -> impl Iterator<Item = Way> + '_ {
         let (own_eps, own_loss) = (self.formation.eps, self.loss);
-        let own = Way::Together {
-            eps: own_eps,
-            loss: own_loss,
-        };
-        let eps = self.other_eps.iter().map(move |&eps| Way::Together {
-            eps,
-            loss: own_loss,
-        });
-        let losses = self
-            .other_losses
-            .iter()
-            .map(move |&loss| Way::Together { eps: own_eps, loss });
+        let own = Way::Together { eps: own_eps, loss: own_loss };
+        let eps = self.other_eps.iter().map(move |&eps| Way::Together { eps, loss: own_loss });
+        let losses = self.other_losses.iter().map(move |&loss| Way::Together { eps: own_eps, loss });
         [Way::Alone, own].into_iter().chain(eps).chain(losses)
     }
 
@@ -189,13 +179,7 @@ impl Plan {
 
     /// The six on a landscape. The rearmost start one cell from the south-west corner; robot 1 goes to the cell that lies
     /// one from the north-east corner.
-    fn scenario(
-        &self,
-        terrain: Terrain,
-        graph: Option<Formation>,
-        places: &[Cell],
-        seed: u64,
-    ) -> Scenario {
+    fn scenario(&self, terrain: Terrain, graph: Option<Formation>, places: &[Cell], seed: u64) -> Scenario {
         let spacing = i16::from(self.spacing);
         let start = Cell::new(2 * spacing + 1, spacing + 1);
         let last = (self.size - 2).cast_signed();
@@ -210,22 +194,12 @@ impl Plan {
             ticks: self.ticks,
             tick_us: TICK_US,
             terrain,
-            rules: MoveRules {
-                norm: self.route.norm,
-                corner_cutting: self.route.corner_cutting,
-            },
-            radio: RadioParams {
-                range_m: f64::INFINITY,
-                ..RadioParams::default()
-            },
+            rules: MoveRules { norm: self.route.norm, corner_cutting: self.route.corner_cutting },
+            radio: RadioParams { range_m: f64::INFINITY, ..RadioParams::default() },
             robots: robots.collect(),
             plane: None,
             formation: graph,
-            route: Routing {
-                params: self.route,
-                replan: Replan::EachCell,
-                sharpness: self.sharpness,
-            },
+            route: Routing { params: self.route, replan: Replan::EachCell, sharpness: self.sharpness },
             formation_params: self.formation,
             faults: Vec::new(),
             key: None,
@@ -237,8 +211,7 @@ impl Plan {
     fn run(&self, graph: &Formation, obstacles: u32, run: u32) -> Result<Run> {
         let terrain = self.landscape(obstacles, run)?;
         let seed = Rng::keyed(self.seed, RUNS, obstacles, run).next_u64();
-        let scenario =
-            |graph: Option<Formation>, places| self.scenario(terrain.clone(), graph, places, seed);
+        let scenario = |graph: Option<Formation>, places| self.scenario(terrain.clone(), graph, places, seed);
         let alone = scenario(None, &graph.places);
         let mut together = scenario(Some(graph.clone()), &graph.places);
         self.ways()
@@ -262,34 +235,18 @@ impl Experiment for Plan {
 
     fn check(&self) -> Result<()> {
         check_runs(self.runs, "landscapes per point")?;
-        ensure!(
-            !self.obstacles.is_empty(),
-            "no landscapes; give one number of obstacles or more"
-        );
-        ensure!(
-            self.ticks > 0,
-            "0 ticks; give the robots time to arrive, about 10000"
-        );
-        ensure!(
-            (1..=10).contains(&self.spacing),
-            "a spacing of {} cells; it must be 1..=10",
-            self.spacing
-        );
+        ensure!(!self.obstacles.is_empty(), "no landscapes; give one number of obstacles or more");
+        ensure!(self.ticks > 0, "0 ticks; give the robots time to arrive, about 10000");
+        ensure!((1..=10).contains(&self.spacing), "a spacing of {} cells; it must be 1..=10", self.spacing);
         let radius = self.route.radius;
-        ensure!(
-            (1..=16).contains(&radius),
-            "a window of radius {radius}; it must be 1..=16"
-        );
+        ensure!((1..=16).contains(&radius), "a window of radius {radius}; it must be 1..=16");
         let (size, least) = (self.size, self.least_size());
         ensure!(
             (least..=2000).contains(&size),
             "a landscape of {size} x {size} cells; its side must be {least}..=2000"
         );
         for loss in [self.loss].iter().chain(&self.other_losses) {
-            ensure!(
-                (0.0..=1.0).contains(loss),
-                "a loss of {loss}; it must be between 0 and 1"
-            );
+            ensure!((0.0..=1.0).contains(loss), "a loss of {loss}; it must be between 0 and 1");
         }
         ensure!(self.rho > 0, "a geodesic radius rho of 0; give 1, 2 or 3");
         self.graph()?;
@@ -305,13 +262,9 @@ impl Experiment for Plan {
 
     fn perform(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Vec<Run>>> {
         let graph = self.graph()?;
-        by_point(
-            self.obstacles.len(),
-            self.runs,
-            8,
-            goes_on,
-            |(): &mut (), point, run| self.run(&graph, self.obstacles[point], run),
-        )
+        by_point(self.obstacles.len(), self.runs, 8, goes_on, |(): &mut (), point, run| {
+            self.run(&graph, self.obstacles[point], run)
+        })
     }
 
     fn report(&self, runs: &[Vec<Run>]) -> Report {
@@ -331,11 +284,7 @@ fn cross(scenario: &Scenario) -> Result<Crossing, Misplaced> {
         worst_error = worst_error.max(moment.row.formation_error_per_agent);
         ControlFlow::Continue(())
     })?;
-    let last: Option<u64> = outcome
-        .arrival_times
-        .iter()
-        .copied()
-        .try_fold(0, |last, at| Some(at?.max(last)));
+    let last: Option<u64> = outcome.arrival_times.iter().copied().try_fold(0, |last, at| Some(at?.max(last)));
     let keeping = outcome.formation;
     Ok(Crossing {
         arrived: outcome.arrived,

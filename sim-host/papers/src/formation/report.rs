@@ -115,14 +115,11 @@ pub struct Report {
 impl Report {
     pub(super) fn of(plan: &Plan, runs: &[Vec<Run>]) -> Self {
         let by_point = plan.obstacles.iter().zip(runs);
-        let mut points: Vec<Point> = by_point
-            .filter_map(|(&obstacles, runs)| Point::of(plan, obstacles, runs))
-            .collect();
+        let mut points: Vec<Point> =
+            by_point.filter_map(|(&obstacles, runs)| Point::of(plan, obstacles, runs)).collect();
         points.sort_by_key(|point| point.obstacles);
-        let fitted: Vec<[f64; 2]> = points
-            .iter()
-            .map(|p| [f64::from(p.obstacles), p.formation.error_per_agent.mean])
-            .collect();
+        let fitted: Vec<[f64; 2]> =
+            points.iter().map(|p| [f64::from(p.obstacles), p.formation.error_per_agent.mean]).collect();
         Self {
             seed: plan.seed,
             runs: plan.runs,
@@ -143,16 +140,13 @@ impl Point {
     fn of(plan: &Plan, obstacles: u32, runs: &[Run]) -> Option<Self> {
         let alone: Vec<Option<f64>> = runs.iter().map(|run| run[0].time_ticks).collect();
         let alone_times: Vec<f64> = alone.iter().copied().flatten().collect();
-        let mut journeys = plan
-            .ways()
-            .enumerate()
-            .filter_map(|(way, kind)| match kind {
-                Way::Alone => None,
-                Way::Together { eps, loss } => {
-                    let crossings: Vec<Crossing> = runs.iter().map(|run| run[way]).collect();
-                    Journey::of(eps, loss, &crossings, &alone)
-                }
-            });
+        let mut journeys = plan.ways().enumerate().filter_map(|(way, kind)| match kind {
+            Way::Alone => None,
+            Way::Together { eps, loss } => {
+                let crossings: Vec<Crossing> = runs.iter().map(|run| run[way]).collect();
+                Journey::of(eps, loss, &crossings, &alone)
+            }
+        });
         let formation = journeys.next()?;
         let other_eps: Vec<Journey> = journeys.by_ref().take(plan.other_eps.len()).collect();
         let other_losses = journeys.collect();
@@ -173,8 +167,7 @@ impl Point {
 
 impl Journey {
     fn of(eps: u8, loss: f64, crossings: &[Crossing], alone: &[Option<f64>]) -> Option<Self> {
-        let column =
-            |value: fn(&Crossing) -> f64| -> Vec<f64> { crossings.iter().map(value).collect() };
+        let column = |value: fn(&Crossing) -> f64| -> Vec<f64> { crossings.iter().map(value).collect() };
         let error = Summary::of(&column(|c| c.error))?;
         let both: Vec<[f64; 2]> = crossings
             .iter()
@@ -252,18 +245,10 @@ impl Display for Report {
         f.write_str("dPhi/6: error per robot, cells; best fit: the same, graph placed by the best-fitting translation; dist: graph distance;\n")?;
         f.write_str("worst: largest error per robot of any tick; alone, time: ticks until the last robot arrived without and in formation\n\n")?;
         if let Some(fit) = self.fit {
-            writeln!(
-                f,
-                "fit:   dPhi/6 = {:.6} ln(N + 1) {:+.6}, R2 = {:.4}",
-                fit.a, fit.b, fit.r2
-            )?;
+            writeln!(f, "fit:   dPhi/6 = {:.6} ln(N + 1) {:+.6}, R2 = {:.4}", fit.a, fit.b, fit.r2)?;
         }
         let paper = self.paper;
-        writeln!(
-            f,
-            "paper: dPhi/6 = {:.6} ln(N + 1) {:+.6}, R2 = {:.4}",
-            paper.a, paper.b, paper.r2
-        )?;
+        writeln!(f, "paper: dPhi/6 = {:.6} ln(N + 1) {:+.6}, R2 = {:.4}", paper.a, paper.b, paper.r2)?;
         variants(f, self, Variants::Eps)?;
         variants(f, self, Variants::Loss)
     }
@@ -295,11 +280,7 @@ fn variants(f: &mut Formatter<'_>, report: &Report, kind: Variants) -> fmt::Resu
         write!(f, "{:>8}", value(journey))?;
         for point in &report.points {
             let entry = point.variants(kind)[index];
-            let crossed = if entry.arrived < point.runs {
-                format!("[{}] ", entry.arrived)
-            } else {
-                String::new()
-            };
+            let crossed = if entry.arrived < point.runs { format!("[{}] ", entry.arrived) } else { String::new() };
             let entry = format!(
                 "{crossed}{:.2} {} ({:.1})",
                 entry.error_per_agent.mean,

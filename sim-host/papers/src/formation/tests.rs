@@ -3,14 +3,7 @@ use staya_controller::cost::Gain;
 
 /// Small enough for a test, large enough to show something.
 fn small() -> Plan {
-    Plan {
-        obstacles: vec![0, 10],
-        runs: 4,
-        size: 40,
-        other_eps: vec![2],
-        other_losses: vec![0.6],
-        ..Plan::default()
-    }
+    Plan { obstacles: vec![0, 10], runs: 4, size: 40, other_eps: vec![2], other_losses: vec![0.6], ..Plan::default() }
 }
 
 fn report(plan: &Plan) -> Report {
@@ -23,10 +16,7 @@ fn formation_is_kept_and_everybody_arrives() {
     assert_eq!(report.points.len(), 2);
     for point in &report.points {
         let journey = &point.formation;
-        assert_eq!(
-            (point.runs, point.alone_arrived, journey.arrived),
-            (4, 4, 4)
-        );
+        assert_eq!((point.runs, point.alone_arrived, journey.arrived), (4, 4, 4));
         assert_eq!(journey.collisions, 0);
         assert!(journey.error_per_agent.mean < 1.5, "{journey:?}");
         assert!(journey.worst_error < 8.0, "{journey:?}");
@@ -45,11 +35,7 @@ fn formation_is_kept_and_everybody_arrives() {
 fn keeping_a_formation_is_what_makes_the_difference() {
     // Without gain, waiting and common pricing the robots still follow; with them they are nearer.
     let loose = Plan {
-        formation: FormationParams {
-            halt_lag: u16::MAX,
-            gain: Gain::ZERO,
-            ..FormationParams::default()
-        },
+        formation: FormationParams { halt_lag: u16::MAX, gain: Gain::ZERO, ..FormationParams::default() },
         ..small()
     };
     let error = |plan: &Plan| report(plan).points[1].formation.error_per_agent.mean;
@@ -60,10 +46,7 @@ fn keeping_a_formation_is_what_makes_the_difference() {
 fn threads_and_early_ends_change_nothing() {
     let plan = small();
     let on = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| plan.carry_out(|_| true).unwrap())
     };
     let all = on(1);
@@ -89,11 +72,7 @@ fn plans_that_cannot_be_carried_out_say_why() {
     assert!(refused(|p| p.loss = f64::NAN).contains("between 0 and 1"));
     assert!(refused(|p| p.route.radius = 17).contains("1..=16"));
     assert!(refused(|p| p.obstacles = vec![2000]).contains("2000"));
-    let least = Plan {
-        size: small().least_size(),
-        obstacles: vec![0],
-        ..small()
-    };
+    let least = Plan { size: small().least_size(), obstacles: vec![0], ..small() };
     assert_eq!(report(&least).points[0].formation.arrived, 4);
 }
 
@@ -102,9 +81,5 @@ fn pictures_are_written() {
     let dir = tempfile::tempdir().unwrap();
     let files = report(&small()).draw(dir.path()).unwrap();
     assert_eq!(files.len(), 6);
-    assert!(
-        files
-            .iter()
-            .all(|file| file.metadata().unwrap().len() > 1000)
-    );
+    assert!(files.iter().all(|file| file.metadata().unwrap().len() > 1000));
 }

@@ -48,12 +48,7 @@ const MOVED: [f64; 2] = [90.0, 20.0];
 #[command(allow_negative_numbers = true)]
 pub struct Plan {
     /// Gains of the pull to the goal.
-    #[arg(
-        long,
-        value_name = "K1,...",
-        value_delimiter = ',',
-        default_value = "0,5,15,30,50,100,150"
-    )]
+    #[arg(long, value_name = "K1,...", value_delimiter = ',', default_value = "0,5,15,30,50,100,150")]
     pub k1: Vec<f64>,
     /// Gain of the pull to the middle of the neighbours.
     #[arg(long, default_value_t = 50.0)]
@@ -62,12 +57,7 @@ pub struct Plan {
     #[arg(long, default_value_t = 100.0)]
     pub k3: f64,
     /// How far neighbours are seen (R_nbh), two least distances or more; the nearest sixteen count.
-    #[arg(
-        long = "neighborhood",
-        value_name = "METRES,...",
-        value_delimiter = ',',
-        default_value = "20,40"
-    )]
+    #[arg(long = "neighborhood", value_name = "METRES,...", value_delimiter = ',', default_value = "20,40")]
     pub neighborhoods_m: Vec<f64>,
     /// Least distance of robots (R_MinDist); bodies have 0.3 of it as radius.
     #[arg(long = "min-distance", value_name = "METRES", default_value_t = 10.0)]
@@ -163,10 +153,7 @@ impl Plan {
     }
 
     fn scenario(&self, k1: f64, neighborhood_m: f64, run: u32) -> Result<Scenario> {
-        let targets = self.goals_m().map(|position_m| Target {
-            position_m,
-            velocity_mps: [0.0; 3],
-        });
+        let targets = self.goals_m().map(|position_m| Target { position_m, velocity_mps: [0.0; 3] });
         let side = START_SIDE * self.min_distance_m * libm::sqrt(f64::from(self.robots)) / 2.0;
         let starts = starts(
             self.robots,
@@ -215,10 +202,7 @@ impl Plan {
             setup.orders.push(Order {
                 tick: self.moves_at(),
                 index: 0,
-                target: Target {
-                    position_m: self.moved_m(),
-                    velocity_mps: [0.0; 3],
-                },
+                target: Target { position_m: self.moved_m(), velocity_mps: [0.0; 3] },
             });
         }
         Ok(arena.scenario(setup))
@@ -242,26 +226,13 @@ impl Experiment for Plan {
 
     fn check(&self) -> Result<()> {
         check_runs(self.runs, "of each point")?;
-        ensure!(
-            !self.points().is_empty(),
-            "no points; give one K1 and one neighbourhood or more"
-        );
-        ensure!(
-            (2..=2000).contains(&self.robots),
-            "{} robots; give 2 to 2000",
-            self.robots
-        );
+        ensure!(!self.points().is_empty(), "no points; give one K1 and one neighbourhood or more");
+        ensure!((2..=2000).contains(&self.robots), "{} robots; give 2 to 2000", self.robots);
         for gain in self.k1.iter().chain([&self.k2, &self.k3]) {
-            ensure!(
-                (-1e6..=1e6).contains(gain),
-                "a gain of {gain}; give a number within +-1,000,000"
-            );
+            ensure!((-1e6..=1e6).contains(gain), "a gain of {gain}; give a number within +-1,000,000");
         }
         let distance_m = self.min_distance_m;
-        ensure!(
-            (0.1..=30.0).contains(&distance_m),
-            "a least distance of {distance_m} m; it must be 0.1 to 30"
-        );
+        ensure!((0.1..=30.0).contains(&distance_m), "a least distance of {distance_m} m; it must be 0.1 to 30");
         let least_m = 2.0 * distance_m;
         for wide_m in &self.neighborhoods_m {
             ensure!(
@@ -269,17 +240,9 @@ impl Experiment for Plan {
                 "a neighbourhood of {wide_m} m; it must be {least_m} (two least distances) to 100,000"
             );
         }
-        ensure!(
-            (0.001..=0.5).contains(&self.step_s),
-            "a step of {} s; it must be 0.001 to 0.5",
-            self.step_s
-        );
+        ensure!((0.001..=0.5).contains(&self.step_s), "a step of {} s; it must be 0.001 to 0.5", self.step_s);
         let steps = self.seconds / self.step_s;
-        ensure!(
-            (1.0..=1e6).contains(&steps),
-            "{} s; a run has 1 to 1,000,000 steps",
-            self.seconds
-        );
+        ensure!((1.0..=1e6).contains(&steps), "{} s; a run has 1 to 1,000,000 steps", self.seconds);
         self.scenario(0.0, least_m, 0)?;
         Ok(())
     }
@@ -290,13 +253,7 @@ impl Experiment for Plan {
 
     fn perform(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Vec<Run>>> {
         let points = self.points();
-        by_point(
-            points.len(),
-            self.runs,
-            1,
-            goes_on,
-            |(): &mut (), point, run| self.run(points[point], run),
-        )
+        by_point(points.len(), self.runs, 1, goes_on, |(): &mut (), point, run| self.run(points[point], run))
     }
 
     fn report(&self, runs: &[Vec<Run>]) -> Report {

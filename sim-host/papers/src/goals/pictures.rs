@@ -24,9 +24,7 @@ impl Report {
     fn shown(&self) -> Vec<(String, &Point)> {
         let last = self.points.last().map(|point| point.neighborhood_m);
         let points = self.points.iter();
-        let row: Vec<&Point> = points
-            .filter(|point| Some(point.neighborhood_m) == last && point.k1 > 0.0)
-            .collect();
+        let row: Vec<&Point> = points.filter(|point| Some(point.neighborhood_m) == last && point.k1 > 0.0).collect();
         let mut shown = Vec::new();
         for index in [0, row.len() / 2, row.len().saturating_sub(1)] {
             if let Some(point) = row.get(index) {
@@ -51,36 +49,16 @@ impl Report {
             }
             chart
         };
-        let title = format!(
-            "{} robots, 3 goals, R_MinDist = {} m, safety {}",
-            self.robots, self.min_distance_m, self.safety
-        );
+        let title =
+            format!("{} robots, 3 goals, R_MinDist = {} m, safety {}", self.robots, self.min_distance_m, self.safety);
         Panels::new(title)
             .columns(2)
             .with(chart("Polarisation on the way", "0 to 1", |p| p.polarisation).y_range(0.0, 1.05))
-            .with(
-                chart("Share of the largest group on the way", "0 to 1", |p| {
-                    p.together
-                })
-                .y_range(0.0, 1.05),
-            )
-            .with(chart(
-                "Radius of the crowd on the way, over that at the start",
-                "ratio",
-                |p| p.spread,
-            ))
-            .with(
-                chart("Share of robots at a goal at the end", "0 to 1", |p| {
-                    Some(p.arrived)
-                })
-                .y_range(0.0, 1.05),
-            )
-            .with(chart("Least distance of two robots", "R_MinDist", |p| {
-                p.least_pair_over_min_distance
-            }))
-            .with(chart("Time until half were at the middle", "s", |p| {
-                p.half_gathered_s
-            }))
+            .with(chart("Share of the largest group on the way", "0 to 1", |p| p.together).y_range(0.0, 1.05))
+            .with(chart("Radius of the crowd on the way, over that at the start", "ratio", |p| p.spread))
+            .with(chart("Share of robots at a goal at the end", "0 to 1", |p| Some(p.arrived)).y_range(0.0, 1.05))
+            .with(chart("Least distance of two robots", "R_MinDist", |p| p.least_pair_over_min_distance))
+            .with(chart("Time until half were at the middle", "s", |p| p.half_gathered_s))
     }
 
     fn sheet(&self, point: &Point) -> Sheet {

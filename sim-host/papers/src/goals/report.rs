@@ -91,9 +91,7 @@ impl Report {
             seconds: plan.seconds,
             safety: safety(plan),
             moves_goal: plan.moves_goal,
-            points: points
-                .filter_map(|(point, runs)| Point::of(plan, point, runs))
-                .collect(),
+            points: points.filter_map(|(point, runs)| Point::of(plan, point, runs)).collect(),
             plan: plan.clone(),
         }
     }
@@ -128,10 +126,7 @@ impl Point {
         let at_goals = [at(0), at(1), at(2)];
         let arrived: f64 = at_goals.iter().sum();
         let halves: Vec<f64> = runs.iter().filter_map(|run| run.half_gathered_s).collect();
-        let least_m = runs
-            .iter()
-            .map(|run| run.least_pair_m)
-            .fold(f64::INFINITY, f64::min);
+        let least_m = runs.iter().map(|run| run.least_pair_m).fold(f64::INFINITY, f64::min);
         Some(Self {
             k1,
             k1_over_k2: (plan.k2 != 0.0).then(|| k1 / plan.k2),
@@ -144,9 +139,7 @@ impl Point {
             half_gathered_s: mean(&halves),
             arrived: arrived / robots,
             goal_shares: at_goals.map(|at| if arrived > 0.0 { at / arrived } else { 0.0 }),
-            least_pair_over_min_distance: least_m
-                .is_finite()
-                .then(|| least_m / plan.min_distance_m),
+            least_pair_over_min_distance: least_m.is_finite().then(|| least_m / plan.min_distance_m),
             overlaps: runs.iter().map(|run| run.overlaps).sum(),
             trace_hash: format!("{:016x}", runs.iter().fold(0, |all, run| all ^ run.hash)),
             frames: first.frames.clone(),
@@ -187,9 +180,7 @@ impl Display for Report {
             "overlaps"
         )?;
         for point in &self.points {
-            let goals = point
-                .goal_shares
-                .map(|share| format!("{:.0}", 100.0 * share));
+            let goals = point.goal_shares.map(|share| format!("{:.0}", 100.0 * share));
             writeln!(
                 f,
                 "{:>6}{:>7}{:>8}{:>6}{:>7}{:>10}{:>8}{:>10.3}{:>8}{:>9.3}{:>20}{:>7}{:>9}",

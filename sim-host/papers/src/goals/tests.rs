@@ -36,11 +36,7 @@ fn robots_gather_draw_and_arrive_and_without_k1_nobody_goes() {
 
 #[test]
 fn a_goal_that_is_moved_on_the_way_is_reached_where_it_is() {
-    let plan = Plan {
-        k1: vec![150.0],
-        moves_goal: true,
-        ..small()
-    };
+    let plan = Plan { k1: vec![150.0], moves_goal: true, ..small() };
     let moved = &report(&plan).points[0];
     assert_eq!(moved.arrived, 1.0);
     assert!(moved.goal_shares[0] > 0.15);
@@ -48,13 +44,7 @@ fn a_goal_that_is_moved_on_the_way_is_reached_where_it_is() {
 
 #[test]
 fn safety_layers_keep_bodies_apart_that_overlap_without() {
-    let plan = |safety, (model, evasion)| Plan {
-        k1: vec![150.0],
-        safety,
-        model,
-        evasion,
-        ..small()
-    };
+    let plan = |safety, (model, evasion)| Plan { k1: vec![150.0], safety, model, evasion, ..small() };
     let multiple = (Model::Radial, Evasion::Multiple);
     let bare = &report(&plan(SafetyName::None, multiple)).points[0];
     assert!(bare.overlaps > 0);
@@ -64,31 +54,19 @@ fn safety_layers_keep_bodies_apart_that_overlap_without() {
     }
     let words = [
         (multiple, "push-out (radial, multiple)"),
-        (
-            (Model::Tangential, Evasion::Single),
-            "push-out (tangential, single)",
-        ),
+        ((Model::Tangential, Evasion::Single), "push-out (tangential, single)"),
     ];
     for (push_out, wanted) in words {
-        let plan = Plan {
-            seconds: 20.0,
-            ..plan(SafetyName::PushOut, push_out)
-        };
+        let plan = Plan { seconds: 20.0, ..plan(SafetyName::PushOut, push_out) };
         assert_eq!(report(&plan).safety, wanted);
     }
 }
 
 #[test]
 fn threads_and_early_ends_change_nothing() {
-    let plan = Plan {
-        seconds: 10.0,
-        ..small()
-    };
+    let plan = Plan { seconds: 10.0, ..small() };
     let on = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| plan.carry_out(|_| true).unwrap())
     };
     assert_eq!(on(1), on(3));
@@ -116,10 +94,7 @@ fn plans_that_cannot_be_carried_out_say_why() {
 #[test]
 fn pictures_are_written() {
     let dir = tempfile::tempdir().unwrap();
-    let plan = Plan {
-        seconds: 10.0,
-        ..small()
-    };
+    let plan = Plan { seconds: 10.0, ..small() };
     let files = report(&plan).draw(dir.path()).unwrap();
     // The order; K1 = 50 and 150.
     assert_eq!(files.len(), 6);

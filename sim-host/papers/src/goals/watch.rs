@@ -76,11 +76,7 @@ impl<'a> Watch<'a> {
         let spacing_m = plan.min_distance_m;
         Self {
             plan,
-            wanted: if draws {
-                MOMENTS.map(at).to_vec()
-            } else {
-                Vec::new()
-            },
+            wanted: if draws { MOMENTS.map(at).to_vec() } else { Vec::new() },
             warm_up: crate::arena::ticks(WARM_UP_S, plan.step_s),
             meter: FlockMeter::new(spacing_m, 2.0 * spacing_m, Space::OPEN),
             has_gathered: vec![false; scenario.robots.len()],
@@ -118,9 +114,7 @@ impl<'a> Watch<'a> {
             self.velocities_mps.push([vx, vy]);
             let off_m = |place_m: [f64; 3]| distance_m(robot.motion.position_m, place_m);
             *has_gathered |= off_m(middle_m) <= arrival_m;
-            let nearest = (0..3)
-                .map(|goal| (off_m(goals_m[goal]), goal))
-                .min_by(|a, b| a.0.total_cmp(&b.0));
+            let nearest = (0..3).map(|goal| (off_m(goals_m[goal]), goal)).min_by(|a, b| a.0.total_cmp(&b.0));
             // As the robot itself rounds.
             if let Some((_, goal)) = nearest.filter(|(off, _)| *off <= arrival_m + 0.01) {
                 self.run.at_goals[goal] += usize::from(*has_gathered);
@@ -163,10 +157,8 @@ impl<'a> Watch<'a> {
         }
         let on_way = self.velocities_mps.iter().zip(&self.has_gathered);
         let on_way: Vec<[f64; 2]> = on_way.filter(|(_, has)| !**has).map(|(v, _)| *v).collect();
-        let largest = self
-            .meter
-            .look(&self.places_m, &self.velocities_mps)
-            .map_or(0, |measure| measure.largest_component);
+        let largest =
+            self.meter.look(&self.places_m, &self.velocities_mps).map_or(0, |measure| measure.largest_component);
         self.sum.polarisation += polarisation(&on_way);
         self.sum.together += largest as f64 / robots as f64;
         self.sum.spread += spread_m / self.first_spread_m;
@@ -191,9 +183,7 @@ fn spread(places_m: &[[f64; 2]]) -> f64 {
     let count = places_m.len() as f64;
     let variance = |axis: usize| {
         let mean = places_m.iter().map(|place| place[axis]).sum::<f64>() / count;
-        let squares = places_m
-            .iter()
-            .map(|place| (place[axis] - mean) * (place[axis] - mean));
+        let squares = places_m.iter().map(|place| (place[axis] - mean) * (place[axis] - mean));
         squares.sum::<f64>() / count
     };
     libm::sqrt(variance(0) + variance(1))

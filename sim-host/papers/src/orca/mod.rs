@@ -8,8 +8,8 @@ use crate::stats::{mean, quantile};
 use serde::Serialize;
 use staya_controller::geom::Vec2;
 use staya_controller::orca::{
-    Analytic, HalfSpaces, MovingBall, Params, VelocityObstacleTable, VoxelTable, VoxelTable2k,
-    VoxelTable8k, VoxelTable16k, VoxelTable64k,
+    Analytic, HalfSpaces, MovingBall, Params, VelocityObstacleTable, VoxelTable, VoxelTable2k, VoxelTable8k,
+    VoxelTable16k, VoxelTable64k,
 };
 use staya_controller::rand::Rng;
 use std::f64::consts::TAU;
@@ -68,11 +68,7 @@ type V = Vec2<f64>;
 /// Purpose of random numbers.
 const PAIRS: u32 = 0x0045_0201;
 
-const PARAMS: Params<f64> = Params {
-    horizon_s: 2.0,
-    separation_s: 0.05,
-    share: 1.0,
-};
+const PARAMS: Params<f64> = Params { horizon_s: 2.0, separation_s: 0.05, share: 1.0 };
 
 impl Sample {
     /// The pairs: own velocity and neighbour.
@@ -125,15 +121,9 @@ fn size<T: VoxelTable>(
     let compared = pairs.iter().filter_map(|(own, other)| {
         let exact = Analytic.half_space(*own, other, &PARAMS)?;
         let found = template.half_space(*own, other, &PARAMS)?;
-        let (sin, cos) = (
-            exact.normal.det(found.normal),
-            exact.normal.dot(found.normal),
-        );
+        let (sin, cos) = (exact.normal.det(found.normal), exact.normal.dot(found.normal));
         let change = found.penetration(*own) - exact.penetration(*own);
-        Some((
-            libm::atan2(sin, cos).abs().to_degrees(),
-            change.abs() * PARAMS.horizon_s / other.radii_m,
-        ))
+        Some((libm::atan2(sin, cos).abs().to_degrees(), change.abs() * PARAMS.horizon_s / other.radii_m))
     });
     let (angles, distances): (Vec<f64>, Vec<f64>) = compared.unzip();
     Size {
@@ -164,11 +154,7 @@ impl fmt::Display for Report {
             "half-planes from voxel templates against the exact ones, {} pairs, seed {}",
             self.pairs, self.seed
         )?;
-        writeln!(
-            text,
-            "{:36}{:>26}{:>36}",
-            "", "angle of normals, deg", "change of velocity, (R_A+R_B)/tau"
-        )?;
+        writeln!(text, "{:36}{:>26}{:>36}", "", "angle of normals, deg", "change of velocity, (R_A+R_B)/tau")?;
         writeln!(
             text,
             "{:<14}{:>8}{:>14}{:>10}{:>8}{:>8}{:>16}{:>10}{:>10}",
@@ -178,11 +164,7 @@ impl fmt::Display for Report {
             let [levels, directions] = size.nodes;
             let nodes = format!("{levels} x {directions}");
             let Errors { mean, p99, max } = size.angle_deg;
-            write!(
-                text,
-                "{:<14}{:>8}{nodes:>14}{mean:>10.4}{p99:>8.3}{max:>8.3}",
-                size.name, size.bytes
-            )?;
+            write!(text, "{:<14}{:>8}{nodes:>14}{mean:>10.4}{p99:>8.3}{max:>8.3}", size.name, size.bytes)?;
             let Errors { mean, p99, max } = size.distance;
             writeln!(text, "{mean:>16.6}{p99:>10.5}{max:>10.5}")?;
         }
@@ -196,10 +178,7 @@ mod tests {
 
     #[test]
     fn larger_templates_err_less_on_average_and_equal_seeds_say_the_same() {
-        let sample = Sample {
-            pairs: 2000,
-            seed: 1,
-        };
+        let sample = Sample { pairs: 2000, seed: 1 };
         let report = sample.report();
         assert_eq!(report, sample.report());
         for pair in report.sizes.windows(2) {
@@ -214,17 +193,11 @@ mod tests {
 
     #[test]
     fn the_table_has_a_row_for_each_size() {
-        let sample = Sample {
-            pairs: 100,
-            seed: 3,
-        };
+        let sample = Sample { pairs: 100, seed: 3 };
         let text = sample.report().to_string();
         assert_eq!(text.lines().count(), 3 + 4);
         assert!(text.contains("Template64k"));
         let width = text.lines().last().unwrap().len();
-        assert!(
-            text.lines().skip(1).all(|line| line.len() == width),
-            "{text}"
-        );
+        assert!(text.lines().skip(1).all(|line| line.len() == width), "{text}");
     }
 }

@@ -3,13 +3,11 @@
 
 use super::V;
 use super::view::{
-    LEFT, NUMBER, PIXELS, SIDE, SMALL_SIDE, TOP, View, arrow, canvas, contoured, grey, image,
-    label, left_of, note, opaque, picture,
+    LEFT, NUMBER, PIXELS, SIDE, SMALL_SIDE, TOP, View, arrow, canvas, contoured, grey, image, label, left_of, note,
+    opaque, picture,
 };
 use anyhow::{Context as _, bail};
-use staya_controller::orca::{
-    HalfPlane, MovingBall, Params, VelocityObstacle, VoxelTable, VoxelTable16k, half_plane,
-};
+use staya_controller::orca::{HalfPlane, MovingBall, Params, VelocityObstacle, VoxelTable, VoxelTable16k, half_plane};
 use staya_plot::canvas::{Anchor, Canvas, Point, Stroke, Text};
 use staya_plot::colour::{Colour, INK, MUTED, PALETTE, WHITE};
 use staya_sim::record::Error;
@@ -72,28 +70,16 @@ impl Scene {
         let vector = |[x, y]: [f64; 2]| V::new(x, y);
         let [place, other_place] = self.places_m.map(vector);
         let [own, other] = self.velocities_mps.map(vector);
-        let sound = [place, other_place, own, other]
-            .iter()
-            .all(|v| v.is_finite());
+        let sound = [place, other_place, own, other].iter().all(|v| v.is_finite());
         if !(sound && self.share.is_finite()) {
             bail!("places, velocities and the share must be finite numbers");
         }
         let positive = |x: f64| x.is_finite() && x > 0.0;
-        if !self
-            .radii_m
-            .into_iter()
-            .chain([self.horizon_s])
-            .all(positive)
-        {
+        if !self.radii_m.into_iter().chain([self.horizon_s]).all(positive) {
             bail!("radii and the horizon must be above 0");
         }
         let radii_m = self.radii_m.iter().sum();
-        let neighbor = MovingBall {
-            offset_m: other_place - place,
-            velocity_mps: other,
-            radii_m,
-            tie: V::ZERO,
-        };
+        let neighbor = MovingBall { offset_m: other_place - place, velocity_mps: other, radii_m, tie: V::ZERO };
         let apart = neighbor.offset_m.norm();
         let obstacle = VelocityObstacle::new(neighbor.offset_m, radii_m, self.horizon_s);
         let obstacle = obstacle.with_context(|| {
@@ -101,15 +87,8 @@ impl Scene {
                 "the robots are {apart} m apart and overlap, so there is no cone; give places more than {radii_m} m apart"
             )
         })?;
-        let params = Params {
-            horizon_s: self.horizon_s,
-            separation_s: self.horizon_s,
-            share: self.share,
-        };
-        let whole = Params {
-            share: 1.0,
-            ..params
-        };
+        let params = Params { horizon_s: self.horizon_s, separation_s: self.horizon_s, share: self.share };
+        let whole = Params { share: 1.0, ..params };
         let out_of_range = "the numbers are out of range";
         Ok(Drawing {
             obstacle,
@@ -118,9 +97,7 @@ impl Scene {
             relative: own - other,
             params,
             plane: half_plane(own, &neighbor, &params).context(out_of_range)?,
-            change_mps: half_plane(own, &neighbor, &whole)
-                .context(out_of_range)?
-                .penetration(own),
+            change_mps: half_plane(own, &neighbor, &whole).context(out_of_range)?.penetration(own),
         })
     }
 }
@@ -142,25 +119,15 @@ impl Drawing {
     fn view(&self, left: f64, top: f64, side: f64) -> View {
         let (tip, radius) = self.obstacle.disc();
         let unit = V::new(1.0, 1.0) * radius;
-        let mut points = vec![
-            tip - unit,
-            tip + unit + self.obstacle.ahead() * (2.0 * radius),
-        ];
+        let mut points = vec![tip - unit, tip + unit + self.obstacle.ahead() * (2.0 * radius)];
         points.extend([V::ZERO, self.own, self.relative, self.neighbor.velocity_mps]);
         points.push(self.plane.point);
         let least = |axis: fn(&V) -> f64| points.iter().map(axis).fold(f64::MAX, f64::min);
         let most = |axis: fn(&V) -> f64| points.iter().map(axis).fold(f64::MIN, f64::max);
-        let (low, high) = (
-            V::new(least(|p| p.x), least(|p| p.y)),
-            V::new(most(|p| p.x), most(|p| p.y)),
-        );
+        let (low, high) = (V::new(least(|p| p.x), least(|p| p.y)), V::new(most(|p| p.x), most(|p| p.y)));
         let size = high - low;
         let extent = 1.3 * size.x.max(size.y);
-        View {
-            corner: (low + high) * 0.5 - V::new(extent, extent) * 0.5,
-            side: extent,
-            area: [left, top, side],
-        }
+        View { corner: (low + high) * 0.5 - V::new(extent, extent) * 0.5, side: extent, area: [left, top, side] }
     }
 
     /// A view of the disc and what is around it.
@@ -168,11 +135,7 @@ impl Drawing {
         let (tip, radius) = self.obstacle.disc();
         let middle = tip + self.obstacle.ahead() * (0.5 * radius);
         let half = 2.2 * radius;
-        View {
-            corner: middle - V::new(half, half),
-            side: 2.0 * half,
-            area: [left, top, SMALL_SIDE],
-        }
+        View { corner: middle - V::new(half, half), side: 2.0 * half, area: [left, top, SMALL_SIDE] }
     }
 
     /// FVM figures 3 to 5: the obstacle's parts, the velocities and the half-plane.
@@ -219,14 +182,7 @@ impl Drawing {
             let along = leg * (0.55 * tip.dot(leg));
             label(canvas, view, along, leg.perp() * outwards, name, INK);
         }
-        label(
-            canvas,
-            view,
-            tip,
-            self.obstacle.ahead(),
-            "(p_B - p_A)/tau",
-            MUTED,
-        );
+        label(canvas, view, tip, self.obstacle.ahead(), "(p_B - p_A)/tau", MUTED);
         canvas.circle(view.place(tip), 2.2, Some(MUTED), None);
     }
 
@@ -238,11 +194,9 @@ impl Drawing {
         let of_b = self.neighbor.velocity_mps;
         // Away from the change.
         let aside = self.plane.normal * -self.change_mps;
-        for (name, to, away, colour) in [
-            ("v_B", of_b, of_b, MUTED),
-            ("v_A", self.own, aside, PALETTE[0]),
-            ("v_A - v_B", self.relative, aside, INK),
-        ] {
+        for (name, to, away, colour) in
+            [("v_B", of_b, of_b, MUTED), ("v_A", self.own, aside, PALETTE[0]), ("v_A - v_B", self.relative, aside, INK)]
+        {
             arrow(canvas, view, V::ZERO, to, Stroke::new(colour, 1.8));
             label(canvas, view, to, away, name, colour);
         }
@@ -255,11 +209,7 @@ impl Drawing {
     fn legend(&self, canvas: &mut Canvas, [x, mut y]: Point) {
         let mut entry = |colour: Option<Colour>, text: &str| {
             if let Some(colour) = colour {
-                canvas.rectangle(
-                    [x, y, 14.0, 14.0],
-                    Some(colour),
-                    Some(Stroke::new(MUTED, 0.6)),
-                );
+                canvas.rectangle([x, y, 14.0, 14.0], Some(colour), Some(Stroke::new(MUTED, 0.6)));
             }
             canvas.text(Text::new([x + 20.0, y + 11.5], NUMBER, Anchor::Start, text));
             y += 21.0;
@@ -292,9 +242,7 @@ impl Drawing {
         let unit = self.obstacle.disc().1;
         let nearest = |at: V| self.nearest(at).map_or(0.0, |(change, _)| change);
         let fields: [(&str, &dyn Fn(V) -> f64); 2] = [
-            ("R-function of Pr1 to Pr4 and Disc", &|at| {
-                self.obstacle.value(at)
-            }),
+            ("R-function of Pr1 to Pr4 and Disc", &|at| self.obstacle.value(at)),
             ("distance to the nearest border", &nearest),
         ];
         for (index, (title, field)) in fields.into_iter().enumerate() {
@@ -312,10 +260,7 @@ impl Drawing {
 
     /// The change to the nearest border (positive inside) and its normal, for a relative velocity.
     fn nearest(&self, relative: V) -> Option<(f64, V)> {
-        let whole = Params {
-            share: 1.0,
-            ..self.params
-        };
+        let whole = Params { share: 1.0, ..self.params };
         let own = relative + self.neighbor.velocity_mps;
         let plane = half_plane(own, &self.neighbor, &whole)?;
         Some((plane.penetration(own), plane.normal))
@@ -353,12 +298,7 @@ impl Drawing {
 
     /// What the voxel template keeps: the normal to the nearest border; and where it errs.
     fn template(&self) -> Canvas {
-        let mut canvas = canvas(
-            "The normal to the nearest border, as the 16 KiB template has it",
-            3,
-            SMALL_SIDE,
-            0.0,
-        );
+        let mut canvas = canvas("The normal to the nearest border, as the 16 KiB template has it", 3, SMALL_SIDE, 0.0);
         let look_up = |at: V| {
             let ahead = self.obstacle.ahead();
             let (tip, radius) = self.obstacle.disc();
@@ -372,19 +312,13 @@ impl Drawing {
         };
         let error = |at: V| {
             let (found, (_, exact)) = (look_up(at)?, self.nearest(at)?);
-            Some(
-                libm::atan2(exact.det(found), exact.dot(found))
-                    .abs()
-                    .to_degrees(),
-            )
+            Some(libm::atan2(exact.det(found), exact.dot(found)).abs().to_degrees())
         };
         type Colouring<'a> = (&'a str, &'a dyn Fn(V) -> Option<[u8; 4]>);
         let pictures: [Colouring<'_>; 3] = [
             ("cos (east)", &|at| Some(grey(look_up(at)?.x))),
             ("sin (north)", &|at| Some(grey(look_up(at)?.y))),
-            ("angle error, white 0 to black 1/2 degree", &|at| {
-                Some(grey(1.0 - 4.0 * error(at)?))
-            }),
+            ("angle error, white 0 to black 1/2 degree", &|at| Some(grey(1.0 - 4.0 * error(at)?))),
         ];
         for (index, (title, colour)) in pictures.into_iter().enumerate() {
             let view = self.near(left_of(index), TOP);
@@ -415,28 +349,13 @@ mod tests {
     fn scenes_without_sense_are_refused_with_the_remedy() {
         let refusal = |scene: Scene| scene.drawing().unwrap_err().to_string();
         let base = Scene::default();
-        let near = Scene {
-            places_m: [[0.0, 0.0], [0.5, 0.0]],
-            ..base
-        };
+        let near = Scene { places_m: [[0.0, 0.0], [0.5, 0.0]], ..base };
         assert!(refusal(near).contains("more than 2 m apart"));
-        let lost = Scene {
-            velocities_mps: [[f64::NAN, 0.0], [0.0; 2]],
-            ..base
-        };
+        let lost = Scene { velocities_mps: [[f64::NAN, 0.0], [0.0; 2]], ..base };
         assert!(refusal(lost).contains("finite"));
-        let thin = Scene {
-            radii_m: [0.0, 1.0],
-            ..base
-        };
+        let thin = Scene { radii_m: [0.0, 1.0], ..base };
         assert!(refusal(thin).contains("above 0"));
-        assert!(
-            refusal(Scene {
-                horizon_s: -1.0,
-                ..base
-            })
-            .contains("above 0")
-        );
+        assert!(refusal(Scene { horizon_s: -1.0, ..base }).contains("above 0"));
     }
 
     #[test]
@@ -451,20 +370,11 @@ mod tests {
 
     #[test]
     fn equal_scenes_give_equal_pictures_also_far_from_the_origin_and_without_motion() {
-        let odd = Scene {
-            places_m: [[1e6, 0.0], [1e6, -7.0]],
-            velocities_mps: [[0.0; 2]; 2],
-            ..Scene::default()
-        };
+        let odd = Scene { places_m: [[1e6, 0.0], [1e6, -7.0]], velocities_mps: [[0.0; 2]; 2], ..Scene::default() };
         for scene in [Scene::default(), odd] {
             let drawing = scene.drawing().unwrap();
             assert_eq!(drawing.velocities(), drawing.velocities());
-            for canvas in [
-                drawing.velocities(),
-                drawing.fields(),
-                drawing.m_images(),
-                drawing.template(),
-            ] {
+            for canvas in [drawing.velocities(), drawing.fields(), drawing.m_images(), drawing.template()] {
                 assert!(canvas.shapes.len() > 10);
             }
         }

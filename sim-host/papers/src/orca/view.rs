@@ -48,11 +48,7 @@ impl View {
                 rgba.push(colour(self.corner + V::new(at(column), at(row))));
             }
         }
-        Pixels {
-            width: PIXELS,
-            height: PIXELS,
-            rgba,
-        }
+        Pixels { width: PIXELS, height: PIXELS, rgba }
     }
 
     /// Numbers along both axes, and the axes through zero.
@@ -72,30 +68,19 @@ impl View {
             let at = self.place(V::new(x, self.corner.y));
             canvas.line(vec![at, [at[0], at[1] + 4.0]], Stroke::new(MUTED, 1.0));
             let text = Text::new([at[0], at[1] + 17.0], NUMBER, Anchor::Middle, number(x));
-            canvas.text(Text {
-                colour: MUTED,
-                ..text
-            });
+            canvas.text(Text { colour: MUTED, ..text });
         }
         for y in marks(self.corner.y) {
             let at = self.place(V::new(self.corner.x, y));
             canvas.line(vec![at, [at[0] - 4.0, at[1]]], Stroke::new(MUTED, 1.0));
             let text = Text::new([at[0] - 7.0, at[1]], NUMBER, Anchor::End, number(y)).centred();
-            canvas.text(Text {
-                colour: MUTED,
-                ..text
-            });
+            canvas.text(Text { colour: MUTED, ..text });
         }
         let bottom = [left + side / 2.0, top + side + 34.0];
         canvas.text(Text::new(bottom, NUMBER, Anchor::Middle, "east, m/s"));
         canvas.text(Text {
             upwards: true,
-            ..Text::new(
-                [left - 32.0, top + side / 2.0],
-                NUMBER,
-                Anchor::Middle,
-                "north, m/s",
-            )
+            ..Text::new([left - 32.0, top + side / 2.0], NUMBER, Anchor::Middle, "north, m/s")
         });
         canvas.rectangle(self.frame(), None, Some(Stroke::new(MUTED, 1.0)));
     }
@@ -105,10 +90,7 @@ impl View {
 pub fn step(side: f64) -> f64 {
     let decade = libm::pow(10.0, libm::floor(libm::log10(side / 6.0)));
     let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * decade);
-    steps
-        .into_iter()
-        .find(|step| side / step <= 8.0)
-        .unwrap_or(decade)
+    steps.into_iter().find(|step| side / step <= 8.0).unwrap_or(decade)
 }
 
 /// An empty picture for so many square pictures in a row.
@@ -117,10 +99,7 @@ pub fn canvas(title: &str, pictures: usize, side: f64, more: f64) -> Canvas {
     // A note goes below several pictures.
     let below = if pictures > 1 { 72.0 } else { 50.0 };
     let mut canvas = Canvas::new(width, TOP + side + below, title);
-    canvas.text(Text {
-        bold: true,
-        ..Text::new([16.0, 30.0], 17.0, Anchor::Start, title)
-    });
+    canvas.text(Text { bold: true, ..Text::new([16.0, 30.0], 17.0, Anchor::Start, title) });
     canvas
 }
 
@@ -129,15 +108,9 @@ pub fn left_of(index: usize) -> f64 {
 }
 
 pub fn note(canvas: &mut Canvas, pictures: usize, text: &str) {
-    let at = [
-        (left_of(pictures) - GAP + LEFT) / 2.0,
-        TOP + SMALL_SIDE + 58.0,
-    ];
+    let at = [(left_of(pictures) - GAP + LEFT) / 2.0, TOP + SMALL_SIDE + 58.0];
     let text = Text::new(at, NUMBER, Anchor::Middle, text);
-    canvas.text(Text {
-        colour: MUTED,
-        ..text
-    });
+    canvas.text(Text { colour: MUTED, ..text });
 }
 
 /// Pixels with a title and axes.
@@ -193,11 +166,7 @@ pub fn label(canvas: &mut Canvas, view: &View, at: V, away: V, name: &str, colou
         _ => Anchor::Middle,
     };
     let text = Text::new([x + 9.0 * away.x, y - 12.0 * away.y], 12.5, anchor, name).centred();
-    canvas.text(Text {
-        colour,
-        halo: Some(WHITE),
-        ..text
-    });
+    canvas.text(Text { colour, halo: Some(WHITE), ..text });
 }
 
 /// An arrow from one velocity to another.

@@ -240,10 +240,7 @@ impl Plan {
 
     /// The plan's own parameters, then those of the sweep.
     fn variants(&self) -> impl Iterator<Item = RouteParams> + '_ {
-        let sweep = self
-            .sweep
-            .iter()
-            .map(|(coefficient, value)| coefficient.set(self.params, *value));
+        let sweep = self.sweep.iter().map(|(coefficient, value)| coefficient.set(self.params, *value));
         std::iter::once(self.params).chain(sweep)
     }
 
@@ -295,33 +292,16 @@ impl Plan {
         Ok(self.run_on(scratch, &terrain, &parked).0)
     }
 
-    fn run_on(
-        &self,
-        Scratch { walker, planner }: &mut Scratch,
-        land: &Terrain,
-        parked: &[Cell],
-    ) -> (Run, Vec<Cell>) {
+    fn run_on(&self, Scratch { walker, planner }: &mut Scratch, land: &Terrain, parked: &[Cell]) -> (Run, Vec<Cell>) {
         let (from, to) = (self.start(), self.target());
-        let RouteParams {
-            norm,
-            corner_cutting,
-            ..
-        } = self.params;
+        let RouteParams { norm, corner_cutting, .. } = self.params;
         let metrics = Metrics::of(land);
         // Random land has no walls: there always is a route.
         let optimal = planner.route(land, from, to, norm, corner_cutting);
-        let (optimal_cost, optimal_length, cells) = optimal.map_or((0, 0, Vec::new()), |route| {
-            (route.cost, route.length(norm), route.cells)
-        });
-        let task = Task {
-            land,
-            parked,
-            from,
-            to,
-        };
-        let walks = self
-            .variants()
-            .map(|params| walker.walk(&task, &params, self.replan));
+        let (optimal_cost, optimal_length, cells) =
+            optimal.map_or((0, 0, Vec::new()), |route| (route.cost, route.length(norm), route.cells));
+        let task = Task { land, parked, from, to };
+        let walks = self.variants().map(|params| walker.walk(&task, &params, self.replan));
         let run = Run {
             entropy: metrics.entropy,
             total_edge: metrics.total_edge,
@@ -338,10 +318,7 @@ impl Plan {
     /// # Errors
     /// A landscape cannot be made.
     pub fn example(&self, runs: &[Vec<Run>]) -> Result<Option<Example>, TerrainError> {
-        let plan = Self {
-            sweep: Vec::new(),
-            ..self.clone()
-        };
+        let plan = Self { sweep: Vec::new(), ..self.clone() };
         let off = |land: Land| land.obstacles().map_or(u32::MAX, |n| n.abs_diff(SHOWN));
         let by_land = plan.lands.iter().zip(runs);
         let filled = by_land.filter(|(_, runs)| !runs.is_empty());
@@ -378,25 +355,13 @@ impl Experiment for Plan {
 
     fn check(&self) -> Result<()> {
         check_runs(self.runs, "landscapes per point")?;
-        ensure!(
-            !self.lands.is_empty(),
-            "no landscapes; give one number of obstacles or more"
-        );
+        ensure!(!self.lands.is_empty(), "no landscapes; give one number of obstacles or more");
         let (size, least, most) = (self.size, SIZES.start(), SIZES.end());
-        ensure!(
-            SIZES.contains(&size),
-            "a landscape of {size} x {size} cells; its side must be {least}..={most}"
-        );
+        ensure!(SIZES.contains(&size), "a landscape of {size} x {size} cells; its side must be {least}..={most}");
         let radius = self.params.radius;
-        ensure!(
-            (1..=MAX_RADIUS).contains(&radius),
-            "a window of radius {radius}; it must be 1..={MAX_RADIUS}"
-        );
+        ensure!((1..=MAX_RADIUS).contains(&radius), "a window of radius {radius}; it must be 1..={MAX_RADIUS}");
         let (parked, cells) = (self.parked, u32::from(size) * u32::from(size));
-        ensure!(
-            parked <= cells / 2,
-            "{parked} parked robots on {cells} cells; at most half of the cells can be taken"
-        );
+        ensure!(parked <= cells / 2, "{parked} parked robots on {cells} cells; at most half of the cells can be taken");
         // The first landscape of each family says whether the family exists.
         for land in &self.lands {
             self.landscape(*land, 0)?;
@@ -409,13 +374,9 @@ impl Experiment for Plan {
     }
 
     fn perform(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Vec<Run>>> {
-        by_point(
-            self.lands.len(),
-            self.runs,
-            64,
-            goes_on,
-            |scratch, land, run| Ok(self.run_one(scratch, self.lands[land], run)?),
-        )
+        by_point(self.lands.len(), self.runs, 64, goes_on, |scratch, land, run| {
+            Ok(self.run_one(scratch, self.lands[land], run)?)
+        })
     }
 
     /// The fits take up to a second per point and go in parallel.

@@ -27,12 +27,7 @@ impl Report {
             files.extend(arrivals.write(&dir.join(times))?);
         }
         files.extend(map(example).write(&dir.join(way))?);
-        for coefficient in [
-            Coefficient::A0,
-            Coefficient::A1,
-            Coefficient::A2,
-            Coefficient::A3,
-        ] {
+        for coefficient in [Coefficient::A0, Coefficient::A1, Coefficient::A2, Coefficient::A3] {
             if let Some(panels) = self.answers(coefficient) {
                 let name = format!("sweep-{}", coefficient.name());
                 files.extend(panels.write(&dir.join(name))?);
@@ -50,10 +45,7 @@ impl Report {
         let (title, label) = if self.is_natural() {
             ("Routes by window on natural land", "obstacles N")
         } else {
-            (
-                "Routes by window on uniformly random land",
-                "obstacles N of natural land with the same classes",
-            )
+            ("Routes by window on uniformly random land", "obstacles N of natural land with the same classes")
         };
         let mut note = format!(
             "{0} x {0} cells, window radius {1}, {2} runs each, mean with 95 % interval",
@@ -61,26 +53,19 @@ impl Report {
         );
         if let Some(equal) = self.points.iter().find(|p| p.obstacles.is_none()) {
             let place = place(equal);
-            note.push_str(&format!(
-                "; at N(S) = {place:.0}: all classes equally likely"
-            ));
+            note.push_str(&format!("; at N(S) = {place:.0}: all classes equally likely"));
         }
         let percent = |loss: fn(&Point) -> Option<Loss>, equal: bool| {
             let points = self.ordered(equal).into_iter();
             points.filter_map(move |point| {
-                let Loss {
-                    summary,
-                    interval95: [low, high],
-                } = loss(point)?;
+                let Loss { summary, interval95: [low, high] } = loss(point)?;
                 Some([place(point), summary.mean, low, high])
             })
         };
         let mut loss = Chart::new("Loss against the fastest route", label, "loss (%)").note(note);
         type Kind = (&'static str, fn(&Point) -> Option<Loss>);
-        let kinds: [Kind; 2] = [
-            ("time dT", |point| point.time_loss_percent),
-            ("length dL", |point| point.length_loss_percent),
-        ];
+        let kinds: [Kind; 2] =
+            [("time dT", |point| point.time_loss_percent), ("length dL", |point| point.length_loss_percent)];
         for (name, value) in kinds {
             loss = loss
                 .with(Series::intervals(name, percent(value, false)).joined())
@@ -119,15 +104,11 @@ impl Report {
 
     fn entropy_by_formula(&self) -> Vec<[f64; 2]> {
         let places = || self.points.iter().map(place);
-        let (low, high) = places().fold((f64::INFINITY, 1.0), |(low, high), x| {
-            (low.min(x.max(1.0)), f64::max(high, x))
-        });
+        let (low, high) =
+            places().fold((f64::INFINITY, 1.0), |(low, high), x| (low.min(x.max(1.0)), f64::max(high, x)));
         // 0.0160518 is N(0).
         let zero = staya_sim::terrain::metrics::obstacles_of_entropy(0.0);
-        (0..=60)
-            .map(|i| low + (high - low) * f64::from(i) / 60.0)
-            .map(|n| [n, log(n / zero) / 4.227_69])
-            .collect()
+        (0..=60).map(|i| low + (high - low) * f64::from(i) / 60.0).map(|n| [n, log(n / zero) / 4.227_69]).collect()
     }
 
     /// Arrival times by the fastest route and by window, at the number of obstacles nearest to the paper's.
@@ -148,11 +129,7 @@ impl Report {
 
     /// dT and dL over the values of one coefficient; `None` unless it was swept.
     fn answers(&self, coefficient: Coefficient) -> Option<Panels> {
-        let answers: Vec<_> = self
-            .sweep
-            .iter()
-            .filter(|answer| answer.coefficient == coefficient)
-            .collect();
+        let answers: Vec<_> = self.sweep.iter().filter(|answer| answer.coefficient == coefficient).collect();
         if answers.is_empty() {
             return None;
         }
@@ -180,20 +157,14 @@ impl Report {
                     Some(n) => format!("N = {n}"),
                     None => String::from("equal classes"),
                 };
-                let mut line: Vec<[f64; 2]> = answers
-                    .iter()
-                    .filter_map(|answer| Some([answer.value, value(&answer.points[index])?]))
-                    .collect();
+                let mut line: Vec<[f64; 2]> =
+                    answers.iter().filter_map(|answer| Some([answer.value, value(&answer.points[index])?])).collect();
                 line.sort_by(|a, b| a[0].total_cmp(&b[0]));
                 chart = chart.with(Series::points(name, line).joined());
             }
             chart
         };
-        let land = if self.is_natural() {
-            "natural"
-        } else {
-            "uniformly random"
-        };
+        let land = if self.is_natural() { "natural" } else { "uniformly random" };
         let title = format!("What {} does on {land} land", coefficient.name());
         let time: Measure = (|p| p.time_loss_percent, |m| m.time_loss_percent);
         let length: Measure = (|p| p.length_loss_percent, |m| m.length_loss_percent);
@@ -205,9 +176,7 @@ impl Report {
 
 /// Where a point lies on the axis of obstacles: uniform land by the number that its entropy stands for.
 fn place(point: &Point) -> f64 {
-    point
-        .obstacles
-        .map_or(point.obstacles_of_entropy, f64::from)
+    point.obstacles.map_or(point.obstacles_of_entropy, f64::from)
 }
 
 fn histogram(title: &str, arrivals: &Arrivals) -> Chart {
@@ -215,9 +184,8 @@ fn histogram(title: &str, arrivals: &Arrivals) -> Chart {
     let total: u64 = arrivals.counts.iter().sum();
     let bars = arrivals.counts.iter().enumerate();
     let bars = bars.map(|(bin, &count)| [edge(bin), edge(bin + 1), count as f64]);
-    let mut chart = Chart::new(title, "travel time (ticks)", "runs")
-        .size(560.0, 400.0)
-        .with(Series::bars("runs", bars));
+    let mut chart =
+        Chart::new(title, "travel time (ticks)", "runs").size(560.0, 400.0).with(Series::bars("runs", bars));
     if let Some(law) = arrivals.norton_rice {
         let last = edge(arrivals.counts.len());
         let area = total as f64 * arrivals.bin_ticks;
@@ -229,10 +197,7 @@ fn histogram(title: &str, arrivals: &Arrivals) -> Chart {
     }
     if let Some(test) = arrivals.goodness {
         let (chi2, freedom) = (test.chi2, test.freedom);
-        chart = chart.note(format!(
-            "chi-square {chi2:.1} with {freedom} degrees of freedom, p = {:.3}",
-            test.p_value
-        ));
+        chart = chart.note(format!("chi-square {chi2:.1} with {freedom} degrees of freedom, p = {:.3}", test.p_value));
     }
     chart
 }
@@ -244,36 +209,20 @@ fn map(example: &Example) -> Canvas {
     const TOP: f64 = 112.0;
     let title = "A robot's way by window and the fastest route";
     let mut canvas = Canvas::new(SIDE + 2.0 * LEFT, SIDE + TOP + LEFT, title);
-    canvas.text(Text {
-        bold: true,
-        ..Text::new([LEFT, 30.0], 18.0, Anchor::Start, title)
-    });
+    canvas.text(Text { bold: true, ..Text::new([LEFT, 30.0], 18.0, Anchor::Start, title) });
     let land = match example.family {
         Land::Natural(n) => format!("Natural land, N = {n}"),
         Land::Shuffled(n) => format!("The cells of natural land, N = {n}, shuffled"),
         Land::Uniform => String::from("Land with all classes equally likely"),
     };
-    let dots = if example.parked.is_empty() {
-        ""
-    } else {
-        "; dots: other robots"
-    };
-    let note = format!(
-        "{land}; darker is slower. The run with the median time loss. Square: the robot's window{dots}"
-    );
-    canvas.text(Text {
-        colour: MUTED,
-        ..Text::new([LEFT, 50.0], 11.5, Anchor::Start, note)
-    });
+    let dots = if example.parked.is_empty() { "" } else { "; dots: other robots" };
+    let note = format!("{land}; darker is slower. The run with the median time loss. Square: the robot's window{dots}");
+    canvas.text(Text { colour: MUTED, ..Text::new([LEFT, 50.0], 11.5, Anchor::Start, note) });
 
     let (width, height, grey) = render(&example.land, 1);
     let rgba = grey.into_iter().map(|g| [g, g, g, 255]).collect();
     let area = [LEFT, TOP, SIDE, SIDE];
-    let pixels = Pixels {
-        width,
-        height,
-        rgba,
-    };
+    let pixels = Pixels { width, height, rgba };
     canvas.shapes.push(Shape::Image { area, pixels });
     canvas.rectangle(area, None, Some(Stroke::new(MUTED, 1.0)));
     let cell = SIDE / f64::from(height.max(1));
@@ -289,12 +238,7 @@ fn map(example: &Example) -> Canvas {
         canvas.line(points.clone(), Stroke::new(WHITE, stroke.width + 2.5));
         canvas.line(points, stroke);
     }
-    for at in example
-        .optimal
-        .first()
-        .into_iter()
-        .chain(example.optimal.last())
-    {
+    for at in example.optimal.first().into_iter().chain(example.optimal.last()) {
         canvas.circle(centre(at), 5.0, Some(WHITE), Some(Stroke::new(INK, 2.0)));
     }
     for at in &example.parked {
@@ -318,10 +262,7 @@ fn map(example: &Example) -> Canvas {
     };
     let ours = numbers(walk.cost, walk.length);
     let best = numbers(run.optimal_cost, run.optimal_length);
-    let rows = [
-        (format!("by window: {ours}{lost}"), thin),
-        (format!("fastest: {best}"), thick),
-    ];
+    let rows = [(format!("by window: {ours}{lost}"), thin), (format!("fastest: {best}"), thick)];
     for (row, (text, stroke)) in rows.into_iter().enumerate() {
         let y = 72.0 + 20.0 * row as f64;
         canvas.line(vec![[LEFT + 3.0, y], [LEFT + 28.0, y]], stroke);

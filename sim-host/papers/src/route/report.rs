@@ -27,10 +27,7 @@ pub struct Loss {
 impl Loss {
     fn of(values: &[f64]) -> Option<Self> {
         let summary = Summary::of(values)?;
-        Some(Self {
-            summary,
-            interval95: summary.mean_interval95(),
-        })
+        Some(Self { summary, interval95: summary.mean_interval95() })
     }
 }
 
@@ -180,10 +177,7 @@ impl Report {
             .filter(|(_, runs)| !runs.is_empty())
             .map(|(land, runs)| (*land, runs.as_slice()))
             .collect();
-        let points = filled
-            .par_iter()
-            .filter_map(|(land, runs)| point(*land, runs, plan.size))
-            .collect();
+        let points = filled.par_iter().filter_map(|(land, runs)| point(*land, runs, plan.size)).collect();
         let response = |(index, (coefficient, value)): (usize, &(Coefficient, Gain))| Response {
             coefficient: *coefficient,
             value: decimal(*value),
@@ -194,11 +188,7 @@ impl Report {
                     let [time, length] = losses(runs, index + 1);
                     let size = |percent: f64| libm::fabs(percent);
                     let length: Vec<f64> = length.into_iter().map(size).collect();
-                    Means {
-                        arrived: time.len(),
-                        time_loss_percent: mean(&time),
-                        length_loss_percent: mean(&length),
-                    }
+                    Means { arrived: time.len(), time_loss_percent: mean(&time), length_loss_percent: mean(&length) }
                 })
                 .collect(),
         };
@@ -235,17 +225,9 @@ impl Report {
 /// Time and (signed) length of walk `variant` above the fastest route, percent, of the robots that arrived.
 fn losses(runs: &[Run], variant: usize) -> [Vec<f64>; 2] {
     let percent = |ours: u64, best: u64| 100.0 * (ours as f64 - best as f64) / best as f64;
-    let arrived = runs
-        .iter()
-        .map(|run| (run, &run.walks[variant]))
-        .filter(|(_, walk)| walk.arrived);
+    let arrived = runs.iter().map(|run| (run, &run.walks[variant])).filter(|(_, walk)| walk.arrived);
     let (time, length) = arrived
-        .map(|(run, walk)| {
-            (
-                percent(walk.cost, run.optimal_cost),
-                percent(walk.length, run.optimal_length),
-            )
-        })
+        .map(|(run, walk)| (percent(walk.cost, run.optimal_cost), percent(walk.length, run.optimal_length)))
         .unzip();
     [time, length]
 }
@@ -261,10 +243,7 @@ fn point(land: Land, runs: &[Run], size: u16) -> Option<Point> {
     let [time, length] = losses(runs, 0);
     let deviation: Vec<f64> = length.iter().map(|percent| libm::fabs(*percent)).collect();
     let walks = runs.iter().map(|run| &run.walks[0]);
-    let arrivals: Vec<f64> = walks
-        .filter(|walk| walk.arrived)
-        .map(|walk| ticks(walk.cost))
-        .collect();
+    let arrivals: Vec<f64> = walks.filter(|walk| walk.arrived).map(|walk| ticks(walk.cost)).collect();
     let optimal: Vec<f64> = runs.iter().map(|run| ticks(run.optimal_cost)).collect();
     Some(Point {
         land: land.family(),
@@ -301,20 +280,7 @@ impl Display for Report {
         writeln!(
             f,
             "{:<9}{:>5}{:>7}{:>9}{:>9}{:>8}{:>8}{:>9}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}",
-            "land",
-            "N",
-            "runs",
-            "arrived",
-            "dT %",
-            "+-",
-            "median",
-            "dL %",
-            "+-",
-            "median",
-            "S",
-            "TE",
-            "TED",
-            "N(S)"
+            "land", "N", "runs", "arrived", "dT %", "+-", "median", "dL %", "+-", "median", "S", "TE", "TED", "N(S)"
         )?;
         for point in &self.points {
             let column = |loss: Option<Loss>| {
@@ -340,7 +306,9 @@ impl Display for Report {
             )?;
         }
         f.write_str("+-: half the 95 % interval of the mean. N(S): obstacles by entropy\n\n")?;
-        f.write_str("Travel time in ticks with its Norton-Rice law (m, alpha, beta) and the p-value of the chi-square test\n")?;
+        f.write_str(
+            "Travel time in ticks with its Norton-Rice law (m, alpha, beta) and the p-value of the chi-square test\n",
+        )?;
         let names = ["mean", "m", "alpha", "beta", "p"];
         write!(f, "{:<14}", "")?;
         for group in ["by window", "fastest route"] {
@@ -362,9 +330,7 @@ impl Display for Report {
                     digits(law.map(|law| law.beta())),
                     Maybe(p, 3).to_string(),
                 ];
-                values
-                    .iter()
-                    .try_for_each(|value| write!(f, "{value:>8}"))?;
+                values.iter().try_for_each(|value| write!(f, "{value:>8}"))?;
             }
             writeln!(f)?;
         }
@@ -391,10 +357,7 @@ fn sweep_tables(f: &mut Formatter<'_>, report: &Report) -> fmt::Result {
     for responses in report.sweep.chunk_by(|a, b| a.coefficient == b.coefficient) {
         let coefficient = responses[0].coefficient;
         let name = coefficient.name();
-        writeln!(
-            f,
-            "\ndT % / dL % for other values of {name}, * = the value above; (n) = only n arrived"
-        )?;
+        writeln!(f, "\ndT % / dL % for other values of {name}, * = the value above; (n) = only n arrived")?;
         write!(f, "{name:>8} ")?;
         for point in &report.points {
             let obstacles = point.obstacles.map_or(String::new(), |n| format!(" {n}"));

@@ -31,20 +31,13 @@ fn all(plan: &Plan) -> Vec<Vec<Run>> {
 
 fn mean_loss(results: &[Vec<Run>]) -> f64 {
     let runs = results.iter().flatten();
-    let losses: Vec<f64> = runs
-        .map(|run| run.walks[0].cost as f64 / run.optimal_cost as f64 - 1.0)
-        .collect();
+    let losses: Vec<f64> = runs.map(|run| run.walks[0].cost as f64 / run.optimal_cost as f64 - 1.0).collect();
     crate::stats::mean(&losses).unwrap()
 }
 
 #[test]
 fn results_are_equal_on_one_thread_and_on_four() {
-    let plan = Plan {
-        runs: 80,
-        sweep: vec![(Coefficient::A3, Gain::ONE)],
-        parked: 10,
-        ..plan()
-    };
+    let plan = Plan { runs: 80, sweep: vec![(Coefficient::A3, Gain::ONE)], parked: 10, ..plan() };
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         pool.unwrap().install(|| {
@@ -64,13 +57,7 @@ fn small_experiment_is_the_pinned_one() {
         .flatten()
         .map(|run| {
             let walk = run.walks[0];
-            [
-                run.total_edge,
-                run.optimal_cost,
-                run.optimal_length,
-                walk.cost,
-                walk.length,
-            ]
+            [run.total_edge, run.optimal_cost, run.optimal_length, walk.cost, walk.length]
         })
         .collect();
     let pinned = [
@@ -86,10 +73,7 @@ fn small_experiment_is_the_pinned_one() {
 
 #[test]
 fn nobody_is_faster_than_the_optimum_though_some_ways_are_shorter() {
-    let plan = Plan {
-        runs: 100,
-        ..plan()
-    };
+    let plan = Plan { runs: 100, ..plan() };
     let results = all(&plan);
     let runs = || results.iter().flatten();
     // From (1, 1) to (38, 38) by diagonals.
@@ -108,11 +92,7 @@ fn nobody_is_faster_than_the_optimum_though_some_ways_are_shorter() {
 #[test]
 fn window_over_all_the_land_gives_the_optimum() {
     for replan in [Replan::EachCell, Replan::UntilChanged] {
-        let mut plan = Plan {
-            size: 30,
-            replan,
-            ..plan()
-        };
+        let mut plan = Plan { size: 30, replan, ..plan() };
         plan.params.radius = 29;
         for run in all(&plan).iter().flatten() {
             assert_eq!(run.walks[0].cost, run.optimal_cost);
@@ -122,20 +102,10 @@ fn window_over_all_the_land_gives_the_optimum() {
 
 #[test]
 fn farther_sight_and_the_better_exit_rule_lose_less() {
-    let plan = Plan {
-        runs: 100,
-        ..plan()
-    };
+    let plan = Plan { runs: 100, ..plan() };
     let with = |radius, exit| {
-        let params = RouteParams {
-            radius,
-            exit,
-            ..plan.params
-        };
-        let plan = Plan {
-            params,
-            ..plan.clone()
-        };
+        let params = RouteParams { radius, exit, ..plan.params };
+        let plan = Plan { params, ..plan.clone() };
         mean_loss(&all(&plan))
     };
     let usual = with(5, ExitRule::Best);
@@ -146,10 +116,7 @@ fn farther_sight_and_the_better_exit_rule_lose_less() {
 
 #[test]
 fn early_end_keeps_a_beginning_of_every_point() {
-    let plan = Plan {
-        runs: 150,
-        ..plan()
-    };
+    let plan = Plan { runs: 150, ..plan() };
     let some = plan.carry_out(|done| done < 100).unwrap();
     let full = all(&plan);
     for (some, full) in some.iter().zip(&full) {
@@ -173,18 +140,11 @@ fn sweep_walks_the_same_landscapes() {
     };
     let results = all(&plan);
     for run in results.iter().flatten() {
-        let [own, _, same, lonely] = run.walks[..] else {
-            panic!("one walk per variant")
-        };
+        let [own, _, same, lonely] = run.walks[..] else { panic!("one walk per variant") };
         assert_eq!(own, same);
         assert_eq!(own, lonely, "a1 has no effect on a robot alone");
     }
-    assert!(
-        results
-            .iter()
-            .flatten()
-            .any(|run| run.walks[0] != run.walks[1])
-    );
+    assert!(results.iter().flatten().any(|run| run.walks[0] != run.walks[1]));
     let report = plan.report(&results);
     assert_eq!(report.sweep[1].value, 3.0);
     let own = report.points[0].time_loss_percent.unwrap().summary.mean;
@@ -204,19 +164,11 @@ fn shuffled_land_has_the_classes_of_natural_land_and_more_edges() {
 
 #[test]
 fn parked_robots_are_walked_round() {
-    let plan = Plan {
-        parked: 300,
-        ..plan()
-    };
+    let plan = Plan { parked: 300, ..plan() };
     let results = all(&plan);
     let example = plan.example(&results).unwrap().unwrap();
     assert_eq!(example.parked.len(), 300);
-    assert!(
-        example
-            .way
-            .iter()
-            .all(|cell| !example.parked.contains(cell))
-    );
+    assert!(example.way.iter().all(|cell| !example.parked.contains(cell)));
     assert!(example.run.walks[0].arrived);
     assert_eq!(example.way.first(), Some(&plan.start()));
     assert_eq!(example.way.last(), Some(&plan.target()));
@@ -226,26 +178,16 @@ fn parked_robots_are_walked_round() {
 
 #[test]
 fn robot_with_nowhere_to_go_stands() {
-    let land =
-        Terrain::from_cells(3, 3, vec![1, BLOCKED, 1, BLOCKED, BLOCKED, 1, 1, 1, 1]).unwrap();
+    let land = Terrain::from_cells(3, 3, vec![1, BLOCKED, 1, BLOCKED, BLOCKED, 1, 1, 1, 1]).unwrap();
     let mut walker = Walker::<25>::default();
     let (from, to) = (Cell::new(0, 0), Cell::new(2, 2));
-    let mut task = Task {
-        land: &land,
-        parked: &[],
-        from,
-        to,
-    };
+    let mut task = Task { land: &land, parked: &[], from, to };
     let params = plan().params;
     let walled = walker.walk(&task, &params, Replan::EachCell);
     assert_eq!(walled, Walk::default());
     let flat = Terrain::flat(3, 3);
     let around = [Cell::new(0, 1), Cell::new(1, 0), Cell::new(1, 1)];
-    task = Task {
-        land: &flat,
-        parked: &around,
-        ..task
-    };
+    task = Task { land: &flat, parked: &around, ..task };
     for replan in [Replan::EachCell, Replan::UntilChanged] {
         assert_eq!(walker.walk(&task, &params, replan), Walk::default());
     }
@@ -262,12 +204,7 @@ fn robot_that_cannot_arrive_gives_up() {
         cells[at] = BLOCKED;
     }
     let land = Terrain::from_cells(8, 8, cells).unwrap();
-    let task = Task {
-        land: &land,
-        parked: &[],
-        from: Cell::new(0, 0),
-        to: Cell::new(7, 7),
-    };
+    let task = Task { land: &land, parked: &[], from: Cell::new(0, 0), to: Cell::new(7, 7) };
     let walk = Walker::<169>::default().walk(&task, &plan().params, Replan::EachCell);
     assert!(!walk.arrived);
     assert!(walk.moves <= 20 * 16);
@@ -293,12 +230,7 @@ fn way_is_that_of_a_robot_that_gets_only_its_window() {
             way.push(here);
         }
         let mut walker = Walker::<CELLS>::default();
-        let task = Task {
-            land: &land,
-            parked: &[],
-            from: plan.start(),
-            to,
-        };
+        let task = Task { land: &land, parked: &[], from: plan.start(), to };
         walker.walk(&task, &plan.params, Replan::EachCell);
         assert_eq!(walker.path(), way);
     }
@@ -311,22 +243,10 @@ fn report_says_what_the_runs_say() {
         total_edge: 800,
         optimal_cost: 7000,
         optimal_length: 700,
-        walks: vec![Walk {
-            arrived,
-            cost,
-            length,
-            moves: 9,
-        }],
+        walks: vec![Walk { arrived, cost, length, moves: 9 }],
     };
-    let plan = Plan {
-        lands: vec![Land::Natural(5)],
-        ..plan()
-    };
-    let report = plan.report(&[vec![
-        run(true, 10_500, 630),
-        run(true, 7000, 770),
-        run(false, 99_999, 9999),
-    ]]);
+    let plan = Plan { lands: vec![Land::Natural(5)], ..plan() };
+    let report = plan.report(&[vec![run(true, 10_500, 630), run(true, 7000, 770), run(false, 99_999, 9999)]]);
     let point = &report.points[0];
     assert_eq!((point.runs, point.arrived), (3, 2));
     let [time, length] = [point.time_loss_percent, point.length_loss_percent].map(Option::unwrap);
@@ -335,72 +255,31 @@ fn report_says_what_the_runs_say() {
     assert_eq!(point.length_excess_percent, Some(0.0));
     assert_eq!((point.total_edge, point.total_edge_density), (800.0, 0.5));
     let arrivals = point.arrivals.as_ref().unwrap();
-    assert_eq!(
-        (arrivals.mean_ticks, arrivals.counts.iter().sum()),
-        (125.0, 2)
-    );
+    assert_eq!((arrivals.mean_ticks, arrivals.counts.iter().sum()), (125.0, 2));
     assert!(arrivals.norton_rice.is_none() && arrivals.goodness.is_none());
 }
 
 #[test]
 fn plans_that_cannot_be_carried_out_name_the_remedy() {
     let message = |plan: Plan| plan.carry_out(|_| true).unwrap_err().to_string();
-    let radius = |radius| Plan {
-        params: RouteParams {
-            radius,
-            ..plan().params
-        },
-        ..plan()
-    };
+    let radius = |radius| Plan { params: RouteParams { radius, ..plan().params }, ..plan() };
     assert!(message(Plan { runs: 0, ..plan() }).contains("1 or more"));
-    assert!(
-        message(Plan {
-            lands: vec![],
-            ..plan()
-        })
-        .contains("number of obstacles")
-    );
+    assert!(message(Plan { lands: vec![], ..plan() }).contains("number of obstacles"));
     assert!(message(Plan { size: 3, ..plan() }).contains("must be 4..=2000"));
-    assert!(
-        message(Plan {
-            size: 2001,
-            ..plan()
-        })
-        .contains("must be 4..=2000")
-    );
-    assert!(
-        message(Plan {
-            classes: 0,
-            ..plan()
-        })
-        .contains("number of classes")
-    );
-    assert!(
-        message(Plan {
-            parked: 801,
-            ..plan()
-        })
-        .contains("801 parked robots on 1600 cells")
-    );
+    assert!(message(Plan { size: 2001, ..plan() }).contains("must be 4..=2000"));
+    assert!(message(Plan { classes: 0, ..plan() }).contains("number of classes"));
+    assert!(message(Plan { parked: 801, ..plan() }).contains("801 parked robots on 1600 cells"));
     assert!(message(radius(0)).contains("must be 1..=31"));
     assert!(message(radius(32)).contains("must be 1..=31"));
     let lands = vec![Land::Natural(10), Land::Natural(1601)];
     let crowded = message(Plan { lands, ..plan() });
-    assert!(
-        crowded.contains("1601 obstacles on 1600 cells"),
-        "{crowded}"
-    );
+    assert!(crowded.contains("1601 obstacles on 1600 cells"), "{crowded}");
 }
 
 #[test]
 fn least_land_and_most_obstacles_work() {
     let plan = Plan {
-        lands: vec![
-            Land::Natural(0),
-            Land::Natural(16),
-            Land::Shuffled(16),
-            Land::Uniform,
-        ],
+        lands: vec![Land::Natural(0), Land::Natural(16), Land::Shuffled(16), Land::Uniform],
         runs: 2,
         size: 4,
         parked: 8,
@@ -418,23 +297,13 @@ fn pictures_are_drawn_for_both_kinds_of_land() {
         let plan = Plan {
             lands,
             runs: 12,
-            sweep: vec![
-                (Coefficient::A3, Gain::ONE),
-                (Coefficient::A3, Gain::from_int(6)),
-            ],
+            sweep: vec![(Coefficient::A3, Gain::ONE), (Coefficient::A3, Gain::from_int(6))],
             ..plan()
         };
         let results = all(&plan);
-        let files = plan
-            .draw(&results, &plan.report(&results), dir.path())
-            .unwrap();
-        let name =
-            |file: &std::path::PathBuf| file.file_name().unwrap().to_str().unwrap().to_owned();
-        assert!(
-            files
-                .iter()
-                .all(|file| std::fs::metadata(file).unwrap().len() > 1000)
-        );
+        let files = plan.draw(&results, &plan.report(&results), dir.path()).unwrap();
+        let name = |file: &std::path::PathBuf| file.file_name().unwrap().to_str().unwrap().to_owned();
+        assert!(files.iter().all(|file| std::fs::metadata(file).unwrap().len() > 1000));
         files.iter().map(name).collect::<Vec<_>>().join(" ")
     };
     assert_eq!(

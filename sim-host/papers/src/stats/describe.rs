@@ -31,13 +31,8 @@ impl Summary {
         let count = values.len();
         let freedom = (count - 1) as f64;
         let squares: f64 = values.iter().map(|x| (x - mean) * (x - mean)).sum();
-        let deviation = if count > 1 {
-            sqrt(squares / freedom)
-        } else {
-            0.0
-        };
-        let mean_error95 = (count > 1)
-            .then(|| student_t_quantile(0.975, freedom) * deviation / sqrt(count as f64));
+        let deviation = if count > 1 { sqrt(squares / freedom) } else { 0.0 };
+        let mean_error95 = (count > 1).then(|| student_t_quantile(0.975, freedom) * deviation / sqrt(count as f64));
         Some(Self {
             count,
             mean,
@@ -62,8 +57,7 @@ impl Summary {
 #[must_use]
 pub fn mean(values: &[f64]) -> Option<f64> {
     let sum: f64 = values.iter().sum();
-    (!values.is_empty() && values.iter().all(|x| x.is_finite()))
-        .then_some(sum / values.len() as f64)
+    (!values.is_empty() && values.iter().all(|x| x.is_finite())).then_some(sum / values.len() as f64)
 }
 
 /// The value below which a share `p` of the values lies, linear between the order statistics
@@ -73,9 +67,7 @@ pub fn mean(values: &[f64]) -> Option<f64> {
 #[must_use]
 pub fn quantile(values: &[f64], p: f64) -> Option<f64> {
     let sorted = sorted(values)?;
-    (0.0..=1.0)
-        .contains(&p)
-        .then(|| quantile_sorted(&sorted, p))
+    (0.0..=1.0).contains(&p).then(|| quantile_sorted(&sorted, p))
 }
 
 fn quantile_sorted(sorted: &[f64], p: f64) -> f64 {
@@ -128,11 +120,7 @@ impl Histogram {
         // All values equal, or so close that the width is lost in rounding: one bin around them.
         if low + width == low {
             let half = (libm::fabs(min) * 1e-9).max(0.5);
-            return Some(Self {
-                low: min - half,
-                width: 2.0 * half,
-                counts: vec![sorted.len() as u64],
-            });
+            return Some(Self { low: min - half, width: 2.0 * half, counts: vec![sorted.len() as u64] });
         }
         let bins = (ceil((max - low) / width) as usize).clamp(1, max_bins);
         let mut counts = vec![0; bins];
@@ -148,10 +136,7 @@ impl Histogram {
         let total: u64 = self.counts.iter().sum();
         let middle = |bin: usize| self.low + (bin as f64 + 0.5) * self.width;
         let density = |count: u64| count as f64 / (total as f64 * self.width);
-        (0..)
-            .zip(&self.counts)
-            .map(|(bin, &count)| [middle(bin), density(count)])
-            .collect()
+        (0..).zip(&self.counts).map(|(bin, &count)| [middle(bin), density(count)]).collect()
     }
 }
 
@@ -203,11 +188,7 @@ mod tests {
             let histogram = Histogram::new(&values, bins).unwrap();
             assert!(histogram.counts.len() <= bins);
             assert_eq!(histogram.counts.iter().sum::<u64>(), 997);
-            let area: f64 = histogram
-                .density()
-                .iter()
-                .map(|[_, d]| d * histogram.width)
-                .sum();
+            let area: f64 = histogram.density().iter().map(|[_, d]| d * histogram.width).sum();
             assert!((area - 1.0).abs() < 1e-12);
         }
     }
@@ -225,10 +206,7 @@ mod tests {
         for x in [0.0, 0.3, 7.0, -1e300] {
             let histogram = Histogram::new(&[x, x, x], 10).unwrap();
             assert_eq!(histogram.counts, [3], "{x}");
-            assert!(
-                histogram.low < x && x < histogram.low + histogram.width,
-                "{x}"
-            );
+            assert!(histogram.low < x && x < histogram.low + histogram.width, "{x}");
         }
         assert_eq!(Histogram::new(&[-1e308, 1e308], 10), None);
     }

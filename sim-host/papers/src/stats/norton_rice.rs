@@ -123,9 +123,7 @@ impl NortonRice {
         }
         let panels = ceil((high - low) / (sigma / 2.0)).max(1.0);
         let edge = |i: f64| low + (high - low) * (i / panels);
-        (0..panels as u32)
-            .map(|i| self.panel(edge(f64::from(i)), edge(f64::from(i) + 1.0)))
-            .sum()
+        (0..panels as u32).map(|i| self.panel(edge(f64::from(i)), edge(f64::from(i) + 1.0))).sum()
     }
 
     fn panel(&self, a: f64, b: f64) -> f64 {
@@ -139,9 +137,7 @@ impl NortonRice {
         };
         GAUSS_LEGENDRE_8
             .iter()
-            .map(|&[node, weight]| {
-                weight * half * (integrand(middle - node * half) + integrand(middle + node * half))
-            })
+            .map(|&[node, weight]| weight * half * (integrand(middle - node * half) + integrand(middle + node * half)))
             .sum()
     }
 
@@ -158,11 +154,7 @@ impl NortonRice {
         let a = self.mean_square();
         let r = self.alpha * self.alpha / a;
         let rest = 2.0 * self.beta * self.beta / a;
-        [
-            log(a),
-            log(rest * (1.0 + r) * a * a / self.m),
-            log(r / rest),
-        ]
+        [log(a), log(rest * (1.0 + r) * a * a / self.m), log(r / rest)]
     }
 
     fn from_coordinates([ln_a, ln_v, logit]: [f64; PARAMETERS]) -> Option<Self> {
@@ -170,11 +162,7 @@ impl NortonRice {
         let odds = exp(logit.clamp(-30.0, 30.0));
         let (r, rest) = (odds / (1.0 + odds), 1.0 / (1.0 + odds));
         let a = exp(ln_a);
-        Self::new(
-            rest * (1.0 + r) * exp(2.0 * ln_a - ln_v),
-            sqrt(a * r),
-            sqrt(a * rest / 2.0),
-        )
+        Self::new(rest * (1.0 + r) * exp(2.0 * ln_a - ln_v), sqrt(a * r), sqrt(a * rest / 2.0))
     }
 
     /// The law that makes the samples likeliest.
@@ -206,22 +194,15 @@ impl NortonRice {
             return Err(FitError::Constant);
         }
         let unlikeliness = |at| {
-            Self::from_coordinates(at).map_or(f64::INFINITY, |law: Self| {
-                -scaled.iter().map(|&x| law.ln_pdf(x)).sum::<f64>()
-            })
+            Self::from_coordinates(at)
+                .map_or(f64::INFINITY, |law: Self| -scaled.iter().map(|&x| law.ln_pdf(x)).sum::<f64>())
         };
         // Shapes to start from: near Nakagami, between, and Rice (m = 1) if the moments allow it.
         let rice = sqrt((1.0 - variance).max(0.25));
         let (best, _) = [0.1, 0.5, rice]
             .map(|r| {
                 let start = [0.0, log(variance), log(r / (1.0 - r))];
-                minimize(
-                    unlikeliness,
-                    start,
-                    [sqrt(variance) / 4.0, 0.2, 1.0],
-                    1e-7,
-                    MAX_EVALS,
-                )
+                minimize(unlikeliness, start, [sqrt(variance) / 4.0, 0.2, 1.0], 1e-7, MAX_EVALS)
             })
             .into_iter()
             .min_by(|a, b| a.1.total_cmp(&b.1))
@@ -244,10 +225,7 @@ impl NortonRice {
     pub fn goodness(&self, samples: &[f64]) -> Option<Goodness> {
         let sorted = sorted(samples)?;
         let (edges, counts) = self.bins(&sorted);
-        let freedom = counts
-            .len()
-            .checked_sub(1 + PARAMETERS)
-            .filter(|&f| f > 0)?;
+        let freedom = counts.len().checked_sub(1 + PARAMETERS).filter(|&f| f > 0)?;
         let n = sorted.len() as f64;
         let chi2 = |at: [f64; PARAMETERS]| -> f64 {
             let Some(law) = Self::from_coordinates(at) else {
@@ -267,11 +245,7 @@ impl NortonRice {
         let relative = exp(start[1] / 2.0 - start[0]);
         let step = [relative / sqrt(n), 2.0 / sqrt(n), 0.5];
         let (_, chi2) = minimize(chi2, start, step, 1e-6, MAX_EVALS);
-        Some(Goodness {
-            chi2,
-            freedom,
-            p_value: gamma_q(freedom as f64 / 2.0, chi2 / 2.0),
-        })
+        Some(Goodness { chi2, freedom, p_value: gamma_q(freedom as f64 / 2.0, chi2 / 2.0) })
     }
 
     /// Edges (from 0 to infinity) and counts of the test's bins.

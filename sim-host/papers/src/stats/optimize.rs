@@ -68,11 +68,7 @@ fn descend<const N: usize>(
         let reflected = at(1.0);
         let accepted = if reflected.1 < best.1 {
             let expanded = at(2.0);
-            Some(if expanded.1 < reflected.1 {
-                expanded
-            } else {
-                reflected
-            })
+            Some(if expanded.1 < reflected.1 { expanded } else { reflected })
         } else if reflected.1 < second_worst.1 {
             Some(reflected)
         } else {
@@ -96,8 +92,7 @@ mod tests {
 
     #[test]
     fn curved_valley_is_followed_to_its_end() {
-        let rosenbrock =
-            |[x, y]: [f64; 2]| 100.0 * (y - x * x) * (y - x * x) + (1.0 - x) * (1.0 - x);
+        let rosenbrock = |[x, y]: [f64; 2]| 100.0 * (y - x * x) * (y - x * x) + (1.0 - x) * (1.0 - x);
         let (at, value) = minimize(rosenbrock, [-1.2, 1.0], [0.5, 0.5], 1e-14, 5000);
         assert!(value < 1e-10, "{at:?} {value}");
         assert!((at[0] - 1.0).abs() < 1e-4 && (at[1] - 1.0).abs() < 1e-4);

@@ -17,11 +17,7 @@ pub struct LogFit {
 
 impl LogFit {
     /// The paper's curve for six agents on natural terrain (KUZ section 8).
-    pub const PAPER: Self = Self {
-        a: 0.901_073,
-        b: -0.673_763,
-        r2: 0.992_729,
-    };
+    pub const PAPER: Self = Self { a: 0.901_073, b: -0.673_763, r2: 0.992_729 };
 
     /// Least squares over points (N, y).
     ///
@@ -32,10 +28,7 @@ impl LogFit {
         let y: Vec<f64> = points.iter().map(|p| p[1]).collect();
         let (mean_x, mean_y) = (mean(&x)?, mean(&y)?);
         let sum = |term: &dyn Fn(f64, f64) -> f64| -> f64 {
-            x.iter()
-                .zip(&y)
-                .map(|(x, y)| term(x - mean_x, y - mean_y))
-                .sum()
+            x.iter().zip(&y).map(|(x, y)| term(x - mean_x, y - mean_y)).sum()
         };
         let (xx, xy, yy) = (sum(&|x, _| x * x), sum(&|x, y| x * y), sum(&|_, y| y * y));
         if xx <= 0.0 || !xx.is_finite() || !yy.is_finite() {
@@ -43,11 +36,7 @@ impl LogFit {
         }
         let a = xy / xx;
         let rest = sum(&|x, y| (y - a * x) * (y - a * x));
-        Some(Self {
-            a,
-            b: mean_y - a * mean_x,
-            r2: if yy > 0.0 { 1.0 - rest / yy } else { 1.0 },
-        })
+        Some(Self { a, b: mean_y - a * mean_x, r2: if yy > 0.0 { 1.0 - rest / yy } else { 1.0 } })
     }
 
     /// The curve's value at `n` obstacles.
@@ -63,9 +52,7 @@ mod tests {
 
     #[test]
     fn points_on_the_curve_give_the_curve_back() {
-        let points: Vec<_> = [0.0, 10.0, 40.0, 130.0]
-            .map(|n| [n, LogFit::PAPER.at(n)])
-            .into();
+        let points: Vec<_> = [0.0, 10.0, 40.0, 130.0].map(|n| [n, LogFit::PAPER.at(n)]).into();
         let fit = LogFit::of(&points).unwrap();
         assert!((fit.a - LogFit::PAPER.a).abs() < 1e-12);
         assert!((fit.b - LogFit::PAPER.b).abs() < 1e-12);

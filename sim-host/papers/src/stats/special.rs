@@ -19,11 +19,7 @@ const MAX_TERMS: u32 = 100_000;
 #[must_use]
 pub fn gamma_q(a: f64, x: f64) -> f64 {
     // The series converges fast below the law's mean, the fraction above.
-    if x < a + 1.0 {
-        1.0 - gamma_p_series(a, x)
-    } else {
-        gamma_q_fraction(a, x)
-    }
+    if x < a + 1.0 { 1.0 - gamma_p_series(a, x) } else { gamma_q_fraction(a, x) }
 }
 
 /// ln of x^a e^-x / Gamma(a + 1).
@@ -176,17 +172,12 @@ pub fn ln_bessel_i_scaled(nu: f64, z: f64) -> f64 {
         + (3.0 - 5.0 * q) / 24.0 / s
         + (81.0 + q * (-462.0 + q * 385.0)) / 1152.0 / (s * s)
         + (30_375.0 + q * (-369_603.0 + q * (765_765.0 - q * 425_425.0))) / 414_720.0 / (s * s * s)
-        + (4_465_125.0
-            + q * (-94_121_676.0 + q * (349_922_430.0 + q * (-446_185_740.0 + q * 185_910_725.0))))
+        + (4_465_125.0 + q * (-94_121_676.0 + q * (349_922_430.0 + q * (-446_185_740.0 + q * 185_910_725.0))))
             / 39_813_120.0
             / (s * s * s * s);
     // s - z without cancellation.
     let excess = nu * nu / (s + z);
-    let order = if nu == 0.0 {
-        0.0
-    } else {
-        nu * log(z / (nu + s))
-    };
+    let order = if nu == 0.0 { 0.0 } else { nu * log(z / (nu + s)) };
     excess + order - 0.5 * log(TAU * s) + log(series)
 }
 
@@ -240,13 +231,7 @@ mod tests {
         assert_eq!(ln_bessel_i_scaled(0.3, 0.0), f64::NEG_INFINITY);
         assert_eq!(ln_bessel_i_scaled(100.0, 0.0), f64::NEG_INFINITY);
         assert_eq!(ln_bessel_i_scaled(-0.3, 0.0), f64::INFINITY);
-        for (nu, z) in [
-            (-1.0, 1.0),
-            (0.0, -1.0),
-            (f64::NAN, 1.0),
-            (0.0, f64::NAN),
-            (0.0, f64::INFINITY),
-        ] {
+        for (nu, z) in [(-1.0, 1.0), (0.0, -1.0), (f64::NAN, 1.0), (0.0, f64::NAN), (0.0, f64::INFINITY)] {
             assert!(ln_bessel_i_scaled(nu, z).is_nan());
         }
     }

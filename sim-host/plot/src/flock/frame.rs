@@ -40,20 +40,11 @@ impl Frame {
         });
         // What is too wide to count in is shown as nothing much.
         let [x_range, y_range] = [0, 1].map(|axis| ticks::sound(low[axis], high[axis]));
-        let top = y
-            + PAD
-            + if snapshot.title.is_empty() {
-                0.0
-            } else {
-                TITLE + 8.0
-            };
+        let top = y + PAD + if snapshot.title.is_empty() { 0.0 } else { TITLE + 8.0 };
         let bottom = y + height - PAD - LABEL - SMALL - 14.0;
         // The widest number decides how much is left; its own axis' marks depend little on that.
         let rough = ticks::linear(y_range[0], y_range[1], marks(bottom - top, 34.0));
-        let widest = rough
-            .iter()
-            .map(|tick| font::width(&tick.label, SMALL, false))
-            .fold(0.0, f64::max);
+        let widest = rough.iter().map(|tick| font::width(&tick.label, SMALL, false)).fold(0.0, f64::max);
         let left = x + PAD + LABEL * 1.5 + widest * layout::OTHER_FONTS + 6.0;
         let right = x + width - PAD - 10.0;
         let room = [(right - left).max(20.0), (bottom - top).max(20.0)];
@@ -65,31 +56,16 @@ impl Frame {
         let low = [0, 1].map(|axis| middle[axis] - shown[axis] / 2.0);
         let ticks = [0, 1].map(|axis| {
             let spacing = [52.0, 34.0][axis];
-            ticks::linear(
-                low[axis],
-                low[axis] + shown[axis],
-                marks(room[axis], spacing),
-            )
+            ticks::linear(low[axis], low[axis] + shown[axis], marks(room[axis], spacing))
         });
-        Self {
-            plot: [left, top, room[0], room[1]],
-            area,
-            low,
-            scale,
-            ticks,
-        }
+        Self { plot: [left, top, room[0], room[1]], area, low, scale, ticks }
     }
 
     /// Where a place is in the picture; `None` when it is not finite or far outside, where readers lose their precision.
     pub fn at(&self, place: [f64; 2]) -> Option<[f64; 2]> {
         let [left, top, _, height] = self.plot;
-        let at = [
-            left + (place[0] - self.low[0]) * self.scale,
-            top + height - (place[1] - self.low[1]) * self.scale,
-        ];
-        at.iter()
-            .all(|c| c.is_finite() && c.abs() < 1e5)
-            .then_some(at)
+        let at = [left + (place[0] - self.low[0]) * self.scale, top + height - (place[1] - self.low[1]) * self.scale];
+        at.iter().all(|c| c.is_finite() && c.abs() < 1e5).then_some(at)
     }
 
     /// Draws title, grid, marks, numbers and names.
@@ -105,23 +81,15 @@ impl Frame {
             let ticks = self.ticks[axis].iter();
             ticks.map(move |tick| (tick, (tick.value - self.low[axis]) * self.scale))
         };
-        let vertical =
-            places(0).map(|(_, along)| vec![[left + along, top], [left + along, bottom]]);
+        let vertical = places(0).map(|(_, along)| vec![[left + along, top], [left + along, bottom]]);
         let level = places(1).map(|(_, up)| vec![[left, bottom - up], [right, bottom - up]]);
         canvas.lines(vertical.chain(level).collect(), Stroke::new(GRID, 0.7));
         canvas.rectangle(self.plot, None, Some(Stroke::new(INK, 0.9)));
-        let number = |at, anchor, label: &str| Text {
-            colour: MUTED,
-            ..Text::new(at, SMALL, anchor, label)
-        };
+        let number = |at, anchor, label: &str| Text { colour: MUTED, ..Text::new(at, SMALL, anchor, label) };
         for (tick, along) in places(0) {
             let half = font::width(&tick.label, SMALL, false) / 2.0;
             let at = (left + along).min(x + area_width - half - 2.0);
-            canvas.text(number(
-                [at, bottom + SMALL + 4.0],
-                Anchor::Middle,
-                &tick.label,
-            ));
+            canvas.text(number([at, bottom + SMALL + 4.0], Anchor::Middle, &tick.label));
         }
         for (tick, up) in places(1) {
             let text = number([left - 6.0, bottom - up], Anchor::End, &tick.label);
@@ -133,12 +101,7 @@ impl Frame {
         let (label, size) = font::fit(&snapshot.labels[1], LABEL, false, height);
         canvas.text(Text {
             upwards: true,
-            ..Text::new(
-                [x + PAD + LABEL * 0.8, top + height / 2.0],
-                size,
-                Anchor::Middle,
-                label,
-            )
+            ..Text::new([x + PAD + LABEL * 0.8, top + height / 2.0], size, Anchor::Middle, label)
         });
     }
 }

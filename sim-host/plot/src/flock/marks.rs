@@ -23,10 +23,7 @@ pub fn draw(snapshot: &Snapshot, frame: &Frame, canvas: &mut Canvas) {
     obstacles(&snapshot.obstacles, frame, canvas);
     trails(snapshot, frame, canvas);
     if let Some(range) = snapshot.edges_within_m {
-        canvas.lines(
-            edges(&snapshot.positions_m, range, frame),
-            Stroke::new(EDGE, 0.7),
-        );
+        canvas.lines(edges(&snapshot.positions_m, range, frame), Stroke::new(EDGE, 0.7));
     }
     for at in snapshot.goals_m.iter().filter_map(|&goal| frame.at(goal)) {
         cross(at, canvas);
@@ -79,12 +76,7 @@ fn edges(positions: &[[f64; 2]], range: f64, frame: &Frame) -> Vec<Vec<Point>> {
     cells.rebuild(positions);
     let (mut lines, mut found) = (Vec::new(), Vec::new());
     for (robot, &at) in (0..).zip(positions) {
-        let query = Query {
-            at,
-            radius: range,
-            most: usize::MAX,
-            except: Some(robot),
-        };
+        let query = Query { at, radius: range, most: usize::MAX, except: Some(robot) };
         cells.within(&query, &mut found);
         for other in found.iter().filter(|other| other.index > robot) {
             let ends = [at, positions[other.index as usize]].map(|end| frame.at(end));
@@ -98,10 +90,7 @@ fn edges(positions: &[[f64; 2]], range: f64, frame: &Frame) -> Vec<Vec<Point>> {
 
 fn cross([x, y]: Point, canvas: &mut Canvas) {
     let arm = 5.0;
-    let lines = vec![
-        vec![[x - arm, y - arm], [x + arm, y + arm]],
-        vec![[x - arm, y + arm], [x + arm, y - arm]],
-    ];
+    let lines = vec![vec![[x - arm, y - arm], [x + arm, y + arm]], vec![[x - arm, y + arm], [x + arm, y - arm]]];
     canvas.lines(lines.clone(), Stroke::new(WHITE, 4.2));
     canvas.lines(lines, Stroke::new(GOAL, 2.2));
 }
@@ -120,15 +109,9 @@ fn robots(snapshot: &Snapshot, frame: &Frame, canvas: &mut Canvas) {
         let velocity = snapshot.velocities_mps.get(robot).copied().unwrap_or(still);
         let speed = velocity.iter().map(|c| c * c).sum::<f64>().sqrt();
         // Nonsense has no direction.
-        if speed.is_finite() {
-            (velocity, speed)
-        } else {
-            (still, 0.0)
-        }
+        if speed.is_finite() { (velocity, speed) } else { (still, 0.0) }
     };
-    let fastest = (0..snapshot.velocities_mps.len())
-        .map(|robot| velocity(robot).1)
-        .fold(0.0, f64::max);
+    let fastest = (0..snapshot.velocities_mps.len()).map(|robot| velocity(robot).1).fold(0.0, f64::max);
     // One shape a colour, however many robots there are.
     let groups = snapshot.groups.iter().max().map_or(1, |most| most + 1);
     let groups = groups.min(colour::PALETTE.len());
@@ -140,21 +123,12 @@ fn robots(snapshot: &Snapshot, frame: &Frame, canvas: &mut Canvas) {
         };
         let (velocity, speed) = velocity(robot);
         // Rows grow downwards.
-        let ahead = if speed > 0.0 {
-            [velocity[0] / speed, -velocity[1] / speed]
-        } else {
-            still
-        };
+        let ahead = if speed > 0.0 { [velocity[0] / speed, -velocity[1] / speed] } else { still };
         let group = snapshot.groups.get(robot).copied().unwrap_or(0) % groups;
         if are_discs {
             let colour = colour_of(snapshot, robot);
             let edge = Stroke::new(colour, 1.0);
-            canvas.circle(
-                [x, y],
-                radius,
-                Some(colour.towards(WHITE, 0.55)),
-                Some(edge),
-            );
+            canvas.circle([x, y], radius, Some(colour.towards(WHITE, 0.55)), Some(edge));
             if speed > 0.0 {
                 let length = radius + ARROW * speed / fastest;
                 arrows.extend(arrow([x, y], ahead, length));
@@ -169,12 +143,7 @@ fn robots(snapshot: &Snapshot, frame: &Frame, canvas: &mut Canvas) {
     for (group, (darts, dots)) in darts.into_iter().zip(dots).enumerate() {
         let colour = colour::nth(group);
         if !darts.is_empty() {
-            canvas.shapes.push(Shape::Path {
-                lines: darts,
-                closed: true,
-                stroke: None,
-                fill: Some(colour),
-            });
+            canvas.shapes.push(Shape::Path { lines: darts, closed: true, stroke: None, fill: Some(colour) });
         }
         let width = if is_crowd { 1.6 } else { 4.0 };
         canvas.lines(dots, Stroke::new(colour, width));
@@ -187,26 +156,13 @@ fn arrow([x, y]: Point, [dx, dy]: Point, length: f64) -> [Vec<Point>; 2] {
     let tip = [x + dx * length, y + dy * length];
     let barb = |side: f64| {
         let back = 3.4;
-        [
-            tip[0] - back * (dx - side * 0.55 * dy),
-            tip[1] - back * (dy + side * 0.55 * dx),
-        ]
+        [tip[0] - back * (dx - side * 0.55 * dy), tip[1] - back * (dy + side * 0.55 * dx)]
     };
     [vec![[x, y], tip], vec![barb(1.0), tip, barb(-1.0)]]
 }
 
 /// A triangle that points ahead, with a notch behind.
 fn dart([x, y]: Point, [dx, dy]: Point, half: f64) -> Vec<Point> {
-    let corner = |ahead: f64, left: f64| {
-        [
-            x + half * (ahead * dx + left * dy),
-            y + half * (ahead * dy - left * dx),
-        ]
-    };
-    vec![
-        corner(1.2, 0.0),
-        corner(-0.9, 0.65),
-        corner(-0.5, 0.0),
-        corner(-0.9, -0.65),
-    ]
+    let corner = |ahead: f64, left: f64| [x + half * (ahead * dx + left * dy), y + half * (ahead * dy - left * dx)];
+    vec![corner(1.2, 0.0), corner(-0.9, 0.65), corner(-0.5, 0.0), corner(-0.9, -0.65)]
 }

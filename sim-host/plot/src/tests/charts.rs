@@ -10,11 +10,7 @@ fn full() -> Chart {
         .note("mean and 95 % interval")
         .with(Series::bars("counts", xs().map(|x| [x, x + 1.0, x * 2.0])))
         .with(Series::intervals("natural", xs().map(|x| [x, x, x - 0.5, x + 0.5])).joined())
-        .with(
-            Series::line("fit", xs().map(|x| [x, x * 1.1]))
-                .like_previous()
-                .dashed(),
-        )
+        .with(Series::line("fit", xs().map(|x| [x, x * 1.1])).like_previous().dashed())
         .with(Series::points("runs", xs().map(|x| [x, 9.0 - x])))
         .with(Series::reference("paper", [[1.0, 4.0], [6.0, 4.0]]))
 }
@@ -42,10 +38,7 @@ fn both_files_are_written_readable_and_the_same_each_time() {
     let names: Vec<_> = files.iter().map(|path| path.file_name().unwrap()).collect();
     assert_eq!(names, ["loss-0.3.svg", "loss-0.3.png"]);
     assert_readable(&files);
-    let bytes: Vec<_> = files
-        .iter()
-        .map(|path| std::fs::read(path).unwrap())
-        .collect();
+    let bytes: Vec<_> = files.iter().map(|path| std::fs::read(path).unwrap()).collect();
     full().write(&stem).unwrap();
     for (path, before) in files.iter().zip(bytes) {
         assert_eq!(std::fs::read(path).unwrap(), before);
@@ -57,32 +50,21 @@ fn both_files_are_written_readable_and_the_same_each_time() {
 #[test]
 fn png_has_two_pixels_per_unit_on_white() {
     let dir = tempfile::tempdir().unwrap();
-    let files = full()
-        .size(300.0, 200.0)
-        .write(&dir.path().join("a"))
-        .unwrap();
+    let files = full().size(300.0, 200.0).write(&dir.path().join("a")).unwrap();
     let (width, height, bytes) = decode(&files[1]);
     assert_eq!((width, height), (600, 400));
     assert_eq!(bytes[..3], [255; 3]);
     let has = |colour: colour::Colour| bytes.chunks(3).any(|pixel| pixel == colour.rgb);
-    assert!(
-        has(PALETTE[1]) && has(PALETTE[2]),
-        "lines in the palette's colours"
-    );
+    assert!(has(PALETTE[1]) && has(PALETTE[2]), "lines in the palette's colours");
 }
 
 #[test]
 fn text_stays_text_in_the_svg() {
     let text = svg_of(&full());
     assert!(text.contains("font-family=\"sans-serif\""));
-    for part in [
-        ">Loss &amp; &lt;gain&gt;<",
-        ">obstacles<",
-        ">ΔT (%)<",
-        ">natural<",
-        ">paper<",
-        ">mean and 95 % interval<",
-    ] {
+    for part in
+        [">Loss &amp; &lt;gain&gt;<", ">obstacles<", ">ΔT (%)<", ">natural<", ">paper<", ">mean and 95 % interval<"]
+    {
         assert!(text.contains(part), "{part}");
     }
     assert!(text.contains("stroke-dasharray"));
@@ -110,14 +92,9 @@ fn charts_without_data_say_so() {
     for chart in [
         Chart::new("", "", ""),
         Chart::new("t", "x", "y").with(Series::line("a", none)),
-        Chart::new("t", "x", "y")
-            .with(Series::points("a", [[f64::NAN, 1.0], [1.0, f64::INFINITY]])),
-        Chart::new("t", "x", "y")
-            .log_x()
-            .with(Series::points("a", [[0.0, 1.0], [-3.0, 1.0]])),
-        Chart::new("t", "x", "y")
-            .log_y()
-            .with(Series::points("a", [[1.0, 0.0], [1.0, -3.0]])),
+        Chart::new("t", "x", "y").with(Series::points("a", [[f64::NAN, 1.0], [1.0, f64::INFINITY]])),
+        Chart::new("t", "x", "y").log_x().with(Series::points("a", [[0.0, 1.0], [-3.0, 1.0]])),
+        Chart::new("t", "x", "y").log_y().with(Series::points("a", [[1.0, 0.0], [1.0, -3.0]])),
     ] {
         assert!(svg_of(&chart).contains(">no data<"));
         assert_texts_apart(&chart.draw());
@@ -148,26 +125,12 @@ fn decades_are_equally_long_on_a_logarithmic_axis() {
 
 #[test]
 fn undefined_values_are_gaps() {
-    let points = [
-        [0.0, 1.0],
-        [1.0, 2.0],
-        [2.0, f64::NAN],
-        [3.0, 2.0],
-        [4.0, 1.0],
-    ];
+    let points = [[0.0, 1.0], [1.0, 2.0], [2.0, f64::NAN], [3.0, 2.0], [4.0, 1.0]];
     let chart = Chart::new("", "", "").with(Series::line("", points).colour(PALETTE[5]));
-    let lines = chart
-        .draw()
-        .shapes
-        .into_iter()
-        .find_map(|shape| match shape {
-            Shape::Path {
-                lines,
-                stroke: Some(stroke),
-                ..
-            } if stroke.colour == PALETTE[5] => Some(lines),
-            _ => None,
-        });
+    let lines = chart.draw().shapes.into_iter().find_map(|shape| match shape {
+        Shape::Path { lines, stroke: Some(stroke), .. } if stroke.colour == PALETTE[5] => Some(lines),
+        _ => None,
+    });
     let lengths: Vec<usize> = lines.unwrap().iter().map(Vec::len).collect();
     assert_eq!(lengths, [2, 2]);
 }
@@ -194,30 +157,10 @@ fn chosen_ranges_hold_and_nonsense_ones_do_not() {
     assert!(svg_of(&chart().y_range(0.0, 50.0)).contains(">50<"));
     assert!(!svg_of(&chart().y_range(0.0, 50.0)).contains(">100<"));
     // What the x range hides does not stretch y.
-    assert!(
-        !svg_of(
-            &chart()
-                .x_range(0.0, 5.0)
-                .with(Series::points("", [[1.0, 3.0]]))
-        )
-        .contains(">100<")
-    );
-    for (low, high) in [
-        (5.0, 5.0),
-        (7.0, 1.0),
-        (f64::NAN, 1.0),
-        (0.0, f64::INFINITY),
-    ] {
-        assert_eq!(
-            svg_of(&chart().y_range(low, high)),
-            svg_of(&chart()),
-            "{low} {high}"
-        );
-        assert_eq!(
-            svg_of(&chart().x_range(low, high)),
-            svg_of(&chart()),
-            "{low} {high}"
-        );
+    assert!(!svg_of(&chart().x_range(0.0, 5.0).with(Series::points("", [[1.0, 3.0]]))).contains(">100<"));
+    for (low, high) in [(5.0, 5.0), (7.0, 1.0), (f64::NAN, 1.0), (0.0, f64::INFINITY)] {
+        assert_eq!(svg_of(&chart().y_range(low, high)), svg_of(&chart()), "{low} {high}");
+        assert_eq!(svg_of(&chart().x_range(low, high)), svg_of(&chart()), "{low} {high}");
     }
 }
 
@@ -232,11 +175,7 @@ fn many_points_are_thinned_but_extremes_stay() {
     assert!(drawn(&canvas).len() < 5000);
     // The spike is a single point, the highest one of the line.
     let line = canvas.shapes.iter().find_map(|shape| match shape {
-        Shape::Path {
-            lines,
-            stroke: Some(stroke),
-            ..
-        } if stroke.colour == PALETTE[0] => Some(&lines[0]),
+        Shape::Path { lines, stroke: Some(stroke), .. } if stroke.colour == PALETTE[0] => Some(&lines[0]),
         _ => None,
     });
     let by_height = |a: &&Point, b: &&Point| a[1].total_cmp(&b[1]);
@@ -244,9 +183,7 @@ fn many_points_are_thinned_but_extremes_stay() {
     ys.sort_by(by_height);
     assert!(ys[1][1] - ys[0][1] > 100.0, "{:?}", &ys[..2]);
     let cloud = (0..200_000).map(|i| [f64::from(i % 447), f64::from(i / 447)]);
-    let canvas = Chart::new("", "", "")
-        .with(Series::points("", cloud.chain([[0.0, 0.0]])))
-        .draw();
+    let canvas = Chart::new("", "", "").with(Series::points("", cloud.chain([[0.0, 0.0]]))).draw();
     assert!(canvas.shapes.len() < 200_050);
 }
 
@@ -257,14 +194,8 @@ fn series_have_different_colours_and_fits_those_of_their_data() {
         let [r, g, b] = PALETTE[index].rgb;
         format!("#{r:02x}{g:02x}{b:02x}")
     };
-    assert!(text.contains(&format!(
-        "stroke=\"{}\" stroke-width=\"1.8\" stroke-dasharray",
-        hex(1)
-    )));
-    assert!(
-        !text.contains(&hex(3)),
-        "the reference is grey and takes no colour"
-    );
+    assert!(text.contains(&format!("stroke=\"{}\" stroke-width=\"1.8\" stroke-dasharray", hex(1))));
+    assert!(!text.contains(&hex(3)), "the reference is grey and takes no colour");
     for (i, a) in PALETTE.iter().enumerate() {
         assert!(PALETTE[i + 1..].iter().all(|b| a.rgb != b.rgb));
     }
@@ -276,30 +207,21 @@ fn panels_align_their_axes_and_keep_texts_apart() {
     let wide = Chart::new("Two", "x", "y").with(Series::line("", [[0.0, 0.0], [1.0, 0.00123]]));
     let axes = |canvas: &Canvas| -> Vec<f64> {
         let is_axis = |shape: &Shape| match shape {
-            Shape::Path {
-                lines,
-                closed: false,
-                stroke: Some(stroke),
-                ..
-            } if stroke.colour == colour::INK && lines[0].len() == 3 => Some(lines[0][0][0]),
+            Shape::Path { lines, closed: false, stroke: Some(stroke), .. }
+                if stroke.colour == colour::INK && lines[0].len() == 3 =>
+            {
+                Some(lines[0][0][0])
+            }
             _ => None,
         };
         canvas.shapes.iter().filter_map(is_axis).collect()
     };
     let (a, b) = (axes(&narrow.draw())[0], axes(&wide.draw())[0]);
     assert!(a < b, "wide numbers need room");
-    let both = Panels::new("Both")
-        .with(narrow.clone())
-        .with(wide.clone())
-        .draw();
+    let both = Panels::new("Both").with(narrow.clone()).with(wide.clone()).draw();
     assert_eq!(axes(&both), [b, b]);
     assert_texts_apart(&both);
-    let beside = Panels::new("")
-        .columns(2)
-        .with(narrow)
-        .with(wide)
-        .with(full())
-        .draw();
+    let beside = Panels::new("").columns(2).with(narrow).with(wide).with(full()).draw();
     assert_eq!((beside.width, beside.height), (1440.0, 840.0));
     assert_texts_apart(&beside);
     let none = Panels::new("").draw();
@@ -309,9 +231,7 @@ fn panels_align_their_axes_and_keep_texts_apart() {
 #[test]
 fn strange_text_keeps_the_file_well_formed() {
     let name = "a<b>&\"c\"\u{0}\u{8}\n\u{ffff}∑日";
-    let chart = Chart::new(name, name, name)
-        .note(name)
-        .with(Series::points(name, [[0.0, 0.0]]));
+    let chart = Chart::new(name, name, name).note(name).with(Series::points(name, [[0.0, 0.0]]));
     assert_well_formed(&svg_of(&chart));
     assert!(crate::raster::png(&chart.draw()).is_ok());
 }
@@ -335,10 +255,7 @@ fn sizes_stay_within_bounds() {
     }
     let canvas = Canvas::new(1e9, 1e9, "too large");
     let dir = tempfile::tempdir().unwrap();
-    let message = canvas
-        .write(&dir.path().join("big"))
-        .unwrap_err()
-        .to_string();
+    let message = canvas.write(&dir.path().join("big")).unwrap_err().to_string();
     assert!(message.contains("big.png"), "{message}");
     assert!(std::fs::read_dir(dir.path()).unwrap().next().is_none());
 }
@@ -349,15 +266,8 @@ fn pictures_in_pictures_keep_their_pixels_and_clips_hold() {
     let mut canvas = Canvas::new(8.0, 4.0, "");
     canvas.clip(Some([0.0, 0.0, 6.0, 4.0]));
     let rgba = vec![[255, 0, 0, 255], [0, 0, 255, 0]];
-    let pixels = Pixels {
-        width: 2,
-        height: 1,
-        rgba,
-    };
-    canvas.shapes.push(Shape::Image {
-        area: [0.0, 0.0, 4.0, 4.0],
-        pixels,
-    });
+    let pixels = Pixels { width: 2, height: 1, rgba };
+    canvas.shapes.push(Shape::Image { area: [0.0, 0.0, 4.0, 4.0], pixels });
     canvas.rectangle([4.0, 0.0, 4.0, 4.0], Some(PALETTE[2]), None);
     canvas.clip(None);
     let files = canvas.write(&dir.path().join("p")).unwrap();

@@ -8,14 +8,8 @@ fn ring(robots: u32, radius_m: f64) -> Snapshot {
     let around = |robot| libm::sincos(angle(robot));
     Snapshot {
         title: format!("{robots} robots"),
-        positions_m: (0..robots)
-            .map(around)
-            .map(|(sin, cos)| [20.0 * cos, 20.0 * sin])
-            .collect(),
-        velocities_mps: (0..robots)
-            .map(around)
-            .map(|(sin, cos)| [-sin, cos])
-            .collect(),
+        positions_m: (0..robots).map(around).map(|(sin, cos)| [20.0 * cos, 20.0 * sin]).collect(),
+        velocities_mps: (0..robots).map(around).map(|(sin, cos)| [-sin, cos]).collect(),
         radius_m,
         ..Snapshot::default()
     }
@@ -26,10 +20,7 @@ fn everything() -> Snapshot {
         edges_within_m: Some(12.0),
         groups: vec![0, 1, 2],
         obstacles: vec![
-            Obstacle::Disc {
-                centre_m: [0.0, 0.0],
-                radius_m: 5.0,
-            },
+            Obstacle::Disc { centre_m: [0.0, 0.0], radius_m: 5.0 },
             Obstacle::Polygon(vec![[-30.0, -30.0], [-25.0, -30.0], [-25.0, -22.0]]),
             Obstacle::Segment([[30.0, -20.0], [30.0, 20.0]]),
         ],
@@ -50,11 +41,7 @@ fn circles(canvas: &Canvas) -> Vec<([f64; 2], f64)> {
 /// Lines of open paths without a fill.
 fn lines(canvas: &Canvas) -> Vec<usize> {
     let open = |shape: &Shape| match shape {
-        Shape::Path {
-            lines,
-            closed: false,
-            ..
-        } => Some(lines.len()),
+        Shape::Path { lines, closed: false, .. } => Some(lines.len()),
         _ => None,
     };
     canvas.shapes.iter().filter_map(open).collect()
@@ -69,20 +56,14 @@ fn snapshots_of_everything_and_of_nothing_can_be_read() {
         ring(1, 0.2),
         ring(200, 0.01),
         ring(MOST_DISCS as u32 + 1, 1.0),
-        Snapshot {
-            size: [f64::NAN, 10.0],
-            ..everything()
-        },
+        Snapshot { size: [f64::NAN, 10.0], ..everything() },
     ];
     for (index, snapshot) in cases.iter().enumerate() {
         let canvas = snapshot.draw();
         assert_texts_apart(&canvas);
         assert_readable(&canvas.write(&dir.path().join(index.to_string())).unwrap());
     }
-    let sheet = cases
-        .into_iter()
-        .fold(Sheet::new("All", 2), Sheet::with)
-        .draw();
+    let sheet = cases.into_iter().fold(Sheet::new("All", 2), Sheet::with).draw();
     assert_texts_apart(&sheet);
     assert_readable(&sheet.write(&dir.path().join("sheet")).unwrap());
     assert_texts_apart(&Sheet::new("", 0).draw());
@@ -90,11 +71,8 @@ fn snapshots_of_everything_and_of_nothing_can_be_read() {
 
 #[test]
 fn metres_are_equally_long_along_both_axes_and_north_is_up() {
-    let snapshot = Snapshot {
-        positions_m: vec![[0.0, 0.0], [100.0, 0.0], [0.0, 10.0]],
-        radius_m: 3.0,
-        ..Snapshot::default()
-    };
+    let snapshot =
+        Snapshot { positions_m: vec![[0.0, 0.0], [100.0, 0.0], [0.0, 10.0]], radius_m: 3.0, ..Snapshot::default() };
     let circles = circles(&snapshot.draw());
     let [(a, radius), (b, _), (c, _)] = circles[..] else {
         panic!("{circles:?}");
@@ -113,11 +91,7 @@ fn edges_join_who_is_near_and_arrows_those_who_move() {
         edges_within_m: Some(10.0),
         ..Snapshot::default()
     };
-    let plain = Snapshot {
-        velocities_mps: Vec::new(),
-        edges_within_m: None,
-        ..three.clone()
-    };
+    let plain = Snapshot { velocities_mps: Vec::new(), edges_within_m: None, ..three.clone() };
     // The grid is there always; then one edge, and one arrow of two lines.
     assert_eq!(lines(&plain.draw()).len(), 1);
     assert_eq!(lines(&three.draw())[1..], [1, 2]);
@@ -137,25 +111,13 @@ fn nonsense_is_left_out_and_a_chosen_view_is_kept() {
     wild.positions_m.push([f64::INFINITY, 0.0]);
     wild.goals_m.push([0.0, f64::NEG_INFINITY]);
     wild.trails_m.push(vec![[f64::NAN; 2], [0.0; 2], [1.0; 2]]);
-    let nowhere = Obstacle::Disc {
-        centre_m: [f64::NAN; 2],
-        radius_m: 2.0,
-    };
+    let nowhere = Obstacle::Disc { centre_m: [f64::NAN; 2], radius_m: 2.0 };
     wild.obstacles.push(nowhere);
     assert_eq!(circles(&wild.draw()), circles(&everything().draw()));
     // The same view whatever there is; a senseless one is everything.
-    let view = |snapshot: Snapshot, view_m| Snapshot {
-        view_m: Some(view_m),
-        ..snapshot
-    };
+    let view = |snapshot: Snapshot, view_m| Snapshot { view_m: Some(view_m), ..snapshot };
     let near = view(ring(12, 1.0), [[-50.0, 50.0]; 2]);
-    let far = view(
-        Snapshot {
-            goals_m: vec![[900.0, 0.0]],
-            ..ring(12, 1.0)
-        },
-        [[-50.0, 50.0]; 2],
-    );
+    let far = view(Snapshot { goals_m: vec![[900.0, 0.0]], ..ring(12, 1.0) }, [[-50.0, 50.0]; 2]);
     assert_eq!(circles(&near.draw()), circles(&far.draw()));
     let senseless = view(ring(12, 1.0), [[5.0, 5.0], [f64::NAN, 1.0]]);
     assert_eq!(circles(&senseless.draw()), circles(&ring(12, 1.0).draw()));

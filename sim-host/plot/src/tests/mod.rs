@@ -16,10 +16,7 @@ fn assert_well_formed(svg: &str) {
     let mut rest = svg;
     while let Some(start) = rest.find('<') {
         let text = &rest[..start];
-        assert!(
-            !open.is_empty() || text.trim().is_empty(),
-            "text outside the root: {text}"
-        );
+        assert!(!open.is_empty() || text.trim().is_empty(), "text outside the root: {text}");
         assert!(!text.contains('>'), "bare > in {text}");
         for (at, _) in text.match_indices('&') {
             let entity = text[at..].split_inclusive(';').next().unwrap();
@@ -33,11 +30,7 @@ fn assert_well_formed(svg: &str) {
         for bad in ["NaN", "inf"] {
             assert!(!attributes.contains(bad), "{bad} in {attributes}");
         }
-        let name = tag
-            .trim_start_matches('/')
-            .split([' ', '/', '\n'])
-            .next()
-            .unwrap();
+        let name = tag.trim_start_matches('/').split([' ', '/', '\n']).next().unwrap();
         if tag.starts_with('/') {
             assert_eq!(open.pop(), Some(name));
         } else {

@@ -30,14 +30,7 @@ fn tick(tick: u32, error: f64) -> TickRow {
         time_s: f64::from(tick) * 0.5,
         formation_error_per_agent: error,
         graph_distance: error * 2.0,
-        packets: PacketCounts {
-            sent: 2,
-            delivered: 10,
-            lost: 1,
-            corrupted: 0,
-            rejected: 0,
-            ..PacketCounts::default()
-        },
+        packets: PacketCounts { sent: 2, delivered: 10, lost: 1, corrupted: 0, rejected: 0, ..PacketCounts::default() },
     }
 }
 
@@ -48,14 +41,7 @@ fn history(robots: u32, ticks: u32, speed: f64, error: f64) -> History {
         let rows = (1..=robots).map(|id| {
             let y = f64::from(id % 256) + 0.5;
             let x = f64::from(id / 256) % 200.0 + speed * f64::from(now) + 0.5;
-            row(
-                id,
-                [x, y],
-                Cell {
-                    x: 30,
-                    y: (id % 256) as i16,
-                },
-            )
+            row(id, [x, y], Cell { x: 30, y: (id % 256) as i16 })
         });
         recorder.tick(&tick(now, error), rows).unwrap();
     }
@@ -77,27 +63,13 @@ fn names(terrain: &Terrain, history: &History, edges: &[(u32, u32)], dir: &Path)
     names.collect()
 }
 
-const WITHOUT_FORMATION: [&str; 4] = [
-    "trajectories.svg",
-    "trajectories.png",
-    "packets.svg",
-    "packets.png",
-];
+const WITHOUT_FORMATION: [&str; 4] = ["trajectories.svg", "trajectories.png", "packets.svg", "packets.png"];
 
 #[test]
 fn runs_of_every_length_give_their_pictures() {
     let dir = tempfile::tempdir().unwrap();
     let nan = f64::NAN;
-    for (robots, ticks) in [
-        (0, 0),
-        (0, 1),
-        (1, 1),
-        (1, 2),
-        (3, 40),
-        (12, 3),
-        (13, 3),
-        (201, 3),
-    ] {
+    for (robots, ticks) in [(0, 0), (0, 1), (1, 1), (1, 2), (3, 40), (12, 3), (13, 3), (201, 3)] {
         let out = dir.path().join(format!("{robots}-{ticks}"));
         let history = history(robots, ticks, 0.5, nan);
         assert_eq!(names(&land(40), &history, &[], &out), WITHOUT_FORMATION);
@@ -105,12 +77,7 @@ fn runs_of_every_length_give_their_pictures() {
         assert_texts_apart(&run::packets(&history).draw());
     }
     let out = dir.path().join("formation");
-    let files = names(
-        &land(40),
-        &history(3, 5, 1.0, 0.25),
-        &[(1, 2), (2, 3), (3, 99)],
-        &out,
-    );
+    let files = names(&land(40), &history(3, 5, 1.0, 0.25), &[(1, 2), (2, 3), (3, 99)], &out);
     assert_eq!(files[2..4], ["formation.svg", "formation.png"]);
     assert_eq!(files.len(), 6);
 }
@@ -147,14 +114,8 @@ fn values_without_number_leave_gaps_and_an_empty_half_is_left_out() {
         let error = if (5..9).contains(&now) { f64::NAN } else { 1.0 };
         let mut values = tick(now, error);
         values.graph_distance = f64::INFINITY;
-        let place = if now == 3 {
-            [f64::NAN; 2]
-        } else {
-            [f64::from(now), 2.5]
-        };
-        recorder
-            .tick(&values, [row(1, place, Cell { x: -3, y: 900 })].into_iter())
-            .unwrap();
+        let place = if now == 3 { [f64::NAN; 2] } else { [f64::from(now), 2.5] };
+        recorder.tick(&values, [row(1, place, Cell { x: -3, y: 900 })].into_iter()).unwrap();
     }
     let history = recorder.finish().unwrap();
     let dir = tempfile::tempdir().unwrap();
@@ -172,23 +133,14 @@ fn packets_are_counted_per_second() {
         let dir = tempfile::tempdir().unwrap();
         let files = canvas.write(&dir.path().join("p")).unwrap();
         let text = std::fs::read_to_string(&files[0]).unwrap();
-        assert!(
-            text.contains("packets per second") && text.contains(">20<"),
-            "{ticks}"
-        );
+        assert!(text.contains("packets per second") && text.contains(">20<"), "{ticks}");
         // Constant rates are level lines: all points of a curve have the same height.
         let curve = text
             .lines()
-            .find(|line| {
-                line.starts_with("<path")
-                    && line.contains("stroke=\"#0072b2\" stroke-width=\"1.8\"")
-            })
+            .find(|line| line.starts_with("<path") && line.contains("stroke=\"#0072b2\" stroke-width=\"1.8\""))
             .unwrap();
         let line = curve.split('"').nth(1).unwrap();
-        let mut heights: Vec<&str> = line
-            .split(['M', 'L'])
-            .filter_map(|point| point.split(' ').nth(1))
-            .collect();
+        let mut heights: Vec<&str> = line.split(['M', 'L']).filter_map(|point| point.split(' ').nth(1)).collect();
         heights.dedup();
         assert_eq!(heights.len(), 1, "{ticks}: {heights:?}");
     }
@@ -204,9 +156,7 @@ fn north_is_up_walls_are_dark_and_the_way_has_its_colour() {
     for now in 0..15 {
         let place = [f64::from(now) + 2.5, 4.5];
         let robots = [row(7, place, Cell { x: 16, y: 4 })];
-        recorder
-            .tick(&tick(now, f64::NAN), robots.into_iter())
-            .unwrap();
+        recorder.tick(&tick(now, f64::NAN), robots.into_iter()).unwrap();
     }
     let history = recorder.finish().unwrap();
     let canvas = trajectories::draw(&terrain, &history, &[]).unwrap();
@@ -220,15 +170,11 @@ fn north_is_up_walls_are_dark_and_the_way_has_its_colour() {
     let [left, top, side, _] = frame.unwrap();
     let cell = side / 20.0;
     let pixel = |x: f64, y: f64| -> [u8; 3] {
-        let at =
-            [left + (x + 0.5) * cell, top + (19.5 - y) * cell].map(|units| (units * 2.0) as usize);
+        let at = [left + (x + 0.5) * cell, top + (19.5 - y) * cell].map(|units| (units * 2.0) as usize);
         let from = (at[1] * width as usize + at[0]) * 3;
         bytes[from..from + 3].try_into().unwrap()
     };
-    assert!(
-        pixel(0.0, 19.0).iter().all(|value| *value < 90),
-        "the wall in the north-west"
-    );
+    assert!(pixel(0.0, 19.0).iter().all(|value| *value < 90), "the wall in the north-west");
     assert_eq!(pixel(0.0, 0.0), [255; 3]);
     assert_eq!(pixel(9.0, 4.0), PALETTE[0].rgb, "on the way");
     assert_eq!(pixel(9.0, 15.0), [255; 3], "its mirror image");
@@ -236,35 +182,21 @@ fn north_is_up_walls_are_dark_and_the_way_has_its_colour() {
 
 #[test]
 fn a_small_part_of_a_large_map_is_shown_alone() {
-    let text = |side: u16| {
-        format!(
-            "{:?}",
-            trajectories::draw(&land(side), &history(2, 20, 1.0, 1.0), &[])
-        )
-    };
+    let text = |side: u16| format!("{:?}", trajectories::draw(&land(side), &history(2, 20, 1.0, 1.0), &[]));
     assert!(text(300).contains("part of a map of 300 × 300"));
     assert!(!text(30).contains("part of"));
 }
 
 #[test]
 fn crowds_and_noisy_land_stay_small() {
-    let plan = Plan {
-        width: 256,
-        height: 256,
-        classes: 9,
-        seed: 5,
-    };
+    let plan = Plan { width: 256, height: 256, classes: 9, seed: 5 };
     let terrain = uniform(&plan).unwrap();
     for robots in [6, 200, 201, 2000, 100_000] {
         let dir = tempfile::tempdir().unwrap();
         let history = history(robots, 12, 3.0, f64::NAN);
         for path in run_pictures(&terrain, &history, &[(1, 2)], dir.path()).unwrap() {
             let bytes = std::fs::metadata(&path).unwrap().len();
-            assert!(
-                bytes < 2_000_000,
-                "{robots} robots: {} {bytes}",
-                path.display()
-            );
+            assert!(bytes < 2_000_000, "{robots} robots: {} {bytes}", path.display());
         }
     }
 }

@@ -2,18 +2,12 @@ use crate::ticks::{enclosing, grouped, linear, logarithmic, round_down, sound};
 use proptest::prelude::*;
 
 fn labels(low: f64, high: f64, most: usize) -> Vec<String> {
-    linear(low, high, most)
-        .into_iter()
-        .map(|tick| tick.label)
-        .collect()
+    linear(low, high, most).into_iter().map(|tick| tick.label).collect()
 }
 
 #[test]
 fn labels_are_short_and_exact() {
-    assert_eq!(
-        labels(0.0, 1.0, 5),
-        ["0", "0.2", "0.4", "0.6", "0.8", "1.0"]
-    );
+    assert_eq!(labels(0.0, 1.0, 5), ["0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
     assert_eq!(labels(-5.0, 5.0, 4), ["-5", "0", "5"]);
     assert_eq!(labels(0.0, 5000.0, 5).last().unwrap(), "5000");
     assert_eq!(labels(0.0, 50_000.0, 5)[1..3], ["10k", "20k"]);
@@ -21,10 +15,7 @@ fn labels_are_short_and_exact() {
     assert_eq!(labels(1e6, 1e6 + 3.0, 3)[1], "1000001");
     assert_eq!(labels(0.0, 3e-9, 3), ["0", "1e-9", "2e-9", "3e-9"]);
     assert_eq!(labels(0.0, 4e20, 4)[1], "1e20");
-    assert_eq!(
-        labels(0.31, 0.59, 6),
-        ["0.35", "0.40", "0.45", "0.50", "0.55"]
-    );
+    assert_eq!(labels(0.31, 0.59, 6), ["0.35", "0.40", "0.45", "0.50", "0.55"]);
 }
 
 #[test]
@@ -56,10 +47,7 @@ fn logarithmic_marks_thin_out_with_the_range() {
         ticks.map(|tick| tick.label).collect()
     };
     assert_eq!(texts(10.0, 160.0, 8), ["10", "20", "50", "100"]);
-    assert_eq!(
-        texts(1.0, 1e5, 8),
-        ["1", "10", "100", "1000", "10k", "100k"]
-    );
+    assert_eq!(texts(1.0, 1e5, 8), ["1", "10", "100", "1000", "10k", "100k"]);
     assert_eq!(texts(1e-9, 1e9, 6).len(), 7);
     // Less than one step of 1, 2, 5: an axis needs marks all the same.
     assert!(texts(21.0, 49.0, 6).len() >= 2);
@@ -67,14 +55,7 @@ fn logarithmic_marks_thin_out_with_the_range() {
 
 #[test]
 fn lengths_of_scale_bars_are_round() {
-    for (value, round) in [
-        (1.0, 1.0),
-        (1.99, 1.0),
-        (2.0, 2.0),
-        (49.0, 20.0),
-        (0.07, 0.05),
-        (99.9, 50.0),
-    ] {
+    for (value, round) in [(1.0, 1.0), (1.99, 1.0), (2.0, 2.0), (49.0, 20.0), (0.07, 0.05), (99.9, 50.0)] {
         assert_eq!(round_down(value), round, "{value}");
     }
     assert_eq!(round_down(0.0), 1.0);

@@ -98,16 +98,10 @@ impl Attacker {
     }
 
     fn say(&mut self, message: &Message) {
-        let header = Header {
-            boot: STARTS,
-            sender: self.attack.claims,
-            sequence: self.sequence,
-        };
+        let header = Header { boot: STARTS, sender: self.attack.claims, sequence: self.sequence };
         self.sequence = self.sequence.wrapping_add(1);
         let mut frame = Bounded::<u8, OUTBOX>::new();
-        self.wire
-            .encode(header, message, &mut frame)
-            .expect("the scenario was checked for its number");
+        self.wire.encode(header, message, &mut frame).expect("the scenario was checked for its number");
         self.outbox.extend_from_slice(&frame);
     }
 }

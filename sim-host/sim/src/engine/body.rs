@@ -35,13 +35,7 @@ impl From<Pose> for KinematicState<f32> {
 impl Kinematics {
     pub(super) fn new(terrain: &Terrain, tick_s: f64) -> Self {
         let [x, y] = terrain.origin_m;
-        Self {
-            frame: GridFrame {
-                origin_m: Vec2::new(x, y),
-                cell_m: terrain.cell_m,
-            },
-            tick_s,
-        }
+        Self { frame: GridFrame { origin_m: Vec2::new(x, y), cell_m: terrain.cell_m }, tick_s }
     }
 
     /// The body at `now_units`. It holds its new cell from the start of a crossing, but gets to the
@@ -49,10 +43,7 @@ impl Kinematics {
     /// the fraction of a tick (see [`World::advance`]) keeps its speed.
     pub(super) fn pose(&self, world: &World, body: &Body, now_units: u64) -> Pose {
         let center = self.frame.center(body.cell);
-        let at_rest = Pose {
-            position_m: [center.x, center.y],
-            velocity_mps: [0.0; 2],
-        };
+        let at_rest = Pose { position_m: [center.x, center.y], velocity_mps: [0.0; 2] };
         if body.entered_by == Dir::Stay || body.free_at + u64::from(UNIT) <= now_units {
             return at_rest;
         }
@@ -85,23 +76,13 @@ mod tests {
         let kinematics = Kinematics::new(&terrain, 0.5);
         let starts = [(RobotId(1), Cell::new(0, 0))];
         let mut world = World::new(terrain, MoveRules::default(), 0, starts).expect("free");
-        let pose = |world: &World, ticks: u64| {
-            kinematics.pose(world, &world.bodies()[0], ticks * u64::from(UNIT))
-        };
-        let start = Pose {
-            position_m: [105.0, -5.0],
-            velocity_mps: [0.0; 2],
-        };
+        let pose = |world: &World, ticks: u64| kinematics.pose(world, &world.bodies()[0], ticks * u64::from(UNIT));
+        let start = Pose { position_m: [105.0, -5.0], velocity_mps: [0.0; 2] };
         assert_eq!(pose(&world, 0), start);
         let east = Command::Move([Dir::East].into_iter().collect());
         world.advance(10, &[east]);
         // Four ticks of half a second for ten metres.
-        for (ticks, x, speed) in [
-            (10, 105.0, 5.0),
-            (12, 110.0, 5.0),
-            (14, 115.0, 5.0),
-            (15, 115.0, 0.0),
-        ] {
+        for (ticks, x, speed) in [(10, 105.0, 5.0), (12, 110.0, 5.0), (14, 115.0, 5.0), (15, 115.0, 0.0)] {
             let now = pose(&world, ticks);
             assert_eq!(now.position_m, [x, -5.0], "after {ticks} ticks");
             assert_eq!(now.velocity_mps, [speed, 0.0], "after {ticks} ticks");

@@ -8,9 +8,7 @@ use crate::metrics::{FormationMeter, Keeping};
 use crate::record::Motion;
 use crate::scenario::{Robot, Scenario};
 use crate::world::{Misplaced, World};
-use staya_controller::agent::{
-    AgentConfig, AnyInputs, AnySurroundings, CellState, Command, Inputs, OnGrid, Task,
-};
+use staya_controller::agent::{AgentConfig, AnyInputs, AnySurroundings, CellState, Command, Inputs, OnGrid, Task};
 use staya_controller::grid::UNIT;
 use staya_controller::robot::Mode;
 use staya_controller::robot::RobotId;
@@ -33,15 +31,11 @@ impl Grid {
     /// When two robots start in one cell or one starts in a wall.
     pub fn new(scenario: &Scenario) -> Result<Self, Misplaced> {
         let starts = scenario.robots.iter().map(|robot| (robot.id, robot.start));
-        let world = World::new(
-            scenario.terrain.clone(),
-            scenario.rules,
-            scenario.seed,
-            starts,
-        )?;
-        let meter = scenario.formation.as_ref().map(|graph| {
-            FormationMeter::new(graph, scenario.formation_params.eps, world.terrain())
-        });
+        let world = World::new(scenario.terrain.clone(), scenario.rules, scenario.seed, starts)?;
+        let meter = scenario
+            .formation
+            .as_ref()
+            .map(|graph| FormationMeter::new(graph, scenario.formation_params.eps, world.terrain()));
         Ok(Self {
             kinematics: Kinematics::new(world.terrain(), scenario.tick_s()),
             robots: scenario.robots.clone(),
@@ -75,20 +69,12 @@ pub(super) fn busy(free_at: u64, now_units: u64, tick_us: u32) -> Duration {
 impl Ground for Grid {
     type Scratch = Vec<u8>;
 
-    fn sense<'a>(
-        &'a self,
-        index: usize,
-        tick: u32,
-        cells: &'a mut Self::Scratch,
-    ) -> AnyInputs<'a, f32> {
+    fn sense<'a>(&'a self, index: usize, tick: u32, cells: &'a mut Self::Scratch) -> AnyInputs<'a, f32> {
         let body = &self.world.bodies()[index];
         Inputs {
             state: self.kinematics.pose(&self.world, body, units(tick)).into(),
             surroundings: AnySurroundings::OnGrid(OnGrid {
-                cell: CellState {
-                    cell: body.cell,
-                    busy: busy(body.free_at, units(tick), self.tick_us),
-                },
+                cell: CellState { cell: body.cell, busy: busy(body.free_at, units(tick), self.tick_us) },
                 window: self.world.window(body.cell, self.radius, cells),
             }),
             inbox: &[],
@@ -100,11 +86,7 @@ impl Ground for Grid {
         let pose = self.kinematics.pose(&self.world, body, units(tick));
         let [x, y] = pose.position_m;
         let [vx, vy] = pose.velocity_mps;
-        Motion {
-            cell: body.cell,
-            position_m: [x, y, 0.0],
-            velocity_mps: [vx, vy, 0.0],
-        }
+        Motion { cell: body.cell, position_m: [x, y, 0.0], velocity_mps: [vx, vy, 0.0] }
     }
 
     fn advance(&mut self, tick: u32, commands: &[Command<f32>]) {
@@ -136,11 +118,7 @@ impl Ground for Grid {
 
     fn keeping(&mut self, counts: bool) -> Option<Keeping> {
         let (meter, bodies) = (self.meter.as_mut()?, self.world.bodies());
-        Some(if counts {
-            meter.measure(bodies)
-        } else {
-            meter.look(bodies)
-        })
+        Some(if counts { meter.measure(bodies) } else { meter.look(bodies) })
     }
 
     fn mean_keeping(&self) -> Option<Keeping> {

@@ -14,12 +14,7 @@ pub trait Ground: Send + Sync {
     type Scratch: Default + Send;
 
     /// What the robot of body `index` senses at the start of `tick`; the inbox is empty.
-    fn sense<'a>(
-        &'a self,
-        index: usize,
-        tick: u32,
-        scratch: &'a mut Self::Scratch,
-    ) -> AnyInputs<'a, f32>;
+    fn sense<'a>(&'a self, index: usize, tick: u32, scratch: &'a mut Self::Scratch) -> AnyInputs<'a, f32>;
 
     /// How the body moves at the start of `tick`.
     fn motion(&self, index: usize, tick: u32) -> Motion;
@@ -72,15 +67,9 @@ pub trait Ground: Send + Sync {
 }
 
 /// A guidance law as a host has it: it is told whatever its world senses, and threads have it in turn.
-pub trait HostLaw:
-    for<'a> Guidance<f32, Input<'a> = AnySurroundings<'a, f32>, Workspace: Default> + Send
-{
-}
+pub trait HostLaw: for<'a> Guidance<f32, Input<'a> = AnySurroundings<'a, f32>, Workspace: Default> + Send {}
 
-impl<G> HostLaw for G where
-    G: for<'a> Guidance<f32, Input<'a> = AnySurroundings<'a, f32>, Workspace: Default> + Send
-{
-}
+impl<G> HostLaw for G where G: for<'a> Guidance<f32, Input<'a> = AnySurroundings<'a, f32>, Workspace: Default> + Send {}
 
 /// A state in words of 64 bits.
 pub type StateWords = heapless::Vec<u64, 8>;

@@ -36,9 +36,7 @@ pub(super) fn grid_words(tick: u32, body: &Body, mode: Mode) -> [u64; 2] {
 
 /// The hash of a swarm: a sum, so that the order of robots plays no part.
 pub(super) fn sum(chains: &[Chain]) -> u64 {
-    chains
-        .iter()
-        .fold(0, |sum, chain| sum.wrapping_add(chain.0))
+    chains.iter().fold(0, |sum, chain| sum.wrapping_add(chain.0))
 }
 
 #[cfg(test)]
@@ -46,12 +44,7 @@ mod tests {
     use super::*;
     use staya_controller::grid::{Cell, Dir};
 
-    const BODY: Body = Body {
-        id: RobotId(1),
-        cell: Cell::new(3, 4),
-        entered_by: Dir::East,
-        free_at: 70,
-    };
+    const BODY: Body = Body { id: RobotId(1), cell: Cell::new(3, 4), entered_by: Dir::East, free_at: 70 };
 
     fn chain(steps: &[(u32, Body, Mode)]) -> Chain {
         let mut chain = Chain::new(RobotId(1));
@@ -63,14 +56,8 @@ mod tests {
 
     #[test]
     fn every_part_of_a_state_and_its_order_count() {
-        let moved = |x, y| Body {
-            cell: Cell::new(x, y),
-            ..BODY
-        };
-        let late = Body {
-            free_at: 71,
-            ..BODY
-        };
+        let moved = |x, y| Body { cell: Cell::new(x, y), ..BODY };
+        let late = Body { free_at: 71, ..BODY };
         let cases = [
             vec![],
             vec![(1, BODY, Mode::Cruise)],

@@ -33,8 +33,7 @@ use attacker::Attacker;
 use hash::Chain;
 use rayon::prelude::*;
 use staya_controller::agent::{
-    Agent, AgentConfig, AnyInputs, Command, Event, GuidanceSetup, Inputs, NEIGHBORS, OUTBOX,
-    Safety, SafetySetup, Setup,
+    Agent, AgentConfig, AnyInputs, Command, Event, GuidanceSetup, Inputs, NEIGHBORS, OUTBOX, Safety, SafetySetup, Setup,
 };
 use staya_controller::auth::Key;
 use staya_controller::grid::Cell;
@@ -120,10 +119,7 @@ impl<W: Ground> Tick<'_, W> {
             }
             heard
         };
-        Inputs {
-            inbox,
-            ..self.ground.sense(index, self.tick, senses)
-        }
+        Inputs { inbox, ..self.ground.sense(index, self.tick, senses) }
     }
 }
 
@@ -172,11 +168,7 @@ where
 {
     /// The scenario before its first tick, on `ground`. `brains(i)` makes guidance law and safety layer of robot number `i` in
     /// [`Scenario::robots`], at its first start and at each restart.
-    pub fn new(
-        scenario: &Scenario,
-        ground: W,
-        brains: impl Fn(usize) -> (G, A) + Send + Sync + 'static,
-    ) -> Self {
+    pub fn new(scenario: &Scenario, ground: W, brains: impl Fn(usize) -> (G, A) + Send + Sync + 'static) -> Self {
         let robots = scenario.robots.clone();
         let (format, cell_m) = (scenario.radio.format, scenario.terrain.cell_m);
         let attackers = scenario.attacks.iter();
@@ -210,34 +202,21 @@ where
             throttled: 0,
             robots,
         };
-        engine.computers = (0..engine.robots.len())
-            .map(|index| engine.start(index, 0))
-            .collect();
-        let waiting = |robot: &Robot| Status {
-            mode: Mode::Idle,
-            leader: RobotId::NOBODY,
-            target: robot.goal,
-        };
+        engine.computers = (0..engine.robots.len()).map(|index| engine.start(index, 0)).collect();
+        let waiting = |robot: &Robot| Status { mode: Mode::Idle, leader: RobotId::NOBODY, target: robot.goal };
         engine.statuses = engine.robots.iter().map(waiting).collect();
         engine
     }
 
     /// The same with some of its robots' controllers outside of this process; before the first tick.
     #[must_use]
-    pub fn with_external(
-        mut self,
-        scenario: &Scenario,
-        controllers: Box<dyn ExternalController>,
-    ) -> Self {
+    pub fn with_external(mut self, scenario: &Scenario, controllers: Box<dyn ExternalController>) -> Self {
         let robots = controllers.robots().into_iter();
         let robots = robots.filter(|&index| index < self.robots.len());
         let robots = robots.map(|index| (index, scenario.guidance(index), scenario.safety()));
         let robots: Vec<_> = robots.collect();
         let indices: Vec<_> = robots.iter().map(|&(index, ..)| index).collect();
-        self.external = Some(External {
-            controllers,
-            robots,
-        });
+        self.external = Some(External { controllers, robots });
         for index in indices {
             self.restart(index, 0);
         }
@@ -247,11 +226,7 @@ where
     /// What the computer of robot `index` must know at its start number `boot`.
     fn config(&self, index: usize, boot: u8) -> AgentConfig<f32> {
         let tick = Duration::from_micros(i32::try_from(self.tick_us).unwrap_or(i32::MAX));
-        AgentConfig {
-            boot,
-            seed: self.seed,
-            ..self.ground.config(self.robots[index].id, tick)
-        }
+        AgentConfig { boot, seed: self.seed, ..self.ground.config(self.robots[index].id, tick) }
     }
 
     /// Computer number `index` with its own agent, started now.
@@ -264,11 +239,7 @@ where
         self.computer(Some(agent), boot)
     }
 
-    fn computer(
-        &self,
-        agent: Option<Agent<f32, G, NEIGHBORS, A, RobotWire>>,
-        boot: u8,
-    ) -> Computer<G, A> {
+    fn computer(&self, agent: Option<Agent<f32, G, NEIGHBORS, A, RobotWire>>, boot: u8) -> Computer<G, A> {
         Computer {
             agent,
             outbox: heapless::Vec::new(),
@@ -286,12 +257,7 @@ where
         let robots = self.external.as_mut().and_then(|external| {
             let found = external.robots.iter().find(|(robot, ..)| *robot == index);
             let (_, guidance, safety) = found?;
-            let setup = Setup {
-                agent: config,
-                guidance: guidance.clone(),
-                safety: *safety,
-                format: self.format,
-            };
+            let setup = Setup { agent: config, guidance: guidance.clone(), safety: *safety, format: self.format };
             external.controllers.start(index, setup, task);
             Some(())
         });
@@ -360,9 +326,7 @@ where
         };
         let controllers = &mut external.controllers;
         let robots = external.robots.iter().map(|&(index, ..)| index);
-        let lost: Vec<_> = robots
-            .filter(|&index| controllers.has_restarted(index))
-            .collect();
+        let lost: Vec<_> = robots.filter(|&index| controllers.has_restarted(index)).collect();
         for index in lost {
             let computer = &self.computers[index];
             // One that is down anyway starts when that is over.
@@ -400,11 +364,7 @@ where
             if tick < computer.down_until {
                 continue;
             }
-            let moment = Tick {
-                tick,
-                ground: &self.ground,
-                radio: &self.radio,
-            };
+            let moment = Tick { tick, ground: &self.ground, radio: &self.radio };
             let inputs = moment.inputs(index, computer, &mut senses, &mut heard);
             let now = computer.now(tick, self.tick_us);
             external.controllers.send(index, tick, now, &inputs);
@@ -438,56 +398,44 @@ where
     /// Steps the robots whose agents are here, in parallel.
     fn decide_here(&mut self) -> PacketCounts {
         let (tick, tick_us, keeps_events) = (self.tick, self.tick_us, self.keeps_events);
-        let moment = Tick {
-            tick,
-            ground: &self.ground,
-            radio: &self.radio,
-        };
+        let moment = Tick { tick, ground: &self.ground, radio: &self.radio };
         let scratch = || (G::Workspace::default(), W::Scratch::default(), Vec::new());
-        let work = (
-            &mut self.computers,
-            &mut self.commands,
-            &mut self.statuses,
-            &mut self.positions_m,
-        );
+        let work = (&mut self.computers, &mut self.commands, &mut self.statuses, &mut self.positions_m);
         work.into_par_iter()
             .enumerate()
             .with_min_len(BATCH)
-            .map_init(
-                scratch,
-                |(workspace, senses, heard), (index, (computer, command, status, position_m))| {
-                    let [x, y, _] = moment.ground.motion(index, tick).position_m;
-                    *position_m = [x, y];
-                    computer.outbox.clear();
-                    computer.events.clear();
-                    *command = Command::Hold;
-                    if tick < computer.down_until {
-                        status.fall_silent();
-                        return PacketCounts::default();
-                    }
-                    if computer.agent.is_none() {
-                        return PacketCounts::default();
-                    }
-                    let now = computer.now(tick, tick_us);
-                    let inputs = moment.inputs(index, computer, senses, heard);
-                    let Some(agent) = &mut computer.agent else {
-                        return PacketCounts::default();
-                    };
-                    let out = agent.step(&inputs, now, workspace);
-                    computer.outbox = out.outbox;
-                    computer.mail.clear();
-                    if keeps_events {
-                        computer.events.extend_from_slice(&out.events);
-                    }
-                    *command = out.command;
-                    *status = Status {
-                        mode: agent.mode(),
-                        leader: agent.leader(),
-                        target: agent.target().unwrap_or(status.target),
-                    };
-                    PacketCounts::refused(out.rejected, out.refused)
-                },
-            )
+            .map_init(scratch, |(workspace, senses, heard), (index, (computer, command, status, position_m))| {
+                let [x, y, _] = moment.ground.motion(index, tick).position_m;
+                *position_m = [x, y];
+                computer.outbox.clear();
+                computer.events.clear();
+                *command = Command::Hold;
+                if tick < computer.down_until {
+                    status.fall_silent();
+                    return PacketCounts::default();
+                }
+                if computer.agent.is_none() {
+                    return PacketCounts::default();
+                }
+                let now = computer.now(tick, tick_us);
+                let inputs = moment.inputs(index, computer, senses, heard);
+                let Some(agent) = &mut computer.agent else {
+                    return PacketCounts::default();
+                };
+                let out = agent.step(&inputs, now, workspace);
+                computer.outbox = out.outbox;
+                computer.mail.clear();
+                if keeps_events {
+                    computer.events.extend_from_slice(&out.events);
+                }
+                *command = out.command;
+                *status = Status {
+                    mode: agent.mode(),
+                    leader: agent.leader(),
+                    target: agent.target().unwrap_or(status.target),
+                };
+                PacketCounts::refused(out.rejected, out.refused)
+            })
             .reduce(PacketCounts::default, |one, other| one + other)
     }
 
@@ -497,8 +445,7 @@ where
         for (index, status) in self.statuses.iter().enumerate() {
             self.chains[index].extend(&ground.words(index, tick, status));
             let arrival = ground.arrival(index, tick, status);
-            self.arrivals
-                .note(index, arrival.is_some(), arrival.unwrap_or(0));
+            self.arrivals.note(index, arrival.is_some(), arrival.unwrap_or(0));
         }
     }
 
@@ -521,17 +468,14 @@ where
 
     /// The robots' lines of the record, by rising number, as of now.
     pub fn rows(&self) -> impl Iterator<Item = RobotRow> {
-        self.statuses
-            .iter()
-            .enumerate()
-            .map(|(index, status)| RobotRow {
-                id: self.robots[index].id.0,
-                motion: self.ground.motion(index, self.tick),
-                mode: status.mode,
-                leader: status.leader.0,
-                target: status.target,
-                formation_error_cells: self.ground.formation_error(index) as f32,
-            })
+        self.statuses.iter().enumerate().map(|(index, status)| RobotRow {
+            id: self.robots[index].id.0,
+            motion: self.ground.motion(index, self.tick),
+            mode: status.mode,
+            leader: status.leader.0,
+            target: status.target,
+            formation_error_cells: self.ground.formation_error(index) as f32,
+        })
     }
 
     /// Ticks done.

@@ -70,10 +70,7 @@ pub fn operated(scenario: &Scenario) -> Result<Box<dyn Operated>, Misplaced> {
     })
 }
 
-fn boxed<W, G, A>(
-    scenario: &Scenario,
-    mut engine: Engine<W, Commanded<f32, G>, A>,
-) -> Box<dyn Operated>
+fn boxed<W, G, A>(scenario: &Scenario, mut engine: Engine<W, Commanded<f32, G>, A>) -> Box<dyn Operated>
 where
     W: Ground + 'static,
     G: HostLaw + 'static,
@@ -82,12 +79,7 @@ where
     engine.keeps_events = true;
     let key = scenario.key.as_ref();
     let (wire, number) = RobotWire::operator(scenario.radio.format, key, 1);
-    Box::new(OperatedEngine {
-        engine,
-        wire,
-        number: key.map(|_| number),
-        sequence: 0,
-    })
+    Box::new(OperatedEngine { engine, wire, number: key.map(|_| number), sequence: 0 })
 }
 
 /// A swarm, and what its operator speaks.
@@ -142,11 +134,7 @@ where
 
     fn tell(&mut self, index: usize, header: Header, message: &Message) {
         let mut frame = heapless::Vec::<u8, MAX_FRAME_LEN>::new();
-        let header = Header {
-            sender: self.number.unwrap_or(header.sender),
-            sequence: self.sequence,
-            ..header
-        };
+        let header = Header { sender: self.number.unwrap_or(header.sender), sequence: self.sequence, ..header };
         self.sequence = self.sequence.wrapping_add(1);
         // What the controller's messages can be fits.
         if self.is_up(index) && self.wire.encode(header, message, &mut frame).is_ok() {
@@ -161,10 +149,7 @@ where
 
     fn set_parameter(&mut self, index: usize, parameter: Parameter, value: f32) -> bool {
         let is_up = self.is_up(index);
-        let agent = self.engine.computers[index]
-            .agent
-            .as_mut()
-            .filter(|_| is_up);
+        let agent = self.engine.computers[index].agent.as_mut().filter(|_| is_up);
         agent.is_some_and(|agent| agent.set_parameter(parameter, value))
     }
 

@@ -8,8 +8,8 @@ use crate::scenario::{Order, PlaneSetup, Robot, Scenario, Target};
 use crate::world::plane::{Clearance, Disc, Plane, narrow};
 use crate::world::window;
 use staya_controller::agent::{
-    AgentConfig, AnyInputs, AnySurroundings, CellState, Command, InCell, InCells, InPlane, Inputs,
-    KinematicState, OnGrid, Task, WAYPOINTS, Waypoint,
+    AgentConfig, AnyInputs, AnySurroundings, CellState, Command, InCell, InCells, InPlane, Inputs, KinematicState,
+    OnGrid, Task, WAYPOINTS, Waypoint,
 };
 use staya_controller::auth::Key;
 use staya_controller::geom::{Position, Vec2, Vec3};
@@ -76,16 +76,11 @@ impl PlaneGround {
         let Senses { cells, obstacles } = senses;
         let sight_m = self.setup.sight_m + self.setup.radius_m;
         obstacles.clear();
-        let near = self
-            .plane
-            .solids()
-            .iter()
-            .filter(|solid| solid.distance_m(position_m) <= sight_m);
+        let near = self.plane.solids().iter().filter(|solid| solid.distance_m(position_m) <= sight_m);
         obstacles.extend(near.map(|solid| narrow(&solid.seen_from(position_m))));
         let place = self.in_cell(position_m);
-        let window = place
-            .zip(self.plane.terrain())
-            .and_then(|((cell, _, _), land)| window(land, cell, self.radius, cells));
+        let window =
+            place.zip(self.plane.terrain()).and_then(|((cell, _, _), land)| window(land, cell, self.radius, cells));
         if let (Some((cell, off, cell_m)), Some(window)) = (place, &window) {
             // The frame as seen from the robot.
             let origin = |cells: i16, axis: usize| -off[axis] - (f64::from(cells) + 0.5) * cell_m;
@@ -96,10 +91,7 @@ impl PlaneGround {
             let walls = grid_walls::<f32, WALLS>(window, &frame, Vec2::ZERO, sight_m as f32);
             obstacles.extend(walls);
         }
-        let plane = InPlane {
-            max_speed_mps: self.plane.max_speed_mps(position_m) as f32,
-            obstacles,
-        };
+        let plane = InPlane { max_speed_mps: self.plane.max_speed_mps(position_m) as f32, obstacles };
         let [vx, vy, vz] = velocity_mps.map(|v| v as f32);
         Inputs {
             state: KinematicState {
@@ -110,18 +102,9 @@ impl PlaneGround {
             surroundings: match place {
                 None => AnySurroundings::InPlane(plane),
                 Some((cell, off, cell_m)) => AnySurroundings::InCells(InCells {
-                    grid: OnGrid {
-                        cell: CellState {
-                            cell,
-                            busy: Duration::ZERO,
-                        },
-                        window,
-                    },
+                    grid: OnGrid { cell: CellState { cell, busy: Duration::ZERO }, window },
                     plane,
-                    in_cell: InCell {
-                        offset_m: Vec2::new(off[0] as f32, off[1] as f32),
-                        cell_m: cell_m as f32,
-                    },
+                    in_cell: InCell { offset_m: Vec2::new(off[0] as f32, off[1] as f32), cell_m: cell_m as f32 },
                 }),
             },
             inbox: &[],
@@ -158,15 +141,10 @@ pub(super) fn frames(orders: &[Order], format: Format, key: Option<&Key>) -> Vec
             position_mm: order.target.position_m.map(|x| milli(x) as i32),
             velocity_mmps: order.target.velocity_mps.map(|x| milli(x) as i16),
         };
-        let header = Header {
-            boot: 0,
-            sender,
-            sequence,
-        };
+        let header = Header { boot: 0, sender, sequence };
         sequence = sequence.wrapping_add(1);
         let mut bytes = heapless::Vec::<u8, 64>::new();
-        wire.encode(header, &Message::Waypoint(place), &mut bytes)
-            .expect("a frame has at most 60 bytes");
+        wire.encode(header, &Message::Waypoint(place), &mut bytes).expect("a frame has at most 60 bytes");
         match frames.last_mut() {
             Some((tick, frame)) if *tick == order.tick => frame.extend_from_slice(&bytes),
             _ => frames.push((order.tick, bytes.to_vec())),
@@ -222,9 +200,7 @@ impl Ground for PlaneGround {
         let head = (u64::from(tick) << 8) | status.mode as u64;
         let numbers = disc.position_m.into_iter().chain(disc.velocity_mps);
         // Zero has two signs that nobody can tell apart.
-        core::iter::once(head)
-            .chain(numbers.map(|x| (x + 0.0).to_bits()))
-            .collect()
+        core::iter::once(head).chain(numbers.map(|x| (x + 0.0).to_bits())).collect()
     }
 
     fn arrival(&self, index: usize, tick: u32, status: &Status) -> Option<u64> {
@@ -270,10 +246,7 @@ impl Ground for PlaneGround {
     }
 
     fn orders(&self, tick: u32) -> Option<&[u8]> {
-        let at = self
-            .orders
-            .binary_search_by_key(&tick, |(tick, _)| *tick)
-            .ok()?;
+        let at = self.orders.binary_search_by_key(&tick, |(tick, _)| *tick).ok()?;
         Some(&self.orders[at].1)
     }
 }

@@ -6,9 +6,7 @@ use crate::record::{PacketCounts, RobotRow, TickRow};
 use crate::scenario::Scenario;
 use crate::world::Misplaced;
 use crate::world::plane::Clearance;
-use staya_controller::agent::{
-    AnyGuidance, AnySafety, CELLS, Commanded, HALF_PLANES, Safety, TEMPLATE, VISITS,
-};
+use staya_controller::agent::{AnyGuidance, AnySafety, CELLS, Commanded, HALF_PLANES, Safety, TEMPLATE, VISITS};
 use std::ops::ControlFlow;
 
 /// Cells of a search for windows up to radius 16 with their border: (2 * 16 + 3)^2.
@@ -52,8 +50,7 @@ pub struct Outcome {
 }
 
 /// Looks at the swarm after each tick, and says whether to go on.
-pub type Watch<'a> =
-    dyn FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>) -> ControlFlow<()> + 'a;
+pub type Watch<'a> = dyn FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>) -> ControlFlow<()> + 'a;
 
 /// Runs a scenario until all robots have arrived, its ticks are used up or `watch` breaks. `watch`
 /// sees the start as tick 0, then each tick, with the robots' lines by rising number.
@@ -125,15 +122,11 @@ fn agents<const C: usize>(
     let guidances: Vec<_> = (0..kinds).map(|index| scenario.guidance(index)).collect();
     let safety = scenario.safety();
     // Cell by cell there is neither speed nor distance.
-    let (speed_mps, tolerance_m) = scenario.plane.as_ref().map_or((0.0, 0.0), |setup| {
-        (setup.cruise_mps as f32, setup.tolerance_m as f32)
-    });
+    let (speed_mps, tolerance_m) =
+        scenario.plane.as_ref().map_or((0.0, 0.0), |setup| (setup.cruise_mps as f32, setup.tolerance_m as f32));
     move |index| {
         let guidance = guidances[index % kinds].guidance();
-        (
-            Commanded::new(guidance, speed_mps, tolerance_m),
-            safety.safety(),
-        )
+        (Commanded::new(guidance, speed_mps, tolerance_m), safety.safety())
     }
 }
 
@@ -154,10 +147,7 @@ where
     }
     let mut row = engine.first_row();
     loop {
-        let moment = Moment {
-            row: &row,
-            arrived: engine.arrivals.count(),
-        };
+        let moment = Moment { row: &row, arrived: engine.arrivals.count() };
         let flow = watch(&moment, &mut engine.rows());
         if flow.is_break() || engine.is_over() || engine.ticks() >= scenario.ticks {
             return engine.outcome();

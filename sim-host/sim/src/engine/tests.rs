@@ -2,8 +2,8 @@ use super::*;
 use crate::scenario::Overrides;
 use proptest::prelude::*;
 use staya_controller::agent::{
-    Action, AnySurroundings, BadInput, Decision, Guidance, GuidanceInput, Status as Standing,
-    Surroundings as _, Teamwork, ToCells, Unguarded,
+    Action, AnySurroundings, BadInput, Decision, Guidance, GuidanceInput, Status as Standing, Surroundings as _,
+    Teamwork, ToCells, Unguarded,
 };
 use staya_controller::grid::Dir;
 use staya_controller::rand::Rng;
@@ -67,10 +67,7 @@ impl Guidance<f32> for Scout {
         });
         Ok(Decision {
             action: Action::Moves([Dir::East].into_iter().collect()),
-            status: Standing {
-                is_at_goal: cell == input.goal,
-                ..Standing::default()
-            },
+            status: Standing { is_at_goal: cell == input.goal, ..Standing::default() },
             target: input.goal,
             ..Decision::default()
         })
@@ -88,9 +85,7 @@ fn scouts(scenario: &Scenario) -> (Engine<Grid, Scout, Unguarded>, Notes) {
     let known = Arc::new(Mutex::new(Vec::new()));
     let shared = known.clone();
     let ground = Grid::new(scenario).expect("free starts");
-    let engine = Engine::new(scenario, ground, move |_| {
-        (Scout(shared.clone()), Unguarded)
-    });
+    let engine = Engine::new(scenario, ground, move |_| (Scout(shared.clone()), Unguarded));
     (engine, known)
 }
 
@@ -114,11 +109,7 @@ fn everybody_decides_on_what_was_sent_a_tick_ago_whoever_comes_first() {
         let (one, two) = (at(1), at(2));
         // Both move each tick: the cell heard of is the one before the last move.
         let heard = |id, x: i16| {
-            if tick == 0 {
-                vec![]
-            } else {
-                vec![(id, Cell::new(x + tick - 1, 3))]
-            }
+            if tick == 0 { vec![] } else { vec![(id, Cell::new(x + tick - 1, 3))] }
         };
         assert_eq!((one.cell.x, &one.others), (3 + tick, &heard(2, 5)));
         assert_eq!((two.cell.x, &two.others), (5 + tick, &heard(1, 3)));
@@ -150,20 +141,12 @@ fn a_robot_that_is_down_stands_in_silence_and_starts_with_a_new_clock() {
     let own: Vec<_> = known.iter().filter(|k| k.id == 1).collect();
     let clocks: Vec<_> = own.iter().map(|k| k.now_us / 500_000).collect();
     assert_eq!(clocks, [0, 1, 0, 1, 2]);
-    assert_eq!(
-        own[2].cell,
-        own[1].cell + Cell::new(1, 0),
-        "it stood meanwhile"
-    );
+    assert_eq!(own[2].cell, own[1].cell + Cell::new(1, 0), "it stood meanwhile");
     assert!(own[2].others.is_empty(), "it forgot everybody");
     assert_eq!(own[3].others.len(), 1);
     assert_eq!(engine.computers[0].boot, 1);
     // The other one heard of its first start, then nothing new, then of its second start.
-    let heard: Vec<_> = known
-        .iter()
-        .filter(|k| k.id == 2)
-        .map(|k| k.others[..].to_vec())
-        .collect();
+    let heard: Vec<_> = known.iter().filter(|k| k.id == 2).map(|k| k.others[..].to_vec()).collect();
     assert_eq!(heard[2], heard[5]);
     assert_eq!(heard[6][0].1, own[2].cell);
 }
@@ -189,10 +172,7 @@ fn overlapping_faults_end_together_and_a_fault_without_length_is_a_restart() {
     let sent: Vec<_> = (0..10).map(|_| engine.step().packets.sent).collect();
     assert_eq!(sent, [2, 2, 1, 1, 1, 1, 1, 1, 2, 2]);
     assert_eq!(engine.computers[0].boot, 1);
-    assert_eq!(
-        (engine.computers[1].boot, engine.computers[1].epoch),
-        (1, 2)
-    );
+    assert_eq!((engine.computers[1].boot, engine.computers[1].epoch), (1, 2));
 }
 
 #[test]
@@ -230,11 +210,7 @@ fn a_run_ends_when_its_ticks_are_used_up_or_the_watcher_has_seen_enough() {
     assert_eq!(seen, [(0, 2), (1, 2), (2, 2), (3, 2), (4, 2)]);
     for enough in [0, 3] {
         let outcome = simulate(&scenario, |moment, _| {
-            if moment.row.tick == enough {
-                ControlFlow::Break(())
-            } else {
-                ControlFlow::Continue(())
-            }
+            if moment.row.tick == enough { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
         assert_eq!(outcome.expect("free starts").ticks, enough);
     }
@@ -264,10 +240,7 @@ fn a_formation_is_measured_and_arrives() {
     let outcome = simulate(&scenario, watch_nothing).expect("free starts");
     assert_eq!(outcome.arrived, 6);
     let keeping = outcome.formation.expect("a formation");
-    assert!(
-        keeping.error_per_agent > 0.0 && keeping.error_per_agent < 3.0,
-        "{keeping:?}"
-    );
+    assert!(keeping.error_per_agent > 0.0 && keeping.error_per_agent < 3.0, "{keeping:?}");
     assert!(keeping.best_fit_error_per_agent <= keeping.error_per_agent + 1.0);
 }
 
@@ -294,16 +267,10 @@ fn neither_a_run_nor_its_hash_depends_on_the_number_of_threads() {
     for threads in [2, 8] {
         let (other, other_rows) = trace(&scenario, threads);
         assert_eq!(other.trace_hash, one.trace_hash, "{threads} threads");
-        assert_eq!(
-            (other.packets, &other.arrival_times, other.ticks),
-            (one.packets, &one.arrival_times, one.ticks)
-        );
+        assert_eq!((other.packets, &other.arrival_times, other.ticks), (one.packets, &one.arrival_times, one.ticks));
         // NaN is not equal to itself.
-        let cells = |rows: &[RobotRow]| {
-            rows.iter()
-                .map(|r| (r.id, r.motion.cell, r.mode, r.target))
-                .collect::<Vec<_>>()
-        };
+        let cells =
+            |rows: &[RobotRow]| rows.iter().map(|r| (r.id, r.motion.cell, r.mode, r.target)).collect::<Vec<_>>();
         assert_eq!(cells(&other_rows), cells(&rows));
     }
 }

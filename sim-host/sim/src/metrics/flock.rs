@@ -71,11 +71,7 @@ impl<const D: usize> FlockMeter<D> {
     ///
     /// # Panics
     /// When there are not as many velocities as places.
-    pub fn look(
-        &mut self,
-        places_m: &[[f64; D]],
-        velocities_mps: &[[f64; D]],
-    ) -> Option<FlockMeasure> {
+    pub fn look(&mut self, places_m: &[[f64; D]], velocities_mps: &[[f64; D]]) -> Option<FlockMeasure> {
         assert_eq!(places_m.len(), velocities_mps.len(), "one velocity a robot");
         let is_sound = |vectors: &[[f64; D]]| vectors.iter().flatten().all(|c| c.is_finite());
         if places_m.is_empty() || !is_sound(places_m) || !is_sound(velocities_mps) {
@@ -86,30 +82,18 @@ impl<const D: usize> FlockMeter<D> {
         let (components, largest_component) = self.components(robots);
         let edges = self.edges.len();
         let centre = mean(places_m);
-        let radius_m = places_m
-            .iter()
-            .map(|&place| length(minus(place, centre)))
-            .fold(0.0, f64::max);
+        let radius_m = places_m.iter().map(|&place| length(minus(place, centre))).fold(0.0, f64::max);
         let drift = mean(velocities_mps);
-        let kinetic: f64 = velocities_mps
-            .iter()
-            .map(|&velocity| squared(minus(velocity, drift)) / 2.0)
-            .sum();
+        let kinetic: f64 = velocities_mps.iter().map(|&velocity| squared(minus(velocity, drift)) / 2.0).sum();
         Some(FlockMeasure {
             robots,
             edges,
             components,
             largest_component,
-            connectivity: if robots > 1 {
-                (robots - components) as f64 / (robots - 1) as f64
-            } else {
-                1.0
-            },
+            connectivity: if robots > 1 { (robots - components) as f64 / (robots - 1) as f64 } else { 1.0 },
             radius_m,
             // Each pair is two ordered ones.
-            deviation_energy: 2.0 * energy
-                / (2 * edges + 1) as f64
-                / (self.spacing_m * self.spacing_m),
+            deviation_energy: 2.0 * energy / (2 * edges + 1) as f64 / (self.spacing_m * self.spacing_m),
             velocity_mismatch: kinetic / robots as f64,
             polarisation: polarisation(velocities_mps),
         })
@@ -130,21 +114,13 @@ impl<const D: usize> FlockMeter<D> {
         self.parents.extend(0..places_m.len() as u32);
         let mut energy = 0.0;
         for (robot, &at) in (0..).zip(places_m) {
-            let query = Query {
-                at,
-                radius: self.range_m,
-                most: usize::MAX,
-                except: Some(robot),
-            };
+            let query = Query { at, radius: self.range_m, most: usize::MAX, except: Some(robot) };
             self.cells.within(&query, &mut self.found);
             for other in self.found.iter().filter(|other| other.index > robot) {
                 let off = other.distance_squared.sqrt() - self.spacing_m;
                 energy += off * off;
                 self.edges.push((robot, other.index));
-                let (a, b) = (
-                    root(&mut self.parents, robot),
-                    root(&mut self.parents, other.index),
-                );
+                let (a, b) = (root(&mut self.parents, robot), root(&mut self.parents, other.index));
                 self.parents[a.max(b) as usize] = a.min(b);
             }
         }
@@ -180,11 +156,7 @@ pub fn polarisation<const D: usize>(velocities_mps: &[[f64; D]]) -> f64 {
         .filter(|(_, length)| *length > 0.0)
         .map(|(velocity, length)| velocity.map(|c| c / length))
         .collect();
-    if directions.is_empty() {
-        0.0
-    } else {
-        length(mean(&directions))
-    }
+    if directions.is_empty() { 0.0 } else { length(mean(&directions)) }
 }
 
 /// What alpha-flocking asks for (OLF definition 4), and how far "few" and "bounded" go.
@@ -205,12 +177,7 @@ impl AlphaLimits {
     /// e1 = 0.005 and e2 = 0.001 (OLF figure 12), nine tenths in one component, all within `cohesion_radius_m`.
     #[must_use]
     pub const fn paper(cohesion_radius_m: f64) -> Self {
-        Self {
-            deviation_energy: 0.005,
-            velocity_mismatch: 0.001,
-            quasi_flock_share: 0.9,
-            cohesion_radius_m,
-        }
+        Self { deviation_energy: 0.005, velocity_mismatch: 0.001, quasi_flock_share: 0.9, cohesion_radius_m }
     }
 }
 
@@ -239,8 +206,7 @@ pub fn alpha_flocking(trace: &[Option<FlockMeasure>], limits: &AlphaLimits) -> A
         let first = trace.iter().rposition(is_broken).map_or(0, |last| last + 1);
         (first < trace.len()).then_some(first)
     };
-    let is_quasi =
-        |m: &FlockMeasure| m.largest_component as f64 >= limits.quasi_flock_share * m.robots as f64;
+    let is_quasi = |m: &FlockMeasure| m.largest_component as f64 >= limits.quasi_flock_share * m.robots as f64;
     let is_cohesive = |m: &FlockMeasure| m.radius_m <= limits.cohesion_radius_m;
     let is_even = |m: &FlockMeasure| m.deviation_energy <= limits.deviation_energy;
     let is_still = |m: &FlockMeasure| m.velocity_mismatch <= limits.velocity_mismatch;

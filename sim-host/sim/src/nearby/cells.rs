@@ -73,17 +73,10 @@ impl<R: Real, const D: usize> Cells<R, D> {
         self.origin = low;
         let most = (2 * points.len() as u64).max(4096);
         // Doubling the side ends: at last every axis has one cell.
-        let mut side = if self.side > R::ZERO {
-            self.side
-        } else {
-            R::MAX
-        };
+        let mut side = if self.side > R::ZERO { self.side } else { R::MAX };
         loop {
             self.counts = length.map(|length| length.over(side).cell(u32::MAX).max(1));
-            let all = self
-                .counts
-                .iter()
-                .fold(1_u64, |all, &n| all.saturating_mul(n.into()));
+            let all = self.counts.iter().fold(1_u64, |all, &n| all.saturating_mul(n.into()));
             if all <= most {
                 break;
             }
@@ -140,11 +133,7 @@ impl<R: Real, const D: usize> Cells<R, D> {
         } else {
             return straight();
         };
-        if from < to {
-            Span::Around(0, count)
-        } else {
-            Span::Around(from, to)
-        }
+        if from < to { Span::Around(0, count) } else { Span::Around(from, to) }
     }
 
     /// Whether all of the cells at this place along the axis are farther away than what still counts.
@@ -169,14 +158,7 @@ impl<R: Real, const D: usize> Cells<R, D> {
 
     /// Goes through the axes from the last to the first, on each from the middle to the outside: when the nearest are
     /// found early, the outer rows need no look.
-    fn descend(
-        &self,
-        at: [R; D],
-        axis: usize,
-        row: usize,
-        spans: &[Span; D],
-        nearest: &mut Nearest<'_, R, D>,
-    ) {
+    fn descend(&self, at: [R; D], axis: usize, row: usize, spans: &[Span; D], nearest: &mut Nearest<'_, R, D>) {
         let row = row * self.counts[axis] as usize;
         let inner = |place: u32, nearest: &mut Nearest<'_, R, D>| {
             self.descend(at, axis - 1, row + place as usize, spans, nearest);
@@ -190,10 +172,7 @@ impl<R: Real, const D: usize> Cells<R, D> {
             }
             Span::Around(from, to) => {
                 let parts = around(from, to, self.counts[axis]);
-                parts
-                    .into_iter()
-                    .flatten()
-                    .for_each(|place| inner(place, nearest));
+                parts.into_iter().flatten().for_each(|place| inner(place, nearest));
             }
             Span::Straight(from, to) => {
                 let middle = self.along(axis, at[axis]).max(from).min(to - 1);
@@ -229,11 +208,7 @@ enum Span {
 
 /// The parts of a [`Span::Around`] on an axis with so many cells.
 fn around(from: u32, to: u32, count: u32) -> [Range<u32>; 2] {
-    if from < to {
-        [from..to, 0..0]
-    } else {
-        [0..to, from..count]
-    }
+    if from < to { [from..to, 0..0] } else { [0..to, from..count] }
 }
 
 impl<R: Real, const D: usize> Search<R, D> for Cells<R, D> {
@@ -292,12 +267,6 @@ fn extent<R: Real, const D: usize>(points: &[[R; D]]) -> ([R; D], [R; D]) {
             }
         }
     }
-    let length = std::array::from_fn(|axis| {
-        if high[axis] > low[axis] {
-            high[axis] - low[axis]
-        } else {
-            R::ZERO
-        }
-    });
+    let length = std::array::from_fn(|axis| if high[axis] > low[axis] { high[axis] - low[axis] } else { R::ZERO });
     (low, length)
 }

@@ -62,10 +62,7 @@ impl<R: Real, const D: usize> AllPairs<R, D> {
     /// A search over no points yet.
     #[must_use]
     pub const fn new(space: Space<R, D>) -> Self {
-        Self {
-            space,
-            points: Vec::new(),
-        }
+        Self { space, points: Vec::new() }
     }
 }
 

@@ -51,12 +51,7 @@ impl<'a, R: Real, const D: usize> Nearest<'a, R, D> {
         } else {
             -R::ONE
         };
-        Self {
-            found,
-            limit,
-            most: query.most,
-            except: query.except,
-        }
+        Self { found, limit, most: query.most, except: query.except }
     }
 
     /// A point at this way from the place that the query is about.
@@ -67,11 +62,7 @@ impl<'a, R: Real, const D: usize> Nearest<'a, R, D> {
             distance_squared += way * way;
         }
         if distance_squared <= self.limit && self.except != Some(index) {
-            self.keep(Found {
-                index,
-                distance_squared,
-                offset,
-            });
+            self.keep(Found { index, distance_squared, offset });
         }
     }
 
@@ -111,9 +102,7 @@ impl<'a, R: Real, const D: usize> Nearest<'a, R, D> {
     /// Forgets all but the wanted ones; what is farther than those does not come in any more.
     fn shrink(&mut self) {
         if self.found.len() > self.most {
-            let (_, last, _) = self
-                .found
-                .select_nth_unstable_by(self.most - 1, Found::order);
+            let (_, last, _) = self.found.select_nth_unstable_by(self.most - 1, Found::order);
             self.limit = last.distance_squared;
             self.found.truncate(self.most);
         }

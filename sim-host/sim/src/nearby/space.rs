@@ -33,12 +33,7 @@ mod sealed {
         fn grow<const D: usize>(points: &[[Self; D]]) -> Self::Over<D>;
 
         /// Calls `each` with the index of every point nearer than the root of `squared`.
-        fn visit<const D: usize>(
-            tree: &Self::Over<D>,
-            at: &[Self; D],
-            squared: Self,
-            each: &mut dyn FnMut(u32),
-        );
+        fn visit<const D: usize>(tree: &Self::Over<D>, at: &[Self; D], squared: Self, each: &mut dyn FnMut(u32));
     }
 
     macro_rules! impl_tree {
@@ -107,9 +102,7 @@ impl<R: Real, const D: usize> Space<R, D> {
     #[must_use]
     pub fn torus(period: [R; D]) -> Option<Self> {
         let is_sound = |&side: &R| Scalar::is_finite(side) && side > R::ZERO;
-        period.iter().all(is_sound).then_some(Self {
-            period: Some(period),
-        })
+        period.iter().all(is_sound).then_some(Self { period: Some(period) })
     }
 
     /// The circumferences of a torus.

@@ -30,21 +30,14 @@ fn agree<R: Real, const D: usize>(
         let mut cells = Cells::new(space, side);
         prop_assert_eq!(&expected, &answers(&mut cells, points, queries));
         // Buffers of earlier points leave no trace.
-        prop_assert!(
-            answers(&mut cells, &points[..points.len() / 2], queries).len() == queries.len()
-        );
+        prop_assert!(answers(&mut cells, &points[..points.len() / 2], queries).len() == queries.len());
         prop_assert_eq!(&expected, &answers(&mut cells, points, queries));
     }
     Ok(())
 }
 
 fn query<R: Real, const D: usize>(at: [R; D], radius: R, most: usize) -> Query<R, D> {
-    Query {
-        at,
-        radius,
-        most,
-        except: None,
-    }
+    Query { at, radius, most, except: None }
 }
 
 fn indices<R, const D: usize>(found: &[Found<R, D>]) -> Vec<u32> {
@@ -68,24 +61,12 @@ fn nearest_come_first_and_ties_go_to_the_smaller_index() {
         within(3.0, 0),
         except,
     ];
-    let expected: [&[u32]; 8] = [
-        &[3, 1, 2, 4, 0],
-        &[3, 1],
-        &[3, 1, 2, 4],
-        &[3],
-        &[],
-        &[],
-        &[],
-        &[1, 2, 4],
-    ];
+    let expected: [&[u32]; 8] = [&[3, 1, 2, 4, 0], &[3, 1], &[3, 1, 2, 4], &[3], &[], &[], &[], &[1, 2, 4]];
     for (found, expected) in answers(&mut cells, &points, &queries).iter().zip(expected) {
         assert_eq!(indices(found), expected);
     }
     let found = &answers(&mut cells, &points, &queries)[0];
-    assert_eq!(
-        (found[4].distance_squared, found[4].offset),
-        (9.0, [3.0, 0.0])
-    );
+    assert_eq!((found[4].distance_squared, found[4].offset), (9.0, [3.0, 0.0]));
 }
 
 #[test]
@@ -132,9 +113,7 @@ fn nobody_and_one_are_crowds_too() {
 
 #[test]
 fn far_strays_do_not_cost_memory() {
-    let mut points: Points<f64, 2> = (0..1000)
-        .map(|i| [f64::from(i % 32), f64::from(i / 32)])
-        .collect();
+    let mut points: Points<f64, 2> = (0..1000).map(|i| [f64::from(i % 32), f64::from(i / 32)]).collect();
     points.push([1e9, -1e9]);
     let mut cells = Cells::new(Space::OPEN, 1.0);
     cells.rebuild(&points);
@@ -167,32 +146,19 @@ fn crowd<const D: usize>() -> impl Strategy<Value = Vec<[f64; D]>> {
 }
 
 fn questions<const D: usize>() -> impl Strategy<Value = Vec<Query<f64, D>>> {
-    let radius = prop_oneof![
-        (0_i32..=16).prop_map(|steps| f64::from(steps) / 2.0),
-        0.0_f64..12.0
-    ];
+    let radius = prop_oneof![(0_i32..=16).prop_map(|steps| f64::from(steps) / 2.0), 0.0_f64..12.0];
     let one = (
         proptest::array::uniform::<_, D>(coordinate()),
         radius,
         prop_oneof![0_usize..12, Just(40), Just(usize::MAX)],
         proptest::option::of(0_u32..150),
     );
-    let one = one.prop_map(|(at, radius, most, except)| Query {
-        at,
-        radius,
-        most,
-        except,
-    });
+    let one = one.prop_map(|(at, radius, most, except)| Query { at, radius, most, except });
     proptest::collection::vec(one, 1..8)
 }
 
 fn to_f32<const D: usize>(query: &Query<f64, D>) -> Query<f32, D> {
-    Query {
-        at: query.at.map(|c| c as f32),
-        radius: query.radius as f32,
-        most: query.most,
-        except: query.except,
-    }
+    Query { at: query.at.map(|c| c as f32), radius: query.radius as f32, most: query.most, except: query.except }
 }
 
 proptest! {

@@ -22,12 +22,7 @@ impl<R: Real, const D: usize> Tree<R, D> {
     /// A search over no points yet.
     #[must_use]
     pub const fn new(space: Space<R, D>) -> Self {
-        Self {
-            space,
-            tree: None,
-            points: Vec::new(),
-            indices: Vec::new(),
-        }
+        Self { space, tree: None, points: Vec::new(), indices: Vec::new() }
     }
 }
 

@@ -58,11 +58,7 @@ impl Fates {
             reorder: q32(params.reorder),
             reorder_us: us(params.reorder_ms),
             ln_intact: libm::log1p(-params.bit_error_rate),
-            blackouts: params
-                .blackout_s
-                .iter()
-                .map(|span| span.map(|s| s * 1e6))
-                .collect(),
+            blackouts: params.blackout_s.iter().map(|span| span.map(|s| s * 1e6)).collect(),
         }
     }
 
@@ -71,21 +67,11 @@ impl Fates {
         Rng::keyed(packet.key, packet.number, receiver.0, tick)
     }
 
-    pub(super) fn judge(
-        &self,
-        draws: &mut Rng,
-        packet: &Packet,
-        receiver: RobotId,
-        tick: u32,
-    ) -> Verdict {
+    pub(super) fn judge(&self, draws: &mut Rng, packet: &Packet, receiver: RobotId, tick: u32) -> Verdict {
         let now_us = (u64::from(tick) * self.tick_us) as f64;
         let silent = |span: &[f64; 2]| span[0] <= now_us && now_us < span[1];
         let burst_loss = self.channel.as_ref().map_or(0, |channel| {
-            if channel.is_bad(self.seed, packet.sender, receiver, tick) {
-                channel.loss
-            } else {
-                0
-            }
+            if channel.is_bad(self.seed, packet.sender, receiver, tick) { channel.loss } else { 0 }
         });
         if draws.chance_q32(self.loss)
             || (burst_loss > 0 && draws.chance_q32(burst_loss))
@@ -148,11 +134,7 @@ impl Channel {
     fn new(burst: &Burst, tick_us: u32) -> Self {
         // Leaving the bad state per tick: q = renewal * (1 - share) = tick / mean.
         let leave = f64::from(tick_us) / (burst.mean_ms * 1000.0);
-        Self {
-            renewal: q32(leave / (1.0 - burst.share)),
-            share: q32(burst.share),
-            loss: q32(burst.loss),
-        }
+        Self { renewal: q32(leave / (1.0 - burst.share)), share: q32(burst.share), loss: q32(burst.loss) }
     }
 
     /// The state of the link's Markov chain at `tick`, found by walking back to the last tick at

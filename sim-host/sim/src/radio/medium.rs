@@ -63,11 +63,7 @@ impl Medium {
     pub(super) fn new(params: &RadioParams, seed: u64, tick_us: u32, robots: usize) -> Self {
         let buckets = params.bandwidth_bytes_per_s.map(|bytes_per_s| {
             let capacity = u64::from(bytes_per_s).max(OUTBOX as u64) * 1_000_000;
-            Buckets {
-                per_tick: u64::from(bytes_per_s) * u64::from(tick_us),
-                capacity,
-                tokens: vec![capacity; robots],
-            }
+            Buckets { per_tick: u64::from(bytes_per_s) * u64::from(tick_us), capacity, tokens: vec![capacity; robots] }
         });
         Self {
             wire: AnyWire::new(params.format),
@@ -115,14 +111,7 @@ impl Medium {
                 let start = self.bytes.len() as u32;
                 self.bytes.extend_from_slice(bytes);
                 let end = self.bytes.len() as u32;
-                let packet = Packet {
-                    sender,
-                    number,
-                    key,
-                    from_m,
-                    start,
-                    end,
-                };
+                let packet = Packet { sender, number, key, from_m, start, end };
                 self.queue.push((cell, packet));
             }
         }
@@ -214,16 +203,9 @@ impl Lattice {
         let extent = [high[0] - low[0], high[1] - low[1]];
         let longest = extent[0].max(extent[1]);
         let per_side = libm::sqrt(positions_m.len() as f64);
-        let side_m = range_m
-            .max(longest / (2.0 * per_side))
-            .max(f64::MIN_POSITIVE);
+        let side_m = range_m.max(longest / (2.0 * per_side)).max(f64::MIN_POSITIVE);
         let count = |length: f64| (length / side_m) as usize + 1;
-        Self {
-            corner_m: low,
-            side_m,
-            columns: count(extent[0]),
-            rows: count(extent[1]),
-        }
+        Self { corner_m: low, side_m, columns: count(extent[0]), rows: count(extent[1]) }
     }
 
     fn column_and_row(&self, at_m: [f64; 2]) -> (usize, usize) {
@@ -242,8 +224,7 @@ impl Lattice {
         let columns = self.columns;
         let last_row = (row + 1).min(self.rows - 1);
         let (first, last) = (column.saturating_sub(1), (column + 1).min(columns - 1));
-        (row.saturating_sub(1)..=last_row)
-            .map(move |row| row * columns + first..row * columns + last + 1)
+        (row.saturating_sub(1)..=last_row).map(move |row| row * columns + first..row * columns + last + 1)
     }
 }
 

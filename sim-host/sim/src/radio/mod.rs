@@ -93,19 +93,8 @@ pub struct Radio {
 impl Radio {
     /// The radio for these robots with ticks of `tick_us` microseconds.
     #[must_use]
-    pub fn new(
-        params: &RadioParams,
-        seed: u64,
-        tick_us: u32,
-        robots: impl IntoIterator<Item = RobotId>,
-    ) -> Self {
-        let receivers: Vec<_> = robots
-            .into_iter()
-            .map(|id| Receiver {
-                id,
-                ..Receiver::default()
-            })
-            .collect();
+    pub fn new(params: &RadioParams, seed: u64, tick_us: u32, robots: impl IntoIterator<Item = RobotId>) -> Self {
+        let receivers: Vec<_> = robots.into_iter().map(|id| Receiver { id, ..Receiver::default() }).collect();
         Self {
             fates: Fates::new(params, seed, tick_us),
             medium: Medium::new(params, seed, tick_us, receivers.len()),
@@ -134,12 +123,7 @@ impl Radio {
     ///
     /// # Panics
     /// When there are fewer positions than robots.
-    pub fn carry<'a>(
-        &mut self,
-        tick: u32,
-        positions_m: &[[f64; 2]],
-        outbox: impl Fn(usize) -> &'a [u8],
-    ) -> Counts {
+    pub fn carry<'a>(&mut self, tick: u32, positions_m: &[[f64; 2]], outbox: impl Fn(usize) -> &'a [u8]) -> Counts {
         let ids = self.receivers.iter().map(|receiver| receiver.id);
         let sent = self.medium.fill(tick, ids, positions_m, outbox);
         let (medium, fates) = (&self.medium, &self.fates);

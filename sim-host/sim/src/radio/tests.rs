@@ -39,19 +39,13 @@ fn a_perfect_radio_delivers_in_order_of_sender_and_never_to_oneself() {
     assert_eq!(radio.inbox(1), [1, 0, 1, 0, 3, 0, 3, 0]);
     assert_eq!((counts.sent, counts.delivered, counts.lost), (6, 12, 0));
     radio.carry(1, &line(3), |_| &[]);
-    assert!(
-        (0..3).all(|i| radio.inbox(i).is_empty()),
-        "inboxes hold one tick"
-    );
+    assert!((0..3).all(|i| radio.inbox(i).is_empty()), "inboxes hold one tick");
 }
 
 #[test]
 fn range_is_inclusive_and_may_be_infinite() {
     for (range_m, reached) in [(0.0, 0), (1.0, 1), (2.999, 2), (3.0, 3), (f64::INFINITY, 5)] {
-        let params = RadioParams {
-            range_m,
-            ..RadioParams::default()
-        };
+        let params = RadioParams { range_m, ..RadioParams::default() };
         let mut radio = radio(params, 6);
         let counts = radio.carry(0, &line(6), |i| if i == 0 { &FRAME } else { &[] });
         assert_eq!(counts.delivered, reached, "range {range_m}");
@@ -60,10 +54,7 @@ fn range_is_inclusive_and_may_be_infinite() {
 
 #[test]
 fn robots_in_one_place_or_nowhere_are_no_problem() {
-    let params = RadioParams {
-        range_m: 0.0,
-        ..RadioParams::default()
-    };
+    let params = RadioParams { range_m: 0.0, ..RadioParams::default() };
     let mut crowd = radio(params, 5);
     let counts = crowd.carry(0, &[[2.0, 3.0]; 5], |_| &FRAME);
     assert_eq!(counts.delivered, 20);
@@ -74,10 +65,7 @@ fn robots_in_one_place_or_nowhere_are_no_problem() {
 #[test]
 fn loss_has_its_probability_and_extremes_are_exact() {
     for (loss, low, high) in [(0.0, 0.0, 0.0), (0.3, 0.28, 0.32), (1.0, 1.0, 1.0)] {
-        let params = RadioParams {
-            loss,
-            ..RadioParams::default()
-        };
+        let params = RadioParams { loss, ..RadioParams::default() };
         let (radio, _) = one_way(params, 10_000);
         let total = radio.total();
         assert_eq!(total.delivered + total.lost, 10_000);
@@ -88,40 +76,20 @@ fn loss_has_its_probability_and_extremes_are_exact() {
 
 #[test]
 fn bursts_have_their_share_and_mean_length() {
-    let burst = Some(Burst {
-        share: 0.2,
-        mean_ms: 1000.0,
-        loss: 1.0,
-    });
-    let params = RadioParams {
-        burst,
-        ..RadioParams::default()
-    };
+    let burst = Some(Burst { share: 0.2, mean_ms: 1000.0, loss: 1.0 });
+    let params = RadioParams { burst, ..RadioParams::default() };
     let (radio, inboxes) = one_way(params, 100_000);
     let lost = share(radio.total().lost, 100_000);
     assert!((0.18..0.22).contains(&lost), "{lost}");
-    let bursts = inboxes
-        .windows(2)
-        .filter(|w| !w[0].is_empty() && w[1].is_empty())
-        .count();
+    let bursts = inboxes.windows(2).filter(|w| !w[0].is_empty() && w[1].is_empty()).count();
     let mean_ticks = share(radio.total().lost, bursts as u64);
     assert!((9.0..11.0).contains(&mean_ticks), "{mean_ticks}");
 }
 
 #[test]
 fn bursts_of_different_links_are_independent() {
-    let burst = Some(Burst {
-        share: 0.5,
-        mean_ms: 500.0,
-        loss: 1.0,
-    });
-    let mut radio = radio(
-        RadioParams {
-            burst,
-            ..RadioParams::default()
-        },
-        3,
-    );
+    let burst = Some(Burst { share: 0.5, mean_ms: 500.0, loss: 1.0 });
+    let mut radio = radio(RadioParams { burst, ..RadioParams::default() }, 3);
     let mut both = 0;
     for tick in 0..20_000 {
         radio.carry(tick, &line(3), |i| if i == 0 { &FRAME } else { &[] });
@@ -133,15 +101,10 @@ fn bursts_of_different_links_are_independent() {
 #[test]
 fn delay_is_rounded_up_to_the_next_step() {
     for (delay_ms, steps) in [(0.0, 0), (100.0, 0), (100.5, 1), (350.0, 3)] {
-        let params = RadioParams {
-            delay_ms,
-            ..RadioParams::default()
-        };
+        let params = RadioParams { delay_ms, ..RadioParams::default() };
         let mut radio = radio(params, 2);
         let arrived = (0..10).find(|&tick| {
-            radio.carry(tick, &line(2), |i| {
-                if i == 0 && tick == 0 { &FRAME } else { &[] }
-            });
+            radio.carry(tick, &line(2), |i| if i == 0 && tick == 0 { &FRAME } else { &[] });
             !radio.inbox(1).is_empty()
         });
         assert_eq!(arrived, Some(steps), "{delay_ms} ms");
@@ -151,15 +114,8 @@ fn delay_is_rounded_up_to_the_next_step() {
 
 #[test]
 fn jitter_and_reorder_let_later_packets_overtake_and_lose_none() {
-    let jitter = RadioParams {
-        jitter_ms: 1000.0,
-        ..RadioParams::default()
-    };
-    let reorder = RadioParams {
-        reorder: 0.2,
-        reorder_ms: 1000.0,
-        ..RadioParams::default()
-    };
+    let jitter = RadioParams { jitter_ms: 1000.0, ..RadioParams::default() };
+    let reorder = RadioParams { reorder: 0.2, reorder_ms: 1000.0, ..RadioParams::default() };
     for params in [jitter, reorder] {
         let mut radio = radio(params, 2);
         let mut order: Vec<u8> = Vec::new();
@@ -177,37 +133,23 @@ fn jitter_and_reorder_let_later_packets_overtake_and_lose_none() {
 
 #[test]
 fn duplicates_have_their_probability() {
-    let params = RadioParams {
-        duplicate: 0.25,
-        ..RadioParams::default()
-    };
+    let params = RadioParams { duplicate: 0.25, ..RadioParams::default() };
     let (radio, inboxes) = one_way(params, 10_000);
     let extra = share(radio.total().delivered - 10_000, 10_000);
     assert!((0.23..0.27).contains(&extra), "{extra}");
-    assert!(
-        inboxes
-            .iter()
-            .all(|inbox| inbox.len() == 4 || inbox[..4] == inbox[4..])
-    );
+    assert!(inboxes.iter().all(|inbox| inbox.len() == 4 || inbox[..4] == inbox[4..]));
 }
 
 #[test]
 fn bits_flip_at_their_rate_and_the_end_of_a_packet_never() {
-    let params = RadioParams {
-        bit_error_rate: 0.01,
-        ..RadioParams::default()
-    };
+    let params = RadioParams { bit_error_rate: 0.01, ..RadioParams::default() };
     let (radio, inboxes) = one_way(params, 20_000);
     let flipped: u32 = (0..)
         .zip(&inboxes)
         .map(|(tick, inbox)| {
             let sent = [tick as u8 | 1, (tick >> 8) as u8 | 1, 1, 0];
             assert_eq!(inbox.last(), Some(&0));
-            inbox
-                .iter()
-                .zip(sent)
-                .map(|(a, b): (&u8, u8)| (a ^ b).count_ones())
-                .sum::<u32>()
+            inbox.iter().zip(sent).map(|(a, b): (&u8, u8)| (a ^ b).count_ones()).sum::<u32>()
         })
         .sum();
     // 20,000 packets of 24 bits that can be hit.
@@ -215,19 +157,13 @@ fn bits_flip_at_their_rate_and_the_end_of_a_packet_never() {
     assert!((0.0095..0.0105).contains(&rate), "{rate}");
     let hit = share(radio.total().corrupted, 20_000);
     assert!((hit - (1.0 - libm::pow(0.99, 24.0))).abs() < 0.01, "{hit}");
-    let all = RadioParams {
-        bit_error_rate: 1.0,
-        ..RadioParams::default()
-    };
+    let all = RadioParams { bit_error_rate: 1.0, ..RadioParams::default() };
     assert_eq!(one_way(all, 1).1[0], [!1, !1, !1, 0]);
 }
 
 #[test]
 fn bandwidth_caps_the_mean_and_counts_what_it_drops() {
-    let params = RadioParams {
-        bandwidth_bytes_per_s: Some(20),
-        ..RadioParams::default()
-    };
+    let params = RadioParams { bandwidth_bytes_per_s: Some(20), ..RadioParams::default() };
     // 8 bytes ten times a second; 20 B/s allow a quarter of it, and 256 bytes are saved at the start.
     let mut radio = radio(params, 2);
     for tick in 0..1000 {
@@ -240,10 +176,7 @@ fn bandwidth_caps_the_mean_and_counts_what_it_drops() {
 
 #[test]
 fn a_blackout_loses_everything_while_it_lasts() {
-    let params = RadioParams {
-        blackout_s: vec![[1.0, 2.0]],
-        ..RadioParams::default()
-    };
+    let params = RadioParams { blackout_s: vec![[1.0, 2.0]], ..RadioParams::default() };
     let (radio, inboxes) = one_way(params, 30);
     for (tick, inbox) in inboxes.iter().enumerate() {
         assert_eq!(inbox.is_empty(), (10..20).contains(&tick), "tick {tick}");
@@ -255,11 +188,7 @@ fn harsh() -> RadioParams {
     RadioParams {
         range_m: 3.0,
         loss: 0.1,
-        burst: Some(Burst {
-            share: 0.1,
-            mean_ms: 400.0,
-            loss: 0.9,
-        }),
+        burst: Some(Burst { share: 0.1, mean_ms: 400.0, loss: 0.9 }),
         delay_ms: 30.0,
         jitter_ms: 200.0,
         duplicate: 0.1,

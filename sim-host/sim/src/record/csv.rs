@@ -13,92 +13,32 @@ pub const TRACE: [Column; 16] = [
     ("tick", "integer", "1", "number of the tick"),
     ("time_s", "number", "s", "simulated time"),
     ("robot", "integer", "1", "the robot's number"),
-    (
-        "x_cell",
-        "integer",
-        "cells",
-        "column of its cell, growing east",
-    ),
-    (
-        "y_cell",
-        "integer",
-        "cells",
-        "row of its cell, growing north",
-    ),
+    ("x_cell", "integer", "cells", "column of its cell, growing east"),
+    ("y_cell", "integer", "cells", "row of its cell, growing north"),
     ("x_m", "number", "m", "world position, east"),
     ("y_m", "number", "m", "world position, north"),
     ("z_m", "number", "m", "world position, up"),
     ("vx_mps", "number", "m/s", "world velocity, east"),
     ("vy_mps", "number", "m/s", "world velocity, north"),
     ("vz_mps", "number", "m/s", "world velocity, up"),
-    (
-        "mode",
-        "string",
-        "",
-        "idle, forming, cruise, hold, arrived, fault or passive",
-    ),
+    ("mode", "string", "", "idle, forming, cruise, hold, arrived, fault or passive"),
     ("leader", "integer", "1", "its leader's number, 0 = none"),
-    (
-        "target_x",
-        "integer",
-        "cells",
-        "column of the cell it heads for",
-    ),
-    (
-        "target_y",
-        "integer",
-        "cells",
-        "row of the cell it heads for",
-    ),
-    (
-        "formation_error_cells",
-        "number",
-        "cells",
-        "distance from its place in the formation; empty: it has none",
-    ),
+    ("target_x", "integer", "cells", "column of the cell it heads for"),
+    ("target_y", "integer", "cells", "row of the cell it heads for"),
+    ("formation_error_cells", "number", "cells", "distance from its place in the formation; empty: it has none"),
 ];
 
 /// `series.csv`: one line per tick.
 pub const SERIES: [Column; 9] = [
     ("tick", "integer", "1", "number of the tick"),
     ("time_s", "number", "s", "simulated time"),
-    (
-        "formation_error",
-        "number",
-        "cells",
-        "mean distance of the robots from their places; empty: no formation",
-    ),
-    (
-        "graph_distance",
-        "number",
-        "1",
-        "distance of the actual from the wanted graph; empty: no formation",
-    ),
-    (
-        "sent",
-        "integer",
-        "packets",
-        "handed to the radio in this tick",
-    ),
-    (
-        "delivered",
-        "integer",
-        "packets",
-        "handed to a receiver in this tick",
-    ),
+    ("formation_error", "number", "cells", "mean distance of the robots from their places; empty: no formation"),
+    ("graph_distance", "number", "1", "distance of the actual from the wanted graph; empty: no formation"),
+    ("sent", "integer", "packets", "handed to the radio in this tick"),
+    ("delivered", "integer", "packets", "handed to a receiver in this tick"),
     ("lost", "integer", "packets", "lost on the way in this tick"),
-    (
-        "corrupted",
-        "integer",
-        "packets",
-        "delivered with flipped bits in this tick",
-    ),
-    (
-        "rejected",
-        "integer",
-        "packets",
-        "refused by a receiver in this tick",
-    ),
+    ("corrupted", "integer", "packets", "delivered with flipped bits in this tick"),
+    ("rejected", "integer", "packets", "refused by a receiver in this tick"),
 ];
 
 /// The first line of a file.
@@ -121,10 +61,7 @@ pub fn write_schemas(dir: &Path) -> Result<(), Error> {
             "format": "CSV: one header line, comma, no quotes, lines end with \\n, an empty field is an unknown value",
             "columns": columns,
         });
-        write_atomically(
-            &dir.join(format!("{name}.schema.json")),
-            format!("{schema:#}\n").as_bytes(),
-        )?;
+        write_atomically(&dir.join(format!("{name}.schema.json")), format!("{schema:#}\n").as_bytes())?;
     }
     Ok(())
 }

@@ -19,11 +19,7 @@ impl Error {
     /// What turns an error of the system into this one: `action` on `path` failed.
     pub fn new(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
         let path = path.to_owned();
-        move |source| Self {
-            action,
-            path,
-            source,
-        }
+        move |source| Self { action, path, source }
     }
 
     /// The file or directory.
@@ -61,13 +57,11 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(format!(".{}.tmp", std::process::id()));
     let temporary = path.with_file_name(name);
-    std::fs::write(&temporary, bytes)
-        .and_then(|()| std::fs::rename(&temporary, path))
-        .map_err(|source| {
-            // The error that matters is the first one.
-            let _ = std::fs::remove_file(&temporary);
-            Error::new("write", path)(source)
-        })
+    std::fs::write(&temporary, bytes).and_then(|()| std::fs::rename(&temporary, path)).map_err(|source| {
+        // The error that matters is the first one.
+        let _ = std::fs::remove_file(&temporary);
+        Error::new("write", path)(source)
+    })
 }
 
 /// Writes `summary.json` into a directory that exists, pretty-printed, in field order.
@@ -76,8 +70,7 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), Error> {
 /// The file cannot be written, or `summary` has a map whose keys are no strings.
 pub fn write_summary(dir: &Path, summary: &impl Serialize) -> Result<(), Error> {
     let path = dir.join("summary.json");
-    let mut text = serde_json::to_vec_pretty(summary)
-        .map_err(|error| Error::new("write", &path)(error.into()))?;
+    let mut text = serde_json::to_vec_pretty(summary).map_err(|error| Error::new("write", &path)(error.into()))?;
     text.push(b'\n');
     write_atomically(&path, &text)
 }

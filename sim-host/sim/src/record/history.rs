@@ -23,12 +23,7 @@ pub struct Sample {
 impl From<RobotRow> for Sample {
     fn from(row: RobotRow) -> Self {
         let [x, y, _] = row.motion.position_m;
-        Self {
-            id: row.id,
-            position_m: [x, y],
-            target: row.target,
-            mode: row.mode,
-        }
+        Self { id: row.id, position_m: [x, y], target: row.target, mode: row.mode }
     }
 }
 
@@ -68,10 +63,7 @@ impl SeriesPoint {
             (_, true) => a,
             _ => (a * weights[0] + b * weights[1]) / (weights[0] + weights[1]),
         };
-        self.formation_error_per_agent = mean(
-            self.formation_error_per_agent,
-            next.formation_error_per_agent,
-        );
+        self.formation_error_per_agent = mean(self.formation_error_per_agent, next.formation_error_per_agent);
         self.graph_distance = mean(self.graph_distance, next.graph_distance);
         self.packets += next.packets;
         self.ticks += next.ticks;
@@ -157,11 +149,7 @@ impl History {
             },
             ticks: 0,
             samples: 0,
-            latest: Frame {
-                tick: 0,
-                time_s: 0.0,
-                samples: Vec::new(),
-            },
+            latest: Frame { tick: 0, time_s: 0.0, samples: Vec::new() },
             max_samples,
             frame_every: 1,
             series_every: 1,
@@ -206,10 +194,7 @@ impl History {
         }
         self.samples += self.latest.samples.len();
         self.frames.push(self.latest.clone());
-        while self.frames.len() > 1
-            && self.samples > self.max_samples
-            && self.frame_every <= u32::MAX / 2
-        {
+        while self.frames.len() > 1 && self.samples > self.max_samples && self.frame_every <= u32::MAX / 2 {
             self.frame_every *= 2;
             let mut frames = std::mem::take(&mut self.frames);
             let (first, every) = (frames[0].tick, self.frame_every);

@@ -134,10 +134,7 @@ pub struct Options {
 impl Default for Options {
     /// The interval by the number of robots, 32 MB of history.
     fn default() -> Self {
-        Self {
-            trace_every: 0,
-            history_samples: 1 << 20,
-        }
+        Self { trace_every: 0, history_samples: 1 << 20 }
     }
 }
 
@@ -178,21 +175,14 @@ impl Recorder {
     /// A recorder that keeps only the history.
     #[must_use]
     pub fn in_memory(options: Options) -> Self {
-        Self {
-            files: None,
-            history: History::with_capacity(options.history_samples),
-        }
+        Self { files: None, history: History::with_capacity(options.history_samples) }
     }
 
     /// Takes one tick. Order of `robots` is kept; it should be the same in each tick. O(robots).
     ///
     /// # Errors
     /// A file cannot be written. What was complete before stays readable.
-    pub fn tick(
-        &mut self,
-        tick: &TickRow,
-        robots: impl Iterator<Item = RobotRow>,
-    ) -> Result<(), Error> {
+    pub fn tick(&mut self, tick: &TickRow, robots: impl Iterator<Item = RobotRow>) -> Result<(), Error> {
         let first_tick = self.history.first_tick().unwrap_or(tick.tick);
         let frame = self.history.begin_frame(tick);
         match &mut self.files {

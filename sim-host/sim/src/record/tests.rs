@@ -7,14 +7,7 @@ fn tick(tick: u32) -> TickRow {
         time_s: f64::from(tick) * 0.1,
         formation_error_per_agent: 1.5,
         graph_distance: f64::NAN,
-        packets: PacketCounts {
-            sent: 6,
-            delivered: 20,
-            lost: 9,
-            corrupted: 2,
-            rejected: 1,
-            ..PacketCounts::default()
-        },
+        packets: PacketCounts { sent: 6, delivered: 20, lost: 9, corrupted: 2, rejected: 1, ..PacketCounts::default() },
     }
 }
 
@@ -62,22 +55,14 @@ fn csv_reads_back_with_the_columns_of_its_schema() {
 
     let (header, lines) = read(&out.join("trace.csv"));
     assert_eq!(lines.len(), 6);
-    assert_eq!(
-        lines[3].join(","),
-        "1,0.1,2,1,-1,1.5,-0.5,0,1,0,0,cruise,1,9,9,",
-        "an unknown value is empty"
-    );
+    assert_eq!(lines[3].join(","), "1,0.1,2,1,-1,1.5,-0.5,0,1,0,0,cruise,1,9,9,", "an unknown value is empty");
     let (series_header, series) = read(&out.join("series.csv"));
     assert_eq!(series[2].join(","), "2,0.2,1.5,,6,20,9,2,1");
     for (name, header) in [("trace", header), ("series", series_header)] {
         let text = fs::read_to_string(out.join(format!("{name}.schema.json"))).unwrap();
         let schema: serde_json::Value = serde_json::from_str(&text).unwrap();
-        let names: Vec<_> = schema["columns"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .map(|column| column["name"].as_str().unwrap())
-            .collect();
+        let names: Vec<_> =
+            schema["columns"].as_array().unwrap().iter().map(|column| column["name"].as_str().unwrap()).collect();
         assert_eq!(names, header);
     }
 }
@@ -95,10 +80,7 @@ fn run_without_ticks_leaves_headers_and_an_empty_history() {
 fn trace_interval_is_kept_and_chosen_by_the_number_of_robots() {
     for (every, robots, expected) in [(4, 1, 3), (0, 1, 10), (0, 1000, 10_000), (0, 1001, 5005)] {
         let dir = tempfile::tempdir().unwrap();
-        let options = Options {
-            trace_every: every,
-            ..Options::default()
-        };
+        let options = Options { trace_every: every, ..Options::default() };
         let mut recorder = Recorder::new(dir.path(), options).unwrap();
         run(&mut recorder, 10, robots);
         recorder.finish().unwrap();
@@ -122,10 +104,7 @@ fn recorder_that_is_dropped_keeps_whole_ticks() {
 #[test]
 fn history_thins_out_but_keeps_first_and_last_frame() {
     for max in [0, 1, 39, 40, 41] {
-        let mut recorder = Recorder::in_memory(Options {
-            history_samples: max,
-            ..Options::default()
-        });
+        let mut recorder = Recorder::in_memory(Options { history_samples: max, ..Options::default() });
         run(&mut recorder, 1000, 4);
         let history = recorder.finish().unwrap();
         let ticks: Vec<_> = history.frames().iter().map(|frame| frame.tick).collect();
@@ -133,14 +112,8 @@ fn history_thins_out_but_keeps_first_and_last_frame() {
         assert!(ticks.len() <= (max / 4).max(1) + 1, "{max}: {ticks:?}");
         // Thinned no more than needed: at least half of what fits is there.
         assert!(ticks.len() >= max / 8, "{max}: {ticks:?}");
-        let steps: Vec<_> = ticks[..ticks.len() - 1]
-            .windows(2)
-            .map(|t| t[1] - t[0])
-            .collect();
-        assert!(
-            steps.windows(2).all(|pair| pair[0] == pair[1]),
-            "{max}: {ticks:?}"
-        );
+        let steps: Vec<_> = ticks[..ticks.len() - 1].windows(2).map(|t| t[1] - t[0]).collect();
+        assert!(steps.windows(2).all(|pair| pair[0] == pair[1]), "{max}: {ticks:?}");
     }
 }
 
@@ -152,16 +125,9 @@ fn series_merges_neighbours_without_losing_a_packet() {
     let points = history.series();
     assert!((8000..=16_384).contains(&points.len()));
     assert_eq!(points.iter().map(|point| point.ticks).sum::<u32>(), 50_000);
-    assert_eq!(
-        points.iter().map(|point| point.packets.sent).sum::<u64>(),
-        300_000
-    );
+    assert_eq!(points.iter().map(|point| point.packets.sent).sum::<u64>(), 300_000);
     assert_eq!(history.totals().delivered, 1_000_000);
-    assert!(
-        points
-            .iter()
-            .all(|point| (point.formation_error_per_agent - 1.5).abs() < 1e-12)
-    );
+    assert!(points.iter().all(|point| (point.formation_error_per_agent - 1.5).abs() < 1e-12));
     assert!(points.iter().all(|point| point.graph_distance.is_nan()));
 }
 
@@ -173,10 +139,7 @@ fn unknown_error_does_not_spoil_its_neighbour() {
         formation_error_per_agent: f64::NAN,
         ..SeriesPoint::from(&tick(1))
     });
-    assert_eq!(
-        (point.graph_distance, point.formation_error_per_agent),
-        (4.0, 1.5)
-    );
+    assert_eq!((point.graph_distance, point.formation_error_per_agent), (4.0, 1.5));
 }
 
 #[test]
@@ -186,19 +149,11 @@ fn directory_in_the_way_is_an_error_that_names_it() {
     fs::write(&file, "not a directory").unwrap();
     let error = Recorder::new(file.join("out"), Options::default()).unwrap_err();
     let text = error.to_string();
-    assert!(
-        text.contains("file/out") && text.contains("in the way"),
-        "{text}"
-    );
+    assert!(text.contains("file/out") && text.contains("in the way"), "{text}");
 
     fs::create_dir(dir.path().join("trace.csv")).unwrap();
-    let text = Recorder::new(dir.path(), Options::default())
-        .unwrap_err()
-        .to_string();
-    assert!(
-        text.contains("trace.csv") && text.contains("in the way"),
-        "{text}"
-    );
+    let text = Recorder::new(dir.path(), Options::default()).unwrap_err().to_string();
+    assert!(text.contains("trace.csv") && text.contains("in the way"), "{text}");
 }
 
 #[cfg(target_os = "linux")]
@@ -206,13 +161,8 @@ fn directory_in_the_way_is_an_error_that_names_it() {
 fn full_disk_is_an_error_that_names_the_file() {
     let dir = tempfile::tempdir().unwrap();
     std::os::unix::fs::symlink("/dev/full", dir.path().join("trace.csv")).unwrap();
-    let text = Recorder::new(dir.path(), Options::default())
-        .unwrap_err()
-        .to_string();
-    assert!(
-        text.contains("trace.csv") && text.contains("free some space"),
-        "{text}"
-    );
+    let text = Recorder::new(dir.path(), Options::default()).unwrap_err().to_string();
+    assert!(text.contains("trace.csv") && text.contains("free some space"), "{text}");
 }
 
 #[test]
@@ -236,8 +186,5 @@ fn summary_is_json_with_the_fields_in_order() {
     let dir = tempfile::tempdir().unwrap();
     write_summary(dir.path(), &tick(0).packets).unwrap();
     let text = fs::read_to_string(dir.path().join("summary.json")).unwrap();
-    assert!(
-        text.starts_with("{\n  \"sent\": 6,\n  \"delivered\": 20,"),
-        "{text}"
-    );
+    assert!(text.starts_with("{\n  \"sent\": 6,\n  \"delivered\": 20,"), "{text}");
 }

@@ -37,19 +37,12 @@ pub(super) fn key(
         }
         _ => {
             let remedy = "give exactly one of key_file, key";
-            return Err(source.error(
-                "authentication",
-                "it is not clear which key is meant",
-                remedy,
-            ));
+            return Err(source.error("authentication", "it is not clear which key is meant", remedy));
         }
     };
     // And two operators.
     if robots.len() + 2 > PEERS {
-        let problem = format!(
-            "{} robots are too many: nobody forgets whom he has heard",
-            robots.len()
-        );
+        let problem = format!("{} robots are too many: nobody forgets whom he has heard", robots.len());
         let remedy = format!("give at most {}, or leave this table out", PEERS - 2);
         return Err(source.error("authentication", problem, remedy));
     }
@@ -69,9 +62,7 @@ pub(super) fn attacks(
     robots: &[Robot],
 ) -> Result<Vec<Attack>, ScenarioError> {
     let tables = file.attack.iter().enumerate();
-    tables
-        .map(|(index, table)| attack(source, file, robots, table, &format!("attack[{index}]")))
-        .collect()
+    tables.map(|(index, table)| attack(source, file, robots, table, &format!("attack[{index}]"))).collect()
 }
 
 fn attack(
@@ -90,11 +81,7 @@ fn attack(
         }
         (_, None, _) => {
             let remedy = "give lure_m, metres";
-            return Err(source.error(
-                field,
-                "it does not say where it orders the robots to",
-                remedy,
-            ));
+            return Err(source.error(field, "it does not say where it orders the robots to", remedy));
         }
         (_, _, Some(_)) => {
             let remedy = "leave delay_s out, or give kind = \"replay\"";
@@ -108,14 +95,7 @@ fn attack(
         }
     }
     let tick = |name: &str, seconds: f64| {
-        within(
-            source,
-            &format!("{field}.{name}"),
-            seconds,
-            0.0,
-            1e9,
-            "seconds",
-        )?;
+        within(source, &format!("{field}.{name}"), seconds, 0.0, 1e9, "seconds")?;
         Ok(libm::ceil(seconds / file.tick_s) as u32)
     };
     let last = robots.last().map_or(RobotId(1), |robot| robot.id);
@@ -123,11 +103,7 @@ fn attack(
     let most = RobotWire::max_robot(file.radio.format, true);
     if !claims.is_somebody() || claims > most {
         let remedy = format!("give 1 to {}", most.0);
-        return Err(source.error(
-            &format!("{field}.claims"),
-            "this is no robot's number",
-            remedy,
-        ));
+        return Err(source.error(&format!("{field}.claims"), "this is no robot's number", remedy));
     }
     Ok(Attack {
         kind: table.kind,

@@ -25,22 +25,13 @@ pub(super) fn general(source: &Source<'_>, file: &ScenarioFile) -> Result<(), Sc
 }
 
 /// Whether the radio's format has room for the robots' numbers.
-pub(super) fn numbers(
-    source: &Source<'_>,
-    file: &ScenarioFile,
-    robots: &[Robot],
-) -> Result<(), ScenarioError> {
+pub(super) fn numbers(source: &Source<'_>, file: &ScenarioFile, robots: &[Robot]) -> Result<(), ScenarioError> {
     let (format, most) = (file.radio.format, max_robot(file.radio.format));
     match robots.iter().find(|robot| robot.id > most) {
         None => Ok(()),
         Some(robot) => Err(source.error(
             "radio.format",
-            format!(
-                "robot {} has no number in {}: systems are 1 to {}",
-                robot.id.0,
-                format.name(),
-                most.0
-            ),
+            format!("robot {} has no number in {}: systems are 1 to {}", robot.id.0, format.name(), most.0),
             "give fewer robots or smaller numbers, or format = \"postcard\"",
         )),
     }
@@ -72,14 +63,7 @@ pub(super) fn radio(source: &Source<'_>, file: &ScenarioFile) -> Result<(), Scen
     }
     if let Some(burst) = &radio.burst {
         probability(source, "radio.burst.loss", burst.loss)?;
-        within(
-            source,
-            "radio.burst.share",
-            burst.share,
-            0.0,
-            0.99,
-            "(share of time)",
-        )?;
+        within(source, "radio.burst.share", burst.share, 0.0, 0.99, "(share of time)")?;
         let least_ms = file.tick_s * 1000.0 / (1.0 - burst.share);
         if !(burst.mean_ms >= least_ms && burst.mean_ms <= 600_000.0) {
             return Err(source.error(
@@ -113,12 +97,8 @@ pub(super) fn terrain(source: &Source<'_>, file: &ScenarioFile) -> Result<Terrai
     let Some(table) = &file.terrain else {
         return Err(source.error("terrain", "it is missing", "say what land is meant"));
     };
-    let plan = |width, height, classes, seed: Option<u64>| Plan {
-        width,
-        height,
-        classes,
-        seed: seed.unwrap_or(file.seed),
-    };
+    let plan =
+        |width, height, classes, seed: Option<u64>| Plan { width, height, classes, seed: seed.unwrap_or(file.seed) };
     let (field, made) = match (&table.file, table.uniform, table.natural, table.entropy) {
         (Some(name), None, None, None) => {
             let path = source.folder().join(name);
@@ -174,10 +154,7 @@ fn terrain_error(source: &Source<'_>, field: &str, error: &TerrainError) -> Scen
 }
 
 /// What would be ignored is refused: a table for robots in formation without one, a choice that they do not have.
-pub(super) fn formation_only(
-    source: &Source<'_>,
-    file: &ScenarioFile,
-) -> Result<(), ScenarioError> {
+pub(super) fn formation_only(source: &Source<'_>, file: &ScenarioFile) -> Result<(), ScenarioError> {
     let in_formation = file.in_formation();
     if !in_formation && source.has("formation") {
         return Err(source.error(
@@ -196,11 +173,7 @@ pub(super) fn formation_only(
     Ok(())
 }
 
-pub(super) fn faults(
-    source: &Source<'_>,
-    file: &ScenarioFile,
-    robots: &[Robot],
-) -> Result<Vec<Fault>, ScenarioError> {
+pub(super) fn faults(source: &Source<'_>, file: &ScenarioFile, robots: &[Robot]) -> Result<Vec<Fault>, ScenarioError> {
     let mut faults = Vec::with_capacity(file.fault.len());
     for (index, fault) in file.fault.iter().enumerate() {
         let robot = RobotId(fault.robot);
@@ -216,11 +189,7 @@ pub(super) fn faults(
             within(source, &field, seconds, 0.0, 1e9, "seconds")?;
         }
         let tick = |seconds: f64| libm::ceil(seconds / file.tick_s) as u32;
-        faults.push(Fault {
-            robot,
-            from_tick: tick(fault.at_s),
-            to_tick: tick(fault.at_s + fault.down_s),
-        });
+        faults.push(Fault { robot, from_tick: tick(fault.at_s), to_tick: tick(fault.at_s + fault.down_s) });
     }
     Ok(faults)
 }

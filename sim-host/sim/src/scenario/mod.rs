@@ -13,21 +13,17 @@ mod schema;
 mod setup;
 mod source;
 
-pub use params::{
-    ExitName, FormationTable, GridTable, PredictionName, RecoveryName, ReplanName, RouteTable,
-    Routing,
-};
+pub use params::{ExitName, FormationTable, GridTable, PredictionName, RecoveryName, ReplanName, RouteTable, Routing};
 pub use plane::{
-    BallEntry, BoidsTable, CircleEntry, CloudEntry, GoalFlockTable, GuidanceName, HalfSpaceEntry,
-    LatticeTable, ModelName, OrcaTable, Order, OrderEntry, Place, PlaneRobotEntry, PlaneRobots,
-    PlaneSetup, PlaneTable, PushOutTable, SafetyName, Start, Target, WallEntry, circle_starts,
+    BallEntry, BoidsTable, CircleEntry, CloudEntry, GoalFlockTable, GuidanceName, HalfSpaceEntry, LatticeTable,
+    ModelName, OrcaTable, Order, OrderEntry, Place, PlaneRobotEntry, PlaneRobots, PlaneSetup, PlaneTable, PushOutTable,
+    SafetyName, Start, Target, WallEntry, circle_starts,
 };
 pub use ranges::within;
 pub use robots::{Formation, Robot};
 pub use schema::{
-    AttackKind, AttackTable, AuthenticationTable, Crop, EntropyTable, FaultTable, FormationEntry,
-    NaturalTable, RobotEntry, RobotsTable, ScatteredEntry, ScenEntry, ScenarioFile, TerrainTable,
-    UniformTable,
+    AttackKind, AttackTable, AuthenticationTable, Crop, EntropyTable, FaultTable, FormationEntry, NaturalTable,
+    RobotEntry, RobotsTable, ScatteredEntry, ScenEntry, ScenarioFile, TerrainTable, UniformTable,
 };
 pub use source::ScenarioError;
 pub use source::Source;
@@ -125,10 +121,8 @@ impl Scenario {
     /// # Errors
     /// [`ScenarioError`], naming file, line, field and remedy.
     pub fn load(path: &Path, overrides: &Overrides) -> Result<Self, ScenarioError> {
-        let text = std::fs::read_to_string(path).map_err(|source| ScenarioError::Io {
-            path: path.to_owned(),
-            source,
-        })?;
+        let text =
+            std::fs::read_to_string(path).map_err(|source| ScenarioError::Io { path: path.to_owned(), source })?;
         Self::parse(&text, path, overrides)
     }
 
@@ -138,8 +132,7 @@ impl Scenario {
     /// See [`Scenario::load`].
     pub fn parse(text: &str, path: &Path, overrides: &Overrides) -> Result<Self, ScenarioError> {
         let source = Source::new(path, text)?;
-        let mut file: ScenarioFile =
-            toml::from_str(source.text()).map_err(|error| source.serde_error(&error, LIST))?;
+        let mut file: ScenarioFile = toml::from_str(source.text()).map_err(|error| source.serde_error(&error, LIST))?;
         file.seed = overrides.seed.unwrap_or(file.seed);
         file.ticks = overrides.ticks.unwrap_or(file.ticks);
         check::general(&source, &file)?;
@@ -183,10 +176,7 @@ impl Scenario {
             ticks: file.ticks,
             tick_us: ranges::micros(file.tick_s),
             terrain,
-            rules: MoveRules {
-                norm: file.grid.norm,
-                corner_cutting: file.grid.corner_cutting,
-            },
+            rules: MoveRules { norm: file.grid.norm, corner_cutting: file.grid.corner_cutting },
             radio: file.radio,
             robots,
             formation,

@@ -119,11 +119,7 @@ pub struct Routing {
     pub sharpness: Sharpness,
 }
 
-pub(super) fn routing(
-    source: &Source<'_>,
-    table: &RouteTable,
-    grid: &GridTable,
-) -> Result<Routing, ScenarioError> {
+pub(super) fn routing(source: &Source<'_>, table: &RouteTable, grid: &GridTable) -> Result<Routing, ScenarioError> {
     let usual = RouteParams::default();
     let gain = |name: &str, value: Option<f64>, usual: Gain| match value {
         None => Ok(usual),
@@ -161,17 +157,10 @@ pub(super) fn routing(
         Gain::ZERO => Sharpness::Greedy,
         halving => Sharpness::HalvedPer(halving),
     };
-    Ok(Routing {
-        params,
-        replan,
-        sharpness,
-    })
+    Ok(Routing { params, replan, sharpness })
 }
 
-pub(super) fn formation(
-    source: &Source<'_>,
-    table: &FormationTable,
-) -> Result<FormationParams, ScenarioError> {
+pub(super) fn formation(source: &Source<'_>, table: &FormationTable) -> Result<FormationParams, ScenarioError> {
     let mut params = FormationParams::default();
     params.eps = table.eps.unwrap_or(params.eps);
     params.lead = table.lead.unwrap_or(params.lead);

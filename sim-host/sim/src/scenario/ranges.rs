@@ -23,9 +23,5 @@ pub fn within(
         return Ok(());
     }
     let what = format!("{value} is out of range");
-    Err(source.error(
-        field,
-        what,
-        format!("give {low} to {high} {unit}").trim_end(),
-    ))
+    Err(source.error(field, what, format!("give {low} to {high} {unit}").trim_end()))
 }

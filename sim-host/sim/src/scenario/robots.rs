@@ -93,11 +93,7 @@ fn listed(list: &[RobotEntry]) -> Vec<Entry> {
     (1..)
         .zip(list)
         .map(|(number, entry)| Entry {
-            robot: Robot {
-                id: RobotId(entry.id.unwrap_or(number)),
-                start: cell(entry.start),
-                goal: cell(entry.goal),
-            },
+            robot: Robot { id: RobotId(entry.id.unwrap_or(number)), start: cell(entry.start), goal: cell(entry.goal) },
             field: format!("robots.list[{}]", number - 1),
             goal_moves: false,
         })
@@ -106,23 +102,16 @@ fn listed(list: &[RobotEntry]) -> Vec<Entry> {
 
 type Graph = (Vec<Cell>, Vec<(u16, u16)>);
 
-fn graph(
-    source: &Source<'_>,
-    entry: &FormationEntry,
-    rho: Option<u8>,
-) -> Result<Formation, ScenarioError> {
+fn graph(source: &Source<'_>, entry: &FormationEntry, rho: Option<u8>) -> Result<Formation, ScenarioError> {
     let (places, edges) = match (entry.rows, entry.columns, &entry.places, &entry.edges) {
-        (Some(rows), Some(columns), None, None) => {
-            grid_graph(rows, columns, entry.spacing.unwrap_or([3, -3])).ok_or_else(|| {
+        (Some(rows), Some(columns), None, None) => grid_graph(rows, columns, entry.spacing.unwrap_or([3, -3]))
+            .ok_or_else(|| {
                 source.error(
                     "robots.formation",
                     format!("{rows} rows of {columns} robots do not fit any map or any memory"),
-                    format!(
-                        "give 1 or more of both, at most {MAX_PLACES} robots, and a smaller spacing"
-                    ),
+                    format!("give 1 or more of both, at most {MAX_PLACES} robots, and a smaller spacing"),
                 )
-            })
-        }
+            }),
         (None, None, Some(places), Some(edges)) => given_graph(source, places, edges),
         _ => Err(source.error(
             "robots.formation",
@@ -131,30 +120,17 @@ fn graph(
         )),
     }?;
     if rho == Some(0) {
-        return Err(source.error(
-            "formation.rho",
-            "with 0 nobody would know of anybody",
-            "give 1 or more",
-        ));
+        return Err(source.error("formation.rho", "with 0 nobody would know of anybody", "give 1 or more"));
     }
-    let templates = |rho| {
-        (0..places.len())
-            .map(|own| Template::from_graph(&places, &edges, own, rho))
-            .collect::<Result<_, _>>()
-    };
+    let templates =
+        |rho| (0..places.len()).map(|own| Template::from_graph(&places, &edges, own, rho)).collect::<Result<_, _>>();
     // Who knows more of the formation keeps it better: the largest usual radius that fits.
     let templates = match rho {
         Some(rho) => templates(rho),
-        None => templates(3)
-            .or_else(|_| templates(2))
-            .or_else(|_| templates(1)),
+        None => templates(3).or_else(|_| templates(2)).or_else(|_| templates(1)),
     }
     .map_err(|error| template_error(source, error))?;
-    Ok(Formation {
-        places,
-        edges,
-        templates,
-    })
+    Ok(Formation { places, edges, templates })
 }
 
 fn template_error(source: &Source<'_>, error: TemplateError) -> ScenarioError {
@@ -194,11 +170,7 @@ fn grid_graph(rows: u16, columns: u16, [dx, dy]: [i16; 2]) -> Option<Graph> {
     Some((places, edges))
 }
 
-fn given_graph(
-    source: &Source<'_>,
-    places: &[[i16; 2]],
-    edges: &[[u32; 2]],
-) -> Result<Graph, ScenarioError> {
+fn given_graph(source: &Source<'_>, places: &[[i16; 2]], edges: &[[u32; 2]]) -> Result<Graph, ScenarioError> {
     if places.first() != Some(&[0, 0]) {
         return Err(source.error(
             "robots.formation.places",
@@ -258,48 +230,29 @@ fn unreached(count: usize, edges: &BTreeSet<(u16, u16)>) -> Option<usize> {
     reached.iter().position(|is_reached| !is_reached)
 }
 
-fn placed(
-    source: &Source<'_>,
-    entry: &FormationEntry,
-    graph: &Formation,
-) -> Result<Vec<Entry>, ScenarioError> {
-    let shifted =
-        |[x, y]: [i16; 2], by: Cell| Some(Cell::new(x.checked_add(by.x)?, y.checked_add(by.y)?));
+fn placed(source: &Source<'_>, entry: &FormationEntry, graph: &Formation) -> Result<Vec<Entry>, ScenarioError> {
+    let shifted = |[x, y]: [i16; 2], by: Cell| Some(Cell::new(x.checked_add(by.x)?, y.checked_add(by.y)?));
     (1..)
         .zip(&graph.places)
-        .map(
-            |(number, &place)| match (shifted(entry.start, place), shifted(entry.goal, place)) {
-                (Some(start), Some(goal)) => Ok(Entry {
-                    robot: Robot {
-                        id: RobotId(number),
-                        start,
-                        goal,
-                    },
-                    field: "robots.formation".to_owned(),
-                    goal_moves: number > 1,
-                }),
-                _ => Err(source.error(
-                    "robots.formation",
-                    format!("robot {number} would be outside of any map"),
-                    "give a smaller formation or another start and goal",
-                )),
-            },
-        )
+        .map(|(number, &place)| match (shifted(entry.start, place), shifted(entry.goal, place)) {
+            (Some(start), Some(goal)) => Ok(Entry {
+                robot: Robot { id: RobotId(number), start, goal },
+                field: "robots.formation".to_owned(),
+                goal_moves: number > 1,
+            }),
+            _ => Err(source.error(
+                "robots.formation",
+                format!("robot {number} would be outside of any map"),
+                "give a smaller formation or another start and goal",
+            )),
+        })
         .collect()
 }
 
-fn from_scen(
-    source: &Source<'_>,
-    entry: &ScenEntry,
-    terrain: &Terrain,
-) -> Result<Vec<Entry>, ScenarioError> {
+fn from_scen(source: &Source<'_>, entry: &ScenEntry, terrain: &Terrain) -> Result<Vec<Entry>, ScenarioError> {
     let path = source.folder().join(&entry.file);
     let queries = movingai::load_scen(&path).map_err(|error| {
-        source.error(
-            "robots.scen.file",
-            error.to_string(),
-            "file names are relative to the scenario file",
-        )
+        source.error("robots.scen.file", error.to_string(), "file names are relative to the scenario file")
     })?;
     let count = entry.count as usize;
     if count == 0 || count > queries.len() {
@@ -326,11 +279,7 @@ fn from_scen(
                 ));
             }
             Ok(Entry {
-                robot: Robot {
-                    id: RobotId(number),
-                    start: query.start,
-                    goal: query.goal,
-                },
+                robot: Robot { id: RobotId(number), start: query.start, goal: query.goal },
                 field: "robots.scen".to_owned(),
                 goal_moves: false,
             })
@@ -382,12 +331,10 @@ fn scattered(
                 let high = at.saturating_add(travel).min(length - 1);
                 low + rng.below((high - low + 1) as u32) as i32
             };
-            let goal = (0..TRIES)
-                .map(|_| Cell::new(draw(x, width) as i16, draw(y, height) as i16))
-                .find(|&goal| {
-                    let at = terrain.index(goal).filter(|_| terrain.is_passable(goal));
-                    at.is_some_and(|at| !std::mem::replace(&mut taken[at], true))
-                });
+            let goal = (0..TRIES).map(|_| Cell::new(draw(x, width) as i16, draw(y, height) as i16)).find(|&goal| {
+                let at = terrain.index(goal).filter(|_| terrain.is_passable(goal));
+                at.is_some_and(|at| !std::mem::replace(&mut taken[at], true))
+            });
             let Some(goal) = goal else {
                 return Err(source.error(
                     "robots.scattered",
@@ -396,11 +343,7 @@ fn scattered(
                 ));
             };
             Ok(Entry {
-                robot: Robot {
-                    id: RobotId(number),
-                    start: Cell::new(x as i16, y as i16),
-                    goal,
-                },
+                robot: Robot { id: RobotId(number), start: Cell::new(x as i16, y as i16), goal },
                 field: "robots.scattered".to_owned(),
                 goal_moves: false,
             })
@@ -425,30 +368,18 @@ fn check(source: &Source<'_>, entries: &[Entry], terrain: &Terrain) -> Result<()
                 "numbers are 1 or more, and each robot has its own",
             ));
         }
-        for (name, place, taken) in [
-            ("start", entry.robot.start, &mut starts),
-            ("goal", entry.robot.goal, &mut goals),
-        ] {
+        for (name, place, taken) in [("start", entry.robot.start, &mut starts), ("goal", entry.robot.goal, &mut goals)]
+        {
             let field = format!("{}.{name}", entry.field);
             let Some(at) = terrain.index(place) else {
                 return Err(source.error(
                     &field,
-                    format!(
-                        "the {name} ({}, {}) of robot {id} is not on the map",
-                        place.x, place.y
-                    ),
-                    format!(
-                        "the map has columns 0 to {} and rows 0 to {}",
-                        terrain.width() - 1,
-                        terrain.height() - 1
-                    ),
+                    format!("the {name} ({}, {}) of robot {id} is not on the map", place.x, place.y),
+                    format!("the map has columns 0 to {} and rows 0 to {}", terrain.width() - 1, terrain.height() - 1),
                 ));
             };
             if !(terrain.is_passable(place) || name == "goal" && entry.goal_moves) {
-                let what = format!(
-                    "the {name} ({}, {}) of robot {id} is in a wall",
-                    place.x, place.y
-                );
+                let what = format!("the {name} ({}, {}) of robot {id} is in a wall", place.x, place.y);
                 let remedy = match nearest_passable(terrain, place) {
                     Some(near) => format!("the nearest free cell is [{}, {}]", near.x, near.y),
                     None => "the map has no free cell at all".to_owned(),
@@ -459,10 +390,7 @@ fn check(source: &Source<'_>, entries: &[Entry], terrain: &Terrain) -> Result<()
             if other != 0 {
                 return Err(source.error(
                     &field,
-                    format!(
-                        "robots {other} and {id} have the same {name} ({}, {})",
-                        place.x, place.y
-                    ),
+                    format!("robots {other} and {id} have the same {name} ({}, {})", place.x, place.y),
                     "a cell holds one robot: move one of them",
                 ));
             }
@@ -474,11 +402,7 @@ fn check(source: &Source<'_>, entries: &[Entry], terrain: &Terrain) -> Result<()
 fn nearest_passable(terrain: &Terrain, to: Cell) -> Option<Cell> {
     let (width, height) = (terrain.width(), terrain.height());
     let rows = (0..height).filter_map(|y| i16::try_from(y).ok());
-    rows.flat_map(|y| {
-        (0..width)
-            .filter_map(|x| i16::try_from(x).ok())
-            .map(move |x| Cell::new(x, y))
-    })
-    .filter(|&cell| terrain.is_passable(cell))
-    .min_by_key(|cell| (cell.distance_squared(to), cell.y, cell.x))
+    rows.flat_map(|y| (0..width).filter_map(|x| i16::try_from(x).ok()).map(move |x| Cell::new(x, y)))
+        .filter(|&cell| terrain.is_passable(cell))
+        .min_by_key(|cell| (cell.distance_squared(to), cell.y, cell.x))
 }

@@ -59,9 +59,7 @@ impl ScenarioFile {
     /// Whether the robots keep a formation.
     #[must_use]
     pub fn in_formation(&self) -> bool {
-        self.robots
-            .as_ref()
-            .is_some_and(|robots| robots.formation.is_some())
+        self.robots.as_ref().is_some_and(|robots| robots.formation.is_some())
     }
 }
 

@@ -35,11 +35,7 @@ pub enum ScenarioError {
 }
 
 fn prefix(field: &str) -> String {
-    if field.is_empty() {
-        String::new()
-    } else {
-        format!("{field}: ")
-    }
+    if field.is_empty() { String::new() } else { format!("{field}: ") }
 }
 
 /// The text of a scenario and where each field stands in it.
@@ -78,12 +74,7 @@ impl<'a> Source<'a> {
     }
 
     /// An error about a field, which may be one that is not there (then its table is named).
-    pub fn error(
-        &self,
-        field: &str,
-        what: impl Into<String>,
-        remedy: impl Into<String>,
-    ) -> ScenarioError {
+    pub fn error(&self, field: &str, what: impl Into<String>, remedy: impl Into<String>) -> ScenarioError {
         ScenarioError::Field {
             path: self.path.to_owned(),
             line: line_of(self.text, self.span(field)),
@@ -185,10 +176,7 @@ fn deepest_value(value: &DeValue<'_>, span: &Range<usize>, field: &mut String) {
     match value {
         DeValue::Table(inner) => deepest(inner, span, field),
         DeValue::Array(array) => {
-            let found = array
-                .iter()
-                .enumerate()
-                .find(|(_, e)| holds(&e.span(), span));
+            let found = array.iter().enumerate().find(|(_, e)| holds(&e.span(), span));
             if let Some((index, element)) = found {
                 field.push_str(&format!("[{index}]"));
                 deepest_value(element.get_ref(), span, field);
@@ -204,11 +192,7 @@ fn holds(outer: &Range<usize>, inner: &Range<usize>) -> bool {
 
 fn line_of(text: &str, span: Option<Range<usize>>) -> usize {
     let start = span.map_or(0, |span| span.start);
-    1 + text
-        .bytes()
-        .take(start)
-        .filter(|&byte| byte == b'\n')
-        .count()
+    1 + text.bytes().take(start).filter(|&byte| byte == b'\n').count()
 }
 
 fn first_line(message: &str) -> String {

@@ -25,9 +25,7 @@ fn parse(text: &str) -> Result<Scenario, ScenarioError> {
 /// The error's text after the folder's name.
 fn refusal(text: &str) -> String {
     let error = parse(text).expect_err("a refusal").to_string();
-    let at = error
-        .find("s.toml")
-        .unwrap_or_else(|| panic!("names no file: {error}"));
+    let at = error.find("s.toml").unwrap_or_else(|| panic!("names no file: {error}"));
     error[at..].to_owned()
 }
 
@@ -38,19 +36,11 @@ fn with_robots(robots: &str) -> String {
 #[test]
 fn the_smallest_scenario_has_the_documented_defaults() {
     let scenario = parse(&with_robots("list = [{ start = [0, 0], goal = [3, 2] }]")).expect("good");
-    assert_eq!(
-        (scenario.seed, scenario.ticks, scenario.tick_us),
-        (0, 5, 1_000_000)
-    );
+    assert_eq!((scenario.seed, scenario.ticks, scenario.tick_us), (0, 5, 1_000_000));
     assert_eq!(scenario.rules, MoveRules::default());
     assert_eq!(scenario.radio, RadioParams::default());
-    let [robot] = scenario.robots[..] else {
-        panic!("one robot")
-    };
-    assert_eq!(
-        (robot.id, robot.start, robot.goal),
-        (RobotId(1), Cell::new(0, 0), Cell::new(3, 2))
-    );
+    let [robot] = scenario.robots[..] else { panic!("one robot") };
+    assert_eq!((robot.id, robot.start, robot.goal), (RobotId(1), Cell::new(0, 0), Cell::new(3, 2)));
 }
 
 #[test]
@@ -58,10 +48,7 @@ fn the_command_line_overrides_the_file() {
     let text = with_robots("list = [{ start = [0, 0], goal = [3, 2] }]");
     let dir = tempfile::tempdir().expect("temporary folder");
     fs::write(dir.path().join("m.map"), MAP).expect("write");
-    let overrides = Overrides {
-        seed: Some(77),
-        ticks: Some(9),
-    };
+    let overrides = Overrides { seed: Some(77), ticks: Some(9) };
     let scenario = Scenario::parse(&text, &dir.path().join("s.toml"), &overrides).expect("good");
     assert_eq!((scenario.seed, scenario.ticks), (77, 9));
 }
@@ -73,27 +60,15 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         // Not TOML at all.
         ("name = ", "s.toml:1: "),
         // Unknown fields, wrong types, missing fields.
-        (
-            &format!("colour = 1\n{HEAD}{robots}"),
-            "s.toml:1: colour: unknown field `colour`",
-        ),
-        (
-            &format!("{HEAD}{robots}[radio]\nloss = \"much\"\n"),
-            "s.toml:8: radio.loss: invalid type",
-        ),
+        (&format!("colour = 1\n{HEAD}{robots}"), "s.toml:1: colour: unknown field `colour`"),
+        (&format!("{HEAD}{robots}[radio]\nloss = \"much\"\n"), "s.toml:8: radio.loss: invalid type"),
         (
             &format!("{HEAD}{robots}[radio]\nlosses = 0.5\n"),
             "s.toml:8: radio.losses: unknown field `losses`, expected one of",
         ),
-        (
-            &format!("{HEAD}{robots}[radio.burst]\nshare = 0.5\n"),
-            "s.toml:7: radio.burst: missing field `mean_ms`",
-        ),
+        (&format!("{HEAD}{robots}[radio.burst]\nshare = 0.5\n"), "s.toml:7: radio.burst: missing field `mean_ms`"),
         ("ticks = 3\n", "s.toml:1: missing field `name`"),
-        (
-            "name = \"t\"\nticks = -3\n",
-            "s.toml:2: ticks: invalid value",
-        ),
+        ("name = \"t\"\nticks = -3\n", "s.toml:2: ticks: invalid value"),
         // Values out of range, NaN, wrong units.
         (
             &format!("{HEAD}{robots}[radio]\nloss = 30\n"),
@@ -113,10 +88,7 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             ),
             "s.toml:8: radio.format: robot 255 has no number in mavlink: systems are 1 to 254; give fewer robots",
         ),
-        (
-            &format!("{HEAD}{robots}[radio]\nrange_m = nan\n"),
-            "s.toml:8: radio.range_m: NaN is no distance",
-        ),
+        (&format!("{HEAD}{robots}[radio]\nrange_m = nan\n"), "s.toml:8: radio.range_m: NaN is no distance"),
         (
             &format!("{HEAD}{robots}[radio]\ndelay_ms = -1\n"),
             "s.toml:8: radio.delay_ms: -1 is out of range; give 0 to 600000 milliseconds",
@@ -129,48 +101,22 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             &format!("{HEAD}{robots}[radio]\nburst = {{ share = 0.5, mean_ms = 100 }}\n"),
             "s.toml:8: radio.burst.mean_ms: 100 is out of range; with this tick and share, give 2000.0",
         ),
-        (
-            &format!("tick_s = inf\n{HEAD}{robots}"),
-            "s.toml:1: tick_s: inf is out of range; give 0.001 to 60 seconds",
-        ),
-        (
-            &format!("{HEAD}{robots}").replace("ticks = 5", "ticks = 0"),
-            "s.toml:2: ticks: 0 ticks",
-        ),
-        (
-            &format!("{HEAD}{robots}").replace("\"t\"", "\"../x\""),
-            "s.toml:1: name: \"../x\" cannot name a folder",
-        ),
+        (&format!("tick_s = inf\n{HEAD}{robots}"), "s.toml:1: tick_s: inf is out of range; give 0.001 to 60 seconds"),
+        (&format!("{HEAD}{robots}").replace("ticks = 5", "ticks = 0"), "s.toml:2: ticks: 0 ticks"),
+        (&format!("{HEAD}{robots}").replace("\"t\"", "\"../x\""), "s.toml:1: name: \"../x\" cannot name a folder"),
         // The land.
-        (
-            &format!("{HEAD}{robots}").replace("m.map", "no.map"),
-            "s.toml:4: terrain.file: ",
-        ),
-        (
-            &format!("{HEAD}crop = {{ x = 2, y = 0, width = 4, height = 1 }}\n{robots}"),
-            "s.toml:5: terrain.crop: ",
-        ),
-        (
-            &format!("{HEAD}cell_m = nan\n{robots}"),
-            "s.toml:5: terrain.cell_m: NaN is out of range",
-        ),
+        (&format!("{HEAD}{robots}").replace("m.map", "no.map"), "s.toml:4: terrain.file: "),
+        (&format!("{HEAD}crop = {{ x = 2, y = 0, width = 4, height = 1 }}\n{robots}"), "s.toml:5: terrain.crop: "),
+        (&format!("{HEAD}cell_m = nan\n{robots}"), "s.toml:5: terrain.cell_m: NaN is out of range"),
         (
             &format!("name = \"t\"\nticks = 5\n[terrain]\n{robots}"),
             "s.toml:3: terrain: it is not clear what land is meant; give exactly one of",
         ),
         // Robots.
+        (&with_robots(""), "s.toml:5: robots: it is not clear who takes part; give exactly one of"),
+        (&with_robots("list = []"), "s.toml:5: robots: nobody takes part"),
         (
-            &with_robots(""),
-            "s.toml:5: robots: it is not clear who takes part; give exactly one of",
-        ),
-        (
-            &with_robots("list = []"),
-            "s.toml:5: robots: nobody takes part",
-        ),
-        (
-            &with_robots(
-                "list = [\n{ start = [0, 0], goal = [3, 2] },\n{ start = [0, 0], goal = [3, 1] }]",
-            ),
+            &with_robots("list = [\n{ start = [0, 0], goal = [3, 2] },\n{ start = [0, 0], goal = [3, 1] }]"),
             "s.toml:8: robots.list[1].start: robots 1 and 2 have the same start (0, 0); a cell holds one",
         ),
         (
@@ -194,46 +140,30 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             "s.toml:6: robots.formation: its shape is not clear",
         ),
         (
-            &with_robots(
-                "formation = { rows = 60000, columns = 60000, start = [0, 2], goal = [0, 2] }",
-            ),
+            &with_robots("formation = { rows = 60000, columns = 60000, start = [0, 2], goal = [0, 2] }"),
             "s.toml:6: robots.formation: 60000 rows of 60000 robots do not fit any map",
         ),
         (
-            &with_robots(
-                "formation = { places = [[0, 0], [1, 0]], edges = [[1, 3]], start = [0, 2], goal = [0, 2] }",
-            ),
+            &with_robots("formation = { places = [[0, 0], [1, 0]], edges = [[1, 3]], start = [0, 2], goal = [0, 2] }"),
             "s.toml:6: robots.formation.edges[0]: [1, 3] joins no two robots",
         ),
-        (
-            &with_robots("scen = { file = \"none.scen\", count = 2 }"),
-            "s.toml:6: robots.scen.file: ",
-        ),
+        (&with_robots("scen = { file = \"none.scen\", count = 2 }"), "s.toml:6: robots.scen.file: "),
         (
             &with_robots("scattered = { count = 12 }"),
             "s.toml:6: robots.scattered.count: 12 robots on 11 passable cells",
         ),
         (
-            &format!(
-                "{}[[fault]]\nrobot = 2\nat_s = 1\n",
-                with_robots("list = [{ start = [0, 0], goal = [1, 2] }]")
-            ),
+            &format!("{}[[fault]]\nrobot = 2\nat_s = 1\n", with_robots("list = [{ start = [0, 0], goal = [1, 2] }]")),
             "s.toml:8: fault[0].robot: there is no robot 2",
         ),
         (
-            &format!(
-                "{}[[fault]]\nrobot = 1\nat_s = nan\n",
-                with_robots("list = [{ start = [0, 0], goal = [1, 2] }]")
-            ),
+            &format!("{}[[fault]]\nrobot = 1\nat_s = nan\n", with_robots("list = [{ start = [0, 0], goal = [1, 2] }]")),
             "s.toml:9: fault[0].at_s: NaN is out of range",
         ),
     ];
     for (text, expected) in cases {
         let refusal = refusal(text);
-        assert!(
-            refusal.starts_with(expected),
-            "expected {expected}\n     got {refusal}\nfor\n{text}"
-        );
+        assert!(refusal.starts_with(expected), "expected {expected}\n     got {refusal}\nfor\n{text}");
         assert!(refusal.contains("; "), "no remedy: {refusal}");
     }
 }
@@ -259,14 +189,9 @@ fn the_order_of_a_list_does_not_matter_beyond_numbers() {
 
 #[test]
 fn grid_formation_is_numbered_row_by_row_with_edges_to_both_sides() {
-    let text = with_robots(
-        "formation = { rows = 2, columns = 2, spacing = [1, -1], start = [2, 2], goal = [2, 1] }",
-    );
+    let text = with_robots("formation = { rows = 2, columns = 2, spacing = [1, -1], start = [2, 2], goal = [2, 1] }");
     let scenario = parse(&text).expect("good");
-    let starts = scenario
-        .robots
-        .iter()
-        .map(|r| (r.id.0, r.start.x, r.start.y));
+    let starts = scenario.robots.iter().map(|r| (r.id.0, r.start.x, r.start.y));
     assert!(starts.eq([(1, 2, 2), (2, 3, 2), (3, 2, 1), (4, 3, 1)]));
     let edges = scenario.formation.expect("a formation").edges;
     assert_eq!(edges, [(0, 1), (0, 2), (1, 3), (2, 3)]);
@@ -306,10 +231,7 @@ fn a_multi_agent_scenario_gives_starts_and_goals() {
         Scenario::parse(&text, &dir.path().join("s.toml"), &Overrides::default())
     };
     let robots = load(2).expect("good").robots;
-    assert_eq!(
-        (robots[0].start, robots[0].goal),
-        (Cell::new(0, 2), Cell::new(3, 0))
-    );
+    assert_eq!((robots[0].start, robots[0].goal), (Cell::new(0, 2), Cell::new(3, 0)));
     for count in [0, 3] {
         let error = load(count).expect_err("too few or too many").to_string();
         assert!(error.contains("robots.scen.count"), "{error}");
@@ -322,11 +244,7 @@ fn faults_become_ticks() {
         "tick_s = 0.5\n{}[[fault]]\nrobot = 1\nat_s = 1.2\ndown_s = 1\n",
         with_robots("list = [{ start = [0, 0], goal = [1, 2] }]")
     );
-    let fault = Fault {
-        robot: RobotId(1),
-        from_tick: 3,
-        to_tick: 5,
-    };
+    let fault = Fault { robot: RobotId(1), from_tick: 3, to_tick: 5 };
     assert_eq!(parse(&text).expect("good").faults, [fault]);
 }
 
@@ -344,67 +262,30 @@ fn parameters_of_routes_and_formations_are_checked() {
          a2 = 0.5\nhalved_per_ticks = 2\n[formation]\nhalt_cells = 2\ngain = 4095\nfootprint = 1\n\
          prediction = \"reflexive\"\nrecovery = \"def\"\n",
     ));
-    let Scenario {
-        route,
-        formation_params: formation,
-        ..
-    } = scenario.expect("good");
-    assert_eq!(
-        (route.params.radius, route.params.exit),
-        (16, ExitRule::Ray)
-    );
+    let Scenario { route, formation_params: formation, .. } = scenario.expect("good");
+    assert_eq!((route.params.radius, route.params.exit), (16, ExitRule::Ray));
     assert_eq!(route.params.a2, Gain::from_sixteenths(8));
     assert!(route.params.corner_cutting);
     assert_eq!(route.sharpness, Sharpness::HalvedPer(Gain::from_int(2)));
     assert_eq!((formation.halt_lag, formation.resume_lag), (140, 140));
-    assert_eq!(
-        (formation.gain, formation.footprint),
-        (Gain::from_int(4095), 16)
-    );
+    assert_eq!((formation.gain, formation.footprint), (Gain::from_int(4095), 16));
     for (rest, expected) in [
-        (
-            "[route]\nradius = 0\n",
-            "route.radius: a window of radius 0 is out of range; give 1 to 16",
-        ),
-        (
-            "[route]\nradius = 17\n",
-            "route.radius: a window of radius 17",
-        ),
-        (
-            "[route]\na3 = -1\n",
-            "route.a3: -1 is out of range; give 0 to 4095",
-        ),
+        ("[route]\nradius = 0\n", "route.radius: a window of radius 0 is out of range; give 1 to 16"),
+        ("[route]\nradius = 17\n", "route.radius: a window of radius 17"),
+        ("[route]\na3 = -1\n", "route.a3: -1 is out of range; give 0 to 4095"),
         ("[route]\na0 = nan\n", "route.a0: NaN is out of range"),
-        (
-            "[route]\nexit = \"door\"\n",
-            "route.exit: unknown variant `door`",
-        ),
-        (
-            "[route]\nreplan = \"until_changed\"\n",
-            "route.replan: robots in formation search in each cell",
-        ),
+        ("[route]\nexit = \"door\"\n", "route.exit: unknown variant `door`"),
+        ("[route]\nreplan = \"until_changed\"\n", "route.replan: robots in formation search in each cell"),
         (
             "[formation]\neps = 1.5\n",
             "formation.eps: invalid type: floating point `1.5`, expected a whole number from 0 to 255; scenarios/README.md",
         ),
-        (
-            "[formation]\ngain = 4096\n",
-            "formation.gain: 4096 is out of range",
-        ),
-        (
-            "[formation]\nresume_cells = 5\n",
-            "formation.resume_cells: 5 is out of range; give 0 to 4.2857",
-        ),
-        (
-            "[formation]\nfootprint = 1.1\n",
-            "formation.footprint: 1.1 is out of range",
-        ),
+        ("[formation]\ngain = 4096\n", "formation.gain: 4096 is out of range"),
+        ("[formation]\nresume_cells = 5\n", "formation.resume_cells: 5 is out of range; give 0 to 4.2857"),
+        ("[formation]\nfootprint = 1.1\n", "formation.footprint: 1.1 is out of range"),
     ] {
         let refusal = refusal(&with(rest));
-        assert!(
-            refusal.starts_with(&format!("s.toml:8: {expected}")),
-            "{refusal}"
-        );
+        assert!(refusal.starts_with(&format!("s.toml:8: {expected}")), "{refusal}");
     }
 }
 
@@ -422,14 +303,10 @@ fn what_only_formations_use_is_refused_without_one() {
 #[test]
 fn a_formation_that_no_controller_holds_is_refused() {
     let star = |leaves: usize| {
-        let places: Vec<_> = (0..=leaves)
-            .map(|i| format!("[{}, {}]", i % 3, i / 3))
-            .collect();
+        let places: Vec<_> = (0..=leaves).map(|i| format!("[{}, {}]", i % 3, i / 3)).collect();
         let edges: Vec<_> = (2..=leaves + 1).map(|i| format!("[1, {i}]")).collect();
         let (places, edges) = (places.join(", "), edges.join(", "));
-        with_robots(&format!(
-            "formation = {{ places = [{places}], edges = [{edges}], start = [0, 0], goal = [0, 0] }}"
-        ))
+        with_robots(&format!("formation = {{ places = [{places}], edges = [{edges}], start = [0, 0], goal = [0, 0] }}"))
     };
     let refused = |text: &str, expected: &str| {
         let refusal = refusal(text);
@@ -439,20 +316,12 @@ fn a_formation_that_no_controller_holds_is_refused() {
     refused(&star(9), too_many);
     // With 8 it is the map that is too small.
     refused(&star(8), "is in a wall");
-    refused(
-        &star(255),
-        "256 robots are more than a formation holds; give at most 255",
-    );
+    refused(&star(255), "256 robots are more than a formation holds; give at most 255");
     let wide = "formation = { rows = 16, columns = 16, start = [0, 0], goal = [0, 0] }";
-    refused(
-        &with_robots(wide),
-        "16 rows of 16 robots do not fit any map or any memory",
-    );
+    refused(&with_robots(wide), "16 rows of 16 robots do not fit any map or any memory");
     let rho = format!(
         "{}[formation]\nrho = 5\n",
-        with_robots(
-            "formation = { rows = 3, columns = 4, spacing = [1, 1], start = [0, 0], goal = [0, 0] }",
-        )
+        with_robots("formation = { rows = 3, columns = 4, spacing = [1, 1], start = [0, 0], goal = [0, 0] }",)
     );
     refused(&rho, "s.toml:8: formation.rho");
     refused(

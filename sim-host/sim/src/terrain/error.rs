@@ -109,34 +109,20 @@ pub(super) fn format_error(
     what: impl Into<String>,
     remedy: impl Into<String>,
 ) -> TerrainError {
-    TerrainError::Format {
-        path: path.to_owned(),
-        place,
-        what: what.into(),
-        remedy: remedy.into(),
-    }
+    TerrainError::Format { path: path.to_owned(), place, what: what.into(), remedy: remedy.into() }
 }
 
 /// A [`TerrainError::Parameter`].
 pub fn parameter_error(what: impl Into<String>, remedy: impl Into<String>) -> TerrainError {
-    TerrainError::Parameter {
-        what: what.into(),
-        remedy: remedy.into(),
-    }
+    TerrainError::Parameter { what: what.into(), remedy: remedy.into() }
 }
 
 /// The bytes of a file.
 pub fn read(path: &Path) -> Result<Vec<u8>, TerrainError> {
-    std::fs::read(path).map_err(|source| TerrainError::Read {
-        path: path.to_owned(),
-        source,
-    })
+    std::fs::read(path).map_err(|source| TerrainError::Read { path: path.to_owned(), source })
 }
 
 /// Writes a file.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), TerrainError> {
-    std::fs::write(path, bytes).map_err(|source| TerrainError::Write {
-        path: path.to_owned(),
-        source,
-    })
+    std::fs::write(path, bytes).map_err(|source| TerrainError::Write { path: path.to_owned(), source })
 }

@@ -35,13 +35,7 @@ struct Header {
 
 impl Header {
     /// Takes a header line's key and value; false: no header line, the data begins.
-    fn take(
-        &mut self,
-        key: &str,
-        word: &str,
-        line: usize,
-        path: &Path,
-    ) -> Result<bool, TerrainError> {
+    fn take(&mut self, key: &str, word: &str, line: usize, path: &Path) -> Result<bool, TerrainError> {
         let key = key.to_ascii_lowercase();
         match key.as_str() {
             "ncols" => self.columns = Some(side(path, line, "ncols", word)?),
@@ -67,12 +61,7 @@ impl Header {
             // Some programs write "nan" here, which is as good as any number.
             "nodata_value" => {
                 self.no_data = Some(word.parse().map_err(|_| {
-                    format_error(
-                        path,
-                        Place::Line(line),
-                        format!("NODATA_value is {}", quoted(word)),
-                        "give a number",
-                    )
+                    format_error(path, Place::Line(line), format!("NODATA_value is {}", quoted(word)), "give a number")
                 })?);
             }
             _ => return Ok(false),
@@ -119,12 +108,8 @@ pub fn parse_heights(bytes: &[u8], path: &Path) -> Result<Heights, TerrainError>
     let height = header.rows.ok_or_else(|| missing("nrows"))?;
     let cell_m = header.cell_m.ok_or_else(|| missing("cellsize"))?;
     let origin_m = [
-        header
-            .origin_m(0, cell_m)
-            .ok_or_else(|| missing("xllcorner"))?,
-        header
-            .origin_m(1, cell_m)
-            .ok_or_else(|| missing("yllcorner"))?,
+        header.origin_m(0, cell_m).ok_or_else(|| missing("xllcorner"))?,
+        header.origin_m(1, cell_m).ok_or_else(|| missing("yllcorner"))?,
     ];
     let no_data = header.no_data.unwrap_or(-9999.0);
 
@@ -163,13 +148,7 @@ pub fn parse_heights(bytes: &[u8], path: &Path) -> Result<Heights, TerrainError>
         ));
     }
     flip_rows(&mut metres, width);
-    Ok(Heights {
-        width,
-        height,
-        metres,
-        cell_m,
-        origin_m,
-    })
+    Ok(Heights { width, height, metres, cell_m, origin_m })
 }
 
 impl Heights {
@@ -183,10 +162,7 @@ impl Heights {
     pub fn downsample(&self, factor: u16) -> Result<Self, TerrainError> {
         if factor == 0 || factor > self.width.min(self.height) {
             return Err(parameter_error(
-                format!(
-                    "downsample is {factor} for heights on {} x {} cells",
-                    self.width, self.height
-                ),
+                format!("downsample is {factor} for heights on {} x {} cells", self.width, self.height),
                 "give a whole number from 1 to the shorter side",
             ));
         }
@@ -204,20 +180,10 @@ impl Heights {
                     }
                 }
                 let is_known = known > 0 && known * 2 >= side * side;
-                metres.push(if is_known {
-                    (sum / known as f64) as f32
-                } else {
-                    f32::NAN
-                });
+                metres.push(if is_known { (sum / known as f64) as f32 } else { f32::NAN });
             }
         }
-        Ok(Self {
-            width,
-            height,
-            metres,
-            cell_m: self.cell_m * f64::from(factor),
-            origin_m: self.origin_m,
-        })
+        Ok(Self { width, height, metres, cell_m: self.cell_m * f64::from(factor), origin_m: self.origin_m })
     }
 }
 
@@ -226,7 +192,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    const GRID: &str = "ncols 3\nnrows 2\nxllcorner 100\nyllcorner 200.5\ncellsize 10\nNODATA_value -1\n1 2 3\n4 -1 6\n";
+    const GRID: &str =
+        "ncols 3\nnrows 2\nxllcorner 100\nyllcorner 200.5\ncellsize 10\nNODATA_value -1\n1 2 3\n4 -1 6\n";
 
     fn heights(text: &str) -> Result<Heights, TerrainError> {
         parse_heights(text.as_bytes(), Path::new("a.asc"))
@@ -246,10 +213,7 @@ mod tests {
     fn center_origins_other_cases_and_broken_lines_mean_the_same() {
         let other = "NROWS 2\r\nNCOLS 3\r\ncellsize 10\r\nXLLCENTER 105\r\nyllCenter 205.5\r\nnodata_VALUE -1\r\n1 2\r\n3 4 -1\r\n\r\n6";
         let (a, b) = (heights(GRID).unwrap(), heights(other).unwrap());
-        assert_eq!(
-            (a.width, a.height, a.cell_m, a.origin_m),
-            (b.width, b.height, b.cell_m, b.origin_m)
-        );
+        assert_eq!((a.width, a.height, a.cell_m, a.origin_m), (b.width, b.height, b.cell_m, b.origin_m));
         assert_eq!(a.metres[2..], b.metres[2..]);
     }
 
@@ -257,50 +221,22 @@ mod tests {
     fn no_data_is_minus_9999_by_default_and_nan_is_none() {
         let text = "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n-9999 nan\n";
         assert!(heights(text).unwrap().metres.iter().all(|m| m.is_nan()));
-        let text =
-            "ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value nan\n-9999";
+        let text = "ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value nan\n-9999";
         assert_eq!(heights(text).unwrap().metres, [-9999.0]);
     }
 
     #[test]
     fn errors_name_file_line_and_remedy() {
         let cases = [
-            (
-                GRID.replace(" 6\n", "\n"),
-                "a.asc:8: the file ends after 5 of 6 values; it is truncated",
-            ),
-            (
-                GRID.replace(" 6\n", " 6 7\n"),
-                "a.asc:8: more than the 6 values",
-            ),
-            (
-                GRID.replace("2 3", "2 x"),
-                "a.asc:7: \"x\" where a height should be",
-            ),
-            (
-                GRID.replace("ncols 3\n", ""),
-                "a.asc:6: the header has no ncols; an ESRI ASCII grid begins",
-            ),
-            (
-                GRID.replace("yllcorner 200.5\n", ""),
-                "a.asc:6: the header has no yllcorner",
-            ),
-            (
-                GRID.replace("ncols 3", "ncols 0"),
-                "a.asc:1: ncols is \"0\"; give a whole number from 1",
-            ),
-            (
-                GRID.replace("cellsize 10", "cellsize 0"),
-                "a.asc:5: cellsize is 0; give the side of a cell in metres",
-            ),
-            (
-                GRID.replace("cellsize 10", "cellsize NaN"),
-                "a.asc:5: cellsize is \"NaN\"; give a finite number",
-            ),
-            (
-                GRID.replace("_value -1", "_value x"),
-                "a.asc:6: NODATA_value is \"x\"; give a number",
-            ),
+            (GRID.replace(" 6\n", "\n"), "a.asc:8: the file ends after 5 of 6 values; it is truncated"),
+            (GRID.replace(" 6\n", " 6 7\n"), "a.asc:8: more than the 6 values"),
+            (GRID.replace("2 3", "2 x"), "a.asc:7: \"x\" where a height should be"),
+            (GRID.replace("ncols 3\n", ""), "a.asc:6: the header has no ncols; an ESRI ASCII grid begins"),
+            (GRID.replace("yllcorner 200.5\n", ""), "a.asc:6: the header has no yllcorner"),
+            (GRID.replace("ncols 3", "ncols 0"), "a.asc:1: ncols is \"0\"; give a whole number from 1"),
+            (GRID.replace("cellsize 10", "cellsize 0"), "a.asc:5: cellsize is 0; give the side of a cell in metres"),
+            (GRID.replace("cellsize 10", "cellsize NaN"), "a.asc:5: cellsize is \"NaN\"; give a finite number"),
+            (GRID.replace("_value -1", "_value x"), "a.asc:6: NODATA_value is \"x\"; give a number"),
             (String::new(), "a.asc:1: the header has no ncols"),
         ];
         for (text, expected) in cases {
@@ -314,18 +250,7 @@ mod tests {
         let grid = Heights {
             width: 5,
             height: 2,
-            metres: vec![
-                1.0,
-                2.0,
-                f32::NAN,
-                f32::NAN,
-                9.0,
-                3.0,
-                4.0,
-                f32::NAN,
-                8.0,
-                9.0,
-            ],
+            metres: vec![1.0, 2.0, f32::NAN, f32::NAN, 9.0, 3.0, 4.0, f32::NAN, 8.0, 9.0],
             cell_m: 2.0,
             origin_m: [7.0, 8.0],
         };

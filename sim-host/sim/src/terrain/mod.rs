@@ -42,13 +42,7 @@ pub struct LoadOptions {
 
 impl Default for LoadOptions {
     fn default() -> Self {
-        Self {
-            swamp: movingai::SWAMP,
-            downsample: 1,
-            slope: SlopeRule::default(),
-            unknown: BLOCKED,
-            classes: 9,
-        }
+        Self { swamp: movingai::SWAMP, downsample: 1, slope: SlopeRule::default(), unknown: BLOCKED, classes: 9 }
     }
 }
 
@@ -71,13 +65,7 @@ impl Terrain {
     #[must_use]
     pub fn flat(width: u16, height: u16) -> Self {
         let cells = vec![1; usize::from(width) * usize::from(height)];
-        Self {
-            width,
-            height,
-            cells,
-            cell_m: 1.0,
-            origin_m: [0.0; 2],
-        }
+        Self { width, height, cells, cell_m: 1.0, origin_m: [0.0; 2] }
     }
 
     /// Land of given impassabilities, row by row from the south-west corner, with cells of 1 m.
@@ -88,19 +76,9 @@ impl Terrain {
         let sides = 1..=MAX_SIDE;
         let fits = cells.len() == usize::from(width) * usize::from(height);
         if !(sides.contains(&width) && sides.contains(&height) && fits) {
-            return Err(TerrainError::Size {
-                width: width.into(),
-                height: height.into(),
-                cells: cells.len(),
-            });
+            return Err(TerrainError::Size { width: width.into(), height: height.into(), cells: cells.len() });
         }
-        Ok(Self {
-            width,
-            height,
-            cells,
-            cell_m: 1.0,
-            origin_m: [0.0; 2],
-        })
+        Ok(Self { width, height, cells, cell_m: 1.0, origin_m: [0.0; 2] })
     }
 
     /// Reads a terrain file with the default [`LoadOptions`].
@@ -121,9 +99,7 @@ impl Terrain {
             "map" => movingai::parse_map(&read(path)?, path, options.swamp),
             "asc" => {
                 let heights = esri::parse_heights(&read(path)?, path)?;
-                let terrain = options
-                    .slope
-                    .apply(&heights.downsample(options.downsample)?)?;
+                let terrain = options.slope.apply(&heights.downsample(options.downsample)?)?;
                 if terrain.cells.iter().all(|u| *u == BLOCKED) {
                     return Err(format_error(
                         path,
@@ -148,20 +124,10 @@ impl Terrain {
     /// # Errors
     /// [`TerrainError::Crop`] unless the piece has cells and all of them are on the map.
     pub fn crop(&self, x: u16, y: u16, width: u16, height: u16) -> Result<Self, TerrainError> {
-        let (right, top) = (
-            u32::from(x) + u32::from(width),
-            u32::from(y) + u32::from(height),
-        );
+        let (right, top) = (u32::from(x) + u32::from(width), u32::from(y) + u32::from(height));
         let inside = right <= u32::from(self.width) && top <= u32::from(self.height);
         if !inside || width == 0 || height == 0 {
-            return Err(TerrainError::Crop {
-                x,
-                y,
-                width,
-                height,
-                map_width: self.width,
-                map_height: self.height,
-            });
+            return Err(TerrainError::Crop { x, y, width, height, map_width: self.width, map_height: self.height });
         }
         let columns = usize::from(x)..usize::from(x) + usize::from(width);
         let cells = self
@@ -177,10 +143,7 @@ impl Terrain {
             height,
             cells,
             cell_m: self.cell_m,
-            origin_m: [
-                self.origin_m[0] + f64::from(x) * self.cell_m,
-                self.origin_m[1] + f64::from(y) * self.cell_m,
-            ],
+            origin_m: [self.origin_m[0] + f64::from(x) * self.cell_m, self.origin_m[1] + f64::from(y) * self.cell_m],
         })
     }
 
@@ -206,8 +169,7 @@ impl Terrain {
     #[must_use]
     pub fn index(&self, cell: Cell) -> Option<usize> {
         let (x, y) = (u16::try_from(cell.x).ok()?, u16::try_from(cell.y).ok()?);
-        (x < self.width && y < self.height)
-            .then(|| usize::from(y) * usize::from(self.width) + usize::from(x))
+        (x < self.width && y < self.height).then(|| usize::from(y) * usize::from(self.width) + usize::from(x))
     }
 
     /// Ticks to cross a cell; [`BLOCKED`] for walls and everything outside the map.
@@ -252,12 +214,7 @@ mod tests {
         assert_eq!(piece.cells(), [6, 7, 10, 11]);
         assert_eq!((piece.cell_m, piece.origin_m), (2.0, [12.0, 22.0]));
         assert_eq!(map.crop(0, 0, 4, 3).unwrap(), map);
-        for (x, y, width, height) in [
-            (3, 0, 2, 1),
-            (0, 0, 0, 1),
-            (0, 3, 1, 1),
-            (u16::MAX, 0, 2, 1),
-        ] {
+        for (x, y, width, height) in [(3, 0, 2, 1), (0, 0, 0, 1), (0, 3, 1, 1), (u16::MAX, 0, 2, 1)] {
             let message = map.crop(x, y, width, height).unwrap_err().to_string();
             assert!(message.contains("leaves the map of 4 x 3"), "{message}");
         }
@@ -294,10 +251,7 @@ mod tests {
         let text = "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 0.00083\n100 130\n";
         std::fs::write(&path, text).unwrap();
         let message = Terrain::load(&path).unwrap_err().to_string();
-        assert!(
-            message.contains("degrees.asc: every cell is steeper"),
-            "{message}"
-        );
+        assert!(message.contains("degrees.asc: every cell is steeper"), "{message}");
         std::fs::write(&path, text.replace("0.00083", "92")).unwrap();
         assert_eq!(Terrain::load(&path).unwrap().cells(), [6, 6]);
     }

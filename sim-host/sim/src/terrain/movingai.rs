@@ -79,10 +79,7 @@ pub fn parse_map(bytes: &[u8], path: &Path, swamp: u8) -> Result<Terrain, Terrai
 }
 
 /// Reads the four header lines up to `map`.
-fn header<'a>(
-    rows: &mut impl Iterator<Item = (usize, &'a str)>,
-    path: &Path,
-) -> Result<(u16, u16), TerrainError> {
+fn header<'a>(rows: &mut impl Iterator<Item = (usize, &'a str)>, path: &Path) -> Result<(u16, u16), TerrainError> {
     let (mut width, mut height, mut last) = (None, None, 1);
     for (line, row) in rows {
         last = line;
@@ -148,9 +145,7 @@ pub fn parse_scen(bytes: &[u8], path: &Path) -> Result<Vec<Query>, TerrainError>
             "a Moving AI scenario begins with: version 1",
         ));
     }
-    rows.filter(|(_, row)| !row.trim().is_empty())
-        .map(|(line, row)| query(row, line, path))
-        .collect()
+    rows.filter(|(_, row)| !row.trim().is_empty()).map(|(line, row)| query(row, line, path)).collect()
 }
 
 /// Reads a `.scen` file; see [`parse_scen`].
@@ -163,23 +158,9 @@ pub fn load_scen(path: &Path) -> Result<Vec<Query>, TerrainError> {
 
 fn query(row: &str, line: usize, path: &Path) -> Result<Query, TerrainError> {
     // Map names may hold spaces when the fields are separated by tabs.
-    let fields: Vec<&str> = if row.contains('\t') {
-        row.split('\t').map(str::trim).collect()
-    } else {
-        row.split_whitespace().collect()
-    };
-    let [
-        bucket,
-        map,
-        width,
-        height,
-        start_x,
-        start_y,
-        goal_x,
-        goal_y,
-        length,
-    ] = fields[..]
-    else {
+    let fields: Vec<&str> =
+        if row.contains('\t') { row.split('\t').map(str::trim).collect() } else { row.split_whitespace().collect() };
+    let [bucket, map, width, height, start_x, start_y, goal_x, goal_y, length] = fields[..] else {
         return Err(format_error(
             path,
             Place::Line(line),
@@ -242,10 +223,7 @@ mod tests {
     fn last_file_row_is_the_southernmost_terrain_row() {
         let terrain = map(MAP).unwrap();
         assert_eq!((terrain.width(), terrain.height()), (4, 3));
-        assert_eq!(
-            terrain.cells(),
-            [1, 1, 1, 1, 3, 3, BLOCKED, BLOCKED, 1, 1, BLOCKED, BLOCKED]
-        );
+        assert_eq!(terrain.cells(), [1, 1, 1, 1, 3, 3, BLOCKED, BLOCKED, 1, 1, BLOCKED, BLOCKED]);
         assert_eq!(terrain.get(Cell::new(2, 2)), BLOCKED);
     }
 
@@ -260,35 +238,14 @@ mod tests {
     #[test]
     fn errors_name_file_line_and_remedy() {
         let cases = [
-            (
-                MAP.replace("height 3", "height 4"),
-                "a.map:7: the file ends after 3 of 4 rows; it is truncated",
-            ),
-            (
-                MAP.replace("height 3", "height 2"),
-                "a.map:7: a row after the 2",
-            ),
-            (
-                MAP.replace("SSOW", "SSO"),
-                "a.map:6: a row of 3 cells; each row must have the 4",
-            ),
-            (
-                MAP.replace("SSOW", "SSXW"),
-                "a.map:6: 'X' in column 3; cells are",
-            ),
-            (
-                MAP.replace("width 4", "width 0"),
-                "a.map:3: width is \"0\"; give a whole number from 1 to 32767",
-            ),
+            (MAP.replace("height 3", "height 4"), "a.map:7: the file ends after 3 of 4 rows; it is truncated"),
+            (MAP.replace("height 3", "height 2"), "a.map:7: a row after the 2"),
+            (MAP.replace("SSOW", "SSO"), "a.map:6: a row of 3 cells; each row must have the 4"),
+            (MAP.replace("SSOW", "SSXW"), "a.map:6: 'X' in column 3; cells are"),
+            (MAP.replace("width 4", "width 0"), "a.map:3: width is \"0\"; give a whole number from 1 to 32767"),
             (MAP.replace("width 4", "width 32768"), "a.map:3: width"),
-            (
-                MAP.replace("width 4\n", ""),
-                "a.map:3: the header has no width",
-            ),
-            (
-                MAP.replace("octile", "hex"),
-                "a.map:1: \"type hex\" in the header",
-            ),
+            (MAP.replace("width 4\n", ""), "a.map:3: the header has no width"),
+            (MAP.replace("octile", "hex"), "a.map:1: \"type hex\" in the header"),
             (String::new(), "a.map:1: the header has no width"),
         ];
         for (text, expected) in cases {
@@ -297,16 +254,12 @@ mod tests {
         }
         let bytes = b"type octile\nheight 1\n\xFF";
         let message = message(parse_map(bytes, Path::new("a.map"), SWAMP));
-        assert!(
-            message.starts_with("a.map:3: bytes that are not text"),
-            "{message}"
-        );
+        assert!(message.starts_with("a.map:3: bytes that are not text"), "{message}");
     }
 
     #[test]
     fn queries_are_turned_to_south_first_rows() {
-        let text =
-            "version 1\n3\tdir/my map.map\t4\t3\t0\t0\t3\t2\t3.41421\n\n0 a.map 4 3 1 1 1 1 0\n";
+        let text = "version 1\n3\tdir/my map.map\t4\t3\t0\t0\t3\t2\t3.41421\n\n0 a.map 4 3 1 1 1 1 0\n";
         let queries = parse_scen(text.as_bytes(), Path::new("a.scen")).unwrap();
         assert_eq!(queries.len(), 2);
         assert_eq!(queries[0].map, "dir/my map.map");
@@ -319,38 +272,14 @@ mod tests {
     #[test]
     fn bad_queries_are_named() {
         let cases = [
-            (
-                "version 2\n",
-                "a.scen:1: the first line is \"version 2\"; a Moving AI scenario begins with",
-            ),
-            (
-                "version 1\n0 m 4 3 4 0 0 0 1",
-                "a.scen:2: the start (4, 0) lies outside the map of 4 x 3",
-            ),
-            (
-                "version 1\n0 m 4 3 0 0 0 3 1",
-                "a.scen:2: the goal (0, 3) lies outside",
-            ),
-            (
-                "version 1\n0 m 4 3 0 0 0 -1 1",
-                "a.scen:2: goal y is \"-1\"; give a whole number",
-            ),
-            (
-                "version 1\n0 m 4 3 0 0 0 1 NaN",
-                "a.scen:2: optimal length is \"NaN\"; give a finite number",
-            ),
-            (
-                "version 1\n0 m 4 3 0 0 0 1 -1",
-                "a.scen:2: optimal length is -1",
-            ),
-            (
-                "version 1\n0 m 4 3 0 0 0 1",
-                "a.scen:2: 8 fields; a query has nine",
-            ),
-            (
-                "version 1\n\n0 m 4 99999 0 0 0 1 1",
-                "a.scen:3: map height is \"99999\"",
-            ),
+            ("version 2\n", "a.scen:1: the first line is \"version 2\"; a Moving AI scenario begins with"),
+            ("version 1\n0 m 4 3 4 0 0 0 1", "a.scen:2: the start (4, 0) lies outside the map of 4 x 3"),
+            ("version 1\n0 m 4 3 0 0 0 3 1", "a.scen:2: the goal (0, 3) lies outside"),
+            ("version 1\n0 m 4 3 0 0 0 -1 1", "a.scen:2: goal y is \"-1\"; give a whole number"),
+            ("version 1\n0 m 4 3 0 0 0 1 NaN", "a.scen:2: optimal length is \"NaN\"; give a finite number"),
+            ("version 1\n0 m 4 3 0 0 0 1 -1", "a.scen:2: optimal length is -1"),
+            ("version 1\n0 m 4 3 0 0 0 1", "a.scen:2: 8 fields; a query has nine"),
+            ("version 1\n\n0 m 4 99999 0 0 0 1 1", "a.scen:3: map height is \"99999\""),
         ];
         for (text, expected) in cases {
             let message = message(parse_scen(text.as_bytes(), Path::new("a.scen")));

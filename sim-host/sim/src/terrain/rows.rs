@@ -35,11 +35,9 @@ mod tests {
 
     #[test]
     fn rows_are_exchanged_whole_and_back_again() {
-        for (height, expected) in [
-            (1, vec![0, 1, 2]),
-            (2, vec![3, 4, 5, 0, 1, 2]),
-            (3, vec![6, 7, 8, 3, 4, 5, 0, 1, 2]),
-        ] {
+        for (height, expected) in
+            [(1, vec![0, 1, 2]), (2, vec![3, 4, 5, 0, 1, 2]), (3, vec![6, 7, 8, 3, 4, 5, 0, 1, 2])]
+        {
             let original: Vec<i32> = (0..3 * height).collect();
             let mut grid = original.clone();
             flip_rows(&mut grid, 3);

@@ -24,10 +24,7 @@ pub struct SlopeRule {
 impl Default for SlopeRule {
     /// Nine classes as in KUZ section 5, and 0.5 (27 degrees).
     fn default() -> Self {
-        Self {
-            classes: 9,
-            max_slope: 0.5,
-        }
+        Self { classes: 9, max_slope: 0.5 }
     }
 }
 
@@ -50,10 +47,7 @@ impl SlopeRule {
     /// [`TerrainError::Parameter`] when the rule makes no sense.
     pub fn apply(&self, heights: &Heights) -> Result<Terrain, TerrainError> {
         if self.classes == 0 {
-            return Err(parameter_error(
-                "slope.classes is 0",
-                "give the number of classes, 1..=255",
-            ));
+            return Err(parameter_error("slope.classes is 0", "give the number of classes, 1..=255"));
         }
         if !(self.max_slope > 0.0 && self.max_slope.is_finite()) {
             return Err(parameter_error(
@@ -111,10 +105,7 @@ mod tests {
         }
     }
 
-    const RULE: SlopeRule = SlopeRule {
-        classes: 4,
-        max_slope: 1.0,
-    };
+    const RULE: SlopeRule = SlopeRule { classes: 4, max_slope: 1.0 };
 
     #[test]
     fn classes_are_linear_up_to_the_maximum_slope() {
@@ -131,19 +122,14 @@ mod tests {
         for (slope, expected) in cases {
             assert_eq!(RULE.impassability(slope), expected, "slope {slope}");
         }
-        let finest = SlopeRule {
-            classes: 255,
-            ..RULE
-        };
+        let finest = SlopeRule { classes: 255, ..RULE };
         assert_eq!(finest.impassability(1.0), 255);
     }
 
     #[test]
     fn a_plane_has_its_slope_everywhere() {
         // 3 m east and 4 m north per cell of 10 m: slope 0.5, class 1 + floor(4 * 0.5) = 3.
-        let plane: Vec<f32> = (0..12)
-            .map(|at| (3 * (at % 4) + 4 * (at / 4)) as f32)
-            .collect();
+        let plane: Vec<f32> = (0..12).map(|at| (3 * (at % 4) + 4 * (at / 4)) as f32).collect();
         let terrain = RULE.apply(&heights(4, &plane)).unwrap();
         assert_eq!(terrain.cells(), [3; 12]);
         assert_eq!((terrain.cell_m, terrain.origin_m), (10.0, [3.0, 4.0]));

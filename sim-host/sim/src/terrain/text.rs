@@ -20,9 +20,7 @@ pub(super) fn text<'a>(bytes: &'a [u8], path: &Path) -> Result<&'a str, TerrainE
 
 /// The lines of a text with their numbers, without line ends of either kind.
 pub(super) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
-    text.lines()
-        .enumerate()
-        .map(|(at, line)| (at + 1, line.trim_end_matches('\r')))
+    text.lines().enumerate().map(|(at, line)| (at + 1, line.trim_end_matches('\r')))
 }
 
 /// A whole number, or an error that names `field`.
@@ -33,12 +31,7 @@ pub(super) fn integer<T: std::str::FromStr>(
     word: &str,
 ) -> Result<T, TerrainError> {
     word.parse().map_err(|_| {
-        format_error(
-            path,
-            Place::Line(line),
-            format!("{field} is {word:?}"),
-            "give a whole number in range",
-        )
+        format_error(path, Place::Line(line), format!("{field} is {word:?}"), "give a whole number in range")
     })
 }
 
@@ -56,20 +49,10 @@ pub(super) fn side(path: &Path, line: usize, field: &str, word: &str) -> Result<
 }
 
 /// A finite number, or an error that names `field`.
-pub(super) fn finite(
-    path: &Path,
-    line: usize,
-    field: &str,
-    word: &str,
-) -> Result<f64, TerrainError> {
+pub(super) fn finite(path: &Path, line: usize, field: &str, word: &str) -> Result<f64, TerrainError> {
     match word.parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
-        _ => Err(format_error(
-            path,
-            Place::Line(line),
-            format!("{field} is {word:?}"),
-            "give a finite number",
-        )),
+        _ => Err(format_error(path, Place::Line(line), format!("{field} is {word:?}"), "give a finite number")),
     }
 }
 

@@ -115,18 +115,9 @@ impl World {
         if let Some(other) = self.body_at(cell) {
             let first = self.bodies[other].id;
             let second = robot;
-            return Err(Misplaced::Overlap {
-                first,
-                second,
-                cell,
-            });
+            return Err(Misplaced::Overlap { first, second, cell });
         }
-        self.bodies.push(Body {
-            id: robot,
-            cell,
-            entered_by: Dir::Stay,
-            free_at: 0,
-        });
+        self.bodies.push(Body { id: robot, cell, entered_by: Dir::Stay, free_at: 0 });
         self.occupancy[at] = self.bodies.len() as u32;
         Ok(())
     }
@@ -190,13 +181,10 @@ impl World {
 
     fn move_body(&mut self, index: usize, preferred: &[Dir], now: u64) {
         let body = self.bodies[index];
-        let open = preferred
-            .iter()
-            .find(|&&dir| dir == Dir::Stay || self.is_open(body.cell, dir));
+        let open = preferred.iter().find(|&&dir| dir == Dir::Stay || self.is_open(body.cell, dir));
         let Some(&dir) = open else { return };
         let to = body.cell + dir.offset();
-        let (Some(from_at), Some(to_at)) = (self.terrain.index(body.cell), self.terrain.index(to))
-        else {
+        let (Some(from_at), Some(to_at)) = (self.terrain.index(body.cell), self.terrain.index(to)) else {
             return;
         };
         if dir == Dir::Stay {
@@ -205,16 +193,8 @@ impl World {
         self.occupancy[from_at] = 0;
         self.occupancy[to_at] = index as u32 + 1;
         let idle = now - body.free_at;
-        let start = if idle < u64::from(UNIT) {
-            body.free_at
-        } else {
-            now
-        };
-        let moved = Body {
-            cell: to,
-            entered_by: dir,
-            ..body
-        };
+        let start = if idle < u64::from(UNIT) { body.free_at } else { now };
+        let moved = Body { cell: to, entered_by: dir, ..body };
         let free_at = start + self.crossing(&moved);
         self.bodies[index] = Body { free_at, ..moved };
     }
@@ -226,9 +206,7 @@ impl World {
         let passable = |x, y| self.terrain.is_passable(Cell::new(x, y));
         self.terrain.is_passable(to)
             && self.body_at(to).is_none()
-            && (self.rules.corner_cutting
-                || !dir.is_diagonal()
-                || (passable(to.x, from.y) && passable(from.x, to.y)))
+            && (self.rules.corner_cutting || !dir.is_diagonal() || (passable(to.x, from.y) && passable(from.x, to.y)))
     }
 
     /// How many bodies stand in a blocked cell, or in a cell that another body already has.

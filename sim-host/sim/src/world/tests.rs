@@ -6,9 +6,7 @@ fn moves(dirs: &[Dir]) -> Command<f32> {
 }
 
 fn world(terrain: Terrain, rules: MoveRules, starts: &[(i16, i16)]) -> World {
-    let starts = (1..)
-        .zip(starts)
-        .map(|(id, &(x, y))| (RobotId(id), Cell::new(x, y)));
+    let starts = (1..).zip(starts).map(|(id, &(x, y))| (RobotId(id), Cell::new(x, y)));
     World::new(terrain, rules, 7, starts).expect("starts are free")
 }
 
@@ -35,28 +33,14 @@ fn starts_in_walls_outside_or_on_each_other_are_refused() {
         assert_eq!(at(x, y).err(), Some(Misplaced::Blocked { robot, cell }));
     }
     let (first, second, cell) = (RobotId(4), RobotId(9), Cell::new(0, 0));
-    assert_eq!(
-        at(0, 0).err(),
-        Some(Misplaced::Overlap {
-            first,
-            second,
-            cell
-        })
-    );
+    assert_eq!(at(0, 0).err(), Some(Misplaced::Overlap { first, second, cell }));
     assert!(at(2, 2).is_ok());
 }
 
 #[test]
 fn first_open_move_is_taken_and_nothing_open_means_stay() {
-    let mut world = world(
-        walled(&[(1, 0)], 2, 2),
-        MoveRules::default(),
-        &[(0, 0), (0, 1)],
-    );
-    world.advance(
-        0,
-        &[moves(&[Dir::East, Dir::North, Dir::South]), Command::Hold],
-    );
+    let mut world = world(walled(&[(1, 0)], 2, 2), MoveRules::default(), &[(0, 0), (0, 1)]);
+    world.advance(0, &[moves(&[Dir::East, Dir::North, Dir::South]), Command::Hold]);
     assert_eq!(world.bodies()[0].cell, Cell::new(0, 0));
     world.advance(1, &[Command::Hold, moves(&[Dir::West, Dir::East])]);
     assert_eq!(world.bodies()[1].cell, Cell::new(1, 1));
@@ -72,27 +56,16 @@ fn diagonal_between_walls_needs_corner_cutting() {
         (&[(1, 0), (0, 1)][..], true, true),
         (&[][..], false, true),
     ] {
-        let rules = MoveRules {
-            corner_cutting,
-            ..MoveRules::default()
-        };
+        let rules = MoveRules { corner_cutting, ..MoveRules::default() };
         let mut world = world(walled(wall, 2, 2), rules, &[(0, 0)]);
         world.advance(0, &[moves(&[Dir::NorthEast])]);
-        assert_eq!(
-            world.bodies()[0].cell == Cell::new(1, 1),
-            passes,
-            "{wall:?}"
-        );
+        assert_eq!(world.bodies()[0].cell == Cell::new(1, 1), passes, "{wall:?}");
     }
 }
 
 #[test]
 fn robots_beside_a_diagonal_do_not_hinder_it() {
-    let mut world = world(
-        Terrain::flat(2, 2),
-        MoveRules::default(),
-        &[(0, 0), (1, 0), (0, 1)],
-    );
+    let mut world = world(Terrain::flat(2, 2), MoveRules::default(), &[(0, 0), (1, 0), (0, 1)]);
     world.advance(0, &[moves(&[Dir::NorthEast]), Command::Hold, Command::Hold]);
     assert_eq!(world.bodies()[0].cell, Cell::new(1, 1));
 }
@@ -100,15 +73,7 @@ fn robots_beside_a_diagonal_do_not_hinder_it() {
 #[test]
 fn a_journey_takes_exactly_the_route_cost_of_eq_7() {
     let mut terrain = Terrain::flat(40, 40);
-    let path: Vec<Dir> = (0..30)
-        .map(|i| {
-            if i % 3 == 1 {
-                Dir::North
-            } else {
-                Dir::NorthEast
-            }
-        })
-        .collect();
+    let path: Vec<Dir> = (0..30).map(|i| if i % 3 == 1 { Dir::North } else { Dir::NorthEast }).collect();
     let mut cell = Cell::new(0, 0);
     let mut cost = 0;
     for (i, dir) in path.iter().enumerate() {
@@ -137,11 +102,7 @@ fn waiting_a_whole_tick_forfeits_the_fraction() {
     world.advance(0, &[moves(&[Dir::NorthEast])]);
     assert_eq!(world.bodies()[0].free_at, 99);
     world.advance(1, &[moves(&[Dir::NorthEast])]);
-    assert_eq!(
-        world.bodies()[0].cell,
-        Cell::new(1, 1),
-        "1.41 ticks are not over at tick 1"
-    );
+    assert_eq!(world.bodies()[0].cell, Cell::new(1, 1), "1.41 ticks are not over at tick 1");
     world.advance(2, &[Command::Hold]);
     world.advance(3, &[moves(&[Dir::NorthEast])]);
     assert_eq!(world.bodies()[0].free_at, 3 * 70 + 99);
@@ -160,16 +121,8 @@ fn two_robots_never_swap_cells() {
 fn a_contested_cell_goes_to_each_robot_equally_often() {
     let mut wins = [0_u32; 3];
     for tick in 0..3000 {
-        let mut world = world(
-            Terrain::flat(3, 2),
-            MoveRules::default(),
-            &[(0, 0), (1, 0), (2, 0)],
-        );
-        let up = [
-            moves(&[Dir::NorthEast]),
-            moves(&[Dir::North]),
-            moves(&[Dir::NorthWest]),
-        ];
+        let mut world = world(Terrain::flat(3, 2), MoveRules::default(), &[(0, 0), (1, 0), (2, 0)]);
+        let up = [moves(&[Dir::NorthEast]), moves(&[Dir::North]), moves(&[Dir::NorthWest])];
         world.advance(tick, &up);
         wins[world.body_at(Cell::new(1, 1)).expect("somebody moved")] += 1;
     }
@@ -193,11 +146,7 @@ fn a_queue_moves_on_together_when_the_first_goes_first() {
 
 #[test]
 fn the_check_finds_what_the_bookkeeping_hides() {
-    let mut world = world(
-        Terrain::flat(3, 1),
-        MoveRules::default(),
-        &[(0, 0), (1, 0), (2, 0)],
-    );
+    let mut world = world(Terrain::flat(3, 1), MoveRules::default(), &[(0, 0), (1, 0), (2, 0)]);
     assert_eq!(world.count_collisions(0), 0);
     world.bodies[0].cell = Cell::new(1, 0);
     assert_eq!(world.count_collisions(1), 1);
@@ -213,21 +162,12 @@ fn window_is_always_square_and_walled_beyond_the_map() {
     terrain.set(Cell::new(1, 1), 9);
     let world = world(terrain, MoveRules::default(), &[]);
     let mut buffer = vec![7; 1000];
-    let corner = world
-        .window(Cell::new(0, 0), 1, &mut buffer)
-        .expect("on the map");
-    assert_eq!(
-        (corner.origin(), corner.width(), corner.height()),
-        (Cell::new(-1, -1), 3, 3)
-    );
+    let corner = world.window(Cell::new(0, 0), 1, &mut buffer).expect("on the map");
+    assert_eq!((corner.origin(), corner.width(), corner.height()), (Cell::new(-1, -1), 3, 3));
     assert_eq!(corner.cells(), [0, 0, 0, 0, 1, 1, 0, 1, 9]);
-    let other = world
-        .window(Cell::new(4, 3), 1, &mut buffer)
-        .expect("on the map");
+    let other = world.window(Cell::new(4, 3), 1, &mut buffer).expect("on the map");
     assert_eq!(other.cells(), [1, 1, 0, 1, 1, 0, 0, 0, 0]);
-    let own = world
-        .window(Cell::new(1, 1), 0, &mut buffer)
-        .expect("on the map");
+    let own = world.window(Cell::new(1, 1), 0, &mut buffer).expect("on the map");
     assert_eq!(own.cells(), [9]);
     for outside in [(-1, 0), (5, 0), (0, 4), (i16::MIN, i16::MAX)] {
         let cell = Cell::new(outside.0, outside.1);
@@ -242,9 +182,7 @@ fn every_cell_of_a_window_is_that_of_the_map() {
     let world = world(terrain, MoveRules::default(), &[]);
     let mut buffer = Vec::new();
     for radius in [1, 2, 6, u8::MAX] {
-        let window = world
-            .window(Cell::new(3, 1), radius, &mut buffer)
-            .expect("on the map");
+        let window = world.window(Cell::new(3, 1), radius, &mut buffer).expect("on the map");
         assert_eq!(window.width(), 2 * u16::from(radius) + 1);
         for (x, y) in (-8..14).flat_map(|x| (-8..14).map(move |y| (x, y))) {
             let cell = Cell::new(x, y);

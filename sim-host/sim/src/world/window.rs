@@ -9,24 +9,14 @@ impl World {
     /// outside the map are walls, so that every window has the same size. `None` when `cell` itself
     /// is not on the map. O(radius^2).
     #[must_use]
-    pub fn window<'a>(
-        &self,
-        cell: Cell,
-        radius: u8,
-        buffer: &'a mut Vec<u8>,
-    ) -> Option<Window<'a>> {
+    pub fn window<'a>(&self, cell: Cell, radius: u8, buffer: &'a mut Vec<u8>) -> Option<Window<'a>> {
         window(&self.terrain, cell, radius, buffer)
     }
 }
 
 /// As [`World::window`], of any land.
 #[must_use]
-pub fn window<'a>(
-    terrain: &Terrain,
-    cell: Cell,
-    radius: u8,
-    buffer: &'a mut Vec<u8>,
-) -> Option<Window<'a>> {
+pub fn window<'a>(terrain: &Terrain, cell: Cell, radius: u8, buffer: &'a mut Vec<u8>) -> Option<Window<'a>> {
     terrain.index(cell)?;
     let reach = i16::from(radius);
     let side = 2 * u16::from(radius) + 1;
@@ -35,9 +25,7 @@ pub fn window<'a>(
     let (before, columns, after) = span(cell.x, reach, terrain.width());
     buffer.clear();
     for y in i32::from(origin.y)..i32::from(origin.y) + i32::from(side) {
-        let row = usize::try_from(y)
-            .ok()
-            .filter(|&row| row < usize::from(terrain.height()));
+        let row = usize::try_from(y).ok().filter(|&row| row < usize::from(terrain.height()));
         let Some(row) = row else {
             buffer.resize(buffer.len() + usize::from(side), BLOCKED);
             continue;
@@ -52,14 +40,7 @@ pub fn window<'a>(
 
 /// The part of `at - reach ..= at + reach` inside `0..length`, and how much of it lies before and after.
 fn span(at: i16, reach: i16, length: u16) -> (usize, std::ops::Range<usize>, usize) {
-    let (first, end) = (
-        i32::from(at) - i32::from(reach),
-        i32::from(at) + i32::from(reach) + 1,
-    );
+    let (first, end) = (i32::from(at) - i32::from(reach), i32::from(at) + i32::from(reach) + 1);
     let (low, high) = (first.max(0), end.min(i32::from(length)));
-    (
-        (low - first) as usize,
-        low as usize..high as usize,
-        (end - high) as usize,
-    )
+    ((low - first) as usize, low as usize..high as usize, (end - high) as usize)
 }

@@ -115,9 +115,6 @@ mod halves {
     }
 
     pub fn half(script: impl IntoIterator<Item = Result<Vec<u8>, ErrorKind>>) -> Half {
-        Half {
-            script: script.into_iter().collect(),
-            heard: Vec::new(),
-        }
+        Half { script: script.into_iter().collect(), heard: Vec::new() }
     }
 }

@@ -9,10 +9,7 @@ use staya_controller::agent::{Setup, Task};
 use staya_controller::rand::Rng;
 use std::vec::Vec;
 
-pub const LIMITS: Limits = Limits {
-    resend_after_us: 20_000,
-    attempts: 60,
-};
+pub const LIMITS: Limits = Limits { resend_after_us: 20_000, attempts: 60 };
 
 /// What one direction does to frames, probabilities in percent.
 #[derive(Clone, Copy, Debug, Default)]
@@ -34,11 +31,7 @@ pub struct Line {
 
 impl Line {
     pub fn new(faults: Faults, seed: u64) -> Self {
-        Self {
-            faults,
-            rng: Rng::new(seed),
-            on_the_way: Vec::new(),
-        }
+        Self { faults, rng: Rng::new(seed), on_the_way: Vec::new() }
     }
 
     fn happens(&mut self, percent: u32) -> bool {
@@ -71,15 +64,8 @@ impl Line {
 
     fn arrived(&mut self, now: u64) -> Vec<Vec<u8>> {
         self.on_the_way.sort_by_key(|(due, _)| *due);
-        let count = self
-            .on_the_way
-            .iter()
-            .filter(|(due, _)| *due <= now)
-            .count();
-        self.on_the_way
-            .drain(..count)
-            .map(|(_, bytes)| bytes)
-            .collect()
+        let count = self.on_the_way.iter().filter(|(due, _)| *due <= now).count();
+        self.on_the_way.drain(..count).map(|(_, bytes)| bytes).collect()
     }
 }
 
@@ -127,10 +113,7 @@ impl<B: Controller + Default> Bench<B> {
                 Next::WaitUntil(until) => until,
                 Next::Idle => panic!("nothing was asked"),
             };
-            let next = [self.there.next(), self.back.next()]
-                .into_iter()
-                .flatten()
-                .min();
+            let next = [self.there.next(), self.back.next()].into_iter().flatten().min();
             self.now = next.map_or(until, |next| next.min(until)).max(self.now);
             let mut restarts = false;
             for bytes in self.there.arrived(self.now) {

@@ -20,11 +20,7 @@ pub fn inbox(tick: u32, now: Instant) -> Vec<u8> {
         mode: Mode::Cruise,
         ..Beacon::default()
     };
-    let header = Header {
-        boot: 0,
-        sender: RobotId(2),
-        sequence: tick as u16,
-    };
+    let header = Header { boot: 0, sender: RobotId(2), sequence: tick as u16 };
     let mut out = heapless::Vec::<u8, 128>::new();
     encode(header, &Message::Beacon(beacon), &mut out).expect("fits");
     // Every ninth one is damaged on the air.
@@ -51,22 +47,15 @@ pub struct Scene {
 }
 
 impl World {
-    pub const START: Self = Self {
-        position: Position::ORIGIN,
-        velocity: Vec3::new(0.0, 0.0, 0.0),
-        cell: Cell::new(0, 0),
-    };
+    pub const START: Self =
+        Self { position: Position::ORIGIN, velocity: Vec3::new(0.0, 0.0, 0.0), cell: Cell::new(0, 0) };
 
     pub fn scene(&self, tick: u32) -> Scene {
         let now = Instant::from_micros(tick.wrapping_mul(100_000));
         let origin = self.cell - Cell::new(5, 5);
         let impassability = |i: i16| {
             let (x, y) = (origin.x + i % 11, origin.y + i / 11);
-            if (x * 7 + y * 3) % 5 == 1 {
-                0
-            } else {
-                1 + (x + y).rem_euclid(3) as u8
-            }
+            if (x * 7 + y * 3) % 5 == 1 { 0 } else { 1 + (x + y).rem_euclid(3) as u8 }
         };
         let [x, y, _] = self.position.mm.map(|mm| mm as f32 / 1000.0);
         let corner = |dx: f32, dy: f32| Vec2::new(dx - x, dy - y);
@@ -77,10 +66,7 @@ impl World {
             origin,
             obstacles: [
                 Obstacle::Wall([corner(4.0, -1.0), corner(4.0, 1.0)]),
-                Obstacle::Ball {
-                    center_m: corner(8.0, 0.5).extend(0.0),
-                    radius_m: 0.5,
-                },
+                Obstacle::Ball { center_m: corner(8.0, 0.5).extend(0.0), radius_m: 0.5 },
             ],
         }
     }
@@ -99,20 +85,11 @@ impl World {
 
 impl Scene {
     pub fn inputs(&self, world: &World, plane: bool) -> AnyInputs<'_, f32> {
-        let cell = CellState {
-            cell: world.cell,
-            busy: Duration::ZERO,
-        };
+        let cell = CellState { cell: world.cell, busy: Duration::ZERO };
         Inputs {
-            state: KinematicState {
-                position: world.position,
-                velocity_mps: world.velocity,
-            },
+            state: KinematicState { position: world.position, velocity_mps: world.velocity },
             surroundings: if plane {
-                AnySurroundings::InPlane(InPlane {
-                    max_speed_mps: 1.0,
-                    obstacles: &self.obstacles,
-                })
+                AnySurroundings::InPlane(InPlane { max_speed_mps: 1.0, obstacles: &self.obstacles })
             } else {
                 let window = Window::new(&self.land, self.origin, 11, 11);
                 AnySurroundings::OnGrid(OnGrid { cell, window })

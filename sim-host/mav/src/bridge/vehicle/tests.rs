@@ -10,10 +10,7 @@ const NAN: f32 = f32::NAN;
 const NONE: [f32; 7] = [0.0; 7];
 
 fn flying() -> VehicleModel {
-    VehicleModel {
-        flies: true,
-        ..model()
-    }
+    VehicleModel { flies: true, ..model() }
 }
 
 fn first(first: f32) -> [f32; 7] {
@@ -29,10 +26,7 @@ fn guided(model: VehicleModel) -> Bench {
     let mut bench = Bench::new(model);
     let number = FlightMode::Guided.number(bench.vehicle.model.flies);
     let result = bench.command(MAV_CMD_DO_SET_MODE, two(1.0, number as f32));
-    assert_eq!(
-        (result, bench.wish()),
-        (MAV_RESULT_ACCEPTED, Some(Wish::Hold))
-    );
+    assert_eq!((result, bench.wish()), (MAV_RESULT_ACCEPTED, Some(Wish::Hold)));
     bench
 }
 

@@ -21,10 +21,7 @@ fn what_is_left_out_is_cautious() {
     let [vehicle] = config.vehicles.as_slice() else {
         panic!("one vehicle");
     };
-    assert_eq!(
-        (vehicle.robot, vehicle.index, vehicle.system),
-        (RobotId(3), 2, 3)
-    );
+    assert_eq!((vehicle.robot, vehicle.index, vehicle.system), (RobotId(3), 2, 3));
     assert_eq!(vehicle.rules.entry, Entry::Wait);
     assert!(!vehicle.rules.arm && !vehicle.rules.takeoff);
     assert_eq!(vehicle.rules.stale, Duration::from_secs(1));
@@ -36,10 +33,7 @@ fn vehicles_share_lines_and_are_sorted() {
     let more = "[[vehicle]]\nrobot = 1\nsystem = 9\nlink = \"udpin:127.0.0.1:14550\"\nautopilot = \"px4\"\n\
                 [[vehicle]]\nrobot = 2\nlink = \"tcpout:127.0.0.1:5760\"\nautopilot = \"px4-rover\"";
     let config = parse(&text("", more)).unwrap();
-    let found = config
-        .vehicles
-        .iter()
-        .map(|v| (v.robot.0, v.system, v.line));
+    let found = config.vehicles.iter().map(|v| (v.robot.0, v.system, v.line));
     assert_eq!(found.collect::<Vec<_>>(), [(1, 9, 0), (2, 2, 1), (3, 3, 0)]);
     assert_eq!(config.lines.len(), 2);
     assert_eq!(config.vehicles[0].kind, Kind::Px4Copter);
@@ -48,40 +42,26 @@ fn vehicles_share_lines_and_are_sorted() {
 #[test]
 fn heights_are_for_what_flies() {
     let rules = "[rules]\nentry = \"once\"\narm = true\ntakeoff = true\naltitude_m = 10";
-    let more = "[[vehicle]]\nrobot = 1\nlink = \"udpin:127.0.0.1:1\"\nautopilot = \"ardupilot-copter\"\naltitude_m = 12";
+    let more =
+        "[[vehicle]]\nrobot = 1\nlink = \"udpin:127.0.0.1:1\"\nautopilot = \"ardupilot-copter\"\naltitude_m = 12";
     let config = parse(&text(rules, more)).unwrap();
-    let found = config
-        .vehicles
-        .iter()
-        .map(|v| (v.rules.takeoff, v.rules.altitude_m));
-    assert_eq!(
-        found.collect::<Vec<_>>(),
-        [(true, Some(12.0)), (false, None)]
-    );
+    let found = config.vehicles.iter().map(|v| (v.rules.takeoff, v.rules.altitude_m));
+    assert_eq!(found.collect::<Vec<_>>(), [(true, Some(12.0)), (false, None)]);
 }
 
 #[test]
 fn a_goal_on_the_earth_is_metres() {
     let config = parse(&text("", "goal_deg = [55.751, 37.62]")).unwrap();
     let goal = config.plane.starts[2].places[0].position_m;
-    assert!(
-        goal[0].abs() < 0.01 && (goal[1] - 111.34).abs() < 0.01,
-        "{goal:?}"
-    );
-    assert_eq!(
-        config.scenario.plane.unwrap().starts[2].places[0].position_m,
-        goal
-    );
+    assert!(goal[0].abs() < 0.01 && (goal[1] - 111.34).abs() < 0.01, "{goal:?}");
+    assert_eq!(config.scenario.plane.unwrap().starts[2].places[0].position_m, goal);
 }
 
 #[test]
 fn ways_to_other_companions() {
     let config = parse(&text("[air]\nmulticast = \"239.1.2.3:5000\"", "")).unwrap();
     assert!(matches!(config.air, MediumSetup::Multicast { .. }));
-    let config = parse(&text(
-        "[air]\nbind = \"0.0.0.0:5000\"\npeers = [\"10.0.0.2:5000\"]",
-        "",
-    ));
+    let config = parse(&text("[air]\nbind = \"0.0.0.0:5000\"\npeers = [\"10.0.0.2:5000\"]", ""));
     assert!(matches!(config.unwrap().air, MediumSetup::Peers { .. }));
     let config = parse(&text("[air]\ntunnel = true", "")).unwrap();
     assert_eq!(config.air, MediumSetup::Tunnel);
@@ -90,113 +70,42 @@ fn ways_to_other_companions() {
 #[test]
 fn errors_name_line_field_and_remedy() {
     let twice = "[[vehicle]]\nrobot = 3\nlink = \"udpin:127.0.0.1:14550\"\nautopilot = \"px4\"";
-    let same_system =
-        "[[vehicle]]\nrobot = 4\nsystem = 3\nlink = \"udpin:127.0.0.1:14550\"\nautopilot = \"px4\"";
+    let same_system = "[[vehicle]]\nrobot = 4\nsystem = 3\nlink = \"udpin:127.0.0.1:14550\"\nautopilot = \"px4\"";
     for (top, bottom, expected) in [
         ("nonsense = 1", "", "test.toml:3: nonsense"),
-        (
-            "[rules]\nstale_s = 0",
-            "",
-            "test.toml:4: rules.stale_s: 0 is out of range; give 0.1 to 60 seconds",
-        ),
-        (
-            "[rules]\nsetpoint_hz = 2",
-            "",
-            "rules.setpoint_hz: 2 is out of range; give 3 to 100 Hz",
-        ),
-        (
-            "[rules]\narm = true",
-            "",
-            "rules.arm: with entry \"wait\" the pilot arms",
-        ),
-        (
-            "[rules]\nentry = \"once\"\ntakeoff = true",
-            "",
-            "rules.takeoff: what is not armed",
-        ),
+        ("[rules]\nstale_s = 0", "", "test.toml:4: rules.stale_s: 0 is out of range; give 0.1 to 60 seconds"),
+        ("[rules]\nsetpoint_hz = 2", "", "rules.setpoint_hz: 2 is out of range; give 3 to 100 Hz"),
+        ("[rules]\narm = true", "", "rules.arm: with entry \"wait\" the pilot arms"),
+        ("[rules]\nentry = \"once\"\ntakeoff = true", "", "rules.takeoff: what is not armed"),
         ("[rules]\nentry = \"always\"", "", "rules.entry"),
-        (
-            "[air]\ntunnel = true\nmulticast = \"239.1.2.3:5\"",
-            "",
-            "air: it is not clear",
-        ),
-        (
-            "[air]\nmulticast = \"10.1.2.3:5\"",
-            "",
-            "`10.1.2.3:5` is no IPv4 multicast group",
-        ),
-        (
-            "[air]\npeers = [\"10.1.2.3:5\"]",
-            "",
-            "air.peers: it is not clear",
-        ),
-        (
-            "[air]\nbind = \"0.0.0.0:5\"\npeers = [\"there\"]",
-            "",
-            "test.toml:5: air.peers[0]: `there` is no address",
-        ),
-        (
-            "",
-            "altitude_m = 0",
-            "vehicle[0].altitude_m: 0 is out of range",
-        ),
-        (
-            "",
-            "goal_deg = [-55.0, 37.62]",
-            "vehicle[0].goal_deg: this is no place near the origin",
-        ),
-        (
-            "",
-            "system = 255",
-            "test.toml:8: vehicle[0].system: 255 is no vehicle's MAVLink system; give 1 to 254",
-        ),
+        ("[air]\ntunnel = true\nmulticast = \"239.1.2.3:5\"", "", "air: it is not clear"),
+        ("[air]\nmulticast = \"10.1.2.3:5\"", "", "`10.1.2.3:5` is no IPv4 multicast group"),
+        ("[air]\npeers = [\"10.1.2.3:5\"]", "", "air.peers: it is not clear"),
+        ("[air]\nbind = \"0.0.0.0:5\"\npeers = [\"there\"]", "", "test.toml:5: air.peers[0]: `there` is no address"),
+        ("", "altitude_m = 0", "vehicle[0].altitude_m: 0 is out of range"),
+        ("", "goal_deg = [-55.0, 37.62]", "vehicle[0].goal_deg: this is no place near the origin"),
+        ("", "system = 255", "test.toml:8: vehicle[0].system: 255 is no vehicle's MAVLink system; give 1 to 254"),
         ("", twice, "vehicle[1].robot: robot 3 is there twice"),
-        (
-            "",
-            same_system,
-            "vehicle[1].system: system 3 is there twice on this link",
-        ),
+        ("", same_system, "vehicle[1].system: system 3 is there twice on this link"),
     ] {
         let error = parse(&text(top, bottom)).expect_err(expected).to_string();
         assert!(error.contains(expected), "{error}\n{expected}");
     }
     for (from, to, expected) in [
-        (
-            "robot = 3",
-            "robot = 99",
-            "vehicle[0].robot: the scenario has no robot 99; give the number of one of its 16",
-        ),
-        (
-            "udpin:127.0.0.1:14550",
-            "udp:1",
-            "vehicle[0].link: `udp:1`: `udp` is no kind of line",
-        ),
+        ("robot = 3", "robot = 99", "vehicle[0].robot: the scenario has no robot 99; give the number of one of its 16"),
+        ("udpin:127.0.0.1:14550", "udp:1", "vehicle[0].link: `udp:1`: `udp` is no kind of line"),
         ("ardupilot-rover", "betaflight", "vehicle[0].autopilot"),
-        (
-            "latitude_deg = 55.75",
-            "latitude_deg = 95",
-            "test.toml:2: origin: this is no place on the Earth",
-        ),
+        ("latitude_deg = 55.75", "latitude_deg = 95", "test.toml:2: origin: this is no place on the Earth"),
         ("[[vehicle]]", "[other]", "other"),
         ("swap-circle", "no-such-file", "no-such-file.toml"),
-        (
-            "swap-circle",
-            "six-robots",
-            "scenario: its robots go from cell to cell",
-        ),
+        ("swap-circle", "six-robots", "scenario: its robots go from cell to cell"),
     ] {
-        let error = parse(&text("", "").replace(from, to))
-            .expect_err(expected)
-            .to_string();
+        let error = parse(&text("", "").replace(from, to)).expect_err(expected).to_string();
         assert!(error.contains(expected), "{error}\n{expected}");
     }
-    let none =
-        format!("scenario = \"{SCENARIO}\"\norigin = {{ latitude_deg = 5, longitude_deg = 7 }}\n");
+    let none = format!("scenario = \"{SCENARIO}\"\norigin = {{ latitude_deg = 5, longitude_deg = 7 }}\n");
     let error = parse(&none).expect_err("no vehicle").to_string();
-    assert!(
-        error.contains("vehicle: there is none; add [[vehicle]]"),
-        "{error}"
-    );
+    assert!(error.contains("vehicle: there is none; add [[vehicle]]"), "{error}");
 }
 
 /// The first column of the tables in docs/autopilots.md are the fields, all of them.

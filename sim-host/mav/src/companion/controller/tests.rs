@@ -15,10 +15,7 @@ fn brains(count: usize) -> Vec<Controller<Postcard>> {
 }
 
 fn at(x: f64, y: f64) -> Body {
-    Body {
-        position_m: [x, y, 7.0],
-        velocity_mps: [0.0; 3],
-    }
+    Body { position_m: [x, y, 7.0], velocity_mps: [0.0; 3] }
 }
 
 #[test]
@@ -34,10 +31,7 @@ fn heads_for_its_goal_and_says_where_it_is() {
         }
     }
     let [x, y, z] = controller.velocity_mps();
-    assert!(
-        (x - 2.0).abs() < 1e-3 && y.abs() < 1e-3 && z == 0.0,
-        "{x} {y} {z}"
-    );
+    assert!((x - 2.0).abs() < 1e-3 && y.abs() < 1e-3 && z == 0.0, "{x} {y} {z}");
     assert_eq!(controller.mode(), Mode::Cruise);
 }
 
@@ -98,18 +92,12 @@ fn one_that_is_passive_is_evaded_by_the_other_alone() {
 
 #[test]
 fn braking_is_faster_far_away_and_never_slower_than_what_ends_in_the_tolerance() {
-    let brake = Brake {
-        place_m: [0.0; 3],
-        tolerance_m: 1.0,
-    };
+    let brake = Brake { place_m: [0.0; 3], tolerance_m: 1.0 };
     let speed = |distance| speed_before(&brake, [distance, 0.0, 0.0], 1.0, 0.5);
     assert_eq!(speed(0.0), 1.0);
     assert!(speed(100.0) > speed(10.0) && speed(10.0) > speed(2.0));
     // v^2 / 2a + v lag = d with half of the acceleration.
     let v = speed(10.0);
     assert!((v * v + v * 0.5 - 10.0).abs() < 1e-9, "{v}");
-    assert_eq!(
-        speed_before(&brake, [5.0, 0.0, 0.0], 1.0, 0.0),
-        f64::INFINITY
-    );
+    assert_eq!(speed_before(&brake, [5.0, 0.0, 0.0], 1.0, 0.0), f64::INFINITY);
 }

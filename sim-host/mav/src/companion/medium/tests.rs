@@ -5,11 +5,7 @@ use staya_controller::wire::{Header, Message, Postcard, encode};
 fn frames(count: u16) -> Vec<u8> {
     let mut bytes = Vec::new();
     for sequence in 0..count {
-        let header = Header {
-            boot: 0,
-            sender: RobotId(1),
-            sequence,
-        };
+        let header = Header { boot: 0, sender: RobotId(1), sequence };
         let mut frame = heapless::Vec::<u8, 64>::new();
         encode(header, &Message::Beacon(Default::default()), &mut frame).unwrap();
         bytes.extend_from_slice(&frame);
@@ -38,17 +34,9 @@ fn tunnels_carry_whole_frames() {
 
 #[test]
 fn tunnels_of_others_are_left_alone() {
-    let other = TUNNEL_DATA {
-        payload_type: 7,
-        payload_length: 4,
-        ..TUNNEL_DATA::DEFAULT
-    };
+    let other = TUNNEL_DATA { payload_type: 7, payload_length: 4, ..TUNNEL_DATA::DEFAULT };
     assert_eq!(tunnelled(&other), None);
-    let too_long = TUNNEL_DATA {
-        payload_type: PAYLOAD_TYPE,
-        payload_length: 129,
-        ..TUNNEL_DATA::DEFAULT
-    };
+    let too_long = TUNNEL_DATA { payload_type: PAYLOAD_TYPE, payload_length: 129, ..TUNNEL_DATA::DEFAULT };
     assert_eq!(tunnelled(&too_long), None);
 }
 
@@ -71,12 +59,7 @@ fn peers_hear_each_other() {
         socket.local_addr().unwrap()
     };
     let (a, b) = (free(), free());
-    let open = |bind, peer| {
-        Medium::open(&MediumSetup::Peers {
-            bind,
-            peers: vec![peer],
-        })
-    };
+    let open = |bind, peer| Medium::open(&MediumSetup::Peers { bind, peers: vec![peer] });
     let (mut first, mut second) = (open(a, b).unwrap(), open(b, a).unwrap());
     first.send(b"one");
     assert_eq!(heard(&mut second), [b"one"]);
@@ -98,11 +81,7 @@ fn nobody_is_heard_where_there_is_nobody() {
 
 #[test]
 fn a_group_does_not_give_back_what_was_sent() {
-    let port = UdpSocket::bind("127.0.0.1:0")
-        .unwrap()
-        .local_addr()
-        .unwrap()
-        .port();
+    let port = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
     let setup = MediumSetup::Multicast {
         group: SocketAddrV4::new(Ipv4Addr::new(239, 255, 77, 1), port),
         interface: Ipv4Addr::LOCALHOST,

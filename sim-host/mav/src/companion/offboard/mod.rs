@@ -231,8 +231,7 @@ impl OffboardStateMachine {
     /// The last position if it is not stale.
     #[must_use]
     pub fn fresh_fix(&self, now: Duration) -> Option<Fix> {
-        self.fix
-            .filter(|fix| now.saturating_sub(fix.at) <= self.rules.stale)
+        self.fix.filter(|fix| now.saturating_sub(fix.at) <= self.rules.stale)
     }
 
     /// Takes the next thing off that is worth telling a person.
@@ -255,9 +254,9 @@ impl OffboardStateMachine {
                 if (at.lat, at.lon) == (0, 0) {
                     return;
                 }
-                let fine = self.velocity.filter(|(heard, _)| {
-                    now.saturating_sub(*heard).as_secs_f64() * self.rules.position_hz <= 2.0
-                });
+                let fine = self
+                    .velocity
+                    .filter(|(heard, _)| now.saturating_sub(*heard).as_secs_f64() * self.rules.position_hz <= 2.0);
                 let coarse = [at.vx, at.vy, at.vz].map(|v| f64::from(v) / 100.0);
                 self.tally.positions += 1;
                 self.fix = Some(Fix {
@@ -281,9 +280,7 @@ impl OffboardStateMachine {
 
     /// Takes note of the autopilot's clock; whether the message is not one that was overtaken.
     fn is_in_order(&mut self, boot_ms: u32) -> bool {
-        let since = self
-            .boot_ms
-            .map(|last| boot_ms.wrapping_sub(last).cast_signed());
+        let since = self.boot_ms.map(|last| boot_ms.wrapping_sub(last).cast_signed());
         match since {
             Some(ms) if (-OVERTAKEN_MS..0).contains(&ms) => return false,
             Some(ms) if !(0..=DAY_MS).contains(&ms) => self.restarted(),
@@ -306,17 +303,11 @@ impl OffboardStateMachine {
         const CUSTOM: u8 = 1;
         const ARMED: u8 = 128;
         let is_controlled = base_mode & CUSTOM != 0 && self.kind.is_outside_control(custom_mode);
-        let beat = Beat {
-            at: now,
-            custom_mode,
-            is_controlled,
-            is_armed: base_mode & ARMED != 0,
-        };
+        let beat = Beat { at: now, custom_mode, is_controlled, is_armed: base_mode & ARMED != 0 };
         self.tally.heartbeats += 1;
         if let Some(last) = self.beat {
             if now.saturating_sub(last.at) > self.rules.link_lost {
-                self.events
-                    .push_back(Event::Back(now.saturating_sub(last.at)));
+                self.events.push_back(Event::Back(now.saturating_sub(last.at)));
                 self.next_look = None;
             }
             let is_changed = last.custom_mode != custom_mode;
@@ -371,9 +362,7 @@ impl OffboardStateMachine {
         if !self.kind.flies() {
             return true;
         }
-        if let (true, Some(altitude_m)) =
-            (self.may_enter && self.rules.takeoff, self.rules.altitude_m)
-        {
+        if let (true, Some(altitude_m)) = (self.may_enter && self.rules.takeoff, self.rules.altitude_m) {
             return fix.above_home_m >= altitude_m - (altitude_m * 0.1).max(0.5);
         }
         match self.landed {
@@ -394,21 +383,13 @@ impl OffboardStateMachine {
         // It asks only for what it could use.
         let enters = self.may_enter && fix.is_some() && (beat.is_armed || self.rules.arm);
         if !beat.is_controlled {
-            return if enters {
-                State::Entering
-            } else {
-                State::Pilot
-            };
+            return if enters { State::Entering } else { State::Pilot };
         }
         if self.must_be_left {
             return State::Restarted;
         }
         if !beat.is_armed {
-            return if enters {
-                State::Entering
-            } else {
-                State::Disarmed
-            };
+            return if enters { State::Entering } else { State::Disarmed };
         }
         let Some(fix) = fix else {
             return match self.state {
@@ -418,11 +399,7 @@ impl OffboardStateMachine {
         };
         if !self.is_in_air(&fix) {
             let takes_off = enters && self.rules.takeoff;
-            return if takes_off {
-                State::Entering
-            } else {
-                State::Grounded
-            };
+            return if takes_off { State::Entering } else { State::Grounded };
         }
         State::Steering
     }
@@ -497,9 +474,7 @@ impl OffboardStateMachine {
             State::Entering if self.kind.needs_stream() => Some(self.at_altitude(STAND)),
             // So that the pilot can choose the mode at all. In other modes PX4 takes no notice.
             State::Pilot | State::Disarmed | State::Grounded
-                if self.kind.needs_stream()
-                    && now >= self.quiet_until
-                    && self.fresh_fix(now).is_some() =>
+                if self.kind.needs_stream() && now >= self.quiet_until && self.fresh_fix(now).is_some() =>
             {
                 Some(STAND)
             }
@@ -509,13 +484,9 @@ impl OffboardStateMachine {
 
     /// With what brings it to its height and keeps it there.
     fn at_altitude(&self, [north, east, down]: [f64; 3]) -> [f64; 3] {
-        let is_armed = self
-            .beat
-            .is_some_and(|beat| beat.is_armed && beat.is_controlled);
+        let is_armed = self.beat.is_some_and(|beat| beat.is_armed && beat.is_controlled);
         let height = self.rules.altitude_m.zip(self.fix).filter(|_| is_armed);
-        let down = height.map_or(down, |(altitude_m, fix)| {
-            -(0.5 * (altitude_m - fix.above_home_m)).clamp(-1.0, 1.0)
-        });
+        let down = height.map_or(down, |(altitude_m, fix)| -(0.5 * (altitude_m - fix.above_home_m)).clamp(-1.0, 1.0));
         [north, east, down]
     }
 
@@ -527,11 +498,7 @@ impl OffboardStateMachine {
         let got = self.tally.positions - self.positions_at_look;
         let wanted = self.rules.position_hz * LOOK.as_secs_f64();
         if self.next_look.is_none() || (got as f64) < wanted / 2.0 {
-            out.extend(out::intervals(
-                self.system,
-                self.kind,
-                self.rules.position_hz,
-            ));
+            out.extend(out::intervals(self.system, self.kind, self.rules.position_hz));
         }
         self.positions_at_look = self.tally.positions;
         self.next_look = Some(now + LOOK);
@@ -546,10 +513,7 @@ impl OffboardStateMachine {
             (true, true) => Ask::Takeoff,
         };
         let is_streaming = |since: Duration| now.saturating_sub(since) >= STREAM;
-        if ask == Ask::Mode
-            && self.kind.needs_stream()
-            && !self.streaming_since.is_some_and(is_streaming)
-        {
+        if ask == Ask::Mode && self.kind.needs_stream() && !self.streaming_since.is_some_and(is_streaming) {
             return;
         }
         let attempt = match self.asked {

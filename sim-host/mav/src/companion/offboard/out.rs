@@ -2,8 +2,8 @@
 
 use super::{AUTOPILOT, Kind};
 use staya_mavlink::dialect::{
-    COMMAND_LONG_DATA, EXTENDED_SYS_STATE_DATA, GLOBAL_POSITION_INT_DATA, HEARTBEAT_DATA,
-    LOCAL_POSITION_NED_DATA, MavMessage, SET_POSITION_TARGET_LOCAL_NED_DATA, STATUSTEXT_DATA,
+    COMMAND_LONG_DATA, EXTENDED_SYS_STATE_DATA, GLOBAL_POSITION_INT_DATA, HEARTBEAT_DATA, LOCAL_POSITION_NED_DATA,
+    MavMessage, SET_POSITION_TARGET_LOCAL_NED_DATA, STATUSTEXT_DATA,
 };
 use staya_mavlink::mavlink_core::MessageData as _;
 use std::time::Duration;
@@ -59,26 +59,19 @@ pub fn arm(system: u8) -> MavMessage {
 }
 
 pub fn takeoff(system: u8, altitude_m: f64) -> MavMessage {
-    command(
-        system,
-        NAV_TAKEOFF,
-        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, altitude_m],
-    )
+    command(system, NAV_TAKEOFF, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, altitude_m])
 }
 
 /// Positions at a rate; whether it flies, for what does, twice a second.
 pub fn intervals(system: u8, kind: Kind, position_hz: f64) -> impl Iterator<Item = MavMessage> {
     let state = kind.flies().then_some((EXTENDED_SYS_STATE_DATA::ID, 2.0));
-    [
-        (GLOBAL_POSITION_INT_DATA::ID, position_hz),
-        (LOCAL_POSITION_NED_DATA::ID, position_hz),
-    ]
-    .into_iter()
-    .chain(state)
-    .map(move |(id, hz)| {
-        let params = [f64::from(id), 1e6 / hz, 0.0, 0.0, 0.0, 0.0, 0.0];
-        command(system, SET_MESSAGE_INTERVAL, params)
-    })
+    [(GLOBAL_POSITION_INT_DATA::ID, position_hz), (LOCAL_POSITION_NED_DATA::ID, position_hz)]
+        .into_iter()
+        .chain(state)
+        .map(move |(id, hz)| {
+            let params = [f64::from(id), 1e6 / hz, 0.0, 0.0, 0.0, 0.0, 0.0];
+            command(system, SET_MESSAGE_INTERVAL, params)
+        })
 }
 
 /// A velocity, north, east, down.

@@ -2,8 +2,8 @@ mod entry;
 
 use super::*;
 use staya_mavlink::dialect::{
-    COMMAND_ACK_DATA, EXTENDED_SYS_STATE_DATA, GLOBAL_POSITION_INT_DATA, HEARTBEAT_DATA,
-    LOCAL_POSITION_NED_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
+    COMMAND_ACK_DATA, EXTENDED_SYS_STATE_DATA, GLOBAL_POSITION_INT_DATA, HEARTBEAT_DATA, LOCAL_POSITION_NED_DATA,
+    SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
 
 const RULES: Rules = Rules {
@@ -16,16 +16,8 @@ const RULES: Rules = Rules {
     setpoint_every: Duration::from_millis(50),
     position_hz: 10.0,
 };
-const ONCE: Rules = Rules {
-    entry: Entry::Once,
-    ..RULES
-};
-const FLY: Rules = Rules {
-    arm: true,
-    takeoff: true,
-    altitude_m: Some(10.0),
-    ..ONCE
-};
+const ONCE: Rules = Rules { entry: Entry::Once, ..RULES };
+const FLY: Rules = Rules { arm: true, takeoff: true, altitude_m: Some(10.0), ..ONCE };
 const GUIDED: u32 = 15;
 const MANUAL: u32 = 0;
 const OFFBOARD: u32 = 6 << 16;
@@ -144,19 +136,13 @@ fn steers_at_the_rate_it_should_with_velocities_only() {
     assert_eq!(bench.state(), State::Steering);
     let sent = bench.run(10.0);
     let setpoints = setpoints(&sent);
-    assert!(
-        (199..=201).contains(&setpoints.len()),
-        "{}",
-        setpoints.len()
-    );
+    assert!((199..=201).contains(&setpoints.len()), "{}", setpoints.len());
     for setpoint in &setpoints {
         assert_eq!((setpoint.target_system, setpoint.target_component), (7, 1));
         assert_eq!((setpoint.coordinate_frame, setpoint.type_mask), (1, 0xDC7));
         assert_eq!([setpoint.vx, setpoint.vy, setpoint.vz], [1.0, 2.0, 0.0]);
     }
-    let beats = sent
-        .iter()
-        .filter(|m| matches!(m, MavMessage::HEARTBEAT(_)));
+    let beats = sent.iter().filter(|m| matches!(m, MavMessage::HEARTBEAT(_)));
     assert_eq!(beats.count(), 10);
 }
 
@@ -210,9 +196,7 @@ fn a_position_is_stale_only_after_its_time_and_then_it_stops() {
     bench.beat();
     bench.offboard.poll(at + RULES.stale, &mut sent);
     assert_eq!(bench.state(), State::Steering);
-    bench
-        .offboard
-        .poll(at + RULES.stale + Duration::from_micros(1), &mut sent);
+    bench.offboard.poll(at + RULES.stale + Duration::from_micros(1), &mut sent);
     assert_eq!(bench.state(), State::Stopped);
     assert!(stands(setpoints(&sent).last().unwrap()));
 }
@@ -243,9 +227,7 @@ fn a_lost_link_ends_setpoints_at_its_boundary() {
     bench.offboard.poll(at + RULES.link_lost, &mut sent);
     assert_eq!(bench.state(), State::Stopped);
     sent.clear();
-    bench
-        .offboard
-        .poll(at + RULES.link_lost + Duration::from_micros(1), &mut sent);
+    bench.offboard.poll(at + RULES.link_lost + Duration::from_micros(1), &mut sent);
     assert_eq!(bench.state(), State::Silent);
     assert_eq!(setpoints(&sent).len(), 0);
     // Back in the same boot, in the mode that the pilot chose: it goes on.
@@ -254,12 +236,7 @@ fn a_lost_link_ends_setpoints_at_its_boundary() {
     (bench.beats, bench.fixes) = (true, true);
     bench.run(1.5);
     assert_eq!(bench.state(), State::Steering);
-    assert!(
-        bench
-            .events()
-            .iter()
-            .any(|event| matches!(event, Event::Back(_)))
-    );
+    assert!(bench.events().iter().any(|event| matches!(event, Event::Back(_))));
 }
 
 #[test]
@@ -272,11 +249,7 @@ fn the_pilot_gets_the_vehicle_with_the_very_heartbeat() {
         assert_eq!(bench.state(), State::Pilot);
         let sent = bench.run(60.0);
         assert_eq!(setpoints(&sent).len(), 0);
-        assert_eq!(
-            commands(&sent, out::DO_SET_MODE),
-            0,
-            "it takes nothing back"
-        );
+        assert_eq!(commands(&sent, out::DO_SET_MODE), 0, "it takes nothing back");
         assert!(bench.events().contains(&Event::HandedOver(MANUAL)));
         assert_eq!(bench.offboard.tally().hand_overs, 1);
         // The pilot gives it again.
@@ -347,11 +320,7 @@ fn a_restart_in_the_mode_is_no_permission() {
 #[test]
 fn telemetry_is_asked_for_again_after_a_restart_and_while_it_comes_too_slowly() {
     let mut bench = Bench::rover(RULES);
-    assert_eq!(
-        commands(&bench.run(10.0), 511),
-        2,
-        "once: it comes as it should"
-    );
+    assert_eq!(commands(&bench.run(10.0), 511), 2, "once: it comes as it should");
     bench.boot_ms = 0;
     assert_eq!(commands(&bench.run(2.0), 511), 2);
     bench.fixes = false;

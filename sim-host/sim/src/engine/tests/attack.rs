@@ -34,10 +34,7 @@ fn a_swarm_with_a_key_goes_as_if_nobody_attacked_it_and_counts_what_it_refused()
         let alone = run(&without(&text, "attack"));
         let packets = alone.packets;
         assert_eq!(alone.arrived, 6, "{format}");
-        assert_eq!(
-            (packets.unsigned, packets.forged, packets.replayed),
-            (0, 0, 0)
-        );
+        assert_eq!((packets.unsigned, packets.forged, packets.replayed), (0, 0, 0));
 
         let attacked = run(&text);
         let packets = attacked.packets;
@@ -70,10 +67,6 @@ fn without_a_key_orders_of_strangers_are_followed() {
         let text = format!("{}[[attack]]{wanted}", without(&open, "attack"));
         let outcome = run(&text);
         assert_eq!(outcome.arrived < 6, is_followed, "{kind}");
-        assert_eq!(
-            outcome.trace_hash != alone.trace_hash,
-            is_followed,
-            "{kind}"
-        );
+        assert_eq!(outcome.trace_hash != alone.trace_hash, is_followed, "{kind}");
     }
 }

@@ -2,9 +2,7 @@
 
 use super::*;
 use crate::engine::{Decision, ExternalController, Status, simulate_with};
-use staya_controller::agent::{
-    AnyAgent, AnyInputs, CELLS, GridWorkspace, HALF_PLANES, NEIGHBORS, Setup, Task, VISITS,
-};
+use staya_controller::agent::{AnyAgent, AnyInputs, CELLS, GridWorkspace, HALF_PLANES, NEIGHBORS, Setup, Task, VISITS};
 
 type Remote = AnyAgent<f32, CELLS, VISITS, NEIGHBORS, HALF_PLANES>;
 
@@ -42,10 +40,7 @@ impl ExternalController for Nearby {
 
     fn start(&mut self, index: usize, setup: Setup, task: Task) {
         let boots = self.boots.clone();
-        boots
-            .lock()
-            .expect("no test panics")
-            .push((index, setup.agent.boot));
+        boots.lock().expect("no test panics").push((index, setup.agent.boot));
         let mut agent = setup.agent().expect("postcard");
         agent.assign(&task).expect("a task for it");
         self.slot(index).1 = Some(agent);
@@ -53,15 +48,12 @@ impl ExternalController for Nearby {
 
     fn has_restarted(&mut self, index: usize) -> bool {
         let tick = self.tick;
-        self.restarts
-            .is_some_and(|(robot, at)| robot == index && tick == at + 2)
+        self.restarts.is_some_and(|(robot, at)| robot == index && tick == at + 2)
     }
 
     fn send(&mut self, index: usize, tick: u32, now: Instant, inputs: &AnyInputs<'_, f32>) {
         self.tick = tick;
-        let is_lost = self
-            .restarts
-            .is_some_and(|(robot, at)| robot == index && (at..at + 3).contains(&tick));
+        let is_lost = self.restarts.is_some_and(|(robot, at)| robot == index && (at..at + 3).contains(&tick));
         let mut workspace = std::mem::take(&mut self.workspace);
         let slot = self.slot(index);
         slot.2 = slot.1.as_mut().filter(|_| !is_lost).map(|agent| {
@@ -101,15 +93,7 @@ fn shipped(name: &str, ticks: u32) -> Scenario {
 
 #[test]
 fn where_a_controller_runs_changes_nothing() {
-    for name in [
-        "six-robots",
-        "figure-6",
-        "six-discs",
-        "swap-circle",
-        "flock-squeeze",
-        "goal-flock",
-        "boids",
-    ] {
+    for name in ["six-robots", "figure-6", "six-discs", "swap-circle", "flock-squeeze", "goal-flock", "boids"] {
         let scenario = shipped(name, 60);
         let here = outcome(&scenario, None);
         let there = outcome(&scenario, Some(Nearby::of(&[0, 2])));
@@ -120,28 +104,18 @@ fn where_a_controller_runs_changes_nothing() {
 #[test]
 fn one_that_lost_its_state_starts_anew_and_arrives() {
     let scenario = shipped("swap-circle", 2000);
-    let nearby = Nearby {
-        restarts: Some((1, 20)),
-        ..Nearby::of(&[0, 1])
-    };
+    let nearby = Nearby { restarts: Some((1, 20)), ..Nearby::of(&[0, 1]) };
     let boots = nearby.boots.clone();
     let outcome = outcome(&scenario, Some(nearby));
     assert_eq!(outcome.arrived, scenario.robots.len());
     assert_eq!(outcome.collisions, 0);
-    assert_eq!(
-        *boots.lock().expect("no test panics"),
-        [(0, 0), (1, 0), (1, 1)]
-    );
+    assert_eq!(*boots.lock().expect("no test panics"), [(0, 0), (1, 0), (1, 1)]);
 }
 
 #[test]
 fn a_fault_of_the_scenario_restarts_a_controller_elsewhere_too() {
     let mut scenario = shipped("swap-circle", 200);
-    scenario.faults = vec![Fault {
-        robot: scenario.robots[2].id,
-        from_tick: 10,
-        to_tick: 30,
-    }];
+    scenario.faults = vec![Fault { robot: scenario.robots[2].id, from_tick: 10, to_tick: 30 }];
     let here = outcome(&scenario, None);
     assert_eq!(outcome(&scenario, Some(Nearby::of(&[2]))), here);
 }

@@ -30,15 +30,9 @@ fn hash_without_operator(scenario: &Scenario) -> u64 {
 
 #[test]
 fn a_run_without_commands_is_the_run_without_an_operator() {
-    let on_grid = Scenario {
-        ticks: 8,
-        ..scenario(TWO, LOSSY)
-    };
+    let on_grid = Scenario { ticks: 8, ..scenario(TWO, LOSSY) };
     let formation = "formation = { rows = 2, columns = 2, start = [4, 8], goal = [15, 8] }";
-    let in_formation = Scenario {
-        ticks: 8,
-        ..scenario(formation, "")
-    };
+    let in_formation = Scenario { ticks: 8, ..scenario(formation, "") };
     for scenario in [on_grid, in_formation, discs()] {
         let mut swarm = operated(&scenario).expect("they can be placed");
         run(&mut *swarm, scenario.ticks);
@@ -51,10 +45,7 @@ fn a_run_without_commands_is_the_run_without_an_operator() {
 fn who_is_commanded_goes_elsewhere_and_nobody_is_hit() {
     let scenario = discs();
     let mut swarm = operated(&scenario).expect("they can be placed");
-    let meeting = Wish::Waypoint {
-        waypoint: Waypoint::fixed(Position::from_mm([2000, 1000, 0])),
-        valid: None,
-    };
+    let meeting = Wish::Waypoint { waypoint: Waypoint::fixed(Position::from_mm([2000, 1000, 0])), valid: None };
     for robot in 0..2 {
         assert!(swarm.command(robot, meeting));
     }
@@ -74,10 +65,7 @@ fn who_is_commanded_goes_elsewhere_and_nobody_is_hit() {
 #[test]
 fn who_is_down_hears_nothing_and_starts_anew_as_the_scenario_has_it() {
     let mut swarm = operated(&discs()).expect("they can be placed");
-    let east = Wish::Velocity {
-        velocity_mps: Vec3::new(1.0, 0.0, 0.0),
-        valid: Duration::from_millis(60_000),
-    };
+    let east = Wish::Velocity { velocity_mps: Vec3::new(1.0, 0.0, 0.0), valid: Duration::from_millis(60_000) };
     assert!(swarm.command(2, east));
     assert!(swarm.set_parameter(2, Parameter::Speed, 0.5));
     run(&mut *swarm, 22);
@@ -104,31 +92,17 @@ fn a_goal_that_it_is_told_reaches_the_controller_and_events_come_back() {
 }
 
 fn tell_a_goal(swarm: &mut dyn Operated) {
-    let goal = GoalAssignment {
-        to: RobotId(1),
-        version: 1,
-        target: Cell::new(3, 9),
-    };
-    let header = Header {
-        boot: 0,
-        sender: RobotId(255),
-        sequence: 0,
-    };
+    let goal = GoalAssignment { to: RobotId(1), version: 1, target: Cell::new(3, 9) };
+    let header = Header { boot: 0, sender: RobotId(255), sequence: 0 };
     swarm.tell(0, header, &Message::Goal(goal));
     swarm.advance();
     assert_eq!(swarm.glance(0).status.target, Cell::new(3, 9));
-    let begins = Event::ModeChanged {
-        from: Mode::Idle,
-        to: Mode::Cruise,
-    };
+    let begins = Event::ModeChanged { from: Mode::Idle, to: Mode::Cruise };
     assert_eq!(swarm.events(0), [begins]);
     assert_eq!(swarm.glance(1).status.target, Cell::new(12, 5));
     run(swarm, 30);
     let there = swarm.glance(0);
-    assert_eq!(
-        (there.motion.cell, there.status.mode),
-        (Cell::new(3, 9), Mode::Arrived)
-    );
+    assert_eq!((there.motion.cell, there.status.mode), (Cell::new(3, 9), Mode::Arrived));
 }
 
 /// Eight discs in a crowd, each with another whim of the operator every half second.
@@ -157,24 +131,14 @@ fn no_whim_of_the_operator_makes_robots_collide() {
                         valid: Duration::from_millis(700),
                     },
                     // All to one place.
-                    4 => Wish::Waypoint {
-                        waypoint: Waypoint::fixed(Position::ORIGIN),
-                        valid: None,
-                    },
-                    _ => Wish::Waypoint {
-                        waypoint: Waypoint::fixed(Position::from_mm([x, y, 0])),
-                        valid: None,
-                    },
+                    4 => Wish::Waypoint { waypoint: Waypoint::fixed(Position::ORIGIN), valid: None },
+                    _ => Wish::Waypoint { waypoint: Waypoint::fixed(Position::from_mm([x, y, 0])), valid: None },
                 };
                 assert!(swarm.command(robot, wish));
             }
             run(&mut *swarm, 10);
         }
         let outcome = swarm.outcome();
-        assert_eq!(
-            outcome.collisions, 0,
-            "seed {seed}: {:?}",
-            outcome.clearance
-        );
+        assert_eq!(outcome.collisions, 0, "seed {seed}: {:?}", outcome.clearance);
     }
 }

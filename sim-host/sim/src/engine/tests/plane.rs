@@ -33,8 +33,7 @@ fn neither_a_run_in_the_plane_nor_its_hash_depends_on_the_number_of_threads() {
     for threads in [2, 8] {
         let (other, other_rows) = trace(&scenario, threads);
         assert_eq!(other, one, "{threads} threads");
-        let places =
-            |rows: &[RobotRow]| rows.iter().map(|r| r.motion.position_m).collect::<Vec<_>>();
+        let places = |rows: &[RobotRow]| rows.iter().map(|r| r.motion.position_m).collect::<Vec<_>>();
         assert_eq!(places(&other_rows), places(&rows));
     }
     scenario.seed += 1;
@@ -95,10 +94,7 @@ fn versions_of_orders_count_up_for_each_goal_by_itself() {
     let order = |number: u32| Order {
         tick: number / 2,
         index: u8::from(number.is_multiple_of(150)),
-        target: Target {
-            position_m: [f64::from(number), 0.0, 0.0],
-            velocity_mps: [0.0; 3],
-        },
+        target: Target { position_m: [f64::from(number), 0.0, 0.0], velocity_mps: [0.0; 3] },
     };
     let orders: Vec<_> = (0..70_000).map(order).collect();
     let sent = crate::engine::plane::frames(&orders, Format::Postcard, None);
@@ -121,23 +117,12 @@ fn versions_of_orders_count_up_for_each_goal_by_itself() {
 fn robots_know_how_old_news_is() {
     let robots = "[plane.robots]\nlist = [{ start_m = [0, 0] }]\n";
     // Sent in a tick, heard in the first one that does not begin before the delay is over.
-    for (delay_ms, ticks) in [
-        (0.0, 1),
-        (99.9, 1),
-        (100.0, 1),
-        (100.1, 2),
-        (200.0, 2),
-        (250.0, 3),
-    ] {
+    for (delay_ms, ticks) in [(0.0, 1), (99.9, 1), (100.0, 1), (100.1, 2), (200.0, 2), (250.0, 3)] {
         let scenario = in_plane(robots, &format!("[radio]\ndelay_ms = {delay_ms}"));
         let setup = scenario.plane.as_ref().expect("robots in the plane");
         let ground = PlaneGround::new(&scenario, setup);
         let config = ground.config(RobotId(1), Duration::from_millis(100));
-        assert_eq!(
-            config.latency,
-            Duration::from_millis(100 * ticks),
-            "{delay_ms} ms"
-        );
+        assert_eq!(config.latency, Duration::from_millis(100 * ticks), "{delay_ms} ms");
     }
 }
 
@@ -145,9 +130,7 @@ fn robots_know_how_old_news_is() {
 fn rough_land_takes_longer() {
     let ticks = |classes: u8| {
         let robots = "sight_m = 0\nsafety = \"none\"\n[plane.robots]\nlist = [{ start_m = [1, 1], goal_m = [9, 9] }]\n";
-        let land = format!(
-            "[terrain]\ncell_m = 2\nuniform = {{ width = 6, height = 6, classes = {classes} }}\n"
-        );
+        let land = format!("[terrain]\ncell_m = 2\nuniform = {{ width = 6, height = 6, classes = {classes} }}\n");
         let (outcome, _) = tracks(&in_plane(robots, &land));
         assert_eq!(outcome.arrived, 1, "{classes} classes");
         outcome.ticks

@@ -26,11 +26,7 @@ impl<const D: usize> Obstacle<D> {
             Self::Segment([a, b]) => {
                 let (along, to) = (minus(b, a), minus(at, a));
                 let whole = squared(along);
-                let share = if whole > 0.0 {
-                    (dot(to, along) / whole).clamp(0.0, 1.0)
-                } else {
-                    0.0
-                };
+                let share = if whole > 0.0 { (dot(to, along) / whole).clamp(0.0, 1.0) } else { 0.0 };
                 length(minus(to, along.map(|c| c * share)))
             }
             Self::Disc { centre_m, radius_m } => length(minus(at, centre_m)) - radius_m,
@@ -69,21 +65,11 @@ pub fn gaps<const D: usize>(
     let reach = 2.0 * largest + horizon_m.max(0.0);
     let mut cells = Cells::new(space, reach);
     cells.rebuild(places_m);
-    let mut all = Gaps {
-        between_robots_m: None,
-        overlapping_pairs: 0,
-        to_obstacles_m: None,
-        robots_in_obstacles: 0,
-    };
+    let mut all = Gaps { between_robots_m: None, overlapping_pairs: 0, to_obstacles_m: None, robots_in_obstacles: 0 };
     let least = |known: Option<f64>, gap: f64| Some(known.map_or(gap, |known| known.min(gap)));
     let mut found = Vec::new();
     for ((robot, &at), &radius) in (0..).zip(places_m).zip(radii_m) {
-        let query = Query {
-            at,
-            radius: reach,
-            most: usize::MAX,
-            except: Some(robot),
-        };
+        let query = Query { at, radius: reach, most: usize::MAX, except: Some(robot) };
         cells.within(&query, &mut found);
         for other in found.iter().filter(|other| other.index > robot) {
             let gap = other.distance_squared.sqrt() - radius - radii_m[other.index as usize];
@@ -92,10 +78,7 @@ pub fn gaps<const D: usize>(
                 all.overlapping_pairs += usize::from(gap < 0.0);
             }
         }
-        let nearest = obstacles
-            .iter()
-            .map(|obstacle| obstacle.distance_m(at) - radius)
-            .fold(None, least);
+        let nearest = obstacles.iter().map(|obstacle| obstacle.distance_m(at) - radius).fold(None, least);
         if let Some(gap) = nearest {
             all.to_obstacles_m = least(all.to_obstacles_m, gap);
             all.robots_in_obstacles += usize::from(gap < 0.0);

@@ -30,10 +30,7 @@ fn a_triangle_lattice_is_connected_and_without_deviation() {
     assert_eq!((measure.edges, measure.components), (16, 1));
     assert_eq!(measure.connectivity, 1.0);
     assert!(measure.deviation_energy < 1e-28);
-    assert_eq!(
-        (measure.velocity_mismatch, measure.polarisation),
-        (0.0, 0.0)
-    );
+    assert_eq!((measure.velocity_mismatch, measure.polarisation), (0.0, 0.0));
 }
 
 #[test]
@@ -57,10 +54,7 @@ fn energy_mismatch_radius_and_order_of_three_robots_by_hand() {
     let centre = 20.0 / 3.0;
     // Four ordered pairs, each off by 1.
     let expected = [4.0 / 5.0 / 49.0, 14.0 - centre];
-    for (got, expected) in [measure.deviation_energy, measure.radius_m]
-        .iter()
-        .zip(expected)
-    {
+    for (got, expected) in [measure.deviation_energy, measure.radius_m].iter().zip(expected) {
         assert!((got - expected).abs() < 1e-12, "{got} {expected}");
     }
     // Mean velocity (0, 1): relative (1, -1), (0, 1), (-1, 0); half the squares 1 + 0.5 + 0.5.
@@ -82,10 +76,7 @@ fn order_is_one_of_equals_none_of_opposites_and_ignores_who_stands() {
 fn one_robot_is_a_flock_and_none_or_nonsense_is_nothing() {
     let one = look(&[[5.0, 5.0, 5.0]], &[[1.0, 0.0, 0.0]]);
     assert_eq!((one.connectivity, one.components, one.edges), (1.0, 1, 0));
-    assert_eq!(
-        (one.radius_m, one.deviation_energy, one.polarisation),
-        (0.0, 0.0, 1.0)
-    );
+    assert_eq!((one.radius_m, one.deviation_energy, one.polarisation), (0.0, 0.0, 1.0));
     let mut meter = FlockMeter::<2>::new(7.0, 8.4, Space::OPEN);
     assert_eq!(meter.look(&[], &[]), None);
     for bad in [f64::NAN, f64::INFINITY] {
@@ -139,10 +130,7 @@ fn verdict_tells_from_when_on_each_condition_holds() {
     };
     assert_eq!(alpha_flocking(&trace, &limits), expected);
     // Whoever breaks up at the end has not flocked, however well it went before.
-    let broken: Vec<_> = trace
-        .into_iter()
-        .chain([moment(5, 0.0, 0.0, 9.0)])
-        .collect();
+    let broken: Vec<_> = trace.into_iter().chain([moment(5, 0.0, 0.0, 9.0)]).collect();
     let verdict = alpha_flocking(&broken, &limits);
     assert_eq!((verdict.alpha_flocking, verdict.quasi_flock), (None, None));
     assert_eq!(verdict.evenly_spaced, Some(2));
@@ -156,10 +144,7 @@ fn gaps_are_from_border_to_border() {
     let places = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.5], [20.0, 0.0]];
     let radii = [1.0, 1.0, 1.0, 0.5];
     let wall = Obstacle::Segment([[-5.0, -2.0], [5.0, -2.0]]);
-    let disc = Obstacle::Disc {
-        centre_m: [20.0, 2.0],
-        radius_m: 1.75,
-    };
+    let disc = Obstacle::Disc { centre_m: [20.0, 2.0], radius_m: 1.75 };
     let all = gaps(&places, &radii, &[wall, disc], 5.0, Space::OPEN);
     let expected = Gaps {
         between_robots_m: Some(-0.5),
@@ -170,15 +155,9 @@ fn gaps_are_from_border_to_border() {
     assert_eq!(all, expected);
     // Touching is not overlapping; nobody else is within the horizon.
     let touching = gaps(&places[..2], &[1.0, 2.0], &[], 0.0, Space::OPEN);
-    assert_eq!(
-        (touching.between_robots_m, touching.overlapping_pairs),
-        (Some(0.0), 0)
-    );
+    assert_eq!((touching.between_robots_m, touching.overlapping_pairs), (Some(0.0), 0));
     let alone = gaps(&places[2..], &radii[2..], &[wall], 1.0, Space::OPEN);
-    assert_eq!(
-        (alone.between_robots_m, alone.to_obstacles_m),
-        (None, Some(2.5))
-    );
+    assert_eq!((alone.between_robots_m, alone.to_obstacles_m), (None, Some(2.5)));
 }
 
 #[test]

@@ -52,32 +52,16 @@ pub(super) const fn goals(guidance: GuidanceName) -> u8 {
     }
 }
 
-fn goal_count(
-    source: &Source<'_>,
-    field: &str,
-    guidance: GuidanceName,
-    count: usize,
-) -> Result<(), ScenarioError> {
+fn goal_count(source: &Source<'_>, field: &str, guidance: GuidanceName, count: usize) -> Result<(), ScenarioError> {
     let most = goals(guidance);
     if count <= usize::from(most) {
         return Ok(());
     }
-    let what = format!(
-        "{count} goals are too many for guidance \"{}\"",
-        guidance.name()
-    );
-    Err(source.error(
-        field,
-        what,
-        format!("give at most {most}, or another guidance"),
-    ))
+    let what = format!("{count} goals are too many for guidance \"{}\"", guidance.name());
+    Err(source.error(field, what, format!("give at most {most}, or another guidance")))
 }
 
-pub(super) fn list(
-    source: &Source<'_>,
-    guidance: GuidanceName,
-    list: &[PlaneRobotEntry],
-) -> Result<(), ScenarioError> {
+pub(super) fn list(source: &Source<'_>, guidance: GuidanceName, list: &[PlaneRobotEntry]) -> Result<(), ScenarioError> {
     let field = "plane.robots.list";
     if list.is_empty() {
         return Err(source.error(field, "nobody takes part", "give one robot or more"));
@@ -95,11 +79,7 @@ pub(super) fn list(
     Ok(())
 }
 
-pub(super) fn cloud(
-    source: &Source<'_>,
-    guidance: GuidanceName,
-    cloud: &CloudEntry,
-) -> Result<(), ScenarioError> {
+pub(super) fn cloud(source: &Source<'_>, guidance: GuidanceName, cloud: &CloudEntry) -> Result<(), ScenarioError> {
     let field = |name| format!("plane.robots.cloud.{name}");
     place(source, &field("from_m"), cloud.from_m)?;
     place(source, &field("to_m"), cloud.to_m)?;
@@ -108,22 +88,14 @@ pub(super) fn cloud(
     velocity(source, &field("velocity_to_mps"), to)?;
     goal_count(source, &field("goals_m"), guidance, cloud.goals_m.len())?;
     for (index, goal) in cloud.goals_m.iter().enumerate() {
-        place(
-            source,
-            &format!("plane.robots.cloud.goals_m[{index}]"),
-            *goal,
-        )?;
+        place(source, &format!("plane.robots.cloud.goals_m[{index}]"), *goal)?;
     }
     let moves = cloud.goal_velocity_mps;
     goal_velocity(source, &field("goal_velocity_mps"), guidance, moves)
 }
 
 /// No two robots overlap, however they were placed.
-pub(super) fn starts(
-    source: &Source<'_>,
-    starts: &[Start],
-    radius_m: f64,
-) -> Result<(), ScenarioError> {
+pub(super) fn starts(source: &Source<'_>, starts: &[Start], radius_m: f64) -> Result<(), ScenarioError> {
     let centers: Vec<_> = starts.iter().map(|start| start.position_m).collect();
     // Less than that is rounding.
     let least_m = 2.0 * radius_m - 1e-6;
@@ -131,12 +103,7 @@ pub(super) fn starts(
     index.rebuild(&centers);
     let mut found = Vec::new();
     for (number, at) in (0..).zip(centers) {
-        let query = Query {
-            at,
-            radius: least_m,
-            most: 1,
-            except: Some(number),
-        };
+        let query = Query { at, radius: least_m, most: 1, except: Some(number) };
         index.within(&query, &mut found);
         if let Some(near) = found.first() {
             let (one, two) = (number + 1, near.index + 1);
@@ -152,8 +119,7 @@ pub(super) fn starts(
 pub(super) fn outside(source: &Source<'_>, setup: &PlaneSetup) -> Result<(), ScenarioError> {
     for (number, start) in (1..).zip(&setup.starts) {
         let place = start.position_m;
-        let is_in =
-            |solid: &crate::world::plane::Solid| solid.distance_m(place) < setup.radius_m - 1e-6;
+        let is_in = |solid: &crate::world::plane::Solid| solid.distance_m(place) < setup.radius_m - 1e-6;
         if setup.solids.iter().any(is_in) {
             let what = format!("robot {number} starts in an obstacle");
             let remedy = format!("keep starts {} m away from obstacles", setup.radius_m);
@@ -170,9 +136,5 @@ pub(super) fn safety_tables(source: &Source<'_>, table: &PlaneTable) -> Result<(
         return Ok(());
     }
     let remedy = "give plane.safety = \"orca\", or leave this table out";
-    Err(source.error(
-        "plane.orca",
-        "these robots have another safety layer",
-        remedy,
-    ))
+    Err(source.error("plane.orca", "these robots have another safety layer", remedy))
 }

@@ -31,28 +31,12 @@ fn goes_with<T: Copy>(
     }
 }
 
-pub(super) fn lattice(
-    source: &Source<'_>,
-    table: &PlaneTable,
-) -> Result<(LatticeParams<f32>, bool), ScenarioError> {
-    let given = goes_with(
-        source,
-        table,
-        GuidanceName::Lattice,
-        "lattice",
-        table.lattice,
-    )?;
+pub(super) fn lattice(source: &Source<'_>, table: &PlaneTable) -> Result<(LatticeParams<f32>, bool), ScenarioError> {
+    let given = goes_with(source, table, GuidanceName::Lattice, "lattice", table.lattice)?;
     let Some(given) = given else {
         return Ok((LatticeParams::new(1.0), true));
     };
-    within(
-        source,
-        "plane.lattice.spacing_m",
-        given.spacing_m,
-        0.01,
-        100.0,
-        "metres",
-    )?;
+    within(source, "plane.lattice.spacing_m", given.spacing_m, 0.01, 100.0, "metres")?;
     let mut params = LatticeParams::new(given.spacing_m as f32);
     params.algorithm = match given.algorithm {
         Some(1) => Algorithm::One,
@@ -69,14 +53,7 @@ pub(super) fn lattice(
         ("c_gamma", given.c_gamma, &mut params.gamma),
     ] {
         if let Some(gain) = gain {
-            within(
-                source,
-                &format!("plane.lattice.{field}"),
-                gain,
-                0.0,
-                1e6,
-                "1/s^2",
-            )?;
+            within(source, &format!("plane.lattice.{field}"), gain, 0.0, 1e6, "1/s^2")?;
             *param = Gain::critical(gain as f32);
         }
     }
@@ -93,26 +70,12 @@ pub(super) fn goal_flock(
         return Ok((GoalParams::new(1.0, 1.0), 1.0));
     };
     let least = given.min_distance_m;
-    within(
-        source,
-        "plane.goal_flock.min_distance_m",
-        least,
-        0.001,
-        10_000.0,
-        "metres",
-    )?;
+    within(source, "plane.goal_flock.min_distance_m", least, 0.001, 10_000.0, "metres")?;
     let seen = given.neighborhood_m.unwrap_or(4.0 * least);
     let field = "plane.goal_flock.neighborhood_m";
     within(source, field, seen, 2.0 * least, 100_000.0, "metres")?;
     let arrival_m = given.arrival_m.unwrap_or(seen);
-    within(
-        source,
-        "plane.goal_flock.arrival_m",
-        arrival_m,
-        0.001,
-        1e6,
-        "metres",
-    )?;
+    within(source, "plane.goal_flock.arrival_m", arrival_m, 0.001, 1e6, "metres")?;
     let mut params = GoalParams::new(least as f32, cruise_mps as f32);
     params.neighborhood_m = seen as f32;
     for (field, gain, param) in [
@@ -121,14 +84,7 @@ pub(super) fn goal_flock(
         ("k3", given.k3, &mut params.repulsion_gain),
     ] {
         if let Some(gain) = gain {
-            within(
-                source,
-                &format!("plane.goal_flock.{field}"),
-                gain,
-                -1e6,
-                1e6,
-                "",
-            )?;
+            within(source, &format!("plane.goal_flock.{field}"), gain, -1e6, 1e6, "")?;
             *param = gain as f32;
         }
     }
@@ -140,46 +96,12 @@ pub(super) fn boids(source: &Source<'_>, table: &PlaneTable) -> Result<BoidsSetu
     let Some(given) = given else {
         return Ok(BoidsSetup::PAPER);
     };
-    within(
-        source,
-        "plane.boids.crowded_m",
-        given.crowded_m,
-        0.0,
-        1e5,
-        "metres",
-    )?;
-    within(
-        source,
-        "plane.boids.closest_m",
-        given.closest_m,
-        0.0,
-        1e5,
-        "metres",
-    )?;
+    within(source, "plane.boids.crowded_m", given.crowded_m, 0.0, 1e5, "metres")?;
+    within(source, "plane.boids.closest_m", given.closest_m, 0.0, 1e5, "metres")?;
     let max_turn = given.max_turn.unwrap_or(0.05);
     let max_turn_away = given.max_turn_away.unwrap_or(0.02);
-    within(
-        source,
-        "plane.boids.max_turn",
-        max_turn,
-        0.0,
-        3.15,
-        "radians",
-    )?;
-    within(
-        source,
-        "plane.boids.max_turn_away",
-        max_turn_away,
-        0.0,
-        3.15,
-        "radians",
-    )?;
-    let [crowded, closest, turn, away] =
-        [given.crowded_m, given.closest_m, max_turn, max_turn_away].map(|x| x as f32);
-    Ok(BoidsSetup {
-        crowded_m: crowded,
-        closest_m: closest,
-        max_turn: turn,
-        max_turn_away: away,
-    })
+    within(source, "plane.boids.max_turn", max_turn, 0.0, 3.15, "radians")?;
+    within(source, "plane.boids.max_turn_away", max_turn_away, 0.0, 3.15, "radians")?;
+    let [crowded, closest, turn, away] = [given.crowded_m, given.closest_m, max_turn, max_turn_away].map(|x| x as f32);
+    Ok(BoidsSetup { crowded_m: crowded, closest_m: closest, max_turn: turn, max_turn_away: away })
 }

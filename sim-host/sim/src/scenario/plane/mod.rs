@@ -98,10 +98,7 @@ impl PlaneSetup {
             guidance: GuidanceName::Waypoint,
             safety: SafetyName::Orca,
             orca: AvoidParams::default(),
-            inflation: StalenessInflation {
-                growth_mps: abilities.max_speed_mps as f32 / 2.0,
-                max_m: radius_m as f32,
-            },
+            inflation: StalenessInflation { growth_mps: abilities.max_speed_mps as f32 / 2.0, max_m: radius_m as f32 },
             push_out: PushOutParams::new(1.0),
             lattice: (LatticeParams::new(1.0), true),
             goal_flock: (GoalParams::new(1.0, 1.0), 1.0),
@@ -113,11 +110,7 @@ impl PlaneSetup {
     /// Numbers for the robots: 1, 2, 3, ... in the order of their starts; their cells mean nothing.
     fn robots(&self) -> Vec<Robot> {
         let ids = 1..=self.starts.len() as u32;
-        let robot = |id| Robot {
-            id: RobotId(id),
-            start: Cell::default(),
-            goal: Cell::default(),
-        };
+        let robot = |id| Robot { id: RobotId(id), start: Cell::default(), goal: Cell::default() };
         ids.map(robot).collect()
     }
 }
@@ -126,13 +119,7 @@ impl Scenario {
     /// A scenario in the plane that no file says: `ticks` of `setup.abilities.step_s`, with a radio. Robots are numbered
     /// from 1 in the order of their starts.
     #[must_use]
-    pub fn in_plane(
-        name: &str,
-        seed: u64,
-        ticks: u32,
-        radio: RadioParams,
-        setup: PlaneSetup,
-    ) -> Self {
+    pub fn in_plane(name: &str, seed: u64, ticks: u32, radio: RadioParams, setup: PlaneSetup) -> Self {
         Self {
             name: name.to_owned(),
             seed,
@@ -165,13 +152,7 @@ pub(super) fn build(
     let far = checks::FAR_M;
     for (field, value, low, high, unit) in [
         ("plane.radius_m", table.radius_m, 0.001, 65.0, "metres"),
-        (
-            "plane.max_speed_mps",
-            table.max_speed_mps,
-            0.001,
-            32.0,
-            "m/s",
-        ),
+        ("plane.max_speed_mps", table.max_speed_mps, 0.001, 32.0, "m/s"),
         ("plane.sight_m", table.sight_m, 0.0, far, "metres"),
     ] {
         within(source, field, value, low, high, unit)?;
@@ -182,23 +163,9 @@ pub(super) fn build(
         return Err(source.error("plane.max_acceleration_mps2", what, remedy));
     }
     let cruise_mps = table.cruise_mps.unwrap_or(table.max_speed_mps);
-    within(
-        source,
-        "plane.cruise_mps",
-        cruise_mps,
-        0.001_f64.min(table.max_speed_mps),
-        table.max_speed_mps,
-        "m/s",
-    )?;
+    within(source, "plane.cruise_mps", cruise_mps, 0.001_f64.min(table.max_speed_mps), table.max_speed_mps, "m/s")?;
     let tolerance_m = table.tolerance_m.unwrap_or(table.radius_m / 10.0);
-    within(
-        source,
-        "plane.tolerance_m",
-        tolerance_m,
-        0.001,
-        far,
-        "metres",
-    )?;
+    within(source, "plane.tolerance_m", tolerance_m, 0.001, far, "metres")?;
     if table.guidance.is_on_grid() && (terrain.is_none() || cells.is_none()) {
         return Err(source.error(
             "plane.guidance",
@@ -260,18 +227,10 @@ pub(super) fn build(
 fn solids(source: &Source<'_>, table: &PlaneTable) -> Result<Vec<Solid>, ScenarioError> {
     let mut solids = Vec::new();
     for (index, wall) in table.wall.iter().enumerate() {
-        let is_sound = wall
-            .points_m
-            .iter()
-            .flatten()
-            .all(|x| x.abs() <= checks::FAR_M);
+        let is_sound = wall.points_m.iter().flatten().all(|x| x.abs() <= checks::FAR_M);
         if wall.points_m.len() < 2 || !is_sound {
             let field = format!("plane.wall[{index}].points_m");
-            return Err(source.error(
-                &field,
-                "this is no wall",
-                "give two or more points in metres",
-            ));
+            return Err(source.error(&field, "this is no wall", "give two or more points in metres"));
         }
         let pairs = wall.points_m.windows(2).map(|pair| [pair[0], pair[1]]);
         solids.extend(pairs.map(Solid::Wall));
@@ -285,10 +244,7 @@ fn solids(source: &Source<'_>, table: &PlaneTable) -> Result<Vec<Solid>, Scenari
         checks::place(source, &field, ball.center_m)?;
         let field = format!("plane.ball[{index}].radius_m");
         within(source, &field, ball.radius_m, 0.001, 1e6, "metres")?;
-        solids.push(Solid::Ball {
-            center_m: ball.center_m.0,
-            radius_m: ball.radius_m,
-        });
+        solids.push(Solid::Ball { center_m: ball.center_m.0, radius_m: ball.radius_m });
     }
     for (index, entry) in table.half_space.iter().enumerate() {
         let field = format!("plane.half_space[{index}].point_m");
@@ -296,16 +252,9 @@ fn solids(source: &Source<'_>, table: &PlaneTable) -> Result<Vec<Solid>, Scenari
         let length = entry.normal.0.iter().map(|x| x * x).sum::<f64>().sqrt();
         if !(length > 0.0 && length.is_finite()) {
             let field = format!("plane.half_space[{index}].normal");
-            return Err(source.error(
-                &field,
-                "this is no direction",
-                "give a vector that is not zero",
-            ));
+            return Err(source.error(&field, "this is no direction", "give a vector that is not zero"));
         }
-        solids.push(Solid::Plane {
-            point_m: entry.point_m.0,
-            normal: entry.normal.0.map(|x| x / length),
-        });
+        solids.push(Solid::Plane { point_m: entry.point_m.0, normal: entry.normal.0.map(|x| x / length) });
     }
     Ok(solids)
 }
@@ -313,41 +262,13 @@ fn solids(source: &Source<'_>, table: &PlaneTable) -> Result<Vec<Solid>, Scenari
 fn orca(source: &Source<'_>, table: &OrcaTable) -> Result<AvoidParams<f32>, ScenarioError> {
     let mut params = AvoidParams::<f32>::default();
     for (field, value, low, high, unit, param) in [
-        (
-            "horizon_s",
-            table.horizon_s,
-            0.01,
-            60.0,
-            "seconds",
-            &mut params.horizon_s,
-        ),
-        (
-            "wall_horizon_s",
-            table.wall_horizon_s,
-            0.01,
-            60.0,
-            "seconds",
-            &mut params.wall_horizon_s,
-        ),
+        ("horizon_s", table.horizon_s, 0.01, 60.0, "seconds", &mut params.horizon_s),
+        ("wall_horizon_s", table.wall_horizon_s, 0.01, 60.0, "seconds", &mut params.wall_horizon_s),
         ("share", table.share, 0.0, 1.0, "", &mut params.share),
-        (
-            "margin_m",
-            table.margin_m,
-            0.0,
-            10.0,
-            "metres",
-            &mut params.margin_m,
-        ),
+        ("margin_m", table.margin_m, 0.0, 10.0, "metres", &mut params.margin_m),
     ] {
         if let Some(value) = value {
-            within(
-                source,
-                &format!("plane.orca.{field}"),
-                value,
-                low,
-                high,
-                unit,
-            )?;
+            within(source, &format!("plane.orca.{field}"), value, low, high, unit)?;
             *param = value as f32;
         }
     }
@@ -370,51 +291,20 @@ fn push_out(source: &Source<'_>, table: &PlaneTable) -> Result<PushOutParams<f32
             ModelName::Radial => Model::Radial,
             ModelName::Tangential => Model::Tangential,
         },
-        evasion: if given.single {
-            Evasion::Single
-        } else {
-            Evasion::Multiple
-        },
+        evasion: if given.single { Evasion::Single } else { Evasion::Multiple },
         min_distance_m: given.min_distance_m as f32,
     })
 }
 
-fn inflation(
-    source: &Source<'_>,
-    table: &PlaneTable,
-) -> Result<StalenessInflation<f32>, ScenarioError> {
-    let growth_mps = table
-        .orca
-        .inflation_mps
-        .unwrap_or(table.max_speed_mps / 2.0);
+fn inflation(source: &Source<'_>, table: &PlaneTable) -> Result<StalenessInflation<f32>, ScenarioError> {
+    let growth_mps = table.orca.inflation_mps.unwrap_or(table.max_speed_mps / 2.0);
     let max_m = table.orca.inflation_m.unwrap_or(table.radius_m);
-    within(
-        source,
-        "plane.orca.inflation_mps",
-        growth_mps,
-        0.0,
-        1000.0,
-        "m/s",
-    )?;
-    within(
-        source,
-        "plane.orca.inflation_m",
-        max_m,
-        0.0,
-        1000.0,
-        "metres",
-    )?;
-    Ok(StalenessInflation {
-        growth_mps: growth_mps as f32,
-        max_m: max_m as f32,
-    })
+    within(source, "plane.orca.inflation_mps", growth_mps, 0.0, 1000.0, "m/s")?;
+    within(source, "plane.orca.inflation_m", max_m, 0.0, 1000.0, "metres")?;
+    Ok(StalenessInflation { growth_mps: growth_mps as f32, max_m: max_m as f32 })
 }
 
-fn orders(
-    source: &Source<'_>,
-    file: &ScenarioFile,
-    table: &PlaneTable,
-) -> Result<Vec<Order>, ScenarioError> {
+fn orders(source: &Source<'_>, file: &ScenarioFile, table: &PlaneTable) -> Result<Vec<Order>, ScenarioError> {
     let mut orders = Vec::new();
     for (index, order) in table.order.iter().enumerate() {
         let field = format!("plane.order[{index}].at_s");
@@ -422,27 +312,17 @@ fn orders(
         if order.goal >= checks::goals(table.guidance) {
             let field = format!("plane.order[{index}].goal");
             let name = table.guidance.name();
-            let what = format!(
-                "robots with guidance \"{name}\" have no goal {}",
-                order.goal
-            );
+            let what = format!("robots with guidance \"{name}\" have no goal {}", order.goal);
             let remedy = "give one that they have, from 0, or another guidance";
             return Err(source.error(&field, what, remedy));
         }
-        checks::place(
-            source,
-            &format!("plane.order[{index}].place_m"),
-            order.place_m,
-        )?;
+        checks::place(source, &format!("plane.order[{index}].place_m"), order.place_m)?;
         let field = format!("plane.order[{index}].velocity_mps");
         checks::goal_velocity(source, &field, table.guidance, order.velocity_mps)?;
         orders.push(Order {
             tick: libm::ceil(order.at_s / file.tick_s) as u32,
             index: order.goal,
-            target: Target {
-                position_m: order.place_m.0,
-                velocity_mps: order.velocity_mps.0,
-            },
+            target: Target { position_m: order.place_m.0, velocity_mps: order.velocity_mps.0 },
         });
     }
     orders.sort_by_key(|order| order.tick);

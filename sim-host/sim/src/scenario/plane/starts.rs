@@ -36,18 +36,13 @@ pub struct Target {
 /// Robots of the grid, in the middles of their cells.
 pub(super) fn on_land(robots: &[Robot], terrain: &Terrain) -> Vec<Start> {
     let center = |cell: Cell| {
-        let at = |cells: i16, axis: usize| {
-            terrain.origin_m[axis] + (f64::from(cells) + 0.5) * terrain.cell_m
-        };
+        let at = |cells: i16, axis: usize| terrain.origin_m[axis] + (f64::from(cells) + 0.5) * terrain.cell_m;
         [at(cell.x, 0), at(cell.y, 1), 0.0]
     };
     let start = |robot: &Robot| Start {
         position_m: center(robot.start),
         velocity_mps: [0.0; 3],
-        places: vec![Target {
-            position_m: center(robot.goal),
-            velocity_mps: [0.0; 3],
-        }],
+        places: vec![Target { position_m: center(robot.goal), velocity_mps: [0.0; 3] }],
     };
     robots.iter().map(start).collect()
 }
@@ -58,10 +53,7 @@ pub(super) fn placed(
     table: &PlaneTable,
     robots: &PlaneRobots,
 ) -> Result<Vec<Start>, ScenarioError> {
-    let fixed = |place: Place| Target {
-        position_m: place.0,
-        velocity_mps: [0.0; 3],
-    };
+    let fixed = |place: Place| Target { position_m: place.0, velocity_mps: [0.0; 3] };
     let starts = match (&robots.list, &robots.circle, &robots.cloud) {
         (Some(list), None, None) => {
             checks::list(source, table.guidance, list)?;
@@ -116,10 +108,7 @@ pub fn circle_starts(count: u32, radius_m: f64, noise_m: f64, seed: u64) -> Vec<
             Start {
                 position_m: [x + noise(), y + noise(), 0.0],
                 velocity_mps: [0.0; 3],
-                places: vec![Target {
-                    position_m: [-x, -y, 0.0],
-                    velocity_mps: [0.0; 3],
-                }],
+                places: vec![Target { position_m: [-x, -y, 0.0], velocity_mps: [0.0; 3] }],
             }
         })
         .collect()
@@ -145,10 +134,7 @@ fn cloud_starts(cloud: &CloudEntry, radius_m: f64, seed: u64) -> Option<Vec<Star
     let places: Vec<_> = cloud
         .goals_m
         .iter()
-        .map(|goal| Target {
-            position_m: goal.0,
-            velocity_mps: cloud.goal_velocity_mps.0,
-        })
+        .map(|goal| Target { position_m: goal.0, velocity_mps: cloud.goal_velocity_mps.0 })
         .collect();
     let mut taken = HashMap::<[i64; 3], Vec<[f64; 3]>>::new();
     let bucket = |place: [f64; 3]| place.map(|x| libm::floor(x / (2.0 * radius_m)) as i64);
@@ -158,9 +144,7 @@ fn cloud_starts(cloud: &CloudEntry, radius_m: f64, seed: u64) -> Option<Vec<Star
         let around = around.flat_map(|(dx, dy)| (-1..=1).map(move |dz| [x + dx, y + dy, z + dz]));
         let mut near = around.filter_map(|at| taken.get(&at)).flatten();
         !near.any(|other| {
-            let squared: f64 = (0..3)
-                .map(|i| (place[i] - other[i]) * (place[i] - other[i]))
-                .sum();
+            let squared: f64 = (0..3).map(|i| (place[i] - other[i]) * (place[i] - other[i])).sum();
             squared < 4.0 * radius_m * radius_m
         })
     };
@@ -170,16 +154,9 @@ fn cloud_starts(cloud: &CloudEntry, radius_m: f64, seed: u64) -> Option<Vec<Star
             let position_m = (0..TRIES)
                 .map(|_| between(&mut rng, cloud.from_m, cloud.to_m))
                 .find(|&place| is_free(&taken, place))?;
-            taken
-                .entry(bucket(position_m))
-                .or_default()
-                .push(position_m);
+            taken.entry(bucket(position_m)).or_default().push(position_m);
             let (from, to) = (cloud.velocity_from_mps, cloud.velocity_to_mps);
-            Some(Start {
-                position_m,
-                velocity_mps: between(&mut rng, from, to),
-                places: places.clone(),
-            })
+            Some(Start { position_m, velocity_mps: between(&mut rng, from, to), places: places.clone() })
         })
         .collect()
 }

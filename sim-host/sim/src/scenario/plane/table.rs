@@ -283,22 +283,8 @@ impl OrcaTable {
     /// Whether it says nothing.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        let Self {
-            horizon_s,
-            wall_horizon_s,
-            share,
-            margin_m,
-            inflation_mps,
-            inflation_m,
-        } = self;
-        let fields = [
-            horizon_s,
-            wall_horizon_s,
-            share,
-            margin_m,
-            inflation_mps,
-            inflation_m,
-        ];
+        let Self { horizon_s, wall_horizon_s, share, margin_m, inflation_mps, inflation_m } = self;
+        let fields = [horizon_s, wall_horizon_s, share, margin_m, inflation_mps, inflation_m];
         fields.iter().all(|field| field.is_none())
     }
 }

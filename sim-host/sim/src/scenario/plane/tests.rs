@@ -5,8 +5,7 @@ use std::path::Path;
 
 const HEAD: &str = "name = \"t\"\nticks = 5\n";
 const PLANE: &str = "[plane]\nradius_m = 0.2\nmax_speed_mps = 1\n";
-const TWO: &str =
-    "[plane.robots]\nlist = [{ start_m = [0, 0], goal_m = [5, 0] }, { start_m = [3, 0, 1] }]\n";
+const TWO: &str = "[plane.robots]\nlist = [{ start_m = [0, 0], goal_m = [5, 0] }, { start_m = [3, 0, 1] }]\n";
 const LAND: &str = "[terrain]\nuniform = { width = 9, height = 9, classes = 1 }\ncell_m = 2\n";
 
 fn parse(text: &str) -> Result<Scenario, ScenarioError> {
@@ -35,18 +34,10 @@ fn the_smallest_plane_has_the_documented_defaults() {
     assert_eq!(plane.abilities.max_acceleration_mps2, f64::INFINITY);
     assert_eq!((plane.cruise_mps, plane.sight_m), (1.0, 10.0));
     assert!((plane.tolerance_m - 0.02).abs() < 1e-12);
-    assert_eq!(
-        (plane.guidance, plane.safety, plane.has_terrain),
-        (GuidanceName::Waypoint, SafetyName::Orca, false)
-    );
+    assert_eq!((plane.guidance, plane.safety, plane.has_terrain), (GuidanceName::Waypoint, SafetyName::Orca, false));
     assert_eq!(plane.orca, AvoidParams::default());
-    assert_eq!(
-        (plane.inflation.growth_mps, plane.inflation.max_m),
-        (0.5, 0.2)
-    );
-    let [one, two] = &plane.starts[..] else {
-        panic!("two robots")
-    };
+    assert_eq!((plane.inflation.growth_mps, plane.inflation.max_m), (0.5, 0.2));
+    let [one, two] = &plane.starts[..] else { panic!("two robots") };
     assert_eq!(one.places[0].position_m, [5.0, 0.0, 0.0]);
     assert_eq!((two.position_m, two.places.len()), ([3.0, 0.0, 1.0], 0));
 }
@@ -58,10 +49,7 @@ fn the_readme_says_the_defaults_of_orca() {
         let mut rows = readme.lines();
         let row = rows.find(|line| line.starts_with(&format!("| `{field}`")));
         let row = row.unwrap_or_else(|| panic!("no row of {field}"));
-        row.trim_end_matches(" |")
-            .rsplit(" | ")
-            .next()
-            .expect("a column")
+        row.trim_end_matches(" |").rsplit(" | ").next().expect("a column")
     };
     let params = AvoidParams::<f32>::default();
     let horizons = format!("{}, {}", params.horizon_s, params.wall_horizon_s);
@@ -91,68 +79,26 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             with("").replace("max_speed_mps = 1", "max_speed_mps = 33"),
             "s.toml:5: plane.max_speed_mps: 33 is out of range; give 0.001 to 32 m/s",
         ),
-        (
-            with("max_acceleration_mps2 = nan\n"),
-            "s.toml:6: plane.max_acceleration_mps2: NaN is no acceleration",
-        ),
-        (
-            with("max_acceleration_mps2 = 0\n"),
-            "s.toml:6: plane.max_acceleration_mps2: 0 is no acceleration",
-        ),
-        (
-            with("cruise_mps = 0\n"),
-            "s.toml:6: plane.cruise_mps: 0 is out of range; give 0.001 to 1 m/s",
-        ),
-        (
-            with("tolerance_m = 0\n"),
-            "s.toml:6: plane.tolerance_m: 0 is out of range",
-        ),
-        (
-            with("sight_m = inf\n"),
-            "s.toml:6: plane.sight_m: inf is out of range",
-        ),
+        (with("max_acceleration_mps2 = nan\n"), "s.toml:6: plane.max_acceleration_mps2: NaN is no acceleration"),
+        (with("max_acceleration_mps2 = 0\n"), "s.toml:6: plane.max_acceleration_mps2: 0 is no acceleration"),
+        (with("cruise_mps = 0\n"), "s.toml:6: plane.cruise_mps: 0 is out of range; give 0.001 to 1 m/s"),
+        (with("tolerance_m = 0\n"), "s.toml:6: plane.tolerance_m: 0 is out of range"),
+        (with("sight_m = inf\n"), "s.toml:6: plane.sight_m: inf is out of range"),
         // Unknown names.
-        (
-            with("guidance = \"sheep\"\n"),
-            "s.toml:6: plane.guidance: unknown variant `sheep`",
-        ),
-        (
-            with("safety = \"luck\"\n"),
-            "s.toml:6: plane.safety: unknown variant `luck`",
-        ),
-        (
-            with("colour = 1\n"),
-            "s.toml:6: plane.colour: unknown field `colour`",
-        ),
-        (
-            robots("list = [{ start_m = [0] }]"),
-            "s.toml:7: plane.robots.list[0].start_m: expected [x, y] or [x, y, z]",
-        ),
+        (with("guidance = \"sheep\"\n"), "s.toml:6: plane.guidance: unknown variant `sheep`"),
+        (with("safety = \"luck\"\n"), "s.toml:6: plane.safety: unknown variant `luck`"),
+        (with("colour = 1\n"), "s.toml:6: plane.colour: unknown field `colour`"),
+        (robots("list = [{ start_m = [0] }]"), "s.toml:7: plane.robots.list[0].start_m: expected [x, y] or [x, y, z]"),
         // Who takes part.
-        (
-            format!("{HEAD}{PLANE}"),
-            "s.toml:3: plane.robots: it is not clear who takes part; give either plane.robots",
-        ),
-        (
-            robots(""),
-            "s.toml:6: plane.robots: it is not clear who takes part; give exactly one of",
-        ),
-        (
-            robots("list = []"),
-            "s.toml:7: plane.robots.list: nobody takes part",
-        ),
-        (
-            robots("circle = { count = 0, radius_m = 3 }"),
-            "s.toml:7: plane.robots.circle.count: 0 robots are no swarm",
-        ),
+        (format!("{HEAD}{PLANE}"), "s.toml:3: plane.robots: it is not clear who takes part; give either plane.robots"),
+        (robots(""), "s.toml:6: plane.robots: it is not clear who takes part; give exactly one of"),
+        (robots("list = []"), "s.toml:7: plane.robots.list: nobody takes part"),
+        (robots("circle = { count = 0, radius_m = 3 }"), "s.toml:7: plane.robots.circle.count: 0 robots are no swarm"),
         (
             robots("circle = { count = 3, radius_m = nan }"),
             "s.toml:7: plane.robots.circle.radius_m: NaN is out of range",
         ),
-        (
-            robots("circle = { count = 1000001, radius_m = 3 }"),
-            "s.toml:7: plane.robots.circle.count: 1000001 robots",
-        ),
+        (robots("circle = { count = 1000001, radius_m = 3 }"), "s.toml:7: plane.robots.circle.count: 1000001 robots"),
         (
             robots("circle = { count = 3, radius_m = 3 }\nlist = []"),
             "s.toml:6: plane.robots: it is not clear who takes part",
@@ -170,15 +116,11 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             "s.toml:7: plane.robots.cloud.to_m: this is too far away",
         ),
         (
-            robots(
-                "cloud = { count = 1, from_m = [0, 0], to_m = [1, 1], velocity_to_mps = [99, 0] }",
-            ),
+            robots("cloud = { count = 1, from_m = [0, 0], to_m = [1, 1], velocity_to_mps = [99, 0] }"),
             "s.toml:7: plane.robots.cloud.velocity_to_mps: this is too fast",
         ),
         (
-            robots(
-                "cloud = { count = 1, from_m = [0, 0], to_m = [1, 1], goals_m = [[1, 2], [3, 4]] }",
-            ),
+            robots("cloud = { count = 1, from_m = [0, 0], to_m = [1, 1], goals_m = [[1, 2], [3, 4]] }"),
             "s.toml:7: plane.robots.cloud.goals_m: 2 goals are too many for guidance \"waypoint\"",
         ),
         (
@@ -216,23 +158,15 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             "s.toml:6: plane.guidance: this guidance goes from cell to cell; give [terrain]",
         ),
         (
-            format!(
-                "{HEAD}{LAND}[robots]\nscattered = {{ count = 2 }}\n{PLANE}guidance = \"formation\"\n"
-            ),
+            format!("{HEAD}{LAND}[robots]\nscattered = {{ count = 2 }}\n{PLANE}guidance = \"formation\"\n"),
             "s.toml:11: plane.guidance: robots.formation and guidance \"formation\" go together",
         ),
-        (
-            with("guidance = \"lattice\"\n"),
-            "s.toml:3: plane.lattice: this guidance needs distances",
-        ),
+        (with("guidance = \"lattice\"\n"), "s.toml:3: plane.lattice: this guidance needs distances"),
         (
             after("[plane.boids]\ncrowded_m = 1\nclosest_m = 2\n"),
             "s.toml:8: plane.boids: these robots have another guidance",
         ),
-        (
-            with("safety = \"push_out\"\n"),
-            "s.toml:3: plane.push_out: safety \"push_out\" and its table go together",
-        ),
+        (with("safety = \"push_out\"\n"), "s.toml:3: plane.push_out: safety \"push_out\" and its table go together"),
         (
             after("[plane.push_out]\nmin_distance_m = 1\n"),
             "s.toml:8: plane.push_out: safety \"push_out\" and its table go together",
@@ -275,48 +209,27 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             after("[plane.orca]\nhorizon_s = 0\n"),
             "s.toml:9: plane.orca.horizon_s: 0 is out of range; give 0.01 to 60 seconds",
         ),
-        (
-            after("[plane.orca]\nshare = 1.1\n"),
-            "s.toml:9: plane.orca.share: 1.1 is out of range; give 0 to 1",
-        ),
-        (
-            after("[plane.orca]\ninflation_m = -1\n"),
-            "s.toml:9: plane.orca.inflation_m: -1 is out of range",
-        ),
+        (after("[plane.orca]\nshare = 1.1\n"), "s.toml:9: plane.orca.share: 1.1 is out of range; give 0 to 1"),
+        (after("[plane.orca]\ninflation_m = -1\n"), "s.toml:9: plane.orca.inflation_m: -1 is out of range"),
         (
             flock("lattice", "spacing_m = 1\nalgorithm = 4", ""),
             "s.toml:11: plane.lattice.algorithm: there is no algorithm 4; give 1, 2 or 3",
         ),
-        (
-            flock("lattice", "spacing_m = nan", ""),
-            "s.toml:10: plane.lattice.spacing_m: NaN is out of range",
-        ),
+        (flock("lattice", "spacing_m = nan", ""), "s.toml:10: plane.lattice.spacing_m: NaN is out of range"),
         (
             flock("goal_flock", "min_distance_m = 1\nneighborhood_m = 1", ""),
             "s.toml:11: plane.goal_flock.neighborhood_m: 1 is out of range; give 2 to",
         ),
         (
-            flock(
-                "goal_flock",
-                "min_distance_m = 1",
-                ", goals_m = [[1, 1], [2, 2], [3, 3], [4, 4], [5, 5]]",
-            ),
+            flock("goal_flock", "min_distance_m = 1", ", goals_m = [[1, 1], [2, 2], [3, 3], [4, 4], [5, 5]]"),
             "s.toml:8: plane.robots.cloud.goals_m: 5 goals are too many for guidance \"goal_flock\"",
         ),
         (
-            flock(
-                "goal_flock",
-                "min_distance_m = 1",
-                ", goals_m = [[1, 1]], goal_velocity_mps = [1, 0]",
-            ),
+            flock("goal_flock", "min_distance_m = 1", ", goals_m = [[1, 1]], goal_velocity_mps = [1, 0]"),
             "s.toml:8: plane.robots.cloud.goal_velocity_mps: goals of guidance \"goal_flock\" do not move",
         ),
         (
-            flock(
-                "boids",
-                "crowded_m = 1\nclosest_m = 3",
-                ", goals_m = [[1, 1]]",
-            ),
+            flock("boids", "crowded_m = 1\nclosest_m = 3", ", goals_m = [[1, 1]]"),
             "s.toml:8: plane.robots.cloud.goals_m: 1 goals are too many for guidance \"boids\"",
         ),
         (
@@ -349,11 +262,7 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             "s.toml:14: plane.order[0].velocity_mps: goals of guidance \"goal_flock\" do not move",
         ),
         (
-            flock(
-                "boids",
-                "crowded_m = 1\nclosest_m = 3\n[[plane.order]]\nat_s = 1\nplace_m = [1, 1]",
-                "",
-            ),
+            flock("boids", "crowded_m = 1\nclosest_m = 3\n[[plane.order]]\nat_s = 1\nplace_m = [1, 1]", ""),
             "s.toml:12: plane.order[0].goal: robots with guidance \"boids\" have no goal 0",
         ),
     ];
@@ -373,12 +282,7 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
 #[test]
 fn walls_are_chains_and_polygons() {
     let points = "points_m = [[1, 2], [3, 2], [3, 4]]";
-    let solids = |closed: &str| {
-        setup(&format!(
-            "{HEAD}{PLANE}{TWO}[[plane.wall]]\n{points}\n{closed}"
-        ))
-        .solids
-    };
+    let solids = |closed: &str| setup(&format!("{HEAD}{PLANE}{TWO}[[plane.wall]]\n{points}\n{closed}")).solids;
     let open = solids("");
     assert_eq!(open.len(), 2);
     let polygon = solids("closed = true\n");
@@ -388,19 +292,14 @@ fn walls_are_chains_and_polygons() {
 
 #[test]
 fn a_normal_may_have_any_length() {
-    let text =
-        format!("{HEAD}{PLANE}{TWO}[[plane.half_space]]\npoint_m = [0, -9]\nnormal = [0, 8]\n");
-    let [Solid::Plane { normal, .. }] = setup(&text).solids[..] else {
-        panic!("one half-space")
-    };
+    let text = format!("{HEAD}{PLANE}{TWO}[[plane.half_space]]\npoint_m = [0, -9]\nnormal = [0, 8]\n");
+    let [Solid::Plane { normal, .. }] = setup(&text).solids[..] else { panic!("one half-space") };
     assert_eq!(normal, [0.0, 1.0, 0.0]);
 }
 
 #[test]
 fn a_cloud_has_room_for_everybody_and_is_the_same_each_time() {
-    let text = format!(
-        "{HEAD}{PLANE}[plane.robots]\ncloud = {{ count = 100, from_m = [-4, 4], to_m = [4, -4] }}\n"
-    );
+    let text = format!("{HEAD}{PLANE}[plane.robots]\ncloud = {{ count = 100, from_m = [-4, 4], to_m = [4, -4] }}\n");
     let starts = setup(&text).starts;
     assert_eq!(starts, setup(&text).starts);
     for (index, one) in starts.iter().enumerate() {
@@ -416,12 +315,7 @@ fn a_cloud_has_room_for_everybody_and_is_the_same_each_time() {
 #[test]
 fn orders_come_by_time_whatever_their_order_in_the_file() {
     let order = |at_s: f64, x: f64| format!("[[plane.order]]\nat_s = {at_s}\nplace_m = [{x}, 0]\n");
-    let text = format!(
-        "tick_s = 0.5\n{HEAD}{PLANE}{TWO}{}{}{}",
-        order(3.1, 1.0),
-        order(0.0, 2.0),
-        order(3.0, 3.0)
-    );
+    let text = format!("tick_s = 0.5\n{HEAD}{PLANE}{TWO}{}{}{}", order(3.1, 1.0), order(0.0, 2.0), order(3.0, 3.0));
     let orders = setup(&text).orders;
     let of = |order: &Order| (order.tick, order.target.position_m[0]);
     let all: Vec<_> = orders.iter().map(of).collect();
@@ -430,9 +324,8 @@ fn orders_come_by_time_whatever_their_order_in_the_file() {
 
 #[test]
 fn robots_of_the_grid_start_in_the_middles_of_their_cells() {
-    let text = format!(
-        "{HEAD}{LAND}[robots]\nlist = [{{ start = [0, 1], goal = [3, 8] }}]\n{PLANE}guidance = \"route\"\n"
-    );
+    let text =
+        format!("{HEAD}{LAND}[robots]\nlist = [{{ start = [0, 1], goal = [3, 8] }}]\n{PLANE}guidance = \"route\"\n");
     let plane = setup(&text);
     assert!(plane.has_terrain);
     assert_eq!(plane.starts[0].position_m, [1.0, 3.0, 0.0]);

@@ -18,23 +18,15 @@ fn every_field_is_in_the_table_of_the_readme() {
     ];
     let mut fields = 0;
     for source in sources {
-        let declared = source
-            .lines()
-            .filter_map(|line| line.strip_prefix("    pub "));
+        let declared = source.lines().filter_map(|line| line.strip_prefix("    pub "));
         for (name, _) in declared.filter_map(|field| field.split_once(": ")) {
             let in_code = format!("`{name}`");
             let is_table = format!("`[{name}]`");
             let is_list = format!("`[[{name}]]`");
             let in_plane = [format!("`[plane.{name}]`"), format!("`[[plane.{name}]]`")];
-            let said = [in_code, is_table, is_list]
-                .iter()
-                .chain(&in_plane)
-                .any(|word| readme.contains(word));
+            let said = [in_code, is_table, is_list].iter().chain(&in_plane).any(|word| readme.contains(word));
             // Those of a Routing are not from the file.
-            assert!(
-                said || ["params", "sharpness"].contains(&name),
-                "{name} is missing"
-            );
+            assert!(said || ["params", "sharpness"].contains(&name), "{name} is missing");
             fields += 1;
         }
     }
@@ -52,10 +44,7 @@ fn every_scenario_is_in_the_list_of_the_readme() {
             let name = path.file_stem().and_then(|name| name.to_str());
             let in_list = format!("`{}`", name.expect("a name in UTF-8"));
             let mut rows = readme.lines().filter(|line| line.starts_with("| `"));
-            assert!(
-                rows.any(|row| row.contains(&in_list)),
-                "{in_list} is missing"
-            );
+            assert!(rows.any(|row| row.contains(&in_list)), "{in_list} is missing");
             Scenario::load(&path, &Overrides::default()).unwrap_or_else(|error| panic!("{error}"));
             scenarios += 1;
         }
@@ -67,9 +56,7 @@ fn every_scenario_is_in_the_list_of_the_readme() {
 fn the_defaults_in_the_readme_are_the_controllers() {
     let readme = include_str!("../../../../../scenarios/README.md");
     let last_column = |field: &str| {
-        let row = readme
-            .lines()
-            .find(|line| line.starts_with(&format!("| `{field}`")));
+        let row = readme.lines().find(|line| line.starts_with(&format!("| `{field}`")));
         let row = row.unwrap_or_else(|| panic!("no row of {field}"));
         let column = row.trim_end_matches(" |").rsplit(" | ").next();
         column.expect("a column").replace('`', "")
@@ -77,45 +64,19 @@ fn the_defaults_in_the_readme_are_the_controllers() {
     let number = |gain: Gain| f64::from(gain.sixteenths()) / 16.0;
     let cells = |units: u16| format!("{:.2}", f64::from(units) / f64::from(UNIT));
     let (route, formation) = (Routing::default(), FormationParams::default());
-    let gains = [
-        route.params.a0,
-        route.params.a1,
-        route.params.a2,
-        route.params.a3,
-    ];
-    assert_eq!(
-        last_column("a0"),
-        gains.map(|gain| number(gain).to_string()).join(", ")
-    );
+    let gains = [route.params.a0, route.params.a1, route.params.a2, route.params.a3];
+    assert_eq!(last_column("a0"), gains.map(|gain| number(gain).to_string()).join(", "));
     assert_eq!(last_column("radius"), route.params.radius.to_string());
-    assert_eq!(
-        (route.params.exit, route.replan),
-        (ExitRule::Best, Replan::EachCell)
-    );
-    assert_eq!(
-        (last_column("exit"), last_column("replan")),
-        ("\"best\"".into(), "\"each_cell\"".into())
-    );
-    assert_eq!(
-        (last_column("halved_per_ticks"), route.sharpness),
-        ("0".into(), Sharpness::Greedy)
-    );
+    assert_eq!((route.params.exit, route.replan), (ExitRule::Best, Replan::EachCell));
+    assert_eq!((last_column("exit"), last_column("replan")), ("\"best\"".into(), "\"each_cell\"".into()));
+    assert_eq!((last_column("halved_per_ticks"), route.sharpness), ("0".into(), Sharpness::Greedy));
     assert_eq!(last_column("eps"), formation.eps.to_string());
     assert_eq!(last_column("gain"), number(formation.gain).to_string());
-    assert_eq!(
-        last_column("halt_cells"),
-        format!("{}, halt_cells", cells(formation.halt_lag))
-    );
+    assert_eq!(last_column("halt_cells"), format!("{}, halt_cells", cells(formation.halt_lag)));
     assert_eq!(formation.resume_lag, formation.halt_lag);
     assert_eq!(last_column("lead"), formation.lead.to_string());
     let footprint = f64::from(formation.footprint) / 16.0;
     assert_eq!(last_column("footprint"), footprint.to_string());
-    assert_eq!(
-        (formation.prediction, formation.recovery),
-        (Prediction::Constant, Recovery::Wait)
-    );
-    assert_eq!(
-        (last_column("prediction"), last_column("recovery")),
-        ("\"constant\"".into(), "\"wait\"".into())
-    );
+    assert_eq!((formation.prediction, formation.recovery), (Prediction::Constant, Recovery::Wait));
+    assert_eq!((last_column("prediction"), last_column("recovery")), ("\"constant\"".into(), "\"wait\"".into()));
 }

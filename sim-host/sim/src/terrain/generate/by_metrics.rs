@@ -44,9 +44,7 @@ pub fn by_metrics(plan: &Plan, wanted: &ByMetrics) -> Result<Terrain, TerrainErr
     plan.check()?;
     let sizes = class_sizes(plan, wanted)?;
     let mut rng = plan.rng();
-    let noise: Vec<u64> = (0..plan.cells())
-        .map(|_| u64::from(rng.next_u32() >> 16))
-        .collect();
+    let noise: Vec<u64> = (0..plan.cells()).map(|_| u64::from(rng.next_u32() >> 16)).collect();
 
     let mut cells = Vec::new();
     for field in fields(plan, &noise) {
@@ -67,10 +65,7 @@ pub fn by_metrics(plan: &Plan, wanted: &ByMetrics) -> Result<Terrain, TerrainErr
             (low, upward.edges)
         } else {
             let stripes = fields(plan, &noise).last().unwrap_or_default();
-            (
-                total_edge(&fill(&stripes, &sizes), plan.width).min(start),
-                search.edges,
-            )
+            (total_edge(&fill(&stripes, &sizes), plan.width).min(start), search.edges)
         };
         return Err(parameter_error(
             format!(
@@ -87,9 +82,8 @@ pub fn by_metrics(plan: &Plan, wanted: &ByMetrics) -> Result<Terrain, TerrainErr
 fn class_sizes(plan: &Plan, wanted: &ByMetrics) -> Result<Vec<usize>, TerrainError> {
     let cells = plan.cells() as usize;
     let sizes_at = |ratio: f64| {
-        let shares: Vec<f64> = std::iter::successors(Some(1.0), |share| Some(share * ratio))
-            .take(plan.classes.into())
-            .collect();
+        let shares: Vec<f64> =
+            std::iter::successors(Some(1.0), |share| Some(share * ratio)).take(plan.classes.into()).collect();
         let total: f64 = shares.iter().sum();
         // Rounding the running sums keeps the total exact.
         let mut taken = 0;
@@ -122,10 +116,7 @@ fn class_sizes(plan: &Plan, wanted: &ByMetrics) -> Result<Vec<usize>, TerrainErr
     }
     let most = libm::log(f64::from(plan.classes).min(cells as f64));
     Err(parameter_error(
-        format!(
-            "entropy {} is out of reach with {} classes on {cells} cells",
-            wanted.entropy, plan.classes
-        ),
+        format!("entropy {} is out of reach with {} classes on {cells} cells", wanted.entropy, plan.classes),
         format!(
             "choose one from 0 to {most:.4} (the nearest that class sizes give here is {:.4}), or allow a greater entropy tolerance",
             entropy(&best)
@@ -142,16 +133,10 @@ fn fields<'a>(plan: &'a Plan, noise: &'a [u64]) -> impl Iterator<Item = Vec<u64>
         .map(move |radius| smooth(noise, plan.width, radius));
     let width = u32::from(plan.width);
     let stripes = (0..plan.cells()).map(move |at| {
-        let across = if plan.width > plan.height {
-            at % width
-        } else {
-            at / width
-        };
+        let across = if plan.width > plan.height { at % width } else { at / width };
         u64::from(across)
     });
-    std::iter::once(noise.to_vec())
-        .chain(smoothed)
-        .chain(std::iter::once_with(move || stripes.collect()))
+    std::iter::once(noise.to_vec()).chain(smoothed).chain(std::iter::once_with(move || stripes.collect()))
 }
 
 /// Two passes of the mean over a square of `radius` (as sums), on a torus: no border shows in the land.
@@ -177,9 +162,7 @@ fn smooth(field: &[u64], width: u16, radius: u16) -> Vec<u64> {
 fn sums(ring: &[u64], radius: usize) -> Vec<u64> {
     let length = ring.len();
     let radius = radius.min((length - 1) / 2);
-    let mut sum: u64 = (0..=2 * radius)
-        .map(|at| ring[(at + length - radius) % length])
-        .sum();
+    let mut sum: u64 = (0..=2 * radius).map(|at| ring[(at + length - radius) % length]).sum();
     (0..length)
         .map(|at| {
             let here = sum;
@@ -230,10 +213,7 @@ impl Search {
             if self.edges == wanted {
                 return;
             }
-            let (a, b) = (
-                self.rng.below(total) as usize,
-                self.rng.below(total) as usize,
-            );
+            let (a, b) = (self.rng.below(total) as usize, self.rng.below(total) as usize);
             if self.cells[a] == self.cells[b] {
                 continue;
             }
@@ -258,10 +238,7 @@ impl Search {
         let south = at.checked_sub(self.width).map(|south| self.cells[south]);
         let north = self.cells.get(at + self.width).copied();
         let differs = |side: &Option<u8>| side.is_some_and(|u| u != here);
-        [west, east, south, north]
-            .iter()
-            .filter(|side| differs(side))
-            .count() as u64
+        [west, east, south, north].iter().filter(|side| differs(side)).count() as u64
     }
 }
 
@@ -270,20 +247,10 @@ mod tests {
     use super::super::super::metrics::Metrics;
     use super::*;
 
-    const PLAN: Plan = Plan {
-        width: 60,
-        height: 40,
-        classes: 9,
-        seed: 5,
-    };
+    const PLAN: Plan = Plan { width: 60, height: 40, classes: 9, seed: 5 };
 
     fn wanted(entropy: f64, total_edge: u64) -> ByMetrics {
-        ByMetrics {
-            entropy,
-            entropy_tolerance: 0.01,
-            total_edge,
-            edge_tolerance: 2,
-        }
+        ByMetrics { entropy, entropy_tolerance: 0.01, total_edge, edge_tolerance: 2 }
     }
 
     #[test]
@@ -303,14 +270,8 @@ mod tests {
         ] {
             let land = by_metrics(&PLAN, &wanted(entropy, edges)).unwrap();
             let metrics = Metrics::of(&land);
-            assert!(
-                (metrics.entropy - entropy).abs() <= 0.01,
-                "S {entropy}: {metrics:?}"
-            );
-            assert!(
-                metrics.total_edge.abs_diff(edges) <= 2,
-                "TE {edges}: {metrics:?}"
-            );
+            assert!((metrics.entropy - entropy).abs() <= 0.01, "S {entropy}: {metrics:?}");
+            assert!(metrics.total_edge.abs_diff(edges) <= 2, "TE {edges}: {metrics:?}");
             assert_eq!(metrics.blocked, 0);
         }
     }
@@ -324,13 +285,9 @@ mod tests {
 
     #[test]
     fn what_is_out_of_reach_is_said_with_the_range() {
-        let message =
-            |plan: &Plan, wanted: &ByMetrics| by_metrics(plan, wanted).unwrap_err().to_string();
+        let message = |plan: &Plan, wanted: &ByMetrics| by_metrics(plan, wanted).unwrap_err().to_string();
         let high = message(&PLAN, &wanted(2.3, 1000));
-        assert!(
-            high.contains("entropy 2.3 is out of reach") && high.contains("0 to 2.1972"),
-            "{high}"
-        );
+        assert!(high.contains("entropy 2.3 is out of reach") && high.contains("0 to 2.1972"), "{high}");
         assert!(message(&PLAN, &wanted(-0.1, 0)).contains("0 to 2.1972"));
         assert!(message(&PLAN, &wanted(f64::NAN, 0)).contains("0 to 2.1972"));
         // Stripes across 40 rows: eight borders of 40 sides, some with a step.
@@ -339,45 +296,21 @@ mod tests {
         // 60 * 39 + 59 * 40 sides in all.
         let rough = message(&PLAN, &wanted(2.19, 4710));
         assert!(rough.contains("total edge 4710 is out of reach"), "{rough}");
-        assert!(
-            rough.contains(" to 4700") || rough.contains(" to 469"),
-            "{rough}"
-        );
+        assert!(rough.contains(" to 4700") || rough.contains(" to 469"), "{rough}");
         let dull = message(&PLAN, &wanted(0.0, 10));
         assert!(dull.contains("choose one from about 0 to 0"), "{dull}");
     }
 
     #[test]
     fn the_smallest_lands_work() {
-        let one = Plan {
-            width: 1,
-            height: 1,
-            ..PLAN
-        };
+        let one = Plan { width: 1, height: 1, ..PLAN };
         assert_eq!(by_metrics(&one, &wanted(0.0, 0)).unwrap().cells(), [1]);
-        let two = Plan {
-            width: 2,
-            height: 1,
-            classes: 2,
-            seed: 0,
-        };
+        let two = Plan { width: 2, height: 1, classes: 2, seed: 0 };
         let cells = by_metrics(&two, &wanted(libm::log(2.0), 1)).unwrap();
         assert_eq!(Metrics::of(&cells).total_edge, 1);
         assert!(by_metrics(&two, &wanted(0.3, 1)).is_err());
-        let column = Plan {
-            width: 1,
-            height: 50,
-            classes: 3,
-            seed: 0,
-        };
-        let land = by_metrics(
-            &column,
-            &ByMetrics {
-                entropy_tolerance: 0.05,
-                ..wanted(1.0, 20)
-            },
-        )
-        .unwrap();
+        let column = Plan { width: 1, height: 50, classes: 3, seed: 0 };
+        let land = by_metrics(&column, &ByMetrics { entropy_tolerance: 0.05, ..wanted(1.0, 20) }).unwrap();
         assert!(Metrics::of(&land).total_edge.abs_diff(20) <= 2);
     }
 }

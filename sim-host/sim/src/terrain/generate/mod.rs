@@ -38,10 +38,7 @@ impl Plan {
             ));
         }
         if self.classes == 0 {
-            return Err(parameter_error(
-                "a landscape of 0 classes",
-                "give the number of classes, 1..=255",
-            ));
+            return Err(parameter_error("a landscape of 0 classes", "give the number of classes, 1..=255"));
         }
         Ok(())
     }
@@ -135,10 +132,7 @@ impl Hill {
                 u32::from(classes).saturating_sub(distance).max(1) as u8
             })
         });
-        Self {
-            reach: reach as usize,
-            square: square.collect(),
-        }
+        Self { reach: reach as usize, square: square.collect() }
     }
 
     /// Raises the land around column `x`, row `y` to the hill.
@@ -165,12 +159,7 @@ mod tests {
     use proptest::prelude::*;
     use staya_controller::grid::Cell;
 
-    const PLAN: Plan = Plan {
-        width: 100,
-        height: 100,
-        classes: 9,
-        seed: 1,
-    };
+    const PLAN: Plan = Plan { width: 100, height: 100, classes: 9, seed: 1 };
 
     /// u by the definition: the nearest obstacle of all.
     fn by_definition(land: &Terrain, classes: u8, obstacles: &[Cell], norm: Norm) -> Vec<u8> {
@@ -230,10 +219,7 @@ mod tests {
         let land = uniform(&PLAN).unwrap();
         let counts = class_counts(land.cells());
         // Binomial with mean 1111 and deviation 31.4: five deviations.
-        assert!(
-            counts[1..=9].iter().all(|n| n.abs_diff(1111) < 157),
-            "{counts:?}"
-        );
+        assert!(counts[1..=9].iter().all(|n| n.abs_diff(1111) < 157), "{counts:?}");
         assert_eq!(counts[1..=9].iter().sum::<usize>(), 10_000);
         assert!(libm::log(9.0) - Metrics::of(&land).entropy < 1e-3);
     }
@@ -255,39 +241,17 @@ mod tests {
 
     #[test]
     fn limits_are_lands_and_beyond_them_are_errors() {
-        let tiny = Plan {
-            width: 1,
-            height: 1,
-            classes: 1,
-            seed: 0,
-        };
+        let tiny = Plan { width: 1, height: 1, classes: 1, seed: 0 };
         assert_eq!(natural(&tiny, 0, Norm::Euclidean).unwrap().cells(), [1]);
         assert_eq!(natural(&tiny, 1, Norm::Euclidean).unwrap().cells(), [1]);
         assert!(natural(&tiny, 2, Norm::Euclidean).is_err());
         assert_eq!(uniform(&tiny).unwrap().cells(), [1]);
         assert!(uniform(&Plan { classes: 0, ..tiny }).is_err());
         assert!(uniform(&Plan { width: 0, ..tiny }).is_err());
-        assert!(
-            uniform(&Plan {
-                height: 32_768,
-                ..tiny
-            })
-            .is_err()
-        );
-        let steep = Plan {
-            width: 3,
-            height: 3,
-            classes: 255,
-            seed: 0,
-        };
-        assert_eq!(
-            natural(&steep, 9, Norm::Chebyshev).unwrap().cells(),
-            [255; 9]
-        );
+        assert!(uniform(&Plan { height: 32_768, ..tiny }).is_err());
+        let steep = Plan { width: 3, height: 3, classes: 255, seed: 0 };
+        assert_eq!(natural(&steep, 9, Norm::Chebyshev).unwrap().cells(), [255; 9]);
         let stripe = Plan { height: 1, ..PLAN };
-        assert_eq!(
-            natural(&stripe, 100, Norm::Euclidean).unwrap().cells(),
-            [9; 100]
-        );
+        assert_eq!(natural(&stripe, 100, Norm::Euclidean).unwrap().cells(), [9; 100]);
     }
 }

@@ -41,11 +41,7 @@ fn impassability(p: f64, meta: &Meta, options: &LoadOptions) -> u8 {
         Mode::Scale => {
             let classes = meta.classes.unwrap_or(options.classes);
             let span = meta.occupied_thresh - meta.free_thresh;
-            let share = if span > 0.0 {
-                (p - meta.free_thresh) / span
-            } else {
-                0.0
-            };
+            let share = if span > 0.0 { (p - meta.free_thresh) / span } else { 0.0 };
             1 + (f64::from(classes - 1) * share).round() as u8
         }
     }
@@ -55,27 +51,16 @@ fn impassability(p: f64, meta: &Meta, options: &LoadOptions) -> u8 {
 ///
 /// # Errors
 /// [`TerrainError::Size`] for a picture that is too large; [`TerrainError::Parameter`] for 0 classes.
-pub fn interpret(
-    picture: &Picture,
-    meta: &Meta,
-    options: &LoadOptions,
-) -> Result<Terrain, TerrainError> {
+pub fn interpret(picture: &Picture, meta: &Meta, options: &LoadOptions) -> Result<Terrain, TerrainError> {
     if options.classes == 0 {
-        return Err(parameter_error(
-            "classes is 0",
-            "give the number of classes, 1..=255",
-        ));
+        return Err(parameter_error("classes is 0", "give the number of classes, 1..=255"));
     }
     let largest = f64::from(picture.largest);
     let mut cells: Vec<u8> = picture
         .pixels
         .iter()
         .map(|pixel| {
-            let x = f64::from(if meta.negate {
-                *pixel
-            } else {
-                picture.largest - *pixel
-            });
+            let x = f64::from(if meta.negate { *pixel } else { picture.largest - *pixel });
             impassability(x / largest, meta, options)
         })
         .collect();
@@ -93,9 +78,7 @@ pub fn interpret(
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Terrain, TerrainError> {
     let meta = parse_meta(&read(path)?, path)?;
     let image = path.parent().unwrap_or(Path::new("")).join(&meta.image);
-    let is_pgm = image
-        .extension()
-        .is_some_and(|extension| extension.eq_ignore_ascii_case("pgm"));
+    let is_pgm = image.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("pgm"));
     if !is_pgm {
         return Err(format_error(
             path,
@@ -113,10 +96,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Terrain, TerrainError>
 /// [`TerrainError::Write`]; [`TerrainError::Format`] when the file name has no place in a YAML line.
 pub fn save(terrain: &Terrain, path: &Path) -> Result<(), TerrainError> {
     let image: PathBuf = path.with_extension("pgm");
-    let name = image
-        .file_name()
-        .and_then(|name| name.to_str())
-        .filter(|name| !name.contains(['"', '\\', '\n', '\r']));
+    let name = image.file_name().and_then(|name| name.to_str()).filter(|name| !name.contains(['"', '\\', '\n', '\r']));
     let Some(name) = name else {
         return Err(format_error(
             path,
@@ -132,11 +112,7 @@ pub fn save(terrain: &Terrain, path: &Path) -> Result<(), TerrainError> {
          occupied_thresh: {OCCUPIED_THRESH:?}\nfree_thresh: {FREE_THRESH:?}\nimpassability_classes: {classes}\n",
         terrain.cell_m
     );
-    let mut pixels: Vec<u8> = terrain
-        .cells()
-        .iter()
-        .map(|u| brightness(*u, classes))
-        .collect();
+    let mut pixels: Vec<u8> = terrain.cells().iter().map(|u| brightness(*u, classes)).collect();
     flip_rows(&mut pixels, terrain.width());
     let mut picture = format!("P5\n{} {}\n255\n", terrain.width(), terrain.height()).into_bytes();
     picture.extend_from_slice(&pixels);
@@ -162,7 +138,8 @@ mod tests {
     use super::*;
     use staya_controller::grid::Cell;
 
-    const META: &str = "image: a.pgm\nresolution: 0.05\norigin: [-1.5, 2, 0]\noccupied_thresh: 0.65\nfree_thresh: 0.196\nnegate: 0\n";
+    const META: &str =
+        "image: a.pgm\nresolution: 0.05\norigin: [-1.5, 2, 0]\noccupied_thresh: 0.65\nfree_thresh: 0.196\nnegate: 0\n";
 
     fn read(meta: &str, picture: &str, options: &LoadOptions) -> Terrain {
         let meta = parse_meta(meta.as_bytes(), Path::new("a.yaml")).unwrap();
@@ -178,10 +155,7 @@ mod tests {
         let terrain = read(META, PICTURE, &LoadOptions::default());
         assert_eq!(terrain.cells(), [BLOCKED, 1, 1, 1, BLOCKED, BLOCKED]);
         assert_eq!((terrain.cell_m, terrain.origin_m), (0.05, [-1.5, 2.0]));
-        let brave = LoadOptions {
-            unknown: 7,
-            ..LoadOptions::default()
-        };
+        let brave = LoadOptions { unknown: 7, ..LoadOptions::default() };
         assert_eq!(read(META, PICTURE, &brave).get(Cell::new(1, 1)), 7);
     }
 
@@ -194,9 +168,7 @@ mod tests {
 
     #[test]
     fn scale_maps_are_linear_between_the_thresholds() {
-        let meta = format!("{META}mode: scale\n")
-            .replace("0.65", "0.8")
-            .replace("0.196", "0.2");
+        let meta = format!("{META}mode: scale\n").replace("0.65", "0.8").replace("0.196", "0.2");
         // p = 0, 0.2, 0.5, 0.8, 1
         let terrain = read(&meta, "P2 5 1 10 10 8 5 2 0", &LoadOptions::default());
         assert_eq!(terrain.cells(), [1, 1, 5, 9, BLOCKED]);
@@ -219,17 +191,10 @@ mod tests {
             ..parse_meta(META.as_bytes(), Path::new("a.yaml")).unwrap()
         };
         for classes in 1..=255 {
-            let meta = Meta {
-                classes: Some(classes),
-                ..meta.clone()
-            };
+            let meta = Meta { classes: Some(classes), ..meta.clone() };
             for u in 0..=classes {
                 let p = f64::from(255 - brightness(u, classes)) / 255.0;
-                assert_eq!(
-                    impassability(p, &meta, &LoadOptions::default()),
-                    u,
-                    "of {classes}"
-                );
+                assert_eq!(impassability(p, &meta, &LoadOptions::default()), u, "of {classes}");
             }
         }
     }

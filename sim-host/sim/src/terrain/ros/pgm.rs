@@ -22,36 +22,22 @@ pub struct Picture {
 /// [`TerrainError::Format`] with the byte, for everything that the format does not allow.
 pub fn parse_pgm(bytes: &[u8], path: &Path) -> Result<Picture, TerrainError> {
     let mut words = Words { bytes, at: 0 };
-    let fail = |at: usize, what: String, remedy: &str| {
-        Err(format_error(path, Place::Byte(at), what, remedy))
-    };
+    let fail = |at: usize, what: String, remedy: &str| Err(format_error(path, Place::Byte(at), what, remedy));
     let is_raw = match bytes.get(..2) {
         Some(b"P2") => false,
         Some(b"P5") => true,
         _ => {
-            return fail(
-                0,
-                "the picture does not begin with P2 or P5".into(),
-                "give a grey PGM picture",
-            );
+            return fail(0, "the picture does not begin with P2 or P5".into(), "give a grey PGM picture");
         }
     };
     words.at = 2;
     let mut header = [0; 3];
-    let fields = [
-        ("width", MAX_SIDE),
-        ("height", MAX_SIDE),
-        ("largest value", u16::MAX),
-    ];
+    let fields = [("width", MAX_SIDE), ("height", MAX_SIDE), ("largest value", u16::MAX)];
     for (value, (field, limit)) in header.iter_mut().zip(fields) {
         *value = match words.number() {
             Ok(number) if (1..=u32::from(limit)).contains(&number) => number as u16,
             _ => {
-                return fail(
-                    words.at,
-                    format!("{field} is not 1..={limit}"),
-                    "correct the header",
-                );
+                return fail(words.at, format!("{field} is not 1..={limit}"), "correct the header");
             }
         };
     }
@@ -64,17 +50,14 @@ pub fn parse_pgm(bytes: &[u8], path: &Path) -> Result<Picture, TerrainError> {
         let body = bytes.get(words.at + 1..).unwrap_or_default();
         let depth = if largest < 256 { 1 } else { 2 };
         if body.len() < wanted * depth {
-            let what = format!(
-                "the file ends after {} of {wanted} pixels",
-                body.len() / depth
-            );
+            let what = format!("the file ends after {} of {wanted} pixels", body.len() / depth);
             return fail(bytes.len(), what, truncated);
         }
-        pixels.extend(body[..wanted * depth].chunks_exact(depth).map(|pixel| {
-            pixel
-                .iter()
-                .fold(0, |sum, byte| sum << 8 | u16::from(*byte))
-        }));
+        pixels.extend(
+            body[..wanted * depth]
+                .chunks_exact(depth)
+                .map(|pixel| pixel.iter().fold(0, |sum, byte| sum << 8 | u16::from(*byte))),
+        );
     } else {
         while pixels.len() < wanted {
             match words.number() {
@@ -85,11 +68,7 @@ pub fn parse_pgm(bytes: &[u8], path: &Path) -> Result<Picture, TerrainError> {
                     return fail(words.at, what, truncated);
                 }
                 Err(Trouble::NoNumber) => {
-                    return fail(
-                        words.at,
-                        "no number where a pixel should be".into(),
-                        "correct the picture",
-                    );
+                    return fail(words.at, "no number where a pixel should be".into(), "correct the picture");
                 }
             }
         }
@@ -102,12 +81,7 @@ pub fn parse_pgm(bytes: &[u8], path: &Path) -> Result<Picture, TerrainError> {
             "correct the largest value in the header",
         ));
     }
-    Ok(Picture {
-        width,
-        height,
-        largest,
-        pixels,
-    })
+    Ok(Picture { width, height, largest, pixels })
 }
 
 /// Why there is no number.
@@ -144,9 +118,7 @@ impl Words<'_> {
         }
         let mut number: u32 = 0;
         while let Some(byte) = self.peek().filter(u8::is_ascii_digit) {
-            number = number
-                .saturating_mul(10)
-                .saturating_add(u32::from(byte - b'0'));
+            number = number.saturating_mul(10).saturating_add(u32::from(byte - b'0'));
             self.at += 1;
         }
         Ok(number)
@@ -183,32 +155,14 @@ mod tests {
     #[test]
     fn errors_name_file_byte_and_remedy() {
         let cases: [(&[u8], &str); 9] = [
-            (
-                b"",
-                "a.pgm, byte 0: the picture does not begin with P2 or P5",
-            ),
+            (b"", "a.pgm, byte 0: the picture does not begin with P2 or P5"),
             (b"P6 1 1 255 abc", "a.pgm, byte 0: "),
-            (
-                b"P5 0 1 255 ",
-                "a.pgm, byte 4: width is not 1..=32767; correct the header",
-            ),
+            (b"P5 0 1 255 ", "a.pgm, byte 4: width is not 1..=32767; correct the header"),
             (b"P5 1 40000 255 ", "a.pgm, byte 10: height is not"),
-            (
-                b"P5 1 1 0 ",
-                "a.pgm, byte 8: largest value is not 1..=65535",
-            ),
-            (
-                b"P5 2 1 255 a",
-                "a.pgm, byte 12: the file ends after 1 of 2 pixels; it is truncated",
-            ),
-            (
-                b"P2 2 1 255 7",
-                "a.pgm, byte 12: the file ends after 1 of 2 pixels",
-            ),
-            (
-                b"P2 2 1 255 7 x",
-                "a.pgm, byte 13: no number where a pixel should be",
-            ),
+            (b"P5 1 1 0 ", "a.pgm, byte 8: largest value is not 1..=65535"),
+            (b"P5 2 1 255 a", "a.pgm, byte 12: the file ends after 1 of 2 pixels; it is truncated"),
+            (b"P2 2 1 255 7", "a.pgm, byte 12: the file ends after 1 of 2 pixels"),
+            (b"P2 2 1 255 7 x", "a.pgm, byte 13: no number where a pixel should be"),
             (b"P2 2 1 9 7 10", "a.pgm: pixel 1 has 10 of at most 9"),
         ];
         for (bytes, expected) in cases {

@@ -115,13 +115,7 @@ pub fn parse_meta(bytes: &[u8], path: &Path) -> Result<Meta, TerrainError> {
             Ok(classes @ 1..=255_u8) => Some(classes),
             _ => {
                 let key = "impassability_classes";
-                return Err(choice(
-                    path,
-                    line,
-                    key,
-                    word,
-                    "give a whole number from 1 to 255",
-                ));
+                return Err(choice(path, line, key, word, "give a whole number from 1 to 255"));
             }
         },
     };
@@ -180,12 +174,7 @@ fn collect<'a>(text: &'a str, path: &Path) -> Result<Entries<'a>, TerrainError> 
             _ => continue,
         };
         if entry.replace((line, value)).is_some() {
-            return Err(format_error(
-                path,
-                Place::Line(line),
-                format!("{key} is given twice"),
-                "keep one of them",
-            ));
+            return Err(format_error(path, Place::Line(line), format!("{key} is given twice"), "keep one of them"));
         }
     }
     Ok(entries)
@@ -209,17 +198,12 @@ fn without_comment(row: &str) -> &str {
 }
 
 fn unquoted(value: &str) -> &str {
-    ['"', '\'']
-        .into_iter()
-        .find_map(|quote| value.strip_prefix(quote)?.strip_suffix(quote))
-        .unwrap_or(value)
+    ['"', '\''].into_iter().find_map(|quote| value.strip_prefix(quote)?.strip_suffix(quote)).unwrap_or(value)
 }
 
 /// The origin: `[x, y, yaw]` in one line, or three lines with a dash.
 fn origin(entries: &Entries<'_>, path: &Path) -> Result<[f64; 2], TerrainError> {
-    let place = entries
-        .origin
-        .map_or(Place::File, |(line, _)| Place::Line(line));
+    let place = entries.origin.map_or(Place::File, |(line, _)| Place::Line(line));
     let in_line = entries.origin.and_then(|(line, value)| {
         let items = value.strip_prefix('[')?.strip_suffix(']')?;
         Some(items.split(',').map(|item| (line, item.trim())).collect())
@@ -274,9 +258,7 @@ mod tests {
     #[test]
     fn lists_with_dashes_foreign_keys_and_document_marks_are_read() {
         let text = FILE.replace("[-1, 2.5, 0.0]", "\n- -1\n  - 2.5\n- 0.0");
-        let text = format!(
-            "---\r\n{text}mode: scale\nother:\n  deep: 1\n  - x\nimpassability_classes: 12\n...\n"
-        );
+        let text = format!("---\r\n{text}mode: scale\nother:\n  deep: 1\n  - x\nimpassability_classes: 12\n...\n");
         let meta = meta(&text).unwrap();
         assert_eq!(meta.origin_m, [-1.0, 2.5]);
         assert_eq!((meta.mode, meta.classes), (Mode::Scale, Some(12)));
@@ -285,50 +267,17 @@ mod tests {
     #[test]
     fn errors_name_file_line_and_remedy() {
         let cases = [
-            (
-                FILE.replace("negate: 0\n", ""),
-                "m.yaml: negate is missing; a map_server file has",
-            ),
-            (
-                FILE.replace("negate: 0", "negate: 2"),
-                "m.yaml:7: negate is \"2\"; give 0 or 1",
-            ),
-            (
-                FILE.replace("0.1\n", "0\n"),
-                "m.yaml:3: resolution is 0; give metres per pixel",
-            ),
-            (
-                FILE.replace("0.1\n", ".nan\n"),
-                "m.yaml:3: resolution is \".nan\"; give a finite number",
-            ),
-            (
-                FILE.replace("2.5, 0.0", "2.5, 1.57"),
-                "m.yaml:4: the origin is turned by 1.57 radians; rotated maps",
-            ),
-            (
-                FILE.replace("2.5, 0.0", "2.5"),
-                "m.yaml:4: origin is missing or has no three numbers",
-            ),
-            (
-                FILE.replace("0.196", "0.9"),
-                "m.yaml:5: occupied_thresh 0.65 is less than free_thresh 0.9",
-            ),
-            (
-                format!("{FILE}mode: raw"),
-                "m.yaml:8: mode is \"raw\"; give trinary or scale",
-            ),
-            (
-                format!("{FILE}negate: 1"),
-                "m.yaml:8: negate is given twice",
-            ),
-            (
-                format!("{FILE}impassability_classes: 256"),
-                "m.yaml:8: impassability_classes is \"256\"",
-            ),
-            (
-                format!("{FILE}what is this"),
-                "m.yaml:8: \"what is this\"; each line",
-            ),
+            (FILE.replace("negate: 0\n", ""), "m.yaml: negate is missing; a map_server file has"),
+            (FILE.replace("negate: 0", "negate: 2"), "m.yaml:7: negate is \"2\"; give 0 or 1"),
+            (FILE.replace("0.1\n", "0\n"), "m.yaml:3: resolution is 0; give metres per pixel"),
+            (FILE.replace("0.1\n", ".nan\n"), "m.yaml:3: resolution is \".nan\"; give a finite number"),
+            (FILE.replace("2.5, 0.0", "2.5, 1.57"), "m.yaml:4: the origin is turned by 1.57 radians; rotated maps"),
+            (FILE.replace("2.5, 0.0", "2.5"), "m.yaml:4: origin is missing or has no three numbers"),
+            (FILE.replace("0.196", "0.9"), "m.yaml:5: occupied_thresh 0.65 is less than free_thresh 0.9"),
+            (format!("{FILE}mode: raw"), "m.yaml:8: mode is \"raw\"; give trinary or scale"),
+            (format!("{FILE}negate: 1"), "m.yaml:8: negate is given twice"),
+            (format!("{FILE}impassability_classes: 256"), "m.yaml:8: impassability_classes is \"256\""),
+            (format!("{FILE}what is this"), "m.yaml:8: \"what is this\"; each line"),
             (String::new(), "m.yaml: image is missing"),
         ];
         for (text, expected) in cases {

@@ -70,12 +70,7 @@ pub struct Clearance {
 
 impl Clearance {
     /// Nothing is near.
-    pub const FREE: Self = Self {
-        bodies_m: f64::INFINITY,
-        solids_m: f64::INFINITY,
-        overlaps: 0,
-        intrusions: 0,
-    };
+    pub const FREE: Self = Self { bodies_m: f64::INFINITY, solids_m: f64::INFINITY, overlaps: 0, intrusions: 0 };
 }
 
 /// Less overlap than this is rounding, metres.
@@ -84,12 +79,7 @@ const ROUNDING_M: f64 = 1e-9;
 impl Plane {
     /// A world with these bodies.
     #[must_use]
-    pub fn new(
-        abilities: Abilities,
-        terrain: Option<Terrain>,
-        solids: Vec<Solid>,
-        discs: Vec<Disc>,
-    ) -> Self {
+    pub fn new(abilities: Abilities, terrain: Option<Terrain>, solids: Vec<Solid>, discs: Vec<Disc>) -> Self {
         let largest_m = discs.iter().map(|disc| disc.radius_m).fold(0.0, f64::max);
         Self {
             abilities,
@@ -151,10 +141,7 @@ impl Plane {
     /// # Panics
     /// When there are fewer commands than bodies.
     pub fn advance(&mut self, commands: &[Command<f32>]) {
-        assert!(
-            commands.len() >= self.discs.len(),
-            "a command for each body"
-        );
+        assert!(commands.len() >= self.discs.len(), "a command for each body");
         for (index, command) in commands.iter().enumerate().take(self.discs.len()) {
             let wish = match *command {
                 Command::Velocity(v) => Vec3::new(v.x.into(), v.y.into(), v.z.into()),
@@ -182,18 +169,13 @@ impl Plane {
     /// How near bodies are to each other and to obstacles now. O(bodies x (neighbours + obstacles)).
     pub fn clearance(&mut self) -> Clearance {
         self.centers.clear();
-        self.centers
-            .extend(self.discs.iter().map(|disc| disc.position_m));
+        self.centers.extend(self.discs.iter().map(|disc| disc.position_m));
         self.index.rebuild(&self.centers);
         let mut clearance = Clearance::FREE;
         let mut found = Vec::new();
         for (number, disc) in (0..).zip(&self.discs) {
-            let query = Query {
-                at: disc.position_m,
-                radius: 3.0 * self.largest_m,
-                most: usize::MAX,
-                except: Some(number),
-            };
+            let query =
+                Query { at: disc.position_m, radius: 3.0 * self.largest_m, most: usize::MAX, except: Some(number) };
             self.index.within(&query, &mut found);
             for near in &found {
                 let other = &self.discs[near.index as usize];
@@ -203,10 +185,7 @@ impl Plane {
                     clearance.overlaps += 1;
                 }
             }
-            let gaps = self
-                .solids
-                .iter()
-                .map(|solid| solid.distance_m(disc.position_m));
+            let gaps = self.solids.iter().map(|solid| solid.distance_m(disc.position_m));
             let gap = gaps.fold(f64::INFINITY, f64::min) - disc.radius_m;
             clearance.solids_m = clearance.solids_m.min(gap);
             let is_in_wall = self

@@ -29,25 +29,13 @@ impl Solid {
     #[must_use]
     pub fn seen_from(&self, place_m: [f64; 3]) -> Obstacle<f64> {
         let flat = |point: [f64; 2]| Vec2::new(point[0] - place_m[0], point[1] - place_m[1]);
-        let way = |point: [f64; 3]| {
-            Vec3::new(
-                point[0] - place_m[0],
-                point[1] - place_m[1],
-                point[2] - place_m[2],
-            )
-        };
+        let way = |point: [f64; 3]| Vec3::new(point[0] - place_m[0], point[1] - place_m[1], point[2] - place_m[2]);
         match *self {
             Self::Wall(ends) => Obstacle::Wall(ends.map(flat)),
-            Self::Ball { center_m, radius_m } => Obstacle::Ball {
-                center_m: way(center_m),
-                radius_m,
-            },
+            Self::Ball { center_m, radius_m } => Obstacle::Ball { center_m: way(center_m), radius_m },
             Self::Plane { point_m, normal } => {
                 let normal = Vec3::new(normal[0], normal[1], normal[2]);
-                Obstacle::Plane {
-                    normal,
-                    distance_m: -way(point_m).dot(normal),
-                }
+                Obstacle::Plane { normal, distance_m: -way(point_m).dot(normal) }
             }
         }
     }
@@ -70,13 +58,9 @@ pub fn narrow(obstacle: &Obstacle<f64>) -> Obstacle<f32> {
     let way = |v: Vec3<f64>| Vec3::new(v.x as f32, v.y as f32, v.z as f32);
     match *obstacle {
         Obstacle::Wall(ends) => Obstacle::Wall(ends.map(flat)),
-        Obstacle::Ball { center_m, radius_m } => Obstacle::Ball {
-            center_m: way(center_m),
-            radius_m: radius_m as f32,
-        },
-        Obstacle::Plane { normal, distance_m } => Obstacle::Plane {
-            normal: way(normal),
-            distance_m: distance_m as f32,
-        },
+        Obstacle::Ball { center_m, radius_m } => Obstacle::Ball { center_m: way(center_m), radius_m: radius_m as f32 },
+        Obstacle::Plane { normal, distance_m } => {
+            Obstacle::Plane { normal: way(normal), distance_m: distance_m as f32 }
+        }
     }
 }

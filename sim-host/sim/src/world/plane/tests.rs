@@ -1,18 +1,9 @@
 use super::*;
 
-const ABILITIES: Abilities = Abilities {
-    max_speed_mps: 2.0,
-    max_acceleration_mps2: f64::INFINITY,
-    step_s: 0.5,
-};
+const ABILITIES: Abilities = Abilities { max_speed_mps: 2.0, max_acceleration_mps2: f64::INFINITY, step_s: 0.5 };
 
 fn disc(id: u32, x: f64, y: f64) -> Disc {
-    Disc {
-        id: RobotId(id),
-        radius_m: 0.5,
-        position_m: [x, y, 0.0],
-        velocity_mps: [0.0; 3],
-    }
+    Disc { id: RobotId(id), radius_m: 0.5, position_m: [x, y, 0.0], velocity_mps: [0.0; 3] }
 }
 
 fn go(x: f32, y: f32) -> Command<f32> {
@@ -33,10 +24,7 @@ fn a_body_goes_as_told_within_its_speed() {
 
 #[test]
 fn inertia_takes_time() {
-    let slow = Abilities {
-        max_acceleration_mps2: 1.0,
-        ..ABILITIES
-    };
+    let slow = Abilities { max_acceleration_mps2: 1.0, ..ABILITIES };
     let mut plane = Plane::new(slow, None, vec![], vec![disc(1, 0.0, 0.0)]);
     let mut speeds = Vec::new();
     for command in [go(2.0, 0.0), go(2.0, 0.0), Command::Hold, Command::Hold] {
@@ -52,23 +40,13 @@ fn rough_land_slows_down_and_walls_are_no_place_to_be() {
     terrain.cell_m = 10.0;
     terrain.set(Cell::new(1, 0), 4);
     terrain.set(Cell::new(2, 0), BLOCKED);
-    let discs = vec![
-        disc(1, 5.0, 5.0),
-        disc(2, 15.0, 5.0),
-        disc(3, -5.0, 5.0),
-        disc(4, 25.0, 5.0),
-    ];
+    let discs = vec![disc(1, 5.0, 5.0), disc(2, 15.0, 5.0), disc(3, -5.0, 5.0), disc(4, 25.0, 5.0)];
     let mut plane = Plane::new(ABILITIES, Some(terrain), vec![], discs);
-    let speeds: Vec<f64> = [5.0, 15.0, -5.0]
-        .map(|x| plane.max_speed_mps([x, 5.0, 0.0]))
-        .into();
+    let speeds: Vec<f64> = [5.0, 15.0, -5.0].map(|x| plane.max_speed_mps([x, 5.0, 0.0])).into();
     assert_eq!(speeds, [2.0, 0.5, 2.0]);
     assert_eq!(plane.clearance().intrusions, 1);
     assert_eq!(plane.cell([15.0, 5.0, 3.0]), Some(Cell::new(1, 0)));
-    assert_eq!(
-        [-0.1, 30.0, f64::NAN].map(|x| plane.cell([x, 5.0, 0.0])),
-        [None; 3]
-    );
+    assert_eq!([-0.1, 30.0, f64::NAN].map(|x| plane.cell([x, 5.0, 0.0])), [None; 3]);
     plane.advance(&[go(9.0, 0.0), go(9.0, 0.0), go(9.0, 0.0), go(0.0, 0.0)]);
     let places: Vec<f64> = plane.discs().iter().map(|d| d.position_m[0]).collect();
     assert_eq!(places, [6.0, 15.25, -4.0, 25.0]);
@@ -77,20 +55,9 @@ fn rough_land_slows_down_and_walls_are_no_place_to_be() {
 #[test]
 fn clearances_and_overlaps_are_those_of_the_surfaces() {
     let wall = Solid::Wall([[2.0, -5.0], [2.0, 5.0]]);
-    let ball = Solid::Ball {
-        center_m: [-3.0, 0.0, 0.0],
-        radius_m: 1.0,
-    };
-    let floor = Solid::Plane {
-        point_m: [0.0, 0.0, -8.0],
-        normal: [0.0, 0.0, 1.0],
-    };
-    let discs = vec![
-        disc(1, 0.0, 0.0),
-        disc(2, 0.0, 1.25),
-        disc(3, 0.0, -0.75),
-        disc(4, 1.75, 9.0),
-    ];
+    let ball = Solid::Ball { center_m: [-3.0, 0.0, 0.0], radius_m: 1.0 };
+    let floor = Solid::Plane { point_m: [0.0, 0.0, -8.0], normal: [0.0, 0.0, 1.0] };
+    let discs = vec![disc(1, 0.0, 0.0), disc(2, 0.0, 1.25), disc(3, 0.0, -0.75), disc(4, 1.75, 9.0)];
     let mut plane = Plane::new(ABILITIES, None, vec![wall, ball, floor], discs);
     let clearance = plane.clearance();
     assert_eq!(clearance.bodies_m, -0.25);
@@ -99,8 +66,5 @@ fn clearances_and_overlaps_are_those_of_the_surfaces() {
     let inside = Plane::new(ABILITIES, None, vec![ball], vec![disc(1, -3.0, 0.0)]).clearance();
     assert_eq!((inside.solids_m, inside.intrusions), (-1.5, 1));
     let alone = Plane::new(ABILITIES, None, vec![], vec![disc(1, 0.0, 0.0)]).clearance();
-    assert_eq!(
-        (alone.bodies_m, alone.solids_m),
-        (f64::INFINITY, f64::INFINITY)
-    );
+    assert_eq!((alone.bodies_m, alone.solids_m), (f64::INFINITY, f64::INFINITY));
 }

@@ -7,18 +7,12 @@ fn arming_stands_and_releases_the_motors() {
     let mut bench = Bench::new(model());
     let arm = MAV_CMD_COMPONENT_ARM_DISARM;
     assert_eq!(bench.command(arm, NONE), MAV_RESULT_ACCEPTED);
-    assert_eq!(
-        (bench.wish(), bench.vehicle.is_armed),
-        (Some(Wish::Off), false)
-    );
+    assert_eq!((bench.wish(), bench.vehicle.is_armed), (Some(Wish::Off), false));
     assert_eq!(bench.texts(), ["disarmed"]);
     assert_eq!(bench.command(arm, NONE), MAV_RESULT_ACCEPTED);
     assert_eq!(bench.wish(), None, "it was so before");
     // What is not used may be no number.
-    assert_eq!(
-        bench.command(arm, [1.0, NAN, NAN, NAN, NAN, NAN, NAN]),
-        MAV_RESULT_ACCEPTED
-    );
+    assert_eq!(bench.command(arm, [1.0, NAN, NAN, NAN, NAN, NAN, NAN]), MAV_RESULT_ACCEPTED);
     assert_eq!(bench.wish(), Some(Wish::Own));
     for bad in [NAN, 2.0, -1.0, 0.5, f32::INFINITY] {
         assert_eq!(bench.command(arm, first(bad)), MAV_RESULT_DENIED, "{bad}");
@@ -32,10 +26,7 @@ fn nobody_disarms_in_the_air_or_on_the_way_unless_forced() {
     bench.tick(|sample| sample.position_m[2] = 2.0);
     let arm = MAV_CMD_COMPONENT_ARM_DISARM;
     assert_eq!(bench.command(arm, NONE), MAV_RESULT_TEMPORARILY_REJECTED);
-    assert_eq!(
-        bench.command(arm, two(0.0, ARM_DISARM_FORCE)),
-        MAV_RESULT_ACCEPTED
-    );
+    assert_eq!(bench.command(arm, two(0.0, ARM_DISARM_FORCE)), MAV_RESULT_ACCEPTED);
     assert_eq!(bench.wish(), Some(Wish::Off));
     let mut bench = Bench::new(model());
     bench.tick(|sample| sample.velocity_mps = [0.0, -0.3, 0.0]);
@@ -49,38 +40,17 @@ fn modes_of_other_vehicles_are_denied_and_what_is_no_command_is_unsupported() {
     let mut bench = Bench::new(model());
     let mode = MAV_CMD_DO_SET_MODE;
     // No such mode, a copter's landing, without the custom flag, no numbers.
-    for bad in [
-        two(1.0, 99.0),
-        two(1.0, 9.0),
-        two(0.0, 15.0),
-        two(NAN, 15.0),
-        two(1.0, NAN),
-    ] {
+    for bad in [two(1.0, 99.0), two(1.0, 9.0), two(0.0, 15.0), two(NAN, 15.0), two(1.0, NAN)] {
         assert_eq!(bench.command(mode, bad), MAV_RESULT_DENIED, "{bad:?}");
     }
     assert_eq!(bench.vehicle.mode, FlightMode::Auto);
     // A takeoff of what does not fly, a landing, a servo, nothing at all.
     for command in [MAV_CMD_NAV_TAKEOFF, MAV_CMD_NAV_LAND, 183, 0, u16::MAX] {
-        assert_eq!(
-            bench.command(command, NONE),
-            MAV_RESULT_UNSUPPORTED,
-            "{command}"
-        );
+        assert_eq!(bench.command(command, NONE), MAV_RESULT_UNSUPPORTED, "{command}");
     }
-    bench.give(MavMessage::SET_MODE(SET_MODE_DATA {
-        custom_mode: 4,
-        target_system: 7,
-        base_mode: 1,
-    }));
-    assert_eq!(
-        (bench.vehicle.mode, bench.wish()),
-        (FlightMode::Hold, Some(Wish::Hold))
-    );
-    bench.give(MavMessage::SET_MODE(SET_MODE_DATA {
-        custom_mode: 77,
-        target_system: 7,
-        base_mode: 1,
-    }));
+    bench.give(MavMessage::SET_MODE(SET_MODE_DATA { custom_mode: 4, target_system: 7, base_mode: 1 }));
+    assert_eq!((bench.vehicle.mode, bench.wish()), (FlightMode::Hold, Some(Wish::Hold)));
+    bench.give(MavMessage::SET_MODE(SET_MODE_DATA { custom_mode: 77, target_system: 7, base_mode: 1 }));
     assert_eq!(bench.texts(), ["no such mode"]);
 }
 
@@ -89,16 +59,9 @@ fn takeoff_and_landing() {
     let mut bench = guided(flying());
     let takeoff = |height| [0.0, 0.0, 0.0, NAN, NAN, NAN, height];
     for bad in [NAN, 0.0, -1.0, 1e6] {
-        assert_eq!(
-            bench.command(MAV_CMD_NAV_TAKEOFF, takeoff(bad)),
-            MAV_RESULT_DENIED,
-            "{bad}"
-        );
+        assert_eq!(bench.command(MAV_CMD_NAV_TAKEOFF, takeoff(bad)), MAV_RESULT_DENIED, "{bad}");
     }
-    assert_eq!(
-        bench.command(MAV_CMD_NAV_TAKEOFF, takeoff(4.0)),
-        MAV_RESULT_ACCEPTED
-    );
+    assert_eq!(bench.command(MAV_CMD_NAV_TAKEOFF, takeoff(4.0)), MAV_RESULT_ACCEPTED);
     assert_eq!(place_mm(bench.wish()), [3000, 5000, 4000]);
     let above_the_sea = COMMAND_INT_DATA {
         z: 104.0,
@@ -111,21 +74,12 @@ fn takeoff_and_landing() {
     bench.tick(|sample| sample.position_m[2] = 4.0);
     let again = bench.command(MAV_CMD_NAV_TAKEOFF, takeoff(4.0));
     assert_eq!(again, MAV_RESULT_TEMPORARILY_REJECTED, "it is in the air");
-    assert_eq!(
-        bench.command(MAV_CMD_NAV_LAND, [NAN; 7]),
-        MAV_RESULT_ACCEPTED
-    );
-    assert_eq!(
-        (bench.vehicle.mode, place_mm(bench.wish())),
-        (FlightMode::Land, [3000, 5000, 0])
-    );
+    assert_eq!(bench.command(MAV_CMD_NAV_LAND, [NAN; 7]), MAV_RESULT_ACCEPTED);
+    assert_eq!((bench.vehicle.mode, place_mm(bench.wish())), (FlightMode::Land, [3000, 5000, 0]));
     bench.tick(|sample| sample.position_m[2] = 1.0);
     assert_eq!(bench.wish(), None);
     bench.tick(|sample| sample.position_m[2] = 0.01);
-    assert_eq!(
-        (bench.wish(), bench.vehicle.is_armed),
-        (Some(Wish::Off), false)
-    );
+    assert_eq!((bench.wish(), bench.vehicle.is_armed), (Some(Wish::Off), false));
     let landed = bench.command(MAV_CMD_NAV_TAKEOFF, takeoff(4.0));
     assert_eq!(landed, MAV_RESULT_TEMPORARILY_REJECTED, "not armed");
 }
@@ -134,16 +88,10 @@ fn takeoff_and_landing() {
 fn who_returns_lands_at_home() {
     let mut bench = Bench::new(flying());
     bench.tick(|sample| sample.position_m = [30.0, 40.0, 9.0]);
-    assert_eq!(
-        bench.command(MAV_CMD_NAV_RETURN_TO_LAUNCH, NONE),
-        MAV_RESULT_ACCEPTED
-    );
+    assert_eq!(bench.command(MAV_CMD_NAV_RETURN_TO_LAUNCH, NONE), MAV_RESULT_ACCEPTED);
     assert_eq!(place_mm(bench.wish()), [3000, 5000, 9000]);
     bench.tick(|sample| sample.position_m = [3.0, 5.04, 9.0]);
-    assert_eq!(
-        (bench.vehicle.mode, place_mm(bench.wish())[2]),
-        (FlightMode::Land, 0)
-    );
+    assert_eq!((bench.vehicle.mode, place_mm(bench.wish())[2]), (FlightMode::Land, 0));
 }
 
 #[test]
@@ -161,10 +109,7 @@ fn messages_for_others_are_for_others() {
         assert!(bench.give(command(system, component)).messages.is_empty());
     }
     for (system, component) in [(7, 0), (7, 1), (0, 0), (0, 1)] {
-        assert_eq!(
-            bench.give(command(system, component)).results,
-            [MAV_RESULT_ACCEPTED]
-        );
+        assert_eq!(bench.give(command(system, component)).results, [MAV_RESULT_ACCEPTED]);
     }
     // What makes everybody the same is for nobody.
     let set = MavMessage::PARAM_SET(PARAM_SET_DATA {
@@ -205,10 +150,7 @@ fn parameters_are_set_within_limits_and_told_either_way() {
     assert!(bench.give(param_set("NO_SUCH", 1.0)).actions.is_empty());
     assert_eq!(bench.texts(), ["no such parameter"]);
     let count = bench.vehicle.parameters.count();
-    let list = MavMessage::PARAM_REQUEST_LIST(PARAM_REQUEST_LIST_DATA {
-        target_system: 7,
-        target_component: 1,
-    });
+    let list = MavMessage::PARAM_REQUEST_LIST(PARAM_REQUEST_LIST_DATA { target_system: 7, target_component: 1 });
     assert_eq!(bench.give(list).messages.len(), count);
     let read = |index| {
         MavMessage::PARAM_REQUEST_READ(PARAM_REQUEST_READ_DATA {
@@ -219,10 +161,7 @@ fn parameters_are_set_within_limits_and_told_either_way() {
         })
     };
     assert_eq!(told(bench.give(read(-1))), 0.5);
-    assert!(matches!(
-        bench.give(read(0)).messages[..],
-        [MavMessage::PARAM_VALUE(_)]
-    ));
+    assert!(matches!(bench.give(read(0)).messages[..], [MavMessage::PARAM_VALUE(_)]));
     bench.give(read(count as i16));
     assert!(bench.texts().is_empty(), "it was said just now");
     bench.vehicle.now_us += 10_000_000;

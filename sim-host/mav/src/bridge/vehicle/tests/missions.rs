@@ -5,19 +5,12 @@ use super::*;
 #[test]
 fn missions_are_gone_through_item_by_item() {
     let mut bench = Bench::new(model());
-    assert_eq!(
-        bench.command(MAV_CMD_MISSION_START, NONE),
-        MAV_RESULT_DENIED,
-        "there is none"
-    );
+    assert_eq!(bench.command(MAV_CMD_MISSION_START, NONE), MAV_RESULT_DENIED, "there is none");
     let mut wait = item(1, 10.0, 0.0);
     wait.param1 = 0.3;
     let items = [item(0, 0.0, 0.0), wait, item(2, 10.0, 10.0)];
     assert_eq!(load(&mut bench, &items), MAV_MISSION_ACCEPTED);
-    assert_eq!(
-        bench.command(MAV_CMD_MISSION_START, [NAN; 7]),
-        MAV_RESULT_ACCEPTED
-    );
+    assert_eq!(bench.command(MAV_CMD_MISSION_START, [NAN; 7]), MAV_RESULT_ACCEPTED);
     assert!((place_mm(bench.wish())[0] - 10_000).abs() < 10);
     let reached = |out: &Out| {
         out.messages.iter().find_map(|message| match message {
@@ -34,43 +27,22 @@ fn missions_are_gone_through_item_by_item() {
     assert_eq!(reached(bench.tick(|_| {})), None);
     let out = bench.tick(|sample| sample.position_m = [10.0, 10.0, 0.0]);
     assert_eq!(reached(out), Some(2));
-    assert_eq!(
-        (bench.wish(), bench.vehicle.is_on_mission),
-        (Some(Wish::Hold), false)
-    );
+    assert_eq!((bench.wish(), bench.vehicle.is_on_mission), (Some(Wish::Hold), false));
     assert_eq!(bench.texts(), ["mission done: holding"]);
     // Whoever takes over ends it.
-    assert_eq!(
-        bench.command(MAV_CMD_DO_SET_MISSION_CURRENT, first(1.0)),
-        MAV_RESULT_ACCEPTED
-    );
-    assert_eq!(
-        bench.command(MAV_CMD_DO_SET_MODE, two(1.0, 10.0)),
-        MAV_RESULT_ACCEPTED
-    );
+    assert_eq!(bench.command(MAV_CMD_DO_SET_MISSION_CURRENT, first(1.0)), MAV_RESULT_ACCEPTED);
+    assert_eq!(bench.command(MAV_CMD_DO_SET_MODE, two(1.0, 10.0)), MAV_RESULT_ACCEPTED);
     assert!(bench.vehicle.is_on_mission);
-    assert_eq!(
-        bench.command(MAV_CMD_DO_SET_MODE, two(1.0, 15.0)),
-        MAV_RESULT_ACCEPTED
-    );
+    assert_eq!(bench.command(MAV_CMD_DO_SET_MODE, two(1.0, 15.0)), MAV_RESULT_ACCEPTED);
     assert!(!bench.vehicle.is_on_mission);
-    assert_eq!(
-        bench.command(MAV_CMD_DO_SET_MISSION_CURRENT, first(9.0)),
-        MAV_RESULT_DENIED
-    );
+    assert_eq!(bench.command(MAV_CMD_DO_SET_MISSION_CURRENT, first(9.0)), MAV_RESULT_DENIED);
 }
 
 #[test]
 fn mission_items_that_cannot_be_are_refused() {
     for (change, fault) in [
-        (
-            (|item| item.command = 82) as fn(&mut MISSION_ITEM_INT_DATA),
-            MAV_MISSION_UNSUPPORTED,
-        ),
-        (
-            |item| item.command = MAV_CMD_NAV_LAND,
-            MAV_MISSION_UNSUPPORTED,
-        ),
+        ((|item| item.command = 82) as fn(&mut MISSION_ITEM_INT_DATA), MAV_MISSION_UNSUPPORTED),
+        (|item| item.command = MAV_CMD_NAV_LAND, MAV_MISSION_UNSUPPORTED),
         (|item| item.frame = 8, MAV_MISSION_UNSUPPORTED_FRAME),
         (|item| item.x = i32::MAX, MAV_MISSION_INVALID_PARAM5_X),
         (|item| item.param1 = -1.0, MAV_MISSION_INVALID_PARAM1),
@@ -100,76 +72,32 @@ fn an_old_client_goes_there_by_an_item_of_no_mission() {
         [MavMessage::MISSION_ACK(ack)] => ack.mavtype,
         other => panic!("{other:?}"),
     };
-    assert_eq!(
-        ended(bench.give(MavMessage::MISSION_ITEM(there.clone()))),
-        MAV_MISSION_ACCEPTED
-    );
+    assert_eq!(ended(bench.give(MavMessage::MISSION_ITEM(there.clone()))), MAV_MISSION_ACCEPTED);
     let [_, north, _] = place_mm(bench.wish());
     assert!((north - 11_120).abs() < 500, "{north}");
-    let higher = MISSION_ITEM_DATA {
-        current: 3,
-        ..there.clone()
-    };
-    assert_eq!(
-        ended(bench.give(MavMessage::MISSION_ITEM(higher))),
-        MAV_MISSION_UNSUPPORTED
-    );
+    let higher = MISSION_ITEM_DATA { current: 3, ..there.clone() };
+    assert_eq!(ended(bench.give(MavMessage::MISSION_ITEM(higher))), MAV_MISSION_UNSUPPORTED);
     bench.command(MAV_CMD_DO_SET_MODE, two(1.0, 4.0));
-    assert_eq!(
-        ended(bench.give(MavMessage::MISSION_ITEM(there))),
-        MAV_MISSION_ERROR
-    );
+    assert_eq!(ended(bench.give(MavMessage::MISSION_ITEM(there))), MAV_MISSION_ERROR);
 }
 
 #[test]
 fn orders_of_the_dialect_reach_the_controller() {
     let mut bench = Bench::new(model());
-    let goal = STAYA_GOAL_DATA {
-        sequence: 4,
-        target_x: 3,
-        target_y: -2,
-        boot: 1,
-        target_system: 0,
-        version: 9,
-    };
+    let goal = STAYA_GOAL_DATA { sequence: 4, target_x: 3, target_y: -2, boot: 1, target_system: 0, version: 9 };
     let out = bench.give(MavMessage::STAYA_GOAL(goal));
     let [Action::Tell(header, Message::Goal(told))] = &out.actions[..] else {
         panic!("{:?}", out.actions);
     };
     assert_eq!((header.boot, header.sender.0, header.sequence), (1, 255, 4));
-    assert_eq!(
-        (told.to.0, told.version, told.target),
-        (0, 9, Cell::new(3, -2))
-    );
+    assert_eq!((told.to.0, told.version, told.target), (0, 9, Cell::new(3, -2)));
     // A count that no message has is none of theirs.
-    let template = STAYA_TEMPLATE_DATA {
-        target_system: 7,
-        count: 3,
-        parts: 1,
-        ..STAYA_TEMPLATE_DATA::DEFAULT
-    };
-    assert!(
-        bench
-            .give(MavMessage::STAYA_TEMPLATE(template.clone()))
-            .actions
-            .is_empty()
-    );
-    let template = STAYA_TEMPLATE_DATA {
-        count: 1,
-        entry_x: [5, 0],
-        entry_id: [6, 0],
-        ..template
-    };
+    let template = STAYA_TEMPLATE_DATA { target_system: 7, count: 3, parts: 1, ..STAYA_TEMPLATE_DATA::DEFAULT };
+    assert!(bench.give(MavMessage::STAYA_TEMPLATE(template.clone())).actions.is_empty());
+    let template = STAYA_TEMPLATE_DATA { count: 1, entry_x: [5, 0], entry_id: [6, 0], ..template };
     let out = bench.give(MavMessage::STAYA_TEMPLATE(template));
     let [Action::Tell(_, Message::Template(told))] = &out.actions[..] else {
         panic!("{:?}", out.actions);
     };
-    assert_eq!(
-        (
-            told.entries.len(),
-            told.entries[0].offset.x,
-            told.entries[0].id.0
-        ),
-        (1, 5, 6)
-    );
+    assert_eq!((told.entries.len(), told.entries[0].offset.x, told.entries[0].id.0), (1, 5, 6));
 }

@@ -7,68 +7,34 @@ fn setpoints_of_each_frame_and_mask_become_wishes() {
     let mut bench = guided(model());
     let valid = Duration::from_millis(3000);
     // East is y, north is x; it stays on the ground, and at (3, 5).
-    assert_eq!(
-        place_mm(set(&mut bench, local(0xDF8, 1))),
-        [20_000, 10_000, 0]
-    );
-    assert_eq!(
-        place_mm(set(&mut bench, local(0xDF8, 7))),
-        [23_000, 15_000, 0]
-    );
-    let velocity = |x, y| {
-        Some(Wish::Velocity {
-            velocity_mps: Vec3::new(x, y, 0.0),
-            valid,
-        })
-    };
+    assert_eq!(place_mm(set(&mut bench, local(0xDF8, 1))), [20_000, 10_000, 0]);
+    assert_eq!(place_mm(set(&mut bench, local(0xDF8, 7))), [23_000, 15_000, 0]);
+    let velocity = |x, y| Some(Wish::Velocity { velocity_mps: Vec3::new(x, y, 0.0), valid });
     assert_eq!(set(&mut bench, local(0xDC7, 1)), velocity(0.5, 1.0));
     // MAVSDK's mask.
     assert_eq!(set(&mut bench, local(2503, 1)), velocity(0.5, 1.0));
     let both = set(&mut bench, local(0xDC0, 1));
-    let Some(Wish::Waypoint {
-        waypoint,
-        valid: Some(until),
-    }) = both
-    else {
+    let Some(Wish::Waypoint { waypoint, valid: Some(until) }) = both else {
         panic!("{both:?}");
     };
-    assert_eq!(
-        (waypoint.velocity_mps, until),
-        (Vec3::new(0.5, 1.0, 0.0), valid)
-    );
+    assert_eq!((waypoint.velocity_mps, until), (Vec3::new(0.5, 1.0, 0.0), valid));
     // It goes east: forward is east, right is south.
     bench.tick(|sample| sample.velocity_mps = [1.0, 0.0, 0.0]);
     for frame in [8, 9] {
-        let Some(Wish::Velocity {
-            velocity_mps: v, ..
-        }) = set(&mut bench, local(0xDC7, frame))
-        else {
+        let Some(Wish::Velocity { velocity_mps: v, .. }) = set(&mut bench, local(0xDC7, frame)) else {
             panic!("a velocity");
         };
-        assert!(
-            (v.x - 1.0).abs() < 1e-6 && (v.y + 0.5).abs() < 1e-6,
-            "{v:?}"
-        );
-        assert_eq!(
-            place_mm(set(&mut bench, local(0xDF8, frame))),
-            [13_000, -15_000, 0]
-        );
+        assert!((v.x - 1.0).abs() < 1e-6 && (v.y + 0.5).abs() < 1e-6, "{v:?}");
+        assert_eq!(place_mm(set(&mut bench, local(0xDF8, frame))), [13_000, -15_000, 0]);
     }
 }
 
 #[test]
 fn setpoints_in_space_have_heights() {
     let mut bench = guided(flying());
-    assert_eq!(
-        place_mm(set(&mut bench, local(0xDF8, 1))),
-        [20_000, 10_000, 3000]
-    );
+    assert_eq!(place_mm(set(&mut bench, local(0xDF8, 1))), [20_000, 10_000, 3000]);
     bench.tick(|sample| sample.position_m[2] = 7.0);
-    assert_eq!(
-        place_mm(set(&mut bench, local(0xDFC, 1)))[2],
-        7000,
-        "z is not meant"
-    );
+    assert_eq!(place_mm(set(&mut bench, local(0xDFC, 1)))[2], 7000, "z is not meant");
     let Some(Wish::Velocity { velocity_mps, .. }) = set(&mut bench, local(0xDC7, 1)) else {
         panic!("a velocity");
     };
@@ -86,10 +52,7 @@ fn setpoints_in_space_have_heights() {
     };
     bench.give(MavMessage::SET_POSITION_TARGET_GLOBAL_INT(target));
     let [x, y, z] = place_mm(bench.wish());
-    assert!(
-        (x + 4000).abs() < 10 && (y - 6000).abs() < 10 && z == 12_500,
-        "{x} {y} {z}"
-    );
+    assert!((x + 4000).abs() < 10 && (y - 6000).abs() < 10 && z == 12_500, "{x} {y} {z}");
 }
 
 #[test]
@@ -119,15 +82,8 @@ fn setpoints_that_make_no_sense_are_not_followed_and_said_so() {
     (target.vx, target.afx, target.yaw) = (NAN, NAN, NAN);
     assert!(set(&mut bench, target).is_some());
     bench.vehicle.now_us += 10_000_000;
-    assert_eq!(
-        bench.command(MAV_CMD_DO_SET_MODE, two(1.0, 4.0)),
-        MAV_RESULT_ACCEPTED
-    );
-    assert_eq!(
-        set(&mut bench, local(0xDF8, 1)),
-        None,
-        "nobody follows in HOLD"
-    );
+    assert_eq!(bench.command(MAV_CMD_DO_SET_MODE, two(1.0, 4.0)), MAV_RESULT_ACCEPTED);
+    assert_eq!(set(&mut bench, local(0xDF8, 1)), None, "nobody follows in HOLD");
     assert_eq!(bench.texts(), ["setpoint: not armed and GUIDED"]);
 }
 
@@ -135,22 +91,12 @@ fn setpoints_that_make_no_sense_are_not_followed_and_said_so() {
 fn reposition_goes_there_or_says_why_not() {
     let mut bench = Bench::new(model());
     let not_now = MAV_RESULT_TEMPORARILY_REJECTED;
-    assert_eq!(
-        bench.command_int(reposition(8.0, 2.0, 0.0)),
-        not_now,
-        "in AUTO"
-    );
-    assert_eq!(
-        bench.command_int(reposition(8.0, 2.0, 1.0)),
-        MAV_RESULT_ACCEPTED
-    );
+    assert_eq!(bench.command_int(reposition(8.0, 2.0, 0.0)), not_now, "in AUTO");
+    assert_eq!(bench.command_int(reposition(8.0, 2.0, 1.0)), MAV_RESULT_ACCEPTED);
     assert_eq!(bench.vehicle.mode, FlightMode::Guided);
     let [x, y, _] = place_mm(bench.wish());
     assert!((x - 8000).abs() < 10 && (y - 2000).abs() < 10, "{x} {y}");
-    assert_eq!(
-        bench.command_int(reposition(9.0, 2.0, NAN)),
-        MAV_RESULT_ACCEPTED
-    );
+    assert_eq!(bench.command_int(reposition(9.0, 2.0, NAN)), MAV_RESULT_ACCEPTED);
     let mut bad = |change: &dyn Fn(&mut COMMAND_INT_DATA)| {
         let mut command = reposition(8.0, 2.0, 1.0);
         change(&mut command);
@@ -168,40 +114,18 @@ fn reposition_goes_there_or_says_why_not() {
     // As floats, a place is off by a metre.
     let floats = bench.command(MAV_CMD_DO_REPOSITION, [-1.0, 1.0, 0.0, 0.0, 50.0, 8.0, 0.0]);
     assert_eq!(floats, MAV_RESULT_COMMAND_INT_ONLY);
-    assert_eq!(
-        bench.command(MAV_CMD_COMPONENT_ARM_DISARM, NONE),
-        MAV_RESULT_ACCEPTED
-    );
-    assert_eq!(
-        bench.command_int(reposition(8.0, 2.0, 1.0)),
-        not_now,
-        "not armed"
-    );
+    assert_eq!(bench.command(MAV_CMD_COMPONENT_ARM_DISARM, NONE), MAV_RESULT_ACCEPTED);
+    assert_eq!(bench.command_int(reposition(8.0, 2.0, 1.0)), not_now, "not armed");
 }
 
 #[test]
 fn nobody_is_sent_into_a_wall() {
-    let ball = Solid::Ball {
-        center_m: [8.0, 2.0, 0.0],
-        radius_m: 1.0,
-    };
-    let mut bench = Bench::new(VehicleModel {
-        solids: vec![ball],
-        ..model()
-    });
-    assert_eq!(
-        bench.command_int(reposition(8.5, 2.0, 1.0)),
-        MAV_RESULT_DENIED
-    );
+    let ball = Solid::Ball { center_m: [8.0, 2.0, 0.0], radius_m: 1.0 };
+    let mut bench = Bench::new(VehicleModel { solids: vec![ball], ..model() });
+    assert_eq!(bench.command_int(reposition(8.5, 2.0, 1.0)), MAV_RESULT_DENIED);
     // Its edge would be in it.
-    assert_eq!(
-        bench.command_int(reposition(9.2, 2.0, 1.0)),
-        MAV_RESULT_DENIED
-    );
-    assert_eq!(
-        bench.command_int(reposition(9.3, 2.0, 1.0)),
-        MAV_RESULT_ACCEPTED
-    );
+    assert_eq!(bench.command_int(reposition(9.2, 2.0, 1.0)), MAV_RESULT_DENIED);
+    assert_eq!(bench.command_int(reposition(9.3, 2.0, 1.0)), MAV_RESULT_ACCEPTED);
 }
 
 #[test]
@@ -210,32 +134,17 @@ fn on_the_grid_places_are_cells_and_velocities_none() {
     assert_eq!(set(&mut bench, local(0xDC7, 1)), None);
     let mut target = local(0xDF8, 1);
     (target.x, target.y) = (17.0, 5.0);
-    assert_eq!(
-        set(&mut bench, target.clone()),
-        Some(Wish::Cell(Cell::new(2, 8)))
-    );
+    assert_eq!(set(&mut bench, target.clone()), Some(Wish::Cell(Cell::new(2, 8))));
     // The wall, and off the map.
     for (x, y) in [(9.0, 9.0), (21.0, 1.0), (-0.1, 1.0)] {
         (target.x, target.y) = (x, y);
         assert_eq!(set(&mut bench, target.clone()), None, "{x} {y}");
-        assert_eq!(
-            bench.command_int(reposition(y.into(), x.into(), 1.0)),
-            MAV_RESULT_DENIED
-        );
+        assert_eq!(bench.command_int(reposition(y.into(), x.into(), 1.0)), MAV_RESULT_DENIED);
     }
-    assert_eq!(
-        bench.command(MAV_CMD_DO_CHANGE_SPEED, two(0.0, 1.0)),
-        MAV_RESULT_UNSUPPORTED
-    );
-    let mut bench = guided(VehicleModel {
-        in_formation: true,
-        ..on_grid()
-    });
+    assert_eq!(bench.command(MAV_CMD_DO_CHANGE_SPEED, two(0.0, 1.0)), MAV_RESULT_UNSUPPORTED);
+    let mut bench = guided(VehicleModel { in_formation: true, ..on_grid() });
     let home = MAV_CMD_NAV_RETURN_TO_LAUNCH;
     assert_eq!(bench.command(home, NONE), MAV_RESULT_DENIED);
-    assert_eq!(
-        bench.command_int(reposition(1.0, 1.0, 1.0)),
-        MAV_RESULT_DENIED
-    );
+    assert_eq!(bench.command_int(reposition(1.0, 1.0, 1.0)), MAV_RESULT_DENIED);
     assert_eq!(set(&mut bench, local(0xDF8, 1)), None);
 }

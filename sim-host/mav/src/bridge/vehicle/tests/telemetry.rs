@@ -13,8 +13,7 @@ fn second(bench: &mut Bench, from_us: u64) -> Vec<MavMessage> {
 }
 
 fn count<D: MessageData>(messages: &[MavMessage]) -> usize {
-    let is_one =
-        |message: &&MavMessage| staya_mavlink::mavlink_core::Message::message_id(*message) == D::ID;
+    let is_one = |message: &&MavMessage| staya_mavlink::mavlink_core::Message::message_id(*message) == D::ID;
     messages.iter().filter(is_one).count()
 }
 
@@ -26,28 +25,16 @@ fn rates_are_those_that_were_asked_for() {
     assert_eq!(count::<LOCAL_POSITION_NED_DATA>(&messages), 10);
     assert_eq!(count::<AUTOPILOT_VERSION_DATA>(&messages), 0);
     let set = MAV_CMD_SET_MESSAGE_INTERVAL;
-    let (position, heartbeat) = (
-        LOCAL_POSITION_NED_DATA::ID as f32,
-        HEARTBEAT_DATA::ID as f32,
-    );
-    assert_eq!(
-        bench.command(set, two(position, 20_000.0)),
-        MAV_RESULT_ACCEPTED
-    );
+    let (position, heartbeat) = (LOCAL_POSITION_NED_DATA::ID as f32, HEARTBEAT_DATA::ID as f32);
+    assert_eq!(bench.command(set, two(position, 20_000.0)), MAV_RESULT_ACCEPTED);
     let attitude = ATTITUDE_DATA::ID as f32;
     assert_eq!(bench.command(set, two(attitude, -1.0)), MAV_RESULT_ACCEPTED);
     let messages = second(&mut bench, 1_000_000);
     assert_eq!(count::<LOCAL_POSITION_NED_DATA>(&messages), 50);
     assert_eq!(count::<ATTITUDE_DATA>(&messages), 0);
     assert_eq!(bench.command(set, two(attitude, 0.0)), MAV_RESULT_ACCEPTED);
-    assert_eq!(
-        bench.command(MAV_CMD_GET_MESSAGE_INTERVAL, first(attitude)),
-        MAV_RESULT_ACCEPTED
-    );
-    let told = MESSAGE_INTERVAL_DATA {
-        interval_us: 200_000,
-        message_id: 30,
-    };
+    assert_eq!(bench.command(MAV_CMD_GET_MESSAGE_INTERVAL, first(attitude)), MAV_RESULT_ACCEPTED);
+    let told = MESSAGE_INTERVAL_DATA { interval_us: 200_000, message_id: 30 };
     assert_eq!(bench.out.messages[1], MavMessage::MESSAGE_INTERVAL(told));
     // Too often, no number, no such message; and a heartbeat is a heartbeat.
     for (bad, result) in [
@@ -77,20 +64,13 @@ fn all_that_streams_can_be_requested() {
     let mut bench = Bench::new(model());
     let request = MAV_CMD_REQUEST_MESSAGE;
     for id in [0, 1, 2, 24, 30, 32, 33, 42, 49, 74, 147, 148, 242, 245_u32] {
-        assert_eq!(
-            bench.command(request, first(id as f32)),
-            MAV_RESULT_ACCEPTED,
-            "{id}"
-        );
+        assert_eq!(bench.command(request, first(id as f32)), MAV_RESULT_ACCEPTED, "{id}");
         assert_eq!(bench.out.messages.len(), 2, "{id}");
     }
     assert_eq!(bench.command(request, first(11.0)), MAV_RESULT_UNSUPPORTED);
     let version = MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES;
     assert_eq!(bench.command(version, first(1.0)), MAV_RESULT_ACCEPTED);
-    assert!(matches!(
-        bench.out.messages[1],
-        MavMessage::AUTOPILOT_VERSION(_)
-    ));
+    assert!(matches!(bench.out.messages[1], MavMessage::AUTOPILOT_VERSION(_)));
 }
 
 #[test]
@@ -108,15 +88,9 @@ fn positions_are_north_east_down_and_on_the_earth() {
     let Some(MavMessage::GLOBAL_POSITION_INT(global)) = bench.vehicle.telemetry(33) else {
         panic!("a position");
     };
-    let expected = origin()
-        .to_global([100.0, 200.0, 30.0])
-        .expect("near")
-        .to_e7();
+    let expected = origin().to_global([100.0, 200.0, 30.0]).expect("near").to_e7();
     assert_eq!([global.lat, global.lon, global.alt], expected);
-    assert_eq!(
-        (global.relative_alt, global.vx, global.vy, global.vz),
-        (30_000, -400, 300, -100)
-    );
+    assert_eq!((global.relative_alt, global.vx, global.vy, global.vz), (30_000, -400, 300, -100));
     // atan2(3, -4): between south and east.
     assert_eq!(global.hdg, 14_313);
     assert_eq!(bench.vehicle.uptime_us(), 100_000);
@@ -130,55 +104,29 @@ fn heartbeats_say_how_it_is() {
         other => panic!("{other:?}"),
     };
     let beat = heartbeat(&bench);
-    assert_eq!(
-        (beat.mavtype, beat.autopilot, beat.custom_mode),
-        (10, 3, 10)
-    );
-    assert_eq!(
-        (beat.base_mode & 0x81, beat.system_status),
-        (0x81, MAV_STATE_ACTIVE)
-    );
+    assert_eq!((beat.mavtype, beat.autopilot, beat.custom_mode), (10, 3, 10));
+    assert_eq!((beat.base_mode & 0x81, beat.system_status), (0x81, MAV_STATE_ACTIVE));
     bench.tick(|sample| sample.mode = Mode::Fault);
     assert_eq!(heartbeat(&bench).system_status, MAV_STATE_CRITICAL);
     bench.command(MAV_CMD_COMPONENT_ARM_DISARM, NONE);
     let beat = heartbeat(&bench);
-    assert_eq!(
-        (beat.base_mode & 0x80, beat.system_status),
-        (0, MAV_STATE_STANDBY)
-    );
+    assert_eq!((beat.base_mode & 0x80, beat.system_status), (0, MAV_STATE_STANDBY));
 }
 
 #[test]
 fn pings_times_and_files_are_answered_at_once() {
     let mut bench = Bench::new(model());
-    let ping = PING_DATA {
-        time_usec: 77,
-        seq: 3,
-        ..PING_DATA::DEFAULT
-    };
-    let answer = PING_DATA {
-        target_system: GCS.system,
-        target_component: GCS.component,
-        ..ping.clone()
-    };
+    let ping = PING_DATA { time_usec: 77, seq: 3, ..PING_DATA::DEFAULT };
+    let answer = PING_DATA { target_system: GCS.system, target_component: GCS.component, ..ping.clone() };
     let out = bench.give(MavMessage::PING(ping));
     assert_eq!(out.messages, [MavMessage::PING(answer.clone())]);
-    assert!(
-        bench.give(MavMessage::PING(answer)).messages.is_empty(),
-        "an answer"
-    );
+    assert!(bench.give(MavMessage::PING(answer)).messages.is_empty(), "an answer");
     bench.tick(|_| {});
     let out = bench.give(MavMessage::TIMESYNC(TIMESYNC_DATA { tc1: 0, ts1: 5 }));
-    let expected = TIMESYNC_DATA {
-        tc1: 100_000_000,
-        ts1: 5,
-    };
+    let expected = TIMESYNC_DATA { tc1: 100_000_000, ts1: 5 };
     assert_eq!(out.messages, [MavMessage::TIMESYNC(expected)]);
-    let mut asked = FILE_TRANSFER_PROTOCOL_DATA {
-        target_system: 7,
-        target_component: 1,
-        ..FILE_TRANSFER_PROTOCOL_DATA::DEFAULT
-    };
+    let mut asked =
+        FILE_TRANSFER_PROTOCOL_DATA { target_system: 7, target_component: 1, ..FILE_TRANSFER_PROTOCOL_DATA::DEFAULT };
     asked.payload[..4].copy_from_slice(&[255, 255, 9, 4]);
     let out = bench.give(MavMessage::FILE_TRANSFER_PROTOCOL(asked));
     let [MavMessage::FILE_TRANSFER_PROTOCOL(answer)] = &out.messages[..] else {
@@ -200,10 +148,7 @@ fn who_is_down_is_silent_and_forgets_its_mode() {
     let (parameters, sample) = (bench.vehicle.parameters.clone(), bench.sample);
     bench.vehicle.restart(parameters, sample, &mut bench.out);
     assert_eq!(bench.texts(), ["started anew"]);
-    assert_eq!(
-        (bench.vehicle.mode, bench.vehicle.mission.len()),
-        (FlightMode::Auto, 2)
-    );
+    assert_eq!((bench.vehicle.mode, bench.vehicle.mission.len()), (FlightMode::Auto, 2));
     assert_eq!(bench.vehicle.uptime_us(), 0);
 }
 
@@ -211,17 +156,11 @@ fn who_is_down_is_silent_and_forgets_its_mode() {
 fn what_happens_is_said_and_a_setpoint_that_ran_out_too() {
     let mut bench = guided(model());
     bench.tick(|sample| {
-        sample.wish = Wish::Velocity {
-            velocity_mps: Vec3::ZERO,
-            valid: Duration::ZERO,
-        };
+        sample.wish = Wish::Velocity { velocity_mps: Vec3::ZERO, valid: Duration::ZERO };
     });
     bench.tick(|sample| sample.wish = Wish::Hold);
     assert_eq!(bench.texts(), ["no setpoint any more: holding"]);
-    let arrived = Event::ModeChanged {
-        from: Mode::Cruise,
-        to: Mode::Arrived,
-    };
+    let arrived = Event::ModeChanged { from: Mode::Cruise, to: Mode::Arrived };
     let lost = [2, 3].map(|id| Event::NeighborLost(staya_controller::robot::RobotId(id)));
     let (sample, mut out) = (bench.sample, Out::default());
     let events = [arrived, lost[0], lost[1]];

@@ -51,12 +51,7 @@ fn a_pilot_who_acts_ends_the_asking() {
 
 #[test]
 fn disarming_ends_it_and_nobody_arms_again() {
-    let mut bench = Bench::new(
-        Kind::ArduRover,
-        Rules { arm: true, ..ONCE },
-        MANUAL,
-        DISARMED,
-    );
+    let mut bench = Bench::new(Kind::ArduRover, Rules { arm: true, ..ONCE }, MANUAL, DISARMED);
     assert_eq!(commands(&bench.run(1.0), out::DO_SET_MODE), 1);
     bench.mode = GUIDED;
     assert_eq!(commands(&bench.run(1.0), out::ARM_DISARM), 1);
@@ -97,22 +92,14 @@ fn copter_is_armed_taken_off_and_then_steered_at_its_height() {
     bench.base = ARMED;
     let sent = bench.run(1.0);
     assert_eq!(commands(&sent, out::NAV_TAKEOFF), 1);
-    assert_eq!(
-        setpoints(&sent).len(),
-        0,
-        "velocities would end the take-off"
-    );
+    assert_eq!(setpoints(&sent).len(), 0, "velocities would end the take-off");
     bench.above_home_m = 8.9;
     bench.run(0.5);
     assert_eq!(bench.state(), State::Entering);
     bench.above_home_m = 9.0;
     let sent = bench.run(0.5);
     assert_eq!(bench.state(), State::Steering);
-    assert_eq!(
-        setpoints(&sent).last().unwrap().vz,
-        -0.5,
-        "it climbs the last metre"
-    );
+    assert_eq!(setpoints(&sent).last().unwrap().vz, -0.5, "it climbs the last metre");
     bench.above_home_m = 30.0;
     assert_eq!(setpoints(&bench.run(0.5)).last().unwrap().vz, 1.0);
 }
@@ -128,10 +115,7 @@ fn what_flies_is_not_steered_on_the_ground() {
     assert_eq!(bench.state(), State::Steering);
     // What the autopilot itself says counts for more than a height.
     let landed = |landed_state| {
-        MavMessage::EXTENDED_SYS_STATE(EXTENDED_SYS_STATE_DATA {
-            landed_state,
-            ..EXTENDED_SYS_STATE_DATA::DEFAULT
-        })
+        MavMessage::EXTENDED_SYS_STATE(EXTENDED_SYS_STATE_DATA { landed_state, ..EXTENDED_SYS_STATE_DATA::DEFAULT })
     };
     bench.offboard.hear(&landed(1), bench.now);
     bench.run(0.5);
