@@ -37,7 +37,7 @@ pub fn run(repo: &Repo, report: &mut Report) {
         }
     }
     crate::device::check_features(repo, report);
-    let mut package = repo.cargo(&["package", "--locked", "--allow-dirty"]);
+    let mut package = repo.cargo(&["package", "--locked", "--allow-dirty", "--no-verify"]);
     package.args(PACKAGES.iter().flat_map(|name| ["--package", name]));
     report.command("packages that users depend on", package);
     let mut doc = repo.cargo(&["doc", "--locked", "--workspace", "--no-deps"]);

@@ -32,10 +32,7 @@ pub fn mavlink_decode(bytes: &[u8]) {
     let sum = calculate_crc(&frame[1..], MavMessage::extra_crc(id));
     frame.extend(sum.to_le_bytes());
     let answer = decode(&frame);
-    assert!(
-        matches!(answer, Ok(_) | Err(DecodeError::Body)),
-        "{answer:?}"
-    );
+    assert!(matches!(answer, Ok(_) | Err(DecodeError::Body)), "{answer:?}");
     judge(&frame);
 }
 

@@ -6,8 +6,8 @@ use heapless::Vec as Bounded;
 use staya_controller::robot::RobotId;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{
-    Arrival, Due, Header, MAX_FRAME_LEN, Message, Orders, Request, RequestKind, Requests, Retry,
-    SequenceWindow, decode, encode,
+    Arrival, Due, Header, MAX_FRAME_LEN, Message, Orders, Request, RequestKind, Requests, Retry, SequenceWindow,
+    decode, encode,
 };
 use std::collections::BTreeMap;
 
@@ -96,26 +96,15 @@ impl Robot {
     }
 
     /// Asks, and follows in the model what became of it.
-    fn ask(
-        &mut self,
-        to: RobotId,
-        origin: RobotId,
-        kind: RequestKind,
-        valid_ms: u16,
-        now: Instant,
-    ) {
-        let same_matter = |request: &Request| {
-            request.origin == origin && request.kind.is_standing() == kind.is_standing()
-        };
+    fn ask(&mut self, to: RobotId, origin: RobotId, kind: RequestKind, valid_ms: u16, now: Instant) {
+        let same_matter =
+            |request: &Request| request.origin == origin && request.kind.is_standing() == kind.is_standing();
         let older = self
             .pending
             .iter()
             .map(|(number, place)| (*number, *place))
             .find(|(_, place)| same_matter(&self.asked[*place].request));
-        let number = self
-            .requests
-            .ask(to, origin, kind, valid_ms, now)
-            .expect("every matter has a place");
+        let number = self.requests.ask(to, origin, kind, valid_ms, now).expect("every matter has a place");
         if let Some((older_number, place)) = older {
             if self.asked[place].request.kind == kind {
                 assert_eq!(number, older_number);
@@ -127,13 +116,7 @@ impl Robot {
         let taken = self.pending.insert(number, self.asked.len());
         assert_eq!(taken, None, "number {number} was on its way");
         self.asked.push(Asked {
-            request: Request {
-                to,
-                origin,
-                number,
-                kind,
-                valid_ms,
-            },
+            request: Request { to, origin, number, kind, valid_ms },
             sends: 0,
             was_delivered: false,
             ends: 0,
@@ -156,36 +139,21 @@ impl Robot {
             asked.sends += 1;
             assert!(asked.sends <= u32::from(Retry::default().attempts));
             let bytes = self.encoded(Message::Request(request));
-            air.push(Packet {
-                to,
-                sent_ms: now_ms,
-                bytes,
-                place,
-            });
+            air.push(Packet { to, sent_ms: now_ms, bytes, place });
         }
         assert_eq!(self.requests.len(), self.pending.len());
     }
 
     fn encoded(&mut self, message: Message) -> Vec<u8> {
         self.sequence = self.sequence.wrapping_add(1);
-        let header = Header {
-            boot: self.boot,
-            sender: self.id,
-            sequence: self.sequence,
-        };
+        let header = Header { boot: self.boot, sender: self.id, sequence: self.sequence };
         let mut out = Bounded::<u8, MAX_FRAME_LEN>::new();
         encode(header, &message, &mut out).expect("every message fits");
         out[..out.len() - 1].to_vec()
     }
 
     /// Takes a frame in and gives the frame that answers it.
-    fn receive(
-        &mut self,
-        packet: &Packet,
-        peer: &mut Self,
-        now_ms: i32,
-        now: Instant,
-    ) -> Option<Vec<u8>> {
+    fn receive(&mut self, packet: &Packet, peer: &mut Self, now_ms: i32, now: Instant) -> Option<Vec<u8>> {
         let frame = decode(&packet.bytes).expect("the radio damages nothing here");
         let arrival = self.window.check(frame.header);
         if arrival == Arrival::Rebooted {
@@ -201,8 +169,7 @@ impl Robot {
         }
         match frame.message {
             Message::Request(request) => {
-                let (accepted, is_new) =
-                    self.expected_answer(frame.header, &request, packet.place, now_ms);
+                let (accepted, is_new) = self.expected_answer(frame.header, &request, packet.place, now_ms);
                 let answer = self.orders.receive(frame.header, &request, now);
                 assert_eq!((answer.ack.accepted, answer.is_new), (accepted, is_new));
                 peer.asked[packet.place].was_delivered = true;
@@ -227,13 +194,7 @@ impl Robot {
     }
 
     /// Whether a request should be accepted and whether it is new, by the model, which remembers it.
-    fn expected_answer(
-        &mut self,
-        header: Header,
-        request: &Request,
-        place: usize,
-        now_ms: i32,
-    ) -> (bool, bool) {
+    fn expected_answer(&mut self, header: Header, request: &Request, place: usize, now_ms: i32) -> (bool, bool) {
         let matter = (request.origin, request.kind.is_standing());
         let line = self.lines.get(&matter);
         match line.filter(|line| line.boot == header.boot) {
@@ -242,12 +203,7 @@ impl Robot {
         }
         self.lines.insert(
             matter,
-            Line {
-                boot: header.boot,
-                place,
-                kind: request.kind,
-                until_ms: now_ms + i32::from(request.valid_ms),
-            },
+            Line { boot: header.boot, place, kind: request.kind, until_ms: now_ms + i32::from(request.valid_ms) },
         );
         (true, true)
     }
@@ -302,12 +258,7 @@ impl World {
         let [a, b] = &mut self.robots;
         let (robot, peer) = if packet.to == 0 { (a, b) } else { (b, a) };
         if let Some(bytes) = robot.receive(&packet, peer, now_ms, now) {
-            self.air.push(Packet {
-                to: 1 - packet.to,
-                sent_ms: now_ms,
-                bytes,
-                place: packet.place,
-            });
+            self.air.push(Packet { to: 1 - packet.to, sent_ms: now_ms, bytes, place: packet.place });
         }
         robot.check(now_ms, now);
         if keep {
@@ -357,11 +308,7 @@ impl World {
         for robot in &mut self.robots {
             assert!(robot.requests.is_empty() && robot.pending.is_empty());
             assert!(robot.asked.iter().all(|asked| asked.ends == 1));
-            assert!(
-                !robot
-                    .orders
-                    .is_stopped(self.start + Duration::from_millis(self.now_ms))
-            );
+            assert!(!robot.orders.is_stopped(self.start + Duration::from_millis(self.now_ms)));
         }
         for kind in [RequestKind::Stop, RequestKind::Resume] {
             for which in [0, 1] {
@@ -385,12 +332,7 @@ impl World {
 pub fn requests_model(bytes: &[u8]) {
     let mut choice = Unstructured::new(bytes);
     let start = Instant::from_micros(choice.arbitrary().unwrap_or_default());
-    let mut world = World {
-        robots: [Robot::new(1), Robot::new(2)],
-        air: Vec::new(),
-        start,
-        now_ms: 0,
-    };
+    let mut world = World { robots: [Robot::new(1), Robot::new(2)], air: Vec::new(), start, now_ms: 0 };
     while !choice.is_empty() && world.act(&mut choice).is_ok() {}
     world.end();
 }
@@ -401,12 +343,7 @@ mod tests {
 
     /// Two robots, and nothing in the air between them.
     fn world() -> World {
-        World {
-            robots: [Robot::new(1), Robot::new(2)],
-            air: Vec::new(),
-            start: Instant::default(),
-            now_ms: 0,
-        }
+        World { robots: [Robot::new(1), Robot::new(2)], air: Vec::new(), start: Instant::default(), now_ms: 0 }
     }
 
     /// The first robot asks the second.

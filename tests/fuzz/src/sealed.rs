@@ -50,19 +50,10 @@ fn refuses<W: Wire>(new: impl Fn() -> W, bytes: &[u8]) {
 }
 
 fn said<W: Wire>(by: &mut W, sequence: u16) -> Bounded<u8, MAX_FRAME_LEN> {
-    let header = Header {
-        boot: 1,
-        sender: RobotId(7),
-        sequence,
-    };
-    let goal = GoalAssignment {
-        to: RobotId(2),
-        version: 3,
-        target: Cell::new(1, -2),
-    };
+    let header = Header { boot: 1, sender: RobotId(7), sequence };
+    let goal = GoalAssignment { to: RobotId(2), version: 3, target: Cell::new(1, -2) };
     let mut out = Bounded::new();
-    by.encode(header, &Message::Goal(goal), &mut out)
-        .expect("a goal is short");
+    by.encode(header, &Message::Goal(goal), &mut out).expect("a goal is short");
     out
 }
 

@@ -6,17 +6,12 @@ use staya_controller::grid::Cell;
 use staya_controller::robot::RobotId;
 use staya_controller::template::{Template, TemplateEntry};
 use staya_controller::wire::{
-    Header, MAX_FRAME_LEN, Message, TEMPLATE_PART, TemplateAssembler, TemplateAssignment, decode,
-    encode,
+    Header, MAX_FRAME_LEN, Message, TEMPLATE_PART, TemplateAssembler, TemplateAssignment, decode, encode,
 };
 
 const F: usize = 7;
 const TO: RobotId = RobotId(3);
-const HEADER: Header = Header {
-    boot: 0,
-    sender: RobotId(1),
-    sequence: 0,
-};
+const HEADER: Header = Header { boot: 0, sender: RobotId(1), sequence: 0 };
 /// How many versions a late part may lie behind the newest; the assembler tells 127 apart.
 const LATE: usize = 60;
 
@@ -43,11 +38,7 @@ fn from_one_commander(choice: &mut Unstructured<'_>) -> Result<()> {
         if sent.is_empty() || choice.ratio(1_u8, 6_u8)? {
             let template = template(choice)?;
             version = version.wrapping_add(1);
-            let Template {
-                slot,
-                offset,
-                entries,
-            } = &template;
+            let Template { slot, offset, entries } = &template;
             let parts: Vec<_> = TemplateAssignment::split(TO, version, *slot, *offset, entries)
                 .expect("a small template")
                 .map(carried)
@@ -59,9 +50,7 @@ fn from_one_commander(choice: &mut Unstructured<'_>) -> Result<()> {
         let which = choice.int_in_range(last.saturating_sub(LATE)..=last)?;
         let (template, parts) = &sent[which];
         let part = choice.choose_index(parts.len())?;
-        let whole = assembler
-            .put(&parts[part])
-            .expect("a part as it was sent is sound");
+        let whole = assembler.put(&parts[part]).expect("a part as it was sent is sound");
         if newest < Some(which) {
             newest = Some(which);
             there = vec![false; parts.len()];
@@ -133,11 +122,7 @@ fn template(choice: &mut Unstructured<'_>) -> Result<Template<F>> {
     for _ in 0..choice.int_in_range(0..=F)? {
         let _ = entries.push(entry(choice, 1)?);
     }
-    Ok(Template {
-        slot: choice.arbitrary()?,
-        offset: Cell::new(choice.arbitrary()?, choice.arbitrary()?),
-        entries,
-    })
+    Ok(Template { slot: choice.arbitrary()?, offset: Cell::new(choice.arbitrary()?, choice.arbitrary()?), entries })
 }
 
 fn entry(choice: &mut Unstructured<'_>, least_hops: u8) -> Result<TemplateEntry> {

@@ -3,8 +3,7 @@
 use crc::{CRC_16_IBM_SDLC, Crc};
 use heapless::Vec as Bounded;
 use staya_controller::wire::{
-    DecodeError, EncodeError, Frame, MAX_FRAME_LEN, TAG_LEN, decode, decode_verified, encode,
-    encode_tagged, frames,
+    DecodeError, EncodeError, Frame, MAX_FRAME_LEN, TAG_LEN, decode, decode_verified, encode, encode_tagged, frames,
 };
 
 /// The catalogue's own, to be checked against the controller's.
@@ -29,14 +28,8 @@ pub fn wire_decode(bytes: &[u8]) {
     let mut content = bytes.to_vec();
     content.extend(CRC.checksum(bytes).to_le_bytes());
     let frame = stuffed(&content);
-    assert!(!matches!(
-        decode(&frame),
-        Err(DecodeError::Cobs | DecodeError::Crc)
-    ));
-    assert_eq!(
-        decode(&frame) == Err(DecodeError::TooLong),
-        frame.len() >= MAX_FRAME_LEN
-    );
+    assert!(!matches!(decode(&frame), Err(DecodeError::Cobs | DecodeError::Crc)));
+    assert_eq!(decode(&frame) == Err(DecodeError::TooLong), frame.len() >= MAX_FRAME_LEN);
     judge(&frame);
 }
 

@@ -10,9 +10,7 @@ const LANDSCAPES: u64 = 32;
 
 fn cost_field<const CELLS: usize>(c: &mut Criterion, side: u16, peaks: usize) {
     let mut field = CostField::<CELLS>::new();
-    let tasks: Vec<Task> = (0..LANDSCAPES)
-        .map(|seed| Task::natural(side, peaks, 0, seed))
-        .collect();
+    let tasks: Vec<Task> = (0..LANDSCAPES).map(|seed| Task::natural(side, peaks, 0, seed)).collect();
     for task in &tasks {
         task.assert_equal(&mut field);
     }
@@ -23,11 +21,7 @@ fn cost_field<const CELLS: usize>(c: &mut Criterion, side: u16, peaks: usize) {
     });
     group.bench_function("pathfinding", |bencher| {
         let mut tasks = tasks.iter().cycle();
-        bencher.iter(|| {
-            tasks
-                .next()
-                .map(|task| black_box(task).pathfinding().count())
-        });
+        bencher.iter(|| tasks.next().map(|task| black_box(task).pathfinding().count()));
     });
     group.finish();
 }

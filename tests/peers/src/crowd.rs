@@ -36,12 +36,7 @@ impl Crowd {
         while neighbors.len() < NEIGHBORS {
             let (offset_m, velocity_mps) = (pair(6.0), pair(1.0));
             if offset_m.norm() > 2.0 * RADIUS_M {
-                neighbors.push(MovingBall {
-                    offset_m,
-                    velocity_mps,
-                    radii_m: 2.0 * RADIUS_M,
-                    tie: Vec2::ZERO,
-                });
+                neighbors.push(MovingBall { offset_m, velocity_mps, radii_m: 2.0 * RADIUS_M, tie: Vec2::ZERO });
             }
         }
         // The robot takes the whole correction: `dodgy_2d` shares it only inside the velocity obstacle
@@ -54,10 +49,7 @@ impl Crowd {
         };
         Self {
             own_agent: agent(Vec2::ZERO, own_velocity, 1.0),
-            agents: neighbors
-                .iter()
-                .map(|n| Cow::Owned(agent(n.offset_m, n.velocity_mps, 0.0)))
-                .collect(),
+            agents: neighbors.iter().map(|n| Cow::Owned(agent(n.offset_m, n.velocity_mps, 0.0))).collect(),
             own_velocity,
             preferred,
             neighbors,
@@ -67,15 +59,8 @@ impl Crowd {
     /// The half-planes of all neighbours and the velocity, by Staya; with how far it violates them, m/s.
     #[must_use]
     pub fn staya(&self) -> ([f32; 2], f32) {
-        let params = Params {
-            horizon_s: HORIZON_S,
-            separation_s: STEP_S,
-            share: 1.0,
-        };
-        let nowhere = HalfPlane {
-            point: Vec2::ZERO,
-            normal: Vec2::ZERO,
-        };
+        let params = Params { horizon_s: HORIZON_S, separation_s: STEP_S, share: 1.0 };
+        let nowhere = HalfPlane { point: Vec2::ZERO, normal: Vec2::ZERO };
         let mut planes = [nowhere; NEIGHBORS];
         let mut count = 0;
         for neighbor in &self.neighbors {
@@ -92,20 +77,11 @@ impl Crowd {
     /// The velocity by `dodgy_2d`.
     #[must_use]
     pub fn dodgy(&self) -> [f32; 2] {
-        let options = AvoidanceOptions {
-            obstacle_margin: 0.0,
-            time_horizon: HORIZON_S,
-            obstacle_time_horizon: HORIZON_S,
-        };
+        let options =
+            AvoidanceOptions { obstacle_margin: 0.0, time_horizon: HORIZON_S, obstacle_time_horizon: HORIZON_S };
         let preferred = dodgy_2d::Vec2::new(self.preferred.x, self.preferred.y);
-        let velocity = self.own_agent.compute_avoiding_velocity(
-            &self.agents,
-            &[],
-            preferred,
-            SPEED_MPS,
-            STEP_S,
-            &options,
-        );
+        let velocity =
+            self.own_agent.compute_avoiding_velocity(&self.agents, &[], preferred, SPEED_MPS, STEP_S, &options);
         [velocity.x, velocity.y]
     }
 }

@@ -118,9 +118,7 @@ impl Agent for Boid {
             return;
         };
         // Everybody in the nine cells around; who is too far is left out by the law, the boid itself too.
-        let others = world
-            .field
-            .get_neighbors_within_relax_distance(self.place, world.closest);
+        let others = world.field.get_neighbors_within_relax_distance(self.place, world.closest);
         let seen = others.iter().map(|other| {
             let offset = Vec2::new(other.place.x - self.place.x, other.place.y - self.place.y);
             let Vec2 { x, y } = world.torus.shortest(offset);
@@ -133,9 +131,7 @@ impl Agent for Boid {
             }
         });
         let seen: Vec<Nearby<f32>> = seen.collect();
-        self.heading = world
-            .params
-            .steer(RobotId(self.id + 1), self.heading, &seen);
+        self.heading = world.params.steer(RobotId(self.id + 1), self.heading, &seen);
         let moved = Vec2::new(self.place.x, self.place.y) + self.heading * world.speed;
         let Vec2 { x, y } = world.torus.wrap(moved);
         self.place = Real2D { x, y };
@@ -156,24 +152,13 @@ impl Peer {
         let plan = plan();
         let [width, height] = flock.sides();
         let boids = flock.places().iter().zip(flock.headings());
-        let start = (0..).zip(boids).map(|(id, (&[x, y], &heading))| Boid {
-            id,
-            place: Real2D { x, y },
-            heading,
-        });
+        let start = (0..).zip(boids).map(|(id, (&[x, y], &heading))| Boid { id, place: Real2D { x, y }, heading });
         let mut world = World {
             // Not "toroidal": then the field's own search stops at the borders (version 0.6.2), while
             // otherwise it goes on at the other side.
             field: Field2D::new(width, height, plan.closest, false),
-            torus: Torus {
-                size_m: [width, height],
-            },
-            params: BoidsParams::new(
-                plan.crowded,
-                plan.closest,
-                plan.max_turn,
-                plan.max_turn_away,
-            ),
+            torus: Torus { size_m: [width, height] },
+            params: BoidsParams::new(plan.crowded, plan.closest, plan.max_turn, plan.max_turn_away),
             closest: plan.closest,
             speed: plan.speed,
             start: start.collect(),
@@ -216,9 +201,7 @@ mod tests {
         }
         let same = flock.headings().iter().zip(peer.headings());
         // Sums of neighbours run in another order; a boid between two choices may take the other one.
-        let alike = same
-            .filter(|(one, other)| (**one - *other).norm() < 1e-4)
-            .count();
+        let alike = same.filter(|(one, other)| (**one - *other).norm() < 1e-4).count();
         assert!(alike >= 1990, "{alike} of 2000");
     }
 }

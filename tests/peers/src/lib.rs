@@ -28,20 +28,14 @@ impl Task {
         let mut state = seed;
         let mut below = |limit: u16| {
             // Knuth's MMIX generator; its upper bits are good enough to scatter peaks.
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             ((state >> 33) % u64::from(limit)) as i16
         };
         let quarter = (side / 4).max(1);
         let from = Cell::new(below(quarter), below(quarter));
         let far = (side - quarter).cast_signed();
         let target = Cell::new(far + below(quarter), far + below(quarter));
-        let mut scatter = |n| -> Vec<Cell> {
-            (0..n)
-                .map(|_| Cell::new(below(side), below(side)))
-                .collect()
-        };
+        let mut scatter = |n| -> Vec<Cell> { (0..n).map(|_| Cell::new(below(side), below(side))).collect() };
         let (peaks, walls) = (scatter(peaks), scatter(walls));
         let height = |cell: Cell| {
             let nearest = peaks.iter().map(|peak| cell.distance_squared(*peak)).min();
@@ -56,12 +50,7 @@ impl Task {
                 if wall { BLOCKED } else { height(cell) }
             })
             .collect();
-        Self {
-            cells,
-            side,
-            from,
-            target,
-        }
+        Self { cells, side, from, target }
     }
 
     /// The cells of the window.
@@ -109,8 +98,7 @@ impl Task {
         Dir::MOVES.into_iter().filter_map(move |dir| {
             let before = cell - dir.offset();
             let corner = !dir.is_diagonal()
-                || self.get(Cell::new(before.x, cell.y)) != BLOCKED
-                    && self.get(Cell::new(cell.x, before.y)) != BLOCKED;
+                || self.get(Cell::new(before.x, cell.y)) != BLOCKED && self.get(Cell::new(cell.x, before.y)) != BLOCKED;
             let open = corner && self.get(before) != BLOCKED;
             open.then(|| (before, params.a0.of(dir.length(params.norm) * u)))
         })
@@ -140,12 +128,7 @@ impl Task {
         self.staya(field);
         for cell in self.cells() {
             let wanted = theirs.get(&cell).copied();
-            assert_eq!(
-                field.cost(cell),
-                wanted,
-                "from {cell:?} to {:?}",
-                self.target
-            );
+            assert_eq!(field.cost(cell), wanted, "from {cell:?} to {:?}", self.target);
         }
         Some(theirs.len())
     }

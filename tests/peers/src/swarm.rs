@@ -68,31 +68,18 @@ impl Swarm {
     }
 
     fn query(at: [f32; 2], robot: u32) -> Query<f32, 2> {
-        Query {
-            at,
-            radius: RANGE_M,
-            most: NEIGHBORS,
-            except: Some(robot),
-        }
+        Query { at, radius: RANGE_M, most: NEIGHBORS, except: Some(robot) }
     }
 
     /// One step by Staya: index, neighbours, half-planes, velocities.
     pub fn staya(&mut self) {
-        let params = Params {
-            horizon_s: HORIZON_S,
-            separation_s: STEP_S,
-            share: 0.5,
-        };
-        let nowhere = HalfPlane {
-            point: Vec2::ZERO,
-            normal: Vec2::ZERO,
-        };
+        let params = Params { horizon_s: HORIZON_S, separation_s: STEP_S, share: 0.5 };
+        let nowhere = HalfPlane { point: Vec2::ZERO, normal: Vec2::ZERO };
         let velocity = |agent: &Agent| Vec2::new(agent.velocity.x, agent.velocity.y);
         self.cells.rebuild(&self.places);
         for &robot in self.cells.order() {
             let own = robot as usize;
-            self.cells
-                .within(&Self::query(self.places[own], robot), &mut self.found);
+            self.cells.within(&Self::query(self.places[own], robot), &mut self.found);
             let own_velocity = velocity(&self.agents[own]);
             let mut planes = [nowhere; NEIGHBORS];
             let mut count = 0;
@@ -117,29 +104,18 @@ impl Swarm {
 
     /// The same neighbours, velocities by `dodgy_2d`.
     pub fn dodgy(&mut self) {
-        let options = AvoidanceOptions {
-            obstacle_margin: 0.0,
-            time_horizon: HORIZON_S,
-            obstacle_time_horizon: HORIZON_S,
-        };
+        let options =
+            AvoidanceOptions { obstacle_margin: 0.0, time_horizon: HORIZON_S, obstacle_time_horizon: HORIZON_S };
         self.cells.rebuild(&self.places);
         let mut others: Vec<Cow<'_, Agent>> = Vec::new();
         for &robot in self.cells.order() {
             let own = robot as usize;
-            self.cells
-                .within(&Self::query(self.places[own], robot), &mut self.found);
+            self.cells.within(&Self::query(self.places[own], robot), &mut self.found);
             others.clear();
             let seen = self.found.iter();
             others.extend(seen.map(|other| Cow::Borrowed(&self.agents[other.index as usize])));
             let wish = dodgy_2d::Vec2::new(self.wishes[own].x, self.wishes[own].y);
-            let velocity = self.agents[own].compute_avoiding_velocity(
-                &others,
-                &[],
-                wish,
-                SPEED_MPS,
-                STEP_S,
-                &options,
-            );
+            let velocity = self.agents[own].compute_avoiding_velocity(&others, &[], wish, SPEED_MPS, STEP_S, &options);
             self.chosen[own] = [velocity.x, velocity.y];
         }
     }
@@ -176,10 +152,7 @@ mod tests {
         assert!(is_sound(&swarm));
         // The shares differ outside of velocity obstacles (see `crowd`), yet most robots are of one mind.
         let off = |(a, b): (&[f32; 2], &[f32; 2])| Vec2::new(a[0] - b[0], a[1] - b[1]).norm();
-        let alike = own
-            .iter()
-            .zip(&swarm.chosen)
-            .filter(|pair| off(*pair) < 0.5);
+        let alike = own.iter().zip(&swarm.chosen).filter(|pair| off(*pair) < 0.5);
         assert!(alike.count() > 500);
     }
 }
