@@ -1,6 +1,6 @@
 use super::*;
 
-const SCENARIO: &str = "../../scenarios/swap-circle.toml";
+const SCENARIO: &str = "../scenarios/swap-circle.toml";
 
 fn parse(text: &str) -> Result<Config, ScenarioError> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../companions");
