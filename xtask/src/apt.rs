@@ -2,8 +2,8 @@
 //!
 //! Nothing is installed for them: that needs no root, and no package of the user's is in the way of another one (Debian's
 //! emulators exclude the `qemu-utils` of backports, for one). apt says which packages this machine lacks; `dpkg-deb` unpacks
-//! those; a small script for each program starts it with the libraries that came along. Only Python, which does not work from
-//! another place than its own, is installed ([`install`]), as root and if nothing has to go or change for it.
+//! those; a small script for each program starts it with the libraries that came along. Only what does not work from another
+//! place than its own (Python; tshark for root) is installed ([`install`]), as root and if nothing has to go or change for it.
 
 use crate::repo::{Repo, output_of, run};
 use std::fs;
@@ -32,6 +32,7 @@ pub fn unpack(repo: &Repo, packages: &[&str], programs: &[&str]) -> Result<(), S
         let unpack = unpack.arg("-x").arg(&archive).arg(&root);
         output_of(unpack).ok_or_else(|| format!("cannot unpack {}", archive.display()))?;
     }
+    relink(&root, &root).map_err(|error| format!("{}: {error}", root.display()))?;
     fs::remove_dir_all(&archives).map_err(|error| format!("{}: {error}", archives.display()))?;
     println!("Unpacked into {}", root.display());
     // The scripts come last: what has one is complete.
@@ -92,6 +93,36 @@ fn read(said: &str) -> Plan {
     plan
 }
 
+/// Turns absolute links below a folder to what came along below `root`.
+fn relink(root: &Path, folder: &Path) -> std::io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let (path, kind) = entry.and_then(|entry| Ok((entry.path(), entry.file_type()?)))?;
+        if kind.is_dir() {
+            relink(root, &path)?;
+        } else if kind.is_symlink() {
+            let to = fs::read_link(&path)?;
+            let inside = to.strip_prefix("/").map(|to| root.join(to));
+            if let Ok(inside) = inside
+                && inside.exists()
+            {
+                fs::remove_file(&path)?;
+                link(&inside, &path)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+#[cfg(unix)]
+fn link(to: &Path, from: &Path) -> std::io::Result<()> {
+    std::os::unix::fs::symlink(to, from)
+}
+
+#[cfg(not(unix))]
+fn link(_: &Path, _: &Path) -> std::io::Result<()> {
+    Ok(()) // where there is apt, there is Unix
+}
+
 /// A script that starts a program with the libraries that were unpacked beside it.
 fn write_script(repo: &Repo, root: &Path, name: &str) -> Result<(), String> {
     let places = ["usr/bin", "usr/sbin"].map(|folder| root.join(folder).join(name));
@@ -102,8 +133,10 @@ fn write_script(repo: &Repo, root: &Path, name: &str) -> Result<(), String> {
         "#!/bin/sh\n\
          # Starts a program that `cargo xtask` unpacked, with its libraries.\n\
          export LD_LIBRARY_PATH='{}'\"${{LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}}\"\n\
+         export WIRESHARK_DATA_DIR='{}'\n\
          exec '{}' \"$@\"\n",
         libraries.join(":"),
+        root.join("usr/share/wireshark").display(),
         program.display()
     );
     let script = repo.tools().join(name);

@@ -152,7 +152,7 @@ mod program {
             let way = two.kinematics().twist(&[encoder.travelled(black_box(1)), any()]);
             odometry.advance(&way, span());
             let heading = odometry.heading_rad();
-            black_box(ahead.pose(&odometry.pose(), heading, any()));
+            black_box(ahead.state(&odometry.state(), heading, any()));
             let _ = bridges.turn(&two.mix(&ahead.twist(any_vec(), heading), span()));
             let wish = Twist::holonomic(any_vec(), heading, any());
             let rims = three.mix(&wish, span());
