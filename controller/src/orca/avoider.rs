@@ -9,7 +9,6 @@ use super::linear_program::{Solution, solve};
 use super::{AvoidParams, Params, half_plane, half_space, wall};
 use crate::body::Body;
 use crate::geom::{Vec2, Vec3, Vector};
-use crate::list::{self, sink_last};
 use crate::neighbor::Nearby;
 use crate::obstacle::Obstacle;
 use crate::rand::Rng;
@@ -208,7 +207,7 @@ fn own_velocity<V: Dimension>(body: &Body<V::Scalar>) -> V {
     if own.is_finite() { own } else { V::ZERO }
 }
 
-/// What the at most `room` nearest obstacles forbid, nearest first. Not inlined, so that its stack is free again for
+/// What the at most `room` nearest obstacles forbid, nearest first, into `constraints`, which are empty. Not inlined, so that its stack is free again for
 /// the solver.
 #[inline(never)]
 fn nearest_obstacles<V: Dimension, const K: usize>(
@@ -219,7 +218,8 @@ fn nearest_obstacles<V: Dimension, const K: usize>(
     constraints: &mut Vec<HalfSpace<V>, K>,
 ) {
     let own = own_velocity(body);
-    let mut nearest = Vec::<(V::Scalar, HalfSpace<V>), K>::new();
+    // Beside the constraints, not with them: pairs would need both lists twice on the stack.
+    let mut distances = Vec::<V::Scalar, K>::new();
     for obstacle in obstacles {
         // Nothing is nearer than a ball in whose very centre the robot is.
         let nearest_point = obstacle.nearest_point();
@@ -227,18 +227,29 @@ fn nearest_obstacles<V: Dimension, const K: usize>(
         let Some(constraint) = static_obstacle(params, body, own, obstacle) else {
             continue;
         };
-        if nearest.len() >= room {
-            let is_nearer = nearest.last().is_some_and(|(farthest, _)| distance < *farthest);
+        if distances.len() >= room {
+            let is_nearer = distances.last().is_some_and(|farthest| distance < *farthest);
             if !is_nearer {
                 continue;
             }
-            nearest.pop();
+            distances.pop();
+            constraints.pop();
         }
-        if nearest.push((distance, constraint)).is_ok() {
-            sink_last(&mut nearest, |before, after| after.0 < before.0);
+        if distances.push(distance).is_err() || constraints.push(constraint).is_err() {
+            continue;
+        }
+        // Both lists in step, by pattern: `swap` would leave a panic in the firmware.
+        let mut at = distances.len().saturating_sub(1);
+        while let Some(before) = at.checked_sub(1)
+            && let Some([nearer, farther]) = distances.get_mut(before..=at)
+            && let Some([one, other]) = constraints.get_mut(before..=at)
+            && *farther < *nearer
+        {
+            core::mem::swap(nearer, farther);
+            core::mem::swap(one, other);
+            at = before;
         }
     }
-    list::extend(constraints, nearest.iter().map(|(_, constraint)| *constraint));
 }
 
 /// What an obstacle forbids: it does nothing to avoid, so the whole correction is the robot's.
