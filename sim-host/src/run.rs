@@ -48,7 +48,7 @@ impl ScenarioArgs {
 pub struct RunArgs {
     #[command(flatten)]
     scenario: ScenarioArgs,
-    /// Folder for the results; files of an earlier run are replaced [default: out/<name of the scenario>].
+    /// Folder for the results; files of an earlier run are replaced [default: out/ and the scenario's name].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }

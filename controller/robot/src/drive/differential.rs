@@ -40,7 +40,7 @@ impl<S: Scalar> Kinematics<S, 2> for Differential<S> {
 /// collision-free navigation for multiple robots under differential-drive constraints" use it for ORCA: this "effective centre"
 /// is the robot as far as the controller is concerned, and then does exactly what ORCA assumes of it. Therefore
 ///
-/// - give the controller the point's pose ([`Self::pose`]), not the axle's, and goals for that point;
+/// - give the controller the state of that point ([`Self::state`]), not the axle's, and goals for that point;
 /// - the radius in [`AgentConfig`](staya_controller::agent::AgentConfig) is that of the disc around the point that holds the body at any
 ///   heading: [`Self::radius`], the body's own plus D;
 /// - the top speed is what the wheels can do in the worst direction: [`Self::max_speed`].

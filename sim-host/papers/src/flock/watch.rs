@@ -15,7 +15,7 @@ const SETTLED_S: f64 = 2.0;
 pub struct Run {
     /// The flock before the first tick and after each.
     pub trace: Vec<Option<FlockMeasure>>,
-    /// Least distance of two centres after [`SETTLED_S`], metres; infinite when none were within d.
+    /// Least distance of two centres after `SETTLED_S`, metres; infinite when none were within d.
     pub least_pair_m: f64,
     /// Pairs of bodies that overlap, summed over ticks.
     pub overlaps: usize,

@@ -126,7 +126,7 @@ pub struct Crossing {
     pub collisions: u64,
 }
 
-/// What one landscape gave: the crossings in the order of [`Plan::ways`].
+/// What one landscape gave: the crossings in the order of `Plan::ways`.
 pub type Run = Vec<Crossing>;
 
 impl Plan {

@@ -61,7 +61,7 @@ pub trait Operated: Send {
 /// A scenario before its first tick, with an operator.
 ///
 /// # Errors
-/// See [`Grid::new`].
+/// [`Misplaced`] when two robots start in one cell or one starts in a wall.
 pub fn operated(scenario: &Scenario) -> Result<Box<dyn Operated>, Misplaced> {
     Ok(match AnyEngine::new(scenario)? {
         AnyEngine::Plane(engine) => boxed(scenario, *engine),
