@@ -28,7 +28,8 @@ pub fn run(repo: &Repo, report: &mut Report) {
         let arguments = |arguments: &[&'static str]| [&["clippy", "--locked"], arguments, &deny].concat();
         let own = ["--workspace", "--all-targets"];
         report.command("clippy", repo.cargo(&arguments(&own)));
-        let defmt = ["--workspace", "--features", "staya-controller/defmt"];
+        let packages = PACKAGES.iter().flat_map(|name| ["--package", name]);
+        let defmt: Vec<_> = packages.chain(["--features", "staya-controller/defmt"]).collect();
         report.command("clippy with defmt", repo.cargo(&arguments(&defmt)));
         for (folder, features) in OTHERS {
             let clippy = arguments(&[&["--all-targets"], features].concat());

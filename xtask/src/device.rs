@@ -1,4 +1,4 @@
-//! The controller built for microcontrollers, with whatever toolchain there is.
+//! The controller compiled for microcontrollers, with whatever toolchain there is.
 
 use crate::debian;
 use crate::part::PARTS;
@@ -20,27 +20,6 @@ pub enum Toolchain {
 #[derive(Default)]
 pub struct Toolchains {
     debian: Option<Result<debian::Rust, String>>,
-}
-
-/// Builds the controller for each target, plain and with every feature: Cortex-M4F and Cortex-M0,
-/// with and without an FPU, with and without compare-and-swap, and RISC-V.
-pub fn run(repo: &Repo, report: &mut Report) {
-    let mut toolchains = Toolchains::default();
-    for part in &PARTS {
-        let toolchain = toolchains.find(repo, part.target);
-        for features in ["", "defmt"] {
-            let mut name = format!("controller for {}", part.target);
-            if !features.is_empty() {
-                name = format!("{name}, {features}");
-            }
-            match &toolchain {
-                Ok(toolchain) => {
-                    report.command(&name, toolchain.controller(repo, part.target, features));
-                }
-                Err(reason) => report.skip(&name, reason),
-            }
-        }
-    }
 }
 
 /// Checks the controller with each set of features that its manifest lists, on the parts with Cortex-M4F and Cortex-M0.
@@ -113,15 +92,6 @@ impl Toolchain {
             Self::Own => repo.target.clone(),
             Self::Debian(_) => debian::target_folder(repo),
         }
-    }
-
-    /// A release build of the controller: code for generic functions and constants is only made
-    /// (and can only fail) in a build, not in a check.
-    fn controller(&self, repo: &Repo, target: &str, features: &str) -> Command {
-        let mut command = self.cargo(repo, target, "build");
-        command.args(["--locked", "--release", "--package", "staya-controller"]);
-        command.args(["--features", features]);
-        command
     }
 }
 

@@ -61,6 +61,6 @@ fn fuzz(repo: &Repo, target: &str, seconds: &str) -> Command {
         .arg(format!("-max_total_time={seconds}"))
         // Stories need some length from the start; one that takes longer than 10 s is a fault.
         .args(["-len_control=0", "-max_len=512", "-timeout=10"])
-        .env("CARGO_TARGET_DIR", repo.target_of(FOLDER));
+        .env("CARGO_TARGET_DIR", &repo.target);
     command
 }

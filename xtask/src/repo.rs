@@ -11,7 +11,7 @@ pub const BLESS: &str = "STAYA_BLESS";
 pub struct Repo {
     /// Its top folder.
     pub root: PathBuf,
-    /// Cargo's target folder; every other workspace builds in a folder inside it.
+    /// Cargo's target folder.
     pub target: PathBuf,
 }
 
@@ -59,16 +59,12 @@ impl Repo {
         command
     }
 
-    /// The same for a workspace of its own inside the repository, which builds apart.
+    /// The same for a workspace of its own inside the repository. It builds in the same folder: with the same profiles it
+    /// finds there what it shares with the others.
     pub fn cargo_in(&self, folder: &str, arguments: &[&str]) -> Command {
         let mut command = self.cargo(arguments);
-        command.current_dir(self.root.join(folder)).env("CARGO_TARGET_DIR", self.target_of(folder));
+        command.current_dir(self.root.join(folder));
         command
-    }
-
-    /// Where a workspace of its own builds: `tests/peers` in `target/peers`.
-    pub fn target_of(&self, folder: &str) -> PathBuf {
-        self.target.join(Path::new(folder).file_name().unwrap_or_default())
     }
 }
 

@@ -35,8 +35,20 @@ struct Part {
     name: String,
     counts: Counts,
     took: Duration,
+    /// Time of all processors in the commands that it ran, if the system tells.
+    worked: Option<Duration>,
     /// Why it failed or was skipped, or what was found.
     note: String,
+}
+
+impl Part {
+    fn seconds(&self) -> String {
+        format!("{:.1}", self.took.as_secs_f64())
+    }
+
+    fn seconds_worked(&self) -> String {
+        self.worked.map_or(String::from("-"), |worked| format!("{:.1}", worked.as_secs_f64()))
+    }
 }
 
 /// The rows so far.
@@ -58,12 +70,16 @@ impl Report {
     pub fn part(&mut self, name: &str, work: impl FnOnce() -> (Counts, String)) -> Counts {
         println!("\n== {name}");
         let start = Instant::now();
+        let before = processor_time();
         let (mut counts, mut note) = work();
+        let worked = before.and_then(|before| processor_time()?.checked_sub(before));
         if self.is_strict && counts.skipped > 0 {
             counts.failed += std::mem::take(&mut counts.skipped);
             note = format!("with CI=true nothing may be skipped: {note}");
         }
-        self.parts.push(Part { name: name.to_string(), counts, took: start.elapsed(), note });
+        let part = Part { name: name.to_string(), counts, took: start.elapsed(), worked, note };
+        println!("-- {} s, of processors {} s", part.seconds(), part.seconds_worked());
+        self.parts.push(part);
         counts
     }
 
@@ -97,17 +113,37 @@ impl Report {
         let mut total = Counts::default();
         let widest = self.parts.iter().map(|part| part.name.chars().count()).max();
         let width = widest.unwrap_or(0);
-        println!("\n{:width$}  passed  failed  skipped  seconds", "part");
-        for Part { name, counts, took, note } in &self.parts {
+        println!("\n{:width$}  passed  failed  skipped  seconds  of processors", "part");
+        for part in &self.parts {
+            let Part { name, counts, note, .. } = part;
             let Counts { passed, failed, skipped } = counts;
-            let seconds = took.as_secs_f64();
-            let row = format!("{name:width$}  {passed:>6}  {failed:>6}  {skipped:>7}  {seconds:>7.1}  {note}");
+            let (took, worked) = (part.seconds(), part.seconds_worked());
+            let row = format!("{name:width$}  {passed:>6}  {failed:>6}  {skipped:>7}  {took:>7}  {worked:>13}  {note}");
             println!("{}", row.trim_end());
             total += *counts;
         }
+        let took: Duration = self.parts.iter().map(|part| part.took).sum();
+        println!("{:.0} seconds in all", took.as_secs_f64());
         println!("{total}");
         ExitCode::from(u8::from(total.failed > 0))
     }
+}
+
+/// What this program and the commands that have ended have worked so far (`/proc/self/stat` of Linux: a machine that
+/// is shared makes parts take longer, but hardly work more). What is started from a server of its own does not count.
+fn processor_time() -> Option<Duration> {
+    let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
+    let hundredths = hundredths_worked(&stat)?;
+    Some(Duration::from_millis(hundredths.checked_mul(10)?))
+}
+
+/// The fields utime, stime, cutime and cstime of proc_pid_stat(5): hundredths of seconds on every Linux of today.
+fn hundredths_worked(stat: &str) -> Option<u64> {
+    // The name in brackets may hold blanks; behind it the fields begin with the third.
+    let (_, fields) = stat.rsplit_once(')')?;
+    let numbers: Option<Vec<u64>> =
+        fields.split_whitespace().skip(11).take(4).map(|field| field.parse().ok()).collect();
+    numbers.filter(|numbers| numbers.len() == 4).map(|numbers| numbers.iter().sum())
 }
 
 /// The counts in one line of a test program's output, if it is its closing line. What the command
@@ -165,6 +201,15 @@ mod tests {
                     4 filtered out; finished in 0.02s";
         let counts = parse_test_result(line).unwrap();
         assert_eq!(counts, Counts { passed: 12, failed: 3, skipped: 5 });
+    }
+
+    #[test]
+    fn time_of_processors_is_that_of_the_program_and_its_commands() {
+        let stat = "42 (a (b) c) S 1 42 42 0 -1 4194304 900 80 0 0 3 5 700 11000 20 0 1 0 99 1 1";
+        assert_eq!(hundredths_worked(stat), Some(3 + 5 + 700 + 11000));
+        for wrong in ["", "42 (a) S 1 2", "42 (a) S 1 42 42 0 -1 4194304 900 80 0 0 3 x 700 11000 20"] {
+            assert_eq!(hundredths_worked(wrong), None, "{wrong:?}");
+        }
     }
 
     #[test]

@@ -128,8 +128,9 @@ fn best_on_plane<S: Scalar>(
     let mut best = foot
         + match aim {
             Aim::Near(goal) => in_border(goal - foot).clamp_norm(radius),
-            // Square to the border everything on it is equally good.
-            Aim::Along(way) => in_border(way).normalized().unwrap_or(Vec3::ZERO) * radius,
+            // Square to the border everything on it is equally good. Where little of the way is left in it, rounding
+            // has turned that out of the border: put back.
+            Aim::Along(way) => in_border(in_border(way).normalized().unwrap_or(Vec3::ZERO)) * radius,
         };
     for (index, other) in before.iter().enumerate() {
         if other.penetration(best) > S::ZERO {

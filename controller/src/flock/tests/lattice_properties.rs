@@ -111,7 +111,7 @@ proptest! {
             prop_assert!(error(fixed) < 0.02, "{:?} {:?}", fixed, plain);
             // A root that is off by 0.2 % is felt where the force of the obstacle sets in.
             let fast = answer::<Fast32>(spacing, &case, |v| v);
-            prop_assert!((fast - plain).norm() < 0.2 * plain.norm().max(50.0), "{:?} {:?}", fast, plain);
+            prop_assert!((fast - plain).norm() < 0.3 * plain.norm().max(50.0), "{:?} {:?}", fast, plain);
         }
     }
 

@@ -314,12 +314,16 @@ proptest! {
             (v(x.to_f64(), y.to_f64(), z.to_f64()), found.penetration_mps.to_f64())
         }
         let exact = solve::<_, 10>(&spaces, 0, preferred, 1.5);
-        // Borders that are nearly parallel move a corner far; what it violates, they do not.
+        // Borders that are nearly parallel move a corner far; what it violates, they do not, until what is left of
+        // their angle is rounding.
+        let sine = |one: &HalfSpace<V>, two: &HalfSpace<V>| one.normal.cross(two.normal).norm();
+        let mut pairs = spaces.iter().enumerate().flat_map(|(i, one)| spaces[..i].iter().map(move |two| (one, two)));
+        let q16 = if pairs.any(|(one, two)| sine(one, two) < 0.02) { 0.1 } else { 0.02 };
         let (at, told) = answer::<f32>(&spaces, preferred);
         prop_assert!(worst(&spaces, at) <= exact.penetration_mps + 1e-3, "f32 {}", worst(&spaces, at));
         prop_assert!((worst(&spaces, at) - told).abs() < 1e-4 && at.norm() < 1.5 + 1e-3);
         let (at, told) = answer::<Q16>(&spaces, preferred);
-        prop_assert!(worst(&spaces, at) <= exact.penetration_mps + 2e-2, "Q16 {}", worst(&spaces, at));
+        prop_assert!(worst(&spaces, at) <= exact.penetration_mps + q16, "Q16 {}", worst(&spaces, at));
         prop_assert!((worst(&spaces, at) - told).abs() < 2e-3 && at.norm() < 1.5 + 1e-2);
     }
 
