@@ -1,20 +1,49 @@
 //! Any wire format, for hosts and for firmware that is told by its host what to speak. A firmware that knows names the format's type.
 
+use crate::signed::Signed;
+use crate::signing::Signing;
 use crate::wire::Mavlink;
+use core::ops::{Deref, DerefMut};
 use heapless::Vec;
 use serde::{Serialize, Serializer};
+use staya_controller::auth::Key;
 use staya_controller::robot::RobotId;
-use staya_controller::wire::{DecodeError, EncodeError, Format, Frame, FromFormat, Header, Message, Postcard, Wire};
+use staya_controller::wire::{
+    DecodeError, EncodeError, Format, Frame, FromFormat, Header, MAX_TAGGED_ROBOT, Message, Postcard, Sealed, Wire,
+};
 
-/// A wire format that is known only when the program runs.
+/// A wire format that is known only when the program runs: open, or with a key if `S` and `G` are where [`Sealed`] and [`Signed`] are kept, such as
+/// boxes of them. Without these a robot pays for no key.
 ///
 /// In an agent's digest it is what is in it, so that agents of the same state have the same digest however they speak.
 #[derive(Clone, Debug)]
-pub enum AnyWire {
+pub enum AnyWire<S = Keyless, G = Keyless> {
     /// The controller's own frames.
     Postcard(Postcard),
     /// MAVLink 2 frames.
     Mavlink(Mavlink),
+    /// The controller's own frames with a tag.
+    Sealed(S),
+    /// MAVLink 2 frames with a signature.
+    Signed(G),
+}
+
+/// In place of a format with a key for who has none: there is no such value.
+#[derive(Clone, Debug, Serialize)]
+pub enum Keyless {}
+
+impl Deref for Keyless {
+    type Target = Postcard;
+
+    fn deref(&self) -> &Postcard {
+        match *self {}
+    }
+}
+
+impl DerefMut for Keyless {
+    fn deref_mut(&mut self) -> &mut Postcard {
+        match *self {}
+    }
 }
 
 /// Does `$do` with the format that is in it.
@@ -23,12 +52,14 @@ macro_rules! each {
         match $any {
             AnyWire::Postcard($wire) => $do,
             AnyWire::Mavlink($wire) => $do,
+            AnyWire::Sealed($wire) => $do,
+            AnyWire::Signed($wire) => $do,
         }
     };
 }
 
-impl AnyWire {
-    /// The format of this name, without a past.
+impl<S, G> AnyWire<S, G> {
+    /// The format of this name, open and without a past.
     #[must_use]
     pub const fn new(format: Format) -> Self {
         match format {
@@ -38,10 +69,28 @@ impl AnyWire {
     }
 }
 
-/// The number that an operator beside the robots has: no robot's, and one that the format has room for.
+impl<S, G, const P: usize, const Q: usize> AnyWire<S, G>
+where
+    S: From<Sealed<P>> + Deref<Target = Sealed<P>>,
+    G: From<Signed<Q>> + Deref<Target = Signed<Q>>,
+{
+    /// The format of this name with a key. Postcard's takes the number of `starts`, by the rule of [`Sealed`]; MAVLink's the number of the `link` and the
+    /// `timestamp` to begin with, by that of [`Signing`]. `None` from 2^20 starts on.
+    #[must_use]
+    pub fn keyed(format: Format, key: &Key, starts: u32, link: u8, timestamp: u64) -> Option<Self> {
+        Some(match format {
+            Format::Postcard => Self::Sealed(Sealed::at_start(key, starts)?.into()),
+            Format::Mavlink => Self::Signed(Signed::new(Signing::new(key.clone(), link, timestamp)).into()),
+        })
+    }
+}
+
+/// The number that an operator beside the robots has: no robot's, and one that the format has room for. With a key there may be two, on `link`
+/// 0 and 1, told apart if the format has room for that, so that each may count his frames for himself.
 #[must_use]
-pub const fn operator(format: Format) -> RobotId {
+pub const fn operator(format: Format, has_key: bool, link: u8) -> RobotId {
     match format {
+        Format::Postcard if has_key => RobotId(MAX_TAGGED_ROBOT.0 - link as u32),
         Format::Postcard => RobotId(u32::MAX),
         Format::Mavlink => RobotId(255),
     }
@@ -49,20 +98,24 @@ pub const fn operator(format: Format) -> RobotId {
 
 /// The largest number of a robot.
 #[must_use]
-pub const fn max_robot(format: Format) -> RobotId {
+pub const fn max_robot(format: Format, has_key: bool) -> RobotId {
     match format {
+        Format::Postcard if has_key => RobotId(MAX_TAGGED_ROBOT.0 - 2),
         Format::Postcard => RobotId(u32::MAX - 1),
         Format::Mavlink => RobotId(crate::wire::MAX_ROBOT as u32),
     }
 }
 
-impl Serialize for AnyWire {
+impl<S: Serialize, G: Serialize> Serialize for AnyWire<S, G> {
     fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
         each!(self, wire => wire.serialize(serializer))
     }
 }
 
-impl FromFormat for AnyWire {
+impl<S, G> FromFormat for AnyWire<S, G>
+where
+    Self: Wire,
+{
     fn from_format(format: Format) -> Option<Self> {
         Some(Self::new(format))
     }
@@ -74,7 +127,11 @@ impl FromFormat for Mavlink {
     }
 }
 
-impl Wire for AnyWire {
+impl<S, G> Wire for AnyWire<S, G>
+where
+    S: Clone + core::fmt::Debug + Serialize + DerefMut<Target: Wire>,
+    G: Clone + core::fmt::Debug + Serialize + DerefMut<Target: Wire>,
+{
     fn beacon_len(&self) -> usize {
         each!(self, wire => wire.beacon_len())
     }

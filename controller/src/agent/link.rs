@@ -83,6 +83,10 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
         }
     }
 
+    pub(super) const fn wire_mut(&mut self) -> &mut W {
+        &mut self.wire
+    }
+
     /// Forgets who was silent for too long. The first thing in each step.
     pub(super) fn expire(&mut self, now: Instant, out: &mut Outputs<S>) {
         let windows = &mut self.windows;

@@ -56,4 +56,9 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
     pub const fn guidance(&self) -> &G {
         &self.guidance
     }
+
+    /// The wire format, to tell it what it must know besides: MAVLink's signatures the time.
+    pub const fn wire_mut(&mut self) -> &mut W {
+        self.link.wire_mut()
+    }
 }

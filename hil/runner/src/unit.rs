@@ -164,7 +164,7 @@ impl Unit {
             return Err(Cause::NotReady);
         };
         let capacities = hello.capacities;
-        let wire = AnyWire::new(self.config.setup.format);
+        let wire: AnyWire = AnyWire::new(self.config.setup.format);
         let (step, cut) = capacities.fit(tick, now, inputs, &wire, &mut self.packed).map_err(Cause::Window)?;
         self.tally.cut_inbox_bytes += cut.inbox_bytes as u64;
         self.tally.cut_obstacles += cut.obstacles as u64;

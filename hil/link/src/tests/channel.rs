@@ -43,7 +43,7 @@ fn thousand_steps<B: Controller + Default>(
         let capacities = crate::capacities::Capacities { inbox_bytes: 1024, ..capacities };
         let mut packed = [0; 64];
         let (step, _) =
-            capacities.fit(tick, scene.now, &inputs, &AnyWire::new(setup.format), &mut packed).expect("fits");
+            capacities.fit(tick, scene.now, &inputs, &<AnyWire>::new(setup.format), &mut packed).expect("fits");
         let result = bench.step(&step).expect("no reset");
         let (command, digest) = plain(&inputs, &step);
         assert_eq!(result.outputs.command, command, "step {tick}");

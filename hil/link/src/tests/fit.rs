@@ -121,7 +121,7 @@ proptest! {
 #[test]
 fn an_inbox_of_another_format_is_cut_at_its_frames() {
     let (header, mut inbox) = (Header { boot: 0, sender: RobotId(2), sequence: 0 }, heapless::Vec::<u8, 256>::new());
-    let mut wire = AnyWire::new(Format::Mavlink);
+    let mut wire: AnyWire = AnyWire::new(Format::Mavlink);
     let message = Message::Beacon(Beacon::default());
     let len = wire.encode(header, &message, &mut inbox).expect("fits");
     wire.encode(header, &message, &mut inbox).expect("fits");

@@ -81,6 +81,11 @@ impl<W: Wire> Controller<W> {
     }
 
     /// What the robot does.
+    /// How it speaks.
+    pub const fn wire_mut(&mut self) -> &mut W {
+        self.agent.wire_mut()
+    }
+
     #[must_use]
     pub fn mode(&self) -> Mode {
         self.agent.mode()

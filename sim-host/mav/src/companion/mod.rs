@@ -11,7 +11,7 @@ mod medium;
 mod offboard;
 mod report;
 mod run;
-mod wire;
+mod seal;
 
 pub use config::{Config, VehicleSetup};
 pub use controller::{Body, Controller};
@@ -20,4 +20,4 @@ pub use medium::{Medium, MediumError, MediumSetup};
 pub use offboard::{AUTOPILOT, COMPONENT, Entry, Event, Fix, OffboardStateMachine, Rules, State, Tally};
 pub use report::{Report, VehicleReport};
 pub use run::{Options, RunError, run};
-pub use wire::{CompanionWire, Seal, WireError};
+pub use seal::{Seal, SealError};

@@ -5,16 +5,18 @@ use super::controller::{Body, Controller};
 use super::medium::{Medium, MediumError, tunnel, tunnelled};
 use super::offboard::{AUTOPILOT, COMPONENT, Event, OffboardStateMachine, State, status_text};
 use super::report::{LineReport, Report, VehicleReport};
-use super::wire::{CompanionWire, Seal, WireError};
+use super::seal::{Seal, SealError};
 use crate::geo::{Origin, enu, ned};
 use crate::{Lines, OpenError, Peer, Received, Tlog, TlogError};
 use staya_controller::agent::Event as AgentEvent;
 use staya_controller::robot::Mode;
+use staya_mavlink::any::AnyWire;
 use staya_mavlink::dialect::MavMessage;
 use staya_mavlink::frame::{MAX_FRAME_LEN, RawFrame, Sender, encode_message};
 use staya_mavlink::signing::Signing;
 use staya_sim::engine::PlaneGround;
 use staya_sim::key::{self, KeyError, KeyFile};
+use staya_sim::radio::HostWire;
 use std::io::{self, Write as _};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -50,7 +52,7 @@ pub enum RunError {
     Medium(#[from] MediumError),
     /// The key of packets cannot be used.
     #[error(transparent)]
-    CompanionWire(#[from] WireError),
+    Seal(#[from] SealError),
     /// The key of links cannot be had.
     #[error(transparent)]
     Key(#[from] KeyError),
@@ -66,7 +68,7 @@ pub enum RunError {
 struct Vehicle {
     setup: VehicleSetup,
     offboard: OffboardStateMachine,
-    controller: Controller<CompanionWire>,
+    controller: Controller<HostWire>,
     /// Where its autopilot was heard.
     peer: Option<Peer>,
     sequence: u8,
@@ -88,7 +90,7 @@ struct Companions<'a> {
     vehicles: Vec<Vehicle>,
     /// One for each line, with a key for links.
     signing: Option<Vec<Signing>>,
-    wire: CompanionWire,
+    wire: AnyWire,
     options: &'a mut Options,
     began: Instant,
 }
@@ -100,6 +102,7 @@ struct Companions<'a> {
 pub fn run(config: &Config, options: &mut Options, is_wanted: impl Fn() -> bool) -> Result<Report, RunError> {
     let ground = Arc::new(PlaneGround::new(&config.scenario, &config.plane));
     let boot = (micros_since_1970() >> 20) as u8;
+    let format = config.scenario.radio.format;
     let seal = config.key.as_deref().map(Seal::read).transpose()?;
     let link_key = config.link_key.as_deref().map(KeyFile::read).transpose()?;
     let remarks =
@@ -121,7 +124,7 @@ pub fn run(config: &Config, options: &mut Options, is_wanted: impl Fn() -> bool)
             setup.index,
             boot,
             config.lag_s,
-            CompanionWire::new(config.scenario.radio.format, seal.as_ref()),
+            seal.as_ref().map_or_else(|| HostWire::new(format), |seal| seal.wire(format)),
         ),
         peer: None,
         sequence: 0,
@@ -140,7 +143,7 @@ pub fn run(config: &Config, options: &mut Options, is_wanted: impl Fn() -> bool)
         medium: Medium::open(&config.air)?,
         vehicles: config.vehicles.iter().map(vehicle).collect(),
         signing,
-        wire: CompanionWire::new(config.scenario.radio.format, None),
+        wire: AnyWire::new(format),
         options,
         began: Instant::now(),
     };
@@ -279,6 +282,10 @@ impl Companions<'_> {
             return Ok(());
         };
         let steers = vehicle.offboard.state() == State::Steering && !is_far;
+        if let AnyWire::Signed(signed) = vehicle.controller.wire_mut() {
+            // So that who starts later does not take it for a recording.
+            signed.signing_mut().advance_to(key::timestamp());
+        }
         let out = vehicle.controller.step(&body, steers, &vehicle.inbox, moment);
         vehicle.inbox.clear();
         vehicle.heard += u64::from(out.received);

@@ -1,6 +1,6 @@
 //! An attacker with a radio like the robots' own, but without their key.
 
-use crate::radio::RobotWire;
+use crate::radio::{self, HostWire};
 use crate::scenario::{Attack, AttackKind};
 use heapless::Vec as Bounded;
 use staya_controller::agent::OUTBOX;
@@ -17,7 +17,7 @@ const STARTS: u8 = u8::MAX;
 pub(super) struct Attacker {
     attack: Attack,
     cell_m: f64,
-    wire: RobotWire,
+    wire: HostWire,
     /// Of its next frame.
     sequence: u16,
     version: u8,
@@ -34,7 +34,7 @@ impl Attacker {
         Self {
             attack: *attack,
             cell_m,
-            wire: RobotWire::new(format, key, STARTS),
+            wire: radio::wire(format, key, STARTS),
             sequence: 0,
             version: 0,
             heard: VecDeque::new(),

@@ -26,7 +26,7 @@ pub use plane::{PlaneGround, Senses};
 pub use simulate::{Moment, Outcome, WIDE, Watch, simulate, simulate_with};
 
 use crate::metrics::{Arrivals, Keeping};
-use crate::radio::{Radio, RobotWire};
+use crate::radio::{self, HostWire, Radio};
 use crate::record::{PacketCounts, RobotRow, TickRow};
 use crate::scenario::{Fault, Robot, Scenario};
 use attacker::Attacker;
@@ -48,7 +48,7 @@ const BATCH: usize = 64;
 #[derive(Debug)]
 struct Computer<G, A> {
     /// `None`: elsewhere.
-    agent: Option<Agent<f32, G, NEIGHBORS, A, RobotWire>>,
+    agent: Option<Agent<f32, G, NEIGHBORS, A, HostWire>>,
     outbox: heapless::Vec<u8, OUTBOX>,
     /// Of the last step, if somebody wants to know.
     events: Vec<Event>,
@@ -232,14 +232,14 @@ where
     /// Computer number `index` with its own agent, started now.
     fn start(&self, index: usize, boot: u8) -> Computer<G, A> {
         let (guidance, safety) = (self.brains)(index);
-        let wire = RobotWire::new(self.format, self.key.as_ref(), boot);
+        let wire = radio::wire(self.format, self.key.as_ref(), boot);
         let mut agent = Agent::new(&self.config(index, boot), guidance, safety, wire);
         // A law that has no use for its task says so; the scenario was checked for that.
         let _ = agent.assign(&self.ground.task(index, self.tick));
         self.computer(Some(agent), boot)
     }
 
-    fn computer(&self, agent: Option<Agent<f32, G, NEIGHBORS, A, RobotWire>>, boot: u8) -> Computer<G, A> {
+    fn computer(&self, agent: Option<Agent<f32, G, NEIGHBORS, A, HostWire>>, boot: u8) -> Computer<G, A> {
         Computer {
             agent,
             outbox: heapless::Vec::new(),

@@ -2,7 +2,7 @@
 
 use super::simulate::AnyEngine;
 use super::{Engine, Ground, HostLaw, Outcome, Status};
-use crate::radio::RobotWire;
+use crate::radio::{self, HostWire};
 use crate::record::Motion;
 use crate::scenario::Scenario;
 use crate::world::Misplaced;
@@ -78,14 +78,14 @@ where
 {
     engine.keeps_events = true;
     let key = scenario.key.as_ref();
-    let (wire, number) = RobotWire::operator(scenario.radio.format, key, 1);
+    let (wire, number) = radio::operator(scenario.radio.format, key, 1);
     Box::new(OperatedEngine { engine, wire, number: key.map(|_| number), sequence: 0 })
 }
 
 /// A swarm, and what its operator speaks.
 struct OperatedEngine<W, G, A> {
     engine: Engine<W, Commanded<f32, G>, A>,
-    wire: RobotWire,
+    wire: HostWire,
     /// As whom it speaks if the robots have a key; otherwise as whom it is told to.
     number: Option<RobotId>,
     /// Of the next frame.

@@ -2,7 +2,7 @@
 
 use super::Status;
 use super::ground::{Ground, StateWords};
-use crate::radio::RobotWire;
+use crate::radio;
 use crate::record::Motion;
 use crate::scenario::{Order, PlaneSetup, Robot, Scenario, Target};
 use crate::world::plane::{Clearance, Disc, Plane, narrow};
@@ -128,7 +128,7 @@ pub(super) fn frames(orders: &[Order], format: Format, key: Option<&Key>) -> Vec
     let mut frames = Vec::<(u32, Vec<u8>)>::new();
     // Each index counts by itself: what is newer may be at most half of all versions ahead.
     let mut versions = [0_u8; 256];
-    let (mut wire, sender) = RobotWire::operator(format, key, 0);
+    let (mut wire, sender) = radio::operator(format, key, 0);
     let mut sequence = 0_u16;
     for order in orders {
         let version = &mut versions[usize::from(order.index)];

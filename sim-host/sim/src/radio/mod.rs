@@ -11,7 +11,7 @@ mod params;
 mod wire;
 
 pub use params::{Burst, RadioParams};
-pub use wire::{PEERS, RobotWire};
+pub use wire::{HostWire, PEERS, operator, wire};
 
 use fate::{Fates, Verdict};
 use medium::Medium;

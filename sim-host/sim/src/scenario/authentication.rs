@@ -4,9 +4,10 @@ use super::ranges::within;
 use super::source::Source;
 use super::{Attack, AttackKind, AttackTable, Robot, ScenarioError, ScenarioFile};
 use crate::key::{self, KeyFile};
-use crate::radio::{PEERS, RobotWire};
+use crate::radio::PEERS;
 use staya_controller::auth::Key;
 use staya_controller::robot::RobotId;
+use staya_mavlink::any::max_robot;
 
 /// Metres from the corner that a place may have: what a packet can say.
 const FARTHEST_M: f64 = 2_000_000.0;
@@ -46,7 +47,7 @@ pub(super) fn key(
         let remedy = format!("give at most {}, or leave this table out", PEERS - 2);
         return Err(source.error("authentication", problem, remedy));
     }
-    let most = RobotWire::max_robot(file.radio.format, true);
+    let most = max_robot(file.radio.format, true);
     if let Some(robot) = robots.iter().find(|robot| robot.id > most) {
         let problem = format!("robot {} has no number in frames with a tag", robot.id.0);
         let remedy = format!("give numbers up to {}", most.0);
@@ -100,7 +101,7 @@ fn attack(
     };
     let last = robots.last().map_or(RobotId(1), |robot| robot.id);
     let claims = table.claims.map_or(last, RobotId);
-    let most = RobotWire::max_robot(file.radio.format, true);
+    let most = max_robot(file.radio.format, true);
     if !claims.is_somebody() || claims > most {
         let remedy = format!("give 1 to {}", most.0);
         return Err(source.error(&format!("{field}.claims"), "this is no robot's number", remedy));

@@ -26,7 +26,7 @@ pub(super) fn general(source: &Source<'_>, file: &ScenarioFile) -> Result<(), Sc
 
 /// Whether the radio's format has room for the robots' numbers.
 pub(super) fn numbers(source: &Source<'_>, file: &ScenarioFile, robots: &[Robot]) -> Result<(), ScenarioError> {
-    let (format, most) = (file.radio.format, max_robot(file.radio.format));
+    let (format, most) = (file.radio.format, max_robot(file.radio.format, false));
     match robots.iter().find(|robot| robot.id > most) {
         None => Ok(()),
         Some(robot) => Err(source.error(
