@@ -4,6 +4,7 @@
 //! Source: A. V. Kuznetsov 2017 (KUZ), sections 2 and 3. Cells are (x, y), x east and y north.
 
 use crate::geom::Vec2;
+use crate::names::named;
 use crate::scalar::Scalar;
 use core::ops::{Add, Sub};
 use serde::{Deserialize, Serialize};
@@ -79,16 +80,16 @@ impl Sub for Cell {
     }
 }
 
-/// The norm of a unit move (KUZ section 2: a parameter).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[serde(rename_all = "snake_case")]
-pub enum Norm {
-    /// A diagonal move is sqrt 2 long.
-    #[default]
-    Euclidean,
-    /// A diagonal move is 1 long.
-    Chebyshev,
+named! {
+    /// The norm of a unit move (KUZ section 2: a parameter).
+    #[derive(Default)]
+    pub enum Norm {
+        /// A diagonal move is sqrt 2 long.
+        #[default]
+        Euclidean = "euclidean",
+        /// A diagonal move is 1 long.
+        Chebyshev = "chebyshev",
+    }
 }
 
 /// One of the eight unit moves, counter-clockwise from east, or `Stay`.

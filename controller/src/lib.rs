@@ -3,7 +3,7 @@
 //! ## Layers
 //!
 //! Modules use only what stands before them:
-//! numbers, geometry and what robots are called ([`scalar`], [`geom`], [`time`], [`rand`], [`grid`], [`cost`], [`shuffle`],
+//! numbers, geometry, names and what robots are called ([`names`], [`scalar`], [`geom`], [`time`], [`rand`], [`grid`], [`cost`], [`shuffle`],
 //! [`obstacle`], [`robot`], [`auth`])
 //! < what is known of oneself and of others ([`body`], [`neighbor`], [`template`], [`wire`])
 //! < behaviours ([`route`], [`formation`], [`orca`], [`flock`], [`push_out`]; they never import each other)
@@ -45,6 +45,7 @@ pub mod formation;
 pub mod geom;
 pub mod grid;
 mod list;
+pub mod names;
 pub mod neighbor;
 pub mod obstacle;
 #[cfg(feature = "orca")]

@@ -1,8 +1,8 @@
 //! Golden tables of swaps and doorways, as the commands print them.
 
+use staya_controller::agent::SafetyKind;
 use staya_papers::crossing::{Conditions, doorway, swap};
 use staya_papers::experiment::Experiment as _;
-use staya_sim::scenario::SafetyName;
 use staya_tests::golden;
 
 #[test]
@@ -17,7 +17,7 @@ fn golden_swap_by_template_with_noise_and_losses() {
         robots: vec![6, 12],
         noise_m: 0.05,
         seeds: 3,
-        conditions: Conditions { safety: SafetyName::Template2k, loss: 0.1, ..Conditions::default() },
+        conditions: Conditions { safety: SafetyKind::Template2k, loss: 0.1, ..Conditions::default() },
         ..swap::Plan::default()
     };
     golden("swap-template", &plan.measure().expect("a sound plan").to_string());

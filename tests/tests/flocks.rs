@@ -1,18 +1,18 @@
 //! What the experiments with flocks give, small, as tables that any change of behaviour breaks. `cargo xtask bless golden`
 //! rewrites them.
 
+use staya_controller::agent::SafetyKind;
 use staya_papers::experiment::Experiment as _;
 use staya_papers::flock::closing::Closing;
 use staya_papers::flock::{Case, Plan};
 use staya_papers::goals;
-use staya_sim::scenario::SafetyName;
 use staya_tests::golden;
 use std::fmt::Write as _;
 
 #[test]
 fn golden_experiment_flock() {
     let mut text = String::new();
-    for safety in [SafetyName::None, SafetyName::Orca] {
+    for safety in [SafetyKind::None, SafetyKind::Orca] {
         let plan = Plan {
             cases: Case::ALL.to_vec(),
             runs: 1,
@@ -70,7 +70,7 @@ fn golden_experiment_closing() {
 #[test]
 fn golden_experiment_goals() {
     let mut text = String::new();
-    for safety in [SafetyName::None, SafetyName::Orca, SafetyName::PushOut] {
+    for safety in [SafetyKind::None, SafetyKind::Orca, SafetyKind::PushOut] {
         let plan = goals::Plan {
             k1: vec![0.0, 50.0, 150.0],
             neighborhoods_m: vec![40.0],

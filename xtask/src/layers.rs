@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 /// [`APART`] says not.
 const LAYERS: [&[&str]; 4] = [
     &[
-        "scalar", "digest", "geom", "time", "rand", "grid", "cost", "shuffle", "list", "fixint", "obstacle", "robot",
-        "auth",
+        "names", "scalar", "digest", "geom", "time", "rand", "grid", "cost", "shuffle", "list", "fixint", "obstacle",
+        "robot", "auth",
     ],
     &["body", "neighbor", "template", "wire"],
     &["route", "formation", "orca", "flock", "push_out"],

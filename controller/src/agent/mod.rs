@@ -132,7 +132,9 @@ pub use other_safety::PushOutSafety;
 pub use parameter::Parameter;
 pub use route_guidance::{GridWorkspace, RouteGuidance};
 pub use safety::{Safety, SafetyInput, Unguarded};
-pub use setup::{AnyAgent, BoidsSetup, GuidanceSetup, RouteSetup, SafetySetup, Setup, Task, WAYPOINTS};
+pub use setup::{
+    AnyAgent, BoidsSetup, GuidanceKind, GuidanceSetup, RouteSetup, SafetyKind, SafetySetup, Setup, Task, WAYPOINTS,
+};
 pub use surroundings::{AnySurroundings, CellState, InCell, InCells, InPlane, OnGrid, Surroundings};
 pub use task::WrongTask;
 pub use waypoint::Waypoint;

@@ -17,6 +17,7 @@ use crate::flock::goal::GoalParams;
 use crate::flock::lattice::LatticeParams;
 use crate::formation::FormationParams;
 use crate::grid::Cell;
+use crate::names::named;
 use crate::neighbor::StalenessInflation;
 use crate::orca::AvoidParams;
 use crate::push_out::PushOutParams;
@@ -49,7 +50,7 @@ pub struct Setup {
 }
 
 /// Routing over a window.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RouteSetup {
     /// What a route costs.
     pub params: RouteParams,
@@ -128,6 +129,81 @@ pub enum SafetySetup {
     PushOut { params: PushOutParams<f32> },
 }
 
+named! {
+    /// A guidance law by name.
+    #[derive(Default)]
+    pub enum GuidanceKind {
+        /// Straight to the goal.
+        #[default]
+        Waypoint = "waypoint",
+        /// The alpha flock (R. Olfati-Saber, OLF): equal distances, with the first goal as its reference.
+        Lattice = "lattice",
+        /// The goal flock (V. E. and V. V. Pavlovsky, PAV): to the middle of the goals together, then each to one of them.
+        GoalFlock = "goal_flock",
+        /// Boids (V. A. Starovoitova, STA).
+        Boids = "boids",
+        /// By the grid's windowed routing (A. V. Kuznetsov, KUZ), from cell to cell.
+        Route = "route",
+        /// The same, keeping a formation.
+        Formation = "formation",
+    }
+}
+
+impl GuidanceKind {
+    /// Whether it goes from cell to cell.
+    #[must_use]
+    pub const fn is_on_grid(self) -> bool {
+        matches!(self, Self::Route | Self::Formation)
+    }
+}
+
+named! {
+    /// A safety layer by name.
+    #[derive(Default)]
+    pub enum SafetyKind {
+        /// Nothing.
+        None = "none",
+        /// ORCA with exact half-planes.
+        #[default]
+        Orca = "orca",
+        /// ORCA with half-planes from the voxel table (A. Tolok and others, FVM) of 2 KiB.
+        Template2k = "template_2k",
+        /// The same of 8 KiB.
+        Template8k = "template_8k",
+        /// The same of 16 KiB.
+        Template16k = "template_16k",
+        /// The same of 64 KiB.
+        Template64k = "template_64k",
+        /// ORCA in space, for robots that fly.
+        Fly = "fly",
+        /// Push-out (PAV).
+        PushOut = "push_out",
+    }
+}
+
+impl SafetyKind {
+    /// The layer with those of the parameters that it has a use for.
+    #[must_use]
+    pub const fn setup(
+        self,
+        params: AvoidParams<f32>,
+        inflation: StalenessInflation<f32>,
+        push_out: PushOutParams<f32>,
+    ) -> SafetySetup {
+        let source = match self {
+            Self::None => return SafetySetup::None,
+            Self::Fly => return SafetySetup::Fly { params, inflation },
+            Self::PushOut => return SafetySetup::PushOut { params: push_out },
+            Self::Orca => AnyHalfPlanes::Analytic,
+            Self::Template2k => AnyHalfPlanes::Template2k,
+            Self::Template8k => AnyHalfPlanes::Template8k,
+            Self::Template16k => AnyHalfPlanes::Template16k,
+            Self::Template64k => AnyHalfPlanes::Template64k,
+        };
+        SafetySetup::Orca { params, inflation, source }
+    }
+}
+
 /// What a robot has to do.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Task {
@@ -170,6 +246,19 @@ impl Setup {
 }
 
 impl GuidanceSetup {
+    /// Which law it is.
+    #[must_use]
+    pub const fn kind(&self) -> GuidanceKind {
+        match self {
+            Self::Waypoint { .. } => GuidanceKind::Waypoint,
+            Self::Lattice { .. } => GuidanceKind::Lattice,
+            Self::GoalFlock { .. } => GuidanceKind::GoalFlock,
+            Self::Boids { .. } => GuidanceKind::Boids,
+            Self::Route { .. } => GuidanceKind::Route,
+            Self::Formation { .. } => GuidanceKind::Formation,
+        }
+    }
+
     /// The guidance law, just started.
     #[must_use]
     pub fn guidance<S: Scalar, const CELLS: usize, const M: usize>(&self) -> AnyGuidance<S, CELLS, M, TEMPLATE> {
@@ -212,6 +301,23 @@ impl RouteSetup {
 }
 
 impl SafetySetup {
+    /// Which layer it is.
+    #[must_use]
+    pub const fn kind(&self) -> SafetyKind {
+        match self {
+            Self::None => SafetyKind::None,
+            Self::Orca { source, .. } => match source {
+                AnyHalfPlanes::Analytic => SafetyKind::Orca,
+                AnyHalfPlanes::Template2k => SafetyKind::Template2k,
+                AnyHalfPlanes::Template8k => SafetyKind::Template8k,
+                AnyHalfPlanes::Template16k => SafetyKind::Template16k,
+                AnyHalfPlanes::Template64k => SafetyKind::Template64k,
+            },
+            Self::Fly { .. } => SafetyKind::Fly,
+            Self::PushOut { .. } => SafetyKind::PushOut,
+        }
+    }
+
     /// The safety layer, just started.
     #[must_use]
     pub fn safety<S: Scalar, const K: usize>(&self) -> AnySafety<S, K> {

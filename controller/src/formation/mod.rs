@@ -40,31 +40,34 @@ pub use neighbors::{Found, Member, Seen, find_leader, find_neighbors};
 pub use steering::{Anchor, Pace, aim, blended, def, deviation, distances, lag, should_stay};
 
 use crate::cost::Gain;
+use crate::names::named;
 use serde::{Deserialize, Serialize};
 
-/// How a robot foresees where another one will be when its own next move is over.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Prediction {
-    /// It goes on in the direction that it announced, as fast as the land allows: O(1).
-    #[default]
-    Constant,
-    /// What would I do in its place (KUZ section 7, item 1): one's own choice of a move from its
-    /// cell, for its target and place, on the land that one sees; never a prediction inside a
-    /// prediction. One more search of the window per neighbour. Falls back to `Constant` for a robot
-    /// whose surroundings are not in sight.
-    Reflexive,
+named! {
+    /// How a robot foresees where another one will be when its own next move is over.
+    #[derive(Default)]
+    pub enum Prediction {
+        /// It goes on in the direction that it announced, as fast as the land allows: O(1).
+        #[default]
+        Constant = "constant",
+        /// What would I do in its place (KUZ section 7, item 1): one's own choice of a move from its
+        /// cell, for its target and place, on the land that one sees; never a prediction inside a
+        /// prediction. One more search of the window per neighbour. Falls back to `Constant` for a robot
+        /// whose surroundings are not in sight.
+        Reflexive = "reflexive",
+    }
 }
 
-/// What the top leader does while somebody is too far behind.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Recovery {
-    /// It stands: nobody loses more time than the slowest needs.
-    #[default]
-    Wait,
-    /// It heads for `cell + def` (KUZ section 7), towards where the others are off to.
-    Def,
+named! {
+    /// What the top leader does while somebody is too far behind.
+    #[derive(Default)]
+    pub enum Recovery {
+        /// It stands: nobody loses more time than the slowest needs.
+        #[default]
+        Wait = "wait",
+        /// It heads for `cell + def` (KUZ section 7), towards where the others are off to.
+        Def = "def",
+    }
 }
 
 /// Parameters of formation keeping.

@@ -26,35 +26,38 @@ mod tests;
 
 use crate::body::Body;
 use crate::geom::Vec3;
+use crate::names::named;
 use crate::neighbor::Nearby;
 use crate::obstacle::Obstacle;
 use crate::scalar::{Scalar, cast};
 use serde::{Deserialize, Serialize};
 use zone::{Side, Zone};
 
-/// What becomes of a step that leads too near.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Model {
-    /// Model 1: it ends where the radius through it leaves the zone; straight at the centre: sideways, as
-    /// long. It slides along and slows down there.
-    #[default]
-    Radial,
-    /// Model 2: it keeps its length and is turned by the smaller angle to the border of the zone. It keeps
-    /// its speed.
-    Tangential,
+named! {
+    /// What becomes of a step that leads too near.
+    #[derive(Default)]
+    pub enum Model {
+        /// Model 1: it ends where the radius through it leaves the zone; straight at the centre: sideways, as
+        /// long. It slides along and slows down there.
+        #[default]
+        Radial = "radial",
+        /// Model 2: it keeps its length and is turned by the smaller angle to the border of the zone. It keeps
+        /// its speed.
+        Tangential = "tangential",
+    }
 }
 
-/// How many robots are evaded at once. Obstacles all are.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Evasion {
-    /// The nearest of those in the way only: the evading step may lead too near to another one.
-    Single,
-    /// All. Of the evading steps around each, to either side, it is the one nearest to the wish that is clear
-    /// of all. If there is none the robot stands.
-    #[default]
-    Multiple,
+named! {
+    /// How many robots are evaded at once. Obstacles all are.
+    #[derive(Default)]
+    pub enum Evasion {
+        /// The nearest of those in the way only: the evading step may lead too near to another one.
+        Single = "single",
+        /// All. Of the evading steps around each, to either side, it is the one nearest to the wish that is clear
+        /// of all. If there is none the robot stands.
+        #[default]
+        Multiple = "multiple",
+    }
 }
 
 /// Parameters of push-out.

@@ -21,18 +21,20 @@ pub use visits::VisitMemory;
 
 use crate::cost::Gain;
 use crate::grid::{Cell, Norm};
+use crate::names::named;
 use serde::{Deserialize, Serialize};
 
-/// Where a route leaves the window when the target lies outside.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum ExitRule {
-    /// The border cell with the least path cost + a3 * distance to the target (eq. 10).
-    #[default]
-    Best,
-    /// The border cell where the ray to the target crosses the border (alg. 3, line 8); if it is
-    /// blocked, the nearest border cell that can be reached.
-    Ray,
+named! {
+    /// Where a route leaves the window when the target lies outside.
+    #[derive(Default)]
+    pub enum ExitRule {
+        /// The border cell with the least path cost + a3 * distance to the target (eq. 10).
+        #[default]
+        Best = "best",
+        /// The border cell where the ray to the target crosses the border (alg. 3, line 8); if it is
+        /// blocked, the nearest border cell that can be reached.
+        Ray = "ray",
+    }
 }
 
 /// Parameters of the route cost T(r) = a0 sum |d| u + a1 #occupied + a2 sum visits + a3 |exit - target|.

@@ -3,22 +3,24 @@
 use super::{CostField, RouteParams, Unreachable, VisitMemory};
 use crate::cost::Weights;
 use crate::grid::{Cell, Dir, Window};
+use crate::names::named;
 use heapless::Vec;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 /// Moves that a plan holds; a longer route is planned again after so many.
 pub const PLAN: usize = 32;
 
-/// When a route is searched anew.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Replan {
-    /// Whenever the robot is free to leave its cell (alg. 1): O((2r + 1)^2) a cell.
-    #[default]
-    EachCell,
-    /// At the end of the planned chain or when something changed on it (KUZ section 3): fewer
-    /// searches, later reactions to what happens beside the chain.
-    UntilChanged,
+named! {
+    /// When a route is searched anew.
+    #[derive(Default)]
+    pub enum Replan {
+        /// Whenever the robot is free to leave its cell (alg. 1): O((2r + 1)^2) a cell.
+        #[default]
+        EachCell = "each_cell",
+        /// At the end of the planned chain or when something changed on it (KUZ section 3): fewer
+        /// searches, later reactions to what happens beside the chain.
+        UntilChanged = "until_changed",
+    }
 }
 
 /// What one robot's routing keeps between steps: visits (`M` cells) and the planned chain.

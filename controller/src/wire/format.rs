@@ -5,8 +5,9 @@
 //! adds nothing to either.
 
 use super::{Beacon, DecodeError, EncodeError, Frame, Header, Message, decode, encode, frames};
+use crate::names::named;
 use heapless::Vec;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 /// A wire format: frames of one message each, which can be told apart in a stream of bytes.
 ///
@@ -39,26 +40,15 @@ pub trait Wire: Clone + core::fmt::Debug + Serialize {
     fn next_frame<'a>(&self, rest: &mut &'a [u8]) -> Option<&'a [u8]>;
 }
 
-/// The wire formats that robots can be told to speak, by name.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[serde(rename_all = "snake_case")]
-pub enum Format {
-    /// [`Postcard`].
-    #[default]
-    Postcard,
-    /// MAVLink 2 frames with the messages of Staya's dialect: the crate `staya-mavlink`.
-    Mavlink,
-}
-
-impl Format {
-    /// As scenario files have it.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Postcard => "postcard",
-            Self::Mavlink => "mavlink",
-        }
+named! {
+    /// The wire formats that robots can be told to speak, by name.
+    #[derive(Default)]
+    pub enum Format {
+        /// [`Postcard`].
+        #[default]
+        Postcard = "postcard",
+        /// MAVLink 2 frames with the messages of Staya's dialect: the crate `staya-mavlink`.
+        Mavlink = "mavlink",
     }
 }
 

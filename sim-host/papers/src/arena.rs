@@ -1,8 +1,11 @@
 //! Scenarios of robots in the plane or in space, put together by an experiment and not read from a file.
 
+use staya_controller::agent::{GuidanceSetup, SafetyKind};
+use staya_controller::orca::AvoidParams;
+use staya_controller::push_out::PushOutParams;
 use staya_controller::rand::Rng;
 use staya_sim::radio::RadioParams;
-use staya_sim::scenario::{GuidanceName, PlaneSetup, SafetyName, Scenario, Start, Target};
+use staya_sim::scenario::{PlaneSetup, Scenario, Start, Target};
 use staya_sim::world::plane::{Abilities, Solid};
 
 /// Fastest speed that a beacon can tell, metres per second.
@@ -21,23 +24,25 @@ pub(super) struct Arena {
     pub range_m: f64,
     pub loss: f64,
     pub sight_m: f64,
-    pub guidance: GuidanceName,
-    pub safety: SafetyName,
+    pub guidance: GuidanceSetup,
+    pub safety: SafetyKind,
+    pub orca: AvoidParams<f32>,
+    pub push_out: PushOutParams<f32>,
     pub solids: Vec<Solid>,
 }
 
 impl Arena {
-    /// The part for the plane with robots that start so, with default parameters of guidance and safety layer.
+    /// The part for the plane with robots that start so.
     pub fn setup(&self, starts: Vec<Start>) -> PlaneSetup {
         let abilities =
             Abilities { max_speed_mps: self.max_speed_mps, max_acceleration_mps2: f64::INFINITY, step_s: self.step_s };
-        PlaneSetup {
+        let setup = PlaneSetup {
             sight_m: self.sight_m,
-            guidance: self.guidance,
-            safety: self.safety,
+            guidance: self.guidance.clone(),
             solids: self.solids.clone(),
             ..PlaneSetup::new(abilities, self.radius_m, starts)
-        }
+        };
+        setup.behind(self.safety, self.orca, self.push_out)
     }
 
     /// The scenario of robots 1, 2, ... as they are set up.

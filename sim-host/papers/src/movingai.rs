@@ -8,6 +8,7 @@ use crate::experiment::{Experiment, GoesOn, in_parallel};
 use crate::stats::Summary;
 use crate::walk::{Task, Walker, holds};
 use anyhow::{Context as _, Result, ensure};
+use clap::ValueEnum;
 use serde::Serialize;
 use staya_controller::grid::UNIT;
 use staya_controller::route::{Replan, RouteParams};
@@ -29,13 +30,17 @@ pub enum Sight {
 }
 
 /// How many cells the robot's visit memory holds: 6 bytes each on the robot.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 #[expect(missing_docs, reason = "the numbers say it")]
 pub enum Memory {
+    #[value(name = "16")]
     Cells16,
     #[default]
+    #[value(name = "64")]
     Cells64,
+    #[value(name = "256")]
     Cells256,
+    #[value(name = "1024")]
     Cells1024,
 }
 

@@ -1,14 +1,14 @@
 //! What several experiments have on the command line: words and what they mean, parameters of routing, coefficients.
 
-use crate::movingai::Memory;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Command};
+use staya_controller::agent::SafetyKind;
 use staya_controller::cost::Gain;
 use staya_controller::formation::{Prediction, Recovery};
 use staya_controller::grid::Norm;
+use staya_controller::names::Named;
 use staya_controller::push_out::{Evasion, Model};
 use staya_controller::route::{ExitRule, Replan, RouteParams};
-use staya_sim::scenario::SafetyName;
 
 /// A plan as the command line makes it without any option: every default is said once, in its arguments.
 ///
@@ -20,118 +20,84 @@ pub(crate) fn defaults<P: Args>() -> P {
     P::from_arg_matches(&matches).expect("every option has a default")
 }
 
-/// A word of the command line, what `--help` says of it, and what it means.
-type Word<T> = (&'static str, &'static str, T);
+/// A value as it is written on the command line and in reports: its name with dashes.
+pub(crate) fn word(value: impl Named) -> String {
+    value.name().replace('_', "-")
+}
 
-/// Takes one of these words.
-fn one_of<T: Clone + Send + Sync + 'static>(words: &'static [Word<T>]) -> impl TypedValueParser<Value = T> {
-    let possible = words.iter().map(|(word, help, _)| {
-        let value = PossibleValue::new(*word);
-        if help.is_empty() { value } else { value.help(*help) }
+/// Takes one of these values by its name, and says in `--help` what it is.
+fn one_of<T: Named + Send + Sync>(values: &'static [(T, &'static str)]) -> impl TypedValueParser<Value = T> {
+    let possible = values.iter().map(|(value, help)| {
+        // A few bytes for the time that the program runs.
+        let possible = PossibleValue::new(&*word(*value).leak()).alias(value.name());
+        if help.is_empty() { possible } else { possible.help(*help) }
     });
-    PossibleValuesParser::new(possible).map(|given| {
-        let found = words.iter().find(|(word, ..)| *word == given);
-        found.map(|(.., meaning)| meaning.clone()).expect("one of the possible values")
-    })
+    PossibleValuesParser::new(possible).map(|given| T::from_name(&given).expect("one of the possible values"))
 }
 
 /// The safety layer of robots in the plane or in space.
-pub(crate) fn safety() -> impl TypedValueParser<Value = SafetyName> {
+pub(crate) fn safety() -> impl TypedValueParser<Value = SafetyKind> {
     one_of(&[
-        ("orca", "ORCA in the plane", SafetyName::Orca),
-        ("fly", "ORCA in space", SafetyName::Fly),
-        ("push-out", "Push-out; for the goal flock", SafetyName::PushOut),
-        ("none", "Nothing", SafetyName::None),
+        (SafetyKind::Orca, "ORCA in the plane"),
+        (SafetyKind::Fly, "ORCA in space"),
+        (SafetyKind::PushOut, "Push-out; for the goal flock"),
+        (SafetyKind::None, "Nothing"),
     ])
 }
 
 /// The safety layer of robots that cross: ORCA, exact or looked up.
-pub(crate) fn crossing_safety() -> impl TypedValueParser<Value = SafetyName> {
+pub(crate) fn crossing_safety() -> impl TypedValueParser<Value = SafetyKind> {
     one_of(&[
-        ("orca", "", SafetyName::Orca),
-        ("template_2k", "", SafetyName::Template2k),
-        ("template_8k", "", SafetyName::Template8k),
-        ("template_16k", "", SafetyName::Template16k),
-        ("template_64k", "", SafetyName::Template64k),
-        ("none", "", SafetyName::None),
+        (SafetyKind::Orca, ""),
+        (SafetyKind::Template2k, ""),
+        (SafetyKind::Template8k, ""),
+        (SafetyKind::Template16k, ""),
+        (SafetyKind::Template64k, ""),
+        (SafetyKind::None, ""),
     ])
-}
-
-/// A safety layer as reports call it.
-pub(crate) const fn safety_name(safety: SafetyName) -> &'static str {
-    match safety {
-        SafetyName::None => "none",
-        SafetyName::Orca => "orca",
-        SafetyName::Template2k => "template-2k",
-        SafetyName::Template8k => "template-8k",
-        SafetyName::Template16k => "template-16k",
-        SafetyName::Template64k => "template-64k",
-        SafetyName::Fly => "fly",
-        SafetyName::PushOut => "push-out",
-    }
 }
 
 /// What push-out makes of a step.
 pub(crate) fn model() -> impl TypedValueParser<Value = Model> {
-    one_of(&[("radial", "1: along the radius", Model::Radial), ("tangential", "2: turned aside", Model::Tangential)])
+    one_of(&[(Model::Radial, "1: along the radius"), (Model::Tangential, "2: turned aside")])
 }
 
 /// How many robots push-out evades at once.
 pub(crate) fn evasion() -> impl TypedValueParser<Value = Evasion> {
-    one_of(&[("single", "The nearest in the way", Evasion::Single), ("multiple", "All", Evasion::Multiple)])
+    one_of(&[(Evasion::Single, "The nearest in the way"), (Evasion::Multiple, "All")])
 }
 
 /// How robots of a formation foresee each other.
 pub(crate) fn prediction() -> impl TypedValueParser<Value = Prediction> {
     one_of(&[
-        ("constant", "They go on as they announced", Prediction::Constant),
-        ("reflexive", "They do what the robot itself would do in their place", Prediction::Reflexive),
+        (Prediction::Constant, "They go on as they announced"),
+        (Prediction::Reflexive, "They do what the robot itself would do in their place"),
     ])
 }
 
 /// What the top leader does while somebody is too far behind.
 pub(crate) fn recovery() -> impl TypedValueParser<Value = Recovery> {
-    one_of(&[
-        ("wait", "It stands", Recovery::Wait),
-        ("def", "It heads for where the others are off to (def)", Recovery::Def),
-    ])
-}
-
-/// How many visits a robot remembers.
-pub(crate) fn memory() -> impl TypedValueParser<Value = Memory> {
-    one_of(&[
-        ("16", "", Memory::Cells16),
-        ("64", "", Memory::Cells64),
-        ("256", "", Memory::Cells256),
-        ("1024", "", Memory::Cells1024),
-    ])
+    one_of(&[(Recovery::Wait, "It stands"), (Recovery::Def, "It heads for where the others are off to (def)")])
 }
 
 /// A norm of the plane.
 pub fn norm() -> impl TypedValueParser<Value = Norm> {
-    one_of(&[
-        ("euclidean", "A diagonal move is sqrt 2 long", Norm::Euclidean),
-        ("chebyshev", "A diagonal move is 1 long", Norm::Chebyshev),
-    ])
+    one_of(&[(Norm::Euclidean, "A diagonal move is sqrt 2 long"), (Norm::Chebyshev, "A diagonal move is 1 long")])
 }
 
 /// Which cells of a window's border end a route.
 fn exit() -> impl TypedValueParser<Value = ExitRule> {
     one_of(&[
-        ("best", "Any border cell, by path cost and distance to the target (eq. 10)", ExitRule::Best),
-        ("ray", "Where the ray to the target crosses the border (algorithm 3)", ExitRule::Ray),
+        (ExitRule::Best, "Any border cell, by path cost and distance to the target (eq. 10)"),
+        (ExitRule::Ray, "Where the ray to the target crosses the border (algorithm 3)"),
     ])
 }
 
 /// When to search anew.
 fn replan() -> impl TypedValueParser<Value = Replan> {
     one_of(&[
-        ("each-cell", "In each cell (algorithm 1)", Replan::EachCell),
-        (
-            "until-changed",
-            "At the end of the planned way or when something changed on it (KUZ section 3)",
-            Replan::UntilChanged,
-        ),
+        (Replan::EachCell, "In each cell (algorithm 1)"),
+        (Replan::UntilChanged, "At the end of the planned way or when something changed on it (KUZ section 3)"),
     ])
 }
 

@@ -1,11 +1,12 @@
 //! What a robot is as a vehicle: the world that it knows, what it can do, and its flight modes.
 
 use crate::geo::Origin;
+use staya_controller::agent::SafetyKind;
 use staya_controller::agent::Wish;
 use staya_controller::grid::{BLOCKED, Cell};
 use staya_controller::robot::Mode;
 use staya_sim::engine::Glance;
-use staya_sim::scenario::{SafetyName, Scenario};
+use staya_sim::scenario::Scenario;
 use staya_sim::terrain::Terrain;
 use staya_sim::world::plane::Solid;
 
@@ -35,7 +36,7 @@ impl VehicleModel {
         let on_grid = scenario.plane.is_none();
         let plane = scenario.plane.as_ref();
         Self {
-            flies: plane.is_some_and(|plane| plane.safety == SafetyName::Fly),
+            flies: plane.is_some_and(|plane| plane.safety.kind() == SafetyKind::Fly),
             grid: on_grid.then(|| scenario.terrain.clone()),
             in_formation: on_grid && scenario.formation.is_some(),
             max_speed_mps: plane.map_or(0.0, |plane| plane.abilities.max_speed_mps as f32),

@@ -6,8 +6,9 @@ use super::offboard::{Entry, Rules};
 use crate::Endpoint;
 use crate::geo::{Global, Origin};
 use serde::Deserialize;
+use staya_controller::agent::GuidanceKind;
 use staya_controller::robot::RobotId;
-use staya_sim::scenario::{GuidanceName, Overrides, PlaneSetup, Scenario, ScenarioError, Source, within};
+use staya_sim::scenario::{Overrides, PlaneSetup, Scenario, ScenarioError, Source, within};
 use std::net::{Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -407,7 +408,7 @@ fn assign_goal(
 ) -> Result<(), ScenarioError> {
     let place = origin.to_enu_m(&Global { latitude_deg, longitude_deg, altitude_m: origin.place().altitude_m });
     let plane = scenario.plane.as_mut();
-    let target = plane.filter(|plane| plane.guidance == GuidanceName::Waypoint);
+    let target = plane.filter(|plane| plane.guidance.kind() == GuidanceKind::Waypoint);
     let target = target.and_then(|plane| plane.starts.get_mut(index)?.places.first_mut());
     match (place, target) {
         (Some(place), Some(target)) => {

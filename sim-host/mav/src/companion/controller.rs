@@ -1,5 +1,6 @@
 //! The agent beside an autopilot: what it senses comes from telemetry and the scenario's land, what it commands is a velocity.
 
+use staya_controller::agent::SafetyKind;
 use staya_controller::agent::{
     Agent, AgentConfig, AnyGuidance, AnySafety, AnySurroundings, Command, Commanded, GridWorkspace, HALF_PLANES,
     InCells, NEIGHBORS, Outputs, TEMPLATE, VISITS, Wish,
@@ -9,7 +10,7 @@ use staya_controller::robot::Mode;
 use staya_controller::time::{self, Instant};
 use staya_controller::wire::Wire;
 use staya_sim::engine::{Ground, PlaneGround, Senses, WIDE};
-use staya_sim::scenario::{SafetyName, Scenario};
+use staya_sim::scenario::Scenario;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -61,18 +62,18 @@ impl<W: Wire> Controller<W> {
         // A law that has no use for its task says so; the scenario was checked for that.
         let _ = agent.assign(&ground.task(index, 0));
         let plane = scenario.plane.as_ref();
-        let places = plane.filter(|plane| !plane.guidance.is_on_grid());
+        let places = plane.filter(|plane| !plane.guidance.kind().is_on_grid());
         let place = places.and_then(|plane| plane.starts.get(index)?.places.first());
         let brake =
             plane.zip(place).map(|(plane, place)| Brake { place_m: place.position_m, tolerance_m: plane.tolerance_m });
-        let safety = plane.map(|plane| plane.safety);
+        let safety = plane.map(|plane| plane.safety.kind());
         Self {
             ground: Arc::clone(ground),
             agent,
             workspace: GridWorkspace::default(),
             senses: Senses::default(),
             out: Outputs::default(),
-            is_in_space: safety == Some(SafetyName::Fly),
+            is_in_space: safety == Some(SafetyKind::Fly),
             brake,
             max_acceleration_mps2: f64::from(config.max_acceleration_mps2),
             lag_s,
@@ -80,12 +81,12 @@ impl<W: Wire> Controller<W> {
         }
     }
 
-    /// What the robot does.
     /// How it speaks.
     pub const fn wire_mut(&mut self) -> &mut W {
         self.agent.wire_mut()
     }
 
+    /// What the robot does.
     #[must_use]
     pub fn mode(&self) -> Mode {
         self.agent.mode()

@@ -3,7 +3,7 @@
 use crate::crossing::{Conditions, doorway, swap};
 use crate::options;
 use clap::Args;
-use staya_sim::scenario::SafetyName;
+use staya_controller::agent::SafetyKind;
 use std::path::{Path, PathBuf};
 
 /// What both experiments understand.
@@ -32,7 +32,7 @@ struct Common {
     loss: f64,
     /// What keeps robots apart.
     #[arg(long, default_value = "orca", value_parser = options::crossing_safety())]
-    safety: SafetyName,
+    safety: SafetyKind,
     /// Folder for the pictures [default: out/swap, out/doorway].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,

@@ -1,7 +1,7 @@
 //! `staya experiment movingai`.
 
 use crate::movingai::{Benchmark, Memory, Plan, Robots, Sight};
-use crate::options::{self, RouteOptions};
+use crate::options::RouteOptions;
 use anyhow::Result;
 use clap::Args;
 use std::path::PathBuf;
@@ -20,7 +20,7 @@ pub struct MovingAiArgs {
     #[arg(long, value_name = "CELLS|map", default_value = "5", value_parser = sight)]
     radius: Sight,
     /// How many visited cells the robot remembers, which gets it out of dead ends larger than its window.
-    #[arg(long, value_name = "CELLS", default_value = "64", value_parser = options::memory())]
+    #[arg(long, value_name = "CELLS", default_value = "64", value_enum)]
     visits: Memory,
     #[command(flatten)]
     route: RouteOptions,

@@ -123,8 +123,7 @@ impl Plan {
             })
             .collect();
         let half = width_m / 2.0;
-        let mut setup = PlaneSetup::new(self.conditions.abilities(), RADIUS_M, starts);
-        setup.tolerance_m = 0.1;
+        let mut setup = PlaneSetup::new(self.conditions.abilities(), RADIUS_M, starts).to_places(0.1);
         setup.solids = vec![Solid::Wall([[0.0, -WALL_M], [0.0, -half]]), Solid::Wall([[0.0, half], [0.0, WALL_M]])];
         self.conditions.scenario("doorway", seed, self.longest_s, setup)
     }

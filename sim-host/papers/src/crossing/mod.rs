@@ -10,13 +10,16 @@ pub mod swap;
 use crate::experiment::GoesOn;
 use anyhow::{Result, ensure};
 use serde::Serialize;
+use staya_controller::agent::SafetyKind;
 use staya_controller::grid::UNIT;
+use staya_controller::orca::AvoidParams;
+use staya_controller::push_out::PushOutParams;
 use staya_plot::flock::Sheet;
 use staya_plot::motion_sheet;
 use staya_sim::engine::{Outcome, simulate};
 use staya_sim::radio::RadioParams;
 use staya_sim::record::{Options, Recorder, RobotRow};
-use staya_sim::scenario::{PlaneSetup, SafetyName, Scenario};
+use staya_sim::scenario::{PlaneSetup, Scenario};
 use staya_sim::world::plane::Abilities;
 use std::ops::ControlFlow;
 
@@ -32,13 +35,13 @@ pub struct Conditions {
     /// Share of packets that get lost.
     pub loss: f64,
     /// What keeps robots apart.
-    pub safety: SafetyName,
+    pub safety: SafetyKind,
 }
 
 impl Default for Conditions {
     /// 0.05 s, 0.5 m/s, 3 m, no losses, ORCA.
     fn default() -> Self {
-        Self { step_s: 0.05, speed_mps: 0.5, range_m: 3.0, loss: 0.0, safety: SafetyName::Orca }
+        Self { step_s: 0.05, speed_mps: 0.5, range_m: 3.0, loss: 0.0, safety: SafetyKind::Orca }
     }
 }
 
@@ -65,7 +68,7 @@ impl Conditions {
     fn scenario(&self, name: &str, seed: u64, longest_s: f64, setup: PlaneSetup) -> Scenario {
         let radio = RadioParams { range_m: self.range_m, loss: self.loss, ..RadioParams::default() };
         let ticks = libm::ceil(longest_s / self.step_s) as u32;
-        let setup = PlaneSetup { safety: self.safety, ..setup };
+        let setup = setup.behind(self.safety, AvoidParams::default(), PushOutParams::new(1.0));
         Scenario::in_plane(name, seed, ticks.max(1), radio, setup)
     }
 

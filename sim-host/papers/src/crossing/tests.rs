@@ -22,7 +22,7 @@ fn a_few_robots_swap_without_a_touch_and_are_measured() {
 fn without_a_safety_layer_they_go_through_each_other() {
     let plan = swap::Plan {
         robots: vec![4],
-        conditions: Conditions { safety: SafetyName::None, ..Conditions::default() },
+        conditions: Conditions { safety: SafetyKind::None, ..Conditions::default() },
         ..swap::Plan::default()
     };
     let report = plan.measure().expect("a sound plan");

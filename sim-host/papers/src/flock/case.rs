@@ -5,9 +5,12 @@ use crate::arena::{Arena, FASTEST_MPS, normal, starts, uniform};
 use anyhow::{Context as _, Result};
 use clap::ValueEnum;
 use serde::Serialize;
+use staya_controller::agent::{GuidanceSetup, SafetyKind};
 use staya_controller::flock::lattice::{Algorithm, Gain, LatticeParams};
+use staya_controller::orca::AvoidParams;
+use staya_controller::push_out::PushOutParams;
 use staya_controller::rand::Rng;
-use staya_sim::scenario::{GuidanceName, SafetyName, Scenario, Target};
+use staya_sim::scenario::{Scenario, Target};
 use staya_sim::world::plane::Solid;
 
 /// Purpose of the random numbers that give each run its starts.
@@ -219,6 +222,21 @@ impl Plan {
             },
         )
         .with_context(|| format!("{robots} robots find no room; give fewer, or another spacing"))?;
+        let [alpha, beta, gamma] = self.gains(case);
+        let gain = |c1: f64| Gain::critical(c1 as f32);
+        // Algorithm 1 stands in the paper without gains.
+        let alpha = match setting.algorithm {
+            Algorithm::One => Gain { position: alpha as f32, velocity: alpha as f32 },
+            Algorithm::Two | Algorithm::Three => gain(alpha),
+        };
+        let params = LatticeParams {
+            algorithm: setting.algorithm,
+            alpha,
+            beta: gain(beta),
+            gamma: gain(gamma),
+            ..LatticeParams::new(self.spacing_m as f32)
+        };
+        let horizon_s = self.horizon_s as f32;
         let arena = Arena {
             name: case.name(),
             seed: Rng::keyed(self.seed, STARTS, run, case as u32).next_u64(),
@@ -234,34 +252,20 @@ impl Plan {
             range_m: 3.0 * self.spacing_m,
             loss: self.loss,
             sight_m: 3.0 * self.spacing_m,
-            guidance: GuidanceName::Lattice,
+            guidance: GuidanceSetup::Lattice {
+                params,
+                moves: !(self.reference == Reference::Static && setting.fixed.is_some()),
+            },
             safety: match (self.safety, case) {
                 // In space only the avoider for space knows of heights.
-                (SafetyName::Orca, Case::Rendezvous3d) => SafetyName::Fly,
+                (SafetyKind::Orca, Case::Rendezvous3d) => SafetyKind::Fly,
                 (safety, _) => safety,
             },
+            orca: AvoidParams { horizon_s, wall_horizon_s: horizon_s, ..AvoidParams::default() },
+            push_out: PushOutParams::new(1.0),
             solids: case.solids(self.spacing_m),
         };
-        let mut setup = arena.setup(starts);
-        let [alpha, beta, gamma] = self.gains(case);
-        let gain = |c1: f64| Gain::critical(c1 as f32);
-        // Algorithm 1 stands in the paper without gains.
-        let alpha = match setting.algorithm {
-            Algorithm::One => Gain { position: alpha as f32, velocity: alpha as f32 },
-            Algorithm::Two | Algorithm::Three => gain(alpha),
-        };
-        setup.lattice = (
-            LatticeParams {
-                algorithm: setting.algorithm,
-                alpha,
-                beta: gain(beta),
-                gamma: gain(gamma),
-                ..LatticeParams::new(self.spacing_m as f32)
-            },
-            !(self.reference == Reference::Static && setting.fixed.is_some()),
-        );
-        setup.orca.horizon_s = self.horizon_s as f32;
-        setup.orca.wall_horizon_s = self.horizon_s as f32;
+        let setup = arena.setup(starts);
         Ok(arena.scenario(setup))
     }
 

@@ -9,14 +9,16 @@ use crate::arena::{Arena, FASTEST_MPS, uniform};
 use crate::experiment::{Experiment, GoesOn, by_point, check_runs};
 use anyhow::{Result, ensure};
 use serde::Serialize;
-use staya_controller::agent::BoidsSetup;
+use staya_controller::agent::{BoidsSetup, GuidanceSetup, SafetyKind};
 use staya_controller::flock::goal::GoalParams;
 use staya_controller::flock::lattice::LatticeParams;
+use staya_controller::orca::AvoidParams;
+use staya_controller::push_out::PushOutParams;
 use staya_controller::rand::Rng;
 use staya_sim::engine::simulate;
 use staya_sim::metrics::flock::gaps;
 use staya_sim::nearby::Space;
-use staya_sim::scenario::{GuidanceName, SafetyName, Scenario, Start, Target};
+use staya_sim::scenario::{Scenario, Start, Target};
 use std::fmt::{self, Display, Formatter};
 use std::ops::ControlFlow;
 
@@ -134,17 +136,26 @@ impl Closing {
     }
 
     /// Both sides a gap apart, at speed; they have passed and gone twice as far when the run ends.
-    fn scenario(&self, flock: Flock, sides: Sides, speed: f64, safety: SafetyName, run: u32) -> Scenario {
+    fn scenario(&self, flock: Flock, sides: Sides, speed: f64, safety: SafetyKind, run: u32) -> Scenario {
         let d = self.spacing_m;
         let side_mps = speed * d / 2.0;
+        let seed = Rng::keyed(self.seed, OFFSETS, run, 1).next_u64();
         let guidance = match flock {
-            Flock::Alpha => GuidanceName::Lattice,
-            Flock::Goal => GuidanceName::GoalFlock,
-            Flock::Boids => GuidanceName::Boids,
+            Flock::Alpha => GuidanceSetup::Lattice { params: LatticeParams::new(d as f32), moves: true },
+            Flock::Goal => GuidanceSetup::GoalFlock {
+                params: GoalParams::new((d / 2.0) as f32, side_mps as f32),
+                arrival_m: d as f32,
+                seed,
+            },
+            // Crowded below d, seen up to 4 d.
+            Flock::Boids => GuidanceSetup::Boids {
+                params: BoidsSetup { crowded_m: d as f32, closest_m: (4.0 * d) as f32, ..BoidsSetup::PAPER },
+                speed_mps: side_mps as f32,
+            },
         };
         let arena = Arena {
             name: "closing",
-            seed: Rng::keyed(self.seed, OFFSETS, run, 1).next_u64(),
+            seed,
             step_s: self.step_s,
             seconds: 4.0 * GAP / speed,
             radius_m: self.radius_m(),
@@ -154,15 +165,12 @@ impl Closing {
             sight_m: d,
             guidance,
             safety,
+            // Beacons are a step old; at these speeds a step is a body's radius.
+            orca: AvoidParams { margin_m: (d / 100.0) as f32, ..AvoidParams::default() },
+            push_out: PushOutParams::new(1.0),
             solids: Vec::new(),
         };
-        let mut setup = arena.setup(self.starts(flock, sides, side_mps, run));
-        setup.lattice = (LatticeParams::new(d as f32), true);
-        setup.goal_flock = (GoalParams::new((d / 2.0) as f32, side_mps as f32), d as f32);
-        // Crowded below d, seen up to 4 d.
-        setup.boids = BoidsSetup { crowded_m: d as f32, closest_m: (4.0 * d) as f32, ..BoidsSetup::PAPER };
-        // Beacons are a step old; at these speeds a step is a body's radius.
-        setup.orca.margin_m = (d / 100.0) as f32;
+        let setup = arena.setup(self.starts(flock, sides, side_mps, run));
         arena.scenario(setup)
     }
 
@@ -249,7 +257,7 @@ impl Experiment for Closing {
         by_point(lines.len(), self.runs, 8, goes_on, |(): &mut (), line, run| {
             let (flock, sides, speed) = lines[line];
             let meet = |safety| self.meet(&self.scenario(flock, sides, speed, safety, run));
-            Ok([meet(SafetyName::None)?, meet(SafetyName::Orca)?])
+            Ok([meet(SafetyKind::None)?, meet(SafetyKind::Orca)?])
         })
     }
 

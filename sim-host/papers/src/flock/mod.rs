@@ -26,8 +26,8 @@ use crate::experiment::{Experiment, GoesOn, by_point, check_runs};
 use crate::options;
 use anyhow::{Result, ensure};
 use clap::{Args, ValueEnum};
+use staya_controller::agent::SafetyKind;
 use staya_sim::engine::simulate;
-use staya_sim::scenario::SafetyName;
 use std::path::{Path, PathBuf};
 use watch::Watch;
 
@@ -54,7 +54,7 @@ pub struct Plan {
     pub robots: Option<u32>,
     /// Safety layer behind the flock; in space "orca" means "fly".
     #[arg(long, default_value = "none", value_parser = options::safety())]
-    pub safety: SafetyName,
+    pub safety: SafetyKind,
     // Long ones keep a flock from closing up: its robots come in faster than they may towards somebody who is d away, and
     // swerve.
     /// How far ahead ORCA looks.
@@ -147,7 +147,7 @@ impl Experiment for Plan {
             ensure!((0.0..=1e6).contains(&gain), "a gain of {gain}; it must be 0 to 1,000,000");
         }
         ensure!((0.0..=1.0).contains(&self.loss), "a loss of {}; it must be between 0 and 1", self.loss);
-        ensure!(self.safety != SafetyName::PushOut, "push-out comes with the goal flock; give orca, fly or none");
+        ensure!(self.safety != SafetyKind::PushOut, "push-out comes with the goal flock; give orca, fly or none");
         for &case in &self.cases {
             self.scenario(case, 0)?;
         }

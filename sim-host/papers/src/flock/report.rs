@@ -3,7 +3,7 @@
 use super::watch::{Frame, Run};
 use super::{Case, Plan, Reference};
 use crate::experiment::Maybe;
-use crate::options::safety_name;
+use crate::options::word;
 use crate::stats::quantile;
 use serde::Serialize;
 use staya_sim::metrics::flock::{AlphaLimits, AlphaVerdict, FlockMeasure, alpha_flocking};
@@ -97,7 +97,7 @@ pub struct Report {
     /// Length of a tick, seconds.
     pub step_s: f64,
     /// What is behind the flock.
-    pub safety: &'static str,
+    pub safety: String,
     /// How far ahead ORCA looks, seconds.
     pub horizon_s: f64,
     /// Loss of packets.
@@ -117,7 +117,7 @@ impl Report {
             spacing_m: plan.spacing_m,
             radius_m: plan.radius_m(),
             step_s: plan.step_s,
-            safety: safety_name(plan.safety),
+            safety: word(plan.safety),
             horizon_s: plan.horizon_s,
             loss: plan.loss,
             static_reference: plan.reference == Reference::Static,

@@ -35,7 +35,7 @@ fn without_a_reference_the_group_breaks_up() {
 
 #[test]
 fn robots_meet_in_space_also_behind_orca() {
-    for safety in [SafetyName::None, SafetyName::Orca] {
+    for safety in [SafetyKind::None, SafetyKind::Orca] {
         let plan = Plan { safety, ..small(Case::Rendezvous3d, 20, 30.0) };
         let case = report(&plan);
         assert_eq!((case.one_flock, case.overlaps), (2, 0), "{:?}", case.each);
@@ -97,7 +97,7 @@ fn plans_that_cannot_be_carried_out_say_why() {
     assert!(refused(|p| p.seconds = Some(0.0)).contains("1 to 1,000,000 steps"));
     assert!(refused(|p| p.c_beta = Some(-1.0)).contains("a gain of -1"));
     assert!(refused(|p| p.loss = 1.5).contains("between 0 and 1"));
-    assert!(refused(|p| p.safety = SafetyName::PushOut).contains("goal flock"));
+    assert!(refused(|p| p.safety = SafetyKind::PushOut).contains("goal flock"));
     let closing = Closing { speeds: vec![10.0], ..Closing::default() };
     let error = closing.check().unwrap_err().to_string();
     assert!(error.contains("at most 9.14"), "{error}");

@@ -11,7 +11,7 @@ pub use report::{Journey, Point, Report, Variants};
 
 use crate::experiment::{Experiment, GoesOn, by_point, check_runs};
 use anyhow::{Result, anyhow, ensure};
-use staya_controller::agent::TEMPLATE;
+use staya_controller::agent::{RouteSetup, TEMPLATE};
 use staya_controller::formation::FormationParams;
 use staya_controller::grid::{Cell, Norm, UNIT};
 use staya_controller::rand::Rng;
@@ -21,7 +21,7 @@ use staya_controller::shuffle::Sharpness;
 use staya_controller::template::{Template, TemplateError};
 use staya_sim::engine::simulate;
 use staya_sim::radio::RadioParams;
-use staya_sim::scenario::{Formation, Robot, Routing, Scenario};
+use staya_sim::scenario::{Formation, Robot, Scenario};
 use staya_sim::terrain::generate::{self, natural};
 use staya_sim::terrain::{Terrain, TerrainError};
 use staya_sim::world::{Misplaced, MoveRules};
@@ -199,7 +199,7 @@ impl Plan {
             robots: robots.collect(),
             plane: None,
             formation: graph,
-            route: Routing { params: self.route, replan: Replan::EachCell, sharpness: self.sharpness },
+            route: RouteSetup { params: self.route, replan: Replan::EachCell, sharpness: self.sharpness },
             formation_params: self.formation,
             faults: Vec::new(),
             key: None,

@@ -25,11 +25,13 @@ use crate::experiment::{Experiment, GoesOn, by_point, check_runs};
 use crate::options;
 use anyhow::{Context as _, Result, ensure};
 use clap::Args;
+use staya_controller::agent::{GuidanceSetup, SafetyKind};
 use staya_controller::flock::goal::GoalParams;
+use staya_controller::orca::AvoidParams;
 use staya_controller::push_out::{Evasion, Model, PushOutParams};
 use staya_controller::rand::Rng;
 use staya_sim::engine::simulate;
-use staya_sim::scenario::{GuidanceName, Order, SafetyName, Scenario, Target};
+use staya_sim::scenario::{Order, Scenario, Target};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use watch::Watch;
@@ -70,7 +72,7 @@ pub struct Plan {
     pub runs: u32,
     /// Safety layer behind the flock; with none, robots overlap where they crowd around the goals.
     #[arg(long, default_value = "orca", value_parser = options::safety())]
-    pub safety: SafetyName,
+    pub safety: SafetyKind,
     /// What push-out makes of a step.
     #[arg(long, default_value = "radial", value_parser = options::model())]
     pub model: Model,
@@ -167,21 +169,6 @@ impl Plan {
         )
         .with_context(|| format!("{} robots find no room; give fewer", self.robots))?;
         let speed_mps = self.speed_mps();
-        let arena = Arena {
-            name: "goals",
-            seed: Rng::keyed(self.seed, STARTS + 1, run, 0).next_u64(),
-            step_s: self.step_s,
-            seconds: self.seconds,
-            radius_m: self.radius_m(),
-            max_speed_mps: speed_mps,
-            range_m: neighborhood_m,
-            loss: 0.0,
-            sight_m: 2.0 * self.min_distance_m,
-            guidance: GuidanceName::GoalFlock,
-            safety: self.safety,
-            solids: Vec::new(),
-        };
-        let mut setup = arena.setup(starts);
         let params = GoalParams {
             goal_gain: k1 as f32,
             center_gain: self.k2 as f32,
@@ -189,15 +176,30 @@ impl Plan {
             neighborhood_m: neighborhood_m as f32,
             ..GoalParams::new(self.min_distance_m as f32, speed_mps as f32)
         };
-        setup.goal_flock = (params, self.arrival_m() as f32);
-        // Beacons are a step old.
-        setup.orca.margin_m = (self.min_distance_m / 50.0) as f32;
-        setup.push_out = PushOutParams {
-            model: self.model,
-            evasion: self.evasion,
-            // A step more than bodies need.
-            min_distance_m: (2.0 * self.radius_m() + speed_mps * self.step_s) as f32,
+        let seed = Rng::keyed(self.seed, STARTS + 1, run, 0).next_u64();
+        let arena = Arena {
+            name: "goals",
+            seed,
+            step_s: self.step_s,
+            seconds: self.seconds,
+            radius_m: self.radius_m(),
+            max_speed_mps: speed_mps,
+            range_m: neighborhood_m,
+            loss: 0.0,
+            sight_m: 2.0 * self.min_distance_m,
+            guidance: GuidanceSetup::GoalFlock { params, arrival_m: self.arrival_m() as f32, seed },
+            safety: self.safety,
+            // Beacons are a step old.
+            orca: AvoidParams { margin_m: (self.min_distance_m / 50.0) as f32, ..AvoidParams::default() },
+            push_out: PushOutParams {
+                model: self.model,
+                evasion: self.evasion,
+                // A step more than bodies need.
+                min_distance_m: (2.0 * self.radius_m() + speed_mps * self.step_s) as f32,
+            },
+            solids: Vec::new(),
         };
+        let mut setup = arena.setup(starts);
         if self.moves_goal {
             setup.orders.push(Order {
                 tick: self.moves_at(),

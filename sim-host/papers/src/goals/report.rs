@@ -3,11 +3,10 @@
 use super::Plan;
 use super::watch::{Frame, Run};
 use crate::experiment::Maybe;
-use crate::options::safety_name;
+use crate::options::word;
 use crate::stats::mean;
 use serde::Serialize;
-use staya_controller::push_out::{Evasion, Model};
-use staya_sim::scenario::SafetyName;
+use staya_controller::agent::SafetyKind;
 use std::fmt::{self, Display, Formatter};
 
 /// One K1 and one R_nbh: means over the runs.
@@ -99,19 +98,11 @@ impl Report {
 
 /// The safety layer in words.
 fn safety(plan: &Plan) -> String {
-    let name = safety_name(plan.safety);
-    if plan.safety != SafetyName::PushOut {
-        return name.into();
+    let name = word(plan.safety);
+    match plan.safety {
+        SafetyKind::PushOut => format!("{name} ({}, {})", plan.model, plan.evasion),
+        _ => name,
     }
-    let model = match plan.model {
-        Model::Radial => "radial",
-        Model::Tangential => "tangential",
-    };
-    let evasion = match plan.evasion {
-        Evasion::Single => "single",
-        Evasion::Multiple => "multiple",
-    };
-    format!("{name} ({model}, {evasion})")
 }
 
 impl Point {

@@ -46,9 +46,9 @@ fn a_goal_that_is_moved_on_the_way_is_reached_where_it_is() {
 fn safety_layers_keep_bodies_apart_that_overlap_without() {
     let plan = |safety, (model, evasion)| Plan { k1: vec![150.0], safety, model, evasion, ..small() };
     let multiple = (Model::Radial, Evasion::Multiple);
-    let bare = &report(&plan(SafetyName::None, multiple)).points[0];
+    let bare = &report(&plan(SafetyKind::None, multiple)).points[0];
     assert!(bare.overlaps > 0);
-    for safety in [SafetyName::Orca, SafetyName::PushOut] {
+    for safety in [SafetyKind::Orca, SafetyKind::PushOut] {
         let point = &report(&plan(safety, multiple)).points[0];
         assert_eq!(point.overlaps, 0, "{safety:?}");
     }
@@ -57,7 +57,7 @@ fn safety_layers_keep_bodies_apart_that_overlap_without() {
         ((Model::Tangential, Evasion::Single), "push-out (tangential, single)"),
     ];
     for (push_out, wanted) in words {
-        let plan = Plan { seconds: 20.0, ..plan(SafetyName::PushOut, push_out) };
+        let plan = Plan { seconds: 20.0, ..plan(SafetyKind::PushOut, push_out) };
         assert_eq!(report(&plan).safety, wanted);
     }
 }

@@ -2,12 +2,13 @@
 
 use super::{Coefficient, Land, Plan, Run, ticks};
 use crate::experiment::Maybe;
+use crate::options::word;
 use crate::stats::{Goodness, Histogram, NortonRice, Summary, mean};
 use rayon::prelude::*;
 use serde::Serialize;
 use staya_controller::cost::Gain;
 use staya_controller::grid::Norm;
-use staya_controller::route::{ExitRule, Replan, RouteParams};
+use staya_controller::route::RouteParams;
 use staya_sim::terrain::metrics::obstacles_of_entropy;
 use std::fmt::{self, Display, Formatter};
 
@@ -137,9 +138,9 @@ pub struct Report {
     /// Window radius, cells.
     pub radius: u8,
     /// Exit rule: `best` or `ray`.
-    pub exit: &'static str,
+    pub exit: String,
     /// When robots search anew: `each-cell` or `until-changed`.
-    pub replan: &'static str,
+    pub replan: String,
     /// Norm of moves.
     pub norm: Norm,
     /// Whether moves may cut corners.
@@ -201,14 +202,8 @@ impl Report {
             parked: plan.parked,
             seed: plan.seed,
             radius: params.radius,
-            exit: match params.exit {
-                ExitRule::Best => "best",
-                ExitRule::Ray => "ray",
-            },
-            replan: match plan.replan {
-                Replan::EachCell => "each-cell",
-                Replan::UntilChanged => "until-changed",
-            },
+            exit: word(params.exit),
+            replan: word(plan.replan),
             norm: params.norm,
             corner_cutting: params.corner_cutting,
             a0: decimal(params.a0),

@@ -223,7 +223,7 @@ impl Ground for PlaneGround {
     }
 
     fn task(&self, index: usize, tick: u32) -> Task {
-        if self.setup.guidance.is_on_grid() {
+        if self.setup.guidance.kind().is_on_grid() {
             return Task::Cell(self.robots[index].goal);
         }
         // One that starts anew is told what has been ordered in the meantime; what is ordered in this tick, it hears.

@@ -1,12 +1,12 @@
 //! The checks that need more than the type of a field.
 
-use super::params::ReplanName;
 use super::ranges::within;
 use super::source::Source;
 use super::{Fault, Robot, ScenarioError, ScenarioFile};
 use crate::terrain::generate::{self, Plan};
 use crate::terrain::{Terrain, TerrainError};
 use staya_controller::robot::RobotId;
+use staya_controller::route::Replan;
 use staya_mavlink::any::max_robot;
 
 pub(super) fn general(source: &Source<'_>, file: &ScenarioFile) -> Result<(), ScenarioError> {
@@ -163,7 +163,7 @@ pub(super) fn formation_only(source: &Source<'_>, file: &ScenarioFile) -> Result
             "give robots.formation, or leave this table out",
         ));
     }
-    if in_formation && matches!(file.route.replan, Some(ReplanName::UntilChanged)) {
+    if in_formation && matches!(file.route.replan, Some(Replan::UntilChanged)) {
         return Err(source.error(
             "route.replan",
             "robots in formation search in each cell",

@@ -13,11 +13,11 @@ mod schema;
 mod setup;
 mod source;
 
-pub use params::{ExitName, FormationTable, GridTable, PredictionName, RecoveryName, ReplanName, RouteTable, Routing};
+pub use params::{FormationTable, GridTable, RouteTable};
 pub use plane::{
-    BallEntry, BoidsTable, CircleEntry, CloudEntry, GoalFlockTable, GuidanceName, HalfSpaceEntry, LatticeTable,
-    ModelName, OrcaTable, Order, OrderEntry, Place, PlaneRobotEntry, PlaneRobots, PlaneSetup, PlaneTable, PushOutTable,
-    SafetyName, Start, Target, WallEntry, circle_starts,
+    BallEntry, BoidsTable, CircleEntry, CloudEntry, GoalFlockTable, HalfSpaceEntry, LatticeTable, OrcaTable, Order,
+    OrderEntry, Place, PlaneRobotEntry, PlaneRobots, PlaneSetup, PlaneTable, PushOutTable, Start, Target, WallEntry,
+    circle_starts,
 };
 pub use ranges::within;
 pub use robots::{Formation, Robot};
@@ -31,6 +31,7 @@ pub use source::Source;
 use crate::radio::RadioParams;
 use crate::terrain::Terrain;
 use crate::world::MoveRules;
+use staya_controller::agent::RouteSetup;
 use staya_controller::auth::Key;
 use staya_controller::formation::FormationParams;
 use staya_controller::robot::RobotId;
@@ -102,7 +103,7 @@ pub struct Scenario {
     /// Bodies in the plane or in space, if they do not move from cell to cell.
     pub plane: Option<PlaneSetup>,
     /// How robots find their ways.
-    pub route: Routing,
+    pub route: RouteSetup,
     /// How robots keep a formation, if they do.
     pub formation_params: FormationParams,
     /// Robots that go down.

@@ -5,6 +5,7 @@ use super::ScenarioError;
 use super::ranges::within;
 use super::source::Source;
 use serde::Deserialize;
+use staya_controller::agent::RouteSetup;
 use staya_controller::cost::Gain;
 use staya_controller::formation::{FormationParams, Prediction, Recovery};
 use staya_controller::grid::{Norm, UNIT};
@@ -31,10 +32,10 @@ pub struct RouteTable {
     /// How far a robot sees, cells in each direction, 1 to 16.
     pub radius: Option<u8>,
     /// Which border cells of the window end a route: `"best"` (eq. 10) or `"ray"` (alg. 3).
-    pub exit: Option<ExitName>,
+    pub exit: Option<ExitRule>,
     /// When to search: `"each_cell"` or `"until_changed"` (follow the chain; robots without
     /// formation only).
-    pub replan: Option<ReplanName>,
+    pub replan: Option<Replan>,
     /// Weight of travel time, 0 to 4095.
     pub a0: Option<f64>,
     /// Ticks that a cell with another robot costs extra, 0 to 4095.
@@ -70,56 +71,13 @@ pub struct FormationTable {
     pub footprint: Option<f64>,
     /// How others are foreseen: `"constant"` (they go on as announced) or `"reflexive"`
     /// ("what would I do in its place").
-    pub prediction: Option<PredictionName>,
+    pub prediction: Option<Prediction>,
     /// What the top leader does meanwhile: `"wait"` or `"def"` (heads for where the others
     /// are off to).
-    pub recovery: Option<RecoveryName>,
+    pub recovery: Option<Recovery>,
 }
 
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(rename_all = "snake_case")]
-#[expect(missing_docs, reason = "see RouteTable::exit")]
-pub enum ExitName {
-    Best,
-    Ray,
-}
-
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(rename_all = "snake_case")]
-#[expect(missing_docs, reason = "see RouteTable::replan")]
-pub enum ReplanName {
-    EachCell,
-    UntilChanged,
-}
-
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(rename_all = "snake_case")]
-#[expect(missing_docs, reason = "see FormationTable::prediction")]
-pub enum PredictionName {
-    Constant,
-    Reflexive,
-}
-
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(rename_all = "snake_case")]
-#[expect(missing_docs, reason = "see FormationTable::recovery")]
-pub enum RecoveryName {
-    Wait,
-    Def,
-}
-
-/// How robots find their ways.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Routing {
-    /// What routes cost, and how far robots see.
-    pub params: RouteParams,
-    /// When they search anew.
-    pub replan: Replan,
-    /// How strictly the order of moves follows their costs.
-    pub sharpness: Sharpness,
-}
-
-pub(super) fn routing(source: &Source<'_>, table: &RouteTable, grid: &GridTable) -> Result<Routing, ScenarioError> {
+pub(super) fn routing(source: &Source<'_>, table: &RouteTable, grid: &GridTable) -> Result<RouteSetup, ScenarioError> {
     let usual = RouteParams::default();
     let gain = |name: &str, value: Option<f64>, usual: Gain| match value {
         None => Ok(usual),
@@ -135,11 +93,7 @@ pub(super) fn routing(source: &Source<'_>, table: &RouteTable, grid: &GridTable)
     }
     let params = RouteParams {
         radius,
-        exit: match table.exit {
-            None => usual.exit,
-            Some(ExitName::Best) => ExitRule::Best,
-            Some(ExitName::Ray) => ExitRule::Ray,
-        },
+        exit: table.exit.unwrap_or(usual.exit),
         norm: grid.norm,
         corner_cutting: grid.corner_cutting,
         a0: gain("a0", table.a0, usual.a0)?,
@@ -147,17 +101,12 @@ pub(super) fn routing(source: &Source<'_>, table: &RouteTable, grid: &GridTable)
         a2: gain("a2", table.a2, usual.a2)?,
         a3: gain("a3", table.a3, usual.a3)?,
     };
-    let replan = match table.replan {
-        None => Replan::default(),
-        Some(ReplanName::EachCell) => Replan::EachCell,
-        Some(ReplanName::UntilChanged) => Replan::UntilChanged,
-    };
     let halving = gain("halved_per_ticks", table.halved_per_ticks, Gain::ZERO)?;
     let sharpness = match halving {
         Gain::ZERO => Sharpness::Greedy,
         halving => Sharpness::HalvedPer(halving),
     };
-    Ok(Routing { params, replan, sharpness })
+    Ok(RouteSetup { params, replan: table.replan.unwrap_or_default(), sharpness })
 }
 
 pub(super) fn formation(source: &Source<'_>, table: &FormationTable) -> Result<FormationParams, ScenarioError> {
@@ -181,16 +130,8 @@ pub(super) fn formation(source: &Source<'_>, table: &FormationTable) -> Result<F
         within(source, "formation.footprint", share, 0.0, 1.0, "(a share)")?;
         params.footprint = libm::round(share * 16.0) as u8;
     }
-    match table.prediction {
-        None => {}
-        Some(PredictionName::Constant) => params.prediction = Prediction::Constant,
-        Some(PredictionName::Reflexive) => params.prediction = Prediction::Reflexive,
-    }
-    match table.recovery {
-        None => {}
-        Some(RecoveryName::Wait) => params.recovery = Recovery::Wait,
-        Some(RecoveryName::Def) => params.recovery = Recovery::Def,
-    }
+    params.prediction = table.prediction.unwrap_or(params.prediction);
+    params.recovery = table.recovery.unwrap_or(params.recovery);
     Ok(params)
 }
 

@@ -255,7 +255,7 @@ fn parameters_of_routes_and_formations_are_checked() {
         format!("{}{rest}", with_robots(robots))
     };
     let scenario = parse(&with("")).expect("good");
-    assert_eq!(scenario.route, Routing::default());
+    assert_eq!(scenario.route, RouteSetup::default());
     assert_eq!(scenario.formation_params, FormationParams::default());
     let scenario = parse(&with(
         "[grid]\ncorner_cutting = true\n[route]\nradius = 16\nexit = \"ray\"\n\

@@ -2,10 +2,10 @@
 
 use super::super::ScenarioError;
 use super::super::source::Source;
-use super::table::{CloudEntry, GuidanceName, Place, PlaneRobotEntry, PlaneTable, SafetyName};
+use super::table::{CloudEntry, Place, PlaneRobotEntry, PlaneTable};
 use super::{PlaneSetup, Start, check_count};
 use crate::nearby::{Cells, Query, Search, Space};
-use staya_controller::agent::GOALS;
+use staya_controller::agent::{GOALS, GuidanceKind, SafetyKind};
 
 /// Farthest from the origin along each axis, metres: places go over the air as millimetres in 32 bits.
 pub(super) const FAR_M: f64 = 2_000_000.0;
@@ -33,10 +33,10 @@ fn velocity(source: &Source<'_>, field: &str, velocity: Place) -> Result<(), Sce
 pub(super) fn goal_velocity(
     source: &Source<'_>,
     field: &str,
-    guidance: GuidanceName,
+    guidance: GuidanceKind,
     given: Place,
 ) -> Result<(), ScenarioError> {
-    if guidance == GuidanceName::GoalFlock && given.0 != [0.0; 3] {
+    if guidance == GuidanceKind::GoalFlock && given.0 != [0.0; 3] {
         let what = "goals of guidance \"goal_flock\" do not move";
         return Err(source.error(field, what, "leave it out"));
     }
@@ -44,15 +44,15 @@ pub(super) fn goal_velocity(
 }
 
 /// How many goals robots have room for.
-pub(super) const fn goals(guidance: GuidanceName) -> u8 {
+pub(super) const fn goals(guidance: GuidanceKind) -> u8 {
     match guidance {
-        GuidanceName::Waypoint | GuidanceName::Lattice => 1,
-        GuidanceName::GoalFlock => GOALS as u8,
-        GuidanceName::Boids | GuidanceName::Route | GuidanceName::Formation => 0,
+        GuidanceKind::Waypoint | GuidanceKind::Lattice => 1,
+        GuidanceKind::GoalFlock => GOALS as u8,
+        GuidanceKind::Boids | GuidanceKind::Route | GuidanceKind::Formation => 0,
     }
 }
 
-fn goal_count(source: &Source<'_>, field: &str, guidance: GuidanceName, count: usize) -> Result<(), ScenarioError> {
+fn goal_count(source: &Source<'_>, field: &str, guidance: GuidanceKind, count: usize) -> Result<(), ScenarioError> {
     let most = goals(guidance);
     if count <= usize::from(most) {
         return Ok(());
@@ -61,7 +61,7 @@ fn goal_count(source: &Source<'_>, field: &str, guidance: GuidanceName, count: u
     Err(source.error(field, what, format!("give at most {most}, or another guidance")))
 }
 
-pub(super) fn list(source: &Source<'_>, guidance: GuidanceName, list: &[PlaneRobotEntry]) -> Result<(), ScenarioError> {
+pub(super) fn list(source: &Source<'_>, guidance: GuidanceKind, list: &[PlaneRobotEntry]) -> Result<(), ScenarioError> {
     let field = "plane.robots.list";
     if list.is_empty() {
         return Err(source.error(field, "nobody takes part", "give one robot or more"));
@@ -79,7 +79,7 @@ pub(super) fn list(source: &Source<'_>, guidance: GuidanceName, list: &[PlaneRob
     Ok(())
 }
 
-pub(super) fn cloud(source: &Source<'_>, guidance: GuidanceName, cloud: &CloudEntry) -> Result<(), ScenarioError> {
+pub(super) fn cloud(source: &Source<'_>, guidance: GuidanceKind, cloud: &CloudEntry) -> Result<(), ScenarioError> {
     let field = |name| format!("plane.robots.cloud.{name}");
     place(source, &field("from_m"), cloud.from_m)?;
     place(source, &field("to_m"), cloud.to_m)?;
@@ -131,7 +131,7 @@ pub(super) fn outside(source: &Source<'_>, setup: &PlaneSetup) -> Result<(), Sce
 
 /// What would be ignored is refused.
 pub(super) fn safety_tables(source: &Source<'_>, table: &PlaneTable) -> Result<(), ScenarioError> {
-    let is_used = !matches!(table.safety, SafetyName::None | SafetyName::PushOut);
+    let is_used = !matches!(table.safety, SafetyKind::None | SafetyKind::PushOut);
     if is_used || table.orca.is_empty() {
         return Ok(());
     }

@@ -2,9 +2,9 @@
 
 use super::super::ScenarioError;
 use super::super::source::Source;
-use super::table::{GuidanceName, PlaneTable};
+use super::table::PlaneTable;
 use super::within;
-use staya_controller::agent::BoidsSetup;
+use staya_controller::agent::{BoidsSetup, GuidanceKind, GuidanceSetup};
 use staya_controller::flock::goal::GoalParams;
 use staya_controller::flock::lattice::{Algorithm, Gain, LatticeParams};
 
@@ -12,7 +12,7 @@ use staya_controller::flock::lattice::{Algorithm, Gain, LatticeParams};
 fn goes_with<T: Copy>(
     source: &Source<'_>,
     table: &PlaneTable,
-    guidance: GuidanceName,
+    guidance: GuidanceKind,
     name: &str,
     given: Option<T>,
 ) -> Result<Option<T>, ScenarioError> {
@@ -31,10 +31,10 @@ fn goes_with<T: Copy>(
     }
 }
 
-pub(super) fn lattice(source: &Source<'_>, table: &PlaneTable) -> Result<(LatticeParams<f32>, bool), ScenarioError> {
-    let given = goes_with(source, table, GuidanceName::Lattice, "lattice", table.lattice)?;
+pub(super) fn lattice(source: &Source<'_>, table: &PlaneTable) -> Result<Option<GuidanceSetup>, ScenarioError> {
+    let given = goes_with(source, table, GuidanceKind::Lattice, "lattice", table.lattice)?;
     let Some(given) = given else {
-        return Ok((LatticeParams::new(1.0), true));
+        return Ok(None);
     };
     within(source, "plane.lattice.spacing_m", given.spacing_m, 0.01, 100.0, "metres")?;
     let mut params = LatticeParams::new(given.spacing_m as f32);
@@ -57,17 +57,18 @@ pub(super) fn lattice(source: &Source<'_>, table: &PlaneTable) -> Result<(Lattic
             *param = Gain::critical(gain as f32);
         }
     }
-    Ok((params, given.goal_moves.unwrap_or(true)))
+    Ok(Some(GuidanceSetup::Lattice { params, moves: given.goal_moves.unwrap_or(true) }))
 }
 
 pub(super) fn goal_flock(
     source: &Source<'_>,
     table: &PlaneTable,
     cruise_mps: f64,
-) -> Result<(GoalParams<f32>, f32), ScenarioError> {
-    let wanted = GuidanceName::GoalFlock;
+    seed: u64,
+) -> Result<Option<GuidanceSetup>, ScenarioError> {
+    let wanted = GuidanceKind::GoalFlock;
     let Some(given) = goes_with(source, table, wanted, "goal_flock", table.goal_flock)? else {
-        return Ok((GoalParams::new(1.0, 1.0), 1.0));
+        return Ok(None);
     };
     let least = given.min_distance_m;
     within(source, "plane.goal_flock.min_distance_m", least, 0.001, 10_000.0, "metres")?;
@@ -88,13 +89,17 @@ pub(super) fn goal_flock(
             *param = gain as f32;
         }
     }
-    Ok((params, arrival_m as f32))
+    Ok(Some(GuidanceSetup::GoalFlock { params, arrival_m: arrival_m as f32, seed }))
 }
 
-pub(super) fn boids(source: &Source<'_>, table: &PlaneTable) -> Result<BoidsSetup, ScenarioError> {
-    let given = goes_with(source, table, GuidanceName::Boids, "boids", table.boids)?;
+pub(super) fn boids(
+    source: &Source<'_>,
+    table: &PlaneTable,
+    cruise_mps: f64,
+) -> Result<Option<GuidanceSetup>, ScenarioError> {
+    let given = goes_with(source, table, GuidanceKind::Boids, "boids", table.boids)?;
     let Some(given) = given else {
-        return Ok(BoidsSetup::PAPER);
+        return Ok(None);
     };
     within(source, "plane.boids.crowded_m", given.crowded_m, 0.0, 1e5, "metres")?;
     within(source, "plane.boids.closest_m", given.closest_m, 0.0, 1e5, "metres")?;
@@ -103,5 +108,6 @@ pub(super) fn boids(source: &Source<'_>, table: &PlaneTable) -> Result<BoidsSetu
     within(source, "plane.boids.max_turn", max_turn, 0.0, 3.15, "radians")?;
     within(source, "plane.boids.max_turn_away", max_turn_away, 0.0, 3.15, "radians")?;
     let [crowded, closest, turn, away] = [given.crowded_m, given.closest_m, max_turn, max_turn_away].map(|x| x as f32);
-    Ok(BoidsSetup { crowded_m: crowded, closest_m: closest, max_turn: turn, max_turn_away: away })
+    let params = BoidsSetup { crowded_m: crowded, closest_m: closest, max_turn: turn, max_turn_away: away };
+    Ok(Some(GuidanceSetup::Boids { params, speed_mps: cruise_mps as f32 }))
 }

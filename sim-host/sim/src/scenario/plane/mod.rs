@@ -13,20 +13,19 @@ pub use table::*;
 
 use super::ranges::within;
 use super::source::Source;
-use super::{Robot, Routing, Scenario, ScenarioError, ScenarioFile};
+use super::{Robot, Scenario, ScenarioError, ScenarioFile, params};
 use crate::radio::RadioParams;
 use crate::terrain::Terrain;
 use crate::world::MoveRules;
 use crate::world::plane::{Abilities, Solid};
-use staya_controller::agent::BoidsSetup;
-use staya_controller::flock::goal::GoalParams;
-use staya_controller::flock::lattice::LatticeParams;
+use staya_controller::agent::{AnyHalfPlanes, GuidanceKind, GuidanceSetup, RouteSetup, SafetyKind, SafetySetup};
 use staya_controller::formation::FormationParams;
 use staya_controller::grid::Cell;
 use staya_controller::neighbor::StalenessInflation;
 use staya_controller::orca::AvoidParams;
-use staya_controller::push_out::{Evasion, Model, PushOutParams};
+use staya_controller::push_out::{Evasion, PushOutParams};
 use staya_controller::robot::RobotId;
+use staya_controller::template::Template;
 
 /// Robots that a plane can hold.
 const MAX_ROBOTS: u32 = 1_000_000;
@@ -62,21 +61,9 @@ pub struct PlaneSetup {
     /// By robot.
     pub starts: Vec<Start>,
     /// Where they want to go.
-    pub guidance: GuidanceName,
+    pub guidance: GuidanceSetup,
     /// What keeps them apart.
-    pub safety: SafetyName,
-    /// Parameters of ORCA.
-    pub orca: AvoidParams<f32>,
-    /// How silent robots are seen.
-    pub inflation: StalenessInflation<f32>,
-    /// Parameters of push-out.
-    pub push_out: PushOutParams<f32>,
-    /// Parameters of the alpha flock, and whether its reference moves.
-    pub lattice: (LatticeParams<f32>, bool),
-    /// Parameters of the goal flock, and how near counts as being at a goal, metres.
-    pub goal_flock: (GoalParams<f32>, f32),
-    /// Parameters of boids.
-    pub boids: BoidsSetup,
+    pub safety: SafetySetup,
     /// By rising tick.
     pub orders: Vec<Order>,
 }
@@ -86,25 +73,36 @@ impl PlaneSetup {
     /// what a `[plane]` with nothing but the required fields says.
     #[must_use]
     pub fn new(abilities: Abilities, radius_m: f64, starts: Vec<Start>) -> Self {
+        let (cruise_mps, tolerance_m) = (abilities.max_speed_mps, radius_m / 10.0);
+        let inflation = inflation(cruise_mps, radius_m);
         Self {
             abilities,
             radius_m,
-            cruise_mps: abilities.max_speed_mps,
-            tolerance_m: radius_m / 10.0,
+            cruise_mps,
+            tolerance_m,
             sight_m: ten(),
             has_terrain: false,
             solids: Vec::new(),
             starts,
-            guidance: GuidanceName::Waypoint,
-            safety: SafetyName::Orca,
-            orca: AvoidParams::default(),
-            inflation: StalenessInflation { growth_mps: abilities.max_speed_mps as f32 / 2.0, max_m: radius_m as f32 },
-            push_out: PushOutParams::new(1.0),
-            lattice: (LatticeParams::new(1.0), true),
-            goal_flock: (GoalParams::new(1.0, 1.0), 1.0),
-            boids: BoidsSetup::PAPER,
+            guidance: waypoint(cruise_mps, tolerance_m),
+            safety: SafetySetup::Orca { params: AvoidParams::default(), inflation, source: AnyHalfPlanes::Analytic },
             orders: Vec::new(),
         }
+    }
+
+    /// The same robots, which go straight to places and count as being there at this distance, metres.
+    #[must_use]
+    pub fn to_places(mut self, tolerance_m: f64) -> Self {
+        self.tolerance_m = tolerance_m;
+        self.guidance = waypoint(self.cruise_mps, tolerance_m);
+        self
+    }
+
+    /// The same robots behind a safety layer with those of the parameters that it has a use for; silent robots grow as usual.
+    #[must_use]
+    pub fn behind(mut self, safety: SafetyKind, orca: AvoidParams<f32>, push_out: PushOutParams<f32>) -> Self {
+        self.safety = safety.setup(orca, inflation(self.abilities.max_speed_mps, self.radius_m), push_out);
+        self
     }
 
     /// Numbers for the robots: 1, 2, 3, ... in the order of their starts; their cells mean nothing.
@@ -113,6 +111,16 @@ impl PlaneSetup {
         let robot = |id| Robot { id: RobotId(id), start: Cell::default(), goal: Cell::default() };
         ids.map(robot).collect()
     }
+}
+
+/// Straight to places.
+const fn waypoint(cruise_mps: f64, tolerance_m: f64) -> GuidanceSetup {
+    GuidanceSetup::Waypoint { speed_mps: cruise_mps as f32, tolerance_m: tolerance_m as f32 }
+}
+
+/// How silent robots grow unless a file says otherwise: by half the highest speed, up to the radius.
+const fn inflation(max_speed_mps: f64, radius_m: f64) -> StalenessInflation<f32> {
+    StalenessInflation { growth_mps: (max_speed_mps / 2.0) as f32, max_m: radius_m as f32 }
 }
 
 impl Scenario {
@@ -131,7 +139,7 @@ impl Scenario {
             robots: setup.robots(),
             formation: None,
             plane: Some(setup),
-            route: Routing::default(),
+            route: RouteSetup::default(),
             formation_params: FormationParams::default(),
             faults: Vec::new(),
             key: None,
@@ -173,7 +181,7 @@ pub(super) fn build(
             "give [terrain] and the top-level [robots], or another guidance",
         ));
     }
-    if (table.guidance == GuidanceName::Formation) != file.in_formation() {
+    if (table.guidance == GuidanceKind::Formation) != file.in_formation() {
         return Err(source.error(
             "plane.guidance",
             "robots.formation and guidance \"formation\" go together",
@@ -208,14 +216,8 @@ pub(super) fn build(
         has_terrain: terrain.is_some(),
         solids: solids(source, table)?,
         starts,
-        guidance: table.guidance,
-        safety: table.safety,
-        orca: orca(source, &table.orca)?,
-        inflation: inflation(source, table)?,
-        push_out: push_out(source, table)?,
-        lattice: flocks::lattice(source, table)?,
-        goal_flock: flocks::goal_flock(source, table, cruise_mps)?,
-        boids: flocks::boids(source, table)?,
+        safety: safety(source, table)?,
+        guidance: guidance(source, file, table, cruise_mps, tolerance_m)?,
         orders: orders(source, file, table)?,
     };
     checks::outside(source, &setup)?;
@@ -259,6 +261,49 @@ fn solids(source: &Source<'_>, table: &PlaneTable) -> Result<Vec<Solid>, Scenari
     Ok(solids)
 }
 
+fn guidance(
+    source: &Source<'_>,
+    file: &ScenarioFile,
+    table: &PlaneTable,
+    cruise_mps: f64,
+    tolerance_m: f64,
+) -> Result<GuidanceSetup, ScenarioError> {
+    let flocks = [
+        flocks::lattice(source, table)?,
+        flocks::goal_flock(source, table, cruise_mps, file.seed)?,
+        flocks::boids(source, table, cruise_mps)?,
+    ];
+    // A table of another guidance is refused, and so is a flock without its own.
+    if let Some(flock) = flocks.into_iter().flatten().next() {
+        return Ok(flock);
+    }
+    if !table.guidance.is_on_grid() {
+        return Ok(waypoint(cruise_mps, tolerance_m));
+    }
+    let (route, speed_mps) = (params::routing(source, &file.route, &file.grid)?, Some(cruise_mps as f32));
+    if table.guidance == GuidanceKind::Route {
+        return Ok(GuidanceSetup::Route { route, speed_mps });
+    }
+    let formation = params::formation(source, &file.formation)?;
+    // Each robot has its own template: see `Scenario::guidance`.
+    Ok(GuidanceSetup::Formation { route, formation, template: Template::default(), speed_mps })
+}
+
+fn safety(source: &Source<'_>, table: &PlaneTable) -> Result<SafetySetup, ScenarioError> {
+    let orca = orca(source, &table.orca)?;
+    let mut inflation = inflation(table.max_speed_mps, table.radius_m);
+    for (field, value, unit, param) in [
+        ("inflation_mps", table.orca.inflation_mps, "m/s", &mut inflation.growth_mps),
+        ("inflation_m", table.orca.inflation_m, "metres", &mut inflation.max_m),
+    ] {
+        if let Some(value) = value {
+            within(source, &format!("plane.orca.{field}"), value, 0.0, 1000.0, unit)?;
+            *param = value as f32;
+        }
+    }
+    Ok(table.safety.setup(orca, inflation, push_out(source, table)?))
+}
+
 fn orca(source: &Source<'_>, table: &OrcaTable) -> Result<AvoidParams<f32>, ScenarioError> {
     let mut params = AvoidParams::<f32>::default();
     for (field, value, low, high, unit, param) in [
@@ -276,7 +321,7 @@ fn orca(source: &Source<'_>, table: &OrcaTable) -> Result<AvoidParams<f32>, Scen
 }
 
 fn push_out(source: &Source<'_>, table: &PlaneTable) -> Result<PushOutParams<f32>, ScenarioError> {
-    let given = match (table.safety == SafetyName::PushOut, table.push_out) {
+    let given = match (table.safety == SafetyKind::PushOut, table.push_out) {
         (false, None) => return Ok(PushOutParams::new(1.0)),
         (true, Some(given)) => given,
         _ => {
@@ -287,21 +332,10 @@ fn push_out(source: &Source<'_>, table: &PlaneTable) -> Result<PushOutParams<f32
     let field = "plane.push_out.min_distance_m";
     within(source, field, given.min_distance_m, 0.001, 1e5, "metres")?;
     Ok(PushOutParams {
-        model: match given.model {
-            ModelName::Radial => Model::Radial,
-            ModelName::Tangential => Model::Tangential,
-        },
+        model: given.model,
         evasion: if given.single { Evasion::Single } else { Evasion::Multiple },
         min_distance_m: given.min_distance_m as f32,
     })
-}
-
-fn inflation(source: &Source<'_>, table: &PlaneTable) -> Result<StalenessInflation<f32>, ScenarioError> {
-    let growth_mps = table.orca.inflation_mps.unwrap_or(table.max_speed_mps / 2.0);
-    let max_m = table.orca.inflation_m.unwrap_or(table.radius_m);
-    within(source, "plane.orca.inflation_mps", growth_mps, 0.0, 1000.0, "m/s")?;
-    within(source, "plane.orca.inflation_m", max_m, 0.0, 1000.0, "metres")?;
-    Ok(StalenessInflation { growth_mps: growth_mps as f32, max_m: max_m as f32 })
 }
 
 fn orders(source: &Source<'_>, file: &ScenarioFile, table: &PlaneTable) -> Result<Vec<Order>, ScenarioError> {

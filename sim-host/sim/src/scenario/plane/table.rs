@@ -1,6 +1,8 @@
 //! `[plane]` as it stands in the file: every field is documented here.
 
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
+use staya_controller::agent::{GuidanceKind, SafetyKind};
+use staya_controller::push_out::Model;
 
 /// `[plane]`.
 #[derive(Clone, Debug, Deserialize)]
@@ -20,12 +22,12 @@ pub struct PlaneTable {
     /// How far robots see obstacles, metres. Default: 10.
     #[serde(default = "ten")]
     pub sight_m: f64,
-    /// Where they want to go.
+    /// Where they want to go; `"route"` and `"formation"` need `[terrain]`, the latter `robots.formation`.
     #[serde(default)]
-    pub guidance: GuidanceName,
+    pub guidance: GuidanceKind,
     /// What keeps them apart.
     #[serde(default)]
-    pub safety: SafetyName,
+    pub safety: SafetyKind,
     /// Who takes part, unless the top-level `robots` says it in cells.
     pub robots: Option<PlaneRobots>,
     /// Walls: chains of points.
@@ -60,73 +62,6 @@ const fn infinite() -> f64 {
 /// How far robots see, metres.
 pub(super) const fn ten() -> f64 {
     10.0
-}
-
-/// `plane.guidance`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum GuidanceName {
-    /// Straight to the goal.
-    #[default]
-    Waypoint,
-    /// The alpha flock (OLF): equal distances, with the first goal as its reference.
-    Lattice,
-    /// The goal flock (PAV): to the middle of the goals together, then each to one of them.
-    GoalFlock,
-    /// Boids (STA).
-    Boids,
-    /// By the grid's windowed routing (KUZ), from cell to cell; needs `[terrain]`.
-    Route,
-    /// As `route`, keeping a formation; needs `robots.formation`.
-    Formation,
-}
-
-impl GuidanceName {
-    /// As it stands in the file.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Waypoint => "waypoint",
-            Self::Lattice => "lattice",
-            Self::GoalFlock => "goal_flock",
-            Self::Boids => "boids",
-            Self::Route => "route",
-            Self::Formation => "formation",
-        }
-    }
-
-    /// Whether it goes from cell to cell.
-    #[must_use]
-    pub const fn is_on_grid(self) -> bool {
-        matches!(self, Self::Route | Self::Formation)
-    }
-}
-
-/// `plane.safety`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum SafetyName {
-    /// Nothing.
-    None,
-    /// ORCA with exact half-planes.
-    #[default]
-    Orca,
-    /// ORCA with half-planes from the voxel template (FVM) of 2 KiB.
-    #[serde(rename = "template_2k")]
-    Template2k,
-    /// The same of 8 KiB.
-    #[serde(rename = "template_8k")]
-    Template8k,
-    /// The same of 16 KiB.
-    #[serde(rename = "template_16k")]
-    Template16k,
-    /// The same of 64 KiB.
-    #[serde(rename = "template_64k")]
-    Template64k,
-    /// ORCA in space, for robots that fly.
-    Fly,
-    /// Push-out (PAV): needs `[plane.push_out]`.
-    PushOut,
 }
 
 /// `[plane.robots]`: exactly one of these.
@@ -297,21 +232,10 @@ pub struct PushOutTable {
     pub min_distance_m: f64,
     /// `"radial"` (model 1: along the radius; the default) or `"tangential"` (model 2: along the border).
     #[serde(default)]
-    pub model: ModelName,
+    pub model: Model,
     /// Whether only the nearest robot in the way is evaded. Default: false, all are.
     #[serde(default)]
     pub single: bool,
-}
-
-/// `plane.push_out.model`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ModelName {
-    /// Model 1.
-    #[default]
-    Radial,
-    /// Model 2.
-    Tangential,
 }
 
 /// `[plane.lattice]` (OLF).

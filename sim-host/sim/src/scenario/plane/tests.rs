@@ -21,8 +21,9 @@ fn setup(text: &str) -> PlaneSetup {
 fn staleness_inflation_is_read_by_its_former_names_too() {
     for (growth, most) in [("inflation_mps", "inflation_m"), ("doubt_mps", "doubt_m")] {
         let table = format!("[plane.orca]\n{growth} = 0.25\n{most} = 0.75\n");
-        let inflation = setup(&format!("{HEAD}{PLANE}{table}{TWO}")).inflation;
-        assert_eq!((inflation.growth_mps, inflation.max_m), (0.25, 0.75));
+        let (params, inflation) = (AvoidParams::default(), StalenessInflation { growth_mps: 0.25, max_m: 0.75 });
+        let safety = SafetySetup::Orca { params, inflation, source: AnyHalfPlanes::Analytic };
+        assert_eq!(setup(&format!("{HEAD}{PLANE}{table}{TWO}")).safety, safety);
     }
 }
 
@@ -34,9 +35,10 @@ fn the_smallest_plane_has_the_documented_defaults() {
     assert_eq!(plane.abilities.max_acceleration_mps2, f64::INFINITY);
     assert_eq!((plane.cruise_mps, plane.sight_m), (1.0, 10.0));
     assert!((plane.tolerance_m - 0.02).abs() < 1e-12);
-    assert_eq!((plane.guidance, plane.safety, plane.has_terrain), (GuidanceName::Waypoint, SafetyName::Orca, false));
-    assert_eq!(plane.orca, AvoidParams::default());
-    assert_eq!((plane.inflation.growth_mps, plane.inflation.max_m), (0.5, 0.2));
+    let (params, inflation) = (AvoidParams::default(), StalenessInflation { growth_mps: 0.5, max_m: 0.2 });
+    assert_eq!(plane.guidance, GuidanceSetup::Waypoint { speed_mps: 1.0, tolerance_m: 0.02 });
+    assert_eq!(plane.safety, SafetySetup::Orca { params, inflation, source: AnyHalfPlanes::Analytic });
+    assert!(!plane.has_terrain);
     let [one, two] = &plane.starts[..] else { panic!("two robots") };
     assert_eq!(one.places[0].position_m, [5.0, 0.0, 0.0]);
     assert_eq!((two.position_m, two.places.len()), ([3.0, 0.0, 1.0], 0));

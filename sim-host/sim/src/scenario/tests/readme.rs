@@ -25,8 +25,7 @@ fn every_field_is_in_the_table_of_the_readme() {
             let is_list = format!("`[[{name}]]`");
             let in_plane = [format!("`[plane.{name}]`"), format!("`[[plane.{name}]]`")];
             let said = [in_code, is_table, is_list].iter().chain(&in_plane).any(|word| readme.contains(word));
-            // Those of a Routing are not from the file.
-            assert!(said || ["params", "sharpness"].contains(&name), "{name} is missing");
+            assert!(said, "{name} is missing");
             fields += 1;
         }
     }
@@ -63,7 +62,7 @@ fn the_defaults_in_the_readme_are_the_controllers() {
     };
     let number = |gain: Gain| f64::from(gain.sixteenths()) / 16.0;
     let cells = |units: u16| format!("{:.2}", f64::from(units) / f64::from(UNIT));
-    let (route, formation) = (Routing::default(), FormationParams::default());
+    let (route, formation) = (RouteSetup::default(), FormationParams::default());
     let gains = [route.params.a0, route.params.a1, route.params.a2, route.params.a3];
     assert_eq!(last_column("a0"), gains.map(|gain| number(gain).to_string()).join(", "));
     assert_eq!(last_column("radius"), route.params.radius.to_string());
