@@ -1,4 +1,4 @@
-//! Travelling in formation (KUZ algorithm 2): the top leader chooses the way for all, the others keep
+//! Travelling in formation (A. V. Kuznetsov 2017, KUZ, algorithm 2): the top leader chooses the way for all, the others keep
 //! their places beside it. See [`crate::formation`] for what differs from the paper and why.
 
 use super::OnGrid;

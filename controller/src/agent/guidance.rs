@@ -123,7 +123,7 @@ pub trait Guidance<S: Scalar>: Teamwork {
 /// What robots that travel together say to each other beyond beacons. A law that has no use for it takes the defaults:
 /// `impl Teamwork for MyLaw {}`.
 pub trait Teamwork {
-    /// "Choose another direction" (KUZ section 7): excludes the last choice from the next one.
+    /// "Choose another direction" (A. V. Kuznetsov 2017, KUZ, section 7): excludes the last choice from the next one.
     fn redirect(&mut self) {}
 
     /// Takes a part of a formation template in; whether the part was of use. `is_anew`: its sender is

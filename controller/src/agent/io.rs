@@ -55,7 +55,7 @@ pub enum Command<S> {
     #[default]
     Hold,
     /// Take the first of these moves whose cell is free and passable; none free: stand
-    /// (KUZ algorithm 4).
+    /// (A. V. Kuznetsov 2017, KUZ, algorithm 4).
     Move(Vec<Dir, 8>),
     /// Go with this world velocity, m/s: within the speed that the body can have.
     Velocity(Vec3<S>),

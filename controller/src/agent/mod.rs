@@ -148,7 +148,7 @@ use crate::wire::{Postcard, Wire};
 use link::Link;
 use serde::Serialize;
 
-/// Cells of a search for windows of radius 5 (KUZ) with their border: (2 * 5 + 3)^2.
+/// Cells of a search for windows of radius 5 (A. V. Kuznetsov 2017, KUZ) with their border: (2 * 5 + 3)^2.
 pub const CELLS: usize = 169;
 /// Neighbours that an agent of default capacity knows.
 pub const NEIGHBORS: usize = 16;

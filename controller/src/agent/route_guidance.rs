@@ -1,4 +1,4 @@
-//! Every robot for itself, to its own goal (KUZ algorithm 1).
+//! Every robot for itself, to its own goal (A. V. Kuznetsov 2017, KUZ, algorithm 1).
 
 use super::OnGrid;
 use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 pub struct CellState {
     /// The cell it occupies.
     pub cell: Cell,
-    /// Time until it may leave; zero or less: free now (KUZ eq. 6).
+    /// Time until it may leave; zero or less: free now (A. V. Kuznetsov 2017, KUZ, eq. 6).
     pub busy: Duration,
 }
 
