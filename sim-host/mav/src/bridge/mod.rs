@@ -6,6 +6,7 @@
 
 mod commands;
 mod guided;
+mod items;
 mod mission;
 mod model;
 mod params;

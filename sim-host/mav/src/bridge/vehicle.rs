@@ -64,7 +64,7 @@ pub struct Vehicle {
     starts_armed: bool,
     /// Its mission is under way, since this simulated time at the present item's place.
     pub(super) is_on_mission: bool,
-    there_since_us: Option<u64>,
+    pub(super) there_since_us: Option<u64>,
     /// When a text of each kind was last sent, and the time now.
     texts: [Option<u64>; Kind::COUNT],
     pub(super) now_us: u64,
@@ -419,7 +419,7 @@ impl Vehicle {
     }
 
     /// Whether it is at a place, by what it knows of its own.
-    fn is_at(&self, place_m: [f64; 3], near_m: f64) -> bool {
+    pub(super) fn is_at(&self, place_m: [f64; 3], near_m: f64) -> bool {
         if self.model.grid.is_some() {
             return self.model.cell(place_m) == Some(self.sample.cell);
         }
@@ -451,67 +451,6 @@ impl Vehicle {
             FlightMode::Auto if self.is_on_mission => self.go_on_with_mission(out),
             _ => {}
         }
-    }
-
-    /// Sends it to the present item's place.
-    pub(super) fn begin_item(&mut self, out: &mut Out) {
-        self.there_since_us = None;
-        let item = self.mission.item(self.mission.current()).copied();
-        let Some(item) = item else {
-            return self.stop_mission(out);
-        };
-        match item.command {
-            MAV_CMD_NAV_RETURN_TO_LAUNCH => self.enter(FlightMode::Return, out),
-            MAV_CMD_NAV_LAND => self.enter(FlightMode::Land, out),
-            _ => match self.item_place(&item).and_then(|place| self.goal(place)) {
-                Some(wish) => out.actions.push(Action::Wish(wish)),
-                None => self.stop_mission(out),
-            },
-        }
-    }
-
-    fn go_on_with_mission(&mut self, out: &mut Out) {
-        let seq = self.mission.current();
-        let item = self.mission.item(seq).copied();
-        let Some((item, place)) = item.and_then(|item| Some((item, self.item_place(&item)?))) else {
-            return;
-        };
-        let [hold_s, near_m, ..] = item.params;
-        let near_m = if near_m.is_finite() { near_m } else { 0.0 };
-        if !self.is_at(place, near_m.into()) {
-            return;
-        }
-        let now = self.sample.time_us;
-        let since = *self.there_since_us.get_or_insert(now);
-        let hold_s = if hold_s.is_finite() { hold_s } else { 0.0 };
-        if ((now - since) as f64) < libm::round(f64::from(hold_s) * 1e6) {
-            return;
-        }
-        let reached = MISSION_ITEM_REACHED_DATA { seq };
-        out.messages.push(MavMessage::MISSION_ITEM_REACHED(reached));
-        if self.mission.set_current(seq + 1) {
-            self.begin_item(out);
-        } else {
-            // It stays where it is.
-            self.is_on_mission = false;
-            out.actions.push(Action::Wish(Wish::Hold));
-            self.text(out, Kind::News, MAV_SEVERITY_INFO, "mission done: holding");
-        }
-    }
-
-    fn stop_mission(&mut self, out: &mut Out) {
-        if core::mem::take(&mut self.is_on_mission) {
-            out.actions.push(Action::Wish(Wish::Hold));
-            self.text(out, Kind::News, MAV_SEVERITY_NOTICE, "mission ended: holding");
-        }
-    }
-
-    fn take_item(&mut self, from: Sender, seq: u16, item: Item) -> MavMessage {
-        let mut mission = core::mem::take(&mut self.mission);
-        let now_us = self.now_us;
-        let answer = mission.take(from, seq, item, now_us, |item| self.item_fault(item));
-        self.mission = mission;
-        answer
     }
 }
 

@@ -11,6 +11,7 @@
 mod attacker;
 mod body;
 mod external;
+mod faults;
 mod grid;
 mod ground;
 mod hash;
@@ -295,46 +296,6 @@ where
         let keeping = self.ground.keeping(true);
         self.tick += 1;
         self.row(keeping, packets)
-    }
-
-    /// Takes computers down whose fault begins; who comes up again has forgotten everything but its
-    /// number, its parameters and its task.
-    fn apply_faults(&mut self) {
-        for at in 0..self.faults.len() {
-            let fault = self.faults[at];
-            let found = self.robots.binary_search_by_key(&fault.robot, |r| r.id);
-            let Ok(index) = found.as_ref().copied() else {
-                continue;
-            };
-            if fault.from_tick == self.tick {
-                let computer = &mut self.computers[index];
-                computer.down_until = computer.down_until.max(fault.to_tick);
-            }
-            let ends = fault.to_tick == self.tick;
-            if ends && self.computers[index].down_until == self.tick {
-                let boot = self.computers[index].boot.wrapping_add(1);
-                self.restart(index, boot);
-            }
-        }
-        self.revive();
-    }
-
-    /// Starts those anew whose controllers outside of this process have lost their state.
-    fn revive(&mut self) {
-        let Some(external) = &mut self.external else {
-            return;
-        };
-        let controllers = &mut external.controllers;
-        let robots = external.robots.iter().map(|&(index, ..)| index);
-        let lost: Vec<_> = robots.filter(|&index| controllers.has_restarted(index)).collect();
-        for index in lost {
-            let computer = &self.computers[index];
-            // One that is down anyway starts when that is over.
-            if computer.down_until <= self.tick {
-                let boot = computer.boot.wrapping_add(1);
-                self.restart(index, boot);
-            }
-        }
     }
 
     /// Attackers hear and speak, as robots do.

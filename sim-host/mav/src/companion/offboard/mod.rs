@@ -10,6 +10,7 @@
 
 mod event;
 mod out;
+mod poll;
 
 pub use event::Event;
 pub use out::status_text;
@@ -28,18 +29,8 @@ pub const AUTOPILOT: u8 = 1;
 
 /// Between two own heartbeats.
 const HEARTBEAT: Duration = Duration::from_secs(1);
-/// Between two looks at the rate of positions.
-const LOOK: Duration = Duration::from_secs(3);
-/// How long PX4 gets setpoints before the mode is asked for.
-const STREAM: Duration = Duration::from_secs(1);
-/// Between two requests of one thing.
-const RETRY: Duration = Duration::from_secs(2);
-/// How often a thing is asked for: two minutes, since autopilots refuse arming and modes long after their first position.
-const ATTEMPTS: u8 = 60;
 /// How long there are no setpoints at all after a hand-over.
 const QUIET: Duration = Duration::from_secs(5);
-/// A command of the agent that is older is none.
-const COMMAND_VALID: Duration = Duration::from_millis(500);
 /// A time since boot that is earlier by more is another boot; by less, a message that was overtaken.
 const OVERTAKEN_MS: i32 = 2000;
 /// A time since boot that is later by more is another boot, whose clock wrapped.
@@ -423,130 +414,6 @@ impl OffboardStateMachine {
         self.command = None;
         self.state = to;
         self.events.push_back(Event::State { from, to });
-    }
-
-    /// The messages that are due at `now`, which never goes back. To be called more often than setpoints are due; at most one of each kind and
-    /// three requests come at a time.
-    pub fn poll(&mut self, now: Duration, out: &mut Vec<MavMessage>) {
-        self.settle(now);
-        if now >= self.next_heartbeat {
-            self.next_heartbeat = now + HEARTBEAT;
-            out.push(out::heartbeat());
-        }
-        if self.state == State::Silent {
-            return;
-        }
-        self.look(now, out);
-        if self.state == State::Entering {
-            self.enter(now, out);
-        }
-        if let Some(velocity) = self.setpoint(now).filter(|_| now >= self.next_setpoint) {
-            // A late call does not make for a burst.
-            let next = self.next_setpoint + self.rules.setpoint_every;
-            self.next_setpoint = next.max(now);
-            if now.saturating_sub(next) < self.rules.setpoint_every {
-                self.next_setpoint = next;
-            }
-            self.streaming_since.get_or_insert(now);
-            self.tally.setpoints += 1;
-            out.push(out::setpoint(self.system, velocity, now));
-        }
-    }
-
-    /// When [`poll`](Self::poll) has something to send if nothing is heard before, and nothing goes stale.
-    #[must_use]
-    pub fn due(&self, now: Duration) -> Duration {
-        let setpoint = self.setpoint(now).map(|_| self.next_setpoint);
-        setpoint.map_or(self.next_heartbeat, |due| due.min(self.next_heartbeat))
-    }
-
-    /// The setpoint to send, if there is one: north, east, down.
-    fn setpoint(&self, now: Duration) -> Option<[f64; 3]> {
-        const STAND: [f64; 3] = [0.0; 3];
-        match self.state {
-            State::Steering => {
-                let command = self.command;
-                let command = command.filter(|(at, _)| now.saturating_sub(*at) <= COMMAND_VALID);
-                let velocity = command.map_or(STAND, |(_, velocity)| velocity);
-                Some(self.at_altitude(velocity))
-            }
-            State::Stopped => Some(STAND),
-            State::Entering if self.kind.needs_stream() => Some(self.at_altitude(STAND)),
-            // So that the pilot can choose the mode at all. In other modes PX4 takes no notice.
-            State::Pilot | State::Disarmed | State::Grounded
-                if self.kind.needs_stream() && now >= self.quiet_until && self.fresh_fix(now).is_some() =>
-            {
-                Some(STAND)
-            }
-            _ => None,
-        }
-    }
-
-    /// With what brings it to its height and keeps it there.
-    fn at_altitude(&self, [north, east, down]: [f64; 3]) -> [f64; 3] {
-        let is_armed = self.beat.is_some_and(|beat| beat.is_armed && beat.is_controlled);
-        let height = self.rules.altitude_m.zip(self.fix).filter(|_| is_armed);
-        let down = height.map_or(down, |(altitude_m, fix)| -(0.5 * (altitude_m - fix.above_home_m)).clamp(-1.0, 1.0));
-        [north, east, down]
-    }
-
-    /// Asks for telemetry until it comes as often as it should.
-    fn look(&mut self, now: Duration, out: &mut Vec<MavMessage>) {
-        if self.next_look.is_some_and(|at| now < at) {
-            return;
-        }
-        let got = self.tally.positions - self.positions_at_look;
-        let wanted = self.rules.position_hz * LOOK.as_secs_f64();
-        if self.next_look.is_none() || (got as f64) < wanted / 2.0 {
-            out.extend(out::intervals(self.system, self.kind, self.rules.position_hz));
-        }
-        self.positions_at_look = self.tally.positions;
-        self.next_look = Some(now + LOOK);
-    }
-
-    /// Asks for the mode, then to be armed, then to take off; each until it is so.
-    fn enter(&mut self, now: Duration, out: &mut Vec<MavMessage>) {
-        let Some(beat) = self.beat else { return };
-        let ask = match (beat.is_controlled, beat.is_armed) {
-            (false, _) => Ask::Mode,
-            (true, false) => Ask::Arm,
-            (true, true) => Ask::Takeoff,
-        };
-        let is_streaming = |since: Duration| now.saturating_sub(since) >= STREAM;
-        if ask == Ask::Mode && self.kind.needs_stream() && !self.streaming_since.is_some_and(is_streaming) {
-            return;
-        }
-        let attempt = match self.asked {
-            Some((last, attempt, at)) if last == ask => {
-                if now.saturating_sub(at) < RETRY {
-                    return;
-                }
-                attempt + 1
-            }
-            _ => 1,
-        };
-        if attempt > ATTEMPTS {
-            self.end_entry(Some(Event::GaveUp));
-            return;
-        }
-        self.asked = Some((ask, attempt, now));
-        match ask {
-            Ask::Mode => out.push(out::set_mode(self.system, self.kind)),
-            Ask::Arm => out.push(out::arm(self.system)),
-            // PX4 climbs by its setpoints.
-            Ask::Takeoff if self.kind.needs_stream() => {}
-            Ask::Takeoff => {
-                let altitude_m = self.rules.altitude_m.unwrap_or(0.0);
-                out.push(out::takeoff(self.system, altitude_m));
-            }
-        }
-    }
-
-    /// What to send a few times when the companion ends: stand, if it steers.
-    #[must_use]
-    pub fn farewell(&self, now: Duration) -> Option<MavMessage> {
-        let steers = matches!(self.state, State::Steering | State::Stopped);
-        steers.then(|| out::setpoint(self.system, [0.0; 3], now))
     }
 }
 

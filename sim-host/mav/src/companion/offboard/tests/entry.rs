@@ -1,5 +1,6 @@
 //! How it comes to steer.
 
+use super::super::poll::ATTEMPTS;
 use super::*;
 
 #[test]
