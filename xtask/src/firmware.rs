@@ -125,9 +125,6 @@ fn build(repo: &Repo, toolchain: &Toolchain, part: &Part, profile: Profile, only
     for bin in &bins {
         cargo.args(["--bin", bin]);
     }
-    if std::env::var_os("DEFMT_LOG").is_none() {
-        cargo.env("DEFMT_LOG", "info");
-    }
     run(&mut cargo)?;
     let built = toolchain.target_folder(repo).join(part.target).join(folder);
     println!("{:>8} {:>8}  file", "flash", "RAM");

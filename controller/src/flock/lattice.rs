@@ -18,6 +18,11 @@
 //!   border, however deep. A wall has no inside: who has crossed it is pushed on.
 //! - What is not a number contributes nothing.
 //!
+//! **Old news.** The paper's robots see each other at once. By radio they act on what a neighbour was a delay and up to
+//! a period of its beacons ago, and a stiff lattice then swings itself apart: at a delay of 0.1 s gains of (10, 6.3) leave
+//! pieces that never settle. [`LatticeParams::stable_for`] softens them as far as that asks;
+//! [`LatticeParams::oldest_news_s`] says what given gains bear.
+//!
 //! **What it does not promise.** Repulsion is bounded and vanishes at contact: robots that close at more than about 2 d per
 //! second go through each other. It knows points, not bodies: choose d well above two radii, 0.6 d above one, and
 //! put a safety layer behind it.
@@ -148,6 +153,40 @@ impl<S: Scalar> LatticeParams<S> {
     #[must_use]
     pub fn is_sound(&self) -> bool {
         Law::new(self).is_some()
+    }
+
+    /// The same flock, gathered and following as its gains ask as long as they bear what robots know of each other: news
+    /// that take `delay_s` and come `rate_hz` times a second (beacons a second times the share that arrives). If they do
+    /// not bear it, robots and reference pull less in the same proportion (c_alpha, c_gamma), as much damped as before;
+    /// obstacles, which a robot sees for itself, push as ever.
+    ///
+    /// A delay that is not at least 0 counts as 0, a rate that is not above 0 as the slowest there is. Constant work.
+    #[must_use]
+    pub fn stable_for(mut self, delay_s: S, rate_hz: S) -> Self {
+        let period = S::ONE.checked_div(rate_hz.max(S::ZERO)).unwrap_or(S::MAX);
+        let news_s = delay_s.max(S::ZERO) + period;
+        let bearable = self.oldest_news_s();
+        if news_s > bearable {
+            // sqrt(c1) falls as news grow older, and c2 = 2 sqrt(c1) with it.
+            let softer = bearable.checked_div(news_s).unwrap_or(S::ZERO);
+            for gain in [&mut self.alpha, &mut self.gamma] {
+                gain.position = gain.position * softer * softer;
+                gain.velocity = gain.velocity * softer;
+            }
+        }
+        self
+    }
+
+    /// The age of news that these gains bear, seconds: a neighbour's delay plus the time between two of its beacons. The
+    /// largest number if nothing pulls.
+    ///
+    /// sqrt(c_alpha) is the rate at which the lattice answers, and news may be a fifth of its inverse old. The fifth is
+    /// measured, not the paper's: of 40 robots at delays of 0 to 0.5 s and steps of 0.05 to 0.2 s, flocks settled as if there
+    /// were no delay up to 0.22, and shook from 0.32 on.
+    #[must_use]
+    pub fn oldest_news_s(&self) -> S {
+        let answer = self.alpha.position.max(S::ZERO).sqrt() * S::from_i32(5);
+        S::ONE.checked_div(answer).unwrap_or(S::MAX)
     }
 
     /// Range of interaction r, metres: neighbours farther away count nothing.

@@ -24,6 +24,14 @@ struct Flock {
     reference: (V, V),
     reference_moves: bool,
     balls: Vec<Ball>,
+    /// Steps that news take, the share of them that is lost, and who draws which.
+    delay: usize,
+    loss: f64,
+    rng: Rng,
+    /// Places and velocities before each step.
+    past: Vec<(Vec<V>, Vec<V>)>,
+    /// The step from which robot i knows robot j.
+    heard: Vec<Vec<usize>>,
     /// Least distance of two robots and least clearance of an obstacle so far.
     least_pair: f64,
     least_clearance: f64,
@@ -52,6 +60,11 @@ impl Flock {
         Self {
             params,
             velocities: std::vec![V::ZERO; places.len()],
+            delay: 0,
+            loss: 0.0,
+            rng: Rng::new(7),
+            past: Vec::new(),
+            heard: std::vec![std::vec![0; places.len()]; places.len()],
             places,
             reference,
             reference_moves: false,
@@ -61,18 +74,27 @@ impl Flock {
         }
     }
 
-    fn nearby(&mut self, i: usize) -> Vec<Nearby<f64>> {
+    /// Whom robot i has in range, as far as it knows: where each was bound for when it was heard last.
+    fn nearby(&mut self, i: usize, step_s: f64) -> Vec<Nearby<f64>> {
         let (range, own) = (self.params.range_m(), self.places[i]);
+        let now = self.past.len() - 1;
         let mut nearby = Vec::new();
         for (j, place) in self.places.iter().enumerate() {
-            let offset_m = *place - own;
-            let squared = offset_m.norm_squared();
-            if j != i && squared < range * range {
-                self.least_pair = self.least_pair.min(squared.sqrt());
+            if j != i {
+                self.least_pair = self.least_pair.min((*place - own).norm());
+            }
+            let is_lost = self.loss > 0.0 && uniform(&mut self.rng, 0.0, 1.0) < self.loss;
+            if !is_lost {
+                self.heard[i][j] = now.saturating_sub(self.delay);
+            }
+            let then = self.heard[i][j];
+            let velocity_mps = self.past[then].1[j];
+            let offset_m = self.past[then].0[j] + velocity_mps * (step_s * (now - then) as f64) - own;
+            if j != i && offset_m.norm_squared() < range * range {
                 nearby.push(Nearby {
                     id: RobotId(j as u32 + 1),
                     offset_m,
-                    velocity_mps: self.velocities[j],
+                    velocity_mps,
                     radius_m: 0.0,
                     gives_way: true,
                 });
@@ -83,9 +105,10 @@ impl Flock {
 
     fn step(&mut self, step_s: f64) {
         let mut forces = Vec::new();
+        self.past.push((self.places.clone(), self.velocities.clone()));
         for i in 0..self.places.len() {
             let own = self.places[i];
-            let nearby = self.nearby(i);
+            let nearby = self.nearby(i, step_s);
             let mut obstacles = Vec::new();
             for ball in &self.balls {
                 let clearance = (ball.center - own).norm() - ball.radius;
@@ -247,6 +270,54 @@ fn free_flock_of_150_is_one_lattice_by_iteration_150() {
         }
         assert!(flock.mismatch() < 0.001, "K~ {}", flock.mismatch());
     }
+}
+
+/// Forty robots that follow a reference and hear of each other late: parts, K~ and E~ after 80 s.
+fn late(params: LatticeParams<f64>, delay: usize, loss: f64, step_s: f64, seed: u64) -> (usize, f64, f64) {
+    let mut rng = Rng::new(seed);
+    let start = places(40, || uniform(&mut rng, 0.0, 44.0));
+    let reference = (vec3([22.0, 22.0, 0.0]), V::new(2.0, 0.0, 0.0));
+    let mut flock = Flock::new(params, start, reference);
+    (flock.reference_moves, flock.delay, flock.loss) = (true, delay, loss);
+    flock.velocities = places(40, || uniform(&mut rng, -1.0, 1.0));
+    for _ in 0..(80.0 / step_s) as usize {
+        flock.step(step_s);
+    }
+    (flock.components(8.4), flock.mismatch(), flock.deviation(8.4))
+}
+
+#[test]
+fn a_flock_stands_late_and_lost_news_with_the_gains_for_them_and_shakes_without() {
+    let params = LatticeParams::new(7.0);
+    for (delay, loss, step_s) in [(2, 0.0, 0.05), (5, 0.0, 0.04), (0, 0.0, 0.2), (0, 0.3, 0.05), (2, 0.3, 0.05)] {
+        let (delay_s, rate_hz) = (step_s * delay as f64, (1.0 - loss) / step_s);
+        let (parts, mismatch, energy) = late(params.stable_for(delay_s, rate_hz), delay, loss, step_s, 3);
+        assert_eq!(parts, 1, "{delay} {loss} {step_s}");
+        assert!(mismatch < 0.05 && energy < 0.005, "K~ {mismatch}, E~ {energy} at {delay} {loss} {step_s}");
+    }
+    // What the bound is for.
+    let (_, shaking, _) = late(params, 2, 0.0, 0.05, 3);
+    assert!(shaking > 1.0, "K~ {shaking}");
+}
+
+#[test]
+fn gains_that_bear_the_news_stay_and_others_bear_them_afterwards() {
+    let params = LatticeParams::<f64>::new(0.7);
+    let oldest = params.oldest_news_s();
+    assert_eq!(params.stable_for(0.0, 20.0), params);
+    assert_eq!(params.stable_for(-1.0, 20.0), params);
+    for (delay_s, rate_hz) in [(0.1, 20.0), (1.0, 1.0), (0.0, 0.5), (3.0, 0.01)] {
+        let softer = params.stable_for(delay_s, rate_hz);
+        let news_s = delay_s + 1.0 / rate_hz;
+        assert!(news_s > oldest && (softer.oldest_news_s() - news_s).abs() < 1e-9 * news_s);
+        let ratio = |gain: Gain<f64>| gain.velocity / gain.position.sqrt();
+        assert!((ratio(softer.alpha) - 2.0).abs() < 1e-9 && (ratio(softer.gamma) - 2.0).abs() < 1e-9);
+        assert!((softer.alpha.position / softer.gamma.position - 5.0).abs() < 1e-9);
+        assert!(softer.beta == params.beta && softer.is_sound());
+    }
+    // Who never hears anything is not pulled; whose gains are nothing bears all.
+    assert_eq!(params.stable_for(0.0, 0.0).alpha.position, 0.0);
+    assert!(LatticeParams { alpha: Gain { position: 0.0, velocity: 0.0 }, ..params }.oldest_news_s() > 1e9);
 }
 
 #[test]
