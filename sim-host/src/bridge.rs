@@ -103,7 +103,9 @@ impl BridgeArgs {
     pub fn run(&self, global: &Global) -> Result<Ended> {
         let overrides = Overrides { seed: self.seed, ticks: None };
         let scenario = Scenario::load(&self.scenario, &overrides)?;
-        say(scenario.key_remark.as_deref());
+        for remark in scenario.remarks() {
+            say(Some(&remark));
+        }
         let ticks = match (self.ticks, self.seconds) {
             (Some(ticks), _) => Some(ticks),
             (None, Some(seconds)) => Some(libm::ceil(seconds / scenario.tick_s()) as u32),

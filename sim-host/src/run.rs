@@ -35,7 +35,7 @@ impl ScenarioArgs {
     pub fn load(&self) -> Result<Scenario> {
         let overrides = Overrides { seed: self.seed, ticks: self.ticks };
         let scenario = Scenario::load(&self.scenario, &overrides)?;
-        if let Some(remark) = &scenario.key_remark {
+        for remark in scenario.remarks() {
             eprintln!("{remark}");
         }
         Ok(scenario)

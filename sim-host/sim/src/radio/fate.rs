@@ -44,6 +44,17 @@ pub(super) struct Fates {
     blackouts: Vec<[f64; 2]>,
 }
 
+impl RadioParams {
+    /// How late robots that send every `period_s` seconds hear of each other, as a flock has to reckon with it: the delay
+    /// (with the longest jitter), seconds, and how many packets a second arrive.
+    #[must_use]
+    pub fn news(&self, period_s: f64) -> (f64, f64) {
+        let burst = self.burst.as_ref().map_or(0.0, |burst| burst.share * burst.loss);
+        let arriving = (1.0 - self.loss).max(0.0) * (1.0 - burst).max(0.0);
+        ((self.delay_ms + self.jitter_ms) / 1000.0, arriving / period_s)
+    }
+}
+
 impl Fates {
     pub(super) fn new(params: &RadioParams, seed: u64, tick_us: u32) -> Self {
         let us = |ms: f64| (ms * 1000.0) as u32;

@@ -31,7 +31,7 @@ pub use source::Source;
 use crate::radio::RadioParams;
 use crate::terrain::Terrain;
 use crate::world::MoveRules;
-use staya_controller::agent::RouteSetup;
+use staya_controller::agent::{GuidanceSetup, RouteSetup};
 use staya_controller::auth::Key;
 use staya_controller::formation::FormationParams;
 use staya_controller::robot::RobotId;
@@ -189,6 +189,17 @@ impl Scenario {
             key_remark: key_remark.flatten(),
             attacks,
         })
+    }
+
+    /// What who runs it should know: lines for people, about the key's file and about gains that are dangerous.
+    #[must_use]
+    pub fn remarks(&self) -> Vec<String> {
+        let guidance = self.plane.as_ref().map(|plane| &plane.guidance);
+        let gains = match guidance {
+            Some(GuidanceSetup::Lattice { params, .. }) => plane::remark(params, &self.radio, self.tick_s()),
+            _ => None,
+        };
+        self.key_remark.clone().into_iter().chain(gains).collect()
     }
 
     /// Length of a tick, seconds.

@@ -1,12 +1,17 @@
 //! The tables of the flocks.
 
 use super::super::ScenarioError;
+use super::super::schema::ScenarioFile;
 use super::super::source::Source;
 use super::table::PlaneTable;
 use super::within;
+use crate::radio::RadioParams;
 use staya_controller::agent::{BoidsSetup, GuidanceKind, GuidanceSetup};
 use staya_controller::flock::goal::GoalParams;
 use staya_controller::flock::lattice::{Algorithm, Gain, LatticeParams};
+
+/// Robots among each other over the goal in algorithm 2: see `LatticeParams::gamma`.
+const GAMMA_OF_TWO: f32 = 50.0;
 
 /// An error when a flock's guidance is chosen without its table, or the table is there without it.
 fn goes_with<T: Copy>(
@@ -31,7 +36,12 @@ fn goes_with<T: Copy>(
     }
 }
 
-pub(super) fn lattice(source: &Source<'_>, table: &PlaneTable) -> Result<Option<GuidanceSetup>, ScenarioError> {
+/// Gains that are not given are those that bear what the radio does.
+pub(super) fn lattice(
+    source: &Source<'_>,
+    file: &ScenarioFile,
+    table: &PlaneTable,
+) -> Result<Option<GuidanceSetup>, ScenarioError> {
     let given = goes_with(source, table, GuidanceKind::Lattice, "lattice", table.lattice)?;
     let Some(given) = given else {
         return Ok(None);
@@ -47,6 +57,14 @@ pub(super) fn lattice(source: &Source<'_>, table: &PlaneTable) -> Result<Option<
             return Err(source.error("plane.lattice.algorithm", what, "give 1, 2 or 3"));
         }
     };
+    if params.algorithm == Algorithm::Two {
+        // Its pull grows with the flock's size.
+        params.gamma = Gain::critical(params.alpha.position / GAMMA_OF_TWO);
+    }
+    if given.c_alpha.is_none() {
+        let (delay_s, rate_hz) = file.radio.news(file.tick_s);
+        params = params.stable_for(delay_s as f32, rate_hz as f32);
+    }
     for (field, gain, param) in [
         ("c_alpha", given.c_alpha, &mut params.alpha),
         ("c_beta", given.c_beta, &mut params.beta),
@@ -58,6 +76,27 @@ pub(super) fn lattice(source: &Source<'_>, table: &PlaneTable) -> Result<Option<
         }
     }
     Ok(Some(GuidanceSetup::Lattice { params, moves: given.goal_moves.unwrap_or(true) }))
+}
+
+/// What is dangerous about gains that are asked for, for people; nothing if they bear what this radio does.
+pub(in super::super) fn remark(params: &LatticeParams<f32>, radio: &RadioParams, tick_s: f64) -> Option<String> {
+    let (delay_s, rate_hz) = radio.news(tick_s);
+    let news_s = delay_s + 1.0 / rate_hz;
+    let (gain, pull) = (f64::from(params.alpha.position), f64::from(params.gamma.position));
+    if news_s > 1.001 * f64::from(params.oldest_news_s()) {
+        let bearable = params.stable_for(delay_s as f32, rate_hz as f32).alpha.position;
+        return Some(format!(
+            "plane.lattice.c_alpha = {gain}: the flock will shake itself apart, since robots hear of each other up to \
+             {news_s:.2} s late; at most {bearable:.2} bears that, and is taken if you leave the field out"
+        ));
+    }
+    (params.algorithm == Algorithm::Two && gain < 0.99 * f64::from(GAMMA_OF_TWO) * pull).then(|| {
+        format!(
+            "plane.lattice.c_gamma = {pull}: in algorithm 2 it squeezes a large flock until robots coincide; give at most \
+             c_alpha / {GAMMA_OF_TWO} = {:.3}",
+            gain / f64::from(GAMMA_OF_TWO)
+        )
+    })
 }
 
 pub(super) fn goal_flock(

@@ -5,6 +5,8 @@ mod flocks;
 mod starts;
 mod table;
 
+pub(super) use flocks::remark;
+
 #[cfg(test)]
 mod tests;
 
@@ -269,7 +271,7 @@ fn guidance(
     tolerance_m: f64,
 ) -> Result<GuidanceSetup, ScenarioError> {
     let flocks = [
-        flocks::lattice(source, table)?,
+        flocks::lattice(source, file, table)?,
         flocks::goal_flock(source, table, cruise_mps, file.seed)?,
         flocks::boids(source, table, cruise_mps)?,
     ];

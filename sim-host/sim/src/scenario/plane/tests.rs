@@ -363,3 +363,36 @@ proptest! {
         let _ = parse(&text.into_iter().collect::<String>());
     }
 }
+
+/// A lattice with this radio and these gains: (c_alpha, c_gamma), and what is said of it.
+fn gains(radio: &str, gains: &str) -> (f32, f32, Vec<String>) {
+    let text = format!(
+        "{HEAD}tick_s = 0.1\n{PLANE}guidance = \"lattice\"\n[plane.robots]\ncloud = {{ count = 2, from_m = [0, 0], to_m = [9, 9] }}\n\
+         [plane.lattice]\nspacing_m = 1\n{gains}\n[radio]\n{radio}\n"
+    );
+    let scenario = Scenario::parse(&text, Path::new("s.toml"), &Overrides::default()).unwrap();
+    let remarks = scenario.remarks();
+    match scenario.plane.unwrap().guidance {
+        GuidanceSetup::Lattice { params, .. } => (params.alpha.position, params.gamma.position, remarks),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn gains_of_a_lattice_bear_its_radio_and_gains_that_do_not_are_remarked_on() {
+    // Beacons come every 0.1 s: too seldom for gains of 10.
+    let (alpha, gamma, said) = gains("", "");
+    assert!((alpha - 4.0).abs() < 1e-3 && (gamma - 0.8).abs() < 1e-3 && said.is_empty(), "{alpha} {gamma} {said:?}");
+    let (late, _, said) = gains("delay_ms = 100", "");
+    assert!((late - 1.0).abs() < 1e-3 && said.is_empty());
+    let (lossy, _, _) = gains("delay_ms = 100\nloss = 0.5", "");
+    assert!((lossy - 4.0 / 9.0).abs() < 1e-3);
+    let (alpha, gamma, said) = gains("delay_ms = 100", "c_alpha = 10");
+    assert_eq!((alpha, gamma), (10.0, 2.0));
+    assert!(said[0].contains("c_alpha = 10") && said[0].contains("at most 1.00"), "{said:?}");
+    // In algorithm 2 the goal squeezes.
+    let (alpha, gamma, said) = gains("", "algorithm = 2");
+    assert!((alpha / gamma - 50.0).abs() < 1e-3 && said.is_empty());
+    let (_, _, said) = gains("", "algorithm = 2\nc_gamma = 1");
+    assert!(said[0].contains("c_gamma = 1: in algorithm 2"), "{said:?}");
+}
