@@ -6,7 +6,10 @@ use staya_papers::experiment::Experiment as _;
 use staya_papers::flock::closing::Closing;
 use staya_papers::flock::{Case, Plan};
 use staya_papers::goals;
-use staya_tests::golden;
+use staya_sim::metrics::flock::FlockMeter;
+use staya_sim::nearby::Space;
+use staya_sim::scenario::{Overrides, Scenario};
+use staya_tests::{golden, root, run};
 use std::fmt::Write as _;
 
 #[test]
@@ -102,4 +105,24 @@ fn golden_experiment_goals() {
         }
     }
     golden("experiment-goals", &text);
+}
+
+/// That it is one flock, of one velocity and even spacing, in the last quarter of the run, and never too near.
+#[test]
+fn the_late_flock_stays_one() {
+    for seed in 1..4 {
+        let path = root().join("scenarios/late-flock.toml");
+        let scenario = Scenario::load(&path, &Overrides { seed: Some(seed), ticks: None }).expect("sound");
+        assert_eq!(scenario.remarks(), Vec::<String>::new());
+        let (_, rows) = run(&scenario);
+        let mut meter = FlockMeter::new(0.7, 0.84, Space::OPEN);
+        for (row, robots) in rows.iter().skip(rows.len() * 3 / 4) {
+            let places: Vec<_> = robots.iter().map(|robot| robot.motion.position_m).collect();
+            let velocities: Vec<_> = robots.iter().map(|robot| robot.motion.velocity_mps).collect();
+            let measure = meter.look(&places, &velocities).expect("robots are somewhere");
+            assert_eq!(measure.components, 1, "seed {seed}, tick {}", row.tick);
+            let energies = (measure.deviation_energy, measure.velocity_mismatch);
+            assert!(energies.0 < 0.005 && energies.1 < 0.002, "{energies:?}, seed {seed}, tick {}", row.tick);
+        }
+    }
 }
