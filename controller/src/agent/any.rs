@@ -129,6 +129,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S> 
 
 /// Any source of half-planes: the formula, or a template of some size.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(missing_docs, reason = "each variant's type says it")]
 pub enum AnyHalfPlanes {
     #[default]

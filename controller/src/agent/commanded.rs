@@ -14,6 +14,7 @@ use serde::Serialize;
 
 /// What an operator wants of a robot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Wish<S> {
     /// Its own behaviour.
     #[default]

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 /// What does not change while the robot runs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct AgentConfig<S> {
     /// Own number, 1 or more.
     pub id: RobotId,

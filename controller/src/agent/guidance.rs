@@ -151,18 +151,22 @@ pub trait Destination {
 
 /// To a cell of the grid: agents have [`Agent::assign_goal`](super::Agent::assign_goal).
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ToCells {}
 
 /// To waypoints: agents have [`Agent::assign_waypoint`](super::Agent::assign_waypoint).
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ToWaypoints {}
 
 /// Nowhere.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Roams {}
 
 /// That is known only at run time: agents have [`Agent::assign`](super::Agent::assign), as all have.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ToAny {}
 
 impl Destination for ToCells {
@@ -225,6 +229,7 @@ impl<'a, S> GuidanceInput<'a, S> {
 
 /// What a guidance law decided.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[must_use]
 pub struct Decision<S> {
     /// What the robot would do with nobody in the way; what becomes of it is the supervisor's and the safety layer's matter.
@@ -243,6 +248,7 @@ pub struct Decision<S> {
 
 /// What to do until the next decision.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Action<S> {
     /// To stand.
     #[default]
@@ -273,6 +279,7 @@ impl<S> Action<S> {
 
 /// How a robot stands to where it should be.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Status {
     /// It is where it should be.
     pub is_at_goal: bool,
@@ -290,6 +297,7 @@ pub struct Status {
 
 /// A request that a guidance law wants made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Ask {
     /// To whom.
     pub to: RobotId,

@@ -17,6 +17,7 @@ pub const EVENTS: usize = 8;
 
 /// The robot's own state, from its sensors or its autopilot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct KinematicState<S> {
     /// World position.
     pub position: Position,
@@ -50,6 +51,7 @@ impl<'a, S: Scalar, I: Into<AnySurroundings<'a, S>>> Inputs<'a, S, I> {
 
 /// What the body should do until the next step.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Command<S> {
     /// Stand.
     #[default]
@@ -101,6 +103,7 @@ pub enum Event {
 /// Frames that were refused for who may have said them and when, by a format that authenticates them: [`Sealed`](crate::wire::Sealed) or MAVLink's
 /// signatures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Refused {
     /// Without tag or signature.
     pub unsigned: u16,
@@ -128,6 +131,7 @@ impl Refused {
 
 /// What one step gives.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[must_use = "a step only decides; the caller moves the body and sends the bytes"]
 pub struct Outputs<S> {
     /// What the body should do.

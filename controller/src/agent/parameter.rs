@@ -9,6 +9,7 @@ use crate::wire::Wire;
 
 /// A number that may change while the robot runs. What it means and what more or less of it does stands where it is set at first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Parameter {
     /// [`AgentConfig::radius_m`](super::AgentConfig::radius_m), metres: less than the body's radius is not safe.
     Radius,

@@ -38,6 +38,7 @@ pub type AnyAgent<S, const CELLS: usize, const M: usize, const N: usize, const K
 
 /// All that makes a robot what it is before it has sensed anything.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Setup {
     /// Number, seed, timing and body.
     pub agent: AgentConfig<f32>,
@@ -51,6 +52,7 @@ pub struct Setup {
 
 /// Routing over a window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct RouteSetup {
     /// What a route costs.
     pub params: RouteParams,
@@ -62,6 +64,7 @@ pub struct RouteSetup {
 
 /// Boids, as [`BoidsParams::new`] takes them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct BoidsSetup {
     /// Nearer than this is crowded, metres.
     pub crowded_m: f32,
@@ -86,6 +89,7 @@ impl BoidsSetup {
 
 /// A guidance law with its parameters. Speeds in m/s, lengths in metres.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(missing_docs, reason = "the constructors of the laws document them")]
 pub enum GuidanceSetup {
     Waypoint {
@@ -121,6 +125,7 @@ pub enum GuidanceSetup {
 
 /// A safety layer with its parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(missing_docs, reason = "the safety layers document them")]
 pub enum SafetySetup {
     None,
@@ -206,6 +211,7 @@ impl SafetyKind {
 
 /// What a robot has to do.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Task {
     /// Go to this cell, or keep the formation whose top leader does.
     Cell(Cell),

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 /// The robot's state on the grid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct CellState {
     /// The cell it occupies.
     pub cell: Cell,
@@ -51,6 +52,7 @@ pub struct InCells<'a, S> {
 
 /// A place within a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct InCell<S> {
     /// The place minus the cell's centre, metres.
     pub offset_m: Vec2<S>,

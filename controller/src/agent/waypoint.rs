@@ -10,6 +10,7 @@ const LONG: Duration = Duration::from_millis(600_000);
 
 /// A place to go to, which may move.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Waypoint<S> {
     /// Where it was.
     pub position: Position,

@@ -171,7 +171,7 @@ impl<S: Scalar> LatticeParams<S> {
             let softer = bearable.checked_div(news_s).unwrap_or(S::ZERO);
             for gain in [&mut self.alpha, &mut self.gamma] {
                 gain.position = gain.position * softer * softer;
-                gain.velocity = gain.velocity * softer;
+                gain.velocity *= softer;
             }
         }
         self
