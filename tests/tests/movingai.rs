@@ -3,7 +3,7 @@
 
 use staya_controller::cost::Gain;
 use staya_papers::experiment::Experiment as _;
-use staya_papers::movingai::{Answer, Benchmark, Memory, Plan, Report, Robots, Sight};
+use staya_papers::movingai::{Answer, Benchmark, Learning, Plan, Report, Robots, Sight};
 use std::path::{Path, PathBuf};
 
 /// Largest deviation from an optimal length, percent. sqrt 2 as 99/70 is off by 0.005 %.
@@ -72,20 +72,33 @@ mod needs_shared {
         }
     }
 
+    /// Out of dead ends larger than the window robots get by what they learn, or along the wall, at a price.
     #[test]
-    fn robots_that_see_five_cells_arrive_as_pinned() {
-        // The wings of den312d are larger than the window: out of them robots get by what they remember, at a price.
-        let (usual, more) = ((Memory::Cells64, 3), (Memory::Cells256, 30));
-        for (name, (memory, a2), arrived) in
-            [("arena.map.scen", usual, 160), ("den312d.map.scen", usual, 206), ("den312d.map.scen", more, 320)]
-        {
-            if let Some(scen) = shared(name) {
+    fn robots_that_see_five_cells_all_arrive() {
+        let ticks = |a3| Gain::from_int(a3);
+        for (learning, a3, loss) in [
+            (Learning::Cells256, ticks(1), Some(80.0)),
+            (Learning::Cells256, ticks(3), Some(80.0)),
+            (Learning::Cells64, ticks(3), None),
+            (Learning::None, ticks(3), None),
+        ] {
+            for (name, queries) in [("arena.map.scen", 160), ("den312d.map.scen", 320)] {
+                let Some(scen) = shared(name) else { continue };
                 let mut robots = Robots::new(Sight::Radius(5));
-                robots.memory = memory;
-                robots.params.a2 = Gain::from_int(a2);
+                (robots.learning, robots.params.a3) = (learning, a3);
                 let (report, _) = answers(&scen, &robots);
-                assert_eq!(report.arrived, arrived, "{name}, {memory:?}");
+                assert_eq!(report.arrived, queries, "{name}, {learning:?}");
+                let mean = report.loss_percent.expect("all arrived").mean;
+                assert!(loss.is_none_or(|most| mean <= most), "{name}, {learning:?}: {mean} %");
             }
         }
+    }
+
+    #[test]
+    fn berlin_is_crossed_at_the_optimal_lengths_although_it_is_larger_than_the_search() {
+        let Some(scen) = shared("Berlin_0_256.map.scen") else { return };
+        let (report, _) = answers(&scen, &Robots::new(Sight::Map));
+        assert_eq!((report.arrived, report.without_price), (report.queries, Some(0)));
+        assert!(report.worst_price_error_percent.unwrap() <= 0.01, "{report}");
     }
 }

@@ -24,15 +24,15 @@ use serde::{Deserialize, Serialize};
 /// Any guidance law, on the grid, in the plane or in space.
 #[derive(Clone, Debug, Serialize)]
 #[expect(missing_docs, reason = "each variant's type says it")]
-pub enum AnyGuidance<S, const CELLS: usize, const M: usize, const F: usize> {
+pub enum AnyGuidance<S, const CELLS: usize, const M: usize, const F: usize, const L: usize = 0> {
     Waypoint(WaypointGuidance<S>),
     Lattice(LatticeGuidance<S>),
     GoalFlock(GoalFlockGuidance<S>),
     Boids(BoidsGuidance<S>),
-    Route(CellFollower<S, RouteGuidance<CELLS, M>>),
-    Formation(CellFollower<S, FormationGuidance<CELLS, M, F>>),
-    RouteOnGrid(RouteGuidance<CELLS, M>),
-    FormationOnGrid(FormationGuidance<CELLS, M, F>),
+    Route(CellFollower<S, RouteGuidance<CELLS, M, L>>),
+    Formation(CellFollower<S, FormationGuidance<CELLS, M, F, L>>),
+    RouteOnGrid(RouteGuidance<CELLS, M, L>),
+    FormationOnGrid(FormationGuidance<CELLS, M, F, L>),
 }
 
 /// Does the same with whatever is inside.
@@ -51,7 +51,9 @@ macro_rules! each {
     };
 }
 
-impl<S, const CELLS: usize, const M: usize, const F: usize> Teamwork for AnyGuidance<S, CELLS, M, F> {
+impl<S, const CELLS: usize, const M: usize, const F: usize, const L: usize> Teamwork
+    for AnyGuidance<S, CELLS, M, F, L>
+{
     fn redirect(&mut self) {
         each!(self, law => law.redirect());
     }
@@ -69,7 +71,9 @@ impl<S, const CELLS: usize, const M: usize, const F: usize> Teamwork for AnyGuid
     }
 }
 
-impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S> for AnyGuidance<S, CELLS, M, F> {
+impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usize> Guidance<S>
+    for AnyGuidance<S, CELLS, M, F, L>
+{
     type Input<'a> = AnySurroundings<'a, S>;
     type Destination = ToAny;
     type Workspace = GridWorkspace<CELLS>;

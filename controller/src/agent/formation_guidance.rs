@@ -35,13 +35,13 @@ const MAX_FORESIGHT: i16 = 3;
 ///
 /// Without a template the robot travels alone.
 #[derive(Clone, Debug, Serialize)]
-pub struct FormationGuidance<const CELLS: usize, const M: usize, const F: usize> {
+pub struct FormationGuidance<const CELLS: usize, const M: usize, const F: usize, const L: usize = 0> {
     route: RouteParams,
     formation: FormationParams,
     sharpness: Sharpness,
     template: Template<F>,
     assembler: TemplateAssembler<F>,
-    router: Router<M>,
+    router: Router<M, L>,
     travel: Travel,
     pace: Pace,
     leader: RobotId,
@@ -51,6 +51,10 @@ pub struct FormationGuidance<const CELLS: usize, const M: usize, const F: usize>
     crowded: u8,
     /// The robot has asked its leader to stop.
     has_asked: bool,
+    /// Decisions on end in which it waited for others.
+    waited: u16,
+    /// Decisions on end in which it was behind, or not there yet when the top leader was.
+    behind: u16,
 }
 
 /// What a follower steers by.
@@ -63,7 +67,7 @@ struct Guide {
     has_arrived: bool,
 }
 
-impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS, M, F> {
+impl<const CELLS: usize, const M: usize, const F: usize, const L: usize> FormationGuidance<CELLS, M, F, L> {
     /// With these parameters and this place in the formation.
     #[must_use]
     pub const fn new(route: RouteParams, formation: FormationParams, template: Template<F>) -> Self {
@@ -80,6 +84,8 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
             leader_offset: Cell::new(0, 0),
             crowded: 0,
             has_asked: false,
+            waited: 0,
+            behind: 0,
         }
     }
 
@@ -306,6 +312,15 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
         })
     }
 
+    /// Whether the robot has been behind, or not there when the top leader was, for so long that it goes to its goal by
+    /// itself, until it is back in its place.
+    fn has_lost_touch(&mut self, guide: &Guide) -> bool {
+        let limit = if self.behind == 0 { self.formation.halt_lag } else { self.formation.resume_lag };
+        let is_behind = guide.has_arrived || guide.lag > u32::from(limit.min(self.formation.halt_lag));
+        self.behind = if is_behind { self.behind.saturating_add(1) } else { 0 };
+        self.behind > self.formation.patience
+    }
+
     /// Asks a stranger who has stood in a neighbour's place for long to choose another direction (KUZ
     /// section 7, item 6).
     fn ask_surplus(&mut self, found: &Found<F>) -> Option<Ask> {
@@ -334,12 +349,23 @@ impl<const CELLS: usize, const M: usize, const F: usize> FormationGuidance<CELLS
     }
 }
 
+/// Whether a robot follows oneself, as far as its leaders were heard. Numbers fall along the chain, so that it ends.
+fn comes_after<S>(input: &GuidanceInput<'_, S>, other: &Seen) -> bool {
+    let heard = |id: RobotId| input.neighbor(id);
+    let chain = successors(Some((other.id, other.leader)), |&(id, leader)| {
+        heard(leader).filter(|next| leader != input.id && next.id < id).map(|next| (next.id, next.leader))
+    });
+    chain.last().is_some_and(|(_, leader)| leader.is_somebody())
+}
+
 /// A neighbour as the formation sees it.
 fn seen_at<S>(other: &Neighbor<S>, predicted: Cell) -> Seen {
     Seen { id: other.id, cell: other.cell, predicted, heading: other.heading, leader: other.leader, mode: other.mode }
 }
 
-impl<const CELLS: usize, const M: usize, const F: usize> Teamwork for FormationGuidance<CELLS, M, F> {
+impl<const CELLS: usize, const M: usize, const F: usize, const L: usize> Teamwork
+    for FormationGuidance<CELLS, M, F, L>
+{
     fn redirect(&mut self) {
         self.travel.redirect();
     }
@@ -353,6 +379,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> Teamwork for FormationG
                 self.template = template;
                 self.pace = Pace::new();
                 self.leader = RobotId::NOBODY;
+                (self.waited, self.behind) = (0, 0);
                 true
             }
             Ok(None) => true,
@@ -369,7 +396,9 @@ impl<const CELLS: usize, const M: usize, const F: usize> Teamwork for FormationG
     }
 }
 
-impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S> for FormationGuidance<CELLS, M, F> {
+impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usize> Guidance<S>
+    for FormationGuidance<CELLS, M, F, L>
+{
     type Input<'a> = OnGrid<'a>;
     type Destination = ToCells;
     type Workspace = GridWorkspace<CELLS>;
@@ -391,11 +420,14 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S> 
         self.choose_leader(input, &found);
         let leader = self.leader;
         let guide = self.guide(input, cell, &seen);
+        let goes_alone = guide.as_ref().is_some_and(|guide| self.has_lost_touch(guide));
+        let guide = guide.filter(|_| !goes_alone);
         let mut status =
             Status { is_at_goal: cell == target, makes_way: self.travel.take_redirection(), ..Status::default() };
         let mut asks = Vec::new();
         let mut stays = false;
         let weights = if let Some(guide) = &guide {
+            self.router.begin_anew();
             list::extend(&mut asks, self.ask_pace(leader, guide.lag));
             status.is_off_place = self.pace.waits();
             // The goal counts when the formation is there.
@@ -409,14 +441,21 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S> 
         } else {
             // Who says that he cannot go on is not waited for, nor who has arrived: a part of the formation that lost the rest
             // on the way would wait for ever for those who are at the goal before it.
+            // Nor who follows somebody else, nor anybody by one who has lost touch.
             let goes_on = |mode: Mode| mode.gives_way() && mode != Mode::Arrived;
             let able = found.members.iter();
-            let able = able.filter(|member| goes_on(member.seen.mode));
+            let able =
+                able.filter(|member| !goes_alone && goes_on(member.seen.mode) && comes_after(input, &member.seen));
             let behind = able.map(|member| {
                 let off = member.seen.cell - (cell + member.offset);
                 lag(off, self.travel.choice())
             });
-            status.waits = self.pace.update(&self.formation, behind.max().unwrap_or(0));
+            let waits = self.pace.update(&self.formation, behind.max().unwrap_or(0));
+            self.waited = if waits { self.waited.saturating_add(1) } else { 0 };
+            status.waits = waits && self.waited <= self.formation.patience;
+            if goes_alone && core::mem::take(&mut self.has_asked) {
+                list::extend(&mut asks, Some(Ask { to: leader, kind: RequestKind::Resume }));
+            }
             self.lead(input, &window, (cell, target), &found, workspace)
         };
         status.is_stuck = weights.is_none() && !status.is_at_goal;
@@ -425,7 +464,8 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S> 
             weights = self.travel.without_last(weights);
             stays = false;
         }
-        let mut moves = Travel::order(&weights, self.sharpness, ALTERNATIVES, rng);
+        let alternatives = if self.travel.is_jammed() { Dir::MOVES.len() } else { ALTERNATIVES };
+        let mut moves = Travel::order(&weights, self.sharpness, alternatives, rng);
         if status.waits && self.formation.recovery == Recovery::Def {
             let towards = def(cell, &found.members);
             status.recovers = towards != Dir::Stay;

@@ -37,15 +37,15 @@ impl<const CELLS: usize> GridWorkspace<CELLS> {
 
 /// Windowed routing to the own goal; remembers visits of `M` cells.
 #[derive(Clone, Debug, Serialize)]
-pub struct RouteGuidance<const CELLS: usize, const M: usize> {
+pub struct RouteGuidance<const CELLS: usize, const M: usize, const L: usize = 0> {
     params: RouteParams,
     replan: Replan,
     sharpness: Sharpness,
-    router: Router<M>,
+    router: Router<M, L>,
     travel: Travel,
 }
 
-impl<const CELLS: usize, const M: usize> RouteGuidance<CELLS, M> {
+impl<const CELLS: usize, const M: usize, const L: usize> RouteGuidance<CELLS, M, L> {
     /// With these parameters, searching anew in each cell and trying cheap moves first.
     #[must_use]
     pub const fn new(params: RouteParams) -> Self {
@@ -98,13 +98,13 @@ impl<const CELLS: usize, const M: usize> RouteGuidance<CELLS, M> {
     }
 }
 
-impl<const CELLS: usize, const M: usize> Teamwork for RouteGuidance<CELLS, M> {
+impl<const CELLS: usize, const M: usize, const L: usize> Teamwork for RouteGuidance<CELLS, M, L> {
     fn redirect(&mut self) {
         self.travel.redirect();
     }
 }
 
-impl<S: Scalar, const CELLS: usize, const M: usize> Guidance<S> for RouteGuidance<CELLS, M> {
+impl<S: Scalar, const CELLS: usize, const M: usize, const L: usize> Guidance<S> for RouteGuidance<CELLS, M, L> {
     type Input<'a> = OnGrid<'a>;
     type Destination = ToCells;
     type Workspace = GridWorkspace<CELLS>;

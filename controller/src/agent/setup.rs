@@ -32,9 +32,17 @@ use serde::{Deserialize, Serialize};
 /// Waypoints that a [`Task`] has room for.
 pub const WAYPOINTS: usize = GOALS;
 
-/// An agent that can be anything: `CELLS` of a search, `M` remembered visits, `N` neighbours, `K` half-planes, wire format `W`.
-pub type AnyAgent<S, const CELLS: usize, const M: usize, const N: usize, const K: usize, W = Postcard> =
-    Agent<S, AnyGuidance<S, CELLS, M, TEMPLATE>, N, AnySafety<S, K>, W>;
+/// An agent that can be anything: `CELLS` of a search, `M` remembered visits, `N` neighbours, `K` half-planes, wire format
+/// `W`, `L` learned costs.
+pub type AnyAgent<
+    S,
+    const CELLS: usize,
+    const M: usize,
+    const N: usize,
+    const K: usize,
+    W = Postcard,
+    const L: usize = 0,
+> = Agent<S, AnyGuidance<S, CELLS, M, TEMPLATE, L>, N, AnySafety<S, K>, W>;
 
 /// All that makes a robot what it is before it has sensed anything.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -222,18 +230,34 @@ pub enum Task {
 impl Setup {
     /// The robot, just started; `None` unless `W` is, or can be, the format that it is to speak.
     #[must_use]
-    pub fn agent<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usize, W: FromFormat>(
+    pub fn agent<
+        S: Scalar,
+        const CELLS: usize,
+        const M: usize,
+        const N: usize,
+        const K: usize,
+        W: FromFormat,
+        const L: usize,
+    >(
         &self,
-    ) -> Option<AnyAgent<S, CELLS, M, N, K, W>> {
+    ) -> Option<AnyAgent<S, CELLS, M, N, K, W, L>> {
         Some(self.speaking(W::from_format(self.format)?))
     }
 
     /// The robot, just started, that speaks `wire` whatever [`Setup::format`] says.
     #[must_use]
-    pub fn speaking<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usize, W: Wire>(
+    pub fn speaking<
+        S: Scalar,
+        const CELLS: usize,
+        const M: usize,
+        const N: usize,
+        const K: usize,
+        W: Wire,
+        const L: usize,
+    >(
         &self,
         wire: W,
-    ) -> AnyAgent<S, CELLS, M, N, K, W> {
+    ) -> AnyAgent<S, CELLS, M, N, K, W, L> {
         Agent::new(&self.agent.cast(), self.guidance.guidance(), self.safety.safety(), wire)
     }
 
@@ -267,7 +291,9 @@ impl GuidanceSetup {
 
     /// The guidance law, just started.
     #[must_use]
-    pub fn guidance<S: Scalar, const CELLS: usize, const M: usize>(&self) -> AnyGuidance<S, CELLS, M, TEMPLATE> {
+    pub fn guidance<S: Scalar, const CELLS: usize, const M: usize, const L: usize>(
+        &self,
+    ) -> AnyGuidance<S, CELLS, M, TEMPLATE, L> {
         match self {
             Self::Waypoint { speed_mps, tolerance_m } => {
                 AnyGuidance::Waypoint(WaypointGuidance::new(cast(*speed_mps), cast(*tolerance_m)))
@@ -301,7 +327,7 @@ impl GuidanceSetup {
 impl RouteSetup {
     /// The guidance law on the grid, just started.
     #[must_use]
-    pub const fn guidance<const CELLS: usize, const M: usize>(&self) -> RouteGuidance<CELLS, M> {
+    pub const fn guidance<const CELLS: usize, const M: usize, const L: usize>(&self) -> RouteGuidance<CELLS, M, L> {
         RouteGuidance::new(self.params).replan(self.replan).sharpness(self.sharpness)
     }
 }

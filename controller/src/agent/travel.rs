@@ -48,6 +48,11 @@ impl Travel {
         core::mem::take(&mut self.redirected)
     }
 
+    /// Whether it has wanted to leave this cell for so long that what stands there must be somebody whom nobody hears.
+    pub(super) const fn is_jammed(&self) -> bool {
+        self.attempts > PATIENCE
+    }
+
     /// The weights without the last choice.
     pub(super) fn without_last(&self, weights: Weights) -> Weights {
         weights.without(self.choice)

@@ -25,6 +25,9 @@
 //!   ([`Found::surplus`]); there is nothing to shuffle anew, as each decision is a new draw.
 //! - A leader is chosen anew when the old one falls silent or a smaller number is found (algorithm 2
 //!   chooses at t = 0 only), so that a formation outlives any robot.
+//! - Nobody waits for ever: see [`FormationParams::patience`]. A leader does not wait for those who follow
+//!   somebody else.
+//! - Who has no direct neighbour to follow follows a farther one ([`find_leader`]).
 //! - The listing's misprints are resolved: `less` is counted once (algorithm 5), the leader is the
 //!   smallest number (algorithm 6), sums restart for each direction (algorithm 7).
 
@@ -91,6 +94,10 @@ pub struct FormationParams {
     /// How much of a cell's price for the top leader is the land under the others' places when it
     /// stands there, sixteenths: 0 only its own, 16 only theirs.
     pub footprint: u8,
+    /// Decisions for which a leader waits on end, and for which a follower is behind on end, before each goes on for
+    /// itself until they are together again. Smaller ones part the formation at every obstacle; larger ones let it
+    /// stand the longer for a robot that has no way.
+    pub patience: u16,
     /// How others are foreseen.
     pub prediction: Prediction,
     /// What the top leader does while somebody is too far behind.
@@ -100,7 +107,7 @@ pub struct FormationParams {
 impl Default for FormationParams {
     /// What reaches the figures of `staya experiment formation`: eps 10 cells, gain 1, r0 300 units
     /// (4.3 cells) without hysteresis, one cell ahead, half of the price by the others'
-    /// land, constant velocity (no worse than reflexive there, for less work), waiting.
+    /// land, a patience of 100 decisions, constant velocity (no worse than reflexive there, for less work), waiting.
     fn default() -> Self {
         Self {
             eps: 10,
@@ -109,6 +116,7 @@ impl Default for FormationParams {
             resume_lag: 300,
             lead: 1,
             footprint: 8,
+            patience: 100,
             prediction: Prediction::Constant,
             recovery: Recovery::Wait,
         }

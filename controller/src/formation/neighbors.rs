@@ -97,14 +97,13 @@ pub fn find_neighbors<const F: usize>(
     found
 }
 
-/// The neighbour to follow (KUZ algorithm 6): the smallest number below one's own among the direct
-/// neighbours in the graph; nobody: the robot leads.
+/// The neighbour to follow (KUZ algorithm 6): the smallest number below one's own among the direct neighbours in the
+/// graph; without any, among all that were found; nobody: the robot leads.
+///
+/// The paper looks at direct neighbours only. When one of those dies, the robots behind it would lead themselves
+/// beside the rest of their formation.
 #[must_use]
 pub fn find_leader(own: RobotId, members: &[Member]) -> RobotId {
-    members
-        .iter()
-        .filter(|member| member.hops == 1 && member.seen.id < own)
-        .map(|member| member.seen.id)
-        .min()
-        .unwrap_or(RobotId::NOBODY)
+    let smaller = members.iter().filter(|member| member.seen.id < own);
+    smaller.min_by_key(|member| (member.hops != 1, member.seen.id)).map_or(RobotId::NOBODY, |member| member.seen.id)
 }

@@ -36,8 +36,13 @@ fn leaders_of_figure_5_are_those_of_the_paper() {
     let leaders: Vec<u32> =
         (1..=6).map(|id| find_leader(RobotId(id), &found(id as usize, 1, 2, &robots).members).0).collect();
     assert_eq!(leaders, [0, 1, 2, 1, 2, 3]);
-    // Farther neighbours of a larger radius do not become leaders.
-    assert_eq!(find_leader(RobotId(6), &found(6, 3, 2, &robots).members).0, 3);
+    // Farther neighbours of a larger radius become leaders only when no nearer one is there.
+    let leader_without = |dead: &[u32]| {
+        let living: Vec<Seen> = robots.iter().copied().filter(|seen| !dead.contains(&seen.id.0)).collect();
+        find_leader(RobotId(6), &found(6, 3, 2, &living).members).0
+    };
+    assert_eq!([leader_without(&[]), leader_without(&[3])], [3, 5]);
+    assert_eq!([leader_without(&[3, 5]), leader_without(&[3, 5, 1, 2, 4])], [1, 0]);
 }
 
 #[test]

@@ -9,6 +9,8 @@ use super::{ExitRule, RouteParams, VisitMemory, ray_exit};
 use crate::cost::{Cost, EXCLUDED, Weights};
 use crate::grid::{BLOCKED, Cell, DIAGONAL, Dir, Norm, UNIT, Window};
 
+mod learning;
+
 /// Buckets in the ring; a power of two.
 const RING: u32 = 64;
 /// End of a list, and "in no list".
@@ -31,7 +33,8 @@ pub struct CostField<const CELLS: usize> {
     height: u16,
     stride: usize,
     impassability: [u8; CELLS],
-    /// Costs of entering a cell beside crossing it: other robots and earlier visits.
+    /// Costs of entering a cell beside crossing it: other robots and earlier visits. In a search that learns: what
+    /// the way from the cell costs at least.
     extra: [Cost; CELLS],
     /// Least known cost to the exit. 0 in cells that no route may use: nothing undercuts it.
     cost: [Cost; CELLS],
@@ -44,6 +47,11 @@ pub struct CostField<const CELLS: usize> {
     occupied: u64,
     /// log2 of a bucket's width.
     shift: u32,
+    /// Impassability of the easiest land in the window, and whether there are walls.
+    easiest: u8,
+    has_walls: bool,
+    /// What `extra` means.
+    learns: bool,
     /// The robot's own cell, which no route may use.
     closed: usize,
     /// The bucket to look at next, as if the ring were endless: costs below it are final.
@@ -84,6 +92,9 @@ impl<const CELLS: usize> CostField<CELLS> {
             heads: [NIL; RING as usize],
             occupied: 0,
             shift: 0,
+            easiest: u8::MAX,
+            has_walls: false,
+            learns: false,
             closed: 0,
             at: 0,
         }
@@ -110,6 +121,19 @@ impl<const CELLS: usize> CostField<CELLS> {
         others: impl IntoIterator<Item = Cell>,
         visits: Option<&VisitMemory<M>>,
     ) -> Result<Weights, Unreachable> {
+        self.weights_knowing(params, window, (from, target), others, visits, &[])
+    }
+
+    /// [`CostField::weights`] of a robot that has learned what exits cost at least. O(w + h) for each of `learned` more.
+    pub(super) fn weights_knowing<const M: usize>(
+        &mut self,
+        params: &RouteParams,
+        window: &Window<'_>,
+        (from, target): (Cell, Cell),
+        others: impl IntoIterator<Item = Cell>,
+        visits: Option<&VisitMemory<M>>,
+        learned: &[(Cell, Cost)],
+    ) -> Result<Weights, Unreachable> {
         self.load(params, window, from);
         let occupied = params.a1.of(UNIT);
         for cell in others {
@@ -118,12 +142,18 @@ impl<const CELLS: usize> CostField<CELLS> {
         for (cell, count) in visits.into_iter().flat_map(VisitMemory::iter) {
             self.add_extra(cell, params.a2.of(UNIT * u32::from(count)));
         }
-        self.solve(params, from, target)
+        self.solve(params, from, target, learned)
     }
 
     /// [`Self::weights`] on the window that was loaded. Not inlined: firmware pays for it once.
     #[inline(never)]
-    fn solve(&mut self, params: &RouteParams, from: Cell, target: Cell) -> Result<Weights, Unreachable> {
+    fn solve(
+        &mut self,
+        params: &RouteParams,
+        from: Cell,
+        target: Cell,
+        learned: &[(Cell, Cost)],
+    ) -> Result<Weights, Unreachable> {
         let from_index = self.index(from).ok_or(Unreachable)?;
         let query = Query { params, from: from_index, from_cell: from, target };
         if let Some(inside) = self.index(target) {
@@ -136,7 +166,7 @@ impl<const CELLS: usize> CostField<CELLS> {
         match params.exit {
             ExitRule::Best => {
                 self.begin(&query);
-                self.offer_border(&query);
+                self.offer_border(&query, learned);
                 self.search(&query);
             }
             ExitRule::Ray => {
@@ -151,6 +181,12 @@ impl<const CELLS: usize> CostField<CELLS> {
         }
         let weights = self.outgoing(&query);
         weights.best().map(|_| weights).ok_or(Unreachable)
+    }
+
+    /// Impassability of the easiest land of the window that was loaded, 255 when all of it is wall, and whether there
+    /// are walls in it.
+    pub(super) const fn land(&self) -> (u8, bool) {
+        (self.easiest, self.has_walls)
     }
 
     /// Goes on with the search of the last query, which ends when the robot's next moves have their
@@ -196,7 +232,7 @@ impl<const CELLS: usize> CostField<CELLS> {
 
     /// Copies the part of `window` within the radius and prices its cells.
     #[inline(never)]
-    fn load(&mut self, params: &RouteParams, window: &Window<'_>, from: Cell) {
+    pub(super) fn load(&mut self, params: &RouteParams, window: &Window<'_>, from: Cell) {
         let (origin, width, height) = window.cut(from, params.radius);
         self.origin = origin;
         self.stride = usize::from(width) + 2;
@@ -212,6 +248,8 @@ impl<const CELLS: usize> CostField<CELLS> {
             *at = 0;
         }
         let mut least = u8::MAX;
+        self.learns = false;
+        self.has_walls = false;
         for row in 0..self.height {
             let source = window
                 .index(self.origin + Cell::new(0, row.cast_signed()))
@@ -226,7 +264,9 @@ impl<const CELLS: usize> CostField<CELLS> {
                 *sink = *u;
             }
             least = source.iter().copied().filter(|&u| u != BLOCKED).fold(least, u8::min);
+            self.has_walls |= source.contains(&BLOCKED);
         }
+        self.easiest = least;
         let cheapest = params.a0.of(u32::from(least) * UNIT);
         self.shift = cheapest.checked_ilog2().unwrap_or(0);
     }
@@ -337,7 +377,8 @@ impl<const CELLS: usize> CostField<CELLS> {
     /// Offers the predecessors of a settled cell the way through it.
     fn settle(&mut self, params: &RouteParams, cell: usize, cost: Cost, at: u32) {
         let u = u32::from(self.impassability.get(cell).copied().unwrap_or(BLOCKED));
-        let beyond = cost.saturating_add(self.extra.get(cell).copied().unwrap_or(0));
+        let extra = if self.learns { 0 } else { self.extra.get(cell).copied().unwrap_or(0) };
+        let beyond = cost.saturating_add(extra);
         let axis = beyond.saturating_add(params.a0.of(UNIT * u));
         let diagonal = match params.norm {
             Norm::Chebyshev => axis,
@@ -371,6 +412,11 @@ impl<const CELLS: usize> CostField<CELLS> {
             return;
         };
         if cost < *known {
+            let least = if self.learns { self.extra.get(cell).copied().unwrap_or(0) } else { 0 };
+            let cost = cost.max(least);
+            if cost >= *known {
+                return;
+            }
             *known = cost;
             self.unlink(cell);
             self.link(cell, (cost >> self.shift).clamp(at, at.saturating_add(RING - 1)));
@@ -389,8 +435,9 @@ impl<const CELLS: usize> CostField<CELLS> {
         }
     }
 
-    /// Makes every border cell an exit, priced by its distance to the target (eq. 10).
-    fn offer_border(&mut self, query: &Query<'_>) {
+    /// Makes every border cell an exit, priced by its distance to the target (eq. 10), or by what was learned if that
+    /// is more.
+    fn offer_border(&mut self, query: &Query<'_>, learned: &[(Cell, Cost)]) {
         let Query { params, target, .. } = *query;
         let distance = |cell: Cell| cell.distance(target, params.norm);
         // Where prices would leave the range of costs, all are less by the least of them.
@@ -400,7 +447,8 @@ impl<const CELLS: usize> CostField<CELLS> {
             if params.a3.of(farthest) < EXCLUDED >> 1 { 0 } else { self.border().map(distance).min().unwrap_or(0) };
         for cell in self.border() {
             if let Some(at) = self.index(cell) {
-                self.offer(at, params.a3.of(distance(cell) - base));
+                let known = learned.iter().find(|&&(at, _)| at == cell).map_or(0, |&(_, cost)| cost);
+                self.offer(at, params.a3.of(distance(cell) - base).max(known.min(EXCLUDED - 1)));
             }
         }
     }
@@ -455,7 +503,7 @@ impl<const CELLS: usize> CostField<CELLS> {
                 }
             }
             let enter = params.a0.of(dir.length(params.norm) * u32::from(u));
-            let extra = self.extra.get(next).copied()?;
+            let extra = if self.learns { 0 } else { self.extra.get(next).copied()? };
             Some(rest(next)?.saturating_add(enter).saturating_add(extra).min(EXCLUDED - 1))
         };
         Weights::new(Dir::MOVES.map(|dir| step(dir).unwrap_or(EXCLUDED)))

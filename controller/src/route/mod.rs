@@ -6,16 +6,22 @@
 //! What differs from the paper: the direction of algorithm 3, line 7 is (target - cell), which the
 //! listing has the wrong way round; one reverse search from the exits serves all directions; beside
 //! the listing's single exit ([`ExitRule::Ray`]) every border cell may be the exit, priced by
-//! equation 10 ([`ExitRule::Best`]).
+//! equation 10 ([`ExitRule::Best`]); where the robot comes no nearer to its target, it learns costs and, as a last
+//! resort, follows the wall ([`Router`]).
 
+mod escape;
 mod field;
+mod learned;
 mod router;
 mod visits;
 
 #[cfg(test)]
+mod escape_tests;
+#[cfg(test)]
 mod tests;
 
 pub use field::{CostField, Unreachable};
+pub use learned::LearnedCosts;
 pub use router::{PLAN, Replan, Router};
 pub use visits::VisitMemory;
 
@@ -55,8 +61,8 @@ pub struct RouteParams {
     /// Ticks that a cell occupied by another robot costs extra (eq. 7). 0 queues behind others;
     /// large values take long detours around a crowd.
     pub a1: Gain,
-    /// Ticks per earlier visit of a cell (eq. 9). 0 can circle for ever before a dead end larger
-    /// than the window; too large drives the robot away from good land that it used before.
+    /// Ticks per earlier visit of a cell (eq. 9). 0 can circle before a dead end larger
+    /// than the window until [`Router`] takes another way out; too large drives the robot away from good land that it used before.
     pub a2: Gain,
     /// Ticks per cell of distance between exit and target (eq. 10). It should be near the time
     /// that a cell takes on a good way over the land: below half of that the robot wanders and may
@@ -69,8 +75,7 @@ impl Default for RouteParams {
     ///
     /// On random natural land a3 = 3 loses least time against the optimum, or all but least
     /// (`staya experiment route --sweep a3`); a1 and a2 hardly matter there once they are not 0.
-    /// In mazes with dead ends larger than the window, a2 = 30 and a visit memory of 256 cells get
-    /// every robot out (`staya experiment movingai`).
+    /// Out of dead ends larger than the window [`Router`] finds the way whatever the gains.
     fn default() -> Self {
         Self {
             radius: 5,

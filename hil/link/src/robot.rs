@@ -6,7 +6,7 @@ use core::fmt;
 use heapless::Vec;
 use staya_controller::agent::{
     AnyAgent, AnySurroundings, CELLS, Command, GridWorkspace, HALF_PLANES, InCell, InCells, InPlane, Inputs,
-    KinematicState, NEIGHBORS, OnGrid, Outputs, Refused, Setup, Task, VISITS, WrongTask,
+    KinematicState, LEARNED, NEIGHBORS, OnGrid, Outputs, Refused, Setup, Task, VISITS, WrongTask,
 };
 use staya_controller::obstacle::Obstacle;
 use staya_controller::robot::RobotId;
@@ -16,7 +16,7 @@ use staya_controller::wire::{Format, FromFormat, Postcard};
 use staya_mavlink::any::AnyWire;
 
 /// The robot that an STM32F405 has room for. As the small one, it speaks whatever format it is told to.
-pub type Large = Robot<f32, CELLS, VISITS, NEIGHBORS, HALF_PLANES, 32, AnyWire>;
+pub type Large = Robot<f32, CELLS, VISITS, NEIGHBORS, HALF_PLANES, 32, AnyWire, LEARNED>;
 /// The robot that the micro:bit's nRF51 has room for.
 pub type Small = Robot<Q16, CELLS, VISITS, 8, 16, 16, AnyWire>;
 /// Bytes of the inbox beside a [`Large`].
@@ -109,15 +109,16 @@ pub struct Robot<
     const K: usize,
     const O: usize,
     W = Postcard,
+    const L: usize = 0,
 > {
-    agent: Option<AnyAgent<S, CELLS, M, N, K, W>>,
+    agent: Option<AnyAgent<S, CELLS, M, N, K, W, L>>,
     workspace: GridWorkspace<CELLS>,
     obstacles: Vec<Obstacle<S>, O>,
     outputs: Outputs<S>,
 }
 
-impl<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usize, const O: usize, W: FromFormat>
-    Robot<S, CELLS, M, N, K, O, W>
+impl<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usize, const O: usize, W: FromFormat, const L: usize>
+    Robot<S, CELLS, M, N, K, O, W, L>
 {
     /// Nobody yet.
     #[must_use]
@@ -140,21 +141,21 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usi
 
     /// The robot, once it was told what to be.
     #[must_use]
-    pub const fn agent(&self) -> Option<&AnyAgent<S, CELLS, M, N, K, W>> {
+    pub const fn agent(&self) -> Option<&AnyAgent<S, CELLS, M, N, K, W, L>> {
         self.agent.as_ref()
     }
 }
 
-impl<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usize, const O: usize, W: FromFormat>
-    Default for Robot<S, CELLS, M, N, K, O, W>
+impl<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usize, const O: usize, W: FromFormat, const L: usize>
+    Default for Robot<S, CELLS, M, N, K, O, W, L>
 {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usize, const O: usize, W: FromFormat>
-    Controller for Robot<S, CELLS, M, N, K, O, W>
+impl<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usize, const O: usize, W: FromFormat, const L: usize>
+    Controller for Robot<S, CELLS, M, N, K, O, W, L>
 {
     fn number(&self) -> NumberFormat {
         if S::IS_FLOATING { NumberFormat::F32 } else { NumberFormat::Q16 }

@@ -2,9 +2,11 @@
 //!
 //! With a window as large as the map the controller must find the optimal lengths that the benchmark states; with a
 //! small one the question is how many robots get out of the dead ends that they cannot see, and how late. What gets them out
-//! is the price of earlier visits, as far as they are remembered: a2 and [`Memory`].
+//! is what they learn of the costs of ways, as far as they can remember it ([`Learning`]), and at last the wall. A map that is
+//! too large for the router's search is answered by the planner ([`optimal`]).
 
 use crate::experiment::{Experiment, GoesOn, in_parallel};
+use crate::optimal;
 use crate::stats::Summary;
 use crate::walk::{Task, Walker, holds};
 use anyhow::{Context as _, Result, ensure};
@@ -57,6 +59,31 @@ impl Memory {
     }
 }
 
+/// How many costs the robot learns: 8 bytes each on the robot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+#[expect(missing_docs, reason = "the numbers say it")]
+pub enum Learning {
+    #[value(name = "0")]
+    None,
+    #[value(name = "64")]
+    Cells64,
+    #[default]
+    #[value(name = "256")]
+    Cells256,
+}
+
+impl Learning {
+    /// The number of cells.
+    #[must_use]
+    pub const fn cells(self) -> usize {
+        match self {
+            Self::None => 0,
+            Self::Cells64 => 64,
+            Self::Cells256 => 256,
+        }
+    }
+}
+
 /// The robots that answer the queries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Robots {
@@ -64,6 +91,8 @@ pub struct Robots {
     pub sight: Sight,
     /// How much they remember of their way.
     pub memory: Memory,
+    /// How much they learn of the costs of ways.
+    pub learning: Learning,
     /// What they take ways to cost. Radius and moves do not count: [`Robots::sight`] is the radius, and moves
     /// are those of the benchmark (diagonals are sqrt 2 long and cut no corners).
     pub params: RouteParams,
@@ -75,7 +104,13 @@ impl Robots {
     /// Robots with the controller's defaults.
     #[must_use]
     pub fn new(sight: Sight) -> Self {
-        Self { sight, memory: Memory::default(), params: RouteParams::default(), replan: Replan::default() }
+        Self {
+            sight,
+            memory: Memory::default(),
+            learning: Learning::default(),
+            params: RouteParams::default(),
+            replan: Replan::default(),
+        }
     }
 }
 
@@ -151,10 +186,33 @@ impl Plan {
         }
     }
 
-    fn answer<const M: usize>(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Answer>> {
+    /// The answer of a planner that sees all of a map that is too large for the router's search.
+    fn planned(&self, query: &Query) -> Answer {
+        let RouteParams { norm, corner_cutting, .. } = self.params();
+        let route = optimal::route(&self.benchmark.land, query.start, query.goal, norm, corner_cutting);
+        Answer {
+            optimal_cells: query.optimal_length,
+            arrived: route.is_some(),
+            length_cells: route.as_ref().map_or(0.0, |route| cells(route.length(norm) as f64)),
+            priced_cells: route.map(|route| cells(route.cost as f64)),
+        }
+    }
+
+    fn answers<const M: usize>(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Answer>> {
+        match self.robots.learning {
+            Learning::None => self.answer::<M, 0>(goes_on),
+            Learning::Cells64 => self.answer::<M, 64>(goes_on),
+            Learning::Cells256 => self.answer::<M, 256>(goes_on),
+        }
+    }
+
+    fn answer<const M: usize, const L: usize>(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Answer>> {
         let (land, robots, params) = (&self.benchmark.land, &self.robots, self.params());
-        let job = |walker: &mut Walker<CELLS, M>, index: usize| {
+        let job = |walker: &mut Walker<CELLS, M, L>, index: usize| {
             let query = &self.benchmark.queries[index];
+            if robots.sight == Sight::Map && !holds(CELLS, land) {
+                return Ok(self.planned(query));
+            }
             let task = Task { land, parked: &[], from: query.start, to: query.goal };
             let walk = walker.walk(&task, &params, robots.replan);
             let priced = match robots.sight {
@@ -180,11 +238,11 @@ impl Experiment for Plan {
     fn check(&self) -> Result<()> {
         let land = &self.benchmark.land;
         // A window that reaches beyond the map holds no more than the map.
-        let sees_all = self.robots.sight == Sight::Map || self.params().radius > 126;
+        let sees_all = self.robots.sight != Sight::Map && self.params().radius > 126;
         ensure!(
             holds(CELLS, land) || !sees_all,
             "a map of {} x {} cells is more than the controller can see at once: no side over 256, and at most \
-             {CELLS} cells with a border of one around them; choose a radius",
+             {CELLS} cells with a border of one around them; choose a smaller radius, or \"map\"",
             land.width(),
             land.height()
         );
@@ -197,10 +255,10 @@ impl Experiment for Plan {
 
     fn perform(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Vec<Answer>>> {
         let answers = match self.robots.memory {
-            Memory::Cells16 => self.answer::<16>(goes_on),
-            Memory::Cells64 => self.answer::<64>(goes_on),
-            Memory::Cells256 => self.answer::<256>(goes_on),
-            Memory::Cells1024 => self.answer::<1024>(goes_on),
+            Memory::Cells16 => self.answers::<16>(goes_on),
+            Memory::Cells64 => self.answers::<64>(goes_on),
+            Memory::Cells256 => self.answers::<256>(goes_on),
+            Memory::Cells1024 => self.answers::<1024>(goes_on),
         };
         Ok(vec![answers?])
     }
@@ -264,6 +322,8 @@ pub struct Report {
     pub radius: Option<u8>,
     /// Cells of the visit memory.
     pub visits: usize,
+    /// Cells of the learned costs.
+    pub learned: usize,
     /// Queries in the scenario.
     pub queries: usize,
     /// Queries answered, fewer after an early end.
@@ -296,6 +356,7 @@ impl Report {
                 Sight::Map => None,
             },
             visits: robots.memory.cells(),
+            learned: robots.learning.cells(),
             queries: benchmark.queries.len(),
             answered: answers.len(),
             arrived: losses.len(),
@@ -313,6 +374,7 @@ impl Display for Report {
         let radius = self.radius.map_or_else(|| String::from("the whole map"), |r| format!("radius {r}"));
         writeln!(f, "  window                {radius}")?;
         writeln!(f, "  visit memory          {} cells", self.visits)?;
+        writeln!(f, "  learned costs         {} cells", self.learned)?;
         let (answered, queries) = (self.answered, self.queries);
         writeln!(f, "  queries answered      {answered} of {queries}")?;
         writeln!(f, "  arrived               {}", self.arrived)?;
@@ -336,6 +398,7 @@ impl Display for Report {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use staya_controller::grid::{BLOCKED, Cell};
 
     const MAP: &str = "type octile\nheight 3\nwidth 4\nmap\n....\n.@@.\n...S\n";
 
@@ -392,6 +455,21 @@ mod tests {
     }
 
     #[test]
+    fn a_map_too_large_for_the_search_is_planned_at_the_optimal_length() {
+        // A wall with a gap at its eastern end, far from the straight way.
+        let mut land = Terrain::flat(300, 260);
+        (0..299).for_each(|x| land.set(Cell::new(x, 100), BLOCKED));
+        let [start, goal] = [Cell::new(298, 0), Cell::new(298, 200)];
+        // Diagonally before the gap and behind it, cutting no corner.
+        let optimal_length = 198.0 + 2.0 * std::f64::consts::SQRT_2;
+        let query = Query { bucket: 0, map: "a.map".into(), width: 300, height: 260, start, goal, optimal_length };
+        let benchmark = Benchmark { map: "a.map".into(), land, queries: vec![query] };
+        let report = Plan { benchmark, robots: Robots::new(Sight::Map) }.measure().unwrap();
+        assert_eq!((report.arrived, report.without_price), (1, Some(0)));
+        assert!(report.worst_price_error_percent.unwrap() < 0.01, "{report}");
+    }
+
+    #[test]
     fn land_too_large_to_be_seen_at_once_is_refused() {
         let benchmark =
             |width, height| Benchmark { map: "a.map".into(), land: Terrain::flat(width, height), queries: vec![] };
@@ -401,11 +479,11 @@ mod tests {
         };
         assert!(answer(253, 253, Sight::Map).is_ok());
         assert!(answer(256, 250, Sight::Map).is_ok());
-        for (width, height) in [(254, 253), (257, 10)] {
-            let error = answer(width, height, Sight::Map).unwrap_err();
-            assert!(error.contains("choose a radius"), "{error}");
-        }
+        assert!(answer(512, 512, Sight::Map).is_ok());
         assert!(answer(1000, 1000, Sight::Radius(126)).is_ok());
-        assert!(answer(1000, 1000, Sight::Radius(127)).is_err());
+        for (width, height) in [(254, 253), (257, 10)] {
+            let error = answer(width, height, Sight::Radius(127)).unwrap_err();
+            assert!(error.contains("choose a smaller radius"), "{error}");
+        }
     }
 }

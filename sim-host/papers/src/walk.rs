@@ -7,7 +7,7 @@ use staya_controller::route::{CostField, Replan, RouteParams, Router};
 use staya_sim::terrain::Terrain;
 
 /// Moves after which a robot is lost, per cell of the map's half circumference (width + height).
-const PATIENCE: usize = 20;
+const PATIENCE: usize = 200;
 
 /// How a walk ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -24,16 +24,16 @@ pub struct Walk {
 }
 
 /// Scratch memory for walks of robots with windows of up to `CELLS` cells, border included, that remember visits of
-/// `M` cells; reusable.
+/// `M` cells and learn the costs of `L`; reusable.
 #[derive(Debug)]
-pub struct Walker<const CELLS: usize, const M: usize = VISITS> {
+pub struct Walker<const CELLS: usize, const M: usize = VISITS, const L: usize = 0> {
     field: Box<CostField<CELLS>>,
     path: Vec<Cell>,
     /// The land with walls around it.
     walled: Vec<u8>,
 }
 
-impl<const CELLS: usize, const M: usize> Default for Walker<CELLS, M> {
+impl<const CELLS: usize, const M: usize, const L: usize> Default for Walker<CELLS, M, L> {
     fn default() -> Self {
         Self { field: Box::new(CostField::new()), path: Vec::new(), walled: Vec::new() }
     }
@@ -52,15 +52,15 @@ pub struct Task<'a> {
     pub to: Cell,
 }
 
-impl<const CELLS: usize, const M: usize> Walker<CELLS, M> {
+impl<const CELLS: usize, const M: usize, const L: usize> Walker<CELLS, M, L> {
     /// Lets a robot walk.
     ///
     /// The router cuts the window to its radius around the robot itself, as on a robot whose sensors see farther. The robot
     /// takes the cheapest move whose cell no other robot has (KUZ algorithm 4, without the shuffle: nobody else moves,
-    /// so there is no conflict to settle). A walk ends at the target, where no move is left, or after 20 moves per cell of
+    /// so there is no conflict to settle). A walk ends at the target, where no move is left, or after 200 moves per cell of
     /// width + height.
     pub fn walk(&mut self, task: &Task<'_>, params: &RouteParams, replan: Replan) -> Walk {
-        let mut router = Router::<M>::new();
+        let mut router = Router::<M, L>::new();
         let mut walk = Walk::default();
         let (land, to) = (task.land, task.to);
         let mut here = task.from;
@@ -120,7 +120,7 @@ impl<const CELLS: usize, const M: usize> Walker<CELLS, M> {
         }
         let params = RouteParams { radius: u8::MAX, a0: Gain::ONE, ..*params };
         let window = Window::new(land.cells(), Cell::default(), land.width(), land.height())?;
-        let router = Router::<0>::new();
+        let mut router = Router::<0>::new();
         let weights = router.weights(&params, &mut self.field, &window, from, to, []).ok()?;
         let least = weights.best().map(|dir| weights.get(dir))?;
         Some(f64::from(least) / f64::from(Gain::ONE.sixteenths()))

@@ -33,13 +33,44 @@ fn who_has_failed_or_arrived_is_not_waited_for() {
     for (mode, expected) in [(Mode::Cruise, Mode::Hold), (Mode::Fault, Mode::Cruise), (Mode::Arrived, Mode::Cruise)] {
         let (mut agent, mut ws) = (formation_agent(1), workspace());
         agent.assign_goal(Cell::new(60, 5));
-        let behind = Beacon { mode, ..beacon_at(-5, 5) };
+        let behind = Beacon { mode, leader: RobotId(1), ..beacon_at(-5, 5) };
         for n in 0..2 {
             let inbox = bytes(2, 0, n, &[Message::Beacon(behind)]);
             let inputs = inputs(&FLAT, Cell::new(5, 5), &inbox);
             let _ = agent.step(&inputs, tick(n.into()), &mut ws);
         }
         assert_eq!(agent.mode(), expected, "follower's mode {mode:?}");
+    }
+}
+
+/// Nobody waits for ever for a robot that has no way, and when it goes on it does not wait again.
+#[test]
+fn a_leader_goes_on_without_who_stays_behind_for_long() {
+    let (mut agent, mut ws) = (formation_agent(1), workspace());
+    agent.assign_goal(Cell::new(60, 5));
+    let behind = Beacon { leader: RobotId(1), ..beacon_at(-5, 5) };
+    let patience = u32::from(FormationParams::default().patience);
+    let mut held = vec![];
+    for n in 0..patience + 20 {
+        let inbox = bytes(2, 0, n as u16, &[Message::Beacon(behind)]);
+        let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(n), &mut ws);
+        if agent.mode() == Mode::Hold {
+            held.push(n);
+        }
+    }
+    assert!(held.iter().copied().eq(0..patience), "{held:?}");
+}
+
+/// A leader does not wait for somebody who leads himself, nor for his followers.
+#[test]
+fn who_follows_somebody_else_is_not_waited_for() {
+    let (mut agent, mut ws) = (formation_agent(1), workspace());
+    agent.assign_goal(Cell::new(60, 5));
+    let alone = Beacon { leader: RobotId::NOBODY, ..beacon_at(-5, 5) };
+    for n in 0..5 {
+        let inbox = bytes(2, 0, n, &[Message::Beacon(alone)]);
+        let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(n.into()), &mut ws);
+        assert_eq!(agent.mode(), Mode::Cruise);
     }
 }
 
@@ -287,7 +318,8 @@ fn a_leader_that_recovers_heads_for_who_is_off() {
         agent.guidance = FormationGuidance::new(RouteParams::default(), formation, template);
         let mut ws = workspace();
         agent.assign_goal(Cell::new(60, 5));
-        let inbox = bytes(2, 0, 0, &[Message::Beacon(beacon_at(-5, 5)), stop(2, 1, 0, RequestKind::Stop)]);
+        let behind = Beacon { leader: RobotId(1), ..beacon_at(-5, 5) };
+        let inbox = bytes(2, 0, 0, &[Message::Beacon(behind), stop(2, 1, 0, RequestKind::Stop)]);
         let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(0), &mut ws);
         out.command
     };

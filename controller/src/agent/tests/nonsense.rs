@@ -162,6 +162,7 @@ fn formation() -> impl Strategy<Value = FormationParams> {
     (numbers, gain(), any::<[bool; 2]>()).prop_map(|(numbers, gain, [reflexive, def])| {
         let (eps, halt_lag, resume_lag, lead, footprint) = numbers;
         FormationParams {
+            patience: 20,
             eps,
             gain,
             halt_lag,

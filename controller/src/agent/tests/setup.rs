@@ -60,7 +60,7 @@ fn setups() -> impl Iterator<Item = Setup> {
 
 /// Digests of an agent that hears one neighbour, step by step.
 fn lived<S: Scalar>(setup: &Setup, steps: u32) -> std::vec::Vec<u64> {
-    let agent = setup.agent::<S, CELLS, VISITS, NEIGHBORS, HALF_PLANES, Postcard>();
+    let agent = setup.agent::<S, CELLS, VISITS, NEIGHBORS, HALF_PLANES, Postcard, 0>();
     let mut agent = agent.unwrap();
     let place = Waypoint::fixed(Position::from_mm([4000, 1000, 0]));
     let task = match setup.guidance {
@@ -154,7 +154,7 @@ fn the_whole_state_counts() {
 #[test]
 fn no_robot_speaks_a_format_that_its_type_has_not() {
     let setup = Setup { format: Format::Mavlink, ..setups().next().unwrap() };
-    let agent = setup.agent::<f32, CELLS, VISITS, NEIGHBORS, HALF_PLANES, Postcard>();
+    let agent = setup.agent::<f32, CELLS, VISITS, NEIGHBORS, HALF_PLANES, Postcard, 0>();
     assert!(agent.is_none());
 }
 

@@ -15,6 +15,7 @@ use staya_controller::agent::*;
 use staya_controller::geom::{Position, Vec2};
 use staya_controller::obstacle::Obstacle;
 use staya_controller::time::Instant;
+use staya_controller::wire::Postcard;
 use staya_mavlink::any::AnyWire;
 use std::vec::Vec;
 
@@ -69,7 +70,7 @@ fn steps_over_a_bad_line_are_those_of_a_plain_agent() {
     let (on_grid, to_a_cell) = on_grid(5);
     for (setup, task) in [(setup, task), (on_grid, to_a_cell)] {
         for (faults, seed) in [(Faults::default(), 1), (BAD, 2), (BAD, 3)] {
-            let agent: Option<AnyAgent<f32, CELLS, VISITS, NEIGHBORS, HALF_PLANES>> = setup.agent();
+            let agent: Option<AnyAgent<f32, CELLS, VISITS, NEIGHBORS, HALF_PLANES, Postcard, LEARNED>> = setup.agent();
             let mut agent = agent.expect("postcard");
             agent.assign(&task).expect("a task for it");
             let mut workspace = GridWorkspace::new();

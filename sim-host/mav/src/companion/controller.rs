@@ -3,7 +3,7 @@
 use staya_controller::agent::SafetyKind;
 use staya_controller::agent::{
     Agent, AgentConfig, AnyGuidance, AnySafety, AnySurroundings, Command, Commanded, GridWorkspace, HALF_PLANES,
-    InCells, NEIGHBORS, Outputs, TEMPLATE, VISITS, Wish,
+    InCells, LEARNED, NEIGHBORS, Outputs, TEMPLATE, VISITS, Wish,
 };
 use staya_controller::geom::Vec3;
 use staya_controller::robot::Mode;
@@ -31,7 +31,7 @@ struct Brake {
 }
 
 /// What the scenario wants, unless the pilot has the vehicle.
-type Guided = Commanded<f32, AnyGuidance<f32, WIDE, VISITS, TEMPLATE>>;
+type Guided = Commanded<f32, AnyGuidance<f32, WIDE, VISITS, TEMPLATE, LEARNED>>;
 type ControllerAgent<W> = Agent<f32, Guided, NEIGHBORS, AnySafety<f32, HALF_PLANES>, W>;
 
 /// An agent with its land.

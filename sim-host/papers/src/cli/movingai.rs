@@ -1,6 +1,6 @@
 //! `staya experiment movingai`.
 
-use crate::movingai::{Benchmark, Memory, Plan, Robots, Sight};
+use crate::movingai::{Benchmark, Learning, Memory, Plan, Robots, Sight};
 use crate::options::RouteOptions;
 use anyhow::Result;
 use clap::Args;
@@ -22,6 +22,10 @@ pub struct MovingAiArgs {
     /// How many visited cells the robot remembers, which gets it out of dead ends larger than its window.
     #[arg(long, value_name = "CELLS", default_value = "64", value_enum)]
     visits: Memory,
+    /// For how many cells the robot learns what the way costs at least, while it comes no nearer to its goal; 0 leaves it
+    /// the walls to follow.
+    #[arg(long, value_name = "CELLS", default_value = "256", value_enum)]
+    learned: Learning,
     #[command(flatten)]
     route: RouteOptions,
 }
@@ -48,6 +52,7 @@ impl MovingAiArgs {
             robots: Robots {
                 sight: self.radius,
                 memory: self.visits,
+                learning: self.learned,
                 // The sight is the radius.
                 params: self.route.params(1),
                 replan: self.route.replan,

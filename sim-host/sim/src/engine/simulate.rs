@@ -6,7 +6,7 @@ use crate::record::{PacketCounts, RobotRow, TickRow};
 use crate::scenario::Scenario;
 use crate::world::Misplaced;
 use crate::world::plane::Clearance;
-use staya_controller::agent::{AnyGuidance, AnySafety, CELLS, Commanded, HALF_PLANES, Safety, TEMPLATE, VISITS};
+use staya_controller::agent::{AnyGuidance, AnySafety, CELLS, Commanded, HALF_PLANES, LEARNED, Safety, TEMPLATE, VISITS};
 use std::ops::ControlFlow;
 
 /// Cells of a search for windows up to radius 16 with their border: (2 * 16 + 3)^2.
@@ -81,7 +81,7 @@ pub fn simulate_with(
 }
 
 /// What a robot's agent is made of: any guidance with searches of up to `C` cells, which an operator may take over, and any safety layer.
-pub(super) type GuidanceOf<const C: usize> = Commanded<f32, AnyGuidance<f32, C, VISITS, TEMPLATE>>;
+pub(super) type GuidanceOf<const C: usize> = Commanded<f32, AnyGuidance<f32, C, VISITS, TEMPLATE, LEARNED>>;
 pub(super) type SafetyOf = AnySafety<f32, HALF_PLANES>;
 
 /// The engines that there are. Only here are they made of generic code, so that it is compiled once.

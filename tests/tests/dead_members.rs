@@ -1,0 +1,45 @@
+//! A formation of which some have failed for good: the others arrive, whoever it is.
+
+use staya_controller::robot::{Mode, RobotId};
+use staya_sim::scenario::{Fault, Scenario};
+use staya_tests::{run, scenario};
+
+/// The scenario with robots that stand silent from some tick on.
+fn without(name: &str, seed: u64, dead: &[(u32, u32)], ticks: u32) -> Scenario {
+    let mut scenario = scenario(name, Some(ticks));
+    scenario.seed = seed;
+    let faults = dead.iter().map(|&(robot, from_tick)| Fault { robot: RobotId(robot), from_tick, to_tick: ticks });
+    scenario.faults.extend(faults);
+    scenario
+}
+
+/// Who of the living is not at its goal in the end.
+fn missing(scenario: &Scenario, dead: &[(u32, u32)]) -> Vec<usize> {
+    let (_, rows) = run(scenario);
+    let (_, robots) = rows.last().expect("at least the start");
+    let is_dead = |index: usize| dead.iter().any(|(robot, _)| *robot as usize == index + 1);
+    let late = (0..robots.len()).filter(|&index| !is_dead(index) && robots[index].mode != Mode::Arrived);
+    late.map(|index| index + 1).collect()
+}
+
+#[test]
+fn six_go_on_without_any_one_or_two_of_them() {
+    assert_eq!(scenario("figure-5", None).robots.len(), 6);
+    for first in 1..=6_u32 {
+        for second in first..=6 {
+            let dead = [(first, 10), (second, 25)];
+            let dead = if first == second { &dead[..1] } else { &dead[..] };
+            let scenario = without("figure-5", 1, dead, 300);
+            assert_eq!(missing(&scenario, dead), [0_usize; 0], "without {dead:?}");
+        }
+    }
+}
+
+#[test]
+fn six_robots_go_on_over_a_bad_radio_without_any_one_of_them() {
+    for robot in 1..=6 {
+        let dead = [(robot, 100)];
+        let scenario = without("six-robots", 1, &dead, 1500);
+        assert_eq!(missing(&scenario, &dead), [0_usize; 0], "without {robot}");
+    }
+}
