@@ -82,14 +82,15 @@ mod needs_shared {
             (Learning::Cells64, ticks(3), None),
             (Learning::None, ticks(3), None),
         ] {
-            for (name, queries) in [("arena.map.scen", 160), ("den312d.map.scen", 320)] {
+            for (name, queries) in [("arena.map.scen", 160), ("den312d.map.scen", 320), ("Berlin_0_256.map.scen", 930)] {
                 let Some(scen) = shared(name) else { continue };
                 let mut robots = Robots::new(Sight::Radius(5));
                 (robots.learning, robots.params.a3) = (learning, a3);
                 let (report, _) = answers(&scen, &robots);
                 assert_eq!(report.arrived, queries, "{name}, {learning:?}");
+                println!("{learning:?}, a3 = {a3:?}\n{report}");
                 let mean = report.loss_percent.expect("all arrived").mean;
-                assert!(loss.is_none_or(|most| mean <= most), "{name}, {learning:?}: {mean} %");
+                assert!(queries == 930 || loss.is_none_or(|most| mean <= most), "{name}, {learning:?}: {mean} %");
             }
         }
     }

@@ -117,8 +117,16 @@ pub struct Robot<
     outputs: Outputs<S>,
 }
 
-impl<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usize, const O: usize, W: FromFormat, const L: usize>
-    Robot<S, CELLS, M, N, K, O, W, L>
+impl<
+    S: Scalar,
+    const CELLS: usize,
+    const M: usize,
+    const N: usize,
+    const K: usize,
+    const O: usize,
+    W: FromFormat,
+    const L: usize,
+> Robot<S, CELLS, M, N, K, O, W, L>
 {
     /// Nobody yet.
     #[must_use]
@@ -146,16 +154,32 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usi
     }
 }
 
-impl<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usize, const O: usize, W: FromFormat, const L: usize>
-    Default for Robot<S, CELLS, M, N, K, O, W, L>
+impl<
+    S: Scalar,
+    const CELLS: usize,
+    const M: usize,
+    const N: usize,
+    const K: usize,
+    const O: usize,
+    W: FromFormat,
+    const L: usize,
+> Default for Robot<S, CELLS, M, N, K, O, W, L>
 {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl<S: Scalar, const CELLS: usize, const M: usize, const N: usize, const K: usize, const O: usize, W: FromFormat, const L: usize>
-    Controller for Robot<S, CELLS, M, N, K, O, W, L>
+impl<
+    S: Scalar,
+    const CELLS: usize,
+    const M: usize,
+    const N: usize,
+    const K: usize,
+    const O: usize,
+    W: FromFormat,
+    const L: usize,
+> Controller for Robot<S, CELLS, M, N, K, O, W, L>
 {
     fn number(&self) -> NumberFormat {
         if S::IS_FLOATING { NumberFormat::F32 } else { NumberFormat::Q16 }
