@@ -82,7 +82,8 @@ mod needs_shared {
             (Learning::Cells64, ticks(3), None),
             (Learning::None, ticks(3), None),
         ] {
-            for (name, queries) in [("arena.map.scen", 160), ("den312d.map.scen", 320), ("Berlin_0_256.map.scen", 930)] {
+            for (name, queries) in [("arena.map.scen", 160), ("den312d.map.scen", 320), ("Berlin_0_256.map.scen", 930)]
+            {
                 let Some(scen) = shared(name) else { continue };
                 let mut robots = Robots::new(Sight::Radius(5));
                 (robots.learning, robots.params.a3) = (learning, a3);
