@@ -153,3 +153,8 @@ fn golden_boids() {
 fn golden_six_discs() {
     check("six-discs", None);
 }
+
+#[test]
+fn golden_twenty_discs() {
+    check("twenty-discs", None);
+}

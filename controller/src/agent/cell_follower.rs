@@ -1,7 +1,7 @@
 //! A guidance law made for the grid, on a body that moves in the plane.
 
 use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Teamwork};
-use super::{InCells, OnGrid, Parameter};
+use super::{CellState, InCells, OnGrid, Parameter};
 use crate::geom::Vec2;
 use crate::grid::{Cell, Dir};
 use crate::rand::Rng;
@@ -11,11 +11,16 @@ use crate::time::Instant;
 use crate::wire::TemplateAssignment;
 use serde::Serialize;
 
+/// How far from the middle of its cell, along an axis, a robot is in the next one: thousandths of a cell.
+const LEAVES_AT: i32 = 750;
+
 /// Goes towards the centre of the cell that a guidance law `G` of the grid would move to.
 ///
-/// The law decides anew when the robot has come into another cell, and otherwise as often as it would on the grid:
-/// once in the time that the robot needs to cross a cell of its land at cruising speed. It sees other robots by their
-/// cells as ever; that they may share a cell now is the safety layer's business.
+/// The law decides anew when the robot has come well into another cell, halfway from the border to the middle (on the
+/// border it could change its mind for ever), and while it does not get on, as often as it would on the grid: once in the
+/// time that the robot needs to cross a cell of its land at cruising speed. It sees other robots by their cells as ever; that they may
+/// share a cell now is the safety layer's business. Its way has no place that it goes to straight for longer than a
+/// cell: who shall give way, and how to get past each other, the law decides by its prices and requests.
 #[derive(Clone, Debug, Serialize)]
 pub struct CellFollower<S, G> {
     law: G,
@@ -80,36 +85,45 @@ where
         rng: &mut Rng,
         workspace: &mut Self::Workspace,
     ) -> Result<Decision<S>, BadInput> {
-        let (cell, place) = (here.grid.cell.cell, here.in_cell);
+        let (under, place) = (here.grid.cell.cell, here.in_cell);
+        let to_center = |cell: Cell| {
+            let along = |cells: i16, offset: S| S::from_i32(cells.into()) * place.cell_m - offset;
+            let cells = cell - under;
+            Vec2::new(along(cells.x, place.offset_m.x), along(cells.y, place.offset_m.y))
+        };
+        let is_left = |cell: Cell| {
+            let Vec2 { x, y } = to_center(cell);
+            x.abs().max(y.abs()) > place.cell_m * S::from_milli(LEAVES_AT)
+        };
+        let cell = self.last.as_ref().map(|last| last.cell).filter(|&cell| !is_left(cell)).unwrap_or(under);
         let speed = self.speed_mps.min(input.body.max_speed_mps);
         let crossing_s = place.cell_m.checked_div(speed);
         let crossing_s = crossing_s.filter(|span| *span > S::ZERO).ok_or(BadInput)?;
+        let way = |decision: &Decision<S>| {
+            let dir = decision.action.moves().first().copied();
+            to_center(cell + dir.unwrap_or(Dir::Stay).offset())
+        };
         let is_due = |last: &Last<S>| {
             let age_s = S::from_micro(input.now.since(last.at).as_micros());
-            last.cell != cell || age_s < S::ZERO || age_s >= crossing_s
+            let ahead = way(&last.decision).normalized().unwrap_or_default();
+            let gets_on = input.body.velocity_mps.xy().dot(ahead) > speed * S::HALF;
+            last.cell != cell || age_s < S::ZERO || age_s >= crossing_s && !gets_on
         };
         let mut decision = match &self.last {
             Some(last) if !is_due(last) => Decision { asks: heapless::Vec::new(), ..last.decision.clone() },
             _ => {
                 self.last = None;
-                let decision = self.law.decide(input, &here.grid, rng, workspace)?;
+                let grid = OnGrid { cell: CellState { cell, ..here.grid.cell }, ..here.grid };
+                let decision = self.law.decide(input, &grid, rng, workspace)?;
                 self.last = Some(Last { cell, at: input.now, decision: decision.clone() });
                 decision
             }
         };
-        let to_center = |cells: Cell| {
-            let along = |cells: i16, offset: S| S::from_i32(cells.into()) * place.cell_m - offset;
-            Vec2::new(along(cells.x, place.offset_m.x), along(cells.y, place.offset_m.y))
-        };
-        let dir = decision.action.moves().first().copied();
-        let way = to_center(dir.unwrap_or(Dir::Stay).offset());
+        let way = way(&decision);
         // On the last step no farther than the centre.
         let needed = way.norm().checked_div(input.body.step_s).unwrap_or(speed);
         let ahead = way.normalized().unwrap_or_default();
-        decision.action = Action::Velocity {
-            wish_mps: (ahead * needed.min(speed)).extend(S::ZERO),
-            way_m: Some(to_center(decision.target - cell).extend(S::ZERO)),
-        };
+        decision.action = Action::Velocity { wish_mps: (ahead * needed.min(speed)).extend(S::ZERO), way_m: None };
         Ok(decision)
     }
 

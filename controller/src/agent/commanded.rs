@@ -151,6 +151,9 @@ impl<S, G: Teamwork> Teamwork for Commanded<S, G> {
     }
 }
 
+/// An ordered velocity leads to where it would be after so many seconds.
+const LEADS_TO_S: i32 = 10;
+
 impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
     type Input<'a> = G::Input<'a>;
     type Destination = G::Destination;
@@ -170,8 +173,9 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
             Wish::Hold => Ok(on_order(Action::Stay, input.goal)),
             Wish::Velocity { velocity_mps, .. } => {
                 input.can_go()?;
-                let action =
-                    Action::Velocity { wish_mps: velocity_mps.clamp_norm(input.body.max_speed_mps), way_m: None };
+                let wish_mps = velocity_mps.clamp_norm(input.body.max_speed_mps);
+                // Somewhere ahead, so that two who are sent against each other get past.
+                let action = Action::Velocity { wish_mps, way_m: Some(wish_mps * S::from_i32(LEADS_TO_S)) };
                 Ok(on_order(action, input.goal))
             }
             Wish::Waypoint { .. } => {

@@ -60,10 +60,7 @@ impl<S: Scalar> Guidance<S> for LatticeGuidance<S> {
         if !wish_mps.is_finite() {
             return Err(BadInput);
         }
-        Ok(Decision {
-            action: Action::Velocity { wish_mps, way_m: reference.map(|reference| reference.offset_m) },
-            ..Decision::default()
-        })
+        Ok(Decision { action: Action::Velocity { wish_mps, way_m: None }, ..Decision::default() })
     }
 
     fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool {
@@ -133,7 +130,7 @@ impl<S: Scalar> Guidance<S> for GoalFlockGuidance<S> {
         let wish_mps = wish(&self.params, &input.body, own, goal, input.nearby);
         let way_m = goal.map(|goal| goal.since(own));
         Ok(Decision {
-            action: Action::Velocity { wish_mps, way_m },
+            action: Action::Velocity { wish_mps, way_m: None },
             status: Status { is_at_goal: self.is_there(own, way_m, wish_mps), ..Status::default() },
             ..Decision::default()
         })

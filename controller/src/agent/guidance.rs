@@ -259,7 +259,8 @@ pub enum Action<S> {
     Velocity {
         /// How it would go with nobody in the way, m/s.
         wish_mps: Vec3<S>,
-        /// Where it goes, relative to its own place, metres; `None` when it only roams.
+        /// The next place on its way that it goes to straight, relative to its own place, metres; `None` when it has
+        /// none: then nobody coming nearer is a reason to swerve.
         way_m: Option<Vec3<S>>,
     },
     /// To leave the body alone: its motors are off, or somebody else steers ([`Mode::Passive`](crate::robot::Mode::Passive)).

@@ -16,7 +16,8 @@ pub struct SafetyInput<'a, S> {
     pub body: Body<S>,
     /// The velocity that the guidance law wishes, m/s: finite, and zero when the robot should stand.
     pub wish_mps: Vec3<S>,
-    /// Where the robot goes, relative to its own place, metres; `None` when it only roams or should stand.
+    /// The next place on its way that it goes to straight, relative to its own place, metres; `None` when it only
+    /// roams, flocks or should stand.
     pub way_m: Option<Vec3<S>>,
     /// Who is near by, nearest first.
     pub nearby: &'a [Nearby<S>],

@@ -17,6 +17,8 @@ use heapless::Vec;
 use serde::Serialize;
 
 #[cfg(all(test, feature = "fixed"))]
+mod scale;
+#[cfg(all(test, feature = "fixed"))]
 mod simulation;
 #[cfg(all(test, feature = "fixed"))]
 mod space;

@@ -55,7 +55,8 @@ impl<S: Scalar> AvoidParams<S> {
     }
 }
 
-/// Parameters of the way out of symmetry and jams in the plane.
+/// Parameters of the way out of symmetry and jams in the plane. They have no units: all lengths and times of the rule
+/// follow from the body, its speed and the horizon, so that kilobots and cars do the same at their own scale.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct DeadlockParams<S> {
@@ -63,25 +64,15 @@ pub struct DeadlockParams<S> {
     /// longer; less leaves robots on a circle in each other's way for longer (below 0.25 for ever). 0.4 to 0.6. No
     /// danger: what robots forbid stays forbidden.
     pub lean_rad: S,
-    /// A robot is in the way when its border is nearer than this, metres: about as far as the robot goes within its
-    /// horizon.
-    pub lean_within_m: S,
-    /// Nobody leans nearer to its goal than this, metres: there it would circle.
-    pub straight_within_m: S,
-    /// For how long (to twice as long) a robot leaves an empty gap to those whose turn it is, seconds. Less than
-    /// others need to come from where they wait (two or three radii) lets turns be skipped; more costs time when
-    /// somebody merely stands near a gap. 2 to 10.
-    pub patience_s: S,
+    /// For how long (to twice as long) a robot leaves an empty gap to those whose turn it is: the time in which it would
+    /// go so many own radii at its highest speed. Less than others need to come from where they wait (two or three
+    /// radii) lets turns be skipped; more costs time when somebody merely stands near a gap. 4 to 16.
+    pub patience_radii: S,
 }
 
 impl<S: Scalar> Default for DeadlockParams<S> {
     fn default() -> Self {
-        Self {
-            lean_rad: S::from_milli(460),
-            lean_within_m: S::from_milli(800),
-            straight_within_m: S::from_milli(800),
-            patience_s: S::from_i32(3),
-        }
+        Self { lean_rad: S::from_milli(460), patience_radii: S::from_i32(5) }
     }
 }
 
@@ -89,12 +80,7 @@ impl<S: Scalar> DeadlockParams<S> {
     /// The same in another kind of number.
     #[must_use]
     pub fn cast<T: Scalar>(&self) -> DeadlockParams<T> {
-        DeadlockParams {
-            lean_rad: cast(self.lean_rad),
-            lean_within_m: cast(self.lean_within_m),
-            straight_within_m: cast(self.straight_within_m),
-            patience_s: cast(self.patience_s),
-        }
+        DeadlockParams { lean_rad: cast(self.lean_rad), patience_radii: cast(self.patience_radii) }
     }
 }
 

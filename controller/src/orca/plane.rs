@@ -39,9 +39,11 @@ impl<S: Scalar> Dimension for Vec2<S> {
         situation: &Situation<'_, Self>,
         rng: &mut Rng,
     ) -> Self {
-        let params = &params.deadlock;
-        let at_gap = memory.wish(situation, params.patience_s, rng);
-        at_gap.unwrap_or_else(|| lean(params, situation))
+        let Some(goal) = situation.goal else {
+            return situation.wish;
+        };
+        let at_gap = memory.wish(situation, goal, params.deadlock.patience_radii, rng);
+        at_gap.unwrap_or_else(|| lean(params, situation, goal))
     }
 }
 

@@ -115,7 +115,7 @@ fn motion(decision: &Decision<f32>) -> (Vec3<f32>, Option<Vec3<f32>>) {
 }
 
 #[test]
-fn it_decides_anew_in_another_cell_or_after_the_time_to_cross_one() {
+fn it_decides_anew_in_another_cell_or_when_it_has_stood_for_the_time_to_cross_one() {
     let mut guidance = counting();
     let mut count = |cell, n| ask(&mut guidance, &told(cell, [0.0; 2], 1.0, n)).1;
     let (here, there) = (Cell::new(5, 5), Cell::new(6, 5));
@@ -146,15 +146,46 @@ fn it_asks_others_once_for_each_decision() {
 }
 
 #[test]
-fn it_goes_to_the_centre_of_the_next_cell_and_knows_its_whole_way() {
+fn on_the_border_of_a_cell_it_does_not_change_its_mind() {
+    let mut guidance = counting();
+    let mut count = |cell, x| ask(&mut guidance, &told(cell, [x, 0.0], 1.0, 0)).1;
+    let (here, there) = (Cell::new(5, 5), Cell::new(6, 5));
+    // Cells of 2 m: over the border and back, then 1.6 m from the middle.
+    let counts =
+        [(here, 0.9), (there, -0.9), (here, 0.9), (there, -0.6), (there, -0.4)].map(|(cell, x)| count(cell, x));
+    assert_eq!(counts, [1, 1, 1, 1, 2]);
+    // The same way back.
+    let counts = [(there, -0.9), (here, 0.9), (here, 0.4)].map(|(cell, x)| count(cell, x));
+    assert_eq!(counts, [2, 2, 3]);
+}
+
+#[test]
+fn while_it_gets_on_it_does_not_decide_anew_in_the_same_cell() {
+    let mut guidance = counting();
+    let mut count = |velocity: [f32; 2], n| {
+        let mut told = told(Cell::new(5, 5), [0.0; 2], 1.0, n);
+        told.0.body.velocity_mps = Vec3::new(velocity[0], velocity[1], 0.0);
+        ask(&mut guidance, &told).1
+    };
+    // To the north-east at more and at less than half of 1 m/s, and elsewhere.
+    assert_eq!([(0.5, 0), (0.5, 25), (0.3, 26), (0.3, 45)].map(|(v, n)| count([v, v], n)), [1, 1, 2, 2]);
+    assert_eq!(count([-0.9, 0.1], 50), 3);
+}
+
+#[test]
+fn it_goes_to_the_centre_of_the_next_cell() {
     let mut guidance = counting();
     let (decision, _) = ask(&mut guidance, &told(Cell::new(5, 5), [0.5, -0.25], 9.0, 0));
     // North-east: 2 m each way, less what it is off.
     let (ahead, length) = ([1.5, 2.25], Vec2::new(1.5_f32, 2.25).norm());
     let (v, way_m) = motion(&decision);
     assert!((v.x - ahead[0] / length).abs() < 1e-6 && (v.y - ahead[1] / length).abs() < 1e-6);
-    // Four cells to the east.
-    assert_eq!(way_m, Some(Vec3::new(7.5, 0.25, 0.0)));
+    // Its goal is elsewhere than where it goes now.
+    assert_eq!(way_m, None);
+    // The same place, seen from the next cell, of which it is not yet.
+    let (beside, _) = ask(&mut guidance, &told(Cell::new(6, 5), [-0.75, -0.25], 9.0, 0));
+    let (v, _) = motion(&beside);
+    assert!((v.x / v.y - 0.75 / 2.25).abs() < 1e-6, "{v:?}");
     // The centre is reached, not passed.
     let near = told(Cell::new(5, 5), [0.03, 0.04], 9.0, 0);
     let (v, _) = motion(&decide(&mut CellFollower::new(Stays, 1.0), &near).unwrap());

@@ -6,6 +6,8 @@
 //! - In narrow places they take turns: see [`right_of_way`].
 //! - In space they lean to the right too, each somewhat up or down: see [`spread`](mod@spread).
 //!
+//! Who has no goal, such as a flock, follows its wish: that others come nearer is no jam there.
+//!
 //! All of it changes the wish and never a constraint, so that ORCA's guarantee stands. It costs nothing where nobody is
 //! near.
 
@@ -16,25 +18,33 @@ mod spread;
 pub(super) use right_of_way::RightOfWay;
 pub(super) use spread::spread;
 
-use super::DeadlockParams;
+use super::AvoidParams;
 use super::dimension::Situation;
 use crate::geom::Vec2;
 use crate::neighbor::Nearby;
 use crate::scalar::Scalar;
 
-/// The wish, turned to the right while a robot is ahead, near, and comes nearer. O(nearby).
-pub(super) fn lean<S: Scalar>(params: &DeadlockParams<S>, situation: &Situation<'_, Vec2<S>>) -> Vec2<S> {
-    let wish = situation.wish;
-    let near_goal = situation.goal.is_some_and(|goal| goal.norm() < params.straight_within_m);
+/// Who is nearer than this is in the way, thousandths of the own radius.
+const LEAN_WITHIN: i32 = 5_333;
+/// The same for fast robots: thousandths of the way within the horizon.
+const LEAN_AHEAD: i32 = 800;
+
+/// The wish, turned to the right while a robot is ahead, near, and comes nearer; not as near to the `goal`, where it
+/// would circle. O(nearby).
+pub(super) fn lean<S: Scalar>(params: &AvoidParams<S>, situation: &Situation<'_, Vec2<S>>, goal: Vec2<S>) -> Vec2<S> {
+    let Situation { wish, body, .. } = *situation;
+    let ahead = body.max_speed_mps * params.horizon_s * S::from_milli(LEAN_AHEAD);
+    let near = body.radius_m * S::from_milli(LEAN_WITHIN);
+    let within = near.max(ahead);
     let is_in_the_way = |other: &Nearby<S>| {
         let offset = other.offset_m.xy();
-        let gap = offset.norm() - situation.body.radius_m - other.radius_m;
+        let gap = offset.norm() - body.radius_m - other.radius_m;
         let closing = wish - other.velocity_mps.xy();
-        gap < params.lean_within_m && offset.dot(wish) > S::ZERO && closing.dot(offset) > S::ZERO
+        gap < within && offset.dot(wish) > S::ZERO && closing.dot(offset) > S::ZERO
     };
-    if near_goal || !situation.nearby.iter().any(is_in_the_way) {
+    if goal.norm() < near || !situation.nearby.iter().any(is_in_the_way) {
         return wish;
     }
-    let (sin, cos) = params.lean_rad.sin_cos();
+    let (sin, cos) = params.deadlock.lean_rad.sin_cos();
     wish.rotate(cos, -sin)
 }

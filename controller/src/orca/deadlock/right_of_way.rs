@@ -41,16 +41,19 @@ const PLAY: i32 = 150;
 /// How far from the gap one waits or comes out.
 const YARD: i32 = 5_000;
 /// Distances that differ by less are equal: the rounding of what robots know is the same for both but for this,
-/// micrometres.
-const TIE_UM: i32 = 100;
+/// millionths of the own radius.
+const TIE: i32 = 600;
+/// For how long more each rank leaves an empty gap alone, thousandths of the time in which one goes the own radius.
+const PATIENCE_OF_RANK: i32 = 1_667;
 
 /// What a robot remembers of the gap before it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RightOfWay<S> {
     /// Which way the last robot seen in the gap went: whether as this one wants to.
     last_went_ahead: Option<bool>,
-    /// For how long nobody has been seen in it, seconds, and for how long this is not remarkable.
-    idle_s: Option<(S, S)>,
+    /// For how long nobody has been seen in it, and for how long this is not remarkable: how many own radii one could
+    /// have gone.
+    idle: Option<(S, S)>,
     /// Whether it was allowed to go in the last step.
     goes: bool,
 }
@@ -83,31 +86,34 @@ struct Traffic<S> {
 
 impl<S: Scalar> RightOfWay<S> {
     /// Of a robot that is at no gap.
-    pub(in crate::orca) const NEW: Self = Self { last_went_ahead: None, idle_s: None, goes: false };
+    pub(in crate::orca) const NEW: Self = Self { last_went_ahead: None, idle: None, goes: false };
 
     /// The wish of a robot whose way leads through a gap, with others near by; `None` when it does not. An empty
-    /// gap is left to others for `patience_s` to twice as long.
+    /// gap is left to others for `patience` to twice as long: see [`DeadlockParams`](crate::orca::DeadlockParams).
     pub(in crate::orca) fn wish(
         &mut self,
         situation: &Situation<'_, Vec2<S>>,
-        patience_s: S,
+        goal: Vec2<S>,
+        patience: S,
         rng: &mut Rng,
     ) -> Option<Vec2<S>> {
-        let Some(approach) = Approach::new(situation) else {
+        let Some(approach) = Approach::new(situation, goal) else {
             *self = Self::NEW;
             return None;
         };
         let traffic = approach.traffic();
         if traffic.ahead || traffic.against {
             self.last_went_ahead = Some(traffic.ahead);
-            self.idle_s = None;
+            self.idle = None;
         }
-        let (idle_s, enough_s) = self.idle_s.unwrap_or_else(|| {
+        let (idle, enough) = self.idle.unwrap_or_else(|| {
             let more = S::from_ratio(rng.below(1000).cast_signed(), 1000);
-            (S::ZERO, patience_s + patience_s * more)
+            (S::ZERO, patience + patience * more)
         });
-        self.idle_s = Some((idle_s + situation.body.step_s, enough_s));
-        let is_impatient = idle_s > enough_s + S::from_i32(traffic.rank);
+        let body = situation.body;
+        let step = (body.max_speed_mps * body.step_s).checked_div(body.radius_m).unwrap_or(S::ZERO);
+        self.idle = Some((idle + step, enough));
+        let is_impatient = idle > enough + S::from_milli(PATIENCE_OF_RANK) * S::from_i32(traffic.rank);
         let has_lanes = approach.has_lanes(traffic.largest);
         self.goes = self.may_go(&approach, &traffic, has_lanes, is_impatient);
         let aim = if self.goes {
@@ -149,14 +155,12 @@ impl<S: Scalar> RightOfWay<S> {
 }
 
 impl<'a, S: Scalar> Approach<'a, S> {
-    fn new(situation: &'a Situation<'a, Vec2<S>>) -> Option<Self> {
+    fn new(situation: &'a Situation<'a, Vec2<S>>, target: Vec2<S>) -> Option<Self> {
         let radius = situation.body.radius_m;
         let radii = |thousandths: i32| radius * S::from_milli(thousandths);
-        let ahead = situation.wish.normalized()?;
-        if situation.nearby.is_empty() {
+        if situation.nearby.is_empty() || situation.wish == Vec2::ZERO {
             return None;
         }
-        let target = situation.goal.unwrap_or(ahead * radii(20_000));
         let wanted =
             Wanted { least_m: radii(2_020), most_m: radii(WIDEST), deepest_m: radii(DEEPEST), past_m: radii(PAST) };
         let gap = gap_on_way(situation.obstacles, target, &wanted)?;
@@ -195,7 +199,7 @@ impl<'a, S: Scalar> Approach<'a, S> {
         };
         // Slower than this is standing.
         let slow = self.situation.body.max_speed_mps * S::from_milli(100);
-        let tie = S::from_micro(TIE_UM);
+        let tie = self.situation.body.radius_m * S::from_micro(TIE);
         let own_distance = self.own.norm();
         for other in self.situation.nearby {
             let place = self.gap.place(other.offset_m.xy());

@@ -190,7 +190,7 @@ fn device_of_another_version_is_a_clear_error() {
     bench.back.send(&foreign, 0);
     let error = bench.wait().expect_err("version 9");
     assert_eq!(error, PortError::Version { device: 9 });
-    assert!(std::format!("{error}").contains("version 9 of the link, this host version 2"));
+    assert!(std::format!("{error}").contains("version 9 of the link, this host version 3"));
 }
 
 #[test]

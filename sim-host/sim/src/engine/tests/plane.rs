@@ -139,3 +139,39 @@ fn rough_land_takes_longer() {
     assert!((113..=116).contains(&ticks(1)), "{}", ticks(1));
     assert!(ticks(3) > 150, "{}", ticks(3));
 }
+
+/// Seconds (on the grid: ticks of 2 s, 1 m at 0.5 m/s) until one robot has got around a U-shaped wall that is open
+/// towards it; `None`: it has not.
+fn out_of_dead_end(depth: usize, width: usize, row: usize, in_plane: bool) -> Option<f64> {
+    let (west, south, north) = (16, 20 - width / 2 - 1, 20 + width / 2 + 1);
+    let rows = (0..41).rev().map(|y| {
+        let is_wall = |x: usize| {
+            let is_side = (y == south || y == north) && (west..=west + depth).contains(&x);
+            is_side || x == west + depth && (south..=north).contains(&y)
+        };
+        (0..41).map(|x| if is_wall(x) { '@' } else { '.' }).collect::<String>()
+    });
+    let map = rows.collect::<Vec<_>>().join("\n");
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("u.map"), format!("type octile\nheight 41\nwidth 41\nmap\n{map}\n"))
+        .expect("a file");
+    let body = "[plane]\nradius_m = 0.3\nmax_speed_mps = 0.5\nguidance = \"route\"";
+    let (tick_s, ticks, body) = if in_plane { (0.1, 12_000, body) } else { (2.0, 600, "") };
+    let text = format!(
+        "name = \"u\"\nticks = {ticks}\ntick_s = {tick_s}\n[terrain]\nfile = \"u.map\"\n\
+         [[robots.list]]\nstart = [9, 20]\ngoal = [32, {row}]\n{body}\n"
+    );
+    let scenario = Scenario::parse(&text, &folder.path().join("u.toml"), &Overrides::default());
+    let outcome = simulate(&scenario.expect("a scenario"), |_, _| ControlFlow::Continue(())).expect("a free start");
+    assert_eq!(outcome.collisions, 0);
+    (outcome.arrived == 1).then_some(outcome.seconds)
+}
+
+#[test]
+fn a_disc_leaves_a_dead_end_as_a_robot_on_the_grid_does() {
+    for (depth, width, row) in [(2, 9, 20), (3, 3, 21), (3, 9, 21), (4, 7, 19), (5, 1, 20), (5, 9, 20), (7, 5, 20)] {
+        let [grid, plane] = [false, true].map(|in_plane| out_of_dead_end(depth, width, row, in_plane));
+        let is_as_good = plane.zip(grid).is_some_and(|(plane, grid)| plane <= 1.3 * grid);
+        assert!(is_as_good, "{depth} {width} {row}: {plane:?} s, on the grid {grid:?} s");
+    }
+}
