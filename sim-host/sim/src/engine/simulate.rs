@@ -6,7 +6,9 @@ use crate::record::{PacketCounts, RobotRow, TickRow};
 use crate::scenario::Scenario;
 use crate::world::Misplaced;
 use crate::world::plane::Clearance;
-use staya_controller::agent::{AnyGuidance, AnySafety, CELLS, Commanded, HALF_PLANES, LEARNED, Safety, TEMPLATE, VISITS};
+use staya_controller::agent::{
+    AnyGuidance, AnySafety, CELLS, Commanded, HALF_PLANES, LEARNED, Safety, TEMPLATE, VISITS,
+};
 use std::ops::ControlFlow;
 
 /// Cells of a search for windows up to radius 16 with their border: (2 * 16 + 3)^2.

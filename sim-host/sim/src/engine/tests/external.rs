@@ -2,8 +2,10 @@
 
 use super::*;
 use crate::engine::{Decision, ExternalController, Status, simulate_with};
+use staya_controller::agent::{
+    AnyAgent, AnyInputs, CELLS, GridWorkspace, HALF_PLANES, LEARNED, NEIGHBORS, Setup, Task, VISITS,
+};
 use staya_controller::wire::Postcard;
-use staya_controller::agent::{AnyAgent, AnyInputs, CELLS, GridWorkspace, HALF_PLANES, LEARNED, NEIGHBORS, Setup, Task, VISITS};
 
 type Remote = AnyAgent<f32, CELLS, VISITS, NEIGHBORS, HALF_PLANES, Postcard, LEARNED>;
 

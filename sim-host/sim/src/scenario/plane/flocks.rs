@@ -1,8 +1,7 @@
 //! The tables of the flocks.
 
-use super::super::ScenarioError;
-use super::super::schema::ScenarioFile;
 use super::super::source::Source;
+use super::super::{ScenarioError, ScenarioFile};
 use super::table::PlaneTable;
 use super::within;
 use crate::radio::RadioParams;
