@@ -16,17 +16,22 @@ const REMEDY: &str = "on Debian run, as root, `apt-get update && apt-get install
 /// Tests wait for real time more than they compute.
 const WORKERS: &str = "4";
 
-/// Makes the environment, builds the program and runs the tests; `only` the tests whose names contain it, and of those with the
-/// mark `long` none unless all are wanted.
+/// The command: builds the program, and runs the tests.
 pub fn run_command(repo: &Repo, report: &mut Report, only: Option<&str>, extent: Extent) {
+    let mut build = repo.cargo(&["build", "--locked", "--package", "staya"]);
+    if report.step("staya for its clients", || run(&mut build)) {
+        return run_tests(repo, report, only, extent);
+    }
+    report.skip(NAME, "the program was not built");
+}
+
+/// Makes the environment and runs the tests with the program that there is; `only` the tests whose names contain it, and of
+/// those with the mark `long` none unless all are wanted.
+pub fn run_tests(repo: &Repo, report: &mut Report, only: Option<&str>, extent: Extent) {
     let python = match prepare(repo) {
         Ok(python) => python,
         Err(reason) => return report.skip(NAME, &reason),
     };
-    let mut build = repo.cargo(&["build", "--locked", "--package", "staya"]);
-    if !report.step("staya for its clients", || run(&mut build)) {
-        return report.skip(NAME, "the program was not built");
-    }
     report.part(NAME, || {
         let mut tests = repo.command(&python);
         tests.args(["-m", "pytest", "-q", TESTS, "-n", WORKERS]);

@@ -22,16 +22,17 @@ pub fn run(repo: &Repo, report: &mut Report) {
     if !missing.is_empty() {
         return report.skip(name, &missing.join("; "));
     }
-    let mut tests = repo.cargo(&["test", "--locked", "--package", "staya-runner"]);
-    tests.args(["--test", "emulated"]);
+    // Of the whole workspace, as the other tests: alone, the runner would be built anew with other features.
+    let mut tests = repo.cargo(&["test", "--locked", "--workspace", "--test", "emulated"]);
     tests.env("STAYA_FIRMWARE", repo.target.join("firmware"));
     report.part(name, || counted(&mut tests, ""));
 }
 
-/// Ten emulated parts for a thousand steps, each compared with its shadow: the run is the one without devices.
+/// Ten emulated parts for a thousand steps, each compared with its shadow: the run is the one without devices. The program is
+/// the one that its own tests have brought.
 pub fn run_ten(repo: &Repo, report: &mut Report) {
     report.step("ten robots of a formation as firmware, 1000 steps", || {
-        let mut staya = repo.cargo(&["run", "--quiet", "--locked", "--package", "staya", "--"]);
+        let mut staya = repo.command(repo.target.join("debug").join(format!("staya{}", std::env::consts::EXE_SUFFIX)));
         staya.args(["hil", "scenarios/ten-robots.toml", "--ticks", "1000"]);
         staya.args(["--device", "qemu:stm32f405", "--devices", "10"]);
         staya.arg("--firmware").arg(repo.target.join("firmware"));

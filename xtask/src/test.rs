@@ -29,17 +29,20 @@ pub fn run(repo: &Repo, report: &mut Report, extent: Extent) {
     let why_skipped = why_skipped.join("; ");
     let arguments = ["test", "--locked", "--workspace", "--no-fail-fast"];
     let mut build = repo.cargo(&arguments);
-    report.command("tests on the host, compiled", {
-        build.arg("--no-run");
-        build
-    });
+    build.arg("--no-run");
+    let is_compiled = report.command("tests on the host, compiled", build);
     let mut tests = repo.cargo(&arguments);
     tests.arg("--").args(options);
     if std::env::var_os(SEED.0).is_none() {
         tests.env(SEED.0, SEED.1);
     }
     report.part("tests on the host", || counted(&mut tests, &why_skipped));
-    crate::clients::run_command(repo, report, None, extent);
+    if is_compiled {
+        // The program's own tests have brought it.
+        crate::clients::run_tests(repo, report, None, extent);
+    } else {
+        crate::clients::run_command(repo, report, None, extent);
+    }
     let mut toolchains = Toolchains::default();
     if extent == Extent::Short {
         crate::swarms::run_short(repo, report, &mut toolchains);
