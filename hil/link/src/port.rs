@@ -312,6 +312,8 @@ impl<const N: usize> Port<N> {
                 let is_answer = fault.seq == self.seq && asked.is_some();
                 match fault.kind {
                     FaultKind::NotConfigured if is_answer && is_step => Some(Event::Restarted),
+                    // Nothing but a step needs a setup: late, about one that was sent twice.
+                    FaultKind::NotConfigured => None,
                     FaultKind::Panic | FaultKind::Version => {
                         self.waiting = None;
                         return Err(PortError::Fault { asked, fault });
