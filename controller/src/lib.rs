@@ -3,11 +3,10 @@
 //! ## Layers
 //!
 //! Modules use only what stands before them:
-//! numbers, geometry, names and what robots are called ([`names`], [`scalar`], [`geom`], [`time`], [`rand`], [`grid`], [`cost`], [`shuffle`],
-//! [`obstacle`], [`robot`], [`auth`])
-//! < what is known of oneself and of others ([`body`], [`neighbor`], [`template`], [`wire`])
-//! < behaviours ([`route`], [`formation`], [`orca`], [`flock`], [`push_out`]; they never import each other)
-//! < composition ([`supervisor`], [`agent`]).
+//! numbers, geometry, names and what robots are called ([`names`], [`scalar`], [`geom`], [`time`], [`rand`], [`grid`],
+//! [`cost`], [`shuffle`], [`obstacle`], [`robot`], [`auth`]) < what is known of oneself and of others ([`body`],
+//! [`neighbor`], [`template`], [`wire`]) < behaviours ([`route`], [`formation`], [`orca`], [`flock`], [`push_out`];
+//! they never import each other) < composition ([`supervisor`], [`agent`]).
 #![no_std]
 // What may panic has no place on a robot; tests may.
 #![cfg_attr(

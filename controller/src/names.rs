@@ -1,7 +1,7 @@
 //! One word for each value of an enum, the same in files, on command lines and in reports.
 //!
-//! `named!` makes the enum and its words in one place: serde's, [`Display`]'s, [`FromStr`](core::str::FromStr)'s and a list of all. A
-//! firmware that reads and prints none of them has none of them in it.
+//! `named!` makes the enum and its words in one place: serde's, [`Display`]'s, [`FromStr`](core::str::FromStr)'s and a
+//! list of all. A firmware that reads and prints none of them has none of them in it.
 
 use core::fmt::{self, Debug, Display, Formatter};
 use core::marker::PhantomData;

@@ -24,7 +24,7 @@ pub fn unpack(repo: &Repo, packages: &[&str], programs: &[&str]) -> Result<(), S
     // What is installed in part is unpacked whole.
     let plan = plan(repo, &[&["--reinstall"], packages].concat())?;
     let home = home(repo);
-    let (root, archives) = (home.join("root"), home.join("archives"));
+    let (root, archives) = (home.join("unpacked"), home.join("archives"));
     make(&archives)?;
     run(apt_get(repo, &["download"]).args(&plan.missing).current_dir(&archives))?;
     for archive in files(&archives)? {

@@ -172,7 +172,7 @@ fn read(targets: &str, codename: &str) -> Option<(String, String)> {
 
 /// debootstrap, installed or unpacked; a shell script that has to be told where the rest of it is.
 fn debootstrap(repo: &Repo) -> Option<Command> {
-    let unpacked = repo.target.join("tools/root/usr/share/debootstrap");
+    let unpacked = repo.target.join("tools/unpacked/usr/share/debootstrap");
     let mut command = if Path::new("/usr/sbin/debootstrap").is_file() {
         repo.command("/usr/sbin/debootstrap")
     } else if repo.tools().join("debootstrap").is_file() {

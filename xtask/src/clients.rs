@@ -25,8 +25,8 @@ pub fn run_command(repo: &Repo, report: &mut Report, only: Option<&str>, extent:
     report.skip(NAME, "the program was not built");
 }
 
-/// Makes the environment and runs the tests with the program that there is; `only` the tests whose names contain it, and of
-/// those with the mark `long` none unless all are wanted.
+/// Makes the environment and runs the tests with the program that there is; `only` the tests whose names contain it,
+/// and of those with the mark `long` none unless all are wanted.
 pub fn run_tests(repo: &Repo, report: &mut Report, only: Option<&str>, extent: Extent) {
     let python = match prepare(repo) {
         Ok(python) => python,

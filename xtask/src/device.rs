@@ -22,8 +22,8 @@ pub struct Toolchains {
     debian: Option<Result<debian::Rust, String>>,
 }
 
-/// Checks the controller with each set of features that its manifest lists, on the part with a Cortex-M4F; on the one with a
-/// Cortex-M0, which has no FPU, with those that have fixed point.
+/// Checks the controller with each set of features that its manifest lists, on the part with a Cortex-M4F; on the one
+/// with a Cortex-M0, which has no FPU, with those that have fixed point.
 pub fn check_features(repo: &Repo, report: &mut Report) {
     let manifest = std::fs::read_to_string(repo.root.join("controller/Cargo.toml"));
     let sets = feature_sets(&manifest.unwrap_or_default());

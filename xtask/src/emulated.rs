@@ -28,8 +28,8 @@ pub fn run(repo: &Repo, report: &mut Report) {
     report.part(name, || counted(&mut tests, ""));
 }
 
-/// Ten emulated parts for a thousand steps, each compared with its shadow: the run is the one without devices. The program is
-/// the one that its own tests have brought.
+/// Ten emulated parts for a thousand steps, each compared with its shadow: the run is the one without devices. The
+/// program is the one that its own tests have brought.
 pub fn run_ten(repo: &Repo, report: &mut Report) {
     report.step("ten robots of a formation as firmware, 1000 steps", || {
         let mut staya = repo.command(repo.target.join("debug").join(format!("staya{}", std::env::consts::EXE_SUFFIX)));

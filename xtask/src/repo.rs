@@ -59,8 +59,8 @@ impl Repo {
         command
     }
 
-    /// The same for a workspace of its own inside the repository. It builds in the same folder: with the same profiles it
-    /// finds there what it shares with the others.
+    /// The same for a workspace of its own inside the repository. It builds in the same folder: with the same profiles
+    /// it finds there what it shares with the others.
     pub fn cargo_in(&self, folder: &str, arguments: &[&str]) -> Command {
         let mut command = self.cargo(arguments);
         command.current_dir(self.root.join(folder));

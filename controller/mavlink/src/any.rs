@@ -12,8 +12,8 @@ use staya_controller::wire::{
     DecodeError, EncodeError, Format, Frame, FromFormat, Header, MAX_TAGGED_ROBOT, Message, Postcard, Sealed, Wire,
 };
 
-/// A wire format that is known only when the program runs: open, or with a key if `S` and `G` are where [`Sealed`] and [`Signed`] are kept, such as
-/// boxes of them. Without these a robot pays for no key.
+/// A wire format that is known only when the program runs: open, or with a key if `S` and `G` are where [`Sealed`] and
+/// [`Signed`] are kept, such as boxes of them. Without these a robot pays for no key.
 ///
 /// In an agent's digest it is what is in it, so that agents of the same state have the same digest however they speak.
 #[derive(Clone, Debug)]
@@ -74,8 +74,9 @@ where
     S: From<Sealed<P>> + Deref<Target = Sealed<P>>,
     G: From<Signed<Q>> + Deref<Target = Signed<Q>>,
 {
-    /// The format of this name with a key. Postcard's takes the number of `starts`, by the rule of [`Sealed`]; MAVLink's the number of the `link` and the
-    /// `timestamp` to begin with, by that of [`Signing`]. `None` from 2^20 starts on.
+    /// The format of this name with a key. Postcard's takes the number of `starts`, by the rule of [`Sealed`];
+    /// MAVLink's the number of the `link` and the `timestamp` to begin with, by that of [`Signing`]. `None` from 2^20
+    /// starts on.
     #[must_use]
     pub fn keyed(format: Format, key: &Key, starts: u32, link: u8, timestamp: u64) -> Option<Self> {
         Some(match format {
@@ -85,8 +86,9 @@ where
     }
 }
 
-/// The number that an operator beside the robots has: no robot's, and one that the format has room for. With a key there may be two, on `link`
-/// 0 and 1, told apart if the format has room for that, so that each may count his frames for himself.
+/// The number that an operator beside the robots has: no robot's, and one that the format has room for. With a key
+/// there may be two, on `link` 0 and 1, told apart if the format has room for that, so that each may count his frames
+/// for himself.
 #[must_use]
 pub const fn operator(format: Format, has_key: bool, link: u8) -> RobotId {
     match format {

@@ -17,10 +17,11 @@ const LEAVES_AT: i32 = 750;
 /// Goes towards the centre of the cell that a guidance law `G` of the grid would move to.
 ///
 /// The law decides anew when the robot has come well into another cell, halfway from the border to the middle (on the
-/// border it could change its mind for ever), and while it does not get on, as often as it would on the grid: once in the
-/// time that the robot needs to cross a cell of its land at cruising speed. It sees other robots by their cells as ever; that they may
-/// share a cell now is the safety layer's business. Its way has no place that it goes to straight for longer than a
-/// cell: who shall give way, and how to get past each other, the law decides by its prices and requests.
+/// border it could change its mind for ever), and while it does not get on, as often as it would on the grid: once in
+/// the time that the robot needs to cross a cell of its land at cruising speed. It sees other robots by their cells as
+/// ever; that they may share a cell now is the safety layer's business. Its way has no place that it goes to straight
+/// for longer than a cell: who shall give way, and how to get past each other, the law decides by its prices and
+/// requests.
 #[derive(Clone, Debug, Serialize)]
 pub struct CellFollower<S, G> {
     law: G,

@@ -151,8 +151,8 @@ impl<S, G: Teamwork> Teamwork for Commanded<S, G> {
     }
 }
 
-/// An ordered velocity leads to where it would be after so many seconds.
-const LEADS_TO_S: i32 = 10;
+/// An ordered velocity leads to a place so many own radii ahead: farther than any from which one swerves.
+const LEADS_TO_RADII: i32 = 100;
 
 impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
     type Input<'a> = G::Input<'a>;
@@ -175,7 +175,9 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
                 input.can_go()?;
                 let wish_mps = velocity_mps.clamp_norm(input.body.max_speed_mps);
                 // Somewhere ahead, so that two who are sent against each other get past.
-                let action = Action::Velocity { wish_mps, way_m: Some(wish_mps * S::from_i32(LEADS_TO_S)) };
+                let far_m = input.body.radius_m * S::from_i32(LEADS_TO_RADII);
+                let way_m = wish_mps.normalized().map(|ahead| ahead * far_m);
+                let action = Action::Velocity { wish_mps, way_m };
                 Ok(on_order(action, input.goal))
             }
             Wish::Waypoint { .. } => {

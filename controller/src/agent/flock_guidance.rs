@@ -13,7 +13,8 @@ use serde::Serialize;
 /// Goals that a robot of a goal flock has room for.
 pub const GOALS: usize = 4;
 
-/// The alpha flock (R. Olfati-Saber 2006, OLF): robots at equal distances that follow a reference, if they are given one as waypoint 0.
+/// The alpha flock (R. Olfati-Saber 2006, OLF): robots at equal distances that follow a reference, if they are given
+/// one as waypoint 0.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct LatticeGuidance<S> {
     params: LatticeParams<S>,
@@ -75,8 +76,8 @@ impl<S: Scalar> Guidance<S> for LatticeGuidance<S> {
     }
 }
 
-/// The goal flock (V. E. and V. V. Pavlovsky, PAV): to the middle of the goals together, there each robot draws one of them. Goals stay where they are until
-/// they are given anew: the velocity of a [`Waypoint`] counts for nothing here.
+/// The goal flock (V. E. and V. V. Pavlovsky, PAV): to the middle of the goals together, there each robot draws one of
+/// them. Goals stay where they are until they are given anew: the velocity of a [`Waypoint`] counts for nothing here.
 #[derive(Clone, Debug, Serialize)]
 pub struct GoalFlockGuidance<S> {
     params: GoalParams<S>,
@@ -147,8 +148,8 @@ impl<S: Scalar> Guidance<S> for GoalFlockGuidance<S> {
     }
 }
 
-/// Boids (V. A. Starovoitova 2018, STA): even speed, headings that follow the neighbours'. In the open plane; what the torus of the paper
-/// adds is the world's matter.
+/// Boids (V. A. Starovoitova 2018, STA): even speed, headings that follow the neighbours'. In the open plane; what the
+/// torus of the paper adds is the world's matter.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct BoidsGuidance<S> {
     params: BoidsParams<S>,

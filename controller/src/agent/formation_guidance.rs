@@ -1,5 +1,5 @@
-//! Travelling in formation (A. V. Kuznetsov 2017, KUZ, algorithm 2): the top leader chooses the way for all, the others keep
-//! their places beside it. See [`crate::formation`] for what differs from the paper and why.
+//! Travelling in formation (A. V. Kuznetsov 2017, KUZ, algorithm 2): the top leader chooses the way for all, the others
+//! keep their places beside it. See [`crate::formation`] for what differs from the paper and why.
 
 use super::OnGrid;
 use super::guidance::{Action, Ask, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};

@@ -180,9 +180,10 @@ const _: () = assert!(matches!(BYTES, [4152, 4408, 1640, 2720]));
 
 /// The controller of one robot: guidance law `G`, at most `N` known neighbours, safety layer `A`, wire format `W`.
 ///
-/// Bytes for the default capacities on a 32-bit part: at most 4152 for [`RouteAgent`] and 4408 for [`FormationAgent`], 2 KiB
-/// of them what a robot learns of its way, 1624 for [`OrcaAgent`], and at most 2720 of workspace that all agents on the grid of
-/// a processor share; on a 64-bit host 4152, 4408, 1640 and 2720. The build fails when one of them changes unnoticed.
+/// Bytes for the default capacities on a 32-bit part: at most 4152 for [`RouteAgent`] and 4408 for [`FormationAgent`],
+/// 2 KiB of them what a robot learns of its way, 1624 for [`OrcaAgent`], and at most 2720 of workspace that all agents
+/// on the grid of a processor share; on a 64-bit host 4152, 4408, 1640 and 2720. The build fails when one of them
+/// changes unnoticed.
 #[derive(Clone, Debug, Serialize)]
 pub struct Agent<S, G, const N: usize, A = Unguarded, W = Postcard> {
     config: AgentConfig<S>,

@@ -7,7 +7,8 @@ use crate::rand::Rng;
 use crate::scalar::Scalar;
 use serde::Serialize;
 
-/// Push-out (V. E. and V. V. Pavlovsky, PAV): steps that lead too near are put right, but only against where others are now.
+/// Push-out (V. E. and V. V. Pavlovsky, PAV): steps that lead too near are put right, but only against where others are
+/// now.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct PushOutSafety<S> {
     params: PushOutParams<S>,

@@ -32,8 +32,8 @@ use serde::{Deserialize, Serialize};
 /// Waypoints that a [`Task`] has room for.
 pub const WAYPOINTS: usize = GOALS;
 
-/// An agent that can be anything: `CELLS` of a search, `M` remembered visits, `N` neighbours, `K` half-planes, wire format
-/// `W`, `L` learned costs.
+/// An agent that can be anything: `CELLS` of a search, `M` remembered visits, `N` neighbours, `K` half-planes, wire
+/// format `W`, `L` learned costs.
 pub type AnyAgent<
     S,
     const CELLS: usize,
@@ -151,7 +151,8 @@ named! {
         Waypoint = "waypoint",
         /// The alpha flock (R. Olfati-Saber, OLF): equal distances, with the first goal as its reference.
         Lattice = "lattice",
-        /// The goal flock (V. E. and V. V. Pavlovsky, PAV): to the middle of the goals together, then each to one of them.
+        /// The goal flock (V. E. and V. V. Pavlovsky, PAV): to the middle of the goals together, then each to one of
+        /// them.
         GoalFlock = "goal_flock",
         /// Boids (V. A. Starovoitova, STA).
         Boids = "boids",

@@ -19,8 +19,8 @@
 //! - What is not a number contributes nothing.
 //!
 //! **Old news.** The paper's robots see each other at once. By radio they act on what a neighbour was a delay and up to
-//! a period of its beacons ago, and a stiff lattice then swings itself apart: at a delay of 0.1 s gains of (10, 6.3) leave
-//! pieces that never settle. [`LatticeParams::stable_for`] softens them as far as that asks;
+//! a period of its beacons ago, and a stiff lattice then swings itself apart: at a delay of 0.1 s gains of (10, 6.3)
+//! leave pieces that never settle. [`LatticeParams::stable_for`] softens them as far as that asks;
 //! [`LatticeParams::oldest_news_s`] says what given gains bear.
 //!
 //! **What it does not promise.** Repulsion is bounded and vanishes at contact: robots that close at more than about 2 d per
@@ -155,10 +155,10 @@ impl<S: Scalar> LatticeParams<S> {
         Law::new(self).is_some()
     }
 
-    /// The same flock, gathered and following as its gains ask as long as they bear what robots know of each other: news
-    /// that take `delay_s` and come `rate_hz` times a second (beacons a second times the share that arrives). If they do
-    /// not bear it, robots and reference pull less in the same proportion (c_alpha, c_gamma), as much damped as before;
-    /// obstacles, which a robot sees for itself, push as ever.
+    /// The same flock, gathered and following as its gains ask as long as they bear what robots know of each other:
+    /// news that take `delay_s` and come `rate_hz` times a second (beacons a second times the share that arrives). If
+    /// they do not bear it, robots and reference pull less in the same proportion (c_alpha, c_gamma), as much damped as
+    /// before; obstacles, which a robot sees for itself, push as ever.
     ///
     /// A delay that is not at least 0 counts as 0, a rate that is not above 0 as the slowest there is. Constant work.
     #[must_use]
@@ -177,12 +177,12 @@ impl<S: Scalar> LatticeParams<S> {
         self
     }
 
-    /// The age of news that these gains bear, seconds: a neighbour's delay plus the time between two of its beacons. The
-    /// largest number if nothing pulls.
+    /// The age of news that these gains bear, seconds: a neighbour's delay plus the time between two of its beacons.
+    /// The largest number if nothing pulls.
     ///
     /// sqrt(c_alpha) is the rate at which the lattice answers, and news may be a fifth of its inverse old. The fifth is
-    /// measured, not the paper's: of 40 robots at delays of 0 to 0.5 s and steps of 0.05 to 0.2 s, flocks settled as if there
-    /// were no delay up to 0.22, and shook from 0.32 on.
+    /// measured, not the paper's: of 40 robots at delays of 0 to 0.5 s and steps of 0.05 to 0.2 s, flocks settled as if
+    /// there were no delay up to 0.22, and shook from 0.32 on.
     #[must_use]
     pub fn oldest_news_s(&self) -> S {
         let answer = self.alpha.position.max(S::ZERO).sqrt() * S::from_i32(5);

@@ -209,8 +209,8 @@ fn own_velocity<V: Dimension>(body: &Body<V::Scalar>) -> V {
     if own.is_finite() { own } else { V::ZERO }
 }
 
-/// What the at most `room` nearest obstacles forbid, nearest first, into `constraints`, which are empty. Not inlined, so that its stack is free again for
-/// the solver.
+/// What the at most `room` nearest obstacles forbid, nearest first, into `constraints`, which are empty. Not inlined,
+/// so that its stack is free again for the solver.
 #[inline(never)]
 fn nearest_obstacles<V: Dimension, const K: usize>(
     params: &AvoidParams<V::Scalar>,

@@ -64,9 +64,9 @@ pub struct DeadlockParams<S> {
     /// longer; less leaves robots on a circle in each other's way for longer (below 0.25 for ever). 0.4 to 0.6. No
     /// danger: what robots forbid stays forbidden.
     pub lean_rad: S,
-    /// For how long (to twice as long) a robot leaves an empty gap to those whose turn it is: the time in which it would
-    /// go so many own radii at its highest speed. Less than others need to come from where they wait (two or three
-    /// radii) lets turns be skipped; more costs time when somebody merely stands near a gap. 4 to 16.
+    /// For how long (to twice as long) a robot leaves an empty gap to those whose turn it is: the time in which it
+    /// would go so many own radii at its highest speed. Less than others need to come from where they wait (two or
+    /// three radii) lets turns be skipped; more costs time when somebody merely stands near a gap. 4 to 16.
     pub patience_radii: S,
 }
 

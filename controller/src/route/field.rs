@@ -1,7 +1,7 @@
 //! The reverse search: cost to the exit from every cell of the window.
 //!
 //! A move's cost depends only on the cell that it enters, so settling a cell offers its eight
-//! predecessors one of two costs. The queue is a ring of buckets (Dial 1969); a bucket is no wider
+//! predecessors one of two costs. The queue is a ring of buckets (`queue`); a bucket is no wider
 //! than the cheapest move, so that (Denardo and Fox 1979) a cell leaves the queue only once. All
 //! arrays have one cell of blocked border around the window: neighbours are plain index offsets.
 
@@ -10,11 +10,9 @@ use crate::cost::{Cost, EXCLUDED, Weights};
 use crate::grid::{BLOCKED, Cell, DIAGONAL, Dir, Norm, UNIT, Window};
 
 mod learning;
+mod queue;
 
-/// Buckets in the ring; a power of two.
-const RING: u32 = 64;
-/// End of a list, and "in no list".
-const NIL: u16 = u16::MAX;
+use queue::{MOST_CELLS, Queue, RING};
 
 /// The robot's surroundings are closed: no exit can be reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,13 +36,7 @@ pub struct CostField<const CELLS: usize> {
     extra: [Cost; CELLS],
     /// Least known cost to the exit. 0 in cells that no route may use: nothing undercuts it.
     cost: [Cost; CELLS],
-    next: [u16; CELLS],
-    previous: [u16; CELLS],
-    /// Bucket that holds the cell, or `RING` if none.
-    bucket: [u8; CELLS],
-    heads: [u16; RING as usize],
-    /// Which buckets are not empty.
-    occupied: u64,
+    queue: Queue<CELLS>,
     /// log2 of a bucket's width.
     shift: u32,
     /// Impassability of the easiest land in the window, and whether there are walls.
@@ -77,7 +69,7 @@ impl<const CELLS: usize> CostField<CELLS> {
     /// Scratch memory, ready for use.
     #[must_use]
     pub const fn new() -> Self {
-        const { assert!(CELLS < NIL as usize, "cells are numbered in 16 bits") };
+        const { assert!(CELLS <= MOST_CELLS, "cells are numbered in 16 bits") };
         Self {
             origin: Cell::new(0, 0),
             width: 0,
@@ -86,11 +78,7 @@ impl<const CELLS: usize> CostField<CELLS> {
             impassability: [BLOCKED; CELLS],
             extra: [0; CELLS],
             cost: [0; CELLS],
-            next: [NIL; CELLS],
-            previous: [NIL; CELLS],
-            bucket: [RING as u8; CELLS],
-            heads: [NIL; RING as usize],
-            occupied: 0,
+            queue: Queue::new(),
             shift: 0,
             easiest: u8::MAX,
             has_walls: false,
@@ -124,7 +112,8 @@ impl<const CELLS: usize> CostField<CELLS> {
         self.weights_knowing(params, window, (from, target), others, visits, &[])
     }
 
-    /// [`CostField::weights`] of a robot that has learned what exits cost at least. O(w + h) for each of `learned` more.
+    /// [`CostField::weights`] of a robot that has learned what exits cost at least. O(w + h) for each of `learned`
+    /// more.
     pub(super) fn weights_knowing<const M: usize>(
         &mut self,
         params: &RouteParams,
@@ -202,7 +191,7 @@ impl<const CELLS: usize> CostField<CELLS> {
     pub fn cost(&self, cell: Cell) -> Option<Cost> {
         let cost = *self.cost.get(self.index(cell)?)?;
         let open = self.index(cell).is_some_and(|at| self.is_passable(at) && at != self.closed);
-        let is_final = self.occupied == 0 || cost >> self.shift < self.at;
+        let is_final = self.queue.is_empty() || cost >> self.shift < self.at;
         (open && is_final && cost != EXCLUDED).then_some(cost)
     }
 
@@ -281,16 +270,14 @@ impl<const CELLS: usize> CostField<CELLS> {
     #[inline(never)]
     fn begin(&mut self, query: &Query<'_>) {
         let used = (usize::from(self.height) + 2) * self.stride;
-        for ((cost, &u), bucket) in self.cost.iter_mut().zip(&self.impassability).zip(&mut self.bucket).take(used) {
+        for (cost, &u) in self.cost.iter_mut().zip(&self.impassability).take(used) {
             *cost = if u == BLOCKED { 0 } else { EXCLUDED };
-            *bucket = RING as u8;
         }
+        self.queue.clear(used);
         self.closed = query.from;
         if let Some(own) = self.cost.get_mut(query.from) {
             *own = 0;
         }
-        self.heads = [NIL; RING as usize];
-        self.occupied = 0;
     }
 
     /// One search from one exit, if there is one.
@@ -311,17 +298,15 @@ impl<const CELLS: usize> CostField<CELLS> {
     #[inline(never)]
     fn advance(&mut self, params: &RouteParams, around: Option<usize>) {
         let mut idle = 0;
-        while self.occupied != 0 && !around.is_some_and(|cell| self.has_settled_around(cell)) {
-            let slot = self.at & (RING - 1);
-            let gap = self.occupied.rotate_right(slot).trailing_zeros();
-            let at = self.at.saturating_add(gap);
+        while !self.queue.is_empty() && !around.is_some_and(|cell| self.has_settled_around(cell)) {
+            let at = self.queue.next_from(self.at);
             idle += 1;
-            while let Some(cell) = self.pop(at & (RING - 1)) {
+            while let Some(cell) = self.queue.pop(at) {
                 let cost = self.cost.get(cell).copied().unwrap_or(0);
                 let due = cost >> self.shift;
                 if due > at {
                     // Was farther away than the ring is long.
-                    self.link(cell, due.min(at.saturating_add(RING - 1)));
+                    self.queue.link(cell, due.min(at.saturating_add(RING - 1)));
                 } else {
                     self.settle(params, cell, cost, at);
                     idle = 0;
@@ -342,12 +327,11 @@ impl<const CELLS: usize> CostField<CELLS> {
         // Beyond the window lies what a search of a larger one left.
         let used = (usize::from(self.height) + 2) * self.stride;
         for cell in 0..used {
-            let of = self.bucket.get(cell);
-            if of.is_some_and(|&of| u32::from(of) != RING) {
+            if self.queue.holds(cell) {
                 let cost = self.cost.get(cell).copied().unwrap_or(0);
                 let last = self.at.saturating_add(RING - 1);
-                self.unlink(cell);
-                self.link(cell, (cost >> self.shift).min(last));
+                self.queue.unlink(cell);
+                self.queue.link(cell, (cost >> self.shift).min(last));
             }
         }
     }
@@ -364,13 +348,7 @@ impl<const CELLS: usize> CostField<CELLS> {
 
     /// Number of the first bucket in use, as if the ring were endless.
     fn lowest_offer(&self) -> u32 {
-        let heads = self.heads.iter().copied().filter(|&head| head != NIL);
-        let chain = heads.flat_map(|head| {
-            core::iter::successors(Some(head), |&cell| {
-                self.next.get(usize::from(cell)).copied().filter(|&next| next != NIL)
-            })
-        });
-        let costs = chain.filter_map(|cell| self.cost.get(usize::from(cell)).copied());
+        let costs = self.queue.iter().filter_map(|cell| self.cost.get(cell).copied());
         costs.min().unwrap_or(0) >> self.shift
     }
 
@@ -418,8 +396,8 @@ impl<const CELLS: usize> CostField<CELLS> {
                 return;
             }
             *known = cost;
-            self.unlink(cell);
-            self.link(cell, (cost >> self.shift).clamp(at, at.saturating_add(RING - 1)));
+            self.queue.unlink(cell);
+            self.queue.link(cell, (cost >> self.shift).clamp(at, at.saturating_add(RING - 1)));
         }
     }
 
@@ -430,8 +408,8 @@ impl<const CELLS: usize> CostField<CELLS> {
         };
         if price < *known {
             *known = price;
-            self.unlink(cell);
-            self.link(cell, price >> self.shift);
+            self.queue.unlink(cell);
+            self.queue.link(cell, price >> self.shift);
         }
     }
 
@@ -507,63 +485,5 @@ impl<const CELLS: usize> CostField<CELLS> {
             Some(rest(next)?.saturating_add(enter).saturating_add(extra).min(EXCLUDED - 1))
         };
         Weights::new(Dir::MOVES.map(|dir| step(dir).unwrap_or(EXCLUDED)))
-    }
-
-    #[inline]
-    fn link(&mut self, cell: usize, bucket: u32) {
-        let slot = bucket & (RING - 1);
-        let name = cell as u16;
-        let (Some(head), Some(next), Some(previous), Some(of)) = (
-            self.heads.get_mut(slot as usize),
-            self.next.get_mut(cell),
-            self.previous.get_mut(cell),
-            self.bucket.get_mut(cell),
-        ) else {
-            return;
-        };
-        let second = *head;
-        *next = second;
-        *previous = NIL;
-        *of = slot as u8;
-        *head = name;
-        if let Some(back) = self.previous.get_mut(usize::from(second)) {
-            *back = name;
-        }
-        self.occupied |= 1 << slot;
-    }
-
-    #[inline]
-    fn unlink(&mut self, cell: usize) {
-        let Some(of) = self.bucket.get_mut(cell) else {
-            return;
-        };
-        let slot = u32::from(*of);
-        if slot == RING {
-            return;
-        }
-        *of = RING as u8;
-        let next = self.next.get(cell).copied().unwrap_or(NIL);
-        let previous = self.previous.get(cell).copied().unwrap_or(NIL);
-        if let Some(back) = self.previous.get_mut(usize::from(next)) {
-            *back = previous;
-        }
-        match self.next.get_mut(usize::from(previous)) {
-            Some(forth) => *forth = next,
-            None => {
-                if let Some(head) = self.heads.get_mut(slot as usize) {
-                    *head = next;
-                }
-                if next == NIL {
-                    self.occupied &= !(1 << slot);
-                }
-            }
-        }
-    }
-
-    #[inline]
-    fn pop(&mut self, slot: u32) -> Option<usize> {
-        let head = self.heads.get(slot as usize).copied().filter(|&head| head != NIL)?;
-        self.unlink(usize::from(head));
-        Some(usize::from(head))
     }
 }

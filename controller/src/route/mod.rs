@@ -62,7 +62,8 @@ pub struct RouteParams {
     /// large values take long detours around a crowd.
     pub a1: Gain,
     /// Ticks per earlier visit of a cell (eq. 9). 0 can circle before a dead end larger
-    /// than the window until [`Router`] takes another way out; too large drives the robot away from good land that it used before.
+    /// than the window until [`Router`] takes another way out; too large drives the robot away from good land that it
+    /// used before.
     pub a2: Gain,
     /// Ticks per cell of distance between exit and target (eq. 10). It should be near the time
     /// that a cell takes on a good way over the land: below half of that the robot wanders and may

@@ -11,7 +11,8 @@ use serde::Serialize;
 /// Moves that a plan holds; a longer route is planned again after so many.
 pub const PLAN: usize = 32;
 
-/// Moves without coming nearer to the target than ever before after which the robot follows the wall, if it cannot learn.
+/// Moves without coming nearer to the target than ever before after which the robot follows the wall, if it cannot
+/// learn.
 const IDLE: u8 = 20;
 /// The same for a robot that learns: more, as that is the shorter way out more often than not.
 const IDLE_LEARNING: u8 = 100;

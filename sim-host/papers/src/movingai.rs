@@ -2,8 +2,8 @@
 //!
 //! With a window as large as the map the controller must find the optimal lengths that the benchmark states; with a
 //! small one the question is how many robots get out of the dead ends that they cannot see, and how late. What gets them out
-//! is what they learn of the costs of ways, as far as they can remember it ([`Learning`]), and at last the wall. A map that is
-//! too large for the router's search is answered by the planner ([`optimal`]).
+//! is what they learn of the costs of ways, as far as they can remember it ([`Learning`]), and at last the wall. A map
+//! that is too large for the router's search is answered by the planner ([`optimal`]).
 
 use crate::experiment::{Experiment, GoesOn, in_parallel};
 use crate::optimal;

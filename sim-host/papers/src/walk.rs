@@ -57,8 +57,8 @@ impl<const CELLS: usize, const M: usize, const L: usize> Walker<CELLS, M, L> {
     ///
     /// The router cuts the window to its radius around the robot itself, as on a robot whose sensors see farther. The robot
     /// takes the cheapest move whose cell no other robot has (KUZ algorithm 4, without the shuffle: nobody else moves,
-    /// so there is no conflict to settle). A walk ends at the target, where no move is left, or after 200 moves per cell of
-    /// width + height.
+    /// so there is no conflict to settle). A walk ends at the target, where no move is left, or after 200 moves per
+    /// cell of width + height.
     pub fn walk(&mut self, task: &Task<'_>, params: &RouteParams, replan: Replan) -> Walk {
         let mut router = Router::<M, L>::new();
         let mut walk = Walk::default();

@@ -22,8 +22,8 @@ pub struct MovingAiArgs {
     /// How many visited cells the robot remembers, which gets it out of dead ends larger than its window.
     #[arg(long, value_name = "CELLS", default_value = "64", value_enum)]
     visits: Memory,
-    /// For how many cells the robot learns what the way costs at least, while it comes no nearer to its goal; 0 leaves it
-    /// the walls to follow.
+    /// For how many cells the robot learns what the way costs at least, while it comes no nearer to its goal; 0 leaves
+    /// it the walls to follow.
     #[arg(long, value_name = "CELLS", default_value = "256", value_enum)]
     learned: Learning,
     #[command(flatten)]

@@ -45,8 +45,8 @@ pub(super) struct Fates {
 }
 
 impl RadioParams {
-    /// How late robots that send every `period_s` seconds hear of each other, as a flock has to reckon with it: the delay
-    /// (with the longest jitter), seconds, and how many packets a second arrive.
+    /// How late robots that send every `period_s` seconds hear of each other, as a flock has to reckon with it: the
+    /// delay (with the longest jitter), seconds, and how many packets a second arrive.
     #[must_use]
     pub fn news(&self, period_s: f64) -> (f64, f64) {
         let burst = self.burst.as_ref().map_or(0.0, |burst| burst.share * burst.loss);

@@ -14,7 +14,8 @@ pub const PEERS: usize = 1024;
 pub type HostWire = AnyWire<Box<Sealed<PEERS>>, Box<Signed<PEERS>>>;
 
 /// What a robot speaks at its start number `starts`, without a past. By the rule of [`Sealed`], and that of
-/// [`Signing`](staya_mavlink::signing::Signing) for robots without a clock: what was stored before each start is less than a minute of timestamps behind.
+/// [`Signing`](staya_mavlink::signing::Signing) for robots without a clock: what was stored before each start is less
+/// than a minute of timestamps behind.
 #[must_use]
 pub fn wire(format: Format, key: Option<&Key>, starts: u8) -> HostWire {
     on_link(format, key, starts, 0)

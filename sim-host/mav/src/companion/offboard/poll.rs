@@ -10,14 +10,15 @@ const LOOK: Duration = Duration::from_secs(3);
 const STREAM: Duration = Duration::from_secs(1);
 /// Between two requests of one thing.
 const RETRY: Duration = Duration::from_secs(2);
-/// How often a thing is asked for: two minutes, since autopilots refuse arming and modes long after their first position.
+/// How often a thing is asked for: two minutes, since autopilots refuse arming and modes long after their first
+/// position.
 pub(super) const ATTEMPTS: u8 = 60;
 /// A command of the agent that is older is none.
 const COMMAND_VALID: Duration = Duration::from_millis(500);
 
 impl OffboardStateMachine {
-    /// The messages that are due at `now`, which never goes back. To be called more often than setpoints are due; at most one of each kind and
-    /// three requests come at a time.
+    /// The messages that are due at `now`, which never goes back. To be called more often than setpoints are due; at
+    /// most one of each kind and three requests come at a time.
     pub fn poll(&mut self, now: Duration, out: &mut Vec<MavMessage>) {
         self.settle(now);
         if now >= self.next_heartbeat {

@@ -100,7 +100,8 @@ impl PlaneSetup {
         self
     }
 
-    /// The same robots behind a safety layer with those of the parameters that it has a use for; silent robots grow as usual.
+    /// The same robots behind a safety layer with those of the parameters that it has a use for; silent robots grow as
+    /// usual.
     #[must_use]
     pub fn behind(mut self, safety: SafetyKind, orca: AvoidParams<f32>, push_out: PushOutParams<f32>) -> Self {
         self.safety = safety.setup(orca, inflation(self.abilities.max_speed_mps, self.radius_m), push_out);

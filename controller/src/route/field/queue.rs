@@ -1,0 +1,156 @@
+//! The queue of a search: cells in a ring of buckets by their costs (Dial 1969), each bucket a list through arrays.
+
+/// Buckets in the ring; a power of two.
+pub(super) const RING: u32 = 64;
+/// End of a list, and "in no list".
+const NIL: u16 = u16::MAX;
+/// How many cells can be told apart.
+pub(super) const MOST_CELLS: usize = NIL as usize - 1;
+
+/// Cells 0 to `CELLS` - 1, each in one bucket or none. A bucket has any number; those 64 apart are one. 5 bytes a cell.
+#[derive(Clone, Debug)]
+pub(super) struct Queue<const CELLS: usize> {
+    next: [u16; CELLS],
+    previous: [u16; CELLS],
+    /// Bucket that holds the cell, or `RING` if none.
+    bucket: [u8; CELLS],
+    heads: [u16; RING as usize],
+    /// Which buckets are not empty.
+    occupied: u64,
+}
+
+impl<const CELLS: usize> Queue<CELLS> {
+    /// Without a cell.
+    pub(super) const fn new() -> Self {
+        Self {
+            next: [NIL; CELLS],
+            previous: [NIL; CELLS],
+            bucket: [RING as u8; CELLS],
+            heads: [NIL; RING as usize],
+            occupied: 0,
+        }
+    }
+
+    /// Takes the first `used` cells out of it, and others are not in it. O(used).
+    pub(super) fn clear(&mut self, used: usize) {
+        for bucket in self.bucket.iter_mut().take(used) {
+            *bucket = RING as u8;
+        }
+        self.heads = [NIL; RING as usize];
+        self.occupied = 0;
+    }
+
+    pub(super) const fn is_empty(&self) -> bool {
+        self.occupied == 0
+    }
+
+    /// The number of the first bucket with a cell, from number `at` on, as if the ring were endless. For a queue that is
+    /// not empty.
+    pub(super) const fn next_from(&self, at: u32) -> u32 {
+        at.saturating_add(self.occupied.rotate_right(at & (RING - 1)).trailing_zeros())
+    }
+
+    pub(super) fn holds(&self, cell: usize) -> bool {
+        self.bucket.get(cell).is_some_and(|&bucket| u32::from(bucket) != RING)
+    }
+
+    /// All cells in it, bucket by bucket.
+    pub(super) fn iter(&self) -> impl Iterator<Item = usize> + '_ {
+        let heads = self.heads.iter().copied().filter(|&head| head != NIL);
+        let cells = heads.flat_map(|head| {
+            core::iter::successors(Some(head), |&cell| {
+                self.next.get(usize::from(cell)).copied().filter(|&next| next != NIL)
+            })
+        });
+        cells.map(usize::from)
+    }
+
+    /// Puts a cell that is in no bucket into the one of this number.
+    #[inline]
+    pub(super) fn link(&mut self, cell: usize, bucket: u32) {
+        let slot = bucket & (RING - 1);
+        let name = cell as u16;
+        let (Some(head), Some(next), Some(previous), Some(of)) = (
+            self.heads.get_mut(slot as usize),
+            self.next.get_mut(cell),
+            self.previous.get_mut(cell),
+            self.bucket.get_mut(cell),
+        ) else {
+            return;
+        };
+        let second = *head;
+        *next = second;
+        *previous = NIL;
+        *of = slot as u8;
+        *head = name;
+        if let Some(back) = self.previous.get_mut(usize::from(second)) {
+            *back = name;
+        }
+        self.occupied |= 1 << slot;
+    }
+
+    /// Takes a cell out of its bucket, if it is in one.
+    #[inline]
+    pub(super) fn unlink(&mut self, cell: usize) {
+        let Some(of) = self.bucket.get_mut(cell) else {
+            return;
+        };
+        let slot = u32::from(*of);
+        if slot == RING {
+            return;
+        }
+        *of = RING as u8;
+        let next = self.next.get(cell).copied().unwrap_or(NIL);
+        let previous = self.previous.get(cell).copied().unwrap_or(NIL);
+        if let Some(back) = self.previous.get_mut(usize::from(next)) {
+            *back = previous;
+        }
+        match self.next.get_mut(usize::from(previous)) {
+            Some(forth) => *forth = next,
+            None => {
+                if let Some(head) = self.heads.get_mut(slot as usize) {
+                    *head = next;
+                }
+                if next == NIL {
+                    self.occupied &= !(1 << slot);
+                }
+            }
+        }
+    }
+
+    /// Takes a cell out of the bucket of this number.
+    #[inline]
+    pub(super) fn pop(&mut self, bucket: u32) -> Option<usize> {
+        let head = self.heads.get((bucket & (RING - 1)) as usize).copied().filter(|&head| head != NIL)?;
+        self.unlink(usize::from(head));
+        Some(usize::from(head))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::vec::Vec;
+
+    #[test]
+    fn cells_leave_by_the_numbers_of_their_buckets() {
+        let mut queue = Queue::<8>::new();
+        assert!(queue.is_empty());
+        for (cell, bucket) in [(1, 70), (2, 66), (3, 70), (4, 100)] {
+            queue.link(cell, bucket);
+        }
+        queue.unlink(4);
+        queue.unlink(5);
+        let mut left: Vec<usize> = queue.iter().collect();
+        left.sort_unstable();
+        assert_eq!(left, [1, 2, 3]);
+        assert!(queue.holds(2) && !queue.holds(4) && !queue.holds(99));
+        assert_eq!(queue.next_from(65), 66);
+        assert_eq!((queue.pop(66), queue.pop(66)), (Some(2), None));
+        assert_eq!(queue.next_from(66), 70);
+        assert_eq!((queue.pop(70), queue.pop(70), queue.is_empty()), (Some(3), Some(1), true));
+        queue.link(7, 0);
+        queue.clear(8);
+        assert!(queue.is_empty() && !queue.holds(7) && queue.iter().next().is_none());
+    }
+}

@@ -1,0 +1,157 @@
+"""`staya companion` beside several autopilots that are not there, in one process and in two."""
+
+import json
+import math
+
+import pytest
+from companion_setup import RADIUS, ends_well, write_config, write_scenario
+from conftest import wait_until
+from fake_autopilot import GUIDED, PILOT, Faults, Fleet, Line, Vehicle
+
+
+def circle(count, radius):
+    places = [(radius * math.cos(2 * math.pi * i / count), radius * math.sin(2 * math.pi * i / count)) for i in range(count)]
+    return [(place, (-place[0], -place[1])) for place in places]
+
+
+def arrive(robots, fleet, timeout):
+    def all_there():
+        return all(math.hypot(v.east - goal[0], v.north - goal[1]) < 0.5 for v, (_, goal) in zip(fleet.vehicles, robots))
+
+    wait_until(all_there, timeout, "arrival of all")
+
+
+@pytest.mark.parametrize("faults", [None, dict(drop=0.1, delay_s=0.1, corrupt=0.02)], ids=["good", "bad"])
+def test_six_cross_and_keep_their_distance(tmp_path, free_port, staya, faults):
+    robots, port = circle(6, 5.0), free_port()
+    write_scenario(tmp_path, robots)
+    config = write_config(tmp_path, [port] * 6, "rover")
+    lines = [Line("127.0.0.1", port, Faults(**faults, seed=i) if faults else None) for i in range(6)]
+    vehicles = [Vehicle(i + 1, "rover", lines[i], start, mode=GUIDED, armed=True) for i, (start, _) in enumerate(robots)]
+    with Fleet(vehicles, RADIUS) as fleet:
+        process = staya("companion", config, "--json", "--quiet")
+        arrive(robots, fleet, 45)
+        report = json.loads(ends_well(process))
+        assert fleet.least_gap > 0.0, f"they touched: {fleet.least_gap} m"
+        assert all(vehicle["neighbors"] == 5 for vehicle in report["vehicles"])
+
+
+@pytest.mark.parametrize("way", ["multicast", "peers", "tunnel"])
+def test_companions_in_two_processes_hear_each_other(tmp_path, free_port, staya, way):
+    robots = [((0.0, 0.0), (8.0, 0.0)), ((8.0, 0.2), (0.0, 0.2))]
+    write_scenario(tmp_path, robots)
+    ports, lan = [free_port(), free_port()], [free_port(), free_port()]
+    airs = {
+        "multicast": ['[air]\nmulticast = "239.255.77.1:%d"\ninterface = "127.0.0.1"' % lan[0]] * 2,
+        "peers": ['[air]\nbind = "127.0.0.1:%d"\npeers = ["127.0.0.1:%d"]' % pair for pair in [tuple(lan), tuple(lan[::-1])]],
+        "tunnel": ["[air]\ntunnel = true"] * 2,
+    }[way]
+    vehicles = [Vehicle(i + 1, "rover", Line("127.0.0.1", ports[i]), robots[i][0], mode=GUIDED, armed=True) for i in range(2)]
+    with Fleet(vehicles, RADIUS) as fleet:
+        processes = []
+        for i in range(2):
+            config = write_config(tmp_path, [ports[i]], "rover", air=airs[i], name=f"config-{i}.toml", robots=[i + 1])
+            processes.append(staya("companion", config))
+        arrive(robots, fleet, 30)
+        for i, process in enumerate(processes):
+            assert f"hears robot {2 - i}" in ends_well(process)
+        assert fleet.least_gap > 0.0, f"they touched: {fleet.least_gap} m"
+
+
+def two_that_meet(tmp_path, free_port, staya, keys, packets):
+    """Two companions, each in a process of its own with its key, in a group; their reports after 3 s."""
+    write_scenario(tmp_path, [((0.0, 0.0), (8.0, 0.0)), ((8.0, 0.2), (0.0, 0.2))], packets=packets)
+    group, processes = free_port(), []
+    for i, key in enumerate(keys):
+        air = f'[air]\nmulticast = "239.255.77.1:{group}"\ninterface = "127.0.0.1"\n'
+        if key:
+            (tmp_path / f"{i}.key").write_text(f"passphrase: {key}\n")
+            (tmp_path / f"{i}.key").chmod(0o600)
+            air += f'key = "{i}.key"'
+        port = free_port()
+        config = write_config(tmp_path, [port], "rover", air=air, name=f"config-{i}.toml", robots=[i + 1])
+        processes.append((port, config))
+    # The pilots keep them.
+    vehicles = [Vehicle(i + 1, "rover", Line("127.0.0.1", processes[i][0]), (8.0 * i, 0.0)) for i in range(2)]
+    with Fleet(vehicles, RADIUS):
+        running = [staya("companion", config, "--json", "--quiet", "--seconds", "3") for _, config in processes]
+        assert [process.wait() for process in running] == [0, 0]
+    return [json.loads(process.output())["vehicles"][0] for process in running]
+
+
+@pytest.mark.parametrize("packets", ["postcard", "mavlink"])
+def test_sealed_packets_are_heard_by_who_has_the_key(tmp_path, free_port, staya, packets):
+    for report in two_that_meet(tmp_path, free_port, staya, ["one for all", "one for all"], packets):
+        assert report["neighbors"] == 1 and report["packets_heard"] > 10 and report["packets_refused"] == 0, report
+
+
+@pytest.mark.parametrize("packets", ["postcard", "mavlink"])
+@pytest.mark.parametrize("keys", [("one for all", "another"), ("one for all", None)], ids=["wrong", "none"])
+def test_packets_without_the_right_key_are_refused(tmp_path, free_port, staya, keys, packets):
+    first, _ = two_that_meet(tmp_path, free_port, staya, keys, packets)
+    assert first["neighbors"] == 0 and first["packets_heard"] == 0 and first["packets_refused"] > 10, first
+
+
+def test_the_others_go_around_one_that_its_pilot_has_taken(tmp_path, free_port, staya):
+    robots = [((0.0, 0.0), (10.0, 0.0)), ((5.0, 0.1), (5.0, 8.0))]
+    write_scenario(tmp_path, robots)
+    port = free_port()
+    config = write_config(tmp_path, [port] * 2, "rover")
+    modes = [GUIDED, PILOT]
+    vehicles = [Vehicle(i + 1, "rover", Line("127.0.0.1", port), robots[i][0], mode=modes[i], armed=True) for i in range(2)]
+    with Fleet(vehicles, RADIUS) as fleet:
+        process = staya("companion", config)
+        arrive(robots[:1], fleet, 30)
+        assert (vehicles[1].east, vehicles[1].north) == (5.0, 0.1)
+        assert vehicles[1].setpoints == []
+        assert fleet.least_gap > 0.0, f"they touched: {fleet.least_gap} m"
+        ends_well(process)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("faults", [None, dict(drop=0.1, delay_s=0.1, corrupt=0.02)], ids=["good", "bad"])
+def test_six_travel_in_formation(tmp_path, free_port, staya, faults):
+    """In two rows of three, from places up to a metre off, over good links and such that lose, delay and damage frames."""
+    (tmp_path / "formation.toml").write_text(
+        """
+name = "formation"
+ticks = 1000
+tick_s = 0.1
+[terrain]
+uniform = { width = 24, height = 24, classes = 1 }
+cell_m = 2
+[robots.formation]
+rows = 2
+columns = 3
+spacing = [-2, -2]
+start = [8, 8]
+goal = [16, 16]
+[radio]
+range_m = 100
+delay_ms = 50
+[plane]
+radius_m = 0.4
+max_speed_mps = 2
+max_acceleration_mps2 = 2
+guidance = "formation"
+[plane.orca]
+margin_m = 0.2
+"""
+    )
+    port = free_port()
+    config = write_config(tmp_path, [port] * 6, "rover", scenario="formation.toml")
+    # Where the scenario's robots start, in metres, and up to 1 m off.
+    off = [(0.6, -0.4), (-0.8, 0.3), (0.2, 0.9), (-0.5, -0.7), (0.9, 0.1), (-0.3, 0.5)]
+    starts = [(17.0 - 4.0 * (i % 3) + off[i][0], 17.0 - 4.0 * (i // 3) + off[i][1]) for i in range(6)]
+    lines = [Line("127.0.0.1", port, Faults(**faults, seed=i) if faults else None) for i in range(6)]
+    vehicles = [Vehicle(i + 1, "rover", lines[i], starts[i], mode=GUIDED, armed=True) for i in range(6)]
+    with Fleet(vehicles, RADIUS) as fleet:
+        process = staya("companion", config)
+
+        def there():
+            places = [(33.0 - 4.0 * (i % 3), 33.0 - 4.0 * (i // 3)) for i in range(6)]
+            return all(math.hypot(v.east - x, v.north - y) < 1.5 for v, (x, y) in zip(vehicles, places))
+
+        wait_until(there, 45, "the formation at its goal")
+        assert fleet.least_gap > 0.0, f"they touched: {fleet.least_gap} m"
+        ends_well(process)
