@@ -6,8 +6,9 @@ use staya_papers::experiment::Experiment as _;
 use staya_papers::flock::closing::Closing;
 use staya_papers::flock::{Case, Plan};
 use staya_papers::goals;
-use staya_sim::metrics::flock::FlockMeter;
+use staya_sim::metrics::flock::{FlockMeter, polarisation};
 use staya_sim::nearby::Space;
+use staya_sim::record::RobotRow;
 use staya_sim::scenario::{Overrides, Scenario};
 use staya_tests::{golden, root, run};
 use std::fmt::Write as _;
@@ -111,18 +112,75 @@ fn golden_experiment_goals() {
 #[test]
 fn the_late_flock_stays_one() {
     for seed in 1..4 {
-        let path = root().join("scenarios/late-flock.toml");
-        let scenario = Scenario::load(&path, &Overrides { seed: Some(seed), ticks: None }).expect("sound");
+        let scenario = seeded("late-flock", seed);
         assert_eq!(scenario.remarks(), Vec::<String>::new());
         let (_, rows) = run(&scenario);
         let mut meter = FlockMeter::new(0.7, 0.84, Space::OPEN);
         for (row, robots) in rows.iter().skip(rows.len() * 3 / 4) {
-            let places: Vec<_> = robots.iter().map(|robot| robot.motion.position_m).collect();
-            let velocities: Vec<_> = robots.iter().map(|robot| robot.motion.velocity_mps).collect();
+            let (places, velocities) = motions(robots);
             let measure = meter.look(&places, &velocities).expect("robots are somewhere");
             assert_eq!(measure.components, 1, "seed {seed}, tick {}", row.tick);
             let energies = (measure.deviation_energy, measure.velocity_mismatch);
             assert!(energies.0 < 0.005 && energies.1 < 0.002, "{energies:?}, seed {seed}, tick {}", row.tick);
         }
+    }
+}
+
+/// A scenario with another seed.
+fn seeded(name: &str, seed: u64) -> Scenario {
+    let path = root().join("scenarios").join(format!("{name}.toml"));
+    Scenario::load(&path, &Overrides { seed: Some(seed), ticks: None }).expect("sound")
+}
+
+/// Places, metres, and velocities, m/s.
+fn motions(robots: &[RobotRow]) -> (Vec<[f64; 3]>, Vec<[f64; 3]>) {
+    robots.iter().map(|robot| (robot.motion.position_m, robot.motion.velocity_mps)).unzip()
+}
+
+#[test]
+fn the_squeezed_flock_goes_between_the_balls_and_is_one_behind_them() {
+    for seed in 1..3 {
+        let (outcome, rows) = run(&seeded("flock-squeeze", seed));
+        assert_eq!(outcome.collisions, 0, "seed {seed}");
+        for (row, robots) in &rows {
+            let (places, _) = motions(robots);
+            // Beside the middles of the balls at (15, 3) and (15, 10), whose radius is 2.5 m.
+            let goes_round = places.iter().any(|[x, y, _]| (x - 15.0).abs() < 0.1 && !(5.5..7.5).contains(y));
+            assert!(!goes_round, "seed {seed}, tick {}", row.tick);
+        }
+        let (places, velocities) = motions(&rows.last().expect("an end").1);
+        assert!(places.iter().all(|[x, ..]| *x > 17.5), "seed {seed}: not all are through");
+        let mut meter = FlockMeter::new(0.7, 0.84, Space::OPEN);
+        assert_eq!(meter.look(&places, &velocities).expect("robots").components, 1, "seed {seed}");
+    }
+}
+
+/// Length of the mean heading within each part of the proximity graph, weighted by its robots.
+fn order_within_parts(places: &[[f64; 3]], velocities: &[[f64; 3]], range_m: f64) -> f64 {
+    let mut meter = FlockMeter::new(range_m, range_m, Space::OPEN);
+    meter.look(places, velocities).expect("robots are somewhere");
+    let mut part: Vec<usize> = (0..places.len()).collect();
+    for &(one, other) in meter.edges() {
+        let (from, to) = (part[one as usize], part[other as usize]);
+        part.iter_mut().filter(|part| **part == from).for_each(|part| *part = to);
+    }
+    let order = |name: usize| {
+        let members = part.iter().zip(velocities).filter(|(part, _)| **part == name);
+        let own: Vec<[f64; 3]> = members.map(|(_, velocity)| *velocity).collect();
+        polarisation(&own) * own.len() as f64
+    };
+    (0..places.len()).map(order).sum::<f64>() / places.len() as f64
+}
+
+#[test]
+fn boids_of_one_flock_have_one_heading() {
+    for seed in 1..5 {
+        let (_, rows) = run(&seeded("boids", seed));
+        let order = |(_, robots): &(_, Vec<RobotRow>)| {
+            let (places, velocities) = motions(robots);
+            order_within_parts(&places, &velocities, 20.0)
+        };
+        let [start, end] = [rows.first(), rows.last()].map(|row| order(row.expect("two moments")));
+        assert!(start < 0.5 && end > 0.8, "seed {seed}: {start} at the start, {end} at the end");
     }
 }

@@ -1,7 +1,7 @@
 //! The way out of any dead end: along the wall until the target is nearer than it ever was.
 //!
 //! Source: V. Lumelsky and A. Stepanov, "Path-Planning Strategies for a Point Mobile Automaton Moving Amidst Unknown
-//! Obstacles of Arbitrary Shape", Algorithmica 2, 1987 (LUM), section 4, with the leave condition of "nearer than where
+//! Obstacles of Arbitrary Shape", Algorithmica 2, 1987, section 4, with the leave condition of "nearer than where
 //! the wall was met", which needs no line. What differs: on a grid the boundary is a closed chain of cells that is
 //! walked with one hand on the wall.
 //!
