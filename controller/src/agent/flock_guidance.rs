@@ -1,7 +1,7 @@
 //! The three flocks as guidance laws.
 
 use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Roams, Status, Teamwork, ToWaypoints};
-use super::{InPlane, Waypoint};
+use super::{InPlane, WAYPOINTS, Waypoint};
 use crate::flock::boids::BoidsParams;
 use crate::flock::goal::{GoalParams, Goals, Stage, wish};
 use crate::flock::lattice::{LatticeParams, Reference, acceleration};
@@ -11,7 +11,7 @@ use crate::scalar::Scalar;
 use serde::Serialize;
 
 /// Goals that a robot of a goal flock has room for.
-pub const GOALS: usize = 4;
+pub const GOALS: usize = WAYPOINTS;
 
 /// The alpha flock (R. Olfati-Saber 2006, OLF): robots at equal distances that follow a reference, if they are given
 /// one as waypoint 0.

@@ -4,14 +4,14 @@
 
 use super::any::{AnyGuidance, AnyHalfPlanes, AnySafety};
 use super::cell_follower::CellFollower;
-use super::flock_guidance::{BoidsGuidance, GOALS, GoalFlockGuidance, LatticeGuidance};
+use super::flock_guidance::{BoidsGuidance, GoalFlockGuidance, LatticeGuidance};
 use super::formation_guidance::FormationGuidance;
 use super::orca_safety::{FlySafety, OrcaSafety};
 use super::other_safety::PushOutSafety;
 use super::route_guidance::RouteGuidance;
 use super::safety::Unguarded;
 use super::waypoint_guidance::WaypointGuidance;
-use super::{Agent, AgentConfig, TEMPLATE, Waypoint};
+use super::{Agent, AgentConfig, TEMPLATE, WAYPOINTS, Waypoint};
 use crate::flock::boids::BoidsParams;
 use crate::flock::goal::GoalParams;
 use crate::flock::lattice::LatticeParams;
@@ -28,9 +28,6 @@ use crate::template::Template;
 use crate::wire::{Format, FromFormat, Postcard, Wire};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
-
-/// Waypoints that a [`Task`] has room for.
-pub const WAYPOINTS: usize = GOALS;
 
 /// An agent that can be anything: `CELLS` of a search, `M` remembered visits, `N` neighbours, `K` half-planes, wire
 /// format `W`, `L` learned costs.

@@ -5,6 +5,9 @@ use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 
+/// Waypoints that a robot has room for.
+pub const WAYPOINTS: usize = 4;
+
 /// Span after which a moving waypoint is taken note of.
 const LONG: Duration = Duration::from_millis(600_000);
 

@@ -1,16 +1,25 @@
-//! Straight to a waypoint.
+//! Straight to a waypoint, by others on the way.
 
 use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToWaypoints};
-use super::{InPlane, Parameter, Waypoint};
+use super::{InPlane, Parameter, WAYPOINTS, Waypoint};
 use crate::geom::Vec3;
 use crate::rand::Rng;
 use crate::scalar::Scalar;
+use heapless::Vec;
 use serde::Serialize;
 
+/// Nearer than so many own radii, a waypoint on the way is passed: beside a robot that stands in it.
+const PASSED_RADII: i32 = 3;
+
 /// Straight to a waypoint, which may move; there it stays, and goes along with one that moves.
-#[derive(Clone, Copy, Debug, Serialize)]
+///
+/// It goes by at most [`WAYPOINTS`] waypoints in the order of their numbers. Number 0 begins a course (what was before is
+/// forgotten), the next number lengthens it, and one that is there already is moved. The last one is its goal.
+#[derive(Clone, Debug, Serialize)]
 pub struct WaypointGuidance<S> {
-    waypoint: Option<Waypoint<S>>,
+    course: Vec<Waypoint<S>, WAYPOINTS, u8>,
+    /// The one that it heads for.
+    leg: u8,
     /// How near is there, metres.
     tolerance_m: S,
     /// Cruising speed, m/s; the body's own limit holds too.
@@ -22,7 +31,25 @@ impl<S: Scalar> WaypointGuidance<S> {
     /// waypoints are rounded to them; `speed_mps`: how fast it wants to go.
     #[must_use]
     pub const fn new(speed_mps: S, tolerance_m: S) -> Self {
-        Self { waypoint: None, tolerance_m, speed_mps }
+        Self { course: Vec::new(), leg: 0, tolerance_m, speed_mps }
+    }
+
+    /// The way to the waypoint that it heads for, metres, and that one's velocity; goes on to the next one when it is
+    /// there. O([`WAYPOINTS`]).
+    fn next(&mut self, input: &GuidanceInput<'_, S>) -> Option<(Vec3<S>, Vec3<S>)> {
+        let passed_m = self.tolerance_m.max(input.body.radius_m * S::from_i32(PASSED_RADII));
+        let mut ahead = self.course.iter_mut().skip(usize::from(self.leg));
+        let mut waypoint = ahead.next()?;
+        let mut way = waypoint.way(input.state.position, input.now);
+        for next in ahead {
+            if way.norm() > passed_m {
+                break;
+            }
+            self.leg = self.leg.saturating_add(1);
+            waypoint = next;
+            way = waypoint.way(input.state.position, input.now);
+        }
+        Some((way, waypoint.velocity_mps))
     }
 }
 
@@ -41,20 +68,20 @@ impl<S: Scalar> Guidance<S> for WaypointGuidance<S> {
         (): &mut (),
     ) -> Result<Decision<S>, BadInput> {
         input.can_go()?;
-        let waypoint = self.waypoint.as_mut().ok_or(BadInput)?;
-        let way = waypoint.way(input.state.position, input.now);
+        let (way, velocity_mps) = self.next(input).ok_or(BadInput)?;
+        let is_last = usize::from(self.leg) + 1 >= self.course.len();
         let distance = way.norm();
         let speed = self.speed_mps.min(input.body.max_speed_mps);
         // On the last step no farther than the waypoint.
         let needed = distance.checked_div(input.body.step_s).unwrap_or(speed);
         let ahead = way.normalized().unwrap_or_default();
-        let is_at_goal = distance <= self.tolerance_m;
+        let is_at_goal = is_last && distance <= self.tolerance_m;
         Ok(Decision {
-            action: Action::Velocity { wish_mps: waypoint.velocity_mps + ahead * needed.min(speed), way_m: Some(way) },
+            action: Action::Velocity { wish_mps: velocity_mps + ahead * needed.min(speed), way_m: Some(way) },
             status: Status {
                 is_at_goal,
                 // Who stood when it is there would lose a waypoint that moves.
-                makes_way: is_at_goal && waypoint.velocity_mps != Vec3::ZERO,
+                makes_way: is_at_goal && velocity_mps != Vec3::ZERO,
                 ..Status::default()
             },
             ..Decision::default()
@@ -63,13 +90,20 @@ impl<S: Scalar> Guidance<S> for WaypointGuidance<S> {
 
     fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool {
         if index == 0 {
-            self.waypoint = Some(*waypoint);
+            self.course.clear();
+            self.leg = 0;
         }
-        index == 0
+        match self.course.get_mut(usize::from(index)) {
+            Some(known) => {
+                *known = *waypoint;
+                true
+            }
+            None => usize::from(index) == self.course.len() && self.course.push(*waypoint).is_ok(),
+        }
     }
 
     fn has_own_goal(&self) -> bool {
-        self.waypoint.is_some()
+        !self.course.is_empty()
     }
 
     fn parameter(&self, parameter: Parameter) -> Option<S> {

@@ -87,3 +87,34 @@ fn a_place_that_will_be_there_in_a_moment_is_on_its_way() {
         assert!((way.x - (n as f32 - 10.0) * 0.1).abs() < 2e-3, "{n}: {way:?}");
     }
 }
+
+#[test]
+fn a_course_is_gone_by_one_waypoint_after_the_other_and_a_new_one_takes_its_place() {
+    let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), [0.0; 2]);
+    let course = [(5_000, 0), (5_000, 5_000), (0, 5_000)];
+    for (index, (x_mm, y_mm)) in (0..).zip(course) {
+        assert!(robot.agent.assign_waypoint(index, &place(x_mm, y_mm)));
+    }
+    assert!(!robot.agent.assign_waypoint(4, &place(9_000, 9_000)), "there is no number 3 yet");
+    let mut nearest_m = [f64::INFINITY; 3];
+    let mut arrived = Vec::new();
+    for n in 0..200 {
+        let _ = robot.step(step_number(n), &[]);
+        for (nearest_m, (x_mm, y_mm)) in nearest_m.iter_mut().zip(course) {
+            let [x, y] = robot.at_m;
+            *nearest_m = nearest_m.min(length([x - f64::from(x_mm) / 1e3, y - f64::from(y_mm) / 1e3]));
+        }
+        if robot.agent.mode() == Mode::Arrived {
+            arrived.push(n);
+        }
+    }
+    // By the first two beside one who might stand in them, three own radii off, to the last one exactly.
+    assert!(nearest_m[0] < 0.6 && nearest_m[1] < 0.6 && nearest_m[2] < 0.01, "{nearest_m:?}");
+    // 15 m less two corners, at 1 m/s: it did not take any of the others for its goal.
+    assert!((130..150).contains(&arrived[0]) && arrived.len() > 40, "{:?}", arrived.first());
+    assert!(robot.agent.assign_waypoint(0, &place(0, 0)));
+    for n in 200..300 {
+        let _ = robot.step(step_number(n), &[]);
+    }
+    assert!(length(robot.at_m) < 0.02 && robot.agent.mode() == Mode::Arrived, "{:?}", robot.at_m);
+}
