@@ -87,6 +87,10 @@ struct Summary {
     least_gap_m: Option<f64>,
     /// Least distance between a body and an obstacle, metres.
     least_obstacle_gap_m: Option<f64>,
+    /// Least distance between a robot's surface and an intruder's, metres; null: without intruders.
+    least_intruder_gap_m: Option<f64>,
+    /// Robots that overlap an intruder, summed over ticks; they are no collisions.
+    intruder_overlaps: u64,
     /// 16 hex digits; equal for equal traces.
     trace_hash: String,
     /// What was written.
@@ -195,6 +199,8 @@ impl Summary {
             graph_distance_mean: formation.map(|f| f.graph_distance),
             least_gap_m: finite(outcome.clearance.map(|c| c.bodies_m)),
             least_obstacle_gap_m: finite(outcome.clearance.map(|c| c.solids_m)),
+            least_intruder_gap_m: finite(outcome.clearance.map(|c| c.intruders_m)),
+            intruder_overlaps: outcome.clearance.map_or(0, |c| c.intruder_overlaps),
             trace_hash: format!("{:016x}", outcome.trace_hash),
             files,
         }
@@ -221,6 +227,10 @@ impl Summary {
         }
         if let Some(gap) = self.least_obstacle_gap_m {
             line("", format!("{gap:.4} m to an obstacle"))?;
+        }
+        if let Some(gap) = self.least_intruder_gap_m {
+            let overlaps = self.intruder_overlaps;
+            line("", format!("{gap:.4} m to an intruder, {overlaps} overlaps with it"))?;
         }
         if let (Some(error), Some(best_fit), Some(distance)) =
             (self.formation_error_per_agent, self.formation_error_per_agent_best_fit, self.graph_distance_mean)

@@ -20,6 +20,9 @@ fn table(scenario: &Scenario, outcome: &Outcome, rows: &[(TickRow, Vec<RobotRow>
     let robots = scenario.robots.len();
     writeln!(text, "arrived    {} of {robots}", outcome.arrived)?;
     writeln!(text, "collisions {}", outcome.collisions)?;
+    if let Some(clearance) = outcome.clearance.filter(|clearance| clearance.intruders_m.is_finite()) {
+        writeln!(text, "intruders  {} overlaps", clearance.intruder_overlaps)?;
+    }
     writeln!(
         text,
         "packets    sent {}, delivered {}, lost {}, corrupted {}, rejected {}",
@@ -127,6 +130,11 @@ fn golden_orca_table() {
 #[test]
 fn golden_swap_circle() {
     check("swap-circle", None);
+}
+
+#[test]
+fn golden_mixed() {
+    check("mixed", None);
 }
 
 #[test]

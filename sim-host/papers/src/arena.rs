@@ -5,7 +5,7 @@ use staya_controller::orca::AvoidParams;
 use staya_controller::push_out::PushOutParams;
 use staya_controller::rand::Rng;
 use staya_sim::radio::RadioParams;
-use staya_sim::scenario::{PlaneSetup, Scenario, Start, Target};
+use staya_sim::scenario::{PlaneSetup, RobotGroup, Scenario, Start, Target};
 use staya_sim::world::plane::{Abilities, Solid};
 
 /// Fastest speed that a beacon can tell, metres per second.
@@ -36,13 +36,12 @@ impl Arena {
     pub fn setup(&self, starts: Vec<Start>) -> PlaneSetup {
         let abilities =
             Abilities { max_speed_mps: self.max_speed_mps, max_acceleration_mps2: f64::INFINITY, step_s: self.step_s };
-        let setup = PlaneSetup {
+        let group = RobotGroup {
             sight_m: self.sight_m,
             guidance: self.guidance.clone(),
-            solids: self.solids.clone(),
-            ..PlaneSetup::new(abilities, self.radius_m, starts)
+            ..RobotGroup::new(abilities, self.radius_m).behind(self.safety, self.orca, self.push_out)
         };
-        setup.behind(self.safety, self.orca, self.push_out)
+        PlaneSetup { solids: self.solids.clone(), ..PlaneSetup::new(group, starts) }
     }
 
     /// The scenario of robots 1, 2, ... as they are set up.
@@ -87,7 +86,7 @@ pub(super) fn starts(
         let mut rng = rng(robot);
         let is_free = |at: [f64; 3]| starts.iter().all(|other| distance_m(other.position_m, at) >= apart_m);
         let (position_m, velocity_mps) = (0..TRIES).map(|_| draw(&mut rng)).find(|(at, _)| is_free(*at))?;
-        starts.push(Start { position_m, velocity_mps, places: targets.to_vec() });
+        starts.push(Start { position_m, velocity_mps, places: targets.to_vec(), group: None });
     }
     Some(starts)
 }

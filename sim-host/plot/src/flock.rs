@@ -56,6 +56,8 @@ pub struct Snapshot {
     pub velocities_mps: Vec<[f64; 2]>,
     /// Radius of their bodies, metres; drawn to scale where that can be seen, as darts where not.
     pub radius_m: f64,
+    /// Radii of bodies that are smaller, metres: one each, or none at all.
+    pub radii_m: Vec<f64>,
     /// Which colour of the palette each robot has; robots without an entry have the first.
     pub groups: Vec<usize>,
     /// Robots up to this far apart are joined by a line.
@@ -82,6 +84,7 @@ impl Default for Snapshot {
             positions_m: Vec::new(),
             velocities_mps: Vec::new(),
             radius_m: 0.0,
+            radii_m: Vec::new(),
             groups: Vec::new(),
             edges_within_m: None,
             obstacles: Vec::new(),

@@ -47,7 +47,8 @@ pub fn motion_sheet(setup: &PlaneSetup, history: &History) -> Sheet {
     let mut goals_m = goals;
     goals_m.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
     goals_m.dedup();
-    let view_m = view(frames, setup.radius_m);
+    let largest_m = setup.kinds().map(|group| group.radius_m).fold(0.0, f64::max);
+    let view_m = view(frames, largest_m);
     let mut sheet = Sheet::new("", 2);
     let last = frames.len().saturating_sub(1);
     let mut before = None;
@@ -63,7 +64,8 @@ pub fn motion_sheet(setup: &PlaneSetup, history: &History) -> Sheet {
             title: format!("after {:.1} s", frame.time_s),
             positions_m: frame.samples.iter().map(|s| s.position_m).collect(),
             velocities_mps: velocities(frames, at),
-            radius_m: setup.radius_m,
+            radius_m: largest_m,
+            radii_m: (0..robots).map(|robot| setup.group(robot).radius_m).collect(),
             groups: (0..robots).map(|robot| robot % COLOURS).collect(),
             obstacles: obstacles.clone(),
             goals_m: goals_m.clone(),

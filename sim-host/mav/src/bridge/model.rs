@@ -6,7 +6,7 @@ use staya_controller::agent::Wish;
 use staya_controller::grid::{BLOCKED, Cell};
 use staya_controller::robot::Mode;
 use staya_sim::engine::Glance;
-use staya_sim::scenario::Scenario;
+use staya_sim::scenario::{PlaneSetup, RobotGroup, Scenario};
 use staya_sim::terrain::Terrain;
 use staya_sim::world::plane::Solid;
 
@@ -19,9 +19,9 @@ pub struct VehicleModel {
     pub grid: Option<Terrain>,
     /// It keeps its place in a formation on the grid, and has no goal of its own.
     pub in_formation: bool,
-    /// Highest speed, m/s; 0 on the grid.
+    /// Highest speed, m/s, of the fastest; 0 on the grid.
     pub max_speed_mps: f32,
-    /// Radius of the body, metres; 0 on the grid.
+    /// Radius of the body, metres, of the largest; 0 on the grid.
     pub radius_m: f32,
     /// Where the scenario is on the Earth.
     pub origin: Origin,
@@ -35,12 +35,16 @@ impl VehicleModel {
     pub fn new(scenario: &Scenario, origin: Origin) -> Self {
         let on_grid = scenario.plane.is_none();
         let plane = scenario.plane.as_ref();
+        let largest = |of: fn(&RobotGroup) -> f64| {
+            let groups = plane.into_iter().flat_map(PlaneSetup::kinds);
+            groups.map(of).fold(0.0, f64::max) as f32
+        };
         Self {
-            flies: plane.is_some_and(|plane| plane.safety.kind() == SafetyKind::Fly),
+            flies: plane.is_some_and(|plane| plane.kinds().any(|group| group.safety.kind() == SafetyKind::Fly)),
             grid: on_grid.then(|| scenario.terrain.clone()),
             in_formation: on_grid && scenario.formation.is_some(),
-            max_speed_mps: plane.map_or(0.0, |plane| plane.abilities.max_speed_mps as f32),
-            radius_m: plane.map_or(0.0, |plane| plane.radius_m as f32),
+            max_speed_mps: largest(|group| group.abilities.max_speed_mps),
+            radius_m: largest(|group| group.radius_m),
             solids: plane.map_or_else(Vec::new, |plane| plane.solids.clone()),
             origin,
         }

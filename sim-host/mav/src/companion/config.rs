@@ -244,6 +244,10 @@ fn check_scenario(source: &Source<'_>, scenario: &Scenario) -> Result<(), Scenar
         let what = String::from("[[plane.order]] has no meaning here");
         return refused(what, "leave it out: orders come from an operator, as packets");
     }
+    if !plane.intruders.is_empty() {
+        let what = String::from("[[plane.intruder]] has no meaning here");
+        return refused(what, "leave it out: whoever comes is real");
+    }
     if scenario.route.params.radius > RADIUS {
         let what = format!("route.radius {} is too large", scenario.route.params.radius);
         return refused(what, "give 16 or less");
@@ -408,8 +412,8 @@ fn assign_goal(
 ) -> Result<(), ScenarioError> {
     let place = origin.to_enu_m(&Global { latitude_deg, longitude_deg, altitude_m: origin.place().altitude_m });
     let plane = scenario.plane.as_mut();
-    let target = plane.filter(|plane| plane.guidance.kind() == GuidanceKind::Waypoint);
-    let target = target.and_then(|plane| plane.starts.get_mut(index)?.places.first_mut());
+    let target = plane.filter(|plane| plane.group(index).guidance.kind() == GuidanceKind::Waypoint);
+    let target = target.and_then(|plane| plane.starts.get_mut(index)?.places.last_mut());
     match (place, target) {
         (Some(place), Some(target)) => {
             target.position_m = [place[0], place[1], target.position_m[2]];

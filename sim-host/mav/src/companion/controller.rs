@@ -1,10 +1,10 @@
 //! The agent beside an autopilot: what it senses comes from telemetry and the scenario's land, what it commands is a velocity.
 
-use staya_controller::agent::SafetyKind;
 use staya_controller::agent::{
     Agent, AgentConfig, AnyGuidance, AnySafety, AnySurroundings, Command, Commanded, GridWorkspace, HALF_PLANES,
     InCells, LEARNED, NEIGHBORS, Outputs, TEMPLATE, VISITS, Wish,
 };
+use staya_controller::agent::{GuidanceKind, SafetyKind};
 use staya_controller::geom::Vec3;
 use staya_controller::robot::Mode;
 use staya_controller::time::{self, Instant};
@@ -36,6 +36,7 @@ type ControllerAgent<W> = Agent<f32, Guided, NEIGHBORS, AnySafety<f32, HALF_PLAN
 
 /// An agent with its land.
 pub struct Controller<W> {
+    index: usize,
     ground: Arc<PlaneGround>,
     agent: Box<ControllerAgent<W>>,
     workspace: GridWorkspace<WIDE>,
@@ -53,21 +54,28 @@ impl<W: Wire> Controller<W> {
     /// Of robot number `index` of the scenario, whose robots are on `ground`; `boot` differs from start to start.
     #[must_use]
     pub fn new(scenario: &Scenario, ground: &Arc<PlaneGround>, index: usize, boot: u8, lag_s: f64, wire: W) -> Self {
-        let robot = scenario.robots.get(index).map(|robot| robot.id);
         let tick = time::Duration::from_micros(i32::try_from(scenario.tick_us).unwrap_or(i32::MAX));
-        let config = AgentConfig { boot, seed: scenario.seed, ..ground.config(robot.unwrap_or_default(), tick) };
+        let config = AgentConfig { boot, seed: scenario.seed, ..ground.config(index, tick) };
         // Nobody wishes places here, so neither speed nor tolerance counts.
         let guidance = Commanded::new(scenario.guidance(index).guidance(), 0.0, 0.0);
-        let mut agent = Box::new(Agent::new(&config, guidance, scenario.safety().safety(), wire));
+        let mut agent = Box::new(Agent::new(&config, guidance, scenario.safety(index).safety(), wire));
         // A law that has no use for its task says so; the scenario was checked for that.
         let _ = agent.assign(&ground.task(index, 0));
         let plane = scenario.plane.as_ref();
-        let places = plane.filter(|plane| !plane.guidance.kind().is_on_grid());
-        let place = places.and_then(|plane| plane.starts.get(index)?.places.first());
-        let brake =
-            plane.zip(place).map(|(plane, place)| Brake { place_m: place.position_m, tolerance_m: plane.tolerance_m });
-        let safety = plane.map(|plane| plane.safety.kind());
+        let group = plane.map(|plane| plane.group(index));
+        let places = plane.and_then(|plane| plane.starts.get(index)).map(|start| &start.places);
+        let brake = group.zip(places).and_then(|(group, places)| {
+            let place = match group.guidance.kind() {
+                kind if kind.is_on_grid() => None,
+                // The end of its way.
+                GuidanceKind::Waypoint => places.last(),
+                _ => places.first(),
+            };
+            Some(Brake { place_m: place?.position_m, tolerance_m: group.tolerance_m })
+        });
+        let safety = group.map(|group| group.safety.kind());
         Self {
+            index,
             ground: Arc::clone(ground),
             agent,
             workspace: GridWorkspace::default(),
@@ -104,7 +112,7 @@ impl<W: Wire> Controller<W> {
         // In the plane heights are told apart by nobody, and altitudes differ by metres between two receivers.
         let position_m = [x, y, if self.is_in_space { z } else { 0.0 }];
         let velocity_mps = self.own_velocity(body.velocity_mps);
-        let mut inputs = self.ground.sense_at(position_m, velocity_mps, &mut self.senses);
+        let mut inputs = self.ground.sense_at(self.index, position_m, velocity_mps, &mut self.senses);
         inputs.inbox = inbox;
         let wish = if steers { Wish::Own } else { Wish::Off };
         if *self.agent.guidance().wish() != wish {

@@ -119,11 +119,12 @@ impl Plan {
                     position_m: [side * x + noise(), y + noise(), 0.0],
                     velocity_mps: [0.0; 3],
                     places: vec![Target { position_m: [-side * goal_x, goal_y, 0.0], velocity_mps: [0.0; 3] }],
+                    group: None,
                 }
             })
             .collect();
         let half = width_m / 2.0;
-        let mut setup = PlaneSetup::new(self.conditions.abilities(), RADIUS_M, starts).to_places(0.1);
+        let mut setup = PlaneSetup::new(self.conditions.group(RADIUS_M, 0.1), starts);
         setup.solids = vec![Solid::Wall([[0.0, -WALL_M], [0.0, -half]]), Solid::Wall([[0.0, half], [0.0, WALL_M]])];
         self.conditions.scenario("doorway", seed, self.longest_s, setup)
     }

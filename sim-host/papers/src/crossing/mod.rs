@@ -19,7 +19,7 @@ use staya_plot::motion_sheet;
 use staya_sim::engine::{Outcome, simulate};
 use staya_sim::radio::RadioParams;
 use staya_sim::record::{Options, Recorder, RobotRow};
-use staya_sim::scenario::{PlaneSetup, Scenario};
+use staya_sim::scenario::{PlaneSetup, RobotGroup, Scenario};
 use staya_sim::world::plane::Abilities;
 use std::ops::ControlFlow;
 
@@ -60,15 +60,22 @@ impl Conditions {
         Ok(())
     }
 
-    fn abilities(&self) -> Abilities {
-        Abilities { max_speed_mps: self.speed_mps, max_acceleration_mps2: f64::INFINITY, step_s: self.step_s }
+    /// Robots of a size that go to places, and count as being there at a distance; metres.
+    fn group(&self, radius_m: f64, tolerance_m: f64) -> RobotGroup {
+        self.group_at(self.speed_mps, radius_m, tolerance_m)
+    }
+
+    /// The same of another highest speed, m/s.
+    fn group_at(&self, max_speed_mps: f64, radius_m: f64, tolerance_m: f64) -> RobotGroup {
+        let abilities = Abilities { max_speed_mps, max_acceleration_mps2: f64::INFINITY, step_s: self.step_s };
+        let group = RobotGroup::new(abilities, radius_m).to_places(tolerance_m);
+        group.behind(self.safety, AvoidParams::default(), PushOutParams::new(1.0))
     }
 
     /// The scenario of one run that is given `longest_s` seconds.
     fn scenario(&self, name: &str, seed: u64, longest_s: f64, setup: PlaneSetup) -> Scenario {
         let radio = RadioParams { range_m: self.range_m, loss: self.loss, ..RadioParams::default() };
         let ticks = libm::ceil(longest_s / self.step_s) as u32;
-        let setup = setup.behind(self.safety, AvoidParams::default(), PushOutParams::new(1.0));
         Scenario::in_plane(name, seed, ticks.max(1), radio, setup)
     }
 

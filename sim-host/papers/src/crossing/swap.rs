@@ -114,7 +114,7 @@ impl Plan {
     pub fn scenario(&self, robots: u32, seed: u64) -> Scenario {
         let circle = self.circle_m.unwrap_or_else(|| circle_m(robots));
         let starts = circle_starts(robots, circle, self.noise_m, seed);
-        let setup = PlaneSetup::new(self.conditions.abilities(), RADIUS_M, starts).to_places(TOLERANCE_M);
+        let setup = PlaneSetup::new(self.conditions.group(RADIUS_M, TOLERANCE_M), starts);
         let longest_s = self.patience * 2.0 * circle / self.conditions.speed_mps;
         self.conditions.scenario("swap", seed, longest_s, setup)
     }

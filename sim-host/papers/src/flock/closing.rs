@@ -205,6 +205,7 @@ impl Closing {
                     ],
                     velocity_mps: [way * side_mps, 0.0, 0.0],
                     places: vec![target],
+                    group: None,
                 });
             }
         }

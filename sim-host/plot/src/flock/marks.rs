@@ -128,6 +128,7 @@ fn robots(snapshot: &Snapshot, frame: &Frame, canvas: &mut Canvas) {
         if are_discs {
             let colour = colour_of(snapshot, robot);
             let edge = Stroke::new(colour, 1.0);
+            let radius = snapshot.radii_m.get(robot).map_or(radius, |own_m| own_m * frame.scale);
             canvas.circle([x, y], radius, Some(colour.towards(WHITE, 0.55)), Some(edge));
             if speed > 0.0 {
                 let length = radius + ARROW * speed / fastest;

@@ -11,7 +11,6 @@ use crate::world::{Misplaced, World};
 use staya_controller::agent::{AgentConfig, AnyInputs, AnySurroundings, CellState, Command, Inputs, OnGrid, Task};
 use staya_controller::grid::UNIT;
 use staya_controller::robot::Mode;
-use staya_controller::robot::RobotId;
 use staya_controller::time::Duration;
 
 /// Bodies that hold a cell each.
@@ -108,8 +107,8 @@ impl Ground for Grid {
         is_there.then_some(body.free_at)
     }
 
-    fn config(&self, id: RobotId, tick: Duration) -> AgentConfig<f32> {
-        AgentConfig::new(id, 0.0, tick)
+    fn config(&self, index: usize, tick: Duration) -> AgentConfig<f32> {
+        AgentConfig::new(self.robots[index].id, 0.0, tick)
     }
 
     fn task(&self, index: usize, _: u32) -> Task {

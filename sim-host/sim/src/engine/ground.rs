@@ -3,9 +3,9 @@
 use super::Status;
 use crate::metrics::Keeping;
 use crate::record::Motion;
-use crate::world::plane::Clearance;
+use crate::world::plane::{Clearance, Disc};
 use staya_controller::agent::{AgentConfig, AnyInputs, AnySurroundings, Command, Guidance, Task};
-use staya_controller::robot::RobotId;
+use staya_controller::grid::Cell;
 use staya_controller::time::Duration;
 
 /// A world with bodies, as the engine needs it. Bodies are numbered as the robots of the scenario.
@@ -32,8 +32,8 @@ pub trait Ground: Send + Sync {
     /// `None` when its robot is not where it should be.
     fn arrival(&self, index: usize, tick: u32, status: &Status) -> Option<u64>;
 
-    /// What a robot must know of its body and its radio.
-    fn config(&self, id: RobotId, tick: Duration) -> AgentConfig<f32>;
+    /// What robot number `index` of the scenario must know of its body and its radio.
+    fn config(&self, index: usize, tick: Duration) -> AgentConfig<f32>;
 
     /// What the robot of body `index` has to do if it starts at `tick`.
     fn task(&self, index: usize, tick: u32) -> Task;
@@ -58,6 +58,11 @@ pub trait Ground: Send + Sync {
     /// ticks; `None` where bodies have no size.
     fn clearance(&self) -> Option<Clearance> {
         None
+    }
+
+    /// Bodies that are no robots and say where they are, with the cells that they are in.
+    fn heard(&self) -> impl Iterator<Item = (&Disc, Option<Cell>)> {
+        core::iter::empty()
     }
 
     /// An order of the operator to everybody that is due at `tick`: frames.

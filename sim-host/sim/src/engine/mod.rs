@@ -15,6 +15,7 @@ mod faults;
 mod grid;
 mod ground;
 mod hash;
+mod intruder;
 mod operator;
 mod plane;
 mod simulate;
@@ -32,6 +33,7 @@ use crate::record::{PacketCounts, RobotRow, TickRow};
 use crate::scenario::{Fault, Robot, Scenario};
 use attacker::Attacker;
 use hash::Chain;
+use intruder::Intruder;
 use rayon::prelude::*;
 use staya_controller::agent::{
     Agent, AgentConfig, AnyInputs, Command, Event, GuidanceSetup, Inputs, NEIGHBORS, OUTBOX, Safety, SafetySetup, Setup,
@@ -150,9 +152,10 @@ pub struct Engine<W, G, A> {
     commands: Vec<Command<f32>>,
     statuses: Vec<Status>,
     chains: Vec<Chain>,
-    /// Of the robots, then of the attackers.
+    /// Of the robots, then of the attackers and of the intruders.
     positions_m: Vec<[f64; 2]>,
     attackers: Vec<Attacker>,
+    intruders: Vec<Intruder>,
     external: Option<External>,
     keeps_events: bool,
     arrivals: Arrivals,
@@ -176,9 +179,12 @@ where
         let attackers = attackers.map(|attack| Attacker::new(attack, format, cell_m));
         let attackers: Vec<_> = attackers.collect();
         let ids = robots.iter().map(|robot| robot.id);
+        let intruders: Vec<_> = ground.heard().map(|(disc, _)| Intruder::new(disc, format)).collect();
         let ids = ids.chain((0..attackers.len()).map(Attacker::id));
+        let ids = ids.chain(intruders.iter().map(|intruder| intruder.id));
         let mut positions_m = vec![[0.0; 2]; robots.len()];
         positions_m.extend(attackers.iter().map(Attacker::place_m));
+        positions_m.extend(intruders.iter().map(|intruder| intruder.position_m));
         let mut engine = Self {
             seed: scenario.seed,
             format,
@@ -195,6 +201,7 @@ where
             chains: robots.iter().map(|robot| Chain::new(robot.id)).collect(),
             positions_m,
             attackers,
+            intruders,
             external: None,
             keeps_events: false,
             arrivals: Arrivals::new(robots.len()),
@@ -214,7 +221,7 @@ where
     pub fn with_external(mut self, scenario: &Scenario, controllers: Box<dyn ExternalController>) -> Self {
         let robots = controllers.robots().into_iter();
         let robots = robots.filter(|&index| index < self.robots.len());
-        let robots = robots.map(|index| (index, scenario.guidance(index), scenario.safety()));
+        let robots = robots.map(|index| (index, scenario.guidance(index), scenario.safety(index)));
         let robots: Vec<_> = robots.collect();
         let indices: Vec<_> = robots.iter().map(|&(index, ..)| index).collect();
         self.external = Some(External { controllers, robots });
@@ -227,7 +234,7 @@ where
     /// What the computer of robot `index` must know at its start number `boot`.
     fn config(&self, index: usize, boot: u8) -> AgentConfig<f32> {
         let tick = Duration::from_micros(i32::try_from(self.tick_us).unwrap_or(i32::MAX));
-        AgentConfig { boot, seed: self.seed, ..self.ground.config(self.robots[index].id, tick) }
+        AgentConfig { boot, seed: self.seed, ..self.ground.config(index, tick) }
     }
 
     /// Computer number `index` with its own agent, started now.
@@ -273,11 +280,15 @@ where
         self.apply_faults();
         let refused = self.decide();
         self.attack();
+        self.intrude();
 
-        let (computers, attackers) = (&self.computers, &self.attackers);
+        let (computers, attackers, intruders) = (&self.computers, &self.attackers, &self.intruders);
         let outbox = |index: usize| match computers.get(index) {
             Some(computer) => computer.outbox.as_slice(),
-            None => attackers[index - computers.len()].outbox(),
+            None => match attackers.get(index - computers.len()) {
+                Some(attacker) => attacker.outbox(),
+                None => intruders[index - computers.len() - attackers.len()].outbox(),
+            },
         };
         let carried = self.radio.carry(self.tick, &self.positions_m, outbox);
         let packets = PacketCounts {
@@ -303,6 +314,19 @@ where
         let robots = self.robots.len();
         for (at, attacker) in self.attackers.iter_mut().enumerate() {
             attacker.act(self.tick, self.radio.inbox(robots + at));
+        }
+    }
+
+    /// Intruders say where they are.
+    fn intrude(&mut self) {
+        let now = Instant::from_micros(self.tick.wrapping_mul(self.tick_us));
+        let first = self.robots.len() + self.attackers.len();
+        let positions_m = self.positions_m.iter_mut().skip(first);
+        for ((intruder, position_m), (disc, cell)) in
+            self.intruders.iter_mut().zip(positions_m).zip(self.ground.heard())
+        {
+            intruder.speak(disc, cell, now);
+            *position_m = intruder.position_m;
         }
     }
 

@@ -5,11 +5,11 @@ use super::ground::{Ground, StateWords};
 use crate::radio;
 use crate::record::Motion;
 use crate::scenario::{Order, PlaneSetup, Robot, Scenario, Target};
-use crate::world::plane::{Clearance, Disc, Plane, narrow};
+use crate::world::plane::{Clearance, Disc, Plane, Solid, narrow};
 use crate::world::window;
 use staya_controller::agent::{
-    AgentConfig, AnyInputs, AnySurroundings, CellState, Command, InCell, InCells, InPlane, Inputs, KinematicState,
-    OnGrid, Task, WAYPOINTS, Waypoint,
+    AgentConfig, AnyInputs, AnySurroundings, CellState, Command, GuidanceKind, InCell, InCells, InPlane, Inputs,
+    KinematicState, OnGrid, Task, WAYPOINTS, Waypoint,
 };
 use staya_controller::auth::Key;
 use staya_controller::geom::{Position, Vec2, Vec3};
@@ -39,15 +39,27 @@ impl PlaneGround {
     /// The scenario's bodies at their starts.
     #[must_use]
     pub fn new(scenario: &Scenario, setup: &PlaneSetup) -> Self {
-        let discs = scenario.robots.iter().zip(&setup.starts);
-        let discs = discs.map(|(robot, start)| Disc {
+        let discs = scenario.robots.iter().zip(&setup.starts).enumerate();
+        let discs = discs.map(|(index, (robot, start))| Disc {
             id: robot.id,
-            radius_m: setup.radius_m,
+            radius_m: setup.group(index).radius_m,
             position_m: start.position_m,
             velocity_mps: start.velocity_mps,
+            abilities: setup.group(index).abilities,
         });
         let land = setup.has_terrain.then(|| scenario.terrain.clone());
-        let plane = Plane::new(setup.abilities, land, setup.solids.clone(), discs.collect());
+        // Those who are heard have the numbers behind the robots'; nobody asks for those of the others.
+        let last = scenario.robots.last().map_or(0, |robot| robot.id.0);
+        let mut ids = (last + 1..).map(RobotId);
+        let intruders = setup.intruders.iter().map(|intruder| Disc {
+            id: if intruder.is_heard { ids.next().unwrap_or_default() } else { RobotId::NOBODY },
+            radius_m: intruder.radius_m,
+            position_m: intruder.position_m,
+            velocity_mps: intruder.velocity_mps,
+            abilities: setup.general.abilities,
+        });
+        let intruders = intruders.collect();
+        let plane = Plane::new(land, setup.solids.clone(), discs.collect()).with_intruders(intruders);
         Self {
             clearance: Clearance::FREE,
             plane,
@@ -66,17 +78,24 @@ impl PlaneGround {
         &self.plane
     }
 
-    /// What a robot of the scenario senses where it is, with what velocity it has; the inbox is empty. Places are finite.
+    /// What robot number `index` of the scenario senses where it is, with what velocity it has; the inbox is empty. Places
+    /// are finite.
     pub fn sense_at<'a>(
         &'a self,
+        index: usize,
         position_m: [f64; 3],
         velocity_mps: [f64; 3],
         senses: &'a mut Senses,
     ) -> AnyInputs<'a, f32> {
         let Senses { cells, obstacles } = senses;
-        let sight_m = self.setup.sight_m + self.setup.radius_m;
+        let group = self.setup.group(index);
+        let sight_m = group.sight_m + group.radius_m;
         obstacles.clear();
-        let near = self.plane.solids().iter().filter(|solid| solid.distance_m(position_m) <= sight_m);
+        // Who says nothing is seen as what stands where he is.
+        let silent = self.plane.intruders().iter().filter(|intruder| !intruder.id.is_somebody());
+        let silent = silent.map(|disc| Solid::Ball { center_m: disc.position_m, radius_m: disc.radius_m });
+        let near = self.plane.solids().iter().copied().chain(silent);
+        let near = near.filter(|solid| solid.distance_m(position_m) <= sight_m);
         obstacles.extend(near.map(|solid| narrow(&solid.seen_from(position_m))));
         let place = self.in_cell(position_m);
         let window =
@@ -91,7 +110,8 @@ impl PlaneGround {
             let walls = grid_walls::<f32, WALLS>(window, &frame, Vec2::ZERO, sight_m as f32);
             obstacles.extend(walls);
         }
-        let plane = InPlane { max_speed_mps: self.plane.max_speed_mps(position_m) as f32, obstacles };
+        let max_speed_mps = self.plane.max_speed_mps(&group.abilities, position_m) as f32;
+        let plane = InPlane { max_speed_mps, obstacles };
         let [vx, vy, vz] = velocity_mps.map(|v| v as f32);
         Inputs {
             state: KinematicState {
@@ -165,7 +185,7 @@ impl Ground for PlaneGround {
 
     fn sense<'a>(&'a self, index: usize, _: u32, senses: &'a mut Senses) -> AnyInputs<'a, f32> {
         let disc = &self.plane.discs()[index];
-        self.sense_at(disc.position_m, disc.velocity_mps, senses)
+        self.sense_at(index, disc.position_m, disc.velocity_mps, senses)
     }
 
     fn motion(&self, index: usize, _: u32) -> Motion {
@@ -183,11 +203,7 @@ impl Ground for PlaneGround {
 
     fn count_collisions(&mut self, _: u32) -> u64 {
         let now = self.plane.clearance();
-        let all = &mut self.clearance;
-        all.bodies_m = all.bodies_m.min(now.bodies_m);
-        all.solids_m = all.solids_m.min(now.solids_m);
-        all.overlaps += now.overlaps;
-        all.intrusions += now.intrusions;
+        self.clearance.add(&now);
         now.overlaps + now.intrusions
     }
 
@@ -211,19 +227,21 @@ impl Ground for PlaneGround {
         is_there.then(|| (u64::from(tick) + 1) * u64::from(UNIT))
     }
 
-    fn config(&self, id: RobotId, tick: Duration) -> AgentConfig<f32> {
+    fn config(&self, index: usize, tick: Duration) -> AgentConfig<f32> {
         // What is sent in a tick is heard in the next one, or in the first one that does not begin before the delay is over.
         let ticks = self.delay_us.div_ceil(self.tick_us.max(1)).max(1);
         let micros = i32::try_from(ticks * self.tick_us).unwrap_or(i32::MAX);
+        let group = self.setup.group(index);
         AgentConfig {
-            max_acceleration_mps2: self.setup.abilities.max_acceleration_mps2 as f32,
+            max_acceleration_mps2: group.abilities.max_acceleration_mps2 as f32,
             latency: Duration::from_micros(micros),
-            ..AgentConfig::new(id, self.setup.radius_m as f32, tick)
+            ..AgentConfig::new(self.robots[index].id, group.radius_m as f32, tick)
         }
     }
 
     fn task(&self, index: usize, tick: u32) -> Task {
-        if self.setup.guidance.kind().is_on_grid() {
+        let guidance = self.setup.group(index).guidance.kind();
+        if guidance.is_on_grid() {
             return Task::Cell(self.robots[index].goal);
         }
         // One that starts anew is told what has been ordered in the meantime; what is ordered in this tick, it hears.
@@ -235,6 +253,10 @@ impl Ground for PlaneGround {
         let mut waypoints = heapless::Vec::<(u8, Waypoint<f32>), WAYPOINTS>::new();
         for (number, since, target) in first.chain(later) {
             let age_s = f64::from(tick - since) * f64::from(self.tick_us) / 1e6;
+            if guidance == GuidanceKind::Waypoint && number == 0 {
+                // It takes the place of all before it.
+                waypoints.clear();
+            }
             let waypoint = waypoint(target, age_s);
             match waypoints.iter_mut().find(|(known, _)| *known == number) {
                 Some((_, known)) => *known = waypoint,
@@ -243,6 +265,11 @@ impl Ground for PlaneGround {
             }
         }
         Task::Waypoints(waypoints)
+    }
+
+    fn heard(&self) -> impl Iterator<Item = (&Disc, Option<Cell>)> {
+        let heard = self.plane.intruders().iter().filter(|intruder| intruder.id.is_somebody());
+        heard.map(|disc| (disc, self.plane.cell(disc.position_m)))
     }
 
     fn orders(&self, tick: u32) -> Option<&[u8]> {

@@ -9,6 +9,7 @@ use crate::world::plane::Clearance;
 use staya_controller::agent::{
     AnyGuidance, AnySafety, CELLS, Commanded, HALF_PLANES, LEARNED, Safety, TEMPLATE, VISITS,
 };
+use std::collections::HashMap;
 use std::ops::ControlFlow;
 
 /// Cells of a search for windows up to radius 16 with their border: (2 * 16 + 3)^2.
@@ -116,19 +117,30 @@ impl AnyEngine {
 fn agents<const C: usize>(
     scenario: &Scenario,
 ) -> impl Fn(usize) -> (GuidanceOf<C>, SafetyOf) + Send + Sync + 'static + use<C> {
-    // Only places in a formation differ from robot to robot.
-    let kinds = match scenario.formation {
-        Some(_) => scenario.robots.len(),
-        None => 1,
+    let kind = |index| {
+        // Cell by cell there is neither speed nor distance.
+        let group = scenario.plane.as_ref().map(|setup| setup.group(index));
+        let [speed_mps, tolerance_m] =
+            group.map_or([0.0; 2], |group| [group.cruise_mps, group.tolerance_m].map(|x| x as f32));
+        (scenario.guidance(index), scenario.safety(index), speed_mps, tolerance_m)
     };
-    let guidances: Vec<_> = (0..kinds).map(|index| scenario.guidance(index)).collect();
-    let safety = scenario.safety();
-    // Cell by cell there is neither speed nor distance.
-    let (speed_mps, tolerance_m) =
-        scenario.plane.as_ref().map_or((0.0, 0.0), |setup| (setup.cruise_mps as f32, setup.tolerance_m as f32));
+    // Places in a formation differ from robot to robot, otherwise groups at most: each is made once.
+    let group_of = |index: usize| match (&scenario.formation, &scenario.plane) {
+        (Some(_), _) => index + 1,
+        (None, Some(plane)) => plane.starts[index].group.map_or(0, |group| group + 1),
+        (None, None) => 0,
+    };
+    let (mut kinds, mut known) = (Vec::new(), HashMap::new());
+    let of_robots = (0..scenario.robots.len()).map(|index| {
+        *known.entry(group_of(index)).or_insert_with(|| {
+            kinds.push(kind(index));
+            kinds.len() - 1
+        })
+    });
+    let of_robots: Vec<usize> = of_robots.collect();
     move |index| {
-        let guidance = guidances[index % kinds].guidance();
-        (Commanded::new(guidance, speed_mps, tolerance_m), safety.safety())
+        let (guidance, safety, speed_mps, tolerance_m) = &kinds[of_robots[index]];
+        (Commanded::new(guidance.guidance(), *speed_mps, *tolerance_m), safety.safety())
     }
 }
 

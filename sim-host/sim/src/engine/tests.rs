@@ -333,5 +333,6 @@ proptest! {
 
 mod attack;
 mod external;
+mod intruder;
 mod operator;
 mod plane;

@@ -24,14 +24,21 @@ pub(super) fn general(source: &Source<'_>, file: &ScenarioFile) -> Result<(), Sc
     within(source, "tick_s", file.tick_s, 0.001, 60.0, "seconds")
 }
 
-/// Whether the radio's format has room for the robots' numbers.
-pub(super) fn numbers(source: &Source<'_>, file: &ScenarioFile, robots: &[Robot]) -> Result<(), ScenarioError> {
+/// Whether the radio's format has room for the numbers of the robots, and of the intruders that are heard behind them.
+pub(super) fn numbers(
+    source: &Source<'_>,
+    file: &ScenarioFile,
+    robots: &[Robot],
+    intruders: usize,
+) -> Result<(), ScenarioError> {
     let (format, most) = (file.radio.format, max_robot(file.radio.format, false));
-    match robots.iter().find(|robot| robot.id > most) {
+    let last = robots.last().map_or(0, |robot| robot.id.0);
+    let ids = robots.iter().map(|robot| robot.id.0).chain((last + 1..).take(intruders));
+    match ids.into_iter().find(|&id| id > most.0) {
         None => Ok(()),
-        Some(robot) => Err(source.error(
+        Some(id) => Err(source.error(
             "radio.format",
-            format!("robot {} has no number in {}: systems are 1 to {}", robot.id.0, format.name(), most.0),
+            format!("robot {id} has no number in {}: systems are 1 to {}", format.name(), most.0),
             "give fewer robots or smaller numbers, or format = \"postcard\"",
         )),
     }

@@ -15,9 +15,9 @@ mod source;
 
 pub use params::{FormationTable, GridTable, RouteTable};
 pub use plane::{
-    BallEntry, BoidsTable, CircleEntry, CloudEntry, GoalFlockTable, HalfSpaceEntry, LatticeTable, OrcaTable, Order,
-    OrderEntry, Place, PlaneRobotEntry, PlaneRobots, PlaneSetup, PlaneTable, PushOutTable, Start, Target, WallEntry,
-    circle_starts,
+    BallEntry, BoidsTable, CircleEntry, CloudEntry, GoalFlockTable, GroupTable, HalfSpaceEntry, Intruder,
+    IntruderEntry, LatticeTable, OrcaTable, Order, OrderEntry, Place, PlaneRobotEntry, PlaneRobots, PlaneSetup,
+    PlaneTable, PushOutTable, RobotGroup, Start, Target, WallEntry, circle_starts,
 };
 pub use ranges::within;
 pub use robots::{Formation, Robot};
@@ -164,7 +164,8 @@ impl Scenario {
                 (land, robots, formation.flatten(), Some(plane))
             }
         };
-        check::numbers(&source, &file, &robots)?;
+        let heard = plane.as_ref().map_or(0, PlaneSetup::heard);
+        check::numbers(&source, &file, &robots, heard)?;
         let (key, key_remark) = authentication::key(&source, &file, &robots)?.unzip();
         let attacks = authentication::attacks(&source, &file, &robots)?;
         let faults = check::faults(&source, &file, &robots)?;
@@ -194,11 +195,11 @@ impl Scenario {
     /// What who runs it should know: lines for people, about the key's file and about gains that are dangerous.
     #[must_use]
     pub fn remarks(&self) -> Vec<String> {
-        let guidance = self.plane.as_ref().map(|plane| &plane.guidance);
-        let gains = match guidance {
-            Some(GuidanceSetup::Lattice { params, .. }) => plane::remark(params, &self.radio, self.tick_s()),
+        let groups = self.plane.iter().flat_map(PlaneSetup::kinds);
+        let gains = groups.filter_map(|group| match &group.guidance {
+            GuidanceSetup::Lattice { params, .. } => plane::remark(params, &self.radio, self.tick_s()),
             _ => None,
-        };
+        });
         self.key_remark.clone().into_iter().chain(gains).collect()
     }
 

@@ -8,7 +8,7 @@ impl Scenario {
     #[must_use]
     pub fn guidance(&self, index: usize) -> GuidanceSetup {
         let mut guidance = match (&self.plane, &self.formation) {
-            (Some(plane), _) => plane.guidance.clone(),
+            (Some(plane), _) => plane.group(index).guidance.clone(),
             (None, None) => GuidanceSetup::Route { route: self.route, speed_mps: None },
             (None, Some(_)) => GuidanceSetup::Formation {
                 route: self.route,
@@ -24,9 +24,9 @@ impl Scenario {
         guidance
     }
 
-    /// What keeps the robots clear.
+    /// What keeps robot number `index` clear.
     #[must_use]
-    pub fn safety(&self) -> SafetySetup {
-        self.plane.as_ref().map_or(SafetySetup::None, |plane| plane.safety)
+    pub fn safety(&self, index: usize) -> SafetySetup {
+        self.plane.as_ref().map_or(SafetySetup::None, |plane| plane.group(index).safety)
     }
 }

@@ -105,6 +105,28 @@ impl<'a> Source<'a> {
         self.root.get_ref().get(name).is_some()
     }
 
+    /// Whether a field stands in the file.
+    pub fn stands(&self, field: &str) -> bool {
+        let mut at = Some(self.root.get_ref());
+        let mut segments = field.split('.').peekable();
+        while let Some(segment) = segments.next() {
+            let mut parts = segment.split(['[', ']']).filter(|part| !part.is_empty());
+            let mut value = at.and_then(|table| table.get(parts.next()?)).map(Spanned::get_ref);
+            for index in parts {
+                value = match (value, index.parse::<usize>()) {
+                    (Some(DeValue::Array(array)), Ok(index)) => array.get(index).map(Spanned::get_ref),
+                    _ => None,
+                };
+            }
+            match (value, segments.peek()) {
+                (Some(_), None) => return true,
+                (Some(DeValue::Table(inner)), Some(_)) => at = Some(inner),
+                _ => return false,
+            }
+        }
+        false
+    }
+
     /// Where a field stands, or as much of the way to it as there is.
     fn span(&self, field: &str) -> Option<Range<usize>> {
         let mut span = None;

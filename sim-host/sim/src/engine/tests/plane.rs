@@ -121,7 +121,7 @@ fn robots_know_how_old_news_is() {
         let scenario = in_plane(robots, &format!("[radio]\ndelay_ms = {delay_ms}"));
         let setup = scenario.plane.as_ref().expect("robots in the plane");
         let ground = PlaneGround::new(&scenario, setup);
-        let config = ground.config(RobotId(1), Duration::from_millis(100));
+        let config = ground.config(0, Duration::from_millis(100));
         assert_eq!(config.latency, Duration::from_millis(100 * ticks), "{delay_ms} ms");
     }
 }

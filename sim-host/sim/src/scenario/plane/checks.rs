@@ -2,10 +2,12 @@
 
 use super::super::ScenarioError;
 use super::super::source::Source;
-use super::table::{CloudEntry, Place, PlaneRobotEntry, PlaneTable};
-use super::{PlaneSetup, Start, check_count};
+use super::group::Spec;
+use super::table::{CloudEntry, Place, PlaneRobotEntry};
+use super::{PlaneSetup, check_count};
 use crate::nearby::{Cells, Query, Search, Space};
-use staya_controller::agent::{GOALS, GuidanceKind, SafetyKind};
+use crate::world::plane::Solid;
+use staya_controller::agent::{GOALS, GuidanceKind, WAYPOINTS};
 
 /// Farthest from the origin along each axis, metres: places go over the air as millimetres in 32 bits.
 pub(super) const FAR_M: f64 = 2_000_000.0;
@@ -21,7 +23,7 @@ pub(super) fn place(source: &Source<'_>, field: &str, place: Place) -> Result<()
     Err(source.error(field, "this is too far away", remedy))
 }
 
-fn velocity(source: &Source<'_>, field: &str, velocity: Place) -> Result<(), ScenarioError> {
+pub(super) fn velocity(source: &Source<'_>, field: &str, velocity: Place) -> Result<(), ScenarioError> {
     if velocity.0.iter().all(|v| v.abs() <= FAST_MPS) {
         return Ok(());
     }
@@ -61,80 +63,104 @@ fn goal_count(source: &Source<'_>, field: &str, guidance: GuidanceKind, count: u
     Err(source.error(field, what, format!("give at most {most}, or another guidance")))
 }
 
-pub(super) fn list(source: &Source<'_>, guidance: GuidanceKind, list: &[PlaneRobotEntry]) -> Result<(), ScenarioError> {
-    let field = "plane.robots.list";
+pub(super) fn list(source: &Source<'_>, spec: &Spec, list: &[PlaneRobotEntry]) -> Result<(), ScenarioError> {
+    let field = format!("{}.robots.list", spec.table());
     if list.is_empty() {
-        return Err(source.error(field, "nobody takes part", "give one robot or more"));
+        return Err(source.error(&field, "nobody takes part", "give one robot or more"));
     }
-    check_count(source, field, u32::try_from(list.len()).unwrap_or(u32::MAX))?;
+    check_count(source, &field, u32::try_from(list.len()).unwrap_or(u32::MAX))?;
     for (index, robot) in list.iter().enumerate() {
         let field = |name| format!("{field}[{index}].{name}");
         place(source, &field("start_m"), robot.start_m)?;
         velocity(source, &field("velocity_mps"), robot.velocity_mps)?;
         if let Some(goal_m) = robot.goal_m {
-            goal_count(source, &field("goal_m"), guidance, 1)?;
+            goal_count(source, &field("goal_m"), spec.guidance, 1)?;
             place(source, &field("goal_m"), goal_m)?;
         }
+        via(source, &field("via_m"), spec.guidance, robot)?;
     }
     Ok(())
 }
 
-pub(super) fn cloud(source: &Source<'_>, guidance: GuidanceKind, cloud: &CloudEntry) -> Result<(), ScenarioError> {
-    let field = |name| format!("plane.robots.cloud.{name}");
+/// Places on the way.
+fn via(source: &Source<'_>, field: &str, guidance: GuidanceKind, robot: &PlaneRobotEntry) -> Result<(), ScenarioError> {
+    let (count, most) = (robot.via_m.len(), WAYPOINTS - 1);
+    if count == 0 {
+        return Ok(());
+    }
+    if guidance != GuidanceKind::Waypoint {
+        let what = format!("robots with guidance \"{}\" go by no places", guidance.name());
+        return Err(source.error(field, what, "give guidance \"waypoint\", or leave it out"));
+    }
+    if robot.goal_m.is_none() {
+        return Err(source.error(field, "a way needs an end", "give goal_m too"));
+    }
+    if count > most {
+        let what = format!("{count} places on the way are too many");
+        return Err(source.error(field, what, format!("give at most {most}")));
+    }
+    let mut places = robot.via_m.iter().enumerate();
+    places.try_for_each(|(index, &at)| place(source, &format!("{field}[{index}]"), at))
+}
+
+pub(super) fn cloud(source: &Source<'_>, spec: &Spec, cloud: &CloudEntry) -> Result<(), ScenarioError> {
+    let field = |name| format!("{}.robots.cloud.{name}", spec.table());
     place(source, &field("from_m"), cloud.from_m)?;
     place(source, &field("to_m"), cloud.to_m)?;
     let (from, to) = (cloud.velocity_from_mps, cloud.velocity_to_mps);
     velocity(source, &field("velocity_from_mps"), from)?;
     velocity(source, &field("velocity_to_mps"), to)?;
-    goal_count(source, &field("goals_m"), guidance, cloud.goals_m.len())?;
+    goal_count(source, &field("goals_m"), spec.guidance, cloud.goals_m.len())?;
     for (index, goal) in cloud.goals_m.iter().enumerate() {
-        place(source, &format!("plane.robots.cloud.goals_m[{index}]"), *goal)?;
+        place(source, &format!("{}[{index}]", field("goals_m")), *goal)?;
     }
     let moves = cloud.goal_velocity_mps;
-    goal_velocity(source, &field("goal_velocity_mps"), guidance, moves)
+    goal_velocity(source, &field("goal_velocity_mps"), spec.guidance, moves)
 }
 
 /// No two robots overlap, however they were placed.
-pub(super) fn starts(source: &Source<'_>, starts: &[Start], radius_m: f64) -> Result<(), ScenarioError> {
-    let centers: Vec<_> = starts.iter().map(|start| start.position_m).collect();
-    // Less than that is rounding.
-    let least_m = 2.0 * radius_m - 1e-6;
-    let mut index = Cells::<f64, 3>::new(Space::OPEN, least_m);
+pub(super) fn starts(source: &Source<'_>, setup: &PlaneSetup) -> Result<(), ScenarioError> {
+    let centers: Vec<_> = setup.starts.iter().map(|start| start.position_m).collect();
+    let largest_m = setup.kinds().map(|group| group.radius_m).fold(0.0, f64::max);
+    let mut index = Cells::<f64, 3>::new(Space::OPEN, (2.0 * largest_m).max(1e-3));
     index.rebuild(&centers);
     let mut found = Vec::new();
     for (number, at) in (0..).zip(centers) {
-        let query = Query { at, radius: least_m, most: 1, except: Some(number) };
+        let own_m = setup.group(number as usize).radius_m;
+        // As many as can overlap one who overlaps nobody before him are few.
+        let query = Query { at, radius: own_m + largest_m, most: usize::MAX, except: Some(number) };
         index.within(&query, &mut found);
-        if let Some(near) = found.first() {
-            let (one, two) = (number + 1, near.index + 1);
-            let what = format!("robots {one} and {two} overlap at the start");
-            let remedy = format!("put them {} m apart", 2.0 * radius_m);
-            return Err(source.error("plane.robots", what, remedy));
+        for near in &found {
+            let apart_m = own_m + setup.group(near.index as usize).radius_m;
+            // Less than that is rounding.
+            if near.distance_squared.sqrt() < apart_m - 1e-6 {
+                let (one, two) = (number + 1, near.index + 1);
+                let what = format!("robots {one} and {two} overlap at the start");
+                let remedy = format!("put them {apart_m} m apart");
+                return Err(source.error("plane.robots", what, remedy));
+            }
         }
     }
     Ok(())
 }
 
-/// No robot starts in an obstacle.
+/// No robot starts in an obstacle or in an intruder.
 pub(super) fn outside(source: &Source<'_>, setup: &PlaneSetup) -> Result<(), ScenarioError> {
-    for (number, start) in (1..).zip(&setup.starts) {
-        let place = start.position_m;
-        let is_in = |solid: &crate::world::plane::Solid| solid.distance_m(place) < setup.radius_m - 1e-6;
-        if setup.solids.iter().any(is_in) {
-            let what = format!("robot {number} starts in an obstacle");
-            let remedy = format!("keep starts {} m away from obstacles", setup.radius_m);
-            return Err(source.error("plane.robots", what, remedy));
-        }
+    for (index, start) in setup.starts.iter().enumerate() {
+        let (place, radius_m) = (start.position_m, setup.group(index).radius_m);
+        let is_in = |solid: &Solid| solid.distance_m(place) < radius_m - 1e-6;
+        let intruders = setup.intruders.iter();
+        let intruders =
+            intruders.map(|intruder| Solid::Ball { center_m: intruder.position_m, radius_m: intruder.radius_m });
+        let what = if setup.solids.iter().any(is_in) {
+            format!("robot {} starts in an obstacle", index + 1)
+        } else if intruders.into_iter().any(|intruder| is_in(&intruder)) {
+            format!("robot {} starts in an intruder", index + 1)
+        } else {
+            continue;
+        };
+        let remedy = format!("keep its start {radius_m} m away");
+        return Err(source.error("plane.robots", what, remedy));
     }
     Ok(())
-}
-
-/// What would be ignored is refused.
-pub(super) fn safety_tables(source: &Source<'_>, table: &PlaneTable) -> Result<(), ScenarioError> {
-    let is_used = !matches!(table.safety, SafetyKind::None | SafetyKind::PushOut);
-    if is_used || table.orca.is_empty() {
-        return Ok(());
-    }
-    let remedy = "give plane.safety = \"orca\", or leave this table out";
-    Err(source.error("plane.orca", "these robots have another safety layer", remedy))
 }

@@ -2,8 +2,7 @@
 
 use super::super::source::Source;
 use super::super::{ScenarioError, ScenarioFile};
-use super::table::PlaneTable;
-use super::within;
+use super::group::Spec;
 use crate::radio::RadioParams;
 use staya_controller::agent::{BoidsSetup, GuidanceKind, GuidanceSetup};
 use staya_controller::flock::goal::GoalParams;
@@ -15,20 +14,20 @@ const GAMMA_OF_TWO: f32 = 50.0;
 /// An error when a flock's guidance is chosen without its table, or the table is there without it.
 fn goes_with<T: Copy>(
     source: &Source<'_>,
-    table: &PlaneTable,
+    spec: &Spec,
     guidance: GuidanceKind,
     name: &str,
     given: Option<T>,
 ) -> Result<Option<T>, ScenarioError> {
-    let field = format!("plane.{name}");
-    match (table.guidance == guidance, given.is_some()) {
+    let field = spec.field(source, name);
+    match (spec.guidance == guidance, given.is_some()) {
         (true, false) => {
             let what = "this guidance needs distances to go by";
             let remedy = "scenarios/README.md lists the fields of its table";
             Err(source.error(&field, what, remedy))
         }
         (false, true) => {
-            let remedy = format!("give plane.guidance = \"{name}\", or leave this table out");
+            let remedy = format!("give {}.guidance = \"{name}\", or leave this table out", spec.table());
             Err(source.error(&field, "these robots have another guidance", remedy))
         }
         _ => Ok(given),
@@ -39,13 +38,13 @@ fn goes_with<T: Copy>(
 pub(super) fn lattice(
     source: &Source<'_>,
     file: &ScenarioFile,
-    table: &PlaneTable,
+    spec: &Spec,
 ) -> Result<Option<GuidanceSetup>, ScenarioError> {
-    let given = goes_with(source, table, GuidanceKind::Lattice, "lattice", table.lattice)?;
+    let given = goes_with(source, spec, GuidanceKind::Lattice, "lattice", spec.lattice)?;
     let Some(given) = given else {
         return Ok(None);
     };
-    within(source, "plane.lattice.spacing_m", given.spacing_m, 0.01, 100.0, "metres")?;
+    spec.within(source, "lattice.spacing_m", given.spacing_m, [0.01, 100.0], "metres")?;
     let mut params = LatticeParams::new(given.spacing_m as f32);
     params.algorithm = match given.algorithm {
         Some(1) => Algorithm::One,
@@ -53,7 +52,7 @@ pub(super) fn lattice(
         None | Some(3) => Algorithm::Three,
         Some(other) => {
             let what = format!("there is no algorithm {other}");
-            return Err(source.error("plane.lattice.algorithm", what, "give 1, 2 or 3"));
+            return Err(source.error(&spec.field(source, "lattice.algorithm"), what, "give 1, 2 or 3"));
         }
     };
     if params.algorithm == Algorithm::Two {
@@ -70,7 +69,7 @@ pub(super) fn lattice(
         ("c_gamma", given.c_gamma, &mut params.gamma),
     ] {
         if let Some(gain) = gain {
-            within(source, &format!("plane.lattice.{field}"), gain, 0.0, 1e6, "1/s^2")?;
+            spec.within(source, &format!("lattice.{field}"), gain, [0.0, 1e6], "1/s^2")?;
             *param = Gain::critical(gain as f32);
         }
     }
@@ -100,21 +99,20 @@ pub(in super::super) fn remark(params: &LatticeParams<f32>, radio: &RadioParams,
 
 pub(super) fn goal_flock(
     source: &Source<'_>,
-    table: &PlaneTable,
+    spec: &Spec,
     cruise_mps: f64,
     seed: u64,
 ) -> Result<Option<GuidanceSetup>, ScenarioError> {
     let wanted = GuidanceKind::GoalFlock;
-    let Some(given) = goes_with(source, table, wanted, "goal_flock", table.goal_flock)? else {
+    let Some(given) = goes_with(source, spec, wanted, "goal_flock", spec.goal_flock)? else {
         return Ok(None);
     };
     let least = given.min_distance_m;
-    within(source, "plane.goal_flock.min_distance_m", least, 0.001, 10_000.0, "metres")?;
+    spec.within(source, "goal_flock.min_distance_m", least, [0.001, 10_000.0], "metres")?;
     let seen = given.neighborhood_m.unwrap_or(4.0 * least);
-    let field = "plane.goal_flock.neighborhood_m";
-    within(source, field, seen, 2.0 * least, 100_000.0, "metres")?;
+    spec.within(source, "goal_flock.neighborhood_m", seen, [2.0 * least, 100_000.0], "metres")?;
     let arrival_m = given.arrival_m.unwrap_or(seen);
-    within(source, "plane.goal_flock.arrival_m", arrival_m, 0.001, 1e6, "metres")?;
+    spec.within(source, "goal_flock.arrival_m", arrival_m, [0.001, 1e6], "metres")?;
     let mut params = GoalParams::new(least as f32, cruise_mps as f32);
     params.neighborhood_m = seen as f32;
     for (field, gain, param) in [
@@ -123,28 +121,24 @@ pub(super) fn goal_flock(
         ("k3", given.k3, &mut params.repulsion_gain),
     ] {
         if let Some(gain) = gain {
-            within(source, &format!("plane.goal_flock.{field}"), gain, -1e6, 1e6, "")?;
+            spec.within(source, &format!("goal_flock.{field}"), gain, [-1e6, 1e6], "")?;
             *param = gain as f32;
         }
     }
     Ok(Some(GuidanceSetup::GoalFlock { params, arrival_m: arrival_m as f32, seed }))
 }
 
-pub(super) fn boids(
-    source: &Source<'_>,
-    table: &PlaneTable,
-    cruise_mps: f64,
-) -> Result<Option<GuidanceSetup>, ScenarioError> {
-    let given = goes_with(source, table, GuidanceKind::Boids, "boids", table.boids)?;
+pub(super) fn boids(source: &Source<'_>, spec: &Spec, cruise_mps: f64) -> Result<Option<GuidanceSetup>, ScenarioError> {
+    let given = goes_with(source, spec, GuidanceKind::Boids, "boids", spec.boids)?;
     let Some(given) = given else {
         return Ok(None);
     };
-    within(source, "plane.boids.crowded_m", given.crowded_m, 0.0, 1e5, "metres")?;
-    within(source, "plane.boids.closest_m", given.closest_m, 0.0, 1e5, "metres")?;
+    spec.within(source, "boids.crowded_m", given.crowded_m, [0.0, 1e5], "metres")?;
+    spec.within(source, "boids.closest_m", given.closest_m, [0.0, 1e5], "metres")?;
     let max_turn = given.max_turn.unwrap_or(0.05);
     let max_turn_away = given.max_turn_away.unwrap_or(0.02);
-    within(source, "plane.boids.max_turn", max_turn, 0.0, 3.15, "radians")?;
-    within(source, "plane.boids.max_turn_away", max_turn_away, 0.0, 3.15, "radians")?;
+    spec.within(source, "boids.max_turn", max_turn, [0.0, 3.15], "radians")?;
+    spec.within(source, "boids.max_turn_away", max_turn_away, [0.0, 3.15], "radians")?;
     let [crowded, closest, turn, away] = [given.crowded_m, given.closest_m, max_turn, max_turn_away].map(|x| x as f32);
     let params = BoidsSetup { crowded_m: crowded, closest_m: closest, max_turn: turn, max_turn_away: away };
     Ok(Some(GuidanceSetup::Boids { params, speed_mps: cruise_mps as f32 }))

@@ -2,6 +2,7 @@
 
 mod checks;
 mod flocks;
+mod group;
 mod starts;
 mod table;
 
@@ -10,24 +11,22 @@ pub(super) use flocks::remark;
 #[cfg(test)]
 mod tests;
 
+pub use group::RobotGroup;
 pub use starts::{Start, Target, circle_starts};
 pub use table::*;
 
 use super::ranges::within;
 use super::source::Source;
-use super::{Robot, Scenario, ScenarioError, ScenarioFile, params};
+use super::{Robot, Scenario, ScenarioError, ScenarioFile};
 use crate::radio::RadioParams;
 use crate::terrain::Terrain;
 use crate::world::MoveRules;
-use crate::world::plane::{Abilities, Solid};
-use staya_controller::agent::{AnyHalfPlanes, GuidanceKind, GuidanceSetup, RouteSetup, SafetyKind, SafetySetup};
+use crate::world::plane::Solid;
+use group::Spec;
+use staya_controller::agent::{GuidanceKind, RouteSetup};
 use staya_controller::formation::FormationParams;
 use staya_controller::grid::Cell;
-use staya_controller::neighbor::StalenessInflation;
-use staya_controller::orca::AvoidParams;
-use staya_controller::push_out::{Evasion, PushOutParams};
 use staya_controller::robot::RobotId;
-use staya_controller::template::Template;
 
 /// Robots that a plane can hold.
 const MAX_ROBOTS: u32 = 1_000_000;
@@ -43,69 +42,70 @@ pub struct Order {
     pub target: Target,
 }
 
+/// A body that is no robot of the swarm: it goes on as it goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Intruder {
+    /// Where it starts, metres.
+    pub position_m: [f64; 3],
+    /// How it goes, m/s.
+    pub velocity_mps: [f64; 3],
+    /// Radius of its body, metres.
+    pub radius_m: f64,
+    /// Whether it sends beacons; otherwise robots see it as they see obstacles.
+    pub is_heard: bool,
+}
+
 /// A checked `[plane]`.
 #[derive(Clone, Debug)]
 pub struct PlaneSetup {
-    /// What bodies can do.
-    pub abilities: Abilities,
-    /// Radius of each body, metres.
-    pub radius_m: f64,
-    /// Speed that robots like to go, m/s.
-    pub cruise_mps: f64,
-    /// How near to a goal counts as being there, metres.
-    pub tolerance_m: f64,
-    /// How far robots see obstacles, metres.
-    pub sight_m: f64,
+    /// What robots are like, unless they are in one of the groups.
+    pub general: RobotGroup,
+    /// Robots that differ.
+    pub groups: Vec<RobotGroup>,
     /// Whether there is land under the bodies.
     pub has_terrain: bool,
     /// What does not move.
     pub solids: Vec<Solid>,
+    /// Bodies that are no robots.
+    pub intruders: Vec<Intruder>,
     /// By robot.
     pub starts: Vec<Start>,
-    /// Where they want to go.
-    pub guidance: GuidanceSetup,
-    /// What keeps them apart.
-    pub safety: SafetySetup,
     /// By rising tick.
     pub orders: Vec<Order>,
 }
 
 impl PlaneSetup {
-    /// Robots of `radius_m` at their starts, without land and obstacles, that go straight to their first places behind ORCA:
-    /// what a `[plane]` with nothing but the required fields says.
+    /// Robots at their starts, without land and obstacles, that are all alike.
     #[must_use]
-    pub fn new(abilities: Abilities, radius_m: f64, starts: Vec<Start>) -> Self {
-        let (cruise_mps, tolerance_m) = (abilities.max_speed_mps, radius_m / 10.0);
-        let inflation = inflation(cruise_mps, radius_m);
+    pub const fn new(general: RobotGroup, starts: Vec<Start>) -> Self {
         Self {
-            abilities,
-            radius_m,
-            cruise_mps,
-            tolerance_m,
-            sight_m: ten(),
+            general,
+            groups: Vec::new(),
             has_terrain: false,
             solids: Vec::new(),
+            intruders: Vec::new(),
             starts,
-            guidance: waypoint(cruise_mps, tolerance_m),
-            safety: SafetySetup::Orca { params: AvoidParams::default(), inflation, source: AnyHalfPlanes::Analytic },
             orders: Vec::new(),
         }
     }
 
-    /// The same robots, which go straight to places and count as being there at this distance, metres.
+    /// What robot number `index` is like.
     #[must_use]
-    pub fn to_places(mut self, tolerance_m: f64) -> Self {
-        self.tolerance_m = tolerance_m;
-        self.guidance = waypoint(self.cruise_mps, tolerance_m);
-        self
+    pub fn group(&self, index: usize) -> &RobotGroup {
+        let group = self.starts.get(index).and_then(|start| self.groups.get(start.group?));
+        group.unwrap_or(&self.general)
     }
 
-    /// The same robots behind a safety layer with those of the parameters that it has a use for; silent robots grow as
-    /// usual.
+    /// Intruders that send beacons.
     #[must_use]
-    pub fn behind(mut self, safety: SafetyKind, orca: AvoidParams<f32>, push_out: PushOutParams<f32>) -> Self {
-        self.safety = safety.setup(orca, inflation(self.abilities.max_speed_mps, self.radius_m), push_out);
-        self
+    pub fn heard(&self) -> usize {
+        self.intruders.iter().filter(|intruder| intruder.is_heard).count()
+    }
+
+    /// What robots are like, each kind once: those that there are robots of.
+    pub fn kinds(&self) -> impl Iterator<Item = &RobotGroup> {
+        let general = Some(&self.general).filter(|_| self.starts.iter().any(|start| start.group.is_none()));
+        general.into_iter().chain(&self.groups)
     }
 
     /// Numbers for the robots: 1, 2, 3, ... in the order of their starts; their cells mean nothing.
@@ -114,16 +114,6 @@ impl PlaneSetup {
         let robot = |id| Robot { id: RobotId(id), start: Cell::default(), goal: Cell::default() };
         ids.map(robot).collect()
     }
-}
-
-/// Straight to places.
-const fn waypoint(cruise_mps: f64, tolerance_m: f64) -> GuidanceSetup {
-    GuidanceSetup::Waypoint { speed_mps: cruise_mps as f32, tolerance_m: tolerance_m as f32 }
-}
-
-/// How silent robots grow unless a file says otherwise: by half the highest speed, up to the radius.
-const fn inflation(max_speed_mps: f64, radius_m: f64) -> StalenessInflation<f32> {
-    StalenessInflation { growth_mps: (max_speed_mps / 2.0) as f32, max_m: radius_m as f32 }
 }
 
 impl Scenario {
@@ -135,7 +125,7 @@ impl Scenario {
             name: name.to_owned(),
             seed,
             ticks,
-            tick_us: super::ranges::micros(setup.abilities.step_s),
+            tick_us: super::ranges::micros(setup.general.abilities.step_s),
             terrain: Terrain::flat(1, 1),
             rules: MoveRules::default(),
             radio,
@@ -160,23 +150,6 @@ pub(super) fn build(
     terrain: Option<&Terrain>,
     cells: Option<&[Robot]>,
 ) -> Result<(PlaneSetup, Vec<Robot>), ScenarioError> {
-    let far = checks::FAR_M;
-    for (field, value, low, high, unit) in [
-        ("plane.radius_m", table.radius_m, 0.001, 65.0, "metres"),
-        ("plane.max_speed_mps", table.max_speed_mps, 0.001, 32.0, "m/s"),
-        ("plane.sight_m", table.sight_m, 0.0, far, "metres"),
-    ] {
-        within(source, field, value, low, high, unit)?;
-    }
-    if table.max_acceleration_mps2.is_nan() || table.max_acceleration_mps2 <= 0.0 {
-        let what = format!("{} is no acceleration", table.max_acceleration_mps2);
-        let remedy = "give more than 0, in m/s^2, or inf";
-        return Err(source.error("plane.max_acceleration_mps2", what, remedy));
-    }
-    let cruise_mps = table.cruise_mps.unwrap_or(table.max_speed_mps);
-    within(source, "plane.cruise_mps", cruise_mps, 0.001_f64.min(table.max_speed_mps), table.max_speed_mps, "m/s")?;
-    let tolerance_m = table.tolerance_m.unwrap_or(table.radius_m / 10.0);
-    within(source, "plane.tolerance_m", tolerance_m, 0.001, far, "metres")?;
     if table.guidance.is_on_grid() && (terrain.is_none() || cells.is_none()) {
         return Err(source.error(
             "plane.guidance",
@@ -191,42 +164,74 @@ pub(super) fn build(
             "give both or none of them",
         ));
     }
-    let starts = match (cells, &table.robots) {
-        (Some(robots), None) => {
+    let spec = Spec::general(table);
+    let general = spec.build(source, file)?;
+    let (mut groups, mut starts) = (Vec::new(), Vec::new());
+    match (cells, &table.robots, table.group.is_empty()) {
+        (Some(robots), None, true) => {
             let terrain = terrain.expect("cells have been checked against the land");
-            starts::on_land(robots, terrain)
+            starts = starts::on_land(robots, terrain);
         }
-        (None, Some(robots)) => starts::placed(source, file.seed, table, robots)?,
+        (None, own, no_groups) if own.is_some() || !no_groups => {
+            let mut placing =
+                starts::Placing { source, file, general_m: general.radius_m, groups: &mut groups, starts: &mut starts };
+            if let Some(robots) = own {
+                placing.place(&spec, None, robots)?;
+            }
+            for (index, group) in table.group.iter().enumerate() {
+                let spec = spec.group(index, group);
+                if spec.guidance.is_on_grid() {
+                    let what = "this guidance goes from cell to cell";
+                    let remedy = "give it to all robots, in plane.guidance with the top-level [robots]";
+                    return Err(source.error(&spec.field(source, "guidance"), what, remedy));
+                }
+                let number = placing.add(&spec)?;
+                placing.place(&spec, Some(number), &group.robots)?;
+            }
+        }
         _ => {
             return Err(source.error(
                 "plane.robots",
                 "it is not clear who takes part",
-                "give either plane.robots in metres or the top-level robots in cells",
+                "give either plane.robots in metres, with plane.group if you like, or the top-level robots in cells",
             ));
         }
-    };
-    checks::starts(source, &starts, table.radius_m)?;
+    }
     let setup = PlaneSetup {
-        abilities: Abilities {
-            max_speed_mps: table.max_speed_mps,
-            max_acceleration_mps2: table.max_acceleration_mps2,
-            step_s: f64::from(super::ranges::micros(file.tick_s)) / 1e6,
-        },
-        radius_m: table.radius_m,
-        cruise_mps,
-        tolerance_m,
-        sight_m: table.sight_m,
+        general,
+        groups,
         has_terrain: terrain.is_some(),
         solids: solids(source, table)?,
+        intruders: intruders(source, table)?,
         starts,
-        safety: safety(source, table)?,
-        guidance: guidance(source, file, table, cruise_mps, tolerance_m)?,
-        orders: orders(source, file, table)?,
+        orders: Vec::new(),
     };
+    checks::starts(source, &setup)?;
     checks::outside(source, &setup)?;
-    checks::safety_tables(source, table)?;
+    let setup = PlaneSetup { orders: orders(source, file, table, &setup)?, ..setup };
     let robots = cells.map_or_else(|| setup.robots(), <[Robot]>::to_vec);
     Ok((setup, robots))
+}
+
+fn intruders(source: &Source<'_>, table: &PlaneTable) -> Result<Vec<Intruder>, ScenarioError> {
+    let mut intruders = Vec::new();
+    for (index, entry) in table.intruder.iter().enumerate() {
+        let field = |name| format!("plane.intruder[{index}].{name}");
+        checks::place(source, &field("start_m"), entry.start_m)?;
+        checks::velocity(source, &field("velocity_mps"), entry.velocity_mps)?;
+        within(source, &field("radius_m"), entry.radius_m, 0.001, 65.0, "metres")?;
+        if entry.heard && source.has("authentication") {
+            let remedy = "give heard = false, or leave [authentication] out";
+            return Err(source.error(&field("heard"), "nobody is heard without the key", remedy));
+        }
+        intruders.push(Intruder {
+            position_m: entry.start_m.0,
+            velocity_mps: entry.velocity_mps.0,
+            radius_m: entry.radius_m,
+            is_heard: entry.heard,
+        });
+    }
+    Ok(intruders)
 }
 
 fn solids(source: &Source<'_>, table: &PlaneTable) -> Result<Vec<Solid>, ScenarioError> {
@@ -264,98 +269,30 @@ fn solids(source: &Source<'_>, table: &PlaneTable) -> Result<Vec<Solid>, Scenari
     Ok(solids)
 }
 
-fn guidance(
+fn orders(
     source: &Source<'_>,
     file: &ScenarioFile,
     table: &PlaneTable,
-    cruise_mps: f64,
-    tolerance_m: f64,
-) -> Result<GuidanceSetup, ScenarioError> {
-    let flocks = [
-        flocks::lattice(source, file, table)?,
-        flocks::goal_flock(source, table, cruise_mps, file.seed)?,
-        flocks::boids(source, table, cruise_mps)?,
-    ];
-    // A table of another guidance is refused, and so is a flock without its own.
-    if let Some(flock) = flocks.into_iter().flatten().next() {
-        return Ok(flock);
-    }
-    if !table.guidance.is_on_grid() {
-        return Ok(waypoint(cruise_mps, tolerance_m));
-    }
-    let (route, speed_mps) = (params::routing(source, &file.route, &file.grid)?, Some(cruise_mps as f32));
-    if table.guidance == GuidanceKind::Route {
-        return Ok(GuidanceSetup::Route { route, speed_mps });
-    }
-    let formation = params::formation(source, &file.formation)?;
-    // Each robot has its own template: see `Scenario::guidance`.
-    Ok(GuidanceSetup::Formation { route, formation, template: Template::default(), speed_mps })
-}
-
-fn safety(source: &Source<'_>, table: &PlaneTable) -> Result<SafetySetup, ScenarioError> {
-    let orca = orca(source, &table.orca)?;
-    let mut inflation = inflation(table.max_speed_mps, table.radius_m);
-    for (field, value, unit, param) in [
-        ("inflation_mps", table.orca.inflation_mps, "m/s", &mut inflation.growth_mps),
-        ("inflation_m", table.orca.inflation_m, "metres", &mut inflation.max_m),
-    ] {
-        if let Some(value) = value {
-            within(source, &format!("plane.orca.{field}"), value, 0.0, 1000.0, unit)?;
-            *param = value as f32;
-        }
-    }
-    Ok(table.safety.setup(orca, inflation, push_out(source, table)?))
-}
-
-fn orca(source: &Source<'_>, table: &OrcaTable) -> Result<AvoidParams<f32>, ScenarioError> {
-    let mut params = AvoidParams::<f32>::default();
-    for (field, value, low, high, unit, param) in [
-        ("horizon_s", table.horizon_s, 0.01, 60.0, "seconds", &mut params.horizon_s),
-        ("wall_horizon_s", table.wall_horizon_s, 0.01, 60.0, "seconds", &mut params.wall_horizon_s),
-        ("share", table.share, 0.0, 1.0, "", &mut params.share),
-        ("margin_m", table.margin_m, 0.0, 10.0, "metres", &mut params.margin_m),
-    ] {
-        if let Some(value) = value {
-            within(source, &format!("plane.orca.{field}"), value, low, high, unit)?;
-            *param = value as f32;
-        }
-    }
-    Ok(params)
-}
-
-fn push_out(source: &Source<'_>, table: &PlaneTable) -> Result<PushOutParams<f32>, ScenarioError> {
-    let given = match (table.safety == SafetyKind::PushOut, table.push_out) {
-        (false, None) => return Ok(PushOutParams::new(1.0)),
-        (true, Some(given)) => given,
-        _ => {
-            let what = "safety \"push_out\" and its table go together";
-            return Err(source.error("plane.push_out", what, "give both or none of them"));
-        }
-    };
-    let field = "plane.push_out.min_distance_m";
-    within(source, field, given.min_distance_m, 0.001, 1e5, "metres")?;
-    Ok(PushOutParams {
-        model: given.model,
-        evasion: if given.single { Evasion::Single } else { Evasion::Multiple },
-        min_distance_m: given.min_distance_m as f32,
-    })
-}
-
-fn orders(source: &Source<'_>, file: &ScenarioFile, table: &PlaneTable) -> Result<Vec<Order>, ScenarioError> {
+    setup: &PlaneSetup,
+) -> Result<Vec<Order>, ScenarioError> {
+    let mut guidances: Vec<_> = setup.kinds().map(|group| group.guidance.kind()).collect();
+    guidances.dedup();
     let mut orders = Vec::new();
     for (index, order) in table.order.iter().enumerate() {
         let field = format!("plane.order[{index}].at_s");
         within(source, &field, order.at_s, 0.0, 1e9, "seconds")?;
-        if order.goal >= checks::goals(table.guidance) {
+        if guidances.iter().all(|&guidance| order.goal >= checks::goals(guidance)) {
             let field = format!("plane.order[{index}].goal");
-            let name = table.guidance.name();
-            let what = format!("robots with guidance \"{name}\" have no goal {}", order.goal);
+            let names: Vec<_> = guidances.iter().map(|guidance| format!("\"{}\"", guidance.name())).collect();
+            let what = format!("robots with guidance {} have no goal {}", names.join(" or "), order.goal);
             let remedy = "give one that they have, from 0, or another guidance";
             return Err(source.error(&field, what, remedy));
         }
         checks::place(source, &format!("plane.order[{index}].place_m"), order.place_m)?;
         let field = format!("plane.order[{index}].velocity_mps");
-        checks::goal_velocity(source, &field, table.guidance, order.velocity_mps)?;
+        for &guidance in &guidances {
+            checks::goal_velocity(source, &field, guidance, order.velocity_mps)?;
+        }
         orders.push(Order {
             tick: libm::ceil(order.at_s / file.tick_s) as u32,
             index: order.goal,

@@ -1,9 +1,10 @@
 //! Where robots in the plane start, and their tasks.
 
 use super::super::source::Source;
-use super::super::{Robot, ScenarioError};
+use super::super::{Robot, ScenarioError, ScenarioFile};
 use super::check_count as count;
-use super::table::{CloudEntry, Place, PlaneRobots, PlaneTable};
+use super::group::{RobotGroup, Spec};
+use super::table::{CloudEntry, Place, PlaneRobotEntry, PlaneRobots};
 use super::{checks, within};
 use crate::terrain::Terrain;
 use staya_controller::grid::Cell;
@@ -22,6 +23,8 @@ pub struct Start {
     pub velocity_mps: [f64; 3],
     /// The places it is told to go to.
     pub places: Vec<Target>,
+    /// Its group in [`PlaneSetup::groups`](super::PlaneSetup::groups); `None`: the general one.
+    pub group: Option<usize>,
 }
 
 /// A place to go to.
@@ -43,56 +46,91 @@ pub(super) fn on_land(robots: &[Robot], terrain: &Terrain) -> Vec<Start> {
         position_m: center(robot.start),
         velocity_mps: [0.0; 3],
         places: vec![Target { position_m: center(robot.goal), velocity_mps: [0.0; 3] }],
+        group: None,
     };
     robots.iter().map(start).collect()
 }
 
-pub(super) fn placed(
-    source: &Source<'_>,
-    seed: u64,
-    table: &PlaneTable,
-    robots: &PlaneRobots,
-) -> Result<Vec<Start>, ScenarioError> {
-    let fixed = |place: Place| Target { position_m: place.0, velocity_mps: [0.0; 3] };
-    let starts = match (&robots.list, &robots.circle, &robots.cloud) {
-        (Some(list), None, None) => {
-            checks::list(source, table.guidance, list)?;
-            list.iter()
-                .map(|entry| Start {
-                    position_m: entry.start_m.0,
-                    velocity_mps: entry.velocity_mps.0,
-                    places: entry.goal_m.into_iter().map(fixed).collect(),
-                })
-                .collect()
+/// Puts groups of robots into the plane, one after the other.
+pub(super) struct Placing<'a> {
+    pub source: &'a Source<'a>,
+    pub file: &'a ScenarioFile,
+    /// Radius of robots of the general group, metres.
+    pub general_m: f64,
+    /// All groups but the general one.
+    pub groups: &'a mut Vec<RobotGroup>,
+    /// All robots so far.
+    pub starts: &'a mut Vec<Start>,
+}
+
+impl Placing<'_> {
+    /// A further group; its number.
+    pub fn add(&mut self, spec: &Spec) -> Result<usize, ScenarioError> {
+        self.groups.push(spec.build(self.source, self.file)?);
+        Ok(self.groups.len() - 1)
+    }
+
+    /// Places the robots of a group (`None`: the general one), which `spec` describes.
+    pub fn place(&mut self, spec: &Spec, group: Option<usize>, robots: &PlaneRobots) -> Result<(), ScenarioError> {
+        let (source, table) = (self.source, format!("{}.robots", spec.table()));
+        let mut placed = match (&robots.list, &robots.circle, &robots.cloud) {
+            (Some(list), None, None) => {
+                checks::list(source, spec, list)?;
+                return self.list(spec, group, list);
+            }
+            (None, Some(circle), None) => {
+                count(source, &format!("{table}.circle.count"), circle.count)?;
+                let field = format!("{table}.circle.radius_m");
+                within(source, &field, circle.radius_m, 0.001, 1e6, "metres")?;
+                let field = format!("{table}.circle.noise_m");
+                within(source, &field, circle.noise_m, 0.0, 1e6, "metres")?;
+                circle_starts(circle.count, circle.radius_m, circle.noise_m, self.file.seed)
+            }
+            (None, None, Some(cloud)) => {
+                count(source, &format!("{table}.cloud.count"), cloud.count)?;
+                checks::cloud(source, spec, cloud)?;
+                self.cloud(spec, cloud).ok_or_else(|| {
+                    source.error(
+                        &format!("{table}.cloud"),
+                        "the robots find no room between the corners",
+                        "give fewer robots or corners farther apart",
+                    )
+                })?
+            }
+            _ => {
+                let remedy = "give exactly one of list, circle, cloud";
+                return Err(source.error(&table, "it is not clear who takes part", remedy));
+            }
+        };
+        placed.iter_mut().for_each(|start| start.group = group);
+        self.starts.append(&mut placed);
+        Ok(())
+    }
+
+    /// Robots of a list that was checked; one whose body differs is a group of its own.
+    fn list(&mut self, spec: &Spec, group: Option<usize>, list: &[PlaneRobotEntry]) -> Result<(), ScenarioError> {
+        let fixed = |place: Place| Target { position_m: place.0, velocity_mps: [0.0; 3] };
+        for (index, entry) in list.iter().enumerate() {
+            let own = spec.entry(&format!("{}.robots.list[{index}]", spec.table()), entry);
+            let group = own.map(|own| self.add(&own)).transpose()?.or(group);
+            self.starts.push(Start {
+                position_m: entry.start_m.0,
+                velocity_mps: entry.velocity_mps.0,
+                places: entry.via_m.iter().copied().chain(entry.goal_m).map(fixed).collect(),
+                group,
+            });
         }
-        (None, Some(circle), None) => {
-            count(source, "plane.robots.circle.count", circle.count)?;
-            let field = "plane.robots.circle.radius_m";
-            within(source, field, circle.radius_m, 0.001, 1e6, "metres")?;
-            let field = "plane.robots.circle.noise_m";
-            within(source, field, circle.noise_m, 0.0, 1e6, "metres")?;
-            circle_starts(circle.count, circle.radius_m, circle.noise_m, seed)
-        }
-        (None, None, Some(cloud)) => {
-            count(source, "plane.robots.cloud.count", cloud.count)?;
-            checks::cloud(source, table.guidance, cloud)?;
-            cloud_starts(cloud, table.radius_m, seed).ok_or_else(|| {
-                source.error(
-                    "plane.robots.cloud",
-                    "the robots find no room between the corners",
-                    "give fewer robots or corners farther apart",
-                )
-            })?
-        }
-        _ => {
-            return Err(source.error(
-                "plane.robots",
-                "it is not clear who takes part",
-                "give exactly one of list, circle, cloud",
-            ));
-        }
-    };
-    Ok(starts)
+        Ok(())
+    }
+
+    /// Evenly between the corners without overlaps; `None` when there is no room.
+    fn cloud(&self, spec: &Spec, cloud: &CloudEntry) -> Option<Vec<Start>> {
+        let others = self.starts.iter().map(|start| {
+            let radius_m = start.group.map_or(self.general_m, |group| self.groups[group].radius_m);
+            (start.position_m, radius_m)
+        });
+        cloud_starts(cloud, spec.radius_m(), self.file.seed, &others.collect::<Vec<_>>())
+    }
 }
 
 /// Evenly on the circle from the east on, each with its goal on the opposite side of its own start; `noise_m` moves the starts, and
@@ -109,6 +147,7 @@ pub fn circle_starts(count: u32, radius_m: f64, noise_m: f64, seed: u64) -> Vec<
                 position_m: [x + noise(), y + noise(), 0.0],
                 velocity_mps: [0.0; 3],
                 places: vec![Target { position_m: [-x, -y, 0.0], velocity_mps: [0.0; 3] }],
+                group: None,
             }
         })
         .collect()
@@ -122,8 +161,9 @@ fn unit(rng: &mut Rng) -> f64 {
 /// Draws of a place before the cloud is refused as too crowded.
 const TRIES: u32 = 1000;
 
-/// Evenly between the corners without overlaps; `None` when there is no room.
-fn cloud_starts(cloud: &CloudEntry, radius_m: f64, seed: u64) -> Option<Vec<Start>> {
+/// Evenly between the corners without overlaps, beside `others` (places and radii, metres), which are few; `None` when
+/// there is no room.
+fn cloud_starts(cloud: &CloudEntry, radius_m: f64, seed: u64, others: &[([f64; 3], f64)]) -> Option<Vec<Start>> {
     let between = |rng: &mut Rng, from: Place, to: Place| {
         let mut place = [0.0; 3];
         for (axis, place) in place.iter_mut().enumerate() {
@@ -136,6 +176,13 @@ fn cloud_starts(cloud: &CloudEntry, radius_m: f64, seed: u64) -> Option<Vec<Star
         .iter()
         .map(|goal| Target { position_m: goal.0, velocity_mps: cloud.goal_velocity_mps.0 })
         .collect();
+    let first = others.len() as u32;
+    let is_clear = |place: [f64; 3]| {
+        others.iter().all(|(other, other_m)| {
+            let squared: f64 = (0..3).map(|i| (place[i] - other[i]) * (place[i] - other[i])).sum();
+            squared >= (radius_m + other_m) * (radius_m + other_m)
+        })
+    };
     let mut taken = HashMap::<[i64; 3], Vec<[f64; 3]>>::new();
     let bucket = |place: [f64; 3]| place.map(|x| libm::floor(x / (2.0 * radius_m)) as i64);
     let is_free = |taken: &HashMap<[i64; 3], Vec<[f64; 3]>>, place: [f64; 3]| {
@@ -150,13 +197,14 @@ fn cloud_starts(cloud: &CloudEntry, radius_m: f64, seed: u64) -> Option<Vec<Star
     };
     (0..cloud.count)
         .map(|index| {
-            let mut rng = Rng::keyed(seed, STARTS, index, 1);
+            let mut rng = Rng::keyed(seed, STARTS, first + index, 1);
             let position_m = (0..TRIES)
                 .map(|_| between(&mut rng, cloud.from_m, cloud.to_m))
-                .find(|&place| is_free(&taken, place))?;
+                .find(|&place| is_free(&taken, place) && is_clear(place))?;
             taken.entry(bucket(position_m)).or_default().push(position_m);
             let (from, to) = (cloud.velocity_from_mps, cloud.velocity_to_mps);
-            Some(Start { position_m, velocity_mps: between(&mut rng, from, to), places: places.clone() })
+            let velocity_mps = between(&mut rng, from, to);
+            Some(Start { position_m, velocity_mps, places: places.clone(), group: None })
         })
         .collect()
 }

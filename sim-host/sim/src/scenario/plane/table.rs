@@ -30,6 +30,12 @@ pub struct PlaneTable {
     pub safety: SafetyKind,
     /// Who takes part, unless the top-level `robots` says it in cells.
     pub robots: Option<PlaneRobots>,
+    /// Further robots, which differ from what is said here.
+    #[serde(default)]
+    pub group: Vec<GroupTable>,
+    /// Bodies that are no robots and go through.
+    #[serde(default)]
+    pub intruder: Vec<IntruderEntry>,
     /// Walls: chains of points.
     #[serde(default)]
     pub wall: Vec<WallEntry>,
@@ -77,16 +83,78 @@ pub struct PlaneRobots {
 }
 
 /// One robot of `plane.robots.list`.
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlaneRobotEntry {
     /// Where it starts: x, y, z in metres.
     pub start_m: Place,
     /// Where it should go. Without it, it stays where guidance leaves it.
     pub goal_m: Option<Place>,
+    /// Places to go by on the way to the goal, at most three.
+    #[serde(default)]
+    pub via_m: Vec<Place>,
     /// How fast it is at the start. Default: at rest.
     #[serde(default)]
     pub velocity_mps: Place,
+    /// Radius of its body, metres. Default: that of its group.
+    pub radius_m: Option<f64>,
+    /// Its highest speed on easy land, m/s. Default: that of its group.
+    pub max_speed_mps: Option<f64>,
+}
+
+/// `[[plane.group]]`: robots that differ from what `[plane]` says; what is not given here is what it says. Their tables
+/// stand here when their guidance or their safety layer is another one.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GroupTable {
+    /// Who is in it.
+    pub robots: PlaneRobots,
+    /// Radius of each body, metres.
+    pub radius_m: Option<f64>,
+    /// Highest speed on easy land, m/s.
+    pub max_speed_mps: Option<f64>,
+    /// Highest acceleration, m/s^2.
+    pub max_acceleration_mps2: Option<f64>,
+    /// Speed that they like to go, m/s.
+    pub cruise_mps: Option<f64>,
+    /// How near to a goal counts as being there, metres.
+    pub tolerance_m: Option<f64>,
+    /// How far they see obstacles, metres.
+    pub sight_m: Option<f64>,
+    /// Where they want to go; not from cell to cell.
+    pub guidance: Option<GuidanceKind>,
+    /// What keeps them apart.
+    pub safety: Option<SafetyKind>,
+    /// Parameters of ORCA.
+    pub orca: Option<OrcaTable>,
+    /// Parameters of push-out.
+    pub push_out: Option<PushOutTable>,
+    /// Parameters of the alpha flock.
+    pub lattice: Option<LatticeTable>,
+    /// Parameters of the goal flock.
+    pub goal_flock: Option<GoalFlockTable>,
+    /// Parameters of boids.
+    pub boids: Option<BoidsTable>,
+}
+
+/// `[[plane.intruder]]`: a body that is no robot of the swarm and gives way to nobody.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct IntruderEntry {
+    /// Where it starts.
+    pub start_m: Place,
+    /// How it goes, all the time, m/s.
+    pub velocity_mps: Place,
+    /// Radius of its body, metres.
+    pub radius_m: f64,
+    /// Whether it says where it is, in beacons of a robot that gives no way; otherwise robots see it as they see
+    /// obstacles: where it is, not how fast. Default: true.
+    #[serde(default = "yes")]
+    pub heard: bool,
+}
+
+const fn yes() -> bool {
+    true
 }
 
 /// `[x, y]` or `[x, y, z]`.

@@ -1,6 +1,11 @@
+mod groups;
+
 use super::super::Overrides;
 use super::*;
 use proptest::prelude::*;
+use staya_controller::agent::{AnyHalfPlanes, GuidanceSetup, SafetySetup};
+use staya_controller::neighbor::StalenessInflation;
+use staya_controller::orca::AvoidParams;
 use std::path::Path;
 
 const HEAD: &str = "name = \"t\"\nticks = 5\n";
@@ -23,7 +28,7 @@ fn staleness_inflation_is_read_by_its_former_names_too() {
         let table = format!("[plane.orca]\n{growth} = 0.25\n{most} = 0.75\n");
         let (params, inflation) = (AvoidParams::default(), StalenessInflation { growth_mps: 0.25, max_m: 0.75 });
         let safety = SafetySetup::Orca { params, inflation, source: AnyHalfPlanes::Analytic };
-        assert_eq!(setup(&format!("{HEAD}{PLANE}{table}{TWO}")).safety, safety);
+        assert_eq!(setup(&format!("{HEAD}{PLANE}{table}{TWO}")).general.safety, safety);
     }
 }
 
@@ -32,12 +37,13 @@ fn the_smallest_plane_has_the_documented_defaults() {
     let scenario = parse(&format!("{HEAD}{PLANE}{TWO}")).expect("good");
     assert_eq!(scenario.robots.len(), 2);
     let plane = scenario.plane.expect("robots in the plane");
-    assert_eq!(plane.abilities.max_acceleration_mps2, f64::INFINITY);
-    assert_eq!((plane.cruise_mps, plane.sight_m), (1.0, 10.0));
-    assert!((plane.tolerance_m - 0.02).abs() < 1e-12);
+    let group = &plane.general;
+    assert_eq!(group.abilities.max_acceleration_mps2, f64::INFINITY);
+    assert_eq!((group.cruise_mps, group.sight_m), (1.0, 10.0));
+    assert!((group.tolerance_m - 0.02).abs() < 1e-12);
     let (params, inflation) = (AvoidParams::default(), StalenessInflation { growth_mps: 0.5, max_m: 0.2 });
-    assert_eq!(plane.guidance, GuidanceSetup::Waypoint { speed_mps: 1.0, tolerance_m: 0.02 });
-    assert_eq!(plane.safety, SafetySetup::Orca { params, inflation, source: AnyHalfPlanes::Analytic });
+    assert_eq!(group.guidance, GuidanceSetup::Waypoint { speed_mps: 1.0, tolerance_m: 0.02 });
+    assert_eq!(group.safety, SafetySetup::Orca { params, inflation, source: AnyHalfPlanes::Analytic });
     assert!(!plane.has_terrain);
     let [one, two] = &plane.starts[..] else { panic!("two robots") };
     assert_eq!(one.places[0].position_m, [5.0, 0.0, 0.0]);
@@ -268,9 +274,14 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             "s.toml:12: plane.order[0].goal: robots with guidance \"boids\" have no goal 0",
         ),
     ];
+    refused(&cases);
+}
+
+/// Each of these texts is refused, with these words and a remedy.
+fn refused(cases: &[(String, &str)]) {
     let mut wrong = String::new();
     for (text, expected) in cases {
-        let refusal = match parse(&text) {
+        let refusal = match parse(text) {
             Err(error) => error.to_string(),
             Ok(_) => "nothing".to_owned(),
         };
@@ -372,7 +383,7 @@ fn gains(radio: &str, gains: &str) -> (f32, f32, Vec<String>) {
     );
     let scenario = Scenario::parse(&text, Path::new("s.toml"), &Overrides::default()).unwrap();
     let remarks = scenario.remarks();
-    match scenario.plane.unwrap().guidance {
+    match scenario.plane.unwrap().general.guidance {
         GuidanceSetup::Lattice { params, .. } => (params.alpha.position, params.gamma.position, remarks),
         other => panic!("{other:?}"),
     }

@@ -28,9 +28,11 @@ pub struct Disc {
     pub position_m: [f64; 3],
     /// World velocity, metres per second.
     pub velocity_mps: [f64; 3],
+    /// What it can do.
+    pub abilities: Abilities,
 }
 
-/// What bodies can do.
+/// What a body can do.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Abilities {
     /// Highest speed on easy land (impassability 1) and off the map, m/s; u times less where the land takes u times
@@ -45,10 +47,10 @@ pub struct Abilities {
 /// Bodies, land and obstacles.
 #[derive(Clone, Debug)]
 pub struct Plane {
-    abilities: Abilities,
     terrain: Option<Terrain>,
     solids: Vec<Solid>,
     discs: Vec<Disc>,
+    intruders: Vec<Disc>,
     centers: Vec<[f64; 3]>,
     index: Cells<f64, 3>,
     largest_m: f64,
@@ -66,11 +68,32 @@ pub struct Clearance {
     pub overlaps: u64,
     /// Bodies that overlap an obstacle, or whose centre is in a blocked cell.
     pub intrusions: u64,
+    /// Least distance between a body's surface and an intruder's, metres; infinite without intruders.
+    pub intruders_m: f64,
+    /// Pairs of a body and an intruder that overlap.
+    pub intruder_overlaps: u64,
 }
 
 impl Clearance {
     /// Nothing is near.
-    pub const FREE: Self = Self { bodies_m: f64::INFINITY, solids_m: f64::INFINITY, overlaps: 0, intrusions: 0 };
+    pub const FREE: Self = Self {
+        bodies_m: f64::INFINITY,
+        solids_m: f64::INFINITY,
+        overlaps: 0,
+        intrusions: 0,
+        intruders_m: f64::INFINITY,
+        intruder_overlaps: 0,
+    };
+
+    /// Takes in those of another moment.
+    pub fn add(&mut self, other: &Self) {
+        self.bodies_m = self.bodies_m.min(other.bodies_m);
+        self.solids_m = self.solids_m.min(other.solids_m);
+        self.overlaps += other.overlaps;
+        self.intrusions += other.intrusions;
+        self.intruders_m = self.intruders_m.min(other.intruders_m);
+        self.intruder_overlaps += other.intruder_overlaps;
+    }
 }
 
 /// Less overlap than this is rounding, metres.
@@ -79,17 +102,30 @@ const ROUNDING_M: f64 = 1e-9;
 impl Plane {
     /// A world with these bodies.
     #[must_use]
-    pub fn new(abilities: Abilities, terrain: Option<Terrain>, solids: Vec<Solid>, discs: Vec<Disc>) -> Self {
+    pub fn new(terrain: Option<Terrain>, solids: Vec<Solid>, discs: Vec<Disc>) -> Self {
         let largest_m = discs.iter().map(|disc| disc.radius_m).fold(0.0, f64::max);
         Self {
-            abilities,
             terrain,
             solids,
+            intruders: Vec::new(),
             centers: Vec::with_capacity(discs.len()),
             index: Cells::new(Space::OPEN, (3.0 * largest_m).max(1e-3)),
             largest_m,
             discs,
         }
+    }
+
+    /// The same with bodies that are no robots: they go on as they go, through everything.
+    #[must_use]
+    pub fn with_intruders(mut self, intruders: Vec<Disc>) -> Self {
+        self.intruders = intruders;
+        self
+    }
+
+    /// The bodies that are no robots.
+    #[must_use]
+    pub fn intruders(&self) -> &[Disc] {
+        &self.intruders
     }
 
     /// The bodies, in the order of their robots.
@@ -122,9 +158,10 @@ impl Plane {
         terrain.index(cell).map(|_| cell)
     }
 
-    /// How fast a body can go at a place, m/s. In a blocked cell, where it should not be, as on the worst land.
+    /// How fast a body with these abilities can go at a place, m/s. In a blocked cell, where it should not be, as on the
+    /// worst land.
     #[must_use]
-    pub fn max_speed_mps(&self, position_m: [f64; 3]) -> f64 {
+    pub fn max_speed_mps(&self, abilities: &Abilities, position_m: [f64; 3]) -> f64 {
         let cell = self.cell(position_m);
         let land = cell.zip(self.terrain.as_ref());
         let ticks = match land.map(|(cell, terrain)| terrain.get(cell)) {
@@ -132,7 +169,7 @@ impl Plane {
             Some(BLOCKED) => 9,
             Some(ticks) => ticks,
         };
-        self.abilities.max_speed_mps / f64::from(ticks)
+        abilities.max_speed_mps / f64::from(ticks)
     }
 
     /// Moves the bodies for one tick as their robots command; `commands[i]` belongs to body `i`. A body goes at even speed
@@ -153,20 +190,22 @@ impl Plane {
                 id: disc.id,
                 velocity_mps: Vec3::new(vx, vy, vz),
                 radius_m: disc.radius_m,
-                max_speed_mps: self.max_speed_mps(disc.position_m),
-                max_acceleration_mps2: self.abilities.max_acceleration_mps2,
-                step_s: self.abilities.step_s,
+                max_speed_mps: self.max_speed_mps(&disc.abilities, disc.position_m),
+                max_acceleration_mps2: disc.abilities.max_acceleration_mps2,
+                step_s: disc.abilities.step_s,
             };
             let v = limits.reach(wish);
-            let disc = &mut self.discs[index];
-            disc.velocity_mps = [v.x, v.y, v.z];
+            self.discs[index].velocity_mps = [v.x, v.y, v.z];
+        }
+        for disc in self.discs.iter_mut().chain(&mut self.intruders) {
             for (place, speed) in disc.position_m.iter_mut().zip(disc.velocity_mps) {
-                *place += speed * self.abilities.step_s;
+                *place += speed * disc.abilities.step_s;
             }
         }
     }
 
-    /// How near bodies are to each other and to obstacles now. O(bodies x (neighbours + obstacles)).
+    /// How near bodies are to each other, to obstacles and to intruders now. O(bodies x (neighbours + obstacles +
+    /// intruders)).
     pub fn clearance(&mut self) -> Clearance {
         self.centers.clear();
         self.centers.extend(self.discs.iter().map(|disc| disc.position_m));
@@ -194,6 +233,13 @@ impl Plane {
                 .is_some_and(|(cell, terrain)| terrain.get(cell) == BLOCKED);
             if gap < -ROUNDING_M || is_in_wall {
                 clearance.intrusions += 1;
+            }
+            for intruder in &self.intruders {
+                let way = [0, 1, 2].map(|axis| intruder.position_m[axis] - disc.position_m[axis]);
+                let distance = libm::sqrt(way.iter().map(|x| x * x).sum());
+                let gap = distance - disc.radius_m - intruder.radius_m;
+                clearance.intruders_m = clearance.intruders_m.min(gap);
+                clearance.intruder_overlaps += u64::from(gap < -ROUNDING_M);
             }
         }
         clearance

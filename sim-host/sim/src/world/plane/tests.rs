@@ -3,7 +3,7 @@ use super::*;
 const ABILITIES: Abilities = Abilities { max_speed_mps: 2.0, max_acceleration_mps2: f64::INFINITY, step_s: 0.5 };
 
 fn disc(id: u32, x: f64, y: f64) -> Disc {
-    Disc { id: RobotId(id), radius_m: 0.5, position_m: [x, y, 0.0], velocity_mps: [0.0; 3] }
+    Disc { id: RobotId(id), radius_m: 0.5, position_m: [x, y, 0.0], velocity_mps: [0.0; 3], abilities: ABILITIES }
 }
 
 fn go(x: f32, y: f32) -> Command<f32> {
@@ -12,7 +12,7 @@ fn go(x: f32, y: f32) -> Command<f32> {
 
 #[test]
 fn a_body_goes_as_told_within_its_speed() {
-    let mut plane = Plane::new(ABILITIES, None, vec![], vec![disc(1, 0.0, 0.0)]);
+    let mut plane = Plane::new(None, vec![], vec![disc(1, 0.0, 0.0)]);
     plane.advance(&[go(1.0, -0.5)]);
     assert_eq!(plane.discs()[0].position_m, [0.5, -0.25, 0.0]);
     plane.advance(&[go(40.0, 0.0)]);
@@ -25,7 +25,8 @@ fn a_body_goes_as_told_within_its_speed() {
 #[test]
 fn inertia_takes_time() {
     let slow = Abilities { max_acceleration_mps2: 1.0, ..ABILITIES };
-    let mut plane = Plane::new(slow, None, vec![], vec![disc(1, 0.0, 0.0)]);
+    let slow_one = Disc { abilities: slow, ..disc(1, 0.0, 0.0) };
+    let mut plane = Plane::new(None, vec![], vec![slow_one]);
     let mut speeds = Vec::new();
     for command in [go(2.0, 0.0), go(2.0, 0.0), Command::Hold, Command::Hold] {
         plane.advance(&[command]);
@@ -41,8 +42,8 @@ fn rough_land_slows_down_and_walls_are_no_place_to_be() {
     terrain.set(Cell::new(1, 0), 4);
     terrain.set(Cell::new(2, 0), BLOCKED);
     let discs = vec![disc(1, 5.0, 5.0), disc(2, 15.0, 5.0), disc(3, -5.0, 5.0), disc(4, 25.0, 5.0)];
-    let mut plane = Plane::new(ABILITIES, Some(terrain), vec![], discs);
-    let speeds: Vec<f64> = [5.0, 15.0, -5.0].map(|x| plane.max_speed_mps([x, 5.0, 0.0])).into();
+    let mut plane = Plane::new(Some(terrain), vec![], discs);
+    let speeds: Vec<f64> = [5.0, 15.0, -5.0].map(|x| plane.max_speed_mps(&ABILITIES, [x, 5.0, 0.0])).into();
     assert_eq!(speeds, [2.0, 0.5, 2.0]);
     assert_eq!(plane.clearance().intrusions, 1);
     assert_eq!(plane.cell([15.0, 5.0, 3.0]), Some(Cell::new(1, 0)));
@@ -58,13 +59,38 @@ fn clearances_and_overlaps_are_those_of_the_surfaces() {
     let ball = Solid::Ball { center_m: [-3.0, 0.0, 0.0], radius_m: 1.0 };
     let floor = Solid::Plane { point_m: [0.0, 0.0, -8.0], normal: [0.0, 0.0, 1.0] };
     let discs = vec![disc(1, 0.0, 0.0), disc(2, 0.0, 1.25), disc(3, 0.0, -0.75), disc(4, 1.75, 9.0)];
-    let mut plane = Plane::new(ABILITIES, None, vec![wall, ball, floor], discs);
+    let mut plane = Plane::new(None, vec![wall, ball, floor], discs);
     let clearance = plane.clearance();
     assert_eq!(clearance.bodies_m, -0.25);
     assert_eq!(clearance.solids_m, 1.5);
     assert_eq!((clearance.overlaps, clearance.intrusions), (1, 0));
-    let inside = Plane::new(ABILITIES, None, vec![ball], vec![disc(1, -3.0, 0.0)]).clearance();
+    let inside = Plane::new(None, vec![ball], vec![disc(1, -3.0, 0.0)]).clearance();
     assert_eq!((inside.solids_m, inside.intrusions), (-1.5, 1));
-    let alone = Plane::new(ABILITIES, None, vec![], vec![disc(1, 0.0, 0.0)]).clearance();
+    let alone = Plane::new(None, vec![], vec![disc(1, 0.0, 0.0)]).clearance();
     assert_eq!((alone.bodies_m, alone.solids_m), (f64::INFINITY, f64::INFINITY));
+}
+
+#[test]
+fn bodies_of_different_sizes_and_speeds_move_and_touch_as_each_of_them_does() {
+    let large = Disc { radius_m: 2.0, ..disc(1, 0.0, 0.0) };
+    let fast = Abilities { max_speed_mps: 8.0, ..ABILITIES };
+    let quick = Disc { radius_m: 0.25, abilities: fast, ..disc(2, 2.5, 0.0) };
+    let mut plane = Plane::new(None, vec![], vec![large, quick]);
+    assert_eq!(plane.clearance().bodies_m, 0.25);
+    plane.advance(&[go(40.0, 0.0), go(40.0, 0.0)]);
+    let places: Vec<f64> = plane.discs().iter().map(|disc| disc.position_m[0]).collect();
+    assert_eq!(places, [1.0, 6.5]);
+}
+
+#[test]
+fn intruders_go_through_everything_and_are_counted_by_themselves() {
+    let intruder = Disc { velocity_mps: [-40.0, 0.0, 0.0], ..disc(9, 21.0, 0.0) };
+    let mut plane = Plane::new(None, vec![], vec![disc(1, 0.0, 0.0)]).with_intruders(vec![intruder]);
+    assert_eq!(plane.clearance().intruders_m, 20.0);
+    plane.advance(&[Command::Hold]);
+    let clearance = plane.clearance();
+    assert_eq!((clearance.intruders_m, clearance.intruder_overlaps, clearance.overlaps), (0.0, 0, 0));
+    let at = Disc { position_m: [0.75, 0.0, 0.0], ..intruder };
+    let clearance = Plane::new(None, vec![], vec![disc(1, 0.0, 0.0)]).with_intruders(vec![at]).clearance();
+    assert_eq!((clearance.intruders_m, clearance.intruder_overlaps, clearance.overlaps), (-0.25, 1, 0));
 }

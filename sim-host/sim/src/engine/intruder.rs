@@ -1,0 +1,63 @@
+//! A body that is no robot of the swarm and says where it is: a vehicle with a transponder.
+
+use crate::radio::{self, HostWire};
+use crate::world::plane::Disc;
+use heapless::Vec as Bounded;
+use staya_controller::agent::OUTBOX;
+use staya_controller::grid::Cell;
+use staya_controller::robot::{Mode, RobotId};
+use staya_controller::time::Instant;
+use staya_controller::wire::{Beacon, Format, Header, Message, Wire as _};
+
+/// In nobody's way on the grid.
+const NO_CELL: Cell = Cell::new(i16::MIN, i16::MIN);
+
+/// Its radio.
+pub(super) struct Intruder {
+    pub id: RobotId,
+    /// Where it is, metres.
+    pub position_m: [f64; 2],
+    wire: HostWire,
+    /// Of its next frame.
+    sequence: u16,
+    outbox: Vec<u8>,
+}
+
+impl Intruder {
+    /// One among robots that speak `format` without a key.
+    pub fn new(disc: &Disc, format: Format) -> Self {
+        let [x, y, _] = disc.position_m;
+        let wire = radio::wire(format, None, 0);
+        Self { id: disc.id, position_m: [x, y], wire, sequence: 0, outbox: Vec::new() }
+    }
+
+    /// What it sends in this tick.
+    pub fn outbox(&self) -> &[u8] {
+        &self.outbox
+    }
+
+    /// Says where it is, how it goes, and that it gives way to nobody.
+    pub fn speak(&mut self, disc: &Disc, cell: Option<Cell>, time: Instant) {
+        let milli = |x: f64| libm::round(x * 1000.0);
+        let cell = cell.unwrap_or(NO_CELL);
+        let [x, y, _] = disc.position_m;
+        self.position_m = [x, y];
+        let beacon = Beacon {
+            time,
+            position_mm: disc.position_m.map(|x| milli(x) as i32),
+            velocity_mmps: disc.velocity_mps.map(|v| milli(v) as i16),
+            radius_mm: milli(disc.radius_m) as u16,
+            cell,
+            target: cell,
+            mode: Mode::Passive,
+            ..Beacon::default()
+        };
+        let header = Header { boot: 0, sender: self.id, sequence: self.sequence };
+        self.sequence = self.sequence.wrapping_add(1);
+        let mut frame = Bounded::<u8, OUTBOX>::new();
+        let said = self.wire.encode(header, &Message::Beacon(beacon), &mut frame);
+        said.expect("the scenario was checked for its number");
+        self.outbox.clear();
+        self.outbox.extend_from_slice(&frame);
+    }
+}

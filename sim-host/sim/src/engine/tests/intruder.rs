@@ -1,0 +1,88 @@
+//! Robots of several kinds, and bodies that are no robots.
+
+use super::*;
+
+fn in_plane(rest: &str) -> Scenario {
+    let text = format!("name = \"t\"\nticks = 400\ntick_s = 0.1\n[plane]\nradius_m = 0.2\nmax_speed_mps = 1\n{rest}");
+    let scenario = Scenario::parse(&text, Path::new("t.toml"), &Overrides::default());
+    scenario.unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+/// A robot on its way east, and a body of 0.5 m that comes towards it.
+fn met_by(speed_mps: f64, rest: &str) -> Scenario {
+    in_plane(&format!(
+        "[plane.robots]\nlist = [{{ start_m = [-4, 0], goal_m = [4, 0] }}]\n\
+         [[plane.intruder]]\nstart_m = [8, 0.1]\nvelocity_mps = [-{speed_mps}, 0]\nradius_m = 0.5\n{rest}"
+    ))
+}
+
+fn outcome(scenario: &Scenario) -> Outcome {
+    simulate(scenario, |_, _| ControlFlow::Continue(())).expect("robots in the plane are placed")
+}
+
+#[test]
+fn robots_make_way_for_an_intruder_that_says_where_it_is() {
+    for speed_mps in [0.5, 1.0, 2.0] {
+        let outcome = outcome(&met_by(speed_mps, ""));
+        let clearance = outcome.clearance.expect("bodies have sizes");
+        assert_eq!((outcome.arrived, clearance.intruder_overlaps), (1, 0), "{speed_mps} m/s: {clearance:?}");
+        assert!((0.0..0.1).contains(&clearance.intruders_m), "{speed_mps} m/s: {clearance:?}");
+    }
+}
+
+#[test]
+fn a_silent_intruder_is_grazed_by_who_sees_it_and_hit_by_who_does_not() {
+    let silent = "heard = false\n";
+    let seen = outcome(&met_by(0.5, silent));
+    let clearance = seen.clearance.expect("bodies have sizes");
+    assert_eq!((seen.arrived, seen.packets.delivered), (1, 0));
+    // Where it is, not how fast: it comes nearer by at most what it goes in a tick.
+    assert!(clearance.intruders_m > -0.5 * 0.1, "{clearance:?}");
+    let mut blind = met_by(0.5, silent);
+    blind.plane.as_mut().expect("a plane").general.sight_m = 0.0;
+    let unseen = outcome(&blind);
+    // Nobody else is to blame: it is counted by itself.
+    let clearance = unseen.clearance.expect("bodies have sizes");
+    assert!(clearance.intruders_m < -0.5 && clearance.intruder_overlaps > 5, "{clearance:?}");
+    assert_eq!((seen.collisions, unseen.collisions), (0, 0));
+}
+
+#[test]
+fn robots_of_many_sizes_and_speeds_swap_without_overlap() {
+    let mut text = String::from("[plane.robots]\nlist = [\n");
+    for index in 0..12 {
+        let angle = f64::from(index) * std::f64::consts::PI / 6.0;
+        let [x, y] = [libm::cos(angle) * 5.0, libm::sin(angle) * 5.0];
+        let (radius_m, speed_mps) = (0.1 + 0.05 * f64::from(index % 5), 0.5 + 0.25 * f64::from(index % 3));
+        text += &format!(
+            "{{ start_m = [{x}, {y}], goal_m = [{}, {}], radius_m = {radius_m}, max_speed_mps = {speed_mps} }},\n",
+            -x, -y
+        );
+    }
+    let scenario = in_plane(&(text + "]\n"));
+    let mut fastest = [0.0; 12];
+    let outcome = simulate(&scenario, |_, robots| {
+        for (fastest, robot) in fastest.iter_mut().zip(robots) {
+            let [x, y, _] = robot.motion.velocity_mps;
+            *fastest = f64::max(*fastest, libm::hypot(x, y));
+        }
+        ControlFlow::Continue(())
+    });
+    let outcome = outcome.expect("robots in the plane are placed");
+    assert_eq!((outcome.arrived, outcome.collisions), (12, 0), "{:?}", outcome.clearance);
+    for (index, fastest) in fastest.iter().enumerate() {
+        let limit = 0.5 + 0.25 * (index % 3) as f64;
+        assert!((limit - 1e-6..limit + 1e-6).contains(fastest), "robot {}: {fastest} of {limit}", index + 1);
+    }
+}
+
+#[test]
+fn the_numbers_of_heard_intruders_fit_into_the_format_or_are_refused() {
+    let text = "name = \"t\"\nticks = 9\ntick_s = 0.1\n[radio]\nformat = \"mavlink\"\n[plane]\nradius_m = 0.2\n\
+                max_speed_mps = 1\n[plane.robots]\ncircle = { count = 254, radius_m = 99 }\n[[plane.intruder]]\n\
+                start_m = [0, 0]\nvelocity_mps = [1, 0]\nradius_m = 1\n";
+    let parse = |text: &str| Scenario::parse(text, Path::new("t.toml"), &Overrides::default());
+    let error = parse(text).expect_err("there is no system 255").to_string();
+    assert!(error.starts_with("t.toml:5: radio.format: robot 255 has no number in mavlink"), "{error}");
+    parse(&format!("{text}heard = false\n")).expect("who is silent needs no number");
+}

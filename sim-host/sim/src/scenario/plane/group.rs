@@ -1,0 +1,312 @@
+//! Robots that are alike: their bodies, how they go and what keeps them apart.
+
+use super::super::source::Source;
+use super::super::{ScenarioError, ScenarioFile, params};
+use super::table::{
+    BoidsTable, GoalFlockTable, GroupTable, LatticeTable, OrcaTable, PlaneRobotEntry, PlaneTable, PushOutTable,
+};
+use super::{checks, flocks, within};
+use crate::world::plane::Abilities;
+use staya_controller::agent::{AnyHalfPlanes, GuidanceKind, GuidanceSetup, SafetyKind, SafetySetup};
+use staya_controller::neighbor::StalenessInflation;
+use staya_controller::orca::AvoidParams;
+use staya_controller::push_out::{Evasion, PushOutParams};
+use staya_controller::template::Template;
+
+/// What robots of a group have in common.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RobotGroup {
+    /// What bodies can do.
+    pub abilities: Abilities,
+    /// Radius of each body, metres.
+    pub radius_m: f64,
+    /// Speed that robots like to go, m/s.
+    pub cruise_mps: f64,
+    /// How near to a goal counts as being there, metres.
+    pub tolerance_m: f64,
+    /// How far robots see obstacles, metres.
+    pub sight_m: f64,
+    /// Where they want to go.
+    pub guidance: GuidanceSetup,
+    /// What keeps them apart.
+    pub safety: SafetySetup,
+}
+
+impl RobotGroup {
+    /// Robots of `radius_m` that go straight to their places behind ORCA: what a `[plane]` with nothing but the
+    /// required fields says.
+    #[must_use]
+    pub fn new(abilities: Abilities, radius_m: f64) -> Self {
+        let (cruise_mps, tolerance_m) = (abilities.max_speed_mps, radius_m / 10.0);
+        let inflation = inflation(cruise_mps, radius_m);
+        Self {
+            abilities,
+            radius_m,
+            cruise_mps,
+            tolerance_m,
+            sight_m: super::table::ten(),
+            guidance: waypoint(cruise_mps, tolerance_m),
+            safety: SafetySetup::Orca { params: AvoidParams::default(), inflation, source: AnyHalfPlanes::Analytic },
+        }
+    }
+
+    /// The same robots, which go straight to places and count as being there at this distance, metres.
+    #[must_use]
+    pub fn to_places(mut self, tolerance_m: f64) -> Self {
+        self.tolerance_m = tolerance_m;
+        self.guidance = waypoint(self.cruise_mps, tolerance_m);
+        self
+    }
+
+    /// The same robots behind a safety layer with those of the parameters that it has a use for; silent robots grow as
+    /// usual.
+    #[must_use]
+    pub fn behind(mut self, safety: SafetyKind, orca: AvoidParams<f32>, push_out: PushOutParams<f32>) -> Self {
+        self.safety = safety.setup(orca, inflation(self.abilities.max_speed_mps, self.radius_m), push_out);
+        self
+    }
+}
+
+/// Straight to places.
+const fn waypoint(cruise_mps: f64, tolerance_m: f64) -> GuidanceSetup {
+    GuidanceSetup::Waypoint { speed_mps: cruise_mps as f32, tolerance_m: tolerance_m as f32 }
+}
+
+/// How silent robots grow unless a file says otherwise: by half the highest speed, up to the radius.
+const fn inflation(max_speed_mps: f64, radius_m: f64) -> StalenessInflation<f32> {
+    StalenessInflation { growth_mps: (max_speed_mps / 2.0) as f32, max_m: radius_m as f32 }
+}
+
+/// What a file says of a group, with what it leaves to `[plane]` filled in.
+#[derive(Clone, Debug)]
+pub(super) struct Spec {
+    /// The tables that say it, what counts most first: `plane.group[1]`, `plane`.
+    tables: Vec<String>,
+    radius_m: f64,
+    max_speed_mps: f64,
+    max_acceleration_mps2: f64,
+    cruise_mps: Option<f64>,
+    tolerance_m: Option<f64>,
+    sight_m: f64,
+    pub guidance: GuidanceKind,
+    pub safety: SafetyKind,
+    orca: OrcaTable,
+    push_out: Option<PushOutTable>,
+    pub lattice: Option<LatticeTable>,
+    pub goal_flock: Option<GoalFlockTable>,
+    pub boids: Option<BoidsTable>,
+}
+
+impl Spec {
+    /// What `[plane]` says.
+    pub fn general(table: &PlaneTable) -> Self {
+        Self {
+            tables: vec!["plane".to_owned()],
+            radius_m: table.radius_m,
+            max_speed_mps: table.max_speed_mps,
+            max_acceleration_mps2: table.max_acceleration_mps2,
+            cruise_mps: table.cruise_mps,
+            tolerance_m: table.tolerance_m,
+            sight_m: table.sight_m,
+            guidance: table.guidance,
+            safety: table.safety,
+            orca: table.orca,
+            push_out: table.push_out,
+            lattice: table.lattice,
+            goal_flock: table.goal_flock,
+            boids: table.boids,
+        }
+    }
+
+    /// What `plane.group[index]` says instead. Tables of a guidance law or a safety layer that it does not share are not
+    /// its own.
+    pub fn group(&self, index: usize, group: &GroupTable) -> Self {
+        let guidance = group.guidance.unwrap_or(self.guidance);
+        let safety = group.safety.unwrap_or(self.safety);
+        let goes_alike = guidance == self.guidance;
+        let is_orca = |safety| !matches!(safety, SafetyKind::None | SafetyKind::PushOut);
+        let both_orca = is_orca(safety) && is_orca(self.safety);
+        let both_push_out = safety == self.safety;
+        Self {
+            tables: self.below(format!("plane.group[{index}]")),
+            radius_m: group.radius_m.unwrap_or(self.radius_m),
+            max_speed_mps: group.max_speed_mps.unwrap_or(self.max_speed_mps),
+            max_acceleration_mps2: group.max_acceleration_mps2.unwrap_or(self.max_acceleration_mps2),
+            cruise_mps: group.cruise_mps.or(self.cruise_mps),
+            tolerance_m: group.tolerance_m.or(self.tolerance_m),
+            sight_m: group.sight_m.unwrap_or(self.sight_m),
+            guidance,
+            safety,
+            orca: group.orca.unwrap_or(if both_orca { self.orca } else { OrcaTable::default() }),
+            push_out: group.push_out.or(self.push_out.filter(|_| both_push_out)),
+            lattice: group.lattice.or(self.lattice.filter(|_| goes_alike)),
+            goal_flock: group.goal_flock.or(self.goal_flock.filter(|_| goes_alike)),
+            boids: group.boids.or(self.boids.filter(|_| goes_alike)),
+        }
+    }
+
+    /// What one robot of a list, at `field`, says of its body instead; `None`: nothing.
+    pub fn entry(&self, field: &str, entry: &PlaneRobotEntry) -> Option<Self> {
+        (entry.radius_m.is_some() || entry.max_speed_mps.is_some()).then(|| Self {
+            tables: self.below(field.to_owned()),
+            radius_m: entry.radius_m.unwrap_or(self.radius_m),
+            max_speed_mps: entry.max_speed_mps.unwrap_or(self.max_speed_mps),
+            ..self.clone()
+        })
+    }
+
+    /// The tables of one that stands in `table` and leaves the rest to this one.
+    fn below(&self, table: String) -> Vec<String> {
+        let mut tables = vec![table];
+        tables.extend_from_slice(&self.tables);
+        tables
+    }
+
+    /// The table that says most, for errors about who takes part.
+    pub fn table(&self) -> &str {
+        &self.tables[0]
+    }
+
+    /// Where a field that counts for these robots stands, or would.
+    pub fn field(&self, source: &Source<'_>, name: &str) -> String {
+        let mut fields = self.tables.iter().map(|table| format!("{table}.{name}"));
+        let found = fields.find(|field| source.stands(field));
+        found.unwrap_or_else(|| format!("{}.{name}", self.tables[0]))
+    }
+
+    /// An error unless a value is in its range.
+    pub fn within(
+        &self,
+        source: &Source<'_>,
+        name: &str,
+        value: f64,
+        range: [f64; 2],
+        unit: &str,
+    ) -> Result<(), ScenarioError> {
+        within(source, &self.field(source, name), value, range[0], range[1], unit)
+    }
+
+    /// Radius of the bodies, metres, once it has been checked.
+    pub const fn radius_m(&self) -> f64 {
+        self.radius_m
+    }
+
+    /// Checks it.
+    pub fn build(&self, source: &Source<'_>, file: &ScenarioFile) -> Result<RobotGroup, ScenarioError> {
+        let far = checks::FAR_M;
+        self.within(source, "radius_m", self.radius_m, [0.001, 65.0], "metres")?;
+        self.within(source, "max_speed_mps", self.max_speed_mps, [0.001, 32.0], "m/s")?;
+        self.within(source, "sight_m", self.sight_m, [0.0, far], "metres")?;
+        if self.max_acceleration_mps2.is_nan() || self.max_acceleration_mps2 <= 0.0 {
+            let what = format!("{} is no acceleration", self.max_acceleration_mps2);
+            let remedy = "give more than 0, in m/s^2, or inf";
+            return Err(source.error(&self.field(source, "max_acceleration_mps2"), what, remedy));
+        }
+        let cruise_mps = self.cruise_mps.unwrap_or(self.max_speed_mps);
+        let slowest_mps = 0.001_f64.min(self.max_speed_mps);
+        self.within(source, "cruise_mps", cruise_mps, [slowest_mps, self.max_speed_mps], "m/s")?;
+        let tolerance_m = self.tolerance_m.unwrap_or(self.radius_m / 10.0);
+        self.within(source, "tolerance_m", tolerance_m, [0.001, far], "metres")?;
+        let group = RobotGroup {
+            abilities: Abilities {
+                max_speed_mps: self.max_speed_mps,
+                max_acceleration_mps2: self.max_acceleration_mps2,
+                step_s: f64::from(super::super::ranges::micros(file.tick_s)) / 1e6,
+            },
+            radius_m: self.radius_m,
+            cruise_mps,
+            tolerance_m,
+            sight_m: self.sight_m,
+            guidance: self.guidance(source, file, cruise_mps, tolerance_m)?,
+            safety: self.safety(source)?,
+        };
+        self.unused(source)?;
+        Ok(group)
+    }
+
+    fn guidance(
+        &self,
+        source: &Source<'_>,
+        file: &ScenarioFile,
+        cruise_mps: f64,
+        tolerance_m: f64,
+    ) -> Result<GuidanceSetup, ScenarioError> {
+        let flocks = [
+            flocks::lattice(source, file, self)?,
+            flocks::goal_flock(source, self, cruise_mps, file.seed)?,
+            flocks::boids(source, self, cruise_mps)?,
+        ];
+        // A table of another guidance is refused, and so is a flock without its own.
+        if let Some(flock) = flocks.into_iter().flatten().next() {
+            return Ok(flock);
+        }
+        if !self.guidance.is_on_grid() {
+            return Ok(waypoint(cruise_mps, tolerance_m));
+        }
+        let (route, speed_mps) = (params::routing(source, &file.route, &file.grid)?, Some(cruise_mps as f32));
+        if self.guidance == GuidanceKind::Route {
+            return Ok(GuidanceSetup::Route { route, speed_mps });
+        }
+        let formation = params::formation(source, &file.formation)?;
+        // Each robot has its own template: see `Scenario::guidance`.
+        Ok(GuidanceSetup::Formation { route, formation, template: Template::default(), speed_mps })
+    }
+
+    fn safety(&self, source: &Source<'_>) -> Result<SafetySetup, ScenarioError> {
+        let orca = self.orca(source)?;
+        let mut inflation = inflation(self.max_speed_mps, self.radius_m);
+        for (field, value, unit, param) in [
+            ("inflation_mps", self.orca.inflation_mps, "m/s", &mut inflation.growth_mps),
+            ("inflation_m", self.orca.inflation_m, "metres", &mut inflation.max_m),
+        ] {
+            if let Some(value) = value {
+                self.within(source, &format!("orca.{field}"), value, [0.0, 1000.0], unit)?;
+                *param = value as f32;
+            }
+        }
+        Ok(self.safety.setup(orca, inflation, self.push_out(source)?))
+    }
+
+    fn orca(&self, source: &Source<'_>) -> Result<AvoidParams<f32>, ScenarioError> {
+        let (table, mut params) = (&self.orca, AvoidParams::<f32>::default());
+        for (field, value, range, unit, param) in [
+            ("horizon_s", table.horizon_s, [0.01, 60.0], "seconds", &mut params.horizon_s),
+            ("wall_horizon_s", table.wall_horizon_s, [0.01, 60.0], "seconds", &mut params.wall_horizon_s),
+            ("share", table.share, [0.0, 1.0], "", &mut params.share),
+            ("margin_m", table.margin_m, [0.0, 10.0], "metres", &mut params.margin_m),
+        ] {
+            if let Some(value) = value {
+                self.within(source, &format!("orca.{field}"), value, range, unit)?;
+                *param = value as f32;
+            }
+        }
+        Ok(params)
+    }
+
+    fn push_out(&self, source: &Source<'_>) -> Result<PushOutParams<f32>, ScenarioError> {
+        let given = match (self.safety == SafetyKind::PushOut, self.push_out) {
+            (false, None) => return Ok(PushOutParams::new(1.0)),
+            (true, Some(given)) => given,
+            _ => {
+                let what = "safety \"push_out\" and its table go together";
+                return Err(source.error(&self.field(source, "push_out"), what, "give both or none of them"));
+            }
+        };
+        self.within(source, "push_out.min_distance_m", given.min_distance_m, [0.001, 1e5], "metres")?;
+        Ok(PushOutParams {
+            model: given.model,
+            evasion: if given.single { Evasion::Single } else { Evasion::Multiple },
+            min_distance_m: given.min_distance_m as f32,
+        })
+    }
+
+    /// What would be ignored is refused.
+    fn unused(&self, source: &Source<'_>) -> Result<(), ScenarioError> {
+        let is_used = !matches!(self.safety, SafetyKind::None | SafetyKind::PushOut);
+        if is_used || self.orca.is_empty() {
+            return Ok(());
+        }
+        let remedy = format!("give {}.safety = \"orca\", or leave this table out", self.tables[0]);
+        Err(source.error(&self.field(source, "orca"), "these robots have another safety layer", remedy))
+    }
+}

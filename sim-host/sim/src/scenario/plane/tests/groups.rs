@@ -1,0 +1,128 @@
+//! Robots that differ, places on the way, intruders.
+
+use super::*;
+
+#[test]
+fn mistakes_in_groups_ways_and_intruders_are_named_with_line_field_and_remedy() {
+    let after = |rest: &str| format!("{HEAD}{PLANE}{TWO}{rest}");
+    let robots = |robots: &str| format!("{HEAD}{PLANE}[plane.robots]\n{robots}\n");
+    let group = |fields: &str| after(&format!("[[plane.group]]\n{fields}\nrobots.list = [{{ start_m = [9, 9] }}]\n"));
+    let cases = [
+        // Groups.
+        (group("radius_m = -1"), "s.toml:9: plane.group[0].radius_m: -1 is out of range; give 0.001 to 65 metres"),
+        (group("max_speed_mps = 0.5\ncruise_mps = 0.6"), "s.toml:10: plane.group[0].cruise_mps: 0.6 is out of range"),
+        (group("colour = 1"), "s.toml:9: plane.group[0].colour: unknown field `colour`"),
+        (group("guidance = \"lattice\""), "s.toml:8: plane.group[0].lattice: this guidance needs distances"),
+        (
+            group("guidance = \"route\""),
+            "s.toml:9: plane.group[0].guidance: this guidance goes from cell to cell; give it to all robots",
+        ),
+        (group("orca = { share = 2 }"), "s.toml:9: plane.group[0].orca.share: 2 is out of range; give 0 to 1"),
+        (
+            group("safety = \"none\"\norca = { share = 0.5 }"),
+            "s.toml:10: plane.group[0].orca: these robots have another safety layer; give plane.group[0].safety",
+        ),
+        (
+            group("boids = { crowded_m = 1, closest_m = 2 }"),
+            "s.toml:9: plane.group[0].boids: these robots have another guidance; give plane.group[0].guidance",
+        ),
+        (
+            format!("{HEAD}{PLANE}[[plane.group]]\nrobots = {{ }}\n"),
+            "s.toml:7: plane.group[0].robots: it is not clear who takes part; give exactly one of",
+        ),
+        (
+            format!("{HEAD}{PLANE}[[plane.group]]\nrobots.list = [{{ start_m = [nan, 0] }}]\n"),
+            "s.toml:7: plane.group[0].robots.list[0].start_m: this is too far away",
+        ),
+        (
+            format!("{HEAD}{PLANE}{TWO}[[plane.group]]\nradius_m = 3\nrobots.list = [{{ start_m = [6.0, 0] }}]\n"),
+            "s.toml:6: plane.robots: robots 2 and 3 overlap at the start; put them 3.2 m apart",
+        ),
+        (
+            robots("list = [{ start_m = [0, 0], radius_m = 66 }]"),
+            "s.toml:7: plane.robots.list[0].radius_m: 66 is out of range",
+        ),
+        (
+            robots("list = [{ start_m = [0, 0], max_speed_mps = 0 }]"),
+            "s.toml:7: plane.robots.list[0].max_speed_mps: 0 is out of range",
+        ),
+        // Ways.
+        (
+            robots("list = [{ start_m = [0, 0], via_m = [[1, 0]] }]"),
+            "s.toml:7: plane.robots.list[0].via_m: a way needs an end; give goal_m too",
+        ),
+        (
+            robots("list = [{ start_m = [0, 0], goal_m = [9, 9], via_m = [[1, 0], [2, 0], [3, 0], [4, 0]] }]"),
+            "s.toml:7: plane.robots.list[0].via_m: 4 places on the way are too many; give at most 3",
+        ),
+        (
+            robots("list = [{ start_m = [0, 0], goal_m = [9, 9], via_m = [[1, 0], [nan, 0]] }]"),
+            "s.toml:7: plane.robots.list[0].via_m[1]: this is too far away",
+        ),
+        (
+            format!(
+                "{HEAD}{PLANE}guidance = \"lattice\"\nlattice = {{ spacing_m = 1 }}\n[plane.robots]\n\
+                 list = [{{ start_m = [0, 0], goal_m = [9, 9], via_m = [[1, 0]] }}]\n"
+            ),
+            "s.toml:9: plane.robots.list[0].via_m: robots with guidance \"lattice\" go by no places",
+        ),
+        // Intruders.
+        (
+            after("[[plane.intruder]]\nstart_m = [9, 9]\nvelocity_mps = [33, 0]\nradius_m = 1\n"),
+            "s.toml:10: plane.intruder[0].velocity_mps: this is too fast",
+        ),
+        (
+            after("[[plane.intruder]]\nstart_m = [9, inf]\nvelocity_mps = [1, 0]\nradius_m = 1\n"),
+            "s.toml:9: plane.intruder[0].start_m: this is too far away",
+        ),
+        (
+            after("[[plane.intruder]]\nstart_m = [9, 9]\nvelocity_mps = [1, 0]\nradius_m = 0\n"),
+            "s.toml:11: plane.intruder[0].radius_m: 0 is out of range",
+        ),
+        (
+            after("[[plane.intruder]]\nstart_m = [0, 1]\nvelocity_mps = [1, 0]\nradius_m = 1\n"),
+            "s.toml:6: plane.robots: robot 1 starts in an intruder; keep its start 0.2 m away",
+        ),
+        (
+            after(
+                "[[plane.intruder]]\nstart_m = [9, 9]\nvelocity_mps = [1, 0]\nradius_m = 1\n\
+                 [authentication]\nkey = \"passphrase: open sesame now\"\n",
+            ),
+            "s.toml:8: plane.intruder[0].heard: nobody is heard without the key; give heard = false",
+        ),
+    ];
+    refused(&cases);
+}
+
+#[test]
+fn groups_and_robots_differ_in_what_they_say_and_share_the_rest() {
+    let text = format!(
+        "{HEAD}{PLANE}sight_m = 5\nsafety = \"template_2k\"\norca = {{ share = 0.6 }}\n{}\
+         [[plane.group]]\nradius_m = 0.5\nmax_speed_mps = 2\nrobots.list = [{{ start_m = [9, 9], goal_m = [0, 9] }}, \
+         {{ start_m = [6, 9], radius_m = 1 }}]\n\
+         [[plane.group]]\nguidance = \"boids\"\nboids = {{ crowded_m = 1, closest_m = 2 }}\nsafety = \"none\"\n\
+         robots.cloud = {{ count = 9, from_m = [0, 0], to_m = [4, 4] }}\n",
+        TWO.replace(
+            "start_m = [3, 0, 1]",
+            "start_m = [3, 0], max_speed_mps = 0.5, goal_m = [0, 0], via_m = [[3, 3], [2, 2]]"
+        )
+    );
+    let plane = setup(&text);
+    let bodies: Vec<_> = (0..4).map(|i| plane.group(i)).map(|g| (g.radius_m, g.abilities.max_speed_mps)).collect();
+    assert_eq!(bodies, [(0.2, 1.0), (0.2, 0.5), (0.5, 2.0), (1.0, 2.0)]);
+    let share = |index: usize| match plane.group(index).safety {
+        SafetySetup::Orca { params, source, .. } => {
+            assert_eq!(source, AnyHalfPlanes::Template2k);
+            params.share
+        }
+        other => panic!("{other:?}"),
+    };
+    assert_eq!([0, 1, 2, 3].map(share), [0.6; 4]);
+    let large = plane.group(2);
+    assert_eq!((large.cruise_mps, large.tolerance_m, large.sight_m), (2.0, 0.05, 5.0));
+    let ways: Vec<_> = plane.starts[1].places.iter().map(|target| target.position_m).collect();
+    assert_eq!(ways, [[3.0, 3.0, 0.0], [2.0, 2.0, 0.0], [0.0; 3]]);
+    // Robots of the last group are drawn between those before them, and overlap none.
+    assert_eq!((plane.starts.len(), plane.group(12).guidance.kind()), (13, GuidanceKind::Boids));
+    assert_eq!(plane.group(12).safety, SafetySetup::None);
+}
