@@ -45,7 +45,11 @@ impl<S: Scalar> Dimension for Vec3<S> {
         situation: &Situation<'_, Self>,
         _: &mut Rng,
     ) -> Self {
-        spread(params.horizon_s, situation)
+        // A flock goes to no place of its own, and would be pulled apart.
+        match situation.goal {
+            Some(_) => spread(params.horizon_s, situation),
+            None => situation.wish,
+        }
     }
 }
 
