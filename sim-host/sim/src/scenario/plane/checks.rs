@@ -2,7 +2,7 @@
 
 use super::super::ScenarioError;
 use super::super::source::Source;
-use super::group::Spec;
+use super::spec::Spec;
 use super::table::{CloudEntry, Place, PlaneRobotEntry};
 use super::{PlaneSetup, check_count};
 use crate::nearby::{Cells, Query, Search, Space};

@@ -2,7 +2,7 @@
 
 use super::super::source::Source;
 use super::super::{ScenarioError, ScenarioFile};
-use super::group::Spec;
+use super::spec::Spec;
 use crate::radio::RadioParams;
 use staya_controller::agent::{BoidsSetup, GuidanceKind, GuidanceSetup};
 use staya_controller::flock::goal::GoalParams;

@@ -2,15 +2,13 @@
 
 use super::super::source::Source;
 use super::super::{ScenarioError, ScenarioFile, params};
-use super::table::{
-    BoidsTable, GoalFlockTable, GroupTable, LatticeTable, OrcaTable, PlaneRobotEntry, PlaneTable, PushOutTable,
-};
-use super::{checks, flocks, within};
+use super::spec::Spec;
+use super::{checks, flocks};
 use crate::world::plane::Abilities;
 use staya_controller::agent::{AnyHalfPlanes, GuidanceKind, GuidanceSetup, SafetyKind, SafetySetup};
 use staya_controller::neighbor::StalenessInflation;
 use staya_controller::orca::AvoidParams;
-use staya_controller::push_out::{Evasion, PushOutParams};
+use staya_controller::push_out::{Evasion, Model, PushOutParams};
 use staya_controller::template::Template;
 
 /// What robots of a group have in common.
@@ -77,120 +75,7 @@ const fn inflation(max_speed_mps: f64, radius_m: f64) -> StalenessInflation<f32>
     StalenessInflation { growth_mps: (max_speed_mps / 2.0) as f32, max_m: radius_m as f32 }
 }
 
-/// What a file says of a group, with what it leaves to `[plane]` filled in.
-#[derive(Clone, Debug)]
-pub(super) struct Spec {
-    /// The tables that say it, what counts most first: `plane.group[1]`, `plane`.
-    tables: Vec<String>,
-    radius_m: f64,
-    max_speed_mps: f64,
-    max_acceleration_mps2: f64,
-    cruise_mps: Option<f64>,
-    tolerance_m: Option<f64>,
-    sight_m: f64,
-    pub guidance: GuidanceKind,
-    pub safety: SafetyKind,
-    orca: OrcaTable,
-    push_out: Option<PushOutTable>,
-    pub lattice: Option<LatticeTable>,
-    pub goal_flock: Option<GoalFlockTable>,
-    pub boids: Option<BoidsTable>,
-}
-
 impl Spec {
-    /// What `[plane]` says.
-    pub fn general(table: &PlaneTable) -> Self {
-        Self {
-            tables: vec!["plane".to_owned()],
-            radius_m: table.radius_m,
-            max_speed_mps: table.max_speed_mps,
-            max_acceleration_mps2: table.max_acceleration_mps2,
-            cruise_mps: table.cruise_mps,
-            tolerance_m: table.tolerance_m,
-            sight_m: table.sight_m,
-            guidance: table.guidance,
-            safety: table.safety,
-            orca: table.orca,
-            push_out: table.push_out,
-            lattice: table.lattice,
-            goal_flock: table.goal_flock,
-            boids: table.boids,
-        }
-    }
-
-    /// What `plane.group[index]` says instead. Tables of a guidance law or a safety layer that it does not share are not
-    /// its own.
-    pub fn group(&self, index: usize, group: &GroupTable) -> Self {
-        let guidance = group.guidance.unwrap_or(self.guidance);
-        let safety = group.safety.unwrap_or(self.safety);
-        let goes_alike = guidance == self.guidance;
-        let is_orca = |safety| !matches!(safety, SafetyKind::None | SafetyKind::PushOut);
-        let both_orca = is_orca(safety) && is_orca(self.safety);
-        let both_push_out = safety == self.safety;
-        Self {
-            tables: self.below(format!("plane.group[{index}]")),
-            radius_m: group.radius_m.unwrap_or(self.radius_m),
-            max_speed_mps: group.max_speed_mps.unwrap_or(self.max_speed_mps),
-            max_acceleration_mps2: group.max_acceleration_mps2.unwrap_or(self.max_acceleration_mps2),
-            cruise_mps: group.cruise_mps.or(self.cruise_mps),
-            tolerance_m: group.tolerance_m.or(self.tolerance_m),
-            sight_m: group.sight_m.unwrap_or(self.sight_m),
-            guidance,
-            safety,
-            orca: group.orca.unwrap_or(if both_orca { self.orca } else { OrcaTable::default() }),
-            push_out: group.push_out.or(self.push_out.filter(|_| both_push_out)),
-            lattice: group.lattice.or(self.lattice.filter(|_| goes_alike)),
-            goal_flock: group.goal_flock.or(self.goal_flock.filter(|_| goes_alike)),
-            boids: group.boids.or(self.boids.filter(|_| goes_alike)),
-        }
-    }
-
-    /// What one robot of a list, at `field`, says of its body instead; `None`: nothing.
-    pub fn entry(&self, field: &str, entry: &PlaneRobotEntry) -> Option<Self> {
-        (entry.radius_m.is_some() || entry.max_speed_mps.is_some()).then(|| Self {
-            tables: self.below(field.to_owned()),
-            radius_m: entry.radius_m.unwrap_or(self.radius_m),
-            max_speed_mps: entry.max_speed_mps.unwrap_or(self.max_speed_mps),
-            ..self.clone()
-        })
-    }
-
-    /// The tables of one that stands in `table` and leaves the rest to this one.
-    fn below(&self, table: String) -> Vec<String> {
-        let mut tables = vec![table];
-        tables.extend_from_slice(&self.tables);
-        tables
-    }
-
-    /// The table that says most, for errors about who takes part.
-    pub fn table(&self) -> &str {
-        &self.tables[0]
-    }
-
-    /// Where a field that counts for these robots stands, or would.
-    pub fn field(&self, source: &Source<'_>, name: &str) -> String {
-        let mut fields = self.tables.iter().map(|table| format!("{table}.{name}"));
-        let found = fields.find(|field| source.stands(field));
-        found.unwrap_or_else(|| format!("{}.{name}", self.tables[0]))
-    }
-
-    /// An error unless a value is in its range.
-    pub fn within(
-        &self,
-        source: &Source<'_>,
-        name: &str,
-        value: f64,
-        range: [f64; 2],
-        unit: &str,
-    ) -> Result<(), ScenarioError> {
-        within(source, &self.field(source, name), value, range[0], range[1], unit)
-    }
-
-    /// Radius of the bodies, metres, once it has been checked.
-    pub const fn radius_m(&self) -> f64 {
-        self.radius_m
-    }
-
     /// Checks it.
     pub fn build(&self, source: &Source<'_>, file: &ScenarioFile) -> Result<RobotGroup, ScenarioError> {
         let far = checks::FAR_M;
@@ -292,6 +177,11 @@ impl Spec {
                 return Err(source.error(&self.field(source, "push_out"), what, "give both or none of them"));
             }
         };
+        if self.guidance == GuidanceKind::Waypoint && given.model == Model::Tangential {
+            let what = "robots that go straight to a place jam for ever in each other's way";
+            let remedy = "give \"radial\", or safety \"orca\"";
+            return Err(source.error(&self.field(source, "push_out.model"), what, remedy));
+        }
         self.within(source, "push_out.min_distance_m", given.min_distance_m, [0.001, 1e5], "metres")?;
         Ok(PushOutParams {
             model: given.model,
@@ -306,7 +196,7 @@ impl Spec {
         if is_used || self.orca.is_empty() {
             return Ok(());
         }
-        let remedy = format!("give {}.safety = \"orca\", or leave this table out", self.tables[0]);
+        let remedy = format!("give {}.safety = \"orca\", or leave this table out", self.table());
         Err(source.error(&self.field(source, "orca"), "these robots have another safety layer", remedy))
     }
 }

@@ -3,6 +3,7 @@
 mod checks;
 mod flocks;
 mod group;
+mod spec;
 mod starts;
 mod table;
 
@@ -22,7 +23,7 @@ use crate::radio::RadioParams;
 use crate::terrain::Terrain;
 use crate::world::MoveRules;
 use crate::world::plane::Solid;
-use group::Spec;
+use spec::Spec;
 use staya_controller::agent::{GuidanceKind, RouteSetup};
 use staya_controller::formation::FormationParams;
 use staya_controller::grid::Cell;

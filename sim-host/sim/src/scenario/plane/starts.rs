@@ -3,7 +3,8 @@
 use super::super::source::Source;
 use super::super::{Robot, ScenarioError, ScenarioFile};
 use super::check_count as count;
-use super::group::{RobotGroup, Spec};
+use super::group::RobotGroup;
+use super::spec::Spec;
 use super::table::{CloudEntry, Place, PlaneRobotEntry, PlaneRobots};
 use super::{checks, within};
 use crate::terrain::Terrain;
@@ -129,7 +130,7 @@ impl Placing<'_> {
             let radius_m = start.group.map_or(self.general_m, |group| self.groups[group].radius_m);
             (start.position_m, radius_m)
         });
-        cloud_starts(cloud, spec.radius_m(), self.file.seed, &others.collect::<Vec<_>>())
+        cloud_starts(cloud, spec.radius_m, self.file.seed, &others.collect::<Vec<_>>())
     }
 }
 

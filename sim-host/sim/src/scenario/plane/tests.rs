@@ -183,6 +183,13 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             format!("{}[plane.orca]\nshare = 0.5\n", with("safety = \"none\"\n")),
             "s.toml:9: plane.orca: these robots have another safety layer",
         ),
+        (
+            format!(
+                "{}[plane.push_out]\nmin_distance_m = 1\nmodel = \"tangential\"\n",
+                with("safety = \"push_out\"\n")
+            ),
+            "s.toml:11: plane.push_out.model: robots that go straight to a place jam for ever",
+        ),
         // Obstacles.
         (
             after("[[plane.wall]]\npoints_m = [[1, 2]]\n"),

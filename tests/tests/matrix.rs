@@ -1,0 +1,182 @@
+//! Any guidance law with any safety layer, over a perfect, a lossy and a dead radio: robots arrive or stay together,
+//! do not overlap where anything can keep them from it, and never run away.
+
+use rayon::prelude::*;
+use staya_controller::agent::{GuidanceKind, SafetyKind};
+use staya_controller::names::Named as _;
+use staya_controller::push_out::Model;
+use staya_sim::metrics::flock::FlockMeter;
+use staya_sim::nearby::Space;
+use staya_sim::scenario::{Overrides, Scenario, ScenarioError};
+use staya_tests::run;
+use std::path::Path;
+
+/// Robots of each swarm.
+const ROBOTS: usize = 6;
+const RADIUS_M: f64 = 0.2;
+/// Highest speed, m/s.
+const FASTEST_MPS: f64 = 1.0;
+/// Spacing of the alpha flock, metres.
+const SPACING_M: f64 = 1.0;
+
+const RADIOS: [(&str, &str); 3] = [("perfect", ""), ("lossy", "loss = 0.3"), ("dead", "loss = 1")];
+
+/// A safety layer, and how it pushes out if it does.
+type Layer = (SafetyKind, Model);
+
+/// All of them.
+fn layers() -> Vec<Layer> {
+    let kinds = SafetyKind::NAMES.iter().map(|&(_, kind)| (kind, Model::Radial));
+    kinds.chain([(SafetyKind::PushOut, Model::Tangential)]).collect()
+}
+
+/// Who takes part and what their law needs, and the least and greatest x and y where they have business.
+fn swarm(guidance: GuidanceKind) -> (&'static str, &'static str, [f64; 2]) {
+    match guidance {
+        GuidanceKind::Waypoint => ("robots.circle = { count = 6, radius_m = 3, noise_m = 0.05 }", "", [-5.0, 5.0]),
+        GuidanceKind::Lattice => (
+            "robots.cloud = { count = 6, from_m = [0, 0], to_m = [3, 3], goals_m = [[6, 6]] }\nlattice = { spacing_m = 1 }",
+            "",
+            [-4.0, 10.0],
+        ),
+        GuidanceKind::GoalFlock => (
+            "robots.cloud = { count = 6, from_m = [0, 0], to_m = [3, 3], goals_m = [[8, 8]] }\n\
+             goal_flock = { min_distance_m = 0.7 }",
+            "",
+            [-4.0, 12.0],
+        ),
+        GuidanceKind::Boids => (
+            "robots.cloud = { count = 6, from_m = [0, 0], to_m = [4, 4] }\nboids = { crowded_m = 0.8, closest_m = 4 }",
+            "",
+            // As far as they get.
+            [-100.0, 100.0],
+        ),
+        GuidanceKind::Route => (
+            "",
+            "[terrain]\nuniform = { width = 12, height = 12, classes = 1 }\n[robots]\nlist = [{ start = [1, 5], goal = [10, 5] }, \
+             { start = [10, 6], goal = [1, 6] }, { start = [5, 1], goal = [5, 10] }, { start = [6, 10], goal = [6, 1] }, \
+             { start = [1, 1], goal = [10, 10] }, { start = [10, 1], goal = [1, 10] }]",
+            [0.0, 12.0],
+        ),
+        GuidanceKind::Formation => (
+            "",
+            "[terrain]\nuniform = { width = 24, height = 12, classes = 1 }\n\
+             [robots.formation]\nrows = 2\ncolumns = 3\nspacing = [2, -2]\nstart = [2, 8]\ngoal = [16, 8]",
+            [0.0, 24.0],
+        ),
+    }
+}
+
+fn scenario(guidance: GuidanceKind, (safety, model): Layer, radio: &str) -> Result<Scenario, ScenarioError> {
+    let (own, above, _) = swarm(guidance);
+    let push_out = match safety {
+        SafetyKind::PushOut => format!("push_out = {{ min_distance_m = 0.5, model = \"{}\" }}", model.name()),
+        _ => String::new(),
+    };
+    let text = format!(
+        "name = \"matrix\"\nseed = 1\nticks = 1800\ntick_s = 0.05\n[radio]\nrange_m = 30\n{radio}\n{above}\n[plane]\n\
+         radius_m = {RADIUS_M}\nmax_speed_mps = {FASTEST_MPS}\ntolerance_m = 0.05\nguidance = \"{}\"\nsafety = \"{}\"\n{own}\n{push_out}\n",
+        guidance.name(),
+        safety.name(),
+    );
+    Scenario::parse(&text, Path::new("matrix.toml"), &Overrides::default())
+}
+
+/// Whether a pair does not go together: who goes straight to a place finds no way past another one by turning aside
+/// from him as he does.
+fn is_refused(guidance: GuidanceKind, layer: Layer) -> bool {
+    (guidance, layer) == (GuidanceKind::Waypoint, (SafetyKind::PushOut, Model::Tangential))
+}
+
+/// What came of a pair.
+#[derive(Debug)]
+struct Verdict {
+    arrived: usize,
+    /// Parts of the swarm at the end, of robots up to two spacings apart.
+    parts: usize,
+    overlaps: u64,
+    deepest_m: f64,
+    /// Nobody was ever faster than bodies are, or elsewhere than there is something to do.
+    stays: bool,
+}
+
+fn verdict(guidance: GuidanceKind, safety: Layer, radio: &str) -> Verdict {
+    let (.., [low, high]) = swarm(guidance);
+    let scenario = scenario(guidance, safety, radio).unwrap_or_else(|error| panic!("{error}"));
+    let (outcome, rows) = run(&scenario);
+    let robots = || rows.iter().flat_map(|(_, robots)| robots);
+    let is_fine = |at: &[f64; 3], v: &[f64; 3]| {
+        let speed = v.iter().map(|v| v * v).sum::<f64>().sqrt();
+        at[..2].iter().all(|x| (low..high).contains(x)) && speed <= FASTEST_MPS * 1.001
+    };
+    let stays = robots().all(|robot| is_fine(&robot.motion.position_m, &robot.motion.velocity_mps));
+    let last = &rows.last().expect("an end").1;
+    let (places, velocities): (Vec<_>, Vec<_>) =
+        last.iter().map(|robot| (robot.motion.position_m, robot.motion.velocity_mps)).unzip();
+    let mut meter = FlockMeter::<3>::new(SPACING_M, 2.0 * SPACING_M, Space::OPEN);
+    let clearance = outcome.clearance.expect("bodies have sizes");
+    Verdict {
+        arrived: outcome.arrived,
+        parts: meter.look(&places, &velocities).expect("robots are somewhere").components,
+        overlaps: clearance.overlaps,
+        deepest_m: -clearance.bodies_m,
+        stays,
+    }
+}
+
+/// What is wrong with a pair; empty: nothing.
+fn complaint(guidance: GuidanceKind, (safety, _): Layer, radio: &str, verdict: &Verdict) -> &'static str {
+    let hears = radio != "dead";
+    let has_goal = !matches!(guidance, GuidanceKind::Boids | GuidanceKind::Lattice);
+    if !verdict.stays {
+        return "somebody ran away";
+    }
+    if has_goal && verdict.arrived < ROBOTS {
+        return "not all arrived";
+    }
+    if guidance == GuidanceKind::Lattice && hears && verdict.parts > 1 {
+        return "the flock is no longer one";
+    }
+    let guards = safety != SafetyKind::None;
+    // Who hears nothing can avoid nobody.
+    match radio {
+        "perfect" if guards && verdict.overlaps > 0 => "robots overlapped",
+        // A tenth of a radius: see docs/limits.md.
+        "lossy" if guards && verdict.deepest_m > RADIUS_M / 10.0 => "robots overlapped deeply",
+        _ => "",
+    }
+}
+
+#[test]
+fn pairs_that_do_not_go_together_are_refused_with_a_remedy() {
+    let mut refused = 0;
+    for &(_, guidance) in GuidanceKind::NAMES {
+        for layer in layers() {
+            let answer = scenario(guidance, layer, "");
+            assert_eq!(answer.is_err(), is_refused(guidance, layer), "{guidance:?} behind {layer:?}");
+            refused += usize::from(answer.is_err_and(|error| error.to_string().contains("plane.push_out.model")));
+        }
+    }
+    assert_eq!(refused, 1);
+}
+
+#[test]
+fn any_guidance_goes_with_any_safety_over_any_radio() {
+    let mut all = Vec::new();
+    for &(_, guidance) in GuidanceKind::NAMES {
+        for safety in layers().into_iter().filter(|&layer| !is_refused(guidance, layer)) {
+            all.extend(RADIOS.map(|radio| (guidance, safety, radio)));
+        }
+    }
+    let complaints: Vec<String> = all
+        .par_iter()
+        .filter_map(|&(guidance, safety, (radio, fields))| {
+            let verdict = verdict(guidance, safety, fields);
+            let complaint = complaint(guidance, safety, radio, &verdict);
+            let (layer, model) = (safety.0.name(), safety.1.name());
+            let pair = format!("{} behind {layer} ({model}), {radio} radio", guidance.name());
+            (!complaint.is_empty()).then(|| format!("{pair}: {complaint}: {verdict:?}"))
+        })
+        .collect();
+    assert!(complaints.is_empty(), "{} of {}:\n{}", complaints.len(), all.len(), complaints.join("\n"));
+}
