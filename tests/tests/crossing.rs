@@ -1,6 +1,7 @@
-//! Golden tables of swaps and doorways, as the commands print them.
+//! Golden tables of swaps, doorways and other crossings, as the commands print them.
 
 use staya_controller::agent::SafetyKind;
+use staya_papers::crossing::cases::{self, Case};
 use staya_papers::crossing::{Conditions, doorway, swap};
 use staya_papers::experiment::Experiment as _;
 use staya_tests::golden;
@@ -27,4 +28,26 @@ fn golden_swap_by_template_with_noise_and_losses() {
 fn golden_doorway() {
     let plan = doorway::Plan { widths_m: vec![0.8, 1.3], robots: 6, ..doorway::Plan::default() };
     golden("doorway-experiment", &plan.measure().expect("a sound plan").to_string());
+}
+
+/// Robots of each case, so few that a debug build is done in seconds.
+const fn few(case: Case) -> u32 {
+    match case {
+        Case::DeadEnd => 2,
+        Case::FourWays | Case::Tee | Case::Corridor => 3,
+        Case::Blocks => 4,
+        Case::Door | Case::Parked => 6,
+        Case::Mixed | Case::Intruder | Case::Blackout => 8,
+        Case::Flock => 9,
+        Case::Sphere => 12,
+    }
+}
+
+#[test]
+fn golden_crossing_of_each_kind() {
+    for case in Case::ALL {
+        let plan = cases::Plan { cases: vec![case], robots: Some(few(case)), seeds: 2, ..cases::Plan::default() };
+        let report = plan.measure().expect("a sound plan");
+        golden(&format!("crossing-{}", case.name()), &report.to_string());
+    }
 }

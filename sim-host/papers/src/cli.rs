@@ -32,6 +32,8 @@ enum Experiment {
     Swap(crossing::SwapArgs),
     /// Two crowds pass one gap in opposite directions.
     Doorway(crossing::DoorwayArgs),
+    /// Twelve ways to get in each other's way: crossings, doors, corridors, sizes, intruders, dead ends, in space.
+    Crossing(Box<crossing::CrossingArgs>),
     /// The queries of a Moving AI benchmark: how many robots arrive, and how much longer they take.
     Movingai(movingai::MovingAiArgs),
     /// Boids on a torus: what three ways to find neighbours cost, with equal flights (Starovoitova, section 2.3).
@@ -54,6 +56,7 @@ impl ExperimentArgs {
             Experiment::Formation(args) => args.plan()?.command(Some(&args.out), global, &stop),
             Experiment::Swap(args) => args.plan().command(Some(&args.out()), global, &stop),
             Experiment::Doorway(args) => args.plan().command(Some(&args.out()), global, &stop),
+            Experiment::Crossing(args) => args.plan().command(None, global, &stop),
             Experiment::Movingai(args) => args.plan()?.command(None, global, &stop),
             Experiment::Boids(plan) => plan.command(Some(&plan.out), global, &stop),
             Experiment::Flock(args) => match args.closing() {

@@ -1,6 +1,6 @@
-//! `staya experiment swap` and `staya experiment doorway`.
+//! `staya experiment swap`, `doorway` and `crossing`.
 
-use crate::crossing::{Conditions, doorway, swap};
+use crate::crossing::{Conditions, cases, doorway, swap};
 use crate::options;
 use clap::Args;
 use staya_controller::agent::SafetyKind;
@@ -87,6 +87,74 @@ pub struct DoorwayArgs {
     longest: f64,
     #[command(flatten)]
     common: Common,
+}
+
+/// Twelve ways to get in each other's way: who arrives, how late, who overlaps.
+///
+/// blocks, four_ways, tee, door and corridor: groups among walls. parked: a goal behind a row of robots that stand.
+/// mixed: five sizes and three speeds. intruder: a vehicle that gives way to nobody. dead_end: a bag of walls, by routing.
+/// sphere: in space. blackout: the radio is dead while they meet. flock: an alpha flock between two balls.
+#[derive(Args, Clone, Debug)]
+#[command(allow_negative_numbers = true)]
+pub struct CrossingArgs {
+    /// Which cases [default: all].
+    #[arg(long = "case", value_enum, value_delimiter = ',')]
+    cases: Vec<cases::Case>,
+    /// Robots of a group, or of all where there are none [default: each case's own].
+    #[arg(long, value_name = "N")]
+    robots: Option<u32>,
+    /// End a run after this many seconds.
+    #[arg(long, value_name = "S", default_value_t = 900.0)]
+    longest: f64,
+    /// How long the radio is dead in the case "blackout", seconds.
+    #[arg(long, value_name = "S", default_value_t = 1.0)]
+    blackout: f64,
+    /// Move each start at random by up to this along both axes, metres.
+    #[arg(long, value_name = "M", default_value_t = 0.02)]
+    noise: f64,
+    /// Runs of each case, with consecutive seeds.
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    seeds: u32,
+    /// The first seed.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Time from one decision to the next, seconds.
+    #[arg(long, value_name = "S", default_value_t = 0.05)]
+    step: f64,
+    /// Highest speed, m/s.
+    #[arg(long, value_name = "M/S", default_value_t = 0.5)]
+    speed: f64,
+    /// How far the radio reaches, metres.
+    #[arg(long, value_name = "M", default_value_t = 6.0)]
+    range: f64,
+    /// Share of packets lost, 0 to 1.
+    #[arg(long, value_name = "P", default_value_t = 0.0)]
+    loss: f64,
+    /// What keeps robots apart; on a sphere it is always ORCA in space.
+    #[arg(long, default_value = "orca", value_parser = options::crossing_safety())]
+    safety: SafetyKind,
+}
+
+impl CrossingArgs {
+    /// What is to be done.
+    pub fn plan(&self) -> cases::Plan {
+        cases::Plan {
+            cases: if self.cases.is_empty() { cases::Case::ALL.to_vec() } else { self.cases.clone() },
+            robots: self.robots,
+            noise_m: self.noise,
+            seeds: self.seeds,
+            seed: self.seed,
+            longest_s: self.longest,
+            blackout_s: self.blackout,
+            conditions: Conditions {
+                step_s: self.step,
+                speed_mps: self.speed,
+                range_m: self.range,
+                loss: self.loss,
+                safety: self.safety,
+            },
+        }
+    }
 }
 
 /// Numbers of robots.

@@ -1,8 +1,10 @@
-//! Robots that get in each other's way as badly as can be: [`swap`] over a circle, [`doorway`] through a gap.
+//! Robots that get in each other's way as badly as can be: [`swap`] over a circle, [`doorway`] through a gap, and
+//! twelve other [`cases`].
 //!
 //! Every robot is a whole controller behind ORCA and knows of the others what the radio delivers: places rounded to a
 //! millimetre, one tick old. Plain ORCA jams in all of these.
 
+pub mod cases;
 pub mod doorway;
 mod report;
 pub mod swap;

@@ -9,7 +9,7 @@ fn milli(gap_m: Option<f64>) -> Maybe {
     Maybe(gap_m.map(|gap| gap * 1000.0), 1)
 }
 
-fn headline(f: &mut Formatter<'_>, what: &str, conditions: &Conditions, noise_m: f64) -> Result {
+pub(super) fn headline(f: &mut Formatter<'_>, what: &str, conditions: &Conditions, noise_m: f64) -> Result {
     let Conditions { step_s, speed_mps, range_m, loss, safety } = conditions;
     writeln!(
         f,

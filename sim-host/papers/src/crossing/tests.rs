@@ -43,6 +43,55 @@ fn a_run_that_is_stopped_is_left_out() {
 }
 
 #[test]
+fn each_case_has_its_robots_and_what_is_out_of_range_is_refused() {
+    for case in cases::Case::ALL {
+        let scenario = cases::Plan::default().scenario(case, 1);
+        let groups = match case {
+            cases::Case::Blocks | cases::Case::FourWays => 4,
+            cases::Case::Tee => 3,
+            cases::Case::Door | cases::Case::Corridor => 2,
+            _ => 1,
+        };
+        assert_eq!(scenario.robots.len(), (groups * case.robots()) as usize, "{case:?}");
+        let plane = scenario.plane.expect("bodies");
+        for (index, one) in plane.starts.iter().enumerate() {
+            for (other_index, other) in plane.starts[..index].iter().enumerate() {
+                let apart = plane.group(index).radius_m + plane.group(other_index).radius_m;
+                let way = crate::arena::distance_m(one.position_m, other.position_m);
+                assert!(way > apart, "{case:?}: robots {} and {}", other_index + 1, index + 1);
+            }
+        }
+    }
+    let refused = [
+        cases::Plan { robots: Some(0), ..cases::Plan::default() },
+        cases::Plan { robots: Some(31), ..cases::Plan::default() },
+        cases::Plan { noise_m: 0.2, ..cases::Plan::default() },
+        cases::Plan { seeds: 0, ..cases::Plan::default() },
+        cases::Plan { blackout_s: f64::NAN, ..cases::Plan::default() },
+    ];
+    for plan in refused {
+        assert!(plan.check().is_err(), "{plan:?}");
+    }
+}
+
+#[test]
+fn robots_without_a_radio_run_into_each_other_and_the_depth_is_told() {
+    let conditions = Conditions { range_m: 0.0, ..Conditions::default() };
+    let plan = cases::Plan {
+        cases: vec![cases::Case::Mixed],
+        robots: Some(6),
+        seeds: 1,
+        conditions,
+        ..cases::Plan::default()
+    };
+    let run = &plan.measure().expect("a sound plan").runs[0];
+    assert!(run.overlaps > 0 && run.deepest_m > 0.1, "{run:?}");
+    let ratio = run.time_ratio.expect("nothing stops them");
+    // Less the tolerance of the goal.
+    assert!((0.98..1.1).contains(&ratio), "{run:?}");
+}
+
+#[test]
 fn patience_ends() {
     let plan = swap::Plan { robots: vec![2], patience: 0.5, ..swap::Plan::default() };
     let report = plan.measure().expect("a sound plan");
