@@ -91,6 +91,8 @@ struct Summary {
     least_intruder_gap_m: Option<f64>,
     /// Robots that overlap an intruder, summed over ticks; they are no collisions.
     intruder_overlaps: u64,
+    /// Robots in the downwash of others, summed over ticks; they are no collisions.
+    washed: u64,
     /// 16 hex digits; equal for equal traces.
     trace_hash: String,
     /// What was written.
@@ -201,6 +203,7 @@ impl Summary {
             least_obstacle_gap_m: finite(outcome.clearance.map(|c| c.solids_m)),
             least_intruder_gap_m: finite(outcome.clearance.map(|c| c.intruders_m)),
             intruder_overlaps: outcome.clearance.map_or(0, |c| c.intruder_overlaps),
+            washed: outcome.clearance.map_or(0, |c| c.washed),
             trace_hash: format!("{:016x}", outcome.trace_hash),
             files,
         }
@@ -237,6 +240,9 @@ impl Summary {
         {
             line("formation error", format!("{error:.3} cells per robot ({best_fit:.3} by best fit)"))?;
             line("graph distance", format!("{distance:.3}"))?;
+        }
+        if self.washed > 0 {
+            line("in downwash", self.washed.to_string())?;
         }
         let packets = &self.packets;
         let share = |part: u64, whole: u64| match whole {

@@ -23,6 +23,10 @@ fn table(scenario: &Scenario, outcome: &Outcome, rows: &[(TickRow, Vec<RobotRow>
     if let Some(clearance) = outcome.clearance.filter(|clearance| clearance.intruders_m.is_finite()) {
         writeln!(text, "intruders  {} overlaps", clearance.intruder_overlaps)?;
     }
+    if scenario.plane.as_ref().is_some_and(|plane| plane.kinds().any(|group| group.downwash() > 1.0)) {
+        let washed = outcome.clearance.map_or(0, |clearance| clearance.washed);
+        writeln!(text, "downwash   {washed} in that of others")?;
+    }
     writeln!(
         text,
         "packets    sent {}, delivered {}, lost {}, corrupted {}, rejected {}",
@@ -130,6 +134,11 @@ fn golden_orca_table() {
 #[test]
 fn golden_swap_circle() {
     check("swap-circle", None);
+}
+
+#[test]
+fn golden_downwash() {
+    check("downwash", None);
 }
 
 #[test]

@@ -17,7 +17,7 @@ pub struct OrcaSafety<S: Scalar, const K: usize, P: HalfSpaces<S> = Analytic> {
 }
 
 /// For robots that fly: at most `K` half-spaces.
-pub type FlySafety<S, const K: usize> = OrcaSafety<S, K, InSpace>;
+pub type FlySafety<S, const K: usize> = OrcaSafety<S, K, InSpace<S>>;
 
 impl<S: Scalar, const K: usize> OrcaSafety<S, K> {
     /// In the plane, with exact half-planes. `inflation`: how the balls of silent neighbours grow.
@@ -28,10 +28,11 @@ impl<S: Scalar, const K: usize> OrcaSafety<S, K> {
 }
 
 impl<S: Scalar, const K: usize> FlySafety<S, K> {
-    /// In space. `inflation`: how the balls of silent neighbours grow.
+    /// In space. `inflation`: how the balls of silent neighbours grow; robots with rotors keep clear of each other's
+    /// downwash by [`InSpace::downwash`], with [`OrcaSafety::with_source`].
     #[must_use]
     pub const fn in_space(params: AvoidParams<S>, inflation: StalenessInflation<S>) -> Self {
-        Self::with_source(params, inflation, InSpace)
+        Self::with_source(params, inflation, InSpace { downwash: S::ONE })
     }
 }
 

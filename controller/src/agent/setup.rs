@@ -19,7 +19,7 @@ use crate::formation::FormationParams;
 use crate::grid::Cell;
 use crate::names::named;
 use crate::neighbor::StalenessInflation;
-use crate::orca::AvoidParams;
+use crate::orca::{AvoidParams, InSpace};
 use crate::push_out::PushOutParams;
 use crate::route::{Replan, RouteParams};
 use crate::scalar::{Scalar, cast};
@@ -135,7 +135,7 @@ pub enum GuidanceSetup {
 pub enum SafetySetup {
     None,
     Orca { params: AvoidParams<f32>, inflation: StalenessInflation<f32>, source: AnyHalfPlanes },
-    Fly { params: AvoidParams<f32>, inflation: StalenessInflation<f32> },
+    Fly { params: AvoidParams<f32>, inflation: StalenessInflation<f32>, downwash: f32 },
     PushOut { params: PushOutParams<f32> },
 }
 
@@ -193,7 +193,7 @@ named! {
 }
 
 impl SafetyKind {
-    /// The layer with those of the parameters that it has a use for.
+    /// The layer with those of the parameters that it has a use for; in space without downwash.
     #[must_use]
     pub const fn setup(
         self,
@@ -203,7 +203,7 @@ impl SafetyKind {
     ) -> SafetySetup {
         let source = match self {
             Self::None => return SafetySetup::None,
-            Self::Fly => return SafetySetup::Fly { params, inflation },
+            Self::Fly => return SafetySetup::Fly { params, inflation, downwash: 1.0 },
             Self::PushOut => return SafetySetup::PushOut { params: push_out },
             Self::Orca => AnyHalfPlanes::Analytic,
             Self::Template2k => AnyHalfPlanes::Template2k,
@@ -356,7 +356,10 @@ impl SafetySetup {
             Self::Orca { params, inflation, source } => {
                 AnySafety::Orca(OrcaSafety::with_source(params.cast(), inflation.cast(), *source))
             }
-            Self::Fly { params, inflation } => AnySafety::Fly(FlySafety::in_space(params.cast(), inflation.cast())),
+            Self::Fly { params, inflation, downwash } => {
+                let source = InSpace { downwash: cast(*downwash) };
+                AnySafety::Fly(FlySafety::with_source(params.cast(), inflation.cast(), source))
+            }
             Self::PushOut { params } => AnySafety::PushOut(PushOutSafety::new(params.cast())),
         }
     }

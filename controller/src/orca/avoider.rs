@@ -62,11 +62,25 @@ impl<S: Scalar> HalfSpaces<S> for Analytic {
 /// While somebody is in the way, robots lean by 25 degrees to the right and, by their numbers, somewhat up or down;
 /// [`DeadlockParams`](super::DeadlockParams) plays no part. Walls are upright and have no top: only the horizontal
 /// velocity counts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct InSpace;
+pub struct InSpace<S> {
+    /// How many times as far as beside each other robots keep apart above and below each other, the same for all; 1 or
+    /// more (less counts as 1): a ball, or an ellipsoid that is so many times higher than wide. Rotors blow downwards: what
+    /// flies through the stream of another one sinks. For a
+    /// small quadrotor 2.5 (W. Hönig et al. 2018) and up. More
+    /// closes gaps between layers; less lets robots fall onto each other.
+    pub downwash: S,
+}
 
-impl<S: Scalar> HalfSpaces<S> for InSpace {
+impl<S: Scalar> Default for InSpace<S> {
+    /// Balls.
+    fn default() -> Self {
+        Self { downwash: S::ONE }
+    }
+}
+
+impl<S: Scalar> HalfSpaces<S> for InSpace<S> {
     type Velocity = Vec3<S>;
 
     fn half_space(
@@ -75,7 +89,19 @@ impl<S: Scalar> HalfSpaces<S> for InSpace {
         ball: &MovingBall<Vec3<S>>,
         params: &Params<S>,
     ) -> Option<HalfSpace<Vec3<S>>> {
-        half_space(own_velocity_mps, ball, params)
+        let high = self.downwash;
+        // Not a number is no downwash either.
+        let is_higher = high > S::ONE;
+        if !is_higher {
+            return half_space(own_velocity_mps, ball, params);
+        }
+        // In a space that is lower by so much, the ellipsoid is a ball. Half-spaces stay half-spaces on the way back.
+        let lowered = |v: Vec3<S>| Some(Vec3::new(v.x, v.y, v.z.checked_div(high)?));
+        let ball = MovingBall { offset_m: lowered(ball.offset_m)?, velocity_mps: lowered(ball.velocity_mps)?, ..*ball };
+        let HalfSpace { point, normal } = half_space(lowered(own_velocity_mps)?, &ball, params)?;
+        let point = Vec3::new(point.x, point.y, point.z * high);
+        let normal = lowered(normal)?.normalized()?;
+        point.is_finite().then_some(HalfSpace { point, normal })
     }
 }
 
@@ -99,11 +125,11 @@ impl<S: Scalar, const K: usize> Avoider<S, K> {
     }
 }
 
-impl<S: Scalar, const K: usize> Avoider<S, K, InSpace> {
-    /// An avoider in space.
+impl<S: Scalar, const K: usize> Avoider<S, K, InSpace<S>> {
+    /// An avoider in space, among balls.
     #[must_use]
     pub const fn in_space(params: AvoidParams<S>) -> Self {
-        Self::with_source(params, InSpace)
+        Self::with_source(params, InSpace { downwash: S::ONE })
     }
 }
 

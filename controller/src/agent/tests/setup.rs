@@ -42,7 +42,7 @@ fn safeties() -> [SafetySetup; 4] {
     [
         SafetySetup::None,
         SafetySetup::Orca { params: AvoidParams::default(), inflation, source: AnyHalfPlanes::Template2k },
-        SafetySetup::Fly { params: AvoidParams::default(), inflation },
+        SafetySetup::Fly { params: AvoidParams::default(), inflation, downwash: 3.0 },
         SafetySetup::PushOut { params: PushOutParams::new(0.4) },
     ]
 }

@@ -383,3 +383,42 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn what_is_above_counts_as_nearer_by_the_downwash_and_what_is_beside_does_not() {
+    let params = Params { horizon_s: 2.0, separation_s: STEP_S, share: 0.5 };
+    let ball = |offset_m| MovingBall { offset_m, velocity_mps: V::ZERO, radii_m: 0.4, tie: V::ZERO };
+    let forbids = |downwash: f64, own: V, offset_m: V| {
+        let space = InSpace { downwash }.half_space(own, &ball(offset_m), &params).expect("sound");
+        space.penetration(own)
+    };
+    // A metre above: free as a ball for a climb of 0.1 m/s, in the way as an ellipsoid 1.2 m high.
+    let (climb, above) = (v(0.0, 0.0, 0.1), v(0.0, 0.0, 1.0));
+    assert!(forbids(1.0, climb, above) < 0.0 && forbids(3.0, climb, above) > 0.0);
+    let (ahead, beside) = (v(0.4, 0.0, 0.0), v(1.0, 0.0, 0.0));
+    assert!((forbids(1.0, ahead, beside) - forbids(3.0, ahead, beside)).abs() < 1e-12);
+    // Less than a ball, or nonsense, is a ball.
+    for nonsense in [0.0, -3.0, 0.5, f64::NAN] {
+        assert_eq!(forbids(nonsense, climb, above), forbids(1.0, climb, above));
+    }
+}
+
+proptest! {
+    #[test]
+    fn velocities_on_the_border_just_miss_the_ellipsoid(
+        own in prop::array::uniform3(-2.0..2.0_f64), offset in prop::array::uniform3(-5.0..5.0_f64), downwash in 1.0..6.0_f64,
+    ) {
+        let (radii_m, own, offset) = (0.4, vector(own), vector(offset));
+        let lowered = |v: V| V::new(v.x, v.y, v.z / downwash);
+        prop_assume!(lowered(offset).norm() > radii_m * 1.01);
+        let ball = MovingBall { offset_m: offset, velocity_mps: V::ZERO, radii_m, tie: V::ZERO };
+        // Who does all of the correction and keeps to the border's point passes outside.
+        let params = Params { horizon_s: 2.0, separation_s: STEP_S, share: 1.0 };
+        let space = InSpace { downwash }.half_space(own, &ball, &params).expect("sound");
+        prop_assert!((space.normal.norm() - 1.0).abs() < 1e-9);
+        for tenth in 0..=20 {
+            let at = space.point * (f64::from(tenth) / 10.0) - offset;
+            prop_assert!(lowered(at).norm() > radii_m * (1.0 - 1e-6), "{at:?}");
+        }
+    }
+}

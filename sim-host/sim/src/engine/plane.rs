@@ -46,6 +46,7 @@ impl PlaneGround {
             position_m: start.position_m,
             velocity_mps: start.velocity_mps,
             abilities: setup.group(index).abilities,
+            downwash: setup.group(index).downwash(),
         });
         let land = setup.has_terrain.then(|| scenario.terrain.clone());
         // Those who are heard have the numbers behind the robots'; nobody asks for those of the others.
@@ -57,6 +58,7 @@ impl PlaneGround {
             position_m: intruder.position_m,
             velocity_mps: intruder.velocity_mps,
             abilities: setup.general.abilities,
+            downwash: 1.0,
         });
         let intruders = intruders.collect();
         let plane = Plane::new(land, setup.solids.clone(), discs.collect()).with_intruders(intruders);

@@ -86,3 +86,43 @@ fn the_numbers_of_heard_intruders_fit_into_the_format_or_are_refused() {
     assert!(error.starts_with("t.toml:5: radio.format: robot 255 has no number in mavlink"), "{error}");
     parse(&format!("{text}heard = false\n")).expect("who is silent needs no number");
 }
+
+/// Balls on two rings that swap, and how often one was in a room of this height below or above another one.
+fn washed(own_downwash: f64, looked_for: f64) -> (Outcome, usize) {
+    let mut list = String::new();
+    for index in 0..12 {
+        let angle = f64::from(index / 2) * std::f64::consts::PI / 3.0;
+        let [x, y, z] = [libm::cos(angle) * 3.0, libm::sin(angle) * 3.0, if index % 2 == 0 { 2.0 } else { 4.5 }];
+        list += &format!("{{ start_m = [{x}, {y}, {z}], goal_m = [{}, {}, {}] }},\n", -x, -y, 6.5 - z);
+    }
+    let scenario = in_plane(&format!(
+        "safety = \"fly\"\norca = {{ downwash = {own_downwash} }}\n[plane.robots]\nlist = [\n{list}]\n"
+    ));
+    let mut count = 0;
+    let outcome = simulate(&scenario, |_, robots| {
+        let places: Vec<_> = robots.map(|robot| robot.motion.position_m).collect();
+        for (index, one) in places.iter().enumerate() {
+            count += places[..index]
+                .iter()
+                .filter(|other| {
+                    let [x, y, z] = [0, 1, 2].map(|axis| one[axis] - other[axis]);
+                    (x * x + y * y + z * z / looked_for / looked_for).sqrt() < 0.4
+                })
+                .count();
+        }
+        ControlFlow::Continue(())
+    });
+    (outcome.expect("robots in space are placed"), count)
+}
+
+#[test]
+fn robots_that_fly_keep_out_of_each_others_downwash() {
+    let (guarded, count) = washed(3.0, 3.0);
+    let clearance = guarded.clearance.expect("bodies have sizes");
+    assert_eq!((guarded.arrived, guarded.collisions), (12, 0), "{clearance:?}");
+    assert_eq!((count, clearance.washed), (0, 0));
+    // Those that take each other for balls fly through it.
+    let (unguarded, count) = washed(1.0, 3.0);
+    assert_eq!((unguarded.arrived, unguarded.collisions), (12, 0));
+    assert!(count > 5, "{count}");
+}

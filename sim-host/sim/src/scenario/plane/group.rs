@@ -56,6 +56,15 @@ impl RobotGroup {
         self
     }
 
+    /// How many times higher than wide the room is that robots leave each other; 1 unless they fly.
+    #[must_use]
+    pub fn downwash(&self) -> f64 {
+        match self.safety {
+            SafetySetup::Fly { downwash, .. } => downwash.into(),
+            _ => 1.0,
+        }
+    }
+
     /// The same robots behind a safety layer with those of the parameters that it has a use for; silent robots grow as
     /// usual.
     #[must_use]
@@ -149,7 +158,17 @@ impl Spec {
                 *param = value as f32;
             }
         }
-        Ok(self.safety.setup(orca, inflation, self.push_out(source)?))
+        let mut setup = self.safety.setup(orca, inflation, self.push_out(source)?);
+        if let Some(value) = self.orca.downwash {
+            self.within(source, "orca.downwash", value, [1.0, 10.0], "")?;
+            let SafetySetup::Fly { downwash, .. } = &mut setup else {
+                let what = "robots in the plane are not above each other";
+                let remedy = "give safety = \"fly\", or leave it out";
+                return Err(source.error(&self.field(source, "orca.downwash"), what, remedy));
+            };
+            *downwash = value as f32;
+        }
+        Ok(setup)
     }
 
     fn orca(&self, source: &Source<'_>) -> Result<AvoidParams<f32>, ScenarioError> {

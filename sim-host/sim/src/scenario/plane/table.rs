@@ -280,14 +280,16 @@ pub struct OrcaTable {
     /// How much it grows at most, metres. Default: the radius.
     #[serde(alias = "doubt_m")]
     pub inflation_m: Option<f64>,
+    /// In space: how many times as far as beside each other robots keep apart above and below each other. Default: 1.
+    pub downwash: Option<f64>,
 }
 
 impl OrcaTable {
     /// Whether it says nothing.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        let Self { horizon_s, wall_horizon_s, share, margin_m, inflation_mps, inflation_m } = self;
-        let fields = [horizon_s, wall_horizon_s, share, margin_m, inflation_mps, inflation_m];
+        let Self { horizon_s, wall_horizon_s, share, margin_m, inflation_mps, inflation_m, downwash } = self;
+        let fields = [horizon_s, wall_horizon_s, share, margin_m, inflation_mps, inflation_m, downwash];
         fields.iter().all(|field| field.is_none())
     }
 }

@@ -225,6 +225,14 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             "s.toml:9: plane.orca.horizon_s: 0 is out of range; give 0.01 to 60 seconds",
         ),
         (after("[plane.orca]\nshare = 1.1\n"), "s.toml:9: plane.orca.share: 1.1 is out of range; give 0 to 1"),
+        (
+            after("[plane.orca]\ndownwash = 3\n"),
+            "s.toml:9: plane.orca.downwash: robots in the plane are not above each other; give safety = \"fly\"",
+        ),
+        (
+            format!("{}[plane.orca]\ndownwash = 0.5\n", with("safety = \"fly\"\n")),
+            "s.toml:10: plane.orca.downwash: 0.5 is out of range; give 1 to 10",
+        ),
         (after("[plane.orca]\ninflation_m = -1\n"), "s.toml:9: plane.orca.inflation_m: -1 is out of range"),
         (
             flock("lattice", "spacing_m = 1\nalgorithm = 4", ""),

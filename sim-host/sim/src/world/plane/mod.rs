@@ -30,6 +30,8 @@ pub struct Disc {
     pub velocity_mps: [f64; 3],
     /// What it can do.
     pub abilities: Abilities,
+    /// How many times higher than wide the room is that others should leave it, for its rotors; 1: a ball.
+    pub downwash: f64,
 }
 
 /// What a body can do.
@@ -53,7 +55,8 @@ pub struct Plane {
     intruders: Vec<Disc>,
     centers: Vec<[f64; 3]>,
     index: Cells<f64, 3>,
-    largest_m: f64,
+    /// How far neighbours are looked for, metres.
+    reach_m: f64,
 }
 
 /// How near bodies are to each other and to obstacles.
@@ -72,6 +75,8 @@ pub struct Clearance {
     pub intruders_m: f64,
     /// Pairs of a body and an intruder that overlap.
     pub intruder_overlaps: u64,
+    /// Pairs of bodies of which one is in the other's downwash, without overlap.
+    pub washed: u64,
 }
 
 impl Clearance {
@@ -83,6 +88,7 @@ impl Clearance {
         intrusions: 0,
         intruders_m: f64::INFINITY,
         intruder_overlaps: 0,
+        washed: 0,
     };
 
     /// Takes in those of another moment.
@@ -93,6 +99,7 @@ impl Clearance {
         self.intrusions += other.intrusions;
         self.intruders_m = self.intruders_m.min(other.intruders_m);
         self.intruder_overlaps += other.intruder_overlaps;
+        self.washed += other.washed;
     }
 }
 
@@ -104,13 +111,15 @@ impl Plane {
     #[must_use]
     pub fn new(terrain: Option<Terrain>, solids: Vec<Solid>, discs: Vec<Disc>) -> Self {
         let largest_m = discs.iter().map(|disc| disc.radius_m).fold(0.0, f64::max);
+        let highest = discs.iter().map(|disc| disc.downwash).fold(1.0, f64::max);
+        let reach_m = largest_m * (2.0 * highest).max(3.0);
         Self {
             terrain,
             solids,
             intruders: Vec::new(),
             centers: Vec::with_capacity(discs.len()),
-            index: Cells::new(Space::OPEN, (3.0 * largest_m).max(1e-3)),
-            largest_m,
+            index: Cells::new(Space::OPEN, reach_m.max(1e-3)),
+            reach_m,
             discs,
         }
     }
@@ -213,15 +222,19 @@ impl Plane {
         let mut clearance = Clearance::FREE;
         let mut found = Vec::new();
         for (number, disc) in (0..).zip(&self.discs) {
-            let query =
-                Query { at: disc.position_m, radius: 3.0 * self.largest_m, most: usize::MAX, except: Some(number) };
+            let query = Query { at: disc.position_m, radius: self.reach_m, most: usize::MAX, except: Some(number) };
             self.index.within(&query, &mut found);
             for near in &found {
                 let other = &self.discs[near.index as usize];
                 let gap = near.distance_squared.sqrt() - disc.radius_m - other.radius_m;
                 clearance.bodies_m = clearance.bodies_m.min(gap);
-                if near.index > number && gap < -ROUNDING_M {
+                if near.index < number {
+                    continue;
+                }
+                if gap < -ROUNDING_M {
                     clearance.overlaps += 1;
+                } else if is_washed(disc, other) {
+                    clearance.washed += 1;
                 }
             }
             let gaps = self.solids.iter().map(|solid| solid.distance_m(disc.position_m));
@@ -244,6 +257,14 @@ impl Plane {
         }
         clearance
     }
+}
+
+/// Whether one of two bodies is in the other's downwash: an ellipsoid that is higher than wide.
+fn is_washed(one: &Disc, other: &Disc) -> bool {
+    let high = one.downwash.max(other.downwash);
+    let [x, y, z] = [0, 1, 2].map(|axis| other.position_m[axis] - one.position_m[axis]);
+    let low_z = z / high;
+    libm::sqrt(x * x + y * y + low_z * low_z) < one.radius_m + other.radius_m - ROUNDING_M
 }
 
 #[cfg(test)]

@@ -3,7 +3,14 @@ use super::*;
 const ABILITIES: Abilities = Abilities { max_speed_mps: 2.0, max_acceleration_mps2: f64::INFINITY, step_s: 0.5 };
 
 fn disc(id: u32, x: f64, y: f64) -> Disc {
-    Disc { id: RobotId(id), radius_m: 0.5, position_m: [x, y, 0.0], velocity_mps: [0.0; 3], abilities: ABILITIES }
+    Disc {
+        id: RobotId(id),
+        radius_m: 0.5,
+        position_m: [x, y, 0.0],
+        velocity_mps: [0.0; 3],
+        abilities: ABILITIES,
+        downwash: 1.0,
+    }
 }
 
 fn go(x: f32, y: f32) -> Command<f32> {
@@ -93,4 +100,19 @@ fn intruders_go_through_everything_and_are_counted_by_themselves() {
     let at = Disc { position_m: [0.75, 0.0, 0.0], ..intruder };
     let clearance = Plane::new(None, vec![], vec![disc(1, 0.0, 0.0)]).with_intruders(vec![at]).clearance();
     assert_eq!((clearance.intruders_m, clearance.intruder_overlaps, clearance.overlaps), (-0.25, 1, 0));
+}
+
+#[test]
+fn who_is_below_another_one_is_in_its_downwash_and_who_is_beside_it_is_not() {
+    let washed = |downwash: f64, x: f64, z: f64| {
+        let one = Disc { downwash, ..disc(1, 0.0, 0.0) };
+        let other = Disc { position_m: [x, 0.0, z], ..disc(2, 0.0, 0.0) };
+        let clearance = Plane::new(None, vec![], vec![one, other]).clearance();
+        (clearance.washed, clearance.overlaps)
+    };
+    assert_eq!(washed(3.0, 0.0, -2.9), (1, 0));
+    assert_eq!(washed(3.0, 0.0, -3.1), (0, 0));
+    assert_eq!(washed(3.0, 1.1, 0.0), (0, 0));
+    assert_eq!(washed(3.0, 0.0, -0.9), (0, 1));
+    assert_eq!(washed(1.0, 0.0, -1.1), (0, 0));
 }
