@@ -6,6 +6,7 @@ mod world;
 use self::bench::{Bench, Faults, LIMITS};
 use self::world::{World, inbox};
 use super::{in_plane, on_grid};
+use crate::frame::VERSION;
 use crate::message::{StepInputs, StepResult};
 use crate::port::{Asked, Event, Next, Port, PortError};
 use crate::robot::{Controller, Large, Robot, Small};
@@ -190,7 +191,8 @@ fn device_of_another_version_is_a_clear_error() {
     bench.back.send(&foreign, 0);
     let error = bench.wait().expect_err("version 9");
     assert_eq!(error, PortError::Version { device: 9 });
-    assert!(std::format!("{error}").contains("version 9 of the link, this host version 3"));
+    let versions = std::format!("version 9 of the link, this host version {VERSION}:");
+    assert!(std::format!("{error}").contains(&versions));
 }
 
 #[test]

@@ -153,7 +153,7 @@ fn other_versions_kinds_and_bodies_get_an_answer_that_says_so() {
     foreign.push(0);
     let (kind, _, text) = fault(&answers(&mut session, &foreign));
     assert_eq!(kind, FaultKind::Version);
-    assert_eq!(text, "the device speaks version 3 of the link, not 4");
+    assert_eq!(text, std::format!("the device speaks version {VERSION} of the link, not {}", VERSION + 1));
     for (kind, body) in [(99, 7_u8), (kind::CONFIGURE, 1), (kind::STEP, 0xFF)] {
         let (kind, ..) = fault(&answers(&mut session, &frame(kind, &body)));
         assert_eq!(kind, FaultKind::Malformed);
