@@ -39,6 +39,19 @@ fn a_swarm_recovers_from_a_blackout() {
     assert!(after < 1.5, "the formation was never restored: {after}");
 }
 
+/// In the plane, behind ORCA: in the thick of a swap, head on, for seconds and for minutes.
+#[test]
+fn a_radio_that_dies_lets_nobody_touch_and_all_arrive_when_it_is_back() {
+    for name in ["radio-dies", "head-on"] {
+        let scenario = scenario(name, None);
+        let (outcome, _) = run(&scenario);
+        assert_all_arrive(&scenario, &outcome);
+        let [_, to_s] = *scenario.radio.blackout_s.last().expect("a blackout");
+        let at_s = f64::from(outcome.ticks) * f64::from(scenario.tick_us) / 1e6;
+        assert!(at_s > to_s, "{name}: all arrived by {at_s} s, before the radio was back");
+    }
+}
+
 #[test]
 fn ten_dead_seconds_of_radio_change_little() {
     let mut scenario = scenario("figure-6", None);

@@ -184,12 +184,11 @@ impl<S: Scalar, const K: usize> Safety<S> for AnySafety<S, K> {
         }
     }
 
-    fn inflation(&self) -> StalenessInflation<S> {
+    fn inflation(&self) -> Option<StalenessInflation<S>> {
         match self {
-            Self::Unguarded(safety) => safety.inflation(),
             Self::Orca(safety) => safety.inflation(),
             Self::Fly(safety) => safety.inflation(),
-            Self::PushOut(safety) => safety.inflation(),
+            Self::Unguarded(_) | Self::PushOut(_) => None,
         }
     }
 

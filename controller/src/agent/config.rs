@@ -1,5 +1,6 @@
 //! What a robot's agent knows of itself from its start.
 
+use super::Silence;
 use crate::neighbor::Ages;
 use crate::robot::RobotId;
 use crate::scalar::{Scalar, cast};
@@ -36,6 +37,8 @@ pub struct AgentConfig<S> {
     pub retry: Retry,
     /// How long a stop stands that is not renewed: bounds what a lost "resume" costs.
     pub stop_valid: Duration,
+    /// What it makes of silence.
+    pub silence: Silence<S>,
 }
 
 impl<S: Scalar> AgentConfig<S> {
@@ -54,6 +57,7 @@ impl<S: Scalar> AgentConfig<S> {
             ages: self.ages,
             retry: self.retry,
             stop_valid: self.stop_valid,
+            silence: self.silence.cast(),
         }
     }
 
@@ -77,6 +81,7 @@ impl<S: Scalar> AgentConfig<S> {
             ages: Ages { stale_after: tick.saturating_mul(4), expire_after: tick.saturating_mul(30) },
             retry: Retry { attempts: 5, interval: tick.saturating_mul(3) },
             stop_valid: tick.saturating_mul(12),
+            silence: Silence::DEFAULT,
         }
     }
 }

@@ -98,6 +98,8 @@ pub enum Event {
     NeighborEvicted(RobotId),
     /// A neighbour's clock or sequence restarted.
     NeighborRebooted(RobotId),
+    /// Nobody is heard any more: all are lost. What the robot makes of it: [`Silence`](super::Silence).
+    NobodyHeard,
 }
 
 /// Frames that were refused for who may have said them and when, by a format that authenticates them: [`Sealed`](crate::wire::Sealed) or MAVLink's

@@ -1,6 +1,7 @@
 //! The agent's end of the radio: bytes to news, and what is to be said to bytes.
 
 use super::io::{Event, KinematicState, OUTBOX, Outputs};
+use super::silence::Company;
 use super::{AgentConfig, CellState, Last, Waypoint};
 use crate::geom::{Position, Vec3};
 use crate::grid::Cell;
@@ -47,6 +48,7 @@ pub(super) struct Link<S, const N: usize, W> {
     wire: W,
     header: Header,
     pub(super) table: NeighborTable<S, N>,
+    pub(super) company: Company,
     /// One window per entry of the table.
     windows: Vec<(RobotId, SequenceWindow), N>,
     requests: Requests<PENDING>,
@@ -72,6 +74,7 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
             wire,
             header: Header { boot, sender: id, sequence: 0 },
             table: NeighborTable::new(ages),
+            company: Company::Unknown,
             windows: Vec::new(),
             requests: Requests::new(id, boot, retry),
             orders: Orders::new(ages.expire_after),
@@ -87,10 +90,10 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
         &mut self.wire
     }
 
-    /// Forgets who was silent for too long. The first thing in each step.
-    pub(super) fn expire(&mut self, now: Instant, out: &mut Outputs<S>) {
+    /// Loses who was silent for too long, and remembers the lost for `remember`. The first thing in each step.
+    pub(super) fn expire(&mut self, own: Position, now: Instant, remember: Duration, out: &mut Outputs<S>) {
         let windows = &mut self.windows;
-        self.table.expire(now, |lost| {
+        self.table.expire(own, now, remember, |lost| {
             windows.retain(|(id, _)| *id != lost);
             report(out, Event::NeighborLost(lost));
         });
@@ -231,6 +234,7 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
         listener: &Listener<'_>,
         out: &mut Outputs<S>,
     ) {
+        self.company = Company::Heard(neighbor.heard);
         let put = self.table.put(neighbor, listener.position, now, listener.needs);
         if let Put::Evicted(evicted) = put {
             self.windows.retain(|(id, _)| *id != evicted);

@@ -58,8 +58,8 @@ impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Safety<S> for OrcaSafety<S, K,
         solution.velocity_mps.at_height(input.wish_mps.z)
     }
 
-    fn inflation(&self) -> StalenessInflation<S> {
-        self.inflation
+    fn inflation(&self) -> Option<StalenessInflation<S>> {
+        Some(self.inflation)
     }
 
     fn parameter(&self, parameter: Parameter) -> Option<S> {

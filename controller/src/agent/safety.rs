@@ -31,9 +31,10 @@ pub trait Safety<S: Scalar> {
     /// A safe velocity near the wished one, m/s. The agent sees to it that the body can have it ([`Body::reach`]).
     fn keep_clear(&mut self, input: &SafetyInput<'_, S>, rng: &mut Rng) -> Vec3<S>;
 
-    /// How neighbours that have fallen silent are to be seen.
-    fn inflation(&self) -> StalenessInflation<S> {
-        StalenessInflation { growth_mps: S::ZERO, max_m: S::ZERO }
+    /// How neighbours that have fallen silent are to be seen; `None` when the layer leaves them to others, and the agent
+    /// neither limits its velocities to the [`Room`](crate::neighbor::Room) that there is nor stands when it hears nobody.
+    fn inflation(&self) -> Option<StalenessInflation<S>> {
+        None
     }
 
     /// What a parameter is now; `None` when it has no such one.

@@ -1,6 +1,7 @@
 //! The composer of behaviours. Read [`Agent::step_into`] first.
 
 use super::link::{Listener, News, beacon, report};
+use super::silence::Company;
 use super::{
     Action, Agent, CellState, Command, Decision, Event, Goal, Guidance, GuidanceInput, Inputs, Outputs, Safety,
     SafetyInput, Surroundings,
@@ -8,7 +9,7 @@ use super::{
 use crate::body::Body;
 use crate::geom::Vec3;
 use crate::grid::{Cell, Dir};
-use crate::neighbor::{Nearby, nearest};
+use crate::neighbor::{Nearby, Room, add_lost, nearest};
 use crate::rand::Rng;
 use crate::scalar::Scalar;
 use crate::supervisor::{moves, next_mode};
@@ -50,11 +51,11 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
     ) {
         out.clear();
         self.hear(inputs, now, out);
-        let nearby = self.look(inputs, now);
+        let mut nearby = self.look(inputs, now);
         let mut rng = Rng::keyed(self.config.seed, PURPOSE, self.config.id.0, self.decisions);
         let decision = self.decide(inputs, &nearby, now, &mut rng, workspace, out);
         self.supervise(decision.as_ref(), out);
-        self.keep_clear(inputs, decision.as_ref(), &nearby, &mut rng, out);
+        self.keep_clear(inputs, decision.as_ref(), &mut nearby, now, &mut rng, out);
         self.speak(inputs, now, out);
     }
 
@@ -64,7 +65,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         if inputs.surroundings.in_plane().is_none() {
             return Vec::new();
         }
-        let (config, inflation) = (&self.config, self.safety.inflation());
+        let (config, inflation) = (&self.config, self.safety.inflation().unwrap_or_default());
         nearest(self.link.table.as_slice(), inputs.state.position, config.radius_m, now, &config.ages, &inflation)
     }
 
@@ -82,11 +83,17 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
 
     #[inline(never)]
     fn hear(&mut self, inputs: &Inputs<'_, S, G::Input<'_>>, now: Instant, out: &mut Outputs<S>) {
-        let Self { config, guidance, link, goal, last, .. } = self;
+        let Self { config, guidance, safety, link, goal, last, .. } = self;
         let leader = last.leader;
         let mut pass_on = Vec::<_, 4>::new();
         let heard_at = now - config.latency;
-        link.expire(now, out);
+        // Only who keeps clear of others has a use for where they were.
+        let keeps_clear = inputs.surroundings.in_plane().is_some() && safety.inflation().is_some();
+        let remember = if keeps_clear { config.silence.remember } else { Duration::ZERO };
+        link.expire(inputs.state.position, now, remember, out);
+        if keeps_clear && link.company.passes(now, config) {
+            report(out, Event::NobodyHeard);
+        }
         let mut inbox = inputs.inbox;
         while let Some(bytes) = link.next_frame(&mut inbox) {
             let listener =
@@ -191,7 +198,8 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         situation.is_at_goal = status.is_at_goal;
         situation.is_stuck = status.is_stuck;
         situation.is_off_place = status.is_off_place;
-        situation.is_stopped = status.waits || (leads && is_stopped && !status.recovers);
+        let is_left = self.link.company == Company::Gone && !self.config.silence.may_be_alone();
+        situation.is_stopped = status.waits || is_left || (leads && is_stopped && !status.recovers);
         self.last.target = decision.target;
         self.last.leader = decision.leader;
         self.last.slot = decision.slot;
@@ -226,7 +234,8 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         &mut self,
         inputs: &Inputs<'_, S, G::Input<'_>>,
         decision: Option<&Decision<S>>,
-        nearby: &[Nearby<S>],
+        nearby: &mut Vec<Nearby<S>, N>,
+        now: Instant,
         rng: &mut Rng,
         out: &mut Outputs<S>,
     ) {
@@ -234,6 +243,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
             return;
         };
         if !self.mode.gives_way() {
+            self.link.table.forget_gaps();
             out.command = Command::Hold;
             return;
         }
@@ -243,8 +253,22 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
             _ => (Vec3::ZERO, None),
         };
         let body = self.body(inputs);
+        let Self { link, safety, config, .. } = self;
+        let (own, table, inflation) = (inputs.state.position, &mut link.table, safety.inflation());
+        let mut wish_mps = wish_mps;
+        if let Some(inflation) = inflation {
+            add_lost(nearby, table.lost(), own, body.radius_m, now, &config.ages, &inflation);
+            if link.company.is_lost() && config.silence.may_be_alone() {
+                wish_mps = wish_mps.clamp_norm(config.silence.alone_mps);
+            }
+        }
         let input = SafetyInput { body, wish_mps, way_m, nearby, obstacles: plane.obstacles };
-        let safe = self.safety.keep_clear(&input, rng);
+        let mut safe = safety.keep_clear(&input, rng);
+        if let Some(inflation) = inflation {
+            let (news, may_be_alone) = (config.latency.max(config.tick), config.silence.may_be_alone());
+            let room = Room { body: &body, own, now, news, inflation, may_be_alone };
+            safe = room.limit(table, plane.obstacles, safe).unwrap_or(Vec3::ZERO);
+        }
         out.command = Command::Velocity(body.reach(safe));
     }
 

@@ -401,3 +401,4 @@ mod nonsense_in_plane;
 mod plane;
 mod sealed;
 mod setup;
+mod silence;

@@ -15,12 +15,17 @@ use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
 mod nearby;
+mod room;
 #[cfg(all(test, feature = "wire"))]
 mod tests;
 mod tie;
 
-pub use nearby::{Nearby, StalenessInflation, nearest};
+pub use nearby::{Nearby, StalenessInflation, add_lost, nearest};
+pub use room::Room;
 pub use tie::tie;
+
+/// Thousandths of the distance to the farthest fresh robot from which on one that is lost has gone out of range.
+const LEAVES_FROM: i32 = 750;
 
 /// One robot as last heard.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -50,6 +55,10 @@ pub struct Neighbor<S> {
     pub slot: u8,
     /// What it is doing.
     pub mode: Mode,
+    /// Silent for longer than [`Ages::expire_after`]: it is remembered, but what it did no longer counts.
+    pub is_lost: bool,
+    /// How far it is from the own body at least while it is silent, metres: what [`Room`] makes of it.
+    pub gap_m: S,
 }
 
 impl<S: Scalar> Neighbor<S> {
@@ -77,7 +86,8 @@ pub struct Ages {
     /// Older than this is [`Knowledge::Stale`]: a few beacon periods. Too short: a lossy radio makes
     /// everybody stale; too long: robots trust positions that are no longer true.
     pub stale_after: Duration,
-    /// Older than this is forgotten; at most half an hour, so that the clock's wrap is never near.
+    /// Older than this is lost: only where it was is remembered; at most half an hour, so that the clock's wrap is never
+    /// near.
     pub expire_after: Duration,
 }
 
@@ -128,9 +138,9 @@ pub enum Put {
     Refused,
 }
 
-/// The known robots, at most `N`, sorted by id.
+/// The known robots, at most `N`, sorted by id; behind them the lost ones that are still remembered, by id too.
 ///
-/// Bytes: `N` times those of [`Neighbor`] (56 for `f32` and fixed point) and 12 more.
+/// Bytes: `N` times those of [`Neighbor`] (60 for `f32` and fixed point) and 12 more.
 #[derive(Clone, Debug, Serialize)]
 pub struct NeighborTable<S, const N: usize> {
     entries: Vec<Neighbor<S>, N, u16>,
@@ -153,7 +163,7 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
     /// Puts `newcomer` in, replacing what was known of the same robot. O(N).
     ///
     /// When the table is full, somebody has to go, though never a robot that `protect` names (the
-    /// leader, members of the formation's template):
+    /// leader, members of the formation's template) unless it is lost:
     /// 1. the stalest of those older than [`Ages::expire_after`];
     /// 2. else the one farthest from `own`, if the newcomer is nearer or protected;
     /// 3. else the newcomer is refused.
@@ -172,6 +182,10 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
             return Put::Refused;
         }
         let place = self.place(newcomer.id);
+        if place.is_none() {
+            // Here is one of the lost again.
+            self.entries.retain(|entry| entry.id != newcomer.id);
+        }
         if let Some(entry) = place.and_then(|i| self.entries.get_mut(i)) {
             *entry = newcomer;
             return Put::Updated;
@@ -181,13 +195,16 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
             let Some(victim) = self.victim(&newcomer, own, now, protect) else {
                 return Put::Refused;
             };
+            // Whose loss was news already is no news again.
+            if self.place(victim).is_some() {
+                answer = Put::Evicted(victim);
+            }
             self.entries.retain(|entry| entry.id != victim);
-            answer = Put::Evicted(victim);
         }
         if self.entries.push(newcomer).is_err() {
             return Put::Refused; // Only a table without any room comes here.
         }
-        sink_last(&mut self.entries, |before, after| before.id > after.id);
+        self.sort_last();
         answer
     }
 
@@ -199,11 +216,12 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
         now: Instant,
         protect: impl Fn(RobotId) -> bool,
     ) -> Option<RobotId> {
-        let candidates = || self.entries.iter().filter(|entry| !protect(entry.id));
+        let candidates = || self.entries.iter().filter(|entry| entry.is_lost || !protect(entry.id));
         // An age beyond half the clock's range is older than any that can be told.
         let age = |entry: &Neighbor<S>| entry.age(now).unwrap_or(Duration::MAX);
-        let stalest =
-            candidates().filter(|entry| age(entry) > self.ages.expire_after).max_by_key(|entry| (age(entry), entry.id));
+        let stalest = candidates()
+            .filter(|entry| !entry.is_lost && age(entry) > self.ages.expire_after)
+            .max_by_key(|entry| (age(entry), entry.id));
         if let Some(stalest) = stalest {
             return Some(stalest.id);
         }
@@ -216,18 +234,41 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
         comes_in.then_some(farthest.1)
     }
 
-    /// Forgets everybody older than [`Ages::expire_after`], reporting each in the order of ids. O(N).
+    /// Moves everybody older than [`Ages::expire_after`] to the lost, reporting each in the order of ids, and forgets whom
+    /// it has not heard for longer than `remember`. O(N), and O(N) for each that is lost.
+    ///
+    /// One that would be three quarters as far from `own` as the farthest fresh one, or farther, had it gone on as it went
+    /// last, has gone out of range, as far as one can tell, and is not remembered; when nobody is fresh, all are.
     ///
     /// Call it every step: see the head of this module.
-    pub fn expire(&mut self, now: Instant, mut lost: impl FnMut(RobotId)) {
+    pub fn expire(&mut self, own: Position, now: Instant, remember: Duration, mut lost: impl FnMut(RobotId)) {
         let ages = self.ages;
-        self.entries.retain(|entry| {
-            let keep = entry.age(now).is_some_and(|age| age <= ages.expire_after);
-            if !keep {
-                lost(entry.id);
+        let distance = |entry: &Neighbor<S>| entry.offset_at(own, now, ages.expire_after).norm();
+        let is_within = |entry: &Neighbor<S>, longest| entry.age(now).is_some_and(|age| age <= longest);
+        while let Some(&silent) = self.as_slice().iter().find(|entry| !is_within(entry, ages.expire_after)) {
+            lost(silent.id);
+            self.entries.retain(|entry| entry.id != silent.id);
+            let fresh = self.as_slice().iter().filter(|entry| is_within(entry, ages.stale_after));
+            let range_m = fresh.map(distance).fold(S::ZERO, Scalar::max) * S::from_milli(LEAVES_FROM);
+            if range_m <= S::ZERO || distance(&silent) < range_m {
+                // Into the place that has just become free.
+                let _ = self.entries.push(Neighbor { is_lost: true, ..silent });
+                self.sort_last();
             }
-            keep
-        });
+        }
+        self.entries.retain(|entry| !entry.is_lost || is_within(entry, remember));
+    }
+
+    /// Forgets how near the silent ones can be: to be called in a step in which nobody asks [`Room`]. O(N).
+    pub fn forget_gaps(&mut self) {
+        for entry in &mut self.entries {
+            entry.gap_m = S::ZERO;
+        }
+    }
+
+    /// Puts the last entry where it belongs.
+    fn sort_last(&mut self) {
+        sink_last(&mut self.entries, |before, after| (before.is_lost, before.id) > (after.is_lost, after.id));
     }
 
     /// What is known of robot `id`. O(log N).
@@ -240,7 +281,7 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
     }
 
     fn place(&self, id: RobotId) -> Option<usize> {
-        self.entries.binary_search_by_key(&id, |entry| entry.id).ok()
+        self.as_slice().binary_search_by_key(&id, |entry| entry.id).ok()
     }
 
     /// How far an entry of this table can be trusted at `now`.
@@ -257,25 +298,37 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
     /// Everybody, in the order of ids; fresh and stale ones, if [`NeighborTable::expire`] is called
     /// every step.
     pub fn iter(&self) -> core::slice::Iter<'_, Neighbor<S>> {
-        self.entries.iter()
+        self.as_slice().iter()
     }
 
     /// Everybody, in the order of ids.
     #[must_use]
     pub fn as_slice(&self) -> &[Neighbor<S>] {
-        &self.entries
+        self.halves().0
+    }
+
+    /// The lost that are remembered, in the order of ids.
+    #[must_use]
+    pub fn lost(&self) -> &[Neighbor<S>] {
+        self.halves().1
+    }
+
+    fn halves(&self) -> (&[Neighbor<S>], &[Neighbor<S>]) {
+        let entries = self.entries.as_slice();
+        let known = entries.partition_point(|entry| !entry.is_lost);
+        entries.split_at_checked(known).unwrap_or((entries, &[]))
     }
 
     /// How many are known.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.entries.len()
+        self.as_slice().len()
     }
 
     /// Whether nobody is known.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.entries.is_empty()
+        self.as_slice().is_empty()
     }
 }
 
@@ -288,5 +341,5 @@ impl<'a, S: Scalar, const N: usize> IntoIterator for &'a NeighborTable<S, N> {
 }
 
 // Every byte counts 16 times per robot, and a simulated swarm has 100,000 of them.
-const _: () = assert!(size_of::<Neighbor<f32>>() == 56);
-const _: () = assert!(size_of::<NeighborTable<f32, 16>>() == 16 * 56 + 12);
+const _: () = assert!(size_of::<Neighbor<f32>>() == 60);
+const _: () = assert!(size_of::<NeighborTable<f32, 16>>() == 16 * 60 + 12);

@@ -25,13 +25,14 @@ pub struct Nearby<S> {
     pub gives_way: bool,
 }
 
-/// How the ball around a silent robot grows with the age of the news.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// How the ball around a silent robot grows with the age of the news. By default it does not.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct StalenessInflation<S> {
-    /// Speed at which a stale neighbour's ball grows, m/s: how fast it might have gone since. 0: never.
+    /// Speed at which the ball grows, m/s: the highest that others can have. Less is not safe when the radio is bad; 0: never.
     pub growth_mps: S,
-    /// How much the ball grows at most, metres.
+    /// How much the ball of one that stands grows at most, metres: how far off it may have come to stand. More closes places;
+    /// less hits who lies in the way.
     pub max_m: S,
 }
 
@@ -47,9 +48,9 @@ impl<S: Scalar> StalenessInflation<S> {
 /// unknown distance (NaN) comes last.
 ///
 /// A fresh one is where its velocity has taken it since it was heard. A stale one (older than
-/// [`Ages::stale_after`], not yet forgotten) stands where that ended; its ball grows as `inflation` says, but
-/// never over the own ball of `own_radius_m`, since old news alone is no collision; and it does not give
-/// way. One older than [`Ages::expire_after`] is not there any more.
+/// [`Ages::stale_after`], not yet forgotten) stands where that ended; its ball grows as `inflation` says, at half of
+/// that speed (what it may do at worst is the business of [`Room`](super::Room)), but never over the own ball of
+/// `own_radius_m`, since old news alone is no collision; and it does not give way. One older than [`Ages::expire_after`] is not there any more.
 ///
 /// O(N K); 40 K bytes of stack (`f32`).
 #[must_use]
@@ -79,6 +80,20 @@ pub fn nearest<S: Scalar, const K: usize>(
     list::collect(nearest.iter().map(|&(_, entry)| seen(entry)))
 }
 
+/// Adds robots that are lost ([`NeighborTable::lost`](super::NeighborTable::lost)) behind those that are not: balls that
+/// stand, as a stale one's does, for as long as they are remembered. Those that find no room come to nothing. O(lost).
+pub fn add_lost<S: Scalar, const K: usize>(
+    nearby: &mut Vec<Nearby<S>, K>,
+    lost: &[Neighbor<S>],
+    own: Position,
+    own_radius_m: S,
+    now: Instant,
+    ages: &Ages,
+    inflation: &StalenessInflation<S>,
+) {
+    list::extend(nearby, lost.iter().map(|entry| seen(entry, own, own_radius_m, now, ages, inflation)));
+}
+
 fn seen<S: Scalar>(
     entry: &Neighbor<S>,
     own: Position,
@@ -100,7 +115,7 @@ fn seen<S: Scalar>(
     if !is_fresh {
         nearby.velocity_mps = Vec3::ZERO;
         let silent = age.as_micros().saturating_sub(ages.stale_after.as_micros());
-        let growth = (inflation.growth_mps * S::from_micro(silent)).min(inflation.max_m);
+        let growth = (inflation.growth_mps * S::HALF * S::from_micro(silent)).min(inflation.max_m);
         let room = offset_m.norm() - own_radius_m - entry.radius_m;
         nearby.radius_m += growth.min(room).max(S::ZERO);
     }

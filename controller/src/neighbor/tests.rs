@@ -30,7 +30,7 @@ fn nearest_ids<const N: usize, const K: usize>(table: &NeighborTable<f32, N>, ow
     nearest.iter().map(|near| near.id.0).collect()
 }
 
-const INFLATION: StalenessInflation<f32> = StalenessInflation { growth_mps: 0.5, max_m: 1.0 };
+const INFLATION: StalenessInflation<f32> = StalenessInflation { growth_mps: 1.0, max_m: 1.0 };
 
 fn put<const N: usize>(table: &mut NeighborTable<f32, N>, n: Neighbor<f32>, now: Instant) -> Put {
     table.put(n, Position::ORIGIN, now, |_| false)
@@ -42,7 +42,7 @@ fn ids<const N: usize>(table: &NeighborTable<f32, N>) -> StdVec<u32> {
 
 fn expired<const N: usize>(table: &mut NeighborTable<f32, N>, now: Instant) -> StdVec<u32> {
     let mut lost = StdVec::new();
-    table.expire(now, |id| lost.push(id.0));
+    table.expire(Position::ORIGIN, now, Duration::ZERO, |id| lost.push(id.0));
     lost
 }
 
@@ -210,6 +210,58 @@ fn expiry_reports_each_lost_robot_once_in_order() {
     assert_eq!(expired(&mut table, at(5_000_001)), [1, 3, 4]);
     assert!(expired(&mut table, at(5_000_001)).is_empty());
     assert_eq!(ids(&table), [2]);
+}
+
+#[test]
+fn the_lost_are_remembered_apart_until_they_are_heard_or_too_old() {
+    let mut table = full::<4>(at(0));
+    let _ = put(&mut table, standing(2, 2.0, at(3_000_000)), at(3_000_000));
+    // Not fresh any more, so that it says nothing of the radio's range.
+    let remember = Duration::from_millis(20_000);
+    let lost = |table: &NeighborTable<f32, 4>| table.lost().iter().map(|n| n.id.0).collect::<StdVec<_>>();
+    let mut told = StdVec::new();
+    for now in [5_000_001, 5_100_000] {
+        table.expire(Position::ORIGIN, at(now), remember, |id| told.push(id.0));
+        assert_eq!((ids(&table), lost(&table)), ([2].into(), [1, 3, 4].into()));
+    }
+    assert_eq!(told, [1, 3, 4], "each once");
+    assert_eq!(table.get(RobotId(3), at(5_100_000)), Knowledge::Unknown);
+    let now = at(6_000_000);
+    assert_eq!(put(&mut table, standing(3, 3.0, now), now), Put::Inserted, "found again");
+    assert_eq!((ids(&table), lost(&table)), ([2, 3].into(), [1, 4].into()));
+    // Full: the farthest goes, lost or not, and whose loss was told already is not told again.
+    assert_eq!(put(&mut table, standing(9, 1.5, now), now), Put::Inserted);
+    assert_eq!((ids(&table), lost(&table)), ([2, 3, 9].into(), [1].into()));
+    table.expire(Position::ORIGIN, at(20_000_001), remember, |_| {});
+    assert_eq!((table.len(), lost(&table)), (0, [2, 3, 9].into()));
+}
+
+#[test]
+fn who_is_lost_beyond_all_that_are_heard_has_left_and_is_not_remembered() {
+    let mut table = full::<4>(at(0));
+    let now = at(5_000_001);
+    let _ = put(&mut table, standing(3, 3.0, now), now);
+    let mut told = StdVec::new();
+    table.expire(Position::ORIGIN, now, Duration::from_millis(20_000), |id| told.push(id.0));
+    assert_eq!(told, [1, 2, 4]);
+    assert_eq!(table.lost().iter().map(|n| n.id.0).collect::<StdVec<_>>(), [1, 2]);
+}
+
+/// In a flock on its way, where somebody was last is in the middle of the others soon.
+#[test]
+fn who_drives_on_out_of_range_is_not_remembered_where_it_was() {
+    let mut table = NeighborTable::<f32, 4>::new(AGES);
+    let moving = |id, x, now| Neighbor { velocity_mps: Vec3::new(0.3, 0.0, 0.0), ..standing(id, x, now) };
+    for neighbor in [moving(1, 1.0, at(0)), moving(2, 2.0, at(0)), standing(4, 2.0, at(0))] {
+        let _ = put(&mut table, neighbor, at(0));
+    }
+    for step in 1..60_u32 {
+        let (now, x) = (at(step * 100_000), 0.03 * step as f32);
+        let own = place(x, 0.0).unwrap();
+        let _ = table.put(moving(3, x + 2.1, now), own, now, |_| false);
+        table.expire(own, now, Duration::from_millis(20_000), |_| {});
+    }
+    assert_eq!((ids(&table), table.lost().iter().map(|n| n.id.0).collect()), ([3].into(), std::vec![1, 4]));
 }
 
 #[test]

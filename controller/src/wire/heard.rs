@@ -25,6 +25,8 @@ impl<S: Scalar> Neighbor<S> {
             heading: beacon.heading,
             slot: beacon.slot,
             mode: beacon.mode,
+            is_lost: false,
+            gap_m: S::ZERO,
         }
     }
 
@@ -47,6 +49,8 @@ impl<S: Scalar> Neighbor<S> {
             heading: Dir::Stay,
             slot: 0,
             mode: beacon.mode,
+            is_lost: false,
+            gap_m: S::ZERO,
         }
     }
 }

@@ -26,7 +26,7 @@ pub(super) fn one_step_late<S: Scalar>(id: u32) -> AgentConfig<S> {
 }
 
 pub(super) fn orca<S: Scalar>() -> OrcaSafety<S, 16> {
-    let inflation = StalenessInflation { growth_mps: S::HALF, max_m: S::from_milli(300) };
+    let inflation = StalenessInflation { growth_mps: S::ONE, max_m: S::from_milli(300) };
     OrcaSafety::new(AvoidParams::default(), inflation)
 }
 
@@ -82,7 +82,7 @@ where
         out
     }
 
-    fn speed(&self) -> f64 {
+    pub(super) fn speed(&self) -> f64 {
         length(self.velocity_mps)
     }
 }

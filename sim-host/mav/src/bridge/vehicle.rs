@@ -186,6 +186,7 @@ impl Vehicle {
                 let text = format!("robot {} has started anew", id.0);
                 self.text(out, Kind::Neighbor, INFO, &text);
             }
+            Event::NobodyHeard => self.text(out, Kind::News, MAV_SEVERITY_WARNING, "nobody is heard any more"),
             Event::NoRoute => self.text(out, Kind::Route, MAV_SEVERITY_WARNING, "no way is open"),
             _ => {}
         }

@@ -389,6 +389,7 @@ impl Companions<'_> {
         match event {
             AgentEvent::NeighborFound(id) => self.tell(index, &format!("hears robot {}", id.0)),
             AgentEvent::NeighborLost(id) => self.tell(index, &format!("has lost robot {}", id.0)),
+            AgentEvent::NobodyHeard => self.tell(index, "hears nobody any more"),
             AgentEvent::NoRoute => self.tell(index, "finds no way"),
             AgentEvent::ModeChanged { to: Mode::Fault, .. }
                 if self.vehicles[index].offboard.state() == State::Steering =>

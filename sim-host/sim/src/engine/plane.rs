@@ -237,6 +237,7 @@ impl Ground for PlaneGround {
         AgentConfig {
             max_acceleration_mps2: group.abilities.max_acceleration_mps2 as f32,
             latency: Duration::from_micros(micros),
+            silence: group.silence,
             ..AgentConfig::new(self.robots[index].id, group.radius_m as f32, tick)
         }
     }

@@ -40,21 +40,37 @@ fn neither_a_run_in_the_plane_nor_its_hash_depends_on_the_number_of_threads() {
     assert_ne!(trace(&scenario, 1).0.trace_hash, one.trace_hash);
 }
 
-#[test]
-fn a_robot_that_is_down_stands_and_others_go_around_it() {
-    let robots = "[plane.robots]\nlist = [{ start_m = [-2, 0], goal_m = [3, 0] }, { start_m = [0, 0.05], goal_m = [0, 0.05] }]\n\
-                  [[fault]]\nrobot = 2\nat_s = 1\ndown_s = 99\n";
-    let (outcome, rows) = tracks(&in_plane(robots, ""));
+/// How many arrive past a robot that goes down in the way of the first one, and where the first one ends; `company`: one
+/// more that it hears.
+fn past_one_that_is_down(company: &str, silence: &str) -> (usize, f64) {
+    let robots = format!(
+        "[plane.robots]\nlist = [{{ start_m = [-2, 0], goal_m = [3, 0] }}, {{ start_m = [0, 0.05], goal_m = [0, 0.05] }}{company}]\n\
+         [[fault]]\nrobot = 2\nat_s = 1\ndown_s = 99\n{silence}"
+    );
+    let (outcome, rows) = tracks(&in_plane(&robots, ""));
     let clearance = outcome.clearance.expect("bodies have sizes");
     assert!(clearance.bodies_m > 0.0, "{clearance:?}");
-    assert_eq!((outcome.collisions, outcome.arrived), (0, 1));
+    assert_eq!(outcome.collisions, 0);
     let down = &rows[11..];
     for robots in down {
         assert_eq!(robots[1].mode, Mode::Fault);
         assert_eq!(robots[1].motion.position_m, down[0][1].motion.position_m);
     }
-    let last = rows.last().expect("rows")[0].motion.position_m;
-    assert!((last[0] - 3.0).abs() < 0.03, "{last:?}");
+    (outcome.arrived, rows.last().expect("rows")[0].motion.position_m[0])
+}
+
+#[test]
+fn a_robot_that_is_down_stands_and_others_go_around_it() {
+    let (arrived, x) = past_one_that_is_down(", { start_m = [-1, 3], goal_m = [-1, 3] }", "");
+    assert!(arrived == 2 && (x - 3.0).abs() < 0.03, "{arrived}, {x} m");
+}
+
+#[test]
+fn who_hears_nobody_but_one_that_is_down_stands_unless_it_may_be_alone() {
+    let (arrived, x) = past_one_that_is_down("", "");
+    assert!(arrived == 0 && x < -0.4, "{arrived}, {x} m");
+    let (arrived, x) = past_one_that_is_down("", "[plane.orca]\nalone_mps = 0.3\n");
+    assert!(arrived == 1 && (x - 3.0).abs() < 0.03, "{arrived}, {x} m");
 }
 
 #[test]

@@ -5,11 +5,12 @@ use super::super::{ScenarioError, ScenarioFile, params};
 use super::spec::Spec;
 use super::{checks, flocks};
 use crate::world::plane::Abilities;
-use staya_controller::agent::{AnyHalfPlanes, GuidanceKind, GuidanceSetup, SafetyKind, SafetySetup};
+use staya_controller::agent::{AnyHalfPlanes, GuidanceKind, GuidanceSetup, SafetyKind, SafetySetup, Silence};
 use staya_controller::neighbor::StalenessInflation;
 use staya_controller::orca::AvoidParams;
 use staya_controller::push_out::{Evasion, Model, PushOutParams};
 use staya_controller::template::Template;
+use staya_controller::time::Duration;
 
 /// What robots of a group have in common.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,6 +29,8 @@ pub struct RobotGroup {
     pub guidance: GuidanceSetup,
     /// What keeps them apart.
     pub safety: SafetySetup,
+    /// What they make of silence.
+    pub silence: Silence<f32>,
 }
 
 impl RobotGroup {
@@ -45,6 +48,7 @@ impl RobotGroup {
             sight_m: super::table::ten(),
             guidance: waypoint(cruise_mps, tolerance_m),
             safety: SafetySetup::Orca { params: AvoidParams::default(), inflation, source: AnyHalfPlanes::Analytic },
+            silence: Silence::DEFAULT,
         }
     }
 
@@ -74,14 +78,28 @@ impl RobotGroup {
     }
 }
 
+/// Lets the balls of silent robots grow by the speed of the fastest robot of all, where no file says how fast.
+pub(super) fn grow_as_the_fastest(general: &mut RobotGroup, groups: &mut [RobotGroup]) {
+    let speed = |group: &RobotGroup| group.abilities.max_speed_mps;
+    let fastest_mps = groups.iter().map(speed).fold(speed(general), f64::max) as f32;
+    for group in groups.iter_mut().chain([general]) {
+        let usual = inflation(group.abilities.max_speed_mps, group.radius_m).growth_mps;
+        if let SafetySetup::Orca { inflation, .. } | SafetySetup::Fly { inflation, .. } = &mut group.safety
+            && inflation.growth_mps == usual
+        {
+            inflation.growth_mps = fastest_mps;
+        }
+    }
+}
+
 /// Straight to places.
 const fn waypoint(cruise_mps: f64, tolerance_m: f64) -> GuidanceSetup {
     GuidanceSetup::Waypoint { speed_mps: cruise_mps as f32, tolerance_m: tolerance_m as f32 }
 }
 
-/// How silent robots grow unless a file says otherwise: by half the highest speed, up to the radius.
+/// How silent robots grow unless a file says otherwise: by the highest speed, up to the radius.
 const fn inflation(max_speed_mps: f64, radius_m: f64) -> StalenessInflation<f32> {
-    StalenessInflation { growth_mps: (max_speed_mps / 2.0) as f32, max_m: radius_m as f32 }
+    StalenessInflation { growth_mps: max_speed_mps as f32, max_m: radius_m as f32 }
 }
 
 impl Spec {
@@ -113,6 +131,7 @@ impl Spec {
             sight_m: self.sight_m,
             guidance: self.guidance(source, file, cruise_mps, tolerance_m)?,
             safety: self.safety(source)?,
+            silence: self.silence(source)?,
         };
         self.unused(source)?;
         Ok(group)
@@ -185,6 +204,19 @@ impl Spec {
             }
         }
         Ok(params)
+    }
+
+    fn silence(&self, source: &Source<'_>) -> Result<Silence<f32>, ScenarioError> {
+        let mut silence = Silence::DEFAULT;
+        if let Some(remember_s) = self.orca.remember_s {
+            self.within(source, "orca.remember_s", remember_s, [0.0, 1800.0], "seconds")?;
+            silence.remember = Duration::from_micros(libm::round(remember_s * 1e6) as i32);
+        }
+        if let Some(alone_mps) = self.orca.alone_mps {
+            self.within(source, "orca.alone_mps", alone_mps, [0.0, f64::INFINITY], "m/s")?;
+            silence.alone_mps = alone_mps.min(f64::from(f32::MAX)) as f32;
+        }
+        Ok(silence)
     }
 
     fn push_out(&self, source: &Source<'_>) -> Result<PushOutParams<f32>, ScenarioError> {

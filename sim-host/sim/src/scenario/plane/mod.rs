@@ -166,7 +166,7 @@ pub(super) fn build(
         ));
     }
     let spec = Spec::general(table);
-    let general = spec.build(source, file)?;
+    let mut general = spec.build(source, file)?;
     let (mut groups, mut starts) = (Vec::new(), Vec::new());
     match (cells, &table.robots, table.group.is_empty()) {
         (Some(robots), None, true) => {
@@ -198,6 +198,7 @@ pub(super) fn build(
             ));
         }
     }
+    group::grow_as_the_fastest(&mut general, &mut groups);
     let setup = PlaneSetup {
         general,
         groups,

@@ -274,23 +274,29 @@ pub struct OrcaTable {
     pub share: Option<f64>,
     /// Distance kept on top of the radii, metres.
     pub margin_m: Option<f64>,
-    /// How fast the ball around a silent robot grows, m/s. Default: half the highest speed.
+    /// How fast the ball around a silent robot grows, m/s. Default: the highest speed.
     #[serde(alias = "doubt_mps")]
     pub inflation_mps: Option<f64>,
-    /// How much it grows at most, metres. Default: the radius.
+    /// How much it grows at most around one that is lost, metres. Default: the radius.
     #[serde(alias = "doubt_m")]
     pub inflation_m: Option<f64>,
     /// In space: how many times as far as beside each other robots keep apart above and below each other. Default: 1.
     pub downwash: Option<f64>,
+    /// How long a lost robot is remembered, seconds.
+    pub remember_s: Option<f64>,
+    /// How fast a robot goes that has lost all others, m/s; `inf`: as ever.
+    pub alone_mps: Option<f64>,
 }
 
 impl OrcaTable {
     /// Whether it says nothing.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        let Self { horizon_s, wall_horizon_s, share, margin_m, inflation_mps, inflation_m, downwash } = self;
-        let fields = [horizon_s, wall_horizon_s, share, margin_m, inflation_mps, inflation_m, downwash];
-        fields.iter().all(|field| field.is_none())
+        let Self { horizon_s, wall_horizon_s, share, margin_m, inflation_mps, inflation_m, .. } = self;
+        let Self { downwash, remember_s, alone_mps, .. } = self;
+        let fields = [horizon_s, wall_horizon_s, share, margin_m, inflation_mps, inflation_m];
+        let fields = fields.into_iter().chain([downwash, remember_s, alone_mps]);
+        fields.into_iter().all(Option::is_none)
     }
 }
 

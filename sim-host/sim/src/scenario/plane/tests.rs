@@ -3,9 +3,10 @@ mod groups;
 use super::super::Overrides;
 use super::*;
 use proptest::prelude::*;
-use staya_controller::agent::{AnyHalfPlanes, GuidanceSetup, SafetySetup};
+use staya_controller::agent::{AnyHalfPlanes, GuidanceSetup, SafetySetup, Silence};
 use staya_controller::neighbor::StalenessInflation;
 use staya_controller::orca::AvoidParams;
+use staya_controller::time::Duration;
 use std::path::Path;
 
 const HEAD: &str = "name = \"t\"\nticks = 5\n";
@@ -41,13 +42,21 @@ fn the_smallest_plane_has_the_documented_defaults() {
     assert_eq!(group.abilities.max_acceleration_mps2, f64::INFINITY);
     assert_eq!((group.cruise_mps, group.sight_m), (1.0, 10.0));
     assert!((group.tolerance_m - 0.02).abs() < 1e-12);
-    let (params, inflation) = (AvoidParams::default(), StalenessInflation { growth_mps: 0.5, max_m: 0.2 });
+    let (params, inflation) = (AvoidParams::default(), StalenessInflation { growth_mps: 1.0, max_m: 0.2 });
     assert_eq!(group.guidance, GuidanceSetup::Waypoint { speed_mps: 1.0, tolerance_m: 0.02 });
     assert_eq!(group.safety, SafetySetup::Orca { params, inflation, source: AnyHalfPlanes::Analytic });
     assert!(!plane.has_terrain);
     let [one, two] = &plane.starts[..] else { panic!("two robots") };
     assert_eq!(one.places[0].position_m, [5.0, 0.0, 0.0]);
     assert_eq!((two.position_m, two.places.len()), ([3.0, 0.0, 1.0], 0));
+    assert_eq!(plane.general.silence, Silence { remember: Duration::from_millis(60_000), alone_mps: 0.0 });
+}
+
+#[test]
+fn what_silence_means_is_read() {
+    let table = "[plane.orca]\nremember_s = 2.5\nalone_mps = inf\n";
+    let silence = setup(&format!("{HEAD}{PLANE}{table}{TWO}")).general.silence;
+    assert_eq!(silence, Silence { remember: Duration::from_millis(2500), alone_mps: f32::MAX });
 }
 
 #[test]
@@ -233,6 +242,8 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             format!("{}[plane.orca]\ndownwash = 0.5\n", with("safety = \"fly\"\n")),
             "s.toml:10: plane.orca.downwash: 0.5 is out of range; give 1 to 10",
         ),
+        (after("[plane.orca]\nremember_s = 1801\n"), "s.toml:9: plane.orca.remember_s: 1801 is out of range"),
+        (after("[plane.orca]\nalone_mps = -1\n"), "s.toml:9: plane.orca.alone_mps: -1 is out of range"),
         (after("[plane.orca]\ninflation_m = -1\n"), "s.toml:9: plane.orca.inflation_m: -1 is out of range"),
         (
             flock("lattice", "spacing_m = 1\nalgorithm = 4", ""),

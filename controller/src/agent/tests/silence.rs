@@ -1,0 +1,165 @@
+//! Radios that lose packets or die, robots that fall silent: nobody touches anybody, and nobody stands for ever who need not.
+
+use super::plane::{Robot, STEP, in_plane, length, one_step_late, orca, place, step_number, waypoint};
+use super::*;
+use crate::neighbor::StalenessInflation;
+use crate::orca::AvoidParams;
+use crate::rand::Rng;
+use crate::scalar::Q16;
+
+type Mover<S> = Robot<S, WaypointGuidance<S>, OrcaSafety<S, 16>>;
+
+/// ORCA among robots of up to 1 m/s, the speed of [`Robot`].
+fn safety<S: Scalar>() -> OrcaSafety<S, 16> {
+    OrcaSafety::new(AvoidParams::default(), StalenessInflation { growth_mps: S::ONE, max_m: S::from_milli(200) })
+}
+
+/// Robots on a circle of 2 m, somewhat off their even places, each bound for the other side.
+fn circle<S: Scalar>(count: u32, seed: u32) -> Vec<Mover<S>> {
+    let mover = |i: u32| {
+        let mut rng = Rng::keyed(9, 9, seed, i);
+        let angle = (f64::from(i) + f64::from(rng.below(20)) / 100.0) / f64::from(count) * core::f64::consts::TAU;
+        let at_m = [2.0 * libm::cos(angle), 2.0 * libm::sin(angle)];
+        let mut robot = Robot::new(&one_step_late(i + 1), waypoint(), safety(), at_m);
+        let _ = robot.agent.assign_waypoint(0, &place(-(at_m[0] * 1e3) as i32, -(at_m[1] * 1e3) as i32));
+        robot
+    };
+    (0..count).map(mover).collect()
+}
+
+/// Steps until all have arrived, at most `steps`; the least gap, and whether all arrived. `is_lost` says of each packet whether it is.
+fn run<S: Scalar>(
+    robots: &mut [Mover<S>],
+    steps: i32,
+    mut is_lost: impl FnMut(i32, usize, usize) -> bool,
+) -> (f64, bool) {
+    let mut said = vec![Vec::new(); robots.len()];
+    let mut least = f64::INFINITY;
+    for n in 0..steps {
+        let heard: Vec<Vec<u8>> = (0..robots.len())
+            .map(|to| {
+                let others = (0..said.len()).filter(|&from| from != to);
+                let others: Vec<usize> = others.filter(|&from| !is_lost(n, from, to)).collect();
+                others.into_iter().flat_map(|from| said[from].clone()).collect()
+            })
+            .collect();
+        said = robots
+            .iter_mut()
+            .zip(&heard)
+            .map(|(robot, inbox)| robot.step(step_number(n), inbox).outbox.to_vec())
+            .collect();
+        for (i, one) in robots.iter().enumerate() {
+            for other in &robots[..i] {
+                least = least.min(length([one.at_m[0] - other.at_m[0], one.at_m[1] - other.at_m[1]]) - 0.4);
+            }
+        }
+        if robots.iter().all(|robot| robot.agent.mode() == Mode::Arrived) {
+            return (least, true);
+        }
+    }
+    (least, false)
+}
+
+#[test]
+fn a_radio_that_dies_at_any_moment_for_any_time_lets_nobody_touch() {
+    fn check<S: Scalar>() {
+        for (from, lasts) in [(8, 20), (16, 20), (24, 20), (12, 900), (20, 900)] {
+            let mut robots = circle::<S>(6, from as u32);
+            let ends = from + lasts;
+            let (least, have_arrived) = run(&mut robots, ends + 1500, |n, _, _| (from..ends).contains(&n));
+            assert!(least > -1e-3, "dead from step {from} for {lasts}: {least} m");
+            assert!(have_arrived, "dead from step {from} for {lasts}");
+        }
+    }
+    check::<f32>();
+    check::<Q16>();
+}
+
+#[test]
+fn with_up_to_three_packets_of_ten_lost_nobody_touches() {
+    fn check<S: Scalar>() {
+        for loss in [1, 3] {
+            for seed in 0..4 {
+                let is_lost = |n: i32, from: usize, to: usize| {
+                    Rng::keyed(seed.into(), 1, (from * 64 + to) as u32, n as u32).below(10) < loss
+                };
+                let (least, have_arrived) = run(&mut circle::<S>(6, seed), 600, is_lost);
+                assert!(least > -1e-3 && have_arrived, "{loss} of 10, seed {seed}: {least} m");
+            }
+        }
+    }
+    check::<f32>();
+    check::<Q16>();
+}
+
+/// At 1 m/s and ten steps a second a step is half a radius.
+#[test]
+fn in_a_crowd_with_a_perfect_radio_nobody_touches_however_long_a_step_is() {
+    for seed in 0..3 {
+        let (least, have_arrived) = run(&mut circle::<f32>(10, seed), 900, |_, _, _| false);
+        assert!(least > -1e-3 && have_arrived, "seed {seed}: {least} m");
+    }
+}
+
+/// One that drives up to two seconds before its neighbour falls silent for good, in its way.
+#[test]
+fn one_that_lies_dead_in_the_way_is_remembered_and_gone_round() {
+    fn check<S: Scalar>() {
+        let mover = |id, at_m: [f64; 2], to_mm: [i32; 2]| {
+            let mut robot: Mover<S> = Robot::new(&one_step_late(id), waypoint(), safety(), at_m);
+            let _ = robot.agent.assign_waypoint(0, &place(to_mm[0], to_mm[1]));
+            robot
+        };
+        // The third one keeps the first one's radio busy, off the way.
+        let mut robots = vec![
+            mover(1, [-8.0, 0.02], [8000, 20]),
+            mover(2, [0.0, 0.0], [0, 0]),
+            mover(3, [-4.0, 7.0], [-4000, 7000]),
+        ];
+        // The dead one is lost after 3 s; the mover is there after 8.
+        let (least, have_arrived) = run(&mut robots, 400, |n, from, to| n >= 10 && (from == 1 || to == 1));
+        assert!(least > 0.0 && have_arrived, "{least} m");
+    }
+    check::<f32>();
+    check::<Q16>();
+}
+
+/// The speed after it has heard somebody far off (or nobody) and then nobody for six seconds, and whether it was told.
+fn left_alone(hears: bool, silence: Silence<f32>) -> (f64, Mode, bool) {
+    let config = AgentConfig { silence, ..in_plane(1) };
+    let mut robot = Robot::new(&config, waypoint::<f32>(), orca(), [0.0; 2]);
+    let _ = robot.agent.assign_waypoint(0, &place(90_000, 0));
+    let inbox = bytes(2, 0, 0, &[super::plane::body_at([-60_000, 0], [0, 0], Mode::Idle)]);
+    let mut is_told = false;
+    for n in 0..60 {
+        let out = robot.step(step_number(n), if n == 0 && hears { &inbox } else { &[] });
+        is_told |= out.events.contains(&Event::NobodyHeard);
+    }
+    (length(robot.velocity_mps), robot.agent.mode(), is_told)
+}
+
+#[test]
+fn who_hears_nobody_any_more_stands_unless_it_may_be_alone() {
+    let after = |alone_mps| Silence { remember: STEP.saturating_mul(50), alone_mps };
+    assert_eq!(left_alone(true, Silence::DEFAULT), (1.0, Mode::Cruise, true), "a minute is not over");
+    assert_eq!(left_alone(true, after(0.0)), (0.0, Mode::Hold, true));
+    assert_eq!(left_alone(true, after(0.25)), (0.25, Mode::Cruise, true));
+    assert_eq!(left_alone(true, after(f32::MAX)), (1.0, Mode::Cruise, true));
+    assert_eq!(left_alone(false, after(0.0)), (1.0, Mode::Cruise, false), "who never heard anybody is the first");
+    let nobody = Silence { remember: Duration::ZERO, alone_mps: 0.0 };
+    assert_eq!(left_alone(true, nobody), (0.0, Mode::Hold, true), "nobody is remembered");
+}
+
+#[test]
+fn who_stands_alone_goes_on_when_somebody_speaks() {
+    let silence = Silence { remember: STEP.saturating_mul(40), alone_mps: 0.0 };
+    let mut robot = Robot::new(&AgentConfig { silence, ..in_plane(1) }, waypoint::<f32>(), orca(), [0.0; 2]);
+    let _ = robot.agent.assign_waypoint(0, &place(90_000, 0));
+    for n in 0..60 {
+        let far = super::plane::body_at([-60_000, 0], [0, 0], Mode::Idle);
+        let inbox = bytes(2, 0, n as u16, &[far]);
+        let _ = robot.step(step_number(n), if n == 0 || n == 55 { &inbox } else { &[] });
+        let goes = !(41..55).contains(&n);
+        assert_eq!(length(robot.velocity_mps) > 0.9, goes, "step {n}");
+    }
+}

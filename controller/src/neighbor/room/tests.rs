@@ -1,0 +1,160 @@
+use super::*;
+use crate::neighbor::Ages;
+use crate::rand::Rng;
+use crate::robot::RobotId;
+use crate::scalar::Q16;
+use crate::wire::Beacon;
+use proptest::prelude::*;
+use std::vec::Vec as StdVec;
+
+const STEP: Duration = Duration::from_millis(100);
+const RADIUS_M: f64 = 0.15;
+
+fn moment(step: i32) -> Instant {
+    Instant::from_micros(1) + STEP.saturating_mul(step)
+}
+
+/// A robot of at most 1 m/s, what it knows of others, and what it has just begun to do.
+struct Mover<S> {
+    table: NeighborTable<S, 4>,
+    body: Body<S>,
+    at_m: Vec3<f64>,
+}
+
+impl<S: Scalar> Mover<S> {
+    fn new(id: u32, at_m: [f64; 3], max_acceleration_mps2: f64) -> Self {
+        let ages = Ages { stale_after: STEP.saturating_mul(4), expire_after: STEP.saturating_mul(30) };
+        let body = Body {
+            id: RobotId(id),
+            velocity_mps: Vec3::ZERO,
+            radius_m: S::from_f64(RADIUS_M).unwrap(),
+            max_speed_mps: S::ONE,
+            max_acceleration_mps2: S::from_f64(max_acceleration_mps2).unwrap_or(S::MAX),
+            step_s: S::from_micro(STEP.as_micros()),
+        };
+        Self { table: NeighborTable::new(ages), body, at_m: Vec3::new(at_m[0], at_m[1], at_m[2]) }
+    }
+
+    fn position(&self) -> Position {
+        Position::from_metres([self.at_m.x, self.at_m.y, self.at_m.z]).unwrap()
+    }
+
+    fn news(&self, step: i32) -> Neighbor<S> {
+        let heard = Neighbor::from_beacon(self.body.id, &Beacon::default(), moment(step));
+        let Body { radius_m, velocity_mps, .. } = self.body;
+        Neighbor { position: self.position(), velocity_mps, radius_m, ..heard }
+    }
+
+    /// What it does of a wish, with what it heard of the step before.
+    fn decide(&self, step: i32, wish: Vec3<f64>, heard: &[Neighbor<S>]) -> Self {
+        let Self { mut table, mut body, at_m } = Self { table: self.table.clone(), ..*self };
+        let (own, now) = (self.position(), moment(step));
+        table.expire(own, now, Duration::from_millis(60_000), |_| {});
+        for &neighbor in heard {
+            let _ = table.put(neighbor, own, now, |_| false);
+        }
+        let inflation = StalenessInflation { growth_mps: S::ONE, max_m: body.radius_m };
+        let room = Room { body: &body, own, now, news: STEP, inflation, may_be_alone: false };
+        let wish = wish.cast().clamp_norm(body.max_speed_mps);
+        let velocity_mps = body.reach(room.limit(&mut table, &[], wish).unwrap_or(Vec3::ZERO));
+        body.velocity_mps = velocity_mps;
+        Self { table, body, at_m }
+    }
+}
+
+/// The least gap among robots that wish anything, while packets are lost as `is_lost` says of step, sender and receiver.
+fn least_gap<S: Scalar>(
+    mut movers: StdVec<Mover<S>>,
+    steps: i32,
+    wish: impl Fn(i32, usize) -> Vec3<f64>,
+    mut is_lost: impl FnMut(i32, usize, usize) -> bool,
+) -> f64 {
+    let mut least = f64::MAX;
+    let mut said: StdVec<_> = movers.iter().map(|mover| mover.news(0)).collect();
+    for step in 1..=steps {
+        let decided = movers.iter().enumerate().map(|(to, mover)| {
+            let from =
+                said.iter().enumerate().filter(|&(from, _)| from != to && (step == 1 || !is_lost(step, from, to)));
+            mover.decide(step, wish(step, to), &from.map(|(_, news)| *news).collect::<StdVec<_>>())
+        });
+        movers = decided.collect();
+        said = movers.iter().map(|mover| mover.news(step)).collect();
+        for mover in &mut movers {
+            mover.at_m += mover.body.velocity_mps.cast() * 0.1;
+        }
+        for (i, one) in movers.iter().enumerate() {
+            for other in &movers[..i] {
+                least = least.min((one.at_m - other.at_m).norm() - 2.0 * RADIUS_M);
+            }
+        }
+    }
+    least
+}
+
+/// Anything up to twice the highest speed, the same for three steps, mostly towards the middle.
+fn wishes(seed: u32, size: f64, movers: usize) -> impl Fn(i32, usize) -> Vec3<f64> {
+    move |step, robot| {
+        let mut rng = Rng::keyed(7, seed, robot as u32, (step / 3) as u32);
+        let mut draw = || f64::from(rng.below(4001)) / 1e3 - 2.0;
+        let angle = robot as f64 / movers as f64 * core::f64::consts::TAU;
+        let inwards = Vec3::new(-libm::cos(angle), -libm::sin(angle), 0.0);
+        inwards + Vec3::new(draw(), draw(), draw() * size)
+    }
+}
+
+fn circle<S: Scalar>(movers: usize, radius_m: f64, most: f64) -> StdVec<Mover<S>> {
+    let at = |i: usize| i as f64 / movers as f64 * core::f64::consts::TAU;
+    let mover = |i| Mover::new(i as u32 + 1, [radius_m * libm::cos(at(i)), radius_m * libm::sin(at(i)), 0.0], most);
+    (0..movers).map(mover).collect()
+}
+
+fn lossy(seed: u32, percent: u32) -> impl FnMut(i32, usize, usize) -> bool {
+    move |step, from, to| Rng::keyed(3, seed, (from * 8 + to) as u32, step as u32).below(100) < percent
+}
+
+proptest! {
+    /// Nearly all packets are another matter: one that is heard by others only is lost, and taken to stand.
+    #[test]
+    fn whatever_they_wish_and_whatever_is_lost_nobody_touches(
+        seed in any::<u32>(), percent in prop_oneof![0..=60_u32, Just(100)], movers in 2..5_usize, radius_m in 0.25..1.5_f64, height in 0..2_u8,
+    ) {
+        let wish = || wishes(seed, height.into(), movers);
+        let gap = least_gap(circle::<f32>(movers, radius_m, f64::MAX), 60, wish(), lossy(seed, percent));
+        prop_assert!(gap > -1e-4, "{}", gap);
+        let gap = least_gap(circle::<Q16>(movers, radius_m, f64::MAX), 60, wish(), lossy(seed, percent));
+        prop_assert!(gap > -1e-3, "fixed: {}", gap);
+    }
+
+    /// Head on: whoever heads elsewhere cannot turn at once.
+    #[test]
+    fn bodies_with_inertia_brake_for_each_other_at_any_loss(
+        seed in any::<u32>(), percent in 0..101_u32, most in 0.3..4.0_f64, apart_m in 0.4..6.0_f64,
+    ) {
+        let wish = |step: i32, robot: usize| {
+            let back = Rng::keyed(5, seed, robot as u32, (step / 5) as u32).below(4) == 0;
+            Vec3::new(if (robot == 0) == back { 1.0 } else { -1.0 }, 0.0, 0.0)
+        };
+        let movers = std::vec![Mover::new(1, [apart_m, 0.0, 0.0], most), Mover::<f32>::new(2, [0.0; 3], most)];
+        let gap = least_gap(movers, 150, wish, lossy(seed, percent));
+        prop_assert!(gap > -1e-3, "{}", gap);
+    }
+}
+
+/// It takes a wall as it comes when somebody is in the way: the way aside is no way through.
+#[test]
+fn who_is_turned_aside_is_not_turned_into_a_wall() {
+    use crate::geom::Vec2;
+    let other = Mover::<f32>::new(2, [0.25, 0.25, 0.0], f64::MAX);
+    let mover = Mover::<f32>::new(1, [0.0; 3], f64::MAX);
+    let wall = [Obstacle::Wall([Vec2::new(-1.0, -0.16), Vec2::new(1.0, -0.16)])];
+    let mut table = mover.table.clone();
+    let _ = table.put(other.news(0), Position::ORIGIN, moment(1), |_| false);
+    let inflation = StalenessInflation { growth_mps: 1.0, max_m: 0.1 };
+    let room =
+        Room { body: &mover.body, own: Position::ORIGIN, now: moment(1), news: STEP, inflation, may_be_alone: false };
+    let east = Vec3::new(1.0, 0.0, 0.0);
+    let open = room.limit(&mut table, &[], east).unwrap();
+    assert!(open.y < -0.2 && open.x > 0.4, "{open:?}: aside");
+    let beside = room.limit(&mut table, &wall, east).unwrap();
+    assert!((0.0..=0.0101).contains(&(-beside.y * 0.1)), "{beside:?}");
+}
