@@ -43,3 +43,26 @@ fn six_robots_go_on_over_a_bad_radio_without_any_one_of_them() {
         assert_eq!(missing(&scenario, &dead), [0_usize; 0], "without {robot}");
     }
 }
+
+#[test]
+fn ranks_close_up_to_the_place_of_a_dead_robot() {
+    for robot in 1..=6_usize {
+        let dead = [(robot as u32, 10)];
+        let mut scenario = without("figure-5", 1, &dead, 300);
+        let goals: Vec<_> = scenario.robots.iter().map(|robot| robot.goal).collect();
+        let mut ends = [false, true].map(|closes_ranks| {
+            scenario.formation_params.closes_ranks = closes_ranks;
+            assert_eq!(missing(&scenario, &dead), [0_usize; 0], "without {robot}");
+            let (_, rows) = run(&scenario);
+            let (_, robots) = rows.last().expect("at least the start").clone();
+            let living = (0..robots.len()).filter(|index| index + 1 != robot);
+            // Numbers of the places at whose goals they stand.
+            let place = |cell| goals.iter().position(|&goal| goal == cell);
+            living.filter_map(|index| place(robots[index].motion.cell)).collect::<Vec<_>>()
+        });
+        ends.iter_mut().for_each(|places| places.sort_unstable());
+        let [kept, closed] = ends;
+        assert_eq!(kept, (0..6).filter(|place| place + 1 != robot).collect::<Vec<_>>(), "without {robot}");
+        assert!(closed.len() == 5 && closed[..3] == [0, 1, 2], "without {robot}: {closed:?}");
+    }
+}

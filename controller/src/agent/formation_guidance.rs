@@ -5,31 +5,30 @@ use super::OnGrid;
 use super::guidance::{Action, Ask, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
 use super::route_guidance::GridWorkspace;
 use super::travel::{PATIENCE, Travel, on_grid, reachable_goal};
-use crate::cost::{Gain, Weights};
+use crate::cost::Weights;
 use crate::formation::{
-    Anchor, FormationParams, Found, GraphDistance, Member, Pace, Prediction, Recovery, Seen, aim, blended, def,
-    distances, find_leader, find_neighbors, graph_distance, lag, should_stay,
+    Anchor, FormationParams, Found, GraphDistance, Member, Pace, Ranks, Recovery, Seen, aim, blended, def, distances,
+    find_leader, find_neighbors, graph_distance, lag, should_stay,
 };
-use crate::grid::{BLOCKED, Cell, Dir, Window};
+use crate::grid::{Cell, Dir, Window};
 use crate::list;
 use crate::neighbor::Neighbor;
 use crate::rand::Rng;
 use crate::robot::{Mode, RobotId};
-use crate::route::{CostField, RouteParams, Router};
+use crate::route::{RouteParams, Router};
 use crate::scalar::Scalar;
 use crate::shuffle::Sharpness;
 use crate::template::Template;
-use crate::time::Duration;
 use crate::wire::{RequestKind, TemplateAssembler, TemplateAssignment};
 use core::iter::successors;
 use heapless::Vec;
 use serde::Serialize;
 
+mod foresight;
+
 /// Moves that a robot of a formation tries: its best and the next best. One that is crowded out of
 /// both waits; trying all eight it would run away from its place.
 const ALTERNATIVES: usize = 2;
-/// Cells by which old news may be carried forward.
-const MAX_FORESIGHT: i16 = 3;
 
 /// Travelling in formation; remembers visits of `M` cells and a template of `F` neighbours.
 ///
@@ -39,7 +38,9 @@ pub struct FormationGuidance<const CELLS: usize, const M: usize, const F: usize,
     route: RouteParams,
     formation: FormationParams,
     sharpness: Sharpness,
+    /// As it was given; what the robot goes by is [`Self::view`].
     template: Template<F>,
+    ranks: Ranks,
     assembler: TemplateAssembler<F>,
     router: Router<M, L>,
     travel: Travel,
@@ -76,6 +77,7 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize> Formati
             formation,
             sharpness: Sharpness::Greedy,
             template,
+            ranks: Ranks::new(),
             assembler: TemplateAssembler::new(),
             router: Router::new(),
             travel: Travel::new(),
@@ -107,128 +109,33 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize> Formati
     #[must_use]
     pub fn graph_distance<S>(&self, cell: Cell, neighbors: &[Neighbor<S>]) -> GraphDistance {
         let robots = neighbors.iter().map(|other| seen_at(other, other.cell));
-        let found = find_neighbors(&self.template, cell, self.formation.eps, robots);
+        let found = find_neighbors(&self.view(neighbors), cell, self.formation.eps, robots);
         graph_distance(cell, &found)
     }
 
-    /// Whether its template or its leader chain is about this robot.
-    fn concerns(&self, id: RobotId) -> bool {
-        id == self.leader || self.template.entries.iter().any(|entry| entry.id == id)
+    /// The template as it is when some have died and others closed ranks.
+    fn view<S>(&self, neighbors: &[Neighbor<S>]) -> Template<F> {
+        if self.formation.closes_ranks {
+            self.ranks.view(&self.template, holders(neighbors))
+        } else {
+            self.template.clone()
+        }
     }
 
     // What has much on the stack is not inlined below, so that only one of it is there at a time.
 
-    /// The others, each with the cell where it will be when one's own next move is over; of more than
-    /// 32 those of the template and the leader, then the smallest numbers.
-    #[inline(never)]
-    fn seen<S>(
-        &self,
-        input: &GuidanceInput<'_, S>,
-        window: &Window<'_>,
-        field: &mut CostField<CELLS>,
-        all: &mut Vec<Seen, 32>,
-    ) {
-        let top = self.top(input);
-        for wanted in [true, false] {
-            let others = input.neighbors.iter().filter(|other| {
-                let is_top = top.is_some_and(|(top, _)| top == other.id);
-                (is_top || self.concerns(other.id)) == wanted
-            });
-            for other in others {
-                // The rest has no room.
-                let _ = all.push(seen_at(other, self.foresee(input, window, other)));
-            }
-        }
-        if self.formation.prediction == Prediction::Reflexive {
-            for index in 0..all.len() {
-                let own =
-                    (self.template.entries.iter()).find(|entry| all.get(index).is_some_and(|seen| seen.id == entry.id));
-                let Some(entry) = own else { continue };
-                let place = top.and_then(|(top, offset)| {
-                    let leader = all.iter().find(|seen| seen.id == top)?;
-                    Some(leader.cell + offset + entry.offset)
-                });
-                if let Some(seen) = all.get(index).copied() {
-                    let choice = self.choice_of(input, window, field, &seen, place);
-                    if let (Some(choice), Some(seen)) = (choice, all.get_mut(index)) {
-                        seen.predicted = choice;
-                    }
-                }
-            }
-        }
-    }
-
-    /// Where a robot will be after the time of the next move if it goes on as it announced
-    /// (constant velocity on the land in sight). At most [`MAX_FORESIGHT`] cells.
-    fn foresee<S>(&self, input: &GuidanceInput<'_, S>, window: &Window<'_>, other: &Neighbor<S>) -> Cell {
-        let mut cell = other.cell;
-        if !matches!(other.mode, Mode::Cruise | Mode::Forming) || other.heading == Dir::Stay {
-            return cell;
-        }
-        let step = other.heading.offset();
-        let length = other.heading.length(self.route.norm).cast_signed();
-        let mut left = (input.now + input.tick).since(other.busy_until);
-        for _ in 0..MAX_FORESIGHT {
-            if left < Duration::ZERO {
-                break;
-            }
-            let next = cell + step;
-            let u = match window.get(next) {
-                Some(BLOCKED) => break,
-                Some(u) => u,
-                // Out of sight: as hard as where it was, or easy land.
-                None => window.get(cell).unwrap_or(1),
-            };
-            cell = next;
-            let ticks = i32::from(u).saturating_mul(length);
-            let micros = i64::from(input.tick.as_micros()) * i64::from(ticks);
-            let crossing = micros.checked_div(i64::from(crate::grid::UNIT)).unwrap_or(0);
-            let crossing = i32::try_from(crossing).unwrap_or(i32::MAX);
-            left = Duration::from_micros(left.as_micros().saturating_sub(crossing));
-        }
-        cell
-    }
-
-    /// What oneself would do in another robot's place (KUZ section 7, item 1); `None` where its
-    /// surroundings are not in sight or it is not free to move.
-    fn choice_of<S>(
-        &self,
-        input: &GuidanceInput<'_, S>,
-        window: &Window<'_>,
-        field: &mut CostField<CELLS>,
-        other: &Seen,
-        place: Option<Cell>,
-    ) -> Option<Cell> {
-        let neighbor = input.neighbor(other.id)?;
-        let is_free = (input.now + input.tick).since(neighbor.busy_until) >= Duration::ZERO;
-        let is_in_sight = Dir::MOVES.iter().all(|dir| window.get(other.cell + dir.offset()).is_some());
-        if !is_free || !is_in_sight {
-            return None;
-        }
-        let target = place.unwrap_or(neighbor.target);
-        if target == other.cell {
-            return Some(other.cell);
-        }
-        let params = RouteParams { a2: Gain::ZERO, ..self.route };
-        let nobody = core::iter::empty();
-        let weights = field.weights::<0>(&params, window, other.cell, target, nobody, None).ok()?;
-        let price = distances(&self.formation, other.cell, place, &[]);
-        let dir = weights.plus(&price).best()?;
-        Some(other.cell + dir.offset())
-    }
-
     /// The robot farthest up the leader chain whose place is known, and one's own place relative to its
     /// place: the top leader if it was heard, else a leader that the template names.
-    fn top<S>(&self, input: &GuidanceInput<'_, S>) -> Option<(RobotId, Cell)> {
+    fn top<S>(&self, input: &GuidanceInput<'_, S>, view: &Template<F>) -> Option<(RobotId, Cell)> {
         let heard = |id: RobotId| input.neighbor(id);
         let first = heard(self.leader)?;
         // Numbers fall along the chain, so that it ends; a wrong beacon cannot make it a circle.
         let chain = successors(Some(first), |robot| heard(robot.leader).filter(|next| next.id < robot.id));
         let placed = chain.filter_map(|robot| {
-            let named = self.template.entries.iter().find(|e| e.id == robot.id);
+            let named = view.entries.iter().find(|e| e.id == robot.id);
             let offset = match named {
                 Some(entry) => Cell::default() - entry.offset,
-                None if !robot.leader.is_somebody() => self.template.offset,
+                None if !robot.leader.is_somebody() => view.offset,
                 None if robot.id == self.leader => self.leader_offset,
                 None => return None,
             };
@@ -258,7 +165,7 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize> Formati
         input: &GuidanceInput<'_, S>,
         window: &Window<'_>,
         (cell, target): (Cell, Cell),
-        found: &Found<F>,
+        (found, view): (&Found<F>, &Template<F>),
         workspace: &mut GridWorkspace<CELLS>,
     ) -> Option<Weights> {
         let GridWorkspace { field, land } = workspace;
@@ -266,7 +173,7 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize> Formati
             None
         } else {
             let (around, share) = ((cell, self.route.radius), self.formation.footprint);
-            blended(window, around, &self.template.entries, share, land)
+            blended(window, around, &view.entries, share, land)
         };
         let shown = shown.as_ref().unwrap_or(window);
         let others = input.neighbors.iter().map(|neighbor| neighbor.cell);
@@ -301,8 +208,8 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize> Formati
     }
 
     /// The top leader seen by a follower.
-    fn guide<S>(&self, input: &GuidanceInput<'_, S>, cell: Cell, seen: &[Seen]) -> Option<Guide> {
-        let (top, offset) = self.top(input)?;
+    fn guide<S>(&self, input: &GuidanceInput<'_, S>, view: &Template<F>, cell: Cell, seen: &[Seen]) -> Option<Guide> {
+        let (top, offset) = self.top(input, view)?;
         let seen = seen.iter().find(|seen| seen.id == top)?;
         let off = cell - (seen.cell + offset);
         Some(Guide {
@@ -358,6 +265,11 @@ fn comes_after<S>(input: &GuidanceInput<'_, S>, other: &Seen) -> bool {
     chain.last().is_some_and(|(_, leader)| leader.is_somebody())
 }
 
+/// Who says to hold which place.
+fn holders<S>(neighbors: &[Neighbor<S>]) -> impl Iterator<Item = (RobotId, u8)> + Clone {
+    neighbors.iter().map(|other| (other.id, other.slot))
+}
+
 /// A neighbour as the formation sees it.
 fn seen_at<S>(other: &Neighbor<S>, predicted: Cell) -> Seen {
     Seen { id: other.id, cell: other.cell, predicted, heading: other.heading, leader: other.leader, mode: other.mode }
@@ -377,6 +289,7 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize> Teamwor
         match self.assembler.put(part) {
             Ok(Some(template)) => {
                 self.template = template;
+                self.ranks = Ranks::new();
                 self.pace = Pace::new();
                 self.leader = RobotId::NOBODY;
                 (self.waited, self.behind) = (0, 0);
@@ -411,15 +324,19 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         workspace: &mut Self::Workspace,
     ) -> Result<Decision<S>, BadInput> {
         let (cell, window) = on_grid(here)?;
-        let target = reachable_goal(&window, input.goal);
+        if self.formation.closes_ranks && cell != input.goal + self.ranks.shift() {
+            self.ranks.close(input.id, &self.template, holders(input.neighbors));
+        }
+        let view = &self.view(input.neighbors);
+        let target = reachable_goal(&window, input.goal + self.ranks.shift());
         self.router.observe(&self.route, cell, target);
 
         let mut seen = Vec::new();
-        self.seen(input, &window, &mut workspace.field, &mut seen);
-        let found = find_neighbors(&self.template, cell, self.formation.eps, seen.iter().copied());
+        self.seen(input, (&window, view), &mut workspace.field, &mut seen);
+        let found = find_neighbors(view, cell, self.formation.eps, seen.iter().copied());
         self.choose_leader(input, &found);
         let leader = self.leader;
-        let guide = self.guide(input, cell, &seen);
+        let guide = self.guide(input, view, cell, &seen);
         let goes_alone = guide.as_ref().is_some_and(|guide| self.has_lost_touch(guide));
         let guide = guide.filter(|_| !goes_alone);
         let mut status =
@@ -456,7 +373,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             if goes_alone && core::mem::take(&mut self.has_asked) {
                 list::extend(&mut asks, Some(Ask { to: leader, kind: RequestKind::Resume }));
             }
-            self.lead(input, &window, (cell, target), &found, workspace)
+            self.lead(input, &window, (cell, target), (&found, view), workspace)
         };
         status.is_stuck = weights.is_none() && !status.is_at_goal;
         let mut weights = weights.unwrap_or(Weights::CLOSED);
@@ -482,7 +399,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             list::extend(&mut asks, blocked);
             list::extend(&mut asks, self.ask_surplus(&found));
         }
-        Ok(Decision { action: Action::Moves(moves), status, target, leader, slot: self.template.slot, asks })
+        Ok(Decision { action: Action::Moves(moves), status, target, leader, slot: view.slot, asks })
     }
 
     fn goes_by_velocity(&self) -> bool {

@@ -5,7 +5,7 @@ use super::silence::Company;
 use super::{AgentConfig, CellState, Last, Waypoint};
 use crate::geom::{Position, Vec3};
 use crate::grid::Cell;
-use crate::neighbor::{Ages, Neighbor, NeighborTable, Put};
+use crate::neighbor::{Ages, LossEstimate, Neighbor, NeighborTable, Put};
 use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
@@ -49,6 +49,7 @@ pub(super) struct Link<S, const N: usize, W> {
     header: Header,
     pub(super) table: NeighborTable<S, N>,
     pub(super) company: Company,
+    loss: LossEstimate,
     /// One window per entry of the table.
     windows: Vec<(RobotId, SequenceWindow), N>,
     requests: Requests<PENDING>,
@@ -75,6 +76,7 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
             header: Header { boot, sender: id, sequence: 0 },
             table: NeighborTable::new(ages),
             company: Company::Unknown,
+            loss: LossEstimate::new(),
             windows: Vec::new(),
             requests: Requests::new(id, boot, retry),
             orders: Orders::new(ages.expire_after),
@@ -91,9 +93,28 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
     }
 
     /// Loses who was silent for too long, and remembers the lost for `remember`. The first thing in each step.
-    pub(super) fn expire(&mut self, own: Position, now: Instant, remember: Duration, out: &mut Outputs<S>) {
-        let windows = &mut self.windows;
-        self.table.expire(own, now, remember, |lost| {
+    ///
+    /// Too long is more than the radio explains when all speak once in a `period` and are heard `latency` later. Who
+    /// remembers the lost, as balls that stand, takes them for that only after [`Ages::expire_after`].
+    pub(super) fn expire(
+        &mut self,
+        own: Position,
+        now: Instant,
+        (period, latency): (Duration, Duration),
+        remember: Duration,
+        out: &mut Outputs<S>,
+    ) {
+        let (windows, loss) = (&mut self.windows, &mut self.loss);
+        let Ages { stale_after, expire_after } = self.table.ages();
+        let patience = if remember > Duration::ZERO {
+            expire_after
+        } else {
+            loss.patience(self.table.len(), period, expire_after).max(stale_after)
+        };
+        let longest = Duration::from_micros(patience.as_micros().saturating_add(latency.as_micros()));
+        let missed = patience.as_micros().checked_div(period.as_micros()).unwrap_or(0);
+        self.table.expire(own, now, (longest, remember), |lost| {
+            loss.gave_up(u16::try_from(missed).unwrap_or(u16::MAX));
             windows.retain(|(id, _)| *id != lost);
             report(out, Event::NeighborLost(lost));
         });
@@ -138,7 +159,11 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
             return None;
         }
         let window = self.windows.iter_mut().find(|(id, _)| *id == sender);
-        let arrival = window.map_or(Arrival::New, |(_, window)| window.check(header));
+        let (missed, arrival) =
+            window.map_or((0, Arrival::New), |(_, window)| (window.skipped(header), window.check(header)));
+        if arrival == Arrival::New {
+            self.loss.heard(missed);
+        }
         if arrival == Arrival::Rebooted {
             self.orders.forget(sender);
             report(out, Event::NeighborRebooted(sender));

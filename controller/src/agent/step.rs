@@ -90,7 +90,8 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         // Only who keeps clear of others has a use for where they were.
         let keeps_clear = inputs.surroundings.in_plane().is_some() && safety.inflation().is_some();
         let remember = if keeps_clear { config.silence.remember } else { Duration::ZERO };
-        link.expire(inputs.state.position, now, remember, out);
+        let radio = (config.beacon_period, config.latency);
+        link.expire(inputs.state.position, now, radio, remember, out);
         if keeps_clear && link.company.passes(now, config) {
             report(out, Event::NobodyHeard);
         }

@@ -27,12 +27,14 @@
 //!   chooses at t = 0 only), so that a formation outlives any robot.
 //! - Nobody waits for ever: see [`FormationParams::patience`]. A leader does not wait for those who follow
 //!   somebody else.
+//! - When the ranks are closed ([`FormationParams::closes_ranks`]), those behind a dead robot move up.
 //! - Who has no direct neighbour to follow follows a farther one ([`find_leader`]).
 //! - The listing's misprints are resolved: `less` is counted once (algorithm 5), the leader is the
 //!   smallest number (algorithm 6), sums restart for each direction (algorithm 7).
 
 mod measure;
 mod neighbors;
+mod ranks;
 mod steering;
 
 #[cfg(test)]
@@ -40,6 +42,7 @@ mod tests;
 
 pub use measure::{FormationError, GraphDistance, graph_distance};
 pub use neighbors::{Found, Member, Seen, find_leader, find_neighbors};
+pub use ranks::Ranks;
 pub use steering::{Anchor, Pace, aim, blended, def, deviation, distances, lag, should_stay};
 
 use crate::cost::Gain;
@@ -98,6 +101,10 @@ pub struct FormationParams {
     /// itself until they are together again. Smaller ones part the formation at every obstacle; larger ones let it
     /// stand the longer for a robot that has no way.
     pub patience: u16,
+    /// Whether a dead robot's place is closed by those behind it ([`Ranks`]) or stays empty. Kept places keep everybody at
+    /// the distances that were wanted; closed ones leave no gap behind the leader and keep the formation within reach of its
+    /// radio.
+    pub closes_ranks: bool,
     /// How others are foreseen.
     pub prediction: Prediction,
     /// What the top leader does while somebody is too far behind.
@@ -117,6 +124,7 @@ impl Default for FormationParams {
             lead: 1,
             footprint: 8,
             patience: 100,
+            closes_ranks: false,
             prediction: Prediction::Constant,
             recovery: Recovery::Wait,
         }

@@ -14,12 +14,14 @@ use crate::time::{Duration, Instant};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
+mod loss;
 mod nearby;
 mod room;
 #[cfg(all(test, feature = "wire"))]
 mod tests;
 mod tie;
 
+pub use loss::LossEstimate;
 pub use nearby::{Nearby, StalenessInflation, add_lost, nearest};
 pub use room::Room;
 pub use tie::tie;
@@ -234,18 +236,25 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
         comes_in.then_some(farthest.1)
     }
 
-    /// Moves everybody older than [`Ages::expire_after`] to the lost, reporting each in the order of ids, and forgets whom
-    /// it has not heard for longer than `remember`. O(N), and O(N) for each that is lost.
+    /// Moves everybody older than `longest`, at most [`Ages::expire_after`], to the lost, reporting each in the order of ids,
+    /// and forgets whom it has not heard for longer than `remember`. O(N), and O(N) for each that is lost.
     ///
     /// One that would be three quarters as far from `own` as the farthest fresh one, or farther, had it gone on as it went
     /// last, has gone out of range, as far as one can tell, and is not remembered; when nobody is fresh, all are.
     ///
     /// Call it every step: see the head of this module.
-    pub fn expire(&mut self, own: Position, now: Instant, remember: Duration, mut lost: impl FnMut(RobotId)) {
+    pub fn expire(
+        &mut self,
+        own: Position,
+        now: Instant,
+        (longest, remember): (Duration, Duration),
+        mut lost: impl FnMut(RobotId),
+    ) {
         let ages = self.ages;
+        let longest = longest.min(ages.expire_after);
         let distance = |entry: &Neighbor<S>| entry.offset_at(own, now, ages.expire_after).norm();
         let is_within = |entry: &Neighbor<S>, longest| entry.age(now).is_some_and(|age| age <= longest);
-        while let Some(&silent) = self.as_slice().iter().find(|entry| !is_within(entry, ages.expire_after)) {
+        while let Some(&silent) = self.as_slice().iter().find(|entry| !is_within(entry, longest)) {
             lost(silent.id);
             self.entries.retain(|entry| entry.id != silent.id);
             let fresh = self.as_slice().iter().filter(|entry| is_within(entry, ages.stale_after));

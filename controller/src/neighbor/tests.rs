@@ -42,7 +42,7 @@ fn ids<const N: usize>(table: &NeighborTable<f32, N>) -> StdVec<u32> {
 
 fn expired<const N: usize>(table: &mut NeighborTable<f32, N>, now: Instant) -> StdVec<u32> {
     let mut lost = StdVec::new();
-    table.expire(Position::ORIGIN, now, Duration::ZERO, |id| lost.push(id.0));
+    table.expire(Position::ORIGIN, now, (Duration::MAX, Duration::ZERO), |id| lost.push(id.0));
     lost
 }
 
@@ -221,7 +221,7 @@ fn the_lost_are_remembered_apart_until_they_are_heard_or_too_old() {
     let lost = |table: &NeighborTable<f32, 4>| table.lost().iter().map(|n| n.id.0).collect::<StdVec<_>>();
     let mut told = StdVec::new();
     for now in [5_000_001, 5_100_000] {
-        table.expire(Position::ORIGIN, at(now), remember, |id| told.push(id.0));
+        table.expire(Position::ORIGIN, at(now), (Duration::MAX, remember), |id| told.push(id.0));
         assert_eq!((ids(&table), lost(&table)), ([2].into(), [1, 3, 4].into()));
     }
     assert_eq!(told, [1, 3, 4], "each once");
@@ -232,7 +232,7 @@ fn the_lost_are_remembered_apart_until_they_are_heard_or_too_old() {
     // Full: the farthest goes, lost or not, and whose loss was told already is not told again.
     assert_eq!(put(&mut table, standing(9, 1.5, now), now), Put::Inserted);
     assert_eq!((ids(&table), lost(&table)), ([2, 3, 9].into(), [1].into()));
-    table.expire(Position::ORIGIN, at(20_000_001), remember, |_| {});
+    table.expire(Position::ORIGIN, at(20_000_001), (Duration::MAX, remember), |_| {});
     assert_eq!((table.len(), lost(&table)), (0, [2, 3, 9].into()));
 }
 
@@ -242,7 +242,7 @@ fn who_is_lost_beyond_all_that_are_heard_has_left_and_is_not_remembered() {
     let now = at(5_000_001);
     let _ = put(&mut table, standing(3, 3.0, now), now);
     let mut told = StdVec::new();
-    table.expire(Position::ORIGIN, now, Duration::from_millis(20_000), |id| told.push(id.0));
+    table.expire(Position::ORIGIN, now, (Duration::MAX, Duration::from_millis(20_000)), |id| told.push(id.0));
     assert_eq!(told, [1, 2, 4]);
     assert_eq!(table.lost().iter().map(|n| n.id.0).collect::<StdVec<_>>(), [1, 2]);
 }
@@ -259,7 +259,7 @@ fn who_drives_on_out_of_range_is_not_remembered_where_it_was() {
         let (now, x) = (at(step * 100_000), 0.03 * step as f32);
         let own = place(x, 0.0).unwrap();
         let _ = table.put(moving(3, x + 2.1, now), own, now, |_| false);
-        table.expire(own, now, Duration::from_millis(20_000), |_| {});
+        table.expire(own, now, (Duration::MAX, Duration::from_millis(20_000)), |_| {});
     }
     assert_eq!((ids(&table), table.lost().iter().map(|n| n.id.0).collect()), ([3].into(), std::vec![1, 4]));
 }

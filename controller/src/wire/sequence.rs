@@ -103,6 +103,13 @@ impl SequenceWindow {
         Arrival::OutOfOrder
     }
 
+    /// How many frames between the newest and this newer one have not come.
+    #[must_use]
+    pub const fn skipped(&self, header: Header) -> u16 {
+        let ahead = header.sequence.wrapping_sub(self.newest);
+        if self.seen == 0 || header.boot != self.boot || ahead.cast_signed() <= 0 { 0 } else { ahead - 1 }
+    }
+
     fn restart(&mut self, header: Header, previous: u8) {
         *self = Self { seen: 1, newest: header.sequence, boot: header.boot, previous };
     }

@@ -159,7 +159,7 @@ fn sharpness() -> impl Strategy<Value = Sharpness> {
 
 fn formation() -> impl Strategy<Value = FormationParams> {
     let numbers = any::<(u8, u16, u16, u8, u8)>();
-    (numbers, gain(), any::<[bool; 2]>()).prop_map(|(numbers, gain, [reflexive, def])| {
+    (numbers, gain(), any::<[bool; 3]>()).prop_map(|(numbers, gain, [reflexive, def, closes_ranks])| {
         let (eps, halt_lag, resume_lag, lead, footprint) = numbers;
         FormationParams {
             patience: 20,
@@ -169,6 +169,7 @@ fn formation() -> impl Strategy<Value = FormationParams> {
             resume_lag,
             lead,
             footprint,
+            closes_ranks,
             prediction: if reflexive { Prediction::Reflexive } else { Prediction::Constant },
             recovery: if def { Recovery::Def } else { Recovery::Wait },
         }

@@ -49,7 +49,7 @@ impl<S: Scalar> Mover<S> {
     fn decide(&self, step: i32, wish: Vec3<f64>, heard: &[Neighbor<S>]) -> Self {
         let Self { mut table, mut body, at_m } = Self { table: self.table.clone(), ..*self };
         let (own, now) = (self.position(), moment(step));
-        table.expire(own, now, Duration::from_millis(60_000), |_| {});
+        table.expire(own, now, (Duration::MAX, Duration::from_millis(60_000)), |_| {});
         for &neighbor in heard {
             let _ = table.put(neighbor, own, now, |_| false);
         }

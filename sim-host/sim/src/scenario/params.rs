@@ -69,6 +69,8 @@ pub struct FormationTable {
     /// Share of the land under the others' places in what a cell costs the top leader, 0 to 1; rounded
     /// to sixteenths.
     pub footprint: Option<f64>,
+    /// Whether those behind a dead robot move up, each by a place; otherwise its place stays empty.
+    pub closes_ranks: Option<bool>,
     /// How others are foreseen: `"constant"` (they go on as announced) or `"reflexive"`
     /// ("what would I do in its place").
     pub prediction: Option<Prediction>,
@@ -130,6 +132,7 @@ pub(super) fn formation(source: &Source<'_>, table: &FormationTable) -> Result<F
         within(source, "formation.footprint", share, 0.0, 1.0, "(a share)")?;
         params.footprint = libm::round(share * 16.0) as u8;
     }
+    params.closes_ranks = table.closes_ranks.unwrap_or(params.closes_ranks);
     params.prediction = table.prediction.unwrap_or(params.prediction);
     params.recovery = table.recovery.unwrap_or(params.recovery);
     Ok(params)

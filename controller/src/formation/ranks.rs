@@ -1,0 +1,217 @@
+//! Closing ranks: who takes the place of a robot that has died.
+
+use crate::grid::Cell;
+use crate::list;
+use crate::robot::RobotId;
+use crate::template::{Template, TemplateEntry};
+use serde::Serialize;
+
+/// The place that a robot holds in its formation, if that is not its own any more.
+///
+/// The rule is a file's: when the place in front falls empty, step into it; whoever stands behind does the same with the place
+/// that this leaves. In front is the nearest place with a smaller number. Places fall empty when the beacons of their
+/// holders ([`slot`](crate::wire::Beacon::slot)) fall silent for so long that these are lost. When two hold one place, the
+/// smaller number keeps it and the other goes back to its own, so that a robot that comes back finds its own place
+/// free again, and who follows whom is settled after a few beacons.
+///
+/// Holds where robot i + 1 has place i, as in [`Template::from_graph`]; others keep their places. The paper (A. V. Kuznetsov 2017) has no
+/// such rule: there the place of a missing robot stays empty.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Ranks {
+    /// The place held instead of one's own, and how far that is off, cells.
+    taken: Option<(u8, Cell)>,
+    /// The place in front, when somebody was heard to hold it.
+    front: Option<u8>,
+}
+
+impl Ranks {
+    /// In one's own place.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { taken: None, front: None }
+    }
+
+    /// From one's own place to the one that is held.
+    #[must_use]
+    pub fn shift(&self) -> Cell {
+        self.taken.map_or(Cell::default(), |(_, shift)| shift)
+    }
+
+    /// Number of the place that is held by the robot with this template.
+    #[must_use]
+    pub fn slot<const F: usize>(&self, template: &Template<F>) -> u8 {
+        self.taken.map_or(template.slot, |(slot, _)| slot)
+    }
+
+    /// Steps into the place in front if that has fallen empty, or back for a smaller number. O(F * robots).
+    ///
+    /// `holders` are the robots heard, each with the number of the place that its beacon says.
+    pub fn close<const F: usize>(
+        &mut self,
+        own: RobotId,
+        template: &Template<F>,
+        holders: impl Iterator<Item = (RobotId, u8)> + Clone,
+    ) {
+        if place_of(own) != Some(template.slot) {
+            return;
+        }
+        let named = |id: RobotId| template.entries.iter().any(|entry| entry.id == id);
+        let held_by = |slot: u8| holders.clone().find(|&(id, holds)| holds == slot && named(id)).map(|(id, _)| id);
+        if self.taken.is_some_and(|(slot, _)| held_by(slot).is_some_and(|id| id < own)) {
+            *self = Self::new();
+        }
+        let (held, shift) = (self.slot(template), self.shift());
+        let in_front = template.entries.iter().filter_map(|entry| {
+            let slot = place_of(entry.id).filter(|&slot| slot < held)?;
+            Some((entry.offset.distance_squared(shift), slot, entry.offset))
+        });
+        let Some((_, slot, offset)) = in_front.min() else {
+            self.front = None;
+            return;
+        };
+        if held_by(slot).is_some() {
+            self.front = Some(slot);
+        } else if self.front == Some(slot) {
+            *self = Self { taken: Some((slot, offset)), front: None };
+        }
+    }
+
+    /// The template as seen from the place that is held, with those who hold the others' places now. O(F * robots).
+    #[must_use]
+    pub fn view<const F: usize>(
+        &self,
+        template: &Template<F>,
+        holders: impl Iterator<Item = (RobotId, u8)> + Clone,
+    ) -> Template<F> {
+        let (held, shift) = (self.slot(template), self.shift());
+        let named = |id: RobotId| template.entries.iter().any(|entry| entry.id == id);
+        let holder = |slot: u8| holders.clone().find(|&(id, holds)| holds == slot && named(id)).map(|(id, _)| id);
+        let is_elsewhere = |id: RobotId| holders.clone().any(|(other, _)| other == id);
+        let others = template.entries.iter().filter_map(|entry| {
+            let offset = entry.offset - shift;
+            let id = match place_of(entry.id) {
+                Some(slot) if slot == held => return None,
+                Some(slot) => holder(slot).or_else(|| (!is_elsewhere(entry.id)).then_some(entry.id))?,
+                None => entry.id,
+            };
+            Some(TemplateEntry { offset, id, ..*entry })
+        });
+        // Who stands now where oneself belongs.
+        let behind = self.taken.and_then(|_| holder(template.slot));
+        let behind = behind.map(|id| TemplateEntry { offset: Cell::default() - shift, id, hops: 1 });
+        Template { slot: held, offset: template.offset + shift, entries: list::collect(others.chain(behind)) }
+    }
+}
+
+/// The place that belongs to a robot.
+fn place_of(id: RobotId) -> Option<u8> {
+    u8::try_from(id.0.checked_sub(1)?).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::vec::Vec;
+
+    /// Six in two columns, three cells apart, each knowing all others: 0 1 / 2 3 / 4 5.
+    fn template(own: usize) -> Template<8> {
+        let places = [0, 1, 2, 3, 4, 5].map(|i: i16| Cell::new(3 * (i % 2), -3 * (i / 2)));
+        let edges = [(0, 1), (0, 2), (1, 3), (2, 3), (2, 4), (3, 5), (4, 5)];
+        Template::from_graph(&places, &edges, own, 3).unwrap()
+    }
+
+    /// Six robots that hear each other, each with its ranks; `is_alive` says who does.
+    struct File {
+        ranks: [Ranks; 6],
+        is_alive: [bool; 6],
+    }
+
+    impl File {
+        fn new() -> Self {
+            Self { ranks: [Ranks::new(); 6], is_alive: [true; 6] }
+        }
+
+        fn slots(&self) -> [Option<u8>; 6] {
+            core::array::from_fn(|own| self.is_alive[own].then(|| self.ranks[own].slot(&template(own))))
+        }
+
+        /// All decide by what was said before.
+        fn tick(&mut self) {
+            let slots = self.slots();
+            for own in (0..6).filter(|&own| self.is_alive[own]) {
+                let others = (0..6).filter(|&other| other != own);
+                let heard = others.filter_map(|other| Some((RobotId(other as u32 + 1), slots[other]?)));
+                self.ranks[own].close(RobotId(own as u32 + 1), &template(own), heard);
+            }
+        }
+
+        fn ticks(&mut self, ticks: u32) -> [Option<u8>; 6] {
+            (0..ticks).for_each(|_| self.tick());
+            self.slots()
+        }
+    }
+
+    #[test]
+    fn without_a_death_everybody_keeps_its_place() {
+        assert_eq!(File::new().ticks(20), [0, 1, 2, 3, 4, 5].map(Some));
+    }
+
+    #[test]
+    fn those_behind_any_dead_move_up_and_no_two_hold_one_place() {
+        for dead in 0..6 {
+            for second in 0..6 {
+                let mut file = File::new();
+                file.ticks(3);
+                file.is_alive[dead] = false;
+                file.ticks(2);
+                file.is_alive[second] = false;
+                let mut held: Vec<u8> = file.ticks(30).into_iter().flatten().collect();
+                held.sort_unstable();
+                let living = if dead == second { 5 } else { 4 };
+                let unique = held.windows(2).all(|pair| pair[0] < pair[1]);
+                assert!(unique && held.len() == living, "{dead} {second}: {held:?}");
+                // The top is never empty, and no place at the front: at most a corner at the back.
+                assert!(held[0] == 0 && held[1] <= 2, "{dead} {second}: {held:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn who_comes_back_finds_its_place() {
+        for dead in 0..6 {
+            let mut file = File::new();
+            file.ticks(3);
+            file.is_alive[dead] = false;
+            file.ticks(20);
+            (file.is_alive[dead], file.ranks[dead]) = (true, Ranks::new());
+            assert_eq!(file.ticks(30), [0, 1, 2, 3, 4, 5].map(Some), "{dead}");
+        }
+    }
+
+    #[test]
+    fn the_view_is_from_the_place_that_is_held() {
+        // Robot 2 is dead; robot 4 (place 3) steps into place 1, robot 6 (place 5) into place 3.
+        let holders = [(1, 0), (3, 2), (4, 1), (5, 4), (6, 3)].map(|(id, slot)| (RobotId(id), slot));
+        let ranks = Ranks { taken: Some((1, Cell::new(0, 3))), front: None };
+        let others = holders.into_iter().filter(|(id, _)| *id != RobotId(4));
+        let view = ranks.view(&template(3), others);
+        assert_eq!((view.slot, view.offset), (1, Cell::new(3, 0)));
+        let mut seen: Vec<_> = view.entries.iter().map(|entry| (entry.id.0, entry.offset.x, entry.offset.y)).collect();
+        seen.sort_unstable();
+        assert_eq!(seen, [(1, -3, 0), (3, -3, -3), (5, -3, -6), (6, 0, -3)]);
+        // And robot 1 sees robot 4 beside it, not behind.
+        let view = Ranks::new().view(&template(0), holders.into_iter().skip(1));
+        let beside = view.entries.iter().find(|entry| entry.id == RobotId(4)).unwrap();
+        assert_eq!(beside.offset, Cell::new(3, 0));
+    }
+
+    #[test]
+    fn robots_that_are_not_numbered_by_their_places_keep_them() {
+        let mut ranks = Ranks::new();
+        for holders in [&[(RobotId(1), 0)][..], &[]] {
+            ranks.close(RobotId(9), &template(3), holders.iter().copied());
+        }
+        assert_eq!(ranks, Ranks::new());
+    }
+}
