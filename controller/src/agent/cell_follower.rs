@@ -78,7 +78,6 @@ where
     type Destination = G::Destination;
     type Workspace = G::Workspace;
 
-    #[inline(never)]
     fn decide(
         &mut self,
         input: &GuidanceInput<'_, S>,
@@ -86,46 +85,8 @@ where
         rng: &mut Rng,
         workspace: &mut Self::Workspace,
     ) -> Result<Decision<S>, BadInput> {
-        let (under, place) = (here.grid.cell.cell, here.in_cell);
-        let to_center = |cell: Cell| {
-            let along = |cells: i16, offset: S| S::from_i32(cells.into()) * place.cell_m - offset;
-            let cells = cell - under;
-            Vec2::new(along(cells.x, place.offset_m.x), along(cells.y, place.offset_m.y))
-        };
-        let is_left = |cell: Cell| {
-            let Vec2 { x, y } = to_center(cell);
-            x.abs().max(y.abs()) > place.cell_m * S::from_milli(LEAVES_AT)
-        };
-        let cell = self.last.as_ref().map(|last| last.cell).filter(|&cell| !is_left(cell)).unwrap_or(under);
-        let speed = self.speed_mps.min(input.body.max_speed_mps);
-        let crossing_s = place.cell_m.checked_div(speed);
-        let crossing_s = crossing_s.filter(|span| *span > S::ZERO).ok_or(BadInput)?;
-        let way = |decision: &Decision<S>| {
-            let dir = decision.action.moves().first().copied();
-            to_center(cell + dir.unwrap_or(Dir::Stay).offset())
-        };
-        let is_due = |last: &Last<S>| {
-            let age_s = S::from_micro(input.now.since(last.at).as_micros());
-            let ahead = way(&last.decision).normalized().unwrap_or_default();
-            let gets_on = input.body.velocity_mps.xy().dot(ahead) > speed * S::HALF;
-            last.cell != cell || age_s < S::ZERO || age_s >= crossing_s && !gets_on
-        };
-        let mut decision = match &self.last {
-            Some(last) if !is_due(last) => Decision { asks: heapless::Vec::new(), ..last.decision.clone() },
-            _ => {
-                self.last = None;
-                let grid = OnGrid { cell: CellState { cell, ..here.grid.cell }, ..here.grid };
-                let decision = self.law.decide(input, &grid, rng, workspace)?;
-                self.last = Some(Last { cell, at: input.now, decision: decision.clone() });
-                decision
-            }
-        };
-        let way = way(&decision);
-        // On the last step no farther than the centre.
-        let needed = way.norm().checked_div(input.body.step_s).unwrap_or(speed);
-        let ahead = way.normalized().unwrap_or_default();
-        decision.action = Action::Velocity { wish_mps: (ahead * needed.min(speed)).extend(S::ZERO), way_m: None };
-        Ok(decision)
+        let Self { law, speed_mps, last } = self;
+        follow(*speed_mps, last, input, here, &mut |grid| law.decide(input, &grid, rng, workspace))
     }
 
     fn parameter(&self, parameter: Parameter) -> Option<S> {
@@ -139,4 +100,55 @@ where
         }
         parameter == Parameter::Speed
     }
+}
+
+/// One step behind a law of the grid that decides by `decide`; the same code whichever law it is.
+#[inline(never)]
+fn follow<S: Scalar>(
+    speed_mps: S,
+    last: &mut Option<Last<S>>,
+    input: &GuidanceInput<'_, S>,
+    here: &InCells<'_, S>,
+    decide: &mut dyn FnMut(OnGrid<'_>) -> Result<Decision<S>, BadInput>,
+) -> Result<Decision<S>, BadInput> {
+    let (under, place) = (here.grid.cell.cell, here.in_cell);
+    let to_center = |cell: Cell| {
+        let along = |cells: i16, offset: S| S::from_i32(cells.into()) * place.cell_m - offset;
+        let cells = cell - under;
+        Vec2::new(along(cells.x, place.offset_m.x), along(cells.y, place.offset_m.y))
+    };
+    let is_left = |cell: Cell| {
+        let Vec2 { x, y } = to_center(cell);
+        x.abs().max(y.abs()) > place.cell_m * S::from_milli(LEAVES_AT)
+    };
+    let cell = last.as_ref().map(|last| last.cell).filter(|&cell| !is_left(cell)).unwrap_or(under);
+    let speed = speed_mps.min(input.body.max_speed_mps);
+    let crossing_s = place.cell_m.checked_div(speed);
+    let crossing_s = crossing_s.filter(|span| *span > S::ZERO).ok_or(BadInput)?;
+    let way = |decision: &Decision<S>| {
+        let dir = decision.action.moves().first().copied();
+        to_center(cell + dir.unwrap_or(Dir::Stay).offset())
+    };
+    let is_due = |last: &Last<S>| {
+        let age_s = S::from_micro(input.now.since(last.at).as_micros());
+        let ahead = way(&last.decision).normalized().unwrap_or_default();
+        let gets_on = input.body.velocity_mps.xy().dot(ahead) > speed * S::HALF;
+        last.cell != cell || age_s < S::ZERO || age_s >= crossing_s && !gets_on
+    };
+    let mut decision = match &*last {
+        Some(last) if !is_due(last) => Decision { asks: heapless::Vec::new(), ..last.decision.clone() },
+        _ => {
+            *last = None;
+            let grid = OnGrid { cell: CellState { cell, ..here.grid.cell }, ..here.grid };
+            let decision = decide(grid)?;
+            *last = Some(Last { cell, at: input.now, decision: decision.clone() });
+            decision
+        }
+    };
+    let way = way(&decision);
+    // On the last step no farther than the centre.
+    let needed = way.norm().checked_div(input.body.step_s).unwrap_or(speed);
+    let ahead = way.normalized().unwrap_or_default();
+    decision.action = Action::Velocity { wish_mps: (ahead * needed.min(speed)).extend(S::ZERO), way_m: None };
+    Ok(decision)
 }
