@@ -3,7 +3,13 @@
 
 use staya_controller::flock::lattice::{LatticeParams, Reference, acceleration};
 use staya_controller::obstacle::Obstacle;
-use staya_controller::{body::Body, geom::Vec3, neighbor::Nearby, rand::Rng, robot::RobotId};
+use staya_controller::{
+    body::Body,
+    geom::Vec3,
+    neighbor::Nearby,
+    rand::Rng,
+    robot::{Mode, RobotId},
+};
 
 const ROBOTS: usize = 30;
 const SPACING_M: f64 = 0.5;
@@ -75,6 +81,7 @@ fn decide(params: &LatticeParams<f64>, robots: &[Robot], own: usize, lead: &Robo
             velocity_mps: other.velocity,
             radius_m: 0.1,
             gives_way: true,
+            mode: Mode::Cruise,
         })
         .filter(|other| other.offset_m.norm() < params.range_m())
         .collect();

@@ -3,7 +3,13 @@
 
 use staya_controller::orca::{AvoidParams, Avoider};
 use staya_controller::scalar::Scalar;
-use staya_controller::{body::Body, geom::Vec3, neighbor::Nearby, rand::Rng, robot::RobotId};
+use staya_controller::{
+    body::Body,
+    geom::Vec3,
+    neighbor::Nearby,
+    rand::Rng,
+    robot::{Mode, RobotId},
+};
 
 const ROBOTS: u32 = 24;
 const RADIUS_M: f64 = 0.25;
@@ -33,6 +39,7 @@ fn main() {
                 velocity_mps: velocities[j],
                 radius_m: RADIUS_M,
                 gives_way: true,
+                mode: Mode::Cruise,
             });
             let mut nearby: Vec<_> = others.collect();
             nearby.sort_by(|a, b| a.offset_m.norm().total_cmp(&b.offset_m.norm()));

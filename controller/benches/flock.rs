@@ -12,7 +12,7 @@ use staya_controller::neighbor::Nearby;
 use staya_controller::obstacle::Obstacle;
 use staya_controller::push_out::{Model, PushOutParams, push_out};
 use staya_controller::rand::Rng;
-use staya_controller::robot::RobotId;
+use staya_controller::robot::{Mode, RobotId};
 
 const NEIGHBORS: usize = 10;
 const CASES: usize = 64;
@@ -36,6 +36,7 @@ fn others(rng: &mut Rng, range: f32) -> Others {
             velocity_mps: heading.unwrap_or(Vec3::ZERO) * 0.5,
             radius_m: 0.1,
             gives_way: true,
+            mode: Mode::Cruise,
         }
     })
 }

@@ -45,6 +45,12 @@ pub enum Mode {
 }
 
 impl Mode {
+    /// Whether it wants to go nowhere: it has arrived, or nobody has sent it.
+    #[must_use]
+    pub const fn is_parked(self) -> bool {
+        matches!(self, Self::Idle | Self::Arrived)
+    }
+
     /// Whether its agent steers it at all, be it to stand, so that others can count on its giving way.
     #[must_use]
     pub const fn gives_way(self) -> bool {

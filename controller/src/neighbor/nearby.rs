@@ -3,7 +3,7 @@
 use super::{Ages, Neighbor};
 use crate::geom::{Position, Vec3};
 use crate::list::{self, sink_last};
-use crate::robot::RobotId;
+use crate::robot::{Mode, RobotId};
 use crate::scalar::{Scalar, cast};
 use crate::time::{Duration, Instant};
 use heapless::Vec;
@@ -23,6 +23,8 @@ pub struct Nearby<S> {
     pub radius_m: S,
     /// Whether it gives way too: fresh, and its agent steers it ([`Mode::gives_way`](crate::robot::Mode::gives_way)).
     pub gives_way: bool,
+    /// What it said last that it is doing.
+    pub mode: Mode,
 }
 
 /// How the ball around a silent robot grows with the age of the news. By default it does not.
@@ -111,6 +113,7 @@ fn seen<S: Scalar>(
         velocity_mps: entry.velocity_mps,
         radius_m: entry.radius_m,
         gives_way: is_fresh && entry.mode.gives_way(),
+        mode: entry.mode,
     };
     if !is_fresh {
         nearby.velocity_mps = Vec3::ZERO;

@@ -5,7 +5,7 @@ use crate::body::Body;
 use crate::geom::{Vec3, Vector};
 use crate::neighbor::Nearby;
 use crate::rand::Rng;
-use crate::robot::RobotId;
+use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
 
 pub const RADIUS_M: f64 = 0.15;
@@ -51,6 +51,7 @@ pub fn robot<S: Scalar, const D: usize>(id: u32, offset_m: [f64; D], velocity_mp
         velocity_mps: vector(velocity_mps),
         radius_m: scalar(RADIUS_M),
         gives_way: true,
+        mode: Mode::Cruise,
     }
 }
 

@@ -76,7 +76,8 @@ pub fn half_plane<S: Scalar>(
         return None;
     } else {
         match p.normalized() {
-            Some(ahead) if p.norm() > r => leave_cone_by_angle(v, p, ahead, r, params.horizon_s)?,
+            // Floating numbers are plain here, but for what rounding makes touch.
+            Some(ahead) if !S::IS_FLOATING && p.norm() > r => leave_cone_by_angle(v, p, ahead, r, params.horizon_s)?,
             _ => {
                 // Overlapping: apart again after the separation time, straight away from each other if
                 // nothing else says where to.

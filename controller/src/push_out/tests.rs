@@ -1,7 +1,7 @@
 use super::*;
 use crate::geom::Vec2;
 use crate::neighbor::tie;
-use crate::robot::RobotId;
+use crate::robot::{Mode, RobotId};
 use crate::scalar::Q16;
 use proptest::prelude::*;
 use std::vec::Vec;
@@ -39,7 +39,14 @@ fn body<S: Scalar>() -> Body<S> {
 }
 
 fn robot<S: Scalar>(id: u32, place: V) -> Nearby<S> {
-    Nearby { id: RobotId(id), offset_m: vec3(place), velocity_mps: Vec3::ZERO, radius_m: S::ZERO, gives_way: true }
+    Nearby {
+        id: RobotId(id),
+        offset_m: vec3(place),
+        velocity_mps: Vec3::ZERO,
+        radius_m: S::ZERO,
+        gives_way: true,
+        mode: Mode::Cruise,
+    }
 }
 
 fn ball(center_m: V, radius_m: f64) -> Obstacle<f64> {

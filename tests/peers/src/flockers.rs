@@ -10,7 +10,7 @@ use krabmaga::engine::state::State;
 use staya_controller::flock::boids::{BoidsParams, Torus};
 use staya_controller::geom::{Vec2, Vec3};
 use staya_controller::neighbor::Nearby;
-use staya_controller::robot::RobotId;
+use staya_controller::robot::{Mode, RobotId};
 use staya_papers::boids::{Flock, Plan};
 use std::any::Any;
 use std::cell::RefCell;
@@ -128,6 +128,7 @@ impl Agent for Boid {
                 velocity_mps: other.heading.extend(0.0),
                 radius_m: 0.0,
                 gives_way: true,
+                mode: Mode::Cruise,
             }
         });
         let seen: Vec<Nearby<f32>> = seen.collect();

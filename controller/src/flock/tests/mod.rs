@@ -7,7 +7,7 @@ mod simulation;
 use crate::body::Body;
 use crate::geom::Vec3;
 use crate::neighbor::Nearby;
-use crate::robot::RobotId;
+use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
 
 fn number<S: Scalar>(value: f64) -> S {
@@ -36,5 +36,12 @@ fn body<S: Scalar>(velocity: [f64; 3]) -> Body<S> {
 }
 
 fn near<S: Scalar>(id: u32, offset: [f64; 3], velocity: [f64; 3]) -> Nearby<S> {
-    Nearby { id: RobotId(id), offset_m: vec3(offset), velocity_mps: vec3(velocity), radius_m: S::ZERO, gives_way: true }
+    Nearby {
+        id: RobotId(id),
+        offset_m: vec3(offset),
+        velocity_mps: vec3(velocity),
+        radius_m: S::ZERO,
+        gives_way: true,
+        mode: Mode::Cruise,
+    }
 }

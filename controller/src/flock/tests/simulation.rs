@@ -7,7 +7,7 @@ use crate::geom::Vec3;
 use crate::neighbor::Nearby;
 use crate::obstacle::Obstacle;
 use crate::rand::Rng;
-use crate::robot::RobotId;
+use crate::robot::{Mode, RobotId};
 use std::vec::Vec;
 
 type V = Vec3<f64>;
@@ -97,6 +97,7 @@ impl Flock {
                     velocity_mps,
                     radius_m: 0.0,
                     gives_way: true,
+                    mode: Mode::Cruise,
                 });
             }
         }

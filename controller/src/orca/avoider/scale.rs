@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::orca::fixtures::rng_of;
-use crate::robot::RobotId;
+use crate::robot::{Mode, RobotId};
 use proptest::prelude::*;
 use std::vec::Vec;
 
@@ -37,6 +37,7 @@ fn trace(units: Units, ways: &[[Vec2<f32>; 2]], walls: &[[Vec2<f32>; 2]], steps:
                     velocity_mps: velocity_mps.extend(0.0),
                     radius_m: 0.15 * length,
                     gives_way: true,
+                    mode: Mode::Cruise,
                 })
                 .collect();
             nearby.sort_by(|a, b| a.offset_m.norm().total_cmp(&b.offset_m.norm()).then(a.id.cmp(&b.id)));

@@ -3,7 +3,7 @@
 use super::*;
 use crate::geom::{Position, Vec3};
 use crate::orca::fixtures::rng_of;
-use crate::robot::RobotId;
+use crate::robot::{Mode, RobotId};
 use std::vec::Vec;
 
 type V = [f64; 2];
@@ -128,6 +128,7 @@ impl Run {
                 velocity_mps: Vec3::new(speed[0] as f32, speed[1] as f32, 0.0),
                 radius_m: self.radius_m as f32,
                 gives_way: true,
+                mode: if other.arrived_s.is_some() { Mode::Arrived } else { Mode::Cruise },
             });
         }
         nearby.sort_by_key(|other| (other.offset_m.length_key(), other.id));
@@ -211,11 +212,13 @@ fn the_swap_does_not_hang_on_exact_places() {
 
 /// Two rooms with a door of `width_m` in a wall of `depth_m` between them; `each` robots of radius 0.3 m on both sides.
 fn doorway(width_m: f64, depth_m: f64, each: u32, seed: u64) -> Run {
-    let (far, half, side) = (8.0, width_m / 2.0, 5.0);
+    let rows = each.div_ceil(4).max(5);
+    let (far, half, side) = (8.0 + depth_m / 2.0, width_m / 2.0, f64::from(rows));
     let mut rng = Rng::keyed(seed, 2, each, 0);
     let mut ways = Vec::new();
     for side in [-1.0, 1.0] {
-        let spot = |k: u32| [2.5 + f64::from(k % 4) * 1.2, (f64::from(k / 4) - 2.0) * 1.6];
+        let middle = f64::from(rows - 1) / 2.0;
+        let spot = |k: u32| [2.5 + depth_m / 2.0 + f64::from(k % 4) * 1.2, (f64::from(k / 4) - middle) * 1.6];
         for k in 0..each {
             let start = spot(k);
             let goal = spot(each - 1 - k);
@@ -271,4 +274,37 @@ fn where_two_fit_two_crowds_pass_at_once() {
 fn one_robot_on_each_side_of_the_narrowest_door() {
     all_pass(0.7, 0.0, 1, 40.0);
     all_pass(0.7, 0.5, 1, 50.0);
+}
+
+#[test]
+fn a_crowd_of_which_nobody_sees_the_half_gets_through() {
+    all_pass(1.0, 0.0, 30, 500.0);
+}
+
+#[test]
+fn in_a_passage_of_thirty_radii_that_is_too_narrow_for_two_directions_take_turns() {
+    for seed in [1, 2] {
+        let mut run = doorway(0.8, 9.0, 4, seed);
+        assert_eq!(run.until(200.0), 8, "seed {seed}");
+        assert!(run.clearance_m >= 0.0 && run.wall_clearance_m >= 0.0, "seed {seed}");
+    }
+}
+
+#[test]
+fn whom_a_wall_bars_goes_to_the_door_from_afar_also_alone() {
+    let mut run = doorway(1.0, 0.0, 1, 1);
+    run.door_x = None;
+    run.robots.truncate(1);
+    run.robots[0].at = [-4.0, 4.5];
+    run.robots[0].goal = [4.0, 4.5];
+    assert_eq!(run.until(40.0), 1);
+    // Two doors one behind the other: first through the nearer one.
+    for x in [3.2, 6.6] {
+        run.walls.push([[x, -5.0], [x, -0.5]]);
+        run.walls.push([[x, 0.5], [x, 5.0]]);
+    }
+    run.robots[0].goal = [7.4, 3.0];
+    run.robots[0].arrived_s = None;
+    run.robots[0].at = [-4.0, 4.5];
+    assert_eq!(run.until(100.0), 1);
 }

@@ -1,7 +1,7 @@
 use super::*;
 use crate::orca::fixtures::{body, robot};
 use crate::rand::Rng;
-use crate::robot::RobotId;
+use crate::robot::{Mode, RobotId};
 use crate::scalar::Q16;
 use proptest::prelude::*;
 
@@ -127,6 +127,7 @@ fn fixed_point_robots_avoid_too() {
         velocity_mps: Vec3::new(q(-0.5), Q16::ZERO, Q16::ZERO),
         radius_m: q(0.15),
         gives_way: true,
+        mode: Mode::Cruise,
     };
     let mut avoider = Avoider::<Q16, 8>::new(AvoidParams::default());
     let wish = Vec2::new(Q16::HALF, Q16::ZERO);

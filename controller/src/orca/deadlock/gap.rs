@@ -15,6 +15,8 @@ pub(super) struct Gap<S> {
     pub(super) half: S,
     /// Half its depth, metres: 0 between walls without thickness.
     pub(super) depth: S,
+    /// A wall bars the straight way.
+    pub(super) is_only_way: bool,
 }
 
 /// Which gaps count.
@@ -23,8 +25,10 @@ pub(super) struct Wanted<S> {
     pub(super) least_m: S,
     /// Most width, metres.
     pub(super) most_m: S,
-    /// Longest passage, metres.
+    /// Longest passage, metres, of those that are not narrow.
     pub(super) deepest_m: S,
+    /// What is less wide is narrow, metres.
+    pub(super) narrow_m: S,
     /// How far behind a gap it still counts, metres.
     pub(super) past_m: S,
 }
@@ -59,8 +63,25 @@ impl<S: Scalar> Gap<S> {
             ahead: if distance < S::ZERO { -across } else { across },
             half: (b - a).norm() * S::HALF,
             depth: S::ZERO,
+            is_only_way: false,
         };
         (distance != S::ZERO).then_some(gap)
+    }
+
+    /// Whether the robot is behind it, or beside it there.
+    fn is_passed(&self, wanted: &Wanted<S>) -> bool {
+        let own = self.place(Vec2::ZERO);
+        own.x > wanted.past_m || own.x > S::ZERO && own.y.abs() > self.half
+    }
+
+    /// Whether walls lead on both sides from this gap to another one in line, `way` off: where they do not, there is a
+    /// room between. It looks halfway.
+    fn is_walled(&self, way: Vec2<S>, obstacles: &[Obstacle<S>]) -> bool {
+        let side = self.ahead.perp() * self.half;
+        let halfway = self.middle + way * S::HALF;
+        [halfway + side, halfway - side]
+            .into_iter()
+            .all(|place| obstacles.iter().filter_map(|obstacle| distance(obstacle, place)).any(|near| near < self.half))
     }
 
     /// Whether nothing stands in it: nothing is nearer to its middle than its sides are.
@@ -69,11 +90,17 @@ impl<S: Scalar> Gap<S> {
         obstacles.iter().filter_map(|obstacle| distance(obstacle, self.middle)).all(|distance| distance >= room)
     }
 
-    /// Joined with the other end of the same passage.
-    fn joined(self, other: &Self, deepest_m: S) -> Self {
-        let Vec2 { x, y } = self.turn(other.middle - self.middle);
+    /// Joined with the other end of the same passage: one that is farther off than [`Wanted::deepest_m`] is if it is
+    /// narrow and there are walls all the way.
+    fn joined(self, other: &Self, wanted: &Wanted<S>, obstacles: &[Obstacle<S>]) -> Self {
+        let way = other.middle - self.middle;
+        let Vec2 { x, y } = self.turn(way);
         let is_same_way = self.ahead.dot(other.ahead) > S::from_milli(990);
-        if !is_same_way || y.abs() > self.half * S::HALF || x.abs() > deepest_m {
+        if !is_same_way || y.abs() > self.half * S::HALF {
+            return self;
+        }
+        let is_narrow = self.half + self.half < wanted.narrow_m;
+        if x.abs() > wanted.deepest_m && !(is_narrow && self.is_walled(way, obstacles)) {
             return self;
         }
         let (low, high) = ((-self.depth).min(x), self.depth.max(x));
@@ -87,26 +114,31 @@ impl<S: Scalar> Gap<S> {
 /// The sides of a gap are ends of two walls with nothing else as near to their middle; gaps in line are the ends of one
 /// passage. O(walls^2), and O(obstacles) more for each pair of ends with the right distance.
 pub(super) fn gap_on_way<S: Scalar>(obstacles: &[Obstacle<S>], target: Vec2<S>, wanted: &Wanted<S>) -> Option<Gap<S>> {
-    let mut best: Option<(S, Gap<S>)> = None;
-    for_each_gap(obstacles, target, wanted, |gap| {
+    let mut best: Option<(bool, S, Gap<S>)> = None;
+    for_each_gap(obstacles, target, wanted, &mut |gap| {
+        if gap.is_passed(wanted) {
+            return;
+        }
         let detour = gap.middle.norm() + (target - gap.middle).norm();
-        if best.is_none_or(|(least, _)| detour < least) {
-            best = Some((detour, gap));
+        // One behind another wall is not the next one.
+        let is_hidden = walls(obstacles).any(|ends| crosses(gap.middle, ends));
+        if best.is_none_or(|(was_hidden, least, _)| is_hidden < was_hidden || is_hidden == was_hidden && detour < least)
+        {
+            best = Some((is_hidden, detour, gap));
         }
     });
-    let (_, mut gap) = best?;
-    for_each_gap(obstacles, target, wanted, |other| {
-        gap = gap.joined(&other, wanted.deepest_m);
+    let (_, _, mut gap) = best?;
+    for_each_gap(obstacles, target, wanted, &mut |other| {
+        gap = gap.joined(&other, wanted, obstacles);
     });
-    let own = gap.place(Vec2::ZERO);
-    if own.x > wanted.past_m || own.x > S::ZERO && own.y.abs() > gap.half {
+    if gap.is_passed(wanted) {
         return None;
     }
+    let own = gap.place(Vec2::ZERO);
     let side = gap.ahead.perp() * gap.half;
-    let is_on_way = own.x >= S::ZERO
-        || crosses(target, [gap.middle - side, gap.middle + side])
-        || walls(obstacles).any(|ends| crosses(target, ends));
-    is_on_way.then_some(gap)
+    let is_free = own.x >= S::ZERO || crosses(target, [gap.middle - side, gap.middle + side]);
+    gap.is_only_way = !is_free;
+    (is_free || walls(obstacles).any(|ends| crosses(target, ends))).then_some(gap)
 }
 
 fn walls<S: Scalar>(obstacles: &[Obstacle<S>]) -> impl Iterator<Item = [Vec2<S>; 2]> {
@@ -120,7 +152,8 @@ fn for_each_gap<S: Scalar>(
     obstacles: &[Obstacle<S>],
     target: Vec2<S>,
     wanted: &Wanted<S>,
-    mut visit: impl FnMut(Gap<S>),
+    // Not generic, so that firmware has this once.
+    visit: &mut dyn FnMut(Gap<S>),
 ) {
     for (index, one) in walls(obstacles).enumerate() {
         for other in walls(obstacles).skip(index + 1) {

@@ -21,7 +21,7 @@ use staya_controller::flock::boids::{BoidsParams, Torus};
 use staya_controller::geom::{Vec2, Vec3};
 use staya_controller::neighbor::Nearby;
 use staya_controller::rand::Rng;
-use staya_controller::robot::RobotId;
+use staya_controller::robot::{Mode, RobotId};
 use staya_sim::nearby::{AllPairs, Cells, Found, Query, Search, Space, Tree};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -385,6 +385,7 @@ impl Flock {
                 velocity_mps: heading.extend(0.0),
                 radius_m: 0.0,
                 gives_way: true,
+                mode: Mode::Cruise,
             }
         });
         scratch.nearby.extend(seen);
