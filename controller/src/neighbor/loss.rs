@@ -8,7 +8,7 @@ const SHORT: u16 = 3;
 /// At this count all counts are halved, so that what is long past weighs little.
 const MEMORY: u16 = 1 << 14;
 /// False alarms that a robot may raise in a minute, over all of its neighbours: one in 10,000 minutes; Q24.
-const FALSE_ALARMS: u64 = (1 << 24) / 10_000;
+const FALSE_ALARMS: u64 = 1_677;
 const MINUTE_US: i32 = 60_000_000;
 /// The most periods of silence that are looked at one by one.
 const MOST_PERIODS: i32 = 64;

@@ -122,7 +122,8 @@ pub(super) fn gap_on_way<S: Scalar>(obstacles: &[Obstacle<S>], target: Vec2<S>, 
         let detour = gap.middle.norm() + (target - gap.middle).norm();
         // One behind another wall is not the next one.
         let is_hidden = walls(obstacles).any(|ends| crosses(gap.middle, ends));
-        if best.is_none_or(|(was_hidden, least, _)| is_hidden < was_hidden || is_hidden == was_hidden && detour < least)
+        if best
+            .is_none_or(|(was_hidden, least, _)| !is_hidden && was_hidden || is_hidden == was_hidden && detour < least)
         {
             best = Some((is_hidden, detour, gap));
         }

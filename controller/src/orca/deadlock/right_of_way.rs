@@ -129,7 +129,7 @@ impl<S: Scalar> RightOfWay<S> {
         let body = situation.body;
         let step_m = body.max_speed_mps * body.step_s;
         let step = step_m.checked_div(body.radius_m).unwrap_or(S::ZERO);
-        self.turn_m = self.turn_m + step_m;
+        self.turn_m += step_m;
         if traffic.ahead || traffic.against {
             if self.last_went_ahead != Some(traffic.ahead) {
                 self.turn_m = S::ZERO;
