@@ -16,6 +16,7 @@ use serde::{Deserialize, Serialize};
 /// | the same, and it may be alone | goes on at [`alone_mps`](Self::alone_mps), around where the lost were last |
 /// | nobody ever, since it was switched on | goes as it likes: it is the first of its swarm, or all of it |
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Silence<S> {
     /// How long one that fell silent is remembered, at most half an hour. Longer: a robot that was taken away blocks its
     /// place for longer, and one that drives out of range goes on for longer; shorter: one that lies dead somewhere is
