@@ -31,7 +31,7 @@ const TOLERANCE_UM: i32 = 200;
 /// | has been silent for t beyond a step | grows by [`growth_mps`](StalenessInflation::growth_mps) t, though its border comes nearer by at most half of the gap in a step, as the robot itself does; with inertia, about the course that it had, by half of the acceleration times t^2 if that is less | the same |
 /// | is lost, while at least half of all are fresh or the robot may be alone | the same, up to [`max_m`](StalenessInflation::max_m) | half |
 ///
-/// Whoever's own centre is inside of such a ball stands. So nobody touches anybody at any loss of packets and in any
+/// Whoever's own centre is inside of such a ball stands. So no two touch each other at any loss of packets and in any
 /// blackout, as long as nobody is faster than `growth_mps` and bodies do what they are told; one with inertia takes no
 /// more than it can brake within.
 #[derive(Clone, Copy, Debug)]
