@@ -17,18 +17,18 @@ use staya_controller::scalar::Scalar;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{Postcard, Wire};
 
-/// Neighbours that an agent of a case knows.
+/// Neighbours that an agent of a case in the plane knows; on the grid as many as there are robots.
 pub(crate) const KNOWN: usize = 8;
 /// Cells whose visits it remembers.
 const VISITS: usize = 32;
 /// Neighbours in its template.
-const TEMPLATE: usize = 8;
+const TEMPLATE: usize = ROBOTS;
 /// Robots of a case on the grid.
 pub(crate) const ROBOTS: usize = 4;
 
 pub(crate) type Route = RouteGuidance<CELLS, VISITS>;
 pub(crate) type Formation = FormationGuidance<CELLS, VISITS, TEMPLATE>;
-pub(crate) type GridAgent<S, G, W = Postcard> = Agent<S, G, KNOWN, Unguarded, W>;
+pub(crate) type GridAgent<S, G, W = Postcard> = Agent<S, G, ROBOTS, Unguarded, W>;
 
 /// A tick in which a unit of [`UNIT`] is a millisecond: crossings need no division.
 pub(crate) const TICK: Duration = Duration::from_millis(UNIT.cast_signed());
