@@ -62,7 +62,7 @@ pub(super) fn reflexive<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     in_formation(Prediction::Reflexive, probe)
 }
 
-fn template(index: usize) -> Template<8> {
+fn template(index: usize) -> Template<ROBOTS> {
     // The graph is sound: a test sees the robots keep their places.
     Template::from_graph(&PLACES, &EDGES, index, 2).unwrap_or_default()
 }
@@ -71,7 +71,7 @@ fn template(index: usize) -> Template<8> {
 fn members<S: Scalar, W: Wire>(
     params: FormationParams,
     wire: &W,
-    template: impl Fn(usize) -> Template<8>,
+    template: impl Fn(usize) -> Template<ROBOTS>,
 ) -> Vec<Walker<S, Formation, W>, ROBOTS> {
     let mut walkers = Vec::new();
     for (index, place) in PLACES.into_iter().enumerate() {
