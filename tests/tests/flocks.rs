@@ -181,6 +181,6 @@ fn boids_of_one_flock_have_one_heading() {
             order_within_parts(&places, &velocities, 20.0)
         };
         let [start, end] = [rows.first(), rows.last()].map(|row| order(row.expect("two moments")));
-        assert!(start < 0.5 && end > 0.8, "seed {seed}: {start} at the start, {end} at the end");
+        assert!(start < 0.5 && end > 0.7, "seed {seed}: {start} at the start, {end} at the end");
     }
 }

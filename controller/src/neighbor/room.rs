@@ -11,11 +11,9 @@ use heapless::Vec;
 #[cfg(all(test, feature = "fixed", feature = "wire"))]
 mod tests;
 
-/// What places told in millimetres are off by, metres.
-const ROUNDING_MM: i32 = 1;
-/// A step is fine that takes a robot at its highest speed no farther than its radius over this. In such steps the safety
-/// layer keeps those apart that hear each other, and half of a gap would only make crowds slow.
-const FINE: i32 = 8;
+/// What is left between two bodies, millimetres: both places are told to a millimetre along each axis, and both robots may
+/// leave [`TOLERANCE_UM`].
+const ROUNDING_MM: i32 = 3;
 /// Rounds in which a velocity is turned aside before it is shortened.
 const ROUNDS: u8 = 6;
 /// What the last round may leave, micrometres; part of the rounding.
@@ -30,7 +28,6 @@ const TOLERANCE_UM: i32 = 200;
 ///
 /// | the other one | its ball | own part of the gap |
 /// | --- | --- | --- |
-/// | is heard as ever, steps are fine (at most an eighth of a radius) and there is no inertia | does not grow | all, without limit: that is the safety layer's business |
 /// | is heard as ever | does not grow | half; all if it does not give way, less what it comes itself |
 /// | has been silent for t beyond a step | grows by [`growth_mps`](StalenessInflation::growth_mps) t, though its border comes nearer by at most half of the gap in a step, as the robot itself does; with inertia, about the course that it had, by half of the acceleration times t^2 if that is less | the same |
 /// | is lost, while at least half of all are fresh or the robot may be alone | the same, up to [`max_m`](StalenessInflation::max_m) | half |
@@ -173,12 +170,7 @@ impl<S: Scalar> Room<'_, S> {
             _ if swerves => told_mps + swerve_mps,
             _ => inflation.growth_mps,
         };
-        let step_m = body.max_speed_mps * body.step_s;
-        let is_fine = step_m * S::from_i32(FINE) <= body.radius_m && most >= S::MAX;
-        let room_m = if silent == 0 && other.mode.gives_way() && is_fine {
-            // More than the body can take.
-            step_m * S::TWO
-        } else if !other.mode.gives_way() {
+        let room_m = if !other.mode.gives_way() {
             self.brakes(gap - comes_mps * body.step_s, comes_mps.max(S::ZERO))
         } else if silent > 0 {
             self.brakes(gap * S::HALF, comes_mps.max(S::ZERO) * S::HALF)

@@ -6,15 +6,9 @@ use clap::Args;
 use staya_controller::agent::SafetyKind;
 use std::path::{Path, PathBuf};
 
-/// What both experiments understand.
+/// What all of them understand.
 #[derive(Args, Clone, Debug)]
-struct Common {
-    /// Move each start at random by up to this along both axes, metres.
-    #[arg(long, value_name = "M", default_value_t = 0.0)]
-    noise: f64,
-    /// Runs per point, with consecutive seeds.
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
-    seeds: u32,
+struct Runs {
     /// The first seed.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
@@ -24,21 +18,18 @@ struct Common {
     /// Highest speed, m/s.
     #[arg(long, value_name = "M/S", default_value_t = 0.5)]
     speed: f64,
-    /// How far the radio reaches, metres [default: 3 for swap, 6 for doorway].
+    /// How far the radio reaches, metres [default: 3 for swap, else 6].
     #[arg(long, value_name = "M")]
     range: Option<f64>,
     /// Share of packets lost, 0 to 1.
     #[arg(long, value_name = "P", default_value_t = 0.0)]
     loss: f64,
-    /// What keeps robots apart.
+    /// What keeps robots apart; on a sphere it is always ORCA in space.
     #[arg(long, default_value = "orca", value_parser = options::crossing_safety())]
     safety: SafetyKind,
-    /// Folder for the pictures [default: out/swap, out/doorway].
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
 }
 
-impl Common {
+impl Runs {
     fn conditions(&self, range_m: f64) -> Conditions {
         Conditions {
             step_s: self.step,
@@ -48,7 +39,25 @@ impl Common {
             safety: self.safety,
         }
     }
+}
 
+/// What swap and doorway understand.
+#[derive(Args, Clone, Debug)]
+struct Common {
+    /// Move each start at random by up to this along both axes, metres.
+    #[arg(long, value_name = "M", default_value_t = 0.0)]
+    noise: f64,
+    /// Runs per point, with consecutive seeds.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    seeds: u32,
+    #[command(flatten)]
+    runs: Runs,
+    /// Folder for the pictures [default: out/swap, out/doorway].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+impl Common {
     fn out(&self, name: &str) -> PathBuf {
         let default = || Path::new("out").join(name);
         self.out.clone().unwrap_or_else(default)
@@ -115,24 +124,8 @@ pub struct CrossingArgs {
     /// Runs of each case, with consecutive seeds.
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     seeds: u32,
-    /// The first seed.
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    seed: u64,
-    /// Time from one decision to the next, seconds.
-    #[arg(long, value_name = "S", default_value_t = 0.05)]
-    step: f64,
-    /// Highest speed, m/s.
-    #[arg(long, value_name = "M/S", default_value_t = 0.5)]
-    speed: f64,
-    /// How far the radio reaches, metres.
-    #[arg(long, value_name = "M", default_value_t = 6.0)]
-    range: f64,
-    /// Share of packets lost, 0 to 1.
-    #[arg(long, value_name = "P", default_value_t = 0.0)]
-    loss: f64,
-    /// What keeps robots apart; on a sphere it is always ORCA in space.
-    #[arg(long, default_value = "orca", value_parser = options::crossing_safety())]
-    safety: SafetyKind,
+    #[command(flatten)]
+    runs: Runs,
 }
 
 impl CrossingArgs {
@@ -143,16 +136,10 @@ impl CrossingArgs {
             robots: self.robots,
             noise_m: self.noise,
             seeds: self.seeds,
-            seed: self.seed,
+            seed: self.runs.seed,
             longest_s: self.longest,
             blackout_s: self.blackout,
-            conditions: Conditions {
-                step_s: self.step,
-                speed_mps: self.speed,
-                range_m: self.range,
-                loss: self.loss,
-                safety: self.safety,
-            },
+            conditions: self.runs.conditions(6.0),
         }
     }
 }
@@ -194,9 +181,9 @@ impl SwapArgs {
             circle_m: self.circle,
             noise_m: self.common.noise,
             seeds: self.common.seeds,
-            seed: self.common.seed,
+            seed: self.common.runs.seed,
             patience: self.patience,
-            conditions: self.common.conditions(3.0),
+            conditions: self.common.runs.conditions(3.0),
         }
     }
 
@@ -214,9 +201,9 @@ impl DoorwayArgs {
             robots: self.robots,
             noise_m: self.common.noise,
             seeds: self.common.seeds,
-            seed: self.common.seed,
+            seed: self.common.runs.seed,
             longest_s: self.longest,
-            conditions: self.common.conditions(6.0),
+            conditions: self.common.runs.conditions(6.0),
         }
     }
 

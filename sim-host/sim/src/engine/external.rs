@@ -1,7 +1,8 @@
 //! Robots whose controllers run elsewhere: on emulated parts, or on boards.
 
-use super::Status;
-use staya_controller::agent::{AnyInputs, Command, OUTBOX, Setup, Task};
+use super::{Engine, Ground, HostLaw, Status, Tick};
+use crate::scenario::Scenario;
+use staya_controller::agent::{AnyInputs, Command, GuidanceSetup, OUTBOX, Safety, SafetySetup, Setup, Task};
 use staya_controller::time::Instant;
 
 /// Controllers external of this process. Robots are numbered as in the scenario.
@@ -38,4 +39,75 @@ pub struct Decision {
     pub rejected: u16,
     /// What it is doing.
     pub status: Status,
+}
+
+/// The controllers that run elsewhere, and what they are made of.
+pub(super) struct External {
+    pub(super) controllers: Box<dyn ExternalController>,
+    /// By number, rising.
+    pub(super) robots: Vec<(usize, GuidanceSetup, SafetySetup)>,
+}
+
+impl<W, G, A> Engine<W, G, A>
+where
+    W: Ground,
+    G: HostLaw,
+    A: Safety<f32> + Send,
+{
+    /// The same with some of its robots' controllers outside of this process; before the first tick.
+    #[must_use]
+    pub fn with_external(mut self, scenario: &Scenario, controllers: Box<dyn ExternalController>) -> Self {
+        let robots = controllers.robots().into_iter();
+        let robots = robots.filter(|&index| index < self.robots.len());
+        let robots = robots.map(|index| (index, scenario.guidance(index), scenario.safety(index)));
+        let robots: Vec<_> = robots.collect();
+        let indices: Vec<_> = robots.iter().map(|&(index, ..)| index).collect();
+        self.external = Some(External { controllers, robots });
+        for index in indices {
+            self.restart(index, 0);
+        }
+        self
+    }
+
+    /// Lets those begin whose controllers are elsewhere.
+    pub(super) fn send_out(&mut self) {
+        let Some(external) = &mut self.external else {
+            return;
+        };
+        let (tick, mut senses, mut heard) = (self.tick, W::Scratch::default(), Vec::new());
+        for &(index, ..) in &external.robots {
+            let computer = &self.computers[index];
+            if tick < computer.down_until {
+                continue;
+            }
+            let moment = Tick { tick, ground: &self.ground, radio: &self.radio };
+            let inputs = moment.inputs(index, computer, &mut senses, &mut heard);
+            let now = computer.now(tick, self.tick_us);
+            external.controllers.send(index, tick, now, &inputs);
+        }
+    }
+
+    /// Takes in what those decided. Returns how many frames they refused.
+    pub(super) fn collect(&mut self) -> u64 {
+        let Some(external) = &mut self.external else {
+            return 0;
+        };
+        let mut rejected = 0;
+        for &(index, ..) in &external.robots {
+            let computer = &mut self.computers[index];
+            if self.tick < computer.down_until {
+                continue;
+            }
+            match external.controllers.collect(index) {
+                Some(decision) => {
+                    computer.outbox = decision.outbox;
+                    self.commands[index] = decision.command;
+                    self.statuses[index] = decision.status;
+                    rejected += u64::from(decision.rejected);
+                }
+                None => self.statuses[index].fall_silent(),
+            }
+        }
+        rejected
+    }
 }

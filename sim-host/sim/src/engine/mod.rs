@@ -20,6 +20,7 @@ mod operator;
 mod plane;
 mod simulate;
 
+use external::External;
 pub use external::{Decision, ExternalController};
 pub use grid::Grid;
 pub use ground::{Ground, HostLaw, StateWords};
@@ -36,7 +37,7 @@ use hash::Chain;
 use intruder::Intruder;
 use rayon::prelude::*;
 use staya_controller::agent::{
-    Agent, AgentConfig, AnyInputs, Command, Event, GuidanceSetup, Inputs, NEIGHBORS, OUTBOX, Safety, SafetySetup, Setup,
+    Agent, AgentConfig, AnyInputs, Command, Event, Inputs, NEIGHBORS, OUTBOX, Safety, Setup,
 };
 use staya_controller::auth::Key;
 use staya_controller::grid::Cell;
@@ -129,13 +130,6 @@ impl<W: Ground> Tick<'_, W> {
 /// Makes the guidance law and the safety layer of a robot by its number in [`Scenario::robots`].
 type Brains<G, A> = Box<dyn Fn(usize) -> (G, A) + Send + Sync>;
 
-/// The controllers that run elsewhere, and what they are made of.
-struct External {
-    controllers: Box<dyn ExternalController>,
-    /// By number, rising.
-    robots: Vec<(usize, GuidanceSetup, SafetySetup)>,
-}
-
 /// A scenario in motion on ground `W`. `G` is the guidance law of all its robots, `A` their safety layer.
 pub struct Engine<W, G, A> {
     seed: u64,
@@ -214,21 +208,6 @@ where
         let waiting = |robot: &Robot| Status { mode: Mode::Idle, leader: RobotId::NOBODY, target: robot.goal };
         engine.statuses = engine.robots.iter().map(waiting).collect();
         engine
-    }
-
-    /// The same with some of its robots' controllers outside of this process; before the first tick.
-    #[must_use]
-    pub fn with_external(mut self, scenario: &Scenario, controllers: Box<dyn ExternalController>) -> Self {
-        let robots = controllers.robots().into_iter();
-        let robots = robots.filter(|&index| index < self.robots.len());
-        let robots = robots.map(|index| (index, scenario.guidance(index), scenario.safety(index)));
-        let robots: Vec<_> = robots.collect();
-        let indices: Vec<_> = robots.iter().map(|&(index, ..)| index).collect();
-        self.external = Some(External { controllers, robots });
-        for index in indices {
-            self.restart(index, 0);
-        }
-        self
     }
 
     /// What the computer of robot `index` must know at its start number `boot`.
@@ -336,48 +315,6 @@ where
         let mut refused = self.decide_here();
         refused.rejected += self.collect();
         refused
-    }
-
-    /// Lets those begin whose controllers are elsewhere.
-    fn send_out(&mut self) {
-        let Some(external) = &mut self.external else {
-            return;
-        };
-        let (tick, mut senses, mut heard) = (self.tick, W::Scratch::default(), Vec::new());
-        for &(index, ..) in &external.robots {
-            let computer = &self.computers[index];
-            if tick < computer.down_until {
-                continue;
-            }
-            let moment = Tick { tick, ground: &self.ground, radio: &self.radio };
-            let inputs = moment.inputs(index, computer, &mut senses, &mut heard);
-            let now = computer.now(tick, self.tick_us);
-            external.controllers.send(index, tick, now, &inputs);
-        }
-    }
-
-    /// Takes in what those decided. Returns how many frames they refused.
-    fn collect(&mut self) -> u64 {
-        let Some(external) = &mut self.external else {
-            return 0;
-        };
-        let mut rejected = 0;
-        for &(index, ..) in &external.robots {
-            let computer = &mut self.computers[index];
-            if self.tick < computer.down_until {
-                continue;
-            }
-            match external.controllers.collect(index) {
-                Some(decision) => {
-                    computer.outbox = decision.outbox;
-                    self.commands[index] = decision.command;
-                    self.statuses[index] = decision.status;
-                    rejected += u64::from(decision.rejected);
-                }
-                None => self.statuses[index].fall_silent(),
-            }
-        }
-        rejected
     }
 
     /// Steps the robots whose agents are here, in parallel.
