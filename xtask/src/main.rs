@@ -21,6 +21,7 @@ mod faults;
 mod firmware;
 mod fuzz;
 mod layers;
+mod minimal;
 mod part;
 mod qemu;
 mod repo;

@@ -1,0 +1,77 @@
+//! The oldest Rust that the workspace declares (`rust-version`) compiles it.
+
+use crate::repo::{Repo, output_of};
+use crate::report::Report;
+
+const NAME: &str = "the declared minimal Rust";
+
+/// If the toolchain here is that Rust, all that is compiled shows it; else rustup's of that version has to check the workspace.
+pub fn check(repo: &Repo, report: &mut Report) {
+    let declared = match declared(repo) {
+        Ok(declared) => declared,
+        Err(reason) => {
+            report.step(NAME, || Err(reason));
+            return;
+        }
+    };
+    let here = output_of(repo.command("rustc").arg("--version")).unwrap_or_default();
+    if is_release_of(&here, &declared) {
+        report.step(NAME, || {
+            println!("{here} compiles everything here");
+            Ok(())
+        });
+        return;
+    }
+    let mut check = repo.command("rustup");
+    check.args(["run", &declared, "cargo"]);
+    if output_of(repo.command("rustup").args(["run", &declared, "rustc", "--version"])).is_some() {
+        check.args(["check", "--locked", "--workspace", "--target-dir"]);
+        check.arg(repo.target.join("minimal"));
+        report.command(NAME, check);
+    } else {
+        let reason = format!(
+            "this is {here}; run `rustup toolchain install {declared}`, or declare another rust-version in Cargo.toml"
+        );
+        report.skip(NAME, &reason);
+    }
+}
+
+/// `rust-version` of the workspace.
+fn declared(repo: &Repo) -> Result<String, String> {
+    let path = repo.root.join("Cargo.toml");
+    let manifest = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let value = manifest.lines().find_map(|line| line.strip_prefix("rust-version = \""));
+    let version = value.and_then(|value| value.strip_suffix('"'));
+    version.map(String::from).ok_or_else(|| format!("{}: no line rust-version = \"...\"", path.display()))
+}
+
+/// Whether what `rustc --version` says is a release of `version`, such as `rustc 1.95.0 (...)` of `1.95`.
+fn is_release_of(said: &str, version: &str) -> bool {
+    let release = said.split_whitespace().nth(1).and_then(|release| release.strip_prefix(version));
+    release.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn releases_of_a_version() {
+        for (said, version, is) in [
+            ("rustc 1.95.0 (59807616e 2026-04-14)", "1.95", true),
+            ("rustc 1.95.0", "1.95.0", true),
+            ("rustc 1.9.0", "1.95", false),
+            ("rustc 1.95.0", "1.9", false),
+            ("rustc 1.96.0-nightly", "1.95", false),
+            ("", "1.95", false),
+        ] {
+            assert_eq!(is_release_of(said, version), is, "{said} {version}");
+        }
+    }
+
+    #[test]
+    fn this_repository_declares_one() {
+        let version = declared(&Repo::find()).unwrap();
+        assert!(version.starts_with("1."), "{version}");
+    }
+}
