@@ -4,12 +4,14 @@ use anyhow::{Context as _, Result};
 use clap::Args;
 use serde::Serialize;
 use staya_console::{Ended, Global, Progress, Stop, print, print_json};
+use staya_controller::agent::Wait;
 use staya_controller::grid::UNIT;
 use staya_plot::{motion_pictures, run_pictures};
 use staya_sim::engine::{Moment, Outcome, simulate};
+use staya_sim::metrics::waits::WaitCount;
 use staya_sim::record::{self, History, Options, PacketCounts, Recorder, RobotRow, write_summary};
 use staya_sim::scenario::{Overrides, Scenario};
-use std::fmt::Write as _;
+use std::fmt::{Display, Formatter, Write as _};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -78,6 +80,8 @@ struct Summary {
     is_authenticated: bool,
     /// Packets beyond a robot's bandwidth, never on the air.
     packets_throttled: u64,
+    /// What robots waited for that did not get on; empty: all did.
+    waits: Vec<Waited>,
     /// dPhi per robot, cells, graph placed on the top leader; null: no formation.
     formation_error_per_agent: Option<f64>,
     /// The same, graph placed by the best-fitting translation.
@@ -97,6 +101,54 @@ struct Summary {
     trace_hash: String,
     /// What was written.
     files: Vec<PathBuf>,
+}
+
+/// One reason to wait, over the run.
+#[derive(Clone, Debug, Serialize)]
+struct Waited {
+    #[serde(rename = "for")]
+    reason: Wait,
+    /// Robots that did so at some time.
+    robots: usize,
+    /// Those of them that do so at the end.
+    at_the_end: usize,
+    /// All their times together.
+    robot_seconds: f64,
+    /// The longest time on end.
+    longest_seconds: f64,
+}
+
+impl Waited {
+    fn new(count: &WaitCount, tick_s: f64) -> Self {
+        Self {
+            reason: count.wait,
+            robots: count.robots,
+            at_the_end: count.now,
+            robot_seconds: count.robot_ticks as f64 * tick_s,
+            longest_seconds: f64::from(count.longest_ticks) * tick_s,
+        }
+    }
+
+    /// For what, as a sentence goes on.
+    const fn words(&self) -> &'static str {
+        match self.reason {
+            Wait::Formation => "for their formation",
+            Wait::Request => "since they were asked to",
+            Wait::Way => "for a way",
+            Wait::Radio => "for news by radio",
+            Wait::Turn => "for their turn at a door",
+            Wait::Others => "for others in the way",
+            Wait::Place => "beside a place that is taken",
+        }
+    }
+}
+
+impl Display for Waited {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let Self { robots, at_the_end, robot_seconds, longest_seconds, .. } = self;
+        write!(f, "{robots} {}: {robot_seconds:.1} s in all, at most {longest_seconds:.1} s", self.words())?;
+        if *at_the_end > 0 { write!(f, "; {at_the_end} still do") } else { Ok(()) }
+    }
 }
 
 impl RunArgs {
@@ -159,7 +211,8 @@ fn simulate_recorded(
             failed = Some(error);
             return ControlFlow::Break(());
         }
-        progress.set(moment.row.tick.into(), || format!("ticks, {} of {count} robots arrived", moment.arrived));
+        let Moment { arrived, waiting, .. } = *moment;
+        progress.set(moment.row.tick.into(), || format!("ticks, {arrived} of {count} robots arrived, {waiting} wait"));
         if stop.is_requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let outcome = simulate(scenario, watch).context("the robots cannot be placed")?;
@@ -196,6 +249,7 @@ impl Summary {
             packets: outcome.packets,
             is_authenticated: scenario.key.is_some(),
             packets_throttled: outcome.throttled,
+            waits: outcome.waits.iter().map(|count| Waited::new(count, scenario.tick_s())).collect(),
             formation_error_per_agent: formation.map(|f| f.error_per_agent),
             formation_error_per_agent_best_fit: formation.map(|f| f.best_fit_error_per_agent),
             graph_distance_mean: formation.map(|f| f.graph_distance),
@@ -224,6 +278,9 @@ impl Summary {
             write!(arrived, ", on average after {mean:.1} s, the last after {last:.1} s")?;
         }
         line("arrived", arrived)?;
+        for (index, waited) in self.waits.iter().enumerate() {
+            line(if index == 0 { "waited" } else { "" }, waited.to_string())?;
+        }
         line("collisions", self.collisions.to_string())?;
         if let Some(gap) = self.least_gap_m {
             line("least gap", format!("{gap:.4} m between two robots"))?;

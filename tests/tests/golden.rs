@@ -4,6 +4,7 @@
 use staya_controller::robot::Mode;
 use staya_papers::orca::Sample;
 use staya_sim::engine::Outcome;
+use staya_sim::metrics::waits::WaitCount;
 use staya_sim::record::{RobotRow, TickRow};
 use staya_sim::scenario::Scenario;
 use staya_tests::{golden, run, scenario};
@@ -32,6 +33,10 @@ fn table(scenario: &Scenario, outcome: &Outcome, rows: &[(TickRow, Vec<RobotRow>
         "packets    sent {}, delivered {}, lost {}, corrupted {}, rejected {}",
         packets.sent, packets.delivered, packets.lost, packets.corrupted, packets.rejected
     )?;
+    for count in &outcome.waits {
+        let WaitCount { wait, robots, now, robot_ticks, longest_ticks } = count;
+        writeln!(text, "wait       {wait}: {robots} robots, {robot_ticks} ticks, at most {longest_ticks}, {now} now")?;
+    }
     if let Some(keeping) = outcome.formation {
         writeln!(
             text,
@@ -144,6 +149,11 @@ fn golden_downwash() {
 #[test]
 fn golden_mixed() {
     check("mixed", None);
+}
+
+#[test]
+fn golden_one_place() {
+    check("one-place", None);
 }
 
 #[test]

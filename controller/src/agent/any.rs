@@ -192,6 +192,13 @@ impl<S: Scalar, const K: usize> Safety<S> for AnySafety<S, K> {
         }
     }
 
+    fn waits_for_turn(&self) -> bool {
+        match self {
+            Self::Orca(safety) => safety.waits_for_turn(),
+            Self::Unguarded(_) | Self::Fly(_) | Self::PushOut(_) => false,
+        }
+    }
+
     fn parameter(&self, parameter: Parameter) -> Option<S> {
         match self {
             Self::Unguarded(safety) => safety.parameter(parameter),

@@ -2,7 +2,7 @@
 
 use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork};
 use super::waypoint_guidance::WaypointGuidance;
-use super::{Parameter, Surroundings, Waypoint, WrongTask};
+use super::{Parameter, Surroundings, Wait, Waypoint, WrongTask};
 use crate::geom::Vec3;
 use crate::grid::Cell;
 use crate::rand::Rng;
@@ -125,7 +125,7 @@ fn on_order<S>(action: Action<S>, goal: Cell) -> Decision<S> {
     let stays = matches!(action, Action::Stay);
     Decision {
         action,
-        status: Status { waits: stays, recovers: !stays, ..Status::default() },
+        status: Status { waits_for: stays.then_some(Wait::Request), recovers: !stays, ..Status::default() },
         target: goal,
         leader: RobotId::NOBODY,
         slot: 0,

@@ -1,10 +1,10 @@
 //! Travelling in formation (A. V. Kuznetsov 2017, KUZ, algorithm 2): the top leader chooses the way for all, the others
 //! keep their places beside it. See [`crate::formation`] for what differs from the paper and why.
 
-use super::OnGrid;
 use super::guidance::{Action, Ask, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
 use super::route_guidance::GridWorkspace;
 use super::travel::{PATIENCE, Travel, on_grid, reachable_goal};
+use super::{OnGrid, Wait};
 use crate::cost::Weights;
 use crate::formation::{
     Anchor, FormationParams, Found, GraphDistance, Member, Pace, Ranks, Recovery, Seen, aim, blended, def, distances,
@@ -369,7 +369,8 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             });
             let waits = self.pace.update(&self.formation, behind.max().unwrap_or(0));
             self.waited = if waits { self.waited.saturating_add(1) } else { 0 };
-            status.waits = waits && self.waited <= self.formation.patience;
+            let is_bearable = self.waited <= self.formation.patience;
+            status.waits_for = (waits && is_bearable).then_some(Wait::Formation);
             if goes_alone && core::mem::take(&mut self.has_asked) {
                 list::extend(&mut asks, Some(Ask { to: leader, kind: RequestKind::Resume }));
             }
@@ -383,10 +384,10 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         }
         let alternatives = if self.travel.is_jammed() { Dir::MOVES.len() } else { ALTERNATIVES };
         let mut moves = Travel::order(&weights, self.sharpness, alternatives, rng);
-        if status.waits && self.formation.recovery == Recovery::Def {
+        if status.waits_for.is_some() && self.formation.recovery == Recovery::Def {
             let towards = def(cell, &found.members);
             status.recovers = towards != Dir::Stay;
-            status.waits = !status.recovers;
+            status.waits_for = (!status.recovers).then_some(Wait::Formation);
             moves = list::collect(status.recovers.then_some(towards));
         }
         if stays {
@@ -394,7 +395,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         }
         let choice = moves.first().copied().unwrap_or_default();
         let blocked = self.travel.note(input, cell, choice);
-        if !status.waits && !status.is_at_goal {
+        if status.waits_for.is_none() && !status.is_at_goal {
             // Asks hold three: for the pace, and these two.
             list::extend(&mut asks, blocked);
             list::extend(&mut asks, self.ask_surplus(&found));

@@ -1,6 +1,6 @@
 //! What the agent asks of a guidance law.
 
-use super::{KinematicState, Parameter, Surroundings, Waypoint};
+use super::{KinematicState, Parameter, Surroundings, Wait, Waypoint};
 use crate::body::Body;
 use crate::geom::Vec3;
 use crate::grid::{Cell, Dir};
@@ -282,10 +282,10 @@ impl<S> Action<S> {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Status {
-    /// It is where it should be.
+    /// It is where it should be, or beside.
     pub is_at_goal: bool,
-    /// It should wait for others.
-    pub waits: bool,
+    /// It should stand and wait for this; [`Wait::Place`] if it is at its goal by standing beside it.
+    pub waits_for: Option<Wait>,
     /// No exit of the window can be reached.
     pub is_stuck: bool,
     /// It heads for where its followers are off to, and so goes on though they ask it to stop.

@@ -1,6 +1,6 @@
 //! What goes into a step and what comes out of it.
 
-use super::AnySurroundings;
+use super::{AnySurroundings, Wait};
 use crate::geom::{Position, Vec3};
 use crate::grid::{Cell, Dir};
 use crate::robot::{Mode, RobotId};
@@ -138,6 +138,8 @@ impl Refused {
 pub struct Outputs<S> {
     /// What the body should do.
     pub command: Command<S>,
+    /// What the robot waits for, if it does not get on; [`Wait::Place`] when it has arrived beside its goal.
+    pub wait: Option<Wait>,
     /// Frames of the inbox that were heard: sound, not seen before, of somebody else.
     pub received: u16,
     /// Frames of the inbox that were refused: damaged, of another version, repeated or replayed. Those of others on the same band
@@ -156,7 +158,7 @@ pub struct Outputs<S> {
 impl<S> Outputs<S> {
     /// As [`Outputs::default`], in place.
     pub(super) fn clear(&mut self) {
-        self.command = Command::Hold;
+        (self.command, self.wait) = (Command::Hold, None);
         (self.received, self.rejected) = (0, 0);
         self.refused = Refused::default();
         self.outbox.clear();

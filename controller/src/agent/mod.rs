@@ -91,6 +91,7 @@
 //! ```
 
 mod any;
+mod beside;
 mod cell_follower;
 mod commanded;
 mod config;
@@ -111,6 +112,7 @@ mod step;
 mod surroundings;
 mod task;
 mod travel;
+mod wait;
 mod waypoint;
 mod waypoint_guidance;
 
@@ -137,6 +139,7 @@ pub use setup::{AnyAgent, BoidsSetup, GuidanceKind, GuidanceSetup, RouteSetup, S
 pub use silence::Silence;
 pub use surroundings::{AnySurroundings, CellState, InCell, InCells, InPlane, OnGrid, Surroundings};
 pub use task::WrongTask;
+pub use wait::Wait;
 pub use waypoint::{WAYPOINTS, Waypoint};
 pub use waypoint_guidance::WaypointGuidance;
 
@@ -174,15 +177,15 @@ pub type OrcaAgent = Agent<f32, WaypointGuidance<f32>, NEIGHBORS, OrcaSafety<f32
 const BYTES: [usize; 4] =
     [size_of::<RouteAgent>(), size_of::<FormationAgent>(), size_of::<OrcaAgent>(), size_of::<GridWorkspace<CELLS>>()];
 #[cfg(target_pointer_width = "32")]
-const _: () = assert!(BYTES[0] <= 4240 && BYTES[1] <= 4512 && BYTES[2] == 1808 && BYTES[3] <= 2720);
+const _: () = assert!(BYTES[0] <= 4244 && BYTES[1] <= 4516 && BYTES[2] <= 1824 && BYTES[3] <= 2720);
 #[cfg(target_pointer_width = "64")]
-const _: () = assert!(matches!(BYTES, [4240, 4512, 1824, 2720]));
+const _: () = assert!(matches!(BYTES, [4248, 4520, 1840, 2720]));
 
 /// The controller of one robot: guidance law `G`, at most `N` known neighbours, safety layer `A`, wire format `W`.
 ///
 /// Bytes for the default capacities on a 32-bit part: at most 4240 for [`RouteAgent`] and 4512 for [`FormationAgent`],
-/// 2 KiB of them what a robot learns of its way, 1808 for [`OrcaAgent`], and at most 2720 of workspace that all agents
-/// on the grid of a processor share; on a 64-bit host 4240, 4512, 1824 and 2720. The build fails when one of them
+/// 2 KiB of them what a robot learns of its way, 1820 for [`OrcaAgent`], and at most 2720 of workspace that all agents
+/// on the grid of a processor share; on a 64-bit host 4240, 4512, 1840 and 2720. The build fails when one of them
 /// changes unnoticed.
 #[derive(Clone, Debug, Serialize)]
 pub struct Agent<S, G, const N: usize, A = Unguarded, W = Postcard> {
@@ -212,6 +215,8 @@ enum Goal {
 struct Last {
     situation: Situation,
     target: Cell,
+    /// Where it was on the grid.
+    cell: Cell,
     leader: RobotId,
     heading: Dir,
     slot: u8,
@@ -241,6 +246,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
                     is_off_place: false,
                 },
                 target: Cell::new(0, 0),
+                cell: Cell::new(0, 0),
                 leader: RobotId::NOBODY,
                 heading: Dir::Stay,
                 slot: 0,

@@ -62,6 +62,10 @@ impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Safety<S> for OrcaSafety<S, K,
         Some(self.inflation)
     }
 
+    fn waits_for_turn(&self) -> bool {
+        self.avoider.waits_for_turn()
+    }
+
     fn parameter(&self, parameter: Parameter) -> Option<S> {
         let params = self.avoider.params();
         Some(match parameter {

@@ -37,6 +37,11 @@ pub trait Safety<S: Scalar> {
         None
     }
 
+    /// Whether it makes the robot wait for others who go first through a door, since the last step.
+    fn waits_for_turn(&self) -> bool {
+        false
+    }
+
     /// What a parameter is now; `None` when it has no such one.
     fn parameter(&self, _parameter: Parameter) -> Option<S> {
         None

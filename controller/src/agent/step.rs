@@ -2,15 +2,17 @@
 
 use super::link::{Listener, News, beacon, report};
 use super::silence::Company;
+use super::wait::is_hindered;
 use super::{
     Action, Agent, CellState, Command, Decision, Event, Goal, Guidance, GuidanceInput, Inputs, Outputs, Safety,
-    SafetyInput, Surroundings,
+    SafetyInput, Surroundings, Wait,
 };
 use crate::body::Body;
 use crate::geom::Vec3;
 use crate::grid::{Cell, Dir};
 use crate::neighbor::{Nearby, Room, add_lost, nearest};
 use crate::rand::Rng;
+use crate::robot::Mode;
 use crate::scalar::Scalar;
 use crate::supervisor::{moves, next_mode};
 use crate::time::{Duration, Instant};
@@ -54,7 +56,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         let mut nearby = self.look(inputs, now);
         let mut rng = Rng::keyed(self.config.seed, PURPOSE, self.config.id.0, self.decisions);
         let decision = self.decide(inputs, &nearby, now, &mut rng, workspace, out);
-        self.supervise(decision.as_ref(), out);
+        self.supervise(inputs, decision.as_ref(), out);
         self.keep_clear(inputs, decision.as_ref(), &mut nearby, now, &mut rng, out);
         self.speak(inputs, now, out);
     }
@@ -199,17 +201,28 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         situation.is_at_goal = status.is_at_goal;
         situation.is_stuck = status.is_stuck;
         situation.is_off_place = status.is_off_place;
-        let is_left = self.link.company == Company::Gone && !self.config.silence.may_be_alone();
-        situation.is_stopped = status.waits || is_left || (leads && is_stopped && !status.recovers);
+        let (is_left, stays) = (self.is_left(), matches!(status.waits_for, Some(wait) if wait != Wait::Place));
+        let situation = &mut self.last.situation;
+        situation.is_stopped = stays || is_left || (leads && is_stopped && !status.recovers);
         self.last.target = decision.target;
         self.last.leader = decision.leader;
         self.last.slot = decision.slot;
         Some(decision)
     }
 
+    /// Whether it stands since it has not heard anybody for too long.
+    fn is_left(&self) -> bool {
+        self.link.company == Company::Gone && !self.config.silence.may_be_alone()
+    }
+
     /// The mode, and what it makes of the guidance law's wishes.
     #[inline(never)]
-    fn supervise(&mut self, decision: Option<&Decision<S>>, out: &mut Outputs<S>) {
+    fn supervise(
+        &mut self,
+        inputs: &Inputs<'_, S, G::Input<'_>>,
+        decision: Option<&Decision<S>>,
+        out: &mut Outputs<S>,
+    ) {
         let to = next_mode(self.mode, self.last.situation);
         if to != self.mode {
             let from = core::mem::replace(&mut self.mode, to);
@@ -217,7 +230,20 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         }
         let Some(decision) = decision else { return };
         let goes = moves(to) || (decision.status.makes_way && to.gives_way());
-        self.last.heading = Dir::Stay;
+        let cell = inputs.surroundings.on_grid().map_or_else(Cell::default, |grid| grid.cell.cell);
+        let before = core::mem::replace(&mut self.last.cell, cell);
+        let heading = core::mem::replace(&mut self.last.heading, Dir::Stay);
+        let status = decision.status;
+        out.wait = match to {
+            Mode::Arrived => status.waits_for.filter(|&wait| wait == Wait::Place),
+            Mode::Hold if self.is_left() => Some(Wait::Radio),
+            Mode::Hold if status.waits_for.is_some() => status.waits_for,
+            Mode::Hold if status.is_stuck => Some(Wait::Way),
+            Mode::Hold => Some(Wait::Request),
+            // It wanted to move, and has not.
+            _ if goes && heading != Dir::Stay && cell == before => Some(Wait::Others),
+            _ => None,
+        };
         match &decision.action {
             Action::Velocity { wish_mps, .. } if goes => out.command = Command::Velocity(*wish_mps),
             Action::Moves(moves) if goes && !moves.is_empty() => {
@@ -265,10 +291,21 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         }
         let input = SafetyInput { body, wish_mps, way_m, nearby, obstacles: plane.obstacles };
         let mut safe = safety.keep_clear(&input, rng);
+        let mut is_hidden = false;
         if let Some(inflation) = inflation {
             let (news, may_be_alone) = (config.latency.max(config.tick), config.silence.may_be_alone());
             let room = Room { body: &body, own, now, news, inflation, may_be_alone };
-            safe = room.limit(table, plane.obstacles, safe).unwrap_or(Vec3::ZERO);
+            let within = room.limit(table, plane.obstacles, safe);
+            is_hidden = within.is_none();
+            safe = within.unwrap_or(Vec3::ZERO);
+        }
+        if is_hindered(&input, safe) {
+            out.wait = Some(match () {
+                () if is_hidden || link.company.is_lost() => Wait::Radio,
+                () if safety.waits_for_turn() => Wait::Turn,
+                () if input.nearby.is_empty() => Wait::Way,
+                () => Wait::Others,
+            });
         }
         out.command = Command::Velocity(body.reach(safe));
     }

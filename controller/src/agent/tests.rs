@@ -402,3 +402,4 @@ mod plane;
 mod sealed;
 mod setup;
 mod silence;
+mod waits;

@@ -1,7 +1,8 @@
 //! Straight to a waypoint, by others on the way.
 
+use super::beside::{Beside, Claim};
 use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToWaypoints};
-use super::{InPlane, Parameter, WAYPOINTS, Waypoint};
+use super::{InPlane, Parameter, WAYPOINTS, Wait, Waypoint};
 use crate::geom::Vec3;
 use crate::rand::Rng;
 use crate::scalar::Scalar;
@@ -11,7 +12,8 @@ use serde::Serialize;
 /// Nearer than so many own radii, a waypoint on the way is passed: beside a robot that stands in it.
 const PASSED_RADII: i32 = 3;
 
-/// Straight to a waypoint, which may move; there it stays, and goes along with one that moves.
+/// Straight to a waypoint, which may move; there it stays, and goes along with one that moves. If somebody else stands on
+/// the last one, it has arrived beside him.
 ///
 /// It goes by at most [`WAYPOINTS`] waypoints in the order of their numbers. Number 0 begins a course (what was before is
 /// forgotten), the next number lengthens it, and one that is there already is moved. The last one is its goal.
@@ -20,6 +22,7 @@ pub struct WaypointGuidance<S> {
     course: Vec<Waypoint<S>, WAYPOINTS, u8>,
     /// The one that it heads for.
     leg: u8,
+    beside: Beside<S>,
     /// How near is there, metres.
     tolerance_m: S,
     /// Cruising speed, m/s; the body's own limit holds too.
@@ -31,7 +34,7 @@ impl<S: Scalar> WaypointGuidance<S> {
     /// waypoints are rounded to them; `speed_mps`: how fast it wants to go.
     #[must_use]
     pub const fn new(speed_mps: S, tolerance_m: S) -> Self {
-        Self { course: Vec::new(), leg: 0, tolerance_m, speed_mps }
+        Self { course: Vec::new(), leg: 0, beside: Beside::NEW, tolerance_m, speed_mps }
     }
 
     /// The way to the waypoint that it heads for, metres, and that one's velocity; goes on to the next one when it is
@@ -75,11 +78,22 @@ impl<S: Scalar> Guidance<S> for WaypointGuidance<S> {
         // On the last step no farther than the waypoint.
         let needed = distance.checked_div(input.body.step_s).unwrap_or(speed);
         let ahead = way.normalized().unwrap_or_default();
-        let is_at_goal = is_last && distance <= self.tolerance_m;
+        let claim = match is_last && velocity_mps == Vec3::ZERO {
+            true => self.beside.claim(input, way, self.tolerance_m),
+            false => Claim::Goes,
+        };
+        let pace = match claim {
+            Claim::Yields(room_m) if distance < room_m => -speed,
+            Claim::Yields(_) => S::ZERO,
+            Claim::Goes | Claim::IsBeside => needed.min(speed),
+        };
+        let is_beside = claim == Claim::IsBeside;
+        let is_at_goal = is_last && distance <= self.tolerance_m || is_beside;
         Ok(Decision {
-            action: Action::Velocity { wish_mps: velocity_mps + ahead * needed.min(speed), way_m: Some(way) },
+            action: Action::Velocity { wish_mps: velocity_mps + ahead * pace, way_m: Some(way) },
             status: Status {
                 is_at_goal,
+                waits_for: is_beside.then_some(Wait::Place),
                 // Who stood when it is there would lose a waypoint that moves.
                 makes_way: is_at_goal && velocity_mps != Vec3::ZERO,
                 ..Status::default()

@@ -151,6 +151,12 @@ impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Avoider<S, K, P> {
         &mut self.params
     }
 
+    /// Whether the robot was told in the last step to wait for others who go first through a gap.
+    #[must_use]
+    pub fn waits_for_turn(&self) -> bool {
+        P::Velocity::waits_for_turn(&self.memory)
+    }
+
     /// The velocity to take until the next step: the nearest to `wish_mps`, bent by the rule against deadlocks, that
     /// robots and obstacles permit; where they permit none, the one that violates them least, obstacles
     /// first. Call it once each [`Body::step_s`].

@@ -113,6 +113,9 @@ pub trait Dimension: Vector + From<Vec3<<Self as Vector>::Scalar>> {
         situation: &Situation<'_, Self>,
         rng: &mut Rng,
     ) -> Self;
+
+    /// Whether that rule made the robot wait for others at a gap.
+    fn waits_for_turn(memory: &Self::Memory) -> bool;
 }
 
 /// From `w`, relative to the ball's centre, to the ball's border: length of the change and outward

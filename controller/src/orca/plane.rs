@@ -45,6 +45,10 @@ impl<S: Scalar> Dimension for Vec2<S> {
         let at_gap = memory.wish(situation, goal, params.deadlock.patience_radii, rng);
         at_gap.unwrap_or_else(|| lean(params, situation, goal))
     }
+
+    fn waits_for_turn(memory: &Self::Memory) -> bool {
+        memory.waits()
+    }
 }
 
 /// The velocities that avoid a disc for the time horizon, if it does its share.

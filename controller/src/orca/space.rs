@@ -51,6 +51,10 @@ impl<S: Scalar> Dimension for Vec3<S> {
             None => situation.wish,
         }
     }
+
+    fn waits_for_turn((): &Self::Memory) -> bool {
+        false
+    }
 }
 
 /// The velocities that avoid a ball for the time horizon, if it does its share: as [`half_plane`](super::half_plane),

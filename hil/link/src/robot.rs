@@ -137,6 +137,7 @@ impl<
             obstacles: Vec::new(),
             outputs: Outputs {
                 command: Command::Hold,
+                wait: None,
                 received: 0,
                 rejected: 0,
                 refused: Refused { unsigned: 0, forged: 0, replayed: 0, no_room: 0 },
@@ -280,6 +281,7 @@ fn in_f32<S: Scalar>(outputs: &Outputs<S>) -> Outputs<f32> {
             Command::Move(moves) => Command::Move(moves.clone()),
             Command::Velocity(velocity_mps) => Command::Velocity(velocity_mps.cast()),
         },
+        wait: outputs.wait,
         received: outputs.received,
         rejected: outputs.rejected,
         refused: outputs.refused,

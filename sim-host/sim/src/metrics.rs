@@ -4,6 +4,7 @@
 //! thread, so that every figure is the same on any machine. Distances are Euclidean, between cells.
 
 pub mod flock;
+pub mod waits;
 
 use crate::scenario::Formation;
 use crate::terrain::Terrain;

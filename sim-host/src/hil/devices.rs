@@ -121,6 +121,7 @@ impl OnDevices {
                             mode: result.mode,
                             leader: result.leader,
                             target: result.target.unwrap_or_default(),
+                            wait: result.outputs.wait,
                         },
                         command: result.outputs.command,
                         outbox: result.outputs.outbox,

@@ -7,10 +7,10 @@ use crate::orca::AvoidParams;
 use crate::rand::Rng;
 use crate::scalar::Q16;
 
-type Mover<S> = Robot<S, WaypointGuidance<S>, OrcaSafety<S, 16>>;
+pub(super) type Mover<S> = Robot<S, WaypointGuidance<S>, OrcaSafety<S, 16>>;
 
 /// ORCA among robots of up to 1 m/s, the speed of [`Robot`].
-fn safety<S: Scalar>() -> OrcaSafety<S, 16> {
+pub(super) fn safety<S: Scalar>() -> OrcaSafety<S, 16> {
     OrcaSafety::new(AvoidParams::default(), StalenessInflation { growth_mps: S::ONE, max_m: S::from_milli(200) })
 }
 
@@ -28,7 +28,7 @@ fn circle<S: Scalar>(count: u32, seed: u32) -> Vec<Mover<S>> {
 }
 
 /// Steps until all have arrived, at most `steps`; the least gap, and whether all arrived. `is_lost` says of each packet whether it is.
-fn run<S: Scalar>(
+pub(super) fn run<S: Scalar>(
     robots: &mut [Mover<S>],
     steps: i32,
     mut is_lost: impl FnMut(i32, usize, usize) -> bool,

@@ -112,6 +112,11 @@ impl<S: Scalar> RightOfWay<S> {
     /// Of a robot that is at no gap.
     pub(in crate::orca) const NEW: Self = Self { last_went_ahead: None, turn_m: S::ZERO, idle: None, goes: false };
 
+    /// Whether it waits at a gap.
+    pub(in crate::orca) const fn waits(&self) -> bool {
+        self.idle.is_some() && !self.goes
+    }
+
     /// The wish of a robot whose way leads through a gap, with others near by; `None` when it does not. An empty
     /// gap is left to others for `patience` to twice as long: see [`DeadlockParams`](crate::orca::DeadlockParams).
     pub(in crate::orca) fn wish(

@@ -42,6 +42,7 @@ fn longest_result() -> StepResult {
     StepResult {
         outputs: Outputs {
             command: Command::Velocity(Vec3::new(1.0, 2.0, 3.0)),
+            wait: Some(Wait::Place),
             received: u16::MAX,
             rejected: u16::MAX,
             refused: Refused { unsigned: u16::MAX, forged: u16::MAX, replayed: u16::MAX, no_room: u16::MAX },
@@ -284,6 +285,7 @@ proptest! {
         };
         let outputs = Outputs {
             command,
+            wait: None,
             received: counts.0,
             rejected: counts.1,
             refused: Refused { forged: counts.0, replayed: counts.1, ..Refused::default() },

@@ -28,6 +28,7 @@ pub use operator::{Glance, Operated, operated};
 pub use plane::{PlaneGround, Senses};
 pub use simulate::{Moment, Outcome, WIDE, Watch, simulate, simulate_with};
 
+use crate::metrics::waits::Waits;
 use crate::metrics::{Arrivals, Keeping};
 use crate::radio::{self, HostWire, Radio};
 use crate::record::{PacketCounts, RobotRow, TickRow};
@@ -37,7 +38,7 @@ use hash::Chain;
 use intruder::Intruder;
 use rayon::prelude::*;
 use staya_controller::agent::{
-    Agent, AgentConfig, AnyInputs, Command, Event, Inputs, NEIGHBORS, OUTBOX, Safety, Setup,
+    Agent, AgentConfig, AnyInputs, Command, Event, Inputs, NEIGHBORS, OUTBOX, Safety, Setup, Wait,
 };
 use staya_controller::auth::Key;
 use staya_controller::grid::Cell;
@@ -75,12 +76,14 @@ pub struct Status {
     pub leader: RobotId,
     /// The cell that it heads for.
     pub target: Cell,
+    /// What it waits for.
+    pub wait: Option<Wait>,
 }
 
 impl Status {
     /// Its computer is down.
     const fn fall_silent(&mut self) {
-        (self.mode, self.leader) = (Mode::Fault, RobotId::NOBODY);
+        (self.mode, self.leader, self.wait) = (Mode::Fault, RobotId::NOBODY, None);
     }
 }
 
@@ -153,6 +156,7 @@ pub struct Engine<W, G, A> {
     external: Option<External>,
     keeps_events: bool,
     arrivals: Arrivals,
+    waits: Waits,
     collisions: u64,
     packets: PacketCounts,
     throttled: u64,
@@ -199,13 +203,15 @@ where
             external: None,
             keeps_events: false,
             arrivals: Arrivals::new(robots.len()),
+            waits: Waits::new(robots.len()),
             collisions: 0,
             packets: PacketCounts::default(),
             throttled: 0,
             robots,
         };
         engine.computers = (0..engine.robots.len()).map(|index| engine.start(index, 0)).collect();
-        let waiting = |robot: &Robot| Status { mode: Mode::Idle, leader: RobotId::NOBODY, target: robot.goal };
+        let waiting =
+            |robot: &Robot| Status { mode: Mode::Idle, leader: RobotId::NOBODY, target: robot.goal, wait: None };
         engine.statuses = engine.robots.iter().map(waiting).collect();
         engine
     }
@@ -355,6 +361,7 @@ where
                     mode: agent.mode(),
                     leader: agent.leader(),
                     target: agent.target().unwrap_or(status.target),
+                    wait: out.wait,
                 };
                 PacketCounts::refused(out.rejected, out.refused)
             })
@@ -368,6 +375,7 @@ where
             self.chains[index].extend(&ground.words(index, tick, status));
             let arrival = ground.arrival(index, tick, status);
             self.arrivals.note(index, arrival.is_some(), arrival.unwrap_or(0));
+            self.waits.note(index, status.wait);
         }
     }
 
@@ -396,6 +404,7 @@ where
             mode: status.mode,
             leader: status.leader.0,
             target: status.target,
+            wait: status.wait,
             formation_error_cells: self.ground.formation_error(index) as f32,
         })
     }
@@ -435,6 +444,7 @@ where
             collisions: self.collisions,
             packets: self.packets,
             throttled: self.throttled,
+            waits: self.waits.counts(),
             formation: self.ground.mean_keeping(),
             clearance: self.ground.clearance(),
             trace_hash: hash::sum(&self.chains),

@@ -2,6 +2,7 @@
 
 use super::{Engine, ExternalController, Grid, Ground, HostLaw, PlaneGround};
 use crate::metrics::Keeping;
+use crate::metrics::waits::WaitCount;
 use crate::record::{PacketCounts, RobotRow, TickRow};
 use crate::scenario::Scenario;
 use crate::world::Misplaced;
@@ -24,6 +25,8 @@ pub struct Moment<'a> {
     pub row: &'a TickRow,
     /// Robots that stand at their targets and know it.
     pub arrived: usize,
+    /// Robots that have somewhere to go and do not get on.
+    pub waiting: usize,
 }
 
 /// What came of a run.
@@ -44,6 +47,8 @@ pub struct Outcome {
     pub packets: PacketCounts,
     /// Packets beyond a robot's bandwidth, never on the air.
     pub throttled: u64,
+    /// What robots waited for.
+    pub waits: Vec<WaitCount>,
     /// Means over the run; `None` without a formation.
     pub formation: Option<Keeping>,
     /// How near bodies came to each other and to obstacles; `None` on the grid, where bodies have no size.
@@ -161,7 +166,7 @@ where
     }
     let mut row = engine.first_row();
     loop {
-        let moment = Moment { row: &row, arrived: engine.arrivals.count() };
+        let moment = Moment { row: &row, arrived: engine.arrivals.count(), waiting: engine.waits.now() };
         let flow = watch(&moment, &mut engine.rows());
         if flow.is_break() || engine.is_over() || engine.ticks() >= scenario.ticks {
             return engine.outcome();

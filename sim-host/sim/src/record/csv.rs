@@ -1,6 +1,7 @@
 //! The lines of `trace.csv` and `series.csv` and the sidecars that explain them.
 
 use super::{Error, RobotRow, TickRow, write_atomically};
+use staya_controller::agent::Wait;
 use staya_controller::robot::Mode;
 use std::io::Write;
 use std::path::Path;
@@ -9,7 +10,7 @@ use std::path::Path;
 type Column = (&'static str, &'static str, &'static str, &'static str);
 
 /// `trace.csv`: one line per robot and sampled tick.
-pub const TRACE: [Column; 16] = [
+pub const TRACE: [Column; 17] = [
     ("tick", "integer", "1", "number of the tick"),
     ("time_s", "number", "s", "simulated time"),
     ("robot", "integer", "1", "the robot's number"),
@@ -26,6 +27,12 @@ pub const TRACE: [Column; 16] = [
     ("target_x", "integer", "cells", "column of the cell it heads for"),
     ("target_y", "integer", "cells", "row of the cell it heads for"),
     ("formation_error_cells", "number", "cells", "distance from its place in the formation; empty: it has none"),
+    (
+        "wait",
+        "string",
+        "",
+        "formation, request, way, radio, turn, others or place: what it waits for; empty: it gets on",
+    ),
 ];
 
 /// `series.csv`: one line per tick.
@@ -81,7 +88,7 @@ pub fn trace_line(out: &mut Vec<u8>, tick: &TickRow, robot: &RobotRow) {
     append(
         out,
         format_args!(
-            "{},{},{},{},{},{},{},{},{},{},{},{mode},{},{},{},{}\n",
+            "{},{},{},{},{},{},{},{},{},{},{},{mode},{},{},{},{},{}\n",
             tick.tick,
             Number(tick.time_s),
             robot.id,
@@ -97,6 +104,7 @@ pub fn trace_line(out: &mut Vec<u8>, tick: &TickRow, robot: &RobotRow) {
             robot.target.x,
             robot.target.y,
             Number(f64::from(robot.formation_error_cells)),
+            robot.wait.map_or("", Wait::name),
         ),
     );
 }

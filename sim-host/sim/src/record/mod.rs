@@ -15,7 +15,7 @@ pub use history::{Frame, History, Sample, SeriesPoint};
 
 use file::LineFile;
 use serde::Serialize;
-use staya_controller::agent::Refused;
+use staya_controller::agent::{Refused, Wait};
 use staya_controller::grid::Cell;
 use staya_controller::robot::Mode;
 use std::ops::{Add, AddAssign};
@@ -45,6 +45,8 @@ pub struct RobotRow {
     pub leader: u32,
     /// The cell it heads for.
     pub target: Cell,
+    /// What it waits for.
+    pub wait: Option<Wait>,
     /// Distance from its place in the formation, cells; NaN when it has no place.
     pub formation_error_cells: f32,
 }

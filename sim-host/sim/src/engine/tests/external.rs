@@ -69,6 +69,7 @@ impl ExternalController for Nearby {
                     mode: agent.mode(),
                     leader: agent.leader(),
                     target: agent.target().unwrap_or_default(),
+                    wait: out.wait,
                 },
             }
         });

@@ -1,0 +1,173 @@
+//! What robots wait for, and that they say so; places that are taken.
+
+use super::plane::{Robot, STEP, body_at, in_plane, length, one_step_late, orca, place, step_number, waypoint};
+use super::silence::{Mover, run, safety};
+use super::*;
+use crate::geom::{Position, Vec2, Vec3};
+use crate::obstacle::Obstacle;
+use crate::rand::Rng;
+use crate::scalar::Q16;
+use proptest::prelude::*;
+
+/// The waits of a robot that goes 10 m east, step by step, with others that say the same in each step.
+fn waits(others: &[Message], steps: u16) -> Vec<Option<Wait>> {
+    let mut robot = Robot::new(&in_plane(9), waypoint::<f32>(), orca(), [0.0; 2]);
+    let _ = robot.agent.assign_waypoint(0, &place(10_000, 0));
+    let mut step = |n: u16| {
+        let say = |(id, message): (usize, &Message)| bytes(id as u32 + 1, 0, n, std::slice::from_ref(message));
+        let inbox: Vec<u8> = others.iter().enumerate().flat_map(say).collect();
+        robot.step(step_number(n.into()), &inbox).wait
+    };
+    (0..steps).map(&mut step).collect()
+}
+
+#[test]
+fn who_gets_on_waits_for_nothing() {
+    assert!(waits(&[], 20).iter().all(Option::is_none));
+    let beside = body_at([2000, 900], [0, 0], Mode::Idle);
+    assert!(waits(&[beside], 60).iter().all(Option::is_none));
+}
+
+#[test]
+fn others_in_the_way_are_waited_for() {
+    // A row without a gap that does not give way.
+    let row: Vec<_> = (-3..=3).map(|i| body_at([1000, i * 420], [0, 0], Mode::Fault)).collect();
+    let waits = waits(&row, 40);
+    assert_eq!(waits[0], None);
+    assert_eq!(*waits.last().unwrap(), Some(Wait::Others));
+}
+
+#[test]
+fn who_hears_nobody_any_more_waits_for_news() {
+    let silence = Silence { remember: STEP.saturating_mul(40), alone_mps: 0.0 };
+    let mut robot = Robot::new(&AgentConfig { silence, ..in_plane(1) }, waypoint::<f32>(), orca(), [0.0; 2]);
+    let _ = robot.agent.assign_waypoint(0, &place(90_000, 0));
+    let far = bytes(2, 0, 0, &[body_at([-60_000, 0], [0, 0], Mode::Idle)]);
+    for n in 0..60 {
+        let out = robot.step(step_number(n), if n == 0 { &far } else { &[] });
+        assert_eq!(out.wait, (n > 40).then_some(Wait::Radio), "step {n}");
+    }
+}
+
+#[test]
+fn a_wall_alone_is_no_one_else_s_fault_and_a_door_is_a_turn() {
+    // A robot at the door of a room, which others leave: in their sight 1 m wide, and 40 m of wall.
+    let door = |half: f32| {
+        let wall = |from: f32, to: f32| Obstacle::Wall([Vec2::new(1.5, from), Vec2::new(1.5, to)]);
+        [wall(-20.0, -half), wall(half, 20.0)]
+    };
+    let last = |obstacles: &[Obstacle<f32>], others: &[Message]| {
+        let mut agent = Agent::<f32, _, 8, _>::new(&in_plane(9), waypoint(), safety(), Postcard);
+        let _ = agent.assign_waypoint(0, &place(10_000, 0));
+        let mut wait = None;
+        for n in 0..10_u16 {
+            let say = |(id, message): (usize, &Message)| bytes(id as u32 + 1, 0, n, std::slice::from_ref(message));
+            let inbox: Vec<u8> = others.iter().enumerate().flat_map(say).collect();
+            let state = KinematicState { position: Position::from_mm([1250, 0, 0]), velocity_mps: Vec3::ZERO };
+            let obstacles: Vec<_> = obstacles.iter().map(|wall| moved(wall, -1.25)).collect();
+            let surroundings = InPlane { max_speed_mps: 1.0, obstacles: &obstacles };
+            wait = agent.step(&Inputs { state, surroundings, inbox: &inbox }, step_number(n.into()), &mut ()).wait;
+        }
+        wait
+    };
+    assert_eq!(last(&door(0.0), &[]), Some(Wait::Way));
+    let comes_out = body_at([1500, 0], [-500, 0], Mode::Cruise);
+    assert_eq!(last(&door(0.3), &[comes_out]), Some(Wait::Turn));
+    assert_eq!(last(&door(5.0), &[]), None);
+}
+
+/// A wall seen from `x_m` farther east.
+fn moved(wall: &Obstacle<f32>, x_m: f32) -> Obstacle<f32> {
+    match wall {
+        Obstacle::Wall(ends) => Obstacle::Wall(ends.map(|end| end + Vec2::new(x_m, 0.0))),
+        other => *other,
+    }
+}
+
+#[test]
+fn on_the_grid_who_has_not_moved_waits_for_others_and_who_is_told_to_stop_says_so() {
+    let (mut agent, mut ws) = (route_agent(1), workspace());
+    agent.assign_goal(Cell::new(60, 5));
+    let mut step =
+        |n: u32, x: i16, inbox: &[u8]| agent.step(&inputs(&FLAT, Cell::new(x, 5), inbox), tick(n), &mut ws).wait;
+    assert_eq!(step(0, 5, &[]), None);
+    assert_eq!(step(1, 6, &[]), None);
+    assert_eq!(step(2, 6, &[]), Some(Wait::Others));
+    assert_eq!(step(3, 7, &[]), None);
+    let inbox = bytes(2, 0, 0, &[Message::Beacon(beacon_at(2, 5)), stop(2, 1, 7, RequestKind::Stop)]);
+    assert_eq!(step(4, 8, &inbox), Some(Wait::Request));
+    let inbox = bytes(2, 0, 2, &[stop(2, 1, 8, RequestKind::Resume)]);
+    assert_eq!(step(5, 8, &inbox), None);
+}
+
+#[test]
+fn a_place_where_somebody_is_parked_is_arrived_at_beside_him_until_it_is_free() {
+    for mode in [Mode::Idle, Mode::Arrived, Mode::Fault, Mode::Passive] {
+        let mut robot = Robot::new(&in_plane(9), waypoint::<f32>(), orca(), [0.0; 2]);
+        let _ = robot.agent.assign_waypoint(0, &place(2000, 0));
+        for n in 0..120 {
+            let on_it = body_at([2030, if n < 60 { 20 } else { 3000 }], [0, 0], mode);
+            let wait = robot.step(step_number(n), &bytes(2, 0, n as u16, &[on_it])).wait;
+            if n == 59 {
+                assert_eq!((robot.agent.mode(), wait), (Mode::Arrived, Some(Wait::Place)), "{mode:?}");
+                let off = length([2.03 - robot.at_m[0], 0.02 - robot.at_m[1]]);
+                assert!((0.4..0.65).contains(&off), "{mode:?}: {off} m from who is there");
+            }
+        }
+        assert_eq!(robot.agent.mode(), Mode::Arrived);
+        assert!(length([2.0 - robot.at_m[0], robot.at_m[1]]) < 0.02, "{:?}", robot.at_m);
+    }
+}
+
+#[test]
+fn who_leaves_makes_place_for_who_stands_beside() {
+    let mover = |id, at_m: [f64; 2]| {
+        let mut robot: Mover<f32> = Robot::new(&one_step_late(id), waypoint(), safety(), at_m);
+        let _ = robot.agent.assign_waypoint(0, &place(0, 0));
+        robot
+    };
+    let mut robots = [mover(1, [0.0, 0.0]), mover(2, [-3.0, 0.0])];
+    let (least, have_arrived) = run(&mut robots, 200, |_, _, _| false);
+    assert!(least > 0.0 && have_arrived, "{least} m");
+    assert!(robots.iter().any(|robot| length(robot.at_m) > 0.4));
+    let [first, _] = &mut robots;
+    let _ = first.agent.assign_waypoint(0, &place(0, 4000));
+    let (least, have_arrived) = run(&mut robots, 200, |_, _, _| false);
+    assert!(least > 0.0 && have_arrived, "{least} m");
+    assert!(length(robots[1].at_m) < 0.02, "{:?}", robots[1].at_m);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
+
+    /// Up to six robots, one place or places closer than a body: all have arrived, one of them there, and nobody touches.
+    #[test]
+    fn those_who_want_one_place_settle_it(
+        angles in prop::collection::vec(0.0..1.0, 2..6),
+        apart_mm in 0..150_i32,
+        loss in prop::sample::select(vec![0_u32, 0, 20]),
+    ) {
+        fn check<S: Scalar>(angles: &[f64], apart_mm: i32, loss: u32) -> Result<(), TestCaseError> {
+            let count = angles.len() as f64;
+            let mut robots: Vec<Mover<S>> = (0..).zip(angles).map(|(i, off)| {
+                let angle = (f64::from(i) + 0.5 * off) / count * core::f64::consts::TAU;
+                let at_m = [2.5 * libm::cos(angle), 2.5 * libm::sin(angle)];
+                let mut robot = Robot::new(&one_step_late(i + 1), waypoint(), safety(), at_m);
+                // Each on the far side of the middle.
+                let goal = at_m.map(|x| (-x / 2.5 * f64::from(apart_mm)) as i32);
+                let _ = robot.agent.assign_waypoint(0, &place(goal[0], goal[1]));
+                robot
+            }).collect();
+            let is_lost = |n: i32, from: usize, to: usize| {
+                Rng::keyed(n as u64, 3, from as u32, to as u32).below(100) < loss
+            };
+            let (least, have_arrived) = run(&mut robots, 1500, is_lost);
+            let modes: Vec<_> = robots.iter().map(|robot| robot.agent.mode()).collect();
+            prop_assert!(have_arrived, "{modes:?}");
+            prop_assert!(least > -1e-3, "{least} m");
+            Ok(())
+        }
+        check::<f32>(&angles, apart_mm, loss)?;
+        check::<Q16>(&angles, apart_mm, loss)?;
+    }
+}

@@ -1,0 +1,110 @@
+//! Who waited for what, and for how long.
+
+use staya_controller::agent::Wait;
+use staya_controller::names::Named;
+
+/// One reason to wait, over a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WaitCount {
+    /// What they waited for.
+    pub wait: Wait,
+    /// Robots that did so at some time.
+    pub robots: usize,
+    /// Robots that do so now.
+    pub now: usize,
+    /// Ticks of all these robots together.
+    pub robot_ticks: u64,
+    /// Ticks of the longest time on end.
+    pub longest_ticks: u32,
+}
+
+/// What one robot waits for.
+#[derive(Clone, Copy, Debug, Default)]
+struct Robot {
+    wait: Option<Wait>,
+    /// For so many ticks.
+    ticks: u32,
+    /// What it has waited for at some time: a bit each.
+    seen: u8,
+}
+
+/// Takes note of waits, tick by tick; 12 bytes per robot.
+#[derive(Clone, Debug)]
+pub struct Waits {
+    robots: Vec<Robot>,
+    counts: Vec<WaitCount>,
+}
+
+impl Waits {
+    /// Nobody has waited yet.
+    #[must_use]
+    pub fn new(robots: usize) -> Self {
+        let count = |&(_, wait)| WaitCount { wait, robots: 0, now: 0, robot_ticks: 0, longest_ticks: 0 };
+        Self { robots: vec![Robot::default(); robots], counts: Wait::NAMES.iter().map(count).collect() }
+    }
+
+    /// Takes note of what robot number `index` waits for after a tick.
+    ///
+    /// # Panics
+    /// When there is no such robot.
+    pub fn note(&mut self, index: usize, wait: Option<Wait>) {
+        let robot = &mut self.robots[index];
+        if wait.is_none() && robot.wait.is_none() {
+            return;
+        }
+        robot.ticks = if wait == robot.wait { robot.ticks + 1 } else { 1 };
+        let before = std::mem::replace(&mut robot.wait, wait);
+        for (bit, count) in self.counts.iter_mut().enumerate() {
+            count.now -= usize::from(before == Some(count.wait));
+            if wait == Some(count.wait) {
+                count.now += 1;
+                count.robots += usize::from(robot.seen & (1 << bit) == 0);
+                robot.seen |= 1 << bit;
+                count.robot_ticks += 1;
+                count.longest_ticks = count.longest_ticks.max(robot.ticks);
+            }
+        }
+    }
+
+    /// How many wait for something now; not those that have arrived beside their places.
+    #[must_use]
+    pub fn now(&self) -> usize {
+        self.counts.iter().filter(|count| count.wait != Wait::Place).map(|count| count.now).sum()
+    }
+
+    /// The reasons that there were.
+    #[must_use]
+    pub fn counts(&self) -> Vec<WaitCount> {
+        self.counts.iter().copied().filter(|count| count.robots > 0).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_robots_once_and_times_on_end() {
+        let mut waits = Waits::new(2);
+        let (turn, others) = (Some(Wait::Turn), Some(Wait::Others));
+        for [one, two] in [[turn, None], [turn, others], [None, others], [turn, others], [others, None]] {
+            waits.note(0, one);
+            waits.note(1, two);
+        }
+        assert_eq!(waits.now(), 1);
+        let expected = [(Wait::Turn, 1, 0, 3, 2), (Wait::Others, 2, 1, 4, 3)];
+        let counts = waits.counts();
+        let seen: Vec<_> = counts.iter().map(|c| (c.wait, c.robots, c.now, c.robot_ticks, c.longest_ticks)).collect();
+        assert_eq!(seen, expected);
+    }
+
+    #[test]
+    fn every_reason_has_a_bit() {
+        assert!(Wait::NAMES.len() <= 8);
+        let mut waits = Waits::new(1);
+        for &(_, wait) in Wait::NAMES {
+            waits.note(0, Some(wait));
+        }
+        assert_eq!(waits.counts().len(), Wait::NAMES.len());
+    }
+}
