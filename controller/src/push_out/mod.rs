@@ -31,7 +31,7 @@ use crate::neighbor::Nearby;
 use crate::obstacle::Obstacle;
 use crate::scalar::{Scalar, cast};
 use serde::{Deserialize, Serialize};
-use zone::{Side, Zone};
+use zone::{Path, Side, Zone};
 
 named! {
     /// What becomes of a step that leads too near.
@@ -118,7 +118,7 @@ pub fn push_out<S: Scalar>(
         return Vec3::ZERO;
     }
     let mut scene = Scene { params, body, nearby, obstacles };
-    if scene.depth(step) <= S::ZERO {
+    if scene.depth(step, S::ZERO) <= S::ZERO {
         return wish;
     }
     if params.evasion == Evasion::Single {
@@ -146,10 +146,17 @@ impl<'a, S: Scalar> Scene<'a, S> {
         obstacles.chain(robots.filter_map(move |other| Zone::of_robot(other, body, least)))
     }
 
-    /// How deep the step leads into a zone, beyond the tolerance; 0 if it does not.
-    fn depth(&self, step: Vec3<S>) -> S {
-        let depths = self.zones(step).map(|zone| zone.depth(step));
-        let deepest = depths.fold(S::ZERO, S::max);
+    /// How deep the step leads into a zone, beyond the tolerance; 0 if it does not. Where it is deeper than `limit`, it says
+    /// only that.
+    fn depth(&self, step: Vec3<S>, limit: S) -> S {
+        let (path, limit) = (Path::new(step), limit.max(S::from_milli(TOLERANCE_MM)));
+        let mut deepest = S::ZERO;
+        for zone in self.zones(step) {
+            deepest = zone.depth_from(&path, deepest);
+            if deepest > limit {
+                return deepest;
+            }
+        }
         if deepest > S::from_milli(TOLERANCE_MM) { deepest } else { S::ZERO }
     }
 
@@ -170,10 +177,12 @@ impl<'a, S: Scalar> Scene<'a, S> {
         let longest = self.body.max_speed_mps * self.body.step_s;
         let mut best = Best {
             // Standing, for want of anything better.
-            depth: self.depth(Vec3::ZERO),
+            depth: self.depth(Vec3::ZERO, S::MAX),
             change: u64::MAX,
             step: Vec3::ZERO,
         };
+        // Whether model 1 has tried to step sideways: that is the same step for all zones, for upright ones another one.
+        let (mut has_sidestepped, mut has_sidestepped_upright) = (false, false);
         for zone in self.zones(step) {
             // Model 1 pushes out of what the step leads into; model 2 may pass between two, along the border of
             // one that is not in the way.
@@ -184,30 +193,48 @@ impl<'a, S: Scalar> Scene<'a, S> {
             if !matters {
                 continue;
             }
-            for side in zone::SIDES {
+            let has_tried = match zone.is_upright {
+                true => &mut has_sidestepped_upright,
+                false => &mut has_sidestepped,
+            };
+            let sides = if *has_tried { &zone::SIDES[..1] } else { &zone::SIDES[..] };
+            *has_tried = model == Model::Radial;
+            for &side in sides {
                 let Some(evading) = zone.evade(step, model, side) else {
                     continue;
                 };
                 let evading = evading.clamp_norm(longest);
-                best.consider(evading, self.depth(evading), step);
-                if model == Model::Radial
-                    && let Some(other) = self.deepest_zone(evading)
+                if model == Model::Tangential {
+                    best.consider(evading, step, |limit| self.depth(evading, limit));
+                    continue;
+                }
+                let deepest = self.deepest(evading);
+                best.consider(evading, step, |_| deepest.map_or(S::ZERO, |(depth, _)| depth));
+                if let Some((_, other)) = deepest
                     && let Some(again) = other.evade(evading, model, Side::Rule)
                 {
                     // Pushed out of one and into another one: out of that too.
                     let again = again.clamp_norm(longest);
-                    best.consider(again, self.depth(again), step);
+                    best.consider(again, step, |limit| self.depth(again, limit));
                 }
             }
         }
         best.step
     }
 
-    /// What the step leads into deepest, if into anything.
-    fn deepest_zone(&self, step: Vec3<S>) -> Option<Zone<S>> {
-        let depths = self.zones(step).map(|zone| (zone.depth(step), zone));
-        let (depth, zone) = depths.max_by(|one, other| one.0.order(other.0))?;
-        (depth > S::from_milli(TOLERANCE_MM)).then_some(zone)
+    /// What the step leads into deepest, beyond the tolerance, and how deep; the first of equals.
+    fn deepest(&self, step: Vec3<S>) -> Option<(S, Zone<S>)> {
+        let path = Path::new(step);
+        let mut deepest = None;
+        let mut most = S::from_milli(TOLERANCE_MM);
+        for zone in self.zones(step) {
+            let depth = zone.depth_from(&path, most);
+            if depth > most {
+                most = depth;
+                deepest = Some((depth, zone));
+            }
+        }
+        deepest
     }
 }
 
@@ -219,8 +246,13 @@ struct Best<S> {
 }
 
 impl<S: Scalar> Best<S> {
-    fn consider(&mut self, evading: Vec3<S>, depth: S, wish: Vec3<S>) {
+    /// `depth` says how deep the evading step is, at least where it is not deeper than the limit that it is told.
+    fn consider(&mut self, evading: Vec3<S>, wish: Vec3<S>, depth: impl FnOnce(S) -> S) {
         let change = (evading - wish).length_key();
+        if self.depth <= S::ZERO && change >= self.change {
+            return;
+        }
+        let depth = depth(self.depth);
         if depth < self.depth || (depth == self.depth && change < self.change) {
             *self = Self { depth, change, step: evading };
         }

@@ -68,7 +68,21 @@ impl<S: Scalar> Otherwise<S> {
 pub struct Zone<S> {
     shape: Shape<S>,
     /// Of all heights, as walls are: only the horizontal part of a step matters.
-    is_upright: bool,
+    pub(super) is_upright: bool,
+}
+
+/// A step, whose direction and length are found once for all zones.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Path<S> {
+    step: Vec3<S>,
+    direction: Option<Vec3<S>>,
+    length: S,
+}
+
+impl<S: Scalar> Path<S> {
+    pub(super) fn new(step: Vec3<S>) -> Self {
+        Self { step, direction: step.normalized(), length: step.norm() }
+    }
 }
 
 impl<S: Scalar> Zone<S> {
@@ -120,8 +134,25 @@ impl<S: Scalar> Zone<S> {
         let step = self.part(step);
         match self.shape {
             Shape::Half { normal, room } => -(room + step.dot(normal)),
-            Shape::Ball { center, radius, .. } => radius - (center - deepest(center, radius, step)).norm(),
+            Shape::Ball { center, radius, .. } => radius - (center - deepest(center, radius, &Path::new(step))).norm(),
         }
+    }
+
+    /// The same if it is at least `floor`, else `floor`.
+    pub(super) fn depth_from(&self, path: &Path<S>, floor: S) -> S {
+        let depth = match self.shape {
+            Shape::Ball { center, radius, .. } if !self.is_upright => {
+                let way = center - deepest(center, radius, path);
+                // Most are not: without a root.
+                let border = Vec3::new((radius - floor).max(S::ZERO), S::ZERO, S::ZERO);
+                if way.length_key() > border.length_key() {
+                    return floor;
+                }
+                radius - way.norm()
+            }
+            _ => self.depth(path.step),
+        };
+        depth.max(floor)
     }
 
     /// The step around the zone; `None` when the model has none on that side.
@@ -174,13 +205,13 @@ fn wall<S: Scalar>([a, b]: [Vec2<S>; 2], margin: S, step: Vec2<S>) -> Option<Sha
 
 /// The point of the step that counts for a ball: the nearest to the centre, or the end when the robot is inside already
 /// and does not go deeper.
-fn deepest<S: Scalar>(center: Vec3<S>, radius: S, step: Vec3<S>) -> Vec3<S> {
-    let Some(direction) = step.normalized() else {
+fn deepest<S: Scalar>(center: Vec3<S>, radius: S, path: &Path<S>) -> Vec3<S> {
+    let Some(direction) = path.direction else {
         return Vec3::ZERO;
     };
-    let along = center.dot(direction).clamp(S::ZERO, step.norm());
+    let along = center.dot(direction).clamp(S::ZERO, path.length);
     let goes_deeper = along > S::ZERO;
-    if !goes_deeper && center.norm() < radius { step } else { direction * along }
+    if !goes_deeper && center.norm() < radius { path.step } else { direction * along }
 }
 
 /// A step of the same length to the left in the plane; east for one that goes straight up or down.
@@ -223,7 +254,7 @@ fn push_radially<S: Scalar>(shape: Shape<S>, step: Vec3<S>) -> Vec3<S> {
             if inwards > S::ZERO && is_straight(step - ahead * inwards, step) {
                 return sideways(step);
             }
-            let point = deepest(center, radius, step) - center;
+            let point = deepest(center, radius, &Path::new(step)) - center;
             let away = point.normalized().unwrap_or(-ahead);
             // The border beyond the tangent point is not reached in a straight line: not farther than that.
             let horizon = radius.checked_div(distance).unwrap_or(S::ONE);
