@@ -13,7 +13,8 @@ use serde::{Deserialize, Serialize};
 /// | one of them no more | keeps clear of where that one can be by now, a ball that grows; once it is [lost](crate::neighbor::Ages::expire_after), of one that grows up to [`max_m`](crate::neighbor::StalenessInflation::max_m), until it is heard again or [`remember`](Self::remember) is over. One that drove about as far off as any who are heard has gone out of range, and is forgotten |
 /// | fewer than half of them | keeps clear of where they can be, then stands |
 /// | nobody any more, all are lost | says so ([`Event::NobodyHeard`](super::Event)); keeps clear of where they can be, then stands. After [`remember`](Self::remember) it stands anyway, until somebody speaks |
-/// | the same, and it may be alone | goes on at [`alone_mps`](Self::alone_mps), around where the lost were last |
+/// | the same, and all have gone out of range: the last ones drove on to beyond where anybody was ever heard | says so, goes as it likes |
+/// | the same as in the row before last, and it may be alone | goes on at [`alone_mps`](Self::alone_mps), around where the lost were last |
 /// | nobody ever, since it was switched on | goes as it likes: it is the first of its swarm, or all of it |
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -47,7 +48,7 @@ impl<S: Scalar> Silence<S> {
 /// Whether anybody is there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub(super) enum Company {
-    /// Nobody was ever heard.
+    /// Nobody was ever heard, or all have gone out of range since.
     Unknown,
     /// Somebody was heard last at this moment.
     Heard(Instant),
@@ -60,7 +61,9 @@ pub(super) enum Company {
 impl Company {
     /// Takes note of the time; whether all have been lost just now. To be asked in each step, so that the clock never
     /// goes half round unnoticed.
-    pub(super) fn passes<S: Scalar>(&mut self, now: Instant, config: &AgentConfig<S>) -> bool {
+    ///
+    /// `have_left`: of those who are lost nobody is remembered, for all went out of range.
+    pub(super) fn passes<S: Scalar>(&mut self, now: Instant, have_left: bool, config: &AgentConfig<S>) -> bool {
         let is_over = |at, longest| !(Duration::ZERO..=longest).contains(&now.since(at));
         let before = *self;
         if let Self::Heard(at) = *self
@@ -68,10 +71,12 @@ impl Company {
         {
             *self = Self::Lost(at);
         }
-        if let Self::Lost(at) = *self
-            && is_over(at, config.silence.remember)
-        {
-            *self = Self::Gone;
+        if let Self::Lost(at) = *self {
+            if is_over(at, config.silence.remember) {
+                *self = Self::Gone;
+            } else if have_left {
+                *self = Self::Unknown;
+            }
         }
         matches!(before, Self::Heard(_)) && *self != before
     }

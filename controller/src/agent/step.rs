@@ -94,7 +94,8 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         let remember = if keeps_clear { config.silence.remember } else { Duration::ZERO };
         let radio = (config.beacon_period, config.latency);
         link.expire(inputs.state.position, now, radio, remember, out);
-        if keeps_clear && link.company.passes(now, config) {
+        let have_left = link.table.is_empty() && link.table.lost().is_empty();
+        if keeps_clear && link.company.passes(now, have_left, config) {
             report(out, Event::NobodyHeard);
         }
         let mut inbox = inputs.inbox;

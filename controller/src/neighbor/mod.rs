@@ -142,18 +142,20 @@ pub enum Put {
 
 /// The known robots, at most `N`, sorted by id; behind them the lost ones that are still remembered, by id too.
 ///
-/// Bytes: `N` times those of [`Neighbor`] (60 for `f32` and fixed point) and 12 more.
+/// Bytes: `N` times those of [`Neighbor`] (60 for `f32` and fixed point) and 16 more.
 #[derive(Clone, Debug, Serialize)]
 pub struct NeighborTable<S, const N: usize> {
     entries: Vec<Neighbor<S>, N, u16>,
     ages: Ages,
+    /// The farthest that anybody was heard from while another one was lost, metres; 0: that never was.
+    range_m: S,
 }
 
 impl<S: Scalar, const N: usize> NeighborTable<S, N> {
     /// An empty table.
     #[must_use]
     pub const fn new(ages: Ages) -> Self {
-        Self { entries: Vec::new(), ages }
+        Self { entries: Vec::new(), ages, range_m: S::ZERO }
     }
 
     /// The ages that it was built with.
@@ -240,7 +242,8 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
     /// and forgets whom it has not heard for longer than `remember`. O(N), and O(N) for each that is lost.
     ///
     /// One that would be three quarters as far from `own` as the farthest fresh one, or farther, had it gone on as it went
-    /// last, has gone out of range, as far as one can tell, and is not remembered; when nobody is fresh, all are.
+    /// last, has gone out of range, as far as one can tell, and is not remembered; when nobody is fresh, one that would be
+    /// as far as anybody was heard from when others left, or farther; all are remembered if nobody has left before.
     ///
     /// Call it every step: see the head of this module.
     pub fn expire(
@@ -258,7 +261,10 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
             lost(silent.id);
             self.entries.retain(|entry| entry.id != silent.id);
             let fresh = self.as_slice().iter().filter(|entry| is_within(entry, ages.stale_after));
-            let range_m = fresh.map(distance).fold(S::ZERO, Scalar::max) * S::from_milli(LEAVES_FROM);
+            let farthest_m = fresh.map(distance).fold(S::ZERO, Scalar::max);
+            // Who hears nobody at all knows how far the radio reaches from those who left before, or takes it for dead.
+            let range_m = if farthest_m > S::ZERO { farthest_m * S::from_milli(LEAVES_FROM) } else { self.range_m };
+            self.range_m = self.range_m.max(farthest_m);
             if range_m <= S::ZERO || distance(&silent) < range_m {
                 // Into the place that has just become free.
                 let _ = self.entries.push(Neighbor { is_lost: true, ..silent });
@@ -351,4 +357,4 @@ impl<'a, S: Scalar, const N: usize> IntoIterator for &'a NeighborTable<S, N> {
 
 // Every byte counts 16 times per robot, and a simulated swarm has 100,000 of them.
 const _: () = assert!(size_of::<Neighbor<f32>>() == 60);
-const _: () = assert!(size_of::<NeighborTable<f32, 16>>() == 16 * 60 + 12);
+const _: () = assert!(size_of::<NeighborTable<f32, 16>>() == 16 * 60 + 16);

@@ -59,7 +59,7 @@ struct Limit<S> {
     ahead: Vec3<S>,
     /// The sine of how far off that way it may be.
     slant: S,
-    /// How far to go there in a step, metres; at least 0.
+    /// How far to go there in a step, metres; less than 0, by the tolerance at most, where that was taken already.
     room_m: S,
 }
 
@@ -79,8 +79,8 @@ impl<S: Scalar> Limit<S> {
 }
 
 impl<S: Scalar> Room<'_, S> {
-    /// What there is room for of `velocity_mps`, m/s: turned aside as far as that helps, then shortened; what it is
-    /// turned towards of `obstacles` shortens it too. `None`: one that is silent can be right here, so stand.
+    /// What there is room for of `velocity_mps`, m/s: turned aside as far as that helps, along those of `obstacles` that it
+    /// is turned towards, then shortened. `None`: one that is silent can be right here, so stand.
     ///
     /// O(N + obstacles), and a root or two for each robot; 20 N bytes of stack (`f32`).
     #[must_use]
@@ -114,19 +114,20 @@ impl<S: Scalar> Room<'_, S> {
                 }
             }
         }
-        let mut share = S::ONE;
-        let mut shorten = |limit: &Limit<S>| {
-            let taken_m = limit.taken(v, step_s) - S::from_micro(TOLERANCE_UM);
-            if taken_m > limit.room_m {
-                share = share.min(limit.room_m.checked_div(taken_m).unwrap_or(S::ZERO));
-            }
-        };
-        limits.iter().for_each(&mut shorten);
         // The safety layer has seen to them, unless the way is another one.
         if v != velocity_mps {
             for (point, distance) in obstacles.iter().filter_map(Obstacle::nearest_point) {
-                let room_m = (distance - self.body.radius_m - S::from_milli(ROUNDING_MM)).max(S::ZERO);
-                shorten(&Limit { ahead: point.normalized().unwrap_or(Vec3::ZERO), slant: S::ZERO, room_m });
+                let ahead = point.normalized().unwrap_or(Vec3::ZERO);
+                let room_m = distance - self.body.radius_m - S::from_milli(ROUNDING_MM);
+                let most = room_m.max(S::ZERO).checked_div(step_s).unwrap_or(S::ZERO);
+                v -= ahead * (v.dot(ahead) - most).max(S::ZERO);
+            }
+        }
+        let mut share = S::ONE;
+        for limit in &limits {
+            let taken_m = limit.taken(v, step_s) - S::from_micro(TOLERANCE_UM);
+            if taken_m > limit.room_m {
+                share = share.min(limit.room_m.max(S::ZERO).checked_div(taken_m).unwrap_or(S::ZERO));
             }
         }
         let v = v * share;
@@ -178,7 +179,7 @@ impl<S: Scalar> Room<'_, S> {
             self.brakes((gap * S::HALF).min(gap - self.way_to_stand(comes_mps)), S::ZERO)
         };
         let slant = grown.checked_div(distance).unwrap_or(S::ZERO);
-        (Limit { ahead, slant, room_m: room_m.max(S::ZERO) }, silent > 0 && grown >= distance)
+        (Limit { ahead, slant, room_m: room_m.max(-S::from_micro(TOLERANCE_UM)) }, silent > 0 && grown >= distance)
     }
 
     /// The way in which a body like the own one comes to stand, metres; 0 without inertia.

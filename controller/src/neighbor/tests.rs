@@ -264,6 +264,29 @@ fn who_drives_on_out_of_range_is_not_remembered_where_it_was() {
     assert_eq!((ids(&table), table.lost().iter().map(|n| n.id.0).collect()), ([3].into(), std::vec![1, 4]));
 }
 
+/// The last one: that the radio is not dead is known from those who left before.
+#[test]
+fn the_last_one_to_drive_on_out_of_range_is_remembered_unless_others_left_before() {
+    let left = |others: &[(u32, f32)]| {
+        let mut table = NeighborTable::<f32, 4>::new(AGES);
+        for step in 0..200_u32 {
+            let (now, x) = (at(step * 100_000), 0.03 * step as f32);
+            for &(id, until_m) in others {
+                let velocity_mps = Vec3::new(0.3, 0.0, 0.0);
+                if x < until_m {
+                    let _ = put(&mut table, Neighbor { velocity_mps, ..standing(id, x, now) }, now);
+                }
+            }
+            table.expire(Position::ORIGIN, now, (Duration::MAX, Duration::from_millis(60_000)), |_| {});
+        }
+        assert!(table.is_empty());
+        table.lost().iter().map(|n| n.id.0).collect::<StdVec<_>>()
+    };
+    assert_eq!(left(&[(1, 2.0)]), [1], "its radio may be dead");
+    assert_eq!(left(&[(1, 2.0), (2, 2.0)]), [1, 2], "the own radio may be dead");
+    assert_eq!(left(&[(1, 0.5), (2, 2.0)]), [0_u32; 0]);
+}
+
 #[test]
 fn silence_beyond_half_the_clock_expires() {
     let mut table = full::<2>(at(0));

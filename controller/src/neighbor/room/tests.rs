@@ -159,3 +159,23 @@ fn who_is_turned_aside_is_not_turned_into_a_wall() {
     let beside = room.limit(&mut table, &wall, east).unwrap();
     assert!((0.0..=0.0101).contains(&(-beside.y * 0.1)), "{beside:?}");
 }
+
+/// Step by step it would be in the wall: what is left between bodies is not given twice.
+#[test]
+fn who_is_held_at_a_wall_and_pressed_does_not_creep_into_it() {
+    use crate::geom::Vec2;
+    let other = Mover::<f32>::new(2, [0.25, 0.25, 0.0], f64::MAX);
+    let mut mover = Mover::<f32>::new(1, [0.0; 3], f64::MAX);
+    for step in 1..500 {
+        let y = (-0.155 - mover.at_m.y) as f32;
+        let wall = [Obstacle::Wall([Vec2::new(-9.0, y), Vec2::new(9.0, y)])];
+        let (own, now) = (mover.position(), moment(step));
+        let _ = mover.table.put(other.news(step - 1), own, now, |_| false);
+        let inflation = StalenessInflation { growth_mps: 1.0, max_m: 0.1 };
+        let room = Room { body: &mover.body, own, now, news: STEP, inflation, may_be_alone: false };
+        let v = room.limit(&mut mover.table, &wall, Vec3::new(1.0, 0.0, 0.0)).unwrap();
+        mover.at_m += v.cast() * 0.1;
+        let gaps = (0.155 + mover.at_m.y - RADIUS_M, (other.at_m - mover.at_m).norm() - 2.0 * RADIUS_M);
+        assert!(gaps.0 > 1e-3 && gaps.1 > 1e-3, "{gaps:?} in step {step}");
+    }
+}
