@@ -1,7 +1,7 @@
 //! ORCA in the plane: the half-plane that one neighbour leaves (ORCA section 4; Tolok et al., the functional voxel
 //! model, FVM, eqs. 6 to 13), and linear programming on one border (RVO2's `linearProgram1`).
 
-use super::deadlock::{RightOfWay, lean};
+use super::deadlock::{Patience, RightOfWay, lean};
 use super::dimension::{Aim, Dimension, HalfPlane, HalfSpace, MovingBall, Situation, leave_ball};
 use super::{AvoidParams, Params};
 use crate::geom::{Vec2, Vec3};
@@ -9,8 +9,8 @@ use crate::rand::Rng;
 use crate::scalar::Scalar;
 
 impl<S: Scalar> Dimension for Vec2<S> {
-    type Memory = RightOfWay<S>;
-    const FRESH: Self::Memory = RightOfWay::NEW;
+    type Memory = (RightOfWay<S>, Patience<S>);
+    const FRESH: Self::Memory = (RightOfWay::NEW, Patience::NEW);
     const SHARES_CONTRADICTIONS: bool = false;
 
     fn at_height(self, height: S) -> Vec3<S> {
@@ -31,7 +31,7 @@ impl<S: Scalar> Dimension for Vec2<S> {
         best_on_line(constraint, before, speed, aim)
     }
 
-    /// In narrow places robots take turns; elsewhere they pass each other on the right.
+    /// In narrow places robots take turns; elsewhere they pass each other on the right, and who is stuck backs off.
     #[inline(never)] // Its stack is free again for the solver.
     fn break_deadlock(
         memory: &mut Self::Memory,
@@ -42,12 +42,16 @@ impl<S: Scalar> Dimension for Vec2<S> {
         let Some(goal) = situation.goal else {
             return situation.wish;
         };
-        let at_gap = memory.wish(situation, goal, params.deadlock.patience_radii, rng);
-        at_gap.unwrap_or_else(|| lean(params, situation, goal))
+        let (right_of_way, stuck) = memory;
+        let patience = params.deadlock.patience_radii;
+        let at_gap = right_of_way.wish(situation, goal, patience, rng);
+        let wish = at_gap.unwrap_or_else(|| lean(params, situation, goal));
+        // Where one waits for one's turn, others see to it that it comes.
+        if right_of_way.takes_turns() { wish } else { stuck.wish(situation, wish, patience, rng) }
     }
 
     fn waits_for_turn(memory: &Self::Memory) -> bool {
-        memory.waits()
+        memory.0.waits()
     }
 }
 

@@ -4,6 +4,7 @@
 //!   to the right by a fixed angle ([`lean`]). Without it equal robots on a circle stop for ever in the middle; with it
 //!   they go round each other as in a roundabout. Who merely goes the same way is no reason to turn.
 //! - In narrow places they take turns: see [`right_of_way`].
+//! - Elsewhere who gets nowhere for long backs off a little: see [`patience`].
 //! - In space they lean to the right too, each somewhat up or down: see [`spread`](mod@spread).
 //!
 //! Who has no goal, such as a flock, follows its wish: that others come nearer is no jam there.
@@ -12,9 +13,11 @@
 //! near.
 
 mod gap;
+mod patience;
 mod right_of_way;
 mod spread;
 
+pub(super) use patience::Patience;
 pub(super) use right_of_way::RightOfWay;
 pub(super) use spread::spread;
 

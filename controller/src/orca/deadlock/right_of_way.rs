@@ -36,7 +36,7 @@ use serde::Serialize;
 /// Longest passage whose walls are not looked at between its ends, thousandths of the own radius.
 const DEEPEST: i32 = 8_000;
 /// Widest gap in which the rule holds; wider ones are open land.
-const WIDEST: i32 = 10_000;
+const WIDEST: i32 = 9_000;
 /// Gaps farther off do not matter yet, unless a wall bars the straight way. Walls must be seen at least as far, since
 /// where sight ends, two walls of a corridor look like a gap.
 const WITHIN: i32 = 14_000;
@@ -70,6 +70,8 @@ pub struct RightOfWay<S> {
     idle: Option<(S, S)>,
     /// Whether it was allowed to go in the last step.
     goes: bool,
+    /// Whether it is at a gap for one.
+    is_narrow: bool,
 }
 
 /// The gap, the robot and the others, seen from the gap.
@@ -110,7 +112,8 @@ struct Traffic<S> {
 
 impl<S: Scalar> RightOfWay<S> {
     /// Of a robot that is at no gap.
-    pub(in crate::orca) const NEW: Self = Self { last_went_ahead: None, turn_m: S::ZERO, idle: None, goes: false };
+    pub(in crate::orca) const NEW: Self =
+        Self { last_went_ahead: None, turn_m: S::ZERO, idle: None, goes: false, is_narrow: false };
 
     /// Whether it waits at a gap.
     pub(in crate::orca) const fn waits(&self) -> bool {
@@ -130,6 +133,7 @@ impl<S: Scalar> RightOfWay<S> {
             *self = Self::NEW;
             return None;
         };
+        self.is_narrow = approach.is_narrow;
         let traffic = approach.traffic();
         let body = situation.body;
         let step_m = body.max_speed_mps * body.step_s;
@@ -159,6 +163,11 @@ impl<S: Scalar> RightOfWay<S> {
         let speed = situation.wish.norm();
         let pace = most.map_or(speed, |most| most.min(speed));
         Some(way.normalized().map_or(Vec2::ZERO, |unit| unit * pace))
+    }
+
+    /// Whether it was at a gap for one in the last step.
+    pub(in crate::orca) const fn takes_turns(&self) -> bool {
+        self.is_narrow
     }
 
     fn may_go(&self, approach: &Approach<'_, S>, traffic: &Traffic<S>, has_lanes: bool, is_impatient: bool) -> bool {

@@ -1,0 +1,118 @@
+//! Who gets nowhere for long backs off.
+//!
+//! Robots that press on each other, each on the side where another one wants to pass, can stand so for ever: nobody
+//! takes more than half of a gap ([`Room`](crate::neighbor::Room)), and half of nothing is nothing. So who gets ahead
+//! by next to nothing gives up its wish for a short way, goes back or aside, and tries anew. Which way and how far is
+//! drawn, since two that did the same would meet again. (RVO2's examples disturb the wishes of all all the time, J. van
+//! den Berg, S. J. Guy, M. Lin, D. Manocha, "Reciprocal n-body collision avoidance", ISRR 2009; here only those of who
+//! is stuck.) Lengths are in own radii.
+
+use crate::geom::Vec2;
+use crate::orca::dimension::Situation;
+use crate::rand::Rng;
+use crate::scalar::Scalar;
+use serde::Serialize;
+
+/// Who gets ahead by less than this share of what it wishes is stuck, thousandths.
+const STUCK: i32 = 150;
+/// How far to back off, to twice as far; thousandths of the own radius. Less does not let another one by.
+const BACK: i32 = 2_000;
+
+/// What a robot remembers of how it gets ahead.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Patience<S> {
+    /// The mean velocity of late, or the one to back off with, m/s; zero: nothing yet.
+    course_mps: Vec2<S>,
+    /// How far to back off yet, own radii; 0: it goes where it wishes.
+    left: S,
+}
+
+impl<S: Scalar> Patience<S> {
+    /// Of a robot that has not moved yet.
+    pub(in crate::orca) const NEW: Self = Self { course_mps: Vec2::ZERO, left: S::ZERO };
+
+    /// The wish, or the way back of one that got nowhere while it could have gone some four times `patience`, in own
+    /// radii. Constant work.
+    pub(in crate::orca) fn wish(
+        &mut self,
+        situation: &Situation<'_, Vec2<S>>,
+        wish: Vec2<S>,
+        patience: S,
+        rng: &mut Rng,
+    ) -> Vec2<S> {
+        let body = situation.body;
+        let step = (body.max_speed_mps * body.step_s).checked_div(body.radius_m).unwrap_or(S::ZERO);
+        if self.left > S::ZERO {
+            let way = self.course_mps;
+            self.left -= step;
+            if self.left <= S::ZERO {
+                *self = Self::NEW;
+            }
+            return way;
+        }
+        if wish == Vec2::ZERO {
+            *self = Self::NEW;
+            return wish;
+        }
+        if self.course_mps == Vec2::ZERO {
+            self.course_mps = wish;
+        }
+        let rate = step.checked_div(patience * S::TWO).unwrap_or(S::ONE).min(S::ONE);
+        self.course_mps += (body.velocity_mps.xy() - self.course_mps) * rate;
+        if self.course_mps.norm() >= wish.norm() * S::from_milli(STUCK) {
+            return wish;
+        }
+        let mut share = || S::from_ratio(rng.below(1000).cast_signed(), 1000);
+        // Somewhere behind.
+        let (sin, cos) = (S::PI * (S::HALF + share())).sin_cos();
+        let left = S::from_milli(BACK) * (S::ONE + share());
+        *self = Self { course_mps: wish.rotate(cos, sin), left };
+        self.course_mps
+    }
+}
+
+#[cfg(all(test, feature = "fixed"))]
+mod tests {
+    use super::*;
+    use crate::geom::Vec3;
+    use crate::orca::fixtures::{STEP_S, body};
+    use crate::scalar::Q16;
+    use std::vec::Vec;
+
+    /// What it wishes in each of 1000 steps when it wishes to go east and gets so much of it.
+    fn wishes<S: Scalar>(share: S) -> Vec<Vec2<S>> {
+        let (mut patience, mut rng) = (Patience::NEW, Rng::keyed(1, 2, 3, 4));
+        let east = Vec2::new(S::HALF, S::ZERO);
+        let mut body = body::<S, 2>(1, [0.0, 0.0]);
+        let mut wish = || {
+            let situation = Situation { body: &body, wish: east, goal: Some(east), nearby: &[], obstacles: &[] };
+            let wish = patience.wish(&situation, east, S::from_i32(5), &mut rng);
+            body.velocity_mps = Vec3::new(wish.x * share, wish.y * share, S::ZERO);
+            wish
+        };
+        (0..1000).map(|_| wish()).collect()
+    }
+
+    fn backs_off<S: Scalar>() {
+        let east = Vec2::new(S::HALF, S::ZERO);
+        let got = wishes(S::ZERO);
+        let first = got.iter().position(|wish| *wish != east).unwrap();
+        // The mean falls to 15 % in 19 radii: 2.85 m.
+        assert!((100..130).contains(&first), "{first}");
+        let back = got[first..].iter().take_while(|wish| **wish != east).count();
+        let radii = back as f64 * 0.5 * STEP_S / 0.15;
+        assert!((2.0..4.2).contains(&radii), "{radii}");
+        assert!(got[first].x < S::from_milli(2) && got[first..first + back].iter().all(|wish| *wish == got[first]));
+        let speeds = got.iter().map(|wish| wish.norm().to_f64());
+        assert!(speeds.into_iter().all(|speed| (speed - 0.5).abs() < 1e-3));
+        assert!(got[first + back..].iter().any(|wish| *wish != east), "again and again");
+        assert!(wishes(S::from_milli(200)).iter().all(|wish| *wish == east), "who goes, be it slowly, goes on");
+    }
+
+    #[test]
+    fn who_gets_nowhere_backs_off_and_tries_anew() {
+        backs_off::<f64>();
+        backs_off::<f32>();
+        backs_off::<Q16>();
+    }
+}
