@@ -19,7 +19,7 @@ const ABOUT: i32 = 8;
 /// How much nearer counts as nearer, thousandths of the own radius.
 const NEARER: i32 = 250;
 /// So much farther off than it was, it begins anew: it was sent elsewhere, or pushed away.
-const FARTHER: i32 = 4_000;
+const FARTHER: i32 = 8_000;
 /// Places as near to the goal as that are equally near, thousandths of the own radius: what both know is rounded.
 const TIE: i32 = 100;
 /// Slower is standing, thousandths of the top speed.

@@ -90,7 +90,11 @@ impl<S: Scalar> Guidance<S> for WaypointGuidance<S> {
         let is_beside = claim == Claim::IsBeside;
         let is_at_goal = is_last && distance <= self.tolerance_m || is_beside;
         Ok(Decision {
-            action: Action::Velocity { wish_mps: velocity_mps + ahead * pace, way_m: Some(way) },
+            // Who lets another one go first goes nowhere himself, and is in no jam.
+            action: Action::Velocity {
+                wish_mps: velocity_mps + ahead * pace,
+                way_m: (!matches!(claim, Claim::Yields(_))).then_some(way),
+            },
             status: Status {
                 is_at_goal,
                 waits_for: is_beside.then_some(Wait::Place),
