@@ -82,6 +82,7 @@ fn decide(params: &LatticeParams<f64>, robots: &[Robot], own: usize, lead: &Robo
             radius_m: 0.1,
             gives_way: true,
             mode: Mode::Cruise,
+            is_stranger: false,
         })
         .filter(|other| other.offset_m.norm() < params.range_m())
         .collect();

@@ -40,6 +40,7 @@ fn main() {
                 radius_m: RADIUS_M,
                 gives_way: true,
                 mode: Mode::Cruise,
+                is_stranger: false,
             });
             let mut nearby: Vec<_> = others.collect();
             nearby.sort_by(|a, b| a.offset_m.norm().total_cmp(&b.offset_m.norm()));

@@ -37,6 +37,7 @@ fn others(rng: &mut Rng, range: f32) -> Others {
             radius_m: 0.1,
             gives_way: true,
             mode: Mode::Cruise,
+            is_stranger: false,
         }
     })
 }

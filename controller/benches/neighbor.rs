@@ -57,7 +57,7 @@ fn neighbor_table(c: &mut Criterion) {
         let inflation = StalenessInflation { growth_mps: 0.5, max_m: 1.0 };
         bencher.iter(|| {
             let known = table.as_slice();
-            nearest::<f32, 8>(known, black_box(here), 0.15, now, &AGES, &inflation)
+            nearest::<f32, 8>(known, 0, black_box(here), 0.15, now, &AGES, &inflation)
         });
     });
     group.finish();

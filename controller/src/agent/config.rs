@@ -39,6 +39,10 @@ pub struct AgentConfig<S> {
     pub stop_valid: Duration,
     /// What it makes of silence.
     pub silence: Silence<S>,
+    /// The flock that it is of. Those of other flocks are nothing but in the way of one that [flocks](crate::flock). Any number;
+    /// 0 too is a flock, of all who are in none. A robot in formation has 0: what says the flock on the air says its
+    /// place there ([`Beacon::slot`](crate::wire::Beacon::slot)).
+    pub flock: u8,
 }
 
 impl<S: Scalar> AgentConfig<S> {
@@ -58,13 +62,14 @@ impl<S: Scalar> AgentConfig<S> {
             retry: self.retry,
             stop_valid: self.stop_valid,
             silence: self.silence.cast(),
+            flock: self.flock,
         }
     }
 
     /// What no robot can do without; `tick` and `radius_m` as the fields say. On the grid, where a body is its cell, the radius counts for
     /// nothing and may be 0.
     ///
-    /// The rest: seed 0, a beacon each tick, news stale after 4 and forgotten after 30 ticks, requests resent every
+    /// The rest: seed 0, flock 0, a beacon each tick, news stale after 4 and forgotten after 30 ticks, requests resent every
     /// 3 ticks, stops for 12 ticks, no inertia, no latency. Robots that go by velocities on real radios need their
     /// [`latency`](Self::latency) besides.
     #[must_use]
@@ -82,6 +87,7 @@ impl<S: Scalar> AgentConfig<S> {
             retry: Retry { attempts: 5, interval: tick.saturating_mul(3) },
             stop_valid: tick.saturating_mul(12),
             silence: Silence::DEFAULT,
+            flock: 0,
         }
     }
 }

@@ -382,7 +382,7 @@ pub(super) fn beacon<S: Scalar>(
         heading: last.heading,
         busy_ms: u16::try_from(busy_ms).unwrap_or(u16::MAX),
         leader: last.leader,
-        slot: last.slot,
+        slot: if config.flock == 0 { last.slot } else { config.flock },
         mode,
         target: last.target,
     }

@@ -68,7 +68,8 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
             return Vec::new();
         }
         let (config, inflation) = (&self.config, self.safety.inflation().unwrap_or_default());
-        nearest(self.link.table.as_slice(), inputs.state.position, config.radius_m, now, &config.ages, &inflation)
+        let (known, own, now) = (self.link.table.as_slice(), inputs.state.position, now);
+        nearest(known, config.flock, own, config.radius_m, now, &config.ages, &inflation)
     }
 
     fn body(&self, inputs: &Inputs<'_, S, G::Input<'_>>) -> Body<S> {

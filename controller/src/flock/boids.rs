@@ -117,8 +117,10 @@ impl<S: Scalar> BoidsParams<S> {
             if key > self.closest || !velocity.is_finite() || other.id == own {
                 continue;
             }
-            velocities += velocity;
-            offsets += offset;
+            if !other.is_stranger {
+                velocities += velocity;
+                offsets += offset;
+            }
             if nearest.is_none_or(|(least, other_id)| (key, other.id) < (least, other_id.id)) {
                 nearest = Some((key, other));
             }

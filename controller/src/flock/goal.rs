@@ -125,7 +125,9 @@ fn among_neighbors<S: Scalar>(params: &GoalParams<S>, own: RobotId, nearby: &[Ne
             continue;
         }
         // The direction of the mean is that of the sum.
-        sum += other.offset_m;
+        if !other.is_stranger {
+            sum += other.offset_m;
+        }
         let force = repulsion(params, distance);
         let apart = || tie(other.id, own).extend(S::ZERO);
         let towards = other.offset_m.normalized().unwrap_or_else(apart);

@@ -17,6 +17,10 @@
 //!   exactly on the border, is pushed out along the normal, as hard as one unit in front of the
 //!   border, however deep. A wall has no inside: who has crossed it is pushed on.
 //! - What is not a number contributes nothing.
+//! - The paper has one flock. Robots of another one ([`Nearby::is_stranger`]) push as those of the own flock do, but neither
+//!   pull nor pass on their velocity; and the more of them are near and in the way, the more the pull of the reference
+//!   turns to the right. So flocks that meet keep to the right of each other; without the turn two lattices of the same
+//!   spacing catch in each other like combs, and stand.
 //!
 //! **Old news.** The paper's robots see each other at once. By radio they act on what a neighbour was a delay and up to
 //! a period of its beacons ago, and a stiff lattice then swings itself apart: at a delay of 0.1 s gains of (10, 6.3)
@@ -228,7 +232,8 @@ pub fn acceleration<S: Scalar>(
     let Some(law) = Law::new(params) else {
         return Vec3::ZERO;
     };
-    let mut sum = Vec3::ZERO;
+    let way = reference.and_then(|reference| reference.offset_m.normalized()).unwrap_or(Vec3::ZERO);
+    let (mut sum, mut turn) = (Vec3::ZERO, S::ZERO);
     let mut add = |term: Vec3<S>| {
         let next = sum + term;
         if next.is_finite() {
@@ -237,6 +242,9 @@ pub fn acceleration<S: Scalar>(
     };
     for other in nearby {
         add(law.alpha(body, other));
+        if other.is_stranger {
+            turn += law.turn(way, other);
+        }
     }
     if params.algorithm == Algorithm::Three {
         for obstacle in obstacles {
@@ -246,7 +254,7 @@ pub fn acceleration<S: Scalar>(
     if params.algorithm != Algorithm::One
         && let Some(reference) = reference
     {
-        add(law.gamma(body, reference));
+        add(law.gamma(body, reference, turn));
     }
     sum
 }
@@ -316,8 +324,11 @@ impl<'a, S: Scalar> Law<'a, S> {
         } else {
             offset * slope
         };
-        let pull = self.params.alpha.position * self.phi_alpha.at(sigma, adjacency);
-        let gain = self.params.alpha.velocity * adjacency;
+        let (mut phi, mut gain) = (self.phi_alpha.at(sigma, adjacency), self.params.alpha.velocity * adjacency);
+        if other.is_stranger {
+            (phi, gain) = (phi.min(S::ZERO), S::ZERO);
+        }
+        let pull = self.params.alpha.position * phi;
         n_ij * (pull * self.metres) + drag(gain, other.velocity_mps - body.velocity_mps)
     }
 
@@ -345,10 +356,26 @@ impl<'a, S: Scalar> Law<'a, S> {
         agent.normal * (push * self.metres) + drag(gain, agent.velocity_mps - known_velocity)
     }
 
-    /// -c1 sigma_1(q - q_r) - c2 (p - p_r), in algorithm 2 without sigma_1; m/s^2.
-    fn gamma(&self, body: &Body<S>, reference: &Reference<S>) -> Vec3<S> {
+    /// How much a stranger is in the `way` (of length 1) to the reference, from 0 to 1: 0 from three spacings on, and beside it.
+    fn turn(&self, way: Vec3<S>, other: &Nearby<S>) -> S {
+        let reach_m = self.params.spacing_m * S::from_i32(3);
+        let distance = other.offset_m.norm();
+        let nearness = S::ONE - distance.checked_div(reach_m).unwrap_or(S::ONE);
+        let ahead = way.dot(other.offset_m).checked_div(distance).unwrap_or(S::ZERO);
+        // False for NaN.
+        let is_in_the_way = nearness > S::ZERO && ahead > S::ZERO;
+        if is_in_the_way { nearness * ahead } else { S::ZERO }
+    }
+
+    /// -c1 sigma_1(q - q_r) - c2 (p - p_r), in algorithm 2 without sigma_1; m/s^2. The pull is turned to the right, by `turn` of a
+    /// quarter turn, as it were.
+    fn gamma(&self, body: &Body<S>, reference: &Reference<S>, turn: S) -> Vec3<S> {
         let Gain { position, velocity } = self.params.gamma;
-        let way = reference.offset_m;
+        let mut way = reference.offset_m;
+        if turn > S::ZERO {
+            let (turn, right) = (turn.min(S::ONE), Vec3::new(way.y, -way.x, S::ZERO));
+            way = way * (S::ONE - turn) + right * turn;
+        }
         let pull = if self.params.algorithm == Algorithm::Two {
             way * position
         } else {

@@ -53,7 +53,7 @@ pub struct Neighbor<S> {
     pub leader: RobotId,
     /// The move that it wants next.
     pub heading: Dir,
-    /// Its place in the formation.
+    /// Its place in the formation, or its flock.
     pub slot: u8,
     /// What it is doing.
     pub mode: Mode,

@@ -25,6 +25,8 @@ pub struct Nearby<S> {
     pub gives_way: bool,
     /// What it said last that it is doing.
     pub mode: Mode,
+    /// Of another flock: one that flocks keeps off it, and takes no further notice.
+    pub is_stranger: bool,
 }
 
 /// How the ball around a silent robot grows with the age of the news. By default it does not.
@@ -53,11 +55,13 @@ impl<S: Scalar> StalenessInflation<S> {
 /// [`Ages::stale_after`], not yet forgotten) stands where that ended; its ball grows as `inflation` says, at half of
 /// that speed (what it may do at worst is the business of [`Room`](super::Room)), but never over the own ball of
 /// `own_radius_m`, since old news alone is no collision; and it does not give way. One older than [`Ages::expire_after`] is not there any more.
+/// Who is not of `flock` ([`Neighbor::slot`]) is a stranger.
 ///
 /// O(N K); 40 K bytes of stack (`f32`).
 #[must_use]
 pub fn nearest<S: Scalar, const K: usize>(
     known: &[Neighbor<S>],
+    flock: u8,
     own: Position,
     own_radius_m: S,
     now: Instant,
@@ -78,7 +82,10 @@ pub fn nearest<S: Scalar, const K: usize>(
             sink_last(&mut nearest, |before, after| before.0 > after.0);
         }
     }
-    let seen = |entry| seen(entry, own, own_radius_m, now, ages, inflation);
+    let seen = |entry: &Neighbor<S>| Nearby {
+        is_stranger: entry.slot != flock,
+        ..seen(entry, own, own_radius_m, now, ages, inflation)
+    };
     list::collect(nearest.iter().map(|&(_, entry)| seen(entry)))
 }
 
@@ -114,6 +121,7 @@ fn seen<S: Scalar>(
         radius_m: entry.radius_m,
         gives_way: is_fresh && entry.mode.gives_way(),
         mode: entry.mode,
+        is_stranger: false,
     };
     if !is_fresh {
         nearby.velocity_mps = Vec3::ZERO;

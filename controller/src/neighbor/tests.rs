@@ -26,7 +26,7 @@ fn place(x: f32, y: f32) -> Option<Position> {
 
 /// Who is near by, nearest first.
 fn nearest_ids<const N: usize, const K: usize>(table: &NeighborTable<f32, N>, own: Position) -> StdVec<u32> {
-    let nearest = nearest::<f32, K>(table.as_slice(), own, 0.0, at(0), &AGES, &INFLATION);
+    let nearest = nearest::<f32, K>(table.as_slice(), 0, own, 0.0, at(0), &AGES, &INFLATION);
     nearest.iter().map(|near| near.id.0).collect()
 }
 
@@ -162,7 +162,7 @@ fn a_silent_neighbour_widens_then_expires() {
     robot.radius_m = 0.25;
     let look = |millis: i32, own_radius_m: f32| {
         let now = at(0) + Duration::from_millis(millis);
-        let seen = nearest::<_, 1>(&[robot], Position::ORIGIN, own_radius_m, now, &AGES, &INFLATION);
+        let seen = nearest::<_, 1>(&[robot], 0, Position::ORIGIN, own_radius_m, now, &AGES, &INFLATION);
         seen.first().map(|n| (n.offset_m.x, n.velocity_mps.x, n.radius_m, n.gives_way))
     };
     assert_eq!(look(0, 0.5), Some((10.0, -2.0, 0.25, true)));
@@ -180,7 +180,7 @@ fn a_silent_neighbour_widens_then_expires() {
 fn who_is_in_fault_does_not_give_way() {
     let mut robot = standing(1, 1.0, at(0));
     robot.mode = Mode::Fault;
-    let seen = nearest::<_, 1>(&[robot], Position::ORIGIN, 0.0, at(0), &AGES, &INFLATION);
+    let seen = nearest::<_, 1>(&[robot], 0, Position::ORIGIN, 0.0, at(0), &AGES, &INFLATION);
     assert!(!seen[0].gives_way);
 }
 

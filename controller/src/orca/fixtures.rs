@@ -52,6 +52,7 @@ pub fn robot<S: Scalar, const D: usize>(id: u32, offset_m: [f64; D], velocity_mp
         radius_m: scalar(RADIUS_M),
         gives_way: true,
         mode: Mode::Cruise,
+        is_stranger: false,
     }
 }
 

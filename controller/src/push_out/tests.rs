@@ -46,6 +46,7 @@ fn robot<S: Scalar>(id: u32, place: V) -> Nearby<S> {
         radius_m: S::ZERO,
         gives_way: true,
         mode: Mode::Cruise,
+        is_stranger: false,
     }
 }
 

@@ -37,7 +37,7 @@ pub struct Beacon {
     pub busy_ms: u16,
     /// Its leader, or nobody.
     pub leader: RobotId,
-    /// Its place in the formation.
+    /// Its place in the formation; of a robot in a flock the flock's number. Nobody is in both, and the frame is full.
     pub slot: u8,
     /// What it is doing.
     pub mode: Mode,

@@ -129,6 +129,7 @@ impl Agent for Boid {
                 radius_m: 0.0,
                 gives_way: true,
                 mode: Mode::Cruise,
+                is_stranger: false,
             }
         });
         let seen: Vec<Nearby<f32>> = seen.collect();

@@ -132,3 +132,21 @@ fn a_boid_that_stands_sets_out_in_a_direction_of_its_own() {
     assert_ne!(heading(1, 1), heading(2, 1));
     assert_ne!(heading(1, 1), heading(1, 2));
 }
+
+/// Each says which flock it is of, and one that only robots of another flock are near gathers with none of them.
+#[test]
+fn goal_flocks_of_different_numbers_do_not_gather() {
+    let parted = |other| {
+        let new = |id, flock, at_m| {
+            let params = GoalParams { goal_gain: 0.0, ..GoalParams::new(0.5, 1.0) };
+            let config = AgentConfig { flock, ..one_step_late(id) };
+            Robot::new(&config, GoalFlockGuidance::new(params, 1.0, 7), Unguarded, at_m)
+        };
+        let mut robots = [new(1, 3, [0.0, 0.0]), new(2, other, [1.5, 0.0])];
+        run(&mut robots, 0..100);
+        assert_eq!(robots[0].agent.neighbors()[0].slot, other);
+        distance(robots[0].at_m, robots[1].at_m)
+    };
+    assert!(parted(3) < 1.2);
+    assert!(parted(4) > 1.49 && parted(0) > 1.49);
+}

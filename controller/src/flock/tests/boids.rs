@@ -351,3 +351,14 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn strangers_are_not_followed_but_made_way_for() {
+    let stranger = |y| Nearby { is_stranger: true, ..flying::<f64>(2, 0.0, y, PI / 2.0) };
+    assert!(is_close(paper().turn(OWN, 0.0, &[stranger(100.0)]), 0.0));
+    let crowded = flying(2, 0.0, 20.0, PI / 2.0);
+    assert!(is_close(paper().turn(OWN, 0.0, &[stranger(20.0)]), paper().turn(OWN, 0.0, &[crowded])));
+    // Neither does one spoil the mean of the others.
+    let friend = flying(3, 0.0, -100.0, -0.03);
+    assert!(is_close(paper().turn(OWN, 0.0, &[stranger(100.0), friend]), paper().turn(OWN, 0.0, &[friend])));
+}

@@ -311,3 +311,11 @@ proptest! {
         prop_assert!(got.is_finite() && got.norm() <= 2.001);
     }
 }
+
+#[test]
+fn strangers_push_and_are_not_of_the_middle() {
+    let stranger = |x, y| Nearby { is_stranger: true, ..at(x, y) };
+    assert_eq!(wished([0.0, 1.0, 0.0], None, &[stranger(30.0, 0.0)]), V::ZERO);
+    assert_eq!(wished([0.0, 1.0, 0.0], None, &[stranger(30.0, 0.0), at(0.0, 30.0)]).x, 0.0);
+    assert_eq!(wished([0.0, 0.0, 1.0], None, &[stranger(8.0, 0.0)]), wished([0.0, 0.0, 1.0], None, &[at(8.0, 0.0)]));
+}

@@ -348,3 +348,42 @@ fn senseless_parameters_give_no_force() {
     }
     assert_eq!(Gain::critical(4.0).velocity, 4.0);
 }
+
+#[test]
+fn strangers_push_and_do_nothing_else() {
+    let params = bare(Algorithm::One);
+    let of = |is_stranger, x, velocity| {
+        let other = Nearby { is_stranger, ..near(2, [x, 0.0, 0.0], velocity) };
+        acceleration(&params, &body([0.0; 3]), &[other], &[], None)
+    };
+    // Too near: the same push; farther than the spacing: no pull; and whatever it goes, nobody goes along.
+    assert_eq!(of(true, 4.0, [0.0; 3]), of(false, 4.0, [0.0; 3]));
+    assert!(of(false, 8.0, [0.0; 3]).x > 0.0);
+    assert_eq!(of(true, 8.0, [0.0; 3]), V::ZERO);
+    assert!(of(false, 7.0, [0.0, 1.0, 0.0]).y > 0.0);
+    assert_eq!(of(true, 7.0, [0.0, 1.0, 0.0]), V::ZERO);
+}
+
+#[test]
+fn strangers_in_the_way_turn_the_pull_of_the_reference_to_the_right() {
+    let params = bare(Algorithm::Three);
+    let reference = Reference { offset_m: vec3([1e3, 0.0, 0.0]), velocity_mps: V::ZERO };
+    let pulled = |offset| {
+        let [x, y, z] = offset;
+        let other = Nearby { is_stranger: true, offset_m: V::new(x, y, z), ..near(2, [0.0; 3], [0.0; 3]) };
+        acceleration(&params, &body([0.0; 3]), &[other], &[], Some(&reference))
+    };
+    let alone = acceleration(&params, &body([0.0; 3]), &[], &[], Some(&reference));
+    for offset in [[21.0, 0.0, 0.0], [0.0, 9.0, 0.0], [0.0, -9.0, 0.0], [-9.0, 0.0, 0.0], [f64::NAN, 0.0, 0.0]] {
+        assert_eq!(pulled(offset), alone, "{offset:?}");
+    }
+    let [near, far] = [9.0, 20.0].map(|x| pulled([x, 0.0, 0.0]));
+    assert!(near.y < far.y && far.y < 0.0 && near.x < far.x, "{near:?} {far:?}");
+    // A robot of the own flock is in nobody's way.
+    let own = [super::near(2, [9.0, 0.0, 0.0], [0.0; 3])];
+    assert_eq!(acceleration(&params, &body([0.0; 3]), &own, &[], Some(&reference)).y, 0.0);
+    // However many there are, at most a quarter turn.
+    let crowd = [Nearby { is_stranger: true, ..super::near(2, [9.0, 0.0, 0.0], [0.0; 3]) }; 8];
+    let turned = acceleration(&params, &body([0.0; 3]), &crowd, &[], Some(&reference));
+    assert!(turned.x.abs() < 1e-9 && is_close(turned.y, -alone.x), "{turned:?}");
+}

@@ -43,5 +43,6 @@ fn near<S: Scalar>(id: u32, offset: [f64; 3], velocity: [f64; 3]) -> Nearby<S> {
         radius_m: S::ZERO,
         gives_way: true,
         mode: Mode::Cruise,
+        is_stranger: false,
     }
 }

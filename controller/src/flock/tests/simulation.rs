@@ -98,6 +98,7 @@ impl Flock {
                     radius_m: 0.0,
                     gives_way: true,
                     mode: Mode::Cruise,
+                    is_stranger: false,
                 });
             }
         }

@@ -38,6 +38,7 @@ fn trace(units: Units, ways: &[[Vec2<f32>; 2]], walls: &[[Vec2<f32>; 2]], steps:
                     radius_m: 0.15 * length,
                     gives_way: true,
                     mode: Mode::Cruise,
+                    is_stranger: false,
                 })
                 .collect();
             nearby.sort_by(|a, b| a.offset_m.norm().total_cmp(&b.offset_m.norm()).then(a.id.cmp(&b.id)));

@@ -129,6 +129,7 @@ impl Run {
                 radius_m: self.radius_m as f32,
                 gives_way: true,
                 mode: if other.arrived_s.is_some() { Mode::Arrived } else { Mode::Cruise },
+                is_stranger: false,
             });
         }
         nearby.sort_by_key(|other| (other.offset_m.length_key(), other.id));

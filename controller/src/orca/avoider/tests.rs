@@ -128,6 +128,7 @@ fn fixed_point_robots_avoid_too() {
         radius_m: q(0.15),
         gives_way: true,
         mode: Mode::Cruise,
+        is_stranger: false,
     };
     let mut avoider = Avoider::<Q16, 8>::new(AvoidParams::default());
     let wish = Vec2::new(Q16::HALF, Q16::ZERO);
