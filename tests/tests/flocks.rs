@@ -184,3 +184,38 @@ fn boids_of_one_flock_have_one_heading() {
         assert!(start < 0.5 && end > 0.7, "seed {seed}: {start} at the start, {end} at the end");
     }
 }
+
+/// How often robots of two flocks of twelve overlap, and the tick from which on each flock is one part around its own goal.
+fn two_flocks(scenario: &Scenario) -> (u64, Option<u32>) {
+    let (outcome, rows) = run(scenario);
+    let mut meter = FlockMeter::new(0.7, 0.84, Space::OPEN);
+    let mut since = None;
+    for (row, robots) in &rows {
+        let is_there = robots.chunks(12).zip([4.5, -4.5_f64]).all(|(flock, goal_m)| {
+            let (places, velocities) = motions(flock);
+            let mean = |axis: usize| places.iter().map(|place| place[axis]).sum::<f64>() / 12.0;
+            let off_m = (mean(0) - goal_m).abs().max(mean(1).abs());
+            meter.look(&places, &velocities).is_some_and(|measure| measure.components == 1) && off_m < 0.5
+        });
+        since = if is_there { since.or(Some(row.tick)) } else { None };
+    }
+    (outcome.collisions, since)
+}
+
+#[test]
+fn two_flocks_pass_each_other_and_neither_loses_anybody() {
+    for seed in 1..4 {
+        let (overlaps, since) = two_flocks(&seeded("two-flocks", seed));
+        assert_eq!(overlaps, 0, "seed {seed}");
+        assert!(since.is_some_and(|tick| tick < 4500), "seed {seed}: {since:?}");
+    }
+}
+
+/// With the same number they are one flock that nobody can please.
+#[test]
+fn two_groups_of_one_flock_merge_and_stand() {
+    let mut scenario = seeded("two-flocks", 1);
+    let plane = scenario.plane.as_mut().expect("a plane");
+    plane.groups.iter_mut().for_each(|group| group.flock = 0);
+    assert_eq!(two_flocks(&scenario).1, None);
+}

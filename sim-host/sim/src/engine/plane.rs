@@ -238,6 +238,7 @@ impl Ground for PlaneGround {
             max_acceleration_mps2: group.abilities.max_acceleration_mps2 as f32,
             latency: Duration::from_micros(micros),
             silence: group.silence,
+            flock: group.flock,
             ..AgentConfig::new(self.robots[index].id, group.radius_m as f32, tick)
         }
     }

@@ -31,6 +31,8 @@ pub struct RobotGroup {
     pub safety: SafetySetup,
     /// What they make of silence.
     pub silence: Silence<f32>,
+    /// Their flock, if they flock: to others they are strangers.
+    pub flock: u8,
 }
 
 impl RobotGroup {
@@ -49,6 +51,7 @@ impl RobotGroup {
             guidance: waypoint(cruise_mps, tolerance_m),
             safety: SafetySetup::Orca { params: AvoidParams::default(), inflation, source: AnyHalfPlanes::Analytic },
             silence: Silence::DEFAULT,
+            flock: 0,
         }
     }
 
@@ -132,6 +135,7 @@ impl Spec {
             guidance: self.guidance(source, file, cruise_mps, tolerance_m)?,
             safety: self.safety(source)?,
             silence: self.silence(source)?,
+            flock: self.flock,
         };
         self.unused(source)?;
         Ok(group)

@@ -26,6 +26,7 @@ pub(super) struct Spec {
     pub lattice: Option<LatticeTable>,
     pub goal_flock: Option<GoalFlockTable>,
     pub boids: Option<BoidsTable>,
+    pub flock: u8,
 }
 
 impl Spec {
@@ -46,6 +47,7 @@ impl Spec {
             lattice: table.lattice,
             goal_flock: table.goal_flock,
             boids: table.boids,
+            flock: 0,
         }
     }
 
@@ -73,6 +75,8 @@ impl Spec {
             lattice: group.lattice.or(self.lattice.filter(|_| goes_alike)),
             goal_flock: group.goal_flock.or(self.goal_flock.filter(|_| goes_alike)),
             boids: group.boids.or(self.boids.filter(|_| goes_alike)),
+            // Each its own; the last ones share the last.
+            flock: group.flock.unwrap_or(u8::try_from(index + 1).unwrap_or(u8::MAX)),
         }
     }
 

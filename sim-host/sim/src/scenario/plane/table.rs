@@ -123,6 +123,8 @@ pub struct GroupTable {
     pub sight_m: Option<f64>,
     /// Where they want to go; not from cell to cell.
     pub guidance: Option<GuidanceKind>,
+    /// The flock that they are of; 0 is that of the robots of `[plane]`. Default: one of their own.
+    pub flock: Option<u8>,
     /// What keeps them apart.
     pub safety: Option<SafetyKind>,
     /// Parameters of ORCA.
