@@ -1,8 +1,12 @@
 //! Who a robot is, and what it is doing as a whole.
 
+use core::fmt;
 use serde::{Deserialize, Serialize};
 
-/// A robot's number; 0 means nobody (the paper's "anyone").
+/// A robot's number, 1 to 2^31 - 1; 0 means nobody (the paper's "anyone").
+///
+/// Each robot has one of its own. When two have the same by mistake, those that hear both know one of them as its
+/// [double](Self::double): the numbers from 2^31 on are for these.
 ///
 /// 32 bits, because a simulated swarm has up to a million robots; small numbers stay small on the
 /// wire (varint).
@@ -20,7 +24,31 @@ impl RobotId {
     pub const fn is_somebody(self) -> bool {
         self.0 != 0
     }
+
+    /// What a second robot of this number is known as; a number that nobody has.
+    #[must_use]
+    pub const fn double(self) -> Self {
+        Self(self.0 | DOUBLE)
+    }
+
+    /// The number of the robot that this is the double of; `None` when it is none.
+    #[must_use]
+    pub const fn doubled(self) -> Option<Self> {
+        if self.0 & DOUBLE == 0 { None } else { Some(Self(self.0 & !DOUBLE)) }
+    }
 }
+
+impl fmt::Display for RobotId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.doubled() {
+            None => write!(f, "{}", self.0),
+            Some(first) => write!(f, "{} (the second one)", first.0),
+        }
+    }
+}
+
+/// Set in the numbers of doubles.
+const DOUBLE: u32 = 1 << 31;
 
 /// What the robot is doing as a whole; see [`crate::supervisor`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]

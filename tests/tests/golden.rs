@@ -167,6 +167,11 @@ fn golden_flock_squeeze() {
 }
 
 #[test]
+fn golden_same_number() {
+    check("same-number", None);
+}
+
+#[test]
 fn golden_two_flocks() {
     check("two-flocks", None);
 }

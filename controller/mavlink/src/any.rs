@@ -98,12 +98,12 @@ pub const fn operator(format: Format, has_key: bool, link: u8) -> RobotId {
     }
 }
 
-/// The largest number of a robot.
+/// The largest number of a robot. Those from 2^31 on are for [doubles](RobotId::double).
 #[must_use]
 pub const fn max_robot(format: Format, has_key: bool) -> RobotId {
     match format {
         Format::Postcard if has_key => RobotId(MAX_TAGGED_ROBOT.0 - 2),
-        Format::Postcard => RobotId(u32::MAX - 1),
+        Format::Postcard => RobotId((1 << 31) - 2),
         Format::Mavlink => RobotId(crate::wire::MAX_ROBOT as u32),
     }
 }

@@ -100,6 +100,10 @@ pub enum Event {
     NeighborRebooted(RobotId),
     /// Nobody is heard any more: all are lost. What the robot makes of it: [`Silence`](super::Silence).
     NobodyHeard,
+    /// Two robots have this number, the own one or that of another robot, and one of them should get another. Said once, and
+    /// again when that one is found again after it was lost. What such robots do: the second one is kept clear of as
+    /// [`RobotId::double`], and by that number it is lost.
+    DuplicateId(RobotId),
 }
 
 /// Frames that were refused for who may have said them and when, by a format that authenticates them: [`Sealed`](crate::wire::Sealed) or MAVLink's

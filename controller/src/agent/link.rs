@@ -1,5 +1,6 @@
 //! The agent's end of the radio: bytes to news, and what is to be said to bytes.
 
+use super::double::{Place, Said, is_ahead};
 use super::io::{Event, KinematicState, OUTBOX, Outputs};
 use super::silence::Company;
 use super::{AgentConfig, CellState, Last, Waypoint};
@@ -47,6 +48,8 @@ pub(super) struct Link<S, const N: usize, W> {
     /// The format of the frames.
     wire: W,
     header: Header,
+    /// What was said last, to know it again.
+    said: Said,
     pub(super) table: NeighborTable<S, N>,
     pub(super) company: Company,
     loss: LossEstimate,
@@ -62,10 +65,13 @@ pub(super) struct Link<S, const N: usize, W> {
     has_sent: bool,
 }
 
-/// Own position, when what arrives was said, and who must stay in a full table.
-pub(super) struct Listener<'a> {
+/// Own position, when what arrives was said, how fast others can be (if that is known), how often they speak, and who must
+/// stay in a full table.
+pub(super) struct Listener<'a, S> {
     pub(super) position: Position,
     pub(super) heard_at: Instant,
+    pub(super) fastest_mps: Option<S>,
+    pub(super) period: Duration,
     pub(super) needs: &'a dyn Fn(RobotId) -> bool,
 }
 
@@ -74,6 +80,7 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
         Self {
             wire,
             header: Header { boot, sender: id, sequence: 0 },
+            said: Said::new(),
             table: NeighborTable::new(ages),
             company: Company::Unknown,
             loss: LossEstimate::new(),
@@ -130,7 +137,7 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
         &mut self,
         bytes: &[u8],
         now: Instant,
-        listener: &Listener<'_>,
+        listener: &Listener<'_, S>,
         out: &mut Outputs<S>,
     ) -> Option<News<S>> {
         let frame = match self.wire.decode(bytes) {
@@ -143,21 +150,64 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
             Ok(frame) => Some(frame),
         };
         let frame = frame.and_then(|frame| {
-            let arrival = self.arrival(frame.header, out)?;
-            Some((frame, arrival))
+            let id = self.known_as(&frame, listener)?;
+            let arrival = self.arrival(id, frame.header, out)?;
+            Some((frame, id, arrival))
         });
         let count = if frame.is_some() { &mut out.received } else { &mut out.rejected };
         *count = count.saturating_add(1);
-        let (frame, arrival) = frame?;
-        self.take(frame, arrival, now, listener, out)
+        let (frame, id, arrival) = frame?;
+        self.take(frame, id, arrival, now, listener, out)
+    }
+
+    /// Whose frame it is: as whom its sender is known here, which is the number that it says unless two have it. `None` for an
+    /// own one that comes back.
+    fn known_as(&mut self, frame: &Frame, listener: &Listener<'_, S>) -> Option<RobotId> {
+        let (header, own) = (frame.header, self.header);
+        let place = Place::of(&frame.message);
+        if header.sender == own.sender {
+            let is_other = place.is_some_and(|place| self.said.is_other(own, header, &place));
+            if is_other && is_ahead(own, header) {
+                (self.header.boot, self.header.sequence) = (header.boot, header.sequence.wrapping_add(1));
+                self.requests.set_boot(header.boot);
+            }
+            return is_other.then_some(own.sender.double());
+        }
+        let is_double = match (place, listener.fastest_mps) {
+            (Some(place), Some(fastest_mps)) => self.is_double(header, &place, listener, fastest_mps),
+            _ => false,
+        };
+        Some(if is_double { header.sender.double() } else { header.sender })
+    }
+
+    /// Whether a beacon is the second one's of two other robots with one number.
+    fn is_double(&self, header: Header, place: &Place, listener: &Listener<'_, S>, fastest_mps: S) -> bool {
+        let at = listener.heard_at;
+        let known = |id| self.table.get(id, at).known();
+        // Doubles are behind all others.
+        let has_doubles = self.table.as_slice().last().is_some_and(|last| last.id.doubled().is_some());
+        let double = if has_doubles { known(header.sender.double()) } else { None };
+        let is_within = |known: &Neighbor<S>, time| place.is_within(known, time, fastest_mps);
+        let age = |known: &Neighbor<S>| known.age(at).unwrap_or(Duration::ZERO);
+        match (known(header.sender), double) {
+            (None, None) => false,
+            (None, Some(double)) => is_within(double, age(double)),
+            (Some(known), None) => {
+                !is_within(known, age(known)) && {
+                    let window = self.windows.iter().find(|(id, _)| *id == header.sender);
+                    let frames = window.map_or(0, |(_, window)| window.distance(header));
+                    !is_within(known, listener.period.saturating_mul(frames.into()))
+                }
+            }
+            (Some(known), Some(double)) => {
+                let distance = |known| place.distance(known, at, self.table.ages().stale_after);
+                distance(double) < distance(known)
+            }
+        }
     }
 
     /// How a frame stands to those before it; `None` for one to refuse.
-    fn arrival(&mut self, header: Header, out: &mut Outputs<S>) -> Option<Arrival> {
-        let Header { sender, .. } = header;
-        if sender == self.header.sender {
-            return None;
-        }
+    fn arrival(&mut self, sender: RobotId, header: Header, out: &mut Outputs<S>) -> Option<Arrival> {
         let window = self.windows.iter_mut().find(|(id, _)| *id == sender);
         let (missed, arrival) =
             window.map_or((0, Arrival::New), |(_, window)| (window.skipped(header), window.check(header)));
@@ -174,22 +224,23 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
     fn take(
         &mut self,
         frame: Frame,
+        id: RobotId,
         arrival: Arrival,
         now: Instant,
-        listener: &Listener<'_>,
+        listener: &Listener<'_, S>,
         out: &mut Outputs<S>,
     ) -> Option<News<S>> {
         let Header { sender, .. } = frame.header;
         let is_mine = |to: RobotId| to == self.header.sender;
         match frame.message {
             Message::Beacon(beacon) if arrival.is_latest() => {
-                let neighbor = Neighbor::from_beacon(sender, &beacon, listener.heard_at);
+                let neighbor = Neighbor::from_beacon(id, &beacon, listener.heard_at);
                 self.keep(neighbor, frame.header, now, listener, out);
             }
             Message::Compact(beacon) if arrival.is_latest() => {
-                let heard = Neighbor::from_compact(sender, &beacon, NO_CELL, listener.heard_at);
+                let heard = Neighbor::from_compact(id, &beacon, NO_CELL, listener.heard_at);
                 // What it does not say is as it was said last.
-                let known = self.table.get(sender, now).known();
+                let known = self.table.get(id, now).known();
                 let neighbor = known.map_or(heard, |known| Neighbor {
                     heard: heard.heard,
                     position: heard.position,
@@ -256,9 +307,10 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
         neighbor: Neighbor<S>,
         header: Header,
         now: Instant,
-        listener: &Listener<'_>,
+        listener: &Listener<'_, S>,
         out: &mut Outputs<S>,
     ) {
+        let id = neighbor.id;
         self.company = Company::Heard(neighbor.heard);
         let put = self.table.put(neighbor, listener.position, now, listener.needs);
         if let Put::Evicted(evicted) = put {
@@ -269,8 +321,8 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
             let mut window = SequenceWindow::new();
             let _ = window.check(header);
             // As many windows as entries.
-            let _ = self.windows.push((header.sender, window));
-            report(out, Event::NeighborFound(header.sender));
+            let _ = self.windows.push((id, window));
+            report(out, id.doubled().map_or(Event::NeighborFound(id), Event::DuplicateId));
         }
     }
 
@@ -318,7 +370,9 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
             }
         }
         if !self.has_sent || now.has_reached(self.beacon_due, period) {
-            self.say(&Message::Beacon(beacon()), 0, out);
+            let beacon = Message::Beacon(beacon());
+            self.said.note(self.header.sequence, &beacon);
+            self.say(&beacon, 0, out);
             self.has_sent = true;
             self.beacon_due = now + period;
         }

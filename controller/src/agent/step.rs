@@ -92,6 +92,8 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         let heard_at = now - config.latency;
         // Only who keeps clear of others has a use for where they were.
         let keeps_clear = inputs.surroundings.in_plane().is_some() && safety.inflation().is_some();
+        let fastest_mps = safety.inflation().map(|inflation| inflation.growth_mps);
+        let fastest_mps = fastest_mps.filter(|fastest| keeps_clear && *fastest > S::ZERO);
         let remember = if keeps_clear { config.silence.remember } else { Duration::ZERO };
         let radio = (config.beacon_period, config.latency);
         link.expire(inputs.state.position, now, radio, remember, out);
@@ -101,8 +103,13 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         }
         let mut inbox = inputs.inbox;
         while let Some(bytes) = link.next_frame(&mut inbox) {
-            let listener =
-                Listener { position: inputs.state.position, heard_at, needs: &|id| id == leader || guidance.needs(id) };
+            let listener = Listener {
+                position: inputs.state.position,
+                heard_at,
+                fastest_mps,
+                period: config.beacon_period,
+                needs: &|id| id == leader || id == config.id.double() || guidance.needs(id),
+            };
             match link.hear(bytes, now, &listener, out) {
                 None => {}
                 Some(News::Redirect) => guidance.redirect(),

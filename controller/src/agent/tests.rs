@@ -394,6 +394,7 @@ fn time_may_wrap() {
 
 mod cell_follower;
 mod commanded;
+mod double;
 mod faults;
 mod flocks;
 mod nonsense;

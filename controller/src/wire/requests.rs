@@ -114,6 +114,11 @@ impl<const P: usize> Requests<P> {
 
     /// No requests yet.
     ///
+    /// From now on the robot's frames say this `boot`.
+    pub const fn set_boot(&mut self, boot: u8) {
+        self.boot = boot;
+    }
+
     /// `own` and `boot` are what the robot's frames say.
     #[must_use]
     pub const fn new(own: RobotId, boot: u8, retry: Retry) -> Self {

@@ -110,6 +110,13 @@ impl SequenceWindow {
         if self.seen == 0 || header.boot != self.boot || ahead.cast_signed() <= 0 { 0 } else { ahead - 1 }
     }
 
+    /// How many frames this one is before or behind the newest, if it is of the same boot; 0 otherwise.
+    #[must_use]
+    pub const fn distance(&self, header: Header) -> u16 {
+        let ahead = header.sequence.wrapping_sub(self.newest);
+        if self.seen == 0 || header.boot != self.boot { 0 } else { ahead.cast_signed().unsigned_abs() }
+    }
+
     fn restart(&mut self, header: Header, previous: u8) {
         *self = Self { seen: 1, newest: header.sequence, boot: header.boot, previous };
     }

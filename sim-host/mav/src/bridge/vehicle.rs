@@ -179,12 +179,16 @@ impl Vehicle {
             }
             Event::ModeChanged { to: Mode::Arrived, .. } => self.text(out, Kind::News, INFO, "arrived"),
             Event::NeighborLost(id) => {
-                let text = format!("robot {} is not heard any more", id.0);
+                let text = format!("robot {id} is not heard any more");
                 self.text(out, Kind::Neighbor, INFO, &text);
             }
             Event::NeighborRebooted(id) => {
-                let text = format!("robot {} has started anew", id.0);
+                let text = format!("robot {id} has started anew");
                 self.text(out, Kind::Neighbor, INFO, &text);
+            }
+            Event::DuplicateId(id) => {
+                let text = format!("two robots have number {id}");
+                self.text(out, Kind::News, MAV_SEVERITY_WARNING, &text);
             }
             Event::NobodyHeard => self.text(out, Kind::News, MAV_SEVERITY_WARNING, "nobody is heard any more"),
             Event::NoRoute => self.text(out, Kind::Route, MAV_SEVERITY_WARNING, "no way is open"),

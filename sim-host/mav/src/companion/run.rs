@@ -388,7 +388,8 @@ impl Companions<'_> {
     fn tell_of(&self, index: usize, event: AgentEvent) {
         match event {
             AgentEvent::NeighborFound(id) => self.tell(index, &format!("hears robot {}", id.0)),
-            AgentEvent::NeighborLost(id) => self.tell(index, &format!("has lost robot {}", id.0)),
+            AgentEvent::NeighborLost(id) => self.tell(index, &format!("has lost robot {id}")),
+            AgentEvent::DuplicateId(id) => self.tell(index, &format!("two robots have number {id}: give one another")),
             AgentEvent::NobodyHeard => self.tell(index, "hears nobody any more"),
             AgentEvent::NoRoute => self.tell(index, "finds no way"),
             AgentEvent::ModeChanged { to: Mode::Fault, .. }

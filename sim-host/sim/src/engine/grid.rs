@@ -37,7 +37,7 @@ impl Grid {
             .map(|graph| FormationMeter::new(graph, scenario.formation_params.eps, world.terrain()));
         Ok(Self {
             kinematics: Kinematics::new(world.terrain(), scenario.tick_s()),
-            robots: scenario.robots.clone(),
+            robots: scenario.numbered(),
             meter,
             radius: scenario.route.params.radius,
             tick_us: scenario.tick_us,

@@ -65,7 +65,7 @@ impl PlaneGround {
         Self {
             clearance: Clearance::FREE,
             plane,
-            robots: scenario.robots.clone(),
+            robots: scenario.numbered(),
             radius: scenario.route.params.radius,
             tick_us: scenario.tick_us,
             delay_us: libm::round(scenario.radio.delay_ms * 1000.0) as u32,

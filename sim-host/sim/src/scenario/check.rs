@@ -180,6 +180,34 @@ pub(super) fn formation_only(source: &Source<'_>, file: &ScenarioFile) -> Result
     Ok(())
 }
 
+pub(super) fn misnumbered(
+    source: &Source<'_>,
+    file: &ScenarioFile,
+    robots: &[Robot],
+) -> Result<Vec<(RobotId, RobotId)>, ScenarioError> {
+    let most = max_robot(file.radio.format, source.has("authentication"));
+    let mut known = Vec::with_capacity(file.misnumbered.len());
+    for (index, entry) in file.misnumbered.iter().enumerate() {
+        let (robot, number) = (RobotId(entry.robot), RobotId(entry.number));
+        let (field, what, remedy) = if robots.binary_search_by_key(&robot, |r| r.id).is_err() {
+            let what = format!("there is no robot {robot}");
+            ("robot", what, "give the number of a robot of this scenario".to_owned())
+        } else if known.iter().any(|(listed, _)| *listed == robot) {
+            ("robot", format!("robot {robot} has been given a number before"), "give each robot one".to_owned())
+        } else if robot == number {
+            ("number", format!("robot {robot} has this number anyway"), "give that of another robot".to_owned())
+        } else if !(RobotId(1)..=most).contains(&number) {
+            let what = format!("{} is no number of a robot", entry.number);
+            ("number", what, format!("give 1 to {}", most.0))
+        } else {
+            known.push((robot, number));
+            continue;
+        };
+        return Err(source.error(&format!("misnumbered[{index}].{field}"), what, remedy));
+    }
+    Ok(known)
+}
+
 pub(super) fn faults(source: &Source<'_>, file: &ScenarioFile, robots: &[Robot]) -> Result<Vec<Fault>, ScenarioError> {
     let mut faults = Vec::with_capacity(file.fault.len());
     for (index, fault) in file.fault.iter().enumerate() {

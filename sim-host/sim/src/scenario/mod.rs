@@ -22,8 +22,8 @@ pub use plane::{
 pub use ranges::within;
 pub use robots::{Formation, Robot};
 pub use schema::{
-    AttackKind, AttackTable, AuthenticationTable, Crop, EntropyTable, FaultTable, FormationEntry, NaturalTable,
-    RobotEntry, RobotsTable, ScatteredEntry, ScenEntry, ScenarioFile, TerrainTable, UniformTable,
+    AttackKind, AttackTable, AuthenticationTable, Crop, EntropyTable, FaultTable, FormationEntry, MisnumberedTable,
+    NaturalTable, RobotEntry, RobotsTable, ScatteredEntry, ScenEntry, ScenarioFile, TerrainTable, UniformTable,
 };
 pub use source::ScenarioError;
 pub use source::Source;
@@ -108,6 +108,8 @@ pub struct Scenario {
     pub formation_params: FormationParams,
     /// Robots that go down.
     pub faults: Vec<Fault>,
+    /// Robots by their numbers here, each with the number that it says.
+    pub misnumbered: Vec<(RobotId, RobotId)>,
     /// What all robots share; `None`: they believe everybody.
     pub key: Option<Key>,
     /// What the owner of the key's file should know, as a line for people.
@@ -169,6 +171,7 @@ impl Scenario {
         let (key, key_remark) = authentication::key(&source, &file, &robots)?.unzip();
         let attacks = authentication::attacks(&source, &file, &robots)?;
         let faults = check::faults(&source, &file, &robots)?;
+        let misnumbered = check::misnumbered(&source, &file, &robots)?;
         check::formation_only(&source, &file)?;
         let route = params::routing(&source, &file.route, &file.grid)?;
         let formation_params = params::formation(&source, &file.formation)?;
@@ -186,6 +189,7 @@ impl Scenario {
             route,
             formation_params,
             faults,
+            misnumbered,
             key,
             key_remark: key_remark.flatten(),
             attacks,
@@ -201,6 +205,15 @@ impl Scenario {
             _ => None,
         });
         self.key_remark.clone().into_iter().chain(gains).collect()
+    }
+
+    /// The robots, each with the number that it says.
+    #[must_use]
+    pub fn numbered(&self) -> Vec<Robot> {
+        let number =
+            |id: RobotId| self.misnumbered.iter().find(|(robot, _)| *robot == id).map_or(id, |(_, said)| *said);
+        let robots = self.robots.iter();
+        robots.map(|robot| Robot { id: number(robot.id), ..*robot }).collect()
     }
 
     /// Length of a tick, seconds.

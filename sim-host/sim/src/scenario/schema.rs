@@ -48,6 +48,9 @@ pub struct ScenarioFile {
     /// Robots that fail during the run.
     #[serde(default)]
     pub fault: Vec<FaultTable>,
+    /// Robots that have the number of another one, by mistake.
+    #[serde(default)]
+    pub misnumbered: Vec<MisnumberedTable>,
     /// The robots' common key. Without this table everybody is believed.
     pub authentication: Option<AuthenticationTable>,
     /// Radios at the roadside whose owners want the robots to go elsewhere.
@@ -247,6 +250,16 @@ pub struct FaultTable {
     /// How long it stands and is silent, seconds. Its clock starts from 0 again. Default: 0.
     #[serde(default)]
     pub down_s: f64,
+}
+
+/// `[[misnumbered]]`: a robot whose owner gave it the number of another one. In this file and in the results it keeps its own.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MisnumberedTable {
+    /// The robot.
+    pub robot: u32,
+    /// The number that it takes for its own.
+    pub number: u32,
 }
 
 /// `[authentication]`: exactly one of these. Robots then tag (postcard) or sign (MAVLink) what they send, and hear only who has the key.

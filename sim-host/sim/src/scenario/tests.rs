@@ -239,6 +239,28 @@ fn a_multi_agent_scenario_gives_starts_and_goals() {
 }
 
 #[test]
+fn misnumbered_robots_say_the_number_and_keep_their_own_and_mistakes_are_named() {
+    let with = |tables: &str| {
+        let list = "list = [{ start = [0, 0], goal = [1, 2] }, { start = [1, 0], goal = [2, 2] }]";
+        format!("{}{tables}", with_robots(list))
+    };
+    let table = |robot: u32, number: u32| format!("[[misnumbered]]\nrobot = {robot}\nnumber = {number}\n");
+    let scenario = parse(&with(&table(2, 1))).expect("good");
+    assert_eq!(scenario.robots.iter().map(|robot| robot.id.0).collect::<Vec<_>>(), [1, 2]);
+    assert_eq!(scenario.numbered().iter().map(|robot| robot.id.0).collect::<Vec<_>>(), [1, 1]);
+    let cases = [
+        (table(3, 1), "misnumbered[0].robot: there is no robot 3; give the number of a robot"),
+        (table(2, 2), "misnumbered[0].number: robot 2 has this number anyway; give that of another"),
+        (table(2, 0), "misnumbered[0].number: 0 is no number of a robot; give 1 to 2147483646"),
+        (table(2, 1) + &table(2, 7), "misnumbered[1].robot: robot 2 has been given a number before; give each"),
+    ];
+    for (tables, expected) in cases {
+        let refusal = refusal(&with(&tables));
+        assert!(refusal.contains(expected), "{refusal}");
+    }
+}
+
+#[test]
 fn faults_become_ticks() {
     let text = format!(
         "tick_s = 0.5\n{}[[fault]]\nrobot = 1\nat_s = 1.2\ndown_s = 1\n",

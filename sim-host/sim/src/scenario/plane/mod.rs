@@ -136,6 +136,7 @@ impl Scenario {
             route: RouteSetup::default(),
             formation_params: FormationParams::default(),
             faults: Vec::new(),
+            misnumbered: Vec::new(),
             key: None,
             key_remark: None,
             attacks: Vec::new(),

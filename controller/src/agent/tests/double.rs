@@ -1,0 +1,190 @@
+//! Two robots with one number: oneself and another one, or two others.
+
+use super::plane::{Robot, body_at, in_plane, one_step_late, orca, place, step_number, waypoint};
+use super::*;
+use proptest::prelude::*;
+
+type Walker = Robot<f32, WaypointGuidance<f32>, OrcaSafety<f32, 16>>;
+
+fn walker(boot: u8, at_m: [f64; 2], goal_mm: [i32; 2]) -> Walker {
+    let mut robot = Robot::new(&AgentConfig { boot, ..one_step_late(7) }, waypoint(), orca(), at_m);
+    let _ = robot.agent.assign_waypoint(0, &place(goal_mm[0], goal_mm[1]));
+    robot
+}
+
+fn frame(sender: u32, boot: u8, sequence: u16, message: &Message) -> Vec<u8> {
+    let mut out = heapless::Vec::<u8, 64>::new();
+    encode(Header { boot, sender: RobotId(sender), sequence }, message, &mut out).unwrap();
+    out.to_vec()
+}
+
+fn standing(x_mm: i32) -> Message {
+    body_at([x_mm, 0], [0, 0], Mode::Hold)
+}
+
+fn is_double(event: &Event) -> bool {
+    matches!(event, Event::DuplicateId(_))
+}
+
+/// Whom it knows of, by number.
+fn known(robot: &Walker) -> Vec<u32> {
+    robot.agent.neighbors().iter().map(|other| other.id.0).collect()
+}
+
+const DOUBLE: u32 = 7 | 1 << 31;
+
+#[test]
+fn numbers_of_doubles_are_nobodys() {
+    assert_eq!(RobotId(7).double(), RobotId(DOUBLE));
+    assert_eq!((RobotId(DOUBLE).doubled(), RobotId(7).doubled()), (Some(RobotId(7)), None));
+    assert_eq!(
+        (std::format!("{}", RobotId(7)), std::format!("{}", RobotId(DOUBLE))),
+        ("7".into(), "7 (the second one)".into())
+    );
+}
+
+/// Whatever comes back, early or late, in whatever order and however often, and however the robot has moved meanwhile.
+#[test]
+fn own_frames_that_come_back_are_nobody() {
+    let mut robot = walker(3, [0.0; 2], [60_000, 0]);
+    let mut said = Vec::new();
+    for n in 0..200_u16 {
+        let delays = [1, 2, 2, 15, 16, 17, 40, usize::from(n) / 2 + 1];
+        let heard =
+            delays.into_iter().filter_map(|delay: usize| said.len().checked_sub(delay).and_then(|at| said.get(at)));
+        let inbox = heard.cloned().collect::<Vec<Vec<u8>>>().concat();
+        let out = robot.step(step_number(n.into()), &inbox);
+        assert_eq!((out.received, known(&robot)), (0, vec![]), "step {n}");
+        assert!(!out.events.iter().any(is_double));
+        said.push(out.outbox.to_vec());
+    }
+    // After a restart it hears what it said in its last life.
+    let mut robot = walker(4, robot.at_m, [60_000, 0]);
+    for n in 0..20 {
+        let out = robot.step(step_number(n), &said.concat());
+        assert!(known(&robot).is_empty() && out.received == 0, "step {n}");
+    }
+}
+
+/// Two walk towards each other, each hearing what the other one said in the step before; `late` steps apart.
+fn meet(boots: [u8; 2], late: i32) -> [usize; 2] {
+    let mut robots = [walker(boots[0], [-4.0, 0.0], [4000, 0]), walker(boots[1], [4.0, 0.02], [-4000, 0])];
+    let (mut said, mut noticed) = ([Vec::new(), Vec::new()], [0; 2]);
+    for n in 0..160 {
+        let mut next = said.clone();
+        for (at, robot) in robots.iter_mut().enumerate() {
+            let since = n - late * at as i32;
+            if since < 0 {
+                continue;
+            }
+            let out = robot.step(step_number(since), &said[1 - at]);
+            noticed[at] += out.events.iter().filter(|event| is_double(event)).count();
+            next[at] = out.outbox.to_vec();
+        }
+        said = next;
+        let [a, b] = robots.each_ref().map(|robot| robot.at_m);
+        let apart = plane::length([a[0] - b[0], a[1] - b[1]]);
+        assert!(apart > 0.4, "{apart} m at step {n}, boots {boots:?}, {late} late");
+        if n > late + 3 {
+            assert_eq!(robots.each_ref().map(|robot| known(robot)), [vec![DOUBLE], vec![DOUBLE]], "step {n}");
+        }
+    }
+    for (robot, goal) in robots.iter().zip([4.0, -4.0]) {
+        assert!((robot.at_m[0] - goal).abs() < 0.02, "{:?}", robot.at_m);
+    }
+    noticed
+}
+
+#[test]
+fn two_of_one_number_hear_each_other_whoever_started_first_and_how_often() {
+    for boots in [[0, 0], [0, 1], [1, 0], [250, 3], [3, 250]] {
+        for late in [0, 1, 5, 15, 16, 30] {
+            assert_eq!(meet(boots, late), [1, 1], "{boots:?} {late}");
+        }
+    }
+}
+
+#[test]
+fn it_is_said_once_and_again_when_it_was_gone() {
+    let mut robot = walker(0, [0.0; 2], [0, 0]);
+    let mut noticed = Vec::new();
+    for n in 0..150_u16 {
+        let speaks = !(40..90).contains(&n);
+        let inbox = if speaks { frame(7, 0, n + 3, &standing(3000)) } else { Vec::new() };
+        let out = robot.step(step_number(n.into()), &inbox);
+        if out.events.contains(&Event::DuplicateId(RobotId(7))) {
+            noticed.push(n);
+        }
+        let lost = out.events.contains(&Event::NeighborLost(RobotId(DOUBLE)));
+        assert_eq!(lost, n == 69, "step {n}: {:?}", out.events);
+    }
+    assert_eq!(noticed, [0, 90]);
+}
+
+#[test]
+fn the_own_double_stays_in_a_full_table_and_other_messages_of_the_own_number_are_nobodys() {
+    let mut robot = walker(0, [0.0; 2], [0, 0]);
+    let crowd = |n: u16| (1..=6).chain(8..=12).flat_map(move |id| frame(id, 0, n, &standing(1000 + 500 * id as i32)));
+    for n in 0..5 {
+        let goal = Message::Goal(GoalAssignment { to: RobotId::NOBODY, version: 9, target: Cell::new(1, 1) });
+        let own = [frame(7, 0, 2 * n + 20, &standing(90_000)), frame(7, 0, 2 * n + 21, &goal)].concat();
+        let inbox: Vec<u8> = own.into_iter().chain(crowd(n)).collect();
+        let out = robot.step(step_number(n.into()), &inbox);
+        assert_eq!((out.received, out.rejected), (12, 1));
+        assert!(known(&robot).contains(&DOUBLE) && known(&robot).len() == 8);
+        assert_eq!(out.events.iter().any(is_double), n == 0);
+    }
+}
+
+/// A third one, 4 m from each of two robots of number 5 that count alike, or a little apart.
+#[test]
+fn two_others_of_one_number_are_both_known_and_neither_takes_the_others_place() {
+    for (apart, boot) in [(0, 0), (1, 0), (5, 0), (40, 0), (0, 1)] {
+        let mut robot = Robot::new(&in_plane(7), waypoint::<f32>(), orca(), [0.0; 2]);
+        let mut noticed = Vec::new();
+        for n in 0..60_u16 {
+            let mut inbox = Vec::new();
+            // Each is not heard now and then.
+            if n % 5 != 3 {
+                inbox.extend(frame(5, 0, n, &standing(40_000)));
+            }
+            if n % 7 != 4 {
+                inbox.extend(frame(5, boot, n + apart, &standing(-40_000)));
+            }
+            let out = robot.step(step_number(n.into()), &inbox);
+            noticed.extend(out.events.iter().filter(|event| is_double(event)).copied());
+            let places: Vec<_> =
+                robot.agent.neighbors().iter().map(|other| (other.id.0, other.position.mm[0])).collect();
+            assert_eq!(places.len(), 2, "step {n}");
+            assert_eq!(places, [(5, 40_000), (5 | 1 << 31, -40_000)], "step {n}, {apart} apart");
+        }
+        assert_eq!(noticed, [Event::DuplicateId(RobotId(5))], "{apart} apart, boot {boot}");
+    }
+}
+
+proptest! {
+    /// One robot goes as it likes at up to 1 m/s; its frames are lost, repeated, held back and mixed up: it is never taken for two.
+    #[test]
+    fn one_robot_is_never_taken_for_two(
+        turns in proptest::collection::vec((any::<[i8; 2]>(), 0..40_usize, any::<bool>(), 0..3_usize), 1..150),
+        latency in 0..3,
+    ) {
+        let config = AgentConfig { latency: plane::STEP.saturating_mul(latency), ..in_plane(7) };
+        let mut robot = Robot::new(&config, waypoint::<f32>(), orca(), [0.0; 2]);
+        let (mut at, mut held) = ([3000, 3000], vec![Vec::new(); 250]);
+        for (n, ([x, y], delay, is_lost, copies)) in turns.into_iter().enumerate() {
+            let step = [x, y].map(|v| i32::from(v) / 2);
+            for (at, step) in at.iter_mut().zip(step) {
+                *at += step;
+            }
+            // Told as it likes, too.
+            let said = frame(5, 0, n as u16, &body_at(at, if x > 0 { [0, 0] } else { step.map(|v| v as i16 * 10) }, Mode::Cruise));
+            if !is_lost {
+                let arrives = n + if delay < 30 { 0 } else { delay - 29 };
+                (0..=copies).for_each(|copy| held[arrives + copy].extend(said.clone()));
+            }
+            let out = robot.step(step_number(n as i32), &held[n]);
+            prop_assert!(!out.events.iter().any(is_double), "step {}", n);
+        }
+    }
+}
