@@ -9,7 +9,8 @@
 //!
 //! **Who hears two robots of another number** tells them apart by their places. When a beacon comes from where the one that is
 //! known cannot be, neither in the time since it was heard nor in that for which its sequence numbers allow (news that were
-//! held back), it is the second one's; after that, a beacon is of the one that is nearer. How fast robots can be is known only to those that
+//! held back), it is the second one's; after that, a beacon is of the one that is nearer. When the first one is not heard any more, it was one
+//! robot that was moved. How fast robots can be is known only to those that
 //! keep clear of them by velocities; on the grid the one whose numbers are ahead is heard, and the other one comes and
 //! goes as frames are lost. Two that have not heard each other count apart: then it may be that only one of them is heard.
 //!
@@ -28,6 +29,7 @@ use serde::Serialize;
 /// Frames of one's own that are known again. What comes back later is refused for its number; a double whose news are so late is
 /// not heard.
 const SAID: usize = 16;
+const _: () = assert!(SAID.is_power_of_two());
 
 /// The last beacons of one's own, by sequence number: a few bits of what they said.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -40,7 +42,7 @@ impl Said {
 
     /// Takes note of what is said under a sequence number.
     pub(super) fn note(&mut self, sequence: u16, message: &Message) {
-        if let (Some(said), Some(place)) = (self.0.get_mut(usize::from(sequence) % SAID), Place::of(message)) {
+        if let (Some(said), Some(place)) = (self.0.get_mut(usize::from(sequence) & (SAID - 1)), Place::of(message)) {
             *said = place.print;
         }
     }
@@ -49,7 +51,7 @@ impl Said {
     /// come, or under one of the last.
     pub(super) fn is_other(&self, next: Header, header: Header, place: &Place) -> bool {
         let behind = usize::from(next.sequence.wrapping_sub(header.sequence));
-        let said = self.0.get(usize::from(header.sequence) % SAID);
+        let said = self.0.get(usize::from(header.sequence) & (SAID - 1));
         is_ahead(next, header) || header.boot == next.boot && behind <= SAID && said != Some(&place.print)
     }
 }

@@ -190,8 +190,8 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
         let is_within = |known: &Neighbor<S>, time| place.is_within(known, time, fastest_mps);
         let age = |known: &Neighbor<S>| known.age(at).unwrap_or(Duration::ZERO);
         match (known(header.sender), double) {
-            (None, None) => false,
-            (None, Some(double)) => is_within(double, age(double)),
+            // Then it is the only one that is heard.
+            (None, _) => false,
             (Some(known), None) => {
                 !is_within(known, age(known)) && {
                     let window = self.windows.iter().find(|(id, _)| *id == header.sender);

@@ -169,8 +169,10 @@ fn any_bytes_are_survived_and_counted() {
 #[test]
 fn repeated_replayed_and_own_frames_are_refused() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
+    let mut own = Vec::new();
     let mut hear = |inbox: &[u8], n| {
         let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), inbox), tick(n), &mut ws);
+        own.push(out.outbox.to_vec());
         (out.received, out.rejected)
     };
     let beacon = |x| Message::Beacon(beacon_at(x, 3));
@@ -178,9 +180,11 @@ fn repeated_replayed_and_own_frames_are_refused() {
     assert_eq!(hear(&bytes(2, 0, 7, &[beacon(2)]), 1), (0, 1), "a duplicate");
     assert_eq!(hear(&bytes(2, 0, 9, &[beacon(3)]), 2), (1, 0));
     assert_eq!(hear(&bytes(2, 0, 8, &[beacon(4)]), 3), (1, 0), "late, but not seen yet");
-    assert_eq!(hear(&bytes(1, 0, 1, &[beacon(5)]), 4), (0, 1), "its own");
-    assert_eq!(hear(&bytes(2, 1, 0, &[beacon(6)]), 5), (1, 0), "it started anew");
-    assert_eq!(hear(&bytes(2, 0, 10, &[beacon(7)]), 6), (0, 1), "from before its start");
+    assert_eq!(hear(&bytes(2, 1, 0, &[beacon(6)]), 4), (1, 0), "it started anew");
+    assert_eq!(hear(&bytes(2, 0, 10, &[beacon(7)]), 5), (0, 1), "from before its start");
+    let own = core::mem::take(&mut own);
+    let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &own.concat()), tick(6), &mut ws);
+    assert_eq!((out.received, out.rejected), (0, 6), "its own");
     // A late beacon does not replace a newer one.
     assert_eq!(agent.neighbors()[0].cell, Cell::new(6, 3));
 }

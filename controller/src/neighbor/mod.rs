@@ -243,7 +243,8 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
     ///
     /// One that would be three quarters as far from `own` as the farthest fresh one, or farther, had it gone on as it went
     /// last, has gone out of range, as far as one can tell, and is not remembered; when nobody is fresh, one that would be
-    /// as far as anybody was heard from when others left, or farther; all are remembered if nobody has left before.
+    /// as far as anybody was heard from when others left, or farther; all are remembered if nobody has left before. Neither
+    /// is one of two with one number while the other one is fresh: one robot that was moved looks like two.
     ///
     /// Call it every step: see the head of this module.
     pub fn expire(
@@ -265,7 +266,12 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
             // Who hears nobody at all knows how far the radio reaches from those who left before, or takes it for dead.
             let range_m = if farthest_m > S::ZERO { farthest_m * S::from_milli(LEAVES_FROM) } else { self.range_m };
             self.range_m = self.range_m.max(farthest_m);
-            if range_m <= S::ZERO || distance(&silent) < range_m {
+            // Of two with one number one is still there: it was moved, and taken for another one.
+            let is_moved = || {
+                let mut others = self.as_slice().iter();
+                others.any(|entry| entry.id.double() == silent.id.double() && is_within(entry, ages.stale_after))
+            };
+            if (range_m <= S::ZERO || distance(&silent) < range_m) && !is_moved() {
                 // Into the place that has just become free.
                 let _ = self.entries.push(Neighbor { is_lost: true, ..silent });
                 self.sort_last();

@@ -86,7 +86,7 @@ fn meet(boots: [u8; 2], late: i32) -> [usize; 2] {
         let apart = plane::length([a[0] - b[0], a[1] - b[1]]);
         assert!(apart > 0.4, "{apart} m at step {n}, boots {boots:?}, {late} late");
         if n > late + 3 {
-            assert_eq!(robots.each_ref().map(|robot| known(robot)), [vec![DOUBLE], vec![DOUBLE]], "step {n}");
+            assert_eq!(robots.each_ref().map(known), [vec![DOUBLE], vec![DOUBLE]], "step {n}");
         }
     }
     for (robot, goal) in robots.iter().zip([4.0, -4.0]) {
@@ -186,5 +186,23 @@ proptest! {
             let out = robot.step(step_number(n as i32), &held[n]);
             prop_assert!(!out.events.iter().any(is_double), "step {}", n);
         }
+    }
+}
+
+/// A robot that is carried away looks like two at first; where it was is soon free.
+#[test]
+fn one_that_was_moved_is_one_again_and_not_remembered_where_it_was() {
+    let mut robot = Robot::new(&in_plane(7), waypoint::<f32>(), orca(), [0.0; 2]);
+    for n in 0..100_u16 {
+        let x_mm = if n < 20 { 2000 } else { -3000 };
+        let _ = robot.step(step_number(n.into()), &frame(5, 0, n, &standing(x_mm)));
+        let places: Vec<_> = robot.agent.neighbors().iter().map(|other| (other.id.0, other.position.mm[0])).collect();
+        match n {
+            0..20 => assert_eq!(places, [(5, 2000)], "step {n}"),
+            20..50 => assert_eq!(places, [(5, 2000), (5 | 1 << 31, -3000)], "step {n}"),
+            50..80 => assert_eq!(places.first(), Some(&(5, -3000)), "step {n}"),
+            _ => assert_eq!(places, [(5, -3000)], "step {n}"),
+        }
+        assert!(robot.agent.link.table.lost().is_empty());
     }
 }
