@@ -56,7 +56,8 @@ fn csv_reads_back_with_the_columns_of_its_schema() {
 
     let (header, lines) = read(&out.join("trace.csv"));
     assert_eq!(lines.len(), 6);
-    assert_eq!(lines[3].join(","), "1,0.1,2,1,-1,1.5,-0.5,0,1,0,0,cruise,1,9,9,", "an unknown value is empty");
+    assert_eq!(lines[3].join(","), "1,0.1,2,1,-1,1.5,-0.5,0,1,0,0,cruise,1,9,9,,", "an unknown value is empty");
+    assert_eq!(lines[5].last().map(String::as_str), Some("others"));
     let (series_header, series) = read(&out.join("series.csv"));
     assert_eq!(series[2].join(","), "2,0.2,1.5,,6,20,9,2,1");
     for (name, header) in [("trace", header), ("series", series_header)] {

@@ -50,13 +50,15 @@ fn who_is_commanded_goes_elsewhere_and_nobody_is_hit() {
         assert!(swarm.command(robot, meeting));
     }
     run(&mut *swarm, 400);
-    for robot in 0..2 {
+    let off_m = [0, 1].map(|robot| {
         let glance = swarm.glance(robot);
         assert_eq!(glance.wish, meeting);
         let [x, y, _] = glance.motion.position_m;
-        let off_m = libm::hypot(x - 2.0, y - 1.0);
-        assert!(off_m < 0.5, "robot {robot} is {off_m} m off");
-    }
+        libm::hypot(x - 2.0, y - 1.0)
+    });
+    // One is there, the other one beside it.
+    let [near_m, far_m] = [off_m[0].min(off_m[1]), off_m[0].max(off_m[1])];
+    assert!(near_m < 0.1 && far_m < 0.7, "{off_m:?}");
     let outcome = swarm.outcome();
     assert_eq!(outcome.collisions, 0);
     assert_ne!(outcome.trace_hash, hash_without_operator(&scenario));
