@@ -19,10 +19,10 @@
 //!
 //! The second one is known as [`RobotId::double`](crate::robot::RobotId::double); only its beacons count, its requests and orders do not.
 
-use crate::geom::Position;
+use crate::geom::{Position, Vec3};
 use crate::neighbor::Neighbor;
 use crate::scalar::Scalar;
-use crate::time::{Duration, Instant};
+use crate::time::Duration;
 use crate::wire::{Header, Message};
 use serde::Serialize;
 
@@ -42,17 +42,20 @@ impl Said {
 
     /// Takes note of what is said under a sequence number.
     pub(super) fn note(&mut self, sequence: u16, message: &Message) {
-        if let (Some(said), Some(place)) = (self.0.get_mut(usize::from(sequence) & (SAID - 1)), Place::of(message)) {
-            *said = place.print;
+        if let (Some(said), Some(print)) = (self.0.get_mut(usize::from(sequence) & (SAID - 1)), print(message)) {
+            *said = print;
         }
     }
 
     /// Whether somebody else must have said this, `next` being the header of the own next frame; under a number that is still to
     /// come, or under one of the last.
-    pub(super) fn is_other(&self, next: Header, header: Header, place: &Place) -> bool {
+    pub(super) fn is_other(&self, next: Header, header: Header, message: &Message) -> bool {
+        let Some(print) = print(message) else {
+            return false;
+        };
         let behind = usize::from(next.sequence.wrapping_sub(header.sequence));
         let said = self.0.get(usize::from(header.sequence) & (SAID - 1));
-        is_ahead(next, header) || header.boot == next.boot && behind <= SAID && said != Some(&place.print)
+        is_ahead(next, header) || header.boot == next.boot && behind <= SAID && said != Some(&print)
     }
 }
 
@@ -63,50 +66,42 @@ pub(super) const fn is_ahead(next: Header, header: Header) -> bool {
     boots > 0 || boots == 0 && ahead >= 0
 }
 
-/// Where a beacon says that its sender is.
-pub(super) struct Place {
-    position: Position,
-    velocity_mmps: [i16; 3],
-    radius_mm: u16,
-    /// A few bits of when and where.
-    print: u16,
+/// A few bits of when and where a beacon says that its sender is; `None` for other messages.
+fn print(message: &Message) -> Option<u16> {
+    let (mm, more) = match message {
+        Message::Beacon(beacon) => {
+            (beacon.position_mm, [beacon.time.as_micros(), beacon.cell.x as u32, beacon.cell.y as u32])
+        }
+        Message::Compact(beacon) => {
+            let [x, y] = beacon.position_mm;
+            ([x, y, 0], [beacon.time_ms.into(), 0, 0])
+        }
+        _ => return None,
+    };
+    // FNV-1a by words.
+    let words = mm.iter().map(|mm| mm.cast_unsigned()).chain(more);
+    let print = words.fold(0x811C_9DC5_u32, |hash, word| (hash ^ word).wrapping_mul(0x0100_0193));
+    Some((print >> 16) as u16)
 }
 
-impl Place {
-    /// What a beacon says; `None` for other messages.
-    pub(super) fn of(message: &Message) -> Option<Self> {
-        let (mm, velocity_mmps, radius_mm, more) = match message {
-            Message::Beacon(beacon) => {
-                let more = [beacon.time.as_micros(), beacon.cell.x as u32, beacon.cell.y as u32];
-                (beacon.position_mm, beacon.velocity_mmps, beacon.radius_mm, more)
-            }
-            Message::Compact(beacon) => {
-                let ([x, y], [vx, vy]) = (beacon.position_mm, beacon.velocity_mmps);
-                ([x, y, 0], [vx, vy, 0], u16::from(beacon.radius_cm) * 10, [beacon.time_ms.into(), 0, 0])
-            }
-            _ => return None,
-        };
-        let words = mm.iter().map(|mm| mm.cast_unsigned()).chain(more);
-        // FNV-1a by words.
-        let print = words.fold(0x811C_9DC5_u32, |hash, word| (hash ^ word).wrapping_mul(0x0100_0193));
-        let print = (print >> 16) as u16;
-        Some(Self { position: Position::from_mm(mm), velocity_mmps, radius_mm, print })
+/// Where a beacon says that its sender is; `None` for other messages.
+pub(super) fn place(message: &Message) -> Option<Position> {
+    match message {
+        Message::Beacon(beacon) => Some(Position::from_mm(beacon.position_mm)),
+        Message::Compact(beacon) => {
+            let [x, y] = beacon.position_mm;
+            Some(Position::from_mm([x, y, 0]))
+        }
+        _ => None,
     }
+}
 
-    /// Whether a robot that was heard as `known` can be here after `time` at its own speed, or one that is told or
-    /// `fastest_mps`, give or take two bodies.
-    pub(super) fn is_within<S: Scalar>(&self, known: &Neighbor<S>, time: Duration, fastest_mps: S) -> bool {
-        let speed = self.velocity_mmps.iter().map(|v| S::from_milli(i32::from(*v).abs()));
-        let speed = speed.fold(fastest_mps.max(known.velocity_mps.norm()), |sum, v| sum.max(v));
-        let slack_m = known.radius_m + S::from_milli(self.radius_mm.into());
-        let way_m = self.position.since::<S>(known.position).norm();
-        // False for NaN: nothing is known of such a robot.
-        let is_beyond = way_m > speed * S::from_micro(time.as_micros()) + slack_m;
-        !is_beyond
-    }
-
-    /// How far it is from where `known` should be at `now`, metres.
-    pub(super) fn distance<S: Scalar>(&self, known: &Neighbor<S>, now: Instant, longest: Duration) -> S {
-        known.offset_at(self.position, now, longest).norm()
-    }
+/// Whether a robot that was heard as `known` can be at `place` after `time` at `fastest_mps`, or as it went if that is faster (by
+/// its components, without a root: this is asked of each beacon), give or take its body's width.
+pub(super) fn is_within<S: Scalar>(place: Position, known: &Neighbor<S>, time: Duration, fastest_mps: S) -> bool {
+    let Vec3 { x, y, z } = known.velocity_mps;
+    let went_mps = x.abs().max(y.abs()).max(z.abs()) * S::TWO;
+    let slack_m = known.radius_m + known.radius_m;
+    let most_m = fastest_mps.max(went_mps) * S::from_micro(time.as_micros()) + slack_m;
+    place.since::<S>(known.position).length_key() <= Vec3::new(most_m, S::ZERO, S::ZERO).length_key()
 }

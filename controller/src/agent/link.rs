@@ -1,6 +1,6 @@
 //! The agent's end of the radio: bytes to news, and what is to be said to bytes.
 
-use super::double::{Place, Said, is_ahead};
+use super::double::{Said, is_ahead, is_within, place};
 use super::io::{Event, KinematicState, OUTBOX, Outputs};
 use super::silence::Company;
 use super::{AgentConfig, CellState, Last, Waypoint};
@@ -164,43 +164,42 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
     /// own one that comes back.
     fn known_as(&mut self, frame: &Frame, listener: &Listener<'_, S>) -> Option<RobotId> {
         let (header, own) = (frame.header, self.header);
-        let place = Place::of(&frame.message);
         if header.sender == own.sender {
-            let is_other = place.is_some_and(|place| self.said.is_other(own, header, &place));
+            let is_other = self.said.is_other(own, header, &frame.message);
             if is_other && is_ahead(own, header) {
                 (self.header.boot, self.header.sequence) = (header.boot, header.sequence.wrapping_add(1));
                 self.requests.set_boot(header.boot);
             }
             return is_other.then_some(own.sender.double());
         }
-        let is_double = match (place, listener.fastest_mps) {
-            (Some(place), Some(fastest_mps)) => self.is_double(header, &place, listener, fastest_mps),
+        let is_double = match (place(&frame.message), listener.fastest_mps) {
+            (Some(place), Some(fastest_mps)) => self.is_double(header, place, listener, fastest_mps),
             _ => false,
         };
         Some(if is_double { header.sender.double() } else { header.sender })
     }
 
     /// Whether a beacon is the second one's of two other robots with one number.
-    fn is_double(&self, header: Header, place: &Place, listener: &Listener<'_, S>, fastest_mps: S) -> bool {
+    fn is_double(&self, header: Header, place: Position, listener: &Listener<'_, S>, fastest_mps: S) -> bool {
         let at = listener.heard_at;
-        let known = |id| self.table.get(id, at).known();
+        let all = self.table.as_slice();
+        let known = |id| all.binary_search_by_key(&id, |known| known.id).ok().and_then(|at| all.get(at));
         // Doubles are behind all others.
-        let has_doubles = self.table.as_slice().last().is_some_and(|last| last.id.doubled().is_some());
+        let has_doubles = all.last().is_some_and(|last| last.id.doubled().is_some());
         let double = if has_doubles { known(header.sender.double()) } else { None };
-        let is_within = |known: &Neighbor<S>, time| place.is_within(known, time, fastest_mps);
-        let age = |known: &Neighbor<S>| known.age(at).unwrap_or(Duration::ZERO);
         match (known(header.sender), double) {
             // Then it is the only one that is heard.
             (None, _) => false,
             (Some(known), None) => {
-                !is_within(known, age(known)) && {
-                    let window = self.windows.iter().find(|(id, _)| *id == header.sender);
-                    let frames = window.map_or(0, |(_, window)| window.distance(header));
-                    !is_within(known, listener.period.saturating_mul(frames.into()))
-                }
+                let window = self.windows.iter().find(|(id, _)| *id == header.sender);
+                let frames = window.map_or(0, |(_, window)| window.distance(header));
+                let counted = listener.period.saturating_mul(frames.into());
+                let time = counted.max(known.age(at).unwrap_or(Duration::ZERO));
+                !is_within(place, known, time, fastest_mps)
             }
             (Some(known), Some(double)) => {
-                let distance = |known| place.distance(known, at, self.table.ages().stale_after);
+                let longest = self.table.ages().stale_after;
+                let distance = |known: &Neighbor<S>| known.offset_at(place, at, longest).length_key();
                 distance(double) < distance(known)
             }
         }

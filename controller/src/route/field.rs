@@ -80,7 +80,7 @@ impl<const CELLS: usize> CostField<CELLS> {
             cost: [0; CELLS],
             queue: Queue::new(),
             shift: 0,
-            easiest: u8::MAX,
+            easiest: 0,
             has_walls: false,
             learns: false,
             closed: 0,

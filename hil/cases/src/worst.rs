@@ -173,7 +173,8 @@ fn say<const N: usize>(step: u32, inbox: &mut Inbox, mut beacon: impl FnMut(u32,
     let numbers = (1..).filter(|number| *number != OWN.0);
     for number in numbers.take(N) {
         let mut rng = Rng::keyed(2, PURPOSE, number, step);
-        let header = Header { boot: 0, sender: RobotId(number), sequence: step as u16 };
+        // Many frames after the last one that was heard, so that it can have come from anywhere.
+        let header = Header { boot: 0, sender: RobotId(number), sequence: step as u16 * 64 };
         // There is room.
         let _ = encode(header, &Message::Beacon(beacon(number, &mut rng)), inbox);
     }

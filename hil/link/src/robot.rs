@@ -6,7 +6,7 @@ use core::fmt;
 use heapless::Vec;
 use staya_controller::agent::{
     AnyAgent, AnySurroundings, CELLS, Command, GridWorkspace, HALF_PLANES, InCell, InCells, InPlane, Inputs,
-    KinematicState, LEARNED, NEIGHBORS, OnGrid, Outputs, Refused, Setup, Task, VISITS, WrongTask,
+    KinematicState, LEARNED, NEIGHBORS, OnGrid, Outputs, Refused, Setup, Task, VISITS, Wait, WrongTask,
 };
 use staya_controller::obstacle::Obstacle;
 use staya_controller::robot::RobotId;
@@ -98,6 +98,30 @@ pub trait Controller {
     fn forget(&mut self);
 }
 
+/// An `Option` whose `None` is all zeros, so that a firmware's robot before its configuration takes no flash.
+#[derive(Clone, Debug)]
+#[repr(u8)]
+enum Slot<A> {
+    Empty = 0,
+    Full(A) = 1,
+}
+
+impl<A> Slot<A> {
+    const fn as_ref(&self) -> Option<&A> {
+        match self {
+            Self::Empty => None,
+            Self::Full(inside) => Some(inside),
+        }
+    }
+
+    const fn as_mut(&mut self) -> Option<&mut A> {
+        match self {
+            Self::Empty => None,
+            Self::Full(inside) => Some(inside),
+        }
+    }
+}
+
 /// A robot that is told what to be. `CELLS` of a search, `M` remembered visits, `N` neighbours, `K` half-planes, `O` obstacles,
 /// wire format `W`.
 #[derive(Clone, Debug)]
@@ -111,7 +135,7 @@ pub struct Robot<
     W = Postcard,
     const L: usize = 0,
 > {
-    agent: Option<AnyAgent<S, CELLS, M, N, K, W, L>>,
+    agent: Slot<AnyAgent<S, CELLS, M, N, K, W, L>>,
     workspace: GridWorkspace<CELLS>,
     obstacles: Vec<Obstacle<S>, O>,
     outputs: Outputs<S>,
@@ -132,12 +156,13 @@ impl<
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            agent: None,
+            agent: Slot::Empty,
             workspace: GridWorkspace::new(),
             obstacles: Vec::new(),
             outputs: Outputs {
                 command: Command::Hold,
-                wait: None,
+                // Nobody sees it before it is configured; `None` would be the one byte here that is not zero.
+                wait: Some(Wait::Formation),
                 received: 0,
                 rejected: 0,
                 refused: Refused { unsigned: 0, forged: 0, replayed: 0, no_room: 0 },
@@ -199,7 +224,7 @@ impl<
     }
 
     fn configure(&mut self, setup: &Setup, task: Option<&Task>) -> Result<u64, Refusal> {
-        self.agent = None;
+        self.agent = Slot::Empty;
         if setup.agent.id == RobotId::NOBODY {
             return Err(Refusal::Nobody);
         }
@@ -209,11 +234,13 @@ impl<
         }
         self.outputs = Outputs::default();
         let wire = W::from_format(setup.format).ok_or(Refusal::Format(setup.format))?;
-        let agent = self.agent.insert(setup.speaking(wire));
-        if task.is_none_or(|task| agent.assign(task).is_ok()) {
+        self.agent = Slot::Full(setup.speaking(wire));
+        if let Some(agent) = self.agent.as_mut()
+            && task.is_none_or(|task| agent.assign(task).is_ok())
+        {
             return Ok(agent.digest());
         }
-        self.agent = None;
+        self.agent = Slot::Empty;
         Err(Refusal::Task)
     }
 
@@ -270,7 +297,7 @@ impl<
     }
 
     fn forget(&mut self) {
-        self.agent = None;
+        self.agent = Slot::Empty;
     }
 }
 

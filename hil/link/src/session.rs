@@ -107,7 +107,7 @@ pub struct Session<C, const CONTENT: usize> {
 #[derive(Clone, Debug)]
 struct Core<C, const CONTENT: usize> {
     controller: C,
-    about: About,
+    about: Option<About>,
     token: Option<Token>,
     /// The request that `answer` answers; `None`: no robot yet.
     last: Option<u16>,
@@ -131,12 +131,21 @@ impl<C: Controller, const CONTENT: usize> Session<C, CONTENT> {
     /// Nobody yet.
     #[must_use]
     pub const fn new(controller: C, about: About) -> Self {
+        let mut session = Self::unnamed(controller);
+        session.introduce(about);
+        session
+    }
+
+    /// The same for a device whose clock and count of starts are not known yet: [`Session::introduce`] it before the first
+    /// word. All zeros if `controller` is, so that a firmware's static of it takes no flash.
+    #[must_use]
+    pub const fn unnamed(controller: C) -> Self {
         const { assert!(CONTENT >= MAX_CONFIGURE, "no room for a setup") };
         Self {
             deframer: Deframer::new(),
             core: Core {
                 controller,
-                about,
+                about: None,
                 token: None,
                 last: None,
                 answer: Frame::new(),
@@ -146,9 +155,9 @@ impl<C: Controller, const CONTENT: usize> Session<C, CONTENT> {
         }
     }
 
-    /// Says anew what the device is, for a session that was made before its clock and its count of starts were known.
+    /// Says what the device is.
     pub const fn introduce(&mut self, about: About) {
-        self.core.about = about;
+        self.core.about = Some(about);
     }
 
     /// What the device says by itself after each start.
@@ -340,7 +349,8 @@ impl<C: Controller, const CONTENT: usize> Core<C, CONTENT> {
     }
 
     fn say_hello(&mut self) {
-        let Self { about, controller, .. } = self;
+        let Self { controller, .. } = self;
+        let about = self.about.unwrap_or(About { part: "", firmware: "", boot: 0, ticks_per_second: 0 });
         let hello = Hello {
             token: self.token,
             boot: about.boot,

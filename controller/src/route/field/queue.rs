@@ -20,15 +20,9 @@ pub(super) struct Queue<const CELLS: usize> {
 }
 
 impl<const CELLS: usize> Queue<CELLS> {
-    /// Without a cell.
+    /// Not in use before [`Queue::clear`]; all zeros, so that a firmware's takes no flash.
     pub(super) const fn new() -> Self {
-        Self {
-            next: [NIL; CELLS],
-            previous: [NIL; CELLS],
-            bucket: [RING as u8; CELLS],
-            heads: [NIL; RING as usize],
-            occupied: 0,
-        }
+        Self { next: [0; CELLS], previous: [0; CELLS], bucket: [0; CELLS], heads: [0; RING as usize], occupied: 0 }
     }
 
     /// Takes the first `used` cells out of it, and others are not in it. O(used).

@@ -26,8 +26,7 @@ mod program {
     const FIRMWARE: &str = concat!("lockstep ", env!("CARGO_PKG_VERSION"));
 
     /// Too large for a stack, so made where it stays; [`Start`] is known only later.
-    static mut SESSION: Session<Robot, CONTENT> =
-        Session::new(Robot::new(), About { part: "", firmware: "", boot: 0, ticks_per_second: 0 });
+    static mut SESSION: Session<Robot, CONTENT> = Session::unnamed(Robot::new());
 
     pub fn run() -> ! {
         let start = runtime::start();
