@@ -44,12 +44,14 @@ struct Document<'a> {
 }
 
 impl Document<'_> {
-    /// Each name of what does not exist, with its line.
+    /// Each name of what does not exist, and what a merge has left, with its line.
     fn faults(&self, text: &str) -> impl Iterator<Item = (usize, String)> {
         text.lines().zip(1..).flat_map(|(line, number)| {
             let links = self.broken_links(line).into_iter().map(|link| format!("the link {link} leads nowhere"));
             let paths = self.missing_paths(line).into_iter().map(|path| format!("{path} does not exist"));
-            links.chain(paths).map(move |fault| (number, fault)).collect::<Vec<_>>()
+            let is_mark = ["<<<<<<< ", ">>>>>>> "].iter().any(|mark| line.starts_with(mark));
+            let mark = is_mark.then(|| String::from("a merge has left this mark"));
+            links.chain(paths).chain(mark).map(move |fault| (number, fault)).collect::<Vec<_>>()
         })
     }
 
@@ -194,6 +196,7 @@ mod tests {
 
     #[test]
     fn what_does_not_exist_is_named() {
+        assert_eq!(missing("<<<<<<< HEAD"), ["a merge has left this mark"]);
         for (line, path) in [
             ("cargo run -- run scenarios/nowhere.toml.", "scenarios/nowhere.toml"),
             ("`xtask/src/main.rs` and `nowhere.rs`", "nowhere.rs"),
