@@ -4,7 +4,7 @@ use anyhow::Result;
 use clap::Args;
 use staya_console::{Ended, Global, Progress, Stop, print, print_json};
 use staya_mav::Endpoint;
-use staya_mav::bridge::{Options, Report, Swarm};
+use staya_mav::bridge::{BridgeReport, Options, Swarm};
 use staya_mav::geo::{Global as Place, Origin};
 use staya_mavlink::signing::Signing;
 use staya_sim::key::{KeyFile, timestamp};
@@ -165,7 +165,7 @@ impl BridgeArgs {
 }
 
 /// The figures for a reader.
-fn table(name: &str, report: &Report) -> Result<String, std::fmt::Error> {
+fn table(name: &str, report: &BridgeReport) -> Result<String, std::fmt::Error> {
     let mut text = String::new();
     writeln!(text, "{name}")?;
     let mut line = |name: &str, value: String| writeln!(text, "  {name:<16}{value}");

@@ -6,7 +6,7 @@ mod firmware;
 use crate::run::ScenarioArgs;
 use anyhow::{Context as _, Result, bail};
 use clap::Args;
-use devices::{OnDevices, Plan};
+use devices::{DevicePlan, OnDevices};
 use serde::Serialize;
 use staya_console::{Ended, Global, Progress, Stop, print, print_json};
 use staya_runner::{Device, LineFaults, Options, Part, Reset, Spread, Statistics};
@@ -146,7 +146,7 @@ impl HilArgs {
     }
 
     /// Which robots run where.
-    fn plan(&self, scenario: &Scenario) -> Result<Plan> {
+    fn plan(&self, scenario: &Scenario) -> Result<DevicePlan> {
         let count = self.devices.map_or(self.kinds.len(), |n| n as usize);
         let robots = scenario.robots.len();
         if count > robots {
@@ -171,7 +171,7 @@ impl HilArgs {
             }
             devices.push((index, device.clone()));
         }
-        Ok(Plan {
+        Ok(DevicePlan {
             devices,
             faults: LineFaults {
                 loss: self.loss,
@@ -186,7 +186,7 @@ impl HilArgs {
     fn drive(
         &self,
         scenario: &Scenario,
-        plan: Plan,
+        plan: DevicePlan,
         options: Options,
         stop: &Stop,
         global: &Global,

@@ -7,7 +7,7 @@ use staya_console::{Ended, Global, print, print_json};
 use staya_controller::grid::Norm;
 use staya_papers::options;
 use staya_plot::terrain::{draw, scale_for};
-use staya_sim::terrain::generate::{ByMetrics, Plan, by_metrics, natural, uniform};
+use staya_sim::terrain::generate::{ByMetrics, LandPlan, by_metrics, natural, uniform};
 use staya_sim::terrain::metrics::{Metrics, obstacles_of_entropy};
 use staya_sim::terrain::{LoadOptions, SlopeRule, Terrain, ros};
 use std::fmt::Write as _;
@@ -129,7 +129,7 @@ impl Source {
 
 /// What the commands report.
 #[derive(Debug, Serialize)]
-struct Report {
+struct LandReport {
     file: PathBuf,
     width: u16,
     height: u16,
@@ -140,7 +140,7 @@ struct Report {
     equivalent_obstacles: f64,
 }
 
-impl Report {
+impl LandReport {
     fn new(file: PathBuf, terrain: &Terrain) -> Self {
         let metrics = Metrics::of(terrain);
         Self {
@@ -180,12 +180,12 @@ impl TerrainArgs {
         match &self.action {
             Action::Generate(generate) => generate.run(global)?,
             Action::Metrics(source) => {
-                Report::new(source.file.clone(), &source.load()?).print(global)?;
+                LandReport::new(source.file.clone(), &source.load()?).print(global)?;
             }
             Action::Draw { source, out, scale } => {
                 let terrain = source.load()?;
                 draw(&terrain, scale.unwrap_or(scale_for(&terrain, 1000)), out)?;
-                Report::new(out.clone(), &terrain).print(global)?;
+                LandReport::new(out.clone(), &terrain).print(global)?;
             }
         }
         Ok(Ended::Done)
@@ -201,7 +201,7 @@ impl Generate {
                 self.out.display()
             );
         }
-        let plan = Plan { width: self.width, height: self.height, classes: self.classes, seed: self.seed };
+        let plan = LandPlan { width: self.width, height: self.height, classes: self.classes, seed: self.seed };
         let terrain = match (self.kind, self.entropy, self.total_edge) {
             (Kind::Uniform, _, _) => uniform(&plan)?,
             (Kind::Natural, _, _) => natural(&plan, self.obstacles, self.norm)?,
@@ -217,7 +217,7 @@ impl Generate {
             (Kind::Entropy, _, _) => bail!("--kind entropy needs --entropy and --total-edge"),
         };
         ros::save(&terrain, &self.out)?;
-        Report::new(self.out.clone(), &terrain).print(global)
+        LandReport::new(self.out.clone(), &terrain).print(global)
     }
 }
 

@@ -12,7 +12,7 @@ use std::process::Command;
 
 /// What apt would do for some packages.
 #[derive(Debug, Default, PartialEq, Eq)]
-struct Plan {
+struct Installation {
     /// The packages that are missing, as `name=version`, with all that they need.
     missing: Vec<String>,
     /// Packages of the user's that would be removed or replaced.
@@ -45,7 +45,7 @@ pub fn install(repo: &Repo, packages: &[&str]) -> Result<(), String> {
     if !is_root(repo) {
         return Err(String::from("only root can install packages"));
     }
-    let Plan { in_the_way, .. } = plan(repo, packages)?;
+    let Installation { in_the_way, .. } = plan(repo, packages)?;
     if !in_the_way.is_empty() {
         let those = in_the_way.join(", ");
         return Err(format!("that would remove or replace {those}"));
@@ -60,7 +60,7 @@ pub fn is_root(repo: &Repo) -> bool {
 }
 
 /// Asks apt, with lists of packages that are up to date, what an installation with these arguments takes.
-fn plan(repo: &Repo, arguments: &[&str]) -> Result<Plan, String> {
+fn plan(repo: &Repo, arguments: &[&str]) -> Result<Installation, String> {
     if output_of(repo.command("apt-get").arg("--version")).is_none() {
         return Err(String::from("no apt-get here"));
     }
@@ -75,8 +75,8 @@ fn plan(repo: &Repo, arguments: &[&str]) -> Result<Plan, String> {
 }
 
 /// Reads what a simulation prints: `Inst NAME [INSTALLED] (VERSION ORIGIN [ARCHITECTURE])`, `Remv NAME [INSTALLED]`.
-fn read(said: &str) -> Plan {
-    let mut plan = Plan::default();
+fn read(said: &str) -> Installation {
+    let mut plan = Installation::default();
     for line in said.lines() {
         let words: Vec<&str> = line.split_whitespace().collect();
         let [action @ ("Inst" | "Remv"), name, second, ..] = words[..] else {
@@ -215,11 +215,11 @@ mod tests {
             Inst libfdt1 (1.6.1-4+b1 Debian:12.15/oldstable [amd64])\n\
             Inst libssl3 [3.0.16-1] (3.0.17-1 Debian-Security:12/oldstable-security [amd64]) []\n\
             Conf libfdt1 (1.6.1-4+b1 Debian:12.15/oldstable [amd64])\n";
-        let expected = Plan {
+        let expected = Installation {
             missing: vec![String::from("libfdt1=1.6.1-4+b1"), String::from("libssl3=3.0.17-1")],
             in_the_way: vec![String::from("qemu-utils"), String::from("libssl3")],
         };
         assert_eq!(read(said), expected);
-        assert_eq!(read(""), Plan::default());
+        assert_eq!(read(""), Installation::default());
     }
 }

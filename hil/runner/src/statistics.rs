@@ -80,7 +80,7 @@ pub struct Statistics {
 
 /// What is collected on the way there.
 #[derive(Clone, Debug, Default)]
-pub struct Tally {
+pub struct Collector {
     pub steps: u64,
     pub mismatches: u64,
     pub round_trip_us: Vec<u32>,
@@ -91,7 +91,7 @@ pub struct Tally {
     pub cut_obstacles: u64,
 }
 
-impl Tally {
+impl Collector {
     /// Instructions of an emulated device.
     pub fn instructions(&self, ticks_per_second: u32) -> Option<Spread> {
         let ticks = Spread::of(&self.ticks)?;
@@ -116,7 +116,7 @@ mod tests {
 
     #[test]
     fn ticks_of_168_mhz_become_instructions() {
-        let tally = Tally { ticks: vec![168, 336, 16_800], ..Tally::default() };
+        let tally = Collector { ticks: vec![168, 336, 16_800], ..Collector::default() };
         let spread = tally.instructions(168_000_000).expect("three steps");
         assert_eq!((spread.median, spread.max), (2000, 100_000));
     }

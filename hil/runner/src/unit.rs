@@ -5,7 +5,7 @@ use crate::channel::Channel;
 use crate::config::{DeviceConfig, Options};
 use crate::line::{Line, micros};
 use crate::mismatch::Mismatch;
-use crate::statistics::{Spread, Statistics, Tally};
+use crate::statistics::{Collector, Spread, Statistics};
 use staya_controller::agent::{AnyInputs, Setup, Task};
 use staya_controller::time::Instant;
 use staya_link::capacities::Capacities;
@@ -61,7 +61,7 @@ pub struct Unit {
     answer: Option<Answer>,
     /// Why nothing will come any more.
     gone: Option<String>,
-    tally: Tally,
+    tally: Collector,
     packed: Vec<u8>,
     resend_after: Duration,
     start_limit: Duration,
@@ -83,7 +83,7 @@ impl Unit {
             down: 0,
             answer: None,
             gone: None,
-            tally: Tally::default(),
+            tally: Collector::default(),
             packed: Vec::new(),
             // Both ways.
             resend_after: options.resend_after + faults.delay * 2,

@@ -51,7 +51,7 @@ pub struct Counts {
 
 /// A [`Counts`] that threads share.
 #[derive(Debug, Default)]
-pub(super) struct Tally {
+pub(super) struct SharedCounts {
     frames_in: AtomicU64,
     bytes_in: AtomicU64,
     frames_out: AtomicU64,
@@ -65,7 +65,7 @@ fn add(counter: &AtomicU64, n: usize) {
     counter.fetch_add(n as u64, Ordering::Relaxed);
 }
 
-impl Tally {
+impl SharedCounts {
     pub(super) fn counts(&self) -> Counts {
         let get = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
         Counts {
@@ -95,7 +95,7 @@ impl Tally {
 pub(super) struct Shared {
     pub(super) line: usize,
     pub(super) inbox: SyncSender<Received>,
-    pub(super) tally: Arc<Tally>,
+    pub(super) tally: Arc<SharedCounts>,
     pub(super) closed: Arc<AtomicBool>,
 }
 

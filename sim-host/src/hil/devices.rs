@@ -11,7 +11,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Which robots run where, and what is to happen to them.
 #[derive(Clone, Debug)]
-pub struct Plan {
+pub struct DevicePlan {
     /// A robot's number in the scenario and its device, by rising number.
     pub devices: Vec<(usize, Device)>,
     /// What all lines do to frames.
@@ -51,7 +51,7 @@ impl Log {
 
 /// The devices as the engine sees them. They are started when the first step begins.
 pub struct OnDevices {
-    plan: Plan,
+    plan: DevicePlan,
     options: Option<Options>,
     /// What each device is to be; then they are part of the fleet.
     orders: Vec<Option<DeviceConfig>>,
@@ -67,7 +67,7 @@ pub struct OnDevices {
 impl OnDevices {
     /// Devices of a plan, and where to ask what became of them.
     #[must_use]
-    pub fn new(plan: Plan, options: Options) -> (Self, Log) {
+    pub fn new(plan: DevicePlan, options: Options) -> (Self, Log) {
         let (log, count) = (Log::default(), plan.devices.len());
         let devices = Self {
             plan,

@@ -20,5 +20,5 @@ mod vehicle;
 pub use model::{FlightMode, Sample, VehicleModel};
 pub use params::{Meaning, NotSet, Parameters};
 pub use streams::Streams;
-pub use swarm::{BridgeError, LineReport, Options, Report, Swarm};
+pub use swarm::{BridgeError, BridgeReport, LineReport, Options, Swarm};
 pub use vehicle::{Action, Out, Vehicle};

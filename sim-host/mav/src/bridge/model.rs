@@ -5,7 +5,7 @@ use staya_controller::agent::SafetyKind;
 use staya_controller::agent::Wish;
 use staya_controller::grid::{BLOCKED, Cell};
 use staya_controller::robot::Mode;
-use staya_sim::engine::Glance;
+use staya_sim::engine::Observation;
 use staya_sim::scenario::{PlaneSetup, RobotGroup, Scenario};
 use staya_sim::terrain::Terrain;
 use staya_sim::world::plane::Solid;
@@ -153,15 +153,15 @@ pub struct Sample {
 impl Sample {
     /// What the engine says of it.
     #[must_use]
-    pub fn new(time_us: u64, glance: &Glance) -> Self {
+    pub fn new(time_us: u64, observation: &Observation) -> Self {
         Self {
             time_us,
-            position_m: glance.motion.position_m,
-            velocity_mps: glance.motion.velocity_mps,
-            cell: glance.motion.cell,
-            mode: glance.status.mode,
-            wish: glance.wish,
-            is_up: glance.is_up,
+            position_m: observation.motion.position_m,
+            velocity_mps: observation.motion.velocity_mps,
+            cell: observation.motion.cell,
+            mode: observation.status.mode,
+            wish: observation.wish,
+            is_up: observation.is_up,
         }
     }
 }

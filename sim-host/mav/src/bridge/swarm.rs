@@ -95,7 +95,7 @@ pub struct LineReport {
 
 /// What came of it.
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
+pub struct BridgeReport {
     /// Robots, each a vehicle.
     pub vehicles: usize,
     /// Ticks done.
@@ -162,7 +162,7 @@ impl Swarm {
         let count = numbers.len();
         let mut vehicles = Vec::with_capacity(count);
         for (index, number) in numbers.into_iter().enumerate() {
-            let sample = Sample::new(0, &engine.glance(index));
+            let sample = Sample::new(0, &engine.observation(index));
             let vehicle = Vehicle::new(
                 // At most 254.
                 number as u8,
@@ -213,7 +213,7 @@ impl Swarm {
     ///
     /// # Errors
     /// When the log cannot be written.
-    pub fn run(mut self, mut is_over: impl FnMut(u32) -> bool) -> Result<Report, BridgeError> {
+    pub fn run(mut self, mut is_over: impl FnMut(u32) -> bool) -> Result<BridgeReport, BridgeError> {
         let tick = Duration::from_secs_f64(f64::from(self.tick_us) / 1e6 / self.options.speed);
         self.began = Instant::now();
         let mut due = self.began + tick;
@@ -312,10 +312,10 @@ impl Swarm {
         let time_us = u64::from(self.ticks) * u64::from(self.tick_us);
         let now_us = self.now_us();
         for index in 0..self.vehicles.len() {
-            let glance = self.engine.glance(index);
-            let sample = Sample::new(time_us, &glance);
-            if glance.is_up && glance.boot != self.boots[index] {
-                self.boots[index] = glance.boot;
+            let observation = self.engine.observation(index);
+            let sample = Sample::new(time_us, &observation);
+            if observation.is_up && observation.boot != self.boots[index] {
+                self.boots[index] = observation.boot;
                 let engine = &self.engine;
                 let parameters = Parameters::new(&self.model, |parameter| engine.parameter(index, parameter));
                 self.vehicles[index].restart(parameters, sample, &mut self.out);
@@ -375,7 +375,7 @@ impl Swarm {
         Ok(())
     }
 
-    fn report(&self) -> Report {
+    fn report(&self) -> BridgeReport {
         let wall_seconds = self.began.elapsed().as_secs_f64();
         let line = |at: usize| {
             let Counts { frames_in, bytes_in, frames_out, bytes_out, junk_bytes, lost_in, lost_out } =
@@ -394,7 +394,7 @@ impl Swarm {
         };
         let outcome = self.engine.outcome();
         let gap = outcome.clearance.map(|clearance| clearance.bodies_m);
-        Report {
+        BridgeReport {
             vehicles: self.vehicles.len(),
             ticks: self.ticks,
             sim_seconds: outcome.seconds,

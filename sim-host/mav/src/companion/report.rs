@@ -1,7 +1,7 @@
 //! What came of it.
 
 use super::kind::Kind;
-use super::offboard::{State, Tally};
+use super::offboard::{OffboardCounters, State};
 use crate::Counts;
 use serde::Serialize;
 use staya_controller::robot::Mode;
@@ -26,7 +26,7 @@ pub struct VehicleReport {
     pub position_m: Option<[f64; 3]>,
     /// What happened.
     #[serde(flatten)]
-    pub tally: Tally,
+    pub tally: OffboardCounters,
     /// Packets of others that were heard.
     pub packets_heard: u64,
     /// Packets that were refused: damaged, repeated, replayed, forged or without a seal.
@@ -49,7 +49,7 @@ pub struct LineReport {
 
 /// The figures of `staya companion`.
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
+pub struct CompanionReport {
     /// Of the scenario.
     pub scenario: String,
     /// How long it ran.
@@ -64,7 +64,7 @@ pub struct Report {
     pub links: Vec<LineReport>,
 }
 
-impl fmt::Display for Report {
+impl fmt::Display for CompanionReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let ended = match (self.interrupted, self.dry_run) {
             (_, true) => ", dry run: nothing was sent",

@@ -4,7 +4,7 @@ use super::config::{Config, VehicleSetup};
 use super::controller::{Body, Controller};
 use super::medium::{Medium, MediumError, tunnel, tunnelled};
 use super::offboard::{AUTOPILOT, COMPONENT, Event, OffboardStateMachine, State, status_text};
-use super::report::{LineReport, Report, VehicleReport};
+use super::report::{CompanionReport, LineReport, VehicleReport};
 use super::seal::{Seal, SealError};
 use crate::geo::{Origin, enu, ned};
 use crate::{Lines, OpenError, Peer, Received, Tlog, TlogError};
@@ -99,7 +99,7 @@ struct Companions<'a> {
 ///
 /// # Errors
 /// What cannot be opened or written; an autopilot that is not there is none.
-pub fn run(config: &Config, options: &mut Options, is_wanted: impl Fn() -> bool) -> Result<Report, RunError> {
+pub fn run(config: &Config, options: &mut Options, is_wanted: impl Fn() -> bool) -> Result<CompanionReport, RunError> {
     let ground = Arc::new(PlaneGround::new(&config.scenario, &config.plane));
     let boot = (micros_since_1970() >> 20) as u8;
     let format = config.scenario.radio.format;
@@ -416,7 +416,7 @@ impl Companions<'_> {
         Ok(())
     }
 
-    fn report(&self, config: &Config, seconds: f64, interrupted: bool) -> Report {
+    fn report(&self, config: &Config, seconds: f64, interrupted: bool) -> CompanionReport {
         let vehicles = self.vehicles.iter().map(|vehicle| VehicleReport {
             robot: vehicle.setup.robot.0,
             system: vehicle.setup.system,
@@ -440,7 +440,7 @@ impl Companions<'_> {
                 .and_then(|signing| signing.get(line))
                 .map_or(0, |signing| signing.counts().refused()),
         });
-        Report {
+        CompanionReport {
             scenario: config.scenario.name.clone(),
             seconds,
             interrupted,

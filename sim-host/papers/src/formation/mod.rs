@@ -168,7 +168,7 @@ impl Plan {
 
     /// The landscape of a run: a function of seed, obstacles and number of the run.
     fn landscape(&self, obstacles: u32, run: u32) -> Result<Terrain, TerrainError> {
-        let plan = generate::Plan {
+        let plan = generate::LandPlan {
             width: self.size,
             height: self.size,
             classes: self.classes,

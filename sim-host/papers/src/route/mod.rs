@@ -250,7 +250,7 @@ impl Plan {
     /// More obstacles than cells, or no classes.
     pub fn landscape(&self, land: Land, run: u32) -> Result<Terrain, TerrainError> {
         let key = land.obstacles().unwrap_or(u32::MAX);
-        let plan = generate::Plan {
+        let plan = generate::LandPlan {
             width: self.size,
             height: self.size,
             classes: self.classes,

@@ -6,7 +6,7 @@ use staya_controller::rand::Rng;
 use staya_controller::robot::Mode;
 use staya_sim::record::{History, Motion, Options, PacketCounts, Recorder, RobotRow, TickRow};
 use staya_sim::terrain::Terrain;
-use staya_sim::terrain::generate::{Plan, uniform};
+use staya_sim::terrain::generate::{LandPlan, uniform};
 use std::path::Path;
 
 fn row(id: u32, position_m: [f64; 2], target: Cell) -> RobotRow {
@@ -190,7 +190,7 @@ fn a_small_part_of_a_large_map_is_shown_alone() {
 
 #[test]
 fn crowds_and_noisy_land_stay_small() {
-    let plan = Plan { width: 256, height: 256, classes: 9, seed: 5 };
+    let plan = LandPlan { width: 256, height: 256, classes: 9, seed: 5 };
     let terrain = uniform(&plan).unwrap();
     for robots in [6, 200, 201, 2000, 100_000] {
         let dir = tempfile::tempdir().unwrap();

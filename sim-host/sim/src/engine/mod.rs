@@ -24,7 +24,7 @@ use external::External;
 pub use external::{Decision, ExternalController};
 pub use grid::Grid;
 pub use ground::{Ground, HostLaw, StateWords};
-pub use operator::{Glance, Operated, operated};
+pub use operator::{Observation, Operated, operated};
 pub use plane::{PlaneGround, Senses};
 pub use simulate::{Moment, Outcome, WIDE, Watch, simulate, simulate_with};
 

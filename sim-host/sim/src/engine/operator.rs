@@ -13,7 +13,7 @@ use staya_mavlink::frame::MAX_FRAME_LEN;
 
 /// What an operator can see of a robot: what the robot itself knows.
 #[derive(Clone, Copy, Debug)]
-pub struct Glance {
+pub struct Observation {
     /// How it moves.
     pub motion: Motion,
     /// What it is doing.
@@ -36,7 +36,7 @@ pub trait Operated: Send {
     fn advance(&mut self);
 
     /// Robot `index` now.
-    fn glance(&self, index: usize) -> Glance;
+    fn observation(&self, index: usize) -> Observation;
 
     /// What happened to it in the last tick.
     fn events(&self, index: usize) -> &[Event];
@@ -108,10 +108,10 @@ where
         self.engine.step();
     }
 
-    fn glance(&self, index: usize) -> Glance {
+    fn observation(&self, index: usize) -> Observation {
         let computer = &self.engine.computers[index];
         let agent = computer.agent.as_ref();
-        Glance {
+        Observation {
             motion: self.engine.ground.motion(index, self.engine.tick),
             status: self.engine.statuses[index],
             boot: computer.boot,

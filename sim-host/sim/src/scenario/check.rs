@@ -3,7 +3,7 @@
 use super::ranges::within;
 use super::source::Source;
 use super::{Fault, Robot, ScenarioError, ScenarioFile};
-use crate::terrain::generate::{self, Plan};
+use crate::terrain::generate::{self, LandPlan};
 use crate::terrain::{Terrain, TerrainError};
 use staya_controller::robot::RobotId;
 use staya_controller::route::Replan;
@@ -104,8 +104,12 @@ pub(super) fn terrain(source: &Source<'_>, file: &ScenarioFile) -> Result<Terrai
     let Some(table) = &file.terrain else {
         return Err(source.error("terrain", "it is missing", "say what land is meant"));
     };
-    let plan =
-        |width, height, classes, seed: Option<u64>| Plan { width, height, classes, seed: seed.unwrap_or(file.seed) };
+    let plan = |width, height, classes, seed: Option<u64>| LandPlan {
+        width,
+        height,
+        classes,
+        seed: seed.unwrap_or(file.seed),
+    };
     let (field, made) = match (&table.file, table.uniform, table.natural, table.entropy) {
         (Some(name), None, None, None) => {
             let path = source.folder().join(name);

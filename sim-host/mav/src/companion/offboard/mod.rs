@@ -126,7 +126,7 @@ enum Ask {
 
 /// What has happened so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Tally {
+pub struct OffboardCounters {
     /// Heartbeats heard.
     pub heartbeats: u64,
     /// Positions heard.
@@ -168,7 +168,7 @@ pub struct OffboardStateMachine {
     next_look: Option<Duration>,
     positions_at_look: u64,
     events: VecDeque<Event>,
-    tally: Tally,
+    tally: OffboardCounters,
 }
 
 impl OffboardStateMachine {
@@ -197,7 +197,7 @@ impl OffboardStateMachine {
             next_look: None,
             positions_at_look: 0,
             events: VecDeque::new(),
-            tally: Tally::default(),
+            tally: OffboardCounters::default(),
         }
     }
 
@@ -209,7 +209,7 @@ impl OffboardStateMachine {
 
     /// What has happened.
     #[must_use]
-    pub const fn tally(&self) -> Tally {
+    pub const fn tally(&self) -> OffboardCounters {
         self.tally
     }
 

@@ -51,9 +51,9 @@ fn who_is_commanded_goes_elsewhere_and_nobody_is_hit() {
     }
     run(&mut *swarm, 400);
     let off_m = [0, 1].map(|robot| {
-        let glance = swarm.glance(robot);
-        assert_eq!(glance.wish, meeting);
-        let [x, y, _] = glance.motion.position_m;
+        let observation = swarm.observation(robot);
+        assert_eq!(observation.wish, meeting);
+        let [x, y, _] = observation.motion.position_m;
         libm::hypot(x - 2.0, y - 1.0)
     });
     // One is there, the other one beside it.
@@ -71,13 +71,13 @@ fn who_is_down_hears_nothing_and_starts_anew_as_the_scenario_has_it() {
     assert!(swarm.command(2, east));
     assert!(swarm.set_parameter(2, Parameter::Speed, 0.5));
     run(&mut *swarm, 22);
-    let before = swarm.glance(2);
+    let before = swarm.observation(2);
     assert!(!before.is_up && before.motion.velocity_mps == [0.0; 3]);
     assert!(!swarm.set_parameter(2, Parameter::Speed, 0.5));
     assert_eq!(swarm.parameter(2, Parameter::Speed), None);
     assert!(!swarm.command(2, east), "nobody is there");
     run(&mut *swarm, 15);
-    let after = swarm.glance(2);
+    let after = swarm.observation(2);
     assert!(after.is_up && after.boot != before.boot && after.wish == Wish::Own);
     assert_eq!(swarm.parameter(2, Parameter::Speed), Some(1.0));
     assert!(after.motion.velocity_mps[1] < -0.5, "{:?}", after.motion);
@@ -98,12 +98,12 @@ fn tell_a_goal(swarm: &mut dyn Operated) {
     let header = Header { boot: 0, sender: RobotId(255), sequence: 0 };
     swarm.tell(0, header, &Message::Goal(goal));
     swarm.advance();
-    assert_eq!(swarm.glance(0).status.target, Cell::new(3, 9));
+    assert_eq!(swarm.observation(0).status.target, Cell::new(3, 9));
     let begins = Event::ModeChanged { from: Mode::Idle, to: Mode::Cruise };
     assert_eq!(swarm.events(0), [begins]);
-    assert_eq!(swarm.glance(1).status.target, Cell::new(12, 5));
+    assert_eq!(swarm.observation(1).status.target, Cell::new(12, 5));
     run(swarm, 30);
-    let there = swarm.glance(0);
+    let there = swarm.observation(0);
     assert_eq!((there.motion.cell, there.status.mode), (Cell::new(3, 9), Mode::Arrived));
 }
 
@@ -121,7 +121,7 @@ fn no_whim_of_the_operator_makes_robots_collide() {
         for _ in 0..60 {
             for robot in 0..8 {
                 let [x, y] = [below(4001), below(4001)].map(|mm| mm as i32 - 2000);
-                let [vx, vy, _] = swarm.glance(robot).motion.velocity_mps;
+                let [vx, vy, _] = swarm.observation(robot).motion.velocity_mps;
                 let speed = libm::hypot(vx, vy);
                 let wish = match below(7) {
                     0 => Wish::Own,

@@ -12,7 +12,7 @@
 use super::super::Terrain;
 use super::super::error::{TerrainError, parameter_error};
 use super::super::metrics::{entropy, total_edge};
-use super::{LAND, Plan};
+use super::{LAND, LandPlan};
 use staya_controller::rand::Rng;
 use std::cmp::Reverse;
 
@@ -40,7 +40,7 @@ const MAX_RADIUS: u16 = 1024;
 ///
 /// # Errors
 /// [`TerrainError::Parameter`] for a plan out of range, and for an S or TE that cannot be reached, with the range that can.
-pub fn by_metrics(plan: &Plan, wanted: &ByMetrics) -> Result<Terrain, TerrainError> {
+pub fn by_metrics(plan: &LandPlan, wanted: &ByMetrics) -> Result<Terrain, TerrainError> {
     plan.check()?;
     let sizes = class_sizes(plan, wanted)?;
     let mut rng = plan.rng();
@@ -79,7 +79,7 @@ pub fn by_metrics(plan: &Plan, wanted: &ByMetrics) -> Result<Terrain, TerrainErr
 }
 
 /// Cells of each class 1..=l (index 0 is class 1) whose entropy is the wanted one.
-fn class_sizes(plan: &Plan, wanted: &ByMetrics) -> Result<Vec<usize>, TerrainError> {
+fn class_sizes(plan: &LandPlan, wanted: &ByMetrics) -> Result<Vec<usize>, TerrainError> {
     let cells = plan.cells() as usize;
     let sizes_at = |ratio: f64| {
         let shares: Vec<f64> =
@@ -125,7 +125,7 @@ fn class_sizes(plan: &Plan, wanted: &ByMetrics) -> Result<Vec<usize>, TerrainErr
 }
 
 /// The fields in whose order cells take their classes, from rough to smooth.
-fn fields<'a>(plan: &'a Plan, noise: &'a [u64]) -> impl Iterator<Item = Vec<u64>> + 'a {
+fn fields<'a>(plan: &'a LandPlan, noise: &'a [u64]) -> impl Iterator<Item = Vec<u64>> + 'a {
     let longest = plan.width.max(plan.height);
     let radii = std::iter::successors(Some(1_u16), |radius| Some(radius + (radius / 2).max(1)));
     let smoothed = radii
@@ -197,7 +197,7 @@ struct Search {
 }
 
 impl Search {
-    fn new(plan: &Plan, cells: Vec<u8>) -> Self {
+    fn new(plan: &LandPlan, cells: Vec<u8>) -> Self {
         Self {
             edges: total_edge(&cells, plan.width),
             cells,
@@ -247,7 +247,7 @@ mod tests {
     use super::super::super::metrics::Metrics;
     use super::*;
 
-    const PLAN: Plan = Plan { width: 60, height: 40, classes: 9, seed: 5 };
+    const PLAN: LandPlan = LandPlan { width: 60, height: 40, classes: 9, seed: 5 };
 
     fn wanted(entropy: f64, total_edge: u64) -> ByMetrics {
         ByMetrics { entropy, entropy_tolerance: 0.01, total_edge, edge_tolerance: 2 }
@@ -278,14 +278,14 @@ mod tests {
 
     #[test]
     fn seeds_decide_and_nothing_else() {
-        let land = |seed| by_metrics(&Plan { seed, ..PLAN }, &wanted(1.5, 1500)).unwrap();
+        let land = |seed| by_metrics(&LandPlan { seed, ..PLAN }, &wanted(1.5, 1500)).unwrap();
         assert_eq!(land(1), land(1));
         assert_ne!(land(1), land(2));
     }
 
     #[test]
     fn what_is_out_of_reach_is_said_with_the_range() {
-        let message = |plan: &Plan, wanted: &ByMetrics| by_metrics(plan, wanted).unwrap_err().to_string();
+        let message = |plan: &LandPlan, wanted: &ByMetrics| by_metrics(plan, wanted).unwrap_err().to_string();
         let high = message(&PLAN, &wanted(2.3, 1000));
         assert!(high.contains("entropy 2.3 is out of reach") && high.contains("0 to 2.1972"), "{high}");
         assert!(message(&PLAN, &wanted(-0.1, 0)).contains("0 to 2.1972"));
@@ -303,13 +303,13 @@ mod tests {
 
     #[test]
     fn the_smallest_lands_work() {
-        let one = Plan { width: 1, height: 1, ..PLAN };
+        let one = LandPlan { width: 1, height: 1, ..PLAN };
         assert_eq!(by_metrics(&one, &wanted(0.0, 0)).unwrap().cells(), [1]);
-        let two = Plan { width: 2, height: 1, classes: 2, seed: 0 };
+        let two = LandPlan { width: 2, height: 1, classes: 2, seed: 0 };
         let cells = by_metrics(&two, &wanted(libm::log(2.0), 1)).unwrap();
         assert_eq!(Metrics::of(&cells).total_edge, 1);
         assert!(by_metrics(&two, &wanted(0.3, 1)).is_err());
-        let column = Plan { width: 1, height: 50, classes: 3, seed: 0 };
+        let column = LandPlan { width: 1, height: 50, classes: 3, seed: 0 };
         let land = by_metrics(&column, &ByMetrics { entropy_tolerance: 0.05, ..wanted(1.0, 20) }).unwrap();
         assert!(Metrics::of(&land).total_edge.abs_diff(20) <= 2);
     }

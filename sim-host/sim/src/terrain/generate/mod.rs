@@ -17,7 +17,7 @@ const LAND: u32 = 0x0054_0001;
 
 /// Size, classes and seed of a random landscape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Plan {
+pub struct LandPlan {
     /// Cells from west to east, 1..=[`MAX_SIDE`].
     pub width: u16,
     /// Cells from south to north, 1..=[`MAX_SIDE`].
@@ -28,7 +28,7 @@ pub struct Plan {
     pub seed: u64,
 }
 
-impl Plan {
+impl LandPlan {
     fn check(&self) -> Result<(), TerrainError> {
         let sides = 1..=MAX_SIDE;
         if !sides.contains(&self.width) || !sides.contains(&self.height) {
@@ -56,7 +56,7 @@ impl Plan {
 ///
 /// # Errors
 /// [`TerrainError::Parameter`] for a plan out of range.
-pub fn uniform(plan: &Plan) -> Result<Terrain, TerrainError> {
+pub fn uniform(plan: &LandPlan) -> Result<Terrain, TerrainError> {
     plan.check()?;
     let mut rng = plan.rng();
     let classes = u32::from(plan.classes);
@@ -70,7 +70,7 @@ pub fn uniform(plan: &Plan) -> Result<Terrain, TerrainError> {
 ///
 /// # Errors
 /// [`TerrainError::Parameter`] for a plan out of range, or more obstacles than cells.
-pub fn natural(plan: &Plan, obstacles: u32, norm: Norm) -> Result<Terrain, TerrainError> {
+pub fn natural(plan: &LandPlan, obstacles: u32, norm: Norm) -> Result<Terrain, TerrainError> {
     plan.check()?;
     if obstacles > plan.cells() {
         return Err(parameter_error(
@@ -159,7 +159,7 @@ mod tests {
     use proptest::prelude::*;
     use staya_controller::grid::Cell;
 
-    const PLAN: Plan = Plan { width: 100, height: 100, classes: 9, seed: 1 };
+    const PLAN: LandPlan = LandPlan { width: 100, height: 100, classes: 9, seed: 1 };
 
     /// u by the definition: the nearest obstacle of all.
     fn by_definition(land: &Terrain, classes: u8, obstacles: &[Cell], norm: Norm) -> Vec<u8> {
@@ -190,7 +190,7 @@ mod tests {
             seed: u64,
             norm in prop_oneof![Just(Norm::Euclidean), Just(Norm::Chebyshev)],
         ) {
-            let plan = Plan { width, height, classes, seed };
+            let plan = LandPlan { width, height, classes, seed };
             let obstacles = plan.cells() * share / 100;
             let land = natural(&plan, obstacles, norm).unwrap();
             let drawn = sample(plan.cells(), obstacles, &mut plan.rng());
@@ -207,7 +207,7 @@ mod tests {
     #[test]
     fn seeds_decide_and_nothing_else() {
         assert_eq!(uniform(&PLAN).unwrap(), uniform(&PLAN).unwrap());
-        let other = Plan { seed: 2, ..PLAN };
+        let other = LandPlan { seed: 2, ..PLAN };
         assert_ne!(uniform(&PLAN).unwrap(), uniform(&other).unwrap());
         let land = |plan| natural(plan, 40, Norm::Euclidean).unwrap();
         assert_eq!(land(&PLAN), land(&PLAN));
@@ -228,7 +228,7 @@ mod tests {
     fn natural_entropy_agrees_with_the_corrected_formula_where_it_should() {
         let mean = |obstacles: u32| {
             let s = (0..50).map(|seed| {
-                let land = natural(&Plan { seed, ..PLAN }, obstacles, Norm::Euclidean).unwrap();
+                let land = natural(&LandPlan { seed, ..PLAN }, obstacles, Norm::Euclidean).unwrap();
                 Metrics::of(&land).entropy
             });
             s.sum::<f64>() / 50.0
@@ -241,17 +241,17 @@ mod tests {
 
     #[test]
     fn limits_are_lands_and_beyond_them_are_errors() {
-        let tiny = Plan { width: 1, height: 1, classes: 1, seed: 0 };
+        let tiny = LandPlan { width: 1, height: 1, classes: 1, seed: 0 };
         assert_eq!(natural(&tiny, 0, Norm::Euclidean).unwrap().cells(), [1]);
         assert_eq!(natural(&tiny, 1, Norm::Euclidean).unwrap().cells(), [1]);
         assert!(natural(&tiny, 2, Norm::Euclidean).is_err());
         assert_eq!(uniform(&tiny).unwrap().cells(), [1]);
-        assert!(uniform(&Plan { classes: 0, ..tiny }).is_err());
-        assert!(uniform(&Plan { width: 0, ..tiny }).is_err());
-        assert!(uniform(&Plan { height: 32_768, ..tiny }).is_err());
-        let steep = Plan { width: 3, height: 3, classes: 255, seed: 0 };
+        assert!(uniform(&LandPlan { classes: 0, ..tiny }).is_err());
+        assert!(uniform(&LandPlan { width: 0, ..tiny }).is_err());
+        assert!(uniform(&LandPlan { height: 32_768, ..tiny }).is_err());
+        let steep = LandPlan { width: 3, height: 3, classes: 255, seed: 0 };
         assert_eq!(natural(&steep, 9, Norm::Chebyshev).unwrap().cells(), [255; 9]);
-        let stripe = Plan { height: 1, ..PLAN };
+        let stripe = LandPlan { height: 1, ..PLAN };
         assert_eq!(natural(&stripe, 100, Norm::Euclidean).unwrap().cells(), [9; 100]);
     }
 }
