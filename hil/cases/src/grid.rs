@@ -53,6 +53,12 @@ pub(crate) fn instant(tick: u32) -> Instant {
     Instant::from_micros(0) + TICK.saturating_mul(tick.cast_signed())
 }
 
+/// Made where it stays, not beside it first: a small part has no room for two.
+#[inline(never)]
+pub(crate) fn workspace() -> GridWorkspace<CELLS> {
+    GridWorkspace::new()
+}
+
 /// Runs `walkers` until all have arrived. `commander` says what an operator says in a tick; robots hear it as they
 /// hear each other, all in wire format `wire`.
 #[inline(never)]
@@ -72,7 +78,7 @@ where
 {
     // One place more, for the operator.
     let mut medium = Medium::<W, { ROBOTS + 1 }>::new(wire, scene.faults);
-    let mut workspace = GridWorkspace::<CELLS>::new();
+    let mut workspace = workspace();
     let (mut hash, mut course) = (Hash::new(), Hash::new());
     let mut summary = Summary::of::<GridAgent<S, G, W>, G::Workspace>();
     let mut commands: [Command<S>; ROBOTS] = [const { Command::Hold }; ROBOTS];

@@ -34,6 +34,7 @@ pub(crate) struct Medium<W, const R: usize> {
 }
 
 impl<W: Wire, const R: usize> Medium<W, R> {
+    #[inline(never)] // Made where it stays, not beside it first.
     pub(crate) const fn new(wire: W, faults: Faults) -> Self {
         Self { wire, said: [const { Vec::new() }; R], next: [const { Vec::new() }; R], faults }
     }

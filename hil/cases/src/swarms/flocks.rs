@@ -1,9 +1,10 @@
 //! The three flocks.
 
-use super::waypoints::movers;
+use super::waypoints::add_movers;
 use crate::medium::Faults;
 use crate::plane::{Scene, Solid, run};
 use crate::{Probe, Summary};
+use heapless::Vec;
 use staya_controller::agent::{BoidsGuidance, GoalFlockGuidance, LatticeGuidance, PushOutSafety, Unguarded, Waypoint};
 use staya_controller::flock::boids::BoidsParams;
 use staya_controller::flock::goal::GoalParams;
@@ -38,7 +39,8 @@ pub(super) fn lattice<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
         gamma: Gain::critical(S::HALF),
         ..LatticeParams::new(S::ONE)
     };
-    let mut movers = movers(&CROWD, |_| LatticeGuidance::new(params, true), || Unguarded);
+    let mut movers = Vec::new();
+    add_movers(&mut movers, &CROWD, |_| LatticeGuidance::new(params, true), || Unguarded);
     let reference = Waypoint {
         velocity_mps: Vec3::new(S::from_ratio(1, 4), S::ZERO, S::ZERO),
         ..Waypoint::fixed(Position::from_mm([1000, 0, 0]))
@@ -52,7 +54,9 @@ pub(super) fn lattice<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
 #[inline(never)]
 pub(super) fn goals<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     let params = GoalParams::new(S::from_milli(500), S::ONE);
-    let mut movers = movers(
+    let mut movers = Vec::new();
+    add_movers(
+        &mut movers,
         &CROWD,
         |_| GoalFlockGuidance::new(params, S::ONE, 3),
         || PushOutSafety::new(PushOutParams::new(S::from_milli(350))),
@@ -69,7 +73,8 @@ pub(super) fn goals<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
 #[inline(never)]
 pub(super) fn boids<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     let params = BoidsParams::new(S::from_milli(300), S::from_i32(30), S::from_ratio(1, 20), S::from_ratio(1, 50));
-    let mut movers = movers(&CROWD, |_| BoidsGuidance::new(params, S::HALF), || Unguarded);
+    let mut movers = Vec::new();
+    add_movers(&mut movers, &CROWD, |_| BoidsGuidance::new(params, S::HALF), || Unguarded);
     // Half of a circle of directions; their speeds differ, which is put right in the first step.
     let ways = [[5, 0], [4, 3], [3, -4], [0, 5], [4, -3]];
     for (mover, [x, y]) in movers.iter_mut().zip(ways) {

@@ -34,14 +34,15 @@ fn config<S: Scalar>(index: usize) -> AgentConfig<S> {
 #[inline(never)]
 pub(super) fn route<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     let scene = Scene { land: LAND, faults: Faults::default(), ticks: 300 };
-    run(&scene, &mut travellers(), Postcard, |_, _| {}, probe)
+    let mut walkers = Vec::new();
+    add_travellers(&mut walkers);
+    run(&scene, &mut walkers, Postcard, |_, _| {}, probe)
 }
 
-/// From each corner to the opposite one.
+/// From each corner to the opposite one. Into a vector of the caller's: a small part has no room for two.
 #[inline(never)]
-fn travellers<S: Scalar>() -> Vec<Walker<S, Route>, ROBOTS> {
+fn add_travellers<S: Scalar>(walkers: &mut Vec<Walker<S, Route>, ROBOTS>) {
     let corners = [(4, 4), (23, 4), (4, 23), (23, 23)].map(|(x, y)| Cell::new(x, y));
-    let mut walkers = Vec::new();
     for (index, (cell, goal)) in corners.into_iter().zip(corners.into_iter().rev()).enumerate() {
         let guidance = Route::new(RouteParams::default());
         let mut agent = GridAgent::new(&config(index), guidance, Unguarded, Postcard);
@@ -49,7 +50,6 @@ fn travellers<S: Scalar>() -> Vec<Walker<S, Route>, ROBOTS> {
         // As many places as robots.
         let _ = walkers.push(Walker { agent, cell, free_at_ms: 0 });
     }
-    walkers
 }
 
 #[inline(never)]
@@ -68,12 +68,12 @@ fn template(index: usize) -> Template<ROBOTS> {
 }
 
 #[inline(never)]
-fn members<S: Scalar, W: Wire>(
+fn add_members<S: Scalar, W: Wire>(
+    walkers: &mut Vec<Walker<S, Formation, W>, ROBOTS>,
     params: FormationParams,
     wire: &W,
     template: impl Fn(usize) -> Template<ROBOTS>,
-) -> Vec<Walker<S, Formation, W>, ROBOTS> {
-    let mut walkers = Vec::new();
+) {
     for (index, place) in PLACES.into_iter().enumerate() {
         let guidance = Formation::new(RouteParams::default(), params, template(index));
         let _ = walkers.push(Walker {
@@ -82,12 +82,12 @@ fn members<S: Scalar, W: Wire>(
             free_at_ms: 0,
         });
     }
-    walkers
 }
 
 fn in_formation<S: Scalar, P: Probe<S>>(prediction: Prediction, probe: &mut P) -> Summary {
     let params = FormationParams { prediction, ..FormationParams::default() };
-    let mut walkers = members(params, &Postcard, template);
+    let mut walkers = Vec::new();
+    add_members(&mut walkers, params, &Postcard, template);
     for (walker, place) in walkers.iter_mut().zip(PLACES) {
         walker.agent.assign_goal(GOAL + place);
     }
@@ -102,7 +102,8 @@ pub(crate) fn packets<S: Scalar, W: Wire, P: Probe<S>>(wire: W, probe: &mut P) -
         faults: Faults { seed: 5, loss: u32::MAX >> 3, flip: u32::MAX >> 4, twice: u32::MAX >> 3 },
         ticks: 400,
     };
-    let mut walkers = members(FormationParams::default(), &wire, |_| Template::default());
+    let mut walkers = Vec::new();
+    add_members(&mut walkers, FormationParams::default(), &wire, |_| Template::default());
     let mut operator = Operator { wire: wire.clone(), sequence: 0 };
     run(&scene, &mut walkers, wire, |tick, out| operator.speak(tick, out), probe)
 }

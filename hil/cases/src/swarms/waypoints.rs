@@ -1,6 +1,6 @@
 //! Cases in which each robot has a waypoint of its own.
 
-use crate::grid::Route;
+use crate::grid::{Route, workspace};
 use crate::land::Land;
 use crate::medium::Faults;
 use crate::plane::{Mover, PlaneAgent, STEP, Scene, Solid, run};
@@ -8,8 +8,7 @@ use crate::{Probe, Summary};
 use heapless::Vec;
 use serde::Serialize;
 use staya_controller::agent::{
-    AgentConfig, CellFollower, FlySafety, GridWorkspace, Guidance, OrcaSafety, PushOutSafety, Safety, Waypoint,
-    WaypointGuidance,
+    AgentConfig, CellFollower, FlySafety, Guidance, OrcaSafety, PushOutSafety, Safety, Waypoint, WaypointGuidance,
 };
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::grid::Cell;
@@ -41,14 +40,14 @@ fn inflation<S: Scalar>() -> StalenessInflation<S> {
     StalenessInflation { growth_mps: S::HALF, max_m: S::from_milli(300) }
 }
 
-/// One robot for each start, standing there.
+/// Adds one robot for each start, standing there. To a vector of the caller's: a small part has no room for two.
 #[inline(never)]
-pub(super) fn movers<S: Scalar, G: Guidance<S>, A: Safety<S>, const R: usize>(
+pub(super) fn add_movers<S: Scalar, G: Guidance<S>, A: Safety<S>, const R: usize>(
+    movers: &mut Vec<Mover<S, G, A>, R>,
     starts: &[[i32; 3]; R],
     guidance: impl Fn(usize) -> G,
     safety: impl Fn() -> A,
-) -> Vec<Mover<S, G, A>, R> {
-    let mut movers = Vec::new();
+) {
     for (index, start) in starts.iter().enumerate() {
         // As many places as robots.
         let _ = movers.push(Mover {
@@ -57,7 +56,6 @@ pub(super) fn movers<S: Scalar, G: Guidance<S>, A: Safety<S>, const R: usize>(
             velocity_mps: Vec3::ZERO,
         });
     }
-    movers
 }
 
 fn scene<S: Scalar>(solids: &'static [Solid]) -> Scene<S> {
@@ -76,7 +74,8 @@ fn to_places<S: Scalar, A: Safety<S> + Serialize, P: Probe<S>, const R: usize>(
     safety: impl Fn() -> A,
     probe: &mut P,
 ) -> Summary {
-    let mut movers = movers(starts, |_| waypoint(), safety);
+    let mut movers = Vec::new();
+    add_movers(&mut movers, starts, |_| waypoint(), safety);
     for (mover, goal) in movers.iter_mut().zip(goals) {
         let waypoint = Waypoint::fixed(Position::from_mm(*goal));
         // There is room for one, number 0.
@@ -141,10 +140,11 @@ pub(super) fn route_in_plane<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     let goals = [Cell::new(12, 11), Cell::new(3, 12), Cell::new(12, 4)];
     let guidance = |_| CellFollower::new(Route::new(RouteParams::default()), S::HALF);
     let safety = || OrcaSafety::<S, PLANES>::with_source(AvoidParams::default(), inflation(), Analytic);
-    let mut movers = movers(&starts, guidance, safety);
+    let mut movers = Vec::new();
+    add_movers(&mut movers, &starts, guidance, safety);
     for (mover, goal) in movers.iter_mut().zip(goals) {
         mover.agent.assign_goal(goal);
     }
     let scene = Scene { land: Some(land), ticks: 700, ..scene(&[]) };
-    run(&scene, &mut movers, &mut GridWorkspace::new(), probe)
+    run(&scene, &mut movers, &mut workspace(), probe)
 }
