@@ -5,7 +5,7 @@ use crate::firmware::Profile;
 use crate::part::PARTS;
 use crate::repo::{Repo, run_reading};
 use crate::report::Report;
-use crate::report::counted;
+use crate::tally::counted;
 use std::process::Command;
 
 /// Runs the tests with the firmware that was built before, or says why not.

@@ -28,6 +28,7 @@ mod repo;
 mod report;
 mod size;
 mod swarms;
+mod tally;
 mod test;
 
 use device::Toolchains;

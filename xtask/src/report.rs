@@ -1,6 +1,5 @@
 //! What passed, what failed, what was skipped and why.
 
-use crate::repo::run_reading;
 use std::process::{Command, ExitCode};
 use std::time::{Duration, Instant};
 
@@ -146,62 +145,9 @@ fn hundredths_worked(stat: &str) -> Option<u64> {
     numbers.filter(|numbers| numbers.len() == 4).map(|numbers| numbers.iter().sum())
 }
 
-/// The counts in one line of a test program's output, if it is its closing line. What the command
-/// line filtered out was skipped.
-fn parse_test_result(line: &str) -> Option<Counts> {
-    let rest = line.strip_prefix("test result: ")?;
-    let (_, counts) = rest.split_once(". ")?;
-    let mut sum = Counts::default();
-    for field in counts.split("; ") {
-        let (number, what) = field.split_once(' ')?;
-        let Ok(number) = number.parse::<u64>() else {
-            continue; // "finished in 0.01s"
-        };
-        match what {
-            "passed" => sum.passed += number,
-            "failed" => sum.failed += number,
-            "ignored" | "filtered out" => sum.skipped += number,
-            _ => {}
-        }
-    }
-    Some(sum)
-}
-
-/// Runs test programs and adds up their closing lines. A program that ends without one (it
-/// crashed, or did not compile) is one failure. `why_skipped` is the note if anything was.
-pub fn counted(tests: &mut Command, why_skipped: &str) -> (Counts, String) {
-    let mut sum = Counts::default();
-    let ended = run_reading(tests, |line| {
-        if let Some(counts) = parse_test_result(line) {
-            sum += counts;
-        }
-    });
-    let mut notes = Vec::new();
-    match ended {
-        Err(reason) if sum.failed == 0 => {
-            sum.failed = 1;
-            notes.push(format!("cargo test: {reason}"));
-        }
-        Err(_) => notes.push(String::from("see above")),
-        Ok(()) => {}
-    }
-    if sum.skipped > 0 && !why_skipped.is_empty() {
-        notes.push(why_skipped.to_string());
-    }
-    (sum, notes.join("; "))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn closing_line_of_a_test_program_is_counted() {
-        let line = "test result: FAILED. 12 passed; 3 failed; 1 ignored; 0 measured; \
-                    4 filtered out; finished in 0.02s";
-        let counts = parse_test_result(line).unwrap();
-        assert_eq!(counts, Counts { passed: 12, failed: 3, skipped: 5 });
-    }
 
     #[test]
     fn time_of_processors_is_that_of_the_program_and_its_commands() {
@@ -209,13 +155,6 @@ mod tests {
         assert_eq!(hundredths_worked(stat), Some(3 + 5 + 700 + 11000));
         for wrong in ["", "42 (a) S 1 2", "42 (a) S 1 42 42 0 -1 4194304 900 80 0 0 3 x 700 11000 20"] {
             assert_eq!(hundredths_worked(wrong), None, "{wrong:?}");
-        }
-    }
-
-    #[test]
-    fn other_lines_are_not_counted() {
-        for line in ["", "running 3 tests", "test a::b ... ok", "  test result: ok. 1 passed;"] {
-            assert_eq!(parse_test_result(line), None, "{line:?}");
         }
     }
 
@@ -244,41 +183,5 @@ mod tests {
         assert_eq!((part.counts.failed, part.counts.skipped), (1, 0));
         assert!(part.note.contains("no emulator"));
         assert_eq!(report.close(), ExitCode::FAILURE);
-    }
-
-    fn shell(script: &str) -> Command {
-        let mut command = Command::new("sh");
-        command.args(["-c", script]);
-        command
-    }
-
-    #[test]
-    fn closing_lines_add_up() {
-        let line = "test result: ok. 2 passed; 0 failed; 1 ignored; 0 measured; 0 filtered out";
-        let (counts, note) = counted(&mut shell(&format!("echo '{line}'; echo '{line}'")), "why");
-        assert_eq!(counts, Counts { passed: 4, failed: 0, skipped: 2 });
-        assert_eq!(note, "why");
-    }
-
-    #[test]
-    fn crash_without_a_closing_line_is_a_failure() {
-        let (counts, note) = counted(&mut shell("echo running 3 tests; exit 101"), "");
-        assert_eq!(counts.failed, 1);
-        assert!(note.contains("101"), "{note}");
-    }
-
-    #[test]
-    fn failure_does_not_hide_why_something_was_skipped() {
-        let line = "test result: FAILED. 2 passed; 1 failed; 0 ignored; 0 measured; 3 filtered out";
-        let (counts, note) = counted(&mut shell(&format!("echo '{line}'; exit 101")), "why");
-        assert_eq!((counts.failed, counts.skipped), (1, 3));
-        assert_eq!(note, "see above; why");
-    }
-
-    #[test]
-    fn failure_is_counted_once() {
-        let line = "test result: FAILED. 2 passed; 1 failed; 0 ignored; 0 measured";
-        let (counts, _) = counted(&mut shell(&format!("echo '{line}'; exit 101")), "");
-        assert_eq!(counts, Counts { passed: 2, failed: 1, skipped: 0 });
     }
 }

@@ -3,7 +3,8 @@
 use crate::device::Toolchains;
 use crate::extent::{Extent, LONG};
 use crate::repo::Repo;
-use crate::report::{Report, counted};
+use crate::report::Report;
+use crate::tally::counted;
 
 /// Tests in a module of this name read data beside the repository, which CI has.
 const NEEDS_SHARED: &str = "needs_shared::";

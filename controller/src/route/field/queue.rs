@@ -2,17 +2,27 @@
 
 /// Buckets in the ring; a power of two.
 pub(super) const RING: u32 = 64;
-/// End of a list, and "in no list".
-const NIL: u16 = u16::MAX;
+/// End of a list, and "in no bucket". Zero, so that a queue of zeros is an empty one.
+const NIL: u16 = 0;
 /// How many cells can be told apart.
-pub(super) const MOST_CELLS: usize = NIL as usize - 1;
+pub(super) const MOST_CELLS: usize = u16::MAX as usize;
+
+/// What the lists call a cell: its number and one.
+const fn name(cell: usize) -> u16 {
+    cell.wrapping_add(1) as u16
+}
+
+/// The number behind a name; beyond all cells for [`NIL`].
+const fn cell(name: u16) -> usize {
+    (name as usize).wrapping_sub(1)
+}
 
 /// Cells 0 to `CELLS` - 1, each in one bucket or none. A bucket has any number; those 64 apart are one. 5 bytes a cell.
 #[derive(Clone, Debug)]
 pub(super) struct Queue<const CELLS: usize> {
     next: [u16; CELLS],
     previous: [u16; CELLS],
-    /// Bucket that holds the cell, or `RING` if none.
+    /// Bucket that holds the cell and one, or `NIL` if none.
     bucket: [u8; CELLS],
     heads: [u16; RING as usize],
     /// Which buckets are not empty.
@@ -20,7 +30,7 @@ pub(super) struct Queue<const CELLS: usize> {
 }
 
 impl<const CELLS: usize> Queue<CELLS> {
-    /// Not in use before [`Queue::clear`]; all zeros, so that a firmware's takes no flash.
+    /// Empty; all zeros, so that a firmware's takes no flash.
     pub(super) const fn new() -> Self {
         Self { next: [0; CELLS], previous: [0; CELLS], bucket: [0; CELLS], heads: [0; RING as usize], occupied: 0 }
     }
@@ -28,7 +38,7 @@ impl<const CELLS: usize> Queue<CELLS> {
     /// Takes the first `used` cells out of it, and others are not in it. O(used).
     pub(super) fn clear(&mut self, used: usize) {
         for bucket in self.bucket.iter_mut().take(used) {
-            *bucket = RING as u8;
+            *bucket = NIL as u8;
         }
         self.heads = [NIL; RING as usize];
         self.occupied = 0;
@@ -45,64 +55,60 @@ impl<const CELLS: usize> Queue<CELLS> {
     }
 
     pub(super) fn holds(&self, cell: usize) -> bool {
-        self.bucket.get(cell).is_some_and(|&bucket| u32::from(bucket) != RING)
+        self.bucket.get(cell).is_some_and(|&bucket| u16::from(bucket) != NIL)
     }
 
     /// All cells in it, bucket by bucket.
     pub(super) fn iter(&self) -> impl Iterator<Item = usize> + '_ {
         let heads = self.heads.iter().copied().filter(|&head| head != NIL);
         let cells = heads.flat_map(|head| {
-            core::iter::successors(Some(head), |&cell| {
-                self.next.get(usize::from(cell)).copied().filter(|&next| next != NIL)
-            })
+            core::iter::successors(Some(head), |&at| self.next.get(cell(at)).copied().filter(|&next| next != NIL))
         });
-        cells.map(usize::from)
+        cells.map(cell)
     }
 
     /// Puts a cell that is in no bucket into the one of this number.
     #[inline]
-    pub(super) fn link(&mut self, cell: usize, bucket: u32) {
+    pub(super) fn link(&mut self, at: usize, bucket: u32) {
         let slot = bucket & (RING - 1);
-        let name = cell as u16;
         let (Some(head), Some(next), Some(previous), Some(of)) = (
             self.heads.get_mut(slot as usize),
-            self.next.get_mut(cell),
-            self.previous.get_mut(cell),
-            self.bucket.get_mut(cell),
+            self.next.get_mut(at),
+            self.previous.get_mut(at),
+            self.bucket.get_mut(at),
         ) else {
             return;
         };
         let second = *head;
         *next = second;
         *previous = NIL;
-        *of = slot as u8;
-        *head = name;
-        if let Some(back) = self.previous.get_mut(usize::from(second)) {
-            *back = name;
+        *of = slot as u8 + 1;
+        *head = name(at);
+        if let Some(back) = self.previous.get_mut(cell(second)) {
+            *back = name(at);
         }
         self.occupied |= 1 << slot;
     }
 
     /// Takes a cell out of its bucket, if it is in one.
     #[inline]
-    pub(super) fn unlink(&mut self, cell: usize) {
-        let Some(of) = self.bucket.get_mut(cell) else {
+    pub(super) fn unlink(&mut self, at: usize) {
+        let Some(of) = self.bucket.get_mut(at) else {
             return;
         };
-        let slot = u32::from(*of);
-        if slot == RING {
+        let Some(slot) = of.checked_sub(1) else {
             return;
-        }
-        *of = RING as u8;
-        let next = self.next.get(cell).copied().unwrap_or(NIL);
-        let previous = self.previous.get(cell).copied().unwrap_or(NIL);
-        if let Some(back) = self.previous.get_mut(usize::from(next)) {
+        };
+        *of = NIL as u8;
+        let next = self.next.get(at).copied().unwrap_or(NIL);
+        let previous = self.previous.get(at).copied().unwrap_or(NIL);
+        if let Some(back) = self.previous.get_mut(cell(next)) {
             *back = previous;
         }
-        match self.next.get_mut(usize::from(previous)) {
+        match self.next.get_mut(cell(previous)) {
             Some(forth) => *forth = next,
             None => {
-                if let Some(head) = self.heads.get_mut(slot as usize) {
+                if let Some(head) = self.heads.get_mut(usize::from(slot)) {
                     *head = next;
                 }
                 if next == NIL {
@@ -116,8 +122,8 @@ impl<const CELLS: usize> Queue<CELLS> {
     #[inline]
     pub(super) fn pop(&mut self, bucket: u32) -> Option<usize> {
         let head = self.heads.get((bucket & (RING - 1)) as usize).copied().filter(|&head| head != NIL)?;
-        self.unlink(usize::from(head));
-        Some(usize::from(head))
+        self.unlink(cell(head));
+        Some(cell(head))
     }
 }
 
@@ -130,8 +136,9 @@ mod tests {
     fn cells_leave_by_the_numbers_of_their_buckets() {
         let mut queue = Queue::<8>::new();
         assert!(queue.is_empty());
-        for (cell, bucket) in [(1, 70), (2, 66), (3, 70), (4, 100)] {
-            queue.link(cell, bucket);
+        assert!(!queue.holds(0) && queue.iter().next().is_none());
+        for (at, bucket) in [(1, 70), (2, 66), (3, 70), (4, 100)] {
+            queue.link(at, bucket);
         }
         queue.unlink(4);
         queue.unlink(5);

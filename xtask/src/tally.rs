@@ -1,0 +1,168 @@
+//! What test programs say of themselves, added up.
+
+use crate::repo::run_reading;
+use crate::report::Counts;
+use std::process::Command;
+
+/// How many failed tests the closing table names.
+const NAMED: usize = 8;
+
+/// The test programs of one command, so far.
+#[derive(Default)]
+struct Tally {
+    counts: Counts,
+    /// Whether a program has begun and not yet said how it ended.
+    runs: bool,
+    /// The last test of that program that was said to take long.
+    slow: Option<String>,
+    /// Names of tests that failed, and of programs that ended without a closing line.
+    failed: Vec<String>,
+}
+
+impl Tally {
+    fn read(&mut self, line: &str) {
+        if let Some(counts) = parse_test_result(line) {
+            self.counts += counts;
+            (self.runs, self.slow) = (false, None);
+        } else if line.starts_with("running ") && (line.ends_with(" tests") || line.ends_with(" test")) {
+            self.crashed();
+            self.runs = true;
+        } else if let Some(test) = line.strip_prefix("test ") {
+            if let Some(name) = test.strip_suffix(" ... FAILED") {
+                self.failed.push(name.to_string());
+            } else if let Some((name, _)) = test.split_once(" has been running for ") {
+                self.slow = Some(name.to_string());
+            }
+        }
+    }
+
+    /// A program that has begun ended without a closing line: one failure.
+    fn crashed(&mut self) {
+        if std::mem::take(&mut self.runs) {
+            self.counts.failed += 1;
+            let during = self.slow.take().map_or(String::new(), |name| format!(", perhaps in {name}"));
+            self.failed.push(format!("a test program ended without a closing line{during}"));
+        }
+    }
+
+    /// For the closing table.
+    fn note(&self) -> Option<String> {
+        let more = self.failed.len().checked_sub(NAMED).filter(|&more| more > 0);
+        let more = more.map(|more| format!("and {more} more"));
+        let names: Vec<String> = self.failed.iter().take(NAMED).cloned().chain(more).collect();
+        (!names.is_empty()).then(|| names.join(", "))
+    }
+}
+
+/// The counts in one line of a test program's output, if it is its closing line. What the command
+/// line filtered out was skipped.
+fn parse_test_result(line: &str) -> Option<Counts> {
+    let rest = line.strip_prefix("test result: ")?;
+    let (_, counts) = rest.split_once(". ")?;
+    let mut sum = Counts::default();
+    for field in counts.split("; ") {
+        let (number, what) = field.split_once(' ')?;
+        let Ok(number) = number.parse::<u64>() else {
+            continue; // "finished in 0.01s"
+        };
+        match what {
+            "passed" => sum.passed += number,
+            "failed" => sum.failed += number,
+            "ignored" | "filtered out" => sum.skipped += number,
+            _ => {}
+        }
+    }
+    Some(sum)
+}
+
+/// Runs test programs and adds up their closing lines. A program that ends without one (it
+/// crashed), and a command that fails without any test that does (it did not compile), is one failure each.
+/// The note names what failed; `why_skipped` is part of it if anything was.
+pub fn counted(tests: &mut Command, why_skipped: &str) -> (Counts, String) {
+    let mut tally = Tally::default();
+    let ended = run_reading(tests, |line| tally.read(line));
+    tally.crashed();
+    let mut notes = Vec::new();
+    notes.extend(tally.note());
+    let mut counts = tally.counts;
+    if let Err(reason) = ended {
+        if counts.failed == 0 {
+            counts.failed = 1;
+        }
+        notes.push(format!("cargo test: {reason}, see above"));
+    }
+    if counts.skipped > 0 && !why_skipped.is_empty() {
+        notes.push(why_skipped.to_string());
+    }
+    (counts, notes.join("; "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn closing_line_of_a_test_program_is_counted() {
+        let line = "test result: FAILED. 12 passed; 3 failed; 1 ignored; 0 measured; \
+                    4 filtered out; finished in 0.02s";
+        let counts = parse_test_result(line).unwrap();
+        assert_eq!(counts, Counts { passed: 12, failed: 3, skipped: 5 });
+    }
+
+    #[test]
+    fn other_lines_are_not_counted() {
+        for line in ["", "running 3 tests", "test a::b ... ok", "  test result: ok. 1 passed;"] {
+            assert_eq!(parse_test_result(line), None, "{line:?}");
+        }
+    }
+
+    fn shell(script: &str) -> Command {
+        let mut command = Command::new("sh");
+        command.args(["-c", script]);
+        command
+    }
+
+    const PASSED: &str = "test result: ok. 2 passed; 0 failed; 1 ignored; 0 measured; 0 filtered out";
+    const FAILED: &str = "test result: FAILED. 2 passed; 1 failed; 3 ignored; 0 measured; 0 filtered out";
+
+    #[test]
+    fn closing_lines_add_up() {
+        let (counts, note) = counted(&mut shell(&format!("echo '{PASSED}'; echo '{PASSED}'")), "why");
+        assert_eq!(counts, Counts { passed: 4, failed: 0, skipped: 2 });
+        assert_eq!(note, "why");
+    }
+
+    #[test]
+    fn crash_without_a_closing_line_is_a_failure_whatever_the_others_say() {
+        let (counts, note) = counted(&mut shell("echo running 3 tests; exit 101"), "");
+        assert_eq!(counts.failed, 1);
+        assert!(note.contains("101") && note.contains("closing line"), "{note}");
+        let script = format!(
+            "echo running 3 tests; echo 'test a::b has been running for over 60 seconds'; echo running 1 test
+             echo 'test c ... FAILED'; echo '{FAILED}'; exit 101"
+        );
+        let (counts, note) = counted(&mut shell(&script), "why");
+        assert_eq!(counts, Counts { passed: 2, failed: 2, skipped: 3 });
+        assert!(note.contains("perhaps in a::b, c;") && note.ends_with("; why"), "{note}");
+    }
+
+    #[test]
+    fn what_does_not_compile_is_a_failure() {
+        let (counts, note) = counted(&mut shell("exit 101"), "");
+        assert_eq!(counts.failed, 1);
+        assert!(note.contains("101"), "{note}");
+    }
+
+    #[test]
+    fn failed_tests_are_named_and_counted_once() {
+        let script = format!("echo running 3 tests; echo 'test a::b ... FAILED'; echo '{FAILED}'; exit 101");
+        let (counts, note) = counted(&mut shell(&script), "");
+        assert_eq!(counts, Counts { passed: 2, failed: 1, skipped: 3 });
+        assert!(note.starts_with("a::b; "), "{note}");
+        let mut many = Tally::default();
+        for number in 0..NAMED + 2 {
+            many.read(&format!("test t{number} ... FAILED"));
+        }
+        assert!(many.note().unwrap().ends_with("t7, and 2 more"));
+    }
+}
