@@ -90,15 +90,16 @@ where
     }
 
     fn parameter(&self, parameter: Parameter) -> Option<S> {
-        (parameter == Parameter::Speed).then_some(self.speed_mps)
+        if parameter == Parameter::Speed { Some(self.speed_mps) } else { self.law.parameter(parameter) }
     }
 
     fn tune(&mut self, parameter: Parameter, value: S) -> bool {
         if parameter == Parameter::Speed {
             // Without a speed it could not decide.
             self.speed_mps = value.max(S::from_milli(1));
+            return true;
         }
-        parameter == Parameter::Speed
+        self.law.tune(parameter, value)
     }
 }
 

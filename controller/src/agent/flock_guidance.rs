@@ -1,7 +1,8 @@
 //! The three flocks as guidance laws.
 
 use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Roams, Status, Teamwork, ToWaypoints};
-use super::{InPlane, WAYPOINTS, Waypoint};
+use super::tunable::Tunable as _;
+use super::{InPlane, Parameter, WAYPOINTS, Waypoint};
 use crate::flock::boids::BoidsParams;
 use crate::flock::goal::{GoalParams, Goals, Stage, wish};
 use crate::flock::lattice::{LatticeParams, Reference, acceleration};
@@ -73,6 +74,14 @@ impl<S: Scalar> Guidance<S> for LatticeGuidance<S> {
 
     fn has_own_goal(&self) -> bool {
         true
+    }
+
+    fn parameter(&self, parameter: Parameter) -> Option<S> {
+        self.params.get(parameter)
+    }
+
+    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
+        self.params.tune(parameter, value)
     }
 }
 
@@ -146,6 +155,18 @@ impl<S: Scalar> Guidance<S> for GoalFlockGuidance<S> {
     fn has_own_goal(&self) -> bool {
         true
     }
+
+    fn parameter(&self, parameter: Parameter) -> Option<S> {
+        if parameter == Parameter::Tolerance { Some(self.arrival_m) } else { self.params.get(parameter) }
+    }
+
+    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
+        if parameter == Parameter::Tolerance {
+            self.arrival_m = value;
+            return true;
+        }
+        self.params.tune(parameter, value)
+    }
 }
 
 /// Boids (V. A. Starovoitova 2018, STA): even speed, headings that follow the neighbours'. In the open plane; what the
@@ -198,5 +219,17 @@ impl<S: Scalar> Guidance<S> for BoidsGuidance<S> {
 
     fn has_own_goal(&self) -> bool {
         true
+    }
+
+    fn parameter(&self, parameter: Parameter) -> Option<S> {
+        if parameter == Parameter::Speed { Some(self.speed_mps) } else { self.params.get(parameter) }
+    }
+
+    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
+        if parameter == Parameter::Speed {
+            self.speed_mps = value;
+            return true;
+        }
+        self.params.tune(parameter, value)
     }
 }

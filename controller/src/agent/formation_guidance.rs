@@ -4,7 +4,8 @@
 use super::guidance::{Action, Ask, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
 use super::route_guidance::GridWorkspace;
 use super::travel::{PATIENCE, Travel, on_grid, reachable_goal};
-use super::{OnGrid, Wait};
+use super::tunable::Tunable;
+use super::{OnGrid, Parameter, Wait};
 use crate::cost::Weights;
 use crate::formation::{
     Anchor, FormationParams, Found, GraphDistance, Member, Pace, Ranks, Recovery, Seen, aim, blended, def, distances,
@@ -405,5 +406,13 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
 
     fn goes_by_velocity(&self) -> bool {
         false
+    }
+
+    fn parameter(&self, parameter: Parameter) -> Option<S> {
+        self.route.get(parameter).or_else(|| self.formation.get(parameter))
+    }
+
+    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
+        Tunable::<S>::tune(&mut self.route, parameter, value) || self.formation.tune(parameter, value)
     }
 }

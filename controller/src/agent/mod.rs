@@ -113,6 +113,7 @@ mod step;
 mod surroundings;
 mod task;
 mod travel;
+mod tunable;
 mod wait;
 mod waypoint;
 mod waypoint_guidance;

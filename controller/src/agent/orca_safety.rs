@@ -2,6 +2,7 @@
 
 use super::Parameter;
 use super::safety::{Safety, SafetyInput};
+use super::tunable::Tunable as _;
 use crate::geom::Vec3;
 use crate::neighbor::StalenessInflation;
 use crate::orca::{Analytic, AvoidParams, Avoider, Dimension, HalfSpaces, InSpace};
@@ -42,6 +43,12 @@ impl<S: Scalar, const K: usize, P: HalfSpaces<S>> OrcaSafety<S, K, P> {
     pub const fn with_source(params: AvoidParams<S>, inflation: StalenessInflation<S>, source: P) -> Self {
         Self { avoider: Avoider::with_source(params, source), inflation }
     }
+
+    /// The avoider, for what it can tell of itself.
+    #[must_use]
+    pub const fn avoider(&self) -> &Avoider<S, K, P> {
+        &self.avoider
+    }
 }
 
 impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Safety<S> for OrcaSafety<S, K, P> {
@@ -67,25 +74,10 @@ impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Safety<S> for OrcaSafety<S, K,
     }
 
     fn parameter(&self, parameter: Parameter) -> Option<S> {
-        let params = self.avoider.params();
-        Some(match parameter {
-            Parameter::Horizon => params.horizon_s,
-            Parameter::WallHorizon => params.wall_horizon_s,
-            Parameter::Share => params.share,
-            Parameter::Margin => params.margin_m,
-            _ => return None,
-        })
+        self.avoider.params().get(parameter)
     }
 
     fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        let params = self.avoider.params_mut();
-        match parameter {
-            Parameter::Horizon => params.horizon_s = value,
-            Parameter::WallHorizon => params.wall_horizon_s = value,
-            Parameter::Share => params.share = value,
-            Parameter::Margin => params.margin_m = value,
-            _ => return false,
-        }
-        true
+        self.avoider.params_mut().tune(parameter, value)
     }
 }

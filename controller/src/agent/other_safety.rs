@@ -1,6 +1,8 @@
 //! Push-out as a safety layer.
 
+use super::Parameter;
 use super::safety::{Safety, SafetyInput};
+use super::tunable::Tunable as _;
 use crate::geom::Vec3;
 use crate::push_out::{PushOutParams, push_out};
 use crate::rand::Rng;
@@ -25,5 +27,13 @@ impl<S: Scalar> PushOutSafety<S> {
 impl<S: Scalar> Safety<S> for PushOutSafety<S> {
     fn keep_clear(&mut self, input: &SafetyInput<'_, S>, _: &mut Rng) -> Vec3<S> {
         push_out(&self.params, &input.body, input.wish_mps, input.nearby, input.obstacles)
+    }
+
+    fn parameter(&self, parameter: Parameter) -> Option<S> {
+        self.params.get(parameter)
+    }
+
+    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
+        self.params.tune(parameter, value)
     }
 }

@@ -1,59 +1,179 @@
 //! What of a running robot can be tuned: by an operator, or by its own firmware.
+//!
+//! The names, units, limits and words of all parameters stand here; where each is in a law's or a layer's own parameters,
+//! in [`tunable`](super::tunable).
 
 use super::Agent;
 use super::guidance::Guidance;
 use super::safety::Safety;
+use crate::names::named;
 use crate::scalar::{Scalar, cast};
 use crate::time::Duration;
 use crate::wire::Wire;
 
-/// A number that may change while the robot runs. What it means and what more or less of it does stands where it is set at first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Parameter {
-    /// [`AgentConfig::radius_m`](super::AgentConfig::radius_m), metres: less than the body's radius is not safe.
-    Radius,
-    /// [`AgentConfig::beacon_period`](super::AgentConfig::beacon_period), seconds.
-    BeaconPeriod,
-    /// Cruising speed, m/s; the body's own limit holds too.
-    Speed,
-    /// How near counts as being there, metres.
-    Tolerance,
-    /// Time ahead for which no collision with a robot may happen, seconds.
-    Horizon,
-    /// The same for what does not move.
-    WallHorizon,
-    /// Own share of a correction.
-    Share,
-    /// Kept on top of the radii, metres.
-    Margin,
+named! {
+    /// A number that may change while the robot runs. What it means and what more or less of it does stands where it is set
+    /// at first; [`Parameter::what`] says it in a line.
+    pub enum Parameter {
+        /// [`AgentConfig::radius_m`](super::AgentConfig::radius_m): less than the body's radius is not safe.
+        Radius = "radius_m",
+        /// [`AgentConfig::beacon_period`](super::AgentConfig::beacon_period).
+        BeaconPeriod = "beacon_period_s",
+        /// Cruising speed; the body's own limit holds too.
+        Speed = "speed_mps",
+        /// How near counts as being there.
+        Tolerance = "tolerance_m",
+        /// [`AvoidParams::horizon_s`](crate::orca::AvoidParams::horizon_s).
+        Horizon = "horizon_s",
+        /// [`AvoidParams::wall_horizon_s`](crate::orca::AvoidParams::wall_horizon_s).
+        WallHorizon = "wall_horizon_s",
+        /// [`AvoidParams::share`](crate::orca::AvoidParams::share).
+        Share = "share",
+        /// [`AvoidParams::margin_m`](crate::orca::AvoidParams::margin_m).
+        Margin = "margin_m",
+        /// [`DeadlockParams::lean_rad`](crate::orca::DeadlockParams::lean_rad).
+        Lean = "lean_rad",
+        /// [`DeadlockParams::patience_radii`](crate::orca::DeadlockParams::patience_radii).
+        PatienceRadii = "patience_radii",
+        /// Least distance of push-out and of the goal flock (R_MinDist).
+        MinDistance = "min_distance_m",
+        /// [`GoalParams::neighborhood_m`](crate::flock::goal::GoalParams::neighborhood_m) (R_nbh).
+        Neighborhood = "neighborhood_m",
+        /// [`GoalParams::goal_gain`](crate::flock::goal::GoalParams::goal_gain).
+        GoalGain = "k1",
+        /// [`GoalParams::center_gain`](crate::flock::goal::GoalParams::center_gain).
+        CenterGain = "k2",
+        /// [`GoalParams::repulsion_gain`](crate::flock::goal::GoalParams::repulsion_gain).
+        RepulsionGain = "k3",
+        /// [`LatticeParams::spacing_m`](crate::flock::lattice::LatticeParams::spacing_m) (d).
+        Spacing = "spacing_m",
+        /// [`LatticeParams::range_ratio`](crate::flock::lattice::LatticeParams::range_ratio) (r / d).
+        RangeRatio = "range_ratio",
+        /// [`LatticeParams::obstacle_ratio`](crate::flock::lattice::LatticeParams::obstacle_ratio) (d' / d).
+        ObstacleRatio = "obstacle_ratio",
+        /// [`LatticeParams::attraction`](crate::flock::lattice::LatticeParams::attraction) (a).
+        Attraction = "attraction",
+        /// [`LatticeParams::repulsion`](crate::flock::lattice::LatticeParams::repulsion) (b).
+        Repulsion = "repulsion",
+        /// Robots among each other, on positions.
+        AlphaPosition = "c1_alpha",
+        /// Robots among each other, on velocities.
+        AlphaVelocity = "c2_alpha",
+        /// Obstacles, on positions.
+        BetaPosition = "c1_beta",
+        /// Obstacles, on velocities.
+        BetaVelocity = "c2_beta",
+        /// The reference, on positions.
+        GammaPosition = "c1_gamma",
+        /// The reference, on velocities.
+        GammaVelocity = "c2_gamma",
+        /// Nearer than this a boid turns away.
+        Crowded = "crowded_m",
+        /// Up to this distance a neighbour counts for a boid.
+        Closest = "closest_m",
+        /// Largest turn of a boid in a step.
+        MaxTurn = "max_turn",
+        /// Turn of a boid away from one that is too near.
+        MaxTurnAway = "max_turn_away",
+        /// [`RouteParams::a0`](crate::route::RouteParams::a0).
+        TimeGain = "a0",
+        /// [`RouteParams::a1`](crate::route::RouteParams::a1).
+        OthersGain = "a1",
+        /// [`RouteParams::a2`](crate::route::RouteParams::a2).
+        VisitsGain = "a2",
+        /// [`RouteParams::a3`](crate::route::RouteParams::a3).
+        WayGain = "a3",
+        /// [`FormationParams::eps`](crate::formation::FormationParams::eps).
+        Eps = "eps_cells",
+        /// [`FormationParams::gain`](crate::formation::FormationParams::gain).
+        PlaceGain = "place_gain",
+        /// [`FormationParams::halt_lag`](crate::formation::FormationParams::halt_lag).
+        HaltLag = "halt_cells",
+        /// [`FormationParams::resume_lag`](crate::formation::FormationParams::resume_lag).
+        ResumeLag = "resume_cells",
+        /// [`FormationParams::lead`](crate::formation::FormationParams::lead).
+        Lead = "lead_cells",
+        /// [`FormationParams::footprint`](crate::formation::FormationParams::footprint).
+        Footprint = "footprint",
+        /// [`FormationParams::patience`](crate::formation::FormationParams::patience).
+        Patience = "patience",
+    }
+}
+
+/// What there is to say of a parameter.
+struct Facts {
+    range: [f32; 2],
+    unit: &'static str,
+    what: &'static str,
+}
+
+const fn facts(least: f32, greatest: f32, unit: &'static str, what: &'static str) -> Facts {
+    Facts { range: [least, greatest], unit, what }
 }
 
 impl Parameter {
-    /// All of them.
-    pub const ALL: [Self; 8] = [
-        Self::Radius,
-        Self::BeaconPeriod,
-        Self::Speed,
-        Self::Tolerance,
-        Self::Horizon,
-        Self::WallHorizon,
-        Self::Share,
-        Self::Margin,
-    ];
+    const fn facts(self) -> Facts {
+        match self {
+            Self::Radius => facts(0.001, 65.0, "m", "radius that others keep clear of; not less than the body's"),
+            Self::BeaconPeriod => facts(0.001, 60.0, "s", "time between two beacons"),
+            Self::Speed => facts(0.0, 32.0, "m/s", "speed that it likes to go"),
+            Self::Tolerance => facts(0.001, 1000.0, "m", "how near counts as being there"),
+            Self::Horizon => facts(0.01, 60.0, "s", "time ahead without a collision with a robot"),
+            Self::WallHorizon => facts(0.01, 60.0, "s", "time ahead without a collision with an obstacle"),
+            Self::Share => facts(0.0, 1.0, "", "own share of a correction"),
+            Self::Margin => facts(0.0, 10.0, "m", "distance kept on top of the radii"),
+            Self::Lean => facts(0.0, 1.5, "rad", "how far to the right to lean when somebody is in the way"),
+            Self::PatienceRadii => facts(0.0, 100.0, "radii", "how long a gap is left to those whose turn it is"),
+            Self::MinDistance => facts(0.001, 1000.0, "m", "least distance of two robots' centres"),
+            Self::Neighborhood => facts(0.002, 10_000.0, "m", "how far neighbours count"),
+            Self::GoalGain => facts(-1000.0, 1000.0, "", "pull of the goal (K1)"),
+            Self::CenterGain => facts(-1000.0, 1000.0, "", "pull of the middle of the neighbours (K2)"),
+            Self::RepulsionGain => facts(-1000.0, 1000.0, "", "push of neighbours that are too near (K3)"),
+            Self::Spacing => facts(0.01, 100.0, "m", "distance of neighbours in the lattice (d)"),
+            Self::RangeRatio => facts(1.001, 4.0, "", "range of interaction over spacing"),
+            Self::ObstacleRatio => facts(0.001, 4.0, "", "distance from obstacles over spacing"),
+            Self::Attraction => facts(0.001, 1000.0, "", "bound of the attraction (a)"),
+            Self::Repulsion => facts(0.001, 1000.0, "", "bound of the repulsion (b), not less than a"),
+            Self::AlphaPosition => facts(0.0, 1000.0, "1/s^2", "robots among each other, on places"),
+            Self::AlphaVelocity => facts(0.0, 1000.0, "1/s", "robots among each other, on velocities"),
+            Self::BetaPosition => facts(0.0, 10_000.0, "1/s^2", "obstacles, on places"),
+            Self::BetaVelocity => facts(0.0, 1000.0, "1/s", "obstacles, on velocities"),
+            Self::GammaPosition => facts(0.0, 1000.0, "1/s^2", "the reference, on places"),
+            Self::GammaVelocity => facts(0.0, 1000.0, "1/s", "the reference, on velocities"),
+            Self::Crowded => facts(0.0, 1000.0, "m", "nearer than this a boid turns away"),
+            Self::Closest => facts(0.0, 10_000.0, "m", "up to this distance a neighbour counts"),
+            Self::MaxTurn => facts(0.0, 3.2, "rad", "largest turn towards the others in a step"),
+            Self::MaxTurnAway => facts(0.0, 3.2, "rad", "turn away from one that is too near in a step"),
+            Self::TimeGain => facts(0.0, 100.0, "", "weight of travel time"),
+            Self::OthersGain => facts(0.0, 1000.0, "ticks", "what a cell with another robot costs extra"),
+            Self::VisitsGain => facts(0.0, 1000.0, "ticks", "what a cell costs extra for each earlier visit"),
+            Self::WayGain => facts(0.0, 1000.0, "ticks", "price of a cell between the window and the target"),
+            Self::Eps => facts(0.0, 255.0, "cells", "how far from its place a robot still counts as there"),
+            Self::PlaceGain => facts(0.0, 1000.0, "ticks", "price of a cell off the own place"),
+            Self::HaltLag => facts(0.0, 400.0, "cells", "how far somebody falls behind before the leader waits"),
+            Self::ResumeLag => facts(0.0, 400.0, "cells", "how near he must be before the leader goes on"),
+            Self::Lead => facts(0.0, 255.0, "cells", "how far ahead of the leader the others aim"),
+            Self::Footprint => facts(0.0, 16.0, "/16", "share of the others' land in the leader's price"),
+            Self::Patience => facts(0.0, 30_000.0, "decisions", "how long they wait before each goes on for itself"),
+        }
+    }
 
     /// Least and greatest value that make sense for any robot; [`Agent::set_parameter`] takes no other.
     #[must_use]
     pub const fn range(self) -> [f32; 2] {
-        match self {
-            Self::Radius => [0.001, 65.0],
-            Self::BeaconPeriod => [0.001, 60.0],
-            Self::Speed => [0.0, 32.0],
-            Self::Tolerance => [0.001, 1000.0],
-            Self::Horizon | Self::WallHorizon => [0.01, 60.0],
-            Self::Share => [0.0, 1.0],
-            Self::Margin => [0.0, 10.0],
-        }
+        self.facts().range
+    }
+
+    /// Its unit, as people write it; empty for a plain number.
+    #[must_use]
+    pub const fn unit(self) -> &'static str {
+        self.facts().unit
+    }
+
+    /// What it is, in a few words.
+    #[must_use]
+    pub const fn what(self) -> &'static str {
+        self.facts().what
     }
 }
 
@@ -70,8 +190,8 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         value.map(cast)
     }
 
-    /// Changes a parameter from the next step on; whether this robot has such one and `value` is within
-    /// [`Parameter::range`].
+    /// Changes a parameter from the next step on; whether this robot has such one, `value` is within
+    /// [`Parameter::range`], and it goes with its other parameters.
     pub fn set_parameter(&mut self, parameter: Parameter, value: f32) -> bool {
         let [least, greatest] = parameter.range();
         if !(least..=greatest).contains(&value) {

@@ -1,8 +1,9 @@
 //! Every robot for itself, to its own goal (A. V. Kuznetsov 2017, KUZ, algorithm 1).
 
-use super::OnGrid;
 use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
 use super::travel::{Travel, on_grid, reachable_goal};
+use super::tunable::Tunable as _;
+use super::{OnGrid, Parameter};
 use crate::grid::{Cell, Dir, Window};
 use crate::list;
 use crate::rand::Rng;
@@ -32,6 +33,12 @@ impl<const CELLS: usize> GridWorkspace<CELLS> {
     #[must_use]
     pub const fn new() -> Self {
         Self { field: CostField::new(), land: [0; CELLS] }
+    }
+
+    /// The last search in it.
+    #[must_use]
+    pub const fn field(&self) -> &CostField<CELLS> {
+        &self.field
     }
 }
 
@@ -139,5 +146,13 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const L: usize> Guidance<S> 
 
     fn goes_by_velocity(&self) -> bool {
         false
+    }
+
+    fn parameter(&self, parameter: Parameter) -> Option<S> {
+        self.params.get(parameter)
+    }
+
+    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
+        self.params.tune(parameter, value)
     }
 }

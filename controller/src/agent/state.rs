@@ -57,6 +57,17 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         &self.guidance
     }
 
+    /// The safety layer, for what it can tell of itself.
+    #[must_use]
+    pub const fn safety(&self) -> &A {
+        &self.safety
+    }
+
+    /// The safety layer, to be told something between two steps.
+    pub const fn safety_mut(&mut self) -> &mut A {
+        &mut self.safety
+    }
+
     /// The wire format, to tell it what it must know besides: MAVLink's signatures the time.
     pub const fn wire_mut(&mut self) -> &mut W {
         self.link.wire_mut()

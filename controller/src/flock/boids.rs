@@ -69,6 +69,8 @@ pub struct BoidsParams<S> {
     closest: u64,
     turn: Turn<S>,
     turn_away: Turn<S>,
+    /// What they were made of.
+    values: [S; 4],
 }
 
 impl<S: Scalar> BoidsParams<S> {
@@ -91,7 +93,14 @@ impl<S: Scalar> BoidsParams<S> {
             closest: key(closest_m).unwrap_or(0),
             turn: Turn::new(max_turn),
             turn_away: Turn::new(max_turn_away),
+            values: [crowded_m, closest_m, max_turn, max_turn_away],
         }
+    }
+
+    /// What [`BoidsParams::new`] was given.
+    #[must_use]
+    pub const fn values(&self) -> [S; 4] {
+        self.values
     }
 
     /// The paper's values, at a scale of `unit_m` metres: 30, 150, 0.05, 0.02.

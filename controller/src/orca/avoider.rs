@@ -193,6 +193,19 @@ impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Avoider<S, K, P> {
         reachable::<P::Velocity, K>(body, &mut constraints, hard, wish)
     }
 
+    /// What [`Avoider::velocity`] reckons with for the same arguments: what obstacles forbid (they are so many), then robots.
+    #[must_use]
+    pub fn half_spaces(
+        &self,
+        body: &Body<S>,
+        nearby: &[Nearby<S>],
+        obstacles: &[Obstacle<S>],
+    ) -> (usize, Vec<HalfSpace<P::Velocity>, K>) {
+        let mut constraints = Vec::new();
+        let hard = self.constraints(body, nearby, obstacles, &mut constraints);
+        (hard, constraints)
+    }
+
     /// What obstacles (their number is the answer), then robots forbid.
     fn constraints(
         &self,

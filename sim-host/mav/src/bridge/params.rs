@@ -2,6 +2,7 @@
 
 use super::model::VehicleModel;
 use staya_controller::agent::Parameter;
+use staya_controller::names::Named as _;
 use staya_mavlink::constants::MAV_PARAM_TYPE_REAL32;
 use staya_mavlink::dialect::PARAM_VALUE_DATA;
 
@@ -50,6 +51,39 @@ const fn name(parameter: Parameter) -> &'static str {
         Parameter::WallHorizon => "ORCA_WALL_S",
         Parameter::Share => "ORCA_SHARE",
         Parameter::Margin => "ORCA_MARGIN_M",
+        Parameter::Lean => "ORCA_LEAN_RAD",
+        Parameter::PatienceRadii => "ORCA_PATIENCE_R",
+        Parameter::MinDistance => "MIN_DIST_M",
+        Parameter::Neighborhood => "GOAL_NBH_M",
+        Parameter::GoalGain => "GOAL_K1",
+        Parameter::CenterGain => "GOAL_K2",
+        Parameter::RepulsionGain => "GOAL_K3",
+        Parameter::Spacing => "LAT_SPACING_M",
+        Parameter::RangeRatio => "LAT_RANGE",
+        Parameter::ObstacleRatio => "LAT_OBSTACLE",
+        Parameter::Attraction => "LAT_A",
+        Parameter::Repulsion => "LAT_B",
+        Parameter::AlphaPosition => "LAT_C1_ALPHA",
+        Parameter::AlphaVelocity => "LAT_C2_ALPHA",
+        Parameter::BetaPosition => "LAT_C1_BETA",
+        Parameter::BetaVelocity => "LAT_C2_BETA",
+        Parameter::GammaPosition => "LAT_C1_GAMMA",
+        Parameter::GammaVelocity => "LAT_C2_GAMMA",
+        Parameter::Crowded => "BOID_CROWDED_M",
+        Parameter::Closest => "BOID_CLOSEST_M",
+        Parameter::MaxTurn => "BOID_TURN",
+        Parameter::MaxTurnAway => "BOID_TURN_AWAY",
+        Parameter::TimeGain => "ROUTE_A0",
+        Parameter::OthersGain => "ROUTE_A1",
+        Parameter::VisitsGain => "ROUTE_A2",
+        Parameter::WayGain => "ROUTE_A3",
+        Parameter::Eps => "FORM_EPS",
+        Parameter::PlaceGain => "FORM_GAIN",
+        Parameter::HaltLag => "FORM_HALT",
+        Parameter::ResumeLag => "FORM_RESUME",
+        Parameter::Lead => "FORM_LEAD",
+        Parameter::Footprint => "FORM_FOOTPRINT",
+        Parameter::Patience => "FORM_PATIENCE",
     }
 }
 
@@ -57,9 +91,9 @@ impl Parameters {
     /// Those that a robot has: `value` says what they are.
     #[must_use]
     pub fn new(model: &VehicleModel, value: impl Fn(Parameter) -> Option<f32>) -> Self {
-        let own = Parameter::ALL.into_iter().filter_map(|parameter| {
+        let own = Parameter::NAMES.iter().filter_map(|&(_, parameter)| {
             let on_grid = model.grid.is_some();
-            let of_bodies = !matches!(parameter, Parameter::BeaconPeriod);
+            let of_bodies = matches!(parameter, Parameter::Radius | Parameter::Speed | Parameter::Tolerance);
             if on_grid && of_bodies {
                 return None;
             }
@@ -135,13 +169,20 @@ impl Parameters {
         self.set(index.ok_or(NotSet::Unknown)?, value)
     }
 
+    /// The value that holds after all; where it is.
+    pub fn set_back(&mut self, meaning: Meaning, value: f32) -> Option<usize> {
+        let index = self.0.iter().position(|entry| entry.meaning == meaning)?;
+        self.0[index].value = value;
+        Some(index)
+    }
+
     /// A parameter as clients are told it.
     #[must_use]
     pub fn message(&self, index: usize) -> Option<PARAM_VALUE_DATA> {
         let entry = self.0.get(index)?;
         Some(PARAM_VALUE_DATA {
             param_value: entry.value,
-            // At most nine.
+            // Some dozens.
             param_count: self.0.len() as u16,
             param_index: index as u16,
             param_id: entry.name.into(),
@@ -168,7 +209,7 @@ mod tests {
     #[test]
     fn names_fit_and_lead_back() {
         let parameters = all();
-        assert_eq!(parameters.count(), Parameter::ALL.len() + 1);
+        assert_eq!(parameters.count(), Parameter::NAMES.len() + 1);
         for index in 0..parameters.count() {
             let name = parameters.0[index].name;
             assert!(name.len() <= 16);
@@ -200,9 +241,10 @@ mod tests {
     }
 
     #[test]
-    fn on_the_grid_there_is_only_the_beacon() {
+    fn on_the_grid_there_is_nothing_of_bodies() {
         let parameters = Parameters::new(&on_grid(), |_| Some(1.0));
-        assert_eq!(parameters.count(), 1);
-        assert_eq!(parameters.find(&padded("BEACON_S")), Some(0));
+        let is_there = |name| parameters.find(&padded(name)).is_some();
+        assert!(is_there("BEACON_S") && is_there("ROUTE_A3"));
+        assert!(!is_there("SPEED_MPS") && !is_there("RADIUS_M") && !is_there("SETPOINT_S"));
     }
 }

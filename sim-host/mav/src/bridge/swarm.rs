@@ -329,6 +329,7 @@ impl Swarm {
 
     /// What vehicle `index` wants done and sent.
     fn carry_out(&mut self, index: usize) -> Result<(), BridgeError> {
+        let mut refused = Vec::new();
         for action in self.out.actions.drain(..) {
             match action {
                 Action::Tell(header, message) => self.engine.tell(index, header, &message),
@@ -337,9 +338,15 @@ impl Swarm {
                     let _ = self.engine.command(index, wish);
                 }
                 Action::Set(parameter, value) => {
-                    let _ = self.engine.set_parameter(index, parameter, value);
+                    if !self.engine.set_parameter(index, parameter, value) {
+                        refused.push(parameter);
+                    }
                 }
             }
+        }
+        for parameter in refused {
+            let value = self.engine.parameter(index, parameter);
+            self.vehicles[index].set_back(parameter, value, &mut self.out);
         }
         for result in self.out.results.drain(..) {
             *self.commands.entry(name(result)).or_default() += 1;

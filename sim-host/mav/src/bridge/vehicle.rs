@@ -363,6 +363,17 @@ impl Vehicle {
         }
     }
 
+    /// The controller did not take a value, since it does not go with the others (or it is down): says what holds.
+    pub(super) fn set_back(&mut self, parameter: Parameter, value: Option<f32>, out: &mut Out) {
+        let meaning = Meaning::Controller(parameter);
+        let Some(index) = value.and_then(|value| self.parameters.set_back(meaning, value)) else {
+            return;
+        };
+        out.messages.extend(self.parameters.message(index).map(MavMessage::PARAM_VALUE));
+        let text = format!("{} does not go with the other parameters", parameter.name());
+        self.text(out, Kind::News, MAV_SEVERITY_WARNING, &text);
+    }
+
     /// Microseconds since its computer started, simulated.
     pub(super) const fn uptime_us(&self) -> u64 {
         self.sample.time_us.saturating_sub(self.started_us)

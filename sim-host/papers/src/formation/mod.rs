@@ -204,6 +204,7 @@ impl Plan {
             faults: Vec::new(),
             key: None,
             key_remark: None,
+            interventions: Vec::new(),
             misnumbered: Vec::new(),
             attacks: Vec::new(),
         }

@@ -4,12 +4,14 @@ use super::Status;
 use super::body::Kinematics;
 use super::ground::{Ground, StateWords};
 use super::hash::grid_words;
+use super::intervene::Change;
 use crate::metrics::{FormationMeter, Keeping};
 use crate::record::Motion;
-use crate::scenario::{Robot, Scenario};
+use crate::scenario::{Refusal, Robot, Scenario};
+use crate::terrain::Terrain;
 use crate::world::{Misplaced, World};
 use staya_controller::agent::{AgentConfig, AnyInputs, AnySurroundings, CellState, Command, Inputs, OnGrid, Task};
-use staya_controller::grid::UNIT;
+use staya_controller::grid::{Cell, UNIT};
 use staya_controller::robot::Mode;
 use staya_controller::time::Duration;
 
@@ -113,6 +115,33 @@ impl Ground for Grid {
 
     fn task(&self, index: usize, _: u32) -> Task {
         Task::Cell(self.robots[index].goal)
+    }
+
+    fn terrain(&self) -> Option<&Terrain> {
+        Some(self.world.terrain())
+    }
+
+    fn is_open(&self, [x, y, _]: [f64; 3]) -> bool {
+        let terrain = self.world.terrain();
+        terrain.cell_at([x, y]).is_some_and(|cell| terrain.is_passable(cell))
+    }
+
+    fn goal_m(&self, index: usize) -> Option<[f64; 3]> {
+        let [x, y] = self.world.terrain().center_m(self.robots[index].goal);
+        Some([x, y, 0.0])
+    }
+
+    fn set_goal(&mut self, index: usize, tick: u32, [x, y, _]: [f64; 3]) -> Task {
+        // A place of a formation may be off the map: then as near as there is land.
+        self.robots[index].goal = self.world.terrain().nearest_cell([x, y]);
+        self.task(index, tick)
+    }
+
+    fn change(&mut self, _: u32, change: Change<'_>) -> Result<(), Refusal> {
+        match change {
+            Change::Cell([x, y], class) => self.world.set_cell(Cell::new(x, y), class),
+            _ => Err(Refusal::new("kind", "these robots go from cell to cell", "change cells of the land instead")),
+        }
     }
 
     fn keeping(&mut self, counts: bool) -> Option<Keeping> {

@@ -1,9 +1,12 @@
 //! What the engine asks of a world: what a robot senses there, and what its command does to its body.
 
-use super::Status;
+use super::inspect::Scratchpad;
+use super::{Change, Status};
 use crate::metrics::Keeping;
 use crate::record::Motion;
-use crate::world::plane::{Clearance, Disc};
+use crate::scenario::Refusal;
+use crate::terrain::Terrain;
+use crate::world::plane::{Clearance, Disc, Solid};
 use staya_controller::agent::{AgentConfig, AnyInputs, AnySurroundings, Command, Guidance, Task};
 use staya_controller::grid::Cell;
 use staya_controller::time::Duration;
@@ -38,6 +41,21 @@ pub trait Ground: Send + Sync {
     /// What the robot of body `index` has to do if it starts at `tick`.
     fn task(&self, index: usize, tick: u32) -> Task;
 
+    /// Whether a body could stand at a place, metres.
+    fn is_open(&self, place_m: [f64; 3]) -> bool;
+
+    /// Where the robot of body `index` is to go, metres; `None`: nowhere in particular.
+    fn goal_m(&self, index: usize) -> Option<[f64; 3]>;
+
+    /// Gives it another goal from `tick` on, and says what to tell it.
+    fn set_goal(&mut self, index: usize, tick: u32, place_m: [f64; 3]) -> Task;
+
+    /// Changes the world itself before `tick`.
+    ///
+    /// # Errors
+    /// There is no such thing in this world.
+    fn change(&mut self, tick: u32, change: Change<'_>) -> Result<(), Refusal>;
+
     /// How well a formation is kept now, if there is one; `counts`: a tick is over.
     fn keeping(&mut self, _counts: bool) -> Option<Keeping> {
         None
@@ -60,6 +78,19 @@ pub trait Ground: Send + Sync {
         None
     }
 
+    /// The land, if there is any.
+    fn terrain(&self) -> Option<&Terrain>;
+
+    /// What stands in the plane.
+    fn solids(&self) -> &[Solid] {
+        &[]
+    }
+
+    /// Bodies that are no robots.
+    fn intruders(&self) -> &[Disc] {
+        &[]
+    }
+
     /// Bodies that are no robots and say where they are, with the cells that they are in.
     fn heard(&self) -> impl Iterator<Item = (&Disc, Option<Cell>)> {
         core::iter::empty()
@@ -72,9 +103,9 @@ pub trait Ground: Send + Sync {
 }
 
 /// A guidance law as a host has it: it is told whatever its world senses, and threads have it in turn.
-pub trait HostLaw: for<'a> Guidance<f32, Input<'a> = AnySurroundings<'a, f32>, Workspace: Default> + Send {}
+pub trait HostLaw: for<'a> Guidance<f32, Input<'a> = AnySurroundings<'a, f32>, Workspace: Scratchpad> + Send {}
 
-impl<G> HostLaw for G where G: for<'a> Guidance<f32, Input<'a> = AnySurroundings<'a, f32>, Workspace: Default> + Send {}
+impl<G> HostLaw for G where G: for<'a> Guidance<f32, Input<'a> = AnySurroundings<'a, f32>, Workspace: Scratchpad> + Send {}
 
 /// A state in words of 64 bits.
 pub type StateWords = heapless::Vec<u64, 8>;

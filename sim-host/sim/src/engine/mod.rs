@@ -15,15 +15,20 @@ mod faults;
 mod grid;
 mod ground;
 mod hash;
+mod inspect;
+mod intervene;
 mod intruder;
 mod operator;
 mod plane;
 mod simulate;
+mod witness;
 
 use external::External;
 pub use external::{Decision, ExternalController};
 pub use grid::Grid;
 pub use ground::{Ground, HostLaw, StateWords};
+pub use inspect::{Choice, Inspection, Known, Permitted, Scratchpad, SeenLand};
+pub use intervene::Change;
 pub use operator::{Observation, Operated, operated};
 pub use plane::{PlaneGround, Senses};
 pub use simulate::{Moment, Outcome, WIDE, Watch, simulate, simulate_with};
@@ -32,9 +37,10 @@ use crate::metrics::waits::Waits;
 use crate::metrics::{Arrivals, Keeping};
 use crate::radio::{self, HostWire, Radio};
 use crate::record::{PacketCounts, RobotRow, TickRow};
-use crate::scenario::{Fault, Robot, Scenario};
+use crate::scenario::{Fault, Intervention, Robot, Scenario};
 use attacker::Attacker;
 use hash::Chain;
+use intervene::Tuned;
 use intruder::Intruder;
 use rayon::prelude::*;
 use staya_controller::agent::{
@@ -45,6 +51,7 @@ use staya_controller::grid::Cell;
 use staya_controller::robot::{Mode, RobotId};
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::Format;
+use std::collections::VecDeque;
 
 /// Robots that a thread takes at least at a time: less would cost more in handing out than in work.
 const BATCH: usize = 64;
@@ -142,6 +149,11 @@ pub struct Engine<W, G, A> {
     tick: u32,
     robots: Vec<Robot>,
     faults: Vec<Fault>,
+    /// What is still to be done to the run, by rising tick.
+    interventions: VecDeque<(u32, Intervention)>,
+    tuned: Vec<Tuned>,
+    /// Goals of all move together.
+    keeps_shape: bool,
     brains: Brains<G, A>,
     ground: W,
     radio: Radio,
@@ -190,6 +202,9 @@ where
             tick_us: scenario.tick_us,
             tick: 0,
             faults: scenario.faults.clone(),
+            interventions: scenario.interventions.iter().cloned().collect(),
+            tuned: Vec::new(),
+            keeps_shape: scenario.formation.is_some(),
             brains: Box::new(brains),
             radio: Radio::new(&scenario.radio, scenario.seed, scenario.tick_us, ids),
             ground,
@@ -229,6 +244,7 @@ where
         let mut agent = Agent::new(&self.config(index, boot), guidance, safety, wire);
         // A law that has no use for its task says so; the scenario was checked for that.
         let _ = agent.assign(&self.ground.task(index, self.tick));
+        intervene::retune(&self.tuned, index, |parameter, value| agent.set_parameter(parameter, value));
         self.computer(Some(agent), boot)
     }
 
@@ -262,6 +278,7 @@ where
 
     /// One tick. Returns what the swarm as a whole looks like after it.
     pub fn step(&mut self) -> TickRow {
+        self.apply_interventions();
         self.apply_faults();
         let refused = self.decide();
         self.attack();
@@ -421,10 +438,10 @@ where
         f64::from(self.tick) * f64::from(self.tick_us) / 1e6
     }
 
-    /// Whether all robots stand at their targets and know it.
+    /// Whether all robots stand at their targets and know it, and nobody is going to do anything about it.
     #[must_use]
     pub fn is_over(&self) -> bool {
-        self.arrivals.is_complete()
+        self.interventions.is_empty() && self.arrivals.is_complete()
     }
 
     /// The ground with its bodies.

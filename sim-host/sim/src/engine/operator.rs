@@ -1,12 +1,14 @@
 //! A run that an operator watches and commands.
 
-use super::simulate::AnyEngine;
-use super::{Engine, Ground, HostLaw, Outcome, Status};
-use crate::radio::{self, HostWire};
-use crate::record::Motion;
-use crate::scenario::Scenario;
+use super::simulate::{AnyEngine, SafetyOf};
+use super::{Engine, Ground, HostLaw, Inspection, Moment, Outcome, Status};
+use crate::radio::{self, HostWire, Reception};
+use crate::record::{Motion, RobotRow, TickRow};
+use crate::scenario::{Intervention, Refusal, Scenario};
+use crate::terrain::Terrain;
 use crate::world::Misplaced;
-use staya_controller::agent::{Commanded, Event, Parameter, Safety, Wish};
+use crate::world::plane::{Disc, Solid};
+use staya_controller::agent::{Commanded, Event, Parameter, Wish};
 use staya_controller::robot::RobotId;
 use staya_controller::wire::{Header, Message, Wire as _};
 use staya_mavlink::frame::MAX_FRAME_LEN;
@@ -56,6 +58,39 @@ pub trait Operated: Send {
 
     /// What came of the run so far.
     fn outcome(&self) -> Outcome;
+
+    /// The swarm and its robots now, as [`simulate`](super::simulate) shows them after each tick.
+    fn show(&self, watch: &mut dyn FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>));
+
+    /// Whether [`simulate`](super::simulate) would end here: all have arrived.
+    fn is_over(&self) -> bool;
+
+    /// Does it before the next tick.
+    ///
+    /// # Errors
+    /// It makes no sense for these robots or this world, or nobody has a use for it.
+    fn intervene(&mut self, what: &Intervention) -> Result<(), Refusal>;
+
+    /// What robot `index` knows, and is going to decide.
+    fn inspect(&self, index: usize) -> Inspection;
+
+    /// Where robot `index` is to go, metres; `None`: nowhere in particular.
+    fn goal_m(&self, index: usize) -> Option<[f64; 3]>;
+
+    /// The land as it is now, if there is any.
+    fn terrain(&self) -> Option<&Terrain>;
+
+    /// What stands in the plane now.
+    fn solids(&self) -> &[Solid];
+
+    /// Bodies that are no robots.
+    fn intruders(&self) -> &[Disc];
+
+    /// Whether [`Operated::receptions`] tells from the next tick on.
+    fn log_receptions(&mut self, wanted: bool);
+
+    /// What became of the last tick's packets at robot `index`, with the numbers of their senders.
+    fn receptions(&self, index: usize) -> &[(RobotId, Reception)];
 }
 
 /// A scenario before its first tick, with an operator.
@@ -70,21 +105,23 @@ pub fn operated(scenario: &Scenario) -> Result<Box<dyn Operated>, Misplaced> {
     })
 }
 
-fn boxed<W, G, A>(scenario: &Scenario, mut engine: Engine<W, Commanded<f32, G>, A>) -> Box<dyn Operated>
+fn boxed<W, G>(scenario: &Scenario, mut engine: Engine<W, Commanded<f32, G>, SafetyOf>) -> Box<dyn Operated>
 where
     W: Ground + 'static,
-    G: HostLaw + 'static,
-    A: Safety<f32> + Send + 'static,
+    G: HostLaw + Clone + 'static,
 {
     engine.keeps_events = true;
+    let row = engine.first_row();
     let key = scenario.key.as_ref();
     let (wire, number) = radio::operator(scenario.radio.format, key, 1);
-    Box::new(OperatedEngine { engine, wire, number: key.map(|_| number), sequence: 0 })
+    Box::new(OperatedEngine { engine, row, wire, number: key.map(|_| number), sequence: 0 })
 }
 
 /// A swarm, and what its operator speaks.
-struct OperatedEngine<W, G, A> {
-    engine: Engine<W, Commanded<f32, G>, A>,
+struct OperatedEngine<W, G> {
+    engine: Engine<W, Commanded<f32, G>, SafetyOf>,
+    /// The swarm's line of the record after the last tick.
+    row: TickRow,
     wire: HostWire,
     /// As whom it speaks if the robots have a key; otherwise as whom it is told to.
     number: Option<RobotId>,
@@ -92,20 +129,13 @@ struct OperatedEngine<W, G, A> {
     sequence: u16,
 }
 
-impl<W, G, A> OperatedEngine<W, G, A> {
-    fn is_up(&self, index: usize) -> bool {
-        self.engine.tick >= self.engine.computers[index].down_until
-    }
-}
-
-impl<W, G, A> Operated for OperatedEngine<W, G, A>
+impl<W, G> Operated for OperatedEngine<W, G>
 where
     W: Ground,
-    G: HostLaw,
-    A: Safety<f32> + Send,
+    G: HostLaw + Clone,
 {
     fn advance(&mut self) {
-        self.engine.step();
+        self.row = self.engine.step();
     }
 
     fn observation(&self, index: usize) -> Observation {
@@ -115,7 +145,7 @@ where
             motion: self.engine.ground.motion(index, self.engine.tick),
             status: self.engine.statuses[index],
             boot: computer.boot,
-            is_up: self.is_up(index),
+            is_up: self.engine.is_up(index),
             wish: agent.map_or(Wish::Own, |agent| *agent.guidance().wish()),
             neighbors: agent.map_or(0, |agent| agent.neighbors().len()),
         }
@@ -126,7 +156,7 @@ where
     }
 
     fn command(&mut self, index: usize, wish: Wish<f32>) -> bool {
-        let is_up = self.is_up(index);
+        let is_up = self.engine.is_up(index);
         let agent = self.engine.computers[index].agent.as_mut();
         let agent = agent.filter(|_| is_up);
         agent.is_some_and(|agent| agent.guidance_mut().command(wish).is_ok())
@@ -137,23 +167,64 @@ where
         let header = Header { sender: self.number.unwrap_or(header.sender), sequence: self.sequence, ..header };
         self.sequence = self.sequence.wrapping_add(1);
         // What the controller's messages can be fits.
-        if self.is_up(index) && self.wire.encode(header, message, &mut frame).is_ok() {
+        if self.engine.is_up(index) && self.wire.encode(header, message, &mut frame).is_ok() {
             self.engine.computers[index].mail.extend_from_slice(&frame);
         }
     }
 
     fn parameter(&self, index: usize, parameter: Parameter) -> Option<f32> {
         let agent = self.engine.computers[index].agent.as_ref();
-        agent.filter(|_| self.is_up(index))?.parameter(parameter)
+        agent.filter(|_| self.engine.is_up(index))?.parameter(parameter)
     }
 
     fn set_parameter(&mut self, index: usize, parameter: Parameter, value: f32) -> bool {
-        let is_up = self.is_up(index);
+        let is_up = self.engine.is_up(index);
         let agent = self.engine.computers[index].agent.as_mut().filter(|_| is_up);
         agent.is_some_and(|agent| agent.set_parameter(parameter, value))
     }
 
     fn outcome(&self) -> Outcome {
         self.engine.outcome()
+    }
+
+    fn show(&self, watch: &mut dyn FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>)) {
+        let (arrived, waiting) = (self.engine.arrivals.count(), self.engine.waits.now());
+        watch(&Moment { row: &self.row, arrived, waiting }, &mut self.engine.rows());
+    }
+
+    fn is_over(&self) -> bool {
+        self.engine.is_over()
+    }
+
+    fn intervene(&mut self, what: &Intervention) -> Result<(), Refusal> {
+        self.engine.intervene(what)
+    }
+
+    fn inspect(&self, index: usize) -> Inspection {
+        self.engine.inspect(index)
+    }
+
+    fn goal_m(&self, index: usize) -> Option<[f64; 3]> {
+        self.engine.ground.goal_m(index)
+    }
+
+    fn terrain(&self) -> Option<&Terrain> {
+        self.engine.ground.terrain()
+    }
+
+    fn solids(&self) -> &[Solid] {
+        self.engine.ground.solids()
+    }
+
+    fn intruders(&self) -> &[Disc] {
+        self.engine.ground.intruders()
+    }
+
+    fn log_receptions(&mut self, wanted: bool) {
+        self.engine.radio.log_receptions(wanted);
+    }
+
+    fn receptions(&self, index: usize) -> &[(RobotId, Reception)] {
+        self.engine.radio.receptions(index)
     }
 }

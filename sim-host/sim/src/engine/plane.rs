@@ -2,9 +2,11 @@
 
 use super::Status;
 use super::ground::{Ground, StateWords};
+use super::intervene::Change;
 use crate::radio;
 use crate::record::Motion;
-use crate::scenario::{Order, PlaneSetup, Robot, Scenario, Target};
+use crate::scenario::{Order, PlaneSetup, Refusal, Robot, Scenario, Target, goals};
+use crate::terrain::Terrain;
 use crate::world::plane::{Clearance, Disc, Plane, Solid, narrow};
 use crate::world::window;
 use staya_controller::agent::{
@@ -31,6 +33,8 @@ pub struct PlaneGround {
     radius: u8,
     tick_us: u32,
     delay_us: u32,
+    format: Format,
+    key: Option<Key>,
     /// Frames to everybody, by rising tick.
     orders: Vec<(u32, Vec<u8>)>,
 }
@@ -70,6 +74,8 @@ impl PlaneGround {
             tick_us: scenario.tick_us,
             delay_us: libm::round(scenario.radio.delay_ms * 1000.0) as u32,
             orders: frames(&setup.orders, scenario.radio.format, scenario.key.as_ref()),
+            format: scenario.radio.format,
+            key: scenario.key.clone(),
             setup: setup.clone(),
         }
     }
@@ -269,6 +275,67 @@ impl Ground for PlaneGround {
             }
         }
         Task::Waypoints(waypoints)
+    }
+
+    fn terrain(&self) -> Option<&Terrain> {
+        self.plane.terrain()
+    }
+
+    fn solids(&self) -> &[Solid] {
+        self.plane.solids()
+    }
+
+    fn intruders(&self) -> &[Disc] {
+        self.plane.intruders()
+    }
+
+    fn is_open(&self, place_m: [f64; 3]) -> bool {
+        match self.plane.terrain() {
+            Some(land) => self.plane.cell(place_m).is_some_and(|cell| land.is_passable(cell)),
+            None => true,
+        }
+    }
+
+    fn goal_m(&self, index: usize) -> Option<[f64; 3]> {
+        self.setup.starts[index].places.first().map(|target| target.position_m)
+    }
+
+    fn set_goal(&mut self, index: usize, tick: u32, place_m: [f64; 3]) -> Task {
+        let guidance = self.setup.group(index).guidance.kind();
+        let target = Target { position_m: place_m, velocity_mps: [0.0; 3] };
+        let places = &mut self.setup.starts[index].places;
+        match places.first_mut() {
+            // One of several goals; for others it takes the place of what is on the way, too.
+            Some(first) if guidance == GuidanceKind::GoalFlock => *first = target,
+            _ => *places = vec![target],
+        }
+        if let Some(land) = self.plane.terrain() {
+            self.robots[index].goal = land.nearest_cell([place_m[0], place_m[1]]);
+        }
+        self.task(index, tick)
+    }
+
+    fn change(&mut self, tick: u32, change: Change<'_>) -> Result<(), Refusal> {
+        match change {
+            Change::Waypoint { goal, place_m } => {
+                if self.setup.kinds().all(|group| goal >= goals(group.guidance.kind())) {
+                    let what = format!("these robots have no goal {goal}");
+                    return Err(Refusal::new("goal", what, "give one that they have, from 0"));
+                }
+                let target = Target { position_m: place_m, velocity_mps: [0.0; 3] };
+                let at = self.setup.orders.partition_point(|order| order.tick <= tick);
+                self.setup.orders.insert(at, Order { tick, index: goal, target });
+                self.orders = frames(&self.setup.orders, self.format, self.key.as_ref());
+                Ok(())
+            }
+            Change::Solid(shape) => {
+                self.plane.add_solids(Solid::of(shape));
+                Ok(())
+            }
+            Change::Move(index, by_m) => self.plane.move_solid(index, by_m),
+            Change::Remove(index) => self.plane.remove_solid(index),
+            Change::Cell([x, y], class) => self.plane.set_cell(Cell::new(x, y), class),
+        }
     }
 
     fn heard(&self) -> impl Iterator<Item = (&Disc, Option<Cell>)> {

@@ -1,5 +1,6 @@
 //! A whole scenario with the guidance that it asks for.
 
+use super::witness::Witness;
 use super::{Engine, ExternalController, Grid, Ground, HostLaw, PlaneGround};
 use crate::metrics::Keeping;
 use crate::metrics::waits::WaitCount;
@@ -90,7 +91,7 @@ pub fn simulate_with(
 
 /// What a robot's agent is made of: any guidance with searches of up to `C` cells, which an operator may take over, and any safety layer.
 pub(super) type GuidanceOf<const C: usize> = Commanded<f32, AnyGuidance<f32, C, VISITS, TEMPLATE, LEARNED>>;
-pub(super) type SafetyOf = AnySafety<f32, HALF_PLANES>;
+pub(super) type SafetyOf = Witness<AnySafety<f32, HALF_PLANES>>;
 
 /// The engines that there are. Only here are they made of generic code, so that it is compiled once.
 pub(super) enum AnyEngine {
@@ -145,7 +146,7 @@ fn agents<const C: usize>(
     let of_robots: Vec<usize> = of_robots.collect();
     move |index| {
         let (guidance, safety, speed_mps, tolerance_m) = &kinds[of_robots[index]];
-        (Commanded::new(guidance.guidance(), *speed_mps, *tolerance_m), safety.safety())
+        (Commanded::new(guidance.guidance(), *speed_mps, *tolerance_m), Witness::new(safety.safety()))
     }
 }
 

@@ -333,6 +333,7 @@ proptest! {
 
 mod attack;
 mod external;
+mod intervene;
 mod intruder;
 mod operator;
 mod plane;

@@ -73,6 +73,10 @@ impl Fates {
         }
     }
 
+    pub(super) fn set_loss(&mut self, loss: f64) {
+        self.loss = q32(loss);
+    }
+
     /// The generator of everything that happens to `packet` at `receiver`.
     pub(super) fn draws(&self, packet: &Packet, receiver: RobotId, tick: u32) -> Rng {
         Rng::keyed(packet.key, packet.number, receiver.0, tick)

@@ -78,6 +78,10 @@ impl Medium {
         }
     }
 
+    pub(super) const fn set_range_m(&mut self, range_m: f64) {
+        self.range_m = range_m;
+    }
+
     /// Replaces the packets with those that the robots send in `tick`.
     pub(super) fn fill<'a>(
         &mut self,

@@ -78,6 +78,19 @@ struct Receiver {
     bytes: Vec<u8>,
     /// Takes the bytes of packets that stay held; swapped with `bytes`.
     spare: Vec<u8>,
+    /// What became of the last tick's packets, if somebody wants to know.
+    log: Option<Vec<(RobotId, Reception)>>,
+}
+
+/// What became of one packet at one receiver.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reception {
+    /// It arrives, now or later.
+    Delivered,
+    /// It does not.
+    Lost,
+    /// It arrives with flipped bits.
+    Damaged,
 }
 
 /// The radio of a swarm.
@@ -107,6 +120,29 @@ impl Radio {
     #[must_use]
     pub fn inbox(&self, index: usize) -> &[u8] {
         &self.receivers[index].inbox
+    }
+
+    /// The radio is another one from now on: loss as a probability, range in metres; what is not given stays.
+    pub fn change(&mut self, loss: Option<f64>, range_m: Option<f64>) {
+        if let Some(loss) = loss {
+            self.fates.set_loss(loss);
+        }
+        if let Some(range_m) = range_m {
+            self.medium.set_range_m(range_m);
+        }
+    }
+
+    /// Whether [`Radio::receptions`] tells from the next tick on.
+    pub fn log_receptions(&mut self, wanted: bool) {
+        for receiver in &mut self.receivers {
+            receiver.log = wanted.then(Vec::new);
+        }
+    }
+
+    /// What became of the last tick's packets at robot number `index`, with their senders.
+    #[must_use]
+    pub fn receptions(&self, index: usize) -> &[(RobotId, Reception)] {
+        self.receivers[index].log.as_deref().unwrap_or_default()
     }
 
     /// Everything that became of packets so far.
@@ -147,13 +183,20 @@ impl Receiver {
     fn receive(&mut self, tick: u32, medium: &Medium, heard: &[u32], fates: &Fates) -> Counts {
         let mut counts = Counts::default();
         self.inbox.clear();
+        if let Some(log) = &mut self.log {
+            log.clear();
+        }
         for &at in heard {
             let packet = medium.packet(at);
             let mut draws = fates.draws(packet, self.id, tick);
             let Verdict::Arrives { copies } = fates.judge(&mut draws, packet, self.id, tick) else {
                 counts.lost += 1;
+                if let Some(log) = &mut self.log {
+                    log.push((packet.sender, Reception::Lost));
+                }
                 continue;
             };
+            let damaged_before = counts.corrupted;
             for copy in 0..copies {
                 let due_us = fates.due_us(&mut draws, tick);
                 let buffer = match due_us {
@@ -177,6 +220,10 @@ impl Receiver {
                         length,
                     });
                 }
+            }
+            if let Some(log) = &mut self.log {
+                let is_damaged = counts.corrupted > damaged_before;
+                log.push((packet.sender, if is_damaged { Reception::Damaged } else { Reception::Delivered }));
             }
         }
         self.release(fates.next_step_us(tick));

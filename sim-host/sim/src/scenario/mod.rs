@@ -5,6 +5,7 @@
 
 mod authentication;
 mod check;
+mod intervention;
 mod params;
 mod plane;
 mod ranges;
@@ -13,7 +14,9 @@ mod schema;
 mod setup;
 mod source;
 
+pub use intervention::{Intervention, InterventionTable, Refusal, Shape, with_interventions};
 pub use params::{FormationTable, GridTable, RouteTable};
+pub(crate) use plane::goals;
 pub use plane::{
     BallEntry, BoidsTable, CircleEntry, CloudEntry, GoalFlockTable, GroupTable, HalfSpaceEntry, Intruder,
     IntruderEntry, LatticeTable, OrcaTable, Order, OrderEntry, Place, PlaneRobotEntry, PlaneRobots, PlaneSetup,
@@ -108,6 +111,8 @@ pub struct Scenario {
     pub formation_params: FormationParams,
     /// Robots that go down.
     pub faults: Vec<Fault>,
+    /// What somebody does to the run, by rising tick.
+    pub interventions: Vec<(u32, Intervention)>,
     /// Robots by their numbers here, each with the number that it says.
     pub misnumbered: Vec<(RobotId, RobotId)>,
     /// What all robots share; `None`: they believe everybody.
@@ -171,6 +176,7 @@ impl Scenario {
         let (key, key_remark) = authentication::key(&source, &file, &robots)?.unzip();
         let attacks = authentication::attacks(&source, &file, &robots)?;
         let faults = check::faults(&source, &file, &robots)?;
+        let interventions = intervention::interventions(&source, &file, &robots)?;
         let misnumbered = check::misnumbered(&source, &file, &robots)?;
         check::formation_only(&source, &file)?;
         let route = params::routing(&source, &file.route, &file.grid)?;
@@ -189,6 +195,7 @@ impl Scenario {
             route,
             formation_params,
             faults,
+            interventions,
             misnumbered,
             key,
             key_remark: key_remark.flatten(),

@@ -3,6 +3,7 @@
 //! Cells are `[x, y]` from the south-west corner of the (cropped) map, x east and y north. Times are
 //! simulated. File names are relative to the scenario file.
 
+use super::intervention::InterventionTable;
 use super::params::{FormationTable, GridTable, RouteTable};
 use super::plane::PlaneTable;
 use crate::radio::RadioParams;
@@ -48,6 +49,9 @@ pub struct ScenarioFile {
     /// Robots that fail during the run.
     #[serde(default)]
     pub fault: Vec<FaultTable>,
+    /// What somebody does to the run: goals, obstacles, radio, parameters.
+    #[serde(default)]
+    pub intervention: Vec<InterventionTable>,
     /// Robots that have the number of another one, by mistake.
     #[serde(default)]
     pub misnumbered: Vec<MisnumberedTable>,

@@ -172,6 +172,34 @@ impl Terrain {
         (x < self.width && y < self.height).then(|| usize::from(y) * usize::from(self.width) + usize::from(x))
     }
 
+    /// The cell under a place, metres; `None` outside the map.
+    #[must_use]
+    pub fn cell_at(&self, place_m: [f64; 2]) -> Option<Cell> {
+        let at = |axis: usize| {
+            let cells = (place_m[axis] - self.origin_m[axis]) / self.cell_m;
+            (cells >= 0.0 && cells < f64::from(i16::MAX)).then_some(cells as i16)
+        };
+        let cell = Cell::new(at(0)?, at(1)?);
+        self.index(cell).map(|_| cell)
+    }
+
+    /// The cell under a place, metres, or that of the map which is nearest to it.
+    #[must_use]
+    pub fn nearest_cell(&self, place_m: [f64; 2]) -> Cell {
+        let at = |axis: usize, side: u16| {
+            let cells = (place_m[axis] - self.origin_m[axis]) / self.cell_m;
+            cells.clamp(0.0, f64::from(side) - 1.0) as i16
+        };
+        Cell::new(at(0, self.width), at(1, self.height))
+    }
+
+    /// The middle of a cell, metres.
+    #[must_use]
+    pub fn center_m(&self, cell: Cell) -> [f64; 2] {
+        let at = |cells: i16, axis: usize| self.origin_m[axis] + (f64::from(cells) + 0.5) * self.cell_m;
+        [at(cell.x, 0), at(cell.y, 1)]
+    }
+
     /// Ticks to cross a cell; [`BLOCKED`] for walls and everything outside the map.
     #[must_use]
     pub fn get(&self, cell: Cell) -> u8 {

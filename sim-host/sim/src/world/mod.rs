@@ -9,6 +9,7 @@ mod window;
 
 pub use window::window;
 
+use crate::scenario::Refusal;
 use crate::terrain::Terrain;
 use staya_controller::agent::Command;
 use staya_controller::grid::{BLOCKED, Cell, Dir, Norm, UNIT};
@@ -128,6 +129,15 @@ impl World {
         &self.terrain
     }
 
+    /// Changes a cell of the land; 0 is a wall.
+    ///
+    /// # Errors
+    /// There is no such cell, or somebody is in it.
+    pub fn set_cell(&mut self, cell: Cell, class: u8) -> Result<(), Refusal> {
+        let is_taken = self.body_at(cell).is_some();
+        set_cell(&mut self.terrain, cell, class, is_taken)
+    }
+
     /// The bodies, in the order in which they were placed.
     #[must_use]
     pub fn bodies(&self) -> &[Body] {
@@ -226,6 +236,19 @@ impl World {
         }
         collisions
     }
+}
+
+/// Changes a cell that nobody is in: who crosses one does so at the pace that it had when he entered.
+fn set_cell(terrain: &mut Terrain, cell: Cell, class: u8, is_taken: bool) -> Result<(), Refusal> {
+    if terrain.index(cell).is_none() {
+        let what = format!("({}, {}) is no cell of the map", cell.x, cell.y);
+        return Err(Refusal::new("cell", what, format!("it has {} x {}", terrain.width(), terrain.height())));
+    }
+    if is_taken {
+        return Err(Refusal::new("cell", "a robot is there", "wait until it has left, or take another cell"));
+    }
+    terrain.set(cell, class);
+    Ok(())
 }
 
 #[cfg(test)]

@@ -46,7 +46,7 @@ pub(super) fn goal_velocity(
 }
 
 /// How many goals robots have room for.
-pub(super) const fn goals(guidance: GuidanceKind) -> u8 {
+pub(crate) const fn goals(guidance: GuidanceKind) -> u8 {
     match guidance {
         GuidanceKind::Waypoint | GuidanceKind::Lattice => 1,
         GuidanceKind::GoalFlock => GOALS as u8,

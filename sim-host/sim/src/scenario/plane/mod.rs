@@ -7,6 +7,7 @@ mod spec;
 mod starts;
 mod table;
 
+pub(crate) use checks::goals;
 pub(super) use flocks::remark;
 
 #[cfg(test)]
@@ -136,6 +137,7 @@ impl Scenario {
             route: RouteSetup::default(),
             formation_params: FormationParams::default(),
             faults: Vec::new(),
+            interventions: Vec::new(),
             misnumbered: Vec::new(),
             key: None,
             key_remark: None,

@@ -40,8 +40,8 @@ pub struct Target {
 /// Robots of the grid, in the middles of their cells.
 pub(super) fn on_land(robots: &[Robot], terrain: &Terrain) -> Vec<Start> {
     let center = |cell: Cell| {
-        let at = |cells: i16, axis: usize| terrain.origin_m[axis] + (f64::from(cells) + 0.5) * terrain.cell_m;
-        [at(cell.x, 0), at(cell.y, 1), 0.0]
+        let [x, y] = terrain.center_m(cell);
+        [x, y, 0.0]
     };
     let start = |robot: &Robot| Start {
         position_m: center(robot.start),

@@ -9,7 +9,9 @@ mod solid;
 pub use solid::Solid;
 pub use solid::narrow;
 
+use super::set_cell;
 use crate::nearby::{Cells, Query, Search, Space};
+use crate::scenario::Refusal;
 use crate::terrain::Terrain;
 use staya_controller::agent::Command;
 use staya_controller::body::Body as Limits;
@@ -149,6 +151,46 @@ impl Plane {
         &self.solids
     }
 
+    /// Puts obstacles behind those that there are, wherever bodies are.
+    pub fn add_solids(&mut self, solids: impl IntoIterator<Item = Solid>) {
+        self.solids.extend(solids);
+    }
+
+    /// Moves an obstacle at once.
+    ///
+    /// # Errors
+    /// There are not so many.
+    pub fn move_solid(&mut self, index: usize, by_m: [f64; 2]) -> Result<(), Refusal> {
+        let count = self.solids.len();
+        let solid = self.solids.get_mut(index).ok_or_else(|| no_solid(index, count))?;
+        *solid = solid.moved(by_m);
+        Ok(())
+    }
+
+    /// Takes an obstacle away; those behind it move up.
+    ///
+    /// # Errors
+    /// There are not so many.
+    pub fn remove_solid(&mut self, index: usize) -> Result<(), Refusal> {
+        if index >= self.solids.len() {
+            return Err(no_solid(index, self.solids.len()));
+        }
+        self.solids.remove(index);
+        Ok(())
+    }
+
+    /// Changes a cell of the land; 0 is a wall.
+    ///
+    /// # Errors
+    /// There is no such cell, or somebody is in it.
+    pub fn set_cell(&mut self, cell: Cell, class: u8) -> Result<(), Refusal> {
+        let is_taken = self.discs.iter().any(|disc| self.cell(disc.position_m) == Some(cell));
+        let Some(terrain) = &mut self.terrain else {
+            return Err(Refusal::new("kind", "there is no land", "draw a wall instead"));
+        };
+        set_cell(terrain, cell, class, is_taken)
+    }
+
     /// The land, if there is any.
     #[must_use]
     pub const fn terrain(&self) -> Option<&Terrain> {
@@ -158,13 +200,8 @@ impl Plane {
     /// The cell of the land under a place; `None` off the map and without land.
     #[must_use]
     pub fn cell(&self, position_m: [f64; 3]) -> Option<Cell> {
-        let terrain = self.terrain.as_ref()?;
-        let at = |axis: usize| {
-            let cells = (position_m[axis] - terrain.origin_m[axis]) / terrain.cell_m;
-            (cells >= 0.0 && cells < f64::from(i16::MAX)).then_some(cells as i16)
-        };
-        let cell = Cell::new(at(0)?, at(1)?);
-        terrain.index(cell).map(|_| cell)
+        let [x, y, _] = position_m;
+        self.terrain.as_ref()?.cell_at([x, y])
     }
 
     /// How fast a body with these abilities can go at a place, m/s. In a blocked cell, where it should not be, as on the
@@ -257,6 +294,11 @@ impl Plane {
         }
         clearance
     }
+}
+
+fn no_solid(index: usize, count: usize) -> Refusal {
+    let what = format!("there is no obstacle {index}");
+    Refusal::new("index", what, format!("there are {count}, counted from 0"))
 }
 
 /// Whether one of two bodies is in the other's downwash: an ellipsoid that is higher than wide.

@@ -1,5 +1,6 @@
 //! What stands in the plane and does not move.
 
+use crate::scenario::Shape;
 use staya_controller::geom::{Vec2, Vec3};
 use staya_controller::obstacle::Obstacle;
 
@@ -25,6 +26,34 @@ pub enum Solid {
 }
 
 impl Solid {
+    /// What somebody has put into the plane.
+    #[must_use]
+    pub fn of(shape: &Shape) -> Vec<Self> {
+        match shape {
+            Shape::Circle { center_m: [x, y], radius_m } => {
+                vec![Self::Ball { center_m: [*x, *y, 0.0], radius_m: *radius_m }]
+            }
+            Shape::Ball { center_m, radius_m } => vec![Self::Ball { center_m: *center_m, radius_m: *radius_m }],
+            Shape::Segment { from_m, to_m } => vec![Self::Wall([*from_m, *to_m])],
+            Shape::Polygon { points_m } => {
+                let next = points_m.iter().cycle().skip(1);
+                points_m.iter().zip(next).map(|(from, to)| Self::Wall([*from, *to])).collect()
+            }
+        }
+    }
+
+    /// The same elsewhere, metres.
+    #[must_use]
+    pub fn moved(&self, [x, y]: [f64; 2]) -> Self {
+        let flat = |point: [f64; 2]| [point[0] + x, point[1] + y];
+        let way = |point: [f64; 3]| [point[0] + x, point[1] + y, point[2]];
+        match *self {
+            Self::Wall(ends) => Self::Wall(ends.map(flat)),
+            Self::Ball { center_m, radius_m } => Self::Ball { center_m: way(center_m), radius_m },
+            Self::Plane { point_m, normal } => Self::Plane { point_m: way(point_m), normal },
+        }
+    }
+
     /// The obstacle as it is seen from a place: relative to it, to the precision of `f64`.
     #[must_use]
     pub fn seen_from(&self, place_m: [f64; 3]) -> Obstacle<f64> {

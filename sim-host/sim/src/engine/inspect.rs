@@ -1,0 +1,197 @@
+//! What a robot knows and is about to decide, for those who look into it: the run goes on as if nobody had looked.
+
+use super::simulate::SafetyOf;
+use super::witness::Asked;
+use super::{Engine, Ground, HostLaw, Tick};
+use staya_controller::agent::{AnySafety, AnySurroundings, Command, Commanded, GridWorkspace, Guidance, Parameter};
+use staya_controller::cost::TICK;
+use staya_controller::grid::Cell;
+use staya_controller::names::Named as _;
+use staya_controller::robot::RobotId;
+
+/// Another robot, as a robot knows it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Known {
+    /// Who it is.
+    pub id: RobotId,
+    /// Where the robot takes it to be now, metres.
+    pub position_m: [f64; 3],
+    /// How it moved when it was heard, m/s.
+    pub velocity_mps: [f64; 3],
+    /// Seconds since it was heard.
+    pub age_s: f64,
+}
+
+/// What a robot sees of the land, and what ways cost in it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SeenLand {
+    /// South-west cell.
+    pub corner: Cell,
+    /// Cells from west to east.
+    pub width: u16,
+    /// Row by row from the south-west corner, as in [`Terrain`](crate::terrain::Terrain).
+    pub cells: Vec<u8>,
+    /// Ticks from each cell to the exit of the last search; NaN where there is no way or nobody looked for one.
+    pub costs: Vec<f32>,
+}
+
+/// A half-space of permitted velocities.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Permitted {
+    /// A point on its border, m/s.
+    pub point_mps: [f32; 3],
+    /// Unit vector into it.
+    pub normal: [f32; 3],
+    /// Whether an obstacle, not a robot, is behind it.
+    pub is_of_obstacle: bool,
+}
+
+/// What a safety layer makes of a wish.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Choice {
+    /// The velocity that the guidance law wishes, m/s.
+    pub wish_mps: [f32; 3],
+    /// The one that the body is told, m/s.
+    pub chosen_mps: [f32; 3],
+    /// The body's highest speed here, m/s.
+    pub max_speed_mps: f32,
+    /// What ORCA permits; empty for other layers.
+    pub permitted: Vec<Permitted>,
+}
+
+/// What a robot knows before its next step, and what it will decide in it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Inspection {
+    /// Whom it knows, by number.
+    pub known: Vec<Known>,
+    /// On the grid.
+    pub land: Option<SeenLand>,
+    /// By velocities.
+    pub choice: Option<Choice>,
+    /// Its parameters.
+    pub parameters: Vec<(Parameter, f32)>,
+    /// Bytes that it sent in the last tick.
+    pub sent_bytes: usize,
+    /// Bytes that it is going to hear.
+    pub heard_bytes: usize,
+}
+
+/// What can be read in a law's scratch memory after a step.
+pub trait Scratchpad: Default {
+    /// Ticks from a cell to the exit of the last search.
+    fn cost(&self, _cell: Cell) -> Option<f32> {
+        None
+    }
+}
+
+impl Scratchpad for () {}
+
+impl<const CELLS: usize> Scratchpad for GridWorkspace<CELLS> {
+    fn cost(&self, cell: Cell) -> Option<f32> {
+        Some(self.field().cost(cell)? as f32 / TICK as f32)
+    }
+}
+
+impl<W, G> Engine<W, Commanded<f32, G>, SafetyOf>
+where
+    W: Ground,
+    G: HostLaw + Clone,
+{
+    /// Looks into robot `index`; of one that is down, or elsewhere, nothing is known. Steps a copy of it.
+    pub(super) fn inspect(&self, index: usize) -> Inspection {
+        let computer = &self.computers[index];
+        let Some(agent) = computer.agent.as_ref().filter(|_| self.is_up(index)) else {
+            return Inspection::default();
+        };
+        let mut agent = agent.clone();
+        agent.safety_mut().listen();
+        let (mut senses, mut heard) = (W::Scratch::default(), Vec::new());
+        let moment = Tick { tick: self.tick, ground: &self.ground, radio: &self.radio };
+        let inputs = moment.inputs(index, computer, &mut senses, &mut heard);
+        let now = computer.now(self.tick, self.tick_us);
+        let mut workspace = <Commanded<f32, G> as Guidance<f32>>::Workspace::default();
+        let out = agent.step(&inputs, now, &mut workspace);
+        let own = inputs.state.position;
+        let own_m = self.ground.motion(index, self.tick).position_m;
+        let known = agent.neighbors().iter().map(|other| {
+            let longest = other.age(now).unwrap_or_default();
+            let way = other.offset_at(own, now, longest);
+            let way = [way.x, way.y, way.z].map(f64::from);
+            Known {
+                id: other.id,
+                position_m: [0, 1, 2].map(|axis| own_m[axis] + way[axis]),
+                velocity_mps: [other.velocity_mps.x, other.velocity_mps.y, other.velocity_mps.z].map(f64::from),
+                age_s: f64::from(longest.as_micros()) / 1e6,
+            }
+        });
+        let window = match &inputs.surroundings {
+            AnySurroundings::OnGrid(grid) => grid.window,
+            AnySurroundings::InCells(cells) => cells.grid.window,
+            AnySurroundings::InPlane(_) => None,
+        };
+        let land = window.map(|window| {
+            let columns = (0..window.height()).flat_map(|y| (0..window.width()).map(move |x| (x, y)));
+            let cost = |(x, y): (u16, u16)| {
+                let cell = window.origin() + Cell::new(x.cast_signed(), y.cast_signed());
+                workspace.cost(cell).unwrap_or(f32::NAN)
+            };
+            SeenLand {
+                corner: window.origin(),
+                width: window.width(),
+                cells: window.cells().to_vec(),
+                costs: columns.map(cost).collect(),
+            }
+        });
+        let chosen = match out.command {
+            Command::Velocity(v) => Some([v.x, v.y, v.z]),
+            Command::Hold | Command::Move(_) => None,
+        };
+        let choice = agent.safety().asked().map(|asked| Choice {
+            wish_mps: [asked.wish_mps.x, asked.wish_mps.y, asked.wish_mps.z],
+            chosen_mps: chosen.unwrap_or_default(),
+            max_speed_mps: asked.body.max_speed_mps,
+            permitted: permitted(agent.safety().inside(), asked),
+        });
+        let parameters = Parameter::NAMES.iter();
+        Inspection {
+            known: known.collect(),
+            land,
+            choice,
+            parameters: parameters
+                .filter_map(|&(_, parameter)| Some((parameter, agent.parameter(parameter)?)))
+                .collect(),
+            sent_bytes: computer.outbox.len(),
+            heard_bytes: inputs.inbox.len(),
+        }
+    }
+}
+
+/// What ORCA permits among those that it was asked about.
+fn permitted<const K: usize>(layer: &AnySafety<f32, K>, asked: &Asked) -> Vec<Permitted> {
+    let Asked { body, nearby, obstacles, .. } = asked;
+    match layer {
+        AnySafety::Orca(layer) => {
+            let (hard, planes) = layer.avoider().half_spaces(body, nearby, obstacles);
+            let planes = planes.iter().enumerate();
+            planes
+                .map(|(index, plane)| Permitted {
+                    point_mps: [plane.point.x, plane.point.y, 0.0],
+                    normal: [plane.normal.x, plane.normal.y, 0.0],
+                    is_of_obstacle: index < hard,
+                })
+                .collect()
+        }
+        AnySafety::Fly(layer) => {
+            let (hard, spaces) = layer.avoider().half_spaces(body, nearby, obstacles);
+            let spaces = spaces.iter().enumerate();
+            spaces
+                .map(|(index, space)| Permitted {
+                    point_mps: [space.point.x, space.point.y, space.point.z],
+                    normal: [space.normal.x, space.normal.y, space.normal.z],
+                    is_of_obstacle: index < hard,
+                })
+                .collect()
+        }
+        AnySafety::Unguarded(_) | AnySafety::PushOut(_) => Vec::new(),
+    }
+}

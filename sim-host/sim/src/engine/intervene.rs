@@ -1,0 +1,144 @@
+//! What somebody does to a run while it goes on ([`Intervention`]).
+
+use super::{Engine, Ground, HostLaw};
+use crate::scenario::{Fault, Intervention, Refusal};
+use staya_controller::agent::{Parameter, Safety};
+use staya_controller::robot::RobotId;
+
+/// A change of the world itself.
+#[derive(Clone, Copy, Debug)]
+pub enum Change<'a> {
+    /// See [`Intervention::Waypoint`].
+    Waypoint {
+        /// Which of the goals.
+        goal: u8,
+        /// Where it is now.
+        place_m: [f64; 3],
+    },
+    /// See [`Intervention::Solid`].
+    Solid(&'a crate::scenario::Shape),
+    /// See [`Intervention::Move`].
+    Move(usize, [f64; 2]),
+    /// See [`Intervention::Remove`].
+    Remove(usize),
+    /// See [`Intervention::Cell`].
+    Cell([i16; 2], u8),
+}
+
+/// A parameter that was changed, of one robot or of all.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tuned {
+    robot: Option<usize>,
+    parameter: Parameter,
+    value: f32,
+}
+
+impl<W, G, A> Engine<W, G, A>
+where
+    W: Ground,
+    G: HostLaw,
+    A: Safety<f32> + Send,
+{
+    /// Does what the scenario has for this tick.
+    pub(super) fn apply_interventions(&mut self) {
+        while let Some((_, what)) = self.interventions.front().filter(|(tick, _)| *tick <= self.tick) {
+            let what = what.clone();
+            // What nobody has a use for was said to whoever did it by hand, and is as void when it is repeated.
+            let _ = self.intervene(&what);
+            self.interventions.pop_front();
+        }
+    }
+
+    /// Does it before the next tick.
+    ///
+    /// # Errors
+    /// It makes no sense for these robots or this world, or nobody has a use for it.
+    pub fn intervene(&mut self, what: &Intervention) -> Result<(), Refusal> {
+        what.check(&self.robots)?;
+        let index = what.robot().and_then(|number| self.index_of(number));
+        match what {
+            Intervention::Goal { place_m, .. } => self.set_goals(index, *place_m),
+            Intervention::Parameter { name, value, .. } => self.tune(index, *name, *value),
+            Intervention::Down { robot, for_s } => {
+                let ticks = for_s.map_or(f64::INFINITY, |for_s| libm::ceil(for_s * 1e6 / f64::from(self.tick_us)));
+                let to_tick = self.tick.saturating_add(ticks as u32);
+                self.faults.push(Fault { robot: RobotId(*robot), from_tick: self.tick, to_tick });
+                Ok(())
+            }
+            Intervention::Radio { loss, range_m } => {
+                self.radio.change(*loss, *range_m);
+                Ok(())
+            }
+            Intervention::Waypoint { goal, place_m } => {
+                self.change(Change::Waypoint { goal: *goal, place_m: *place_m })
+            }
+            Intervention::Solid { solid } => self.change(Change::Solid(solid)),
+            Intervention::Move { index, by_m } => self.change(Change::Move(*index, *by_m)),
+            Intervention::Remove { index } => self.change(Change::Remove(*index)),
+            Intervention::Cell { cell, class } => self.change(Change::Cell(*cell, *class)),
+        }
+    }
+
+    fn change(&mut self, change: Change<'_>) -> Result<(), Refusal> {
+        self.ground.change(self.tick, change)
+    }
+
+    fn index_of(&self, number: u32) -> Option<usize> {
+        self.robots.binary_search_by_key(&RobotId(number), |robot| robot.id).ok()
+    }
+
+    fn set_goals(&mut self, index: Option<usize>, place_m: [f64; 3]) -> Result<(), Refusal> {
+        if self.external.is_some() {
+            return Err(Refusal::new("kind", "some of these robots run elsewhere", "run them here"));
+        }
+        if !self.ground.is_open(place_m) {
+            return Err(Refusal::new("place_m", "nobody can stand there", "give a place on the map and not in a wall"));
+        }
+        let shape_of = self.ground.goal_m(0).filter(|_| index.is_none() && self.keeps_shape);
+        let robots = index.map_or(0..self.robots.len(), |index| index..index + 1);
+        let mut is_of_use = false;
+        for index in robots {
+            let own = shape_of.zip(self.ground.goal_m(index));
+            let off_m = own.map_or([0.0; 3], |(first, own)| [0, 1, 2].map(|axis| own[axis] - first[axis]));
+            let task = self.ground.set_goal(index, self.tick, [0, 1, 2].map(|axis| place_m[axis] + off_m[axis]));
+            let is_up = self.is_up(index);
+            let agent = self.computers[index].agent.as_mut();
+            // One that is down hears of it when it starts anew.
+            is_of_use |= agent.filter(|_| is_up).is_none_or(|agent| agent.assign(&task).is_ok());
+        }
+        if is_of_use {
+            return Ok(());
+        }
+        Err(Refusal::new("kind", "these robots go to no place, they roam", "give them another guidance law"))
+    }
+
+    fn tune(&mut self, robot: Option<usize>, parameter: Parameter, value: f32) -> Result<(), Refusal> {
+        let tuned = Tuned { robot, parameter, value };
+        let mut is_known = false;
+        for (index, computer) in self.computers.iter_mut().enumerate() {
+            if robot.is_none_or(|robot| robot == index)
+                && let Some(agent) = &mut computer.agent
+            {
+                is_known |= agent.set_parameter(parameter, value);
+            }
+        }
+        if !is_known {
+            let what = format!("no robot that this is for has the parameter {parameter}");
+            return Err(Refusal::new("name", what, "give one that its guidance law or its safety layer has"));
+        }
+        self.tuned.push(tuned);
+        Ok(())
+    }
+
+    /// Whether the computer of a robot runs.
+    pub(super) fn is_up(&self, index: usize) -> bool {
+        self.tick >= self.computers[index].down_until
+    }
+}
+
+/// Gives an agent that starts the parameters that robot `index` has by now.
+pub(super) fn retune(tuned: &[Tuned], index: usize, mut set: impl FnMut(Parameter, f32) -> bool) {
+    for Tuned { parameter, value, .. } in tuned.iter().filter(|tuned| tuned.robot.is_none_or(|robot| robot == index)) {
+        set(*parameter, *value);
+    }
+}

@@ -1,0 +1,85 @@
+//! A safety layer that can tell what it was asked and what it answered.
+
+use serde::Serialize;
+use staya_controller::agent::{Parameter, Safety, SafetyInput};
+use staya_controller::body::Body;
+use staya_controller::geom::Vec3;
+use staya_controller::neighbor::{Nearby, StalenessInflation};
+use staya_controller::obstacle::Obstacle;
+use staya_controller::rand::Rng;
+
+/// What a safety layer was asked in a step, and its answer.
+#[derive(Clone, Debug)]
+pub struct Asked {
+    /// Own body.
+    pub body: Body<f32>,
+    /// The velocity that the guidance law wished, m/s.
+    pub wish_mps: Vec3<f32>,
+    /// Who was near by, nearest first.
+    pub nearby: Vec<Nearby<f32>>,
+    /// What it saw that does not move.
+    pub obstacles: Vec<Obstacle<f32>>,
+}
+
+/// Layer `A`, which tells nothing unless [`Witness::listen`] was called: the same state and the same answers either way.
+#[derive(Clone, Debug, Serialize)]
+#[serde(transparent)]
+pub struct Witness<A> {
+    inside: A,
+    #[serde(skip)]
+    listens: bool,
+    #[serde(skip)]
+    asked: Option<Box<Asked>>,
+}
+
+impl<A> Witness<A> {
+    /// Around a layer.
+    pub const fn new(inside: A) -> Self {
+        Self { inside, listens: false, asked: None }
+    }
+
+    /// Keeps what it is asked from now on.
+    pub const fn listen(&mut self) {
+        self.listens = true;
+    }
+
+    /// The layer.
+    pub const fn inside(&self) -> &A {
+        &self.inside
+    }
+
+    /// What it was asked last.
+    pub fn asked(&self) -> Option<&Asked> {
+        self.asked.as_deref()
+    }
+}
+
+impl<A: Safety<f32>> Safety<f32> for Witness<A> {
+    fn keep_clear(&mut self, input: &SafetyInput<'_, f32>, rng: &mut Rng) -> Vec3<f32> {
+        if self.listens {
+            self.asked = Some(Box::new(Asked {
+                body: input.body,
+                wish_mps: input.wish_mps,
+                nearby: input.nearby.to_vec(),
+                obstacles: input.obstacles.to_vec(),
+            }));
+        }
+        self.inside.keep_clear(input, rng)
+    }
+
+    fn inflation(&self) -> Option<StalenessInflation<f32>> {
+        self.inside.inflation()
+    }
+
+    fn waits_for_turn(&self) -> bool {
+        self.inside.waits_for_turn()
+    }
+
+    fn parameter(&self, parameter: Parameter) -> Option<f32> {
+        self.inside.parameter(parameter)
+    }
+
+    fn tune(&mut self, parameter: Parameter, value: f32) -> bool {
+        self.inside.tune(parameter, value)
+    }
+}
