@@ -1,6 +1,6 @@
 //! `staya run SCENARIO`: one run, its figures and its pictures.
 
-use anyhow::{Context as _, Result};
+use anyhow::{Context as _, Result, anyhow};
 use clap::Args;
 use serde::Serialize;
 use staya_console::{Ended, Global, Progress, Stop, print, print_json};
@@ -9,7 +9,7 @@ use staya_controller::grid::UNIT;
 use staya_plot::{motion_pictures, run_pictures};
 use staya_sim::engine::{Moment, Outcome, simulate};
 use staya_sim::metrics::waits::WaitCount;
-use staya_sim::record::{self, History, Options, PacketCounts, Recorder, RobotRow, write_summary};
+use staya_sim::record::{self, History, Options, PacketCounts, Recorder, Results, RobotRow, write_summary};
 use staya_sim::scenario::{Overrides, Scenario};
 use std::fmt::{Display, Formatter, Write as _};
 use std::ops::ControlFlow;
@@ -50,7 +50,8 @@ impl ScenarioArgs {
 pub struct RunArgs {
     #[command(flatten)]
     scenario: ScenarioArgs,
-    /// Folder for the results; files of an earlier run are replaced [default: out/ and the scenario's name].
+    /// Folder for the results; those of an earlier run are replaced when the new ones are complete [default: out/ and the
+    /// scenario's name].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
@@ -170,9 +171,31 @@ impl RunArgs {
     }
 }
 
-/// Runs a scenario and leaves everything about it in `out`.
+/// Runs a scenario and leaves everything about it in `out`; what was there before stays until all of it is written.
 fn run(scenario: &Scenario, out: &Path, stop: &Stop, global: &Global) -> Result<Summary> {
-    let recorder = Recorder::new(out, Options::default())?;
+    let results = Results::begin(out)?;
+    let whole = run_into(scenario, results.dir(), out, stop, global).and_then(|summary| {
+        write_summary(results.dir(), &summary)?;
+        Ok(summary)
+    });
+    match whole {
+        Ok(summary) => {
+            results.finish()?;
+            Ok(summary)
+        }
+        Err(error) if error.is::<record::Error>() => {
+            let kept = results.keep();
+            let (kept, out) = (kept.display(), out.display());
+            let what = format!("{kept} keeps what was written until the next run into {out}, where nothing has changed");
+            Err(anyhow!("{}; {what}", crate::in_one_line(&error)))
+        }
+        Err(error) => Err(error),
+    }
+}
+
+/// The same in folder `dir`, which will be `out`; without `summary.json`.
+fn run_into(scenario: &Scenario, dir: &Path, out: &Path, stop: &Stop, global: &Global) -> Result<Summary> {
+    let recorder = Recorder::new(dir, Options::default())?;
     let began = Instant::now();
     let (outcome, history) = simulate_recorded(scenario, recorder, stop, global)?;
     let wall_seconds = began.elapsed().as_secs_f64();
@@ -186,14 +209,14 @@ fn run(scenario: &Scenario, out: &Path, stop: &Stop, global: &Global) -> Result<
     };
     let names = ["summary.json", "series.csv", "series.schema.json", "trace.csv", "trace.schema.json"];
     let mut files: Vec<_> = names.iter().map(|name| out.join(name)).collect();
-    files.extend(match &scenario.plane {
-        None => run_pictures(&scenario.terrain, &history, &edges, out)?,
-        Some(setup) => motion_pictures(setup, &history, out)?,
-    });
+    let pictures = match &scenario.plane {
+        None => run_pictures(&scenario.terrain, &history, &edges, dir)?,
+        Some(setup) => motion_pictures(setup, &history, dir)?,
+    };
+    files.extend(pictures.iter().map(|file| out.join(file.strip_prefix(dir).unwrap_or(file))));
     let mut summary = Summary::new(scenario, &outcome, files);
     summary.wall_seconds = wall_seconds;
     summary.interrupted = stop.is_requested();
-    write_summary(out, &summary)?;
     Ok(summary)
 }
 

@@ -260,40 +260,102 @@ fn every_command_that_offers_json_prints_one_object_and_leaves_no_probe() {
     }
 }
 
-#[cfg(target_os = "linux")]
+/// The folder in which a run into `out` has its files until they are complete.
+fn partial(out: &str) -> Option<PathBuf> {
+    let out = Path::new(out);
+    let found = fs::read_dir(out.parent()?).ok()?.flatten().map(|entry| entry.path());
+    let mut found = found.filter(|path| path.file_name().is_some_and(|n| n.to_string_lossy().contains(".partial-")));
+    found.next()
+}
+
+#[cfg(unix)]
 #[test]
-fn a_full_disk_ends_the_run_with_the_files_name() {
+fn a_full_disk_ends_the_run_with_the_files_name_and_the_old_results() {
     let (_dir, out) = folder();
-    fs::create_dir(&out).expect("folder");
-    std::os::unix::fs::symlink("/dev/full", Path::new(&out).join("trace.csv")).expect("link");
-    let full = refusal(&["run", &scenario("scale-small.toml"), "--quiet", "--out", &out]);
+    let small = scenario("scale-small.toml");
+    let first = staya(&["run", &small, "--quiet", "--ticks", "2", "--out", &out]).output().expect("staya starts");
+    assert!(first.status.success());
+    let before = fs::read(Path::new(&out).join("summary.json")).expect("summary.json");
+    fs::write(Path::new(&out).join("notes.txt"), "mine").expect("write");
+    // Files beyond 64 KiB are refused by the system, as on a full disk.
+    let line = "trap '' XFSZ; ulimit -f 128; exec \"$0\" \"$@\"";
+    let ended = Command::new("sh")
+        .args(["-c", line, env!("CARGO_BIN_EXE_staya"), "run", &small, "--quiet", "--out", &out])
+        .output()
+        .expect("sh starts");
+    assert_eq!(ended.status.code(), Some(1));
+    let full = text(&ended.stderr);
+    let kept = partial(&out).expect("what was written");
     assert!(full.contains("trace.csv") && full.contains("free some space"), "{full}");
+    assert!(full.contains(kept.to_str().expect("UTF-8")) && full.contains("nothing has changed"), "{full}");
+    assert_eq!(fs::read(Path::new(&out).join("summary.json")).expect("still there"), before);
+    // The next run clears that away, and leaves what no run made.
+    let next = staya(&["run", &small, "--quiet", "--ticks", "3", "--out", &out]).output().expect("staya starts");
+    assert!(next.status.success());
+    assert_eq!(partial(&out), None);
+    assert_ne!(fs::read(Path::new(&out).join("summary.json")).expect("new"), before);
+    assert_eq!(fs::read_to_string(Path::new(&out).join("notes.txt")).expect("kept"), "mine");
 }
 
 /// One robot that never gets out of its room, for as long as it takes.
 const PRISON: &str = "name = \"prison\"\nticks = 4000000000\n[terrain]\nfile = \"prison.map\"\n\
                       [robots]\nlist = [{ start = [0, 0], goal = [4, 0] }]\n";
 
+/// Writes the scenario and its map into a folder.
+fn prison(dir: &Path) -> PathBuf {
+    let path = dir.join("prison.toml");
+    fs::write(&path, PRISON).expect("write");
+    let map = "type octile\nheight 1\nwidth 5\nmap\n..@..\n";
+    fs::write(dir.join("prison.map"), map).expect("write");
+    path
+}
+
+/// Waits until a run into `out` has written something.
+fn wait_for_series(out: &str, child: &mut std::process::Child) {
+    let patience = Instant::now() + Duration::from_secs(120);
+    let written = || fs::metadata(partial(out)?.join("series.csv")).ok();
+    while written().map_or(0, |m| m.len()) < 10_000 {
+        assert!(Instant::now() < patience, "nothing is written");
+        assert!(child.try_wait().expect("a child").is_none(), "it ended by itself");
+        thread::sleep(Duration::from_millis(10));
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_killed_run_leaves_the_old_results_as_they_were() {
+    let (dir, out) = folder();
+    let path = prison(dir.path());
+    let path = path.to_str().expect("UTF-8");
+    let first = staya(&["run", path, "--quiet", "--ticks", "5", "--out", &out]).output().expect("staya starts");
+    assert!(first.status.success());
+    let all = || -> Vec<(PathBuf, Vec<u8>)> {
+        let mut paths: Vec<_> = fs::read_dir(&out).expect("results").map(|entry| entry.expect("one").path()).collect();
+        paths.sort();
+        paths.into_iter().map(|path| (path.clone(), fs::read(path).expect("readable"))).collect()
+    };
+    let before = all();
+    let mut child = staya(&["run", path, "--quiet", "--out", &out]).stderr(Stdio::null()).spawn().expect("staya starts");
+    wait_for_series(&out, &mut child);
+    child.kill().expect("killed");
+    child.wait().expect("it ends");
+    assert!(before == all(), "the results have changed");
+    let again = staya(&["run", path, "--quiet", "--ticks", "5", "--out", &out]).output().expect("staya starts");
+    assert!(again.status.success());
+    assert_eq!(partial(&out), None, "what the dead run left is gone");
+}
+
 #[cfg(unix)]
 #[test]
 fn ctrl_c_ends_a_run_cleanly_and_keeps_what_it_has() {
     let (dir, out) = folder();
-    let path = dir.path().join("prison.toml");
-    fs::write(&path, PRISON).expect("write");
-    let map = "type octile\nheight 1\nwidth 5\nmap\n..@..\n";
-    fs::write(dir.path().join("prison.map"), map).expect("write");
+    let path = prison(dir.path());
     let mut child = staya(&["run", path.to_str().expect("UTF-8"), "--json", "--out", &out])
         .stdout(Stdio::piped())
         .stderr(Stdio::null())
         .spawn()
         .expect("staya starts");
-    let series = Path::new(&out).join("series.csv");
-    let patience = Instant::now() + Duration::from_secs(120);
-    while fs::metadata(&series).map_or(0, |m| m.len()) < 10_000 {
-        assert!(Instant::now() < patience, "nothing is written");
-        assert!(child.try_wait().expect("a child").is_none(), "it ended by itself");
-        thread::sleep(Duration::from_millis(10));
-    }
+    wait_for_series(&out, &mut child);
     let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
     assert!(sent.expect("kill starts").success());
     let Output { status, stdout, .. } = child.wait_with_output().expect("it ends");
@@ -301,7 +363,7 @@ fn ctrl_c_ends_a_run_cleanly_and_keeps_what_it_has() {
     let json: Value = serde_json::from_slice(&stdout).expect("one JSON object");
     assert_eq!((&json["interrupted"], &json["arrived"]), (&true.into(), &0.into()));
     let ticks = json["ticks"].as_u64().expect("a number");
-    let series = fs::read_to_string(series).expect("readable");
+    let series = fs::read_to_string(Path::new(&out).join("series.csv")).expect("readable");
     let last = series.lines().last().expect("a line");
     assert!(last.starts_with(&format!("{ticks},")), "{last}");
     assert!(Path::new(&out).join("summary.json").is_file());

@@ -7,10 +7,12 @@
 
 mod csv;
 mod file;
+mod folder;
 mod history;
 
 pub use file::make_dir;
 pub use file::{Error, prepare_dir, write_atomically, write_summary};
+pub use folder::Results;
 pub use history::{Frame, History, Sample, SeriesPoint};
 
 use file::LineFile;

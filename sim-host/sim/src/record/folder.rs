@@ -1,0 +1,384 @@
+//! A results folder that is whole or old.
+//!
+//! A run's files are made in a folder of their own beside the target, `.NAME.partial-PID`, and moved into place
+//! together when they are complete: the old folder is renamed to `.NAME.old-PID`, the new one to `NAME`, then what the
+//! old run made is removed. Whenever that is cut off, either `NAME` or `.NAME.old-PID` is whole; the next run into the
+//! same place puts back or clears away what a dead one left, which it tells by a file lock.
+//!
+//! Each results folder has a file [`MARKER`] that lists what the run made. Only that is ever replaced: all other files
+//! move along into the new folder. A folder that no run made is never renamed: files are moved into it one by one, the
+//! summary last, and one that has a file by the name of a result is refused before the run begins.
+
+use super::Error;
+use std::collections::BTreeSet;
+use std::fs::{self, File, TryLockError};
+use std::io::{self, ErrorKind, Write as _};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Lists what the run in a results folder made; locked while the run goes on.
+pub const MARKER: &str = ".staya-results";
+/// Gone while a folder is changed file by file, and there again when it is whole.
+const SUMMARY: &str = "summary.json";
+/// What runs make, to know the folders of those that left no list.
+const KNOWN: [&str; 13] = [
+    SUMMARY,
+    "formation.png",
+    "formation.svg",
+    "motion.png",
+    "motion.svg",
+    "packets.png",
+    "packets.svg",
+    "series.csv",
+    "series.schema.json",
+    "trace.csv",
+    "trace.schema.json",
+    "trajectories.png",
+    "trajectories.svg",
+];
+/// A folder without a list is taken to be a dead run's when it is older: one that begins makes its list at once.
+const YOUNG: Duration = Duration::from_secs(60);
+/// How often others may get in the way of one move.
+const TRIES: usize = 32;
+
+/// The results of a run that is under way. Dropped unfinished, they are removed, and the old ones stay.
+#[derive(Debug)]
+pub struct Results {
+    target: PathBuf,
+    partial: PathBuf,
+    /// The list in `partial`; `None`: nothing is left to be removed.
+    marker: Option<File>,
+    one_by_one: bool,
+}
+
+impl Results {
+    /// Makes the folder for a run's files, and clears away what dead runs into the same `target` left. `target` need not
+    /// exist and is not touched.
+    ///
+    /// # Errors
+    /// The folder cannot be made, `target` is a file, or it has files by the names of results that no run made.
+    pub fn begin(target: impl AsRef<Path>) -> Result<Self, Error> {
+        let target = resolved(target.as_ref())?;
+        let (parent, name) = split(&target);
+        let is_there = match fs::metadata(&target) {
+            Ok(found) if found.is_dir() => true,
+            Ok(_) => return Err(Error::new("make directory", &target)(ErrorKind::NotADirectory.into())),
+            Err(_) => false,
+        };
+        fs::create_dir_all(&parent).map_err(Error::new("make directory", &target))?;
+        for place in [&parent, &target] {
+            clear(place, &name, &target);
+        }
+        let mut one_by_one = is_there && (is_in_use(&target) || check(&target)?);
+        let (partial, marker) = match make(&parent, &name) {
+            Ok(made) => made,
+            // As where a container has a volume: one may write into it, not beside it.
+            Err(_) if is_there => {
+                one_by_one = true;
+                make(&target, &name).map_err(Error::new("write to", &target))?
+            }
+            Err(error) => return Err(Error::new("make directory", &target)(error)),
+        };
+        Ok(Self { target, partial, marker: Some(marker), one_by_one })
+    }
+
+    /// Where to write.
+    #[must_use]
+    pub fn dir(&self) -> &Path {
+        &self.partial
+    }
+
+    /// Where it will be.
+    #[must_use]
+    pub fn target(&self) -> &Path {
+        &self.target
+    }
+
+    /// Moves everything into place. O(files).
+    ///
+    /// # Errors
+    /// A file cannot be moved. The new results stay where they are, and the old ones too, as far as can be.
+    pub fn finish(mut self) -> Result<(), Error> {
+        let done = self.settle();
+        self.marker = None;
+        done.map_err(|source| Error::new("move the new results into", &self.target)(source))
+    }
+
+    /// Leaves what there is for the user, and says where. The next run into the same place removes it.
+    #[must_use]
+    pub fn keep(mut self) -> PathBuf {
+        self.marker = None;
+        std::mem::take(&mut self.partial)
+    }
+
+    fn settle(&mut self) -> io::Result<()> {
+        let names = entries(&self.partial)?;
+        if let Some(marker) = &mut self.marker {
+            write_list(marker, &names)?;
+        }
+        if cfg!(windows) {
+            // An open file would hold its folder in place.
+            self.marker = None;
+        }
+        if !self.one_by_one && self.swap()? {
+            return Ok(());
+        }
+        self.move_in(&names)
+    }
+
+    /// Replaces the whole folder; false when the system does not let it, and nothing is changed.
+    fn swap(&self) -> io::Result<bool> {
+        let (parent, name) = split(&self.target);
+        // Process and number, as in the name of the new folder: nobody else's.
+        let own = self.partial.file_name().unwrap_or_default().to_string_lossy();
+        let own = own.strip_prefix(&prefix(&name, "partial")).unwrap_or_default();
+        let mut aside = Vec::new();
+        let mut outcome = Err(io::Error::other("other runs keep replacing the folder"));
+        for attempt in 0..TRIES {
+            match fs::rename(&self.partial, &self.target) {
+                Ok(()) => {
+                    outcome = Ok(true);
+                    break;
+                }
+                Err(error) if is_in_the_way(&error) => {}
+                Err(error) => {
+                    outcome = Err(error);
+                    break;
+                }
+            }
+            let old = parent.join(format!("{}{own}-{attempt}", prefix(&name, "old")));
+            match fs::rename(&self.target, &old) {
+                Ok(()) => aside.push(old),
+                // Another run is as far as this one.
+                Err(error) if error.kind() == ErrorKind::NotFound => {}
+                // A mount point, for one.
+                Err(_) => {
+                    outcome = Ok(false);
+                    break;
+                }
+            }
+        }
+        // Best effort: what is left is the next run's to clear away. Without new results it goes back where it was.
+        aside.iter().for_each(|old| drop(retire(old, &self.target)));
+        outcome
+    }
+
+    /// Moves files into a folder that stays.
+    fn move_in(&self, names: &BTreeSet<String>) -> io::Result<()> {
+        let own = own(&self.target).unwrap_or_default();
+        fs::create_dir_all(&self.target)?;
+        // From here on the list knows all names, old and new, wherever this is cut off.
+        let list = names.union(&own).cloned().collect();
+        write_list(&mut File::create(self.target.join(MARKER))?, &list)?;
+        gone(fs::remove_file(self.target.join(SUMMARY)))?;
+        let last = [SUMMARY, MARKER];
+        for name in names.iter().filter(|name| !last.contains(&name.as_str())) {
+            if !own.contains(name) {
+                step_aside(&self.target.join(name))?;
+            }
+            fs::rename(self.partial.join(name), self.target.join(name))?;
+        }
+        for name in own.difference(names).filter(|name| !last.contains(&name.as_str())) {
+            gone(remove(&self.target.join(name)))?;
+        }
+        for name in last {
+            gone(fs::rename(self.partial.join(name), self.target.join(name)))?;
+        }
+        fs::remove_dir(&self.partial)
+    }
+}
+
+impl Drop for Results {
+    fn drop(&mut self) {
+        if self.marker.take().is_some() {
+            // Nobody is left to hear of an error; the next run tries again.
+            let _ = fs::remove_dir_all(&self.partial);
+        }
+    }
+}
+
+/// The folder itself, not a link to it.
+fn resolved(target: &Path) -> Result<PathBuf, Error> {
+    let is_plain = target.file_name().is_some() && !target.is_symlink();
+    if is_plain {
+        return Ok(target.to_owned());
+    }
+    target.canonicalize().map_err(Error::new("find directory", target))
+}
+
+/// Parent and name.
+fn split(target: &Path) -> (PathBuf, String) {
+    let parent = target.parent().filter(|parent| !parent.as_os_str().is_empty());
+    let name = target.file_name().unwrap_or_default().to_string_lossy();
+    (parent.unwrap_or(Path::new(".")).to_owned(), name.into_owned())
+}
+
+fn prefix(name: &str, what: &str) -> String {
+    format!(".{name}.{what}-")
+}
+
+/// Makes `.NAME.partial-PID` with a locked list in it.
+fn make(parent: &Path, name: &str) -> io::Result<(PathBuf, File)> {
+    for attempt in 0..TRIES {
+        let partial = parent.join(format!("{}{}-{attempt}", prefix(name, "partial"), std::process::id()));
+        match fs::create_dir(&partial) {
+            Ok(()) => {
+                let marker = File::create_new(partial.join(MARKER)).and_then(|file| {
+                    // Where files cannot be locked, dead runs cannot be told, and what they left stays.
+                    let _ = file.try_lock();
+                    Ok(file)
+                });
+                return match marker {
+                    Ok(marker) => Ok((partial, marker)),
+                    Err(error) => {
+                        let _ = fs::remove_dir_all(&partial);
+                        Err(error)
+                    }
+                };
+            }
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Err(ErrorKind::AlreadyExists.into())
+}
+
+/// Whether the process works in the folder or below it, so that it must not be renamed.
+fn is_in_use(target: &Path) -> bool {
+    let here = std::env::current_dir().and_then(|here| here.canonicalize());
+    here.is_ok_and(|here| target.canonicalize().is_ok_and(|target| here.starts_with(target)))
+}
+
+/// Whether files must be moved into an existing folder one by one, because no run made it.
+fn check(target: &Path) -> Result<bool, Error> {
+    let found = entries(target).map_err(Error::new("read directory", target))?;
+    if found.is_empty() || own(target).is_some() {
+        return Ok(false);
+    }
+    match KNOWN.iter().find(|name| found.contains(**name)) {
+        None => Ok(true),
+        Some(name) => {
+            let stranger = io::Error::new(ErrorKind::AlreadyExists, "no run that was completed made it");
+            Err(Error::new("replace", &target.join(name))(stranger))
+        }
+    }
+}
+
+/// What is in a folder, but for the list and folders of runs under way.
+fn entries(dir: &Path) -> io::Result<BTreeSet<String>> {
+    let mut names = BTreeSet::new();
+    for entry in fs::read_dir(dir)? {
+        let name = entry?.file_name().to_string_lossy().into_owned();
+        if name != MARKER && !(name.starts_with('.') && name.contains(".partial-")) {
+            names.insert(name);
+        }
+    }
+    Ok(names)
+}
+
+/// What a run made in a folder; `None`: no run made it.
+fn own(dir: &Path) -> Option<BTreeSet<String>> {
+    if let Ok(list) = fs::read_to_string(dir.join(MARKER)) {
+        let names = list.lines().skip(1).filter(|name| !name.contains(['/', '\\']) && !["", ".", ".."].contains(name));
+        return Some(names.map(str::to_owned).collect());
+    }
+    // Of a version that left no list.
+    let summary = fs::read_to_string(dir.join(SUMMARY)).ok()?;
+    summary.contains("\"trace_hash\"").then(|| KNOWN.map(str::to_owned).into())
+}
+
+fn write_list(marker: &mut File, names: &BTreeSet<String>) -> io::Result<()> {
+    let mut text = String::from("made by `staya run`, which replaces these files and no others:\n");
+    for name in names {
+        text.push_str(name);
+        text.push('\n');
+    }
+    marker.write_all(text.as_bytes())
+}
+
+/// Whether a folder cannot get its new name because there is one by that name.
+fn is_in_the_way(error: &io::Error) -> bool {
+    let refused = cfg!(windows) && error.kind() == ErrorKind::PermissionDenied;
+    refused || matches!(error.kind(), ErrorKind::DirectoryNotEmpty | ErrorKind::AlreadyExists)
+}
+
+/// Something that is not there need not be removed.
+fn gone(result: io::Result<()>) -> io::Result<()> {
+    result.or_else(|error| if error.kind() == ErrorKind::NotFound { Ok(()) } else { Err(error) })
+}
+
+fn remove(path: &Path) -> io::Result<()> {
+    let is_folder = fs::symlink_metadata(path)?.is_dir();
+    if is_folder { fs::remove_dir_all(path) } else { fs::remove_file(path) }
+}
+
+/// Gives what has this name another one.
+fn step_aside(path: &Path) -> io::Result<()> {
+    if fs::symlink_metadata(path).is_ok() { fs::rename(path, free(path)?) } else { Ok(()) }
+}
+
+/// The same name with `.mine` behind it, or a number more.
+fn free(path: &Path) -> io::Result<PathBuf> {
+    for number in 0..10_000 {
+        let mut name = path.as_os_str().to_owned();
+        name.push(if number == 0 { ".mine".to_owned() } else { format!(".mine-{number}") });
+        if fs::symlink_metadata(&name).is_err() {
+            return Ok(name.into());
+        }
+    }
+    Err(ErrorKind::AlreadyExists.into())
+}
+
+/// An old folder when there is a new one: what no run made moves there, the rest is removed. Without a new one it is put back.
+fn retire(old: &Path, target: &Path) -> io::Result<()> {
+    if !target.is_dir() && fs::rename(old, target).is_ok() {
+        return Ok(());
+    }
+    let own = own(old).unwrap_or_default();
+    for name in entries(old)?.difference(&own) {
+        let to = target.join(name);
+        let to = if fs::symlink_metadata(&to).is_ok() { free(&to)? } else { to };
+        gone(fs::rename(old.join(name), to))?;
+    }
+    for name in &own {
+        gone(remove(&old.join(name)))?;
+    }
+    gone(fs::remove_file(old.join(MARKER)))?;
+    fs::remove_dir(old)
+}
+
+/// Puts back or removes what dead runs into `target` left in `place`; best effort.
+fn clear(place: &Path, name: &str, target: &Path) {
+    let Ok(found) = fs::read_dir(place) else {
+        return;
+    };
+    for entry in found.flatten() {
+        let file_name = entry.file_name().to_string_lossy().into_owned();
+        let is_ours = |what: &str| {
+            let rest = file_name.strip_prefix(&prefix(name, what));
+            rest.is_some_and(|rest| !rest.is_empty() && rest.chars().all(|c| c.is_ascii_digit() || c == '-'))
+        };
+        if is_ours("old") {
+            let _ = retire(&entry.path(), target);
+        } else if is_ours("partial") && is_dead(&entry.path()) {
+            let _ = fs::remove_dir_all(entry.path());
+        }
+    }
+}
+
+/// Whether the run that made this folder is over.
+fn is_dead(partial: &Path) -> bool {
+    match File::options().read(true).write(true).open(partial.join(MARKER)) {
+        Ok(marker) => match marker.try_lock() {
+            Ok(()) => true,
+            Err(TryLockError::WouldBlock | TryLockError::Error(_)) => false,
+        },
+        Err(_) => {
+            let made = fs::metadata(partial).and_then(|found| found.modified());
+            made.is_ok_and(|made| made.elapsed().is_ok_and(|age| age > YOUNG))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
