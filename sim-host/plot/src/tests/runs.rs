@@ -20,6 +20,7 @@ fn row(id: u32, position_m: [f64; 2], target: Cell) -> RobotRow {
         mode: Mode::Cruise,
         leader: 0,
         target,
+        target_m: None,
         wait: None,
         formation_error_cells: f32::NAN,
     }

@@ -144,6 +144,13 @@ impl Ground for Grid {
         }
     }
 
+    fn target_m(&self, _: usize, _: u32, status: &Status) -> Option<[f64; 3]> {
+        let land = self.world.terrain();
+        land.index(status.target)?;
+        let [x, y] = land.center_m(status.target);
+        Some([x, y, 0.0])
+    }
+
     fn keeping(&mut self, counts: bool) -> Option<Keeping> {
         let (meter, bodies) = (self.meter.as_mut()?, self.world.bodies());
         Some(if counts { meter.measure(bodies) } else { meter.look(bodies) })

@@ -78,6 +78,16 @@ pub trait Ground: Send + Sync {
         None
     }
 
+    /// The least distance between the surfaces of two bodies when collisions were last counted, metres.
+    fn gap_m(&self) -> Option<f64> {
+        None
+    }
+
+    /// Where in the world robot `index` heads for at `tick`; `None`: nowhere, or that is for its law to choose.
+    fn target_m(&self, _index: usize, _tick: u32, _status: &Status) -> Option<[f64; 3]> {
+        None
+    }
+
     /// The land, if there is any.
     fn terrain(&self) -> Option<&Terrain>;
 

@@ -421,9 +421,25 @@ where
             mode: status.mode,
             leader: status.leader.0,
             target: status.target,
+            target_m: self.ground.target_m(index, self.tick, status),
             wait: status.wait,
             formation_error_cells: self.ground.formation_error(index) as f32,
         })
+    }
+
+    /// What a watcher sees of the swarm, with its line of the record.
+    pub(crate) fn moment<'a>(&'a self, row: &'a TickRow) -> Moment<'a> {
+        Moment {
+            row,
+            arrived: self.arrivals.count(),
+            waiting: self.waits.now(),
+            collisions: self.collisions,
+            gap_m: self.ground.gap_m(),
+            intruders: self.ground.intruders(),
+            land: self.ground.terrain(),
+            solids: self.ground.solids(),
+            trace_hash: hash::sum(&self.chains),
+        }
     }
 
     /// Ticks done.

@@ -188,8 +188,7 @@ where
     }
 
     fn show(&self, watch: &mut dyn FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>)) {
-        let (arrived, waiting) = (self.engine.arrivals.count(), self.engine.waits.now());
-        watch(&Moment { row: &self.row, arrived, waiting }, &mut self.engine.rows());
+        watch(&self.engine.moment(&self.row), &mut self.engine.rows());
     }
 
     fn is_over(&self) -> bool {

@@ -29,6 +29,8 @@ pub struct PlaneGround {
     plane: Plane,
     setup: PlaneSetup,
     clearance: Clearance,
+    /// After the last tick, metres.
+    gap_m: Option<f64>,
     robots: Vec<Robot>,
     radius: u8,
     tick_us: u32,
@@ -68,6 +70,7 @@ impl PlaneGround {
         let plane = Plane::new(land, setup.solids.clone(), discs.collect()).with_intruders(intruders);
         Self {
             clearance: Clearance::FREE,
+            gap_m: None,
             plane,
             robots: scenario.numbered(),
             radius: scenario.route.params.radius,
@@ -212,6 +215,7 @@ impl Ground for PlaneGround {
     fn count_collisions(&mut self, _: u32) -> u64 {
         let now = self.plane.clearance();
         self.clearance.add(&now);
+        self.gap_m = Some(now.bodies_m).filter(|gap_m| gap_m.is_finite());
         now.overlaps + now.intrusions
     }
 
@@ -275,6 +279,32 @@ impl Ground for PlaneGround {
             }
         }
         Task::Waypoints(waypoints)
+    }
+
+    fn gap_m(&self) -> Option<f64> {
+        self.gap_m
+    }
+
+    fn target_m(&self, index: usize, tick: u32, status: &Status) -> Option<[f64; 3]> {
+        let guidance = self.setup.group(index).guidance.kind();
+        if guidance.is_on_grid() {
+            let land = self.plane.terrain().filter(|land| land.index(status.target).is_some())?;
+            let [x, y] = land.center_m(status.target);
+            return Some([x, y, 0.0]);
+        }
+        let (mut target, mut since) = match &self.setup.starts[index].places[..] {
+            [one] => (one, 0),
+            // Of several, robots choose.
+            _ => return None,
+        };
+        for order in self.setup.orders.iter().take_while(|order| order.tick < tick) {
+            if order.index > 0 {
+                return None;
+            }
+            (target, since) = (&order.target, order.tick);
+        }
+        let age_s = f64::from(tick - since) * f64::from(self.tick_us) / 1e6;
+        Some([0, 1, 2].map(|axis| target.position_m[axis] + target.velocity_mps[axis] * age_s))
     }
 
     fn terrain(&self) -> Option<&Terrain> {

@@ -6,8 +6,9 @@ use crate::metrics::Keeping;
 use crate::metrics::waits::WaitCount;
 use crate::record::{PacketCounts, RobotRow, TickRow};
 use crate::scenario::Scenario;
+use crate::terrain::Terrain;
 use crate::world::Misplaced;
-use crate::world::plane::Clearance;
+use crate::world::plane::{Clearance, Disc, Solid};
 use staya_controller::agent::{
     AnyGuidance, AnySafety, CELLS, Commanded, HALF_PLANES, LEARNED, Safety, TEMPLATE, VISITS,
 };
@@ -28,6 +29,19 @@ pub struct Moment<'a> {
     pub arrived: usize,
     /// Robots that have somewhere to go and do not get on.
     pub waiting: usize,
+    /// Collisions of the run so far, as in [`Outcome::collisions`].
+    pub collisions: u64,
+    /// Least distance between the surfaces of two bodies now, metres; `None` on the grid, before the first tick, and where
+    /// nobody is within three radii of another one.
+    pub gap_m: Option<f64>,
+    /// Bodies that are no robots.
+    pub intruders: &'a [Disc],
+    /// The land as it is now, if there is any.
+    pub land: Option<&'a Terrain>,
+    /// What stands in the plane now.
+    pub solids: &'a [Solid],
+    /// Of the run so far, as in [`Outcome::trace_hash`].
+    pub trace_hash: u64,
 }
 
 /// What came of a run.
@@ -167,8 +181,7 @@ where
     }
     let mut row = engine.first_row();
     loop {
-        let moment = Moment { row: &row, arrived: engine.arrivals.count(), waiting: engine.waits.now() };
-        let flow = watch(&moment, &mut engine.rows());
+        let flow = watch(&engine.moment(&row), &mut engine.rows());
         if flow.is_break() || engine.is_over() || engine.ticks() >= scenario.ticks {
             return engine.outcome();
         }

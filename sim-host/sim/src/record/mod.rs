@@ -16,7 +16,7 @@ pub use folder::Results;
 pub use history::{Frame, History, Sample, SeriesPoint};
 
 use file::LineFile;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use staya_controller::agent::{Refused, Wait};
 use staya_controller::grid::Cell;
 use staya_controller::robot::Mode;
@@ -47,6 +47,8 @@ pub struct RobotRow {
     pub leader: u32,
     /// The cell it heads for.
     pub target: Cell,
+    /// Where in the world it heads for, metres; `None`: nowhere, or that is for its law to choose.
+    pub target_m: Option<[f64; 3]>,
     /// What it waits for.
     pub wait: Option<Wait>,
     /// Distance from its place in the formation, cells; NaN when it has no place.
@@ -69,7 +71,8 @@ pub struct TickRow {
 }
 
 /// Packets by their fate.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct PacketCounts {
     /// Handed to the radio.
     pub sent: u64,

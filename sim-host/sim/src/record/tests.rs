@@ -22,6 +22,7 @@ fn robot(id: u32, x: i16) -> RobotRow {
         mode: Mode::Cruise,
         leader: id - 1,
         target: Cell::new(9, 9),
+        target_m: None,
         wait: (x == 2).then_some(Wait::Others),
         formation_error_cells: f32::NAN,
     }
