@@ -1,0 +1,249 @@
+//! One moment of a run in bytes: where everybody is, for pages and recordings (`PROTOCOL.md`, Frames).
+
+use serde::{Deserialize, Serialize};
+use staya_controller::agent::Wait;
+use staya_controller::names::Named as _;
+use staya_sim::engine::Moment;
+use staya_sim::metrics::flock::polarisation;
+use staya_sim::record::{PacketCounts, RobotRow};
+use staya_sim::scenario::Scenario;
+
+/// What frames begin with.
+pub const MAGIC: [u8; 4] = *b"STF1";
+/// In place of a leader: there is none.
+pub const NOBODY: u32 = u32::MAX;
+/// In place of a wait: it gets on.
+pub const NO_WAIT: u8 = u8::MAX;
+/// `Mode::Passive`, in which intruders are.
+const PASSIVE: u8 = 6;
+const HEAD: usize = 32;
+const HAS_Z: u32 = 1;
+const HAS_TARGETS: u32 = 2;
+
+/// Bytes that are no frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum FrameError {
+    /// They do not begin as frames do.
+    #[error("a frame begins with {MAGIC:?}; is it of another version?")]
+    Magic,
+    /// Their length is not what their head says.
+    #[error("a frame's head asks for {expected} bytes, and there are {found}")]
+    Length {
+        /// By the head.
+        expected: u64,
+        /// That there are.
+        found: usize,
+    },
+    /// The figures are no JSON of the known form.
+    #[error("the figures of a frame cannot be read")]
+    Figures,
+}
+
+/// The swarm as a whole at a moment; what there is none of is `None`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Figures {
+    /// Robots at their targets that know it.
+    pub arrived: usize,
+    /// Robots that have somewhere to go and do not get on.
+    pub waiting: usize,
+    /// Of the run so far.
+    pub collisions: u64,
+    /// Of this tick.
+    pub packets: PacketCounts,
+    /// Mean distance from the places in the formation, cells.
+    pub formation_error: Option<f64>,
+    /// Length of the mean of the robots' directions, 0 to 1; none when nobody moves.
+    pub order: Option<f64>,
+    /// Least distance between the surfaces of two bodies, metres.
+    pub gap_m: Option<f64>,
+    /// The run's fingerprint so far, 16 hex digits.
+    pub hash: String,
+}
+
+/// One moment. All arrays have an entry for each body: the robots by rising number, then the intruders.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FrameData {
+    /// Number of the tick.
+    pub tick: u32,
+    /// Simulated time, seconds.
+    pub time_s: f64,
+    /// Whether z is kept; otherwise it is 0.
+    pub has_z: bool,
+    /// Metres from the scene's origin.
+    pub position_m: Vec<[f32; 3]>,
+    /// Metres per second.
+    pub velocity_mps: Vec<[f32; 3]>,
+    /// Metres from the scene's origin, NaN for none; empty: nobody's is kept.
+    pub target_m: Vec<[f32; 3]>,
+    /// Index of the leader, or [`NOBODY`].
+    pub leader: Vec<u32>,
+    /// Number of the mode in the scene's words.
+    pub mode: Vec<u8>,
+    /// Number of the wait in the scene's words, or [`NO_WAIT`].
+    pub wait: Vec<u8>,
+    /// The swarm as a whole.
+    pub figures: Figures,
+}
+
+/// Makes frames of a run's moments.
+#[derive(Clone, Debug)]
+pub struct Framer {
+    origin_m: [f64; 3],
+    has_z: bool,
+    ids: Vec<u32>,
+}
+
+impl Framer {
+    /// For the runs of a scenario, measured from the origin of its [`Scene`](crate::scene::Scene).
+    #[must_use]
+    pub fn new(scenario: &Scenario) -> Self {
+        Self {
+            origin_m: crate::scene::origin_m(scenario),
+            has_z: crate::scene::is_in_space(scenario),
+            ids: scenario.robots.iter().map(|robot| robot.id.0).collect(),
+        }
+    }
+
+    /// A moment as a frame; `frame`'s memory is used again. O(bodies).
+    pub fn fill(&self, frame: &mut FrameData, moment: &Moment<'_>, robots: impl Iterator<Item = RobotRow>) {
+        let row = moment.row;
+        (frame.tick, frame.time_s, frame.has_z) = (row.tick, row.time_s, self.has_z);
+        for rows in [&mut frame.position_m, &mut frame.velocity_mps, &mut frame.target_m] {
+            rows.clear();
+        }
+        (frame.leader.clear(), frame.mode.clear(), frame.wait.clear());
+        let mut velocities = Vec::new();
+        for robot in robots {
+            velocities.push(robot.motion.velocity_mps);
+            frame.position_m.push(self.near(robot.motion.position_m));
+            frame.velocity_mps.push(self.flat(robot.motion.velocity_mps));
+            frame.target_m.push(robot.target_m.map_or([f32::NAN; 3], |target_m| self.near(target_m)));
+            let leader = self.ids.binary_search(&robot.leader).ok().filter(|_| robot.leader != 0);
+            frame.leader.push(leader.and_then(|index| u32::try_from(index).ok()).unwrap_or(NOBODY));
+            frame.mode.push(robot.mode as u8);
+            frame.wait.push(robot.wait.map_or(NO_WAIT, |wait| wait as u8));
+        }
+        for intruder in moment.intruders {
+            frame.position_m.push(self.near(intruder.position_m));
+            frame.velocity_mps.push(self.flat(intruder.velocity_mps));
+            frame.target_m.push([f32::NAN; 3]);
+            frame.leader.push(NOBODY);
+            frame.mode.push(PASSIVE);
+            frame.wait.push(NO_WAIT);
+        }
+        let moves = velocities.iter().any(|velocity| velocity.iter().any(|v| *v != 0.0));
+        frame.figures = Figures {
+            arrived: moment.arrived,
+            waiting: moment.waiting,
+            collisions: moment.collisions,
+            packets: row.packets,
+            formation_error: Some(row.formation_error_per_agent).filter(|error| error.is_finite()),
+            order: moves.then(|| polarisation(&velocities)),
+            gap_m: moment.gap_m,
+            hash: format!("{:016x}", moment.trace_hash),
+        };
+    }
+
+    fn near(&self, place_m: [f64; 3]) -> [f32; 3] {
+        self.flat([0, 1, 2].map(|axis| place_m[axis] - self.origin_m[axis]))
+    }
+
+    fn flat(&self, [x, y, z]: [f64; 3]) -> [f32; 3] {
+        [x as f32, y as f32, if self.has_z { z as f32 } else { 0.0 }]
+    }
+}
+
+impl FrameData {
+    /// Bodies of the frame.
+    #[must_use]
+    pub const fn bodies(&self) -> usize {
+        self.position_m.len()
+    }
+
+    /// Puts the frame's bytes into `out`, which is emptied before. Arrays that are too short are filled up. O(bodies).
+    pub fn encode(&self, out: &mut Vec<u8>) {
+        let figures = serde_json::to_vec(&self.figures).unwrap_or_default();
+        let bodies = self.bodies();
+        let has_targets = !self.target_m.is_empty();
+        let flags = if self.has_z { HAS_Z } else { 0 } | if has_targets { HAS_TARGETS } else { 0 };
+        out.clear();
+        out.reserve(HEAD + bodies * 48 + figures.len());
+        out.extend(MAGIC);
+        out.extend(self.tick.to_le_bytes());
+        out.extend(self.time_s.to_le_bytes());
+        for word in [bodies as u32, flags, figures.len() as u32, 0] {
+            out.extend(word.to_le_bytes());
+        }
+        let axes = if self.has_z { 3 } else { 2 };
+        for (rows, missing) in [(&self.position_m, 0.0), (&self.velocity_mps, 0.0), (&self.target_m, f32::NAN)] {
+            if rows.is_empty() && missing.is_nan() {
+                continue;
+            }
+            for axis in 0..axes {
+                let column = (0..bodies).map(|body| rows.get(body).map_or(missing, |row| row[axis]));
+                column.for_each(|value| out.extend(value.to_le_bytes()));
+            }
+        }
+        let leaders = (0..bodies).map(|body| self.leader.get(body).copied().unwrap_or(NOBODY));
+        leaders.for_each(|leader| out.extend(leader.to_le_bytes()));
+        for (bytes, missing) in [(&self.mode, 0), (&self.wait, NO_WAIT)] {
+            out.extend((0..bodies).map(|body| bytes.get(body).copied().unwrap_or(missing)));
+            out.resize(out.len().next_multiple_of(4), 0);
+        }
+        out.extend(figures);
+    }
+
+    /// Reads a frame. O(bytes); memory for no more bodies than there are bytes of.
+    ///
+    /// # Errors
+    /// [`FrameError`].
+    pub fn decode(bytes: &[u8]) -> Result<Self, FrameError> {
+        let Some((head, mut rest)) = bytes.split_at_checked(HEAD).filter(|(head, _)| head.starts_with(&MAGIC)) else {
+            return Err(FrameError::Magic);
+        };
+        let word = |at: usize| u32::from_le_bytes([head[at], head[at + 1], head[at + 2], head[at + 3]]);
+        let (bodies, flags, figures) = (u64::from(word(16)), word(20), u64::from(word(24)));
+        let has_z = flags & HAS_Z != 0;
+        let axes = if has_z { 3 } else { 2 };
+        let columns = if flags & HAS_TARGETS != 0 { 3 } else { 2 };
+        let expected = HEAD as u64 + bodies * 4 * (axes * columns + 1) + 2 * bodies.next_multiple_of(4) + figures;
+        if expected != bytes.len() as u64 {
+            return Err(FrameError::Length { expected, found: bytes.len() });
+        }
+        // As many as there are bytes of.
+        let bodies = bodies as usize;
+        let mut take = |count: usize| {
+            let (taken, left) = rest.split_at(count);
+            rest = left;
+            taken
+        };
+        let mut axes_of = || {
+            let mut rows = vec![[0.0_f32; 3]; bodies];
+            for axis in 0..axes as usize {
+                for (row, value) in rows.iter_mut().zip(take(bodies * 4).chunks_exact(4)) {
+                    row[axis] = f32::from_le_bytes([value[0], value[1], value[2], value[3]]);
+                }
+            }
+            rows
+        };
+        let (position_m, velocity_mps) = (axes_of(), axes_of());
+        let target_m = if columns == 3 { axes_of() } else { Vec::new() };
+        let leaders = take(bodies * 4).chunks_exact(4);
+        let leader = leaders.map(|value| u32::from_le_bytes([value[0], value[1], value[2], value[3]])).collect();
+        let mut words = || take(bodies.next_multiple_of(4))[..bodies].to_vec();
+        let (mode, wait) = (words(), words());
+        let figures = serde_json::from_slice(rest).map_err(|_| FrameError::Figures)?;
+        let time_s = f64::from_le_bytes([head[8], head[9], head[10], head[11], head[12], head[13], head[14], head[15]]);
+        Ok(Self { tick: word(4), time_s, has_z, position_m, velocity_mps, target_m, leader, mode, wait, figures })
+    }
+}
+
+/// Names of the waits, by the numbers in frames.
+#[must_use]
+pub fn wait_names() -> impl Iterator<Item = &'static str> {
+    Wait::NAMES.iter().map(|(name, _)| *name)
+}
+
+#[cfg(test)]
+pub(crate) mod tests;

@@ -1,0 +1,6 @@
+//! Runs to look at: what a page in the browser is told, live or from a recording. `PROTOCOL.md` says how.
+
+pub mod frame;
+pub mod page;
+pub mod recording;
+pub mod scene;

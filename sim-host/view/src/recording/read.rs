@@ -1,0 +1,317 @@
+//! Recordings from a file.
+
+use super::{
+    BLOCK_HEAD, END, FILE_HEAD, FRAMES, MAGIC, MOST_PACKED_BY, MOST_RAW, ORDERS, RecordingError, SCENE, VERSION,
+};
+use crate::frame::{self, FrameData};
+use crate::scene::Scene;
+use miniz_oxide::inflate::decompress_to_vec_with_limit;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+use std::fs::File;
+use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// Where frames are in an unpacked block.
+pub type Span = Range<usize>;
+
+/// A block of the file.
+#[derive(Clone, Copy, Debug)]
+struct Block {
+    at: u64,
+    kind: u8,
+    raw: u32,
+    packed: u32,
+    crc: u32,
+    /// Of its first frame.
+    tick: u32,
+    /// The block of the scene that its frames are in, by index.
+    scene: usize,
+}
+
+/// An unpacked block of frames.
+#[derive(Debug)]
+struct Unpacked {
+    block: usize,
+    bytes: Vec<u8>,
+    /// Each with its tick.
+    frames: Vec<(u32, Span)>,
+}
+
+/// A recording, of which the index and one block at a time are in memory.
+#[derive(Debug)]
+pub struct Reader<R = BufReader<File>> {
+    source: R,
+    path: PathBuf,
+    blocks: Vec<Block>,
+    /// Those with frames, by index.
+    frames: Vec<usize>,
+    unpacked: Option<Unpacked>,
+    last_tick: u32,
+    torn_at: Option<u64>,
+}
+
+impl Reader {
+    /// Reads the index of a recording, and checks each of its blocks. O(bytes of the file), in little memory.
+    ///
+    /// # Errors
+    /// The file cannot be read, is no recording, or is damaged. One that ends within a block is read up to it.
+    pub fn open(path: &Path) -> Result<Self, RecordingError> {
+        let file = File::open(path).map_err(RecordingError::reading(path))?;
+        Self::new(BufReader::with_capacity(1 << 16, file), path)
+    }
+}
+
+impl<R: Read + Seek> Reader<R> {
+    /// The same of anything that can be read; errors call it `path`.
+    ///
+    /// # Errors
+    /// See [`Reader::open`].
+    pub fn new(mut source: R, path: &Path) -> Result<Self, RecordingError> {
+        let io = RecordingError::reading(path);
+        let length = source.seek(SeekFrom::End(0)).map_err(&io)?;
+        source.rewind().map_err(&io)?;
+        let mut head = [0; FILE_HEAD as usize];
+        let is_one = length >= FILE_HEAD && {
+            source.read_exact(&mut head).map_err(&io)?;
+            head[..8] == MAGIC
+        };
+        if !is_one {
+            let (what, remedy) = ("this is no recording".to_owned(), "name a file that `staya run --record` made");
+            return Err(RecordingError::Format { path: path.to_owned(), at: 0, what, remedy });
+        }
+        let version = word(&head, 8);
+        if version != VERSION {
+            let what = format!("the recording has version {version}, and this program reads {VERSION}");
+            return Err(RecordingError::damage(path, 8, what));
+        }
+        let (blocks, torn_at) = index(&mut source, path, length)?;
+        let frames = (0..blocks.len()).filter(|&at| blocks[at].kind == FRAMES).collect();
+        let mut this = Self { source, path: path.to_owned(), blocks, frames, unpacked: None, last_tick: 0, torn_at };
+        this.place_frames()?;
+        Ok(this)
+    }
+
+    /// Finds the first tick of each block, and the last one of all.
+    fn place_frames(&mut self) -> Result<(), RecordingError> {
+        let mut before = None;
+        for at in self.frames.clone() {
+            let block = self.blocks[at];
+            // Length, magic and tick of the first frame are enough; what is behind them is looked at when it is asked for.
+            let packed = self.packed(&block)?;
+            let beginning = match decompress_to_vec_with_limit(&packed, 12) {
+                Ok(bytes) => bytes,
+                Err(error) => error.output,
+            };
+            let is_frame = beginning.len() >= 12 && beginning[4..8] == frame::MAGIC;
+            let tick = if is_frame { word(&beginning, 8) } else { 0 };
+            if !is_frame || before.is_some_and(|before| before >= tick) {
+                return Err(RecordingError::damage(&self.path, block.at, "this block has no frames that come next"));
+            }
+            before = Some(tick);
+            self.blocks[at].tick = tick;
+        }
+        if let Some(&last) = self.frames.last() {
+            let unpacked = self.unpack(last)?;
+            self.last_tick = unpacked.frames.last().map_or(0, |(tick, _)| *tick);
+        }
+        Ok(())
+    }
+
+    /// The byte at which the file ends too early, if it does.
+    #[must_use]
+    pub const fn torn_at(&self) -> Option<u64> {
+        self.torn_at
+    }
+
+    /// First and last tick; `None` without frames.
+    #[must_use]
+    pub fn ticks(&self) -> Option<(u32, u32)> {
+        self.frames.first().map(|&first| (self.blocks[first].tick, self.last_tick))
+    }
+
+    /// The first scene, as the JSON text that a page is sent.
+    ///
+    /// # Errors
+    /// The file cannot be read, or is damaged there.
+    pub fn scene_text(&mut self) -> Result<String, RecordingError> {
+        self.scene_text_at(0)
+    }
+
+    /// The scene that holds at a tick.
+    ///
+    /// # Errors
+    /// See [`Reader::scene_text`].
+    pub fn scene_text_at(&mut self, tick: u32) -> Result<String, RecordingError> {
+        // The index begins with a scene.
+        let block = self.blocks[self.block_of(tick).map_or(0, |at| self.blocks[at].scene)];
+        let bytes = self.raw(&block)?;
+        String::from_utf8(bytes).map_err(|_| RecordingError::damage(&self.path, block.at, "this scene is no UTF-8"))
+    }
+
+    /// The first scene.
+    ///
+    /// # Errors
+    /// See [`Reader::scene_text`]; or it has another form.
+    pub fn scene(&mut self) -> Result<Scene, RecordingError> {
+        self.json(self.blocks[0])
+    }
+
+    /// The bytes of the last frame that is not after `tick`, or of the first one. The latest unpacked block is kept.
+    ///
+    /// # Errors
+    /// There are no frames; the file cannot be read, or is damaged there.
+    pub fn frame_bytes(&mut self, tick: u32) -> Result<&[u8], RecordingError> {
+        let Some(at) = self.block_of(tick) else {
+            return Err(RecordingError::damage(&self.path, FILE_HEAD, "there are no frames"));
+        };
+        let Unpacked { bytes, frames, .. } = self.unpack(at)?;
+        let number = frames.partition_point(|(first, _)| *first <= tick).saturating_sub(1);
+        Ok(frames.get(number).and_then(|(_, span)| bytes.get(span.clone())).unwrap_or_default())
+    }
+
+    /// The same, read.
+    ///
+    /// # Errors
+    /// See [`Reader::frame_bytes`].
+    pub fn frame(&mut self, tick: u32) -> Result<FrameData, RecordingError> {
+        let decoded = FrameData::decode(self.frame_bytes(tick)?);
+        let at = self.block_of(tick).map_or(0, |at| self.blocks[at].at);
+        decoded.map_err(|error| RecordingError::damage(&self.path, at, error.to_string()))
+    }
+
+    /// The orders with their ticks; none when the run was cut off.
+    ///
+    /// # Errors
+    /// See [`Reader::scene`].
+    pub fn orders(&mut self) -> Result<Vec<Value>, RecordingError> {
+        self.of_kind(ORDERS).map_or_else(|| Ok(Vec::new()), |block| self.json(block))
+    }
+
+    /// The run's summary; none when the run was cut off.
+    ///
+    /// # Errors
+    /// See [`Reader::scene`].
+    pub fn summary(&mut self) -> Result<Option<Value>, RecordingError> {
+        self.of_kind(END).map(|block| self.json(block)).transpose()
+    }
+
+    fn of_kind(&self, kind: u8) -> Option<Block> {
+        self.blocks.iter().rfind(|block| block.kind == kind).copied()
+    }
+
+    /// The block, by index, in which the frame of a tick is.
+    fn block_of(&self, tick: u32) -> Option<usize> {
+        let number = self.frames.partition_point(|&at| self.blocks[at].tick <= tick).saturating_sub(1);
+        self.frames.get(number).copied()
+    }
+
+    fn json<T: DeserializeOwned>(&mut self, block: Block) -> Result<T, RecordingError> {
+        let bytes = self.raw(&block)?;
+        let read = serde_json::from_slice(&bytes);
+        read.map_err(|error| {
+            RecordingError::damage(&self.path, block.at, format!("this block cannot be read: {error}"))
+        })
+    }
+
+    fn packed(&mut self, block: &Block) -> Result<Vec<u8>, RecordingError> {
+        let io = RecordingError::reading(&self.path);
+        self.source.seek(SeekFrom::Start(block.at + BLOCK_HEAD as u64)).map_err(&io)?;
+        // No longer than the file, as the index has found.
+        let mut packed = vec![0; block.packed as usize];
+        self.source.read_exact(&mut packed).map_err(&io)?;
+        if crc32fast::hash(&packed) == block.crc {
+            return Ok(packed);
+        }
+        Err(RecordingError::damage(&self.path, block.at, "this block is damaged: its check sum is another one"))
+    }
+
+    fn raw(&mut self, block: &Block) -> Result<Vec<u8>, RecordingError> {
+        let packed = self.packed(block)?;
+        let raw = decompress_to_vec_with_limit(&packed, block.raw as usize).ok();
+        raw.filter(|raw| raw.len() == block.raw as usize)
+            .ok_or_else(|| RecordingError::damage(&self.path, block.at, "this block is damaged: it cannot be unpacked"))
+    }
+
+    /// Block number `at` of the index, unpacked.
+    fn unpack(&mut self, at: usize) -> Result<&Unpacked, RecordingError> {
+        let unpacked = match self.unpacked.take() {
+            Some(unpacked) if unpacked.block == at => unpacked,
+            _ => {
+                let block = self.blocks[at];
+                let mut bytes = self.raw(&block)?;
+                let frames = spans(&mut bytes).ok_or_else(|| {
+                    RecordingError::damage(&self.path, block.at, "the frames of this block are damaged")
+                })?;
+                Unpacked { block: at, bytes, frames }
+            }
+        };
+        Ok(self.unpacked.insert(unpacked))
+    }
+}
+
+/// Undoes the XOR, and finds the frames; `None` when lengths or ticks make no sense.
+fn spans(bytes: &mut [u8]) -> Option<Vec<(u32, Span)>> {
+    let (mut frames, mut at, mut before) = (Vec::<(u32, Span)>::new(), 0, 0..0);
+    while at < bytes.len() {
+        let length = word(bytes.get(at..at + 4)?, 0) as usize;
+        let span = at + 4..(at + 4).checked_add(length)?;
+        let (done, now) = bytes.get_mut(..span.end)?.split_at_mut(span.start);
+        now.iter_mut().zip(done.get(before)?).for_each(|(now, before)| *now ^= before);
+        let tick = word(now.get(4..8)?, 0);
+        if frames.last().is_some_and(|(last, _)| *last >= tick) {
+            return None;
+        }
+        frames.push((tick, span.clone()));
+        at = span.end;
+        before = span;
+    }
+    (!frames.is_empty()).then_some(frames)
+}
+
+/// Four bytes as a number; there are as many.
+fn word(bytes: &[u8], at: usize) -> u32 {
+    let four = bytes.get(at..at + 4).and_then(|four| four.try_into().ok());
+    four.map_or(0, u32::from_le_bytes)
+}
+
+/// The blocks, and where the file ends too early.
+fn index(
+    source: &mut (impl Read + Seek),
+    path: &Path,
+    length: u64,
+) -> Result<(Vec<Block>, Option<u64>), RecordingError> {
+    let io = RecordingError::reading(path);
+    let (mut blocks, mut at, mut scene) = (Vec::new(), FILE_HEAD, None);
+    while at < length {
+        let mut head = [0; BLOCK_HEAD];
+        if length - at < BLOCK_HEAD as u64 {
+            break;
+        }
+        source.seek(SeekFrom::Start(at)).map_err(&io)?;
+        source.read_exact(&mut head).map_err(&io)?;
+        let (kind, raw, packed) = (head[0], word(&head, 1), word(&head, 5));
+        let is_possible = raw <= MOST_RAW && u64::from(raw) <= u64::from(packed) * MOST_PACKED_BY;
+        if !(SCENE..=END).contains(&kind) || !is_possible {
+            let what = format!("no block begins like this (kind {kind}, {raw} bytes in {packed})");
+            return Err(RecordingError::damage(path, at, what));
+        }
+        let next = at + BLOCK_HEAD as u64 + u64::from(packed);
+        if next > length {
+            break;
+        }
+        if kind == SCENE {
+            scene = Some(blocks.len());
+        }
+        let Some(scene) = scene else {
+            return Err(RecordingError::damage(path, at, "the first block is no scene"));
+        };
+        blocks.push(Block { at, kind, raw, packed, crc: word(&head, 9), tick: 0, scene });
+        at = next;
+    }
+    if blocks.is_empty() {
+        return Err(RecordingError::damage(path, at, "the file ends before the scene does"));
+    }
+    Ok((blocks, (at < length).then_some(at)))
+}

@@ -1,0 +1,173 @@
+use super::*;
+use crate::frame::FrameData;
+use crate::frame::tests::frames;
+use crate::scene::{Mode, Scene};
+use proptest::prelude::*;
+use serde_json::json;
+use staya_sim::scenario::{Overrides, Scenario};
+use std::io::Cursor;
+
+fn scene() -> Scene {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/swap-circle.toml");
+    Scene::new(&Scenario::load(&path, &Overrides::default()).unwrap(), Mode::Recording)
+}
+
+fn written(frames: &[FrameData], flush_every: usize) -> Vec<u8> {
+    let mut writer = Writer::new(Vec::new(), Path::new("a.rec"), &scene()).unwrap();
+    for (number, frame) in frames.iter().enumerate() {
+        writer.frame(frame).unwrap();
+        if number % flush_every == flush_every - 1 {
+            writer.flush().unwrap();
+        }
+    }
+    writer.finish(&json!([{"tick": 3, "order": {"kind": "goal"}}]), &json!({"arrived": 7})).unwrap()
+}
+
+fn read(bytes: &[u8]) -> Result<Reader<Cursor<&[u8]>>, RecordingError> {
+    Reader::new(Cursor::new(bytes), Path::new("a.rec"))
+}
+
+/// Reads everything there is.
+fn all(bytes: &[u8]) -> Result<Vec<FrameData>, RecordingError> {
+    let mut reader = read(bytes)?;
+    reader.scene_text()?;
+    reader.orders()?;
+    reader.summary()?;
+    let Some((first, last)) = reader.ticks() else {
+        return Ok(Vec::new());
+    };
+    let (mut frames, mut tick) = (Vec::new(), first);
+    loop {
+        let frame = reader.frame(tick)?;
+        if frames.last() != Some(&frame) {
+            frames.push(frame);
+        }
+        if tick >= last {
+            return Ok(frames);
+        }
+        // Frames are at most a few ticks apart.
+        tick += 1;
+    }
+}
+
+/// Frames whose ticks rise.
+fn runs() -> impl Strategy<Value = Vec<FrameData>> {
+    prop::collection::vec((frames(), 1..4_u32), 1..12).prop_map(|frames| {
+        let mut tick = 0;
+        let with_ticks = frames.into_iter().map(|(frame, step)| {
+            tick += step;
+            FrameData { tick, ..frame }
+        });
+        with_ticks.collect()
+    })
+}
+
+#[test]
+fn everything_is_found_again() {
+    let frames: Vec<_> = (0..10).map(|tick| FrameData { tick: 5 + 2 * tick, ..FrameData::default() }).collect();
+    let bytes = written(&frames, 3);
+    let mut reader = read(&bytes).unwrap();
+    assert_eq!((reader.ticks(), reader.torn_at()), (Some((5, 23)), None));
+    for (asked, tick) in [(0, 5), (5, 5), (6, 5), (7, 7), (10, 9), (11, 11), (23, 23), (99, 23)] {
+        assert_eq!(reader.frame(asked).unwrap().tick, tick, "{asked}");
+    }
+    assert_eq!(reader.scene().unwrap(), scene());
+    assert_eq!(reader.orders().unwrap()[0]["tick"], 3);
+    assert_eq!(reader.summary().unwrap(), Some(json!({"arrived": 7})));
+}
+
+#[test]
+fn a_scene_that_changes_holds_from_there_on() {
+    let mut writer = Writer::new(Vec::new(), Path::new("a.rec"), &scene()).unwrap();
+    let frame = |tick| FrameData { tick, ..FrameData::default() };
+    writer.frame(&frame(1)).unwrap();
+    writer.scene(&Scene { name: "other".into(), ..scene() }).unwrap();
+    writer.frame(&frame(2)).unwrap();
+    let bytes = writer.finish(&json!([]), &json!({})).unwrap();
+    let mut reader = read(&bytes).unwrap();
+    assert!(!reader.scene_text_at(1).unwrap().contains("\"other\""));
+    assert!(reader.scene_text_at(2).unwrap().contains("\"other\""));
+}
+
+#[test]
+fn damage_is_named_with_file_and_byte() {
+    let frames: Vec<_> = (0..4).map(|tick| FrameData { tick, ..FrameData::default() }).collect();
+    let good = written(&frames, 2);
+    let scene_end = 12 + 13 + u32::from_le_bytes(good[17..21].try_into().unwrap()) as usize;
+    let spoilt = |at: usize| {
+        let mut bytes = good.clone();
+        bytes[at] ^= 0x40;
+        all(&bytes).unwrap_err().to_string()
+    };
+    assert!(spoilt(0).starts_with("a.rec: byte 0: this is no recording; name a file"), "{}", spoilt(0));
+    assert!(spoilt(8).contains("byte 8: the recording has version 65"), "{}", spoilt(8));
+    let damaged = spoilt(scene_end + 20);
+    assert!(damaged.starts_with(&format!("a.rec: byte {scene_end}: this block is damaged")), "{damaged}");
+    // A length that asks for more than can be packed into what there is.
+    assert!(spoilt(scene_end + 4).contains("no block begins like this"), "{}", spoilt(scene_end + 4));
+    assert!(all(b"").is_err() && all(&good[..12]).is_err());
+    // One that ends too early is read up to there.
+    let mut torn = read(&good[..good.len() - 1]).unwrap();
+    assert_eq!((torn.ticks(), torn.summary().unwrap()), (Some((0, 3)), None));
+    assert!(torn.torn_at().is_some());
+}
+
+#[test]
+fn a_full_disk_leaves_whole_blocks() {
+    /// Takes so many bytes and no more.
+    struct Full(Vec<u8>, usize);
+    impl std::io::Write for Full {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            let room = (self.1 - self.0.len()).min(bytes.len());
+            self.0.extend(&bytes[..room]);
+            if room == 0 { Err(io::ErrorKind::StorageFull.into()) } else { Ok(room) }
+        }
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+    impl Sink for &mut Full {
+        fn cut(&mut self, length: u64) {
+            self.0.cut(length);
+        }
+    }
+    let mut disk = Full(Vec::new(), 3000);
+    let mut writer = Writer::new(&mut disk, Path::new("full.rec"), &scene()).unwrap();
+    let error = (0..100_000).find_map(|tick: u32| {
+        let position_m = vec![[tick as f32 * 0.37, 1.0 / tick as f32, 0.0]; 9];
+        let frame = FrameData { tick, position_m, ..FrameData::default() };
+        writer.frame(&frame).and_then(|()| if tick % 5 == 4 { writer.flush() } else { Ok(()) }).err()
+    });
+    let error = error.unwrap().to_string();
+    assert!(error.contains("full.rec") && error.contains("free some space"), "{error}");
+    drop(writer);
+    let frames = all(&disk.0).unwrap();
+    assert!(!frames.is_empty() && frames.len() % 5 == 0);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn any_run_comes_back(frames in runs(), flush_every in 1..5_usize) {
+        prop_assert_eq!(all(&written(&frames, flush_every)).unwrap(), frames);
+    }
+
+    #[test]
+    fn what_is_cut_off_or_flipped_is_an_error_or_less(
+        frames in runs(), flush_every in 1..5_usize, at: prop::sample::Index, bit in 0..8_u8,
+    ) {
+        let good = written(&frames, flush_every);
+        let at = at.index(good.len());
+        if let Ok(some) = all(&good[..at]) {
+            prop_assert!(frames.starts_with(&some));
+        }
+        let mut flipped = good;
+        flipped[at] ^= 1 << bit;
+        if let Ok(some) = all(&flipped) {
+            // The kind of a block is outside of its check sum.
+            let mut left = frames.iter();
+            prop_assert!(some.iter().all(|frame| left.any(|other| other == frame)), "{} of {}", some.len(), frames.len());
+        }
+    }
+}

@@ -1,0 +1,160 @@
+//! Recordings in the making.
+
+use super::{BLOCK_HEAD, END, FRAMES, MAGIC, MOST_RAW, ORDERS, RecordingError, SCENE, VERSION};
+use crate::frame::FrameData;
+use crate::scene::Scene;
+use serde::Serialize;
+use std::fs::File;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// Raw bytes of frames that make a block: what a page unpacks to show one moment.
+const BLOCK: usize = 1 << 18;
+/// As good as the slower ones, within a few per cent.
+const LEVEL: u8 = 6;
+
+/// What a recording can be written to: what the disk refused in the middle of a block is cut off again.
+pub trait Sink: Write {
+    /// Forgets what comes behind this many bytes; best effort.
+    fn cut(&mut self, length: u64);
+}
+
+impl Sink for File {
+    fn cut(&mut self, length: u64) {
+        let _ = self.set_len(length);
+    }
+}
+
+impl Sink for Vec<u8> {
+    fn cut(&mut self, length: u64) {
+        self.truncate(usize::try_from(length).unwrap_or(usize::MAX));
+    }
+}
+
+/// Writes a recording block by block. Whatever becomes of the run, the file ends with a whole block. Memory: a block and a
+/// frame.
+#[derive(Debug)]
+pub struct Writer<W: Sink> {
+    out: W,
+    path: PathBuf,
+    /// In the file, all of it whole blocks.
+    written: u64,
+    /// Frames of the block under way.
+    raw: Vec<u8>,
+    /// The last one of them.
+    before: Vec<u8>,
+    frame: Vec<u8>,
+}
+
+impl Writer<File> {
+    /// Begins a recording; a file of that name is replaced.
+    ///
+    /// # Errors
+    /// The file cannot be made or written.
+    pub fn create(path: &Path, scene: &Scene) -> Result<Self, RecordingError> {
+        let file = File::create(path).map_err(RecordingError::writing(path))?;
+        Self::new(file, path, scene)
+    }
+}
+
+impl<W: Sink> Writer<W> {
+    /// Begins a recording in `out`; errors call it `path`.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn new(out: W, path: &Path, scene: &Scene) -> Result<Self, RecordingError> {
+        let mut this =
+            Self { out, path: path.to_owned(), written: 0, raw: Vec::new(), before: Vec::new(), frame: Vec::new() };
+        let head: Vec<u8> = MAGIC.into_iter().chain(VERSION.to_le_bytes()).collect();
+        this.write(&head)?;
+        this.scene(scene)?;
+        Ok(this)
+    }
+
+    /// What holds from the next frame on, where land or solids have changed.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn scene(&mut self, scene: &Scene) -> Result<(), RecordingError> {
+        self.flush()?;
+        self.json(SCENE, scene)
+    }
+
+    /// Takes a frame; ticks grow from frame to frame. O(bytes of the frame).
+    ///
+    /// # Errors
+    /// It cannot be written. The file then ends with the block before.
+    pub fn frame(&mut self, frame: &FrameData) -> Result<(), RecordingError> {
+        frame.encode(&mut self.frame);
+        let fits = self.raw.len() + self.frame.len() + 4 <= MOST_RAW as usize;
+        if !fits || self.raw.len() >= BLOCK {
+            self.flush()?;
+        }
+        self.raw.extend((self.frame.len() as u32).to_le_bytes());
+        let shared = self.frame.len().min(self.before.len());
+        let pairs = self.frame.iter().zip(&self.before);
+        self.raw.extend(pairs.map(|(now, before)| now ^ before));
+        self.raw.extend_from_slice(&self.frame[shared..]);
+        std::mem::swap(&mut self.frame, &mut self.before);
+        Ok(())
+    }
+
+    /// Writes the frames that have gathered.
+    ///
+    /// # Errors
+    /// They cannot be written.
+    pub fn flush(&mut self) -> Result<(), RecordingError> {
+        let raw = std::mem::take(&mut self.raw);
+        self.before.clear();
+        if raw.is_empty() {
+            return Ok(());
+        }
+        let done = self.block(FRAMES, &raw);
+        self.raw = raw;
+        self.raw.clear();
+        done
+    }
+
+    /// Writes the orders of the run, each with its tick, and its summary; returns what it was written to.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn finish(mut self, orders: &impl Serialize, summary: &impl Serialize) -> Result<W, RecordingError> {
+        self.flush()?;
+        self.json(ORDERS, orders)?;
+        self.json(END, summary)?;
+        self.out.flush().map_err(RecordingError::writing(&self.path))?;
+        Ok(self.out)
+    }
+
+    fn json(&mut self, kind: u8, value: &impl Serialize) -> Result<(), RecordingError> {
+        let text = serde_json::to_vec(value).map_err(io::Error::from).map_err(RecordingError::writing(&self.path))?;
+        self.block(kind, &text)
+    }
+
+    fn block(&mut self, kind: u8, raw: &[u8]) -> Result<(), RecordingError> {
+        let packed = miniz_oxide::deflate::compress_to_vec(raw, LEVEL);
+        let lengths =
+            u32::try_from(raw.len()).ok().filter(|raw| *raw <= MOST_RAW).zip(u32::try_from(packed.len()).ok());
+        let Some((raw, length)) = lengths else {
+            let text = format!("a block of {} bytes is too large; run a smaller scenario", raw.len());
+            return Err(RecordingError::writing(&self.path)(io::Error::other(text)));
+        };
+        let mut bytes = Vec::with_capacity(BLOCK_HEAD + packed.len());
+        bytes.push(kind);
+        for word in [raw, length, crc32fast::hash(&packed)] {
+            bytes.extend(word.to_le_bytes());
+        }
+        bytes.extend(packed);
+        self.write(&bytes)
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> Result<(), RecordingError> {
+        self.out.write_all(bytes).map_err(|source| {
+            self.out.cut(self.written);
+            RecordingError::writing(&self.path)(source)
+        })?;
+        self.written += bytes.len() as u64;
+        Ok(())
+    }
+}

@@ -1,0 +1,430 @@
+//! What stays as it is in a run: the message `scene` of `PROTOCOL.md`.
+
+use crate::frame::wait_names;
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD;
+use serde::{Deserialize, Serialize};
+use staya_sim::scenario::{PlaneSetup, Scenario};
+use staya_sim::terrain::Terrain;
+use staya_sim::world::plane;
+
+/// Names of the modes, by the numbers in frames.
+pub const MODES: [&str; 7] = ["idle", "forming", "cruise", "hold", "arrived", "fault", "passive"];
+/// Radius of a robot on the grid, where bodies have none: a share of a cell.
+const GRID_RADIUS: f64 = 0.35;
+/// Room around what is shown at first, a share of its longer side.
+const MARGIN: f64 = 0.08;
+
+/// What stays as it is.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "type", rename = "scene")]
+pub struct Scene {
+    /// Of the scenario.
+    pub name: String,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// Length of a tick, seconds.
+    pub tick_s: f64,
+    /// The tick at which the run ends at the latest.
+    pub ticks: u32,
+    /// How bodies move.
+    pub kind: Kind,
+    /// What the page can do.
+    pub mode: Mode,
+    /// What all lengths are measured from, metres.
+    pub origin_m: [f64; 3],
+    /// What to show at first: west, south, east, north, metres.
+    pub bounds_m: [f64; 4],
+    /// Lowest and highest place to show at first, metres.
+    pub height_m: [f64; 2],
+    /// An entry a robot, by rising number.
+    pub robots: Robots,
+    /// The land, if there is any.
+    pub land: Option<Land>,
+    /// What stands in the way.
+    pub solids: Vec<Indexed>,
+    /// Bodies that are no robots.
+    pub intruders: Vec<Intruder>,
+    /// The graph of the formation, if robots keep one.
+    pub formation: Option<Formation>,
+    /// How far and how well one is heard.
+    pub radio: Radio,
+    /// What can be changed while it runs.
+    pub parameters: Vec<Parameter>,
+    /// Names of the numbers in frames.
+    pub words: Words,
+}
+
+/// How bodies move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// From cell to cell.
+    Grid,
+    /// In the plane.
+    Plane,
+    /// In space.
+    Space,
+}
+
+/// What a page can do with a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Mode {
+    /// Give orders.
+    Live,
+    /// Move in time.
+    Recording,
+    /// Look.
+    Watch,
+}
+
+/// What robots are like.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Robots {
+    /// Their numbers, rising.
+    pub id: Vec<u32>,
+    /// Radii of their bodies, metres.
+    pub radius_m: Vec<f64>,
+    /// What they can do on easy land, m/s.
+    pub max_speed_mps: Vec<f64>,
+    /// 0 for those in no group, then groups by their order in the scenario.
+    pub group: Vec<u32>,
+}
+
+/// Cells that take longer or shorter to cross.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Land {
+    /// Cells from west to east.
+    pub width: u16,
+    /// Cells from south to north.
+    pub height: u16,
+    /// Side of a cell, metres.
+    pub cell_m: f64,
+    /// South-west corner, metres.
+    pub origin_m: [f64; 2],
+    /// The slowest cell.
+    pub classes: u8,
+    /// Base64 of a byte a cell, row by row from the south-west: 0 a wall, otherwise ticks to cross it.
+    pub cells: String,
+}
+
+/// A solid and its number.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Indexed {
+    /// By which orders name it.
+    pub index: usize,
+    /// What it is.
+    #[serde(flatten)]
+    pub solid: Solid,
+}
+
+/// What stands in the way, metres.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+pub enum Solid {
+    /// A disc.
+    Circle {
+        /// Its middle.
+        center_m: [f64; 2],
+        /// Its radius.
+        radius_m: f64,
+    },
+    /// A wall of no thickness.
+    Segment {
+        /// One end.
+        from_m: [f64; 2],
+        /// The other one.
+        to_m: [f64; 2],
+    },
+    /// An area.
+    Polygon {
+        /// Its corners.
+        points_m: Vec<[f64; 2]>,
+    },
+    /// A ball.
+    Ball {
+        /// Its middle.
+        center_m: [f64; 3],
+        /// Its radius.
+        radius_m: f64,
+    },
+    /// Everything behind a plane.
+    Plane {
+        /// A point of the plane.
+        point_m: [f64; 3],
+        /// Unit vector out of the obstacle.
+        normal: [f64; 3],
+    },
+}
+
+/// A body that is no robot; where it is, is in frames.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Intruder {
+    /// Radius, metres.
+    pub radius_m: f64,
+    /// Whether it says where it is.
+    pub heard: bool,
+}
+
+/// Who keeps which distance.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Formation {
+    /// Pairs of robots by index.
+    pub edges: Vec<[u32; 2]>,
+}
+
+/// The radio.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Radio {
+    /// Farthest reception, metres; `None`: everywhere.
+    pub range_m: Option<f64>,
+    /// Share of packets that are lost.
+    pub loss: f64,
+}
+
+/// A number that can be changed while robots run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Parameter {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// Least value.
+    pub least: f64,
+    /// Greatest value.
+    pub greatest: f64,
+    /// That of the first robot that has it.
+    pub value: Option<f64>,
+    /// What it is.
+    pub what: String,
+}
+
+/// Names of the numbers in frames.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Words {
+    /// Modes.
+    pub modes: Vec<String>,
+    /// What robots wait for.
+    pub waits: Vec<String>,
+}
+
+impl Scene {
+    /// The scene of a scenario before its first tick. O(robots + cells).
+    #[must_use]
+    pub fn new(scenario: &Scenario, mode: Mode) -> Self {
+        let setup = scenario.plane.as_ref();
+        let has_land = setup.is_none_or(|setup| setup.has_terrain);
+        let origin = origin_m(scenario);
+        let (bounds_m, height_m) = bounds(scenario, origin);
+        Self {
+            name: scenario.name.clone(),
+            seed: scenario.seed,
+            tick_s: scenario.tick_s(),
+            ticks: scenario.ticks,
+            kind: match setup {
+                None => Kind::Grid,
+                Some(_) if is_in_space(scenario) => Kind::Space,
+                Some(_) => Kind::Plane,
+            },
+            mode,
+            origin_m: origin,
+            bounds_m,
+            height_m,
+            robots: robots(scenario),
+            land: has_land.then(|| land(&scenario.terrain, origin)),
+            solids: setup.map_or_else(Vec::new, |setup| solids(&setup.solids, is_in_space(scenario), origin)),
+            intruders: setup.map_or(&[][..], |setup| &setup.intruders).iter().map(Intruder::from).collect(),
+            formation: scenario
+                .formation
+                .as_ref()
+                .map(|graph| Formation { edges: graph.edges.iter().map(|&(a, b)| [a.into(), b.into()]).collect() }),
+            radio: Radio {
+                range_m: Some(scenario.radio.range_m).filter(|range_m| range_m.is_finite()),
+                loss: scenario.radio.loss,
+            },
+            parameters: Vec::new(),
+            words: Words { modes: MODES.map(str::to_owned).into(), waits: wait_names().map(str::to_owned).collect() },
+        }
+    }
+}
+
+impl From<&staya_sim::scenario::Intruder> for Intruder {
+    fn from(intruder: &staya_sim::scenario::Intruder) -> Self {
+        Self { radius_m: intruder.radius_m, heard: intruder.is_heard }
+    }
+}
+
+/// What the lengths of a scenario's scene and frames are measured from, metres: near its bodies, so that `f32` is exact enough.
+#[must_use]
+pub fn origin_m(scenario: &Scenario) -> [f64; 3] {
+    match &scenario.plane {
+        Some(setup) if !setup.has_terrain => {
+            // Places that a person wrote stay as they are, unless that costs digits.
+            let far = setup.starts.iter().flat_map(|start| start.position_m).fold(0.0, |far: f64, x| far.max(x.abs()));
+            match setup.starts.first() {
+                Some(start) if far > 1e4 => start.position_m.map(libm::round),
+                _ => [0.0; 3],
+            }
+        }
+        _ => [scenario.terrain.origin_m[0], scenario.terrain.origin_m[1], 0.0],
+    }
+}
+
+/// Whether bodies of a scenario have heights.
+#[must_use]
+pub fn is_in_space(scenario: &Scenario) -> bool {
+    scenario.plane.as_ref().is_some_and(|setup| {
+        let starts = setup.starts.iter();
+        let moves = starts.clone().map(|start| (start.position_m, start.velocity_mps));
+        let goals = starts.flat_map(|start| &start.places).chain(setup.orders.iter().map(|order| &order.target));
+        let goals = goals.map(|target| (target.position_m, target.velocity_mps));
+        let intruders = setup.intruders.iter().map(|intruder| (intruder.position_m, intruder.velocity_mps));
+        let mut all = moves.chain(goals).chain(intruders);
+        all.any(|(at, by)| at[2] != 0.0 || by[2] != 0.0)
+    })
+}
+
+/// The land as scenes have it, measured from `origin_m`.
+#[must_use]
+pub fn land(terrain: &Terrain, origin_m: [f64; 3]) -> Land {
+    Land {
+        width: terrain.width(),
+        height: terrain.height(),
+        cell_m: terrain.cell_m,
+        origin_m: [0, 1].map(|axis| terrain.origin_m[axis] - origin_m[axis]),
+        classes: terrain.cells().iter().copied().max().unwrap_or(0),
+        cells: BASE64_STANDARD.encode(terrain.cells()),
+    }
+}
+
+/// Solids as scenes have them, measured from `origin_m`; in the plane balls are discs.
+#[must_use]
+pub fn solids(solids: &[plane::Solid], is_in_space: bool, origin_m: [f64; 3]) -> Vec<Indexed> {
+    let flat = |at: [f64; 2]| [at[0] - origin_m[0], at[1] - origin_m[1]];
+    let near = |at: [f64; 3]| [0, 1, 2].map(|axis| at[axis] - origin_m[axis]);
+    let shape = |solid: &plane::Solid| match *solid {
+        plane::Solid::Wall([from, to]) => Solid::Segment { from_m: flat(from), to_m: flat(to) },
+        plane::Solid::Ball { center_m, radius_m } if is_in_space => Solid::Ball { center_m: near(center_m), radius_m },
+        plane::Solid::Ball { center_m: [x, y, _], radius_m } => Solid::Circle { center_m: flat([x, y]), radius_m },
+        plane::Solid::Plane { point_m, normal } => Solid::Plane { point_m: near(point_m), normal },
+    };
+    solids.iter().enumerate().map(|(index, solid)| Indexed { index, solid: shape(solid) }).collect()
+}
+
+fn robots(scenario: &Scenario) -> Robots {
+    let mut robots = Robots::default();
+    for (index, robot) in scenario.robots.iter().enumerate() {
+        let (radius_m, speed_mps, group) = match &scenario.plane {
+            Some(setup) => {
+                let group = setup.group(index);
+                let number = setup.starts.get(index).and_then(|start| start.group);
+                (group.radius_m, group.abilities.max_speed_mps, number.map_or(0, |number| number as u32 + 1))
+            }
+            None => {
+                let cell_m = scenario.terrain.cell_m;
+                (cell_m * GRID_RADIUS, cell_m / scenario.tick_s(), 0)
+            }
+        };
+        robots.id.push(robot.id.0);
+        robots.radius_m.push(radius_m);
+        robots.max_speed_mps.push(speed_mps);
+        robots.group.push(group);
+    }
+    robots
+}
+
+/// What is there to see: starts, goals, obstacles.
+fn bounds(scenario: &Scenario, origin_m: [f64; 3]) -> ([f64; 4], [f64; 2]) {
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    let mut take = |at: [f64; 3], radius_m: f64| {
+        for axis in 0..3 {
+            low[axis] = low[axis].min(at[axis] - radius_m);
+            high[axis] = high[axis].max(at[axis] + radius_m);
+        }
+    };
+    let land = &scenario.terrain;
+    match &scenario.plane {
+        None => {
+            for cell in scenario.robots.iter().flat_map(|robot| [robot.start, robot.goal]) {
+                let middle = |axis: usize, cell: i16| land.origin_m[axis] + (f64::from(cell) + 0.5) * land.cell_m;
+                take([middle(0, cell.x), middle(1, cell.y), 0.0], land.cell_m);
+            }
+        }
+        Some(setup) => in_plane(setup, &mut take),
+    }
+    let longest = (high[0] - low[0]).max(high[1] - low[1]).max(1.0);
+    if !longest.is_finite() {
+        return ([0.0, 0.0, 1.0, 1.0], [0.0, 0.0]);
+    }
+    let margin = longest * MARGIN;
+    let millimetres = |x: f64| libm::round(x * 1000.0) / 1000.0;
+    let [west, south] = [0, 1].map(|axis| millimetres(low[axis] - margin - origin_m[axis]));
+    let [east, north] = [0, 1].map(|axis| millimetres(high[axis] + margin - origin_m[axis]));
+    let height_m =
+        if is_in_space(scenario) { [low[2], high[2]].map(|z| millimetres(z - origin_m[2])) } else { [0.0; 2] };
+    ([west, south, east, north], height_m)
+}
+
+fn in_plane(setup: &PlaneSetup, take: &mut impl FnMut([f64; 3], f64)) {
+    for (index, start) in setup.starts.iter().enumerate() {
+        let radius_m = setup.group(index).radius_m;
+        take(start.position_m, radius_m);
+        start.places.iter().for_each(|place| take(place.position_m, radius_m));
+    }
+    for solid in &setup.solids {
+        match *solid {
+            plane::Solid::Wall(ends) => ends.iter().for_each(|&[x, y]| take([x, y, 0.0], 0.0)),
+            plane::Solid::Ball { center_m, radius_m } => take(center_m, radius_m),
+            plane::Solid::Plane { .. } => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use staya_sim::scenario::Overrides;
+    use std::path::Path;
+
+    fn scene(name: &str) -> Scene {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(name);
+        Scene::new(&Scenario::load(&path, &Overrides::default()).unwrap(), Mode::Recording)
+    }
+
+    #[test]
+    fn scenes_come_back_from_their_text_and_say_what_they_should() {
+        for (name, kind) in [
+            ("six-robots.toml", Kind::Grid),
+            ("twenty-discs.toml", Kind::Plane),
+            ("doorway.toml", Kind::Plane),
+            ("downwash.toml", Kind::Space),
+            ("mixed.toml", Kind::Plane),
+        ] {
+            let scene = scene(name);
+            assert_eq!(scene.kind, kind, "{name}");
+            let text = serde_json::to_string(&scene).unwrap();
+            let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+            assert_eq!((&json["type"], &json["mode"]), (&"scene".into(), &"recording".into()));
+            assert_eq!(serde_json::from_str::<Scene>(&text).unwrap(), scene, "{name}");
+            let [west, south, east, north] = scene.bounds_m;
+            assert!(west < east && south < north, "{name}");
+            let robots = scene.robots.id.len();
+            assert!(robots > 0 && scene.robots.radius_m.len() == robots && scene.robots.group.len() == robots);
+        }
+    }
+
+    #[test]
+    fn land_solids_and_formation_are_there() {
+        let six = scene("six-robots.toml");
+        let land = six.land.unwrap();
+        let cells = BASE64_STANDARD.decode(&land.cells).unwrap();
+        assert_eq!(cells.len(), usize::from(land.width) * usize::from(land.height));
+        assert_eq!(land.origin_m, [0.0; 2]);
+        assert!(!six.formation.unwrap().edges.is_empty());
+        let door = scene("doorway.toml");
+        assert!(door.land.is_none() && !door.solids.is_empty());
+        let text = serde_json::to_value(&door.solids[0]).unwrap();
+        assert!(text["kind"].is_string() && text["index"] == 0, "{text}");
+    }
+}
