@@ -1,4 +1,4 @@
-//! The command line: `staya run | hil | bridge | companion | terrain | orca | experiment`.
+//! The command line: `staya run | page | hil | bridge | companion | terrain | orca | experiment`.
 //!
 //! A new command is a module with a `clap::Args` struct and `run(&self, &Global) -> Result<Ended>`,
 //! and one line in `Command`. Results go to standard output, progress and errors to standard
@@ -8,6 +8,7 @@
 mod bridge;
 mod companion;
 mod hil;
+mod page;
 mod run;
 mod terrain;
 
@@ -32,6 +33,8 @@ struct Cli {
 enum Command {
     /// Run a scenario.
     Run(run::RunArgs),
+    /// Make one HTML file of a run, for any browser, without server or network.
+    Page(page::PageArgs),
     /// Run some robots of a scenario as firmware, on emulated microcontrollers or boards.
     Hil(hil::HilArgs),
     /// Let ground stations and scripts see and command a simulated swarm over MAVLink.
@@ -71,6 +74,7 @@ fn run(cli: &Cli) -> Result<Ended> {
     }
     match &cli.command {
         Command::Run(args) => args.run(&cli.global),
+        Command::Page(args) => args.run(&cli.global),
         Command::Hil(args) => args.run(&cli.global),
         Command::Bridge(args) => args.run(&cli.global),
         Command::Companion(args) => args.run(&cli.global),

@@ -1,20 +1,21 @@
 //! `staya run SCENARIO`: one run, its figures and its pictures.
 
+mod also;
+mod summary;
+
+use also::{Also, AlsoArgs};
 use anyhow::{Context as _, Result, anyhow};
 use clap::Args;
-use serde::Serialize;
 use staya_console::{Ended, Global, Progress, Stop, print, print_json};
-use staya_controller::agent::Wait;
-use staya_controller::grid::UNIT;
 use staya_plot::{motion_pictures, run_pictures};
 use staya_sim::engine::{Moment, Outcome, simulate};
-use staya_sim::metrics::waits::WaitCount;
-use staya_sim::record::{self, History, Options, PacketCounts, Recorder, Results, RobotRow, write_summary};
+use staya_sim::record::{self, History, Options, Recorder, Results, RobotRow, write_summary};
 use staya_sim::scenario::{Overrides, Scenario};
-use std::fmt::{Display, Formatter, Write as _};
+use staya_view::recording::RecordingError;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+use summary::Summary;
 
 /// Which scenario, and what of it is otherwise.
 #[derive(Args, Clone, Debug)]
@@ -30,6 +31,11 @@ pub struct ScenarioArgs {
 }
 
 impl ScenarioArgs {
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.scenario
+    }
+
     /// Reads it.
     ///
     /// # Errors
@@ -54,102 +60,8 @@ pub struct RunArgs {
     /// scenario's name].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-}
-
-/// The figures of a run, as in `summary.json` and with `--json`.
-#[derive(Clone, Debug, Serialize)]
-struct Summary {
-    scenario: String,
-    seed: u64,
-    robots: usize,
-    /// Ticks done.
-    ticks: u32,
-    sim_seconds: f64,
-    /// Of the simulation itself, without reading and drawing.
-    wall_seconds: f64,
-    /// Stopped by Ctrl-C.
-    interrupted: bool,
-    /// Robots that stand at their targets and know it.
-    arrived: usize,
-    /// Mean and last of their travel times, simulated seconds; null: nobody arrived.
-    arrival_mean_seconds: Option<f64>,
-    arrival_last_seconds: Option<f64>,
-    /// Robots in a wall, in another one's cell, or overlapping another one or an obstacle, summed over ticks.
-    collisions: u64,
-    packets: PacketCounts,
-    /// Whether the robots have a key.
-    is_authenticated: bool,
-    /// Packets beyond a robot's bandwidth, never on the air.
-    packets_throttled: u64,
-    /// What robots waited for that did not get on; empty: all did.
-    waits: Vec<Waited>,
-    /// dPhi per robot, cells, graph placed on the top leader; null: no formation.
-    formation_error_per_agent: Option<f64>,
-    /// The same, graph placed by the best-fitting translation.
-    formation_error_per_agent_best_fit: Option<f64>,
-    graph_distance_mean: Option<f64>,
-    /// Least distance between the surfaces of two bodies, metres; null: on the grid, or nobody came near.
-    least_gap_m: Option<f64>,
-    /// Least distance between a body and an obstacle, metres.
-    least_obstacle_gap_m: Option<f64>,
-    /// Least distance between a robot's surface and an intruder's, metres; null: without intruders.
-    least_intruder_gap_m: Option<f64>,
-    /// Robots that overlap an intruder, summed over ticks; they are no collisions.
-    intruder_overlaps: u64,
-    /// Robots in the downwash of others, summed over ticks; they are no collisions.
-    washed: u64,
-    /// 16 hex digits; equal for equal traces.
-    trace_hash: String,
-    /// What was written.
-    files: Vec<PathBuf>,
-}
-
-/// One reason to wait, over the run.
-#[derive(Clone, Debug, Serialize)]
-struct Waited {
-    #[serde(rename = "for")]
-    reason: Wait,
-    /// Robots that did so at some time.
-    robots: usize,
-    /// Those of them that do so at the end.
-    at_the_end: usize,
-    /// All their times together.
-    robot_seconds: f64,
-    /// The longest time on end.
-    longest_seconds: f64,
-}
-
-impl Waited {
-    fn new(count: &WaitCount, tick_s: f64) -> Self {
-        Self {
-            reason: count.wait,
-            robots: count.robots,
-            at_the_end: count.now,
-            robot_seconds: count.robot_ticks as f64 * tick_s,
-            longest_seconds: f64::from(count.longest_ticks) * tick_s,
-        }
-    }
-
-    /// For what, as a sentence goes on.
-    const fn words(&self) -> &'static str {
-        match self.reason {
-            Wait::Formation => "for their formation",
-            Wait::Request => "since they were asked to",
-            Wait::Way => "for a way",
-            Wait::Radio => "for news by radio",
-            Wait::Turn => "for their turn at a door",
-            Wait::Others => "for others in the way",
-            Wait::Place => "beside a place that is taken",
-        }
-    }
-}
-
-impl Display for Waited {
-    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
-        let Self { robots, at_the_end, robot_seconds, longest_seconds, .. } = self;
-        write!(f, "{robots} {}: {robot_seconds:.1} s in all, at most {longest_seconds:.1} s", self.words())?;
-        if *at_the_end > 0 { write!(f, "; {at_the_end} still do") } else { Ok(()) }
-    }
+    #[command(flatten)]
+    also: AlsoArgs,
 }
 
 impl RunArgs {
@@ -161,7 +73,7 @@ impl RunArgs {
         let scenario = self.scenario.load()?;
         let out = self.out.clone().unwrap_or_else(|| Path::new("out").join(&scenario.name));
         let stop = Stop::on_ctrl_c()?;
-        let summary = run(&scenario, &out, &stop, global)?;
+        let summary = run(&scenario, &out, &self.also, &stop, global)?;
         if global.json {
             print_json(&summary)?;
         } else {
@@ -171,10 +83,15 @@ impl RunArgs {
     }
 }
 
+/// The figures of a run that left no files.
+pub fn summary(scenario: &Scenario, outcome: &Outcome) -> impl serde::Serialize + use<> {
+    Summary::new(scenario, outcome, Vec::new())
+}
+
 /// Runs a scenario and leaves everything about it in `out`; what was there before stays until all of it is written.
-fn run(scenario: &Scenario, out: &Path, stop: &Stop, global: &Global) -> Result<Summary> {
+fn run(scenario: &Scenario, out: &Path, also: &AlsoArgs, stop: &Stop, global: &Global) -> Result<Summary> {
     let results = Results::begin(out)?;
-    let whole = run_into(scenario, results.dir(), out, stop, global).and_then(|summary| {
+    let whole = run_into(scenario, results.dir(), out, also, stop, global).and_then(|summary| {
         write_summary(results.dir(), &summary)?;
         Ok(summary)
     });
@@ -183,10 +100,11 @@ fn run(scenario: &Scenario, out: &Path, stop: &Stop, global: &Global) -> Result<
             results.finish()?;
             Ok(summary)
         }
-        Err(error) if error.is::<record::Error>() => {
+        Err(error) if error.is::<record::Error>() || error.is::<RecordingError>() => {
             let kept = results.keep();
             let (kept, out) = (kept.display(), out.display());
-            let what = format!("{kept} keeps what was written until the next run into {out}, where nothing has changed");
+            let what =
+                format!("{kept} keeps what was written until the next run into {out}, where nothing has changed");
             Err(anyhow!("{}; {what}", crate::in_one_line(&error)))
         }
         Err(error) => Err(error),
@@ -194,10 +112,18 @@ fn run(scenario: &Scenario, out: &Path, stop: &Stop, global: &Global) -> Result<
 }
 
 /// The same in folder `dir`, which will be `out`; without `summary.json`.
-fn run_into(scenario: &Scenario, dir: &Path, out: &Path, stop: &Stop, global: &Global) -> Result<Summary> {
+fn run_into(
+    scenario: &Scenario,
+    dir: &Path,
+    out: &Path,
+    also: &AlsoArgs,
+    stop: &Stop,
+    global: &Global,
+) -> Result<Summary> {
     let recorder = Recorder::new(dir, Options::default())?;
+    let mut also = Also::begin(also, scenario)?;
     let began = Instant::now();
-    let (outcome, history) = simulate_recorded(scenario, recorder, stop, global)?;
+    let (outcome, history) = simulate_recorded(scenario, recorder, &mut also, stop, global)?;
     let wall_seconds = began.elapsed().as_secs_f64();
     let edges: Vec<_> = match &scenario.formation {
         Some(formation) => {
@@ -214,23 +140,33 @@ fn run_into(scenario: &Scenario, dir: &Path, out: &Path, stop: &Stop, global: &G
         Some(setup) => motion_pictures(setup, &history, dir)?,
     };
     files.extend(pictures.iter().map(|file| out.join(file.strip_prefix(dir).unwrap_or(file))));
+    files.extend(also.paths());
     let mut summary = Summary::new(scenario, &outcome, files);
     summary.wall_seconds = wall_seconds;
     summary.interrupted = stop.is_requested();
+    also.finish(&summary, &history)?;
     Ok(summary)
 }
 
 fn simulate_recorded(
     scenario: &Scenario,
     mut recorder: Recorder,
+    also: &mut Also<'_>,
     stop: &Stop,
     global: &Global,
 ) -> Result<(Outcome, History)> {
     let mut progress = Progress::new(&scenario.name, scenario.ticks.into(), global);
-    let mut failed: Option<record::Error> = None;
+    let mut failed: Option<anyhow::Error> = None;
     let count = scenario.robots.len();
     let watch = |moment: &Moment<'_>, robots: &mut dyn Iterator<Item = RobotRow>| {
-        if let Err(error) = recorder.tick(moment.row, robots) {
+        let done = if also.is_idle() {
+            recorder.tick(moment.row, robots).map_err(Into::into)
+        } else {
+            let rows: Vec<_> = robots.collect();
+            let done = recorder.tick(moment.row, rows.iter().copied()).map_err(Into::into);
+            done.and_then(|()| also.tick(moment, &rows))
+        };
+        if let Err(error) = done {
             failed = Some(error);
             return ControlFlow::Break(());
         }
@@ -241,120 +177,10 @@ fn simulate_recorded(
     let outcome = simulate(scenario, watch).context("the robots cannot be placed")?;
     progress.finish();
     match failed {
-        Some(error) => Err(error.into()),
+        Some(error) => {
+            also.flush();
+            Err(error)
+        }
         None => Ok((outcome, recorder.finish()?)),
-    }
-}
-
-/// What JSON has a form for.
-fn finite(value: Option<f64>) -> Option<f64> {
-    value.filter(|value| value.is_finite())
-}
-
-impl Summary {
-    fn new(scenario: &Scenario, outcome: &Outcome, files: Vec<PathBuf>) -> Self {
-        let units: Vec<u64> = outcome.arrival_times.iter().flatten().copied().collect();
-        let seconds = |units: f64| units / f64::from(UNIT) * scenario.tick_s();
-        let mean = units.iter().sum::<u64>() as f64 / units.len() as f64;
-        let formation = outcome.formation;
-        Self {
-            scenario: scenario.name.clone(),
-            seed: scenario.seed,
-            robots: scenario.robots.len(),
-            ticks: outcome.ticks,
-            sim_seconds: outcome.seconds,
-            wall_seconds: 0.0,
-            interrupted: false,
-            arrived: outcome.arrived,
-            arrival_mean_seconds: (!units.is_empty()).then(|| seconds(mean)),
-            arrival_last_seconds: units.iter().max().map(|&last| seconds(last as f64)),
-            collisions: outcome.collisions,
-            packets: outcome.packets,
-            is_authenticated: scenario.key.is_some(),
-            packets_throttled: outcome.throttled,
-            waits: outcome.waits.iter().map(|count| Waited::new(count, scenario.tick_s())).collect(),
-            formation_error_per_agent: formation.map(|f| f.error_per_agent),
-            formation_error_per_agent_best_fit: formation.map(|f| f.best_fit_error_per_agent),
-            graph_distance_mean: formation.map(|f| f.graph_distance),
-            least_gap_m: finite(outcome.clearance.map(|c| c.bodies_m)),
-            least_obstacle_gap_m: finite(outcome.clearance.map(|c| c.solids_m)),
-            least_intruder_gap_m: finite(outcome.clearance.map(|c| c.intruders_m)),
-            intruder_overlaps: outcome.clearance.map_or(0, |c| c.intruder_overlaps),
-            washed: outcome.clearance.map_or(0, |c| c.washed),
-            trace_hash: format!("{:016x}", outcome.trace_hash),
-            files,
-        }
-    }
-
-    /// The figures for a reader.
-    fn table(&self, out: &Path) -> Result<String, std::fmt::Error> {
-        let mut text = String::new();
-        let robot_ticks = self.robots as f64 * f64::from(self.ticks);
-        let cost_us = self.wall_seconds * 1e6 / robot_ticks.max(1.0);
-        let stopped = if self.interrupted { ", stopped" } else { "" };
-        writeln!(text, "{} (seed {}{stopped})", self.scenario, self.seed)?;
-        let mut line = |name: &str, value: String| writeln!(text, "  {name:<22}{value}");
-        line("simulated", format!("{} s in {} ticks", self.sim_seconds, self.ticks))?;
-        line("took", format!("{:.2} s, {cost_us:.2} us per robot and tick", self.wall_seconds))?;
-        let mut arrived = format!("{} of {} robots", self.arrived, self.robots);
-        if let (Some(mean), Some(last)) = (self.arrival_mean_seconds, self.arrival_last_seconds) {
-            write!(arrived, ", on average after {mean:.1} s, the last after {last:.1} s")?;
-        }
-        line("arrived", arrived)?;
-        for (index, waited) in self.waits.iter().enumerate() {
-            line(if index == 0 { "waited" } else { "" }, waited.to_string())?;
-        }
-        line("collisions", self.collisions.to_string())?;
-        if let Some(gap) = self.least_gap_m {
-            line("least gap", format!("{gap:.4} m between two robots"))?;
-        }
-        if let Some(gap) = self.least_obstacle_gap_m {
-            line("", format!("{gap:.4} m to an obstacle"))?;
-        }
-        if let Some(gap) = self.least_intruder_gap_m {
-            let overlaps = self.intruder_overlaps;
-            line("", format!("{gap:.4} m to an intruder, {overlaps} overlaps with it"))?;
-        }
-        if let (Some(error), Some(best_fit), Some(distance)) =
-            (self.formation_error_per_agent, self.formation_error_per_agent_best_fit, self.graph_distance_mean)
-        {
-            line("formation error", format!("{error:.3} cells per robot ({best_fit:.3} by best fit)"))?;
-            line("graph distance", format!("{distance:.3}"))?;
-        }
-        if self.washed > 0 {
-            line("in downwash", self.washed.to_string())?;
-        }
-        let packets = &self.packets;
-        let share = |part: u64, whole: u64| match whole {
-            0 => String::new(),
-            _ => format!(" ({:.1} %)", 100.0 * part as f64 / whole as f64),
-        };
-        let receptions = packets.delivered + packets.lost;
-        let (sent, throttled) = (packets.sent, self.packets_throttled);
-        line(
-            "packets",
-            match throttled {
-                0 => format!("{sent} sent"),
-                _ => format!("{sent} sent, {throttled} held back by bandwidth"),
-            },
-        )?;
-        line(
-            "receptions",
-            format!("{} delivered, {} lost{}", packets.delivered, packets.lost, share(packets.lost, receptions)),
-        )?;
-        line("bad frames", format!("{} damaged, {} refused", packets.corrupted, packets.rejected))?;
-        if self.is_authenticated {
-            line(
-                "of them, by the key",
-                format!("{} unsigned, {} forged, {} replayed", packets.unsigned, packets.forged, packets.replayed),
-            )?;
-        }
-        line("trace hash", self.trace_hash.clone())?;
-        writeln!(text, "written to {}", out.display())?;
-        for file in &self.files {
-            let name = file.strip_prefix(out).unwrap_or(file);
-            writeln!(text, "  {}", name.display())?;
-        }
-        Ok(text)
     }
 }

@@ -335,7 +335,8 @@ fn a_killed_run_leaves_the_old_results_as_they_were() {
         paths.into_iter().map(|path| (path.clone(), fs::read(path).expect("readable"))).collect()
     };
     let before = all();
-    let mut child = staya(&["run", path, "--quiet", "--out", &out]).stderr(Stdio::null()).spawn().expect("staya starts");
+    let mut child =
+        staya(&["run", path, "--quiet", "--out", &out]).stderr(Stdio::null()).spawn().expect("staya starts");
     wait_for_series(&out, &mut child);
     child.kill().expect("killed");
     child.wait().expect("it ends");

@@ -1,0 +1,98 @@
+//! `staya page`: a run as one HTML file.
+
+use crate::run::ScenarioArgs;
+use anyhow::{Context as _, Result};
+use clap::Args;
+use serde::Serialize;
+use staya_console::{Ended, Global, Progress, Stop, print, print_json};
+use staya_sim::engine::{Moment, simulate};
+use staya_sim::record::{RobotRow, write_atomically};
+use staya_sim::scenario::Scenario;
+use staya_view::frame::{FrameData, Framer};
+use staya_view::page;
+use staya_view::recording::{Reader, RecordingError, Writer};
+use staya_view::scene::{Mode, Scene};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+/// Make one HTML file of a run, for any browser, without server or network.
+#[derive(Args, Clone, Debug)]
+pub struct PageArgs {
+    /// A scenario (.toml), which is run, or a recording of `staya run --record`.
+    #[command(flatten)]
+    source: ScenarioArgs,
+    /// The page.
+    #[arg(long, value_name = "FILE", default_value = "page.html")]
+    out: PathBuf,
+    /// Of a scenario: ticks from one moment on the page to the next.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    every: u32,
+}
+
+/// What was made, as with `--json`.
+#[derive(Debug, Serialize)]
+struct Made {
+    page: PathBuf,
+    bytes: usize,
+    /// Of the recording inside.
+    recording_bytes: usize,
+    first_tick: u32,
+    last_tick: u32,
+}
+
+impl PageArgs {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// A scenario or recording that cannot be read or is wrong, a page that cannot be written.
+    pub fn run(&self, global: &Global) -> Result<Ended> {
+        let path = self.source.path();
+        let stop = Stop::on_ctrl_c()?;
+        let is_scenario = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
+        let bytes = match is_scenario {
+            true => recorded(&self.source.load()?, self.every, &stop, global)?,
+            false => std::fs::read(path).with_context(|| format!("cannot read {}; check the name", path.display()))?,
+        };
+        // A page that shows nothing is of no use.
+        let reader = Reader::new(std::io::Cursor::new(&bytes), path)?;
+        let (first_tick, last_tick) =
+            reader.ticks().with_context(|| format!("{} has no frames; record it anew", path.display()))?;
+        let page = page::with_recording(&bytes)?;
+        write_atomically(&self.out, page.as_bytes())?;
+        let made =
+            Made { page: self.out.clone(), bytes: page.len(), recording_bytes: bytes.len(), first_tick, last_tick };
+        if global.json {
+            print_json(&made)?;
+        } else {
+            let size = made.bytes as f64 / 1e6;
+            print(&format!("{}: {size:.2} MB, ticks {first_tick} to {last_tick}\n", self.out.display()))?;
+        }
+        Ok(Ended::by(&stop))
+    }
+}
+
+/// Runs a scenario and records it in memory.
+fn recorded(scenario: &Scenario, every: u32, stop: &Stop, global: &Global) -> Result<Vec<u8>> {
+    let scene = Scene::new(scenario, Mode::Recording);
+    let mut writer = Writer::new(Vec::new(), Path::new(&scenario.name), &scene)?;
+    let (framer, mut frame, mut is_written) = (Framer::new(scenario), FrameData::default(), true);
+    let mut progress = Progress::new(&scenario.name, scenario.ticks.into(), global);
+    let mut failed: Option<RecordingError> = None;
+    let watch = |moment: &Moment<'_>, robots: &mut dyn Iterator<Item = RobotRow>| {
+        framer.fill(&mut frame, moment, robots);
+        is_written = frame.tick.is_multiple_of(every);
+        failed = if is_written { writer.frame(&frame).err() } else { None };
+        progress.set(frame.tick.into(), || "ticks".to_owned());
+        if failed.is_some() || stop.is_requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    };
+    let outcome = simulate(scenario, watch).context("the robots cannot be placed")?;
+    progress.finish();
+    if let Some(error) = failed {
+        return Err(error.into());
+    }
+    if !is_written {
+        writer.frame(&frame)?;
+    }
+    let summary = crate::run::summary(scenario, &outcome);
+    Ok(writer.finish(&[(); 0], &summary)?)
+}
