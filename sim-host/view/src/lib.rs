@@ -4,3 +4,4 @@ pub mod frame;
 pub mod page;
 pub mod recording;
 pub mod scene;
+pub mod server;

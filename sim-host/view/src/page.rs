@@ -90,10 +90,21 @@ mod tests {
 
     #[test]
     fn every_part_comes_to_its_mark() {
-        let files = [("a.css", "p { color: red }"), ("main.js", "import \"staya/b.js\";"), ("b.js", "// <!-- staya:entry -->")];
+        let files =
+            [("a.css", "p { color: red }"), ("main.js", "import \"staya/b.js\";"), ("b.js", "// <!-- staya:entry -->")];
         let page = assemble(PAGE, &files, b"STAYAREC").unwrap();
-        let parts = ["<!doctype", "p { color: red }", "\"staya/b.js\":\"data:text/javascript;base64,", "<body>", "U1RBWUFSRUM=</script>", "<!-- staya:other -->", "import \"staya/main.js\"", "</body>"];
-        let places: Vec<_> = parts.iter().map(|part| page.find(part).unwrap_or_else(|| panic!("{part} in {page}"))).collect();
+        let parts = [
+            "<!doctype",
+            "p { color: red }",
+            "\"staya/b.js\":\"data:text/javascript;base64,",
+            "<body>",
+            "U1RBWUFSRUM=</script>",
+            "<!-- staya:other -->",
+            "import \"staya/main.js\"",
+            "</body>",
+        ];
+        let places: Vec<_> =
+            parts.iter().map(|part| page.find(part).unwrap_or_else(|| panic!("{part} in {page}"))).collect();
         assert!(places.is_sorted(), "{places:?} in {page}");
         assert!(page.contains(&BASE64_STANDARD.encode("import \"staya/b.js\";")));
     }

@@ -35,6 +35,8 @@ pub struct PlaneGround {
     radius: u8,
     tick_us: u32,
     delay_us: u32,
+    /// By robot: when it was given its first goal.
+    since: Vec<u32>,
     format: Format,
     key: Option<Key>,
     /// Frames to everybody, by rising tick.
@@ -77,6 +79,7 @@ impl PlaneGround {
             tick_us: scenario.tick_us,
             delay_us: libm::round(scenario.radio.delay_ms * 1000.0) as u32,
             orders: frames(&setup.orders, scenario.radio.format, scenario.key.as_ref()),
+            since: vec![0; scenario.robots.len()],
             format: scenario.radio.format,
             key: scenario.key.clone(),
             setup: setup.clone(),
@@ -140,6 +143,12 @@ impl PlaneGround {
             },
             inbox: &[],
         }
+    }
+
+    /// What has been ordered before `tick`, for the robot of body `index`; a goal that it was given later stands.
+    fn ordered(&self, index: usize, tick: u32) -> impl Iterator<Item = &Order> {
+        let orders = self.setup.orders.iter().take_while(move |order| order.tick < tick);
+        orders.filter(move |order| order.index > 0 || order.tick >= self.since[index])
     }
 
     /// Where in its cell of the land a body is.
@@ -261,9 +270,7 @@ impl Ground for PlaneGround {
         // One that starts anew is told what has been ordered in the meantime; what is ordered in this tick, it hears.
         let first = (0..).zip(&self.setup.starts[index].places);
         let first = first.map(|(number, target)| (number, 0, target));
-        let orders = self.setup.orders.iter();
-        let orders = orders.take_while(|order| order.tick < tick);
-        let later = orders.map(|order| (order.index, order.tick, &order.target));
+        let later = self.ordered(index, tick).map(|order| (order.index, order.tick, &order.target));
         let mut waypoints = heapless::Vec::<(u8, Waypoint<f32>), WAYPOINTS>::new();
         for (number, since, target) in first.chain(later) {
             let age_s = f64::from(tick - since) * f64::from(self.tick_us) / 1e6;
@@ -279,6 +286,14 @@ impl Ground for PlaneGround {
             }
         }
         Task::Waypoints(waypoints)
+    }
+
+    fn terrain(&self) -> Option<&Terrain> {
+        self.plane.terrain()
+    }
+
+    fn solids(&self) -> &[Solid] {
+        self.plane.solids()
     }
 
     fn gap_m(&self) -> Option<f64> {
@@ -297,7 +312,7 @@ impl Ground for PlaneGround {
             // Of several, robots choose.
             _ => return None,
         };
-        for order in self.setup.orders.iter().take_while(|order| order.tick < tick) {
+        for order in self.ordered(index, tick) {
             if order.index > 0 {
                 return None;
             }
@@ -305,14 +320,6 @@ impl Ground for PlaneGround {
         }
         let age_s = f64::from(tick - since) * f64::from(self.tick_us) / 1e6;
         Some([0, 1, 2].map(|axis| target.position_m[axis] + target.velocity_mps[axis] * age_s))
-    }
-
-    fn terrain(&self) -> Option<&Terrain> {
-        self.plane.terrain()
-    }
-
-    fn solids(&self) -> &[Solid] {
-        self.plane.solids()
     }
 
     fn intruders(&self) -> &[Disc] {
@@ -342,6 +349,7 @@ impl Ground for PlaneGround {
         if let Some(land) = self.plane.terrain() {
             self.robots[index].goal = land.nearest_cell([place_m[0], place_m[1]]);
         }
+        self.since[index] = tick;
         self.task(index, tick)
     }
 

@@ -1,0 +1,191 @@
+//! What a browser asks for, and whether it may: HTTP/1.1 requests without bodies.
+//!
+//! Any page that the user happens to visit can send requests to this machine. So the name by which the server is called must be
+//! its address (no name that somebody else's DNS gives out), the page must be one of its own, and who wants to
+//! see or steer anything must know the token of the address that was printed.
+
+use std::net::{IpAddr, SocketAddr};
+
+/// Longest request, bytes.
+pub(super) const LONGEST: usize = 8192;
+/// Headers of a request at most.
+const HEADERS: usize = 64;
+
+/// What is asked for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Request {
+    /// More bytes are to come.
+    Partial,
+    /// A file of the page; empty: the page itself.
+    File(String),
+    /// The WebSocket, with the key of its handshake.
+    Live(String),
+    /// Nothing that there is, or that he may have.
+    Refused(Refused),
+}
+
+/// Why a request gets nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Refused {
+    /// It is no request.
+    Malformed,
+    /// It is not for this server, not from its page, or without its token.
+    Forbidden,
+    /// Only GET.
+    Method,
+}
+
+/// Who may ask.
+#[derive(Clone, Debug)]
+pub(super) struct Rules {
+    /// Where the server listens.
+    pub address: SocketAddr,
+    /// What the address of the page ends with.
+    pub token: String,
+}
+
+impl Rules {
+    /// Whether `host` (a header) is an address of this server: a number or localhost, and its port.
+    fn is_own_host(&self, host: &str) -> bool {
+        let (name, port) = match host.rsplit_once(':') {
+            Some((name, port)) if !port.ends_with(']') => (name, port.parse().ok()),
+            _ => (host, Some(80)),
+        };
+        let name = name.strip_prefix('[').and_then(|name| name.strip_suffix(']')).unwrap_or(name);
+        let is_own_name = match name.parse::<IpAddr>() {
+            // Beyond loopback a machine has several addresses.
+            Ok(ip) => ip == self.address.ip() || !self.address.ip().is_loopback(),
+            Err(_) => name.eq_ignore_ascii_case("localhost"),
+        };
+        is_own_name && port == Some(self.address.port())
+    }
+
+    /// Compares in a time that does not tell how much of the token is right.
+    fn is_token(&self, given: &str) -> bool {
+        let pairs = self.token.bytes().zip(given.bytes());
+        given.len() == self.token.len() && pairs.fold(0, |differs, (a, b)| differs | (a ^ b)) == 0
+    }
+
+    /// Reads a request.
+    pub fn read(&self, bytes: &[u8]) -> Request {
+        let mut headers = [httparse::EMPTY_HEADER; HEADERS];
+        let mut request = httparse::Request::new(&mut headers);
+        match request.parse(bytes) {
+            Ok(httparse::Status::Complete(_)) => {}
+            Ok(httparse::Status::Partial) if bytes.len() < LONGEST => return Request::Partial,
+            _ => return Request::Refused(Refused::Malformed),
+        }
+        let header = |name: &str| {
+            let mut found = request.headers.iter().filter(|header| header.name.eq_ignore_ascii_case(name));
+            let first = found.next().and_then(|header| std::str::from_utf8(header.value).ok());
+            // Twice the same is a trick.
+            first.filter(|_| found.next().is_none())
+        };
+        let Some(host) = header("host").filter(|host| self.is_own_host(host)) else {
+            return Request::Refused(Refused::Forbidden);
+        };
+        let has_origin = request.headers.iter().any(|header| header.name.eq_ignore_ascii_case("origin"));
+        let is_own_page = header("origin").and_then(|origin| origin.strip_prefix("http://")) == Some(host);
+        if has_origin && !is_own_page {
+            return Request::Refused(Refused::Forbidden);
+        }
+        if request.method != Some("GET") {
+            return Request::Refused(Refused::Method);
+        }
+        let target = request.path.unwrap_or_default();
+        let (path, query) = target.split_once('?').unwrap_or((target, ""));
+        let mut fields = query.split('&').filter_map(|field| field.split_once('='));
+        let has_token = fields.any(|(name, value)| name == "token" && self.is_token(value));
+        match path {
+            "/live" => {
+                let key = header("sec-websocket-key").filter(|_| header("sec-websocket-version") == Some("13"));
+                match key {
+                    Some(key) if has_token => Request::Live(key.to_owned()),
+                    Some(_) => Request::Refused(Refused::Forbidden),
+                    None => Request::Refused(Refused::Malformed),
+                }
+            }
+            "/" if !has_token => Request::Refused(Refused::Forbidden),
+            // There is nothing secret in the other files, and modules do not pass tokens on.
+            path => Request::File(path.trim_start_matches('/').to_owned()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn rules(ip: &str) -> Rules {
+        Rules { address: SocketAddr::new(ip.parse().expect("an address"), 8123), token: "0123abcd".to_owned() }
+    }
+
+    fn ask(target: &str, host: &str, rest: &str) -> Request {
+        rules("127.0.0.1").read(format!("GET {target} HTTP/1.1\r\nHost: {host}\r\n{rest}\r\n").as_bytes())
+    }
+
+    const SOCKET: &str = "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n";
+    const FORBIDDEN: Request = Request::Refused(Refused::Forbidden);
+
+    #[test]
+    fn who_has_the_address_gets_the_page_and_its_socket() {
+        let page = Request::File(String::new());
+        for host in ["127.0.0.1:8123", "localhost:8123", "LOCALHOST:8123"] {
+            assert_eq!(ask("/?token=0123abcd", host, ""), page);
+        }
+        assert_eq!(ask("/app.js", "127.0.0.1:8123", ""), Request::File("app.js".to_owned()));
+        let own = format!("{SOCKET}Origin: http://127.0.0.1:8123\r\n");
+        let live = ask("/live?token=0123abcd", "127.0.0.1:8123", &own);
+        assert_eq!(live, Request::Live("dGhlIHNhbXBsZSBub25jZQ==".to_owned()));
+    }
+
+    #[test]
+    fn other_names_other_pages_and_other_tokens_get_nothing() {
+        for host in ["evil.example:8123", "127.0.0.1:8124", "127.0.0.1", "10.0.0.1:8123", "[::1]:8123", ""] {
+            assert_eq!(ask("/?token=0123abcd", host, ""), FORBIDDEN, "{host}");
+        }
+        for target in ["/", "/?token=", "/?token=0123abce", "/?token=0123abcd0", "/?nekot=0123abcd"] {
+            assert_eq!(ask(target, "127.0.0.1:8123", ""), FORBIDDEN, "{target}");
+        }
+        for origin in ["http://evil.example", "null", "https://127.0.0.1:8123", "http://127.0.0.1:81230"] {
+            let rest = format!("{SOCKET}Origin: {origin}\r\n");
+            assert_eq!(ask("/live?token=0123abcd", "127.0.0.1:8123", &rest), FORBIDDEN, "{origin}");
+        }
+        let twice = format!("{SOCKET}Origin: http://127.0.0.1:8123\r\nOrigin: http://evil.example\r\n");
+        assert_eq!(ask("/live?token=0123abcd", "127.0.0.1:8123", &twice), FORBIDDEN);
+        let rest = format!("{SOCKET}Host: evil.example\r\n");
+        assert_eq!(ask("/live?token=0123abcd", "127.0.0.1:8123", &rest), FORBIDDEN);
+        assert_eq!(ask("/live?token=1", "127.0.0.1:8123", SOCKET), FORBIDDEN);
+    }
+
+    #[test]
+    fn beyond_loopback_the_name_must_still_be_a_number() {
+        let rules = rules("0.0.0.0");
+        let ask = |host: &str| rules.read(format!("GET /?token=0123abcd HTTP/1.1\r\nHost: {host}\r\n\r\n").as_bytes());
+        assert_eq!(ask("192.168.1.7:8123"), Request::File(String::new()));
+        assert_eq!(ask("evil.example:8123"), FORBIDDEN);
+    }
+
+    #[test]
+    fn what_is_no_request_is_told_so_before_memory_runs_out() {
+        let rules = rules("127.0.0.1");
+        assert_eq!(rules.read(b"GET / HT"), Request::Partial);
+        let malformed = Request::Refused(Refused::Malformed);
+        assert_eq!(rules.read(b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03"), malformed);
+        assert_eq!(rules.read(&[b"GET /".as_slice(), &[b'a'; LONGEST]].concat()), malformed);
+        let many = "A: b\r\n".repeat(HEADERS + 1);
+        assert_eq!(ask("/", "127.0.0.1:8123", &many), malformed);
+        let post = b"POST /?token=0123abcd HTTP/1.1\r\nHost: 127.0.0.1:8123\r\n\r\n";
+        assert_eq!(rules.read(post), Request::Refused(Refused::Method));
+        assert_eq!(ask("/live?token=0123abcd", "127.0.0.1:8123", ""), malformed);
+    }
+
+    proptest! {
+        #[test]
+        fn any_bytes_get_an_answer(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+            let _ = rules("::1").read(&bytes);
+            let _ = rules("::1").read(&[b"GET /?token=0123abcd HTTP/1.1\r\nHost: [::1]:8123\r\n".as_slice(), &bytes].concat());
+        }
+    }
+}
