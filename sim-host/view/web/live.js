@@ -1,0 +1,59 @@
+// The connection to a running view; it comes back by itself.
+
+import { fromBase64, parseFrame } from "staya/frame.js";
+
+const FIRST_RETRY_MS = 500;
+const LAST_RETRY_MS = 8000;
+
+export class Live {
+  constructor(listener) {
+    this.listener = listener;
+    this.retry = FIRST_RETRY_MS;
+    this.socket = null;
+  }
+
+  start() {
+    const token = new URLSearchParams(location.search).get("token") ?? "";
+    const scheme = location.protocol === "https:" ? "wss:" : "ws:";
+    const socket = new WebSocket(`${scheme}//${location.host}/live?token=${encodeURIComponent(token)}`);
+    socket.binaryType = "arraybuffer";
+    socket.onmessage = ({ data }) => this.receive(data);
+    socket.onopen = () => {
+      this.retry = FIRST_RETRY_MS;
+      this.listener.connection("open");
+    };
+    socket.onclose = () => {
+      this.listener.connection("lost", Math.round(this.retry / 1000));
+      setTimeout(() => this.start(), this.retry);
+      this.retry = Math.min(2 * this.retry, LAST_RETRY_MS);
+    };
+    this.socket = socket;
+  }
+
+  receive(data) {
+    try {
+      if (typeof data !== "string") {
+        this.listener.frame(parseFrame(data));
+        return;
+      }
+      const message = JSON.parse(data);
+      switch (message.type) {
+        case "scene": case "state": case "robot": this.listener[message.type](message); break;
+        case "links": this.listener.links(message.tick, pairsOf(message.pairs)); break;
+        case "saved": this.listener.saved(message); break;
+        case "error": case "note": this.listener.message(message.type, message.text); break;
+      }
+    } catch (error) {
+      this.listener.message("error", `A message of the server cannot be read: ${error.message}.`);
+    }
+  }
+
+  send(message) {
+    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+  }
+}
+
+/** Sender, receiver << 2 | fate, and so on. */
+function pairsOf(encoded) {
+  return new Uint32Array(fromBase64(encoded).buffer);
+}

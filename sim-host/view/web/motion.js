@@ -1,0 +1,77 @@
+// Where bodies are between two ticks: drawn a moment late, on the way from the frame before to the last one.
+
+const SLOWEST_MS = 2000;
+
+export class Motion {
+  constructor() {
+    this.reset();
+  }
+
+  reset() {
+    this.pending = this.previous = this.current = null;
+    this.mix = 1;
+    this.interval = 50;
+    this.taken = 0;
+    this.headings = new Float32Array(0);
+  }
+
+  /** A frame that comes before the last one was drawn replaces it. */
+  offer(frame) {
+    this.pending = frame;
+  }
+
+  /** Takes the newest frame, if there is one: "none", "next", or "jump" when it does not follow the one before. */
+  advance(now, paused) {
+    let news = "none";
+    const frame = this.pending;
+    if (frame) {
+      this.pending = null;
+      const before = this.current;
+      const follows = before && before.key === frame.key && frame.tick >= before.tick;
+      news = follows && !(paused && frame.tick > before.tick + 1) ? "next" : "jump";
+      this.previous = follows && !paused ? before : frame;
+      this.current = frame;
+      const gap = Math.min(now - this.taken, SLOWEST_MS);
+      this.interval = follows ? this.interval + 0.3 * (gap - this.interval) : 50;
+      this.taken = now;
+      this.turn(before, frame, follows);
+    }
+    this.mix = paused ? 1 : Math.min(1, (now - this.taken) / this.interval);
+    return news;
+  }
+
+  /** Whether bodies still move on although no frame has come. */
+  get moving() {
+    return this.mix < 1;
+  }
+
+  turn(before, frame, follows) {
+    const { n, vx, vy, x, y } = frame;
+    if (this.headings.length !== 2 * n) this.headings = new Float32Array(2 * n);
+    const headings = this.headings;
+    for (let i = 0; i < n; i++) {
+      if (vx[i] !== 0 || vy[i] !== 0) {
+        headings[2 * i] = vx[i];
+        headings[2 * i + 1] = vy[i];
+      } else if (follows && (x[i] !== before.x[i] || y[i] !== before.y[i])) {
+        headings[2 * i] = x[i] - before.x[i];
+        headings[2 * i + 1] = y[i] - before.y[i];
+      }
+    }
+  }
+
+  /** Where body `i` is drawn; into `out`. */
+  place(i, out) {
+    const { previous: a, current: b, mix } = this;
+    out[0] = a.x[i] + (b.x[i] - a.x[i]) * mix;
+    out[1] = a.y[i] + (b.y[i] - a.y[i]) * mix;
+    out[2] = b.z ? a.z[i] + (b.z[i] - a.z[i]) * mix : 0;
+    return out;
+  }
+
+  /** The simulated time that is drawn. */
+  get time() {
+    const { previous: a, current: b, mix } = this;
+    return b ? a.time + (b.time - a.time) * mix : 0;
+  }
+}

@@ -1,0 +1,158 @@
+// Plays a recording: takes the page's orders and answers as a server would.
+
+import { Recording } from "staya/recording.js";
+import { fromBase64 } from "staya/frame.js";
+
+// Recordings up to this many bytes are read through once for the plots; of longer ones only what is played is plotted.
+const READ_THROUGH = 1 << 30;
+const STATE_EVERY_MS = 500;
+
+export class Player {
+  constructor(element, listener) {
+    this.element = element;
+    this.listener = listener;
+    this.paused = true;
+    this.speed = 1;
+    this.tick = 0;
+    this.sceneBlock = null;
+    this.selected = null;
+    this.busy = false;
+    this.wanted = null;
+  }
+
+  async start() {
+    try {
+      this.recording = await Recording.open(fromBase64(this.element.textContent.trim()));
+      this.element.remove();
+      this.tick = this.recording.first;
+      await this.show(this.tick);
+    } catch (error) {
+      this.listener.failed(`The recording in this page cannot be read: ${error.message}. Make the page anew with "staya page".`);
+      return;
+    }
+    this.played = performance.now();
+    this.said = 0;
+    const turn = (now) => {
+      this.advance(now);
+      requestAnimationFrame(turn);
+    };
+    requestAnimationFrame(turn);
+    this.play();
+    this.readThrough();
+  }
+
+  get atEnd() {
+    return this.tick >= this.recording.last;
+  }
+
+  play() {
+    if (this.atEnd) this.seek(this.recording.first);
+    this.paused = false;
+    this.time = null;
+    this.say();
+  }
+
+  say() {
+    const { first, last } = this.recording;
+    const { paused, speed, tick } = this;
+    this.listener.state({ type: "state", paused, speed, tick, first, last, clients: 1, at_end: tick >= last });
+  }
+
+  /** Shows `tick` as soon as its block is there; of several asked for meanwhile only the last. */
+  seek(tick) {
+    this.wanted = Math.max(this.recording.first, Math.min(this.recording.last, Math.round(tick)));
+    this.time = null;
+    this.fetch();
+  }
+
+  async fetch() {
+    if (this.busy) return;
+    this.busy = true;
+    try {
+      while (this.wanted !== null) {
+        const tick = this.wanted;
+        this.wanted = null;
+        await this.show(tick);
+        this.say();
+      }
+    } catch (error) {
+      this.paused = true;
+      this.listener.message("error", `The recording ends here: ${error.message}.`);
+      this.say();
+    }
+    this.busy = false;
+  }
+
+  async show(tick) {
+    const { frame, scene, next } = await this.recording.at(tick);
+    if (scene !== this.shownScene) {
+      this.shownScene = scene;
+      this.listener.scene({ ...scene, mode: "recording" });
+    }
+    this.tick = frame.tick;
+    this.next = next;
+    this.listener.frame(frame);
+    this.tell(frame);
+  }
+
+  /** What a recording knows of the selected robot. */
+  tell(frame) {
+    const index = this.selected;
+    if (index === null || index >= frame.n) return;
+    this.listener.robot({
+      index, id: this.shownScene.robots.id[index] ?? null, tick: frame.tick, mode: frame.mode[index],
+      wait: frame.wait[index] === 255 ? null : frame.wait[index],
+      leader: frame.leader[index] === 0xffffffff ? null : frame.leader[index],
+    });
+  }
+
+  advance(now) {
+    const passed = Math.min(now - this.played, 250) / 1000;
+    this.played = now;
+    if (this.paused || this.busy) return;
+    if (this.atEnd) {
+      this.paused = true;
+      this.say();
+      return;
+    }
+    const tickS = this.shownScene.tick_s;
+    // As fast as it goes: a frame each time the page draws.
+    const ahead = this.speed === null ? this.next : Math.floor(this.time = (this.time ?? this.tick) + passed * this.speed / tickS);
+    if (this.next !== null && ahead >= this.next) {
+      this.wanted = ahead;
+      this.fetch();
+    }
+    if (now - this.said > STATE_EVERY_MS) {
+      this.said = now;
+      this.say();
+    }
+  }
+
+  /** Fills the plots from the first frame to the last, a block at a time. */
+  async readThrough() {
+    if (this.recording.size > READ_THROUGH) return;
+    const count = this.recording.frames.length;
+    try {
+      for (let index = 0; index < count; index++) {
+        const block = await this.recording.unpacked(index);
+        for (let i = 0; i < block.ticks.length; i++) {
+          this.listener.figures(block.frame(i));
+          if (i % 64 === 63) await new Promise((resolve) => setTimeout(resolve));
+        }
+      }
+    } catch {
+      // Playing comes to the damaged block and says so.
+    }
+  }
+
+  send(message) {
+    switch (message.do) {
+      case "pause": this.paused = true; this.say(); break;
+      case "play": this.play(); break;
+      case "step": this.paused = true; if (this.next !== null) this.seek(this.next); break;
+      case "speed": this.speed = message.x; this.time = null; this.say(); break;
+      case "seek": this.paused = true; this.seek(message.tick); break;
+      case "select": this.selected = message.robot; this.wanted ??= this.tick; this.fetch(); break;
+    }
+  }
+}
