@@ -20,10 +20,10 @@ export class Live {
     socket.onmessage = ({ data }) => this.receive(data);
     socket.onopen = () => {
       this.retry = FIRST_RETRY_MS;
-      this.listener.connection("open");
+      this.listener.onConnection("open");
     };
     socket.onclose = () => {
-      this.listener.connection("lost", Math.round(this.retry / 1000));
+      this.listener.onConnection("lost", Math.round(this.retry / 1000));
       setTimeout(() => this.start(), this.retry);
       this.retry = Math.min(2 * this.retry, LAST_RETRY_MS);
     };
@@ -33,18 +33,20 @@ export class Live {
   receive(data) {
     try {
       if (typeof data !== "string") {
-        this.listener.frame(parseFrame(data));
+        this.listener.onFrame(parseFrame(data));
         return;
       }
       const message = JSON.parse(data);
       switch (message.type) {
-        case "scene": case "state": case "robot": this.listener[message.type](message); break;
-        case "links": this.listener.links(message.tick, pairsOf(message.pairs)); break;
-        case "saved": this.listener.saved(message); break;
-        case "error": case "note": this.listener.message(message.type, message.text); break;
+        case "scene": this.listener.onScene(message); break;
+        case "state": this.listener.onState(message); break;
+        case "robot": this.listener.onRobot(message); break;
+        case "links": this.listener.onLinks(message.tick, pairsOf(message.pairs)); break;
+        case "saved": this.listener.onSaved(message); break;
+        case "error": case "note": this.listener.onMessage(message.type, message.text); break;
       }
     } catch (error) {
-      this.listener.message("error", `A message of the server cannot be read: ${error.message}.`);
+      this.listener.onMessage("error", `A message of the server cannot be read: ${error.message}.`);
     }
   }
 

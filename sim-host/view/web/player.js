@@ -27,7 +27,7 @@ export class Player {
       this.tick = this.recording.first;
       await this.show(this.tick);
     } catch (error) {
-      this.listener.failed(`The recording in this page cannot be read: ${error.message}. Make the page anew with "staya page".`);
+      this.listener.onFailed(`The recording in this page cannot be read: ${error.message}. Make the page anew with "staya page".`);
       return;
     }
     this.played = performance.now();
@@ -55,7 +55,7 @@ export class Player {
   say() {
     const { first, last } = this.recording;
     const { paused, speed, tick } = this;
-    this.listener.state({ type: "state", paused, speed, tick, first, last, clients: 1, at_end: tick >= last });
+    this.listener.onState({ type: "state", paused, speed, tick, first, last, clients: 1, at_end: tick >= last });
   }
 
   /** Shows `tick` as soon as its block is there; of several asked for meanwhile only the last. */
@@ -77,7 +77,7 @@ export class Player {
       }
     } catch (error) {
       this.paused = true;
-      this.listener.message("error", `The recording ends here: ${error.message}.`);
+      this.listener.onMessage("error", `The recording ends here: ${error.message}.`);
       this.say();
     }
     this.busy = false;
@@ -87,11 +87,11 @@ export class Player {
     const { frame, scene, next } = await this.recording.at(tick);
     if (scene !== this.shownScene) {
       this.shownScene = scene;
-      this.listener.scene({ ...scene, mode: "recording" });
+      this.listener.onScene({ ...scene, mode: "recording" });
     }
     this.tick = frame.tick;
     this.next = next;
-    this.listener.frame(frame);
+    this.listener.onFrame(frame);
     this.tell(frame);
   }
 
@@ -99,7 +99,7 @@ export class Player {
   tell(frame) {
     const index = this.selected;
     if (index === null || index >= frame.n) return;
-    this.listener.robot({
+    this.listener.onRobot({
       index, id: this.shownScene.robots.id[index] ?? null, tick: frame.tick, mode: frame.mode[index],
       wait: frame.wait[index] === 255 ? null : frame.wait[index],
       leader: frame.leader[index] === 0xffffffff ? null : frame.leader[index],
@@ -136,7 +136,7 @@ export class Player {
       for (let index = 0; index < count; index++) {
         const block = await this.recording.unpacked(index);
         for (let i = 0; i < block.ticks.length; i++) {
-          this.listener.figures(block.frame(i));
+          this.listener.onFigures(block.frame(i));
           if (i % 64 === 63) await new Promise((resolve) => setTimeout(resolve));
         }
       }

@@ -1,0 +1,362 @@
+// The page: takes what the server or the recording says, and draws.
+
+import { Camera } from "staya/camera.js";
+import { Controls } from "staya/controls.js";
+import { fromBase64 } from "staya/frame.js";
+import { Ground } from "staya/ground.js";
+import { Live } from "staya/live.js";
+import { Look } from "staya/look.js";
+import { Motion } from "staya/motion.js";
+import { Orders } from "staya/orders.js";
+import { Panel } from "staya/panel.js";
+import { Player } from "staya/player.js";
+import { Plots } from "staya/plots.js";
+import { Pointer } from "staya/pointer.js";
+import { Renderer } from "staya/renderer.js";
+import { View } from "staya/view.js";
+
+const PLOTS_EVERY_MS = 120;
+const TOAST_MS = 6000;
+const TOP_RATIO = 2;
+
+const element = (id) => document.getElementById(id);
+
+class App {
+  constructor() {
+    this.scene = null;
+    this.state = null;
+    this.selected = null;
+    this.robot = null;
+    this.links = null;
+    this.follow = false;
+    this.dirty = true;
+    this.frames = { received: 0, drawn: 0 };
+    // Frames of this connection.
+    this.sinceOpen = 0;
+    this.fps = 0;
+    this.figures = {};
+    this.camera = new Camera();
+    this.motion = new Motion();
+    this.look = new Look();
+    this.ground = new Ground(element("ground"));
+    this.renderer = Renderer.on(element("bodies"));
+    this.view = new View(this, element("overlay"));
+    this.plots = new Plots(element("plots"), (tick) => this.seek(tick));
+    this.panel = new Panel(this);
+    this.orders = new Orders(this);
+    this.controls = new Controls(this);
+    this.pointer = new Pointer(this, element("overlay"));
+    this.look.onTheme = () => this.restyle();
+    this.restyle();
+    if (!this.renderer) {
+      this.banner("This browser offers no WebGL2, so robots cannot be drawn. Turn on hardware acceleration in its settings, "
+        + "or start Chromium with --enable-unsafe-swiftshader; a current Firefox, Chrome, Edge or Safari has it.");
+    }
+    new ResizeObserver(() => this.resize()).observe(element("stage"));
+    this.resize();
+  }
+
+  start() {
+    const recording = element("recording");
+    this.source = recording ? new Player(recording, this) : new Live(this);
+    this.source.start();
+    const turn = (now) => {
+      this.turn(now);
+      requestAnimationFrame(turn);
+    };
+    requestAnimationFrame(turn);
+  }
+
+  // What the source says.
+
+  onScene(scene) {
+    const before = this.scene;
+    const same = before && before.name === scene.name && before.kind === scene.kind
+      && before.robots.id.length === scene.robots.id.length && `${before.bounds_m}` === `${scene.bounds_m}`;
+    this.scene = scene;
+    this.cells = scene.land ? fromBase64(scene.land.cells) : null;
+    this.solids = scene.solids.map((solid) => ({ ...solid }));
+    this.links = null;
+    this.robots = scene.robots.id.length;
+    this.groups = Uint8Array.from(scene.robots.group, (group) => group % 7);
+    const radii = Float32Array.from([...scene.robots.radius_m, ...scene.intruders.map(({ radius_m }) => radius_m)]);
+    this.radii = radii;
+    this.fastest = scene.robots.max_speed_mps.reduce((most, speed) => Math.max(most, speed), 0);
+    if (!same || before.seed !== scene.seed) {
+      this.motion.reset();
+      this.plots.reset();
+    }
+    this.renderer?.setBodies(this.robots, radii, new Uint8Array(radii.length).map((_, i) => this.groups[i] ?? 0));
+    this.renderer?.setBalls(scene.kind === "space"
+      ? this.solids.filter(({ kind }) => kind === "ball").map(({ center_m, radius_m }) => [...center_m, radius_m]) : []);
+    this.ground.setScene(scene, this.cells, this.solids);
+    this.look.words = scene.words;
+    if (!same) {
+      this.look.colourBy = this.robots <= 8 ? "robot" : "mode";
+      this.look.leastRadius = this.robots <= 20 ? 6 : this.robots <= 200 ? 4 : this.robots <= 5000 ? 2.2 : 1.1;
+      this.look.targetSize = this.robots <= 200 ? 6 : this.robots <= 5000 ? 3.5 : 2;
+      this.select(null);
+      this.fit();
+    }
+    this.controls.scene();
+    this.orders.scene();
+    this.restyle();
+  }
+
+  onState(state) {
+    const before = this.state;
+    if (before && before.speed !== state.speed) this.motion.interval = 50;
+    if (state.last < (before?.last ?? 0)) this.plots.forgetAfter(state.last);
+    this.state = state;
+    this.plots.setRange(state.first, this.horizon);
+    this.controls.state(before);
+    this.orders.state();
+    this.dirty = true;
+  }
+
+  /** The tick at the end of the time line. */
+  get horizon() {
+    const { state, scene } = this;
+    if (!state || !scene) return 1;
+    return scene.mode !== "live" || state.at_end ? state.last : Math.max(state.last, scene.ticks ?? 0);
+  }
+
+  onFrame(frame) {
+    this.frames.received++;
+    this.sinceOpen++;
+    if (!this.scene) return;
+    this.motion.offer(frame);
+    this.figures = frame.figures;
+    this.plots.add(frame.tick, frame.figures);
+  }
+
+  /** Frames that are read for the plots alone. */
+  onFigures(frame) {
+    this.plots.add(frame.tick, frame.figures);
+  }
+
+  onRobot(robot) {
+    if (robot.index !== this.selected) return;
+    this.robot = robot;
+    this.view.robotChanged();
+    this.panel.update();
+    this.orders.robot();
+    this.dirty = true;
+  }
+
+  onLinks(tick, pairs) {
+    this.links = { tick, pairs };
+    this.dirty = true;
+  }
+
+  onMessage(kind, text) {
+    this.toast(text, kind);
+  }
+
+  onSaved({ name, text }) {
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(new Blob([text], { type: "application/toml" }));
+    link.download = name;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+    this.toast(`Saved as ${name}.`);
+  }
+
+  onConnection(is, inSeconds) {
+    this.sinceOpen = 0;
+    if (is === "open") {
+      this.banner(null);
+      if (this.selected !== null) this.send({ do: "select", robot: this.selected });
+      if (this.look.layers.links) this.send({ do: "links", on: true });
+    } else {
+      this.banner(`No connection to staya view${this.scene ? "" : " yet"}. Is it still running in its terminal? Start it again and `
+        + `open the address that it prints. The page tries again ${inSeconds > 1 ? `in ${inSeconds} s` : "now"}.`);
+    }
+    this.controls.connection(is);
+  }
+
+  onFailed(text) {
+    this.banner(text);
+    this.controls.connection("failed");
+  }
+
+  // What the controls do.
+
+  send(message) {
+    this.source.send(message);
+  }
+
+  order(order) {
+    this.send({ do: "order", order });
+  }
+
+  get live() {
+    return this.scene?.mode === "live";
+  }
+
+  get timed() {
+    return this.scene && this.scene.mode !== "watch";
+  }
+
+  seek(tick) {
+    if (!this.timed) return;
+    const { first, last } = this.state;
+    this.send({ do: "seek", tick: Math.max(first, Math.min(last, Math.round(tick))) });
+  }
+
+  select(index) {
+    if (index === this.selected) return;
+    this.selected = index;
+    this.robot = null;
+    this.follow = this.follow && index !== null;
+    if (this.source) this.send({ do: "select", robot: index });
+    this.view.robotChanged();
+    this.panel.update();
+    this.orders.robot();
+    this.controls.follow();
+    if (index !== null) this.announce(`Robot ${this.idOf(index)} selected`);
+    this.dirty = true;
+  }
+
+  idOf(index) {
+    return this.scene.robots.id[index] ?? index;
+  }
+
+  /** The body that is seen nearest to these pixels, if it is near enough; robots only. */
+  pick(px, py, reach = 14) {
+    const { current } = this.motion;
+    if (!current) return null;
+    let best = null, least = Infinity;
+    const place = [0, 0, 0];
+    const n = Math.min(current.n, this.robots);
+    for (let i = 0; i < n; i++) {
+      this.motion.place(i, place);
+      const at = this.camera.project(place[0], place[1], place[2]);
+      if (!at) continue;
+      const radius = this.radii[i] * this.camera.pixelsPerMetre(at[2]);
+      const far = Math.max(0, Math.hypot(at[0] - px, at[1] - py) - radius) + 1e-3 * Math.hypot(at[0] - px, at[1] - py);
+      if (far < least && far <= reach) {
+        best = i;
+        least = far;
+      }
+    }
+    return best;
+  }
+
+  /** Where body `i` is going; null when it has no goal. */
+  targetOf(i) {
+    const frame = this.motion.current;
+    if (!frame?.tx || i >= frame.n || Number.isNaN(frame.tx[i])) return null;
+    return [frame.tx[i], frame.ty[i], frame.tz ? frame.tz[i] : 0];
+  }
+
+  fit() {
+    const { scene, camera } = this;
+    if (!scene) return;
+    const phone = camera.width < 720;
+    const left = this.live && !phone ? 58 : 12;
+    camera.fit(scene.bounds_m, scene.height_m ?? [0, 0], scene.kind === "space", phone ? [8, 8, 8, 40] : [left, 14, 56, 40]);
+    this.follow = false;
+    this.controls?.follow();
+  }
+
+  restyle() {
+    this.look.read();
+    this.ground.setLook(this.look.layers.relief, this.look.css);
+    this.plots.stale = true;
+    this.controls.legend();
+    this.panel.update();
+    this.dirty = true;
+  }
+
+  toast(text, kind = "note") {
+    const toast = document.createElement("div");
+    toast.className = `toast ${kind}`;
+    toast.textContent = text;
+    element("toasts").replaceChildren(...[...element("toasts").children].slice(-2), toast);
+    setTimeout(() => toast.remove(), TOAST_MS);
+  }
+
+  banner(text) {
+    element("banner").hidden = text === null;
+    element("banner").textContent = text ?? "";
+  }
+
+  announce(text) {
+    element("announce").textContent = text;
+  }
+
+  // Drawing.
+
+  resize() {
+    const { clientWidth: width, clientHeight: height } = element("stage");
+    const ratio = Math.min(devicePixelRatio || 1, TOP_RATIO);
+    const first = this.camera.width === 1;
+    this.camera.resize(Math.max(width, 1), Math.max(height, 1));
+    for (const layer of [this.ground, this.renderer, this.view]) layer?.resize(width, height, ratio);
+    if (first || !this.pointer.touched) this.fit();
+    this.dirty = true;
+  }
+
+  turn(now) {
+    const { motion, camera } = this;
+    if (!this.scene) return;
+    const paused = this.state?.paused ?? false;
+    const news = motion.advance(now, paused);
+    if (news === "jump") this.renderer?.trails.reset();
+    if (this.follow && this.selected !== null && motion.current) camera.centre(...motion.place(this.selected, [0, 0, 0]));
+    if (news === "none" && !this.wasMoving && !this.dirty && camera.version === this.drawnVersion) return;
+    this.wasMoving = motion.moving;
+    this.dirty = false;
+    this.drawnVersion = camera.version;
+    this.draw(now);
+    if (news !== "none") {
+      this.frames.drawn++;
+      if (this.source instanceof Live) this.send({ do: "seen", frames: this.sinceOpen });
+    }
+  }
+
+  draw(now) {
+    const { motion, camera, look } = this;
+    look.velocitySeconds = this.view.velocitySeconds();
+    this.ground.draw(camera, look.layers.grid);
+    this.view.lines();
+    this.renderer?.draw(camera, motion, look, this.view);
+    this.view.overlay();
+    const passed = now - (this.drawnAt ?? now - 1000);
+    this.drawnAt = now;
+    this.fps += 0.1 * (1000 / Math.max(passed, 1) - this.fps);
+    if (now - (this.plottedAt ?? 0) > PLOTS_EVERY_MS) {
+      this.plottedAt = now;
+      this.plots.draw(motion.current?.tick ?? 0, this.figures, look.css);
+      this.controls.counts();
+    } else {
+      // The last picture before a pause has its figures, too.
+      clearTimeout(this.plotLater);
+      this.plotLater = setTimeout(() => { this.dirty = true; }, PLOTS_EVERY_MS);
+    }
+    this.controls.clock();
+  }
+}
+
+const app = new App();
+
+// What tests ask for.
+window.staya = {
+  get state() { return app.state; },
+  get scene() { return app.scene; },
+  get frames() { return { ...app.frames }; },
+  get currentTick() { return app.motion.current?.tick ?? null; },
+  get selected() { return app.selected; },
+  get robot() { return app.robot; },
+  get fps() { return app.fps; },
+  get lastFigures() { return app.figures; },
+  project: (x, y, z = 0) => {
+    const at = app.camera.project(x, y, z);
+    const { left, top } = element("overlay").getBoundingClientRect();
+    return at && [at[0] + left, at[1] + top];
+  },
+  place: (i) => (app.motion.current ? app.motion.place(i, [0, 0, 0]) : null),
+};
+
+app.start();
