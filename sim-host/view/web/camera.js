@@ -31,7 +31,7 @@ export class Camera {
     this.extent = Math.hypot(spanX, spanY, space ? z1 - z0 : 0);
     this.target = [(x0 + x1) / 2, (y0 + y1) / 2, space ? (z0 + z1) / 2 : 0];
     this.scale = 0.94 * Math.min(freeX / spanX, freeY / spanY);
-    this.distance = 0.62 * this.extent * FOCUS * Math.max(1, this.height / freeY, this.height / freeX);
+    this.distance = 0.5 * this.extent * FOCUS * Math.max(1, this.height / freeY, this.height / freeX);
     if (!space) {
       this.target[0] += (right - left) / 2 / this.scale;
       this.target[1] -= (bottom - top) / 2 / this.scale;

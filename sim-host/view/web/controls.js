@@ -73,6 +73,10 @@ export class Controls {
     show("window", Boolean(scene.land) && scene.mode !== "recording");
     show("known", scene.mode !== "recording");
     element("colour-by").value = app.look.colourBy;
+    if (this.trailsFor !== app.robots) {
+      this.trailsFor = app.robots;
+      element("trail-length").value = app.robots <= 20 ? "0.5" : app.robots <= 1000 ? "0.15" : "0";
+    }
     this.setTrails();
     this.showStatus();
   }
@@ -321,7 +325,7 @@ export class Controls {
       key(line(css.vermillion), "packet lost");
       key(line(css.orange, [2, 2]), "packet damaged");
     }
-    if (layers.known && scene.mode !== "recording") key(disc("transparent", css.ghost), "where the selected robot thinks others are");
+    if (layers.known && scene.mode !== "recording") key(disc("transparent", css.ghost), "where it thinks others are");
     if (scene.land) {
       key((context) => {
         const shades = context.createLinearGradient(1, 0, 25, 0);
@@ -356,7 +360,7 @@ export class Controls {
       if (!kind) continue;
       const text = kind === "velocity" ? `in ${+app.look.velocitySeconds.toPrecision(2)} s`
         : kind === "waits" ? n - counts.wait[255] : counts[kind][index];
-      row.lastChild.textContent = text;
+      if (row.lastChild.textContent !== String(text)) row.lastChild.textContent = text;
       row.hidden = (kind === "mode" || kind === "wait") && text === 0;
     }
   }

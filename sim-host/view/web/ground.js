@@ -14,9 +14,10 @@ export function niceStep(metres) {
 }
 
 export class Ground {
-  constructor(canvas) {
+  /** `software`: there is no GPU, so that the canvas is best kept in memory. */
+  constructor(canvas, software) {
     this.canvas = canvas;
-    this.context = canvas.getContext("2d");
+    this.context = canvas.getContext("2d", { alpha: false, willReadFrequently: software });
     this.land = null;
     this.solids = [];
     this.relief = true;
@@ -213,7 +214,7 @@ export class Ground {
       context.fill();
     } else {
       context.lineWidth = 3.5;
-      context.strokeStyle = colours.wall;
+      context.strokeStyle = this.land ? colours.wall : colours.fence;
     }
     context.stroke();
   }

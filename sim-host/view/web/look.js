@@ -9,7 +9,7 @@ const NAMED = {
 const NUMBERED = ["blue", "orange", "green", "purple", "sky", "vermillion", "yellow"];
 const CSS = {
   paper: "paper", grid: "grid", gridStrong: "grid-strong", gridOnLand: "grid-on-land", border: "border",
-  landLow: "land-low", landHigh: "land-high", wall: "wall", solid: "solid", solidEdge: "solid-edge",
+  landLow: "land-low", landHigh: "land-high", wall: "wall", solid: "solid", solidEdge: "solid-edge", fence: "fence",
   ink: "ink", muted: "muted", label: "label", halo: "halo", selected: "selected", ghost: "ghost", accent: "accent",
   ok: "ok", warn: "warn", bad: "bad", violet: "violet", cursor: "muted", axis: "edge", line: "bad",
   forbidden: "forbidden", allowed: "allowed", preferred: "accent", chosen: "ink",

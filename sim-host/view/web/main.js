@@ -38,9 +38,10 @@ class App {
     this.camera = new Camera();
     this.motion = new Motion();
     this.look = new Look();
-    this.ground = new Ground(element("ground"));
     this.renderer = Renderer.on(element("bodies"));
-    this.view = new View(this, element("overlay"));
+    const software = this.renderer?.software ?? true;
+    this.ground = new Ground(element("ground"), software);
+    this.view = new View(this, element("overlay"), software);
     this.plots = new Plots(element("plots"), (tick) => this.seek(tick));
     this.panel = new Panel(this);
     this.orders = new Orders(this);
@@ -86,9 +87,9 @@ class App {
       this.motion.reset();
       this.plots.reset();
     }
-    this.renderer?.setBodies(this.robots, radii, new Uint8Array(radii.length).map((_, i) => this.groups[i] ?? 0));
-    this.renderer?.setBalls(scene.kind === "space"
-      ? this.solids.filter(({ kind }) => kind === "ball").map(({ center_m, radius_m }) => [...center_m, radius_m]) : []);
+    const balls = scene.kind === "space" ? this.solids.filter(({ kind }) => kind === "ball") : [];
+    this.renderer?.setBodies(this.robots, Float32Array.from([...radii].flatMap((radius, i) => [radius, this.groups[i] ?? 0])),
+      balls.map(({ center_m: [x, y, z], radius_m: radius }) => [x, y, z ?? 0, radius]));
     this.ground.setScene(scene, this.cells, this.solids);
     this.look.words = scene.words;
     if (!same) {
@@ -108,7 +109,7 @@ class App {
     if (before && before.speed !== state.speed) this.motion.interval = 50;
     if (state.last < (before?.last ?? 0)) this.plots.forgetAfter(state.last);
     this.state = state;
-    this.plots.setRange(state.first, this.horizon);
+    this.plots.setRange(state.first, state.last);
     this.controls.state(before);
     this.orders.state();
     this.dirty = true;
@@ -255,7 +256,7 @@ class App {
     if (!scene) return;
     const phone = camera.width < 720;
     const left = this.live && !phone ? 58 : 12;
-    camera.fit(scene.bounds_m, scene.height_m ?? [0, 0], scene.kind === "space", phone ? [8, 8, 8, 40] : [left, 14, 56, 40]);
+    camera.fit(scene.bounds_m, scene.height_m ?? [0, 0], scene.kind === "space", phone ? [8, 8, 8, 44] : [left, 14, 58, 54]);
     this.follow = false;
     this.controls?.follow();
   }
@@ -330,12 +331,12 @@ class App {
       this.plottedAt = now;
       this.plots.draw(motion.current?.tick ?? 0, this.figures, look.css);
       this.controls.counts();
+      this.controls.clock();
     } else {
       // The last picture before a pause has its figures, too.
       clearTimeout(this.plotLater);
       this.plotLater = setTimeout(() => { this.dirty = true; }, PLOTS_EVERY_MS);
     }
-    this.controls.clock();
   }
 }
 

@@ -10,11 +10,8 @@ const PLOTS = [
   { name: "Formation error", unit: "cells", lines: [{ of: (f) => f.formation_error, colour: "accent" }], digits: 2 },
   { name: "Group order", lines: [{ of: (f) => f.order, colour: "accent" }], digits: 3, greatest: 1 },
   {
-    name: "Packets a tick", digits: 0,
-    lines: [
-      { of: (f) => f.packets?.delivered, colour: "ok", name: "delivered" },
-      { of: (f) => f.packets?.lost, colour: "bad", name: "lost" },
-    ],
+    name: "Packets arrived, lost", digits: 0,
+    lines: [{ of: (f) => f.packets?.delivered, colour: "ok" }, { of: (f) => f.packets?.lost, colour: "bad" }],
   },
   { name: "Least gap", unit: "m", lines: [{ of: (f) => f.gap_m, colour: "violet" }], digits: 3 },
 ];
@@ -43,7 +40,9 @@ export class Plots {
       const { left, width } = canvas.getBoundingClientRect();
       this.onSeek(this.first + (event.clientX - left) / width * (this.last - this.first));
     });
-    row.append(name, value, canvas);
+    const label = document.createElement("div");
+    label.append(name, value);
+    row.append(label, canvas);
     this.element.append(row);
     return { plot, row, value, canvas };
   }
@@ -103,13 +102,10 @@ export class Plots {
       value.replaceChildren(...values.map((each, i) => {
         const span = document.createElement("span");
         span.textContent = each === null ? "–" : each.toFixed(plot.digits);
-        if (plot.lines[i].name) {
-          span.textContent += ` ${plot.lines[i].name}`;
-          span.style.color = colours[plot.lines[i].colour];
-        }
+        if (plot.lines.length > 1) span.style.color = colours[plot.lines[i].colour];
         return span;
       }));
-      canvas.setAttribute("aria-label", `${plot.name}: ${value.textContent}`);
+      canvas.setAttribute("aria-label", `${plot.name}: ${[...value.children].map((span) => span.textContent).join(", ")}`);
       this.drawPlot(canvas, plot, from, tick, colours);
     }
   }
@@ -138,7 +134,7 @@ export class Plots {
     context.stroke();
     plot.lines.forEach(({ colour }, i) => {
       context.beginPath();
-      let pen = false, lastX = 0;
+      let pen = false, firstX = null, lastX = 0;
       this.samples.forEach((values, at) => {
         const value = values[from + i];
         if (Number.isNaN(value)) {
@@ -148,6 +144,7 @@ export class Plots {
         lastX = x((at + 0.5) * this.spacing);
         if (pen) context.lineTo(lastX, y(value));
         else context.moveTo(lastX, y(value));
+        firstX ??= lastX;
         pen = true;
       });
       context.strokeStyle = colours[colour];
@@ -156,7 +153,7 @@ export class Plots {
       context.stroke();
       if (plot.lines.length === 1 && pen) {
         context.lineTo(lastX, height - 2);
-        context.lineTo(x(this.first), height - 2);
+        context.lineTo(firstX, height - 2);
         context.globalAlpha = 0.12;
         context.fillStyle = colours[colour];
         context.fill();

@@ -1,14 +1,17 @@
-// WebGL2: bodies, velocities, targets, lines and trails, each kind in one instanced call. A frame's bytes go to the GPU
-// as they came, once.
+// WebGL2: bodies, velocities, targets, lines and trails, each kind in one call. A frame's bytes go to the GPU as they
+// came, once, as words of a texture.
 
 import { BODIES, LINES, TARGETS, TRAILS, VELOCITIES } from "staya/shaders.js";
 import { Trails } from "staya/trails.js";
 
-const LINE_BYTES = 36;
+const WIDTH = 2048;
+const LINE_WORDS = 12;
+const LINES_A_ROW = 256;
+const COLOUR_BY = ["mode", "wait", "group", "robot"];
+const BALL_COLOUR = 13;
 
 class Program {
   constructor(gl, [vertex, fragment]) {
-    this.gl = gl;
     this.program = gl.createProgram();
     for (const [type, source] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
       const shader = gl.createShader(type);
@@ -21,49 +24,35 @@ class Program {
       const logs = gl.getAttachedShaders(this.program).map((shader) => gl.getShaderInfoLog(shader));
       throw new Error(`a shader does not compile: ${logs.join(" ")}`);
     }
-    this.array = gl.createVertexArray();
     this.uniforms = {};
-    const uniforms = gl.getProgramParameter(this.program, gl.ACTIVE_UNIFORMS);
+    const uniforms = gl.getProgramParameter(this.program, gl.ACTIVE_UNIFORMS) ?? 0;
     for (let i = 0; i < uniforms; i++) {
       const { name } = gl.getActiveUniform(this.program, i);
       this.uniforms[name.replace("[0]", "")] = gl.getUniformLocation(this.program, name);
     }
-    this.attributes = {};
-    const attributes = gl.getProgramParameter(this.program, gl.ACTIVE_ATTRIBUTES);
-    for (let i = 0; i < attributes; i++) {
-      const { name } = gl.getActiveAttrib(this.program, i);
-      this.attributes[name] = gl.getAttribLocation(this.program, name);
+  }
+}
+
+/** Numbers in rows of texels, as many rows as they need. */
+class Table {
+  constructor(gl, internal, format, type, channels, width) {
+    Object.assign(this, { gl, internal, format, type, channels, width, rows: 0 });
+    this.texture = gl.createTexture();
+  }
+
+  store(data) {
+    const { gl, format, type, channels, width } = this;
+    const texels = data.length / channels, rows = Math.max(1, Math.ceil(texels / width));
+    gl.bindTexture(gl.TEXTURE_2D, this.texture);
+    if (rows > this.rows) {
+      this.rows = rows;
+      gl.texImage2D(gl.TEXTURE_2D, 0, this.internal, width, rows, 0, format, type, null);
+      gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+      gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
     }
-  }
-
-  use() {
-    this.gl.useProgram(this.program);
-    this.gl.bindVertexArray(this.array);
-  }
-
-  /** One value an instance, from the bound buffer. */
-  floats(name, size, stride, offset, type = this.gl.FLOAT) {
-    const { gl } = this, location = this.attributes[name];
-    if (location === undefined) return;
-    gl.enableVertexAttribArray(location);
-    gl.vertexAttribPointer(location, size, type, type !== gl.FLOAT, stride, offset);
-    gl.vertexAttribDivisor(location, 1);
-  }
-
-  bytes(name, offset) {
-    const { gl } = this, location = this.attributes[name];
-    if (location === undefined) return;
-    gl.enableVertexAttribArray(location);
-    gl.vertexAttribIPointer(location, 1, gl.UNSIGNED_BYTE, 0, offset);
-    gl.vertexAttribDivisor(location, 1);
-  }
-
-  /** The same for all instances. */
-  constant(name, value) {
-    const location = this.attributes[name];
-    if (location === undefined) return;
-    this.gl.disableVertexAttribArray(location);
-    this.gl.vertexAttrib1f(location, value);
+    const full = Math.floor(texels / width), rest = texels - full * width;
+    if (full) gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, width, full, format, type, data);
+    if (rest) gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, full, rest, 1, format, type, data, full * width * channels);
   }
 }
 
@@ -77,15 +66,17 @@ export class Renderer {
   constructor(canvas, gl) {
     this.canvas = canvas;
     this.gl = gl;
-    this.bodies = 0;
     this.robots = 0;
-    this.radii = new Float32Array(0);
-    this.groups = new Uint8Array(0);
+    this.bodies = new Float32Array(0);
+    this.balls = [];
+    // Without a GPU each vertex counts.
+    const named = gl.getExtension("WEBGL_debug_renderer_info");
+    this.software = Boolean(named) && /swiftshader|llvmpipe|software|basic render/i.test(gl.getParameter(named.UNMASKED_RENDERER_WEBGL));
     this.make();
     canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
     canvas.addEventListener("webglcontextrestored", () => {
       this.make();
-      this.setBodies(this.robots, this.radii, this.groups);
+      this.setBodies(this.robots, this.bodies, this.balls);
     });
   }
 
@@ -95,35 +86,41 @@ export class Renderer {
       bodies: new Program(gl, BODIES), velocities: new Program(gl, VELOCITIES), targets: new Program(gl, TARGETS),
       lines: new Program(gl, LINES), trails: new Program(gl, TRAILS),
     };
-    const buffer = () => gl.createBuffer();
-    this.frameBuffers = [buffer(), buffer()];
+    const words = () => new Table(gl, gl.R32UI, gl.RED_INTEGER, gl.UNSIGNED_INT, 1, WIDTH);
+    const pairs = () => new Table(gl, gl.RG32F, gl.RG, gl.FLOAT, 2, WIDTH);
+    this.frames = [words(), words()];
     this.held = [null, null];
-    this.headingBuffer = buffer();
-    this.radiusBuffer = buffer();
-    this.groupBuffer = buffer();
-    this.lineBuffer = buffer();
-    this.ballBuffer = buffer();
-    this.balls = 0;
-    this.trails = new Trails(gl);
-    gl.disable(gl.CULL_FACE);
+    this.headings = pairs();
+    this.statics = pairs();
+    this.ballFrame = words();
+    this.ballStatics = pairs();
+    this.noHeadings = pairs();
+    this.lines = new Table(gl, gl.RGBA32UI, gl.RGBA_INTEGER, gl.UNSIGNED_INT, 4, 3 * LINES_A_ROW);
+    this.trails = new Trails(gl, this.software);
+    gl.bindVertexArray(gl.createVertexArray());
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
   }
 
-  /** Radii and groups of the robots, then of the intruders. */
-  setBodies(robots, radii, groups) {
-    const { gl } = this;
-    Object.assign(this, { robots, radii, groups });
+  /** `bodies` are radius and group of each robot, then of the intruders; `balls` are solids in space, [x, y, z, radius]. */
+  setBodies(robots, bodies, balls) {
+    Object.assign(this, { robots, bodies, balls });
     this.held = [null, null];
-    this.store(this.radiusBuffer, radii, gl.STATIC_DRAW);
-    this.store(this.groupBuffer, groups, gl.STATIC_DRAW);
+    this.headingsOf = null;
+    this.statics.store(bodies);
     this.trails.reset();
-  }
-
-  store(buffer, data, usage) {
-    const { gl } = this;
-    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-    gl.bufferData(gl.ARRAY_BUFFER, data, usage);
+    // Balls are drawn as bodies are, from a frame of their own.
+    const n = balls.length, padded = (n + 3) >> 2;
+    const words = new Uint32Array(3 * n + 2 * padded);
+    const floats = new Float32Array(words.buffer), bytes = new Uint8Array(words.buffer);
+    balls.forEach((ball, i) => {
+      for (let k = 0; k < 3; k++) floats[k * n + i] = ball[k];
+      bytes[12 * n + i] = BALL_COLOUR;
+      bytes[4 * (3 * n + padded) + i] = 255;
+    });
+    this.ballFrame.store(words);
+    this.ballStatics.store(Float32Array.from(balls.flatMap((ball) => [ball[3], 0])));
+    this.noHeadings.store(new Float32Array(2 * n));
   }
 
   resize(width, height, ratio) {
@@ -132,15 +129,15 @@ export class Renderer {
     this.canvas.height = Math.round(height * ratio);
   }
 
-  /** The buffer that has `frame`; uploads it over `other` than that of `keep` if none has. */
-  bufferOf(frame, keep) {
+  /** The table that has `frame`; if none has it, it goes to the one that does not have `keep`. */
+  tableOf(frame, keep) {
     let slot = this.held.indexOf(frame);
     if (slot < 0) {
       slot = this.held[0] === keep ? 1 : 0;
-      this.store(this.frameBuffers[slot], frame.body, this.gl.STREAM_DRAW);
+      this.frames[slot].store(new Uint32Array(frame.body.buffer, frame.body.byteOffset, frame.body.length / 4));
       this.held[slot] = frame;
     }
-    return this.frameBuffers[slot];
+    return this.frames[slot];
   }
 
   draw(camera, motion, look, lines) {
@@ -151,151 +148,108 @@ export class Renderer {
     gl[camera.space ? "enable" : "disable"](gl.DEPTH_TEST);
     const frame = motion.current;
     if (!frame) return;
-    const bodies = Math.min(frame.n, this.radii.length);
-    if (this.headingsOf !== frame || this.held[0] === null) {
-      this.store(this.headingBuffer, motion.headings, gl.STREAM_DRAW);
+    gl.activeTexture(gl.TEXTURE0);
+    const count = Math.min(frame.n, this.bodies.length / 2);
+    if (this.headingsOf !== frame) {
+      this.headings.store(motion.headings);
       this.headingsOf = frame;
     }
-    const now = this.bufferOf(frame, motion.previous), before = this.bufferOf(motion.previous, frame);
-    const scene = { camera, motion, look, frame, now, before, bodies };
-    if (look.trails) this.drawTrails(scene);
+    const now = this.tableOf(frame, motion.previous), before = this.tableOf(motion.previous, frame);
+    const { at } = frame;
+    const triple = (name) => ["x", "y", "z"].map((axis) => (at[name + axis] === undefined ? -1 : at[name + axis] / 4));
+    const scene = {
+      camera, look, count, now, before, mix: motion.mix, statics: this.statics, headings: this.headings, robots: this.robots,
+      colourBy: COLOUR_BY.indexOf(look.colourBy),
+      place: triple(""), velocity: triple("v"), target: triple("t"), modeWait: [at.mode / 4, at.wait / 4],
+    };
+    if (look.trails && this.trails.record(motion, count, look.trails)) {
+      const program = this.begin(this.programs.trails, scene);
+      gl.uniform4fv(program.uniforms.uInk, look.colours.trail);
+      this.trails.draw(program);
+    }
     this.drawLines(scene, lines.below);
-    if (look.targets && frame.tx) this.drawTargets(scene);
+    if (look.targets && frame.tx) {
+      const { uniforms } = this.beginBodies(this.programs.targets, scene);
+      gl.uniform1f(uniforms.uSize, look.targetSize);
+      gl.drawArrays(gl.TRIANGLES, 0, 6 * Math.min(this.robots, count));
+    }
     if (!camera.space && look.velocities) this.drawVelocities(scene);
     this.drawBodies(scene);
+    if (camera.space && this.balls.length) this.drawBalls(scene);
     if (camera.space && look.velocities) this.drawVelocities(scene);
     this.drawLines(scene, lines.above);
   }
 
-  begin(program, { camera, look }) {
+  begin(program, { camera, look, colourBy }) {
     const { gl } = this, { uniforms } = program;
-    program.use();
+    gl.useProgram(program.program);
     gl.uniformMatrix4fv(uniforms.uMatrix, false, camera.matrix);
     gl.uniform2f(uniforms.uViewport, this.canvas.width, this.canvas.height);
     gl.uniform1f(uniforms.uPixels, camera.pixelsPerMetre() * this.ratio);
     gl.uniform1f(uniforms.uRatio, this.ratio);
     if (uniforms.uPalette) gl.uniform4fv(uniforms.uPalette, look.palette);
     if (uniforms.uRim) gl.uniform4fv(uniforms.uRim, look.colours.rim);
-    if (uniforms.uRobots) gl.uniform1i(uniforms.uRobots, this.robots);
-    if (uniforms.uByNumber) gl.uniform1i(uniforms.uByNumber, look.colourBy === "robot" ? 1 : 0);
+    if (uniforms.uColourBy) gl.uniform1i(uniforms.uColourBy, colourBy);
+    return program;
   }
 
-  places(program, { motion, frame, now, before }) {
-    const { gl } = this;
-    [["0", before, motion.previous], ["1", now, frame]].forEach(([end, buffer, { at }]) => {
-      gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-      for (const axis of ["x", "y", "z"]) {
-        const name = `a${axis.toUpperCase()}${end}`;
-        if (at[axis] === undefined) program.constant(name, 0);
-        else program.floats(name, 1, 4, at[axis]);
-      }
-    });
-    gl.uniform1f(program.uniforms.uMix, motion.mix);
-  }
-
-  colours(program, { look, frame, now }) {
-    const { gl } = this;
-    gl.bindBuffer(gl.ARRAY_BUFFER, look.colourBy === "group" ? this.groupBuffer : now);
-    program.bytes("aColour", look.colourBy === "group" ? 0 : frame.at[look.colourBy === "wait" ? "wait" : "mode"]);
+  /** For programs that read frames. */
+  beginBodies(program, scene) {
+    const { gl } = this, { uniforms } = this.begin(program, scene);
+    [["uNow", scene.now], ["uBefore", scene.before], ["uStatic", scene.statics], ["uHeadings", scene.headings]]
+      .forEach(([name, table], unit) => {
+        if (!uniforms[name]) return;
+        gl.activeTexture(gl.TEXTURE0 + unit);
+        gl.bindTexture(gl.TEXTURE_2D, table.texture);
+        gl.uniform1i(uniforms[name], unit);
+      });
+    gl.activeTexture(gl.TEXTURE0);
+    const triple = (uniform, at) => uniform && gl.uniform3i(uniform, ...at);
+    triple(uniforms.uAtPlace, scene.place);
+    triple(uniforms.uAtVelocity, scene.velocity);
+    triple(uniforms.uAtTarget, scene.target);
+    if (uniforms.uAtModeWait) gl.uniform2i(uniforms.uAtModeWait, ...scene.modeWait);
+    if (uniforms.uMix) gl.uniform1f(uniforms.uMix, scene.mix);
+    if (uniforms.uRobots) gl.uniform1i(uniforms.uRobots, scene.robots);
+    return program;
   }
 
   drawBodies(scene) {
-    const { gl } = this, { camera, look, frame, bodies } = scene, program = this.programs.bodies;
-    this.begin(program, scene);
-    this.places(program, scene);
-    this.colours(program, scene);
-    gl.bindBuffer(gl.ARRAY_BUFFER, scene.now);
-    program.bytes("aWait", frame.at.wait);
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.radiusBuffer);
-    program.floats("aRadius", 1, 4, 0);
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.headingBuffer);
-    program.floats("aHeading", 2, 8, 0);
-    gl.uniform1f(program.uniforms.uLeast, look.leastRadius);
-    gl.uniform4fv(program.uniforms.uWaiting, look.colours.waiting);
-    gl.uniform1i(program.uniforms.uSpace, camera.space ? 1 : 0);
-    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, bodies);
-    if (camera.space && this.balls) this.drawBalls(program);
+    const { gl } = this, { camera, look } = scene, { uniforms } = this.beginBodies(this.programs.bodies, scene);
+    gl.uniform1f(uniforms.uLeast, look.leastRadius);
+    gl.uniform4fv(uniforms.uWaiting, look.colours.waiting);
+    gl.uniform1i(uniforms.uSpace, camera.space ? 1 : 0);
+    gl.drawArrays(gl.TRIANGLES, 0, 6 * scene.count);
   }
 
-  /** Solids in space, `[x, y, z, radius]` each; from above the ground has them. */
-  setBalls(balls) {
-    this.balls = balls.length;
-    this.store(this.ballBuffer, new Float32Array(balls.flat()), this.gl.STATIC_DRAW);
-  }
-
-  /** With the uniforms of the bodies, which have just been drawn. */
-  drawBalls(program) {
-    const { gl } = this;
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.ballBuffer);
-    for (const end of ["0", "1"]) {
-      ["x", "y", "z"].forEach((axis, i) => program.floats(`a${axis.toUpperCase()}${end}`, 1, 16, 4 * i));
-    }
-    program.floats("aRadius", 1, 16, 12);
-    program.constant("aHeading", 0);
-    for (const [name, value] of [["aWait", 255], ["aColour", 13]]) {
-      gl.disableVertexAttribArray(program.attributes[name]);
-      gl.vertexAttribI4ui(program.attributes[name], value, 0, 0, 0);
-    }
-    gl.uniform1i(program.uniforms.uRobots, this.balls);
-    gl.uniform1i(program.uniforms.uByNumber, 0);
-    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.balls);
+  drawBalls(scene) {
+    const n = this.balls.length;
+    this.drawBodies({
+      ...scene, count: n, robots: n, now: this.ballFrame, before: this.ballFrame, statics: this.ballStatics,
+      headings: this.noHeadings, colourBy: 0, place: [0, n, 2 * n], modeWait: [3 * n, 3 * n + ((n + 3) >> 2)],
+    });
   }
 
   drawVelocities(scene) {
-    const { gl } = this, { look, frame, bodies } = scene, program = this.programs.velocities;
-    this.begin(program, scene);
-    this.places(program, scene);
-    gl.bindBuffer(gl.ARRAY_BUFFER, scene.now);
-    for (const axis of ["x", "y", "z"]) {
-      const at = frame.at["v" + axis];
-      if (at === undefined) program.constant(`aV${axis}`, 0);
-      else program.floats(`aV${axis}`, 1, 4, at);
-    }
-    gl.uniform1f(program.uniforms.uSeconds, look.velocitySeconds);
-    gl.uniform4fv(program.uniforms.uInk, look.colours.velocity);
-    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, bodies);
-  }
-
-  drawTargets(scene) {
-    const { gl } = this, { look, frame } = scene, program = this.programs.targets;
-    this.begin(program, scene);
-    this.colours(program, scene);
-    gl.bindBuffer(gl.ARRAY_BUFFER, scene.now);
-    for (const axis of ["x", "y", "z"]) {
-      const at = frame.at["t" + axis];
-      if (at === undefined) program.constant(`aT${axis}`, 0);
-      else program.floats(`aT${axis}`, 1, 4, at);
-    }
-    gl.uniform1f(program.uniforms.uSize, look.targetSize);
-    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, Math.min(this.robots, scene.bodies));
-  }
-
-  drawTrails(scene) {
-    const { gl } = this, { motion, look, bodies } = scene, program = this.programs.trails;
-    if (!this.trails.record(motion, bodies, look.trails)) return;
-    this.begin(program, scene);
-    gl.uniform4fv(program.uniforms.uInk, look.colours.trail);
-    gl.uniform1i(program.uniforms.uBodies, bodies);
-    this.trails.draw(program, bodies);
+    const { gl } = this, { look } = scene, { uniforms } = this.beginBodies(this.programs.velocities, scene);
+    gl.uniform1f(uniforms.uSeconds, look.velocitySeconds);
+    gl.uniform4fv(uniforms.uInk, look.colours.velocity);
+    gl.drawArrays(gl.TRIANGLES, 0, 6 * scene.count);
   }
 
   drawLines(scene, lines) {
     if (!lines.count) return;
-    const { gl } = this, program = this.programs.lines;
-    this.begin(program, scene);
-    this.store(this.lineBuffer, new Uint8Array(lines.floats.buffer, 0, lines.count * LINE_BYTES), gl.STREAM_DRAW);
-    program.floats("aFrom", 3, LINE_BYTES, 0);
-    program.floats("aTo", 3, LINE_BYTES, 12);
-    program.floats("aInk", 4, LINE_BYTES, 24, gl.UNSIGNED_BYTE);
-    program.floats("aStyle", 2, LINE_BYTES, 28);
-    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, lines.count);
+    const { gl } = this, { uniforms } = this.begin(this.programs.lines, scene);
+    this.lines.store(lines.words.subarray(0, lines.count * LINE_WORDS));
+    gl.uniform1i(uniforms.uLines, 0);
+    gl.drawArrays(gl.TRIANGLES, 0, 6 * lines.count);
   }
 }
 
 /** Straight lines, refilled for each picture; colours are 0xAABBGGRR. */
 export class Lines {
   constructor() {
-    this.floats = new Float32Array(64 * LINE_BYTES / 4);
+    this.floats = new Float32Array(64 * LINE_WORDS);
     this.words = new Uint32Array(this.floats.buffer);
     this.count = 0;
   }
@@ -305,8 +259,8 @@ export class Lines {
   }
 
   add(x0, y0, z0, x1, y1, z1, ink, width = 1, dash = 0) {
-    let at = this.count * LINE_BYTES / 4;
-    if (at + LINE_BYTES / 4 > this.floats.length) {
+    let at = this.count * LINE_WORDS;
+    if (at + LINE_WORDS > this.floats.length) {
       const larger = new Float32Array(2 * this.floats.length);
       larger.set(this.floats);
       this.floats = larger;

@@ -16,10 +16,11 @@ const DELIVERED = 0, DAMAGED = 2;
 const COSTS = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
 
 export class View {
-  constructor(app, canvas) {
+  /** `software`: there is no GPU, so that the canvas is best kept in memory. */
+  constructor(app, canvas, software) {
     this.app = app;
     this.canvas = canvas;
-    this.context = canvas.getContext("2d");
+    this.context = canvas.getContext("2d", { willReadFrequently: software });
     this.below = new Lines();
     this.above = new Lines();
     // What the pointer is doing: `{kind, ...}` or null.
