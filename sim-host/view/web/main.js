@@ -131,9 +131,9 @@ class App {
     this.plots.add(frame.tick, frame.figures);
   }
 
-  /** Frames that are read for the plots alone. */
-  onFigures(frame) {
-    this.plots.add(frame.tick, frame.figures);
+  /** What is for the plots alone. */
+  onFigures(tick, figures) {
+    this.plots.add(tick, figures);
   }
 
   onRobot(robot) {

@@ -82,7 +82,7 @@ export class Orders {
     const label = document.createElement("label");
     label.className = "slider";
     const title = document.createElement("span");
-    title.textContent = name.replace(/_/g, " ");
+    title.textContent = name.replace(/_(s|m|mps|mps2)$/, "").replace(/_/g, " ");
     const shown = document.createElement("output");
     const input = document.createElement("input");
     input.type = "range";

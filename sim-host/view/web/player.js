@@ -6,6 +6,8 @@ import { fromBase64 } from "staya/frame.js";
 // Recordings up to this many bytes are read through once for the plots; of longer ones only what is played is plotted.
 const READ_THROUGH = 1 << 30;
 const STATE_EVERY_MS = 500;
+// A recording starts with as many ticks a second at least.
+const LEAST_TICKS = 10;
 
 export class Player {
   constructor(element, listener) {
@@ -14,7 +16,6 @@ export class Player {
     this.paused = true;
     this.speed = 1;
     this.tick = 0;
-    this.sceneBlock = null;
     this.selected = null;
     this.busy = false;
     this.wanted = null;
@@ -26,6 +27,8 @@ export class Player {
       this.element.remove();
       this.tick = this.recording.first;
       await this.show(this.tick);
+      const { tick_s: tickS } = this.shownScene;
+      this.speed = Math.max(1, 10 ** Math.round(Math.log10(LEAST_TICKS * tickS)));
     } catch (error) {
       this.listener.onFailed(`The recording in this page cannot be read: ${error.message}. Make the page anew with "staya page".`);
       return;
@@ -136,7 +139,8 @@ export class Player {
       for (let index = 0; index < count; index++) {
         const block = await this.recording.unpacked(index);
         for (let i = 0; i < block.ticks.length; i++) {
-          this.listener.onFigures(block.frame(i));
+          const { tick, figures } = block.frame(i);
+          this.listener.onFigures(tick, figures);
           if (i % 64 === 63) await new Promise((resolve) => setTimeout(resolve));
         }
       }

@@ -31,7 +31,7 @@ export class Plots {
     row.hidden = true;
     const name = document.createElement("span");
     name.className = "plot-name";
-    name.textContent = plot.unit ? `${plot.name}, ${plot.unit}` : plot.name;
+    name.textContent = plot.name;
     const value = document.createElement("span");
     value.className = "plot-value";
     const canvas = document.createElement("canvas");
@@ -103,6 +103,7 @@ export class Plots {
         const span = document.createElement("span");
         span.textContent = each === null ? "–" : each.toFixed(plot.digits);
         if (plot.lines.length > 1) span.style.color = colours[plot.lines[i].colour];
+        if (plot.unit && each !== null) span.textContent += `\u2009${plot.unit}`;
         return span;
       }));
       canvas.setAttribute("aria-label", `${plot.name}: ${[...value.children].map((span) => span.textContent).join(", ")}`);

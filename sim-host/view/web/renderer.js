@@ -144,8 +144,11 @@ export class Renderer {
     const { gl } = this;
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
     gl.clearColor(0, 0, 0, 0);
+    gl.depthMask(true);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl[camera.space ? "enable" : "disable"](gl.DEPTH_TEST);
+    // What is thin and soft at its edges hides nothing behind it.
+    gl.depthMask(false);
     const frame = motion.current;
     if (!frame) return;
     gl.activeTexture(gl.TEXTURE0);
@@ -174,8 +177,10 @@ export class Renderer {
       gl.drawArrays(gl.TRIANGLES, 0, 6 * Math.min(this.robots, count));
     }
     if (!camera.space && look.velocities) this.drawVelocities(scene);
+    gl.depthMask(true);
     this.drawBodies(scene);
     if (camera.space && this.balls.length) this.drawBalls(scene);
+    gl.depthMask(false);
     if (camera.space && look.velocities) this.drawVelocities(scene);
     this.drawLines(scene, lines.above);
   }
