@@ -305,7 +305,7 @@ export class Controls {
     }
     key(disc(css.grey, css.orange), "waits", "waits");
     if (scene.intruders.length) key(disc(css.rim, css.purple), "intruder");
-    if (look.targets) {
+    if (layers.targets) {
       key((context) => {
         context.strokeStyle = css.muted;
         context.lineWidth = 2;
@@ -317,7 +317,7 @@ export class Controls {
         context.stroke();
       }, "goal");
     }
-    if (look.velocities) key(line(css.velocity), "velocity", "velocity");
+    if (layers.velocities) key(line(css.velocity), "velocity", "velocity");
     if (layers.formation && scene.formation) key(line(css.formation), "formation");
     if (layers.leaders) key(line(css.leader, [3, 3]), "leader");
     if (layers.links) {
@@ -358,7 +358,7 @@ export class Controls {
     for (const row of element("legend-body").children) {
       const [kind, index] = row.dataset.count?.split(":") ?? [];
       if (!kind) continue;
-      const text = kind === "velocity" ? `in ${+app.look.velocitySeconds.toPrecision(2)} s`
+      const text = kind === "velocity" ? app.look.crowded ? "when closer" : `in ${+app.look.velocitySeconds.toPrecision(2)} s`
         : kind === "waits" ? n - counts.wait[255] : counts[kind][index];
       if (row.lastChild.textContent !== String(text)) row.lastChild.textContent = text;
       row.hidden = (kind === "mode" || kind === "wait") && text === 0;

@@ -34,9 +34,11 @@ export class Look {
     this.colourBy = "mode";
     this.trails = 0;
     this.palette = new Float32Array(64);
+    // Set for each picture, as there is room: CSS pixels, and seconds of way that an arrow shows.
     this.leastRadius = 4;
     this.targetSize = 6;
     this.velocitySeconds = 1;
+    this.crowded = false;
     this.words = { modes: [], waits: [] };
     const wish = matchMedia("(prefers-color-scheme: dark)");
     this.dark = wish.matches;
@@ -53,11 +55,11 @@ export class Look {
   }
 
   get velocities() {
-    return this.layers.velocities;
+    return this.layers.velocities && !this.crowded;
   }
 
   get targets() {
-    return this.layers.targets;
+    return this.layers.targets && !this.crowded;
   }
 
   /** After the theme, the words or what colours mean changed. */

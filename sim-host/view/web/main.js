@@ -83,19 +83,20 @@ class App {
     const radii = Float32Array.from([...scene.robots.radius_m, ...scene.intruders.map(({ radius_m }) => radius_m)]);
     this.radii = radii;
     this.fastest = scene.robots.max_speed_mps.reduce((most, speed) => Math.max(most, speed), 0);
-    if (!same || before.seed !== scene.seed) {
+    const anew = !same || before.seed !== scene.seed;
+    if (anew) {
       this.motion.reset();
       this.plots.reset();
     }
     const balls = scene.kind === "space" ? this.solids.filter(({ kind }) => kind === "ball") : [];
-    this.renderer?.setBodies(this.robots, Float32Array.from([...radii].flatMap((radius, i) => [radius, this.groups[i] ?? 0])),
-      balls.map(({ center_m: [x, y, z], radius_m: radius }) => [x, y, z ?? 0, radius]));
+    if (anew || balls.length) {
+      this.renderer?.setBodies(this.robots, Float32Array.from([...radii].flatMap((radius, i) => [radius, this.groups[i] ?? 0])),
+        balls.map(({ center_m: [x, y, z], radius_m: radius }) => [x, y, z ?? 0, radius]));
+    }
     this.ground.setScene(scene, this.cells, this.solids);
     this.look.words = scene.words;
     if (!same) {
       this.look.colourBy = this.robots <= 8 ? "robot" : "mode";
-      this.look.leastRadius = this.robots <= 20 ? 6 : this.robots <= 200 ? 4 : this.robots <= 5000 ? 2.2 : 1.1;
-      this.look.targetSize = this.robots <= 200 ? 6 : this.robots <= 5000 ? 3.5 : 2;
       this.select(null);
       this.fit();
     }
@@ -225,17 +226,21 @@ class App {
 
   /** The body that is seen nearest to these pixels, if it is near enough; robots only. */
   pick(px, py, reach = 14) {
-    const { current } = this.motion;
+    const { motion, camera } = this, { current } = motion;
     if (!current) return null;
     let best = null, least = Infinity;
-    const place = [0, 0, 0];
+    const place = [0, 0, 0], m = camera.matrix;
     const n = Math.min(current.n, this.robots);
     for (let i = 0; i < n; i++) {
-      this.motion.place(i, place);
-      const at = this.camera.project(place[0], place[1], place[2]);
-      if (!at) continue;
-      const radius = this.radii[i] * this.camera.pixelsPerMetre(at[2]);
-      const far = Math.max(0, Math.hypot(at[0] - px, at[1] - py) - radius) + 1e-3 * Math.hypot(at[0] - px, at[1] - py);
+      // As `camera.project`, without an array for each of many.
+      const [x, y, z] = motion.place(i, place);
+      const w = m[3] * x + m[7] * y + m[11] * z + m[15];
+      if (w <= 0) continue;
+      const dx = ((m[0] * x + m[4] * y + m[8] * z + m[12]) / w + 1) / 2 * camera.width - px;
+      const dy = (1 - (m[1] * x + m[5] * y + m[9] * z + m[13]) / w) / 2 * camera.height - py;
+      const middle = Math.sqrt(dx * dx + dy * dy);
+      // Of several that are hit, the one whose middle is nearest.
+      const far = Math.max(0, middle - this.radii[i] * camera.pixelsPerMetre(w)) + 1e-3 * middle;
       if (far < least && far <= reach) {
         best = i;
         least = far;
@@ -319,7 +324,7 @@ class App {
 
   draw(now) {
     const { motion, camera, look } = this;
-    look.velocitySeconds = this.view.velocitySeconds();
+    this.view.suit(look);
     this.ground.draw(camera, look.layers.grid);
     this.view.lines();
     this.renderer?.draw(camera, motion, look, this.view);

@@ -69,13 +69,14 @@ export class Orders {
     this.showRadio();
   }
 
+  /** Metres; null where nothing is too far. */
   range() {
-    return Number((this.farthest * number("radio-range") ** 2).toPrecision(3));
+    return number("radio-range") >= 1 ? null : Number((this.farthest * number("radio-range") ** 2).toPrecision(3));
   }
 
   showRadio() {
     element("radio-loss-value").textContent = `${Math.round(100 * number("radio-loss"))} %`;
-    element("radio-range-value").textContent = metres(this.range());
+    element("radio-range-value").textContent = this.range() === null ? "no limit" : metres(this.range());
   }
 
   slider({ name, unit, least, greatest, value, what }) {

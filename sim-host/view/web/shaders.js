@@ -89,12 +89,12 @@ out vec2 vAt;
 flat out vec4 vColour;
 flat out vec2 vHeading;
 flat out float vRadius;
-flat out int vKind;        // 1 waits, 2 an intruder
+flat out int vKind;        // 1 waits and has room for a ring, 2 an intruder
 void main() {
   int body = gl_VertexID / 6;
   vec4 clip = uMatrix * vec4(place(body), 1.0);
   vRadius = max(uLeast * uRatio, pair(uStatic, body).r * uPixels / max(clip.w, 1e-6));
-  vKind = body >= uRobots ? 2 : octet(uAtModeWait.y, body) != 255u ? 1 : 0;
+  vKind = body >= uRobots ? 2 : vRadius > 2.5 * uRatio && octet(uAtModeWait.y, body) != 255u ? 1 : 0;
   float reach = vRadius + (vKind == 1 ? 3.5 * uRatio : 1.5);
   vAt = square() * reach;
   vColour = colour(body);

@@ -10,6 +10,7 @@ const MOST_STEMS = 2000;
 const MOST_NUMBERS = 400;
 const MOST_CROSSES = 400;
 const VECTOR_PIXELS = 34;
+const CROWDED_PIXELS = 9;
 const SCALE_PIXELS = 110;
 const DELIVERED = 0, DAMAGED = 2;
 // From cheap to dear, told apart by anybody and on any ground.
@@ -40,11 +41,18 @@ export class View {
     this.costs = window ? new Float32Array(fromBase64(window.costs).buffer) : null;
   }
 
-  /** A round number of seconds in which the fastest robot goes about as far as an arrow is long. */
-  velocitySeconds() {
-    const { app } = this;
-    const pixels = app.camera.pixelsPerMetre(app.camera.space ? app.camera.distance : 1);
-    return niceStep(VECTOR_PIXELS / pixels / Math.max(app.fastest, 1e-6));
+  /** Makes signs small, and leaves out some, where robots would be hidden by them. */
+  suit(look) {
+    const { app } = this, { camera, scene } = app;
+    const [x0, y0, x1, y1] = scene.bounds_m;
+    const pixels = camera.pixelsPerMetre(camera.space ? camera.distance : 1);
+    // About how far robots are from each other.
+    const apart = Math.sqrt((x1 - x0) * (y1 - y0) / Math.max(app.robots, 1)) * pixels;
+    look.leastRadius = Math.max(0.9, Math.min(app.robots <= 20 ? 6 : 4, 0.22 * apart));
+    look.targetSize = Math.max(2.5, Math.min(6, 0.3 * apart));
+    look.crowded = apart < CROWDED_PIXELS;
+    // A round number of seconds in which the fastest robot goes about as far as an arrow is long.
+    look.velocitySeconds = niceStep(Math.min(VECTOR_PIXELS, Math.max(0.8 * apart, 6)) / pixels / Math.max(app.fastest, 1e-6));
   }
 
   lines() {
@@ -98,7 +106,7 @@ export class View {
     const { look, motion } = app;
     const target = app.targetOf(app.selected);
     const place = motion.place(app.selected, [0, 0, 0]);
-    if (target && look.targets) below.add(...place, ...target, packed(look.css.selected, 0.6), 1.3, 5);
+    if (target && look.layers.targets) below.add(...place, ...target, packed(look.css.selected, 0.6), 1.3, 5);
     if (!look.layers.known || !app.robot?.neighbors) return;
     for (const { index, age_s, position_m } of app.robot.neighbors) {
       // News that are old are faint.
@@ -131,7 +139,7 @@ export class View {
       });
     }
     if (frame.n > MOST_STEMS) return;
-    const stem = packed(look.css.muted, 0.5);
+    const stem = packed(look.css.muted, 0.5 * Math.min(1, 8 / Math.sqrt(frame.n)));
     const place = [0, 0, 0];
     for (let i = 0; i < frame.n; i++) {
       motion.place(i, place);
@@ -291,7 +299,7 @@ export class View {
     const { app, context } = this;
     (frame.figures.goals ?? []).forEach((goal, i) => {
       const at = app.camera.project(goal[0], goal[1], goal[2] ?? 0);
-      if (!at || !app.look.targets) return;
+      if (!at || !app.look.layers.targets) return;
       const [x, y] = at;
       context.beginPath();
       context.arc(x, y, 9, 0, 2 * Math.PI);
