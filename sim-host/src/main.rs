@@ -1,4 +1,4 @@
-//! The command line: `staya run | page | hil | bridge | companion | terrain | orca | experiment`.
+//! The command line: `staya run | view | page | hil | bridge | companion | terrain | orca | experiment`.
 //!
 //! A new command is a module with a `clap::Args` struct and `run(&self, &Global) -> Result<Ended>`,
 //! and one line in `Command`. Results go to standard output, progress and errors to standard
@@ -11,6 +11,7 @@ mod hil;
 mod page;
 mod run;
 mod terrain;
+mod view;
 
 use anyhow::{Context as _, Result};
 use clap::{Parser, Subcommand};
@@ -34,6 +35,7 @@ enum Command {
     /// Run a scenario.
     Run(run::RunArgs),
     /// Make one HTML file of a run, for any browser, without server or network.
+    View(view::ViewArgs),
     Page(page::PageArgs),
     /// Run some robots of a scenario as firmware, on emulated microcontrollers or boards.
     Hil(hil::HilArgs),
@@ -74,6 +76,7 @@ fn run(cli: &Cli) -> Result<Ended> {
     }
     match &cli.command {
         Command::Run(args) => args.run(&cli.global),
+        Command::View(args) => args.run(&cli.global),
         Command::Page(args) => args.run(&cli.global),
         Command::Hil(args) => args.run(&cli.global),
         Command::Bridge(args) => args.run(&cli.global),

@@ -36,13 +36,17 @@ impl ScenarioArgs {
         &self.scenario
     }
 
+    /// What is otherwise than in the file.
+    pub const fn overrides(&self) -> Overrides {
+        Overrides { seed: self.seed, ticks: self.ticks }
+    }
+
     /// Reads it.
     ///
     /// # Errors
     /// It cannot be read, or is wrong.
     pub fn load(&self) -> Result<Scenario> {
-        let overrides = Overrides { seed: self.seed, ticks: self.ticks };
-        let scenario = Scenario::load(&self.scenario, &overrides)?;
+        let scenario = Scenario::load(&self.scenario, &self.overrides())?;
         for remark in scenario.remarks() {
             eprintln!("{remark}");
         }

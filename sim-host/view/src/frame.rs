@@ -59,6 +59,9 @@ pub struct Figures {
     pub gap_m: Option<f64>,
     /// The run's fingerprint so far, 16 hex digits.
     pub hash: String,
+    /// Goals 0 to 3 of goal flocks, as far as there are any, metres from the scene's origin.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub goals: Vec<[f64; 3]>,
 }
 
 /// One moment. All arrays have an entry for each body: the robots by rising number, then the intruders.
@@ -105,6 +108,12 @@ impl Framer {
         }
     }
 
+    /// What lengths are measured from, metres.
+    #[must_use]
+    pub const fn origin_m(&self) -> [f64; 3] {
+        self.origin_m
+    }
+
     /// A moment as a frame; `frame`'s memory is used again. O(bodies).
     pub fn fill(&self, frame: &mut FrameData, moment: &Moment<'_>, robots: impl Iterator<Item = RobotRow>) {
         let row = moment.row;
@@ -142,6 +151,12 @@ impl Framer {
             order: moves.then(|| polarisation(&velocities)),
             gap_m: moment.gap_m,
             hash: format!("{:016x}", moment.trace_hash),
+            goals: moment
+                .goals_m
+                .iter()
+                .flatten()
+                .map(|goal| [0, 1, 2].map(|axis| goal[axis] - self.origin_m[axis]))
+                .collect(),
         };
     }
 
@@ -192,6 +207,20 @@ impl FrameData {
             out.resize(out.len().next_multiple_of(4), 0);
         }
         out.extend(figures);
+    }
+
+    /// The tick and the figures of a frame, and nothing else. O(1).
+    ///
+    /// # Errors
+    /// [`FrameError`].
+    pub fn figures_of(bytes: &[u8]) -> Result<(u32, Figures), FrameError> {
+        let Some(head) = bytes.get(..HEAD).filter(|head| head.starts_with(&MAGIC)) else {
+            return Err(FrameError::Magic);
+        };
+        let word = |at: usize| u32::from_le_bytes([head[at], head[at + 1], head[at + 2], head[at + 3]]);
+        let figures = usize::try_from(word(24)).ok().and_then(|length| bytes.len().checked_sub(length));
+        let figures = figures.filter(|at| *at >= HEAD).and_then(|at| serde_json::from_slice(&bytes[at..]).ok());
+        Ok((word(4), figures.ok_or(FrameError::Figures)?))
     }
 
     /// Reads a frame. O(bytes); memory for no more bodies than there are bytes of.

@@ -2,6 +2,7 @@
 //!
 //! Its modules import each other by `staya/NAME.js`; here these names stand for `data:` URLs in an import map.
 
+use crate::server::File;
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use std::fmt::Write as _;
@@ -34,30 +35,65 @@ pub fn file(name: &str) -> Option<&'static str> {
 /// The program was built without the page.
 pub fn with_recording(recording: &[u8]) -> Result<String, PageError> {
     let index = file(INDEX).ok_or(PageError::File(INDEX))?;
-    assemble(index, FILES, recording)
+    assemble(index, &inside(FILES, recording))
 }
 
-/// Puts the parts where the marks are.
-fn assemble(index: &str, files: &[(&str, &str)], recording: &[u8]) -> Result<String, PageError> {
+/// What the marks of the page stand for, each with its name.
+type Parts = [(&'static str, String); 4];
+
+/// Everything in one file.
+fn inside(files: &[(&str, &str)], recording: &[u8]) -> Parts {
     let of_kind = |end: &'static str| files.iter().filter(move |(name, _)| name.ends_with(end));
     let style = of_kind(".css").fold(String::from("<style>"), |style, (_, text)| style + "\n" + text) + "</style>";
-    let mut imports = serde_json::Map::new();
-    for (name, text) in of_kind(".js") {
-        let url = format!("data:text/javascript;base64,{}", BASE64_STANDARD.encode(text));
-        imports.insert(format!("staya/{name}"), url.into());
-    }
-    // Neither base64 nor names can end a script.
-    let map = serde_json::json!({ "imports": imports });
+    let map = import_map(files, |_, text| format!("data:text/javascript;base64,{}", BASE64_STANDARD.encode(text)));
     let mut data = String::with_capacity(recording.len() * 4 / 3 + 128);
     data.push_str("<script type=\"application/octet-stream;base64\" id=\"recording\">");
     BASE64_STANDARD.encode_string(recording, &mut data);
     data.push_str("</script>");
-    let parts = [
+    [
         ("importmap", format!("<script type=\"importmap\">{map}</script>")),
         ("style", style),
         ("recording", data),
         ("entry", "<script type=\"module\">import \"staya/main.js\";</script>".to_owned()),
-    ];
+    ]
+}
+
+/// Each file by itself, from a server that puts a number of its own into what stands in the page.
+fn beside(files: &[(&str, &str)]) -> Parts {
+    let map = import_map(files, |name, _| format!("/{name}"));
+    let links = files.iter().filter(|(name, _)| name.ends_with(".css"));
+    [
+        ("importmap", format!("<script type=\"importmap\" nonce=\"NONCE\">{map}</script>")),
+        ("style", links.map(|(name, _)| format!("<link rel=\"stylesheet\" href=\"/{name}\">")).collect()),
+        ("recording", String::new()),
+        ("entry", "<script type=\"module\" nonce=\"NONCE\">import \"staya/main.js\";</script>".to_owned()),
+    ]
+}
+
+/// Where modules are by the names that they import each other by. Neither base64 nor names can end a script.
+fn import_map(files: &[(&str, &str)], place: impl Fn(&str, &str) -> String) -> serde_json::Value {
+    let modules = files.iter().filter(|(name, _)| name.ends_with(".js"));
+    let imports = modules.map(|(name, text)| (format!("staya/{name}"), place(name, text).into()));
+    serde_json::json!({ "imports": imports.collect::<serde_json::Map<_, _>>() })
+}
+
+/// The files of the page for a [`Server`](crate::server::Server).
+///
+/// # Errors
+/// The program was built without the page.
+pub fn served() -> Result<Vec<File>, PageError> {
+    let index = file(INDEX).ok_or(PageError::File(INDEX))?;
+    let page = File { name: "", kind: "text/html", text: assemble(index, &beside(FILES))? };
+    let others = FILES.iter().filter(|(name, _)| *name != INDEX).map(|&(name, text)| File {
+        name,
+        kind: if name.ends_with(".css") { "text/css" } else { "text/javascript" },
+        text: text.to_owned(),
+    });
+    Ok(std::iter::once(page).chain(others).collect())
+}
+
+/// Puts the parts where the marks are.
+fn assemble(index: &str, parts: &Parts) -> Result<String, PageError> {
     let (mut page, mut rest) = (String::new(), index);
     while let Some((before, mark, behind)) = next_mark(rest) {
         page.push_str(before);
@@ -92,7 +128,7 @@ mod tests {
     fn every_part_comes_to_its_mark() {
         let files =
             [("a.css", "p { color: red }"), ("main.js", "import \"staya/b.js\";"), ("b.js", "// <!-- staya:entry -->")];
-        let page = assemble(PAGE, &files, b"STAYAREC").unwrap();
+        let page = assemble(PAGE, &inside(&files, b"STAYAREC")).unwrap();
         let parts = [
             "<!doctype",
             "p { color: red }",
@@ -112,6 +148,6 @@ mod tests {
     #[test]
     fn a_page_without_a_place_for_a_part_is_an_error() {
         let without = PAGE.replace("<!-- staya:recording -->", "");
-        assert_eq!(assemble(&without, &[], b""), Err(PageError::Mark("recording")));
+        assert_eq!(assemble(&without, &inside(&[], b"")), Err(PageError::Mark("recording")));
     }
 }

@@ -239,13 +239,19 @@ impl Scene {
                 .formation
                 .as_ref()
                 .map(|graph| Formation { edges: graph.edges.iter().map(|&(a, b)| [a.into(), b.into()]).collect() }),
-            radio: Radio {
-                range_m: Some(scenario.radio.range_m).filter(|range_m| range_m.is_finite()),
-                loss: scenario.radio.loss,
-            },
+            radio: Radio::of(scenario),
             parameters: Vec::new(),
             words: Words { modes: MODES.map(str::to_owned).into(), waits: wait_names().map(str::to_owned).collect() },
         }
+    }
+}
+
+impl Radio {
+    /// As it is at the start.
+    #[must_use]
+    pub fn of(scenario: &Scenario) -> Self {
+        let radio = &scenario.radio;
+        Self { range_m: Some(radio.range_m).filter(|range_m| range_m.is_finite()), loss: radio.loss }
     }
 }
 

@@ -7,7 +7,7 @@ use crate::record::Motion;
 use crate::scenario::Refusal;
 use crate::terrain::Terrain;
 use crate::world::plane::{Clearance, Disc, Solid};
-use staya_controller::agent::{AgentConfig, AnyInputs, AnySurroundings, Command, Guidance, Task};
+use staya_controller::agent::{AgentConfig, AnyInputs, AnySurroundings, Command, Guidance, Task, WAYPOINTS};
 use staya_controller::grid::Cell;
 use staya_controller::time::Duration;
 
@@ -94,6 +94,11 @@ pub trait Ground: Send + Sync {
     /// What stands in the plane.
     fn solids(&self) -> &[Solid] {
         &[]
+    }
+
+    /// The goals of a goal flock at `tick`, metres.
+    fn goals_m(&self, _tick: u32) -> [Option<[f64; 3]>; WAYPOINTS] {
+        [None; WAYPOINTS]
     }
 
     /// Bodies that are no robots.

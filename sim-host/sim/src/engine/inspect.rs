@@ -70,10 +70,10 @@ pub struct Inspection {
     pub choice: Option<Choice>,
     /// Its parameters.
     pub parameters: Vec<(Parameter, f32)>,
-    /// Bytes that it sent in the last tick.
-    pub sent_bytes: usize,
-    /// Bytes that it is going to hear.
-    pub heard_bytes: usize,
+    /// Bytes that it has sent since it started last.
+    pub sent_bytes: u64,
+    /// Bytes that it has heard since it started last.
+    pub heard_bytes: u64,
 }
 
 /// What can be read in a law's scratch memory after a step.
@@ -160,8 +160,8 @@ where
             parameters: parameters
                 .filter_map(|&(_, parameter)| Some((parameter, agent.parameter(parameter)?)))
                 .collect(),
-            sent_bytes: computer.outbox.len(),
-            heard_bytes: inputs.inbox.len(),
+            sent_bytes: computer.sent_bytes,
+            heard_bytes: computer.heard_bytes,
         }
     }
 }

@@ -72,6 +72,9 @@ struct Computer<G, A> {
     epoch: u32,
     /// Down before this tick.
     down_until: u32,
+    /// Since its start.
+    sent_bytes: u64,
+    heard_bytes: u64,
 }
 
 /// What the rest of the engine needs to know of a robot after its decision.
@@ -257,6 +260,8 @@ where
             boot,
             epoch: self.tick,
             down_until: self.tick,
+            sent_bytes: 0,
+            heard_bytes: 0,
         }
     }
 
@@ -368,6 +373,9 @@ where
                     return PacketCounts::default();
                 };
                 let out = agent.step(&inputs, now, workspace);
+                let heard_bytes = inputs.inbox.len() as u64;
+                computer.heard_bytes += heard_bytes;
+                computer.sent_bytes += out.outbox.len() as u64;
                 computer.outbox = out.outbox;
                 computer.mail.clear();
                 if keeps_events {
@@ -436,6 +444,7 @@ where
             collisions: self.collisions,
             gap_m: self.ground.gap_m(),
             intruders: self.ground.intruders(),
+            goals_m: self.ground.goals_m(self.tick),
             land: self.ground.terrain(),
             solids: self.ground.solids(),
             trace_hash: hash::sum(&self.chains),

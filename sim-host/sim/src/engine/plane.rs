@@ -296,6 +296,23 @@ impl Ground for PlaneGround {
         self.plane.solids()
     }
 
+    fn goals_m(&self, tick: u32) -> [Option<[f64; 3]>; WAYPOINTS] {
+        let mut goals_m = [None; WAYPOINTS];
+        let first = (0..self.setup.starts.len())
+            .find(|&index| self.setup.group(index).guidance.kind() == GuidanceKind::GoalFlock);
+        if let Some(first) = first {
+            let places = self.setup.starts[first].places.iter();
+            let later = self.ordered(first, tick + 1);
+            let places = (0..).zip(places).chain(later.map(|order| (usize::from(order.index), &order.target)));
+            for (index, place) in places {
+                if let Some(goal_m) = goals_m.get_mut(index) {
+                    *goal_m = Some(place.position_m);
+                }
+            }
+        }
+        goals_m
+    }
+
     fn gap_m(&self) -> Option<f64> {
         self.gap_m
     }

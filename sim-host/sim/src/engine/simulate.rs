@@ -10,7 +10,7 @@ use crate::terrain::Terrain;
 use crate::world::Misplaced;
 use crate::world::plane::{Clearance, Disc, Solid};
 use staya_controller::agent::{
-    AnyGuidance, AnySafety, CELLS, Commanded, HALF_PLANES, LEARNED, Safety, TEMPLATE, VISITS,
+    AnyGuidance, AnySafety, CELLS, Commanded, HALF_PLANES, LEARNED, Safety, TEMPLATE, VISITS, WAYPOINTS,
 };
 use std::collections::HashMap;
 use std::ops::ControlFlow;
@@ -40,6 +40,8 @@ pub struct Moment<'a> {
     pub land: Option<&'a Terrain>,
     /// What stands in the plane now.
     pub solids: &'a [Solid],
+    /// The goals of a goal flock, world coordinates in metres.
+    pub goals_m: [Option<[f64; 3]>; WAYPOINTS],
     /// Of the run so far, as in [`Outcome::trace_hash`].
     pub trace_hash: u64,
 }

@@ -18,6 +18,9 @@ const UNREAD: usize = 512;
 /// Bytes on their way to a page at most: a scene and a frame of a million robots.
 const MOST_BYTES: usize = 256 << 20;
 
+/// Frames on their way to a page that says what it has drawn.
+const AHEAD: u64 = 3;
+
 /// What came of a turn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Outcome {
@@ -43,6 +46,10 @@ struct Live {
     frame: Option<Bytes>,
     /// Bytes are in its buffer.
     is_behind: bool,
+    /// Frames that were sent.
+    sent: u64,
+    /// Of them, those that it says it has drawn; `None`: it has said nothing yet.
+    seen: Option<u64>,
 }
 
 pub(super) struct Connection {
@@ -146,7 +153,8 @@ impl Connection {
             .max_write_buffer_size(MOST_BYTES);
         let socket = WebSocket::from_raw_socket(stream, Role::Server, Some(config));
         self.stream = Some(Stream::Socket(Box::new(socket)));
-        self.state = State::Live(Box::new(Live { texts: VecDeque::new(), frame: None, is_behind: false }));
+        self.state =
+            State::Live(Box::new(Live { texts: VecDeque::new(), frame: None, is_behind: false, sent: 0, seen: None }));
         Outcome::Opened
     }
 
@@ -161,6 +169,13 @@ impl Connection {
     pub fn show(&mut self, frame: Bytes) {
         if let State::Live(live) = &mut self.state {
             live.frame = Some(frame);
+        }
+    }
+
+    /// It has drawn so many frames.
+    pub fn seen(&mut self, frames: u64) {
+        if let State::Live(live) = &mut self.state {
+            live.seen = Some(frames.min(live.sent));
         }
     }
 
@@ -192,9 +207,12 @@ impl Connection {
                     }
                 }
                 let next = live.texts.pop_front().map(Message::Text);
-                let Some(message) = next.or_else(|| live.frame.take().map(Message::Binary)) else {
+                let is_ready = live.seen.is_none_or(|seen| live.sent < seen + AHEAD);
+                let frame = || live.frame.take_if(|_| is_ready).map(Message::Binary);
+                let Some(message) = next.or_else(frame) else {
                     return Outcome::Goes;
                 };
+                live.sent += u64::from(message.is_binary());
                 live.is_behind = true;
                 match socket.write(message) {
                     Ok(()) => {}
@@ -247,7 +265,7 @@ fn answer(request: &Request, files: &[File]) -> Vec<u8> {
     };
     // Without one nothing inline runs.
     let nonce = super::random_hex().unwrap_or_default();
-    let text = text.replace("NONCE", &nonce);
+    let text = if kind == "text/html" { text.replace("NONCE", &nonce) } else { text.to_owned() };
     let length = text.len();
     let policy = format!(
         "default-src 'none'; script-src 'self' 'nonce-{nonce}'; style-src 'self' 'nonce-{nonce}'; connect-src 'self'; \

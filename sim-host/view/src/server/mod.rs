@@ -51,6 +51,7 @@ pub enum FromPage {
 /// What goes to pages.
 enum ToPages {
     Text(Option<Client>, Utf8Bytes),
+    Seen(Client, u64),
     Dismiss(Client),
     End,
 }
@@ -62,7 +63,7 @@ pub struct File {
     pub name: &'static str,
     /// Its type, as in MIME.
     pub kind: &'static str,
-    /// What is in it; `NONCE` stands for a number that is drawn for each answer.
+    /// What is in it; in HTML, `NONCE` stands for a number that is drawn for each answer.
     pub text: String,
 }
 
@@ -164,6 +165,11 @@ impl Server {
         *lock(&self.latest) = Some(frame.into());
         // The next time somebody says something it is sent all the same.
         let _ = self.waker.wake();
+    }
+
+    /// A page has drawn so many frames since it connected; it gets no more while two are on their way.
+    pub fn seen(&self, client: Client, frames: u64) {
+        self.send(ToPages::Seen(client, frames));
     }
 
     /// Closes the connection to a page.
@@ -283,6 +289,11 @@ impl Pages {
         while let Ok(what) = self.out.try_recv() {
             match what {
                 ToPages::End => return true,
+                ToPages::Seen(Client(number), frames) => {
+                    if let Some(connection) = self.connections.get_mut(&number) {
+                        connection.seen(frames);
+                    }
+                }
                 ToPages::Dismiss(Client(number)) => self.close(number),
                 ToPages::Text(Some(Client(number)), text) => {
                     if let Some(connection) = self.connections.get_mut(&number) {

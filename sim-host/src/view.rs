@@ -1,0 +1,124 @@
+//! `staya view`: a run, or a recording, in the browser.
+
+use crate::run::ScenarioArgs;
+use anyhow::{Context as _, Result};
+use clap::Args;
+use serde::Serialize;
+use staya_console::{Ended, Global, Stop, print, print_json};
+use staya_view::page;
+use staya_view::playback::Playback;
+use staya_view::server::Server;
+use staya_view::session::Session;
+use std::net::{IpAddr, Ipv4Addr, SocketAddr};
+use std::process::{Command, Stdio};
+
+/// Where pages are served.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct ListenArgs {
+    /// Address and port of the page; port 0: any that is free. Beyond this machine (0.0.0.0) whoever has the address that is
+    /// printed, with its token, can watch and steer the run, unencrypted.
+    #[arg(long, value_name = "ADDRESS", default_value_t = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 0))]
+    pub listen: SocketAddr,
+    /// Do not open a browser.
+    #[arg(long)]
+    pub no_open: bool,
+}
+
+impl ListenArgs {
+    /// Starts serving the page, and says where.
+    ///
+    /// # Errors
+    /// The address cannot be listened on.
+    pub fn serve(&self, global: &Global) -> Result<Server> {
+        let server = Server::start(self.listen, page::served()?)?;
+        if !server.address().ip().is_loopback() {
+            eprintln!(
+                "The page is open to the network: whoever learns its address can steer this run, and others on the way can \
+                 read along."
+            );
+        }
+        let url = server.url();
+        if global.json {
+            print_json(&Served { url: &url })?;
+        } else {
+            print(&format!("{url}\n"))?;
+        }
+        if !self.no_open {
+            open(&url);
+        }
+        Ok(server)
+    }
+}
+
+/// Where the page is, as with `--json`.
+#[derive(Debug, Serialize)]
+struct Served<'a> {
+    url: &'a str,
+}
+
+/// Look at a run in the browser, and take hold of it; or play a recording.
+#[derive(Args, Clone, Debug)]
+pub struct ViewArgs {
+    /// A scenario (.toml), or a recording of `staya run --record`.
+    #[command(flatten)]
+    source: ScenarioArgs,
+    #[command(flatten)]
+    listen: ListenArgs,
+    /// Begin paused.
+    #[arg(long)]
+    paused: bool,
+    /// Simulated seconds per second [default: 1, or ten ticks a second where a tick is longer].
+    #[arg(long, value_name = "X", value_parser = speed)]
+    speed: Option<f64>,
+}
+
+fn speed(text: &str) -> Result<f64, String> {
+    let speed = text.parse().ok().filter(|speed| (0.001..=1e6).contains(speed));
+    speed.ok_or_else(|| "give 0.001 to 1000000".to_owned())
+}
+
+impl ViewArgs {
+    /// Runs the command, until Ctrl-C.
+    ///
+    /// # Errors
+    /// A scenario or recording that cannot be read or is wrong, an address that cannot be listened on.
+    pub fn run(&self, global: &Global) -> Result<Ended> {
+        let path = self.source.path();
+        let stop = Stop::on_ctrl_c()?;
+        let is_stopped = || stop.is_requested();
+        let is_scenario = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
+        if is_scenario {
+            let mut session = Session::open(path, &self.source.overrides(), self.paused)?;
+            session.scenario().remarks().iter().for_each(|remark| eprintln!("{remark}"));
+            if self.speed.is_some() {
+                session.set_speed(self.speed);
+            }
+            session.run(&self.listen.serve(global)?, &is_stopped);
+        } else {
+            let mut playback = Playback::open(path, self.paused)?;
+            if let Some(at) = playback.torn_at() {
+                let (_, last) = playback.ticks();
+                eprintln!("{}: the file ends too early, at byte {at}; it is played up to tick {last}", path.display());
+            }
+            if self.speed.is_some() {
+                playback.set_speed(self.speed);
+            }
+            playback.run(&self.listen.serve(global)?, &is_stopped).context("the recording cannot be played on")?;
+        }
+        Ok(Ended::by(&stop))
+    }
+}
+
+/// Opens a browser where there is one; the address has been printed in any case.
+fn open(url: &str) {
+    let has_screen = ["DISPLAY", "WAYLAND_DISPLAY"].iter().any(|name| std::env::var_os(name).is_some());
+    let mut command = match std::env::consts::OS {
+        "macos" => Command::new("open"),
+        "windows" => Command::new("explorer"),
+        _ if has_screen => Command::new("xdg-open"),
+        _ => return,
+    };
+    let command = command.arg(url).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    // Without a browser there is still the address.
+    drop(command.spawn());
+}

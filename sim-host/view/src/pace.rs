@@ -1,0 +1,105 @@
+//! When the next tick is due.
+
+use std::time::{Duration, Instant};
+
+/// How long ticks may be worked on before somebody is listened to again.
+pub const SLICE: Duration = Duration::from_millis(15);
+/// Who is behind by more does not hurry after.
+const LATE: Duration = Duration::from_millis(250);
+/// Ticks a second by default where a tick is long.
+const TICKS_A_SECOND: f64 = 10.0;
+
+/// A clock that runs some times as fast as the wall's, or stands.
+#[derive(Clone, Copy, Debug)]
+pub struct Pace {
+    tick_s: f64,
+    /// Simulated seconds per second; `None`: as fast as it goes.
+    speed: Option<f64>,
+    is_paused: bool,
+    due: Instant,
+}
+
+impl Pace {
+    /// For ticks of `tick_s`; in real time, or ten ticks a second where that is slower.
+    #[must_use]
+    pub fn new(tick_s: f64, is_paused: bool) -> Self {
+        let speed = Some((tick_s * TICKS_A_SECOND).max(1.0));
+        Self { tick_s, speed, is_paused, due: Instant::now() }
+    }
+
+    /// Simulated seconds per second; `None`: as fast as it goes.
+    #[must_use]
+    pub const fn speed(&self) -> Option<f64> {
+        self.speed
+    }
+
+    /// Whether it stands.
+    #[must_use]
+    pub const fn is_paused(&self) -> bool {
+        self.is_paused
+    }
+
+    /// Lets it stand.
+    pub const fn pause(&mut self) {
+        self.is_paused = true;
+    }
+
+    /// Lets it go.
+    pub fn play(&mut self) {
+        self.is_paused = false;
+        self.due = Instant::now();
+    }
+
+    /// Another speed; nonsense is none.
+    pub fn set_speed(&mut self, speed: Option<f64>) {
+        self.speed = speed.filter(|speed| speed.is_finite()).map(|speed| speed.clamp(0.001, 1e6));
+        self.due = Instant::now();
+    }
+
+    /// Until the next tick; zero: it is due. `None`: it stands.
+    #[must_use]
+    pub fn until_due(&self, now: Instant) -> Option<Duration> {
+        (!self.is_paused).then(|| self.speed.map_or(Duration::ZERO, |_| self.due.saturating_duration_since(now)))
+    }
+
+    /// A tick has been done.
+    pub fn done(&mut self, now: Instant) {
+        if let Some(speed) = self.speed {
+            self.due += Duration::from_secs_f64((self.tick_s / speed).min(1e6));
+            if self.due + LATE < now {
+                self.due = now;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_due_at_their_times_and_nobody_hurries_after_a_break() {
+        let mut pace = Pace::new(0.05, false);
+        assert_eq!(pace.speed(), Some(1.0));
+        assert_eq!(Pace::new(2.0, false).speed(), Some(20.0));
+        pace.set_speed(Some(2.0));
+        let start = pace.due;
+        assert_eq!(pace.until_due(start), Some(Duration::ZERO));
+        pace.done(start);
+        assert_eq!(pace.until_due(start), Some(Duration::from_millis(25)));
+        let late = start + Duration::from_secs(60);
+        pace.done(late);
+        pace.done(late);
+        assert_eq!(pace.until_due(late), Some(Duration::from_millis(25)));
+        pace.pause();
+        assert_eq!(pace.until_due(late), None);
+        pace.set_speed(None);
+        pace.play();
+        pace.done(late);
+        assert_eq!(pace.until_due(late), Some(Duration::ZERO));
+        for nonsense in [0.0, -1.0, 1e300, f64::NAN] {
+            pace.set_speed(Some(nonsense));
+            pace.done(late);
+        }
+    }
+}

@@ -1,0 +1,213 @@
+//! A recording that pages look at and move about in.
+
+use crate::frame::FrameData;
+use crate::pace::Pace;
+use crate::recording::{Reader, RecordingError};
+use crate::server::{Client, FromPage, Server};
+use serde::Deserialize;
+use serde_json::json;
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// Least time between two frames.
+const FRAME: Duration = Duration::from_millis(16);
+/// Time between two states that nobody asked for.
+const STATE: Duration = Duration::from_millis(500);
+/// Rows of figures that a page is told at first.
+const ROWS: u32 = 2000;
+
+/// What a page can ask of a recording.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(tag = "do", rename_all = "lowercase")]
+enum Wanted {
+    Pause,
+    Play,
+    Step,
+    Speed {
+        x: Option<f64>,
+    },
+    Seek {
+        tick: u32,
+    },
+    Seen {
+        frames: u64,
+    },
+    #[serde(other)]
+    Other,
+}
+
+/// A recording, and those who look at it.
+#[derive(Debug)]
+pub struct Playback {
+    reader: Reader,
+    first: u32,
+    last: u32,
+    tick: u32,
+    /// The scene that pages know.
+    scene: String,
+    rows: Option<String>,
+    pace: Pace,
+    pages: BTreeSet<Client>,
+    is_new: bool,
+    shown: Instant,
+    told: Instant,
+}
+
+impl Playback {
+    /// A recording from its beginning.
+    ///
+    /// # Errors
+    /// It cannot be read, or is damaged.
+    pub fn open(path: &Path, is_paused: bool) -> Result<Self, RecordingError> {
+        let mut reader = Reader::open(path)?;
+        let tick_s = reader.scene()?.tick_s;
+        let scene = reader.scene_text()?;
+        let (first, last) = reader.ticks().unwrap_or_default();
+        let now = Instant::now();
+        let mut playback = Self {
+            reader,
+            first,
+            last,
+            tick: first,
+            scene,
+            rows: None,
+            pace: Pace::new(tick_s, is_paused),
+            pages: BTreeSet::new(),
+            is_new: true,
+            shown: now,
+            told: now,
+        };
+        playback.rows = playback.rows()?;
+        Ok(playback)
+    }
+
+    /// The byte at which the file ends too early, if it does.
+    #[must_use]
+    pub const fn torn_at(&self) -> Option<u64> {
+        self.reader.torn_at()
+    }
+
+    /// First and last tick.
+    #[must_use]
+    pub const fn ticks(&self) -> (u32, u32) {
+        (self.first, self.last)
+    }
+
+    /// How fast it goes at first: simulated seconds per second, `None` as fast as it can.
+    pub fn set_speed(&mut self, speed: Option<f64>) {
+        self.pace.set_speed(speed);
+    }
+
+    /// Plays, and serves pages, until `stop` says so.
+    ///
+    /// # Errors
+    /// The file cannot be read any more, or is damaged.
+    pub fn run(mut self, server: &Server, stop: &dyn Fn() -> bool) -> Result<(), RecordingError> {
+        while !stop() {
+            let patience = self.pace.until_due(Instant::now()).unwrap_or(STATE).min(STATE / 10);
+            let mut word = server.next(patience.max(Duration::from_millis(1)));
+            while let Some(what) = word {
+                self.hear(what, server);
+                word = server.next(Duration::ZERO);
+            }
+            // What nobody could see is left out.
+            let start = Instant::now();
+            while self.pace.until_due(start) == Some(Duration::ZERO) {
+                self.step();
+                self.pace.done(start);
+                if self.pace.speed().is_none() {
+                    break;
+                }
+            }
+            self.show(server)?;
+        }
+        Ok(())
+    }
+
+    fn step(&mut self) {
+        self.tick = (self.tick + 1).min(self.last);
+        self.is_new = true;
+        if self.tick == self.last {
+            self.pace.pause();
+        }
+    }
+
+    fn hear(&mut self, word: FromPage, server: &Server) {
+        match word {
+            FromPage::Opened(client) => {
+                self.pages.insert(client);
+                server.begin_anew(Some(client), self.scene.clone());
+                if let Some(rows) = &self.rows {
+                    server.say(Some(client), rows.clone());
+                }
+                self.is_new = true;
+            }
+            FromPage::Closed(client) => {
+                self.pages.remove(&client);
+            }
+            FromPage::Said(client, text) => match serde_json::from_str(&text) {
+                Ok(Wanted::Pause) => self.pace.pause(),
+                Ok(Wanted::Play) => {
+                    if self.tick == self.last {
+                        self.tick = self.first;
+                    }
+                    self.pace.play();
+                }
+                Ok(Wanted::Step) => {
+                    self.pace.pause();
+                    self.step();
+                }
+                Ok(Wanted::Speed { x }) => self.pace.set_speed(x),
+                Ok(Wanted::Seek { tick }) => {
+                    self.pace.pause();
+                    self.tick = tick.clamp(self.first, self.last);
+                    self.is_new = true;
+                }
+                Ok(Wanted::Seen { frames }) => return server.seen(client, frames),
+                Ok(Wanted::Other) => {}
+                Err(_) => server.dismiss(client),
+            },
+        }
+        self.tell(server);
+    }
+
+    fn show(&mut self, server: &Server) -> Result<(), RecordingError> {
+        let now = Instant::now();
+        if now.duration_since(self.told) >= STATE {
+            self.tell(server);
+        }
+        if !self.is_new || self.pages.is_empty() || now.duration_since(self.shown) < FRAME {
+            return Ok(());
+        }
+        (self.is_new, self.shown) = (false, now);
+        let scene = self.reader.scene_text_at(self.tick)?;
+        if scene != self.scene {
+            server.begin_anew(None, scene.clone());
+            self.scene = scene;
+        }
+        server.show(self.reader.frame_bytes(self.tick)?.to_vec());
+        Ok(())
+    }
+
+    fn tell(&mut self, server: &Server) {
+        self.told = Instant::now();
+        let state = json!({
+            "type": "state", "paused": self.pace.is_paused(), "speed": self.pace.speed(), "tick": self.tick,
+            "first": self.first, "last": self.last, "clients": self.pages.len(), "at_end": self.tick == self.last,
+        });
+        server.say(None, state.to_string());
+    }
+
+    /// Figures over the whole recording.
+    fn rows(&mut self) -> Result<Option<String>, RecordingError> {
+        let every = ((self.last - self.first) / ROWS).max(1);
+        let mut rows = Vec::new();
+        for tick in (self.first..=self.last).step_by(every as usize) {
+            if let Ok((tick, figures)) = FrameData::figures_of(self.reader.frame_bytes(tick)?) {
+                rows.push(json!([tick, figures]));
+            }
+        }
+        Ok((rows.len() > 1).then(|| json!({ "type": "figures", "rows": rows }).to_string()))
+    }
+}

@@ -1,0 +1,289 @@
+//! What a session and its pages say to each other, in JSON (`PROTOCOL.md`).
+
+use super::Session;
+use crate::frame::FrameData;
+use crate::scene::{self, Mode, Scene};
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD;
+use serde::Deserialize;
+use serde_json::{Value, json};
+use staya_controller::agent::{Event, Parameter, Wait};
+use staya_controller::names::Named as _;
+use staya_controller::robot::RobotId;
+use staya_sim::engine::{Choice, Inspection, SeenLand};
+use staya_sim::radio::Reception;
+use staya_sim::scenario::{Intervention, Scenario, Shape};
+
+/// Links that are told at a time.
+const LINKS: usize = 20_000;
+
+/// What a page asks for.
+#[derive(Clone, Debug)]
+pub(super) struct Asked {
+    pub wanted: Wanted,
+}
+
+/// See `PROTOCOL.md`, From the page.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(tag = "do", rename_all = "lowercase", deny_unknown_fields)]
+pub(super) enum Wanted {
+    Pause,
+    Play,
+    Step,
+    Speed { x: Option<f64> },
+    Seek { tick: u32 },
+    Select { robot: Option<usize> },
+    Links { on: bool },
+    Seen { frames: u64 },
+    Save,
+    Restart { seed: Option<u64> },
+    New { robots: u32, goals: u32, obstacles: u32, seed: u64 },
+    Order { order: Order },
+}
+
+/// A word of a page that cannot be understood.
+#[derive(Clone, Debug)]
+pub(super) struct NotUnderstood {
+    pub text: String,
+    /// Otherwise it is no page that speaks.
+    pub is_json: bool,
+}
+
+impl Asked {
+    pub fn read(text: &str) -> Result<Self, NotUnderstood> {
+        match serde_json::from_str(text) {
+            Ok(wanted) => Ok(Self { wanted }),
+            Err(error) => {
+                let is_json = serde_json::from_str::<serde_json::Map<String, Value>>(text).is_ok();
+                Err(NotUnderstood { text: format!("not understood: {error}"), is_json })
+            }
+        }
+    }
+
+    /// Whether it is about the run at the moment that is shown.
+    pub const fn needs_the_run(&self) -> bool {
+        !matches!(self.wanted, Wanted::Select { .. } | Wanted::Links { .. } | Wanted::Seen { .. })
+    }
+}
+
+/// An intervention as pages say it: robots by their index, places from the scene's origin.
+#[derive(Clone, Debug, Deserialize)]
+pub(super) struct Order(serde_json::Map<String, Value>);
+
+impl Order {
+    /// The same by robots' numbers, in world coordinates.
+    pub fn intervention(mut self, scenario: &Scenario, origin_m: [f64; 3]) -> Result<Intervention, String> {
+        if let Some(index) = self.0.get("robot").filter(|index| !index.is_null()) {
+            let index = index.as_u64().and_then(|index| usize::try_from(index).ok());
+            let robot = index.and_then(|index| scenario.robots.get(index));
+            let robot = robot.ok_or("there is no such robot; select one that there is")?;
+            self.0.insert("robot".to_owned(), robot.id.0.into());
+        }
+        // No limit is no number in JSON.
+        if self.0.get("range_m").is_some_and(Value::is_null) {
+            self.0.remove("range_m");
+            self.0.insert("no_limit".to_owned(), true.into());
+        }
+        let no_limit = self.0.remove("no_limit").is_some();
+        let intervention = serde_json::from_value(Value::Object(self.0));
+        let mut intervention = intervention.map_err(|error| format!("this order is not understood: {error}"))?;
+        let near = |place_m: &mut [f64; 3]| (0..3).for_each(|axis| place_m[axis] += origin_m[axis]);
+        let flat = |place_m: &mut [f64; 2]| (0..2).for_each(|axis| place_m[axis] += origin_m[axis]);
+        match &mut intervention {
+            Intervention::Goal { place_m, .. } | Intervention::Waypoint { place_m, .. } => near(place_m),
+            Intervention::Radio { range_m, .. } if no_limit => *range_m = Some(f64::INFINITY),
+            Intervention::Solid { solid } => match solid {
+                Shape::Circle { center_m, .. } => flat(center_m),
+                Shape::Segment { from_m, to_m } => [from_m, to_m].into_iter().for_each(flat),
+                Shape::Polygon { points_m } => points_m.iter_mut().for_each(flat),
+                Shape::Ball { center_m, .. } => near(center_m),
+            },
+            _ => {}
+        }
+        Ok(intervention)
+    }
+}
+
+pub(super) fn error(text: &str) -> String {
+    json!({ "type": "error", "text": text }).to_string()
+}
+
+pub(super) fn saved(name: &str, text: &str) -> String {
+    json!({ "type": "saved", "name": format!("{name}-by-hand.toml"), "text": text }).to_string()
+}
+
+/// What happened, for people.
+pub(super) fn event(event: &Event) -> String {
+    match event {
+        Event::ModeChanged { from, to } => format!("{from:?} → {to:?}").to_lowercase(),
+        Event::NoRoute => "no way out of the window".to_owned(),
+        Event::TargetMoved { from, to } => format!("target ({}, {}) → ({}, {})", from.x, from.y, to.x, to.y),
+        Event::RequestExpired { to, kind } => format!("robot {to} never answered ({kind:?})").to_lowercase(),
+        Event::NeighborFound(id) => format!("robot {id} found"),
+        Event::NeighborLost(id) => format!("robot {id} lost"),
+        Event::NeighborEvicted(id) => format!("no room for robot {id}"),
+        Event::NeighborRebooted(id) => format!("robot {id} started anew"),
+        Event::NobodyHeard => "nobody is heard".to_owned(),
+        Event::DuplicateId(id) => format!("two robots have the number {id}"),
+    }
+}
+
+/// One of a robot's numbers of which others are told too.
+fn word(index: usize) -> Option<&'static str> {
+    Some(Wait::NAMES.get(index)?.0)
+}
+
+impl Session {
+    pub(super) fn scene(&self, mode: Mode) -> String {
+        let origin_m = self.framer.origin_m();
+        let parameters = Parameter::NAMES.iter().filter_map(|&(name, parameter)| {
+            let value = (0..self.scenario.robots.len()).find_map(|index| self.engine.parameter(index, parameter))?;
+            let [least, greatest] = parameter.range();
+            Some(scene::Parameter {
+                name: name.to_owned(),
+                unit: parameter.unit().to_owned(),
+                least: least.into(),
+                greatest: greatest.into(),
+                value: Some(value.into()),
+                what: parameter.what().to_owned(),
+            })
+        });
+        let is_in_space = scene::is_in_space(&self.scenario);
+        let scene = Scene {
+            land: self.engine.terrain().map(|land| scene::land(land, origin_m)),
+            solids: scene::solids(self.engine.solids(), is_in_space, origin_m),
+            parameters: parameters.collect(),
+            radio: self.radio(),
+            ..Scene::new(&self.scenario, mode)
+        };
+        json!(scene).to_string()
+    }
+
+    /// The radio as it is now.
+    fn radio(&self) -> scene::Radio {
+        let mut radio = scene::Radio::of(&self.scenario);
+        let planned = self.scenario.interventions.iter().filter(|(tick, _)| *tick < self.tick);
+        for (_, what) in planned.chain(self.done.iter().filter(|(tick, _)| *tick <= self.tick)) {
+            if let Intervention::Radio { loss, range_m } = what {
+                radio.loss = loss.unwrap_or(radio.loss);
+                if let Some(range_m) = range_m {
+                    radio.range_m = Some(*range_m).filter(|range_m| range_m.is_finite());
+                }
+            }
+        }
+        radio
+    }
+
+    pub(super) fn state(&self) -> String {
+        json!({
+            "type": "state",
+            "paused": self.pace.is_paused(),
+            "speed": self.pace.speed(),
+            "tick": self.catches_up_to.unwrap_or(self.tick),
+            "first": 0,
+            "last": self.last_tick(),
+            "clients": self.pages.len(),
+            "at_end": self.is_over,
+            "radio": self.radio(),
+        })
+        .to_string()
+    }
+
+    /// Figures of the ticks so far; `None` before the first.
+    pub(super) fn rows(&self, most: usize) -> Option<String> {
+        let frames = self.memory.some(most).filter_map(|bytes| FrameData::figures_of(bytes).ok());
+        let rows: Vec<_> = frames.map(|(tick, figures)| json!([tick, figures])).collect();
+        (rows.len() > 1).then(|| json!({ "type": "figures", "rows": rows }).to_string())
+    }
+
+    pub(super) fn links(&self) -> String {
+        let robots = &self.scenario.robots;
+        let index_of = |id: RobotId| robots.binary_search_by_key(&id, |robot| robot.id).ok();
+        let mut pairs = Vec::new();
+        for to in 0..robots.len() {
+            for (sender, reception) in self.engine.receptions(to) {
+                let Some(from) = index_of(*sender) else { continue };
+                let fate = match reception {
+                    Reception::Delivered => 0,
+                    Reception::Lost => 1,
+                    Reception::Damaged => 2,
+                };
+                pairs.extend((from as u32).to_le_bytes());
+                pairs.extend(((to as u32) << 2 | fate).to_le_bytes());
+                if pairs.len() >= LINKS * 8 {
+                    break;
+                }
+            }
+        }
+        json!({ "type": "links", "tick": self.tick, "pairs": BASE64_STANDARD.encode(pairs) }).to_string()
+    }
+
+    /// Everything about one robot.
+    pub(super) fn robot(&self, index: usize) -> String {
+        let observation = self.engine.observation(index);
+        let Inspection { known, land, choice, parameters, sent_bytes, heard_bytes } = self.engine.inspect(index);
+        let origin_m = self.framer.origin_m();
+        let robots = &self.scenario.robots;
+        let index_of = |id: RobotId| robots.binary_search_by_key(&id, |robot| robot.id).ok();
+        let neighbors = known.iter().map(|known| {
+            let other = index_of(known.id);
+            let error_m = other.map(|other| {
+                let truth_m = self.engine.observation(other).motion.position_m;
+                let off = [0, 1, 2].map(|axis| known.position_m[axis] - truth_m[axis]);
+                libm::sqrt(off.iter().map(|x| x * x).sum())
+            });
+            let position_m = [0, 1, 2].map(|axis| known.position_m[axis] - origin_m[axis]);
+            json!({
+                "id": known.id.0, "index": other, "position_m": position_m, "velocity_mps": known.velocity_mps,
+                "age_s": known.age_s, "error_m": error_m,
+            })
+        });
+        let parameters = parameters.iter().map(|(parameter, value)| (parameter.name().to_owned(), json!(value)));
+        let events = self.events.get(&index).into_iter().flatten();
+        let status = observation.status;
+        json!({
+            "type": "robot",
+            "index": index,
+            "id": robots[index].id.0,
+            "tick": self.tick,
+            "mode": status.mode as u8,
+            "wait": status.wait.map(|wait| wait as u8).filter(|wait| word(usize::from(*wait)).is_some()),
+            "leader": index_of(status.leader),
+            "boot": observation.boot,
+            "up": observation.is_up,
+            "wish": choice.as_ref().map(|choice| choice.wish_mps),
+            "neighbors": neighbors.collect::<Vec<_>>(),
+            "window": land.map(|land| window(&land)),
+            "orca": choice.map(|choice| orca(&choice)),
+            "events": events.map(|(tick, text)| json!({ "tick": tick, "text": text })).collect::<Vec<_>>(),
+            "sent": sent_bytes,
+            "heard": heard_bytes,
+            "parameters": parameters.collect::<serde_json::Map<_, _>>(),
+            "device": null,
+        })
+        .to_string()
+    }
+}
+
+fn window(land: &SeenLand) -> Value {
+    let costs: Vec<u8> = land.costs.iter().flat_map(|cost| cost.to_le_bytes()).collect();
+    json!({
+        "corner": [land.corner.x, land.corner.y],
+        "side": land.width,
+        "cells": BASE64_STANDARD.encode(&land.cells),
+        "costs": BASE64_STANDARD.encode(costs),
+    })
+}
+
+fn orca(choice: &Choice) -> Value {
+    let flat = |v: [f32; 3]| [v[0], v[1]];
+    let lines = choice.permitted.iter().map(|permitted| {
+        json!({ "point": flat(permitted.point_mps), "normal": flat(permitted.normal), "hard": permitted.is_of_obstacle })
+    });
+    json!({
+        "preferred_mps": flat(choice.wish_mps),
+        "chosen_mps": flat(choice.chosen_mps),
+        "max_speed_mps": choice.max_speed_mps,
+        "lines": lines.collect::<Vec<_>>(),
+    })
+}

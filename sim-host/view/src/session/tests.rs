@@ -1,0 +1,236 @@
+use super::*;
+use crate::frame::FrameData;
+use serde_json::{Value, json};
+use staya_sim::engine::simulate;
+use std::net::{SocketAddr, TcpStream};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+use tungstenite::stream::MaybeTlsStream;
+use tungstenite::{Message, WebSocket};
+
+const IN_PLANE: &str = "name = \"t\"\nseed = 3\nticks = 2000\ntick_s = 0.05\n[radio]\nrange_m = 9\nloss = 0.1\n\
+     [plane]\nradius_m = 0.2\nmax_speed_mps = 1\n[[plane.robots.list]]\nstart_m = [0, 0]\ngoal_m = [6, 0]\n\
+     [[plane.robots.list]]\nstart_m = [6, 0.1]\ngoal_m = [0, 0]\n[[plane.ball]]\ncenter_m = [4, 2]\nradius_m = 0.3\n";
+
+/// A session in a thread, and a page that looks at it.
+struct Running {
+    page: WebSocket<MaybeTlsStream<TcpStream>>,
+    stop: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+    url: String,
+    /// Frames and texts keep no order among each other.
+    last: Option<FrameData>,
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+impl Running {
+    fn new(text: &str) -> Self {
+        let session = Session::new(text.to_owned(), Path::new("t.toml"), &Overrides::default(), true);
+        let session = session.expect("a good scenario");
+        let server = Server::start(SocketAddr::from(([127, 0, 0, 1], 0)), Vec::new()).expect("a port is free");
+        let url = server.url().replace("http:", "ws:").replace("/?", "/live?");
+        let stop = Arc::new(AtomicBool::new(false));
+        let stops = Arc::clone(&stop);
+        // The engine does not change threads: the session is made where it runs.
+        let thread = std::thread::spawn(move || session.run(&server, &|| stops.load(Ordering::Relaxed)));
+        let (page, _) = tungstenite::connect(&url).expect("it lets its pages in");
+        Self { page, stop, thread: Some(thread), url, last: None }
+    }
+
+    fn say(&mut self, word: &Value) {
+        self.page.send(Message::Text(word.to_string().into())).expect("it reads");
+    }
+
+    /// The next message for which there is an answer.
+    fn until<T>(&mut self, mut is: impl FnMut(Result<Value, FrameData>) -> Option<T>) -> T {
+        loop {
+            let found = match self.page.read().expect("it goes on") {
+                Message::Text(text) => is(Ok(serde_json::from_str(&text).expect("JSON"))),
+                Message::Binary(bytes) => {
+                    let frame = FrameData::decode(&bytes).expect("a frame");
+                    self.last = Some(frame.clone());
+                    is(Err(frame))
+                }
+                _ => None,
+            };
+            if let Some(found) = found {
+                return found;
+            }
+        }
+    }
+
+    fn text(&mut self, kind: &str) -> Value {
+        self.until(|message| message.ok().filter(|message| message["type"] == kind))
+    }
+
+    fn state(&mut self, is: impl Fn(&Value) -> bool) -> Value {
+        self.until(|message| message.ok().filter(|message| message["type"] == "state" && is(message)))
+    }
+
+    fn frame(&mut self, tick: u32) -> FrameData {
+        if let Some(last) = self.last.take_if(|last| last.tick == tick) {
+            return last;
+        }
+        self.until(|message| message.err().filter(|frame| frame.tick == tick))
+    }
+}
+
+fn hash(text: &str) -> String {
+    let scenario = Scenario::parse(text, Path::new("t.toml"), &Overrides::default()).expect("a good scenario");
+    let outcome = simulate(&scenario, |_, _| ControlFlow::Continue(())).expect("they can be placed");
+    format!("{:016x}", outcome.trace_hash)
+}
+
+#[test]
+fn a_page_pauses_steps_and_goes_back_and_the_run_is_the_same() {
+    let mut run = Running::new(IN_PLANE);
+    let scene = run.text("scene");
+    assert_eq!(
+        (&scene["kind"], &scene["mode"], &scene["solids"][0]["kind"]),
+        (&json!("plane"), &json!("live"), &json!("circle"))
+    );
+    assert!(scene["parameters"].as_array().expect("a list").iter().any(|parameter| parameter["name"] == "horizon_s"));
+    assert_eq!(run.frame(0).bodies(), 2);
+    for tick in 1..=5 {
+        run.say(&json!({ "do": "step" }));
+        assert_eq!(run.frame(tick).tick, tick);
+    }
+    let fifth = {
+        run.say(&json!({ "do": "seek", "tick": 2 }));
+        run.frame(2)
+    };
+    assert!(fifth.position_m[0][0] > 0.0);
+    run.say(&json!({ "do": "speed", "x": null }));
+    run.say(&json!({ "do": "play" }));
+    let end = run.state(|state| state["at_end"] == true);
+    assert_eq!(end["paused"], true);
+    let last = u32::try_from(end["tick"].as_u64().expect("a number")).expect("small");
+    assert_eq!(run.frame(last).figures.hash, hash(IN_PLANE));
+}
+
+#[test]
+fn what_a_page_does_is_saved_as_a_scenario_that_does_it_again() {
+    let mut run = Running::new(IN_PLANE);
+    run.text("scene");
+    let order = |order: Value| json!({ "do": "order", "order": order });
+    for _ in 0..7 {
+        run.say(&json!({ "do": "step" }));
+    }
+    run.say(&order(json!({ "kind": "goal", "robot": 0, "place_m": [3, 3, 0] })));
+    run.say(&order(json!({ "kind": "solid", "solid": { "kind": "segment", "from_m": [2, 1], "to_m": [3, 1] } })));
+    assert_eq!(
+        run.until(|message| message.ok().filter(|scene| scene["solids"][1].is_object()))["solids"][1]["kind"],
+        "segment"
+    );
+    run.say(&order(json!({ "kind": "parameter", "name": "horizon_s", "value": 3 })));
+    run.say(&order(json!({ "kind": "radio", "loss": 0.5, "range_m": null })));
+    run.say(&json!({ "do": "step" }));
+    run.say(&order(json!({ "kind": "move", "index": 0, "by_m": [-1, -1] })));
+    run.say(&order(json!({ "kind": "down", "robot": 1, "for_s": 1 })));
+    run.say(&json!({ "do": "speed", "x": null }));
+    run.say(&json!({ "do": "play" }));
+    let state = run.state(|state| state["at_end"] == true);
+    assert_eq!(state["radio"], json!({ "loss": 0.5, "range_m": null }));
+    // And again from the middle: what was done stays done.
+    let last = state["tick"].as_u64().expect("a number");
+    run.say(&json!({ "do": "seek", "tick": 5 }));
+    run.state(|state| state["tick"] == 5);
+    run.say(&json!({ "do": "seek", "tick": last }));
+    run.state(|state| state["tick"] == last);
+    run.say(&json!({ "do": "save" }));
+    let saved = run.text("saved");
+    let text = saved["text"].as_str().expect("a text");
+    let said = format!("# Trace hash after tick {last}: {}", hash(text));
+    assert!(text.contains(&said), "{said}\n{text}");
+    assert_ne!(hash(text), hash(IN_PLANE));
+    // Playing on from an earlier moment forgets what came later.
+    run.say(&json!({ "do": "seek", "tick": 5 }));
+    run.state(|state| state["tick"] == 5);
+    run.last = None;
+    run.say(&json!({ "do": "play" }));
+    let state = run.state(|state| state["at_end"] == true && state["tick"].as_u64() > Some(5));
+    let last = u32::try_from(state["tick"].as_u64().expect("a number")).expect("small");
+    assert_eq!(run.frame(last).figures.hash, hash(IN_PLANE));
+}
+
+#[test]
+fn a_selected_robot_shows_what_it_knows() {
+    let mut run = Running::new(IN_PLANE);
+    run.text("scene");
+    run.say(&json!({ "do": "select", "robot": 1 }));
+    run.say(&json!({ "do": "links", "on": true }));
+    for _ in 0..8 {
+        run.say(&json!({ "do": "step" }));
+    }
+    let robot = run.until(|message| message.ok().filter(|robot| robot["type"] == "robot" && robot["tick"] == 8));
+    assert_eq!((&robot["index"], &robot["id"]), (&json!(1), &json!(2)));
+    assert_eq!(robot["neighbors"][0]["index"], 0);
+    assert!(robot["neighbors"][0]["error_m"].as_f64() < Some(0.2), "{robot}");
+    assert!(robot["orca"]["max_speed_mps"].as_f64() > Some(0.0) && robot["orca"]["lines"].is_array());
+    assert!(robot["events"].as_array().is_some_and(|events| !events.is_empty()));
+    let links = run.until(|message| message.ok().filter(|links| links["type"] == "links" && links["tick"] == 8));
+    assert!(links["pairs"].is_string());
+}
+
+#[test]
+fn wrong_words_are_answered_and_strangers_are_left() {
+    let mut run = Running::new(IN_PLANE);
+    run.text("scene");
+    let wrong = [
+        json!({ "do": "fly" }),
+        json!({ "do": "order", "order": { "kind": "goal", "robot": 9, "place_m": [0, 0, 0] } }),
+        json!({ "do": "order", "order": { "kind": "goal", "robot": 0 } }),
+        json!({ "do": "order", "order": { "kind": "remove", "index": 5 } }),
+        json!({ "do": "order", "order": { "kind": "cell", "cell": [0, 0], "class": 0 } }),
+        json!({ "do": "order", "order": { "kind": "parameter", "name": "share", "value": 7 } }),
+        json!({ "do": "seek", "tick": -1 }),
+    ];
+    for word in wrong {
+        run.say(&word);
+        let error = run.text("error");
+        assert!(error["text"].as_str().is_some_and(|text| text.len() > 10), "{word}: {error}");
+    }
+    assert_eq!(
+        {
+            run.say(&json!({ "do": "step" }));
+            run.frame(1)
+        }
+        .tick,
+        1
+    );
+    // What is no JSON ends the connection, and nothing else.
+    let (mut stranger, _) = tungstenite::connect(&run.url).expect("it knows the token");
+    stranger.send(Message::Text("garbage".into())).expect("it reads");
+    while stranger.read().is_ok() {}
+    assert_eq!(
+        {
+            run.say(&json!({ "do": "step" }));
+            run.frame(2)
+        }
+        .tick,
+        2
+    );
+}
+
+#[test]
+fn new_runs_take_the_place_of_old_ones() {
+    let mut run = Running::new(IN_PLANE);
+    run.text("scene");
+    run.say(&json!({ "do": "new", "robots": 12, "goals": 3, "obstacles": 5, "seed": 4 }));
+    let scene = run.text("scene");
+    assert_eq!((&scene["name"], scene["solids"].as_array().map(Vec::len)), (&json!("new-run"), Some(5)));
+    let frame = run.until(|message| message.err().filter(|frame| frame.bodies() > 2));
+    assert_eq!((frame.bodies(), frame.figures.goals.len()), (12, 3));
+    run.say(&json!({ "do": "restart", "seed": 5 }));
+    assert_eq!(run.text("scene")["seed"], 5);
+}

@@ -1,0 +1,113 @@
+//! Scenarios as files: with what was done by hand, or made up of a few numbers.
+
+use staya_controller::rand::Rng;
+use staya_sim::scenario::{Intervention, Scenario, with_interventions};
+use std::fmt::Write as _;
+
+/// Keeps the draws of this module apart from all others.
+const RANDOM: u32 = u32::from_be_bytes(*b"view");
+
+/// Sets a field at the top of a scenario's text, where fields stand that are in no table.
+pub(super) fn with_top_field(text: &str, name: &str, value: &str) -> String {
+    let mut lines: Vec<&str> = text.lines().collect();
+    let top = lines.iter().position(|line| line.trim_start().starts_with('[')).unwrap_or(lines.len());
+    let is_it = |line: &&str| line.split_once('=').is_some_and(|(field, _)| field.trim() == name);
+    let field = format!("{name} = {value}");
+    match lines[..top].iter().position(is_it) {
+        Some(at) => lines[at] = &field,
+        None => lines.insert(0, &field),
+    }
+    lines.join("\n") + "\n"
+}
+
+/// The file that does again what was done by hand.
+pub(super) fn saved(text: &str, scenario: &Scenario, done: &[(u32, Intervention)], tick: u32, hash: &str) -> String {
+    let text = with_top_field(text, "seed", &scenario.seed.to_string());
+    let text = with_top_field(&text, "ticks", &scenario.ticks.max(tick).to_string());
+    let head = format!(
+        "# Saved from a view. File names are relative to the folder of the scenario that it was made of.\n\
+         # Trace hash after tick {tick}: {hash}\n"
+    );
+    head + &with_interventions(&text, scenario.tick_us, done)
+}
+
+/// What a run of one's own is made of (V. E. and V. V. Pavlovsky, PAV): robots that flock to goals among obstacles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Configuration {
+    /// 1 to 2000.
+    pub robots: u32,
+    /// 1 to 4.
+    pub goals: u32,
+    /// Round ones, 0 to 200.
+    pub obstacles: u32,
+    /// Of places and of the run.
+    pub seed: u64,
+}
+
+impl Configuration {
+    /// The same within what there can be.
+    #[must_use]
+    pub fn clamped(self) -> Self {
+        let Self { robots, goals, obstacles, seed } = self;
+        Self { robots: robots.clamp(1, 2000), goals: goals.clamp(1, 4), obstacles: obstacles.min(200), seed }
+    }
+
+    /// The scenario: robots start in the west, their goals are in the east, obstacles between them, away from both.
+    #[must_use]
+    pub fn scenario(self) -> String {
+        let Self { robots, goals, obstacles, seed } = self.clamped();
+        // A robot needs a place of a metre or so to be drawn into.
+        let side_m = libm::ceil(libm::sqrt(f64::from(robots))) * 1.2 + 3.0;
+        let width_m = side_m * 2.0 + 16.0;
+        let mut draws = Rng::keyed(seed, RANDOM, robots, obstacles);
+        let mut draw = |low: f64, high: f64| low + (high - low) * f64::from(draws.below(1 << 20)) / f64::from(1 << 20);
+        let places: Vec<String> = (0..goals)
+            .map(|goal| {
+                let y = side_m * (f64::from(goal) + 0.5) / f64::from(goals);
+                format!("[{:.2}, {y:.2}]", width_m - side_m / 2.0)
+            })
+            .collect();
+        let mut text = format!(
+            "name = \"new-run\"\nseed = {seed}\nticks = 4000\ntick_s = 0.1\n[radio]\nrange_m = 20\n\
+             [plane]\nradius_m = 0.2\nmax_speed_mps = 1\nguidance = \"goal_flock\"\nsafety = \"orca\"\n\
+             [plane.robots.cloud]\ncount = {robots}\nfrom_m = [0, 0]\nto_m = [{side_m:.2}, {side_m:.2}]\n\
+             goals_m = [{}]\n[plane.goal_flock]\nmin_distance_m = 0.6\narrival_m = {:.2}\n",
+            places.join(", "),
+            0.6 * libm::sqrt(f64::from(robots)).max(2.0),
+        );
+        for _ in 0..obstacles {
+            let radius_m = draw(0.2, 0.8);
+            let (x, y) = (draw(side_m + 2.0, width_m - side_m - 2.0), draw(-1.0, side_m + 1.0));
+            let ball = format!("[[plane.ball]]\ncenter_m = [{x:.2}, {y:.2}]\nradius_m = {radius_m:.2}\n");
+            text.push_str(&ball);
+        }
+        let _ = writeln!(text, "# {robots} robots, {goals} goals, {obstacles} obstacles.");
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use staya_sim::scenario::Overrides;
+    use std::path::Path;
+
+    #[test]
+    fn fields_at_the_top_are_replaced_or_added_and_others_left_alone() {
+        let text = "# a\nname = \"t\"\nseed=3\n[radio]\nseed = 5\n";
+        assert_eq!(with_top_field(text, "seed", "7"), "# a\nname = \"t\"\nseed = 7\n[radio]\nseed = 5\n");
+        assert_eq!(with_top_field(text, "ticks", "9"), format!("ticks = 9\n{text}"));
+    }
+
+    #[test]
+    fn any_configuration_is_a_good_scenario() {
+        for (robots, goals, obstacles) in [(1, 1, 0), (20, 3, 12), (0, 9, 999), (600, 4, 60), (u32::MAX, 0, 5)] {
+            for seed in 0..4 {
+                let configuration = Configuration { robots, goals, obstacles, seed };
+                let scenario = Scenario::parse(&configuration.scenario(), Path::new("new.toml"), &Overrides::default());
+                let scenario = scenario.unwrap_or_else(|error| panic!("{configuration:?}: {error}"));
+                assert_eq!(scenario.robots.len(), configuration.clamped().robots as usize);
+            }
+        }
+    }
+}
