@@ -146,9 +146,21 @@ export class Controls {
     const timeline = element("timeline");
     if (!this.scrubbing) timeline.value = frame.tick;
     timeline.setAttribute("aria-valuetext", `${text}, ${duration(frame.time)}`);
-    const share = (tick) => `${100 * (tick - state.first) / Math.max(timeline.max - state.first, 1)}%`;
+    // The knob's middle stays half its width within the line.
+    const share = (tick) => `calc(7px + (100% - 14px) * ${(tick - state.first) / Math.max(timeline.max - state.first, 1)})`;
     timeline.style.setProperty("--played", share(this.scrubbing ? Number(timeline.value) : frame.tick));
     timeline.style.setProperty("--known", share(Math.max(state.last, scene.mode === "recording" ? 0 : frame.tick)));
+  }
+
+  /** Shows on the time line when something was ordered. */
+  mark(orders) {
+    const { first, last } = this.app.state;
+    element("marks").replaceChildren(...orders.map(({ tick, order }) => {
+      const mark = document.createElement("i");
+      mark.style.left = `${100 * (tick - first) / Math.max(last - first, 1)}%`;
+      mark.title = `${order.kind} at tick ${tick}`;
+      return mark;
+    }));
   }
 
   scrub() {
@@ -198,6 +210,7 @@ export class Controls {
       app.send({ do: "links", on });
     }
     if (layer === "relief") app.restyle();
+    if (layer === "window") app.showWindow();
     this.legend();
     app.dirty = true;
   }
@@ -325,7 +338,7 @@ export class Controls {
       key(line(css.vermillion), "packet lost");
       key(line(css.orange, [2, 2]), "packet damaged");
     }
-    if (layers.known && scene.mode !== "recording") key(disc("transparent", css.ghost), "where it thinks others are");
+    if (layers.known && app.selected !== null && scene.mode !== "recording") key(disc("transparent", css.ghost), "where it thinks others are");
     if (scene.land) {
       key((context) => {
         const shades = context.createLinearGradient(1, 0, 25, 0);

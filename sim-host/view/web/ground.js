@@ -1,10 +1,15 @@
-// What does not move by itself: land, grid and solids, on a canvas below the bodies that is drawn anew only when they or
-// the camera change.
+// What is below the bodies: land, grid, solids, and what the selected robot reckons that cells of its window cost; on a
+// canvas that is drawn anew only when they or the camera change.
+
+import { fromBase64 } from "staya/frame.js";
 
 const IMAGE_PIXELS = 1200000;
 const FINEST = 8;
 const CRISP_PIXELS = 5;
 const SHADE = 0.55;
+const COST_PIXELS = 30;
+// From cheap to dear, told apart by anybody and on any ground.
+const COSTS = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
 
 /** Round steps of about `pixels`: 1, 2 or 5 times a power of ten metres. */
 export function niceStep(metres) {
@@ -20,6 +25,7 @@ export class Ground {
     this.context = canvas.getContext("2d", { alpha: false, willReadFrequently: software });
     this.land = null;
     this.solids = [];
+    this.window = null;
     this.relief = true;
     this.version = 0;
     this.drawn = "";
@@ -34,6 +40,13 @@ export class Ground {
   }
 
   changed() {
+    this.version++;
+  }
+
+  /** A robot's window, with `costs` as they came; null without one. */
+  setWindow(window) {
+    if (!window && !this.window) return;
+    this.window = window && { ...window, costs: new Float32Array(fromBase64(window.costs).buffer) };
     this.version++;
   }
 
@@ -68,6 +81,7 @@ export class Ground {
     if (camera.space) return;
     if (this.land) this.drawLand(camera);
     if (showGrid) this.drawGrid(camera);
+    if (this.land && this.window) this.drawWindow(camera);
     for (const solid of this.solids) this.drawSolid(camera, solid);
   }
 
@@ -154,6 +168,31 @@ export class Ground {
     this.image.getContext("2d").putImageData(picture, x0 * fine, (height - y1) * fine);
   }
 
+  drawWindow(camera) {
+    const { context, land, colours, window: { corner, side, costs } } = this;
+    const cell = land.cell_m * camera.scale;
+    const finite = costs.filter(Number.isFinite);
+    const low = Math.min(...finite), span = Math.max(...finite) - low;
+    const [left, bottom] = camera.project(
+      land.origin_m[0] + corner[0] * land.cell_m, land.origin_m[1] + corner[1] * land.cell_m);
+    context.font = "500 10px system-ui, sans-serif";
+    context.textAlign = "center";
+    for (let y = 0; y < side; y++) {
+      for (let x = 0; x < side; x++) {
+        const cost = costs[y * side + x];
+        if (!Number.isFinite(cost)) continue;
+        context.fillStyle = costColour(span > 0 ? (cost - low) / span : 0, 0.55);
+        context.fillRect(left + x * cell, bottom - (y + 1) * cell, cell, cell);
+        if (cell < COST_PIXELS) continue;
+        context.fillStyle = colours.label;
+        context.fillText(cost < 100 ? cost.toFixed(1) : cost.toFixed(0), left + (x + 0.5) * cell, bottom - (y + 0.08) * cell);
+      }
+    }
+    context.strokeStyle = colours.selected;
+    context.lineWidth = 1.5;
+    context.strokeRect(left, bottom - side * cell, side * cell, side * cell);
+  }
+
   drawGrid(camera) {
     const { context, land, colours } = this;
     const step = land ? land.cell_m : niceStep(45 / camera.scale);
@@ -218,6 +257,12 @@ export class Ground {
     }
     context.stroke();
   }
+}
+
+function costColour(share, alpha) {
+  const at = Math.min(share, 0.9999) * (COSTS.length - 1), i = Math.floor(at), t = at - i;
+  const [r, g, b] = COSTS[i].map((part, k) => Math.round(part + (COSTS[i + 1][k] - part) * t));
+  return `rgb(${r} ${g} ${b} / ${alpha})`;
 }
 
 /** Red, green and blue of `#rrggbb`. */

@@ -10,6 +10,8 @@ export class Live {
     this.listener = listener;
     this.retry = FIRST_RETRY_MS;
     this.socket = null;
+    // Of this connection.
+    this.frames = 0;
   }
 
   start() {
@@ -20,6 +22,7 @@ export class Live {
     socket.onmessage = ({ data }) => this.receive(data);
     socket.onopen = () => {
       this.retry = FIRST_RETRY_MS;
+      this.frames = 0;
       this.listener.onConnection("open");
     };
     socket.onclose = () => {
@@ -33,6 +36,7 @@ export class Live {
   receive(data) {
     try {
       if (typeof data !== "string") {
+        this.frames++;
         this.listener.onFrame(parseFrame(data));
         return;
       }
@@ -49,6 +53,11 @@ export class Live {
     } catch (error) {
       this.listener.onMessage("error", `A message of the server cannot be read: ${error.message}.`);
     }
+  }
+
+  /** The newest frame has been drawn: there is room for more. */
+  seen() {
+    this.send({ do: "seen", frames: this.frames });
   }
 
   send(message) {

@@ -18,6 +18,8 @@ import { View } from "staya/view.js";
 const PLOTS_EVERY_MS = 120;
 const TOAST_MS = 6000;
 const TOP_RATIO = 2;
+const NO_WEBGL = "This browser offers no WebGL2, so robots cannot be drawn. Turn on hardware acceleration in its settings, "
+  + "or start Chromium with --enable-unsafe-swiftshader; a current Firefox, Chrome, Edge or Safari has it.";
 
 const element = (id) => document.getElementById(id);
 
@@ -31,14 +33,13 @@ class App {
     this.follow = false;
     this.dirty = true;
     this.frames = { received: 0, drawn: 0 };
-    // Frames of this connection.
-    this.sinceOpen = 0;
     this.fps = 0;
     this.figures = {};
     this.camera = new Camera();
     this.motion = new Motion();
     this.look = new Look();
     this.renderer = Renderer.on(element("bodies"));
+    this.lack = this.renderer ? null : NO_WEBGL;
     const software = this.renderer?.software ?? true;
     this.ground = new Ground(element("ground"), software);
     this.view = new View(this, element("overlay"), software);
@@ -49,10 +50,7 @@ class App {
     this.pointer = new Pointer(this, element("overlay"));
     this.look.onTheme = () => this.restyle();
     this.restyle();
-    if (!this.renderer) {
-      this.banner("This browser offers no WebGL2, so robots cannot be drawn. Turn on hardware acceleration in its settings, "
-        + "or start Chromium with --enable-unsafe-swiftshader; a current Firefox, Chrome, Edge or Safari has it.");
-    }
+    this.banner(this.lack);
     new ResizeObserver(() => this.resize()).observe(element("stage"));
     this.resize();
   }
@@ -125,7 +123,6 @@ class App {
 
   onFrame(frame) {
     this.frames.received++;
-    this.sinceOpen++;
     if (!this.scene) return;
     this.motion.offer(frame);
     this.figures = frame.figures;
@@ -140,7 +137,7 @@ class App {
   onRobot(robot) {
     if (robot.index !== this.selected) return;
     this.robot = robot;
-    this.view.robotChanged();
+    this.showWindow();
     this.panel.update();
     this.orders.robot();
     this.dirty = true;
@@ -149,6 +146,10 @@ class App {
   onLinks(tick, pairs) {
     this.links = { tick, pairs };
     this.dirty = true;
+  }
+
+  onOrders(orders) {
+    this.controls.mark(orders);
   }
 
   onMessage(kind, text) {
@@ -165,9 +166,8 @@ class App {
   }
 
   onConnection(is, inSeconds) {
-    this.sinceOpen = 0;
     if (is === "open") {
-      this.banner(null);
+      this.banner(this.lack);
       if (this.selected !== null) this.send({ do: "select", robot: this.selected });
       if (this.look.layers.links) this.send({ do: "links", on: true });
     } else {
@@ -212,12 +212,17 @@ class App {
     this.robot = null;
     this.follow = this.follow && index !== null;
     if (this.source) this.send({ do: "select", robot: index });
-    this.view.robotChanged();
+    this.showWindow();
     this.panel.update();
     this.orders.robot();
     this.controls.follow();
+    this.controls.legend();
     if (index !== null) this.announce(`Robot ${this.idOf(index)} selected`);
     this.dirty = true;
+  }
+
+  showWindow() {
+    this.ground.setWindow(this.look.layers.window ? this.robot?.window ?? null : null);
   }
 
   idOf(index) {
@@ -296,7 +301,7 @@ class App {
 
   resize() {
     const { clientWidth: width, clientHeight: height } = element("stage");
-    const ratio = Math.min(devicePixelRatio || 1, TOP_RATIO);
+    const ratio = this.renderer?.software ? 1 : Math.min(devicePixelRatio || 1, TOP_RATIO);
     const first = this.camera.width === 1;
     this.camera.resize(Math.max(width, 1), Math.max(height, 1));
     for (const layer of [this.ground, this.renderer, this.view]) layer?.resize(width, height, ratio);
@@ -318,7 +323,7 @@ class App {
     this.draw(now);
     if (news !== "none") {
       this.frames.drawn++;
-      if (this.source instanceof Live) this.send({ do: "seen", frames: this.sinceOpen });
+      if (this.source instanceof Live) this.source.seen();
     }
   }
 

@@ -33,6 +33,8 @@ export class Player {
       this.listener.onFailed(`The recording in this page cannot be read: ${error.message}. Make the page anew with "staya page".`);
       return;
     }
+    const { damage, last } = this.recording;
+    if (damage) this.listener.onMessage("error", `The recording is shown up to tick ${last}: ${damage}.`);
     this.played = performance.now();
     this.said = 0;
     const turn = (now) => {
@@ -41,6 +43,7 @@ export class Player {
     };
     requestAnimationFrame(turn);
     this.play();
+    this.recording.orders().then((orders) => this.listener.onOrders(orders), () => {});
     this.readThrough();
   }
 
@@ -80,7 +83,7 @@ export class Player {
       }
     } catch (error) {
       this.paused = true;
-      this.listener.onMessage("error", `The recording ends here: ${error.message}.`);
+      this.listener.onMessage("error", `The recording cannot be shown from here on: ${error.message}.`);
       this.say();
     }
     this.busy = false;

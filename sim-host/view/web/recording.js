@@ -6,7 +6,7 @@ const MAGIC = "STAYAREC";
 const VERSION = 1;
 const FILE_HEADER = 12;
 const BLOCK_HEADER = 13;
-const SCENE = 1, FRAMES = 2, ORDERS = 3, END = 4;
+const SCENE = 1, FRAMES = 2, ORDERS = 3;
 // Unpacked blocks that are kept, in bytes.
 const KEPT = 96 << 20;
 
@@ -110,25 +110,45 @@ export class Recording {
       if (kind === SCENE) scene = block;
       if (kind === FRAMES && scene) recording.frames.push(Object.assign(block, { scene }));
       if (kind === ORDERS) recording.ordersBlock = block;
-      if (kind === END) recording.endBlock = block;
       at = end;
     }
     if (!recording.frames.length) throw new Error("the recording has no frames");
-    for (const block of recording.frames) {
-      block.first = new DataView((await beginning(block.packed, 12)).buffer).getUint32(8, true);
-    }
-    recording.first = recording.frames[0].first;
-    const last = await recording.unpacked(recording.frames.length - 1);
-    recording.last = last.ticks[last.ticks.length - 1];
+    await recording.readTicks();
     return recording;
   }
 
   constructor() {
     this.frames = [];
     this.ordersBlock = null;
-    this.endBlock = null;
+    // Why there is no more, where the file has been damaged.
+    this.damage = null;
     this.kept = new Map();
     this.scenes = new Map();
+  }
+
+  /** Finds out which ticks the blocks have; what comes after a damaged one is left out. */
+  async readTicks() {
+    const { frames } = this;
+    for (let i = 0; i < frames.length; i++) {
+      try {
+        frames[i].first = new DataView((await beginning(frames[i].packed, 12)).buffer).getUint32(8, true);
+      } catch {
+        this.damage = `the block at byte ${frames[i].at} is damaged`;
+        frames.length = i;
+      }
+    }
+    while (frames.length) {
+      try {
+        const { ticks } = await this.unpacked(frames.length - 1);
+        this.first = frames[0].first;
+        this.last = ticks[ticks.length - 1];
+        return;
+      } catch (error) {
+        this.damage = error.message;
+        frames.pop();
+      }
+    }
+    throw new Error(this.damage);
   }
 
   /** Bytes of all frames, unpacked. */
@@ -141,6 +161,7 @@ export class Recording {
     return this.scenes.get(block.at);
   }
 
+  /** What was ordered while it was made, `[{tick, order}]`. */
   async orders() {
     return this.ordersBlock ? JSON.parse(text.decode(await unpack(this.ordersBlock))) : [];
   }

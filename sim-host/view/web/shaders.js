@@ -94,7 +94,7 @@ void main() {
   int body = gl_VertexID / 6;
   vec4 clip = uMatrix * vec4(place(body), 1.0);
   vRadius = max(uLeast * uRatio, pair(uStatic, body).r * uPixels / max(clip.w, 1e-6));
-  vKind = body >= uRobots ? 2 : vRadius > 2.5 * uRatio && octet(uAtModeWait.y, body) != 255u ? 1 : 0;
+  vKind = body >= uRobots ? 2 : vRadius > 3.0 * uRatio && octet(uAtModeWait.y, body) != 255u ? 1 : 0;
   float reach = vRadius + (vKind == 1 ? 3.5 * uRatio : 1.5);
   vAt = square() * reach;
   vColour = colour(body);
@@ -122,8 +122,8 @@ void main() {
     colour.rgb *= 0.42 + 0.66 * light;
     colour.rgb += 0.25 * pow(light, 12.0);
   } else {
-    float rim = vRadius > 3.0 * uRatio ? clamp(r - (vRadius - 1.4 * uRatio), 0.0, 1.0) : 0.0;
-    if (vRadius > 3.5 * uRatio && vKind != 2) {
+    float rim = vRadius > 4.5 * uRatio ? clamp(r - (vRadius - 1.4 * uRatio), 0.0, 1.0) : 0.0;
+    if (vRadius > 4.5 * uRatio && vKind != 2) {
       float ahead = dot(vAt, vHeading), beside = abs(vAt.x * vHeading.y - vAt.y * vHeading.x);
       // An arrowhead, with a notch at its back.
       float flank = (0.68 * vRadius - ahead) * 0.52 - beside;

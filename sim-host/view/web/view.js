@@ -1,7 +1,7 @@
 // What is drawn around the bodies: lines for the GPU, and on a canvas above them labels, what the selected robot knows,
 // and what a tool is about to do.
 
-import { NOBODY, fromBase64 } from "staya/frame.js";
+import { NOBODY } from "staya/frame.js";
 import { niceStep } from "staya/ground.js";
 import { packed } from "staya/look.js";
 import { Lines } from "staya/renderer.js";
@@ -13,8 +13,6 @@ const VECTOR_PIXELS = 34;
 const CROWDED_PIXELS = 9;
 const SCALE_PIXELS = 110;
 const DELIVERED = 0, DAMAGED = 2;
-// From cheap to dear, told apart by anybody and on any ground.
-const COSTS = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
 
 export class View {
   /** `software`: there is no GPU, so that the canvas is best kept in memory. */
@@ -27,18 +25,12 @@ export class View {
     // What the pointer is doing: `{kind, ...}` or null.
     this.sketch = null;
     this.hovered = null;
-    this.costs = null;
   }
 
   resize(width, height, ratio) {
     this.ratio = ratio;
     this.canvas.width = Math.round(width * ratio);
     this.canvas.height = Math.round(height * ratio);
-  }
-
-  robotChanged() {
-    const window = this.app.robot?.window;
-    this.costs = window ? new Float32Array(fromBase64(window.costs).buffer) : null;
   }
 
   /** Makes signs small, and leaves out some, where robots would be hidden by them. */
@@ -48,7 +40,7 @@ export class View {
     const pixels = camera.pixelsPerMetre(camera.space ? camera.distance : 1);
     // About how far robots are from each other.
     const apart = Math.sqrt((x1 - x0) * (y1 - y0) / Math.max(app.robots, 1)) * pixels;
-    look.leastRadius = Math.max(0.9, Math.min(app.robots <= 20 ? 6 : 4, 0.22 * apart));
+    look.leastRadius = Math.max(0.9, Math.min(app.robots <= 200 ? 6 : 4, 0.22 * apart));
     look.targetSize = Math.max(2.5, Math.min(6, 0.3 * apart));
     look.crowded = apart < CROWDED_PIXELS;
     // A round number of seconds in which the fastest robot goes about as far as an arrow is long.
@@ -159,7 +151,6 @@ export class View {
     if (!frame) return;
     const at = (i) => app.camera.project(...app.motion.place(i, [0, 0, 0]));
     const selected = app.selected !== null && app.selected < frame.n;
-    if (selected && app.look.layers.window && app.robot?.window) this.drawWindow(app.robot.window);
     if (selected && app.look.layers.known) this.drawGhosts();
     this.drawCrosses();
     this.drawGoals(frame);
@@ -215,7 +206,7 @@ export class View {
       if (taken.has(slot)) return;
       taken.add(slot);
       written++;
-      this.write(i < app.robots ? String(app.idOf(i)) : "intruder", x, y - radius - 5);
+      this.write(i < app.robots ? String(app.idOf(i)) : "intruder", x, y - radius - (i === app.selected ? 11 : 5));
     };
     if (app.selected !== null && app.selected < frame.n) number(app.selected);
     for (let i = app.robots; i < frame.n; i++) number(i);
@@ -246,36 +237,6 @@ export class View {
         context.strokeStyle = css.ghost;
       }
     }
-  }
-
-  /** What the selected robot reckons cells of its window to cost. */
-  drawWindow({ corner, side }) {
-    const { app, context, costs } = this;
-    const { land } = app.scene;
-    if (!land || !costs || app.camera.space) return;
-    const cell = land.cell_m * app.camera.scale;
-    let low = Infinity, high = -Infinity;
-    for (const cost of costs) {
-      if (!Number.isFinite(cost)) continue;
-      low = Math.min(low, cost);
-      high = Math.max(high, cost);
-    }
-    for (let y = 0; y < side; y++) {
-      for (let x = 0; x < side; x++) {
-        const cost = costs[y * side + x];
-        if (!Number.isFinite(cost)) continue;
-        const [left, top] = app.camera.project(
-          land.origin_m[0] + (corner[0] + x) * land.cell_m, land.origin_m[1] + (corner[1] + y + 1) * land.cell_m);
-        context.fillStyle = costColour(high > low ? (cost - low) / (high - low) : 0, 0.55);
-        context.fillRect(left, top, cell, cell);
-        if (cell >= 30) this.write(cost < 100 ? cost.toFixed(1) : cost.toFixed(0), left + cell / 2, top + cell / 2 + 4, "center", 10);
-      }
-    }
-    const [left, top] = app.camera.project(
-      land.origin_m[0] + corner[0] * land.cell_m, land.origin_m[1] + (corner[1] + side) * land.cell_m);
-    context.strokeStyle = app.look.css.selected;
-    context.lineWidth = 1.5;
-    context.strokeRect(left, top, side * cell, side * cell);
   }
 
   drawCrosses() {
@@ -368,12 +329,6 @@ export class View {
     const cells = cell && length >= cell ? ` ≈ ${+(length / cell).toPrecision(3)} cells` : "";
     document.getElementById("scale-text").textContent = metres(length) + cells;
   }
-}
-
-function costColour(share, alpha) {
-  const at = Math.min(share, 0.9999) * (COSTS.length - 1), i = Math.floor(at), t = at - i;
-  const [r, g, b] = COSTS[i].map((part, k) => Math.round(part + (COSTS[i + 1][k] - part) * t));
-  return `rgb(${r} ${g} ${b} / ${alpha})`;
 }
 
 /** A length with a unit that suits it. */
