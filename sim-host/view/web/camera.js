@@ -20,13 +20,15 @@ export class Camera {
     this.version = 0;
   }
 
-  /** Shows `bounds` (x0, y0, x1, y1) and `heights` (z0, z1); `insets` are pixels covered at left, top, right, bottom. */
+  /** Shows `bounds` (x0, y0, x1, y1) and `heights` (z0, z1) between `insets`: pixels at left, top, right, bottom. */
   fit(bounds, heights, space, insets) {
     const [left, top, right, bottom] = insets;
     const [x0, y0, x1, y1] = bounds;
     const [z0, z1] = heights;
-    const spanX = Math.max(x1 - x0, 0.01), spanY = Math.max(y1 - y0, 0.01);
-    const freeX = Math.max(this.width - left - right, 50), freeY = Math.max(this.height - top - bottom, 50);
+    const spanX = Math.max(x1 - x0, 0.01),
+      spanY = Math.max(y1 - y0, 0.01);
+    const freeX = Math.max(this.width - left - right, 50),
+      freeY = Math.max(this.height - top - bottom, 50);
     this.space = space;
     this.extent = Math.hypot(spanX, spanY, space ? z1 - z0 : 0);
     this.target = [(x0 + x1) / 2, (y0 + y1) / 2, space ? (z0 + z1) / 2 : 0];
@@ -46,15 +48,25 @@ export class Camera {
   }
 
   update() {
-    const { matrix: m, target: [x, y, z], width, height } = this;
+    const {
+      matrix: m,
+      target: [x, y, z],
+      width,
+      height,
+    } = this;
     this.version++;
     if (!this.space) {
-      const sx = 2 * this.scale / width, sy = 2 * this.scale / height;
+      const sx = (2 * this.scale) / width,
+        sy = (2 * this.scale) / height;
       m.set([sx, 0, 0, 0, 0, sy, 0, 0, 0, 0, 0, 0, -x * sx, -y * sy, 0, 1]);
       return;
     }
-    const [cosYaw, sinYaw, cosPitch, sinPitch] =
-      [Math.cos(this.yaw), Math.sin(this.yaw), Math.cos(this.pitch), Math.sin(this.pitch)];
+    const [cosYaw, sinYaw, cosPitch, sinPitch] = [
+      Math.cos(this.yaw),
+      Math.sin(this.yaw),
+      Math.cos(this.pitch),
+      Math.sin(this.pitch),
+    ];
     // Right, up and back, of the camera.
     const r = [cosYaw, sinYaw, 0];
     const u = [sinPitch * -sinYaw, sinPitch * cosYaw, cosPitch];
@@ -62,8 +74,11 @@ export class Camera {
     this.axes = { r, u, b };
     const eye = [x + b[0] * this.distance, y + b[1] * this.distance, z + b[2] * this.distance];
     const dot = (v) => v[0] * eye[0] + v[1] * eye[1] + v[2] * eye[2];
-    const near = this.distance / 200, far = this.distance + 20 * this.extent;
-    const fx = FOCUS * height / width, depth = (far + near) / (near - far), offset = 2 * far * near / (near - far);
+    const near = this.distance / 200,
+      far = this.distance + 20 * this.extent;
+    const fx = (FOCUS * height) / width,
+      depth = (far + near) / (near - far),
+      offset = (2 * far * near) / (near - far);
     for (let i = 0; i < 3; i++) {
       m[4 * i] = fx * r[i];
       m[4 * i + 1] = FOCUS * u[i];
@@ -82,30 +97,40 @@ export class Camera {
     const w = m[3] * x + m[7] * y + m[11] * z + m[15];
     if (w <= 0) return null;
     return [
-      ((m[0] * x + m[4] * y + m[8] * z + m[12]) / w + 1) / 2 * this.width,
-      (1 - (m[1] * x + m[5] * y + m[9] * z + m[13]) / w) / 2 * this.height,
+      (((m[0] * x + m[4] * y + m[8] * z + m[12]) / w + 1) / 2) * this.width,
+      ((1 - (m[1] * x + m[5] * y + m[9] * z + m[13]) / w) / 2) * this.height,
       w,
     ];
   }
 
   /** Pixels of a metre where `project` says `w`. */
   pixelsPerMetre(w = 1) {
-    return this.space ? this.height / 2 * FOCUS / w : this.scale;
+    return this.space ? ((this.height / 2) * FOCUS) / w : this.scale;
   }
 
   /** Where the plane at height `z` is seen at these pixels; null where it is not. */
   unproject(px, py, z = 0) {
-    const nx = 2 * px / this.width - 1, ny = 1 - 2 * py / this.height;
+    const nx = (2 * px) / this.width - 1,
+      ny = 1 - (2 * py) / this.height;
     if (!this.space) {
-      return [this.target[0] + nx * this.width / 2 / this.scale, this.target[1] + ny * this.height / 2 / this.scale, 0];
+      return [
+        this.target[0] + (nx * this.width) / 2 / this.scale,
+        this.target[1] + (ny * this.height) / 2 / this.scale,
+        0,
+      ];
     }
     const { r, u, b } = this.axes;
-    const across = nx * this.width / this.height / FOCUS, up = ny / FOCUS;
+    const across = (nx * this.width) / this.height / FOCUS,
+      up = ny / FOCUS;
     const ray = [0, 1, 2].map((i) => across * r[i] + up * u[i] - b[i]);
     const eyeZ = this.target[2] + b[2] * this.distance;
     const far = (z - eyeZ) / ray[2];
     if (!(far > 0 && far < 1e4 * this.distance)) return null;
-    return [this.target[0] + b[0] * this.distance + far * ray[0], this.target[1] + b[1] * this.distance + far * ray[1], z];
+    return [
+      this.target[0] + b[0] * this.distance + far * ray[0],
+      this.target[1] + b[1] * this.distance + far * ray[1],
+      z,
+    ];
   }
 
   pan(dx, dy) {

@@ -33,7 +33,9 @@ export class Controls {
     click("toggle-side", () => this.toggleSide());
     click("open-help", () => element("help").showModal());
     element("timeline").addEventListener("input", () => this.scrub());
-    element("timeline").addEventListener("change", () => { this.scrubbing = false; });
+    element("timeline").addEventListener("change", () => {
+      this.scrubbing = false;
+    });
     element("speed").addEventListener("change", () => {
       app.send({ do: "speed", x: element("speed").value === "null" ? null : Number(element("speed").value) });
     });
@@ -54,20 +56,27 @@ export class Controls {
   }
 
   scene() {
-    const { app } = this, { scene } = app;
+    const { app } = this,
+      { scene } = app;
     document.title = `${scene.name} – Staya`;
     element("name").textContent = scene.name;
     const groups = new Set(scene.robots.group).size;
     element("facts").textContent = [
       `${app.robots.toLocaleString("en")} ${app.robots === 1 ? "robot" : "robots"}`,
-      groups > 1 ? `${groups} groups` : "", `seed ${scene.seed}`, `tick ${scene.tick_s} s`,
-    ].filter(Boolean).join(" · ");
+      groups > 1 ? `${groups} groups` : "",
+      `seed ${scene.seed}`,
+      `tick ${scene.tick_s} s`,
+    ]
+      .filter(Boolean)
+      .join(" · ");
     const root = element("app");
     root.classList.remove("loading");
     root.dataset.mode = document.body.dataset.mode = scene.mode;
     root.dataset.kind = scene.kind;
     root.toggleAttribute("data-land", Boolean(scene.land));
-    const show = (layer, on) => { document.querySelector(`[data-layer="${layer}"]`).parentElement.hidden = !on; };
+    const show = (layer, on) => {
+      document.querySelector(`[data-layer="${layer}"]`).parentElement.hidden = !on;
+    };
     show("formation", Boolean(scene.formation));
     show("relief", Boolean(scene.land));
     show("window", Boolean(scene.land) && scene.mode !== "recording");
@@ -82,7 +91,8 @@ export class Controls {
   }
 
   setTrails() {
-    const { app } = this, { scene } = app;
+    const { app } = this,
+      { scene } = app;
     if (!scene) return;
     const [x0, y0, x1, y1] = scene.bounds_m;
     // How long the fastest robot takes across all that there is to see.
@@ -92,17 +102,21 @@ export class Controls {
   }
 
   state(before) {
-    const { app } = this, { state } = app;
+    const { app } = this,
+      { state } = app;
     const playing = !state.paused;
     element("play-icon").setAttribute("href", playing ? "#i-pause" : "#i-play");
     element("play").setAttribute("aria-label", playing ? "Pause" : "Play");
     element("back").disabled = state.tick <= state.first;
     const later = app.live && state.paused && state.tick < state.last;
     element("go-on").hidden = !later;
-    const { speed } = state, select = element("speed");
+    const { speed } = state,
+      select = element("speed");
     const speeds = SPEEDS.includes(speed) ? SPEEDS : [...SPEEDS.slice(0, -1), speed].sort((a, b) => a - b).concat(null);
     if (select.options.length !== speeds.length || !before) {
-      select.replaceChildren(...speeds.map((each) => new Option(each === null ? "fastest" : `${each} ×`, String(each))));
+      select.replaceChildren(
+        ...speeds.map((each) => new Option(each === null ? "fastest" : `${each} ×`, String(each))),
+      );
     }
     select.value = String(speed);
     const timeline = element("timeline");
@@ -123,12 +137,18 @@ export class Controls {
 
   showStatus() {
     const { state, scene } = this.app;
-    const [is, text] = this.is === "lost" ? ["lost", "Disconnected"]
-      : this.is === "failed" ? ["lost", "Unreadable"]
-      : !scene || !state ? ["", "Connecting"]
-      : state.at_end && state.paused ? ["", "At the end"]
-      : state.paused ? ["paused", "Paused"]
-      : ["running", scene.mode === "watch" ? "Watching" : "Running"];
+    const [is, text] =
+      this.is === "lost"
+        ? ["lost", "Disconnected"]
+        : this.is === "failed"
+          ? ["lost", "Unreadable"]
+          : !scene || !state
+            ? ["", "Connecting"]
+            : state.at_end && state.paused
+              ? ["", "At the end"]
+              : state.paused
+                ? ["paused", "Paused"]
+                : ["running", scene.mode === "watch" ? "Watching" : "Running"];
     const chip = element("status");
     chip.dataset.is = is;
     const kind = scene?.mode === "recording" && is !== "lost" ? "Recording · " : "";
@@ -147,7 +167,10 @@ export class Controls {
     if (!this.scrubbing) timeline.value = frame.tick;
     timeline.setAttribute("aria-valuetext", `${text}, ${duration(frame.time)}`);
     // The knob's middle stays half its width within the line.
-    const share = (tick) => `calc(7px + (100% - 14px) * ${(tick - state.first) / Math.max(timeline.max - state.first, 1)})`;
+    const share = (tick) => {
+      const part = (tick - state.first) / Math.max(timeline.max - state.first, 1);
+      return part >= 1 ? "100%" : `calc(7px + (100% - 14px) * ${part})`;
+    };
     timeline.style.setProperty("--played", share(this.scrubbing ? Number(timeline.value) : frame.tick));
     timeline.style.setProperty("--known", share(Math.max(state.last, scene.mode === "recording" ? 0 : frame.tick)));
   }
@@ -155,12 +178,14 @@ export class Controls {
   /** Shows on the time line when something was ordered. */
   mark(orders) {
     const { first, last } = this.app.state;
-    element("marks").replaceChildren(...orders.map(({ tick, order }) => {
-      const mark = document.createElement("i");
-      mark.style.left = `${100 * (tick - first) / Math.max(last - first, 1)}%`;
-      mark.title = `${order.kind} at tick ${tick}`;
-      return mark;
-    }));
+    element("marks").replaceChildren(
+      ...orders.map(({ tick, order }) => {
+        const mark = document.createElement("i");
+        mark.style.left = `${(100 * (tick - first)) / Math.max(last - first, 1)}%`;
+        mark.title = `${order.kind} at tick ${tick}`;
+        return mark;
+      }),
+    );
   }
 
   scrub() {
@@ -237,11 +262,23 @@ export class Controls {
       if (app.robots) app.select(((app.selected ?? (by > 0 ? -1 : 0)) + by + app.robots) % app.robots);
     };
     const keys = {
-      ".": () => this.step(1), ",": () => this.step(-1), "[": () => this.faster(-1), "]": () => this.faster(1),
-      "+": () => app.camera.zoom(1.25), "=": () => app.camera.zoom(1.25), "-": () => app.camera.zoom(1 / 1.25),
-      f: () => app.fit(), "?": () => element("help").showModal(), n: () => next(1), b: () => next(-1),
-      c: () => this.toggleFollow(), p: () => this.toggleSide(), d: () => app.look.toggleTheme(),
-      l: () => { if (app.live) document.querySelector("[data-layer='links']").click(); },
+      ".": () => this.step(1),
+      ",": () => this.step(-1),
+      "[": () => this.faster(-1),
+      "]": () => this.faster(1),
+      "+": () => app.camera.zoom(1.25),
+      "=": () => app.camera.zoom(1.25),
+      "-": () => app.camera.zoom(1 / 1.25),
+      f: () => app.fit(),
+      "?": () => element("help").showModal(),
+      n: () => next(1),
+      b: () => next(-1),
+      c: () => this.toggleFollow(),
+      p: () => this.toggleSide(),
+      d: () => app.look.toggleTheme(),
+      l: () => {
+        if (app.live) document.querySelector("[data-layer='links']").click();
+      },
       Escape: () => {
         if (app.pointer.drag) app.pointer.cancel();
         else if (app.pointer.tool !== "select") app.pointer.choose("select");
@@ -263,7 +300,8 @@ export class Controls {
 
   /** What colours and signs mean; numbers of robots are filled in by `counts`. */
   legend() {
-    const { app } = this, { scene, look } = app;
+    const { app } = this,
+      { scene, look } = app;
     if (!scene) return;
     const { css, layers } = look;
     const keys = [];
@@ -299,22 +337,26 @@ export class Controls {
       context.arc(13, 7, 6, 0, 2 * Math.PI);
       context.stroke();
     };
-    const line = (colour, dash = []) => (context) => {
-      context.strokeStyle = colour;
-      context.lineWidth = 1.8;
-      context.setLineDash(dash);
-      context.beginPath();
-      context.moveTo(2, 7);
-      context.lineTo(24, 7);
-      context.stroke();
-    };
-    if (look.colourBy === "mode") scene.words.modes.forEach((word, i) => key(disc(look.modeColours[i]), word, `mode:${i}`));
+    const line =
+      (colour, dash = []) =>
+      (context) => {
+        context.strokeStyle = colour;
+        context.lineWidth = 1.8;
+        context.setLineDash(dash);
+        context.beginPath();
+        context.moveTo(2, 7);
+        context.lineTo(24, 7);
+        context.stroke();
+      };
+    if (look.colourBy === "mode")
+      scene.words.modes.forEach((word, i) => key(disc(look.modeColours[i]), word, `mode:${i}`));
     if (look.colourBy === "wait") {
       scene.words.waits.forEach((word, i) => key(disc(look.waitColours[i]), `waits: ${word}`, `wait:${i}`));
       key(disc(css.grey), "does not wait", "wait:255");
     }
     if (look.colourBy === "group") {
-      for (const group of [...new Set(scene.robots.group)].slice(0, 7)) key(disc(look.numberColours[group % 7]), `group ${group}`);
+      for (const group of [...new Set(scene.robots.group)].slice(0, 7))
+        key(disc(look.numberColours[group % 7]), `group ${group}`);
     }
     key(disc(css.grey, css.orange), "waits", "waits");
     if (scene.intruders.length) key(disc(css.rim, css.purple), "intruder");
@@ -338,7 +380,8 @@ export class Controls {
       key(line(css.vermillion), "packet lost");
       key(line(css.orange, [2, 2]), "packet damaged");
     }
-    if (layers.known && app.selected !== null && scene.mode !== "recording") key(disc("transparent", css.ghost), "where it thinks others are");
+    if (layers.known && app.selected !== null && scene.mode !== "recording")
+      key(disc("transparent", css.ghost), "where it thinks others are");
     if (scene.land) {
       key((context) => {
         const shades = context.createLinearGradient(1, 0, 25, 0);
@@ -359,7 +402,8 @@ export class Controls {
 
   counts() {
     const { app } = this;
-    const frame = app.motion.current, now = performance.now();
+    const frame = app.motion.current,
+      now = performance.now();
     if (!frame || !element("legend").open || now - this.counted < COUNTS_EVERY_MS) return;
     this.counted = now;
     const counts = { mode: new Uint32Array(256), wait: new Uint32Array(256) };
@@ -371,8 +415,14 @@ export class Controls {
     for (const row of element("legend-body").children) {
       const [kind, index] = row.dataset.count?.split(":") ?? [];
       if (!kind) continue;
-      const text = kind === "velocity" ? app.look.crowded ? "when closer" : `in ${+app.look.velocitySeconds.toPrecision(2)} s`
-        : kind === "waits" ? n - counts.wait[255] : counts[kind][index];
+      const text =
+        kind === "velocity"
+          ? app.look.crowded
+            ? "when closer"
+            : `in ${+app.look.velocitySeconds.toPrecision(2)} s`
+          : kind === "waits"
+            ? n - counts.wait[255]
+            : counts[kind][index];
       if (row.lastChild.textContent !== String(text)) row.lastChild.textContent = text;
       row.hidden = (kind === "mode" || kind === "wait") && text === 0;
     }

@@ -20,7 +20,11 @@ export function parseFrame(buffer) {
     tick: head.getUint32(4, true),
     time: head.getFloat64(8, true),
     n,
-    z: null, vz: null, tx: null, ty: null, tz: null,
+    z: null,
+    vz: null,
+    tx: null,
+    ty: null,
+    tz: null,
     // Where each array begins in `body`, for vertex attributes.
     at: {},
     key: `${n}:${flags}`,
@@ -36,7 +40,8 @@ export function parseFrame(buffer) {
   for (const axis of axes) floats("v" + axis);
   if (flags & HAS_TARGETS) for (const axis of axes) floats("t" + axis);
   const padded = (n + 3) & ~3;
-  if (offset + 4 * n + 2 * padded + figuresLength > buffer.byteLength) throw new Error("a frame is shorter than it says");
+  if (offset + 4 * n + 2 * padded + figuresLength > buffer.byteLength)
+    throw new Error("a frame is shorter than it says");
   frame.leader = new Uint32Array(buffer, offset, n);
   offset += 4 * n;
   for (const name of ["mode", "wait"]) {

@@ -9,7 +9,13 @@ const CRISP_PIXELS = 5;
 const SHADE = 0.55;
 const COST_PIXELS = 30;
 // From cheap to dear, told apart by anybody and on any ground.
-const COSTS = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
+const COSTS = [
+  [68, 1, 84],
+  [59, 82, 139],
+  [33, 145, 140],
+  [94, 201, 98],
+  [253, 231, 37],
+];
 
 /** Round steps of about `pixels`: 1, 2 or 5 times a power of ten metres. */
 export function niceStep(metres) {
@@ -96,7 +102,8 @@ export class Ground {
       this.paint(0, 0, land.width, land.height);
     }
     const [left, top] = camera.project(land.origin_m[0], land.origin_m[1] + land.height * land.cell_m);
-    const width = land.width * land.cell_m * camera.scale, height = land.height * land.cell_m * camera.scale;
+    const width = land.width * land.cell_m * camera.scale,
+      height = land.height * land.cell_m * camera.scale;
     context.imageSmoothingEnabled = this.relief;
     context.drawImage(this.image, left, top, width, height);
     if (this.relief && land.cell_m * camera.scale >= CRISP_PIXELS) this.drawWalls(camera);
@@ -107,11 +114,17 @@ export class Ground {
 
   /** Blocked cells with sharp edges, a run of them at a time. */
   drawWalls(camera) {
-    const { context, land: { width, height, cells, cell_m: cell, origin_m: origin } } = this;
-    const [west, north] = camera.unproject(0, 0), [east, south] = camera.unproject(camera.width, camera.height);
+    const {
+      context,
+      land: { width, height, cells, cell_m: cell, origin_m: origin },
+    } = this;
+    const [west, north] = camera.unproject(0, 0),
+      [east, south] = camera.unproject(camera.width, camera.height);
     const from = (metres, o) => Math.max(0, Math.floor((metres - o) / cell));
-    const x0 = from(west, origin[0]), x1 = Math.min(width, from(east, origin[0]) + 1);
-    const y0 = from(south, origin[1]), y1 = Math.min(height, from(north, origin[1]) + 1);
+    const x0 = from(west, origin[0]),
+      x1 = Math.min(width, from(east, origin[0]) + 1);
+    const y0 = from(south, origin[1]),
+      y1 = Math.min(height, from(north, origin[1]) + 1);
     context.beginPath();
     for (let y = y0; y < y1; y++) {
       for (let x = x0; x < x1; x++) {
@@ -128,11 +141,20 @@ export class Ground {
 
   /** Colours the image of some cells. */
   paint(x0, y0, x1, y1) {
-    const { land: { width, height, cells, classes }, fine, relief } = this;
-    x0 = Math.max(0, x0); y0 = Math.max(0, y0); x1 = Math.min(width, x1); y1 = Math.min(height, y1);
+    const {
+      land: { width, height, cells, classes },
+      fine,
+      relief,
+    } = this;
+    x0 = Math.max(0, x0);
+    y0 = Math.max(0, y0);
+    x1 = Math.min(width, x1);
+    y1 = Math.min(height, y1);
     const [low, high, wall] = ["landLow", "landHigh", "wall"].map((name) => rgb(this.colours[name]));
-    const columns = (x1 - x0) * fine, rows = (y1 - y0) * fine;
-    const picture = new ImageData(columns, rows), { data } = picture;
+    const columns = (x1 - x0) * fine,
+      rows = (y1 - y0) * fine;
+    const picture = new ImageData(columns, rows),
+      { data } = picture;
     const span = Math.max(1, classes - 1);
     const level = (x, y) => {
       const at = Math.max(0, Math.min(height - 1, y)) * width + Math.max(0, Math.min(width - 1, x));
@@ -141,20 +163,26 @@ export class Ground {
     // Levels between the middles of cells, rounded so that cells show as gentle terraces.
     const smooth = (t) => t * t * (3 - 2 * t);
     const surface = (x, y) => {
-      const cx = Math.floor(x), cy = Math.floor(y), tx = smooth(x - cx), ty = smooth(y - cy);
-      return (level(cx, cy) * (1 - tx) + level(cx + 1, cy) * tx) * (1 - ty)
-        + (level(cx, cy + 1) * (1 - tx) + level(cx + 1, cy + 1) * tx) * ty;
+      const cx = Math.floor(x),
+        cy = Math.floor(y),
+        tx = smooth(x - cx),
+        ty = smooth(y - cy);
+      return (
+        (level(cx, cy) * (1 - tx) + level(cx + 1, cy) * tx) * (1 - ty) +
+        (level(cx, cy + 1) * (1 - tx) + level(cx + 1, cy + 1) * tx) * ty
+      );
     };
     for (let row = 0; row < rows; row++) {
       const y = y1 - (row + 0.5) / fine;
       for (let column = 0; column < columns; column++) {
         const x = x0 + (column + 0.5) / fine;
         const class_ = cells[Math.floor(y) * width + Math.floor(x)];
-        let value = (class_ - 1) / span, light = 1;
+        let value = (class_ - 1) / span,
+          light = 1;
         if (relief && fine > 1) {
           const here = surface(x - 0.5, y - 0.5);
           // Light from the north-west.
-          const slope = (surface(x - 0.1, y - 0.5) - here) - (surface(x - 0.5, y - 0.1) - here);
+          const slope = surface(x - 0.1, y - 0.5) - here - (surface(x - 0.5, y - 0.1) - here);
           value = Math.min(1, here);
           light = 1 - SHADE * Math.max(-0.6, Math.min(0.6, slope * 1.4));
         }
@@ -169,12 +197,20 @@ export class Ground {
   }
 
   drawWindow(camera) {
-    const { context, land, colours, window: { corner, side, costs } } = this;
+    const {
+      context,
+      land,
+      colours,
+      window: { corner, side, costs },
+    } = this;
     const cell = land.cell_m * camera.scale;
     const finite = costs.filter(Number.isFinite);
-    const low = Math.min(...finite), span = Math.max(...finite) - low;
+    const low = Math.min(...finite),
+      span = Math.max(...finite) - low;
     const [left, bottom] = camera.project(
-      land.origin_m[0] + corner[0] * land.cell_m, land.origin_m[1] + corner[1] * land.cell_m);
+      land.origin_m[0] + corner[0] * land.cell_m,
+      land.origin_m[1] + corner[1] * land.cell_m,
+    );
     context.font = "500 10px system-ui, sans-serif";
     context.textAlign = "center";
     for (let y = 0; y < side; y++) {
@@ -185,7 +221,11 @@ export class Ground {
         context.fillRect(left + x * cell, bottom - (y + 1) * cell, cell, cell);
         if (cell < COST_PIXELS) continue;
         context.fillStyle = colours.label;
-        context.fillText(cost < 100 ? cost.toFixed(1) : cost.toFixed(0), left + (x + 0.5) * cell, bottom - (y + 0.08) * cell);
+        context.fillText(
+          cost < 100 ? cost.toFixed(1) : cost.toFixed(0),
+          left + (x + 0.5) * cell,
+          bottom - (y + 0.08) * cell,
+        );
       }
     }
     context.strokeStyle = colours.selected;
@@ -198,10 +238,16 @@ export class Ground {
     const step = land ? land.cell_m : niceStep(45 / camera.scale);
     const pixels = step * camera.scale;
     if (pixels < (land ? 12 : 4)) return;
-    const [west, north] = camera.unproject(0, 0), [east, south] = camera.unproject(camera.width, camera.height);
+    const [west, north] = camera.unproject(0, 0),
+      [east, south] = camera.unproject(camera.width, camera.height);
     const [ox, oy] = land ? land.origin_m : [0, 0];
     context.lineWidth = 1;
-    for (const [every, colour] of land ? [[1, colours.gridOnLand]] : [[1, colours.grid], [5, colours.gridStrong]]) {
+    for (const [every, colour] of land
+      ? [[1, colours.gridOnLand]]
+      : [
+          [1, colours.grid],
+          [5, colours.gridStrong],
+        ]) {
       context.beginPath();
       for (let i = Math.ceil((west - ox) / step / every) * every; ox + i * step <= east; i += every) {
         if (land && (i < 0 || i > land.width)) continue;
@@ -223,8 +269,14 @@ export class Ground {
   }
 
   landSpan(camera, axis) {
-    const { origin_m: [x, y], width, height, cell_m: cell } = this.land;
-    const a = camera.project(x, y + height * cell)[axis], b = camera.project(x + width * cell, y)[axis];
+    const {
+      origin_m: [x, y],
+      width,
+      height,
+      cell_m: cell,
+    } = this.land;
+    const a = camera.project(x, y + height * cell)[axis],
+      b = camera.project(x + width * cell, y)[axis];
     return [a, b];
   }
 
@@ -260,7 +312,9 @@ export class Ground {
 }
 
 function costColour(share, alpha) {
-  const at = Math.min(share, 0.9999) * (COSTS.length - 1), i = Math.floor(at), t = at - i;
+  const at = Math.min(share, 0.9999) * (COSTS.length - 1),
+    i = Math.floor(at),
+    t = at - i;
   const [r, g, b] = COSTS[i].map((part, k) => Math.round(part + (COSTS[i + 1][k] - part) * t));
   return `rgb(${r} ${g} ${b} / ${alpha})`;
 }

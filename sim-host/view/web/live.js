@@ -42,13 +42,28 @@ export class Live {
       }
       const message = JSON.parse(data);
       switch (message.type) {
-        case "scene": this.listener.onScene(message); break;
-        case "state": this.listener.onState(message); break;
-        case "robot": this.listener.onRobot(message); break;
-        case "figures": for (const [tick, figures] of message.rows) this.listener.onFigures(tick, figures); break;
-        case "links": this.listener.onLinks(message.tick, pairsOf(message.pairs)); break;
-        case "saved": this.listener.onSaved(message); break;
-        case "error": case "note": this.listener.onMessage(message.type, message.text); break;
+        case "scene":
+          this.listener.onScene(message);
+          break;
+        case "state":
+          this.listener.onState(message);
+          break;
+        case "robot":
+          this.listener.onRobot(message);
+          break;
+        case "figures":
+          for (const [tick, figures] of message.rows) this.listener.onFigures(tick, figures);
+          break;
+        case "links":
+          this.listener.onLinks(message.tick, pairsOf(message.pairs));
+          break;
+        case "saved":
+          this.listener.onSaved(message);
+          break;
+        case "error":
+        case "note":
+          this.listener.onMessage(message.type, message.text);
+          break;
       }
     } catch (error) {
       this.listener.onMessage("error", `A message of the server cannot be read: ${error.message}.`);

@@ -3,28 +3,73 @@
 import { rgb } from "staya/ground.js";
 
 const NAMED = {
-  idle: "grey", forming: "sky", cruise: "blue", hold: "orange", arrived: "green", fault: "vermillion", passive: "purple",
-  formation: "purple", request: "sky", way: "vermillion", radio: "blue", turn: "orange", others: "yellow", place: "green",
+  idle: "grey",
+  forming: "sky",
+  cruise: "blue",
+  hold: "orange",
+  arrived: "green",
+  fault: "vermillion",
+  passive: "purple",
+  formation: "purple",
+  request: "sky",
+  way: "vermillion",
+  radio: "blue",
+  turn: "orange",
+  others: "yellow",
+  place: "green",
 };
 const NUMBERED = ["blue", "orange", "green", "purple", "sky", "vermillion", "yellow"];
 const CSS = {
-  paper: "paper", grid: "grid", gridStrong: "grid-strong", gridOnLand: "grid-on-land", border: "border",
-  landLow: "land-low", landHigh: "land-high", wall: "wall", solid: "solid", solidEdge: "solid-edge", fence: "fence",
-  ink: "ink", muted: "muted", label: "label", halo: "halo", selected: "selected", ghost: "ghost", accent: "accent",
-  ok: "ok", warn: "warn", bad: "bad", violet: "violet", cursor: "muted", axis: "edge", line: "bad",
-  forbidden: "forbidden", allowed: "allowed", preferred: "accent", chosen: "ink",
-  formation: "formation", leader: "leader", vermillion: "vermillion", blue: "blue", yellow: "yellow", orange: "orange",
-  rim: "rim", trail: "trail", velocity: "velocity", grey: "grey", purple: "purple",
+  paper: "paper",
+  grid: "grid",
+  gridStrong: "grid-strong",
+  gridOnLand: "grid-on-land",
+  border: "border",
+  landLow: "land-low",
+  landHigh: "land-high",
+  wall: "wall",
+  solid: "solid",
+  solidEdge: "solid-edge",
+  fence: "fence",
+  ink: "ink",
+  muted: "muted",
+  label: "label",
+  halo: "halo",
+  selected: "selected",
+  ghost: "ghost",
+  accent: "accent",
+  ok: "ok",
+  warn: "warn",
+  bad: "bad",
+  violet: "violet",
+  cursor: "muted",
+  axis: "edge",
+  line: "bad",
+  forbidden: "forbidden",
+  allowed: "allowed",
+  preferred: "accent",
+  chosen: "ink",
+  formation: "formation",
+  leader: "leader",
+  vermillion: "vermillion",
+  blue: "blue",
+  yellow: "yellow",
+  orange: "orange",
+  rim: "rim",
+  trail: "trail",
+  velocity: "velocity",
+  grey: "grey",
+  purple: "purple",
 };
 
 function vector(hex, alpha = 1) {
-  return new Float32Array([...rgb(hex).map((part) => part / 255 * alpha), alpha]);
+  return new Float32Array([...rgb(hex).map((part) => (part / 255) * alpha), alpha]);
 }
 
 /** `#rrggbb` as bytes of a vertex attribute. */
 export function packed(hex, alpha = 1) {
   const [r, g, b] = rgb(hex);
-  return (Math.round(alpha * 255) << 24 | b << 16 | g << 8 | r) >>> 0;
+  return ((Math.round(alpha * 255) << 24) | (b << 16) | (g << 8) | r) >>> 0;
 }
 
 export class Look {
@@ -69,26 +114,19 @@ export class Look {
     const value = (name) => style.getPropertyValue(`--${name}`).trim();
     this.css = Object.fromEntries(Object.entries(CSS).map(([name, property]) => [name, value(property)]));
     this.colours = {
-      rim: vector(this.css.rim), waiting: vector(this.css.orange), velocity: vector(this.css.velocity),
+      rim: vector(this.css.rim),
+      waiting: vector(this.css.orange),
+      velocity: vector(this.css.velocity),
       trail: vector(this.css.trail, 0.8),
     };
     this.modeColours = this.words.modes.map((word, i) => value(NAMED[word] ?? NUMBERED[i % 7]));
     this.waitColours = this.words.waits.map((word, i) => value(NAMED[word] ?? NUMBERED[i % 7]));
     this.numberColours = NUMBERED.map(value);
     const entries = { mode: this.modeColours, wait: this.waitColours }[this.colourBy] ?? this.numberColours;
-    for (let i = 0; i < 13; i++) this.palette.set(vector(entries[i % Math.max(entries.length, 1)] ?? this.css.grey), 4 * i);
+    for (let i = 0; i < 13; i++)
+      this.palette.set(vector(entries[i % Math.max(entries.length, 1)] ?? this.css.grey), 4 * i);
     this.palette.set(vector(this.css.solidEdge), 52);
     this.palette.set(vector(this.css.grey), 56);
     this.palette.set(vector(this.css.purple), 60);
-  }
-
-  /** The colour of robot `i`, as a string. */
-  colourOf(i, frame, groups) {
-    switch (this.colourBy) {
-      case "robot": return this.numberColours[i % 7];
-      case "group": return this.numberColours[groups[i] % 7];
-      case "wait": return frame.wait[i] === 255 ? this.css.grey : this.waitColours[frame.wait[i]] ?? this.css.grey;
-      default: return this.modeColours[frame.mode[i]] ?? this.css.grey;
-    }
   }
 }

@@ -18,8 +18,9 @@ import { View } from "staya/view.js";
 const PLOTS_EVERY_MS = 120;
 const TOAST_MS = 6000;
 const TOP_RATIO = 2;
-const NO_WEBGL = "This browser offers no WebGL2, so robots cannot be drawn. Turn on hardware acceleration in its settings, "
-  + "or start Chromium with --enable-unsafe-swiftshader; a current Firefox, Chrome, Edge or Safari has it.";
+const NO_WEBGL =
+  "This browser offers no WebGL2, so robots cannot be drawn. Turn on hardware acceleration in its settings, " +
+  "or start Chromium with --enable-unsafe-swiftshader; a current Firefox, Chrome, Edge or Safari has it.";
 
 const element = (id) => document.getElementById(id);
 
@@ -70,8 +71,12 @@ class App {
 
   onScene(scene) {
     const before = this.scene;
-    const same = before && before.name === scene.name && before.kind === scene.kind
-      && before.robots.id.length === scene.robots.id.length && `${before.bounds_m}` === `${scene.bounds_m}`;
+    const same =
+      before &&
+      before.name === scene.name &&
+      before.kind === scene.kind &&
+      before.robots.id.length === scene.robots.id.length &&
+      `${before.bounds_m}` === `${scene.bounds_m}`;
     this.scene = scene;
     this.cells = scene.land ? fromBase64(scene.land.cells) : null;
     this.solids = scene.solids.map((solid) => ({ ...solid }));
@@ -88,8 +93,11 @@ class App {
     }
     const balls = scene.kind === "space" ? this.solids.filter(({ kind }) => kind === "ball") : [];
     if (anew || balls.length) {
-      this.renderer?.setBodies(this.robots, Float32Array.from([...radii].flatMap((radius, i) => [radius, this.groups[i] ?? 0])),
-        balls.map(({ center_m: [x, y, z], radius_m: radius }) => [x, y, z ?? 0, radius]));
+      this.renderer?.setBodies(
+        this.robots,
+        Float32Array.from([...radii].flatMap((radius, i) => [radius, this.groups[i] ?? 0])),
+        balls.map(({ center_m: [x, y, z], radius_m: radius }) => [x, y, z ?? 0, radius]),
+      );
     }
     this.ground.setScene(scene, this.cells, this.solids);
     this.look.words = scene.words;
@@ -171,8 +179,10 @@ class App {
       if (this.selected !== null) this.send({ do: "select", robot: this.selected });
       if (this.look.layers.links) this.send({ do: "links", on: true });
     } else {
-      this.banner(`No connection to staya view${this.scene ? "" : " yet"}. Is it still running in its terminal? Start it again and `
-        + `open the address that it prints. The page tries again ${inSeconds > 1 ? `in ${inSeconds} s` : "now"}.`);
+      this.banner(
+        `No connection to staya view${this.scene ? "" : " yet"}. Is it still running in its terminal? Start it again and ` +
+          `open the address that it prints. The page tries again ${inSeconds > 1 ? `in ${inSeconds} s` : "now"}.`,
+      );
     }
     this.controls.connection(is);
   }
@@ -222,7 +232,7 @@ class App {
   }
 
   showWindow() {
-    this.ground.setWindow(this.look.layers.window ? this.robot?.window ?? null : null);
+    this.ground.setWindow(this.look.layers.window ? (this.robot?.window ?? null) : null);
   }
 
   idOf(index) {
@@ -231,18 +241,21 @@ class App {
 
   /** The body that is seen nearest to these pixels, if it is near enough; robots only. */
   pick(px, py, reach = 14) {
-    const { motion, camera } = this, { current } = motion;
+    const { motion, camera } = this,
+      { current } = motion;
     if (!current) return null;
-    let best = null, least = Infinity;
-    const place = [0, 0, 0], m = camera.matrix;
+    let best = null,
+      least = Infinity;
+    const place = [0, 0, 0],
+      m = camera.matrix;
     const n = Math.min(current.n, this.robots);
     for (let i = 0; i < n; i++) {
       // As `camera.project`, without an array for each of many.
       const [x, y, z] = motion.place(i, place);
       const w = m[3] * x + m[7] * y + m[11] * z + m[15];
       if (w <= 0) continue;
-      const dx = ((m[0] * x + m[4] * y + m[8] * z + m[12]) / w + 1) / 2 * camera.width - px;
-      const dy = (1 - (m[1] * x + m[5] * y + m[9] * z + m[13]) / w) / 2 * camera.height - py;
+      const dx = (((m[0] * x + m[4] * y + m[8] * z + m[12]) / w + 1) / 2) * camera.width - px;
+      const dy = ((1 - (m[1] * x + m[5] * y + m[9] * z + m[13]) / w) / 2) * camera.height - py;
       const middle = Math.sqrt(dx * dx + dy * dy);
       // Of several that are hit, the one whose middle is nearest.
       const far = Math.max(0, middle - this.radii[i] * camera.pixelsPerMetre(w)) + 1e-3 * middle;
@@ -266,7 +279,12 @@ class App {
     if (!scene) return;
     const phone = camera.width < 720;
     const left = this.live && !phone ? 58 : 12;
-    camera.fit(scene.bounds_m, scene.height_m ?? [0, 0], scene.kind === "space", phone ? [8, 8, 8, 44] : [left, 14, 58, 54]);
+    camera.fit(
+      scene.bounds_m,
+      scene.height_m ?? [0, 0],
+      scene.kind === "space",
+      phone ? [8, 8, 8, 44] : [left, 14, 58, 54],
+    );
     this.follow = false;
     this.controls?.follow();
   }
@@ -315,7 +333,8 @@ class App {
     const paused = this.state?.paused ?? false;
     const news = motion.advance(now, paused);
     if (news === "jump") this.renderer?.trails.reset();
-    if (this.follow && this.selected !== null && motion.current) camera.centre(...motion.place(this.selected, [0, 0, 0]));
+    if (this.follow && this.selected !== null && motion.current)
+      camera.centre(...motion.place(this.selected, [0, 0, 0]));
     if (news === "none" && !this.wasMoving && !this.dirty && camera.version === this.drawnVersion) return;
     this.wasMoving = motion.moving;
     this.dirty = false;
@@ -345,7 +364,9 @@ class App {
     } else {
       // The last picture before a pause has its figures, too.
       clearTimeout(this.plotLater);
-      this.plotLater = setTimeout(() => { this.dirty = true; }, PLOTS_EVERY_MS);
+      this.plotLater = setTimeout(() => {
+        this.dirty = true;
+      }, PLOTS_EVERY_MS);
     }
   }
 }
@@ -354,14 +375,30 @@ const app = new App();
 
 // What tests ask for.
 window.staya = {
-  get state() { return app.state; },
-  get scene() { return app.scene; },
-  get frames() { return { ...app.frames }; },
-  get currentTick() { return app.motion.current?.tick ?? null; },
-  get selected() { return app.selected; },
-  get robot() { return app.robot; },
-  get fps() { return app.fps; },
-  get lastFigures() { return app.figures; },
+  get state() {
+    return app.state;
+  },
+  get scene() {
+    return app.scene;
+  },
+  get frames() {
+    return { ...app.frames };
+  },
+  get currentTick() {
+    return app.motion.current?.tick ?? null;
+  },
+  get selected() {
+    return app.selected;
+  },
+  get robot() {
+    return app.robot;
+  },
+  get fps() {
+    return app.fps;
+  },
+  get lastFigures() {
+    return app.figures;
+  },
   project: (x, y, z = 0) => {
     const at = app.camera.project(x, y, z);
     const { left, top } = element("overlay").getBoundingClientRect();

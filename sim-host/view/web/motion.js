@@ -1,6 +1,8 @@
 // Where bodies are between two ticks: drawn a moment late, on the way from the frame before to the last one.
 
 const SLOWEST_MS = 2000;
+// So many times as many ticks as usual at once are no motion but a jump.
+const JUMP = 8;
 
 export class Motion {
   constructor() {
@@ -11,6 +13,7 @@ export class Motion {
     this.pending = this.previous = this.current = null;
     this.mix = 1;
     this.interval = 50;
+    this.stride = 1;
     this.taken = 0;
     this.headings = new Float32Array(0);
   }
@@ -27,9 +30,13 @@ export class Motion {
     if (frame) {
       this.pending = null;
       const before = this.current;
-      const follows = before && before.key === frame.key && frame.tick >= before.tick;
-      news = follows && !(paused && frame.tick > before.tick + 1) ? "next" : "jump";
+      const ticks = before ? frame.tick - before.tick : 0;
+      const usual = paused ? 1 : JUMP * (this.stride + 1);
+      const follows = before && before.key === frame.key && ticks >= 0 && ticks <= usual;
+      news = follows ? "next" : "jump";
       this.previous = follows && !paused ? before : frame;
+      // It grows at once and shrinks slowly, so that a run that gets faster is seen to move.
+      if (ticks > 0) this.stride = Math.max(0.9 * this.stride, Math.min(ticks, usual));
       this.current = frame;
       const gap = Math.min(now - this.taken, SLOWEST_MS);
       this.interval = follows ? this.interval + 0.3 * (gap - this.interval) : 50;

@@ -13,10 +13,15 @@ export class Orders {
     this.sliders = new Map();
     this.loss = 0;
     element("save").addEventListener("click", () => app.send({ do: "save" }));
-    this.dialog("new", "new-run", () => app.send({
-      do: "new", robots: number("new-robots"), goals: number("new-goals"),
-      obstacles: number("new-obstacles"), seed: number("new-seed"),
-    }));
+    this.dialog("new", "new-run", () =>
+      app.send({
+        do: "new",
+        robots: number("new-robots"),
+        goals: number("new-goals"),
+        obstacles: number("new-obstacles"),
+        seed: number("new-seed"),
+      }),
+    );
     this.dialog("restart", "restart", () => app.send({ do: "restart", seed: number("restart-seed") }));
     element("only-selected").addEventListener("change", () => this.robot());
     element("radio-on").addEventListener("change", () => {
@@ -95,9 +100,12 @@ export class Orders {
     // Ranges over powers of ten are set by ratios.
     const wide = least > 0 && greatest / least >= WIDE;
     const toValue = (share) => (wide ? least * (greatest / least) ** share : least + share * (greatest - least));
-    const toShare = (at) => (wide ? Math.log(at / least) / Math.log(greatest / least) : (at - least) / (greatest - least));
+    const toShare = (at) =>
+      wide ? Math.log(at / least) / Math.log(greatest / least) : (at - least) / (greatest - least);
     const current = () => Number(toValue(input.value / STEPS).toPrecision(3));
-    const show = (at) => { shown.textContent = `${+at.toPrecision(4)}${unit && unit !== "1" ? ` ${unit}` : ""}`; };
+    const show = (at) => {
+      shown.textContent = `${+at.toPrecision(4)}${unit && unit !== "1" ? ` ${unit}` : ""}`;
+    };
     const set = (at) => {
       input.value = STEPS * toShare(at);
       show(at);
@@ -122,7 +130,8 @@ export class Orders {
   robot() {
     const { app } = this;
     element("parameters-one").hidden = app.selected === null;
-    if (app.selected !== null) element("parameters-one").lastElementChild.textContent = `Only of robot ${app.idOf(app.selected)}`;
+    if (app.selected !== null)
+      element("parameters-one").lastElementChild.textContent = `Only of robot ${app.idOf(app.selected)}`;
     const own = this.only ? app.robot?.parameters : null;
     for (const [name, { label, set, value }] of this.sliders) {
       label.hidden = Boolean(own) && own[name] === undefined;

@@ -37,20 +37,31 @@ export class Panel {
     this.follow.id = "follow";
     this.follow.setAttribute("aria-pressed", "false");
     this.down = button("Take down", "Its computer goes down and stays down", order("down", { for_s: null }));
-    this.reboot = button("Reboot", `Its computer goes down and starts anew after ${REBOOT_S} s`, order("down", { for_s: REBOOT_S }));
+    this.reboot = button(
+      "Reboot",
+      `Its computer goes down and starts anew after ${REBOOT_S} s`,
+      order("down", { for_s: REBOOT_S }),
+    );
     for (const each of [this.down, this.reboot]) each.classList.add("live-only");
     this.facts = make("dl", "grid-facts");
     this.velocities = make("section");
     this.plot = make("canvas");
     this.plot.id = "velocity-plot";
     this.plot.setAttribute("role", "img");
-    this.plot.setAttribute("aria-label", "Velocities that others leave it, the one that it wants and the one that it chose");
+    this.plot.setAttribute(
+      "aria-label",
+      "Velocities that others leave it, the one that it wants and the one that it chose",
+    );
     this.key = make("p", "caption");
     this.velocities.append(make("h3", "", "Velocities to choose among"), this.plot, this.key);
     this.neighbors = make("section");
     this.neighborTitle = make("h3", "");
     this.rows = make("tbody");
-    const head = make("thead", "", make("tr", "", ...["Robot", "far", "age", "off by"].map((text) => make("th", "", text))));
+    const head = make(
+      "thead",
+      "",
+      make("tr", "", ...["Robot", "far", "age", "off by"].map((text) => make("th", "", text))),
+    );
     this.neighbors.append(this.neighborTitle, make("div", "scroll", make("table", "table", head, this.rows)));
     this.rows.addEventListener("click", (event) => {
       const index = event.target.closest("tr")?.dataset.index;
@@ -59,7 +70,13 @@ export class Panel {
     this.eventsPart = make("section");
     this.events = make("ul", "events");
     this.eventsPart.append(make("h3", "", "Events"), make("div", "scroll", this.events));
-    this.body.append(make("div", "actions", this.follow, this.reboot, this.down), this.facts, this.velocities, this.neighbors, this.eventsPart);
+    this.body.append(
+      make("div", "actions", this.follow, this.reboot, this.down),
+      this.facts,
+      this.velocities,
+      this.neighbors,
+      this.eventsPart,
+    );
   }
 
   update() {
@@ -80,8 +97,10 @@ export class Panel {
   }
 
   showFacts(robot) {
-    const { app } = this, { scene, look } = app;
-    const frame = app.motion.current, i = app.selected;
+    const { app } = this,
+      { scene, look } = app;
+    const frame = app.motion.current,
+      i = app.selected;
     const facts = [];
     const fact = (name, ...value) => facts.push(make("dt", "", name), make("dd", "", ...value));
     if (!robot || !frame) {
@@ -90,19 +109,28 @@ export class Panel {
     }
     const swatch = make("i");
     swatch.style.background = look.modeColours[robot.mode] ?? "";
-    fact("mode", make("span", "tag", swatch, robot.up === false ? "down" : scene.words.modes[robot.mode] ?? String(robot.mode)));
-    if (robot.wait !== null && robot.wait !== undefined) fact("waits for", scene.words.waits[robot.wait] ?? String(robot.wait));
+    fact(
+      "mode",
+      make("span", "tag", swatch, robot.up === false ? "down" : (scene.words.modes[robot.mode] ?? String(robot.mode))),
+    );
+    if (robot.wait !== null && robot.wait !== undefined)
+      fact("waits for", scene.words.waits[robot.wait] ?? String(robot.wait));
     if (robot.leader !== null && robot.leader !== undefined) fact("leader", `robot ${app.idOf(robot.leader)}`);
     const speed = (v) => `${Math.hypot(...v).toFixed(3)} m/s`;
     if (i < frame.n) {
-      const place = [frame.x[i], frame.y[i], ...(frame.z ? [frame.z[i]] : [])].map((part, k) => part + scene.origin_m[k]);
+      const place = [frame.x[i], frame.y[i], ...(frame.z ? [frame.z[i]] : [])].map(
+        (part, k) => part + scene.origin_m[k],
+      );
       fact("place", `${place.map((part) => part.toFixed(2)).join(", ")} m`);
       fact("speed", speed([frame.vx[i], frame.vy[i], frame.vz ? frame.vz[i] : 0]));
     }
     if (robot.wish) fact("wants", speed(robot.wish));
     const target = app.targetOf(i);
     if (target && i < frame.n) {
-      fact("to go", metres(Math.hypot(target[0] - frame.x[i], target[1] - frame.y[i], frame.z ? target[2] - frame.z[i] : 0)));
+      fact(
+        "to go",
+        metres(Math.hypot(target[0] - frame.x[i], target[1] - frame.y[i], frame.z ? target[2] - frame.z[i] : 0)),
+      );
     }
     if (robot.boot !== undefined) fact("starts", String(robot.boot));
     if (robot.sent !== undefined) fact("bytes sent, heard", `${thousands(robot.sent)}, ${thousands(robot.heard)}`);
@@ -115,7 +143,8 @@ export class Panel {
   }
 
   showVelocities({ orca, index }) {
-    const { app } = this, { css } = app.look;
+    const { app } = this,
+      { css } = app.look;
     const frame = app.motion.current;
     const velocity = frame && index < frame.n ? [frame.vx[index], frame.vy[index]] : [0, 0];
     drawVelocities(this.plot, orca, velocity, css);
@@ -124,21 +153,32 @@ export class Panel {
       sign.style.color = colour;
       return make("span", "", sign, ` ${text}`);
     };
-    this.key.replaceChildren(key(css.chosen, "chosen"), key(css.preferred, "wanted"), key(css.muted, "as it moves"),
-      key(css.line, `${orca.lines.length} half-planes`));
+    this.key.replaceChildren(
+      key(css.chosen, "chosen"),
+      key(css.preferred, "wanted"),
+      key(css.muted, "as it moves"),
+      key(css.line, `${orca.lines.length} half-planes`),
+    );
   }
 
   showNeighbors(neighbors) {
     const { app } = this;
     const frame = app.motion.current;
     this.neighborTitle.textContent = neighbors.length ? `Knows of ${neighbors.length}` : "Knows of nobody";
-    const rows = neighbors.slice(0, MOST_NEIGHBORS).map(({ id, index, position_m: place, age_s: age, error_m: error }) => {
-      const far = frame ? Math.hypot(place[0] - frame.x[app.selected], place[1] - frame.y[app.selected]) : 0;
-      const row = make("tr", "", ...[String(id), metres(far), `${age.toFixed(age < 10 ? 2 : 0)} s`, error === null ? "–" : metres(error)]
-        .map((text) => make("td", "", text)));
-      if (index !== null) row.dataset.index = index;
-      return row;
-    });
+    const rows = neighbors
+      .slice(0, MOST_NEIGHBORS)
+      .map(({ id, index, position_m: place, age_s: age, error_m: error }) => {
+        const far = frame ? Math.hypot(place[0] - frame.x[app.selected], place[1] - frame.y[app.selected]) : 0;
+        const row = make(
+          "tr",
+          "",
+          ...[String(id), metres(far), `${age.toFixed(age < 10 ? 2 : 0)} s`, error === null ? "–" : metres(error)].map(
+            (text) => make("td", "", text),
+          ),
+        );
+        if (index !== null) row.dataset.index = index;
+        return row;
+      });
     this.rows.replaceChildren(...rows);
   }
 
@@ -146,7 +186,9 @@ export class Panel {
     const key = `${this.app.selected}:${events.length}:${events.at(-1)?.tick}:${events.at(-1)?.text}`;
     if (key === this.shownEvents) return;
     this.shownEvents = key;
-    this.events.replaceChildren(...events.toReversed().map(({ tick, text }) => make("li", "", make("span", "", String(tick)), text)));
+    this.events.replaceChildren(
+      ...events.toReversed().map(({ tick, text }) => make("li", "", make("span", "", String(tick)), text)),
+    );
   }
 }
 

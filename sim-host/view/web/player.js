@@ -8,6 +8,7 @@ const READ_THROUGH = 1 << 30;
 const STATE_EVERY_MS = 500;
 // A recording starts with as many ticks a second at least.
 const LEAST_TICKS = 10;
+const FASTEST_S = 8;
 
 export class Player {
   constructor(element, listener) {
@@ -30,7 +31,9 @@ export class Player {
       const { tick_s: tickS } = this.shownScene;
       this.speed = Math.max(1, 10 ** Math.round(Math.log10(LEAST_TICKS * tickS)));
     } catch (error) {
-      this.listener.onFailed(`The recording in this page cannot be read: ${error.message}. Make the page anew with "staya page".`);
+      this.listener.onFailed(
+        `The recording in this page cannot be read: ${error.message}. Make the page anew with "staya page".`,
+      );
       return;
     }
     const { damage, last } = this.recording;
@@ -43,7 +46,10 @@ export class Player {
     };
     requestAnimationFrame(turn);
     this.play();
-    this.recording.orders().then((orders) => this.listener.onOrders(orders), () => {});
+    this.recording.orders().then(
+      (orders) => this.listener.onOrders(orders),
+      () => {},
+    );
     this.readThrough();
   }
 
@@ -106,7 +112,10 @@ export class Player {
     const index = this.selected;
     if (index === null || index >= frame.n) return;
     this.listener.onRobot({
-      index, id: this.shownScene.robots.id[index] ?? null, tick: frame.tick, mode: frame.mode[index],
+      index,
+      id: this.shownScene.robots.id[index] ?? null,
+      tick: frame.tick,
+      mode: frame.mode[index],
       wait: frame.wait[index] === 255 ? null : frame.wait[index],
       leader: frame.leader[index] === 0xffffffff ? null : frame.leader[index],
     });
@@ -122,8 +131,10 @@ export class Player {
       return;
     }
     const tickS = this.shownScene.tick_s;
-    // As fast as it goes: a frame each time the page draws.
-    const ahead = this.speed === null ? this.next : Math.floor(this.time = (this.time ?? this.tick) + passed * this.speed / tickS);
+    // As fast as it goes: every frame, but all of them within a few seconds.
+    const rate = this.speed === null ? (this.recording.last - this.recording.first) / FASTEST_S : this.speed / tickS;
+    this.time = (this.time ?? this.tick) + passed * rate;
+    const ahead = this.speed === null ? Math.max(this.next, Math.floor(this.time)) : Math.floor(this.time);
     if (this.next !== null && ahead >= this.next) {
       this.wanted = ahead;
       this.fetch();
@@ -154,12 +165,31 @@ export class Player {
 
   send(message) {
     switch (message.do) {
-      case "pause": this.paused = true; this.say(); break;
-      case "play": this.play(); break;
-      case "step": this.paused = true; if (this.next !== null) this.seek(this.next); break;
-      case "speed": this.speed = message.x; this.time = null; this.say(); break;
-      case "seek": this.paused = true; this.seek(message.tick); break;
-      case "select": this.selected = message.robot; this.wanted ??= this.tick; this.fetch(); break;
+      case "pause":
+        this.paused = true;
+        this.say();
+        break;
+      case "play":
+        this.play();
+        break;
+      case "step":
+        this.paused = true;
+        if (this.next !== null) this.seek(this.next);
+        break;
+      case "speed":
+        this.speed = message.x;
+        this.time = null;
+        this.say();
+        break;
+      case "seek":
+        this.paused = true;
+        this.seek(message.tick);
+        break;
+      case "select":
+        this.selected = message.robot;
+        this.wanted ??= this.tick;
+        this.fetch();
+        break;
     }
   }
 }

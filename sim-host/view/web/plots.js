@@ -10,8 +10,12 @@ const PLOTS = [
   { name: "Formation error", unit: "cells", lines: [{ of: (f) => f.formation_error, colour: "accent" }], digits: 2 },
   { name: "Group order", lines: [{ of: (f) => f.order, colour: "accent" }], digits: 3, greatest: 1 },
   {
-    name: "Packets arrived, lost", digits: 0,
-    lines: [{ of: (f) => f.packets?.delivered, colour: "ok" }, { of: (f) => f.packets?.lost, colour: "bad" }],
+    name: "Packets arrived, lost",
+    digits: 0,
+    lines: [
+      { of: (f) => f.packets?.delivered, colour: "ok" },
+      { of: (f) => f.packets?.lost, colour: "bad" },
+    ],
   },
   { name: "Least gap", unit: "m", lines: [{ of: (f) => f.gap_m, colour: "violet" }], digits: 3 },
 ];
@@ -38,7 +42,7 @@ export class Plots {
     canvas.setAttribute("role", "img");
     canvas.addEventListener("pointerdown", (event) => {
       const { left, width } = canvas.getBoundingClientRect();
-      this.onSeek(this.first + (event.clientX - left) / width * (this.last - this.first));
+      this.onSeek(this.first + ((event.clientX - left) / width) * (this.last - this.first));
     });
     const label = document.createElement("div");
     label.append(name, value);
@@ -99,14 +103,19 @@ export class Plots {
       const values = plot.lines.map(({ of }) => of(figures) ?? null);
       if (row.hidden && values.some((each) => each !== null)) row.hidden = false;
       if (row.hidden) continue;
-      value.replaceChildren(...values.map((each, i) => {
-        const span = document.createElement("span");
-        span.textContent = each === null ? "–" : each.toFixed(plot.digits);
-        if (plot.lines.length > 1) span.style.color = colours[plot.lines[i].colour];
-        if (plot.unit && each !== null) span.textContent += `\u2009${plot.unit}`;
-        return span;
-      }));
-      canvas.setAttribute("aria-label", `${plot.name}: ${[...value.children].map((span) => span.textContent).join(", ")}`);
+      value.replaceChildren(
+        ...values.map((each, i) => {
+          const span = document.createElement("span");
+          span.textContent = each === null ? "–" : each.toFixed(plot.digits);
+          if (plot.lines.length > 1) span.style.color = colours[plot.lines[i].colour];
+          if (plot.unit && each !== null) span.textContent += `\u2009${plot.unit}`;
+          return span;
+        }),
+      );
+      canvas.setAttribute(
+        "aria-label",
+        `${plot.name}: ${[...value.children].map((span) => span.textContent).join(", ")}`,
+      );
       this.drawPlot(canvas, plot, from, tick, colours);
     }
   }
@@ -123,10 +132,11 @@ export class Plots {
     let greatest = plot.greatest ?? 0;
     if (!plot.greatest) {
       for (const values of this.samples) {
-        if (values) for (let i = 0; i < plot.lines.length; i++) if (values[from + i] > greatest) greatest = values[from + i];
+        if (values)
+          for (let i = 0; i < plot.lines.length; i++) if (values[from + i] > greatest) greatest = values[from + i];
       }
     }
-    const x = (at) => (at - this.first) / (this.last - this.first) * width;
+    const x = (at) => ((at - this.first) / (this.last - this.first)) * width;
     const y = (value) => height - 2 - (greatest > 0 ? value / greatest : 0) * (height - 5);
     context.strokeStyle = colours.grid;
     context.beginPath();
@@ -135,7 +145,9 @@ export class Plots {
     context.stroke();
     plot.lines.forEach(({ colour }, i) => {
       context.beginPath();
-      let pen = false, firstX = null, lastX = 0;
+      let pen = false,
+        firstX = null,
+        lastX = 0;
       this.samples.forEach((values, at) => {
         const value = values[from + i];
         if (Number.isNaN(value)) {

@@ -7,8 +7,11 @@ const LEAST_WALL_PIXELS = 6;
 
 const HINTS = {
   goal: "Drag from a robot to where it shall go, or click to send the selected one",
-  move: "Drag an obstacle", wall: "Drag a wall", circle: "Drag from the middle to the edge",
-  erase: "Click an obstacle to remove it", paint: "Paint cells",
+  move: "Drag an obstacle",
+  wall: "Drag a wall",
+  circle: "Drag from the middle to the edge",
+  erase: "Click an obstacle to remove it",
+  paint: "Paint cells",
 };
 
 export class Pointer {
@@ -26,12 +29,16 @@ export class Pointer {
     for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, (event) => this.up(event));
     canvas.addEventListener("pointerleave", () => this.hover(null));
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
-    canvas.addEventListener("wheel", (event) => {
-      event.preventDefault();
-      this.touched = true;
-      const lines = event.deltaMode === 1 ? 30 : 1;
-      app.camera.zoom(Math.exp(-event.deltaY * lines * WHEEL), event.offsetX, event.offsetY);
-    }, { passive: false });
+    canvas.addEventListener(
+      "wheel",
+      (event) => {
+        event.preventDefault();
+        this.touched = true;
+        const lines = event.deltaMode === 1 ? 30 : 1;
+        app.camera.zoom(Math.exp(-event.deltaY * lines * WHEEL), event.offsetX, event.offsetY);
+      },
+      { passive: false },
+    );
     for (const button of document.querySelectorAll("[data-tool]")) {
       button.addEventListener("click", () => this.choose(button.dataset.tool));
     }
@@ -39,7 +46,7 @@ export class Pointer {
 
   choose(tool) {
     const button = document.querySelector(`[data-tool="${tool}"]`);
-    if (!this.app.live || !button.offsetParent && tool !== "select") return;
+    if (!this.app.live || (!button.offsetParent && tool !== "select")) return;
     this.tool = tool;
     this.cancel();
     for (const each of document.querySelectorAll("[data-tool]")) each.setAttribute("aria-pressed", each === button);
@@ -98,7 +105,8 @@ export class Pointer {
     const robot = app.pick(at[0], at[1]);
     const still = event.button === 1 || event.button === 2;
     if (app.live && !still) {
-      if ((event.shiftKey || this.tool === "goal") && robot !== null) return { kind: "goal", robot, heights: app.motion.place(robot, [0, 0, 0]) };
+      if ((event.shiftKey || this.tool === "goal") && robot !== null)
+        return { kind: "goal", robot, heights: app.motion.place(robot, [0, 0, 0]) };
       if (this.tool === "goal") return { kind: "send" };
       if (this.tool === "select") {
         const goal = this.handle(at);
@@ -176,10 +184,12 @@ export class Pointer {
     drag.place = place;
     app.dirty = true;
     switch (drag.kind) {
-      case "goal": case "waypoint":
+      case "goal":
+      case "waypoint":
         if (drag.moved) app.view.sketch = { kind: "goal", robot: drag.robot ?? null, place };
         break;
-      case "wall": case "circle":
+      case "wall":
+      case "circle":
         app.view.sketch = { kind: drag.kind, from: drag.from, to: place };
         break;
       case "move": {
@@ -189,7 +199,9 @@ export class Pointer {
         app.ground.changed();
         break;
       }
-      case "paint": this.paint(place); break;
+      case "paint":
+        this.paint(place);
+        break;
     }
   }
 
@@ -201,8 +213,9 @@ export class Pointer {
     const from = drag.last ?? cell;
     const steps = Math.max(Math.abs(cell[0] - from[0]), Math.abs(cell[1] - from[1]), 1);
     for (let i = 0; i <= steps; i++) {
-      const [x, y] = [0, 1].map((axis) => Math.round(from[axis] + (cell[axis] - from[axis]) * i / steps));
-      if (x < 0 || y < 0 || x >= land.width || y >= land.height || app.cells[y * land.width + x] === paintClass) continue;
+      const [x, y] = [0, 1].map((axis) => Math.round(from[axis] + ((cell[axis] - from[axis]) * i) / steps));
+      if (x < 0 || y < 0 || x >= land.width || y >= land.height || app.cells[y * land.width + x] === paintClass)
+        continue;
       app.cells[y * land.width + x] = paintClass;
       app.ground.cellChanged(x, y);
       app.order({ kind: "cell", cell: [x, y], class: paintClass });
@@ -225,7 +238,8 @@ export class Pointer {
     const { app } = this;
     const { place } = drag;
     switch (drag.kind) {
-      case "pan": case "orbit":
+      case "pan":
+      case "orbit":
         if (!drag.moved && drag.click) app.select(app.pick(at[0], at[1], 18));
         break;
       case "goal":
@@ -242,7 +256,10 @@ export class Pointer {
         break;
       case "wall":
         if (Math.hypot(at[0] - drag.start[0], at[1] - drag.start[1]) >= LEAST_WALL_PIXELS) {
-          app.order({ kind: "solid", solid: { kind: "segment", from_m: drag.from.slice(0, 2), to_m: place.slice(0, 2) } });
+          app.order({
+            kind: "solid",
+            solid: { kind: "segment", from_m: drag.from.slice(0, 2), to_m: place.slice(0, 2) },
+          });
         }
         break;
       case "circle": {
@@ -281,12 +298,18 @@ export class Pointer {
     const { app } = this;
     const place = app.camera.unproject(px, py);
     const near = HANDLE_PIXELS / 2 / app.camera.scale;
-    return place && app.solids.findLast((solid) => {
-      if (solid.center_m) return Math.hypot(place[0] - solid.center_m[0], place[1] - solid.center_m[1]) <= solid.radius_m + near;
-      const points = solid.points_m ?? [solid.from_m, solid.to_m];
-      return points.some((point, i) => i > 0 && toSegment(place, points[i - 1], point) <= near)
-        || solid.points_m && (inside(place, points) || toSegment(place, points[points.length - 1], points[0]) <= near);
-    });
+    return (
+      place &&
+      app.solids.findLast((solid) => {
+        if (solid.center_m)
+          return Math.hypot(place[0] - solid.center_m[0], place[1] - solid.center_m[1]) <= solid.radius_m + near;
+        const points = solid.points_m ?? [solid.from_m, solid.to_m];
+        return (
+          points.some((point, i) => i > 0 && toSegment(place, points[i - 1], point) <= near) ||
+          (solid.points_m && (inside(place, points) || toSegment(place, points[points.length - 1], points[0]) <= near))
+        );
+      })
+    );
   }
 }
 
@@ -306,7 +329,7 @@ function inside([x, y], points) {
   let odd = false;
   points.forEach(([x1, y1], i) => {
     const [x0, y0] = points[(i + points.length - 1) % points.length];
-    if ((y0 > y) !== (y1 > y) && x < (x1 - x0) * (y - y0) / (y1 - y0) + x0) odd = !odd;
+    if (y0 > y !== y1 > y && x < ((x1 - x0) * (y - y0)) / (y1 - y0) + x0) odd = !odd;
   });
   return odd;
 }

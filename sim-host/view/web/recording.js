@@ -6,7 +6,9 @@ const MAGIC = "STAYAREC";
 const VERSION = 1;
 const FILE_HEADER = 12;
 const BLOCK_HEADER = 13;
-const SCENE = 1, FRAMES = 2, ORDERS = 3;
+const SCENE = 1,
+  FRAMES = 2,
+  ORDERS = 3;
 // Unpacked blocks that are kept, in bytes.
 const KEPT = 96 << 20;
 
@@ -71,7 +73,8 @@ function framesOf(raw) {
     at += 4 + length;
   }
   const bytes = new Uint8Array(room);
-  let before = 0, beforeLength = 0;
+  let before = 0,
+    beforeLength = 0;
   for (const [from, length, to] of spans) {
     const shared = Math.min(length, beforeLength);
     for (let i = 0; i < shared; i++) bytes[to + i] = raw[from + i] ^ bytes[before + i];
@@ -103,8 +106,12 @@ export class Recording {
       const end = at + BLOCK_HEADER + packedLength;
       if (end > bytes.length) break;
       const block = {
-        at, rawLength: view.getUint32(at + 1, true), crc: view.getUint32(at + 9, true),
-        packed: bytes.subarray(at + BLOCK_HEADER, end), scene: null, first: 0,
+        at,
+        rawLength: view.getUint32(at + 1, true),
+        crc: view.getUint32(at + 9, true),
+        packed: bytes.subarray(at + BLOCK_HEADER, end),
+        scene: null,
+        first: 0,
       };
       const kind = bytes[at];
       if (kind === SCENE) scene = block;
@@ -193,7 +200,7 @@ export class Recording {
     const block = await this.unpacked(low);
     let i = 0;
     while (i + 1 < block.ticks.length && block.ticks[i + 1] <= tick) i++;
-    const after = i + 1 < block.ticks.length ? block.ticks[i + 1] : this.frames[low + 1]?.first ?? null;
+    const after = i + 1 < block.ticks.length ? block.ticks[i + 1] : (this.frames[low + 1]?.first ?? null);
     return { frame: block.frame(i), scene: await this.scene(this.frames[low].scene), next: after };
   }
 }

@@ -13,7 +13,10 @@ const BALL_COLOUR = 13;
 class Program {
   constructor(gl, [vertex, fragment]) {
     this.program = gl.createProgram();
-    for (const [type, source] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
+    for (const [type, source] of [
+      [gl.VERTEX_SHADER, vertex],
+      [gl.FRAGMENT_SHADER, fragment],
+    ]) {
       const shader = gl.createShader(type);
       gl.shaderSource(shader, source);
       gl.compileShader(shader);
@@ -42,7 +45,8 @@ class Table {
 
   store(data) {
     const { gl, format, type, channels, width } = this;
-    const texels = data.length / channels, rows = Math.max(1, Math.ceil(texels / width));
+    const texels = data.length / channels,
+      rows = Math.max(1, Math.ceil(texels / width));
     gl.bindTexture(gl.TEXTURE_2D, this.texture);
     if (rows > this.rows) {
       this.rows = rows;
@@ -50,7 +54,8 @@ class Table {
       gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
       gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
     }
-    const full = Math.floor(texels / width), rest = texels - full * width;
+    const full = Math.floor(texels / width),
+      rest = texels - full * width;
     if (full) gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, width, full, format, type, data);
     if (rest) gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, full, rest, 1, format, type, data, full * width * channels);
   }
@@ -59,7 +64,12 @@ class Table {
 export class Renderer {
   /** Null where there is no WebGL2. */
   static on(canvas) {
-    const gl = canvas.getContext("webgl2", { alpha: true, antialias: false, depth: true, powerPreference: "high-performance" });
+    const gl = canvas.getContext("webgl2", {
+      alpha: true,
+      antialias: false,
+      depth: true,
+      powerPreference: "high-performance",
+    });
     return gl && new Renderer(canvas, gl);
   }
 
@@ -71,7 +81,9 @@ export class Renderer {
     this.balls = [];
     // Without a GPU each vertex counts.
     const named = gl.getExtension("WEBGL_debug_renderer_info");
-    this.software = Boolean(named) && /swiftshader|llvmpipe|software|basic render/i.test(gl.getParameter(named.UNMASKED_RENDERER_WEBGL));
+    this.software =
+      Boolean(named) &&
+      /swiftshader|llvmpipe|software|basic render/i.test(gl.getParameter(named.UNMASKED_RENDERER_WEBGL));
     this.make();
     canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
     canvas.addEventListener("webglcontextrestored", () => {
@@ -83,8 +95,11 @@ export class Renderer {
   make() {
     const { gl } = this;
     this.programs = {
-      bodies: new Program(gl, BODIES), velocities: new Program(gl, VELOCITIES), targets: new Program(gl, TARGETS),
-      lines: new Program(gl, LINES), trails: new Program(gl, TRAILS),
+      bodies: new Program(gl, BODIES),
+      velocities: new Program(gl, VELOCITIES),
+      targets: new Program(gl, TARGETS),
+      lines: new Program(gl, LINES),
+      trails: new Program(gl, TRAILS),
     };
     const words = () => new Table(gl, gl.R32UI, gl.RED_INTEGER, gl.UNSIGNED_INT, 1, WIDTH);
     const pairs = () => new Table(gl, gl.RG32F, gl.RG, gl.FLOAT, 2, WIDTH);
@@ -102,7 +117,7 @@ export class Renderer {
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
   }
 
-  /** `bodies` are radius and group of each robot, then of the intruders; `balls` are solids in space, [x, y, z, radius]. */
+  /** `bodies`: radius and group of each robot, then of the intruders; `balls`: solids in space, [x, y, z, radius]. */
   setBodies(robots, bodies, balls) {
     Object.assign(this, { robots, bodies, balls });
     this.held = [null, null];
@@ -110,9 +125,11 @@ export class Renderer {
     this.statics.store(bodies);
     this.trails.reset();
     // Balls are drawn as bodies are, from a frame of their own.
-    const n = balls.length, padded = (n + 3) >> 2;
+    const n = balls.length,
+      padded = (n + 3) >> 2;
     const words = new Uint32Array(3 * n + 2 * padded);
-    const floats = new Float32Array(words.buffer), bytes = new Uint8Array(words.buffer);
+    const floats = new Float32Array(words.buffer),
+      bytes = new Uint8Array(words.buffer);
     balls.forEach((ball, i) => {
       for (let k = 0; k < 3; k++) floats[k * n + i] = ball[k];
       bytes[12 * n + i] = BALL_COLOUR;
@@ -157,13 +174,25 @@ export class Renderer {
       this.headings.store(motion.headings);
       this.headingsOf = frame;
     }
-    const now = this.tableOf(frame, motion.previous), before = this.tableOf(motion.previous, frame);
+    const now = this.tableOf(frame, motion.previous),
+      before = this.tableOf(motion.previous, frame);
     const { at } = frame;
     const triple = (name) => ["x", "y", "z"].map((axis) => (at[name + axis] === undefined ? -1 : at[name + axis] / 4));
     const scene = {
-      camera, look, count, now, before, mix: motion.mix, statics: this.statics, headings: this.headings, robots: this.robots,
+      camera,
+      look,
+      count,
+      now,
+      before,
+      mix: motion.mix,
+      statics: this.statics,
+      headings: this.headings,
+      robots: this.robots,
       colourBy: COLOUR_BY.indexOf(look.colourBy),
-      place: triple(""), velocity: triple("v"), target: triple("t"), modeWait: [at.mode / 4, at.wait / 4],
+      place: triple(""),
+      velocity: triple("v"),
+      target: triple("t"),
+      modeWait: [at.mode / 4, at.wait / 4],
     };
     if (look.trails && this.trails.record(motion, count, look.trails)) {
       const program = this.begin(this.programs.trails, scene);
@@ -186,7 +215,8 @@ export class Renderer {
   }
 
   begin(program, { camera, look, colourBy }) {
-    const { gl } = this, { uniforms } = program;
+    const { gl } = this,
+      { uniforms } = program;
     gl.useProgram(program.program);
     gl.uniformMatrix4fv(uniforms.uMatrix, false, camera.matrix);
     gl.uniform2f(uniforms.uViewport, this.canvas.width, this.canvas.height);
@@ -200,14 +230,19 @@ export class Renderer {
 
   /** For programs that read frames. */
   beginBodies(program, scene) {
-    const { gl } = this, { uniforms } = this.begin(program, scene);
-    [["uNow", scene.now], ["uBefore", scene.before], ["uStatic", scene.statics], ["uHeadings", scene.headings]]
-      .forEach(([name, table], unit) => {
-        if (!uniforms[name]) return;
-        gl.activeTexture(gl.TEXTURE0 + unit);
-        gl.bindTexture(gl.TEXTURE_2D, table.texture);
-        gl.uniform1i(uniforms[name], unit);
-      });
+    const { gl } = this,
+      { uniforms } = this.begin(program, scene);
+    [
+      ["uNow", scene.now],
+      ["uBefore", scene.before],
+      ["uStatic", scene.statics],
+      ["uHeadings", scene.headings],
+    ].forEach(([name, table], unit) => {
+      if (!uniforms[name]) return;
+      gl.activeTexture(gl.TEXTURE0 + unit);
+      gl.bindTexture(gl.TEXTURE_2D, table.texture);
+      gl.uniform1i(uniforms[name], unit);
+    });
     gl.activeTexture(gl.TEXTURE0);
     const triple = (uniform, at) => uniform && gl.uniform3i(uniform, ...at);
     triple(uniforms.uAtPlace, scene.place);
@@ -220,7 +255,9 @@ export class Renderer {
   }
 
   drawBodies(scene) {
-    const { gl } = this, { camera, look } = scene, { uniforms } = this.beginBodies(this.programs.bodies, scene);
+    const { gl } = this,
+      { camera, look } = scene,
+      { uniforms } = this.beginBodies(this.programs.bodies, scene);
     gl.uniform1f(uniforms.uLeast, look.leastRadius);
     gl.uniform4fv(uniforms.uWaiting, look.colours.waiting);
     gl.uniform1i(uniforms.uSpace, camera.space ? 1 : 0);
@@ -230,13 +267,23 @@ export class Renderer {
   drawBalls(scene) {
     const n = this.balls.length;
     this.drawBodies({
-      ...scene, count: n, robots: n, now: this.ballFrame, before: this.ballFrame, statics: this.ballStatics,
-      headings: this.noHeadings, colourBy: 0, place: [0, n, 2 * n], modeWait: [3 * n, 3 * n + ((n + 3) >> 2)],
+      ...scene,
+      count: n,
+      robots: n,
+      now: this.ballFrame,
+      before: this.ballFrame,
+      statics: this.ballStatics,
+      headings: this.noHeadings,
+      colourBy: 0,
+      place: [0, n, 2 * n],
+      modeWait: [3 * n, 3 * n + ((n + 3) >> 2)],
     });
   }
 
   drawVelocities(scene) {
-    const { gl } = this, { look } = scene, { uniforms } = this.beginBodies(this.programs.velocities, scene);
+    const { gl } = this,
+      { look } = scene,
+      { uniforms } = this.beginBodies(this.programs.velocities, scene);
     gl.uniform1f(uniforms.uSeconds, look.velocitySeconds);
     gl.uniform4fv(uniforms.uInk, look.colours.velocity);
     gl.drawArrays(gl.TRIANGLES, 0, 6 * scene.count);
@@ -244,7 +291,8 @@ export class Renderer {
 
   drawLines(scene, lines) {
     if (!lines.count) return;
-    const { gl } = this, { uniforms } = this.begin(this.programs.lines, scene);
+    const { gl } = this,
+      { uniforms } = this.begin(this.programs.lines, scene);
     this.lines.store(lines.words.subarray(0, lines.count * LINE_WORDS));
     gl.uniform1i(uniforms.uLines, 0);
     gl.drawArrays(gl.TRIANGLES, 0, 6 * lines.count);
@@ -272,10 +320,15 @@ export class Lines {
       this.words = new Uint32Array(larger.buffer);
     }
     const { floats } = this;
-    floats[at++] = x0; floats[at++] = y0; floats[at++] = z0;
-    floats[at++] = x1; floats[at++] = y1; floats[at++] = z1;
+    floats[at++] = x0;
+    floats[at++] = y0;
+    floats[at++] = z0;
+    floats[at++] = x1;
+    floats[at++] = y1;
+    floats[at++] = z1;
     this.words[at++] = ink;
-    floats[at++] = width; floats[at] = dash;
+    floats[at++] = width;
+    floats[at] = dash;
     this.count++;
   }
 }

@@ -1,5 +1,5 @@
-// GLSL of the bodies and lines. Vertices fetch what they need from textures by their number, six of them a body or line;
-// that is quick on any GPU, and without one ten times as quick as instancing. Sizes on the screen are in canvas pixels.
+// GLSL of the bodies and lines. Vertices fetch what they need from textures by their number, six of them a body or
+// line; that is quick on any GPU, and without one ten times as quick as instancing.
 
 const COMMON = `#version 300 es
 precision highp float;
@@ -83,7 +83,8 @@ in float vHalf;
 float edge() { return clamp(vHalf + 0.5 - abs(vAcross), 0.0, 1.0) * min(1.0, 2.0 * vHalf); }
 `;
 
-export const BODIES = [`${COMMON}${CORNER}${FRAME}${COLOUR}
+export const BODIES = [
+  `${COMMON}${CORNER}${FRAME}${COLOUR}
 uniform float uLeast;      // radius in CSS pixels that a body has at least
 out vec2 vAt;
 flat out vec4 vColour;
@@ -102,7 +103,8 @@ void main() {
   vHeading = dot(heading, heading) > 0.0 ? normalize(heading) : vec2(0.0);
   gl_Position = clip;
   gl_Position.xy += vAt * 2.0 / uViewport * clip.w;
-}`, `${COMMON}
+}`,
+  `${COMMON}
 in vec2 vAt;
 flat in vec4 vColour;
 flat in vec2 vHeading;
@@ -145,9 +147,11 @@ void main() {
   float alpha = max(cover, ring);
   if (alpha < 0.02) discard;
   result = vec4(mix(uWaiting.rgb, colour.rgb, cover) * alpha, alpha);
-}`];
+}`,
+];
 
-export const VELOCITIES = [`${COMMON}${FRAME}
+export const VELOCITIES = [
+  `${COMMON}${FRAME}
 uniform float uSeconds;
 uniform vec4 uInk;
 ${RIBBON}
@@ -158,12 +162,15 @@ void main() {
   vec3 to = from + triple(uNow, uAtVelocity, body) * uSeconds;
   vColour = uInk;
   if (from == to || !ribbon(from, to, 1.6)) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
-}`, `${COMMON}${EDGE}
+}`,
+  `${COMMON}${EDGE}
 flat in vec4 vColour;
 out vec4 result;
-void main() { result = vColour * edge(); }`];
+void main() { result = vColour * edge(); }`,
+];
 
-export const TARGETS = [`${COMMON}${CORNER}${FRAME}${COLOUR}
+export const TARGETS = [
+  `${COMMON}${CORNER}${FRAME}${COLOUR}
 uniform float uSize;
 out vec2 vAt;
 flat out vec4 vColour;
@@ -176,7 +183,8 @@ void main() {
   gl_Position = uMatrix * vec4(none ? vec3(0.0) : triple(uNow, uAtTarget, body), 1.0);
   gl_Position.xy += vAt * 2.0 / uViewport * gl_Position.w;
   if (none) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
-}`, `${COMMON}
+}`,
+  `${COMMON}
 in vec2 vAt;
 flat in vec4 vColour;
 uniform vec4 uRim;
@@ -191,9 +199,11 @@ void main() {
   float alpha = max(fill, halo);
   if (alpha < 0.02) discard;
   result = vec4(mix(uRim.rgb, vColour.rgb, fill / alpha) * alpha, alpha);
-}`];
+}`,
+];
 
-export const LINES = [`${COMMON}
+export const LINES = [
+  `${COMMON}
 uniform usampler2D uLines;  // three texels each: from and to, colour, width, and pixels of a dash or 0
 ${RIBBON}
 flat out vec4 vColour;
@@ -201,13 +211,16 @@ flat out float vDash;
 void main() {
   int line = gl_VertexID / 6;
   ivec2 at = ivec2(3 * (line & 255), line >> 8);
-  uvec4 a = texelFetch(uLines, at, 0), b = texelFetch(uLines, at + ivec2(1, 0), 0), c = texelFetch(uLines, at + ivec2(2, 0), 0);
+  uvec4 a = texelFetch(uLines, at, 0);
+  uvec4 b = texelFetch(uLines, at + ivec2(1, 0), 0);
+  uvec4 c = texelFetch(uLines, at + ivec2(2, 0), 0);
   vec4 ink = vec4(uvec4(b.z, b.z >> 8, b.z >> 16, b.z >> 24) & 255u) / 255.0;
   vColour = vec4(ink.rgb * ink.a, ink.a);
   vDash = uintBitsToFloat(c.x) * uRatio;
   vec3 from = uintBitsToFloat(a.xyz), to = uintBitsToFloat(uvec3(a.w, b.xy));
   if (!ribbon(from, to, uintBitsToFloat(b.w))) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
-}`, `${COMMON}${EDGE}
+}`,
+  `${COMMON}${EDGE}
 flat in vec4 vColour;
 flat in float vDash;
 out vec4 result;
@@ -215,9 +228,11 @@ void main() {
   float on = vDash > 0.0 ? step(fract(vAlong / (2.0 * vDash)), 0.5) : 1.0;
   if (on == 0.0) discard;
   result = vColour * edge();
-}`];
+}`,
+];
 
-export const TRAILS = [`${COMMON}
+export const TRAILS = [
+  `${COMMON}
 uniform sampler2D uSnapshots;
 uniform vec4 uPalette[16];
 uniform vec4 uInk;
@@ -236,7 +251,9 @@ void main() {
   vColour = vec4(ink.rgb * alpha, alpha);
   vec3 from = place(uOldest + step, body), to = place(uOldest + step + 1, body);
   if (from == to || !ribbon(from, to, uColourBy == 3 ? 2.0 : 1.3)) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
-}`, `${COMMON}${EDGE}
+}`,
+  `${COMMON}${EDGE}
 flat in vec4 vColour;
 out vec4 result;
-void main() { result = vColour * edge(); }`];
+void main() { result = vColour * edge(); }`,
+];

@@ -8,9 +8,10 @@ function clipped(polygon, { point, normal }) {
   const kept = [];
   polygon.forEach((corner, i) => {
     const next = polygon[(i + 1) % polygon.length];
-    const a = side(corner), b = side(next);
+    const a = side(corner),
+      b = side(next);
     if (a >= 0) kept.push(corner);
-    if ((a >= 0) !== (b >= 0)) {
+    if (a >= 0 !== b >= 0) {
       const t = a / (a - b);
       kept.push([corner[0] + t * (next[0] - corner[0]), corner[1] + t * (next[1] - corner[1])]);
     }
@@ -27,8 +28,9 @@ export function drawVelocities(canvas, orca, velocity, colours) {
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
   context.clearRect(0, 0, size, size);
   const { max_speed_mps: fastest, lines, preferred_mps: preferred, chosen_mps: chosen } = orca;
-  const reach = 1.3 * Math.max(fastest, 1e-6), middle = size / 2;
-  const px = (v) => [middle + v[0] / reach * middle, middle - v[1] / reach * middle];
+  const reach = 1.3 * Math.max(fastest, 1e-6),
+    middle = size / 2;
+  const px = (v) => [middle + (v[0] / reach) * middle, middle - (v[1] / reach) * middle];
   const path = (points, close) => {
     context.beginPath();
     for (const point of points) context.lineTo(...px(point));
@@ -36,7 +38,12 @@ export function drawVelocities(canvas, orca, velocity, colours) {
   };
 
   // Forbidden sides, one over the other.
-  const frame = [[-reach, -reach], [reach, -reach], [reach, reach], [-reach, reach]];
+  const frame = [
+    [-reach, -reach],
+    [reach, -reach],
+    [reach, reach],
+    [-reach, reach],
+  ];
   context.fillStyle = colours.forbidden;
   for (const { point, normal } of lines) {
     const gone = clipped(frame, { point, normal: [-normal[0], -normal[1]] });
@@ -46,7 +53,7 @@ export function drawVelocities(canvas, orca, velocity, colours) {
     }
   }
   let allowed = Array.from({ length: CORNERS }, (_, i) => {
-    const angle = 2 * Math.PI * i / CORNERS;
+    const angle = (2 * Math.PI * i) / CORNERS;
     return [fastest * Math.cos(angle), fastest * Math.sin(angle)];
   });
   for (const line of lines) allowed = clipped(allowed, line);
@@ -58,20 +65,30 @@ export function drawVelocities(canvas, orca, velocity, colours) {
 
   context.strokeStyle = colours.axis;
   context.lineWidth = 1;
-  path([[-reach, 0], [reach, 0]]);
+  path([
+    [-reach, 0],
+    [reach, 0],
+  ]);
   context.stroke();
-  path([[0, -reach], [0, reach]]);
+  path([
+    [0, -reach],
+    [0, reach],
+  ]);
   context.stroke();
   context.beginPath();
-  context.arc(middle, middle, fastest / reach * middle, 0, 2 * Math.PI);
+  context.arc(middle, middle, (fastest / reach) * middle, 0, 2 * Math.PI);
   context.strokeStyle = colours.muted;
   context.stroke();
 
   context.strokeStyle = colours.line;
   context.lineWidth = 1.25;
   for (const { point, normal } of lines) {
-    const along = [-normal[1], normal[0]], far = 4 * reach;
-    path([[point[0] - far * along[0], point[1] - far * along[1]], [point[0] + far * along[0], point[1] + far * along[1]]]);
+    const along = [-normal[1], normal[0]],
+      far = 4 * reach;
+    path([
+      [point[0] - far * along[0], point[1] - far * along[1]],
+      [point[0] + far * along[0], point[1] + far * along[1]],
+    ]);
     context.stroke();
   }
 
@@ -94,7 +111,9 @@ function arrow(context, [x0, y0], [x1, y1], colour, width, filled, dash = []) {
     context[filled ? "fill" : "stroke"]();
     return;
   }
-  const ux = (x1 - x0) / length, uy = (y1 - y0) / length, head = Math.min(8, length);
+  const ux = (x1 - x0) / length,
+    uy = (y1 - y0) / length,
+    head = Math.min(8, length);
   context.setLineDash(dash);
   context.beginPath();
   context.moveTo(x0, y0);

@@ -12,7 +12,8 @@ const MOST_CROSSES = 400;
 const VECTOR_PIXELS = 34;
 const CROWDED_PIXELS = 9;
 const SCALE_PIXELS = 110;
-const DELIVERED = 0, DAMAGED = 2;
+const DELIVERED = 0,
+  DAMAGED = 2;
 
 export class View {
   /** `software`: there is no GPU, so that the canvas is best kept in memory. */
@@ -35,16 +36,19 @@ export class View {
 
   /** Makes signs small, and leaves out some, where robots would be hidden by them. */
   suit(look) {
-    const { app } = this, { camera, scene } = app;
+    const { app } = this,
+      { camera, scene } = app;
     const [x0, y0, x1, y1] = scene.bounds_m;
     const pixels = camera.pixelsPerMetre(camera.space ? camera.distance : 1);
     // About how far robots are from each other.
-    const apart = Math.sqrt((x1 - x0) * (y1 - y0) / Math.max(app.robots, 1)) * pixels;
+    const apart = Math.sqrt(((x1 - x0) * (y1 - y0)) / Math.max(app.robots, 1)) * pixels;
     look.leastRadius = Math.max(0.9, Math.min(app.robots <= 200 ? 6 : 4, 0.22 * apart));
     look.targetSize = Math.max(2.5, Math.min(6, 0.3 * apart));
     look.crowded = apart < CROWDED_PIXELS;
     // A round number of seconds in which the fastest robot goes about as far as an arrow is long.
-    look.velocitySeconds = niceStep(Math.min(VECTOR_PIXELS, Math.max(0.8 * apart, 6)) / pixels / Math.max(app.fastest, 1e-6));
+    look.velocitySeconds = niceStep(
+      Math.min(VECTOR_PIXELS, Math.max(0.8 * apart, 6)) / pixels / Math.max(app.fastest, 1e-6),
+    );
   }
 
   lines() {
@@ -55,7 +59,8 @@ export class View {
     const frame = motion.current;
     if (!frame) return;
     if (camera.space) this.spaceLines(frame);
-    const a = [0, 0, 0], b = [0, 0, 0];
+    const a = [0, 0, 0],
+      b = [0, 0, 0];
     const join = (lines, i, j, ink, width, dash = 0) => {
       if (i >= frame.n || j >= frame.n) return;
       motion.place(i, a);
@@ -77,7 +82,9 @@ export class View {
       const { pairs } = app.links;
       const inks = [packed(look.css.ok, 0.4), packed(look.css.vermillion, 0.75), packed(look.css.orange, 0.85)];
       for (let at = 0; at + 1 < pairs.length; at += 2) {
-        const from = pairs[at], to = pairs[at + 1] >>> 2, fate = pairs[at + 1] & 3;
+        const from = pairs[at],
+          to = pairs[at + 1] >>> 2,
+          fate = pairs[at + 1] & 3;
         if (fate === DELIVERED) {
           join(below, from, to, inks[0], 1);
         } else if (from < frame.n && to < frame.n) {
@@ -125,7 +132,9 @@ export class View {
     }
     const ink = packed(look.css.solidEdge);
     for (const solid of app.solids) {
-      const points = solid.points_m ? [...solid.points_m, solid.points_m[0]] : solid.from_m && [solid.from_m, solid.to_m];
+      const points = solid.points_m
+        ? [...solid.points_m, solid.points_m[0]]
+        : solid.from_m && [solid.from_m, solid.to_m];
       points?.slice(1).forEach((point, i) => {
         below.add(points[i][0], points[i][1], z, point[0], point[1], z, ink, 2.5);
       });
@@ -135,7 +144,8 @@ export class View {
     const place = [0, 0, 0];
     for (let i = 0; i < frame.n; i++) {
       motion.place(i, place);
-      const [x, y] = place, foot = 0.5 * (app.radii[i] ?? 0);
+      const [x, y] = place,
+        foot = 0.5 * (app.radii[i] ?? 0);
       below.add(x, y, z, x, y, place[2], stem, 1);
       below.add(x - foot, y, z, x + foot, y, z, stem, 1.5);
       below.add(x, y - foot, z, x, y + foot, z, stem, 1.5);
@@ -155,7 +165,8 @@ export class View {
     this.drawCrosses();
     this.drawGoals(frame);
     if (app.look.layers.numbers) this.drawNumbers(frame, at);
-    if (this.hovered !== null && this.hovered < frame.n) this.ring(at(this.hovered), this.hovered, app.look.css.muted, 1.5);
+    if (this.hovered !== null && this.hovered < frame.n)
+      this.ring(at(this.hovered), this.hovered, app.look.css.muted, 1.5);
     if (selected) this.ring(at(app.selected), app.selected, app.look.css.selected, 2);
     if (this.sketch) this.drawSketch(at);
   }
@@ -179,7 +190,8 @@ export class View {
   }
 
   write(text, x, y, align = "center", size = 11) {
-    const { context } = this, { css } = this.app.look;
+    const { context } = this,
+      { css } = this.app.look;
     context.font = `500 ${size}px system-ui, "DejaVu Sans", sans-serif`;
     context.textAlign = align;
     context.lineJoin = "round";
@@ -210,7 +222,9 @@ export class View {
     };
     if (app.selected !== null && app.selected < frame.n) number(app.selected);
     for (let i = app.robots; i < frame.n; i++) number(i);
-    const few = app.robots <= 60 || app.robots <= 2000 && app.camera.pixelsPerMetre(app.camera.distance) * (app.radii[0] ?? 0) > 7;
+    const few =
+      app.robots <= 60 ||
+      (app.robots <= 2000 && app.camera.pixelsPerMetre(app.camera.distance) * (app.radii[0] ?? 0) > 7);
     for (let i = 0; few && i < Math.min(frame.n, app.robots) && written < MOST_NUMBERS; i++) {
       if (i !== app.selected) number(i);
     }
@@ -232,7 +246,13 @@ export class View {
       context.stroke();
       context.setLineDash([]);
       if (index === null || age_s > 2 * app.scene.tick_s) {
-        this.write(`${index === null ? `${id}? ` : ""}${age_s.toFixed(age_s < 10 ? 1 : 0)} s`, at[0], at[1] + radius + 13, "center", 10);
+        this.write(
+          `${index === null ? `${id}? ` : ""}${age_s.toFixed(age_s < 10 ? 1 : 0)} s`,
+          at[0],
+          at[1] + radius + 13,
+          "center",
+          10,
+        );
         context.lineWidth = 1.5;
         context.strokeStyle = css.ghost;
       }
@@ -303,7 +323,11 @@ export class View {
       context.moveTo(a[0], a[1]);
       context.lineTo(b[0], b[1]);
       context.stroke();
-      this.write(`${metres(Math.hypot(sketch.to[0] - sketch.from[0], sketch.to[1] - sketch.from[1]))}`, b[0], b[1] - 12);
+      this.write(
+        `${metres(Math.hypot(sketch.to[0] - sketch.from[0], sketch.to[1] - sketch.from[1]))}`,
+        b[0],
+        b[1] - 12,
+      );
     } else if (sketch.kind === "circle") {
       const a = app.camera.project(...sketch.from);
       const radius = Math.hypot(sketch.to[0] - sketch.from[0], sketch.to[1] - sketch.from[1]);
@@ -323,7 +347,7 @@ export class View {
     const key = `${camera.version}`;
     if (key === this.scaled) return;
     this.scaled = key;
-    const length = niceStep(SCALE_PIXELS * 0.7 / perMetre);
+    const length = niceStep((SCALE_PIXELS * 0.7) / perMetre);
     document.getElementById("scale-bar").style.width = `${length * perMetre}px`;
     const cell = this.app.scene.land?.cell_m;
     const cells = cell && length >= cell ? ` ≈ ${+(length / cell).toPrecision(3)} cells` : "";
