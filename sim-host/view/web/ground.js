@@ -25,10 +25,9 @@ export function niceStep(metres) {
 }
 
 export class Ground {
-  /** `software`: there is no GPU, so that the canvas is best kept in memory. */
-  constructor(canvas, software) {
+  constructor(canvas) {
     this.canvas = canvas;
-    this.context = canvas.getContext("2d", { alpha: false, willReadFrequently: software });
+    this.context = canvas.getContext("2d", { alpha: false });
     this.land = null;
     this.solids = [];
     this.window = null;

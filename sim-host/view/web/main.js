@@ -41,9 +41,8 @@ class App {
     this.look = new Look();
     this.renderer = Renderer.on(element("bodies"));
     this.lack = this.renderer ? null : NO_WEBGL;
-    const software = this.renderer?.software ?? true;
-    this.ground = new Ground(element("ground"), software);
-    this.view = new View(this, element("overlay"), software);
+    this.ground = new Ground(element("ground"));
+    this.view = new View(this, element("overlay"));
     this.plots = new Plots(element("plots"), (tick) => this.seek(tick));
     this.panel = new Panel(this);
     this.orders = new Orders(this);

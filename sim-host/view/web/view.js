@@ -16,11 +16,10 @@ const DELIVERED = 0,
   DAMAGED = 2;
 
 export class View {
-  /** `software`: there is no GPU, so that the canvas is best kept in memory. */
-  constructor(app, canvas, software) {
+  constructor(app, canvas) {
     this.app = app;
     this.canvas = canvas;
-    this.context = canvas.getContext("2d", { willReadFrequently: software });
+    this.context = canvas.getContext("2d");
     this.below = new Lines();
     this.above = new Lines();
     // What the pointer is doing: `{kind, ...}` or null.
