@@ -403,6 +403,7 @@ window.staya = {
     const { left, top } = element("overlay").getBoundingClientRect();
     return at && [at[0] + left, at[1] + top];
   },
+  target: (i) => app.targetOf(i),
   place: (i) => (app.motion.current ? app.motion.place(i, [0, 0, 0]) : null),
 };
 
