@@ -81,6 +81,7 @@ export class Controls {
     show("relief", Boolean(scene.land));
     show("window", Boolean(scene.land) && scene.mode !== "recording");
     show("known", scene.mode !== "recording");
+    show("links", scene.mode !== "recording");
     element("colour-by").value = app.look.colourBy;
     if (this.trailsFor !== app.robots) {
       this.trailsFor = app.robots;
@@ -222,6 +223,11 @@ export class Controls {
     this.app.announce(`Speed ${select.options[next].text}`);
   }
 
+  /** On a narrow screen panels are closed until there is a robot to tell about. */
+  showPanels() {
+    if (matchMedia(NARROW).matches && element("app").classList.contains("side-closed")) this.toggleSide();
+  }
+
   toggleSide() {
     const closed = element("app").classList.toggle("side-closed");
     element("toggle-side").setAttribute("aria-expanded", !closed);
@@ -277,7 +283,7 @@ export class Controls {
       p: () => this.toggleSide(),
       d: () => app.look.toggleTheme(),
       l: () => {
-        if (app.live) document.querySelector("[data-layer='links']").click();
+        if (app.scene?.mode !== "recording") document.querySelector("[data-layer='links']").click();
       },
       Escape: () => {
         if (app.pointer.drag) app.pointer.cancel();
