@@ -226,10 +226,7 @@ class App {
     this.orders.robot();
     this.controls.follow();
     this.controls.legend();
-    if (index !== null) {
-      this.controls.showPanels();
-      this.announce(`Robot ${this.idOf(index)} selected`);
-    }
+    if (index !== null) this.announce(`Robot ${this.idOf(index)} selected`);
     this.dirty = true;
   }
 

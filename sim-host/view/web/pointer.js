@@ -22,11 +22,18 @@ export class Pointer {
     this.paintClass = 0;
     this.pointers = new Map();
     this.drag = null;
+    // Whether the click that is about to come has chosen a robot.
+    this.picked = false;
     // Whether the camera has been moved by hand.
     this.touched = false;
     canvas.addEventListener("pointerdown", (event) => this.down(event));
     canvas.addEventListener("pointermove", (event) => this.move(event));
     for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, (event) => this.up(event));
+    // Only now, or the panel would slide under the finger and take the click.
+    canvas.addEventListener("click", () => {
+      if (this.picked && app.selected !== null) app.controls.showPanels();
+      this.picked = false;
+    });
     canvas.addEventListener("pointerleave", () => this.hover(null));
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
     canvas.addEventListener(
@@ -240,7 +247,8 @@ export class Pointer {
     switch (drag.kind) {
       case "pan":
       case "orbit":
-        if (!drag.moved && drag.click) app.select(app.pick(at[0], at[1], 18));
+        this.picked = !drag.moved && drag.click;
+        if (this.picked) app.select(app.pick(at[0], at[1], 18));
         break;
       case "goal":
         if (drag.moved) app.order({ kind: "goal", robot: drag.robot, place_m: place });
