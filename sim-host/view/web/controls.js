@@ -70,7 +70,6 @@ export class Controls {
       .filter(Boolean)
       .join(" · ");
     const root = element("app");
-    root.classList.remove("loading");
     root.dataset.mode = document.body.dataset.mode = scene.mode;
     root.dataset.kind = scene.kind;
     root.toggleAttribute("data-land", Boolean(scene.land));

@@ -60,8 +60,8 @@ class App {
     this.source = recording ? new Player(recording, this) : new Live(this);
     this.source.start();
     const turn = (now) => {
-      this.turn(now);
       requestAnimationFrame(turn);
+      this.turn(now);
     };
     requestAnimationFrame(turn);
   }

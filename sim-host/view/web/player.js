@@ -41,8 +41,8 @@ export class Player {
     this.played = performance.now();
     this.said = 0;
     const turn = (now) => {
-      this.advance(now);
       requestAnimationFrame(turn);
+      this.advance(now);
     };
     requestAnimationFrame(turn);
     this.play();

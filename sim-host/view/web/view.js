@@ -7,6 +7,7 @@ import { packed } from "staya/look.js";
 import { Lines } from "staya/renderer.js";
 
 const MOST_STEMS = 2000;
+const MOST_FEET = 200;
 const MOST_NUMBERS = 400;
 const MOST_CROSSES = 400;
 const VECTOR_PIXELS = 34;
@@ -146,6 +147,7 @@ export class View {
       const [x, y] = place,
         foot = 0.5 * (app.radii[i] ?? 0);
       below.add(x, y, z, x, y, place[2], stem, 1);
+      if (frame.n > MOST_FEET) continue;
       below.add(x - foot, y, z, x + foot, y, z, stem, 1.5);
       below.add(x, y - foot, z, x, y + foot, z, stem, 1.5);
     }
