@@ -32,7 +32,7 @@ enum Experiment {
     Swap(crossing::SwapArgs),
     /// Two crowds pass one gap in opposite directions.
     Doorway(crossing::DoorwayArgs),
-    /// Twelve ways to get in each other's way: crossings, doors, corridors, sizes, intruders, dead ends, in space.
+    /// Fourteen ways to get in each other's way: crossings, doors, corridors, sizes, intruders, dead ends, in space.
     Crossing(Box<crossing::CrossingArgs>),
     /// The queries of a Moving AI benchmark: how many robots arrive, and how much longer they take.
     Movingai(movingai::MovingAiArgs),

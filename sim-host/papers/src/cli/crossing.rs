@@ -98,9 +98,10 @@ pub struct DoorwayArgs {
     common: Common,
 }
 
-/// Twelve ways to get in each other's way: who arrives, how late, who overlaps.
+/// Fourteen ways to get in each other's way: who arrives, how late, who overlaps.
 ///
-/// blocks, four_ways, tee, door and corridor: groups among walls. parked: a goal behind a row of robots that stand.
+/// blocks, four_ways, tee, door, doors and corridor: groups among walls. parked_door: a crowd that goes through a door to
+/// places among others that stand behind it. parked: a goal behind a row of robots that stand.
 /// mixed: five sizes and three speeds. intruder: a vehicle that gives way to nobody. dead_end: a bag of walls, by routing.
 /// sphere: in space. blackout: the radio is dead while they meet. flock: an alpha flock between two balls.
 #[derive(Args, Clone, Debug)]
@@ -118,6 +119,9 @@ pub struct CrossingArgs {
     /// How long the radio is dead in the case "blackout", seconds.
     #[arg(long, value_name = "S", default_value_t = 1.0)]
     blackout: f64,
+    /// Everything so many times as large: bodies, ways, walls, speeds, noise and how far the radio reaches.
+    #[arg(long, value_name = "N", default_value_t = 1.0)]
+    size: f64,
     /// Move each start at random by up to this along both axes, metres.
     #[arg(long, value_name = "M", default_value_t = 0.02)]
     noise: f64,
@@ -139,6 +143,7 @@ impl CrossingArgs {
             seed: self.runs.seed,
             longest_s: self.longest,
             blackout_s: self.blackout,
+            size: self.size,
             conditions: self.runs.conditions(6.0),
         }
     }

@@ -1,4 +1,4 @@
-//! Twelve ways to get in each other's way, one table: [`Case`].
+//! Fourteen ways to get in each other's way, one table: [`Case`].
 //!
 //! Where the same kind of scene is known of RVO2's library (plain ORCA with everybody's state), the report says what
 //! became of it there; sizes and walls are not those of these runs to the centimetre.
@@ -29,6 +29,10 @@ pub enum Case {
     Tee,
     /// Two crowds at a door in which one robot fits.
     Door,
+    /// Two crowds at a wall with two such doors.
+    Doors,
+    /// A crowd that goes through a door to places among and beyond robots that are parked behind it.
+    ParkedDoor,
     /// Two groups in a corridor in which two robots pass each other.
     Corridor,
     /// A robot whose goal is behind a row of others that stand at theirs.
@@ -49,11 +53,13 @@ pub enum Case {
 
 impl Case {
     /// All.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 14] = [
         Self::Blocks,
         Self::FourWays,
         Self::Tee,
         Self::Door,
+        Self::Doors,
+        Self::ParkedDoor,
         Self::Corridor,
         Self::Parked,
         Self::Mixed,
@@ -72,6 +78,8 @@ impl Case {
             Self::FourWays => "four_ways",
             Self::Tee => "tee",
             Self::Door => "door",
+            Self::Doors => "doors",
+            Self::ParkedDoor => "parked_door",
             Self::Corridor => "corridor",
             Self::Parked => "parked",
             Self::Mixed => "mixed",
@@ -90,7 +98,8 @@ impl Case {
             Self::Blocks | Self::Flock => 25,
             Self::FourWays => 5,
             Self::Tee => 7,
-            Self::Door => 20,
+            Self::Door | Self::Doors => 20,
+            Self::ParkedDoor => 10,
             Self::Corridor => 6,
             Self::Parked => 8,
             Self::Mixed | Self::Intruder | Self::Blackout => 20,
@@ -128,6 +137,8 @@ pub struct Plan {
     pub longest_s: f64,
     /// How long the radio is dead in [`Case::Blackout`], seconds.
     pub blackout_s: f64,
+    /// How many times as large as else everything is: bodies, ways, walls, speeds, noise and how far the radio reaches.
+    pub size: f64,
     /// What else holds.
     pub conditions: Conditions,
 }
@@ -142,6 +153,7 @@ impl Default for Plan {
             seed: 1,
             longest_s: 900.0,
             blackout_s: 1.0,
+            size: 1.0,
             conditions: Conditions { range_m: 6.0, ..Conditions::default() },
         }
     }
@@ -154,7 +166,7 @@ pub struct Crossing {
     pub case: Case,
     /// Seed of noise and losses.
     pub seed: u64,
-    /// Robots.
+    /// Robots that have a goal.
     pub robots: usize,
     /// Robots at their goals at the end; of a flock those that are past the balls.
     pub arrived: usize,
@@ -181,6 +193,8 @@ pub struct Report {
     pub conditions: Conditions,
     /// Noise of the starts, metres.
     pub noise_m: f64,
+    /// How many times as large as else everything was, that and the speed above too.
+    pub size: f64,
     /// Each run, by case and seed.
     pub runs: Vec<Crossing>,
 }
@@ -193,7 +207,9 @@ impl Plan {
             (places, velocities) = robots.map(|robot| (robot.motion.position_m, robot.motion.velocity_mps)).unzip();
         })?;
         let clearance = outcome.clearance?;
-        let times = self.conditions.arrivals_s(&outcome);
+        let mut times = self.conditions.arrivals_s(&outcome);
+        let mut sent = has_goal(&scenario);
+        times.retain(|_| sent.next().unwrap_or(true));
         for (time, free_s) in times.iter().zip(free_s(&scenario)) {
             if let Some(time) = time
                 && free_s > 0.0
@@ -227,11 +243,17 @@ impl Plan {
     }
 }
 
-/// How long each robot needs for its way if nobody and nothing is in it, seconds; 0 for one that is where it wants to be.
+/// Whether each robot has somewhere to go.
+fn has_goal(scenario: &Scenario) -> impl Iterator<Item = bool> {
+    scenario.plane.iter().flat_map(|plane| plane.starts.iter().map(|start| !start.places.is_empty()))
+}
+
+/// How long each robot that has a goal needs for its way if nobody and nothing is in it, seconds; 0 for one that is where it wants to be.
 fn free_s(scenario: &Scenario) -> impl Iterator<Item = f64> {
     let plane = scenario.plane.iter();
     plane.flat_map(|plane| {
-        plane.starts.iter().enumerate().map(|(index, start)| {
+        let sent = plane.starts.iter().enumerate().filter(|(_, start)| !start.places.is_empty());
+        sent.map(|(index, start)| {
             let (mut way_m, mut from) = (0.0, start.position_m);
             for target in &start.places {
                 way_m += crate::arena::distance_m(from, target.position_m);
@@ -259,6 +281,12 @@ impl Experiment for Plan {
         // The bag of the dead end and the row of the parked ones are full then.
         let is_full = |case: &Case| matches!(case, Case::DeadEnd | Case::Parked) && robots > 30;
         ensure!(!self.cases.iter().any(is_full), "--robots {robots} find no room in dead_end or parked: give 1 to 30");
+        ensure!((0.1..=10.0).contains(&self.size), "--size {} is out of range: give 0.1 to 10", self.size);
+        let is_of_metres = |case: &Case| matches!(case, Case::DeadEnd | Case::Flock) && self.size != 1.0;
+        ensure!(
+            !self.cases.iter().any(is_of_metres),
+            "--size: dead_end and flock have one size only; give other cases"
+        );
         for (name, value) in [("--longest", self.longest_s), ("--blackout", self.blackout_s)] {
             ensure!((0.1..=1e6).contains(&value), "{name} {value} is out of range: give 0.1 to 1000000 seconds");
         }
@@ -276,21 +304,24 @@ impl Experiment for Plan {
     }
 
     fn report(&self, runs: &[Vec<Crossing>]) -> Report {
-        Report { conditions: self.conditions, noise_m: self.noise_m, runs: runs.concat() }
+        Report { conditions: self.conditions, noise_m: self.noise_m, size: self.size, runs: runs.concat() }
     }
 }
 
 impl Display for Report {
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
         super::report::headline(f, "crossing", &self.conditions, self.noise_m)?;
+        if self.size != 1.0 {
+            writeln!(f, "lengths and speeds times {}", self.size)?;
+        }
         writeln!(
             f,
-            "case       seed  arrived  last (s)  time / free  overlaps  deepest (mm)  with intruder  parts  RVO2, in scenes of the kind"
+            "case         seed  arrived  last (s)  time / free  overlaps  deepest (mm)  with intruder  parts  RVO2, in scenes of the kind"
         )?;
         for run in &self.runs {
             let parts = run.parts.map_or("-".to_owned(), |parts| parts.to_string());
             let line = format!(
-                "{:<9}  {:4}  {:>7}  {:>8}  {:>11}  {:8}  {:12.1}  {:13}  {parts:>5}  {}",
+                "{:<11}  {:4}  {:>7}  {:>8}  {:>11}  {:8}  {:12.1}  {:13}  {parts:>5}  {}",
                 run.case.name(),
                 run.seed,
                 format!("{}/{}", run.arrived, run.robots),

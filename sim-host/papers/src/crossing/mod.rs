@@ -1,5 +1,5 @@
 //! Robots that get in each other's way as badly as can be: [`swap`] over a circle, [`doorway`] through a gap, and
-//! twelve other [`cases`].
+//! fourteen other [`cases`].
 //!
 //! Every robot is a whole controller behind ORCA and knows of the others what the radio delivers: places rounded to a
 //! millimetre, one tick old. Plain ORCA jams in all of these.
@@ -89,17 +89,21 @@ impl Conditions {
     }
 }
 
-/// Runs a scenario; `see` sees the robots before the first tick and after each. `None` when `goes_on` says so before its
-/// end.
+/// Runs a scenario until all that have a goal have arrived; `see` sees the robots before the first tick and after each.
+/// `None` when `goes_on` says so before its end.
 fn run(
     scenario: &Scenario,
     goes_on: &GoesOn<'_>,
     mut see: impl FnMut(&mut dyn Iterator<Item = RobotRow>),
 ) -> Option<Outcome> {
     let mut stopped = false;
-    let outcome = simulate(scenario, |_, robots| {
+    let starts = scenario.plane.iter().flat_map(|plane| &plane.starts);
+    let sent = starts.filter(|start| !start.places.is_empty()).count();
+    let outcome = simulate(scenario, |moment, robots| {
         see(robots);
-        if goes_on(0) {
+        if moment.arrived >= sent {
+            ControlFlow::Break(())
+        } else if goes_on(0) {
             ControlFlow::Continue(())
         } else {
             stopped = true;

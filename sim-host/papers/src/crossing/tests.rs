@@ -49,10 +49,12 @@ fn each_case_has_its_robots_and_what_is_out_of_range_is_refused() {
         let groups = match case {
             cases::Case::Blocks | cases::Case::FourWays => 4,
             cases::Case::Tee => 3,
-            cases::Case::Door | cases::Case::Corridor => 2,
+            cases::Case::Door | cases::Case::Doors | cases::Case::Corridor => 2,
             _ => 1,
         };
-        assert_eq!(scenario.robots.len(), (groups * case.robots()) as usize, "{case:?}");
+        // Those that are parked behind a door besides.
+        let parked = if case == cases::Case::ParkedDoor { 15 } else { 0 };
+        assert_eq!(scenario.robots.len(), (groups * case.robots() + parked) as usize, "{case:?}");
         let plane = scenario.plane.expect("bodies");
         for (index, one) in plane.starts.iter().enumerate() {
             for (other_index, other) in plane.starts[..index].iter().enumerate() {
@@ -67,6 +69,8 @@ fn each_case_has_its_robots_and_what_is_out_of_range_is_refused() {
         cases::Plan { robots: Some(31), ..cases::Plan::default() },
         cases::Plan { noise_m: 0.2, ..cases::Plan::default() },
         cases::Plan { seeds: 0, ..cases::Plan::default() },
+        cases::Plan { size: 0.0, ..cases::Plan::default() },
+        cases::Plan { size: 2.0, ..cases::Plan::default() },
         cases::Plan { blackout_s: f64::NAN, ..cases::Plan::default() },
     ];
     for plan in refused {

@@ -61,7 +61,9 @@ impl Plan {
             Case::Blocks => blocks(count),
             Case::FourWays => roads(count, 4),
             Case::Tee => roads(count, 3),
-            Case::Door => door(count),
+            Case::Door => door(count, &[0.0]),
+            Case::Doors => door(count, &[-3.0, 3.0]),
+            Case::ParkedDoor => parked_door(count),
             Case::Corridor => corridor(count),
             Case::Parked => parked(count),
             Case::Mixed | Case::Intruder | Case::Blackout => (circle(count), Vec::new()),
@@ -71,6 +73,7 @@ impl Plan {
         };
         let mut setup = PlaneSetup::new(self.general(case), starts);
         setup.solids = solids;
+        resize(&mut setup, self.size);
         if case == Case::Mixed {
             self.mix(&mut setup);
         }
@@ -78,19 +81,20 @@ impl Plan {
             // So that it is in the middle when the robots are.
             let way_m = circle_m(count);
             setup.intruders.push(Intruder {
-                position_m: [-way_m - 2.0, 0.2, 0.0],
-                velocity_mps: [self.conditions.speed_mps, 0.0, 0.0],
-                radius_m: 2.0 * RADIUS_M,
+                position_m: [-way_m - 2.0, 0.2, 0.0].map(|x| x * self.size),
+                velocity_mps: [self.conditions.speed_mps * self.size, 0.0, 0.0],
+                radius_m: 2.0 * RADIUS_M * self.size,
                 is_heard: true,
             });
         }
         for (index, start) in (0..).zip(&mut setup.starts) {
             let mut rng = Rng::keyed(seed, NOISE, index, 0);
             for axis in &mut start.position_m[..2] {
-                *axis += (f64::from(rng.below(20_001)) / 1e4 - 1.0) * self.noise_m;
+                *axis += (f64::from(rng.below(20_001)) / 1e4 - 1.0) * self.noise_m * self.size;
             }
         }
         let mut scenario = self.conditions.scenario(case.name(), seed, self.longest_s, setup);
+        scenario.radio.range_m *= self.size;
         if case == Case::Blackout {
             // Just when they come into each other's reach.
             let meet_s = circle_m(count) / self.conditions.speed_mps;
@@ -104,7 +108,8 @@ impl Plan {
 
     /// What robots of a case are like.
     fn general(&self, case: Case) -> RobotGroup {
-        let group = self.conditions.group(RADIUS_M, TOLERANCE_M);
+        let speed_mps = self.conditions.speed_mps * self.size;
+        let group = self.conditions.group_at(speed_mps, RADIUS_M * self.size, TOLERANCE_M * self.size);
         match case {
             Case::DeadEnd => {
                 let speed_mps = Some(group.cruise_mps as f32);
@@ -126,9 +131,9 @@ impl Plan {
     /// Robots of five sizes and three speeds by turns.
     fn mix(&self, setup: &mut PlaneSetup) {
         for (index, start) in setup.starts.iter_mut().enumerate() {
-            let radius_m = RADIUS_M * [0.4, 0.7, 1.0, 1.3, 1.6][index % 5];
-            let speed_mps = self.conditions.speed_mps * [1.0, 1.5, 2.0][index % 3];
-            setup.groups.push(self.conditions.group_at(speed_mps, radius_m, TOLERANCE_M));
+            let radius_m = RADIUS_M * self.size * [0.4, 0.7, 1.0, 1.3, 1.6][index % 5];
+            let speed_mps = self.conditions.speed_mps * self.size * [1.0, 1.5, 2.0][index % 3];
+            setup.groups.push(self.conditions.group_at(speed_mps, radius_m, TOLERANCE_M * self.size));
             start.group = Some(setup.groups.len() - 1);
         }
     }
@@ -192,21 +197,77 @@ fn roads(count: u32, arms: u32) -> (Vec<Start>, Vec<Solid>) {
     (starts, solids)
 }
 
-/// Two crowds and one door in which one robot fits.
-fn door(count: u32) -> (Vec<Start>, Vec<Solid>) {
+/// A wall along x = 0 with doors in which one robot fits, at these y, from the lowest on.
+fn wall_with_doors(doors: &[f64]) -> Vec<Solid> {
     let half = 0.5;
-    let solids = vec![Solid::Wall([[0.0, -FAR_M], [0.0, -half]]), Solid::Wall([[0.0, half], [0.0, FAR_M]])];
-    let (row, mut starts) = (5, Vec::new());
+    let mut from = -FAR_M;
+    let mut solids = Vec::new();
+    for y in doors {
+        solids.push(Solid::Wall([[0.0, from], [0.0, y - half]]));
+        from = y + half;
+    }
+    solids.push(Solid::Wall([[0.0, from], [0.0, FAR_M]]));
+    solids
+}
+
+/// Of a crowd of `count` before a wall, the place of number `index`: how far from the wall, and how far aside.
+fn before_wall(index: u32, count: u32) -> [f64; 2] {
+    let [along, side] = in_rows(index, 5, count);
+    [2.5 + along * 1.3, side * 1.6]
+}
+
+/// Two crowds and a wall with doors in which one robot fits.
+fn door(count: u32, doors: &[f64]) -> (Vec<Start>, Vec<Solid>) {
+    let mut starts = Vec::new();
     for index in 0..count {
-        let place = |index: u32| {
-            let [along, side] = in_rows(index, row, count);
-            [2.5 + along * 1.3, side * 1.6]
-        };
-        let ([x, y], [goal_x, goal_y]) = (place(index), place(count - 1 - index));
+        let ([x, y], [goal_x, goal_y]) = (before_wall(index, count), before_wall(count - 1 - index, count));
         starts.push(start([-x, y], &[[goal_x, goal_y]]));
         starts.push(start([x, y], &[[-goal_x, goal_y]]));
     }
-    (starts, solids)
+    (starts, wall_with_doors(doors))
+}
+
+/// A crowd, a door, and behind it rows of robots that nobody has sent anywhere and that stand half a body's width apart.
+/// Half of the crowd goes to places in the middle of four of these, the others behind them all.
+fn parked_door(count: u32) -> (Vec<Start>, Vec<Solid>) {
+    let (first_m, parked) = (1.8, (count + count.div_ceil(2)).next_multiple_of(5).max(10));
+    let mut starts = Vec::new();
+    for index in 0..count {
+        let [x, y] = before_wall(index, count);
+        let half = index / 2;
+        let goal = if index % 2 == 0 {
+            let [along, side] = in_rows(half, 4, 4);
+            [first_m + APART_M / 2.0 + along, side]
+        } else {
+            let [along, side] = in_rows(parked + half, 5, parked);
+            [first_m + APART_M + along, side]
+        };
+        starts.push(start([-x, y], &[goal]));
+    }
+    for index in 0..parked {
+        let [along, side] = in_rows(index, 5, parked);
+        starts.push(start([first_m + along, side], &[]));
+    }
+    (starts, wall_with_doors(&[0.0]))
+}
+
+/// Makes ways and walls so many times as large.
+fn resize(setup: &mut PlaneSetup, size: f64) {
+    let scale = |place: &mut [f64]| place.iter_mut().for_each(|x| *x *= size);
+    for start in &mut setup.starts {
+        scale(&mut start.position_m);
+        start.places.iter_mut().for_each(|place| scale(&mut place.position_m));
+    }
+    for solid in &mut setup.solids {
+        match solid {
+            Solid::Wall(ends) => ends.iter_mut().for_each(|end| scale(end)),
+            Solid::Ball { center_m, radius_m } => {
+                scale(center_m);
+                *radius_m *= size;
+            }
+            Solid::Plane { point_m, .. } => scale(point_m),
+        }
+    }
 }
 
 /// Two groups meet in a corridor in which two robots pass each other.
