@@ -36,7 +36,7 @@ const fn few(case: Case) -> u32 {
         Case::DeadEnd => 2,
         Case::FourWays | Case::Tee | Case::Corridor => 3,
         Case::Blocks => 4,
-        Case::Door | Case::Parked => 6,
+        Case::Door | Case::Doors | Case::ParkedDoor | Case::Parked => 6,
         Case::Mixed | Case::Intruder | Case::Blackout => 8,
         Case::Flock => 9,
         Case::Sphere => 12,
