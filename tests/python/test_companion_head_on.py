@@ -11,7 +11,7 @@ from conftest import wait_until
 from fake_autopilot import GUIDED, Fleet, Line, Vehicle
 
 SPEED = 1.5
-# Metres between the two at the start: at full speed they are in the middle after four seconds, and by their acceleration later.
+# Metres between the two at the start: at full speed they are in the middle after four seconds.
 WAY = 12.0
 STANDS = 0.05
 

@@ -248,7 +248,8 @@ fn has_goal(scenario: &Scenario) -> impl Iterator<Item = bool> {
     scenario.plane.iter().flat_map(|plane| plane.starts.iter().map(|start| !start.places.is_empty()))
 }
 
-/// How long each robot that has a goal needs for its way if nobody and nothing is in it, seconds; 0 for one that is where it wants to be.
+/// How long each robot that has a goal needs for its way if nobody and nothing is in it, seconds; 0 for one that is
+/// where it wants to be.
 fn free_s(scenario: &Scenario) -> impl Iterator<Item = f64> {
     let plane = scenario.plane.iter();
     plane.flat_map(|plane| {

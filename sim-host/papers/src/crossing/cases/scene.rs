@@ -227,8 +227,7 @@ fn door(count: u32, doors: &[f64]) -> (Vec<Start>, Vec<Solid>) {
     (starts, wall_with_doors(doors))
 }
 
-/// A crowd, a door, and behind it rows of robots that nobody has sent anywhere and that stand half a body's width apart.
-/// Half of the crowd goes to places in the middle of four of these, the others behind them all.
+/// A crowd, a door, and behind it rows of robots that nobody has sent anywhere and that stand half a body apart. Half of the crowd goes to places in the middle of four of these, the others behind them all.
 fn parked_door(count: u32) -> (Vec<Start>, Vec<Solid>) {
     let (first_m, parked) = (1.8, (count + count.div_ceil(2)).next_multiple_of(5).max(10));
     let mut starts = Vec::new();
