@@ -8,10 +8,8 @@ use staya_console::{Ended, Global, Progress, Stop, print, print_json};
 use staya_sim::engine::{Moment, simulate};
 use staya_sim::record::{RobotRow, write_atomically};
 use staya_sim::scenario::Scenario;
-use staya_view::frame::{FrameData, Framer};
 use staya_view::page;
-use staya_view::recording::{Reader, RecordingError, Writer};
-use staya_view::scene::{Mode, Scene};
+use staya_view::recording::{Reader, RecordingError, RunRecorder};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
@@ -54,7 +52,8 @@ impl PageArgs {
             false => std::fs::read(path).with_context(|| format!("cannot read {}; check the name", path.display()))?,
         };
         // A page that shows nothing is of no use.
-        let reader = Reader::new(std::io::Cursor::new(&bytes), path)?;
+        let mut reader = Reader::new(std::io::Cursor::new(&bytes), path)?;
+        reader.scene()?;
         let (first_tick, last_tick) =
             reader.ticks().with_context(|| format!("{} has no frames; record it anew", path.display()))?;
         let page = page::with_recording(&bytes)?;
@@ -73,16 +72,12 @@ impl PageArgs {
 
 /// Runs a scenario and records it in memory.
 fn recorded(scenario: &Scenario, every: u32, stop: &Stop, global: &Global) -> Result<Vec<u8>> {
-    let scene = Scene::new(scenario, Mode::Recording);
-    let mut writer = Writer::new(Vec::new(), Path::new(&scenario.name), &scene)?;
-    let (framer, mut frame, mut is_written) = (Framer::new(scenario), FrameData::default(), true);
+    let mut recorder = RunRecorder::new(Vec::new(), Path::new(&scenario.name), scenario, every)?;
     let mut progress = Progress::new(&scenario.name, scenario.ticks.into(), global);
     let mut failed: Option<RecordingError> = None;
     let watch = |moment: &Moment<'_>, robots: &mut dyn Iterator<Item = RobotRow>| {
-        framer.fill(&mut frame, moment, robots);
-        is_written = frame.tick.is_multiple_of(every);
-        failed = if is_written { writer.frame(&frame).err() } else { None };
-        progress.set(frame.tick.into(), || "ticks".to_owned());
+        failed = recorder.tick(moment, robots).err();
+        progress.set(moment.row.tick.into(), || "ticks".to_owned());
         if failed.is_some() || stop.is_requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let outcome = simulate(scenario, watch).context("the robots cannot be placed")?;
@@ -90,9 +85,6 @@ fn recorded(scenario: &Scenario, every: u32, stop: &Stop, global: &Global) -> Re
     if let Some(error) = failed {
         return Err(error.into());
     }
-    if !is_written {
-        writer.frame(&frame)?;
-    }
     let summary = crate::run::summary(scenario, &outcome);
-    Ok(writer.finish(&[(); 0], &summary)?)
+    Ok(recorder.finish(&summary)?)
 }

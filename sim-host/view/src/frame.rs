@@ -121,7 +121,10 @@ impl Framer {
         for rows in [&mut frame.position_m, &mut frame.velocity_mps, &mut frame.target_m] {
             rows.clear();
         }
-        (frame.leader.clear(), frame.mode.clear(), frame.wait.clear());
+        frame.leader.clear();
+        for bytes in [&mut frame.mode, &mut frame.wait] {
+            bytes.clear();
+        }
         let mut velocities = Vec::new();
         for robot in robots {
             velocities.push(robot.motion.velocity_mps);
@@ -269,7 +272,6 @@ impl FrameData {
 }
 
 /// Names of the waits, by the numbers in frames.
-#[must_use]
 pub fn wait_names() -> impl Iterator<Item = &'static str> {
     Wait::NAMES.iter().map(|(name, _)| *name)
 }

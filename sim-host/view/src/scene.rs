@@ -4,7 +4,7 @@ use crate::frame::wait_names;
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use serde::{Deserialize, Serialize};
-use staya_sim::scenario::{PlaneSetup, Scenario};
+use staya_sim::scenario::Scenario;
 use staya_sim::terrain::Terrain;
 use staya_sim::world::plane;
 
@@ -14,6 +14,8 @@ pub const MODES: [&str; 7] = ["idle", "forming", "cruise", "hold", "arrived", "f
 const GRID_RADIUS: f64 = 0.35;
 /// Room around what is shown at first, a share of its longer side.
 const MARGIN: f64 = 0.08;
+/// How far beyond starts and goals obstacles are shown at first, the same.
+const AROUND: f64 = 0.5;
 
 /// What stays as it is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -340,50 +342,78 @@ fn robots(scenario: &Scenario) -> Robots {
     robots
 }
 
-/// What is there to see: starts, goals, obstacles.
+/// What is there to see: starts and goals, and obstacles near them.
 fn bounds(scenario: &Scenario, origin_m: [f64; 3]) -> ([f64; 4], [f64; 2]) {
-    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    let mut take = |at: [f64; 3], radius_m: f64| {
-        for axis in 0..3 {
-            low[axis] = low[axis].min(at[axis] - radius_m);
-            high[axis] = high[axis].max(at[axis] + radius_m);
-        }
-    };
+    let mut extent = Extent { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
     let land = &scenario.terrain;
     match &scenario.plane {
         None => {
             for cell in scenario.robots.iter().flat_map(|robot| [robot.start, robot.goal]) {
-                let middle = |axis: usize, cell: i16| land.origin_m[axis] + (f64::from(cell) + 0.5) * land.cell_m;
-                take([middle(0, cell.x), middle(1, cell.y), 0.0], land.cell_m);
+                let [x, y] = land.center_m(cell);
+                extent.take([x, y, 0.0], land.cell_m);
             }
         }
-        Some(setup) => in_plane(setup, &mut take),
+        Some(setup) => {
+            for (index, start) in setup.starts.iter().enumerate() {
+                let radius_m = setup.group(index).radius_m;
+                extent.take(start.position_m, radius_m);
+                start.places.iter().for_each(|place| extent.take(place.position_m, radius_m));
+            }
+            let most = extent.grown(AROUND);
+            for solid in &setup.solids {
+                match *solid {
+                    plane::Solid::Wall(ends) => {
+                        ends.iter().for_each(|&[x, y]| extent.take(most.nearest([x, y, extent.low[2]]), 0.0));
+                    }
+                    plane::Solid::Ball { center_m, radius_m } => {
+                        let corners = [-radius_m, radius_m].map(|by| center_m.map(|at| at + by));
+                        corners.iter().for_each(|&corner| extent.take(most.nearest(corner), 0.0));
+                    }
+                    plane::Solid::Plane { .. } => {}
+                }
+            }
+        }
     }
-    let longest = (high[0] - low[0]).max(high[1] - low[1]).max(1.0);
-    if !longest.is_finite() {
+    if !extent.longest().is_finite() {
         return ([0.0, 0.0, 1.0, 1.0], [0.0, 0.0]);
     }
-    let margin = longest * MARGIN;
+    let shown = extent.grown(MARGIN);
     let millimetres = |x: f64| libm::round(x * 1000.0) / 1000.0;
-    let [west, south] = [0, 1].map(|axis| millimetres(low[axis] - margin - origin_m[axis]));
-    let [east, north] = [0, 1].map(|axis| millimetres(high[axis] + margin - origin_m[axis]));
-    let height_m =
-        if is_in_space(scenario) { [low[2], high[2]].map(|z| millimetres(z - origin_m[2])) } else { [0.0; 2] };
-    ([west, south, east, north], height_m)
+    let near = |at: [f64; 3]| [0, 1].map(|axis| millimetres(at[axis] - origin_m[axis]));
+    let ([west, south], [east, north]) = (near(shown.low), near(shown.high));
+    let heights = [extent.low[2], extent.high[2]].map(|z| millimetres(z - origin_m[2]));
+    ([west, south, east, north], if is_in_space(scenario) { heights } else { [0.0; 2] })
 }
 
-fn in_plane(setup: &PlaneSetup, take: &mut impl FnMut([f64; 3], f64)) {
-    for (index, start) in setup.starts.iter().enumerate() {
-        let radius_m = setup.group(index).radius_m;
-        take(start.position_m, radius_m);
-        start.places.iter().for_each(|place| take(place.position_m, radius_m));
-    }
-    for solid in &setup.solids {
-        match *solid {
-            plane::Solid::Wall(ends) => ends.iter().for_each(|&[x, y]| take([x, y, 0.0], 0.0)),
-            plane::Solid::Ball { center_m, radius_m } => take(center_m, radius_m),
-            plane::Solid::Plane { .. } => {}
+/// A box around places, metres.
+#[derive(Clone, Copy, Debug)]
+struct Extent {
+    low: [f64; 3],
+    high: [f64; 3],
+}
+
+impl Extent {
+    fn take(&mut self, at: [f64; 3], radius_m: f64) {
+        for ((low, high), at) in self.low.iter_mut().zip(&mut self.high).zip(at) {
+            *low = low.min(at - radius_m);
+            *high = high.max(at + radius_m);
         }
+    }
+
+    /// Its longer side on the ground; 1 at least.
+    fn longest(&self) -> f64 {
+        (self.high[0] - self.low[0]).max(self.high[1] - self.low[1]).max(1.0)
+    }
+
+    /// The same with room around it, a share of its longer side.
+    fn grown(&self, share: f64) -> Self {
+        let by = self.longest() * share;
+        Self { low: self.low.map(|low| low - by), high: self.high.map(|high| high + by) }
+    }
+
+    /// The place in it that is nearest to this one.
+    fn nearest(&self, at: [f64; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|axis| at[axis].max(self.low[axis]).min(self.high[axis]))
     }
 }
 

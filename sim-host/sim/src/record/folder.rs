@@ -223,10 +223,9 @@ fn make(parent: &Path, name: &str) -> io::Result<(PathBuf, File)> {
         let partial = parent.join(format!("{}{}-{attempt}", prefix(name, "partial"), std::process::id()));
         match fs::create_dir(&partial) {
             Ok(()) => {
-                let marker = File::create_new(partial.join(MARKER)).and_then(|file| {
+                let marker = File::create_new(partial.join(MARKER)).inspect(|file| {
                     // Where files cannot be locked, dead runs cannot be told, and what they left stays.
                     let _ = file.try_lock();
-                    Ok(file)
                 });
                 return match marker {
                     Ok(marker) => Ok((partial, marker)),

@@ -3,9 +3,11 @@
 //! reading it all into memory.
 
 mod read;
+mod run;
 mod write;
 
 pub use read::{Reader, Span};
+pub use run::RunRecorder;
 pub use write::{Sink, Writer};
 
 use std::io;
@@ -59,7 +61,8 @@ pub enum RecordingError {
 }
 
 impl RecordingError {
-    fn writing(path: &Path) -> impl Fn(io::Error) -> Self {
+    /// What turns an error of the system into this one: `path` could not be written.
+    pub fn writing(path: &Path) -> impl Fn(io::Error) -> Self {
         move |source| {
             let remedy = staya_sim::file::write_remedy(&source);
             Self::Io { action: "write", path: path.to_owned(), source, remedy }

@@ -142,7 +142,7 @@ fn a_full_disk_leaves_whole_blocks() {
     assert!(error.contains("full.rec") && error.contains("free some space"), "{error}");
     drop(writer);
     let frames = all(&disk.0).unwrap();
-    assert!(!frames.is_empty() && frames.len() % 5 == 0);
+    assert!(!frames.is_empty() && frames.len().is_multiple_of(5));
 }
 
 proptest! {

@@ -1,0 +1,114 @@
+//! A recording of a run that goes on.
+
+use super::{RecordingError, Sink, Writer};
+use crate::frame::{FrameData, Framer};
+use crate::scene::{self, Mode, Scene};
+use serde::Serialize;
+use serde_json::{Value, json};
+use staya_sim::engine::Moment;
+use staya_sim::record::RobotRow;
+use staya_sim::scenario::{Intervention, Scenario};
+use std::path::Path;
+
+/// Takes the moments of a run, and writes those that are due: every so many ticks, and the last one.
+#[derive(Debug)]
+pub struct RunRecorder<W: Sink> {
+    writer: Writer<W>,
+    framer: Framer,
+    frame: FrameData,
+    is_written: bool,
+    every: u32,
+    scene: Scene,
+    /// Ticks before which somebody changes the land or what stands in it, the latest first.
+    changes: Vec<u32>,
+    orders: Vec<Value>,
+}
+
+impl<W: Sink> RunRecorder<W> {
+    /// Begins a recording in `out`; errors call it `path`. `every` is in ticks, at least 1.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn new(out: W, path: &Path, scenario: &Scenario, every: u32) -> Result<Self, RecordingError> {
+        let scene = Scene::new(scenario, Mode::Recording);
+        let interventions = scenario.interventions.iter();
+        let mut changes: Vec<u32> =
+            interventions.clone().filter(|(_, what)| changes_scene(what)).map(|(tick, _)| *tick).collect();
+        changes.sort_unstable_by(|a, b| b.cmp(a));
+        let orders = interventions.map(|(tick, what)| json!({ "tick": tick, "order": order(what, &scene) })).collect();
+        Ok(Self {
+            writer: Writer::new(out, path, &scene)?,
+            framer: Framer::new(scenario),
+            frame: FrameData::default(),
+            is_written: true,
+            every: every.max(1),
+            scene,
+            changes,
+            orders,
+        })
+    }
+
+    /// Takes a moment. O(bodies), and O(cells) where the scene changes.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn tick(&mut self, moment: &Moment<'_>, robots: impl Iterator<Item = RobotRow>) -> Result<(), RecordingError> {
+        let tick = moment.row.tick;
+        let known = self.changes.len();
+        while self.changes.last().is_some_and(|at| *at < tick) {
+            self.changes.pop();
+        }
+        if self.changes.len() < known {
+            let origin_m = self.scene.origin_m;
+            self.scene.land = moment.land.map(|land| scene::land(land, origin_m));
+            self.scene.solids = scene::solids(moment.solids, self.scene.kind == scene::Kind::Space, origin_m);
+            self.writer.scene(&self.scene)?;
+        }
+        self.framer.fill(&mut self.frame, moment, robots);
+        self.is_written = tick.is_multiple_of(self.every);
+        if self.is_written { self.writer.frame(&self.frame) } else { Ok(()) }
+    }
+
+    /// Writes what has gathered.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn flush(&mut self) -> Result<(), RecordingError> {
+        self.writer.flush()
+    }
+
+    /// Completes the recording.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn finish(mut self, summary: &impl Serialize) -> Result<W, RecordingError> {
+        if !self.is_written {
+            self.writer.frame(&self.frame)?;
+        }
+        self.writer.finish(&self.orders, summary)
+    }
+}
+
+fn changes_scene(what: &Intervention) -> bool {
+    matches!(
+        what,
+        Intervention::Solid { .. }
+            | Intervention::Move { .. }
+            | Intervention::Remove { .. }
+            | Intervention::Cell { .. }
+    )
+}
+
+/// As a page says it: robots by index, places from the scene's origin.
+fn order(what: &Intervention, scene: &Scene) -> Value {
+    let mut order = serde_json::to_value(what).unwrap_or_default();
+    if let Some(robot) = what.robot() {
+        order["robot"] = json!(scene.robots.id.binary_search(&robot).ok());
+    }
+    if let Some(place) = order.get_mut("place_m").and_then(Value::as_array_mut) {
+        for (value, origin) in place.iter_mut().zip(scene.origin_m) {
+            *value = json!(value.as_f64().map(|value| value - origin));
+        }
+    }
+    order
+}
