@@ -16,6 +16,7 @@ mod layout;
 mod look;
 mod map;
 mod motion;
+pub mod movie;
 mod panels;
 mod raster;
 mod run;

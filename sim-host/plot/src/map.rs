@@ -182,7 +182,7 @@ impl<'a> Map<'a> {
 }
 
 /// The land, a pixel per cell, or per square of cells on maps beyond [`MAX_PIXELS`].
-fn pixels(terrain: &Terrain) -> Pixels {
+pub fn pixels(terrain: &Terrain) -> Pixels {
     let (width, height, brightness) = terrain::render(terrain, 1);
     let Raster { columns, rows, cells: square } = Raster::new(terrain);
     let mut rgba = Vec::with_capacity(columns as usize * rows as usize);

@@ -57,19 +57,36 @@ pub fn layer(canvas: &Canvas, scale: f64) -> io::Result<Pixels> {
     Ok(Pixels { width: pixmap.width(), height: pixmap.height(), rgba })
 }
 
+/// Draws a picture over pixels that there are, or on none; a pixel per unit.
+///
+/// # Errors
+/// The picture has no pixels or too many.
+pub fn over(ground: Option<Pixmap>, canvas: &Canvas) -> io::Result<Pixmap> {
+    let pixmap = ground.map_or_else(|| empty(canvas, 1.0), Ok)?;
+    Ok(onto(pixmap, canvas, 1.0))
+}
+
 fn draw(canvas: &Canvas, scale: f64, ground: Option<Colour>) -> io::Result<Pixmap> {
-    let [width, height] = [canvas.width, canvas.height].map(|side| libm::ceil(side * scale) as u32);
-    let mut pixmap = Pixmap::new(width, height)
-        .ok_or_else(|| io::Error::other(format!("a picture of {width} x {height} pixels is not possible")))?;
+    let mut pixmap = empty(canvas, scale)?;
     if let Some(ground) = ground {
         pixmap.fill(plain(ground));
     }
+    Ok(onto(pixmap, canvas, scale))
+}
+
+fn empty(canvas: &Canvas, scale: f64) -> io::Result<Pixmap> {
+    let [width, height] = [canvas.width, canvas.height].map(|side| libm::ceil(side * scale) as u32);
+    Pixmap::new(width, height)
+        .ok_or_else(|| io::Error::other(format!("a picture of {width} x {height} pixels is not possible")))
+}
+
+fn onto(pixmap: Pixmap, canvas: &Canvas, scale: f64) -> Pixmap {
     let scale = scale as f32;
     let mut brush = Brush { transform: Transform::from_scale(scale, scale), pixmap, mask: None };
     for shape in &canvas.shapes {
         brush.shape(shape);
     }
-    Ok(brush.pixmap)
+    brush.pixmap
 }
 
 struct Brush {
