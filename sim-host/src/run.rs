@@ -94,6 +94,7 @@ pub fn summary(scenario: &Scenario, outcome: &Outcome) -> impl serde::Serialize 
 
 /// Runs a scenario and leaves everything about it in `out`; what was there before stays until all of it is written.
 fn run(scenario: &Scenario, out: &Path, also: &AlsoArgs, stop: &Stop, global: &Global) -> Result<Summary> {
+    let also = Also::begin(also, scenario)?;
     let results = Results::begin(out)?;
     let whole = run_into(scenario, results.dir(), out, also, stop, global).and_then(|summary| {
         write_summary(results.dir(), &summary)?;
@@ -120,12 +121,11 @@ fn run_into(
     scenario: &Scenario,
     dir: &Path,
     out: &Path,
-    also: &AlsoArgs,
+    mut also: Also<'_>,
     stop: &Stop,
     global: &Global,
 ) -> Result<Summary> {
     let recorder = Recorder::new(dir, Options::default())?;
-    let mut also = Also::begin(also, scenario)?;
     let began = Instant::now();
     let (outcome, history) = simulate_recorded(scenario, recorder, &mut also, stop, global)?;
     let wall_seconds = began.elapsed().as_secs_f64();

@@ -1,37 +1,57 @@
-//! Files that grow beside a run's results: recordings.
+//! Files that a run makes besides its results: recordings, MCAP files, moving pictures.
 
 use anyhow::Result;
 use clap::Args;
 use serde::Serialize;
+use staya_plot::movie::{self, Look};
 use staya_sim::engine::Moment;
-use staya_sim::record::{History, RobotRow};
+use staya_sim::record::{History, RobotRow, write_atomically};
 use staya_sim::scenario::Scenario;
 use staya_view::frame::{FrameData, Framer};
-use staya_view::recording::Writer;
+use staya_view::mcap::McapWriter;
+use staya_view::recording::{RecordingError, RunRecorder};
 use staya_view::scene::{Mode, Scene};
 use std::fs::File;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What to write besides.
 #[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Files besides the results; docs/recordings.md")]
 pub struct AlsoArgs {
-    /// Also record the run for `staya page`: where everybody is at each tick. A file of that name is replaced.
+    /// Record the run for `staya page`: where everybody is, tick by tick. Each file is replaced.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
-    /// Ticks from one recorded moment to the next; the last tick is always recorded.
+    /// Record the run as MCAP, for Foxglove, Lichtblick and Rerun.
+    #[arg(long, value_name = "FILE")]
+    mcap: Option<PathBuf>,
+    /// Ticks from one recorded moment to the next, in both; the last tick is always recorded.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     record_every: u32,
+    /// Draw the run as a moving picture.
+    #[arg(long, value_name = "FILE")]
+    gif: Option<PathBuf>,
+    /// Its width in pixels.
+    #[arg(long, value_name = "PIXELS", default_value_t = 640, value_parser = clap::value_parser!(u32).range(64..=1920))]
+    gif_width: u32,
+    /// Its length in seconds; pictures follow each other at most every 0.04 s.
+    #[arg(long, value_name = "S", default_value_t = 12, value_parser = clap::value_parser!(u32).range(1..=120))]
+    gif_seconds: u32,
 }
 
 /// The files under way.
 pub struct Also<'a> {
     args: &'a AlsoArgs,
+    scenario: &'a Scenario,
+    recording: Option<RunRecorder<File>>,
+    mcap: Option<Mcap>,
+}
+
+/// An MCAP file, and the latest moment.
+struct Mcap {
+    writer: McapWriter<File>,
     framer: Framer,
-    /// The latest moment.
     frame: FrameData,
-    /// It has been written.
     is_written: bool,
-    recording: Option<Writer<File>>,
 }
 
 impl<'a> Also<'a> {
@@ -40,24 +60,35 @@ impl<'a> Also<'a> {
     /// # Errors
     /// One cannot be written.
     pub fn begin(args: &'a AlsoArgs, scenario: &'a Scenario) -> Result<Self> {
-        let begin = |path: &PathBuf| Writer::create(path, &Scene::new(scenario, Mode::Recording));
-        Ok(Self {
-            args,
-            framer: Framer::new(scenario),
-            frame: FrameData::default(),
-            is_written: true,
-            recording: args.record.as_ref().map(begin).transpose()?,
-        })
+        let recording = match &args.record {
+            Some(path) => Some(RunRecorder::new(create(path)?, path, scenario, args.record_every)?),
+            None => None,
+        };
+        let mcap = match &args.mcap {
+            Some(path) => Some(Mcap {
+                writer: McapWriter::create(path, &Scene::new(scenario, Mode::Recording))?,
+                framer: Framer::new(scenario),
+                frame: FrameData::default(),
+                is_written: true,
+            }),
+            None => None,
+        };
+        if let Some(path) = &args.gif {
+            // Better now than after the run.
+            write_atomically(path, b"")?;
+        }
+        Ok(Self { args, scenario, recording, mcap })
     }
 
     /// Whether there is nothing to do at each tick.
     pub const fn is_idle(&self) -> bool {
-        self.recording.is_none()
+        self.recording.is_none() && self.mcap.is_none()
     }
 
     /// What is written.
     pub fn paths(&self) -> impl Iterator<Item = PathBuf> {
-        self.args.record.clone().into_iter()
+        let AlsoArgs { record, mcap, gif, .. } = self.args;
+        [record, mcap, gif].into_iter().flatten().cloned()
     }
 
     /// Takes a moment.
@@ -65,15 +96,15 @@ impl<'a> Also<'a> {
     /// # Errors
     /// A file cannot be written.
     pub fn tick(&mut self, moment: &Moment<'_>, rows: &[RobotRow]) -> Result<()> {
-        self.framer.fill(&mut self.frame, moment, rows.iter().copied());
-        self.is_written = false;
-        if moment.row.tick.is_multiple_of(self.args.record_every) { self.write() } else { Ok(()) }
-    }
-
-    fn write(&mut self) -> Result<()> {
-        self.is_written = true;
         if let Some(recording) = &mut self.recording {
-            recording.frame(&self.frame)?;
+            recording.tick(moment, rows.iter().copied())?;
+        }
+        if let Some(Mcap { writer, framer, frame, is_written }) = &mut self.mcap {
+            framer.fill(frame, moment, rows.iter().copied());
+            *is_written = moment.row.tick.is_multiple_of(self.args.record_every);
+            if *is_written {
+                writer.frame(frame)?;
+            }
         }
         Ok(())
     }
@@ -89,13 +120,24 @@ impl<'a> Also<'a> {
     ///
     /// # Errors
     /// One cannot be written.
-    pub fn finish(mut self, summary: &impl Serialize, _history: &History) -> Result<()> {
-        if !self.is_written {
-            self.write()?;
-        }
+    pub fn finish(self, summary: &impl Serialize, history: &History) -> Result<()> {
         if let Some(recording) = self.recording {
-            recording.finish(&[(); 0], summary)?;
+            recording.finish(summary)?;
+        }
+        if let Some(mut mcap) = self.mcap {
+            if !mcap.is_written {
+                mcap.writer.frame(&mcap.frame)?;
+            }
+            mcap.writer.finish()?;
+        }
+        if let Some(path) = &self.args.gif {
+            let look = Look { width: self.args.gif_width, seconds: self.args.gif_seconds };
+            write_atomically(path, &movie::of_run(self.scenario, history, look)?)?;
         }
         Ok(())
     }
+}
+
+fn create(path: &Path) -> Result<File, RecordingError> {
+    File::create(path).map_err(RecordingError::writing(path))
 }
