@@ -1,8 +1,6 @@
 //! One moment of a run in bytes: where everybody is, for pages and recordings (`PROTOCOL.md`, Frames).
 
 use serde::{Deserialize, Serialize};
-use staya_controller::agent::Wait;
-use staya_controller::names::Named as _;
 use staya_sim::engine::Moment;
 use staya_sim::metrics::flock::polarisation;
 use staya_sim::record::{PacketCounts, RobotRow};
@@ -269,11 +267,6 @@ impl FrameData {
         let time_s = f64::from_le_bytes([head[8], head[9], head[10], head[11], head[12], head[13], head[14], head[15]]);
         Ok(Self { tick: word(4), time_s, has_z, position_m, velocity_mps, target_m, leader, mode, wait, figures })
     }
-}
-
-/// Names of the waits, by the numbers in frames.
-pub fn wait_names() -> impl Iterator<Item = &'static str> {
-    Wait::NAMES.iter().map(|(name, _)| *name)
 }
 
 #[cfg(test)]

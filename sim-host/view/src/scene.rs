@@ -1,9 +1,10 @@
 //! What stays as it is in a run: the message `scene` of `PROTOCOL.md`.
 
-use crate::frame::wait_names;
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use serde::{Deserialize, Serialize};
+use staya_controller::agent::Wait;
+use staya_controller::names::Named as _;
 use staya_sim::scenario::Scenario;
 use staya_sim::terrain::Terrain;
 use staya_sim::world::plane;
@@ -263,7 +264,13 @@ impl From<&staya_sim::scenario::Intruder> for Intruder {
     }
 }
 
-/// What the lengths of a scenario's scene and frames are measured from, metres: near its bodies, so that `f32` is exact enough.
+/// Names of the waits, by the numbers in frames.
+pub fn wait_names() -> impl Iterator<Item = &'static str> {
+    Wait::NAMES.iter().map(|(name, _)| *name)
+}
+
+/// What the lengths of a scenario's scene and frames are measured from, metres: near its bodies, so that `f32` is
+/// exact enough.
 #[must_use]
 pub fn origin_m(scenario: &Scenario) -> [f64; 3] {
     match &scenario.plane {

@@ -52,7 +52,8 @@ pub struct Results {
 }
 
 impl Results {
-    /// Makes the folder for a run's files, and clears away what dead runs into the same `target` left. `target` need not
+    /// Makes the folder for a run's files, and clears away what dead runs into the same `target` left. `target` need
+    /// not
     /// exist and is not touched.
     ///
     /// # Errors
@@ -328,7 +329,8 @@ fn free(path: &Path) -> io::Result<PathBuf> {
     Err(ErrorKind::AlreadyExists.into())
 }
 
-/// An old folder when there is a new one: what no run made moves there, the rest is removed. Without a new one it is put back.
+/// An old folder when there is a new one: what no run made moves there, the rest is removed. Without a new one it is
+/// put back.
 fn retire(old: &Path, target: &Path) -> io::Result<()> {
     if !target.is_dir() && fs::rename(old, target).is_ok() {
         return Ok(());

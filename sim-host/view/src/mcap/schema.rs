@@ -1,5 +1,7 @@
-//! Foxglove's schemas, as far as runs need them: names, numbers and types of their fields are those of its .proto files,
-//! so that any reader of those understands them (<https://docs.foxglove.dev/docs/visualization/message-schemas/introduction>).
+//! Foxglove's schemas, as far as runs need them: names, numbers and types of their fields are those of its .proto
+//! files,
+//! so that any reader of those understands them
+//! (<https://docs.foxglove.dev/docs/visualization/message-schemas/introduction>).
 
 use super::proto::{Field, File, Kind, Type, descriptor_set, many, one};
 use Kind::{Bool, Bytes, Double, Enum, Fixed32, Int32, Int64, Message, Text};

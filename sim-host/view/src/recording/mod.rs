@@ -1,4 +1,5 @@
-//! A run in a file: the scene, every frame, the orders and the summary, in blocks that are packed and checked one by one
+//! A run in a file: the scene, every frame, the orders and the summary, in blocks that are packed and checked one by
+//! one
 //! (`PROTOCOL.md`, Recordings). [`Writer`] makes one while a run goes on, [`Reader`] finds any moment of it without
 //! reading it all into memory.
 

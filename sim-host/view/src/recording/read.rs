@@ -98,7 +98,8 @@ impl<R: Read + Seek> Reader<R> {
         let mut before = None;
         for at in self.frames.clone() {
             let block = self.blocks[at];
-            // Length, magic and tick of the first frame are enough; what is behind them is looked at when it is asked for.
+            // Length, magic and tick of the first frame are enough; what is behind them is looked at when it is asked
+            // for.
             let packed = self.packed(&block)?;
             let beginning = match decompress_to_vec_with_limit(&packed, 12) {
                 Ok(bytes) => bytes,
