@@ -36,7 +36,7 @@ const KNOWN: [&str; 13] = [
     "trajectories.png",
     "trajectories.svg",
 ];
-/// A folder without a list is taken to be a dead run's when it is older: one that begins makes its list at once.
+/// A folder without a locked list is taken to be a dead run's when it is older: one that begins locks its list at once.
 const YOUNG: Duration = Duration::from_secs(60);
 /// How often others may get in the way of one move.
 const TRIES: usize = 32;
@@ -218,26 +218,34 @@ fn prefix(name: &str, what: &str) -> String {
     format!(".{name}.{what}-")
 }
 
-/// Makes `.NAME.partial-PID` with a locked list in it.
+/// Makes `.NAME.partial-PID` with a locked list in it. It gets that name when the list is locked, so that nobody takes it to
+/// be a dead run's.
 fn make(parent: &Path, name: &str) -> io::Result<(PathBuf, File)> {
     for attempt in 0..TRIES {
-        let partial = parent.join(format!("{}{}-{attempt}", prefix(name, "partial"), std::process::id()));
-        match fs::create_dir(&partial) {
-            Ok(()) => {
-                let marker = File::create_new(partial.join(MARKER)).inspect(|file| {
-                    // Where files cannot be locked, dead runs cannot be told, and what they left stays.
-                    let _ = file.try_lock();
-                });
-                return match marker {
-                    Ok(marker) => Ok((partial, marker)),
-                    Err(error) => {
-                        let _ = fs::remove_dir_all(&partial);
-                        Err(error)
-                    }
-                };
-            }
-            Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+        let of_kind = |what: &str| parent.join(format!("{}{}-{attempt}", prefix(name, what), std::process::id()));
+        let partial = of_kind("partial");
+        // Windows renames no folder in which a file is open.
+        let making = if cfg!(windows) { partial.clone() } else { of_kind("making") };
+        match fs::create_dir(&making) {
+            Ok(()) => {}
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => continue,
             Err(error) => return Err(error),
+        }
+        let marker = File::create_new(making.join(MARKER)).inspect(|file| {
+            // Where files cannot be locked, dead runs cannot be told, and what they left stays.
+            let _ = file.try_lock();
+        });
+        let named =
+            |marker| if making == partial { Ok(marker) } else { fs::rename(&making, &partial).map(|()| marker) };
+        let made = marker.and_then(named);
+        match made {
+            Ok(marker) => return Ok((partial, marker)),
+            Err(error) => {
+                let _ = fs::remove_dir_all(&making);
+                if !is_in_the_way(&error) {
+                    return Err(error);
+                }
+            }
         }
     }
     Err(ErrorKind::AlreadyExists.into())
@@ -269,7 +277,8 @@ fn entries(dir: &Path) -> io::Result<BTreeSet<String>> {
     let mut names = BTreeSet::new();
     for entry in fs::read_dir(dir)? {
         let name = entry?.file_name().to_string_lossy().into_owned();
-        if name != MARKER && !(name.starts_with('.') && name.contains(".partial-")) {
+        let is_under_way = [".partial-", ".making-"].iter().any(|part| name.contains(part));
+        if name != MARKER && !(name.starts_with('.') && is_under_way) {
             names.insert(name);
         }
     }
@@ -361,7 +370,7 @@ fn clear(place: &Path, name: &str, target: &Path) {
         };
         if is_ours("old") {
             let _ = retire(&entry.path(), target);
-        } else if is_ours("partial") && is_dead(&entry.path()) {
+        } else if is_ours("partial") && is_dead(&entry.path()) || is_ours("making") && is_old(&entry.path()) {
             let _ = fs::remove_dir_all(entry.path());
         }
     }
@@ -374,11 +383,13 @@ fn is_dead(partial: &Path) -> bool {
             Ok(()) => true,
             Err(TryLockError::WouldBlock | TryLockError::Error(_)) => false,
         },
-        Err(_) => {
-            let made = fs::metadata(partial).and_then(|found| found.modified());
-            made.is_ok_and(|made| made.elapsed().is_ok_and(|age| age > YOUNG))
-        }
+        Err(_) => is_old(partial),
     }
+}
+
+fn is_old(folder: &Path) -> bool {
+    let made = fs::metadata(folder).and_then(|found| found.modified());
+    made.is_ok_and(|made| made.elapsed().is_ok_and(|age| age > YOUNG))
 }
 
 #[cfg(test)]
