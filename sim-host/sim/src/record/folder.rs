@@ -259,8 +259,14 @@ fn is_in_use(target: &Path) -> bool {
 
 /// Whether files must be moved into an existing folder one by one, because no run made it.
 fn check(target: &Path) -> Result<bool, Error> {
-    let found = entries(target).map_err(Error::new("read directory", target))?;
-    if found.is_empty() || own(target).is_some() {
+    let is_own = || own(target).is_some();
+    let found = match entries(target) {
+        // Another run is about to replace it.
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(false),
+        found => found.map_err(Error::new("read directory", target))?,
+    };
+    let pause = || std::thread::sleep(Duration::from_millis(20));
+    if found.is_empty() || is_own() || (pause(), is_own()).1 {
         return Ok(false);
     }
     match KNOWN.iter().find(|name| found.contains(**name)) {
