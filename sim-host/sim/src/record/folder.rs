@@ -14,6 +14,7 @@ use std::collections::BTreeSet;
 use std::fs::{self, File, TryLockError};
 use std::io::{self, ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
 
 /// Lists what the run in a results folder made; locked while the run goes on.
@@ -40,6 +41,9 @@ const KNOWN: [&str; 13] = [
 const YOUNG: Duration = Duration::from_secs(60);
 /// How often others may get in the way of one move.
 const TRIES: usize = 32;
+
+/// Runs that this process has begun.
+static BEGUN: AtomicU32 = AtomicU32::new(0);
 
 /// The results of a run that is under way. Dropped unfinished, they are removed, and the old ones stay.
 #[derive(Debug)]
@@ -221,8 +225,10 @@ fn prefix(name: &str, what: &str) -> String {
 /// Makes `.NAME.partial-PID` with a locked list in it. It gets that name when the list is locked, so that nobody takes it to
 /// be a dead run's.
 fn make(parent: &Path, name: &str) -> io::Result<(PathBuf, File)> {
-    for attempt in 0..TRIES {
-        let of_kind = |what: &str| parent.join(format!("{}{}-{attempt}", prefix(name, what), std::process::id()));
+    for _ in 0..TRIES {
+        // Never the same name twice: who looks whether a run is dead may be late.
+        let number = BEGUN.fetch_add(1, Ordering::Relaxed);
+        let of_kind = |what: &str| parent.join(format!("{}{}-{number}", prefix(name, what), std::process::id()));
         let partial = of_kind("partial");
         // Windows renames no folder in which a file is open.
         let making = if cfg!(windows) { partial.clone() } else { of_kind("making") };
@@ -259,15 +265,24 @@ fn is_in_use(target: &Path) -> bool {
 
 /// Whether files must be moved into an existing folder one by one, because no run made it.
 fn check(target: &Path) -> Result<bool, Error> {
-    let is_own = || own(target).is_some();
-    let found = match entries(target) {
-        // Another run is about to replace it.
-        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(false),
-        found => found.map_err(Error::new("read directory", target))?,
-    };
-    let pause = || std::thread::sleep(Duration::from_millis(20));
-    if found.is_empty() || is_own() || (pause(), is_own()).1 {
-        return Ok(false);
+    let mut found = BTreeSet::new();
+    for _ in 0..TRIES {
+        let before = std::mem::replace(
+            &mut found,
+            match entries(target) {
+                // Another run is about to replace it.
+                Err(error) if error.kind() == ErrorKind::NotFound => return Ok(false),
+                found => found.map_err(Error::new("read directory", target))?,
+            },
+        );
+        if found.is_empty() || own(target).is_some() {
+            return Ok(false);
+        }
+        // A folder that is just being replaced looks otherwise the next time.
+        if found == before {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(20));
     }
     match KNOWN.iter().find(|name| found.contains(**name)) {
         None => Ok(true),
