@@ -374,6 +374,9 @@ const app = new App();
 
 // What tests ask for.
 window.staya = {
+  send(message) {
+    app.send(message);
+  },
   get state() {
     return app.state;
   },
