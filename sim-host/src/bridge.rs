@@ -22,6 +22,8 @@ pub struct BridgeArgs {
     /// Line to clients: udpout:HOST:PORT, udpin:HOST:PORT, tcpin:HOST:PORT, tcpout:HOST:PORT or serial:PORT,baud=N; may be repeated.
     #[arg(long, value_name = "LINE", default_value = "udpout:127.0.0.1:14550")]
     mavlink: Vec<Endpoint>,
+    #[command(flatten)]
+    page: crate::view::WatchArgs,
     /// Simulated seconds per second of real time.
     #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = speed)]
     speed: f64,
@@ -139,7 +141,8 @@ impl BridgeArgs {
             say(Some(&format!("{count} vehicles at {lines}; Ctrl-C ends")));
         }
         let mut shown = None;
-        let report = swarm.run(|ticks| {
+        let mut page = self.page.watcher(&scenario)?;
+        let is_over = |ticks: u32| {
             if let Some(progress) = &mut progress
                 && shown != Some(ticks)
             {
@@ -147,6 +150,11 @@ impl BridgeArgs {
                 progress.set(ticks.into(), || format!("ticks, {count} vehicles at {lines}"));
             }
             stop.is_requested()
+        };
+        let report = swarm.run_watched(is_over, &mut |moment, robots| {
+            if let Some(page) = &mut page {
+                page.tick(moment, robots);
+            }
         })?;
         if let Some(progress) = progress {
             progress.finish();

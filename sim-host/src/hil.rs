@@ -38,6 +38,8 @@ pub struct HilArgs {
     /// Run in real time, and count the ticks that are late.
     #[arg(long)]
     real_time: bool,
+    #[command(flatten)]
+    page: crate::view::WatchArgs,
     /// Folder with firmware, PART/lockstep [default: $STAYA_FIRMWARE, or the repository's target/firmware (`cargo run` there builds
     /// it when needed), or ~/.local/share/staya/firmware].
     #[arg(long, value_name = "DIR")]
@@ -196,7 +198,11 @@ impl HilArgs {
         let mut progress = Progress::new(&scenario.name, scenario.ticks.into(), global);
         let count = scenario.robots.len();
         let mut pace = self.real_time.then(|| Pace::new(scenario.tick_s()));
-        let mut watch = |moment: &Moment<'_>, _: &mut dyn Iterator<Item = RobotRow>| {
+        let mut page = self.page.watcher(scenario)?;
+        let mut watch = |moment: &Moment<'_>, robots: &mut dyn Iterator<Item = RobotRow>| {
+            if let Some(page) = &mut page {
+                page.tick(moment, robots);
+            }
             progress.set(moment.row.tick.into(), || format!("ticks, {} of {count} robots arrived", moment.arrived));
             if stop.is_requested() || log.trouble().is_some() {
                 return ControlFlow::Break(());

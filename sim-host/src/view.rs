@@ -5,10 +5,12 @@ use anyhow::{Context as _, Result};
 use clap::Args;
 use serde::Serialize;
 use staya_console::{Ended, Global, Stop, print, print_json};
+use staya_sim::scenario::Scenario;
 use staya_view::page;
 use staya_view::playback::Playback;
 use staya_view::server::Server;
 use staya_view::session::Session;
+use staya_view::watch::Watcher;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::process::{Command, Stdio};
 
@@ -47,6 +49,39 @@ impl ListenArgs {
             open(&url);
         }
         Ok(server)
+    }
+}
+
+/// Pages that look on.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct WatchArgs {
+    /// Serve a page that shows the run while it goes on.
+    #[arg(long, help_heading = "A page that looks on")]
+    view: bool,
+    /// Address and port of the page; port 0: any that is free. Beyond this machine (0.0.0.0) whoever has the address that is
+    /// printed, with its token, can watch, unencrypted.
+    #[arg(
+        long,
+        value_name = "ADDRESS",
+        requires = "view",
+        default_value_t = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 0),
+        help_heading = "A page that looks on"
+    )]
+    listen: SocketAddr,
+}
+
+impl WatchArgs {
+    /// Begins to serve the page if it is wanted, and says where on standard error.
+    ///
+    /// # Errors
+    /// The address cannot be listened on.
+    pub fn watcher(&self, scenario: &Scenario) -> Result<Option<Watcher>> {
+        if !self.view {
+            return Ok(None);
+        }
+        let watcher = Watcher::new(Server::start(self.listen, page::served()?)?, scenario)?;
+        eprintln!("{}", watcher.url());
+        Ok(Some(watcher))
     }
 }
 

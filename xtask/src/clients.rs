@@ -95,7 +95,7 @@ pub fn prepare(repo: &Repo) -> Result<PathBuf, String> {
 }
 
 /// The counts in pytest's last line: `1 failed, 2 passed, 1 skipped in 3.21s`.
-fn closing_line(line: &str) -> Option<Counts> {
+pub fn closing_line(line: &str) -> Option<Counts> {
     let (counts, time) = line.trim_matches(['=', ' ']).rsplit_once(" in ")?;
     if !time.contains('s') || !time.starts_with(|first: char| first.is_ascii_digit()) {
         return None;

@@ -7,6 +7,7 @@ mod apt;
 mod bare;
 mod bench;
 mod bless;
+mod browser;
 mod check;
 mod circles;
 mod clients;
@@ -51,6 +52,7 @@ Usage: cargo xtask COMMAND
   bless [NAME]    rewrite golden files by running the tests whose name contains NAME (default: golden)
   fuzz [--seconds N]
                   each fuzz target for N seconds (default: 60), if nightly Rust and cargo-fuzz are there
+  browser         the page of `staya view` in Chromium, driven from Python
   clients [NAME]  MAVLink clients (pymavlink, MAVSDK, MAVProxy, tshark) against staya, from Python: all tests or those whose names contain NAME
   faults [PART...]
                   firmware that goes wrong on purpose says why and starts anew, on each part (default: all)
@@ -98,6 +100,7 @@ fn main() -> ExitCode {
         ["clients", name] if !name.starts_with('-') => {
             clients::run_command(&repo, &mut report, Some(name), Extent::All);
         }
+        ["browser"] => browser::run_command(&repo, &mut report),
         ["example"] => example::run(&repo, &mut report),
         ["fuzz"] => fuzz::run(&repo, &mut report, fuzz::SECONDS),
         ["fuzz", "--seconds", n] if n.parse().is_ok_and(|n: u32| n > 0) => {

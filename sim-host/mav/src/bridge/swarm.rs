@@ -14,8 +14,9 @@ use staya_mavlink::dialect::MavMessage;
 use staya_mavlink::frame::{MAX_FRAME_LEN, RawFrame, Sender, encode_message};
 use staya_mavlink::mavlink_core::Message as _;
 use staya_mavlink::signing::Signing;
-use staya_sim::engine::{Operated, operated};
+use staya_sim::engine::{Moment, Operated, operated};
 use staya_sim::key::timestamp;
+use staya_sim::record::RobotRow;
 use staya_sim::scenario::Scenario;
 use staya_sim::world::Misplaced;
 use std::collections::BTreeMap;
@@ -124,6 +125,9 @@ pub struct BridgeReport {
     pub trace_hash: String,
 }
 
+/// Who looks at the swarm after each tick, and is quick about it.
+pub type Onlooker<'a> = dyn FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>) + 'a;
+
 /// The swarm with all that belongs to it.
 pub struct Swarm {
     engine: Box<dyn Operated>,
@@ -213,7 +217,19 @@ impl Swarm {
     ///
     /// # Errors
     /// When the log cannot be written.
-    pub fn run(mut self, mut is_over: impl FnMut(u32) -> bool) -> Result<BridgeReport, BridgeError> {
+    pub fn run(self, is_over: impl FnMut(u32) -> bool) -> Result<BridgeReport, BridgeError> {
+        self.run_watched(is_over, &mut |_, _| {})
+    }
+
+    /// The same, with somebody who looks on.
+    ///
+    /// # Errors
+    /// When the log cannot be written.
+    pub fn run_watched(
+        mut self,
+        mut is_over: impl FnMut(u32) -> bool,
+        onlooker: &mut Onlooker<'_>,
+    ) -> Result<BridgeReport, BridgeError> {
         let tick = Duration::from_secs_f64(f64::from(self.tick_us) / 1e6 / self.options.speed);
         self.began = Instant::now();
         let mut due = self.began + tick;
@@ -221,6 +237,7 @@ impl Swarm {
             let now = Instant::now();
             if now >= due {
                 self.tick()?;
+                self.engine.show(onlooker);
                 let done = Instant::now();
                 self.slowest = self.slowest.max(done - now);
                 due += tick;

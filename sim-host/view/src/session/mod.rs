@@ -397,7 +397,7 @@ impl Session {
         server: &Server,
     ) -> Result<(), SessionError> {
         let mut fresh = Self::new(text, path, overrides, self.pace.is_paused())?;
-        fresh.pages = self.pages.iter().map(|(client, _)| (*client, Looks::default())).collect();
+        fresh.pages = self.pages.keys().map(|client| (*client, Looks::default())).collect();
         *self = fresh;
         self.begin_anew(None, server);
         Ok(())
