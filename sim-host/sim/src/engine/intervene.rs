@@ -1,7 +1,9 @@
 //! What somebody does to a run while it goes on ([`Intervention`]).
 
 use super::{Engine, Ground, HostLaw};
-use crate::scenario::{Fault, Intervention, Refusal};
+use crate::scenario::{Fault, Intervention};
+use crate::world::Refusal;
+use crate::world::plane::Shape;
 use staya_controller::agent::{Parameter, Safety};
 use staya_controller::robot::RobotId;
 
@@ -16,7 +18,7 @@ pub enum Change<'a> {
         place_m: [f64; 3],
     },
     /// See [`Intervention::Solid`].
-    Solid(&'a crate::scenario::Shape),
+    Solid(&'a Shape),
     /// See [`Intervention::Move`].
     Move(usize, [f64; 2]),
     /// See [`Intervention::Remove`].

@@ -5,8 +5,9 @@ use super::ground::{Ground, StateWords};
 use super::intervene::Change;
 use crate::radio;
 use crate::record::Motion;
-use crate::scenario::{Order, PlaneSetup, Refusal, Robot, Scenario, Target, goals};
+use crate::scenario::{Order, PlaneSetup, Robot, Scenario, Target, goals};
 use crate::terrain::Terrain;
+use crate::world::Refusal;
 use crate::world::plane::{Clearance, Disc, Plane, Solid, narrow};
 use crate::world::window;
 use staya_controller::agent::{

@@ -3,14 +3,11 @@
 use super::ranges::micros;
 use super::source::{ScenarioError, Source};
 use super::{Robot, ScenarioFile};
+use crate::world::Refusal;
+use crate::world::plane::{FAR_M, Shape};
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::Parameter;
 use staya_controller::robot::RobotId;
-
-/// Farthest coordinate, metres.
-const FAR_M: f64 = 1e6;
-/// Points of a polygon at most.
-const POINTS: usize = 1000;
 
 /// One thing that somebody does. Robots are named by their numbers, places are world coordinates in metres.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -80,38 +77,6 @@ pub enum Intervention {
     },
 }
 
-/// What stands in the plane.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
-pub enum Shape {
-    /// A disc, as high as there is anything.
-    Circle {
-        /// Its centre.
-        center_m: [f64; 2],
-        /// Its radius.
-        radius_m: f64,
-    },
-    /// A wall without thickness.
-    Segment {
-        /// One end.
-        from_m: [f64; 2],
-        /// The other.
-        to_m: [f64; 2],
-    },
-    /// Walls around a polygon.
-    Polygon {
-        /// Its corners.
-        points_m: Vec<[f64; 2]>,
-    },
-    /// A ball.
-    Ball {
-        /// Its centre.
-        center_m: [f64; 3],
-        /// Its radius.
-        radius_m: f64,
-    },
-}
-
 /// `[[intervention]]`.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -121,52 +86,6 @@ pub struct InterventionTable {
     /// What, as `{ kind = "goal", robot = 3, place_m = [4, 5, 0] }`.
     #[serde(rename = "do")]
     pub what: Intervention,
-}
-
-/// Why an intervention makes no sense.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{what}; {remedy}")]
-pub struct Refusal {
-    /// The field of the intervention.
-    pub field: &'static str,
-    /// What is wrong.
-    pub what: String,
-    /// What to do about it.
-    pub remedy: String,
-}
-
-impl Refusal {
-    pub(crate) fn new(field: &'static str, what: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self { field, what: what.into(), remedy: remedy.into() }
-    }
-}
-
-impl Shape {
-    fn numbers(&self) -> (Vec<f64>, Option<f64>) {
-        match self {
-            Self::Circle { center_m, radius_m } => (center_m.to_vec(), Some(*radius_m)),
-            Self::Segment { from_m, to_m } => ([*from_m, *to_m].concat(), None),
-            Self::Polygon { points_m } => (points_m.concat(), None),
-            Self::Ball { center_m, radius_m } => (center_m.to_vec(), Some(*radius_m)),
-        }
-    }
-
-    fn check(&self) -> Result<(), Refusal> {
-        let (coordinates, radius_m) = self.numbers();
-        if coordinates.iter().any(|x| x.abs().partial_cmp(&FAR_M).is_none_or(std::cmp::Ordering::is_gt)) {
-            return Err(Refusal::new("solid", "it is nowhere", format!("give metres within {FAR_M}")));
-        }
-        if radius_m.is_some_and(|radius_m| !(0.001..=FAR_M).contains(&radius_m)) {
-            return Err(Refusal::new("solid", "its radius is no size", format!("give 0.001 to {FAR_M} metres")));
-        }
-        match self {
-            Self::Polygon { points_m } if !(3..=POINTS).contains(&points_m.len()) => {
-                let what = format!("{} points are no polygon", points_m.len());
-                Err(Refusal::new("solid", what, format!("give 3 to {POINTS}")))
-            }
-            _ => Ok(()),
-        }
-    }
 }
 
 impl Intervention {

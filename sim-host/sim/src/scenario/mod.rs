@@ -14,7 +14,7 @@ mod schema;
 mod setup;
 mod source;
 
-pub use intervention::{Intervention, InterventionTable, Refusal, Shape, with_interventions};
+pub use intervention::{Intervention, InterventionTable, with_interventions};
 pub use params::{FormationTable, GridTable, RouteTable};
 pub(crate) use plane::goals;
 pub use plane::{

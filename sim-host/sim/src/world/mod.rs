@@ -5,11 +5,12 @@
 //! precedence for good and the order of robots in memory plays no part.
 
 pub mod plane;
+mod refusal;
 mod window;
 
+pub use refusal::Refusal;
 pub use window::window;
 
-use crate::scenario::Refusal;
 use crate::terrain::Terrain;
 use staya_controller::agent::Command;
 use staya_controller::grid::{BLOCKED, Cell, Dir, Norm, UNIT};

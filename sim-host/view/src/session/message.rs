@@ -12,7 +12,8 @@ use staya_controller::names::Named as _;
 use staya_controller::robot::RobotId;
 use staya_sim::engine::{Choice, Inspection, SeenLand};
 use staya_sim::radio::Reception;
-use staya_sim::scenario::{Intervention, Scenario, Shape};
+use staya_sim::scenario::{Intervention, Scenario};
+use staya_sim::world::plane::Shape;
 
 /// Links that are told at a time.
 const LINKS: usize = 20_000;

@@ -1,7 +1,8 @@
 //! Runs that somebody interferes with, by hand or by the scenario.
 
 use super::*;
-use crate::scenario::{Intervention, Shape, with_interventions};
+use crate::scenario::{Intervention, with_interventions};
+use crate::world::plane::Shape;
 use staya_controller::agent::Parameter;
 
 const ON_GRID: &str = "name = \"t\"\nticks = 200\ntick_s = 0.5\n[radio]\nrange_m = 12\nloss = 0.2\n[terrain]\ncell_m = 2\n\

@@ -4,14 +4,15 @@
 //! This is no physics engine: nothing stops a body but its own robot. Bodies pass through each other and through
 //! obstacles, and each such overlap is counted, so that no controller can rely on the world to be safe.
 
+mod shape;
 mod solid;
 
+pub use shape::{FAR_M, Shape};
 pub use solid::Solid;
 pub use solid::narrow;
 
-use super::set_cell;
+use super::{Refusal, set_cell};
 use crate::nearby::{Cells, Query, Search, Space};
-use crate::scenario::Refusal;
 use crate::terrain::Terrain;
 use staya_controller::agent::Command;
 use staya_controller::body::Body as Limits;

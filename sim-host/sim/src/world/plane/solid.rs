@@ -1,6 +1,6 @@
 //! What stands in the plane and does not move.
 
-use crate::scenario::Shape;
+use super::shape::Shape;
 use staya_controller::geom::{Vec2, Vec3};
 use staya_controller::obstacle::Obstacle;
 
