@@ -68,7 +68,7 @@ def parameters(one, system):
 def test_parameters_are_listed_set_limited_and_have_an_effect(bridge):
     ten = bridge()
     values = parameters(ten, 2)
-    assert values["SPEED_MPS"] == 1.0 and values["RADIUS_M"] == 0.25 and len(values) == 9
+    assert values["SPEED_MPS"] == 1.0 and values["RADIUS_M"] == 0.25 and len(values) == 11
     ten.sink.param_set_send(2, 1, b"SPEED_MPS", 0.5, 9)
     assert ten.next("PARAM_VALUE", 2).param_value == 0.5
     ten.sink.param_set_send(2, 1, b"SPEED_MPS", 99.0, 9)

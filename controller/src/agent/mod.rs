@@ -15,7 +15,7 @@
 //! What a robot's sensors do not show for a while is told as missing ([`OnGrid::window`], [`InPlane::max_speed_mps`]): that puts it into
 //! [`Mode::Fault`], and it stands.
 //!
-//! What turns velocities into PWM, bytes of a UART into an inbox and ranges into a window is in the crate `staya-device`.
+//! What turns velocities into PWM, bytes of a UART into an inbox and ranges into a window is in the crate `staya-robot`.
 //!
 //! Cell by cell, to a goal on the grid:
 //!

@@ -69,7 +69,8 @@ pub struct BoidsParams<S> {
     closest: u64,
     turn: Turn<S>,
     turn_away: Turn<S>,
-    /// What they were made of.
+    /// What they were made of; says nothing more than the others.
+    #[serde(skip)]
     values: [S; 4],
 }
 

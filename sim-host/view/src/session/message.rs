@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use staya_controller::agent::{Event, Parameter, Wait};
 use staya_controller::names::Named as _;
 use staya_controller::robot::RobotId;
-use staya_sim::engine::{Choice, Inspection, SeenLand};
+use staya_sim::engine::{Choice, Inspection, Permitted, SeenLand};
 use staya_sim::radio::Reception;
 use staya_sim::scenario::{Intervention, Scenario};
 use staya_sim::world::plane::Shape;
@@ -276,10 +276,12 @@ fn window(land: &SeenLand) -> Value {
     })
 }
 
+/// In space, the section at the climb that was chosen.
 fn orca(choice: &Choice) -> Value {
     let flat = |v: [f32; 3]| [v[0], v[1]];
-    let lines = choice.permitted.iter().map(|permitted| {
-        json!({ "point": flat(permitted.point_mps), "normal": flat(permitted.normal), "hard": permitted.is_of_obstacle })
+    let lines = choice.permitted.iter().filter_map(|permitted| {
+        let (point, normal) = section(permitted, choice.chosen_mps[2])?;
+        Some(json!({ "point": point, "normal": normal, "hard": permitted.is_of_obstacle }))
     });
     json!({
         "preferred_mps": flat(choice.wish_mps),
@@ -287,4 +289,38 @@ fn orca(choice: &Choice) -> Value {
         "max_speed_mps": choice.max_speed_mps,
         "lines": lines.collect::<Vec<_>>(),
     })
+}
+
+/// Where a half-space cuts the velocities of one climb: a point of its border there and the unit vector into it; `None`
+/// when it permits all of them or none.
+fn section(permitted: &Permitted, climb_mps: f32) -> Option<([f32; 2], [f32; 2])> {
+    let Permitted { point_mps: [px, py, pz], normal: [nx, ny, nz], .. } = *permitted;
+    let length = libm::hypotf(nx, ny);
+    let is_level = length < 1e-3;
+    let off = nz * (pz - climb_mps) / length;
+    (!is_level).then(|| {
+        let normal = [nx / length, ny / length];
+        ([px + normal[0] * off, py + normal[1] * off], normal)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_section_is_the_half_space_at_that_climb() {
+        let plane = Permitted { point_mps: [0.3, -0.2, 0.0], normal: [0.6, 0.8, 0.0], is_of_obstacle: false };
+        assert_eq!(section(&plane, 0.7), Some(([0.3, -0.2], [0.6, 0.8])));
+        let space = Permitted { point_mps: [0.1, 0.2, 0.3], normal: [0.48, 0.36, 0.8], is_of_obstacle: false };
+        for climb in [-0.5, 0.0, 0.3, 1.0] {
+            let (point, normal) = section(&space, climb).expect("it cuts");
+            assert!((libm::hypotf(normal[0], normal[1]) - 1.0).abs() < 1e-6);
+            // The point of the section is on the border of the half-space.
+            let off = (point[0] - 0.1) * 0.48 + (point[1] - 0.2) * 0.36 + (climb - 0.3) * 0.8;
+            assert!(off.abs() < 1e-6, "{off}");
+        }
+        let floor = Permitted { point_mps: [0.0; 3], normal: [0.0, 0.0, 1.0], is_of_obstacle: true };
+        assert_eq!(section(&floor, 1.0), None);
+    }
 }
