@@ -7,7 +7,7 @@ use staya_controller::agent::Wait;
 use staya_controller::names::Named as _;
 use staya_sim::scenario::Scenario;
 use staya_sim::terrain::Terrain;
-use staya_sim::world::plane;
+use staya_sim::world::plane::{self, Shape};
 
 /// Names of the modes, by the numbers in frames.
 pub const MODES: [&str; 7] = ["idle", "forming", "cruise", "hold", "arrived", "fault", "passive"];
@@ -124,41 +124,22 @@ pub struct Indexed {
 
 /// What stands in the way, metres.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "lowercase")]
+#[serde(untagged)]
 pub enum Solid {
-    /// A disc.
-    Circle {
-        /// Its middle.
-        center_m: [f64; 2],
-        /// Its radius.
-        radius_m: f64,
-    },
-    /// A wall of no thickness.
-    Segment {
-        /// One end.
-        from_m: [f64; 2],
-        /// The other one.
-        to_m: [f64; 2],
-    },
-    /// An area.
-    Polygon {
-        /// Its corners.
-        points_m: Vec<[f64; 2]>,
-    },
-    /// A ball.
-    Ball {
-        /// Its middle.
-        center_m: [f64; 3],
-        /// Its radius.
-        radius_m: f64,
-    },
+    /// What somebody could also have put there.
+    Shape(Shape),
     /// Everything behind a plane.
-    Plane {
-        /// A point of the plane.
-        point_m: [f64; 3],
-        /// Unit vector out of the obstacle.
-        normal: [f64; 3],
-    },
+    HalfSpace(HalfSpace),
+}
+
+/// A half-space of obstacle.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename = "plane")]
+pub struct HalfSpace {
+    /// A point of the plane.
+    pub point_m: [f64; 3],
+    /// Unit vector out of the obstacle.
+    pub normal: [f64; 3],
 }
 
 /// A body that is no robot; where it is, is in frames.
@@ -319,10 +300,14 @@ pub fn solids(solids: &[plane::Solid], is_in_space: bool, origin_m: [f64; 3]) ->
     let flat = |at: [f64; 2]| [at[0] - origin_m[0], at[1] - origin_m[1]];
     let near = |at: [f64; 3]| [0, 1, 2].map(|axis| at[axis] - origin_m[axis]);
     let shape = |solid: &plane::Solid| match *solid {
-        plane::Solid::Wall([from, to]) => Solid::Segment { from_m: flat(from), to_m: flat(to) },
-        plane::Solid::Ball { center_m, radius_m } if is_in_space => Solid::Ball { center_m: near(center_m), radius_m },
-        plane::Solid::Ball { center_m: [x, y, _], radius_m } => Solid::Circle { center_m: flat([x, y]), radius_m },
-        plane::Solid::Plane { point_m, normal } => Solid::Plane { point_m: near(point_m), normal },
+        plane::Solid::Wall([from, to]) => Solid::Shape(Shape::Segment { from_m: flat(from), to_m: flat(to) }),
+        plane::Solid::Ball { center_m, radius_m } if is_in_space => {
+            Solid::Shape(Shape::Ball { center_m: near(center_m), radius_m })
+        }
+        plane::Solid::Ball { center_m: [x, y, _], radius_m } => {
+            Solid::Shape(Shape::Circle { center_m: flat([x, y]), radius_m })
+        }
+        plane::Solid::Plane { point_m, normal } => Solid::HalfSpace(HalfSpace { point_m: near(point_m), normal }),
     };
     solids.iter().enumerate().map(|(index, solid)| Indexed { index, solid: shape(solid) }).collect()
 }

@@ -3,6 +3,7 @@
 use super::proto::Bytes;
 use crate::frame::FrameData;
 use crate::scene::{Kind, Scene, Solid};
+use staya_sim::world::plane::Shape;
 
 /// The frame of reference of everything.
 pub const FRAME: &str = "map";
@@ -141,12 +142,12 @@ pub fn obstacles(scene: &Scene, at_ns: u64) -> Vec<u8> {
     entity(&mut update, "obstacles", at_ns, |out| {
         for solid in &scene.solids {
             match &solid.solid {
-                Solid::Segment { from_m, to_m } => wall(out, &[*from_m, *to_m], largest_m),
-                Solid::Polygon { points_m } => {
+                Solid::Shape(Shape::Segment { from_m, to_m }) => wall(out, &[*from_m, *to_m], largest_m),
+                Solid::Shape(Shape::Polygon { points_m }) => {
                     let ends = points_m.first().into_iter().chain(points_m).copied();
                     wall(out, &ends.collect::<Vec<_>>(), largest_m);
                 }
-                Solid::Circle { center_m: [x, y], radius_m } => out.message(10, |out| {
+                Solid::Shape(Shape::Circle { center_m: [x, y], radius_m }) => out.message(10, |out| {
                     let high = largest_m.max(radius_m / 4.0);
                     out.message(1, |out| pose(out, [*x, *y, high / 2.0], 0.0));
                     out.message(2, |out| vector(out, [2.0 * radius_m, 2.0 * radius_m, high]));
@@ -154,13 +155,13 @@ pub fn obstacles(scene: &Scene, at_ns: u64) -> Vec<u8> {
                     out.double(4, 1.0);
                     out.message(5, |out| rgba(out, OBSTACLE));
                 }),
-                Solid::Ball { center_m, radius_m } => out.message(9, |out| {
+                Solid::Shape(Shape::Ball { center_m, radius_m }) => out.message(9, |out| {
                     out.message(1, |out| pose(out, *center_m, 0.0));
                     out.message(2, |out| vector(out, [2.0 * radius_m; 3]));
                     out.message(3, |out| rgba(out, OBSTACLE));
                 }),
                 // It has no end that could be drawn.
-                Solid::Plane { .. } => {}
+                Solid::HalfSpace(_) => {}
             }
         }
     });
