@@ -7,7 +7,7 @@ use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use serde::Deserialize;
 use serde_json::{Value, json};
-use staya_controller::agent::{Event, Parameter, Wait};
+use staya_controller::agent::{Event, Parameter};
 use staya_controller::names::Named as _;
 use staya_controller::robot::RobotId;
 use staya_sim::engine::{Choice, Inspection, Permitted, SeenLand};
@@ -18,13 +18,7 @@ use staya_sim::world::plane::Shape;
 /// Links that are told at a time.
 const LINKS: usize = 20_000;
 
-/// What a page asks for.
-#[derive(Clone, Debug)]
-pub(super) struct Asked {
-    pub wanted: Wanted,
-}
-
-/// See `PROTOCOL.md`, From the page.
+/// What a page asks for: see `PROTOCOL.md`, From the page.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(tag = "do", rename_all = "lowercase", deny_unknown_fields)]
 pub(super) enum Wanted {
@@ -50,10 +44,10 @@ pub(super) struct NotUnderstood {
     pub is_json: bool,
 }
 
-impl Asked {
+impl Wanted {
     pub fn read(text: &str) -> Result<Self, NotUnderstood> {
         match serde_json::from_str(text) {
-            Ok(wanted) => Ok(Self { wanted }),
+            Ok(wanted) => Ok(wanted),
             Err(error) => {
                 let is_json = serde_json::from_str::<serde_json::Map<String, Value>>(text).is_ok();
                 Err(NotUnderstood { text: format!("not understood: {error}"), is_json })
@@ -63,7 +57,7 @@ impl Asked {
 
     /// Whether it is about the run at the moment that is shown.
     pub const fn needs_the_run(&self) -> bool {
-        !matches!(self.wanted, Wanted::Select { .. } | Wanted::Links { .. } | Wanted::Seen { .. })
+        !matches!(self, Wanted::Select { .. } | Wanted::Links { .. } | Wanted::Seen { .. })
     }
 }
 
@@ -129,13 +123,8 @@ pub(super) fn event(event: &Event) -> String {
     }
 }
 
-/// One of a robot's numbers of which others are told too.
-fn word(index: usize) -> Option<&'static str> {
-    Some(Wait::NAMES.get(index)?.0)
-}
-
 impl Session {
-    pub(super) fn scene(&self, mode: Mode) -> String {
+    pub(super) fn scene(&self) -> String {
         let origin_m = self.framer.origin_m();
         let parameters = Parameter::NAMES.iter().filter_map(|&(name, parameter)| {
             let value = (0..self.scenario.robots.len()).find_map(|index| self.engine.parameter(index, parameter))?;
@@ -155,7 +144,7 @@ impl Session {
             solids: scene::solids(self.engine.solids(), is_in_space, origin_m),
             parameters: parameters.collect(),
             radio: self.radio(),
-            ..Scene::new(&self.scenario, mode)
+            ..Scene::new(&self.scenario, Mode::Live)
         };
         json!(scene).to_string()
     }
@@ -248,7 +237,7 @@ impl Session {
             "id": robots[index].id.0,
             "tick": self.tick,
             "mode": status.mode as u8,
-            "wait": status.wait.map(|wait| wait as u8).filter(|wait| word(usize::from(*wait)).is_some()),
+            "wait": status.wait.map(|wait| wait as u8),
             "leader": index_of(status.leader),
             "boot": observation.boot,
             "up": observation.is_up,

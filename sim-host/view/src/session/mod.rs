@@ -12,10 +12,9 @@ pub use text::Configuration;
 
 use crate::frame::{FrameData, Framer};
 use crate::pace::{Pace, SLICE};
-use crate::scene::Mode;
 use crate::server::{Client, FromPage, Server};
 use memory::Memory;
-use message::{Asked, Wanted};
+use message::Wanted;
 use staya_sim::engine::{Operated, operated};
 use staya_sim::scenario::{Intervention, Overrides, Scenario, ScenarioError};
 use staya_sim::world::Misplaced;
@@ -70,7 +69,7 @@ pub struct Session {
     /// On the way to this tick again, without anybody's seeing it.
     catches_up_to: Option<u32>,
     /// What is asked for in the meantime.
-    deferred: VecDeque<(Client, Asked)>,
+    deferred: VecDeque<(Client, Wanted)>,
     /// Whether the end of the run has been seen.
     is_over: bool,
     pages: BTreeMap<Client, Looks>,
@@ -295,7 +294,7 @@ impl Session {
                 self.pages.remove(&client);
                 self.engine.log_receptions(self.wants_links());
             }
-            FromPage::Said(client, text) => match Asked::read(&text) {
+            FromPage::Said(client, text) => match Wanted::read(&text) {
                 Ok(asked) if self.catches_up_to.is_some() && asked.needs_the_run() => {
                     self.deferred.push_back((client, asked));
                 }
@@ -306,9 +305,9 @@ impl Session {
         }
     }
 
-    fn answer(&mut self, client: Client, asked: Asked, server: &Server) {
+    fn answer(&mut self, client: Client, asked: Wanted, server: &Server) {
         let error = |text: &str| server.say(Some(client), message::error(text));
-        match asked.wanted {
+        match asked {
             Wanted::Pause => self.pace.pause(),
             Wanted::Play => self.pace.play(),
             Wanted::Step => {
@@ -410,7 +409,7 @@ impl Session {
 
     /// What a page must know before frames mean anything to it.
     fn begin_anew(&mut self, to: Option<Client>, server: &Server) {
-        server.begin_anew(to, self.scene(Mode::Live));
+        server.begin_anew(to, self.scene());
         if let Some(rows) = self.rows(ROWS) {
             server.say(to, rows);
         }
