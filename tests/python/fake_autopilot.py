@@ -206,6 +206,13 @@ class Vehicle:
         self.down_until = time.monotonic() + down_s
         self.mode, self.armed = mode, False
 
+    def take_off(self, height):
+        """To so many metres; whether it does, which one that has left the ground never does again."""
+        does = self.kind == "copter" and self.mode == GUIDED and self.armed and self.up < 0.1
+        if does:
+            self.climb_to = height
+        return does
+
     # What the autopilot does.
 
     @property
@@ -266,8 +273,9 @@ class Vehicle:
             self.stream_since = now
         self.last_setpoint = now
         if self.mode == GUIDED and self.armed and (self.kind == "rover" or self.up > 0.3 or self.kind == "px4"):
-            if self.climb_to is None:
-                self.wish = [message.vy, message.vx, -message.vz if self.kind != "rover" else 0.0]
+            # A velocity breaks a takeoff off, as ArduCopter does.
+            self.climb_to = None
+            self.wish = [message.vy, message.vx, -message.vz if self.kind != "rover" else 0.0]
 
     def _command(self, now, message):
         accepted, rejected, denied, unsupported, failed = 0, 1, 2, 3, 4
@@ -290,10 +298,7 @@ class Vehicle:
             self.armed = bool(p1)
             return accepted
         if message.command == 22:
-            if self.kind != "copter" or self.mode != GUIDED or not self.armed:
-                return failed
-            self.climb_to = message.param7
-            return accepted
+            return accepted if self.take_off(message.param7) else failed
         return unsupported
 
     def _has_stream(self, now):
@@ -360,7 +365,9 @@ class Vehicle:
         if number == 2:
             return m.MAVLink_system_time_message(0, ms)
         if number == 245:
-            return m.MAVLink_extended_sys_state_message(0, 2 if self.up > 0.3 else 1)
+            on_ground, in_air, taking_off = 1, 2, 3
+            flies = on_ground if self.up < 0.1 else in_air if self.climb_to is None else taking_off
+            return m.MAVLink_extended_sys_state_message(0, flies)
         if self.mute_position or number not in (32, 33) or (not self.is_ready and self.kind == "px4"):
             return None
         if number == 32:

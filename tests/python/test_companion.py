@@ -73,6 +73,20 @@ def test_asks_arms_and_takes_off_if_it_is_told_to(one, kind):
         ends_well(process)
 
 
+def test_the_pilots_takeoff_is_left_alone(one):
+    vehicle, fleet, start = one("copter", goal=(4.0, 0.0), mode=GUIDED, armed=True)
+    with fleet:
+        process = start()
+        process.wait_for("waits: not in the air")
+        time.sleep(0.5)
+        with fleet.lock:
+            assert vehicle.take_off(5.0)
+        process.wait_for("robot 1: steers")
+        assert abs(vehicle.up - 5.0) < 0.2, "the takeoff was broken off"
+        process.wait_for("arrived")
+        ends_well(process)
+
+
 def test_a_late_position_is_waited_for(one):
     vehicle, fleet, start = one(position_after=4.0, mode=GUIDED, armed=True)
     with fleet:

@@ -20,6 +20,7 @@ pub const MAV_STATE_CRITICAL: u8 = 5;
 
 pub const MAV_LANDED_STATE_ON_GROUND: u8 = 1;
 pub const MAV_LANDED_STATE_IN_AIR: u8 = 2;
+pub const MAV_LANDED_STATE_TAKEOFF: u8 = 3;
 pub const MAV_LANDED_STATE_LANDING: u8 = 4;
 
 pub const MAV_SYS_STATUS_SENSOR_GPS: u32 = 1 << 5;

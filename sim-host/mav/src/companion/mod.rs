@@ -9,6 +9,8 @@ mod controller;
 mod kind;
 mod medium;
 mod offboard;
+#[cfg(test)]
+mod replay;
 mod report;
 mod run;
 mod seal;

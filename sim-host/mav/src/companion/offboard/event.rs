@@ -44,7 +44,7 @@ impl State {
             Self::Entering => "asks for control",
             Self::Disarmed => "waits: not armed",
             Self::NoPosition => "waits: no position yet",
-            Self::Grounded => "waits: not in the air",
+            Self::Grounded => "waits: not in the air, or still climbing",
             Self::Stopped => "position is stale: stops",
             Self::Steering => "steers",
         }

@@ -18,6 +18,9 @@ pub use out::status_text;
 use super::kind::Kind;
 use crate::geo::Global;
 use serde::{Deserialize, Serialize};
+use staya_mavlink::constants::{
+    MAV_LANDED_STATE_IN_AIR, MAV_LANDED_STATE_LANDING, MAV_LANDED_STATE_ON_GROUND, MAV_LANDED_STATE_TAKEOFF,
+};
 use staya_mavlink::dialect::MavMessage;
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -35,6 +38,8 @@ const QUIET: Duration = Duration::from_secs(5);
 const OVERTAKEN_MS: i32 = 2000;
 /// A time since boot that is later by more is another boot, whose clock wrapped.
 const DAY_MS: i32 = 86_400_000;
+/// Who climbs no faster has come to the end of a takeoff, m/s.
+const CLIMB_OVER_MPS: f64 = 0.3;
 /// Lower than this over its home, a vehicle that does not say whether it flies is on the ground, metres.
 const LOW_M: f64 = 1.0;
 
@@ -86,7 +91,7 @@ pub enum State {
     Disarmed,
     /// In the mode and armed, without a position yet.
     NoPosition,
-    /// In the mode and armed, not in the air.
+    /// In the mode and armed, not in the air, or still taking off or landing.
     Grounded,
     /// It was steering and the position is stale: it tells the vehicle to stop.
     Stopped,
@@ -346,20 +351,31 @@ impl OffboardStateMachine {
         self.refused = refused;
     }
 
-    /// Whether a vehicle that flies does.
+    /// Whether a vehicle that flies can be steered. Its takeoff must be over: taking off and landing are the pilot's, or what was asked for.
     fn is_in_air(&self, fix: &Fix) -> bool {
-        const ON_GROUND: u8 = 1;
-        const IN_AIR: u8 = 2;
         if !self.kind.flies() {
             return true;
         }
-        if let (true, Some(altitude_m)) = (self.may_enter && self.rules.takeoff, self.rules.altitude_m) {
-            return fix.above_home_m >= altitude_m - (altitude_m * 0.1).max(0.5);
-        }
+        let has_begun = matches!(self.state, State::Steering | State::Stopped);
+        let [_, _, down_mps] = fix.velocity_ned_mps;
+        let asked_m = self.rules.altitude_m.filter(|_| self.may_enter && self.rules.takeoff);
+        let is_up = match asked_m {
+            Some(altitude_m) => fix.above_home_m >= altitude_m - (altitude_m * 0.1).max(0.5),
+            None => has_begun || -down_mps < CLIMB_OVER_MPS,
+        };
         match self.landed {
-            Some(ON_GROUND) => false,
-            Some(IN_AIR) => true,
-            _ => fix.above_home_m >= LOW_M,
+            Some(MAV_LANDED_STATE_ON_GROUND | MAV_LANDED_STATE_TAKEOFF | MAV_LANDED_STATE_LANDING) => false,
+            Some(MAV_LANDED_STATE_IN_AIR) => is_up,
+            _ => fix.above_home_m >= LOW_M && is_up,
+        }
+    }
+
+    /// Whether it has left the ground, by what it says, or else by its height.
+    fn is_taking_off(&self) -> bool {
+        match self.landed {
+            Some(MAV_LANDED_STATE_TAKEOFF | MAV_LANDED_STATE_IN_AIR) => true,
+            Some(MAV_LANDED_STATE_ON_GROUND) => false,
+            _ => self.fix.is_some_and(|fix| fix.above_home_m >= LOW_M),
         }
     }
 

@@ -104,6 +104,10 @@ impl OffboardStateMachine {
             (true, false) => Ask::Arm,
             (true, true) => Ask::Takeoff,
         };
+        // ArduPilot answers a second request during the climb with "failed".
+        if ask == Ask::Takeoff && self.is_taking_off() {
+            return;
+        }
         let is_streaming = |since: Duration| now.saturating_sub(since) >= STREAM;
         if ask == Ask::Mode && self.kind.needs_stream() && !self.streaming_since.is_some_and(is_streaming) {
             return;

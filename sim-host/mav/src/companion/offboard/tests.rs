@@ -33,6 +33,7 @@ struct Bench {
     mode: u32,
     base: u8,
     above_home_m: f64,
+    climb_mps: f64,
     beats: bool,
     fixes: bool,
     sent: Vec<MavMessage>,
@@ -47,6 +48,7 @@ impl Bench {
             mode,
             base,
             above_home_m: 0.0,
+            climb_mps: 0.0,
             beats: true,
             fixes: true,
             sent: Vec::new(),
@@ -74,6 +76,7 @@ impl Bench {
             alt: 156_000,
             relative_alt: (self.above_home_m * 1e3) as i32,
             vx: 100,
+            vz: (self.climb_mps * -100.0) as i16,
             ..GLOBAL_POSITION_INT_DATA::DEFAULT
         });
         self.offboard.hear(&fix, self.now);

@@ -115,9 +115,6 @@ fn what_flies_is_not_steered_on_the_ground() {
     bench.run(0.5);
     assert_eq!(bench.state(), State::Steering);
     // What the autopilot itself says counts for more than a height.
-    let landed = |landed_state| {
-        MavMessage::EXTENDED_SYS_STATE(EXTENDED_SYS_STATE_DATA { landed_state, ..EXTENDED_SYS_STATE_DATA::DEFAULT })
-    };
     bench.offboard.hear(&landed(1), bench.now);
     bench.run(0.5);
     assert_eq!(bench.state(), State::Grounded);
@@ -125,6 +122,55 @@ fn what_flies_is_not_steered_on_the_ground() {
     bench.offboard.hear(&landed(2), bench.now);
     bench.run(0.5);
     assert_eq!(bench.state(), State::Steering);
+}
+
+fn landed(landed_state: u8) -> MavMessage {
+    MavMessage::EXTENDED_SYS_STATE(EXTENDED_SYS_STATE_DATA { landed_state, ..EXTENDED_SYS_STATE_DATA::DEFAULT })
+}
+
+#[test]
+fn taking_off_and_landing_are_the_pilots() {
+    let mut bench = Bench::new(Kind::ArduCopter, RULES, 4, ARMED);
+    bench.above_home_m = 5.0;
+    for (landed_state, state) in
+        [(1, State::Grounded), (3, State::Grounded), (2, State::Steering), (4, State::Grounded)]
+    {
+        bench.offboard.hear(&landed(landed_state), bench.now);
+        let sent = bench.run(1.0);
+        assert_eq!(bench.state(), state, "landed_state {landed_state}");
+        assert_eq!(setpoints(&sent).is_empty(), state == State::Grounded, "landed_state {landed_state}");
+    }
+}
+
+#[test]
+fn steering_begins_when_the_climb_is_over_and_goes_on_when_it_climbs_itself() {
+    for landed_state in [0, 2] {
+        let mut bench = Bench::new(Kind::ArduCopter, RULES, 4, ARMED);
+        bench.offboard.hear(&landed(landed_state), bench.now);
+        (bench.above_home_m, bench.climb_mps) = (4.0, 0.31);
+        bench.run(1.0);
+        assert_eq!(bench.state(), State::Grounded);
+        bench.climb_mps = 0.29;
+        bench.run(1.0);
+        assert_eq!(bench.state(), State::Steering);
+        bench.climb_mps = 2.0;
+        bench.run(1.0);
+        assert_eq!(bench.state(), State::Steering);
+    }
+}
+
+#[test]
+fn a_takeoff_that_has_begun_is_not_asked_for_again() {
+    let mut bench = Bench::new(Kind::ArduCopter, FLY, 4, ARMED);
+    bench.offboard.hear(&landed(1), bench.now);
+    assert_eq!(commands(&bench.run(3.0), out::NAV_TAKEOFF), 2, "nothing has come of it yet");
+    bench.offboard.hear(&landed(3), bench.now);
+    assert_eq!(commands(&bench.run(10.0), out::NAV_TAKEOFF), 0);
+    // A height says it where the autopilot does not.
+    let mut bench = Bench::new(Kind::ArduCopter, FLY, 4, ARMED);
+    bench.run(1.0);
+    bench.above_home_m = 1.0;
+    assert_eq!(commands(&bench.run(10.0), out::NAV_TAKEOFF), 0);
 }
 
 #[test]
