@@ -1,6 +1,6 @@
 """Staya's dialect for pymavlink: `python dialect.py` makes it a part of the installed one.
 
-The messages of controller/mavlink/messages/staya.xml, on top of the whole public common dialect that pymavlink brings along.
+The messages of controller/mavlink/messages/staya.xml, on top of the whole public dialects that pymavlink brings along.
 """
 
 import shutil

@@ -20,7 +20,7 @@ import time
 from dataclasses import dataclass, field
 
 os.environ.setdefault("MAVLINK20", "1")
-from pymavlink.dialects.v20 import common as mavlink
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 ORIGIN = (-35.363262, 149.165237, 584.0)
 
@@ -173,6 +173,8 @@ class Vehicle:
         self.max_speed, self.max_acceleration, self.lag = 5.0, 3.0, 0.3
         self.mute = False
         self.mute_position = False
+        # Its estimator goes on by dead reckoning, and says so.
+        self.gps_lost = False
         self.down_until = None
         self.key = key
         self.setpoints, self.commands, self.heard = [], [], []
@@ -368,6 +370,18 @@ class Vehicle:
             on_ground, in_air, taking_off = 1, 2, 3
             flies = on_ground if self.up < 0.1 else in_air if self.climb_to is None else taking_off
             return m.MAVLink_extended_sys_state_message(0, flies)
+        if number == 24:
+            no_fix, rtk_fixed = 1, 6
+            fix = rtk_fixed if self.is_ready and not self.gps_lost else no_fix
+            return m.MAVLink_gps_raw_int_message(0, fix, 0, 0, 0, 121, 200, 0, 0, 10 if fix == rtk_fixed else 3)
+        if number == 1:
+            gps, ahrs = 1 << 5, 1 << 21
+            enabled = gps | ahrs if self.is_ready else gps
+            return m.MAVLink_sys_status_message(gps | ahrs, enabled, gps | ahrs, 0, 12600, 0, 0, 0, 0, 0, 0, 0, 0)
+        if number == 193 and self.kind != "px4":
+            return m.MAVLink_ekf_status_report_message(0x33F if self.is_ready else 0xA7, 0.01, 0.0, 0.02, 0.03, 0.0)
+        if number == 230 and self.kind == "px4":
+            return m.MAVLink_estimator_status_message(0, 0x33F if self.is_ready else 0xA7, *[0.01] * 8)
         if self.mute_position or number not in (32, 33) or (not self.is_ready and self.kind == "px4"):
             return None
         if number == 32:

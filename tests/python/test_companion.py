@@ -119,6 +119,28 @@ def test_stale_telemetry_stops_and_fresh_telemetry_goes_on(one):
         ends_well(process)
 
 
+@pytest.mark.parametrize("kind", ["rover", "px4"])
+def test_a_vehicle_whose_gps_is_lost_stands_and_goes_on_after_a_while(one, kind):
+    # PX4 leaves OFFBOARD before anybody streams.
+    mode = GUIDED if kind == "rover" else PILOT
+    vehicle, fleet, start = one(kind, 'entry = "once"', goal=(60.0, 0.0), mode=mode, armed=True, airborne=kind == "px4")
+    with fleet:
+        process = start("--json")
+        wait_until(lambda: vehicle.velocity[0] > 1.0, what="motion")
+        with fleet.lock:
+            vehicle.gps_lost = True
+        wait_until(lambda: abs(vehicle.velocity[0]) < 0.05, 4, "standing")
+        process.wait_for("position not trusted: GPS has lost its fix")
+        since = time.monotonic()
+        with fleet.lock:
+            vehicle.gps_lost = False
+        wait_until(lambda: vehicle.velocity[0] > 0.5, 10, "motion again")
+        assert time.monotonic() - since > 4.0
+        assert any("not trusted" in text for _, text in vehicle.texts), vehicle.texts
+        ends_well(process)
+    assert '"doubts": 1' in process.output()
+
+
 def test_a_lost_link_ends_setpoints_and_the_vehicle_stops(one):
     vehicle, fleet, start = one(goal=(40.0, 0.0), mode=GUIDED, armed=True)
     with fleet:

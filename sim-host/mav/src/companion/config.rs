@@ -96,6 +96,8 @@ struct RulesTable {
     lag_s: f64,
     /// Vehicles farther from the origin are not steered, metres. Default: 10000.
     reach_m: f64,
+    /// How far a vehicle whose position is old or not to be believed may be from it at most, metres: others keep so much more room after a while. Default: 10.
+    error_m: f64,
 }
 
 impl Default for RulesTable {
@@ -111,6 +113,7 @@ impl Default for RulesTable {
             position_hz: 10.0,
             lag_s: 0.5,
             reach_m: 10_000.0,
+            error_m: 10.0,
         }
     }
 }
@@ -173,6 +176,8 @@ pub struct Config {
     pub lag_s: f64,
     /// Vehicles farther from the origin are not steered, metres.
     pub reach_m: f64,
+    /// How far a vehicle may be from where it was known to be last, metres.
+    pub error_m: f64,
 }
 
 impl Config {
@@ -222,6 +227,7 @@ impl Config {
             vehicles,
             lag_s: file.rules.lag_s,
             reach_m: file.rules.reach_m,
+            error_m: file.rules.error_m,
         })
     }
 }
@@ -263,6 +269,7 @@ fn check_rules(source: &Source<'_>, rules: &RulesTable) -> Result<(), ScenarioEr
         ("position_hz", rules.position_hz, 1.0, 100.0, "Hz"),
         ("lag_s", rules.lag_s, 0.0, 10.0, "seconds"),
         ("reach_m", rules.reach_m, 1.0, 500_000.0, "metres"),
+        ("error_m", rules.error_m, 0.0, 50.0, "metres"),
     ] {
         within(source, &format!("rules.{field}"), value, low, high, unit)?;
     }

@@ -2,7 +2,7 @@
 
 use staya_controller::agent::{
     Agent, AgentConfig, AnyGuidance, AnySafety, AnySurroundings, Command, Commanded, GridWorkspace, HALF_PLANES,
-    InCells, LEARNED, NEIGHBORS, Outputs, TEMPLATE, VISITS, Wish,
+    InCells, LEARNED, NEIGHBORS, Outputs, Parameter, TEMPLATE, VISITS, Wish,
 };
 use staya_controller::agent::{GuidanceKind, SafetyKind};
 use staya_controller::geom::Vec3;
@@ -21,6 +21,8 @@ pub struct Body {
     pub position_m: [f64; 3],
     /// How fast.
     pub velocity_mps: [f64; 3],
+    /// How far from there it may be, metres; 0 as long as its telemetry is fresh and believed.
+    pub error_m: f64,
 }
 
 /// How a vehicle that heads for a place is kept from overshooting.
@@ -46,6 +48,8 @@ pub struct Controller<W> {
     brake: Option<Brake>,
     max_acceleration_mps2: f64,
     lag_s: f64,
+    /// Of its own body, metres.
+    radius_m: f64,
     /// What it commanded last, if it steers.
     commanded_mps: Option<[f64; 3]>,
 }
@@ -85,6 +89,7 @@ impl<W: Wire> Controller<W> {
             brake,
             max_acceleration_mps2: f64::from(config.max_acceleration_mps2),
             lag_s,
+            radius_m: f64::from(config.radius_m),
             commanded_mps: None,
         }
     }
@@ -106,7 +111,8 @@ impl<W: Wire> Controller<W> {
         self.agent.neighbors().len()
     }
 
-    /// One step of the agent. One that does not steer (the pilot does, or telemetry is stale) says by its beacons where it is and that others must make way.
+    /// One step of the agent. One that does not steer (the pilot does, or telemetry is stale) says by its beacons where it is and that others must make way;
+    /// the radius that it says has its error in it, so that they stay clear of wherever it can be.
     pub fn step(&mut self, body: &Body, steers: bool, inbox: &[u8], now: Duration) -> &Outputs<f32> {
         let [x, y, z] = body.position_m;
         // In the plane heights are told apart by nobody, and altitudes differ by metres between two receivers.
@@ -127,6 +133,10 @@ impl<W: Wire> Controller<W> {
             let limit = speed_before(&brake, position_m, self.max_acceleration_mps2, self.lag_s);
             plane.max_speed_mps = plane.max_speed_mps.min(limit as f32);
         }
+        let [least, greatest] = Parameter::Radius.range();
+        let radius_m = (self.radius_m + body.error_m) as f32;
+        // Any agent has a radius.
+        let _ = self.agent.set_parameter(Parameter::Radius, radius_m.clamp(least, greatest));
         // The robot's clock wraps; steps are far closer to each other.
         let now = Instant::from_micros(now.as_micros() as u32);
         self.agent.step_into(&inputs, now, &mut self.workspace, &mut self.out);

@@ -32,6 +32,12 @@ impl Kind {
     /// Whether the mode for outside control is refused, and left again, without a stream of setpoints.
     #[must_use]
     pub const fn needs_stream(self) -> bool {
+        self.is_px4()
+    }
+
+    /// Whether it is PX4 and not ArduPilot.
+    #[must_use]
+    pub const fn is_px4(self) -> bool {
         matches!(self, Self::Px4Copter | Self::Px4Rover)
     }
 

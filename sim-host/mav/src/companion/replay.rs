@@ -2,9 +2,10 @@
 
 use super::kind::Kind;
 use super::offboard::{AUTOPILOT, Event, OffboardStateMachine, Rules};
+use crate::geo::{Global, Origin};
 use flate2::read::GzDecoder;
 use staya_mavlink::dialect::MavMessage;
-use staya_mavlink::frame::{Scan, scan};
+use staya_mavlink::frame::RawFrame;
 use std::fs::File;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
@@ -12,6 +13,16 @@ use std::time::Duration;
 
 /// Between two polls.
 const STEP: Duration = Duration::from_millis(10);
+
+/// How long the frame at the beginning of `bytes` is, by its header.
+fn frame_len(bytes: &[u8]) -> usize {
+    const SIGNED: u8 = 1;
+    match *bytes {
+        [0xFD, len, flags, ..] => usize::from(len) + if flags & SIGNED == 0 { 12 } else { 25 },
+        [0xFE, len, ..] => usize::from(len) + 8,
+        _ => panic!("no frame behind a time, {} bytes before the end", bytes.len()),
+    }
+}
 
 /// What autopilots said, and when, from the first frame on.
 pub struct Recording(Vec<(Duration, u8, MavMessage)>);
@@ -35,15 +46,15 @@ impl Recording {
         let (mut all, mut rest, mut first) = (Vec::new(), bytes, None);
         while let Some((time, frames)) = rest.split_first_chunk::<8>() {
             let micros = u64::from_be_bytes(*time);
-            let Scan::Frame { junk: 0, frame } = scan(frames, true) else {
-                panic!("no frame behind a time, {} bytes before the end", frames.len());
-            };
             let at = Duration::from_micros(micros - *first.get_or_insert(micros));
+            let (frame, behind) = frames.split_at(frame_len(frames));
+            rest = behind;
+            // What the dialect does not have is left out.
+            let Some(frame) = RawFrame::new(frame) else { continue };
             let sender = frame.sender();
             if let Some(message) = frame.message().filter(|_| sender.component == AUTOPILOT) {
                 all.push((at, sender.system, message));
             }
-            rest = &frames[frame.bytes().len()..];
         }
         Self(all)
     }
@@ -78,7 +89,7 @@ impl Recording {
 
 mod needs_shared {
     use super::*;
-    use crate::companion::offboard::Entry;
+    use crate::companion::offboard::{Doubt, Entry, State};
 
     const RULES: Rules = Rules {
         entry: Entry::Wait,
@@ -140,5 +151,92 @@ mod needs_shared {
         assert!((69.9..=70.0).contains(&last.0.as_secs_f64()), "{last:?}");
         let rate = (setpoints.len() - 1) as f64 / (last.0 - first.0).as_secs_f64();
         assert!((19.5..=20.5).contains(&rate), "{rate} setpoints a second");
+    }
+
+    /// North and east of a place, metres, near ArduPilot's usual one.
+    fn north_east_m(offboard: &OffboardStateMachine) -> [f64; 2] {
+        let place = offboard.fix().expect("a position").place;
+        let origin = Origin::new(Global { latitude_deg: -35.363_262, longitude_deg: 149.165_237, altitude_m: 584.0 });
+        let [east, north, _] = origin.expect("an origin").to_enu_m(&place).expect("near");
+        [north, east]
+    }
+
+    fn off(a: [f64; 2], b: [f64; 2]) -> f64 {
+        libm::hypot(a[0] - b[0], a[1] - b[1])
+    }
+
+    const ROVER: Rules = Rules { entry: Entry::Once, arm: true, ..RULES };
+
+    /// The fix was lost between 6.0 and 7.0 s, which is as often as this vehicle said so; the autopilot's own failsafe came at 14.2 s.
+    #[test]
+    fn a_lost_gps_ends_steering_and_is_believed_again_after_a_while() {
+        let Some(recording) = Recording::shared("rovers-gps-lost") else { return };
+        let (mut states, mut doubts, mut start, mut lost, mut end) = (Vec::new(), Vec::new(), None, None, None);
+        recording.replay(3, Kind::ArduRover, ROVER, |now, offboard, sent, events| {
+            let seconds = now.as_secs_f64();
+            states.push((seconds, offboard.state()));
+            doubts.extend(events.iter().filter_map(|event| match event {
+                Event::Doubts(doubt) => Some((seconds, *doubt)),
+                _ => None,
+            }));
+            if (1.0..7.0).contains(&seconds) {
+                start.get_or_insert_with(|| north_east_m(offboard));
+            }
+            if (7.05..46.0).contains(&seconds) {
+                let sure = north_east_m(offboard);
+                assert!(off(*lost.get_or_insert(sure), sure) < 1e-6, "{seconds}: {sure:?} is not to be believed");
+                assert!(offboard.fresh_fix(now).is_none(), "{seconds}");
+            }
+            if (7.05..14.2).contains(&seconds) {
+                assert_eq!(offboard.state(), State::Distrusted, "{seconds}");
+                for message in sent {
+                    if let MavMessage::SET_POSITION_TARGET_LOCAL_NED(setpoint) = message {
+                        assert_eq!([setpoint.vx, setpoint.vy, setpoint.vz], [0.0; 3], "{seconds}");
+                    }
+                }
+            }
+            end = offboard.fix().map(|_| north_east_m(offboard));
+        });
+        assert_eq!(doubts.len(), 1, "{doubts:?}");
+        assert_eq!(doubts[0].1, Doubt::Gps);
+        assert!((7.0..7.1).contains(&doubts[0].0), "{doubts:?}");
+        let [start, lost, end] = [start, lost, end].map(|place| place.expect("it was there"));
+        let from_start = |place: [f64; 2]| [place[0] - start[0], place[1] - start[1]];
+        // What the simulation says of the truth at 7.0 s (SIMSTATE), and at the end.
+        assert!(off(from_start(lost), [3.12, 5.85]) < 0.3, "{lost:?}");
+        assert!(off(from_start(end), [-0.68, 14.09]) < 0.3, "{end:?}");
+    }
+
+    #[test]
+    fn vehicles_that_are_well_are_believed_throughout() {
+        for name in ["rovers-crossing", "rovers-pilot-hold"] {
+            let Some(recording) = Recording::shared(name) else { return };
+            for system in 1..=6 {
+                recording.replay(system, Kind::ArduRover, ROVER, |now, offboard, _, events| {
+                    assert!(!events.iter().any(|event| matches!(event, Event::Doubts(_))), "{name} {system} {now:?}");
+                    assert_ne!(offboard.state(), State::Distrusted, "{name} {system} {now:?}");
+                });
+            }
+        }
+    }
+
+    #[test]
+    fn after_a_restart_the_last_place_is_known_until_there_is_a_new_one() {
+        let Some(recording) = Recording::shared("rovers-restart") else { return };
+        let (mut steered, mut last) = (Vec::new(), None);
+        recording.replay(3, Kind::ArduRover, ROVER, |now, offboard, _, _| {
+            let seconds = now.as_secs_f64();
+            // Killed at about 6.9 s; a position that is to be believed came at 55 s.
+            if (8.0..54.9).contains(&seconds) {
+                assert!(offboard.fresh_fix(now).is_none(), "{seconds}");
+                let known = north_east_m(offboard);
+                assert!(off(*last.get_or_insert(known), known) < 1e-6, "{seconds}: {known:?}");
+            }
+            if offboard.state() == State::Steering {
+                steered.push(seconds);
+            }
+        });
+        assert!(steered.iter().all(|seconds| *seconds < 8.0 || *seconds >= 77.9), "only by the pilot's choice");
+        assert!(steered.iter().any(|seconds| *seconds < 2.0) && steered.iter().any(|seconds| *seconds > 78.0));
     }
 }

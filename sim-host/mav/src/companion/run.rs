@@ -67,6 +67,8 @@ pub enum RunError {
 /// A vehicle and its companion.
 struct Vehicle {
     setup: VehicleSetup,
+    /// How fast it can be, m/s.
+    max_speed_mps: f64,
     offboard: OffboardStateMachine,
     controller: Controller<HostWire>,
     /// Where its autopilot was heard.
@@ -84,6 +86,7 @@ struct Vehicle {
 struct Companions<'a> {
     origin: Origin,
     reach_m: f64,
+    error_m: f64,
     tick: Duration,
     lines: Lines,
     medium: Medium,
@@ -117,6 +120,7 @@ pub fn run(config: &Config, options: &mut Options, is_wanted: impl Fn() -> bool)
     });
     let vehicle = |setup: &VehicleSetup| Vehicle {
         setup: setup.clone(),
+        max_speed_mps: config.plane.group(setup.index).abilities.max_speed_mps,
         offboard: OffboardStateMachine::new(setup.system, setup.kind, setup.rules),
         controller: Controller::new(
             &config.scenario,
@@ -138,6 +142,7 @@ pub fn run(config: &Config, options: &mut Options, is_wanted: impl Fn() -> bool)
     let mut companions = Companions {
         origin: config.origin,
         reach_m: config.reach_m,
+        error_m: config.error_m,
         tick: Duration::from_micros(config.scenario.tick_us.into()),
         lines: Lines::open(&config.lines)?,
         medium: Medium::open(&config.air)?,
@@ -268,7 +273,7 @@ impl Companions<'_> {
         let missed = now.saturating_sub(vehicle.next_step).as_micros() / tick.as_micros().max(1);
         let moment = vehicle.next_step + tick * u32::try_from(missed).unwrap_or(u32::MAX);
         vehicle.next_step = moment + tick;
-        let body = vehicle.body(&self.origin, now);
+        let body = vehicle.body(&self.origin, self.error_m, now);
         let is_far = vehicle.offboard.fix().is_some() && !body.is_some_and(|body| is_within(&body, self.reach_m));
         let is_news = is_far && !vehicle.is_far;
         vehicle.is_far = is_far;
@@ -459,15 +464,18 @@ impl Vehicle {
         }
     }
 
-    /// Where it is by now, and how fast; who was told to stop, or is not heard, is taken to stand where it was last.
-    fn body(&self, origin: &Origin, now: Duration) -> Option<Body> {
+    /// Where it is by now, and how fast. Whose telemetry is old or not to be believed is somewhere about its last place, the farther off the older that is, up to
+    /// `error_m`: told to stop, it has rolled on, or a pilot drives it.
+    fn body(&self, origin: &Origin, error_m: f64, now: Duration) -> Option<Body> {
         let last = self.offboard.fix()?;
         let at = origin.to_enu_m(&last.place)?;
-        let Some(fix) = self.offboard.fresh_fix(now) else {
-            return Some(Body { position_m: at, velocity_mps: [0.0; 3] });
-        };
-        let velocity_mps = enu(fix.velocity_ned_mps);
-        let age_s = now.saturating_sub(fix.at).as_secs_f64();
-        Some(Body { position_m: [0, 1, 2].map(|axis| at[axis] + velocity_mps[axis] * age_s), velocity_mps })
+        let age_s = now.saturating_sub(last.at).as_secs_f64();
+        if self.offboard.fresh_fix(now).is_none() {
+            let error_m = (self.max_speed_mps * age_s).min(error_m);
+            return Some(Body { position_m: at, velocity_mps: [0.0; 3], error_m });
+        }
+        let velocity_mps = enu(last.velocity_ned_mps);
+        let position_m = [0, 1, 2].map(|axis| at[axis] + velocity_mps[axis] * age_s);
+        Some(Body { position_m, velocity_mps, error_m: 0.0 })
     }
 }

@@ -15,7 +15,7 @@ fn brains(count: usize) -> Vec<Controller<Postcard>> {
 }
 
 fn at(x: f64, y: f64) -> Body {
-    Body { position_m: [x, y, 7.0], velocity_mps: [0.0; 3] }
+    Body { position_m: [x, y, 7.0], ..Body::default() }
 }
 
 #[test]
@@ -68,15 +68,14 @@ fn a_vehicle_that_lags_does_not_overshoot_its_tolerance() {
     assert!((body.position_m[0] - 50.0).abs() < 1.0);
 }
 
-#[test]
-fn one_that_is_passive_is_evaded_by_the_other_alone() {
+/// How near the second one comes to the first, which stands beside its way and does not steer.
+fn least_distance(error_m: f64) -> f64 {
     let mut brains = brains(2);
     let mut second = brains.remove(1);
     let mut first = brains.remove(0);
-    // The first one stands in the way of the second and does not steer.
-    let (stands, mut moves) = (at(25.0, 0.1), at(10.0, 0.0));
+    let (stands, mut moves) = (Body { error_m, ..at(25.0, 0.1) }, at(10.0, 0.0));
     let mut least = f64::INFINITY;
-    for step in 0..300 {
+    for step in 0..400 {
         let said = first.step(&stands, false, &[], TICK * step).outbox.clone();
         let _ = second.step(&moves, true, &said, TICK * step);
         moves.velocity_mps = second.velocity_mps();
@@ -87,7 +86,21 @@ fn one_that_is_passive_is_evaded_by_the_other_alone() {
         least = least.min(off.iter().map(|x| x * x).sum::<f64>().sqrt());
     }
     assert_eq!(second.mode(), Mode::Arrived);
-    assert!(least >= 2.0, "{least}");
+    least
+}
+
+#[test]
+fn one_that_is_passive_is_evaded_by_the_other_alone() {
+    let least = least_distance(0.0);
+    assert!((2.0..4.0).contains(&least), "{least}");
+}
+
+#[test]
+fn one_that_is_not_sure_of_its_place_is_given_more_room() {
+    for error_m in [1.0, 4.0] {
+        let least = least_distance(error_m);
+        assert!(least >= 2.0 + error_m, "{least} m beside an error of {error_m} m");
+    }
 }
 
 #[test]

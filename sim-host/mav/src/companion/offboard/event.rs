@@ -1,6 +1,6 @@
 //! What a person wants to know of a companion.
 
-use super::State;
+use super::{Doubt, State};
 use std::fmt;
 use std::time::Duration;
 
@@ -18,6 +18,10 @@ pub enum Event {
     HandedOver(u32),
     /// The autopilot's clock began anew.
     Restarted,
+    /// Its positions are not to be believed any more.
+    Doubts(Doubt),
+    /// The autopilot says nothing of its estimator, although asked.
+    NoHealth,
     /// Heard again after so long.
     Back(Duration),
     /// A pilot acted while the companion asked: it asks no more.
@@ -46,14 +50,21 @@ impl State {
             Self::NoPosition => "waits: no position yet",
             Self::Grounded => "waits: not in the air, or still climbing",
             Self::Stopped => "position is stale: stops",
+            Self::Distrusted => "position not trusted: stops",
             Self::Steering => "steers",
         }
+    }
+
+    /// Whether the vehicle does what the companion says.
+    #[must_use]
+    pub const fn has_control(self) -> bool {
+        matches!(self, Self::Steering | Self::Stopped | Self::Distrusted)
     }
 
     /// Whether somebody should look after it: `MAV_SEVERITY_WARNING` rather than `_INFO`.
     #[must_use]
     pub const fn is_worrying(self) -> bool {
-        matches!(self, Self::Silent | Self::Restarted | Self::Stopped)
+        matches!(self, Self::Silent | Self::Restarted | Self::Stopped | Self::Distrusted)
     }
 }
 
@@ -75,6 +86,8 @@ impl fmt::Display for Event {
             Self::State { to, .. } => f.write_str(to.words()),
             Self::HandedOver(mode) => write!(f, "handed over to the pilot (mode {mode})"),
             Self::Restarted => f.write_str("the autopilot has restarted"),
+            Self::Doubts(doubt) => write!(f, "position not trusted: {}", doubt.words()),
+            Self::NoHealth => f.write_str("says nothing of its estimator: all its positions are trusted"),
             Self::Back(gap) => write!(f, "heard again after {:.1} s", gap.as_secs_f64()),
             Self::PilotActs => f.write_str("the pilot acts: asks no more"),
             Self::GaveUp => f.write_str("asked in vain: asks no more"),

@@ -9,14 +9,17 @@
 //! of the autopilot the mode it comes up in is nobody's permission: it must be left and chosen again.
 
 mod event;
+mod health;
 mod out;
 mod poll;
 
 pub use event::Event;
+pub use health::Doubt;
 pub use out::status_text;
 
 use super::kind::Kind;
 use crate::geo::Global;
+use health::Health;
 use serde::{Deserialize, Serialize};
 use staya_mavlink::constants::{
     MAV_LANDED_STATE_IN_AIR, MAV_LANDED_STATE_LANDING, MAV_LANDED_STATE_ON_GROUND, MAV_LANDED_STATE_TAKEOFF,
@@ -95,11 +98,13 @@ pub enum State {
     Grounded,
     /// It was steering and the position is stale: it tells the vehicle to stop.
     Stopped,
+    /// It was steering and the position is not to be believed: it tells the vehicle to stop.
+    Distrusted,
     /// It steers.
     Steering,
 }
 
-/// The last position.
+/// The last position that could be believed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fix {
     /// When it arrived.
@@ -142,6 +147,8 @@ pub struct OffboardCounters {
     pub hand_overs: u64,
     /// How often it stopped for want of a position.
     pub stops: u64,
+    /// How often positions came that were not to be believed any more.
+    pub doubts: u64,
     /// Restarts of the autopilot.
     pub restarts: u64,
 }
@@ -154,7 +161,10 @@ pub struct OffboardStateMachine {
     rules: Rules,
     state: State,
     beat: Option<Beat>,
+    /// The last one that could be believed, and whether it is of this boot.
     fix: Option<Fix>,
+    is_of_boot: bool,
+    health: Health,
     boot_ms: Option<u32>,
     /// Velocity from `LOCAL_POSITION_NED`, which is finer, and when.
     velocity: Option<(Duration, [f64; 3])>,
@@ -172,6 +182,8 @@ pub struct OffboardStateMachine {
     next_setpoint: Duration,
     next_look: Option<Duration>,
     positions_at_look: u64,
+    reports_at_look: u64,
+    looks: u8,
     events: VecDeque<Event>,
     tally: OffboardCounters,
 }
@@ -187,6 +199,8 @@ impl OffboardStateMachine {
             state: State::Silent,
             beat: None,
             fix: None,
+            is_of_boot: false,
+            health: Health::default(),
             boot_ms: None,
             velocity: None,
             landed: None,
@@ -201,6 +215,8 @@ impl OffboardStateMachine {
             next_setpoint: Duration::ZERO,
             next_look: None,
             positions_at_look: 0,
+            reports_at_look: 0,
+            looks: 0,
             events: VecDeque::new(),
             tally: OffboardCounters::default(),
         }
@@ -218,16 +234,17 @@ impl OffboardStateMachine {
         self.tally
     }
 
-    /// The last position, however old.
+    /// The last position that could be believed, however old, and of whichever boot.
     #[must_use]
     pub const fn fix(&self) -> Option<Fix> {
         self.fix
     }
 
-    /// The last position if it is not stale.
+    /// The last position if it is not stale, and positions can still be believed.
     #[must_use]
     pub fn fresh_fix(&self, now: Duration) -> Option<Fix> {
-        self.fix.filter(|fix| now.saturating_sub(fix.at) <= self.rules.stale)
+        let fix = self.fix.filter(|_| self.is_of_boot && self.health.is_trusted(now));
+        fix.filter(|fix| now.saturating_sub(fix.at) <= self.rules.stale)
     }
 
     /// Takes the next thing off that is worth telling a person.
@@ -255,6 +272,10 @@ impl OffboardStateMachine {
                     .filter(|(heard, _)| now.saturating_sub(*heard).as_secs_f64() * self.rules.position_hz <= 2.0);
                 let coarse = [at.vx, at.vy, at.vz].map(|v| f64::from(v) / 100.0);
                 self.tally.positions += 1;
+                if !self.health.is_trusted(now) {
+                    return;
+                }
+                self.is_of_boot = true;
                 self.fix = Some(Fix {
                     at: now,
                     place: Global::from_e7(at.lat, at.lon, at.alt),
@@ -270,7 +291,14 @@ impl OffboardStateMachine {
             }
             MavMessage::EXTENDED_SYS_STATE(state) => self.landed = Some(state.landed_state),
             MavMessage::COMMAND_ACK(ack) => self.acknowledged(ack.command, ack.result),
-            _ => {}
+            _ => {
+                if let Some(doubt) = self.health.hear(message, now) {
+                    self.tally.doubts += 1;
+                    self.events.push_back(Event::Doubts(doubt));
+                    // It does not wait for the next poll.
+                    self.settle(now);
+                }
+            }
         }
     }
 
@@ -291,7 +319,10 @@ impl OffboardStateMachine {
         self.events.push_back(Event::Restarted);
         self.must_be_left = self.beat.is_some_and(|beat| beat.is_controlled);
         self.end_entry(None);
-        (self.fix, self.velocity, self.landed) = (None, None, None);
+        // Where it was is still the best that others can be told.
+        self.is_of_boot = false;
+        self.health = Health::default();
+        (self.velocity, self.landed) = (None, None);
         self.next_look = None;
     }
 
@@ -313,7 +344,7 @@ impl OffboardStateMachine {
             if last.is_controlled && !is_controlled {
                 self.quiet_until = now + QUIET;
                 self.streaming_since = None;
-                if matches!(self.state, State::Steering | State::Stopped) {
+                if self.state.has_control() {
                     self.tally.hand_overs += 1;
                     self.events.push_back(Event::HandedOver(custom_mode));
                 }
@@ -356,7 +387,7 @@ impl OffboardStateMachine {
         if !self.kind.flies() {
             return true;
         }
-        let has_begun = matches!(self.state, State::Steering | State::Stopped);
+        let has_begun = self.state.has_control();
         let [_, _, down_mps] = fix.velocity_ned_mps;
         let asked_m = self.rules.altitude_m.filter(|_| self.may_enter && self.rules.takeoff);
         let is_up = match asked_m {
@@ -375,7 +406,7 @@ impl OffboardStateMachine {
         match self.landed {
             Some(MAV_LANDED_STATE_TAKEOFF | MAV_LANDED_STATE_IN_AIR) => true,
             Some(MAV_LANDED_STATE_ON_GROUND) => false,
-            _ => self.fix.is_some_and(|fix| fix.above_home_m >= LOW_M),
+            _ => self.fix.is_some_and(|fix| self.is_of_boot && fix.above_home_m >= LOW_M),
         }
     }
 
@@ -400,6 +431,11 @@ impl OffboardStateMachine {
         }
         let Some(fix) = fix else {
             return match self.state {
+                State::Steering | State::Stopped | State::Distrusted if !self.health.is_trusted(now) => {
+                    State::Distrusted
+                }
+                // Until there is one to be believed.
+                State::Distrusted => State::Distrusted,
                 State::Steering | State::Stopped => State::Stopped,
                 _ => State::NoPosition,
             };
@@ -424,7 +460,7 @@ impl OffboardStateMachine {
         if to == State::Stopped {
             self.tally.stops += 1;
         }
-        if matches!(to, State::Steering | State::Stopped | State::Entering) {
+        if to.has_control() || to == State::Entering {
             self.next_setpoint = now;
         }
         self.command = None;

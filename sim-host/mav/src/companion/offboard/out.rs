@@ -2,8 +2,9 @@
 
 use super::{AUTOPILOT, Kind};
 use staya_mavlink::dialect::{
-    COMMAND_LONG_DATA, EXTENDED_SYS_STATE_DATA, GLOBAL_POSITION_INT_DATA, HEARTBEAT_DATA, LOCAL_POSITION_NED_DATA,
-    MavMessage, SET_POSITION_TARGET_LOCAL_NED_DATA, STATUSTEXT_DATA,
+    COMMAND_LONG_DATA, EKF_STATUS_REPORT_DATA, ESTIMATOR_STATUS_DATA, EXTENDED_SYS_STATE_DATA,
+    GLOBAL_POSITION_INT_DATA, GPS_RAW_INT_DATA, HEARTBEAT_DATA, LOCAL_POSITION_NED_DATA, MavMessage,
+    SET_POSITION_TARGET_LOCAL_NED_DATA, STATUSTEXT_DATA, SYS_STATUS_DATA,
 };
 use staya_mavlink::mavlink_core::MessageData as _;
 use std::time::Duration;
@@ -68,10 +69,19 @@ pub fn intervals(system: u8, kind: Kind, position_hz: f64) -> impl Iterator<Item
     [(GLOBAL_POSITION_INT_DATA::ID, position_hz), (LOCAL_POSITION_NED_DATA::ID, position_hz)]
         .into_iter()
         .chain(state)
-        .map(move |(id, hz)| {
-            let params = [f64::from(id), 1e6 / hz, 0.0, 0.0, 0.0, 0.0, 0.0];
-            command(system, SET_MESSAGE_INTERVAL, params)
-        })
+        .map(move |(id, hz)| interval(system, id, hz))
+}
+
+/// What says whether positions can be believed, as often as that is heeded.
+pub fn health_intervals(system: u8, kind: Kind) -> impl Iterator<Item = MavMessage> {
+    const HEALTH_HZ: f64 = 4.0;
+    let estimator = if kind.is_px4() { ESTIMATOR_STATUS_DATA::ID } else { EKF_STATUS_REPORT_DATA::ID };
+    let ids = [estimator, GPS_RAW_INT_DATA::ID, SYS_STATUS_DATA::ID];
+    ids.into_iter().map(move |id| interval(system, id, HEALTH_HZ))
+}
+
+fn interval(system: u8, id: u32, hz: f64) -> MavMessage {
+    command(system, SET_MESSAGE_INTERVAL, [f64::from(id), 1e6 / hz, 0.0, 0.0, 0.0, 0.0, 0.0])
 }
 
 /// A velocity, north, east, down.

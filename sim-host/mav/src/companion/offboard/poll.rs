@@ -6,6 +6,8 @@ use std::time::Duration;
 
 /// Between two looks at the rate of positions.
 const LOOK: Duration = Duration::from_secs(3);
+/// In so many looks it asks for news of the estimator, which not every autopilot has.
+const HEALTH_LOOKS: u8 = 3;
 /// How long PX4 gets setpoints before the mode is asked for.
 const STREAM: Duration = Duration::from_secs(1);
 /// Between two requests of one thing.
@@ -62,7 +64,7 @@ impl OffboardStateMachine {
                 let velocity = command.map_or(STAND, |(_, velocity)| velocity);
                 Some(self.at_altitude(velocity))
             }
-            State::Stopped => Some(STAND),
+            State::Stopped | State::Distrusted => Some(STAND),
             State::Entering if self.kind.needs_stream() => Some(self.at_altitude(STAND)),
             // So that the pilot can choose the mode at all. In other modes PX4 takes no notice.
             State::Pilot | State::Disarmed | State::Grounded
@@ -82,17 +84,26 @@ impl OffboardStateMachine {
         [north, east, down]
     }
 
-    /// Asks for telemetry until it comes as often as it should.
+    /// Asks for telemetry until it comes as often as it should, and a few times for news of the estimator.
     fn look(&mut self, now: Duration, out: &mut Vec<MavMessage>) {
         if self.next_look.is_some_and(|at| now < at) {
             return;
         }
+        let is_first = self.next_look.is_none();
         let got = self.tally.positions - self.positions_at_look;
         let wanted = self.rules.position_hz * LOOK.as_secs_f64();
-        if self.next_look.is_none() || (got as f64) < wanted / 2.0 {
+        if is_first || (got as f64) < wanted / 2.0 {
             out.extend(out::intervals(self.system, self.kind, self.rules.position_hz));
         }
+        self.looks = if is_first { 0 } else { self.looks.saturating_add(1) };
+        let has_health = !is_first && self.health.reports > self.reports_at_look;
+        if !has_health && self.looks < HEALTH_LOOKS {
+            out.extend(out::health_intervals(self.system, self.kind));
+        } else if !has_health && self.looks == HEALTH_LOOKS {
+            self.events.push_back(Event::NoHealth);
+        }
         self.positions_at_look = self.tally.positions;
+        self.reports_at_look = self.health.reports;
         self.next_look = Some(now + LOOK);
     }
 
@@ -141,7 +152,6 @@ impl OffboardStateMachine {
     /// What to send a few times when the companion ends: stand, if it steers.
     #[must_use]
     pub fn farewell(&self, now: Duration) -> Option<MavMessage> {
-        let steers = matches!(self.state, State::Steering | State::Stopped);
-        steers.then(|| out::setpoint(self.system, [0.0; 3], now))
+        self.state.has_control().then(|| out::setpoint(self.system, [0.0; 3], now))
     }
 }

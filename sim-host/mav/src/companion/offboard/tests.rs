@@ -2,8 +2,8 @@ mod entry;
 
 use super::*;
 use staya_mavlink::dialect::{
-    COMMAND_ACK_DATA, EXTENDED_SYS_STATE_DATA, GLOBAL_POSITION_INT_DATA, HEARTBEAT_DATA, LOCAL_POSITION_NED_DATA,
-    SET_POSITION_TARGET_LOCAL_NED_DATA,
+    COMMAND_ACK_DATA, EKF_STATUS_REPORT_DATA, EXTENDED_SYS_STATE_DATA, GLOBAL_POSITION_INT_DATA, HEARTBEAT_DATA,
+    LOCAL_POSITION_NED_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
 
 const RULES: Rules = Rules {
@@ -36,6 +36,9 @@ struct Bench {
     climb_mps: f64,
     beats: bool,
     fixes: bool,
+    /// Whether it says of its estimator what `ekf_flags` has.
+    reports: bool,
+    ekf_flags: u16,
     sent: Vec<MavMessage>,
 }
 
@@ -51,6 +54,8 @@ impl Bench {
             climb_mps: 0.0,
             beats: true,
             fixes: true,
+            reports: false,
+            ekf_flags: 0x33F,
             sent: Vec::new(),
         }
     }
@@ -82,6 +87,14 @@ impl Bench {
         self.offboard.hear(&fix, self.now);
     }
 
+    fn ekf(&mut self) {
+        let report = MavMessage::EKF_STATUS_REPORT(EKF_STATUS_REPORT_DATA {
+            flags: self.ekf_flags,
+            ..EKF_STATUS_REPORT_DATA::DEFAULT
+        });
+        self.offboard.hear(&report, self.now);
+    }
+
     /// Runs for so long in steps of 10 ms; returns what was sent meanwhile.
     fn run(&mut self, seconds: f64) -> Vec<MavMessage> {
         self.sent.clear();
@@ -92,6 +105,9 @@ impl Bench {
             }
             if self.fixes && ms.is_multiple_of(100) {
                 self.fix();
+            }
+            if self.reports && ms.is_multiple_of(250) {
+                self.ekf();
             }
             if self.offboard.state() == State::Steering {
                 self.offboard.steer([1.0, 2.0, 0.0], self.now);
@@ -323,13 +339,58 @@ fn a_restart_in_the_mode_is_no_permission() {
 #[test]
 fn telemetry_is_asked_for_again_after_a_restart_and_while_it_comes_too_slowly() {
     let mut bench = Bench::rover(RULES);
-    assert_eq!(commands(&bench.run(10.0), 511), 2, "once: it comes as it should");
+    bench.reports = true;
+    assert_eq!(commands(&bench.run(10.0), 511), 5, "once: it comes as it should");
     bench.boot_ms = 0;
-    assert_eq!(commands(&bench.run(2.0), 511), 2);
+    assert_eq!(commands(&bench.run(2.0), 511), 5);
     bench.fixes = false;
     assert!(commands(&bench.run(9.0), 511) >= 4);
     let mut copter = Bench::new(Kind::ArduCopter, RULES, 0, ARMED);
-    assert_eq!(commands(&copter.run(2.0), 511), 3, "and whether it flies");
+    assert_eq!(commands(&copter.run(2.0), 511), 6, "and whether it flies");
+}
+
+#[test]
+fn an_autopilot_that_says_nothing_of_its_estimator_is_asked_a_few_times_and_believed() {
+    let mut bench = Bench::rover(RULES);
+    assert_eq!(commands(&bench.run(60.0), 511), 2 + 3 * 3);
+    assert_eq!(bench.state(), State::Steering);
+    assert_eq!(bench.events().iter().filter(|event| **event == Event::NoHealth).count(), 1);
+}
+
+#[test]
+fn a_doubt_stops_it_with_the_very_message_and_for_a_while_after_its_end() {
+    let mut bench = Bench::rover(RULES);
+    bench.reports = true;
+    bench.run(2.0);
+    let known = bench.offboard.fix();
+    bench.ekf_flags = 0x27;
+    bench.ekf();
+    assert_eq!(bench.state(), State::Distrusted);
+    assert_eq!(bench.offboard.fresh_fix(bench.now), None);
+    let sent = bench.run(3.0);
+    let stops = setpoints(&sent);
+    assert!(stops.len() >= 58 && stops.iter().all(stands));
+    assert_eq!((bench.offboard.fix(), bench.offboard.tally().doubts), (known, 1));
+    bench.ekf_flags = 0x33F;
+    bench.run(4.7);
+    assert_eq!(bench.state(), State::Distrusted);
+    bench.run(0.5);
+    assert_eq!(bench.state(), State::Steering);
+    assert!(bench.offboard.fresh_fix(bench.now).is_some());
+}
+
+#[test]
+fn a_position_that_is_not_believed_is_none_to_begin_with() {
+    let mut bench = Bench::new(Kind::ArduRover, Rules { arm: true, ..ONCE }, MANUAL, DISARMED);
+    bench.ekf_flags = 0xA7;
+    bench.reports = true;
+    bench.ekf();
+    let sent = bench.run(10.0);
+    assert_eq!(bench.state(), State::Pilot);
+    assert_eq!(commands(&sent, out::DO_SET_MODE), 0, "it asks only for what it could use");
+    (bench.mode, bench.base) = (GUIDED, ARMED);
+    let sent = bench.run(3.0);
+    assert_eq!((bench.state(), setpoints(&sent).len()), (State::NoPosition, 0));
 }
 
 #[test]
@@ -412,6 +473,7 @@ fn words_of_states_fit_a_status_text() {
         State::NoPosition,
         State::Grounded,
         State::Stopped,
+        State::Distrusted,
         State::Steering,
     ] {
         assert!("staya: ".len() + state.words().len() <= 50);
