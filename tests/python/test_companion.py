@@ -321,6 +321,22 @@ def test_log_is_read_by_pymavlink(one, tmp_path, dialect):
     assert "staya: steers" in text
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs Linux's /dev/full")
+def test_a_full_disk_does_not_end_steering(one):
+    vehicle, fleet, start = one(goal=(40.0, 0.0), mode=GUIDED, armed=True)
+    with fleet:
+        process = start("--tlog", "/dev/full")
+        process.wait_for("cannot write the log /dev/full")
+        wait_until(lambda: vehicle.velocity[0] > 1.0, what="motion")
+        since = time.monotonic()
+        time.sleep(1.0)
+        assert rate(vehicle, since, since + 1.0) > 15
+        assert any("log cannot be written" in text for _, text in vehicle.texts), vehicle.texts
+        output = ends_well(process)
+        assert [setpoint[1:] for setpoint in vehicle.setpoints[-3:]] == [STAND] * 3, "it ends with zeros"
+    assert "what is there is not all" in output
+
+
 def test_signed_links_take_the_right_key_and_no_other(one, tmp_path):
     key = bytes(range(32))
     file = tmp_path / "link.key"

@@ -52,7 +52,6 @@ pub struct MediumError {
 pub struct Medium {
     socket: Option<UdpSocket>,
     to: Vec<SocketAddr>,
-    is_tunnel: bool,
     /// The last datagrams: a group gives them back.
     sent: VecDeque<Vec<u8>>,
 }
@@ -63,10 +62,10 @@ impl Medium {
     /// # Errors
     /// When an address cannot be had.
     pub fn open(setup: &MediumSetup) -> Result<Self, MediumError> {
-        let medium = |socket, to| Self { socket, to, is_tunnel: false, sent: VecDeque::new() };
+        let medium = |socket, to| Self { socket, to, sent: VecDeque::new() };
         match setup {
-            MediumSetup::Here => Ok(medium(None, Vec::new())),
-            MediumSetup::Tunnel => Ok(Self { is_tunnel: true, ..medium(None, Vec::new()) }),
+            // Through the autopilots' links packets go with the other messages.
+            MediumSetup::Here | MediumSetup::Tunnel => Ok(medium(None, Vec::new())),
             MediumSetup::Multicast { group, interface } => match join(*group, *interface) {
                 Ok(socket) => Ok(medium(Some(socket), vec![SocketAddr::V4(*group)])),
                 Err(source) => Err(MediumError { over: group.to_string(), source }),
@@ -82,18 +81,6 @@ impl Medium {
                 }
             }
         }
-    }
-
-    /// Whether packets go as TUNNEL messages.
-    #[must_use]
-    pub const fn is_tunnel(&self) -> bool {
-        self.is_tunnel
-    }
-
-    /// Whether packets may come over a network.
-    #[must_use]
-    pub const fn is_lan(&self) -> bool {
-        self.socket.is_some()
     }
 
     /// Sends what an agent says; what the network does not take is lost, as on a radio.

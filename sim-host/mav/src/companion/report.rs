@@ -62,6 +62,8 @@ pub struct CompanionReport {
     pub vehicles: Vec<VehicleReport>,
     /// As opened.
     pub links: Vec<LineReport>,
+    /// Why the log is not complete; null: it is, or there is none.
+    pub log_error: Option<String>,
 }
 
 impl fmt::Display for CompanionReport {
@@ -103,6 +105,9 @@ impl fmt::Display for CompanionReport {
                 counts.junk_bytes,
                 counts.lost_in + counts.lost_out,
             )?;
+        }
+        if let Some(error) = &self.log_error {
+            writeln!(f, "  {error}: what is there is not all")?;
         }
         Ok(())
     }

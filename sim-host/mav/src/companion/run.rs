@@ -1,14 +1,17 @@
 //! The loop around companions: frames in, steps of agents and duties when they are due, frames out.
 
+mod machine;
+mod telling;
+
 use super::config::{Config, VehicleSetup};
 use super::controller::{Body, Controller};
-use super::medium::{Medium, MediumError, tunnel, tunnelled};
+use super::medium::{Medium, MediumError, MediumSetup, tunnel, tunnelled};
 use super::offboard::{AUTOPILOT, COMPONENT, Event, OffboardStateMachine, State, status_text};
-use super::report::{CompanionReport, LineReport, VehicleReport};
+use super::report::CompanionReport;
 use super::seal::{Seal, SealError};
 use crate::geo::{Origin, enu, ned};
 use crate::{Lines, OpenError, Peer, Received, Tlog, TlogError};
-use staya_controller::agent::Event as AgentEvent;
+use machine::{Host, Machine};
 use staya_controller::robot::Mode;
 use staya_mavlink::any::AnyWire;
 use staya_mavlink::dialect::MavMessage;
@@ -37,7 +40,7 @@ pub struct Options {
     pub quiet: bool,
     /// End after so long; `None`: when asked to.
     pub seconds: Option<f64>,
-    /// Where all messages of all links go.
+    /// Where all messages of all links go that are believed.
     pub tlog: Option<Tlog>,
 }
 
@@ -56,9 +59,6 @@ pub enum RunError {
     /// The key of links cannot be had.
     #[error(transparent)]
     Key(#[from] KeyError),
-    /// The log cannot be written.
-    #[error(transparent)]
-    Tlog(#[from] TlogError),
     /// What would be sent cannot be shown.
     #[error("cannot write to standard output: {0}")]
     Output(io::Error),
@@ -67,8 +67,9 @@ pub enum RunError {
 /// A vehicle and its companion.
 struct Vehicle {
     setup: VehicleSetup,
-    /// How fast it can be, m/s.
+    /// How fast it can be, m/s, and how far from where it was known to be last, metres.
     max_speed_mps: f64,
+    error_m: f64,
     offboard: OffboardStateMachine,
     controller: Controller<HostWire>,
     /// Where its autopilot was heard.
@@ -86,26 +87,29 @@ struct Vehicle {
 struct Companions<'a> {
     origin: Origin,
     reach_m: f64,
-    error_m: f64,
     tick: Duration,
-    lines: Lines,
-    medium: Medium,
+    /// Between two looks at what others may have said.
+    glance: Duration,
+    is_tunnel: bool,
+    machine: Box<dyn Machine>,
     vehicles: Vec<Vehicle>,
     /// One for each line, with a key for links.
     signing: Option<Vec<Signing>>,
     wire: AnyWire,
-    options: &'a mut Options,
-    began: Instant,
+    options: &'a Options,
+    /// Why the log is incomplete.
+    log_error: Option<TlogError>,
+    /// Why nothing more can be shown of a dry run.
+    output_error: Option<io::Error>,
+    has_said_farewell: bool,
 }
 
-/// Runs the companions of a configuration until the time is over or `is_wanted` says no.
+/// Runs the companions of a configuration until the time is over or `is_wanted` says no. Nothing else ends it, and whatever does, steered vehicles are
+/// told to stand: a log that cannot be written is told on standard error, to the vehicles' ground stations, and in the report.
 ///
 /// # Errors
-/// What cannot be opened or written; an autopilot that is not there is none.
+/// What cannot be opened at the start, and a dry run that cannot be shown; an autopilot that is not there is none.
 pub fn run(config: &Config, options: &mut Options, is_wanted: impl Fn() -> bool) -> Result<CompanionReport, RunError> {
-    let ground = Arc::new(PlaneGround::new(&config.scenario, &config.plane));
-    let boot = (micros_since_1970() >> 20) as u8;
-    let format = config.scenario.radio.format;
     let seal = config.key.as_deref().map(Seal::read).transpose()?;
     let link_key = config.link_key.as_deref().map(KeyFile::read).transpose()?;
     let remarks =
@@ -114,60 +118,20 @@ pub fn run(config: &Config, options: &mut Options, is_wanted: impl Fn() -> bool)
         // A closed standard error must not stop it.
         let _ = writeln!(io::stderr(), "staya: {remark}");
     }
-    let signing = link_key.map(|file| {
-        let line = |link| Signing::new(file.key.clone(), link, key::timestamp());
-        (0..=u8::MAX).map(line).take(config.lines.len()).collect()
-    });
-    let vehicle = |setup: &VehicleSetup| Vehicle {
-        setup: setup.clone(),
-        max_speed_mps: config.plane.group(setup.index).abilities.max_speed_mps,
-        offboard: OffboardStateMachine::new(setup.system, setup.kind, setup.rules),
-        controller: Controller::new(
-            &config.scenario,
-            &ground,
-            setup.index,
-            boot,
-            config.lag_s,
-            seal.as_ref().map_or_else(|| HostWire::new(format), |seal| seal.wire(format)),
-        ),
-        peer: None,
-        sequence: 0,
-        inbox: Vec::new(),
-        next_step: Duration::ZERO,
-        has_arrived: false,
-        is_far: false,
-        heard: 0,
-        refused: 0,
-    };
-    let mut companions = Companions {
-        origin: config.origin,
-        reach_m: config.reach_m,
-        error_m: config.error_m,
-        tick: Duration::from_micros(config.scenario.tick_us.into()),
+    let host = Host {
         lines: Lines::open(&config.lines)?,
         medium: Medium::open(&config.air)?,
-        vehicles: config.vehicles.iter().map(vehicle).collect(),
-        signing,
-        wire: AnyWire::new(format),
-        options,
+        tlog: options.tlog.take(),
         began: Instant::now(),
     };
-    let limit = companions.options.seconds.map(Duration::from_secs_f64);
-    let mut interrupted = false;
-    while limit.is_none_or(|limit| companions.now() < limit) {
-        if !is_wanted() {
-            interrupted = true;
-            break;
-        }
-        companions.turn()?;
+    let mut companions = Companions::new(config, options, seal.as_ref(), link_key, Box::new(host));
+    let (seconds, interrupted) = companions.run(is_wanted);
+    companions.say_farewell();
+    companions.close_log();
+    match companions.output_error.take() {
+        Some(error) => Err(RunError::Output(error)),
+        None => Ok(companions.report(config, seconds, interrupted)),
     }
-    let seconds = companions.now().as_secs_f64();
-    companions.say_farewell()?;
-    let report = companions.report(config, seconds, interrupted);
-    if let Some(tlog) = options.tlog.take() {
-        tlog.finish()?;
-    }
-    Ok(report)
 }
 
 /// Whether a body is so near the origin, along the ground.
@@ -181,64 +145,144 @@ fn micros_since_1970() -> u128 {
     now.map_or(0, |time| time.as_micros())
 }
 
-impl Companions<'_> {
+impl<'a> Companions<'a> {
+    fn new(
+        config: &Config,
+        options: &'a Options,
+        seal: Option<&Seal>,
+        link_key: Option<KeyFile>,
+        machine: Box<dyn Machine>,
+    ) -> Self {
+        let ground = Arc::new(PlaneGround::new(&config.scenario, &config.plane));
+        let boot = (micros_since_1970() >> 20) as u8;
+        let format = config.scenario.radio.format;
+        let signing = link_key.map(|file| {
+            let line = |link| Signing::new(file.key.clone(), link, key::timestamp());
+            (0..=u8::MAX).map(line).take(config.lines.len()).collect()
+        });
+        let vehicle = |setup: &VehicleSetup| Vehicle {
+            setup: setup.clone(),
+            max_speed_mps: config.plane.group(setup.index).abilities.max_speed_mps,
+            error_m: config.error_m,
+            offboard: OffboardStateMachine::new(setup.system, setup.kind, setup.rules),
+            controller: Controller::new(
+                &config.scenario,
+                &ground,
+                setup.index,
+                boot,
+                config.lag_s,
+                seal.map_or_else(|| HostWire::new(format), |seal| seal.wire(format)),
+            ),
+            peer: None,
+            sequence: 0,
+            inbox: Vec::new(),
+            next_step: Duration::ZERO,
+            has_arrived: false,
+            is_far: false,
+            heard: 0,
+            refused: 0,
+        };
+        let [lan, else_] = GLANCES;
+        let is_lan = matches!(config.air, MediumSetup::Multicast { .. } | MediumSetup::Peers { .. });
+        Companions {
+            origin: config.origin,
+            reach_m: config.reach_m,
+            tick: Duration::from_micros(config.scenario.tick_us.into()),
+            glance: if is_lan { lan } else { else_ },
+            is_tunnel: config.air == MediumSetup::Tunnel,
+            machine,
+            vehicles: config.vehicles.iter().map(vehicle).collect(),
+            signing,
+            wire: AnyWire::new(format),
+            options,
+            log_error: None,
+            output_error: None,
+            has_said_farewell: false,
+        }
+    }
+
+    /// Goes on until the time is over or nobody wants it; returns for how many seconds, and whether it was interrupted.
+    fn run(&mut self, is_wanted: impl Fn() -> bool) -> (f64, bool) {
+        let limit = self.options.seconds.map(Duration::from_secs_f64);
+        let mut interrupted = false;
+        while limit.is_none_or(|limit| self.now() < limit) && self.output_error.is_none() {
+            if !is_wanted() {
+                interrupted = true;
+                break;
+            }
+            self.turn();
+        }
+        (self.now().as_secs_f64(), interrupted)
+    }
+
     fn now(&self) -> Duration {
-        self.began.elapsed()
+        self.machine.now()
     }
 
     /// Waits for a frame until something is due, then does all that is.
-    fn turn(&mut self) -> Result<(), RunError> {
+    fn turn(&mut self) {
         let now = self.now();
         let due = |vehicle: &Vehicle| vehicle.next_step.min(vehicle.offboard.due(now));
         let due = self.vehicles.iter().map(due).min().unwrap_or_default();
-        let [lan, else_] = GLANCES;
-        let glance = if self.medium.is_lan() { lan } else { else_ };
-        let mut wait = due.saturating_sub(now).min(glance);
+        let mut wait = due.saturating_sub(now).min(self.glance);
         // What has come in meanwhile, but not what a flood would bring in.
         for _ in 0..1024 {
-            let Some(received) = self.lines.receive(wait) else {
+            let Some(received) = self.machine.receive(wait) else {
                 break;
             };
             wait = Duration::ZERO;
-            self.hear(&received)?;
+            self.hear(&received);
         }
         let vehicles = &mut self.vehicles;
-        self.medium.receive(|frames| {
+        self.machine.hear_others(&mut |frames| {
             for vehicle in &mut *vehicles {
                 vehicle.listen(frames);
             }
         });
         for index in 0..self.vehicles.len() {
-            self.step(index)?;
-            self.poll(index)?;
+            self.step(index);
+            self.poll(index);
         }
-        Ok(())
     }
 
     fn signing_of(&mut self, line: usize) -> Option<&mut Signing> {
         self.signing.as_mut()?.get_mut(line)
     }
 
-    fn log(&mut self, frame: &[u8]) -> Result<(), RunError> {
-        if let Some(tlog) = &mut self.options.tlog {
-            tlog.add(frame)?;
+    fn log(&mut self, frame: &[u8]) {
+        if self.log_error.is_none()
+            && let Err(error) = self.machine.log(frame)
+        {
+            self.log_fails(error);
         }
-        Ok(())
     }
 
-    fn hear(&mut self, received: &Received) -> Result<(), RunError> {
-        let Some(frame) = RawFrame::new(&received.frame) else {
-            return Ok(());
-        };
-        self.log(frame.bytes())?;
+    /// From now on there is none: flying goes on without it.
+    fn log_fails(&mut self, error: TlogError) {
+        self.say(&format!("staya: {error}; goes on without a log"));
+        self.log_error = Some(error);
+        for index in 0..self.vehicles.len() {
+            self.send(index, &status_text("staya: the log cannot be written", true));
+        }
+    }
+
+    fn close_log(&mut self) {
+        if self.log_error.is_none()
+            && let Err(error) = self.machine.close_log()
+        {
+            self.log_fails(error);
+        }
+    }
+
+    fn hear(&mut self, received: &Received) {
+        let Some(frame) = RawFrame::new(&received.frame) else { return };
         if let Some(signing) = self.signing_of(received.line)
             && !signing.verify(&frame).is_accepted()
         {
-            return Ok(());
+            return;
         }
-        let Some(message) = frame.message() else {
-            return Ok(());
-        };
+        self.log(frame.bytes());
+        let Some(message) = frame.message() else { return };
         let (sender, now) = (frame.sender(), self.now());
         if let MavMessage::TUNNEL(tunnel) = &message {
             // What others say through the links. Own packets may come back.
@@ -249,7 +293,7 @@ impl Companions<'_> {
                     vehicle.listen(frames);
                 }
             }
-            return Ok(());
+            return;
         }
         let found = self
             .vehicles
@@ -259,21 +303,20 @@ impl Companions<'_> {
             vehicle.peer = Some(received.peer);
             vehicle.offboard.hear(&message, now);
         }
-        Ok(())
     }
 
     /// The agent's step, if it is due.
-    fn step(&mut self, index: usize) -> Result<(), RunError> {
+    fn step(&mut self, index: usize) {
         let (now, tick) = (self.now(), self.tick);
         let vehicle = &mut self.vehicles[index];
         if now < vehicle.next_step {
-            return Ok(());
+            return;
         }
         // The agent's clock goes in whole ticks, whatever the system's timers do; what was slept through is left out.
         let missed = now.saturating_sub(vehicle.next_step).as_micros() / tick.as_micros().max(1);
         let moment = vehicle.next_step + tick * u32::try_from(missed).unwrap_or(u32::MAX);
         vehicle.next_step = moment + tick;
-        let body = vehicle.body(&self.origin, self.error_m, now);
+        let body = vehicle.body(&self.origin, now);
         let is_far = vehicle.offboard.fix().is_some() && !body.is_some_and(|body| is_within(&body, self.reach_m));
         let is_news = is_far && !vehicle.is_far;
         vehicle.is_far = is_far;
@@ -284,7 +327,7 @@ impl Companions<'_> {
         // Who has no place in the swarm's world has nothing to say.
         let Some(body) = body else {
             vehicle.inbox.clear();
-            return Ok(());
+            return;
         };
         let steers = vehicle.offboard.state() == State::Steering && !is_far;
         if let AnyWire::Signed(signed) = vehicle.controller.wire_mut() {
@@ -308,13 +351,13 @@ impl Companions<'_> {
         for event in events {
             self.tell_of(index, event);
         }
-        self.speak(index, &said)
+        self.speak(index, &said);
     }
 
     /// To all other robots, here and elsewhere.
-    fn speak(&mut self, index: usize, said: &[u8]) -> Result<(), RunError> {
+    fn speak(&mut self, index: usize, said: &[u8]) {
         if said.is_empty() {
-            return Ok(());
+            return;
         }
         for (other, vehicle) in self.vehicles.iter_mut().enumerate() {
             if other != index {
@@ -322,18 +365,17 @@ impl Companions<'_> {
             }
         }
         if !self.options.dry_run {
-            self.medium.send(said);
+            self.machine.tell_others(said);
         }
-        if self.medium.is_tunnel() {
+        if self.is_tunnel {
             for message in tunnel(&self.wire, said) {
-                self.send(index, &message)?;
+                self.send(index, &message);
             }
         }
-        Ok(())
     }
 
     /// The duties, if they are due.
-    fn poll(&mut self, index: usize) -> Result<(), RunError> {
+    fn poll(&mut self, index: usize) {
         let now = self.now();
         let mut messages = Vec::new();
         self.vehicles[index].offboard.poll(now, &mut messages);
@@ -345,113 +387,58 @@ impl Companions<'_> {
             }
         }
         for message in &messages {
-            self.send(index, message)?;
+            self.send(index, message);
         }
-        Ok(())
     }
 
     /// Sends a message to a vehicle's autopilot, or shows it.
-    fn send(&mut self, index: usize, message: &MavMessage) -> Result<(), RunError> {
+    fn send(&mut self, index: usize, message: &MavMessage) {
         let vehicle = &mut self.vehicles[index];
         let sender = Sender { system: vehicle.setup.system, component: COMPONENT, sequence: vehicle.sequence };
         if self.options.dry_run {
-            let (at, robot) = (self.began.elapsed().as_secs_f64(), vehicle.setup.robot.0);
-            return writeln!(io::stdout(), "{at:9.3} robot {robot}: {message:?}").map_err(RunError::Output);
+            let (at, robot) = (self.machine.now().as_secs_f64(), vehicle.setup.robot.0);
+            self.output_error = self.machine.show(&format!("{at:9.3} robot {robot}: {message:?}")).err();
+            return;
         }
         let mut frame = heapless::Vec::<u8, MAX_FRAME_LEN>::new();
         // A frame has room for any message.
         if encode_message(sender, message, &mut frame).is_err() {
-            return Ok(());
+            return;
         }
         vehicle.sequence = vehicle.sequence.wrapping_add(1);
         let (line, peer) = (vehicle.setup.line, vehicle.peer);
         if let Some(signing) = self.signing_of(line) {
             signing.advance_to(key::timestamp());
             // What cannot be signed would not be heard.
-            let Ok(signature) = signing.sign(&mut frame) else {
-                return Ok(());
-            };
+            let Ok(signature) = signing.sign(&mut frame) else { return };
             // There is room: see `MAX_FRAME_LEN`.
             let _ = frame.extend_from_slice(&signature);
         }
-        match peer {
-            Some(peer) => self.lines.send_to(line, peer, &frame),
-            None => self.lines.send(line, &frame),
-        }
-        self.log(&frame)
-    }
-
-    /// A line for the person at the terminal.
-    fn tell(&self, index: usize, what: &str) {
-        if !self.options.quiet {
-            let (at, robot) = (self.now().as_secs_f64(), self.vehicles[index].setup.robot.0);
-            // A closed standard error must not stop a vehicle's companion.
-            let _ = writeln!(io::stderr(), "{at:9.3} robot {robot}: {what}");
-        }
-    }
-
-    fn tell_of(&self, index: usize, event: AgentEvent) {
-        match event {
-            AgentEvent::NeighborFound(id) => self.tell(index, &format!("hears robot {}", id.0)),
-            AgentEvent::NeighborLost(id) => self.tell(index, &format!("has lost robot {id}")),
-            AgentEvent::DuplicateId(id) => self.tell(index, &format!("two robots have number {id}: give one another")),
-            AgentEvent::NobodyHeard => self.tell(index, "hears nobody any more"),
-            AgentEvent::NoRoute => self.tell(index, "finds no way"),
-            AgentEvent::ModeChanged { to: Mode::Fault, .. }
-                if self.vehicles[index].offboard.state() == State::Steering =>
-            {
-                self.tell(index, "stands: it is off the scenario's map, or has no goal");
-            }
-            _ => {}
-        }
+        self.machine.send(line, peer, &frame);
+        self.log(&frame);
     }
 
     /// Tells those to stand that are steered.
-    fn say_farewell(&mut self) -> Result<(), RunError> {
+    fn say_farewell(&mut self) {
+        self.has_said_farewell = true;
         let (times, pause) = FAREWELLS;
         for _ in 0..times {
             let now = self.now();
             for index in 0..self.vehicles.len() {
                 if let Some(message) = self.vehicles[index].offboard.farewell(now) {
-                    self.send(index, &message)?;
+                    self.send(index, &message);
                 }
             }
-            std::thread::sleep(pause);
+            self.machine.pause(pause);
         }
-        Ok(())
     }
+}
 
-    fn report(&self, config: &Config, seconds: f64, interrupted: bool) -> CompanionReport {
-        let vehicles = self.vehicles.iter().map(|vehicle| VehicleReport {
-            robot: vehicle.setup.robot.0,
-            system: vehicle.setup.system,
-            autopilot: vehicle.setup.kind,
-            state: vehicle.offboard.state(),
-            agent: vehicle.controller.mode(),
-            has_arrived: vehicle.has_arrived,
-            position_m: vehicle.offboard.fix().and_then(|fix| self.origin.to_enu_m(&fix.place)),
-            tally: vehicle.offboard.tally(),
-            packets_heard: vehicle.heard,
-            packets_refused: vehicle.refused,
-            neighbors: vehicle.controller.neighbors(),
-        });
-        let links = config.lines.iter().enumerate();
-        let links = links.map(|(line, endpoint)| LineReport {
-            link: endpoint.to_string(),
-            counts: self.lines.counts(line),
-            refused: self
-                .signing
-                .as_ref()
-                .and_then(|signing| signing.get(line))
-                .map_or(0, |signing| signing.counts().refused()),
-        });
-        CompanionReport {
-            scenario: config.scenario.name.clone(),
-            seconds,
-            interrupted,
-            dry_run: self.options.dry_run,
-            vehicles: vehicles.collect(),
-            links: links.collect(),
+impl Drop for Companions<'_> {
+    fn drop(&mut self) {
+        // What should never happen does not make vehicles go on.
+        if !self.has_said_farewell {
+            self.say_farewell();
         }
     }
 }
@@ -466,12 +453,12 @@ impl Vehicle {
 
     /// Where it is by now, and how fast. Whose telemetry is old or not to be believed is somewhere about its last place, the farther off the older that is, up to
     /// `error_m`: told to stop, it has rolled on, or a pilot drives it.
-    fn body(&self, origin: &Origin, error_m: f64, now: Duration) -> Option<Body> {
+    fn body(&self, origin: &Origin, now: Duration) -> Option<Body> {
         let last = self.offboard.fix()?;
         let at = origin.to_enu_m(&last.place)?;
         let age_s = now.saturating_sub(last.at).as_secs_f64();
         if self.offboard.fresh_fix(now).is_none() {
-            let error_m = (self.max_speed_mps * age_s).min(error_m);
+            let error_m = (self.max_speed_mps * age_s).min(self.error_m);
             return Some(Body { position_m: at, velocity_mps: [0.0; 3], error_m });
         }
         let velocity_mps = enu(last.velocity_ned_mps);
@@ -479,3 +466,6 @@ impl Vehicle {
         Some(Body { position_m, velocity_mps, error_m: 0.0 })
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -75,7 +75,6 @@ fn nobody_is_heard_where_there_is_nobody() {
         let mut medium = Medium::open(&setup).unwrap();
         medium.send(b"nothing");
         medium.receive(|_| panic!("heard something"));
-        assert_eq!(medium.is_tunnel(), setup == MediumSetup::Tunnel);
     }
 }
 

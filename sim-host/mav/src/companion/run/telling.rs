@@ -1,0 +1,75 @@
+//! What a person is told: lines as things happen, and the figures at the end.
+
+use super::Companions;
+use crate::companion::config::Config;
+use crate::companion::offboard::State;
+use crate::companion::report::{CompanionReport, LineReport, VehicleReport};
+use staya_controller::agent::Event as AgentEvent;
+use staya_controller::robot::Mode;
+
+impl Companions<'_> {
+    /// A line for the person at the terminal, about a vehicle.
+    pub(super) fn tell(&mut self, index: usize, what: &str) {
+        let (at, robot) = (self.now().as_secs_f64(), self.vehicles[index].setup.robot.0);
+        self.say(&format!("{at:9.3} robot {robot}: {what}"));
+    }
+
+    /// A line for the person at the terminal.
+    pub(super) fn say(&mut self, line: &str) {
+        if !self.options.quiet {
+            // A closed standard error must not stop a vehicle's companion.
+            let _ = self.machine.tell(line);
+        }
+    }
+
+    pub(super) fn tell_of(&mut self, index: usize, event: AgentEvent) {
+        match event {
+            AgentEvent::NeighborFound(id) => self.tell(index, &format!("hears robot {}", id.0)),
+            AgentEvent::NeighborLost(id) => self.tell(index, &format!("has lost robot {id}")),
+            AgentEvent::DuplicateId(id) => self.tell(index, &format!("two robots have number {id}: give one another")),
+            AgentEvent::NobodyHeard => self.tell(index, "hears nobody any more"),
+            AgentEvent::NoRoute => self.tell(index, "finds no way"),
+            AgentEvent::ModeChanged { to: Mode::Fault, .. }
+                if self.vehicles[index].offboard.state() == State::Steering =>
+            {
+                self.tell(index, "stands: it is off the scenario's map, or has no goal");
+            }
+            _ => {}
+        }
+    }
+
+    pub(super) fn report(&self, config: &Config, seconds: f64, interrupted: bool) -> CompanionReport {
+        let vehicles = self.vehicles.iter().map(|vehicle| VehicleReport {
+            robot: vehicle.setup.robot.0,
+            system: vehicle.setup.system,
+            autopilot: vehicle.setup.kind,
+            state: vehicle.offboard.state(),
+            agent: vehicle.controller.mode(),
+            has_arrived: vehicle.has_arrived,
+            position_m: vehicle.offboard.fix().and_then(|fix| self.origin.to_enu_m(&fix.place)),
+            tally: vehicle.offboard.tally(),
+            packets_heard: vehicle.heard,
+            packets_refused: vehicle.refused,
+            neighbors: vehicle.controller.neighbors(),
+        });
+        let links = config.lines.iter().enumerate();
+        let links = links.map(|(line, endpoint)| LineReport {
+            link: endpoint.to_string(),
+            counts: self.machine.counts(line),
+            refused: self
+                .signing
+                .as_ref()
+                .and_then(|signing| signing.get(line))
+                .map_or(0, |signing| signing.counts().refused()),
+        });
+        CompanionReport {
+            scenario: config.scenario.name.clone(),
+            seconds,
+            interrupted,
+            dry_run: self.options.dry_run,
+            vehicles: vehicles.collect(),
+            links: links.collect(),
+            log_error: self.log_error.as_ref().map(ToString::to_string),
+        }
+    }
+}

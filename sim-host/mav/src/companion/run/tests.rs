@@ -1,0 +1,322 @@
+use super::*;
+use crate::Counts;
+use crate::geo::Global;
+use staya_mavlink::dialect::{GLOBAL_POSITION_INT_DATA, HEARTBEAT_DATA};
+use std::cell::RefCell;
+use std::collections::VecDeque;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+
+/// Calls of the loop that can fail.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Call {
+    Receive,
+    Send,
+    HearOthers,
+    TellOthers,
+    Log,
+    Tell,
+}
+
+/// What becomes of the calls of one kind.
+#[derive(Clone, Copy, Debug)]
+enum Failure {
+    /// The one of this number, from 1, fails.
+    One(usize),
+    /// This one and all after it.
+    From(usize),
+    /// This one panics.
+    Panic(usize),
+}
+
+/// A rover that does at once what it is told, and says where it is.
+struct Rover {
+    system: u8,
+    north_east_m: [f64; 2],
+    velocity_mps: [f64; 2],
+    setpoints: Vec<(Duration, [f64; 2])>,
+    warnings: Vec<String>,
+}
+
+/// A machine whose time passes when somebody waits, with rovers at its first line.
+struct World {
+    now: Duration,
+    rovers: Vec<Rover>,
+    frames: VecDeque<Received>,
+    failing: Option<(Call, Failure)>,
+    /// How often the failing call was made.
+    calls: usize,
+    logged: usize,
+    lines: Vec<String>,
+}
+
+const STEP: Duration = Duration::from_millis(5);
+const PLACE: Global = Global { latitude_deg: 55.75, longitude_deg: 37.62, altitude_m: 0.0 };
+
+impl World {
+    fn new(failing: Option<(Call, Failure)>) -> Self {
+        let rover = |system: u8| Rover {
+            system,
+            north_east_m: [f64::from(system) * 10.0, 0.0],
+            velocity_mps: [0.0; 2],
+            setpoints: Vec::new(),
+            warnings: Vec::new(),
+        };
+        Self {
+            now: Duration::ZERO,
+            rovers: vec![rover(1), rover(2)],
+            frames: VecDeque::new(),
+            failing,
+            calls: 0,
+            logged: 0,
+            lines: Vec::new(),
+        }
+    }
+
+    /// Whether this call fails.
+    fn fails(&mut self, call: Call) -> bool {
+        let Some((_, failure)) = self.failing.filter(|(failing, _)| *failing == call) else { return false };
+        self.calls += 1;
+        match failure {
+            Failure::One(number) => self.calls == number,
+            Failure::From(number) => self.calls >= number,
+            Failure::Panic(number) => {
+                assert_ne!(self.calls, number, "as the test wants");
+                false
+            }
+        }
+    }
+
+    fn pass(&mut self, time: Duration) {
+        let end = self.now + time;
+        while self.now < end {
+            self.now += STEP.min(end - self.now);
+            let ms = self.now.as_millis();
+            let origin = Origin::new(PLACE).unwrap();
+            for rover in &mut self.rovers {
+                for (at, speed) in rover.north_east_m.iter_mut().zip(rover.velocity_mps) {
+                    *at += speed * STEP.as_secs_f64();
+                }
+                let [north, east] = rover.north_east_m;
+                let [lat, lon, _] = origin.to_global([east, north, 0.0]).unwrap().to_e7();
+                let [vx, vy] = rover.velocity_mps.map(|v| (v * 100.0) as i16);
+                let mut say = |message: MavMessage| {
+                    let sender = Sender { system: rover.system, component: AUTOPILOT, sequence: 0 };
+                    let mut frame = heapless::Vec::<u8, MAX_FRAME_LEN>::new();
+                    encode_message(sender, &message, &mut frame).unwrap();
+                    self.frames.push_back(Received { line: 0, peer: Peer::Wire, frame: frame.to_vec() });
+                };
+                if ms.is_multiple_of(1000) {
+                    let beat = HEARTBEAT_DATA { custom_mode: 15, base_mode: 0x81, ..HEARTBEAT_DATA::DEFAULT };
+                    say(MavMessage::HEARTBEAT(beat));
+                }
+                if ms.is_multiple_of(100) {
+                    say(MavMessage::GLOBAL_POSITION_INT(GLOBAL_POSITION_INT_DATA {
+                        time_boot_ms: ms as u32,
+                        lat,
+                        lon,
+                        vx,
+                        vy,
+                        ..GLOBAL_POSITION_INT_DATA::DEFAULT
+                    }));
+                }
+            }
+        }
+    }
+}
+
+/// What the loop sees of it.
+struct Shared(Rc<RefCell<World>>);
+
+fn broken() -> io::Error {
+    io::Error::other("broken by the test")
+}
+
+impl Machine for Shared {
+    fn now(&self) -> Duration {
+        self.0.borrow().now
+    }
+
+    fn pause(&mut self, time: Duration) {
+        self.0.borrow_mut().pass(time);
+    }
+
+    fn receive(&mut self, wait: Duration) -> Option<Received> {
+        let mut world = self.0.borrow_mut();
+        if world.frames.is_empty() {
+            world.pass(wait);
+        }
+        let received = world.frames.pop_front()?;
+        (!world.fails(Call::Receive)).then_some(received)
+    }
+
+    fn send(&mut self, _: usize, _: Option<Peer>, frame: &[u8]) {
+        let mut world = self.0.borrow_mut();
+        if world.fails(Call::Send) {
+            return;
+        }
+        let (frame, now) = (RawFrame::new(frame).expect("a frame"), world.now);
+        let sender = frame.sender();
+        let rover = world.rovers.iter_mut().find(|rover| rover.system == sender.system).expect("one of two");
+        match frame.message() {
+            Some(MavMessage::SET_POSITION_TARGET_LOCAL_NED(setpoint)) => {
+                rover.velocity_mps = [setpoint.vx, setpoint.vy].map(f64::from);
+                rover.setpoints.push((now, rover.velocity_mps));
+            }
+            Some(MavMessage::STATUSTEXT(text)) if text.severity <= 4 => {
+                rover.warnings.push(text.text.to_str().unwrap_or_default().to_owned());
+            }
+            _ => {}
+        }
+    }
+
+    fn counts(&self, _: usize) -> Counts {
+        Counts::default()
+    }
+
+    fn hear_others(&mut self, heard: &mut dyn FnMut(&[u8])) {
+        if !self.0.borrow_mut().fails(Call::HearOthers) {
+            heard(&[]);
+        }
+    }
+
+    fn tell_others(&mut self, _: &[u8]) {
+        let _ = self.0.borrow_mut().fails(Call::TellOthers);
+    }
+
+    fn log(&mut self, _: &[u8]) -> Result<(), TlogError> {
+        let mut world = self.0.borrow_mut();
+        world.logged += 1;
+        if world.fails(Call::Log) {
+            return Err(TlogError { path: PathBuf::from("flight.tlog"), source: broken() });
+        }
+        Ok(())
+    }
+
+    fn close_log(&mut self) -> Result<(), TlogError> {
+        Ok(())
+    }
+
+    fn show(&mut self, _: &str) -> io::Result<()> {
+        Err(broken())
+    }
+
+    fn tell(&mut self, line: &str) -> io::Result<()> {
+        let mut world = self.0.borrow_mut();
+        if world.fails(Call::Tell) {
+            return Err(broken());
+        }
+        world.lines.push(line.to_owned());
+        Ok(())
+    }
+}
+
+const SECONDS: f64 = 3.0;
+
+fn config() -> Config {
+    let vehicle =
+        |robot: u8| format!("[[vehicle]]\nrobot = {robot}\nlink = \"serial:none\"\nautopilot = \"ardupilot-rover\"\n");
+    let text = format!(
+        "scenario = \"crossing.toml\"\norigin = {{ latitude_deg = {}, longitude_deg = {} }}\n{}{}",
+        PLACE.latitude_deg,
+        PLACE.longitude_deg,
+        vehicle(1),
+        vehicle(2)
+    );
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../companions");
+    Config::parse(&text, &folder.join("test.toml")).unwrap()
+}
+
+/// A flight in which calls fail; what came of it, and the report of one that has come to its end.
+fn fly(config: &Config, failing: Option<(Call, Failure)>) -> (World, Option<CompanionReport>) {
+    let options = Options { seconds: Some(SECONDS), ..Options::default() };
+    let world = Rc::new(RefCell::new(World::new(failing)));
+    let mut companions = Companions::new(config, &options, None, None, Box::new(Shared(Rc::clone(&world))));
+    let ended = catch_unwind(AssertUnwindSafe(move || {
+        let (seconds, interrupted) = companions.run(|| true);
+        companions.say_farewell();
+        companions.report(config, seconds, interrupted)
+    }));
+    (Rc::into_inner(world).expect("the loop has ended").into_inner(), ended.ok())
+}
+
+/// Each vehicle was steered until the end, and then told to stand.
+fn assert_steered(world: &World, what: &str) {
+    for rover in &world.rovers {
+        let all = &rover.setpoints;
+        let last = all.last().unwrap_or_else(|| panic!("{what}: no setpoint"));
+        assert_eq!(last.1, [0.0; 2], "{what}: farewell");
+        assert!(all.iter().any(|(_, velocity)| *velocity != [0.0; 2]), "{what}: it never moved");
+        let longest = all.windows(2).map(|pair| pair[1].0 - pair[0].0).max().expect("two");
+        assert!(longest <= Duration::from_millis(110), "{what}: no setpoint for {longest:?}");
+        // A heartbeat that is lost is heard a second later.
+        assert!(all[0].0.as_secs_f64() < 2.2 && last.0.as_secs_f64() >= SECONDS, "{what}");
+    }
+}
+
+#[test]
+fn no_single_failure_ends_steering_or_its_farewell() {
+    let config = config();
+    for call in [Call::Receive, Call::Send, Call::HearOthers, Call::TellOthers, Call::Log, Call::Tell] {
+        // Numbers beyond the end do no harm, and say how often the call is made.
+        let (quiet, _) = fly(&config, Some((call, Failure::One(usize::MAX))));
+        assert!(quiet.calls > 0, "{call:?} is never made");
+        for number in 1..=quiet.calls {
+            let (world, report) = fly(&config, Some((call, Failure::One(number))));
+            assert_steered(&world, &format!("{call:?} {number} of {}", quiet.calls));
+            let log_error = report.expect("it came to its end").log_error;
+            assert_eq!(log_error.is_some(), call == Call::Log);
+        }
+    }
+}
+
+#[test]
+fn what_fails_for_good_does_not_end_steering_either() {
+    let config = config();
+    for call in [Call::HearOthers, Call::TellOthers, Call::Log, Call::Tell] {
+        for number in [1, 2, 20] {
+            let (world, report) = fly(&config, Some((call, Failure::From(number))));
+            assert_steered(&world, &format!("{call:?} from {number}"));
+            assert!(report.is_some());
+        }
+    }
+    // Nothing comes, nothing goes: it ends by its command all the same.
+    for call in [Call::Receive, Call::Send] {
+        let (_, report) = fly(&config, Some((call, Failure::From(1))));
+        assert!(report.expect("its end").seconds >= SECONDS);
+    }
+}
+
+#[test]
+fn a_full_disk_is_told_once_on_the_ground_and_on_board() {
+    let (world, report) = fly(&config(), Some((Call::Log, Failure::From(50))));
+    let told = world.lines.iter().filter(|line| line.contains("flight.tlog: broken by the test")).count();
+    assert_eq!((told, world.logged), (1, 50));
+    for rover in &world.rovers {
+        assert_eq!(rover.warnings, ["staya: the log cannot be written"]);
+    }
+    let report = report.expect("its end").to_string();
+    assert!(report.contains("flight.tlog: broken by the test: what is there is not all"), "{report}");
+}
+
+#[test]
+fn even_a_defect_of_its_own_does_not_leave_vehicles_going() {
+    let (world, report) = fly(&config(), Some((Call::Log, Failure::Panic(150))));
+    assert!(report.is_none(), "it panicked");
+    for rover in &world.rovers {
+        let farewells = rover.setpoints.iter().rev().take_while(|(_, velocity)| *velocity == [0.0; 2]).count();
+        assert!(rover.setpoints.len() > 5 && farewells >= 5, "{farewells} of {}", rover.setpoints.len());
+    }
+}
+
+#[test]
+fn a_dry_run_that_nobody_reads_ends() {
+    let options = Options { seconds: Some(SECONDS), dry_run: true, ..Options::default() };
+    let world = Rc::new(RefCell::new(World::new(None)));
+    let config = config();
+    let mut companions = Companions::new(&config, &options, None, None, Box::new(Shared(Rc::clone(&world))));
+    let (seconds, _) = companions.run(|| true);
+    assert!(seconds < 1.0 && companions.output_error.is_some(), "{seconds}");
+    assert!(world.borrow().rovers.iter().all(|rover| rover.setpoints.is_empty()));
+}
