@@ -169,6 +169,8 @@ class Vehicle:
         self.velocity = [0.0, 0.0, 0.0]
         self.wish = [0.0, 0.0, 0.0]
         self.climb_to = None
+        # Where a rover turns, radians from north to east.
+        self.heading = math.radians(90.0)
         self.position_after = position_after
         self.max_speed, self.max_acceleration, self.lag = 5.0, 3.0, 0.3
         self.mute = False
@@ -269,7 +271,8 @@ class Vehicle:
             self._setpoint(now, message)
 
     def _setpoint(self, now, message):
-        assert message.coordinate_frame == 1 and message.type_mask == 0xDC7, message
+        velocity, velocity_and_yaw_rate = 0xDC7, 0x5C7
+        assert message.coordinate_frame == 1 and message.type_mask in (velocity, velocity_and_yaw_rate), message
         self.setpoints.append((now, message.vx, message.vy, message.vz))
         if self.last_setpoint is None or now - self.last_setpoint > STREAM_S:
             self.stream_since = now
@@ -277,6 +280,9 @@ class Vehicle:
         if self.mode == GUIDED and self.armed and (self.kind == "rover" or self.up > 0.3 or self.kind == "px4"):
             # A velocity breaks a takeoff off, as ArduCopter does.
             self.climb_to = None
+            if self.kind == "rover" and message.type_mask == velocity:
+                # ArduRover makes a heading of it, and north of none.
+                self.heading = math.atan2(message.vy, message.vx)
             self.wish = [message.vy, message.vx, -message.vz if self.kind != "rover" else 0.0]
 
     def _command(self, now, message):

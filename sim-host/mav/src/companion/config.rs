@@ -6,7 +6,7 @@ use super::offboard::{Entry, Rules};
 use crate::Endpoint;
 use crate::geo::{Global, Origin};
 use serde::Deserialize;
-use staya_controller::agent::GuidanceKind;
+use staya_controller::agent::{GuidanceKind, SafetyKind};
 use staya_controller::robot::RobotId;
 use staya_sim::scenario::{Overrides, PlaneSetup, Scenario, ScenarioError, Source, within};
 use std::net::{Ipv4Addr, SocketAddr};
@@ -82,7 +82,7 @@ struct RulesTable {
     arm: bool,
     /// With `arm`: whether it also takes off, to `altitude_m`. Default: false.
     takeoff: bool,
-    /// Height above home that what flies keeps, metres. Default: none, vertical velocities are the agent's.
+    /// Height above home that what flies takes off to, metres, and keeps if the scenario is in the plane. Default: none, vertical velocities are the agent's.
     altitude_m: Option<f64>,
     /// Positions that are older are stale, and the vehicle is told to stop, seconds. Default: 1.
     stale_s: f64,
@@ -323,12 +323,14 @@ fn air(source: &Source<'_>, table: &AirTable) -> Result<MediumSetup, ScenarioErr
     }
 }
 
-fn rules(table: &RulesTable, vehicle: &VehicleTable) -> Rules {
+fn rules(table: &RulesTable, vehicle: &VehicleTable, safety: SafetyKind) -> Rules {
     Rules {
         entry: table.entry,
         arm: table.arm,
         takeoff: table.takeoff && vehicle.autopilot.flies(),
         altitude_m: vehicle.altitude_m.or(table.altitude_m).filter(|_| vehicle.autopilot.flies()),
+        // In space heights are what robots give each other room by.
+        keeps_altitude: safety != SafetyKind::Fly,
         stale: Duration::from_secs_f64(table.stale_s),
         link_lost: Duration::from_secs_f64(table.link_lost_s),
         setpoint_every: Duration::from_secs_f64(1.0 / table.setpoint_hz),
@@ -385,21 +387,15 @@ fn vehicles(
             };
             within(source, &name, altitude_m, 0.5, 1000.0, "metres")?;
         }
-        if file.rules.takeoff && table.autopilot.flies() && rules(&file.rules, table).altitude_m.is_none() {
+        let rules = rules(&file.rules, table, scenario.safety(index).kind());
+        if file.rules.takeoff && table.autopilot.flies() && rules.altitude_m.is_none() {
             let what = "it is not said how high it takes off";
             return Err(source.error("rules.takeoff", what, "give altitude_m"));
         }
         if let Some(goal) = table.goal_deg {
             assign_goal(source, &field("goal_deg"), goal, origin, scenario, index)?;
         }
-        vehicles.push(VehicleSetup {
-            robot: RobotId(table.robot),
-            index,
-            system,
-            line,
-            kind: table.autopilot,
-            rules: rules(&file.rules, table),
-        });
+        vehicles.push(VehicleSetup { robot: RobotId(table.robot), index, system, line, kind: table.autopilot, rules });
     }
     if vehicles.is_empty() {
         let remedy = "add [[vehicle]] with robot, link and autopilot";

@@ -96,6 +96,7 @@ mod needs_shared {
         arm: false,
         takeoff: false,
         altitude_m: None,
+        keeps_altitude: true,
         stale: Duration::from_secs(1),
         link_lost: Duration::from_secs(3),
         setpoint_every: Duration::from_millis(50),

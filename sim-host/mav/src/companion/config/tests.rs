@@ -50,6 +50,14 @@ fn heights_are_for_what_flies() {
 }
 
 #[test]
+fn heights_are_kept_in_the_plane_and_left_to_the_agent_in_space() {
+    let config = parse(&text("", "")).unwrap();
+    assert!(config.vehicles[0].rules.keeps_altitude);
+    let config = parse(&text("", "").replace(SCENARIO, "../scenarios/bridge-fly.toml")).unwrap();
+    assert!(!config.vehicles[0].rules.keeps_altitude);
+}
+
+#[test]
 fn a_goal_on_the_earth_is_metres() {
     let config = parse(&text("", "goal_deg = [55.751, 37.62]")).unwrap();
     let goal = config.plane.starts[2].places[0].position_m;

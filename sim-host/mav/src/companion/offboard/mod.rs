@@ -66,8 +66,10 @@ pub struct Rules {
     pub arm: bool,
     /// Whether it then takes off, to `altitude_m`.
     pub takeoff: bool,
-    /// Height above home that is kept, metres; `None`: vertical velocities are the agent's, zero in the plane.
+    /// Height above home to take off to, metres.
     pub altitude_m: Option<f64>,
+    /// Whether that height is kept then, as in the plane. Otherwise vertical velocities are the agent's.
+    pub keeps_altitude: bool,
     /// A position that is older is stale.
     pub stale: Duration,
     /// An autopilot that is silent for longer is gone.

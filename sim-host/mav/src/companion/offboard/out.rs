@@ -19,6 +19,8 @@ pub const ARM_DISARM: u16 = 400;
 const SET_MESSAGE_INTERVAL: u16 = 511;
 /// Only the velocity counts: `POSITION_TARGET_TYPEMASK` to ignore position, acceleration, yaw and yaw rate.
 const VELOCITY_ONLY: u16 = 0xDC7;
+/// The same with the yaw rate.
+const VELOCITY_AND_YAW_RATE: u16 = 0x5C7;
 /// `MAV_FRAME_LOCAL_NED`.
 const LOCAL_NED: u8 = 1;
 
@@ -84,16 +86,21 @@ fn interval(system: u8, id: u32, hz: f64) -> MavMessage {
     command(system, SET_MESSAGE_INTERVAL, [f64::from(id), 1e6 / hz, 0.0, 0.0, 0.0, 0.0, 0.0])
 }
 
-/// A velocity, north, east, down.
-pub fn setpoint(system: u8, velocity_ned_mps: [f64; 3], now: Duration) -> MavMessage {
-    let [vx, vy, vz] = velocity_ned_mps.map(|v| v as f32);
+/// A velocity, north, east, down. Below 0.05 m/s a rover of ArduPilot is told to stand and not to turn: of a velocity it makes a heading, and north of none.
+pub fn setpoint(system: u8, kind: Kind, velocity_ned_mps: [f64; 3], now: Duration) -> MavMessage {
+    const SLOW_MPS: f64 = 0.05;
+    let [north, east, _] = velocity_ned_mps;
+    let stands = kind == Kind::ArduRover && north * north + east * east < SLOW_MPS * SLOW_MPS;
+    let (type_mask, velocity) =
+        if stands { (VELOCITY_AND_YAW_RATE, [0.0; 3]) } else { (VELOCITY_ONLY, velocity_ned_mps) };
+    let [vx, vy, vz] = velocity.map(|v| v as f32);
     MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
         // Wraps like everybody's.
         time_boot_ms: now.as_millis() as u32,
         target_system: system,
         target_component: AUTOPILOT,
         coordinate_frame: LOCAL_NED,
-        type_mask: VELOCITY_ONLY,
+        type_mask,
         vx,
         vy,
         vz,

@@ -43,7 +43,7 @@ impl OffboardStateMachine {
             }
             self.streaming_since.get_or_insert(now);
             self.tally.setpoints += 1;
-            out.push(out::setpoint(self.system, velocity, now));
+            out.push(out::setpoint(self.system, self.kind, velocity, now));
         }
     }
 
@@ -76,10 +76,11 @@ impl OffboardStateMachine {
         }
     }
 
-    /// With what brings it to its height and keeps it there.
+    /// With what brings it to its height, and keeps it there unless heights are the agent's.
     fn at_altitude(&self, [north, east, down]: [f64; 3]) -> [f64; 3] {
         let is_armed = self.beat.is_some_and(|beat| beat.is_armed && beat.is_controlled);
-        let height = self.rules.altitude_m.zip(self.fix).filter(|_| is_armed);
+        let is_told = self.rules.keeps_altitude || self.state == State::Entering;
+        let height = self.rules.altitude_m.zip(self.fix).filter(|_| is_armed && is_told);
         let down = height.map_or(down, |(altitude_m, fix)| -(0.5 * (altitude_m - fix.above_home_m)).clamp(-1.0, 1.0));
         [north, east, down]
     }
@@ -152,6 +153,6 @@ impl OffboardStateMachine {
     /// What to send a few times when the companion ends: stand, if it steers.
     #[must_use]
     pub fn farewell(&self, now: Duration) -> Option<MavMessage> {
-        self.state.has_control().then(|| out::setpoint(self.system, [0.0; 3], now))
+        self.state.has_control().then(|| out::setpoint(self.system, self.kind, [0.0; 3], now))
     }
 }

@@ -11,6 +11,7 @@ const RULES: Rules = Rules {
     arm: false,
     takeoff: false,
     altitude_m: None,
+    keeps_altitude: true,
     stale: Duration::from_secs(1),
     link_lost: Duration::from_secs(3),
     setpoint_every: Duration::from_millis(50),
@@ -34,6 +35,8 @@ struct Bench {
     base: u8,
     above_home_m: f64,
     climb_mps: f64,
+    /// What the agent wants.
+    down_mps: f64,
     beats: bool,
     fixes: bool,
     /// Whether it says of its estimator what `ekf_flags` has.
@@ -52,6 +55,7 @@ impl Bench {
             base,
             above_home_m: 0.0,
             climb_mps: 0.0,
+            down_mps: 0.0,
             beats: true,
             fixes: true,
             reports: false,
@@ -110,7 +114,7 @@ impl Bench {
                 self.ekf();
             }
             if self.offboard.state() == State::Steering {
-                self.offboard.steer([1.0, 2.0, 0.0], self.now);
+                self.offboard.steer([1.0, 2.0, self.down_mps], self.now);
             }
             self.offboard.poll(self.now, &mut self.sent);
             self.now += Duration::from_millis(10);
@@ -163,6 +167,23 @@ fn steers_at_the_rate_it_should_with_velocities_only() {
     }
     let beats = sent.iter().filter(|m| matches!(m, MavMessage::HEARTBEAT(_)));
     assert_eq!(beats.count(), 10);
+}
+
+#[test]
+fn a_rover_of_ardupilot_that_stands_is_told_not_to_turn() {
+    let masks = |kind, velocity| {
+        let MavMessage::SET_POSITION_TARGET_LOCAL_NED(said) = out::setpoint(7, kind, velocity, Duration::ZERO) else {
+            panic!("a setpoint");
+        };
+        (said.type_mask, [said.vx, said.vy, said.vz], said.yaw_rate)
+    };
+    for slow in [[0.0; 3], [0.03, -0.03, 0.0]] {
+        assert_eq!(masks(Kind::ArduRover, slow), (0x5C7, [0.0; 3], 0.0));
+    }
+    assert_eq!(masks(Kind::ArduRover, [0.0, -0.051, 0.0]), (0xDC7, [0.0, -0.051, 0.0], 0.0));
+    for other in [Kind::ArduCopter, Kind::Px4Copter, Kind::Px4Rover] {
+        assert_eq!(masks(other, [0.0; 3]), (0xDC7, [0.0; 3], 0.0));
+    }
 }
 
 #[test]

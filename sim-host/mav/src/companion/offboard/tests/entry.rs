@@ -106,6 +106,21 @@ fn copter_is_armed_taken_off_and_then_steered_at_its_height() {
 }
 
 #[test]
+fn in_space_heights_are_the_agents_once_it_has_taken_off() {
+    for (kind, mode) in [(Kind::ArduCopter, 4), (Kind::Px4Copter, OFFBOARD)] {
+        let mut bench = Bench::new(kind, Rules { keeps_altitude: false, ..FLY }, mode, ARMED);
+        bench.down_mps = 0.7;
+        let sent = bench.run(1.0);
+        assert_eq!(bench.state(), State::Entering);
+        assert_eq!(setpoints(&sent).last().map(|setpoint| setpoint.vz), kind.is_px4().then_some(-1.0));
+        bench.above_home_m = 9.5;
+        let sent = bench.run(1.0);
+        assert_eq!(bench.state(), State::Steering);
+        assert_eq!(setpoints(&sent).last().unwrap().vz, 0.7, "{kind:?}");
+    }
+}
+
+#[test]
 fn what_flies_is_not_steered_on_the_ground() {
     let mut bench = Bench::new(Kind::ArduCopter, RULES, 4, ARMED);
     let sent = bench.run(2.0);
