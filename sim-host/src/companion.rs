@@ -18,7 +18,8 @@ pub struct CompanionArgs {
     /// End after this many seconds [default: at Ctrl-C].
     #[arg(long, value_name = "N", value_parser = seconds)]
     seconds: Option<f64>,
-    /// Write all messages of all links to a log, for mavlogdump, MAVExplorer or QGroundControl.
+    /// Write all messages of all links that are believed to a log, for mavlogdump, MAVExplorer or QGroundControl; at 256 MiB it gets `.1` behind its name, and a new one
+    /// begins.
     #[arg(long, value_name = "FILE")]
     tlog: Option<PathBuf>,
     /// Seal packets between companions with the key in this file, and hear only sealed ones; instead of air.key.

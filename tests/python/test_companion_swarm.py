@@ -67,6 +67,7 @@ def two_that_meet(tmp_path, free_port, staya, keys, packets):
         if key:
             (tmp_path / f"{i}.key").write_text(f"passphrase: {key}\n")
             (tmp_path / f"{i}.key").chmod(0o600)
+            (tmp_path / f"{i}.key.starts").write_text("0\n")
             air += f'key = "{i}.key"'
         port = free_port()
         config = write_config(tmp_path, [port], "rover", air=air, name=f"config-{i}.toml", robots=[i + 1])

@@ -5,11 +5,18 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
+/// Bytes of one file of a log: hours of a few vehicles.
+const LIMIT: u64 = 256 << 20;
+
 /// A tlog: before each frame the time, eight bytes with the highest first, microseconds since 1970.
+///
+/// A log that has come to 256 MiB gets `.1` behind its name, in the place of one that had it, and goes on in a new file: so much and no more is kept.
 #[derive(Debug)]
 pub struct Tlog {
     file: BufWriter<File>,
     path: PathBuf,
+    len: u64,
+    limit: u64,
 }
 
 /// A log that cannot be written.
@@ -30,7 +37,7 @@ impl Tlog {
     pub fn create(path: &Path) -> Result<Self, TlogError> {
         let path = path.to_owned();
         match File::create(&path) {
-            Ok(file) => Ok(Self { file: BufWriter::new(file), path }),
+            Ok(file) => Ok(Self { file: BufWriter::new(file), path, len: 0, limit: LIMIT }),
             Err(source) => Err(TlogError { path, source }),
         }
     }
@@ -50,9 +57,28 @@ impl Tlog {
     /// # Errors
     /// When the file cannot be written.
     pub fn add_at(&mut self, micros: u64, frame: &[u8]) -> Result<(), TlogError> {
-        let time = self.file.write_all(&micros.to_be_bytes());
-        let written = time.and_then(|()| self.file.write_all(frame));
-        written.map_err(|source| self.error(source))
+        self.write(micros, frame).map_err(|source| self.error(source))
+    }
+
+    fn write(&mut self, micros: u64, frame: &[u8]) -> io::Result<()> {
+        let time = micros.to_be_bytes();
+        let len = (time.len() + frame.len()) as u64;
+        if self.len > 0 && self.len + len > self.limit {
+            self.rotate()?;
+        }
+        self.len += len;
+        self.file.write_all(&time)?;
+        self.file.write_all(frame)
+    }
+
+    fn rotate(&mut self) -> io::Result<()> {
+        self.file.flush()?;
+        let mut name = self.path.as_os_str().to_owned();
+        name.push(".1");
+        std::fs::rename(&self.path, PathBuf::from(name))?;
+        self.file = BufWriter::new(File::create(&self.path)?);
+        self.len = 0;
+        Ok(())
     }
 
     /// Writes what is still kept back. Dropping does it too, but tells nobody of errors.
@@ -81,6 +107,25 @@ mod tests {
         log.finish().expect("room");
         let bytes = std::fs::read(&path).expect("the log");
         assert_eq!(bytes, b"\0\0\0\0\0\0\x01\x02xyz");
+    }
+
+    #[test]
+    fn a_log_has_a_bound_and_keeps_what_came_last() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.tlog");
+        let mut log = Tlog { limit: 40, ..Tlog::create(&path).expect("a log") };
+        // 10 bytes each: four in a file.
+        for frame in 0..11 {
+            log.add_at(frame, b"ab").expect("room");
+        }
+        log.finish().expect("room");
+        let frames = |name: &str| {
+            let bytes = std::fs::read(folder.path().join(name)).expect(name);
+            bytes.chunks(10).map(|part| part[7]).collect::<Vec<_>>()
+        };
+        assert_eq!(frames("a.tlog.1"), [4, 5, 6, 7]);
+        assert_eq!(frames("a.tlog"), [8, 9, 10]);
+        assert_eq!(std::fs::read_dir(folder.path()).expect("it is there").count(), 2);
     }
 
     #[test]

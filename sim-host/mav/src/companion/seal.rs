@@ -5,7 +5,8 @@ use staya_controller::wire::{Format, Sealed};
 use staya_sim::file::{read_remedy, write_remedy};
 use staya_sim::key::{self, KeyError, KeyFile};
 use staya_sim::radio::HostWire;
-use std::io::ErrorKind;
+use std::fs::File;
+use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 
 /// Why agents cannot speak with a key.
@@ -22,9 +23,19 @@ pub enum SealError {
         /// Why.
         source: std::io::Error,
     },
-    /// There is no number, or one that no start can have.
+    /// There is no file. To begin anew at 0 unasked would make what was recorded of earlier starts good again, and others deaf to this one.
     #[error(
-        "{} does not hold a number of starts below 1048576; write one into it that is greater than it ever was, or take a new key and remove it",
+        "there is no {}, which counts how often this key was used here; if it never was, make it: `echo 0 > {}`; else write a number into it that is \
+         greater than it ever was, or take a new key",
+        .path.display(), .path.display()
+    )]
+    Missing {
+        /// Where it should be.
+        path: PathBuf,
+    },
+    /// There is no number, or one that no start can have, or its line has no end: it was torn.
+    #[error(
+        "{} does not hold a line with a number of starts below 1048576; write one into it that is greater than it ever was, or take a new key and remove it",
         .path.display()
     )]
     NoNumber {
@@ -50,6 +61,24 @@ pub struct Seal {
     pub remark: Option<String>,
 }
 
+/// Puts `text` in the place of a file: after a power failure there is the old one or the new one, whole.
+fn replace(path: &Path, text: &str) -> std::io::Result<()> {
+    let mut name = path.as_os_str().to_owned();
+    name.push(".new");
+    let new = PathBuf::from(name);
+    let mut file = File::create(&new)?;
+    file.write_all(text.as_bytes())?;
+    file.sync_all()?;
+    std::fs::rename(&new, path)?;
+    // The rename itself; what is no Unix has no way to ask for it.
+    #[cfg(unix)]
+    if let Some(folder) = path.parent() {
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        File::open(folder)?.sync_all()?;
+    }
+    Ok(())
+}
+
 impl Seal {
     /// Reads the key in `path`, and the number of starts in the file of the same name with `.starts` behind it, where the next one is left.
     ///
@@ -61,15 +90,15 @@ impl Seal {
         name.push(".starts");
         let path = PathBuf::from(name);
         let starts = match std::fs::read_to_string(&path) {
-            Ok(text) => text.trim().parse::<u32>().ok(),
-            Err(error) if error.kind() == ErrorKind::NotFound => Some(0),
+            Ok(text) => text.strip_suffix('\n').and_then(|line| line.trim().parse::<u32>().ok()),
+            Err(error) if error.kind() == ErrorKind::NotFound => return Err(SealError::Missing { path }),
             Err(source) => return Err(SealError::Read { path, source }),
         };
         let starts = starts.filter(|starts| Sealed::<1>::at_start(&key, *starts).is_some());
         let Some(starts) = starts else {
             return Err(SealError::NoNumber { path });
         };
-        if let Err(source) = std::fs::write(&path, format!("{}\n", starts + 1)) {
+        if let Err(source) = replace(&path, &format!("{}\n", starts + 1)) {
             return Err(SealError::Write { path, source });
         }
         Ok(Self { key, starts, remark })
@@ -104,6 +133,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("swarm.key");
         std::fs::write(&path, "passphrase: one for all\n").unwrap();
+        std::fs::write(folder.path().join("swarm.key.starts"), "0\n").unwrap();
         let seal = || Seal::read(&path).unwrap();
         for format in [Format::Postcard, Format::Mavlink] {
             let mut speaker = seal().wire(format);
@@ -123,17 +153,37 @@ mod tests {
     }
 
     #[test]
+    fn a_number_that_cannot_be_stored_is_an_error_and_the_old_one_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("swarm.key");
+        std::fs::write(&path, "passphrase: one for all\n").unwrap();
+        let kept = folder.path().join("swarm.key.starts");
+        std::fs::write(&kept, "7\n").unwrap();
+        // In the way of the new file.
+        std::fs::create_dir(folder.path().join("swarm.key.starts.new")).unwrap();
+        assert!(matches!(Seal::read(&path), Err(SealError::Write { .. })));
+        assert_eq!(std::fs::read_to_string(&kept).unwrap(), "7\n");
+    }
+
+    #[test]
     fn each_start_has_a_number_of_its_own() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("swarm.key");
         std::fs::write(&path, "passphrase: one for all\n").unwrap();
+        let kept = folder.path().join("swarm.key.starts");
+        let error = Seal::read(&path).expect_err("nobody has said that it was never used").to_string();
+        assert!(error.contains("swarm.key.starts, which counts") && error.contains("echo 0 >"), "{error}");
+        assert!(!kept.exists());
+        std::fs::write(&kept, "0\n").unwrap();
         let starts = (0..3).map(|_| Seal::read(&path).unwrap().starts);
         assert_eq!(starts.collect::<std::vec::Vec<_>>(), [0, 1, 2]);
-        let kept = folder.path().join("swarm.key.starts");
-        for wrong in ["", "many", "-1", "1048576"] {
+        assert_eq!(std::fs::read_to_string(&kept).unwrap(), "3\n");
+        // The last is torn: it may have been 17.
+        for wrong in ["", "\n", "many\n", "-1\n", "1048576\n", "1"] {
             std::fs::write(&kept, wrong).unwrap();
             let error = Seal::read(&path).expect_err(wrong).to_string();
             assert!(error.contains("swarm.key.starts does not hold"), "{error}");
+            assert_eq!(std::fs::read_to_string(&kept).unwrap(), wrong, "it is left as it is");
         }
         std::fs::remove_file(&kept).unwrap();
         std::fs::create_dir(&kept).unwrap();
