@@ -171,8 +171,6 @@ def test_the_pilot_takes_over_and_nothing_is_taken_back(one, kind, entry):
         wait_until(lambda: vehicle.velocity[0] > 0.5, what="motion")
         with fleet.lock:
             vehicle.pilot()
-            # Tells of it at once, as autopilots do.
-            vehicle.due[0] = 0.0
         process.wait_for("handed over")
         at = time.monotonic()
         commands = len(vehicle.commands)
@@ -296,8 +294,12 @@ def test_dry_run_shows_and_sends_nothing(one):
         assert process.wait() == 0
         time.sleep(0.2)
         assert vehicle.heard == []
-    shown = re.findall(r"robot 1: ([A-Z_]+)\(", process.output())
-    assert {"HEARTBEAT", "COMMAND_LONG", "STATUSTEXT"} <= set(shown), process.output()
+    output = process.output()
+    assert "COMMAND_LONG SET_MESSAGE_INTERVAL GLOBAL_POSITION_INT 10.0 Hz" in output
+    assert "COMMAND_LONG DO_SET_MODE 15" in output and "COMPONENT_ARM_DISARM: arm" in output
+    assert 'STATUSTEXT "staya: steers"' in output
+    speeds = [float(east) for east in re.findall(r"m/s north, (\S+) m/s east", output)]
+    assert 2 <= len(speeds) <= 4 and max(speeds) > 0.1, output
     assert "nothing was sent" in process.output()
 
 
@@ -348,13 +350,19 @@ def test_signed_links_take_the_right_key_and_no_other(one, tmp_path):
         process = start("--link-key", file)
         wait_until(lambda: vehicle.velocity[0] > 0.5, what="motion")
         ends_well(process)
+    vehicle, fleet, start = one(mode=GUIDED, armed=True, key=key)
+    with fleet:
+        process = start()
+        process.wait_for("its messages are signed")
+        ends_well(process)
     for other in (bytes(32), None):
         vehicle, fleet, start = one(mode=GUIDED, armed=True, key=other)
         with fleet:
-            process = start("--link-key", file, "--json", "--quiet", "--seconds", "2.5")
+            process = start("--link-key", file, "--json", "--seconds", "2.5")
             assert process.wait() == 0
-            report = json.loads(process.output())
-            assert report["links"][0]["refused"] >= 2
+            told, report = process.output().split("{", 1)
+            report = json.loads("{" + report)
+            assert report["links"][0]["refused"] >= 2 and told.count("not signed with the key") == 1
             assert report["vehicles"][0]["state"] == "silent" and vehicle.setpoints == []
 
 

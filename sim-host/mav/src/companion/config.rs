@@ -335,6 +335,7 @@ fn rules(table: &RulesTable, vehicle: &VehicleTable, safety: SafetyKind) -> Rule
         link_lost: Duration::from_secs_f64(table.link_lost_s),
         setpoint_every: Duration::from_secs_f64(1.0 / table.setpoint_hz),
         position_hz: table.position_hz,
+        rehearses: false,
     }
 }
 

@@ -101,6 +101,7 @@ mod needs_shared {
         link_lost: Duration::from_secs(3),
         setpoint_every: Duration::from_millis(50),
         position_hz: 10.0,
+        rehearses: false,
     };
 
     fn is_setpoint(message: &MavMessage) -> bool {

@@ -1,12 +1,13 @@
 //! The loop around companions: frames in, steps of agents and duties when they are due, frames out.
 
 mod machine;
+mod shown;
 mod telling;
 
 use super::config::{Config, VehicleSetup};
 use super::controller::{Body, Controller};
 use super::medium::{Medium, MediumError, MediumSetup, tunnel, tunnelled};
-use super::offboard::{AUTOPILOT, COMPONENT, Event, OffboardStateMachine, State, status_text};
+use super::offboard::{AUTOPILOT, COMPONENT, Event, OffboardStateMachine, Rules, State, status_text};
 use super::report::CompanionReport;
 use super::seal::{Seal, SealError};
 use crate::geo::{Origin, enu, ned};
@@ -30,6 +31,9 @@ const GLANCES: [Duration; 2] = [Duration::from_millis(5), Duration::from_millis(
 const INBOX: usize = 16 * 1024;
 /// Setpoints to stand, and the time between them, at the end.
 const FAREWELLS: (u32, Duration) = (5, Duration::from_millis(40));
+
+/// How old positions may be in a dry run at least.
+const SELDOM: Duration = Duration::from_secs(3);
 
 /// What the command line says.
 #[derive(Debug, Default)]
@@ -74,7 +78,11 @@ struct Vehicle {
     controller: Controller<HostWire>,
     /// Where its autopilot was heard.
     peer: Option<Peer>,
+    /// Whether it was told that signatures do not match.
+    is_signing_told: bool,
     sequence: u8,
+    /// When a dry run showed a velocity last.
+    shown: Option<Duration>,
     inbox: Vec<u8>,
     next_step: Duration,
     has_arrived: bool,
@@ -140,6 +148,13 @@ fn is_within(body: &Body, reach_m: f64) -> bool {
     x * x + y * y <= reach_m * reach_m
 }
 
+/// A dry run asks for no positions: those that come anyway are good for longer.
+fn rules(setup: &VehicleSetup, options: &Options) -> Rules {
+    let Rules { stale, .. } = setup.rules;
+    let stale = if options.dry_run { stale.max(SELDOM) } else { stale };
+    Rules { rehearses: options.dry_run, stale, ..setup.rules }
+}
+
 fn micros_since_1970() -> u128 {
     let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
     now.map_or(0, |time| time.as_micros())
@@ -164,7 +179,7 @@ impl<'a> Companions<'a> {
             setup: setup.clone(),
             max_speed_mps: config.plane.group(setup.index).abilities.max_speed_mps,
             error_m: config.error_m,
-            offboard: OffboardStateMachine::new(setup.system, setup.kind, setup.rules),
+            offboard: OffboardStateMachine::new(setup.system, setup.kind, rules(setup, options)),
             controller: Controller::new(
                 &config.scenario,
                 &ground,
@@ -174,7 +189,9 @@ impl<'a> Companions<'a> {
                 seal.map_or_else(|| HostWire::new(format), |seal| seal.wire(format)),
             ),
             peer: None,
+            is_signing_told: false,
             sequence: 0,
+            shown: None,
             inbox: Vec::new(),
             next_step: Duration::ZERO,
             has_arrived: false,
@@ -276,9 +293,13 @@ impl<'a> Companions<'a> {
 
     fn hear(&mut self, received: &Received) {
         let Some(frame) = RawFrame::new(&received.frame) else { return };
-        if let Some(signing) = self.signing_of(received.line)
-            && !signing.verify(&frame).is_accepted()
-        {
+        let signing = self.signing_of(received.line);
+        let is_refused = signing.is_some_and(|signing| !signing.verify(&frame).is_accepted());
+        let is_open = self.signing.is_none();
+        if is_refused || (is_open && frame.signature().is_some()) {
+            self.tell_of_signing(received.line, frame.sender(), is_open);
+        }
+        if is_refused {
             return;
         }
         self.log(frame.bytes());
@@ -396,9 +417,7 @@ impl<'a> Companions<'a> {
         let vehicle = &mut self.vehicles[index];
         let sender = Sender { system: vehicle.setup.system, component: COMPONENT, sequence: vehicle.sequence };
         if self.options.dry_run {
-            let (at, robot) = (self.machine.now().as_secs_f64(), vehicle.setup.robot.0);
-            self.output_error = self.machine.show(&format!("{at:9.3} robot {robot}: {message:?}")).err();
-            return;
+            return self.show(index, message);
         }
         let mut frame = heapless::Vec::<u8, MAX_FRAME_LEN>::new();
         // A frame has room for any message.

@@ -1,6 +1,6 @@
 //! What a person wants to know of a companion.
 
-use super::{Doubt, State};
+use super::{ARM_DISARM, DO_SET_MODE, Doubt, NAV_TAKEOFF, State};
 use std::fmt;
 use std::time::Duration;
 
@@ -68,6 +68,16 @@ impl State {
     }
 }
 
+/// What it asks for, in words.
+const fn command_words(command: u16) -> &'static str {
+    match command {
+        DO_SET_MODE => "the mode",
+        ARM_DISARM => "arming",
+        NAV_TAKEOFF => "the takeoff",
+        _ => "a request",
+    }
+}
+
 /// `MAV_RESULT` in words.
 const fn result_words(result: u8) -> &'static str {
     match result {
@@ -92,7 +102,7 @@ impl fmt::Display for Event {
             Self::PilotActs => f.write_str("the pilot acts: asks no more"),
             Self::GaveUp => f.write_str("asked in vain: asks no more"),
             Self::Refused { command, result } => {
-                write!(f, "command {command}: {}", result_words(*result))
+                write!(f, "{} (command {command}): {}", command_words(*command), result_words(*result))
             }
         }
     }

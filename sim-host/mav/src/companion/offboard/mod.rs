@@ -15,7 +15,7 @@ mod poll;
 
 pub use event::Event;
 pub use health::Doubt;
-pub use out::status_text;
+pub use out::{ARM_DISARM, DO_SET_MODE, NAV_TAKEOFF, SET_MESSAGE_INTERVAL, status_text};
 
 use super::kind::Kind;
 use crate::geo::Global;
@@ -78,6 +78,8 @@ pub struct Rules {
     pub setpoint_every: Duration,
     /// Positions asked for, Hz.
     pub position_hz: f64,
+    /// A dry run: what it asks for is taken to be granted at once, and whoever has a position is steered.
+    pub rehearses: bool,
 }
 
 /// What a companion does.
@@ -420,6 +422,9 @@ impl OffboardStateMachine {
             return State::Silent;
         };
         let fix = self.fresh_fix(now);
+        if self.rules.rehearses {
+            return if fix.is_some() { State::Steering } else { State::NoPosition };
+        }
         // It asks only for what it could use.
         let enters = self.may_enter && fix.is_some() && (beat.is_armed || self.rules.arm);
         if !beat.is_controlled {
@@ -455,7 +460,7 @@ impl OffboardStateMachine {
         if from == to {
             return;
         }
-        if to == State::Steering {
+        if to == State::Steering && !self.rules.rehearses {
             // It has what it wanted.
             self.end_entry(None);
         }

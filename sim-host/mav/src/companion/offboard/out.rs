@@ -16,7 +16,7 @@ pub const DO_SET_MODE: u16 = 176;
 /// `MAV_CMD_COMPONENT_ARM_DISARM`.
 pub const ARM_DISARM: u16 = 400;
 /// `MAV_CMD_SET_MESSAGE_INTERVAL`.
-const SET_MESSAGE_INTERVAL: u16 = 511;
+pub const SET_MESSAGE_INTERVAL: u16 = 511;
 /// Only the velocity counts: `POSITION_TARGET_TYPEMASK` to ignore position, acceleration, yaw and yaw rate.
 const VELOCITY_ONLY: u16 = 0xDC7;
 /// The same with the yaw rate.

@@ -1,6 +1,6 @@
 //! What a companion says, and when.
 
-use super::{Ask, Event, HEARTBEAT, OffboardStateMachine, State, out};
+use super::{Ask, Event, HEARTBEAT, OffboardStateMachine, Rules, State, out};
 use staya_mavlink::dialect::MavMessage;
 use std::time::Duration;
 
@@ -31,6 +31,9 @@ impl OffboardStateMachine {
             return;
         }
         self.look(now, out);
+        if self.rules.rehearses && self.state == State::Steering {
+            self.rehearse_entry(out);
+        }
         if self.state == State::Entering {
             self.enter(now, out);
         }
@@ -91,6 +94,10 @@ impl OffboardStateMachine {
             return;
         }
         let is_first = self.next_look.is_none();
+        // Who asks for nothing gets nothing.
+        if self.rules.rehearses && !is_first {
+            return;
+        }
         let got = self.tally.positions - self.positions_at_look;
         let wanted = self.rules.position_hz * LOOK.as_secs_f64();
         if is_first || (got as f64) < wanted / 2.0 {
@@ -148,6 +155,18 @@ impl OffboardStateMachine {
                 out.push(out::takeoff(self.system, altitude_m));
             }
         }
+    }
+
+    /// All that it would ask for, once.
+    fn rehearse_entry(&mut self, out: &mut Vec<MavMessage>) {
+        if !std::mem::take(&mut self.may_enter) {
+            return;
+        }
+        let Rules { arm, takeoff, altitude_m, .. } = self.rules;
+        out.push(out::set_mode(self.system, self.kind));
+        out.extend(arm.then(|| out::arm(self.system)));
+        let height = altitude_m.filter(|_| takeoff && !self.kind.needs_stream());
+        out.extend(height.map(|altitude_m| out::takeoff(self.system, altitude_m)));
     }
 
     /// What to send a few times when the companion ends: stand, if it steers.

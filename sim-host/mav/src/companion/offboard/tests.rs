@@ -16,6 +16,7 @@ const RULES: Rules = Rules {
     link_lost: Duration::from_secs(3),
     setpoint_every: Duration::from_millis(50),
     position_hz: 10.0,
+    rehearses: false,
 };
 const ONCE: Rules = Rules { entry: Entry::Once, ..RULES };
 const FLY: Rules = Rules { arm: true, takeoff: true, altitude_m: Some(10.0), ..ONCE };

@@ -1,11 +1,17 @@
 //! What a person is told: lines as things happen, and the figures at the end.
 
-use super::Companions;
+use super::{Companions, Vehicle, shown};
 use crate::companion::config::Config;
-use crate::companion::offboard::State;
+use crate::companion::offboard::{AUTOPILOT, State};
 use crate::companion::report::{CompanionReport, LineReport, VehicleReport};
 use staya_controller::agent::Event as AgentEvent;
 use staya_controller::robot::Mode;
+use staya_mavlink::dialect::MavMessage;
+use staya_mavlink::frame::Sender;
+use std::time::Duration;
+
+/// Between two velocities that a dry run shows.
+const SHOWN: Duration = Duration::from_secs(1);
 
 impl Companions<'_> {
     /// A line for the person at the terminal, about a vehicle.
@@ -20,6 +26,39 @@ impl Companions<'_> {
             // A closed standard error must not stop a vehicle's companion.
             let _ = self.machine.tell(line);
         }
+    }
+
+    /// Shows what would be sent, a velocity once a second.
+    pub(super) fn show(&mut self, index: usize, message: &MavMessage) {
+        let (now, vehicle) = (self.machine.now(), &mut self.vehicles[index]);
+        if let MavMessage::SET_POSITION_TARGET_LOCAL_NED(_) = message {
+            if vehicle.shown.is_some_and(|at| now.saturating_sub(at) < SHOWN) {
+                return;
+            }
+            vehicle.shown = Some(now);
+        }
+        let (at, robot) = (now.as_secs_f64(), vehicle.setup.robot.0);
+        if let Some(words) = shown::words(message).filter(|_| self.output_error.is_none()) {
+            self.output_error = self.machine.show(&format!("{at:9.3} robot {robot}: {words}")).err();
+        }
+    }
+
+    /// A hint, once, that one of the vehicles signs what it says (`is_open`: and nobody here does), or does not with this key.
+    pub(super) fn tell_of_signing(&mut self, line: usize, sender: Sender, is_open: bool) {
+        let is_it = |vehicle: &Vehicle| {
+            let at = (vehicle.setup.line, vehicle.setup.system, AUTOPILOT);
+            !vehicle.is_signing_told && at == (line, sender.system, sender.component)
+        };
+        let Some(index) = self.vehicles.iter().position(is_it) else { return };
+        self.vehicles[index].is_signing_told = true;
+        self.tell(
+            index,
+            if is_open {
+                "its messages are signed; if it hears only signed ones, give link_key or --link-key"
+            } else {
+                "is refused: its messages are not signed with the key of link_key, or are repeated"
+            },
+        );
     }
 
     pub(super) fn tell_of(&mut self, index: usize, event: AgentEvent) {

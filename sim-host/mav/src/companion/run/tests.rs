@@ -17,6 +17,7 @@ enum Call {
     TellOthers,
     Log,
     Tell,
+    Show,
 }
 
 /// What becomes of the calls of one kind.
@@ -49,6 +50,7 @@ struct World {
     calls: usize,
     logged: usize,
     lines: Vec<String>,
+    shown: Vec<String>,
 }
 
 const STEP: Duration = Duration::from_millis(5);
@@ -71,6 +73,7 @@ impl World {
             calls: 0,
             logged: 0,
             lines: Vec::new(),
+            shown: Vec::new(),
         }
     }
 
@@ -198,8 +201,13 @@ impl Machine for Shared {
         Ok(())
     }
 
-    fn show(&mut self, _: &str) -> io::Result<()> {
-        Err(broken())
+    fn show(&mut self, line: &str) -> io::Result<()> {
+        let mut world = self.0.borrow_mut();
+        if world.fails(Call::Show) {
+            return Err(broken());
+        }
+        world.shown.push(line.to_owned());
+        Ok(())
     }
 
     fn tell(&mut self, line: &str) -> io::Result<()> {
@@ -212,7 +220,7 @@ impl Machine for Shared {
     }
 }
 
-const SECONDS: f64 = 3.0;
+const SECONDS: f64 = 2.4;
 
 fn config() -> Config {
     let vehicle =
@@ -302,7 +310,7 @@ fn a_full_disk_is_told_once_on_the_ground_and_on_board() {
 
 #[test]
 fn even_a_defect_of_its_own_does_not_leave_vehicles_going() {
-    let (world, report) = fly(&config(), Some((Call::Log, Failure::Panic(150))));
+    let (world, report) = fly(&config(), Some((Call::Log, Failure::Panic(100))));
     assert!(report.is_none(), "it panicked");
     for rover in &world.rovers {
         let farewells = rover.setpoints.iter().rev().take_while(|(_, velocity)| *velocity == [0.0; 2]).count();
@@ -310,13 +318,34 @@ fn even_a_defect_of_its_own_does_not_leave_vehicles_going() {
     }
 }
 
-#[test]
-fn a_dry_run_that_nobody_reads_ends() {
+/// A dry run; how many seconds it took.
+fn rehearse(failing: Option<(Call, Failure)>) -> (World, f64) {
     let options = Options { seconds: Some(SECONDS), dry_run: true, ..Options::default() };
-    let world = Rc::new(RefCell::new(World::new(None)));
+    let world = Rc::new(RefCell::new(World::new(failing)));
     let config = config();
     let mut companions = Companions::new(&config, &options, None, None, Box::new(Shared(Rc::clone(&world))));
     let (seconds, _) = companions.run(|| true);
-    assert!(seconds < 1.0 && companions.output_error.is_some(), "{seconds}");
-    assert!(world.borrow().rovers.iter().all(|rover| rover.setpoints.is_empty()));
+    companions.has_said_farewell = true;
+    drop(companions);
+    (Rc::into_inner(world).expect("the loop has ended").into_inner(), seconds)
+}
+
+#[test]
+fn a_dry_run_that_nobody_reads_ends() {
+    let (world, seconds) = rehearse(Some((Call::Show, Failure::One(3))));
+    assert!(seconds < SECONDS && world.shown.len() == 2, "{seconds}: {:?}", world.shown);
+}
+
+#[test]
+fn a_dry_run_shows_velocities_and_texts_in_words() {
+    let (world, seconds) = rehearse(None);
+    assert!(seconds >= SECONDS);
+    assert!(world.rovers.iter().all(|rover| rover.setpoints.is_empty()), "nothing is sent");
+    let shown = world.shown.iter().filter(|line| line.contains("robot 1: "));
+    let shown: Vec<_> = shown.map(|line| line.split_once("robot 1: ").expect("it has it").1).collect();
+    assert!(shown.contains(&"COMMAND_LONG SET_MESSAGE_INTERVAL GLOBAL_POSITION_INT 10.0 Hz"), "{shown:?}");
+    assert!(shown.contains(&"STATUSTEXT \"staya: steers\""), "{shown:?}");
+    let velocities: Vec<_> = shown.iter().filter(|line| line.contains(" m/s north, ")).collect();
+    assert!((2..=3).contains(&velocities.len()), "one a second: {shown:?}");
+    assert!(velocities.iter().any(|line| !line.contains(" 0.00 m/s north, 0.00 m/s east")), "{velocities:?}");
 }

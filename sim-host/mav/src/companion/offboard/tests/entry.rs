@@ -80,7 +80,7 @@ fn a_refusal_is_told_once() {
     }
     let told = bench.events();
     assert_eq!(told.len(), 1);
-    assert_eq!(told[0].to_string(), "command 176: failed");
+    assert_eq!(told[0].to_string(), "the mode (command 176): failed");
 }
 
 #[test]
@@ -221,6 +221,25 @@ fn px4_can_be_put_into_offboard_by_its_pilot_but_is_left_alone_after_a_hand_over
     assert_eq!(setpoints(&sent).len(), 0);
     let offered = setpoints(&bench.run(1.0));
     assert!(!offered.is_empty() && offered.iter().all(stands));
+}
+
+/// Nothing that it asks for is ever granted, and positions come once a second.
+#[test]
+fn a_dry_run_shows_what_it_would_ask_for_and_then_velocities() {
+    let rules = Rules { rehearses: true, stale: Duration::from_secs(3), ..FLY };
+    let mut bench = Bench::new(Kind::ArduCopter, rules, 0, DISARMED);
+    bench.fixes = false;
+    let mut sent = Vec::new();
+    for _ in 0..10 {
+        bench.fix();
+        sent.extend(bench.run(1.0));
+    }
+    for (command, times) in [(out::DO_SET_MODE, 1), (out::ARM_DISARM, 1), (out::NAV_TAKEOFF, 1), (511, 6)] {
+        assert_eq!(commands(&sent, command), times, "{command}");
+    }
+    let states = bench.events().iter().filter(|event| matches!(event, Event::State { .. })).count();
+    assert_eq!(states, 1, "it does not go to and fro");
+    assert!(setpoints(&sent).len() > 190 && setpoints(&sent).iter().any(|setpoint| setpoint.vx == 1.0));
 }
 
 #[test]
