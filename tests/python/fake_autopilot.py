@@ -22,7 +22,8 @@ from dataclasses import dataclass, field
 os.environ.setdefault("MAVLINK20", "1")
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-ORIGIN = (-35.363262, 149.165237, 584.0)
+# ArduPilot's usual place, CMAC.
+ORIGIN = (-35.363261, 149.165230, 584.0)
 
 GUIDED, PILOT, FAILSAFE = "guided", "pilot", "failsafe"
 MODES = {
@@ -36,6 +37,10 @@ MODES = {
 VELOCITY_VALID_S = 3.0
 OFFBOARD_LOSS_S = 1.0
 STREAM_S = 0.5
+# From the command until a copter leaves the ground.
+SPOOL_UP_S = 2.4
+# Flags of a heartbeat's base mode.
+CUSTOM, GUIDES, STABILIZES, TAKES_STICKS, IS_ARMED = 1, 8, 16, 64, 128
 GROUND_STATION_S = 5.0
 
 
@@ -168,7 +173,7 @@ class Vehicle:
         self.up = 5.0 if airborne else 0.0
         self.velocity = [0.0, 0.0, 0.0]
         self.wish = [0.0, 0.0, 0.0]
-        self.climb_to = None
+        self.climb_to, self.spools_up = None, 0.0
         # Where a rover turns, radians from north to east.
         self.heading = math.radians(90.0)
         self.position_after = position_after
@@ -182,6 +187,8 @@ class Vehicle:
         self.setpoints, self.commands, self.heard = [], [], []
         self.texts = []
         self.started = None
+        # A real one that has a position has been up for so long.
+        self.uptime_s = 45.0
         self._start()
 
     def _start(self):
@@ -203,18 +210,20 @@ class Vehicle:
     # What a person does.
 
     def pilot(self, mode=PILOT):
-        """The pilot chooses a mode."""
+        """The pilot chooses a mode, and the next heartbeat says so at once."""
         self.mode = mode
+        self.due[0] = time.monotonic()
 
     def reboot(self, down_s=1.0, mode=PILOT):
         self.down_until = time.monotonic() + down_s
+        self.uptime_s = 0.0
         self.mode, self.armed = mode, False
 
     def take_off(self, height):
         """To so many metres; whether it does, which one that has left the ground never does again."""
         does = self.kind == "copter" and self.mode == GUIDED and self.armed and self.up < 0.1
-        if does:
-            self.climb_to = height
+        if does and self.climb_to is None:
+            self.climb_to, self.spools_up = height, SPOOL_UP_S
         return does
 
     # What the autopilot does.
@@ -241,7 +250,7 @@ class Vehicle:
             self.down_until = None
             self._start()
         if self.booted is None:
-            self.booted = now
+            self.booted = now - self.uptime_s
         forward = []
         for data in self.line.turn(now):
             for message in self.codec.parse_buffer(data) or []:
@@ -299,6 +308,7 @@ class Vehicle:
             if wanted == [GUIDED] and self.kind == "px4" and not self._has_stream(now):
                 return rejected
             self.mode = wanted[0]
+            self.pack(now, self._message(now, 0))
             return accepted
         if message.command == 400:
             if p1 and not self.is_ready:
@@ -329,8 +339,9 @@ class Vehicle:
     def _move(self, dt):
         wish = list(self.wish)
         if self.climb_to is not None:
+            self.spools_up -= dt
             left = self.climb_to - self.up
-            wish = [0.0, 0.0, max(-2.0, min(2.0, 2.0 * left))]
+            wish = [0.0, 0.0, max(-2.0, min(2.0, 2.0 * left)) if self.spools_up <= 0.0 else 0.0]
             if left < 0.1:
                 self.climb_to = None
         speed = math.hypot(*wish)
@@ -368,7 +379,8 @@ class Vehicle:
         ve, vn, vu = self.velocity
         if number == 0:
             types = {"rover": 10, "copter": 2, "px4": 2}
-            base = 1 | (128 if self.armed else 0)
+            base = CUSTOM | (IS_ARMED if self.armed else 0) | (GUIDES if self.mode == GUIDED else 0)
+            base |= {"rover": TAKES_STICKS if self.mode == PILOT else 0, "copter": TAKES_STICKS | STABILIZES, "px4": 0}[self.kind]
             return m.MAVLink_heartbeat_message(types[self.kind], 12 if self.kind == "px4" else 3, base, MODES[self.kind][self.mode], 4, 3)
         if number == 2:
             return m.MAVLink_system_time_message(0, ms)
