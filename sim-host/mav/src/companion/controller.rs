@@ -111,6 +111,12 @@ impl<W: Wire> Controller<W> {
         self.agent.neighbors().len()
     }
 
+    /// The radius of a robot that it knows, metres.
+    #[cfg(test)]
+    pub fn known_radius_m(&self, robot: u32) -> Option<f32> {
+        self.agent.neighbors().iter().find(|known| known.id.0 == robot).map(|known| known.radius_m)
+    }
+
     /// One step of the agent. One that does not steer (the pilot does, or telemetry is stale) says by its beacons where it is and that others must make way;
     /// the radius that it says has its error in it, so that they stay clear of wherever it can be.
     pub fn step(&mut self, body: &Body, steers: bool, inbox: &[u8], now: Duration) -> &Outputs<f32> {

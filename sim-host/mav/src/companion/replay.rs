@@ -11,6 +11,8 @@ use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+/// The recorder's own station.
+const STATION: u8 = 250;
 /// Between two polls.
 const STEP: Duration = Duration::from_millis(10);
 
@@ -25,7 +27,7 @@ fn frame_len(bytes: &[u8]) -> usize {
 }
 
 /// What autopilots said, and when, from the first frame on.
-pub struct Recording(Vec<(Duration, u8, MavMessage)>);
+pub struct Recording(Vec<(Duration, Vec<u8>)>);
 
 impl Recording {
     /// The recording `name` beside the repository, or where `STAYA_SHARED` says. Without it, says so and answers `None`.
@@ -50,18 +52,25 @@ impl Recording {
             let (frame, behind) = frames.split_at(frame_len(frames));
             rest = behind;
             // What the dialect does not have is left out.
-            let Some(frame) = RawFrame::new(frame) else { continue };
-            let sender = frame.sender();
-            if let Some(message) = frame.message().filter(|_| sender.component == AUTOPILOT) {
-                all.push((at, sender.system, message));
+            if RawFrame::new(frame).is_some_and(|frame| frame.sender().component == AUTOPILOT) {
+                all.push((at, frame.to_vec()));
             }
         }
         Self(all)
     }
 
+    /// The frames of the vehicles' autopilots.
+    pub fn frames(self) -> Vec<(Duration, Vec<u8>)> {
+        let vehicle = |frame: &[u8]| RawFrame::new(frame).is_some_and(|frame| frame.sender().system < STATION);
+        self.0.into_iter().filter(|(_, frame)| vehicle(frame)).collect()
+    }
+
     /// What the autopilot of `system` said.
-    pub fn of(&self, system: u8) -> impl Iterator<Item = (Duration, &MavMessage)> {
-        self.0.iter().filter(move |(_, from, _)| *from == system).map(|(at, _, message)| (*at, message))
+    pub fn of(&self, system: u8) -> impl Iterator<Item = (Duration, MavMessage)> {
+        self.0.iter().filter_map(move |(at, frame)| {
+            let frame = RawFrame::new(frame).filter(|frame| frame.sender().system == system)?;
+            Some((*at, frame.message()?))
+        })
     }
 
     /// Feeds the messages of `system` into a state machine that is polled meanwhile; `look` sees it after each poll, with what it has sent.
@@ -82,7 +91,7 @@ impl Recording {
                 look(now, &offboard, &sent, &events);
                 now += STEP;
             }
-            offboard.hear(message, at);
+            offboard.hear(&message, at);
         }
     }
 }

@@ -1,3 +1,5 @@
+mod replayed;
+
 use super::*;
 use crate::Counts;
 use crate::geo::Global;

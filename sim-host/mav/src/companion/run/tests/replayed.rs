@@ -1,0 +1,103 @@
+//! Recorded flights of six rovers, heard by the whole loop: what the companions tell each other of a vehicle in trouble.
+
+use super::*;
+use crate::companion::replay::Recording;
+
+/// A machine whose time is that of a recording.
+struct Replay {
+    now: Duration,
+    frames: VecDeque<(Duration, Vec<u8>)>,
+}
+
+impl Machine for Replay {
+    fn now(&self) -> Duration {
+        self.now
+    }
+
+    fn pause(&mut self, time: Duration) {
+        self.now += time;
+    }
+
+    fn receive(&mut self, wait: Duration) -> Option<Received> {
+        let (at, _) = self.frames.front()?;
+        if *at > self.now + wait {
+            self.now += wait;
+            return None;
+        }
+        self.now = self.now.max(*at);
+        let (_, frame) = self.frames.pop_front()?;
+        // Vehicle n of the file is at line n - 1.
+        let line = usize::from(RawFrame::new(&frame)?.sender().system) - 1;
+        Some(Received { line, peer: Peer::Wire, frame })
+    }
+
+    fn send(&mut self, _: usize, _: Option<Peer>, _: &[u8]) {}
+
+    fn counts(&self, _: usize) -> Counts {
+        Counts::default()
+    }
+
+    fn hear_others(&mut self, _: &mut dyn FnMut(&[u8])) {}
+
+    fn tell_others(&mut self, _: &[u8]) {}
+
+    fn log(&mut self, _: &[u8]) -> Result<(), TlogError> {
+        Ok(())
+    }
+
+    fn close_log(&mut self) -> Result<(), TlogError> {
+        Ok(())
+    }
+
+    fn show(&mut self, _: &str) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn tell(&mut self, _: &str) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// What robot 1 knows of robot 3 at a time, seconds: its radius, metres; `None`: nothing.
+fn known_of_the_third(name: &str, until: f64) -> Option<Vec<(f64, Option<f32>)>> {
+    let recording = Recording::shared(name)?;
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../companions/six-rovers-crossing.toml");
+    let config = Config::load(&path).unwrap();
+    let options = Options { quiet: true, ..Options::default() };
+    let replay = Replay { now: Duration::ZERO, frames: recording.frames().into() };
+    let mut companions = Companions::new(&config, &options, None, None, Box::new(replay));
+    let mut known = Vec::new();
+    while companions.now().as_secs_f64() < until {
+        companions.turn();
+        known.push((companions.now().as_secs_f64(), companions.vehicles[0].controller.known_radius_m(3)));
+    }
+    companions.has_said_farewell = true;
+    Some(known)
+}
+
+mod needs_shared {
+    use super::*;
+
+    #[test]
+    fn others_are_told_that_a_vehicle_without_gps_may_be_elsewhere() {
+        let Some(known) = known_of_the_third("rovers-gps-lost", 55.0) else { return };
+        let at = |seconds: f64| {
+            let found = known.iter().find(|(at, _)| *at >= seconds).expect("so long");
+            f64::from(found.1.expect("it is heard throughout"))
+        };
+        assert_eq!(at(6.9), 1.0, "its body");
+        // From 7.03 s on, at 2 m/s, up to rules.error_m.
+        assert!((at(9.03) - 5.0).abs() < 0.5, "{}", at(9.03));
+        assert!((at(14.0) - 11.0).abs() < 1e-3 && (at(45.0) - 11.0).abs() < 1e-3, "{}", at(14.0));
+        assert_eq!(at(47.0), 1.0, "all was well for 5 s");
+    }
+
+    #[test]
+    fn others_never_lose_a_vehicle_whose_autopilot_restarts() {
+        let Some(known) = known_of_the_third("rovers-restart", 62.0) else { return };
+        let heard: Vec<_> = known.iter().filter(|(at, _)| *at > 2.0).collect();
+        assert!(heard.iter().all(|(_, radius)| radius.is_some()), "lost it");
+        let widest = heard.iter().filter_map(|(_, radius)| *radius).fold(0.0, f32::max);
+        assert!((widest - 11.0).abs() < 1e-3, "{widest}");
+    }
+}
