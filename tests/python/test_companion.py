@@ -261,6 +261,17 @@ def test_a_link_over_tcp_that_breaks_is_made_anew(tmp_path, free_port, staya):
         ends_well(process)
 
 
+def test_a_connection_that_is_refused_is_told(tmp_path, free_port, staya):
+    port = free_port()
+    write_scenario(tmp_path, [((0.0, 0.0), (40.0, 0.0))])
+    config = write_config(tmp_path, [port], "rover")
+    config.write_text(config.read_text().replace("udpin", "tcpout"))
+    process = staya("companion", config, "--seconds", "2")
+    assert process.wait() == 0
+    told = [line for line in process.output().splitlines() if "refused" in line and f"tcpout:127.0.0.1:{port}" in line]
+    assert len(told) == 2 and "no connection" in told[0], process.output()
+
+
 def test_a_wrong_origin_moves_nothing(tmp_path, free_port, staya):
     port = free_port()
     write_scenario(tmp_path, [((0.0, 0.0), (6.0, 0.0))])

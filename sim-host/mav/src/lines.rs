@@ -123,6 +123,14 @@ impl Lines {
     }
 }
 
+impl Lines {
+    /// Why line number `line` has no connection, when that was tried last; `None` for one that has, or needs none.
+    #[must_use]
+    pub fn trouble(&self, line: usize) -> Option<String> {
+        self.lines.get(line).and_then(|line| line.shared.tally.trouble())
+    }
+}
+
 impl Drop for Lines {
     fn drop(&mut self) {
         for line in &self.lines {

@@ -71,7 +71,7 @@ pub(super) fn connect(to: SocketAddr, shared: &Shared) -> (Box<dyn Outgoing>, Th
     let shared = shared.clone();
     let work = move || {
         while !shared.is_closed() {
-            if let Ok(socket) = TcpStream::connect_timeout(&to, PATIENCE) {
+            if let Ok(socket) = shared.tally.noting(TcpStream::connect_timeout(&to, PATIENCE)) {
                 converse_tcp(&socket, Peer::Address(to), &peers, &shared);
             }
             wait(RETRY, &shared);

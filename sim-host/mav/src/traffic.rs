@@ -1,10 +1,11 @@
 //! What goes over a line, whatever its kind: who is at the other end, frames that come in, counts of both ways.
 
 use staya_mavlink::frame::{Scan, scan};
+use std::io;
 use std::net::SocketAddr;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{SyncSender, TrySendError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 /// How often those who wait look whether they are still wanted.
@@ -59,6 +60,8 @@ pub(super) struct SharedCounts {
     junk_bytes: AtomicU64,
     lost_in: AtomicU64,
     lost_out: AtomicU64,
+    /// Why there was no connection when it was tried last.
+    trouble: Mutex<Option<String>>,
 }
 
 fn add(counter: &AtomicU64, n: usize) {
@@ -77,6 +80,17 @@ impl SharedCounts {
             lost_in: get(&self.lost_in),
             lost_out: get(&self.lost_out),
         }
+    }
+
+    /// Keeps why a connection cannot be had, until there is one.
+    pub(super) fn noting<T>(&self, tried: io::Result<T>) -> io::Result<T> {
+        *self.trouble.lock().unwrap_or_else(PoisonError::into_inner) = tried.as_ref().err().map(ToString::to_string);
+        tried
+    }
+
+    /// See [`Self::noting`].
+    pub(super) fn trouble(&self) -> Option<String> {
+        self.trouble.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     /// A frame was handed to the system, or not.

@@ -43,6 +43,8 @@ pub struct LineReport {
     /// What it carried.
     #[serde(flatten)]
     pub counts: Counts,
+    /// Why it has no connection; null: it has one, or needs none.
+    pub trouble: Option<String>,
     /// Frames refused for want of a signature that is right and new.
     pub refused: u32,
 }
@@ -96,10 +98,11 @@ impl fmt::Display for CompanionReport {
                 vehicle.packets_refused,
             )?;
         }
-        for LineReport { link, counts, refused } in &self.links {
+        for LineReport { link, counts, trouble, refused } in &self.links {
+            let trouble = trouble.as_ref().map_or_else(String::new, |why| format!("; no connection: {why}"));
             writeln!(
                 f,
-                "  {link}: {} frames in, {} out, {} bytes of junk, {} lost, {refused} refused",
+                "  {link}: {} frames in, {} out, {} bytes of junk, {} lost, {refused} refused{trouble}",
                 counts.frames_in,
                 counts.frames_out,
                 counts.junk_bytes,

@@ -32,6 +32,8 @@ const INBOX: usize = 16 * 1024;
 /// Setpoints to stand, and the time between them, at the end.
 const FAREWELLS: (u32, Duration) = (5, Duration::from_millis(40));
 
+/// Between two looks at whether lines are connected.
+const LOOK: Duration = Duration::from_secs(1);
 /// How old positions may be in a dry run at least.
 const SELDOM: Duration = Duration::from_secs(3);
 
@@ -92,6 +94,13 @@ struct Vehicle {
     refused: u64,
 }
 
+/// A line to autopilots.
+struct Link {
+    name: String,
+    /// Why it has no connection, as far as that was told.
+    trouble: Option<String>,
+}
+
 struct Companions<'a> {
     origin: Origin,
     reach_m: f64,
@@ -100,6 +109,9 @@ struct Companions<'a> {
     glance: Duration,
     is_tunnel: bool,
     machine: Box<dyn Machine>,
+    links: Vec<Link>,
+    /// When to look at them again.
+    next_look: Duration,
     vehicles: Vec<Vehicle>,
     /// One for each line, with a key for links.
     signing: Option<Vec<Signing>>,
@@ -208,6 +220,8 @@ impl<'a> Companions<'a> {
             glance: if is_lan { lan } else { else_ },
             is_tunnel: config.air == MediumSetup::Tunnel,
             machine,
+            links: config.lines.iter().map(|line| Link { name: line.to_string(), trouble: None }).collect(),
+            next_look: Duration::ZERO,
             vehicles: config.vehicles.iter().map(vehicle).collect(),
             signing,
             wire: AnyWire::new(format),
@@ -256,6 +270,7 @@ impl<'a> Companions<'a> {
                 vehicle.listen(frames);
             }
         });
+        self.look_at_links(now);
         for index in 0..self.vehicles.len() {
             self.step(index);
             self.poll(index);

@@ -158,3 +158,21 @@ fn taken_port_is_an_error_that_names_it() {
     let error = Lines::open(&[again]).err().expect("taken").to_string();
     assert!(error.starts_with(&format!("cannot open udpin:{address}: ")), "{error}");
 }
+
+#[test]
+fn a_connection_that_is_refused_is_known_until_there_is_one() {
+    let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = listener.local_addr().unwrap();
+    drop(listener);
+    let lines = Lines::open(&[Endpoint::TcpOut(address)]).unwrap();
+    let wait = |is_troubled: bool| {
+        (0..400).any(|_| {
+            std::thread::sleep(Duration::from_millis(10));
+            lines.trouble(0).is_some() == is_troubled
+        })
+    };
+    assert!(wait(true));
+    assert!(lines.trouble(0).unwrap().contains("refused"));
+    let _listener = std::net::TcpListener::bind(address).unwrap();
+    assert!(wait(false));
+}

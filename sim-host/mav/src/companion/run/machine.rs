@@ -22,6 +22,9 @@ pub trait Machine {
     /// What line number `line` has carried.
     fn counts(&self, line: usize) -> Counts;
 
+    /// Why line number `line` has no connection.
+    fn trouble(&self, line: usize) -> Option<String>;
+
     /// Gives `heard` what companions of other processes have said meanwhile.
     fn hear_others(&mut self, heard: &mut dyn FnMut(&[u8]));
 
@@ -83,6 +86,10 @@ impl Machine for Host {
 
     fn counts(&self, line: usize) -> Counts {
         self.lines.counts(line)
+    }
+
+    fn trouble(&self, line: usize) -> Option<String> {
+        self.lines.trouble(line)
     }
 
     fn hear_others(&mut self, heard: &mut dyn FnMut(&[u8])) {

@@ -1,6 +1,6 @@
 //! What a person is told: lines as things happen, and the figures at the end.
 
-use super::{Companions, Vehicle, shown};
+use super::{Companions, LOOK, Vehicle, shown};
 use crate::companion::config::Config;
 use crate::companion::offboard::{AUTOPILOT, State};
 use crate::companion::report::{CompanionReport, LineReport, VehicleReport};
@@ -40,6 +40,26 @@ impl Companions<'_> {
         let (at, robot) = (now.as_secs_f64(), vehicle.setup.robot.0);
         if let Some(words) = shown::words(message).filter(|_| self.output_error.is_none()) {
             self.output_error = self.machine.show(&format!("{at:9.3} robot {robot}: {words}")).err();
+        }
+    }
+
+    /// Says of links that have no connection why not, once for each reason.
+    pub(super) fn look_at_links(&mut self, now: Duration) {
+        if now < self.next_look {
+            return;
+        }
+        self.next_look = now + LOOK;
+        for index in 0..self.links.len() {
+            let trouble = self.machine.trouble(index);
+            let link = &mut self.links[index];
+            if trouble != link.trouble {
+                let line = match &trouble {
+                    Some(error) => format!("staya: {}: no connection: {error}; tries again and again", link.name),
+                    None => format!("staya: {}: connected", link.name),
+                };
+                link.trouble = trouble;
+                self.say(&line);
+            }
         }
     }
 
@@ -95,6 +115,7 @@ impl Companions<'_> {
         let links = links.map(|(line, endpoint)| LineReport {
             link: endpoint.to_string(),
             counts: self.machine.counts(line),
+            trouble: self.machine.trouble(line),
             refused: self
                 .signing
                 .as_ref()

@@ -180,6 +180,10 @@ impl Machine for Shared {
         Counts::default()
     }
 
+    fn trouble(&self, _: usize) -> Option<String> {
+        None
+    }
+
     fn hear_others(&mut self, heard: &mut dyn FnMut(&[u8])) {
         if !self.0.borrow_mut().fails(Call::HearOthers) {
             heard(&[]);

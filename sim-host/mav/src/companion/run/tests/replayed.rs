@@ -37,6 +37,10 @@ impl Machine for Replay {
         Counts::default()
     }
 
+    fn trouble(&self, _: usize) -> Option<String> {
+        None
+    }
+
     fn hear_others(&mut self, _: &mut dyn FnMut(&[u8])) {}
 
     fn tell_others(&mut self, _: &[u8]) {}
