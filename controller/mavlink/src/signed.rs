@@ -71,6 +71,7 @@ impl<const N: usize> Wire for Signed<N> {
             Verdict::RefusedUnsigned => Err(DecodeError::Unsigned),
             Verdict::Forged => Err(DecodeError::Forged),
             Verdict::Replayed => Err(DecodeError::Replayed),
+            Verdict::Ahead => Err(DecodeError::Ahead),
             Verdict::NoRoom => Err(DecodeError::NoRoom),
         }
     }

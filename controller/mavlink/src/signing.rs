@@ -11,6 +11,8 @@ use staya_controller::auth::{Freshness, Key, ReplayGuard, Sha256, is_same};
 pub const STREAMS: usize = 64;
 /// A minute of timestamps, which count tens of microseconds.
 pub const MINUTE: u64 = 6_000_000;
+/// Thirty days of timestamps.
+pub const MONTH: u64 = 30 * 24 * 60 * MINUTE;
 /// What begins with timestamp 0: the first second of 2015 (UTC), in seconds after that of 1970.
 pub const EPOCH_UNIX_S: u64 = 1_420_070_400;
 
@@ -57,6 +59,8 @@ pub enum Verdict {
     Forged,
     /// Signed with the key, but seen before or too old: to be dropped.
     Replayed,
+    /// Signed with the key, but of a time too far ahead: to be dropped. See [`Signing::with_lead`].
+    Ahead,
     /// From a sender that is not known and for whom there is no room: to be dropped.
     NoRoom,
 }
@@ -83,6 +87,8 @@ pub struct Counts {
     pub forged: u32,
     /// [`Verdict::Replayed`].
     pub replayed: u32,
+    /// [`Verdict::Ahead`].
+    pub ahead: u32,
     /// [`Verdict::NoRoom`].
     pub no_room: u32,
 }
@@ -91,7 +97,8 @@ impl Counts {
     /// Frames that were to be dropped.
     #[must_use]
     pub const fn refused(&self) -> u32 {
-        self.refused_unsigned.saturating_add(self.forged).saturating_add(self.replayed).saturating_add(self.no_room)
+        let of_key = self.replayed.saturating_add(self.ahead).saturating_add(self.no_room);
+        self.refused_unsigned.saturating_add(self.forged).saturating_add(of_key)
     }
 
     fn count(&mut self, verdict: Verdict) {
@@ -101,6 +108,7 @@ impl Counts {
             Verdict::RefusedUnsigned => &mut self.refused_unsigned,
             Verdict::Forged => &mut self.forged,
             Verdict::Replayed => &mut self.replayed,
+            Verdict::Ahead => &mut self.ahead,
             Verdict::NoRoom => &mut self.no_room,
         };
         *count = count.saturating_add(1);
@@ -112,12 +120,13 @@ impl Counts {
 /// # Timestamps
 ///
 /// Each signed frame has a timestamp, 10 us since 2015, greater than all before it of the same system, component and link id. It
-/// goes up by at least 1 per frame, and never falls behind what was received: so a swarm without clocks agrees on one.
+/// goes up by at least 1 per frame, and never falls behind what was accepted: so a swarm without clocks agrees on one.
 ///
 /// - **With a clock:** give the time to [`Self::new`], and from time to time (once a second will do) to [`Self::advance_to`].
-/// - **Without:** store [`Self::timestamp`] in lasting memory at least once a minute, and start with what is stored plus [`MINUTE`].
-///   A robot that starts with an older one is not heard (pymavlink, Staya and autopilots alike) until it has caught up, which it does with the first frame
-///   of somebody else that it accepts; robots that all forgot theirs hear each other, but not who still knows.
+/// - **Without:** the first timestamp comes with the key, as in MAVLink's SETUP_SIGNING. Store [`Self::timestamp`] in lasting memory at least once a
+///   minute, and start with what is stored plus [`MINUTE`]. A robot that starts with an older one is not heard (pymavlink, Staya and autopilots alike)
+///   until it has caught up, which it does with the first frame of somebody else that it accepts; robots that all forgot theirs hear each other, but
+///   not who still knows.
 ///
 /// # What is accepted
 ///
@@ -125,6 +134,15 @@ impl Counts {
 /// and not seen before: a counter's frames may overtake each other, as with [`ReplayGuard`]; with a clock 31 are a third of a millisecond. A stream's
 /// first frame must not be more than [`MINUTE`] older than the newest timestamp known. So after a restart with a proper timestamp at
 /// most the last minute can be replayed, and only of who has not been heard since. A full table refuses new streams.
+///
+/// # What is too far ahead
+///
+/// MAVLink's own rule has no bound upwards: whoever signs one frame with the last timestamp there is mutes all that hear it, since they have none
+/// left, and shuts its stream out; and whoever has recorded that frame does so again after each restart, without the key. So a frame is refused as
+/// [`Verdict::Ahead`], and leaves no trace, when it is more than [`MINUTE`] ahead of the clock, or, for who was never told the time, more than
+/// [`MONTH`] ahead of the own timestamp; [`Self::with_lead`] sets another bound. A robot without a clock that was off for longer than that, among others
+/// that have one, hears none of them until its owner tells it the time. To exhaust it takes a thousand frames, each a month ahead of the last, all signed
+/// with the key.
 ///
 /// The state that serde sees does not hold the key.
 #[derive(Clone, Debug, Serialize)]
@@ -134,6 +152,9 @@ pub struct Signing<const N: usize = STREAMS> {
     link: u8,
     /// Of the next frame.
     timestamp: u64,
+    /// What the clock showed last, if there is one.
+    clock: Option<u64>,
+    lead: Option<u64>,
     streams: ReplayGuard<N>,
     may_be_unsigned: &'static [u32],
     counts: Counts,
@@ -147,9 +168,19 @@ impl<const N: usize> Signing<N> {
             key,
             link,
             timestamp,
+            clock: None,
+            lead: None,
             streams: ReplayGuard::new(),
             may_be_unsigned: &[],
-            counts: Counts { authentic: 0, unsigned: 0, refused_unsigned: 0, forged: 0, replayed: 0, no_room: 0 },
+            counts: Counts {
+                authentic: 0,
+                unsigned: 0,
+                refused_unsigned: 0,
+                forged: 0,
+                replayed: 0,
+                ahead: 0,
+                no_room: 0,
+            },
         }
     }
 
@@ -161,17 +192,45 @@ impl<const N: usize> Signing<N> {
         self
     }
 
+    /// The same, but frames may be so far ahead of the clock, or without one of the own timestamp: tens of microseconds, by default [`MINUTE`] and
+    /// [`MONTH`]. A shorter lead refuses who has another time; a longer one lets who has the key, or a recording of his frames, take more of the
+    /// timestamps that are left.
+    #[must_use]
+    pub const fn with_lead(mut self, lead: u64) -> Self {
+        self.lead = Some(lead);
+        self
+    }
+
+    /// How many more frames can be signed at this timestamp. 0: [`SignError::Exhausted`].
+    #[must_use]
+    pub const fn left(&self) -> u64 {
+        (LAST_TIMESTAMP + 1).saturating_sub(self.timestamp)
+    }
+
     /// The timestamp of the next frame: what to store.
     #[must_use]
     pub const fn timestamp(&self) -> u64 {
         self.timestamp
     }
 
-    /// Says what time it is; an earlier one than known changes nothing.
-    pub const fn advance_to(&mut self, timestamp: u64) {
+    /// Says what time it is, for who has a clock; 0, the time of a clock that was never set, changes nothing. The timestamp never goes back.
+    pub const fn advance_to(&mut self, time: u64) {
+        if time > 0 {
+            self.clock = Some(time);
+            self.follow(time);
+        }
+    }
+
+    const fn follow(&mut self, timestamp: u64) {
         if timestamp > self.timestamp {
             self.timestamp = timestamp;
         }
+    }
+
+    /// The latest timestamp that is believed.
+    fn latest(&self) -> u64 {
+        let (base, lead) = self.clock.map_or((self.timestamp, MONTH), |clock| (clock, MINUTE));
+        base.saturating_add(self.lead.unwrap_or(lead))
     }
 
     /// How many frames were what so far.
@@ -231,6 +290,9 @@ impl<const N: usize> Signing<N> {
             return Verdict::Forged;
         }
         let timestamp = u64::from_le_bytes([a, b, c, d, e, f, 0, 0]);
+        if timestamp > self.latest() {
+            return Verdict::Ahead;
+        }
         let sender = frame.sender();
         let stream = u32::from_le_bytes([sender.system, sender.component, link, 0]);
         let is_old = timestamp.saturating_add(MINUTE) < self.timestamp;
@@ -239,7 +301,7 @@ impl<const N: usize> Signing<N> {
         }
         match self.streams.admit(stream, timestamp) {
             Freshness::New | Freshness::Late => {
-                self.advance_to(timestamp);
+                self.follow(timestamp);
                 Verdict::Authentic
             }
             Freshness::Replayed => Verdict::Replayed,

@@ -104,6 +104,9 @@ pub enum Event {
     /// again when that one is found again after it was lost. What such robots do: the second one is kept clear of as
     /// [`RobotId::double`], and by that number it is lost.
     DuplicateId(RobotId),
+    /// The robot says nothing any more: its format has no counter or timestamp left to authenticate frames with
+    /// ([`EncodeError::Exhausted`](crate::wire::EncodeError)). Said for each beacon that was due; a new key ends it.
+    Muted,
 }
 
 /// Frames that were refused for who may have said them and when, by a format that authenticates them: [`Sealed`](crate::wire::Sealed) or MAVLink's
@@ -115,7 +118,7 @@ pub struct Refused {
     pub unsigned: u16,
     /// With one of another key, or of another content.
     pub forged: u16,
-    /// Recorded, or repeated by the radio.
+    /// Recorded, repeated by the radio, or of a time too far ahead.
     pub replayed: u16,
     /// Of senders for whom there is no room.
     pub no_room: u16,
@@ -127,7 +130,7 @@ impl Refused {
         let count = match error {
             DecodeError::Unsigned => &mut self.unsigned,
             DecodeError::Forged => &mut self.forged,
-            DecodeError::Replayed => &mut self.replayed,
+            DecodeError::Replayed | DecodeError::Ahead => &mut self.replayed,
             DecodeError::NoRoom => &mut self.no_room,
             _ => return,
         };

@@ -11,8 +11,8 @@ use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 use crate::wire::{
-    Arrival, Beacon, DecodeError, Due, Frame, Header, Message, Newest, Orders, Request, RequestKind, Requests, Retry,
-    SequenceWindow, TemplateAssignment, Wire,
+    Arrival, Beacon, DecodeError, Due, EncodeError, Frame, Header, Message, Newest, Orders, Request, RequestKind,
+    Requests, Retry, SequenceWindow, TemplateAssignment, Wire,
 };
 use heapless::Vec;
 use serde::Serialize;
@@ -371,7 +371,9 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
         if !self.has_sent || now.has_reached(self.beacon_due, period) {
             let beacon = Message::Beacon(beacon());
             self.said.note(self.header.sequence, &beacon);
-            self.say(&beacon, 0, out);
+            if self.say(&beacon, 0, out) == Err(EncodeError::Exhausted) {
+                report(out, Event::Muted);
+            }
             self.has_sent = true;
             self.beacon_due = now + period;
         }
@@ -383,21 +385,20 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
 
     /// Appends a frame to the outbox if a beacon still fits behind it.
     fn say_early(&mut self, message: &Message, out: &mut Outputs<S>) {
-        self.say(message, self.wire.beacon_len(), out);
+        // What finds no room is asked for again.
+        let _ = self.say(message, self.wire.beacon_len(), out);
     }
 
     /// Appends a frame to the outbox if `reserved` bytes stay free behind it.
-    fn say(&mut self, message: &Message, reserved: usize, out: &mut Outputs<S>) {
+    fn say(&mut self, message: &Message, reserved: usize, out: &mut Outputs<S>) -> Result<(), EncodeError> {
         let before = out.outbox.len();
-        let said = self.wire.encode(self.header, message, &mut out.outbox);
-        if said.is_err() {
-            return;
-        }
+        self.wire.encode(self.header, message, &mut out.outbox)?;
         if out.outbox.len() + reserved > OUTBOX {
             out.outbox.truncate(before);
-        } else {
-            self.header.sequence = self.header.sequence.wrapping_add(1);
+            return Err(EncodeError::Full);
         }
+        self.header.sequence = self.header.sequence.wrapping_add(1);
+        Ok(())
     }
 }
 

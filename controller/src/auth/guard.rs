@@ -114,6 +114,19 @@ impl<const N: usize> ReplayGuard<N> {
         self.floor = floor;
     }
 
+    /// What [`Self::set_floor`] set; 0 before.
+    #[must_use]
+    pub const fn floor(&self) -> u64 {
+        self.floor
+    }
+
+    /// A sender's newest counter, accepted or imported; `None` for one who is not known. O(log N).
+    #[must_use]
+    pub fn newest(&self, sender: u32) -> Option<u64> {
+        let at = self.find(sender).ok()?;
+        Some(self.peers.get(at)?.newest)
+    }
+
     /// Whether frames of this sender were accepted or imported.
     #[must_use]
     pub fn knows(&self, sender: u32) -> bool {

@@ -199,6 +199,8 @@ pub enum DecodeError {
     Forged,
     /// Authentic, but recorded: seen before, or older than what was.
     Replayed,
+    /// Authentic, but its counter or timestamp is too far ahead to be true.
+    Ahead,
     /// Authentic, but there is no room to remember its sender, see [`ReplayGuard`](crate::auth::ReplayGuard).
     NoRoom,
     /// Sound, but no header and message that this code knows.
@@ -226,6 +228,7 @@ impl fmt::Display for DecodeError {
             Self::Unsigned => "the frame has no tag or signature; give its sender the key",
             Self::Forged => "the frame's tag or signature is not of this key",
             Self::Replayed => "the frame was recorded: seen before, or older than what was",
+            Self::Ahead => "the frame is authentic, but of a time too far ahead",
             Self::NoRoom => "the frame is authentic, but there is no room to remember its sender",
             Self::Body => "the frame is sound, but has no header and message that are known",
             Self::Trailing => "bytes follow the message in the frame",

@@ -26,7 +26,7 @@ pub use newest::Newest;
 pub use orders::{Answer, Orders};
 pub use requests::{AskError, Due, Requests, Retry};
 #[cfg(feature = "auth")]
-pub use sealed::{PEERS, Sealed};
+pub use sealed::{PEERS, REACH_STARTS, Sealed};
 pub use sequence::{Arrival, SEQUENCE_SPAN, SequenceWindow};
 
 #[cfg(test)]

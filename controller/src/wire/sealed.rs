@@ -3,6 +3,7 @@
 use super::frame::{decode_verified, encode_tagged};
 use super::{Beacon, DecodeError, EncodeError, Frame, Header, Message, Postcard, TAG_LEN, Wire};
 use crate::auth::{Freshness, Key, Mac, ReplayGuard, is_same};
+use crate::robot::RobotId;
 use heapless::Vec;
 use serde::Serialize;
 
@@ -12,6 +13,8 @@ pub const PEERS: usize = 64;
 /// How often the sequence may wrap within one start, as a power of two: 268 million frames, a month at 100 frames a second.
 const WRAP_BITS: u32 = 12;
 const EPOCH_LEN: usize = 4;
+/// How many starts a sender may be ahead of those known of it: see [`Sealed`].
+pub const REACH_STARTS: u32 = 1024;
 
 /// [`Postcard`]'s frames with a tag, and with protection against replays.
 ///
@@ -25,10 +28,18 @@ const EPOCH_LEN: usize = 4;
 ///
 /// Whoever does not have the key can neither make a frame nor change one: a code that is guessed is right once in 2^32 tries. On a radio that takes 500 frames
 /// per second, one forged frame passes per 99 days of nothing but guessing. It would count for one beacon, or one order, and
-/// could shut its true sender out until that one's next start. Who wants less than that takes MAVLink's signatures (48 bits).
+/// could shut its true sender out, as below. Who wants less than that takes MAVLink's signatures (48 bits).
 /// A recorded frame is refused because its counter, epoch and sequence together, was seen before: see [`ReplayGuard`].
 /// All robots share the key: one that is taken with its key can speak for all others. Nothing is secret: frames can be read. Noise
 /// on the band, and frames held back for less than a neighbour's age, are beyond any code.
+///
+/// # What is too far ahead
+///
+/// A frame with a later counter than its sender's shuts that sender out, with who hears it and as long as that one remembers; who has recorded it can do so
+/// again after each restart, without the key. So a frame is refused, and leaves no trace, that is more than [`REACH_STARTS`] starts ahead of the latest
+/// of: its sender's last frame, the own start, and [`Self::refuse_before`]. What is left: who has the key can shut a sender out for up to that many of its
+/// starts. Give the sender a number of starts that is greater by [`REACH_STARTS`], and a recording of such frames is worth nothing any more. A robot that is
+/// started more often than that by itself is not heard by the others, nor they by it, until their numbers are brought together again.
 ///
 /// # The rule for who starts a robot
 ///
@@ -76,6 +87,12 @@ impl<const N: usize> Sealed<N> {
     /// The same, to be filled with what was stored.
     pub const fn guard_mut(&mut self) -> &mut ReplayGuard<N> {
         &mut self.guard
+    }
+
+    /// The latest counter that is believed of a sender.
+    fn latest(&self, sender: RobotId) -> u64 {
+        let known = self.guard.newest(sender.0).unwrap_or(self.guard.floor());
+        known.max(counter(self.epoch, 0)).saturating_add(counter(REACH_STARTS << WRAP_BITS, 0))
     }
 
     /// The first bytes of the code.
@@ -131,7 +148,11 @@ impl<const N: usize> Wire for Sealed<N> {
             if is_same(&self.code(content, bytes), &code) { Ok(()) } else { Err(DecodeError::Forged) }
         })?;
         let Header { sender, sequence, .. } = frame.header;
-        match self.guard.admit(sender.0, counter(epoch, sequence)) {
+        let counted = counter(epoch, sequence);
+        if counted > self.latest(sender) {
+            return Err(DecodeError::Ahead);
+        }
+        match self.guard.admit(sender.0, counted) {
             Freshness::New | Freshness::Late => Ok(frame),
             Freshness::Replayed => Err(DecodeError::Replayed),
             Freshness::NoRoom => Err(DecodeError::NoRoom),

@@ -49,7 +49,7 @@ fn judged<const N: usize>(by: &mut Signing<N>, frame: &[u8]) -> Verdict {
 #[test]
 fn frames_signed_here_are_those_of_pymavlink() {
     let mut sender = Signing::<4>::new(key(), 3, NOW);
-    let mut receiver = Signing::<4>::new(key(), 0, 0);
+    let mut receiver = Signing::<4>::new(key(), 0, NOW - MINUTE);
     let mut stranger = Signing::<4>::new(Key::of_passphrase(b"another"), 0, 0);
     let mut count = 0;
     for (name, want) in golden() {
@@ -95,7 +95,9 @@ fn what_is_no_plain_frame_is_not_signed() {
 #[test]
 fn timestamps_end() {
     let mut signing = Signing::<1>::new(key(), 0, LAST_TIMESTAMP);
+    assert_eq!(signing.left(), 1);
     assert!(signing.sign(&mut heartbeat(1, 0)).is_ok());
+    assert_eq!(signing.left(), 0);
     let mut frame = heartbeat(1, 1);
     assert_eq!(signing.sign(&mut frame), Err(SignError::Exhausted));
     assert_eq!(frame, heartbeat(1, 1));
@@ -125,7 +127,7 @@ fn a_new_stream_is_at_most_a_minute_old() {
 
 #[test]
 fn timestamps_catch_up_with_those_received() {
-    let (mut old, mut young) = (Signing::<2>::new(key(), 0, NOW), Signing::<2>::new(key(), 0, 1));
+    let (mut old, mut young) = (Signing::<2>::new(key(), 0, NOW), Signing::<2>::new(key(), 0, NOW - MONTH));
     let refused = signed(&mut young, &heartbeat(2, 0));
     assert_eq!(judged(&mut old, &refused), Verdict::Replayed);
     let heard = signed(&mut old, &heartbeat(1, 0));
@@ -174,6 +176,58 @@ fn the_state_does_not_hold_the_key() {
     let of = |key| staya_controller::digest::digest(&Signing::<2>::new(key, 1, 2));
     assert_eq!(of(key()), of(Key::of_passphrase(b"another")));
     assert_ne!(of(key()), staya_controller::digest::digest(&Signing::<2>::new(key(), 1, 3)));
+}
+
+/// The attack: one frame with the last timestamp, made by who has the key, recorded, and sent again after each restart by who does not have it.
+#[test]
+fn a_frame_of_the_far_future_mutes_nobody_and_shuts_nobody_out() {
+    let evil = signed(&mut Signing::<1>::new(key(), 0, LAST_TIMESTAMP), &heartbeat(7, 0));
+    for clock in [None, Some(NOW)] {
+        for _ in 0..3 {
+            let mut receiver = Signing::<2>::new(key(), 0, NOW);
+            clock.map(|now| receiver.advance_to(now));
+            let mut true_sender = Signing::<1>::new(key(), 0, NOW);
+            for n in 0..3 {
+                assert_eq!(judged(&mut receiver, &evil), Verdict::Ahead);
+                assert!(receiver.sign(&mut heartbeat(1, n)).is_ok());
+                let heard = signed(&mut true_sender, &heartbeat(7, n));
+                assert_eq!(judged(&mut receiver, &heard), Verdict::Authentic);
+            }
+            assert_eq!((receiver.counts().ahead, receiver.counts().refused()), (3, 3));
+            assert!(receiver.timestamp() < NOW + 10);
+        }
+    }
+}
+
+#[test]
+fn the_lead_is_a_minute_on_the_clock_a_month_without_one_or_as_set() {
+    let with = |clock: Option<u64>, lead: Option<u64>| {
+        let mut receiver = Signing::<2>::new(key(), 0, NOW);
+        clock.map(|clock| receiver.advance_to(clock));
+        match lead {
+            Some(lead) => receiver.with_lead(lead),
+            None => receiver,
+        }
+    };
+    // A clock that was never set is none; one that was put back counts as it is.
+    for (clock, lead, last) in [
+        (None, None, NOW + MONTH),
+        (Some(0), None, NOW + MONTH),
+        (Some(NOW), None, NOW + MINUTE),
+        (Some(NOW + 5), None, NOW + 5 + MINUTE),
+        (Some(NOW - MINUTE), None, NOW),
+        (None, Some(7), NOW + 7),
+        (Some(NOW), Some(7), NOW + 7),
+        (None, Some(u64::MAX), LAST_TIMESTAMP),
+    ] {
+        let said = |timestamp| signed(&mut Signing::<1>::new(key(), 0, timestamp), &heartbeat(1, 0));
+        let mut receiver = with(clock, lead);
+        assert_eq!(judged(&mut receiver, &said(last)), Verdict::Authentic, "{clock:?} {lead:?}");
+        assert_eq!(receiver.timestamp(), last);
+        if last < LAST_TIMESTAMP {
+            assert_eq!(judged(&mut with(clock, lead), &said(last + 1)), Verdict::Ahead, "{clock:?} {lead:?}");
+        }
+    }
 }
 
 proptest! {

@@ -54,3 +54,24 @@ fn only_fresh_frames_of_who_has_the_key_are_obeyed_and_the_others_are_counted() 
     assert_eq!(listener.decode(beacon).unwrap().header.sender, RobotId(1));
     assert!(wire(b"guessed").decode(beacon).is_err());
 }
+
+#[test]
+fn a_robot_that_has_no_counter_left_says_so_and_goes_on() {
+    let guidance = RouteGuidance::new(RouteParams::default());
+    let mut wire = wire(b"swarm");
+    // 4095 wraps of the sequence: 268 million frames later.
+    let mut out = heapless::Vec::<u8, 64>::new();
+    for _ in 0..1 << 12 {
+        for sequence in [0, 1] {
+            out.clear();
+            let header = Header { boot: 0, sender: RobotId(1), sequence };
+            let _ = wire.encode(header, &goal(1), &mut out);
+        }
+    }
+    let mut agent = SealedAgent::new(&config(1), guidance, Unguarded, wire);
+    let mut ws = workspace();
+    let friend = said(&mut Sealed::<4>::at_start(&Key::of_passphrase(b"swarm"), 0).unwrap(), 0, &goal(20));
+    let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &friend), tick(0), &mut ws);
+    assert!(out.outbox.is_empty() && out.events.contains(&Event::Muted), "{:?}", out.events);
+    assert_eq!((out.received, agent.target()), (1, Some(Cell::new(20, 5))));
+}

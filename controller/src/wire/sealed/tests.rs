@@ -201,6 +201,51 @@ fn a_full_table_refuses_new_senders_and_an_attacker_cannot_fill_it() {
     assert!(receiver.decode(&said(&mut sealed(0), header(2, 1))).is_ok());
 }
 
+/// A frame of any epoch, as who has the key can make it.
+fn said_in(epoch: u32, header: Header) -> StdVec<u8> {
+    let mut by = sealed(0);
+    by.epoch = epoch;
+    said(&mut by, header)
+}
+
+/// The attack: one frame of the last epoch, recorded, and sent again after each start of the receiver.
+#[test]
+fn a_frame_of_the_last_epoch_shuts_nobody_out() {
+    let evil = said_in(u32::MAX, header(1, u16::MAX));
+    for starts in 0..3 {
+        let mut receiver = sealed(starts);
+        let mut sender = sealed(2);
+        for n in 0..3 {
+            assert_eq!(receiver.decode(&evil), Err(DecodeError::Ahead));
+            assert!(receiver.decode(&said(&mut sender, header(1, n))).is_ok());
+        }
+        // Nor is its sender's next life.
+        assert!(receiver.decode(&said(&mut sealed(3), header(1, 0))).is_ok());
+    }
+}
+
+#[test]
+fn senders_are_believed_a_reach_ahead_of_themselves_of_the_listener_or_of_the_mission() {
+    let last = |starts: u32| said_in((starts + REACH_STARTS) << WRAP_BITS, header(1, 0));
+    let beyond = |starts: u32| said_in((starts + REACH_STARTS) << WRAP_BITS, header(1, 1));
+    let mut stranger = sealed(5);
+    assert_eq!(stranger.decode(&beyond(5)), Err(DecodeError::Ahead));
+    assert!(stranger.decode(&last(5)).is_ok());
+    let mut mission = sealed(5);
+    mission.refuse_before(900);
+    assert_eq!(mission.decode(&beyond(900)), Err(DecodeError::Ahead));
+    assert!(mission.decode(&last(900)).is_ok());
+    let mut known = sealed(5);
+    assert!(known.decode(&said(&mut sealed(700), header(1, 0))).is_ok());
+    assert_eq!(known.decode(&beyond(700)), Err(DecodeError::Ahead));
+    assert!(known.decode(&last(700)).is_ok());
+    // The owner's remedy for who was shut out.
+    assert!(known.decode(&said(&mut sealed(701 + REACH_STARTS), header(1, 0))).is_ok());
+    // The last start there is has no beyond.
+    let mut end = sealed((1 << 20) - 1);
+    assert!(end.decode(&said_in(u32::MAX, header(1, 0))).is_ok());
+}
+
 #[test]
 fn the_state_does_not_hold_the_key() {
     let of = |key: &Key| digest(&Sealed::<4>::at_start(key, 1));
@@ -215,7 +260,7 @@ fn summed(body: &[u8]) -> StdVec<u8> {
 
 proptest! {
     #[test]
-    fn any_flipped_bit_is_refused(bit in 0_usize..8 * 64, starts in 0_u32..1 << 20) {
+    fn any_flipped_bit_is_refused(bit in 0_usize..8 * 64, starts in 0_u32..REACH_STARTS) {
         let frame = said(&mut sealed(starts), header(12, 0x0102));
         let mut content = unstuffed(&frame);
         content.truncate(content.len() - 2);
