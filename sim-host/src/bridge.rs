@@ -45,7 +45,10 @@ pub struct BridgeArgs {
     /// Sign what is sent, and refuse what is not signed with this key: a file with 64 hex digits, or "passphrase: WORDS".
     #[arg(long, value_name = "FILE")]
     key: Option<PathBuf>,
-    /// Write all frames to a log that MAVExplorer and mavlogdump read.
+    /// With a key: refuse frames whose timestamp is more than this many seconds ahead of the clock.
+    #[arg(long, value_name = "S", default_value_t = 60.0, requires = "key", value_parser = lead)]
+    lead: f64,
+    /// Write what is sent and what is believed to a log that MAVExplorer and mavlogdump read.
     #[arg(long, value_name = "FILE")]
     tlog: Option<PathBuf>,
     /// Seed of all random numbers, instead of the scenario's.
@@ -69,6 +72,10 @@ fn seconds(text: &str) -> Result<f64, String> {
 
 fn rate(text: &str) -> Result<f64, String> {
     within(text, 0.1, 1000.0)
+}
+
+fn lead(text: &str) -> Result<f64, String> {
+    within(text, 0.1, 1e8)
 }
 
 fn origin(text: &str) -> Result<Origin, String> {
@@ -117,7 +124,8 @@ impl BridgeArgs {
             Some(path) => {
                 let file = KeyFile::read(path)?;
                 say(file.remark.as_deref());
-                Some(Signing::new(file.key, 0, timestamp()))
+                // Timestamps count tens of microseconds.
+                Some(Signing::new(file.key, 0, timestamp()).with_lead((self.lead * 1e5) as u64))
             }
             None => None,
         };
@@ -182,10 +190,8 @@ fn table(name: &str, report: &BridgeReport) -> Result<String, std::fmt::Error> {
         "simulated",
         format!("{} s in {} ticks, {:.1} s on the wall", report.sim_seconds, report.ticks, report.wall_seconds),
     )?;
-    line(
-        "deadlines",
-        format!("{} of {} missed, slowest tick {:.4} s", report.deadlines_missed, report.ticks, report.slowest_seconds),
-    )?;
+    let (missed, ticks, slowest) = (report.deadlines_missed, report.ticks, report.slowest_seconds);
+    line("deadlines", format!("{missed} missed in {ticks} ticks, {slowest:.4} s at most until one was done"))?;
     let commands = report.commands.iter();
     let commands: Vec<_> = commands.map(|(result, count)| format!("{count} {result}")).collect();
     let commands = match commands.is_empty() {
@@ -195,8 +201,14 @@ fn table(name: &str, report: &BridgeReport) -> Result<String, std::fmt::Error> {
     line("commands", commands)?;
     line(
         "frames dropped",
-        format!("{} for nobody here, {} without a good signature", report.frames_ignored, report.frames_refused),
+        format!(
+            "{} for nobody here, {} without a good signature, {} of these from too far ahead",
+            report.frames_ignored, report.frames_refused, report.frames_ahead
+        ),
     )?;
+    if report.is_exhausted {
+        line("signing", String::from("no timestamp is left, nothing is obeyed: give the swarm a new key"))?;
+    }
     line("collisions", report.collisions.to_string())?;
     line("trace hash", report.trace_hash.clone())?;
     writeln!(

@@ -10,11 +10,11 @@ use std::str::FromStr;
 pub enum Endpoint {
     /// `udpout:HOST:PORT`: datagrams to this address; answers come back to the port they were sent from.
     UdpOut(SocketAddr),
-    /// `udpin:HOST:PORT`: datagrams at this address; everybody who was heard is answered.
+    /// `udpin:HOST:PORT`: datagrams at this address; up to 16 who were heard, and believed, are answered.
     UdpIn(SocketAddr),
     /// `tcpout:HOST:PORT`: a connection to this address, made anew when it ends.
     TcpOut(SocketAddr),
-    /// `tcpin:HOST:PORT`: connections at this address, any number.
+    /// `tcpin:HOST:PORT`: connections at this address, up to 32.
     TcpIn(SocketAddr),
     /// `serial:PORT[,baud=N]`.
     Serial(SerialPort),

@@ -8,6 +8,7 @@ pub mod bridge;
 pub mod companion;
 mod endpoint;
 pub mod geo;
+mod inbox;
 mod lines;
 mod stream;
 mod tlog;

@@ -1,18 +1,16 @@
 //! Several lines, one queue of frames.
 
 use super::endpoint::Endpoint;
+use super::inbox::Inbox;
 use super::traffic::{Counts, Outgoing, Peer, Received, Shared};
 use super::{stream, udp};
 use std::io;
 use std::net::SocketAddr;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// Frames that wait for [`Lines::receive`] at most; more are lost and counted.
-const INBOX: usize = 16_384;
 /// Why there is no line.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot open {endpoint}: {source}")]
@@ -31,9 +29,12 @@ struct Line {
 }
 
 /// Open lines. Nothing here waits for a slow or absent peer: what cannot be sent is lost and counted, as on a radio. Closed when dropped.
+///
+/// Who calls a line that listens is nobody until its owner says [`Self::believe`]: a datagram's sender is not told anything before, and one at a
+/// connection is the first to go when there are too many. Each peer that is believed has a queue of its own, and all are served in turn.
 pub struct Lines {
     lines: Vec<Line>,
-    inbox: Receiver<Received>,
+    inbox: Arc<Inbox>,
 }
 
 impl Lines {
@@ -42,14 +43,14 @@ impl Lines {
     /// # Errors
     /// The first one that cannot be opened. An absent peer is no error.
     pub fn open(endpoints: &[Endpoint]) -> Result<Self, OpenError> {
-        let (sender, inbox) = sync_channel(INBOX);
-        let mut lines = Self { lines: Vec::new(), inbox };
+        let inbox = Arc::<Inbox>::default();
+        let mut lines = Self { lines: Vec::new(), inbox: Arc::clone(&inbox) };
         for (line, endpoint) in endpoints.iter().enumerate() {
-            let shared = Shared { line, inbox: sender.clone(), tally: Arc::default(), closed: Arc::default() };
+            let shared = Shared { line, inbox: Arc::clone(&inbox), tally: Arc::default(), closed: Arc::default() };
             let opened = match endpoint {
                 Endpoint::UdpOut(address) => udp::open_out(*address, &shared),
                 Endpoint::UdpIn(address) => udp::open_in(*address, &shared),
-                Endpoint::TcpOut(address) => Ok(stream::connect(*address, &shared)),
+                Endpoint::TcpOut(address) => stream::connect(*address, &shared),
                 Endpoint::TcpIn(address) => stream::listen(*address, &shared),
                 Endpoint::Serial(port) => stream::serial(port, &shared),
             };
@@ -101,18 +102,24 @@ impl Lines {
         }
     }
 
-    /// The next frame that came in over any line, in order of arrival; `None` when there is none for so long.
+    /// Says that a frame of this peer was sound, and with a key authentic: from now on, and as long as more of them come, it is one of those whom
+    /// [`Self::send`] reaches.
+    pub fn believe(&self, line: usize, peer: Peer) {
+        if let Some(line) = self.lines.get(line) {
+            line.outgoing.believe(peer);
+        }
+    }
+
+    /// The next frame that came in over any line, each peer in turn; `None` when there is none for so long.
     #[must_use]
     pub fn receive(&self, timeout: Duration) -> Option<Received> {
-        match self.inbox.recv_timeout(timeout) {
-            Ok(received) => Some(received),
-            Err(RecvTimeoutError::Timeout) => None,
-            // No line: nothing will come.
-            Err(RecvTimeoutError::Disconnected) => {
-                std::thread::sleep(timeout);
-                None
-            }
-        }
+        self.inbox.next(timeout)
+    }
+
+    /// Says how many messages the last frame of [`Self::receive`] was answered with. Whoever has had a thousand more than a thousand a second is not
+    /// served until they are made up for; its frames wait, and are lost when its queue is full.
+    pub fn charge(&self, answers: usize) {
+        self.inbox.charge(answers);
     }
 
     /// What line number `line` has carried.

@@ -4,12 +4,18 @@ use super::traffic::{GLANCE, Outgoing, Peer, Shared};
 use staya_serial::SerialPort;
 use std::collections::HashMap;
 use std::io::{self, ErrorKind, Read, Write};
-use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
+/// Connections to a port that listens, at most.
+pub(super) const CONNECTIONS: usize = 32;
+/// A connection over which nothing sound came for so long is ended.
+const IDLE: Duration = Duration::from_secs(60);
+/// Who was silent for so long makes room for another one.
+const YIELD: Duration = Duration::from_secs(5);
 /// Frames that wait for a slow peer at most.
 const QUEUE: usize = 1024;
 /// How long until a connection that ended is tried again.
@@ -24,11 +30,63 @@ type Opened = io::Result<(Box<dyn Outgoing>, Threads)>;
 
 /// Who is connected.
 #[derive(Clone, Default)]
-struct Peers(Arc<Mutex<HashMap<Peer, SyncSender<Vec<u8>>>>>);
+struct Peers(Arc<Mutex<HashMap<Peer, Connected>>>);
+
+/// One of them.
+struct Connected {
+    queue: SyncSender<Vec<u8>>,
+    /// When it was believed last, or since when it is there.
+    heard: Instant,
+    is_believed: bool,
+    /// To end it.
+    socket: Option<TcpStream>,
+}
+
+impl Connected {
+    fn end(&self) {
+        if let Some(socket) = &self.socket {
+            // The other side may have gone already.
+            let _ = socket.shutdown(Shutdown::Both);
+        }
+    }
+}
 
 impl Peers {
-    fn with<T>(&self, work: impl FnOnce(&mut HashMap<Peer, SyncSender<Vec<u8>>>) -> T) -> T {
+    fn with<T>(&self, work: impl FnOnce(&mut HashMap<Peer, Connected>) -> T) -> T {
         work(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// Takes somebody in; what is to be written to him comes out.
+    fn join(&self, peer: Peer, socket: Option<TcpStream>) -> Receiver<Vec<u8>> {
+        let (queue, frames) = sync_channel(QUEUE);
+        let connected = Connected { queue, heard: Instant::now(), is_believed: false, socket };
+        self.with(|peers| peers.insert(peer, connected));
+        frames
+    }
+
+    /// Ends connections that were idle for too long.
+    fn end_idle(&self, now: Instant) {
+        self.with(|peers| {
+            let idle = |peer: &Connected| now.saturating_duration_since(peer.heard) >= IDLE;
+            peers.values().filter(|peer| idle(peer)).for_each(Connected::end);
+        });
+    }
+
+    /// Makes room for one more, if need be by ending a connection: of those that were never believed the oldest, otherwise the one that was silent
+    /// longest, if that is long. Whether there is room.
+    fn make_room(&self, now: Instant) -> bool {
+        self.with(|peers| {
+            if peers.len() < CONNECTIONS {
+                return true;
+            }
+            let first = peers.iter().min_by_key(|(_, peer)| (peer.is_believed, peer.heard));
+            let first =
+                first.filter(|(_, peer)| !peer.is_believed || now.saturating_duration_since(peer.heard) >= YIELD);
+            let Some(first) = first.map(|(first, _)| *first) else {
+                return false;
+            };
+            peers.remove(&first).inspect(Connected::end).is_some()
+        })
     }
 }
 
@@ -41,8 +99,8 @@ struct Stream {
 impl Outgoing for Stream {
     fn send(&self, frame: &[u8]) {
         self.peers.with(|peers| {
-            for queue in peers.values() {
-                if queue.try_send(frame.to_vec()).is_err() {
+            for peer in peers.values() {
+                if peer.queue.try_send(frame.to_vec()).is_err() {
                     self.shared.tally.sent(frame, false);
                 }
             }
@@ -51,12 +109,20 @@ impl Outgoing for Stream {
 
     fn send_to(&self, peer: Peer, frame: &[u8]) {
         let is_queued = self.peers.with(|peers| {
-            let queue = peers.get(&peer);
-            queue.is_some_and(|queue| queue.try_send(frame.to_vec()).is_ok())
+            let peer = peers.get(&peer);
+            peer.is_some_and(|peer| peer.queue.try_send(frame.to_vec()).is_ok())
         });
         if !is_queued {
             self.shared.tally.sent(frame, false);
         }
+    }
+
+    fn believe(&self, peer: Peer) {
+        self.peers.with(|peers| {
+            if let Some(peer) = peers.get_mut(&peer) {
+                (peer.heard, peer.is_believed) = (Instant::now(), true);
+            }
+        });
     }
 
     fn local(&self) -> Option<SocketAddr> {
@@ -65,19 +131,20 @@ impl Outgoing for Stream {
 }
 
 /// A connection to an address, again and again.
-pub(super) fn connect(to: SocketAddr, shared: &Shared) -> (Box<dyn Outgoing>, Threads) {
+pub(super) fn connect(to: SocketAddr, shared: &Shared) -> Opened {
     let peers = Peers::default();
     let stream = Stream { peers: peers.clone(), local: None, shared: shared.clone() };
     let shared = shared.clone();
     let work = move || {
         while !shared.is_closed() {
             if let Ok(socket) = shared.tally.noting(TcpStream::connect_timeout(&to, PATIENCE)) {
-                converse_tcp(&socket, Peer::Address(to), &peers, &shared);
+                let frames = peers.join(Peer::Address(to), None);
+                converse_tcp(&socket, Peer::Address(to), frames, &peers, &shared);
             }
             wait(RETRY, &shared);
         }
     };
-    (Box::new(stream), vec![thread::spawn(work)])
+    Ok((Box::new(stream), vec![start("tcp", work)?]))
 }
 
 /// Connections at an address.
@@ -91,21 +158,37 @@ pub(super) fn listen(at: SocketAddr, shared: &Shared) -> Opened {
         let mut threads = Threads::new();
         while !shared.is_closed() {
             threads.retain(|thread| !thread.is_finished());
-            match listener.accept() {
-                Ok((socket, from)) => {
-                    let (peers, shared) = (peers.clone(), shared.clone());
-                    threads.push(thread::spawn(move || {
-                        converse_tcp(&socket, Peer::Address(from), &peers, &shared);
-                    }));
-                }
-                Err(_) => thread::sleep(GLANCE),
+            let now = Instant::now();
+            peers.end_idle(now);
+            // Those that were ended need a moment; callers wait in the system's queue for so long.
+            let accepted = if threads.len() < 2 * CONNECTIONS { listener.accept().ok() } else { None };
+            let Some((socket, from)) = accepted else {
+                thread::sleep(GLANCE);
+                continue;
+            };
+            if !peers.make_room(now) {
+                continue;
+            }
+            let (peer, Ok(end)) = (Peer::Address(from), socket.try_clone()) else {
+                continue;
+            };
+            let frames = peers.join(peer, Some(end));
+            let (with, shared) = (peers.clone(), shared.clone());
+            match start("tcp", move || converse_tcp(&socket, peer, frames, &with, &shared)) {
+                Ok(thread) => threads.push(thread),
+                // A system that has no thread left has one caller less here; the port stays.
+                Err(_) => drop(peers.with(|peers| peers.remove(&peer))),
             }
         }
         for thread in threads {
             let _ = thread.join();
         }
     };
-    Ok((Box::new(stream), vec![thread::spawn(work)]))
+    Ok((Box::new(stream), vec![start("tcpin", work)?]))
+}
+
+fn start(name: &str, work: impl FnOnce() + Send + 'static) -> io::Result<JoinHandle<()>> {
+    thread::Builder::new().name(name.to_owned()).spawn(work)
 }
 
 /// A serial port; opened again when it was unplugged.
@@ -119,13 +202,14 @@ pub(super) fn serial(port: &SerialPort, shared: &Shared) -> Opened {
     let work = move || {
         while !shared.is_closed() {
             if let Some((read, write)) = opened.take() {
-                converse(read, write, Peer::Wire, &peers, &shared);
+                let frames = peers.join(Peer::Wire, None);
+                converse(read, write, Peer::Wire, frames, &peers, &shared);
             }
             wait(RETRY, &shared);
             opened = open().ok();
         }
     };
-    Ok((Box::new(stream), vec![thread::spawn(work)]))
+    Ok((Box::new(stream), vec![start("serial", work)?]))
 }
 
 /// Sleeps, but not beyond the line's end.
@@ -137,38 +221,45 @@ fn wait(time: Duration, shared: &Shared) {
     }
 }
 
-fn converse_tcp(socket: &TcpStream, peer: Peer, peers: &Peers, shared: &Shared) {
+fn converse_tcp(socket: &TcpStream, peer: Peer, frames: Receiver<Vec<u8>>, peers: &Peers, shared: &Shared) {
     let set = || {
         socket.set_nonblocking(false)?;
         socket.set_nodelay(true)?;
         socket.set_read_timeout(Some(GLANCE))?;
-        socket.set_write_timeout(Some(PATIENCE))?;
-        Ok::<_, io::Error>((socket.try_clone()?, socket.try_clone()?))
+        socket.set_write_timeout(Some(PATIENCE))
     };
-    if let Ok((read, write)) = set() {
-        converse(read, write, peer, peers, shared);
+    if set().is_ok() {
+        converse(socket, socket, peer, frames, peers, shared);
     }
+    peers.with(|peers| peers.remove(&peer));
     // The other side may have gone already.
-    let _ = socket.shutdown(std::net::Shutdown::Both);
+    let _ = socket.shutdown(Shutdown::Both);
 }
 
-/// Reads and writes until either side ends.
-fn converse(mut read: impl Read, write: impl Write + Send, peer: Peer, peers: &Peers, shared: &Shared) {
-    let (queue, frames) = sync_channel(QUEUE);
-    peers.with(|peers| peers.insert(peer, queue));
+/// Reads, and writes `frames`, until either side ends.
+fn converse(
+    mut read: impl Read,
+    write: impl Write + Send,
+    peer: Peer,
+    frames: Receiver<Vec<u8>>,
+    peers: &Peers,
+    shared: &Shared,
+) {
     thread::scope(|scope| {
-        let writer = scope.spawn(move || write_all(write, &frames, shared));
-        let (mut buffer, mut chunk) = (Vec::new(), [0; 4096]);
-        while !shared.is_closed() && !writer.is_finished() {
-            match read.read(&mut chunk) {
-                Ok(0) => break,
-                Ok(len) => {
-                    buffer.extend_from_slice(&chunk[..len]);
-                    let used = shared.take(peer, &buffer, false);
-                    buffer.drain(..used);
+        let writer = thread::Builder::new().name(String::from("write"));
+        if let Ok(writer) = writer.spawn_scoped(scope, move || write_all(write, &frames, shared)) {
+            let (mut buffer, mut chunk) = (Vec::new(), [0; 4096]);
+            while !shared.is_closed() && !writer.is_finished() {
+                match read.read(&mut chunk) {
+                    Ok(0) => break,
+                    Ok(len) => {
+                        buffer.extend_from_slice(&chunk[..len]);
+                        let used = shared.take(peer, &buffer, false, true);
+                        buffer.drain(..used);
+                    }
+                    Err(error) if is_nothing(&error) => {}
+                    Err(_) => break,
                 }
-                Err(error) if is_nothing(&error) => {}
-                Err(_) => break,
             }
         }
         // The writer ends when nobody can send any more.

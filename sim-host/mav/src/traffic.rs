@@ -1,10 +1,10 @@
 //! What goes over a line, whatever its kind: who is at the other end, frames that come in, counts of both ways.
 
+use super::inbox::Inbox;
 use staya_mavlink::frame::{Scan, scan};
 use std::io;
 use std::net::SocketAddr;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::mpsc::{SyncSender, TrySendError};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
@@ -44,7 +44,7 @@ pub struct Counts {
     pub bytes_out: u64,
     /// Bytes that came in and belong to no frame.
     pub junk_bytes: u64,
-    /// Frames that came in and found the queue full.
+    /// Frames that came in and found their peer's queue full.
     pub lost_in: u64,
     /// Frames that could not be sent: the other side is not there, or reads too slowly.
     pub lost_out: u64,
@@ -108,7 +108,7 @@ impl SharedCounts {
 #[derive(Clone, Debug)]
 pub(super) struct Shared {
     pub(super) line: usize,
-    pub(super) inbox: SyncSender<Received>,
+    pub(super) inbox: Arc<Inbox>,
     pub(super) tally: Arc<SharedCounts>,
     pub(super) closed: Arc<AtomicBool>,
 }
@@ -119,15 +119,16 @@ impl Shared {
         self.closed.load(Ordering::Relaxed)
     }
 
-    /// Takes frames off the front of `bytes` and hands them on; returns how many bytes are used up. `is_whole` as for [`scan`].
-    pub(super) fn take(&self, peer: Peer, bytes: &[u8], is_whole: bool) -> usize {
+    /// Takes frames off the front of `bytes` and hands them on; returns how many bytes are used up. `is_whole` as for [`scan`]; who is not
+    /// known shares a queue with all other strangers of the line.
+    pub(super) fn take(&self, peer: Peer, bytes: &[u8], is_whole: bool, is_known: bool) -> usize {
         let mut used = 0;
         loop {
             match scan(&bytes[used..], is_whole) {
                 Scan::Frame { junk, frame } => {
                     add(&self.tally.junk_bytes, junk);
                     used += junk + frame.bytes().len();
-                    self.hand_on(peer, frame.bytes());
+                    self.hand_on(peer, frame.bytes(), is_known);
                 }
                 Scan::Nothing { junk } => {
                     add(&self.tally.junk_bytes, junk);
@@ -137,11 +138,11 @@ impl Shared {
         }
     }
 
-    fn hand_on(&self, peer: Peer, frame: &[u8]) {
+    fn hand_on(&self, peer: Peer, frame: &[u8], is_known: bool) {
         add(&self.tally.frames_in, 1);
         add(&self.tally.bytes_in, frame.len());
         let received = Received { line: self.line, peer, frame: frame.to_vec() };
-        if let Err(TrySendError::Full(_)) = self.inbox.try_send(received) {
+        if !self.inbox.put(received, is_known) {
             add(&self.tally.lost_in, 1);
         }
     }
@@ -153,6 +154,8 @@ pub(super) trait Outgoing: Send + Sync {
     fn send(&self, frame: &[u8]);
     /// To one of them.
     fn send_to(&self, peer: Peer, frame: &[u8]);
+    /// A frame of this one was sound, and with a key authentic.
+    fn believe(&self, peer: Peer);
     /// Where it listens, or is sent from; `None` for what is no socket.
     fn local(&self) -> Option<SocketAddr>;
 }

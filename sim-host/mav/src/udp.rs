@@ -1,20 +1,28 @@
 //! Lines of datagrams.
 
 use super::traffic::{GLANCE, Outgoing, Peer, Shared};
+use socket2::SockRef;
 use std::collections::HashMap;
 use std::io;
 use std::net::{SocketAddr, UdpSocket};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-/// Who was not heard for so long is not told any more.
-const FORGET: Duration = Duration::from_secs(60);
-/// Peers of a port that listens, at most; the one that was silent longest makes room.
-const PEERS: usize = 64;
+/// Who said nothing sound for so long is not told any more. Ground stations speak once a second.
+const FORGET: Duration = Duration::from_secs(20);
+/// Peers of a port that listens, at most.
+pub(super) const PEERS: usize = 16;
+/// Who was silent for so long makes room for another one.
+const YIELD: Duration = Duration::from_secs(5);
+/// What the system should keep until it is read, bytes; it may keep less.
+const KEPT: usize = 4 << 20;
 
 type Opened = io::Result<(Box<dyn Outgoing>, Vec<JoinHandle<()>>)>;
-type Heard = Arc<Mutex<HashMap<SocketAddr, Instant>>>;
+
+/// Those who were believed, and when last.
+#[derive(Clone, Default)]
+struct Believed(Arc<Mutex<HashMap<SocketAddr, Instant>>>);
 
 /// Datagrams to one address.
 struct Out {
@@ -23,11 +31,41 @@ struct Out {
     shared: Shared,
 }
 
-/// Datagrams to all who were heard.
+/// Datagrams to all who were believed.
 struct In {
     socket: UdpSocket,
-    heard: Heard,
+    believed: Believed,
     shared: Shared,
+}
+
+impl Believed {
+    fn lock(&self) -> MutexGuard<'_, HashMap<SocketAddr, Instant>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn has(&self, peer: SocketAddr) -> bool {
+        self.lock().contains_key(&peer)
+    }
+
+    /// Takes note of a peer, if it is known or there is room.
+    fn note(&self, peer: SocketAddr, now: Instant) {
+        let mut peers = self.lock();
+        if peers.len() >= PEERS && !peers.contains_key(&peer) {
+            let silent = peers.iter().min_by_key(|(_, heard)| **heard).map(|(peer, heard)| (*peer, *heard));
+            match silent {
+                Some((silent, heard)) if now.saturating_duration_since(heard) >= YIELD => drop(peers.remove(&silent)),
+                _ => return,
+            }
+        }
+        peers.insert(peer, now);
+    }
+
+    /// Those who are still there.
+    fn all(&self, now: Instant) -> Vec<SocketAddr> {
+        let mut peers = self.lock();
+        peers.retain(|_, heard| now.saturating_duration_since(*heard) < FORGET);
+        peers.keys().copied().collect()
+    }
 }
 
 pub(super) fn open_out(to: SocketAddr, shared: &Shared) -> Opened {
@@ -39,47 +77,39 @@ pub(super) fn open_out(to: SocketAddr, shared: &Shared) -> Opened {
         SocketAddr::V6(_) => "[::1]:0",
     };
     let socket = UdpSocket::bind(local)?;
-    let reader = read(socket.try_clone()?, shared, move |from| from.ip() == to.ip())?;
+    // Only one host is heard, but any port of it.
+    let reader = read(socket.try_clone()?, shared, move |from| (from.ip() == to.ip()).then_some(from == to))?;
     let shared = shared.clone();
     Ok((Box::new(Out { socket, to, shared }), vec![reader]))
 }
 
 pub(super) fn open_in(at: SocketAddr, shared: &Shared) -> Opened {
     let socket = UdpSocket::bind(at)?;
-    let heard = Heard::default();
-    let known = Arc::clone(&heard);
-    let reader = read(socket.try_clone()?, shared, move |from| {
-        let mut known = known.lock().unwrap_or_else(PoisonError::into_inner);
-        if known.len() >= PEERS && !known.contains_key(&from) {
-            let silent = known.iter().min_by_key(|(_, heard)| **heard);
-            if let Some(silent) = silent.map(|(peer, _)| *peer) {
-                known.remove(&silent);
-            }
-        }
-        known.insert(from, Instant::now());
-        true
-    })?;
+    let believed = Believed::default();
+    let known = believed.clone();
+    let reader = read(socket.try_clone()?, shared, move |from| Some(known.has(from)))?;
     let shared = shared.clone();
-    let line = In { socket, heard, shared };
-    Ok((Box::new(line), vec![reader]))
+    Ok((Box::new(In { socket, believed, shared }), vec![reader]))
 }
 
-/// Reads datagrams from those who are welcome until the line is closed.
+/// Reads datagrams until the line is closed. `knows` says of a sender whether it is known; `None` when it is not to be heard.
 fn read(
     socket: UdpSocket,
     shared: &Shared,
-    is_welcome: impl Fn(SocketAddr) -> bool + Send + 'static,
+    knows: impl Fn(SocketAddr) -> Option<bool> + Send + 'static,
 ) -> io::Result<JoinHandle<()>> {
     socket.set_read_timeout(Some(GLANCE))?;
+    // A larger buffer is a wish: bursts of many peers are not lost while others have the processor.
+    let _ = SockRef::from(&socket).set_recv_buffer_size(KEPT);
     let shared = shared.clone();
     thread::Builder::new().name(String::from("udp")).spawn(move || {
         let mut buffer = vec![0; 65_536];
         while !shared.is_closed() {
             // Errors are those of datagrams that nobody took, or that none came: neither ends a line.
             if let Ok((len, from)) = socket.recv_from(&mut buffer)
-                && is_welcome(from)
+                && let Some(is_known) = knows(from)
             {
-                shared.take(Peer::Address(from), &buffer[..len], true);
+                shared.take(Peer::Address(from), &buffer[..len], true, is_known);
             }
         }
     })
@@ -103,30 +133,82 @@ impl Outgoing for Out {
         }
     }
 
+    /// Whom it tells was said when it was opened.
+    fn believe(&self, _: Peer) {}
+
     fn local(&self) -> Option<SocketAddr> {
         self.socket.local_addr().ok()
     }
 }
 
+impl In {
+    fn to(&self, to: SocketAddr, frame: &[u8]) {
+        let is_sent = self.socket.send_to(frame, to).is_ok();
+        self.shared.tally.sent(frame, is_sent);
+    }
+}
+
 impl Outgoing for In {
     fn send(&self, frame: &[u8]) {
-        let mut heard = self.heard.lock().unwrap_or_else(PoisonError::into_inner);
-        heard.retain(|_, heard| heard.elapsed() < FORGET);
-        let peers: Vec<_> = heard.keys().copied().collect();
-        drop(heard);
-        for peer in peers {
-            self.send_to(Peer::Address(peer), frame);
+        for peer in self.believed.all(Instant::now()) {
+            self.to(peer, frame);
         }
     }
 
     fn send_to(&self, peer: Peer, frame: &[u8]) {
-        if let Peer::Address(to) = peer {
-            let is_sent = self.socket.send_to(frame, to).is_ok();
-            self.shared.tally.sent(frame, is_sent);
+        match peer {
+            Peer::Address(to) if self.believed.has(to) => self.to(to, frame),
+            // Somebody may only use its address.
+            _ => self.shared.tally.sent(frame, false),
+        }
+    }
+
+    fn believe(&self, peer: Peer) {
+        if let Peer::Address(from) = peer {
+            self.believed.note(from, Instant::now());
         }
     }
 
     fn local(&self) -> Option<SocketAddr> {
         self.socket.local_addr().ok()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn peer(port: usize) -> SocketAddr {
+        SocketAddr::from(([127, 0, 0, 1], u16::try_from(port).expect("a port")))
+    }
+
+    #[test]
+    fn who_goes_on_speaking_stays_whoever_else_comes() {
+        let believed = Believed::default();
+        let began = Instant::now();
+        // A ground station, once a second, and 64 others each second.
+        for second in 0..60 {
+            let now = began + Duration::from_secs(second);
+            believed.note(peer(1), now);
+            for other in 0..64 {
+                believed.note(peer(1000 + other + 64 * second as usize), now);
+            }
+            let all = believed.all(now);
+            assert!(all.contains(&peer(1)) && all.len() <= PEERS, "{second}: {all:?}");
+        }
+    }
+
+    #[test]
+    fn the_silent_make_room_and_are_forgotten() {
+        let believed = Believed::default();
+        let began = Instant::now();
+        for port in 0..PEERS {
+            believed.note(peer(port), began + Duration::from_millis(port as u64));
+        }
+        believed.note(peer(100), began + YIELD - Duration::from_millis(1));
+        assert!(!believed.has(peer(100)), "everybody speaks");
+        believed.note(peer(100), began + YIELD);
+        assert!(believed.has(peer(100)) && !believed.has(peer(0)), "the longest silent one goes");
+        assert_eq!(believed.all(began + FORGET + Duration::from_millis(500)), [peer(100)]);
     }
 }

@@ -4,7 +4,9 @@
 //! An operator's wish reaches the robot's controller ([`Commanded`](staya_controller::agent::Commanded)), where the safety layer stays behind
 //! it; nobody's state is changed from outside.
 
+mod budget;
 mod commands;
+mod files;
 mod guided;
 mod items;
 mod mission;

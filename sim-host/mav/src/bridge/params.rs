@@ -29,7 +29,12 @@ struct Entry {
 
 /// All parameters of a vehicle, as clients see them: by rising name.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Parameters(Vec<Entry>);
+pub struct Parameters {
+    entries: Vec<Entry>,
+    /// What is told next to who asked for all, and how many are still to be told.
+    next: usize,
+    left: usize,
+}
 
 /// Why a parameter was not set.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,13 +125,32 @@ impl Parameters {
         });
         let mut entries: Vec<_> = own.chain(timeout).collect();
         entries.sort_by_key(|entry| entry.name);
-        Self(entries)
+        Self { entries, next: 0, left: 0 }
     }
 
     /// How many there are.
     #[must_use]
-    pub fn count(&self) -> usize {
-        self.0.len()
+    pub const fn count(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// Somebody wants to be told all of them. Whoever asks while they are being told does not make them more: he gets those that he missed at the end.
+    pub const fn list(&mut self) {
+        self.left = self.count();
+    }
+
+    /// Whether some are still to be told.
+    #[must_use]
+    pub const fn is_listing(&self) -> bool {
+        self.left > 0
+    }
+
+    /// The next one to tell.
+    pub fn next_listed(&mut self) -> Option<PARAM_VALUE_DATA> {
+        self.left = self.left.checked_sub(1)?;
+        let told = self.message(self.next);
+        self.next = (self.next + 1) % self.count().max(1);
+        told
     }
 
     /// Where a parameter is, by the name of a message.
@@ -134,13 +158,13 @@ impl Parameters {
     pub fn find(&self, id: &[u8; 16]) -> Option<usize> {
         let end = id.iter().position(|letter| *letter == 0);
         let id = &id[..end.unwrap_or(id.len())];
-        self.0.iter().position(|entry| entry.name.as_bytes() == id)
+        self.entries.iter().position(|entry| entry.name.as_bytes() == id)
     }
 
     /// The value of what a parameter changes.
     #[must_use]
     pub fn get(&self, meaning: Meaning) -> Option<f32> {
-        let mut entries = self.0.iter();
+        let mut entries = self.entries.iter();
         Some(entries.find(|entry| entry.meaning == meaning)?.value)
     }
 
@@ -149,7 +173,7 @@ impl Parameters {
     /// # Errors
     /// [`NotSet`]; nothing was changed.
     pub fn set(&mut self, index: usize, value: f32) -> Result<Meaning, NotSet> {
-        let entry = self.0.get_mut(index).ok_or(NotSet::Unknown)?;
+        let entry = self.entries.get_mut(index).ok_or(NotSet::Unknown)?;
         let [least, greatest] = entry.range;
         // Also for what is no number.
         if !(least..=greatest).contains(&value) {
@@ -164,26 +188,26 @@ impl Parameters {
     /// # Errors
     /// [`NotSet`]; nothing was changed.
     pub fn set_meaning(&mut self, meaning: Meaning, value: f32) -> Result<Meaning, NotSet> {
-        let mut entries = self.0.iter();
+        let mut entries = self.entries.iter();
         let index = entries.position(|entry| entry.meaning == meaning);
         self.set(index.ok_or(NotSet::Unknown)?, value)
     }
 
     /// The value that holds after all; where it is.
     pub fn set_back(&mut self, meaning: Meaning, value: f32) -> Option<usize> {
-        let index = self.0.iter().position(|entry| entry.meaning == meaning)?;
-        self.0[index].value = value;
+        let index = self.entries.iter().position(|entry| entry.meaning == meaning)?;
+        self.entries[index].value = value;
         Some(index)
     }
 
     /// A parameter as clients are told it.
     #[must_use]
     pub fn message(&self, index: usize) -> Option<PARAM_VALUE_DATA> {
-        let entry = self.0.get(index)?;
+        let entry = self.entries.get(index)?;
         Some(PARAM_VALUE_DATA {
             param_value: entry.value,
             // Some dozens.
-            param_count: self.0.len() as u16,
+            param_count: self.entries.len() as u16,
             param_index: index as u16,
             param_id: entry.name.into(),
             param_type: MAV_PARAM_TYPE_REAL32,
@@ -211,7 +235,7 @@ mod tests {
         let parameters = all();
         assert_eq!(parameters.count(), Parameter::NAMES.len() + 1);
         for index in 0..parameters.count() {
-            let name = parameters.0[index].name;
+            let name = parameters.entries[index].name;
             assert!(name.len() <= 16);
             assert_eq!(parameters.find(&padded(name)), Some(index), "{name}");
             let told = parameters.message(index).expect("it is there");
@@ -220,6 +244,24 @@ mod tests {
         assert_eq!(parameters.find(&padded("SPEED_MP")), None);
         assert_eq!(parameters.find(&padded("")), None);
         assert_eq!(parameters.message(parameters.count()), None);
+    }
+
+    #[test]
+    fn who_asks_again_and_again_gets_each_once_a_round() {
+        let mut parameters = all();
+        assert_eq!(parameters.next_listed(), None);
+        let count = parameters.count() as u16;
+        parameters.list();
+        let told = |parameters: &mut Parameters| parameters.next_listed().map(|told| told.param_index);
+        for index in 0..3 {
+            assert_eq!(told(&mut parameters), Some(index));
+        }
+        for _ in 0..200 {
+            parameters.list();
+        }
+        let round: Vec<_> = std::iter::from_fn(|| told(&mut parameters)).collect();
+        assert_eq!(round, (3..count).chain(0..3).collect::<Vec<_>>());
+        assert!(!parameters.is_listing());
     }
 
     #[test]

@@ -3,6 +3,7 @@
 //! A tick is done when its time has come. Between two ticks frames are taken in and what is due is sent, so that answers do not wait for
 //! ticks and rates are those of the clock on the wall, whatever `speed` the simulation has. Setpoints and missions count simulated time.
 
+use super::budget::Budget;
 use super::model::{Sample, VehicleModel};
 use super::params::Parameters;
 use super::streams::Streams;
@@ -28,8 +29,14 @@ use std::time::{Duration, Instant};
 const LAST_SYSTEM: u32 = 254;
 /// What is due is looked for at least so often.
 const GLANCE: Duration = Duration::from_millis(4);
-/// Frames taken in between two looks at what is due.
-const AT_ONCE: usize = 512;
+/// Frames taken in between two ticks however little time the ticks leave.
+const AT_LEAST: usize = 8;
+/// Parameters that all vehicles together list in a second, and at once.
+const PARAMETERS_PER_S: u32 = 2000;
+/// With fewer timestamps left nothing is obeyed any more: it could not be answered.
+const RESERVE: u64 = 1 << 16;
+/// How often it is said that there are none left.
+const COMPLAIN_US: u64 = 10_000_000;
 
 /// How to run it.
 #[derive(Debug)]
@@ -105,14 +112,18 @@ pub struct BridgeReport {
     pub sim_seconds: f64,
     /// Time on the wall, seconds.
     pub wall_seconds: f64,
-    /// Ticks whose work was not done when the next one was due.
+    /// Ticks that were due by the clock on the wall while an earlier one was not done; the simulation is behind by as many.
     pub deadlines_missed: u32,
-    /// The longest that a tick's work took, seconds.
+    /// The longest from when a tick was due until its work was done, seconds.
     pub slowest_seconds: f64,
     /// Frames for vehicles that there are none of, or from no client.
     pub frames_ignored: u64,
-    /// Frames refused for their signature, or for having none.
+    /// Frames refused for their signature, or for having none; those of the future among them.
     pub frames_refused: u64,
+    /// Frames refused for a timestamp too far ahead of the clock.
+    pub frames_ahead: u64,
+    /// Whether too few timestamps are left to sign with, so that nothing is obeyed any more: a new key is needed.
+    pub is_exhausted: bool,
     /// Answers to commands, by result.
     pub commands: BTreeMap<&'static str, u64>,
     /// What each line carried.
@@ -145,6 +156,10 @@ pub struct Swarm {
     began: Instant,
     missed: u32,
     slowest: Duration,
+    /// Which vehicle speaks first.
+    first: usize,
+    listing: Budget,
+    complained_us: Option<u64>,
     ignored: u64,
     refused: u64,
     commands: BTreeMap<&'static str, u64>,
@@ -186,6 +201,7 @@ impl Swarm {
             Some(path) => Some(Tlog::create(path)?),
             None => None,
         };
+        let listing = Budget::per_second(parameters_per_s(&options.endpoints));
         Ok(Self {
             boots: vec![0; count],
             sequences: vec![0; count],
@@ -200,6 +216,9 @@ impl Swarm {
             began: Instant::now(),
             missed: 0,
             slowest: Duration::ZERO,
+            first: 0,
+            listing,
+            complained_us: None,
             ignored: 0,
             refused: 0,
             commands: BTreeMap::new(),
@@ -239,16 +258,18 @@ impl Swarm {
                 self.tick()?;
                 self.engine.show(onlooker);
                 let done = Instant::now();
-                self.slowest = self.slowest.max(done - now);
+                self.slowest = self.slowest.max(done - due);
                 due += tick;
-                if done > due {
+                if let Some(late) = done.checked_duration_since(due) {
                     // What came late is not made up for: the clock starts anew.
-                    self.missed += 1;
+                    let others = late.as_nanos() / tick.as_nanos().max(1);
+                    self.missed =
+                        self.missed.saturating_add(1).saturating_add(u32::try_from(others).unwrap_or(u32::MAX));
                     due = done;
                 }
             }
             self.listen(due)?;
-            self.speak()?;
+            self.speak(due)?;
         }
         if let Some(log) = self.log.take() {
             log.finish()?;
@@ -256,15 +277,22 @@ impl Swarm {
         Ok(self.report())
     }
 
-    /// Takes in what comes, for a moment, but not beyond `due`.
+    /// Takes in what comes, for a moment, but hardly beyond `due`.
     fn listen(&mut self, due: Instant) -> Result<(), BridgeError> {
+        if let Some(signing) = &mut self.options.signing {
+            signing.advance_to(timestamp());
+        }
         let until = due.min(Instant::now() + GLANCE);
-        for _ in 0..AT_ONCE {
+        for served in 0.. {
             let left = until.saturating_duration_since(Instant::now());
+            if left.is_zero() && served >= AT_LEAST {
+                break;
+            }
             let Some(received) = self.lines.receive(left) else {
                 break;
             };
-            self.take(&received)?;
+            let answers = self.take(&received)?;
+            self.lines.charge(answers);
         }
         Ok(())
     }
@@ -273,24 +301,31 @@ impl Swarm {
         u64::try_from(self.began.elapsed().as_micros()).unwrap_or(u64::MAX)
     }
 
-    /// One frame that came in.
-    fn take(&mut self, received: &Received) -> Result<(), BridgeError> {
-        if let Some(log) = &mut self.log {
-            log.add(&received.frame)?;
-        }
+    /// One frame that came in; how many messages it was answered with.
+    fn take(&mut self, received: &Received) -> Result<usize, BridgeError> {
         let Some(frame) = RawFrame::new(&received.frame) else {
-            return Ok(());
+            return Ok(0);
         };
         if let Some(signing) = &mut self.options.signing
             && !signing.verify(&frame).is_accepted()
         {
             self.refused += 1;
-            return Ok(());
+            return Ok(0);
         }
         let Some(message) = frame.message() else {
             self.ignored += 1;
-            return Ok(());
+            return Ok(0);
         };
+        self.lines.believe(received.line, received.peer);
+        // Only what was believed: others would fill the disk.
+        if let Some(log) = &mut self.log {
+            log.add(&received.frame)?;
+        }
+        if self.is_exhausted() {
+            self.refused += 1;
+            return Ok(0);
+        }
+        let mut answers = 0;
         let (from, now_us) = (frame.sender(), self.now_us());
         let system = message.target_system_id().unwrap_or(0);
         // A heartbeat is for nobody; the rest that names nobody is for all.
@@ -302,28 +337,53 @@ impl Swarm {
             if is_for_some && !is_own && (system == 0 || system == vehicle.system()) {
                 vehicle.receive(from, &message, now_us, &mut self.out);
                 is_heard = true;
-                self.carry_out(index)?;
+                answers += self.carry_out(index)?;
             }
         }
         self.ignored += u64::from(is_for_some && !is_heard);
+        Ok(answers)
+    }
+
+    /// Sends what is due, every vehicle in turn, until the next tick is due.
+    fn speak(&mut self, due: Instant) -> Result<(), BridgeError> {
+        let now_us = self.now_us();
+        self.complain(now_us)?;
+        let count = self.vehicles.len();
+        for _ in 0..count {
+            let index = self.first;
+            self.vehicles[index].poll(now_us, &mut self.out);
+            if self.vehicles[index].is_listing() && self.listing.take(now_us) {
+                self.vehicles[index].list_one(&mut self.out);
+            }
+            self.carry_out(index)?;
+            self.first = (index + 1) % count;
+            if Instant::now() >= due {
+                break;
+            }
+        }
         Ok(())
     }
 
-    /// Sends what is due.
-    fn speak(&mut self) -> Result<(), BridgeError> {
-        let now_us = self.now_us();
+    /// Says that there are too few timestamps to sign with, while there are some.
+    fn complain(&mut self, now_us: u64) -> Result<(), BridgeError> {
+        let is_early = |last: u64| now_us.saturating_sub(last) < COMPLAIN_US;
+        if !self.is_exhausted() || self.complained_us.is_some_and(is_early) {
+            return Ok(());
+        }
+        self.complained_us = Some(now_us);
         for index in 0..self.vehicles.len() {
-            self.vehicles[index].poll(now_us, &mut self.out);
+            self.vehicles[index].say_exhausted(&mut self.out);
             self.carry_out(index)?;
         }
         Ok(())
     }
 
+    fn is_exhausted(&self) -> bool {
+        self.options.signing.as_ref().is_some_and(|signing| signing.left() < RESERVE)
+    }
+
     /// One tick, and what the vehicles see of it.
     fn tick(&mut self) -> Result<(), BridgeError> {
-        if let Some(signing) = &mut self.options.signing {
-            signing.advance_to(timestamp());
-        }
         self.engine.advance();
         self.ticks += 1;
         let time_us = u64::from(self.ticks) * u64::from(self.tick_us);
@@ -344,8 +404,8 @@ impl Swarm {
         Ok(())
     }
 
-    /// What vehicle `index` wants done and sent.
-    fn carry_out(&mut self, index: usize) -> Result<(), BridgeError> {
+    /// What vehicle `index` wants done and sent; how many messages these are.
+    fn carry_out(&mut self, index: usize) -> Result<usize, BridgeError> {
         let mut refused = Vec::new();
         for action in self.out.actions.drain(..) {
             match action {
@@ -368,6 +428,7 @@ impl Swarm {
         for result in self.out.results.drain(..) {
             *self.commands.entry(name(result)).or_default() += 1;
         }
+        let answers = self.out.messages.len();
         for message in self.out.messages.drain(..) {
             let sequence = &mut self.sequences[index];
             let sender = Sender {
@@ -396,7 +457,7 @@ impl Swarm {
                 self.lines.send(line, &frame);
             }
         }
-        Ok(())
+        Ok(answers)
     }
 
     fn report(&self) -> BridgeReport {
@@ -427,6 +488,8 @@ impl Swarm {
             slowest_seconds: self.slowest.as_secs_f64(),
             frames_ignored: self.ignored,
             frames_refused: self.refused,
+            frames_ahead: self.options.signing.as_ref().map_or(0, |signing| signing.counts().ahead.into()),
+            is_exhausted: self.is_exhausted(),
             commands: self.commands.clone(),
             lines: (0..self.lines.len()).map(line).collect(),
             collisions: outcome.collisions,
@@ -434,6 +497,17 @@ impl Swarm {
             trace_hash: format!("{:016x}", outcome.trace_hash),
         }
     }
+}
+
+/// How many parameters a second the slowest line carries beside everything else: a serial one, a third of it.
+fn parameters_per_s(endpoints: &[Endpoint]) -> u32 {
+    /// Bits of a PARAM_VALUE with its signature: 10 for each byte.
+    const BITS: u32 = 10 * 50;
+    let serial = endpoints.iter().filter_map(|endpoint| match endpoint {
+        Endpoint::Serial(port) => Some((port.baud / BITS / 3).max(1)),
+        _ => None,
+    });
+    serial.fold(PARAMETERS_PER_S, u32::min)
 }
 
 /// A result's name.
@@ -448,3 +522,6 @@ const fn name(result: u8) -> &'static str {
         _ => "unsupported frame",
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -4,6 +4,7 @@
 //! What a client says becomes a [`Action`] for the robot's controller, or is refused. Commands are answered always
 //! (`commands`), setpoints never (`guided`), as the protocol has it; what was wrong with them is said as STATUSTEXT.
 
+use super::files;
 use super::mission::{Item, Mission};
 use super::model::{FlightMode, Sample, VehicleModel};
 use super::params::{Meaning, NotSet, Parameters};
@@ -191,6 +192,10 @@ impl Vehicle {
                 self.text(out, Kind::News, MAV_SEVERITY_WARNING, &text);
             }
             Event::NobodyHeard => self.text(out, Kind::News, MAV_SEVERITY_WARNING, "nobody is heard any more"),
+            Event::Muted => {
+                let text = "robot is mute: it needs a new key";
+                self.text(out, Kind::Neighbor, MAV_SEVERITY_ERROR, text);
+            }
             Event::NoRoute => self.text(out, Kind::Route, MAV_SEVERITY_WARNING, "no way is open"),
             _ => {}
         }
@@ -225,6 +230,23 @@ impl Vehicle {
         out.messages.extend(self.mission.poll(now_us));
     }
 
+    /// Whether parameters that somebody asked to be listed are still to be sent.
+    #[must_use]
+    pub const fn is_listing(&self) -> bool {
+        self.parameters.is_listing()
+    }
+
+    /// Sends one of them.
+    pub fn list_one(&mut self, out: &mut Out) {
+        out.messages.extend(self.parameters.next_listed().map(MavMessage::PARAM_VALUE));
+    }
+
+    /// Says that soon nothing can be said any more, since there is no timestamp left to sign with.
+    pub fn say_exhausted(&mut self, out: &mut Out) {
+        let text = "no timestamp to sign with: take a new key";
+        self.text(out, Kind::News, MAV_SEVERITY_ERROR, text);
+    }
+
     /// Takes a message of somebody else in: for this vehicle, or for all.
     pub fn receive(&mut self, from: Sender, message: &MavMessage, now_us: u64, out: &mut Out) {
         self.now_us = now_us;
@@ -237,10 +259,7 @@ impl Vehicle {
             MavMessage::SET_MODE(wanted) => self.set_mode_message(wanted, out),
             MavMessage::SET_POSITION_TARGET_LOCAL_NED(target) => self.target_local(target, out),
             MavMessage::SET_POSITION_TARGET_GLOBAL_INT(target) => self.target_global(target, out),
-            MavMessage::PARAM_REQUEST_LIST(_) => {
-                let all = (0..self.parameters.count()).filter_map(|i| self.parameters.message(i));
-                out.messages.extend(all.map(MavMessage::PARAM_VALUE));
-            }
+            MavMessage::PARAM_REQUEST_LIST(_) => self.parameters.list(),
             MavMessage::PARAM_REQUEST_READ(wanted) => {
                 let index = match usize::try_from(wanted.param_index) {
                     Ok(index) => Some(index),
@@ -273,7 +292,7 @@ impl Vehicle {
                     ts1: sync.ts1,
                 }));
             }
-            MavMessage::FILE_TRANSFER_PROTOCOL(asked) => out.messages.extend(no_files(from, asked)),
+            MavMessage::FILE_TRANSFER_PROTOCOL(asked) => out.messages.extend(files::none(from, asked)),
             _ => self.receive_goals(from, message, out),
         }
     }
@@ -472,29 +491,6 @@ impl Vehicle {
 
 /// MISSION_CURRENT.
 const MISSION_CURRENT_ID: u32 = 42;
-
-/// There are no files: said at once, so that nobody waits for them.
-fn no_files(from: Sender, asked: &FILE_TRANSFER_PROTOCOL_DATA) -> Option<MavMessage> {
-    const NAK: u8 = 129;
-    const FILE_NOT_FOUND: u8 = 10;
-    let [low, high, session, opcode, ..] = asked.payload;
-    // An answer to somebody is no question.
-    if opcode >= 128 {
-        return None;
-    }
-    let mut payload = [0; 251];
-    let sequence = u16::from_le_bytes([low, high]).wrapping_add(1);
-    let [low, high] = sequence.to_le_bytes();
-    // Sequence, session, opcode, bytes of data, what was asked; the data begin at 12.
-    payload[..6].copy_from_slice(&[low, high, session, NAK, 1, opcode]);
-    payload[12] = FILE_NOT_FOUND;
-    Some(MavMessage::FILE_TRANSFER_PROTOCOL(FILE_TRANSFER_PROTOCOL_DATA {
-        target_network: 0,
-        target_system: from.system,
-        target_component: from.component,
-        payload,
-    }))
-}
 
 #[cfg(test)]
 mod tests;

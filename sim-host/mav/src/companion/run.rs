@@ -308,8 +308,10 @@ impl<'a> Companions<'a> {
 
     fn hear(&mut self, received: &Received) {
         let Some(frame) = RawFrame::new(&received.frame) else { return };
-        let signing = self.signing_of(received.line);
-        let is_refused = signing.is_some_and(|signing| !signing.verify(&frame).is_accepted());
+        let is_refused = self.signing_of(received.line).is_some_and(|signing| {
+            signing.advance_to(key::timestamp());
+            !signing.verify(&frame).is_accepted()
+        });
         let is_open = self.signing.is_none();
         if is_refused || (is_open && frame.signature().is_some()) {
             self.tell_of_signing(received.line, frame.sender(), is_open);
@@ -319,6 +321,7 @@ impl<'a> Companions<'a> {
         }
         self.log(frame.bytes());
         let Some(message) = frame.message() else { return };
+        self.machine.believe(received.line, received.peer);
         let (sender, now) = (frame.sender(), self.now());
         if let MavMessage::TUNNEL(tunnel) = &message {
             // What others say through the links. Own packets may come back.

@@ -1,8 +1,9 @@
 use super::*;
+use crate::stream::CONNECTIONS;
 use crate::traffic::GLANCE;
 use staya_mavlink::dialect::STAYA_GOAL_DATA;
 use staya_mavlink::frame::{RawFrame, Sender, encode};
-use std::io::Write as _;
+use std::io::{Read as _, Write as _};
 use std::net::{TcpStream, UdpSocket};
 use std::time::Instant;
 
@@ -37,6 +38,7 @@ fn arrives(from: &Lines, to: &Lines, x: i16) -> Received {
     while began.elapsed() < PATIENCE {
         from.send(0, &framed(x));
         if let Some(received) = to.receive(Duration::from_millis(100)) {
+            to.believe(0, received.peer);
             return received;
         }
     }
@@ -116,6 +118,63 @@ fn everybody_who_was_heard_is_told() {
     for caller in &callers {
         assert_eq!(goal(&caller.receive(PATIENCE).expect("told")), 9);
     }
+}
+
+fn datagrams(socket: &UdpSocket) -> usize {
+    let mut buffer = [0; 512];
+    std::iter::from_fn(|| socket.recv(&mut buffer).ok()).count()
+}
+
+/// The attack: one byte, or one frame that is not believed, from many ports (or addresses that are not the sender's) makes each a receiver of everything.
+#[test]
+fn nothing_is_sent_to_who_was_not_believed() {
+    let listening = open("udpin:127.0.0.1:0");
+    let address = listening.local(0).expect("an address");
+    let strangers: Vec<_> = (0..64).map(|_| UdpSocket::bind("127.0.0.1:0").expect("a port")).collect();
+    for stranger in &strangers {
+        stranger.set_read_timeout(Some(Duration::from_millis(1))).expect("a time");
+        stranger.send_to(b"x", address).expect("sent");
+        stranger.send_to(&framed(1), address).expect("sent");
+    }
+    // One more, who is.
+    let friend = open(&format!("udpout:{address}"));
+    friend.send(0, &framed(77));
+    let mut heard = 0;
+    while let Some(received) = listening.receive(PATIENCE) {
+        listening.send_to(0, received.peer, &framed(2));
+        listening.send(0, &framed(3));
+        heard += 1;
+        if goal(&received) == 77 {
+            listening.believe(0, received.peer);
+            listening.send(0, &framed(4));
+            break;
+        }
+    }
+    assert!(heard > 1);
+    assert_eq!(goal(&friend.receive(PATIENCE).expect("told")), 4);
+    assert_eq!(strangers.iter().map(datagrams).sum::<usize>(), 0);
+}
+
+/// The attack: connections that stay, until there are no descriptors or threads left.
+#[test]
+fn callers_that_say_nothing_make_room_and_the_port_stays() {
+    let listening = open("tcpin:127.0.0.1:0");
+    let address = listening.local(0).expect("an address");
+    let friend = open(&format!("tcpout:{address}"));
+    arrives(&friend, &listening, 1);
+    let idle: Vec<_> = (0..2 * CONNECTIONS).map(|_| TcpStream::connect(address).expect("a queue")).collect();
+    // A newcomer after all of them.
+    let late = open(&format!("tcpout:{address}"));
+    assert_eq!(goal(&arrives(&late, &listening, 2)), 2);
+    // The older ones are closed, and who was believed is still there.
+    let ended = |mut socket: &TcpStream| {
+        let _ = socket.set_read_timeout(Some(Duration::from_millis(1)));
+        matches!(socket.read(&mut [0; 1]), Ok(0))
+    };
+    assert!(idle.iter().filter(|socket| ended(socket)).count() > CONNECTIONS);
+    listening.send(0, &framed(3));
+    assert_eq!(goal(&friend.receive(PATIENCE).expect("told")), 3);
+    assert_eq!(goal(&late.receive(PATIENCE).expect("told")), 3);
 }
 
 #[test]

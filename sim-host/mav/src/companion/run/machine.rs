@@ -19,6 +19,9 @@ pub trait Machine {
     /// Sends a frame on a line, to one peer or to all.
     fn send(&mut self, line: usize, peer: Option<Peer>, frame: &[u8]);
 
+    /// Notes that `peer` said something sound over line number `line`, and may be told things.
+    fn believe(&mut self, line: usize, peer: Peer);
+
     /// What line number `line` has carried.
     fn counts(&self, line: usize) -> Counts;
 
@@ -82,6 +85,10 @@ impl Machine for Host {
             Some(peer) => self.lines.send_to(line, peer, frame),
             None => self.lines.send(line, frame),
         }
+    }
+
+    fn believe(&mut self, line: usize, peer: Peer) {
+        self.lines.believe(line, peer);
     }
 
     fn counts(&self, line: usize) -> Counts {

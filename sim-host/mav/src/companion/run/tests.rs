@@ -176,6 +176,8 @@ impl Machine for Shared {
         }
     }
 
+    fn believe(&mut self, _: usize, _: Peer) {}
+
     fn counts(&self, _: usize) -> Counts {
         Counts::default()
     }

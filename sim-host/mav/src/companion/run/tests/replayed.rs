@@ -33,6 +33,8 @@ impl Machine for Replay {
 
     fn send(&mut self, _: usize, _: Option<Peer>, _: &[u8]) {}
 
+    fn believe(&mut self, _: usize, _: Peer) {}
+
     fn counts(&self, _: usize) -> Counts {
         Counts::default()
     }

@@ -1,0 +1,182 @@
+use super::*;
+use crate::geo::{Global, Origin};
+use staya_controller::auth::Key;
+use staya_mavlink::dialect::{COMMAND_LONG_DATA, HEARTBEAT_DATA};
+use staya_sim::scenario::Overrides;
+use std::net::{SocketAddr, UdpSocket};
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+const PATIENCE: Duration = Duration::from_secs(20);
+/// Longest that there is.
+const LAST: u64 = (1 << 48) - 1;
+
+fn key() -> Key {
+    Key::of_passphrase(b"swarm")
+}
+
+/// Ten discs at a port of this machine.
+fn ten(signing: Option<Signing>) -> (Swarm, SocketAddr) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/bridge.toml");
+    let scenario = Scenario::load(&path, &Overrides::default()).expect("a scenario");
+    let place = Global { latitude_deg: 47.0, longitude_deg: 8.0, altitude_m: 400.0 };
+    let options = Options {
+        endpoints: vec!["udpin:127.0.0.1:0".parse().expect("a line")],
+        speed: 1.0,
+        ticks: None,
+        position_hz: 1.0,
+        starts_armed: false,
+        origin: Origin::new(place).expect("a place"),
+        signing,
+        tlog: None,
+    };
+    let swarm = Swarm::new(&scenario, options).expect("a swarm");
+    let address = swarm.lines().local(0).expect("an address");
+    (swarm, address)
+}
+
+/// A client of a bridge.
+struct Client {
+    socket: UdpSocket,
+    to: SocketAddr,
+    signing: Option<Signing>,
+}
+
+impl Client {
+    fn new(to: SocketAddr, signing: Option<Signing>) -> Self {
+        let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
+        socket.set_read_timeout(Some(Duration::from_millis(20))).expect("a time");
+        Self { socket, to, signing }
+    }
+
+    fn framed(&mut self, message: &MavMessage) -> Vec<u8> {
+        let sender = Sender { system: 255, component: 190, sequence: 0 };
+        let mut frame = heapless::Vec::<u8, MAX_FRAME_LEN>::new();
+        encode_message(sender, message, &mut frame).expect("room");
+        if let Some(signing) = &mut self.signing {
+            let signature = signing.sign(&mut frame).expect("a timestamp");
+            frame.extend_from_slice(&signature).expect("room");
+        }
+        frame.to_vec()
+    }
+
+    fn say(&mut self, message: &MavMessage) {
+        let frame = self.framed(message);
+        self.socket.send_to(&frame, self.to).expect("sent");
+    }
+
+    /// Arms vehicle 3, again and again until it is answered.
+    fn is_obeyed(&mut self) -> bool {
+        let began = Instant::now();
+        while began.elapsed() < PATIENCE {
+            self.say(&arm(3));
+            if self.hears(|message| matches!(message, MavMessage::COMMAND_ACK(ack) if ack.target_component == 190)) {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Whether such a message comes before there are none for a moment.
+    fn hears(&self, is_it: impl Fn(&MavMessage) -> bool) -> bool {
+        let mut buffer = [0; 512];
+        let frames = std::iter::from_fn(|| self.socket.recv(&mut buffer).ok().map(|len| buffer[..len].to_vec()));
+        let messages = frames.filter_map(|bytes| RawFrame::new(&bytes)?.message());
+        messages.into_iter().any(|message| is_it(&message))
+    }
+}
+
+fn arm(system: u8) -> MavMessage {
+    MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
+        param1: 1.0,
+        command: staya_mavlink::constants::MAV_CMD_COMPONENT_ARM_DISARM,
+        target_system: system,
+        target_component: 1,
+        ..COMMAND_LONG_DATA::DEFAULT
+    })
+}
+
+/// Runs the swarm beside a test, and gives its figures.
+fn beside(swarm: Swarm, test: impl FnOnce()) -> BridgeReport {
+    let is_over = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        let run = scope.spawn(|| swarm.run(|_| is_over.load(Ordering::Relaxed)));
+        test();
+        is_over.store(true, Ordering::Relaxed);
+        run.join().expect("no panic").expect("a report")
+    })
+}
+
+/// The attack: one frame by who has the key, with the last timestamp; recorded, and sent again by who does not have it.
+#[test]
+fn a_frame_of_the_far_future_does_not_mute_the_bridge() {
+    let (swarm, address) = ten(Some(Signing::new(key(), 0, timestamp())));
+    let mut insider = Client::new(address, Some(Signing::new(key(), 9, LAST)));
+    let evil = insider.framed(&arm(1));
+    let mut client = Client::new(address, Some(Signing::new(key(), 1, timestamp())));
+    let report = beside(swarm, || {
+        for _ in 0..3 {
+            insider.socket.send_to(&evil, address).expect("sent");
+            assert!(client.is_obeyed());
+        }
+    });
+    assert_eq!((report.frames_ahead, report.frames_refused, report.is_exhausted), (3, 3, false));
+}
+
+#[test]
+fn who_cannot_answer_does_not_obey_and_says_why_while_he_can() {
+    let left = 20_000;
+    let (swarm, address) = ten(Some(Signing::new(key(), 0, LAST - left).with_lead(LAST)));
+    let mut client = Client::new(address, Some(Signing::new(key(), 1, LAST - left)));
+    let report = beside(swarm, || {
+        let began = Instant::now();
+        let is_said = |message: &MavMessage| match message {
+            MavMessage::STATUSTEXT(text) => text.text.to_str().is_ok_and(|text| text.contains("new key")),
+            _ => false,
+        };
+        let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA::DEFAULT);
+        let mut is_told = false;
+        while !is_told && began.elapsed() < PATIENCE {
+            client.say(&heartbeat);
+            client.say(&arm(1));
+            is_told = client.hears(is_said);
+        }
+        assert!(is_told);
+    });
+    assert!(report.is_exhausted && report.frames_refused > 0);
+    assert!(report.commands.is_empty(), "{:?}", report.commands);
+}
+
+/// The attack: commands from one port as fast as they go.
+#[test]
+fn who_floods_costs_the_others_no_answer() {
+    let (swarm, address) = ten(None);
+    let mut client = Client::new(address, None);
+    let mut flooder = Client::new(address, None);
+    let frame = flooder.framed(&arm(0));
+    let is_over = AtomicBool::new(false);
+    let report = std::thread::scope(|scope| {
+        scope.spawn(|| {
+            while !is_over.load(Ordering::Relaxed) {
+                for _ in 0..200 {
+                    let _ = flooder.socket.send_to(&frame, address);
+                }
+                std::thread::sleep(Duration::from_millis(2));
+            }
+        });
+        let report = beside(swarm, || {
+            for _ in 0..10 {
+                assert!(client.is_obeyed());
+            }
+        });
+        is_over.store(true, Ordering::Relaxed);
+        report
+    });
+    let [line] = &report.lines[..] else {
+        panic!("one line");
+    };
+    assert!(line.lost_in > 0, "{line:?}");
+    // No more than answers cost: first as a stranger, then as a peer.
+    let answers: u64 = report.commands.values().sum();
+    assert!((answers as f64) < 2.0 * (1100.0 + 1000.0 * report.wall_seconds), "{answers} in {}", report.wall_seconds);
+}

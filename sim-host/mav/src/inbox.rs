@@ -1,0 +1,184 @@
+//! Frames that wait to be served: every peer in turn, so that one who says too much waits himself and nobody else does.
+
+use super::traffic::{Peer, Received};
+use std::collections::{HashMap, VecDeque};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+/// Frames of one peer that wait at most; more are lost and counted.
+pub(super) const QUEUE: usize = 512;
+/// Messages that one peer can have answered in a second, and at once.
+const ANSWERS_PER_S: u32 = 1000;
+const ANSWERS_AT_ONCE: u32 = 1000;
+
+/// A line and who is heard there; `None`: all who are not known yet.
+type Source = (usize, Option<Peer>);
+
+#[derive(Debug, Default)]
+struct Waiting {
+    queues: HashMap<Source, VecDeque<Received>>,
+    /// Those with something in their queues, in the order of service.
+    turn: VecDeque<Source>,
+    /// When all answers will be paid for.
+    paid_at: HashMap<Source, Instant>,
+    served: Option<Source>,
+}
+
+/// One for all lines.
+#[derive(Debug, Default)]
+pub(super) struct Inbox {
+    waiting: Mutex<Waiting>,
+    news: Condvar,
+}
+
+impl Inbox {
+    fn lock(&self) -> MutexGuard<'_, Waiting> {
+        self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Puts a frame behind those of its peer, or behind those of all strangers of its line; whether there was room.
+    pub(super) fn put(&self, received: Received, is_known: bool) -> bool {
+        let source = (received.line, is_known.then_some(received.peer));
+        let mut waiting = self.lock();
+        let queue = waiting.queues.entry(source).or_default();
+        if queue.len() >= QUEUE {
+            return false;
+        }
+        queue.push_back(received);
+        if queue.len() == 1 {
+            waiting.turn.push_back(source);
+            self.news.notify_one();
+        }
+        true
+    }
+
+    /// The frame whose turn it is; `None` when there is none for so long. O(peers).
+    pub(super) fn next(&self, timeout: Duration) -> Option<Received> {
+        let until = Instant::now() + timeout;
+        let mut waiting = self.lock();
+        loop {
+            let now = Instant::now();
+            if let Some(received) = waiting.next(now) {
+                return Some(received);
+            }
+            let next = waiting.paid_at.values().copied().filter_map(|at| at.checked_sub(burst()));
+            let wake = next.filter(|at| *at > now).fold(until, Instant::min);
+            if now >= until {
+                return None;
+            }
+            let waited = self.news.wait_timeout(waiting, wake.saturating_duration_since(now));
+            waiting = waited.unwrap_or_else(PoisonError::into_inner).0;
+        }
+    }
+
+    /// Puts so many messages on the account of whoever was served last. Who has too many there is not served for a while.
+    pub(super) fn charge(&self, answers: usize) {
+        let mut waiting = self.lock();
+        let cost = one() * u32::try_from(answers).unwrap_or(u32::MAX).min(1 << 20);
+        if let Some(source) = waiting.served.filter(|_| !cost.is_zero()) {
+            let now = Instant::now();
+            // Of those who are even with us there is nothing to remember.
+            waiting.paid_at.retain(|_, at| *at > now);
+            let at = waiting.paid_at.entry(source).or_insert(now);
+            *at += cost;
+        }
+    }
+}
+
+/// What one answer costs, and what is given on trust.
+fn one() -> Duration {
+    Duration::from_secs(1) / ANSWERS_PER_S
+}
+
+fn burst() -> Duration {
+    one() * ANSWERS_AT_ONCE
+}
+
+impl Waiting {
+    fn next(&mut self, now: Instant) -> Option<Received> {
+        for _ in 0..self.turn.len() {
+            let source = self.turn.pop_front()?;
+            if self.paid_at.get(&source).is_some_and(|at| at.saturating_duration_since(now) > burst()) {
+                self.turn.push_back(source);
+                continue;
+            }
+            let queue = self.queues.get_mut(&source)?;
+            let received = queue.pop_front();
+            if queue.is_empty() {
+                self.queues.remove(&source);
+            } else {
+                self.turn.push_back(source);
+            }
+            self.served = Some(source);
+            return received;
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::net::SocketAddr;
+
+    fn from(port: u16, frame: u8) -> Received {
+        let peer = Peer::Address(SocketAddr::from(([127, 0, 0, 1], port)));
+        Received { line: 0, peer, frame: vec![frame] }
+    }
+
+    fn next(inbox: &Inbox) -> Option<(u16, u8)> {
+        let received = inbox.next(Duration::ZERO)?;
+        let Peer::Address(address) = received.peer else {
+            panic!("no address");
+        };
+        Some((address.port(), received.frame[0]))
+    }
+
+    #[test]
+    fn who_floods_loses_his_own_frames_and_others_are_served_in_turn() {
+        let inbox = Inbox::default();
+        let taken = (0..10_000).filter(|_| inbox.put(from(1, 0), true)).count();
+        assert_eq!(taken, QUEUE);
+        assert!(inbox.put(from(2, 1), true) && inbox.put(from(2, 2), true));
+        let order: Vec<_> = (0..5).map(|_| next(&inbox).expect("a frame")).collect();
+        assert_eq!(order, [(1, 0), (2, 1), (1, 0), (2, 2), (1, 0)]);
+    }
+
+    #[test]
+    fn strangers_share_one_queue_however_many_they_are() {
+        let inbox = Inbox::default();
+        let taken = (0..60_000).filter(|port| inbox.put(from(*port, 0), false)).count();
+        assert_eq!(taken, QUEUE);
+        assert!(inbox.put(from(1, 7), true));
+        assert_eq!((next(&inbox), next(&inbox)), (Some((0, 0)), Some((1, 7))));
+        let rest = std::iter::from_fn(|| next(&inbox)).count();
+        assert_eq!(rest, QUEUE - 1);
+        assert_eq!(inbox.lock().queues.len(), 0, "nothing is left behind");
+    }
+
+    #[test]
+    fn who_has_had_too_many_answers_waits_until_they_are_paid_for() {
+        let inbox = Inbox::default();
+        for port in [1, 2] {
+            for frame in 0..3 {
+                assert!(inbox.put(from(port, frame), true));
+            }
+        }
+        assert_eq!(next(&inbox), Some((1, 0)));
+        inbox.charge(100 * ANSWERS_AT_ONCE as usize);
+        let order: Vec<_> = std::iter::from_fn(|| next(&inbox)).collect();
+        assert_eq!(order, [(2, 0), (2, 1), (2, 2)]);
+        // A minute and a half later.
+        let later = Instant::now() + Duration::from_secs(120);
+        assert_eq!(inbox.lock().next(later).map(|received| received.frame), Some(vec![1]));
+    }
+
+    #[test]
+    fn what_is_waited_for_comes_when_it_comes() {
+        let inbox = std::sync::Arc::new(Inbox::default());
+        let other = std::sync::Arc::clone(&inbox);
+        let thread = std::thread::spawn(move || other.next(Duration::from_secs(60)));
+        assert!(inbox.put(from(1, 5), true));
+        assert_eq!(thread.join().expect("no panic").map(|received| received.frame), Some(vec![5]));
+    }
+}
