@@ -69,8 +69,10 @@ fn main() -> ExitCode {
 
 fn run(cli: &Cli) -> Result<Ended> {
     if let Some(threads) = cli.global.threads {
+        // More than one for each processor only cost time.
+        let processors = std::thread::available_parallelism().map_or(usize::MAX, usize::from);
         rayon::ThreadPoolBuilder::new()
-            .num_threads(usize::from(threads))
+            .num_threads(usize::from(threads).min(processors))
             .build_global()
             .with_context(|| format!("cannot start {threads} threads"))?;
     }

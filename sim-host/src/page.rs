@@ -6,6 +6,7 @@ use clap::Args;
 use serde::Serialize;
 use staya_console::{Ended, Global, Progress, Stop, print, print_json};
 use staya_sim::engine::{Moment, simulate};
+use staya_sim::file::{MAP, read};
 use staya_sim::record::{RobotRow, write_atomically};
 use staya_sim::scenario::Scenario;
 use staya_view::page;
@@ -49,7 +50,7 @@ impl PageArgs {
         let is_scenario = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
         let bytes = match is_scenario {
             true => recorded(&self.source.load()?, self.every, &stop, global)?,
-            false => std::fs::read(path).with_context(|| format!("cannot read {}; check the name", path.display()))?,
+            false => read(path, MAP).with_context(|| format!("cannot read {}; check the name", path.display()))?,
         };
         // A page that shows nothing is of no use.
         let mut reader = Reader::new(std::io::Cursor::new(&bytes), path)?;

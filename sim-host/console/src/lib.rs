@@ -17,7 +17,7 @@ pub struct Global {
     /// Print one JSON object on standard output instead of tables.
     #[arg(long, global = true, help_heading = "Options of every command")]
     pub json: bool,
-    /// Threads to use; results never depend on it. Default: one per processor.
+    /// Threads to use, at most one per processor, which is the default; results never depend on it.
     #[arg(long, global = true, help_heading = "Options of every command", value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     /// Show no progress.

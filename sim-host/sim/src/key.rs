@@ -8,7 +8,7 @@
 //! 3d6b...
 //! ```
 
-use crate::file::read_remedy;
+use crate::file::{self, read_remedy};
 use staya_controller::auth::{KEY_LEN, Key};
 use staya_mavlink::signing::EPOCH_UNIX_S;
 use std::fs;
@@ -16,6 +16,8 @@ use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 use thiserror::Error;
 
+/// Most bytes of a key file, remarks included.
+const LONGEST: u64 = 1 << 16;
 /// What a key file must hold.
 const WANTED: &str =
     "write one line into it: 64 hexadecimal digits (openssl rand -hex 32), or \"passphrase: \" and words";
@@ -59,7 +61,7 @@ impl KeyFile {
     /// See [`KeyError`].
     pub fn read(path: &Path) -> Result<Self, KeyError> {
         let text =
-            fs::read_to_string(path).map_err(|error| KeyError::Unreadable { path: path.to_path_buf(), error })?;
+            file::read_text(path, LONGEST).map_err(|error| KeyError::Unreadable { path: path.to_path_buf(), error })?;
         let key =
             parse(&text).map_err(|(line, problem)| KeyError::NoKey { path: path.to_path_buf(), line, problem })?;
         let remark = is_open(path).then(|| {

@@ -8,6 +8,7 @@ use crate::geo::{Global, Origin};
 use serde::Deserialize;
 use staya_controller::agent::{GuidanceKind, SafetyKind};
 use staya_controller::robot::RobotId;
+use staya_sim::file::{TEXT, read_text};
 use staya_sim::scenario::{Overrides, PlaneSetup, Scenario, ScenarioError, Source, within};
 use std::net::{Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
@@ -186,8 +187,7 @@ impl Config {
     /// # Errors
     /// [`ScenarioError`], naming file, line, field and remedy.
     pub fn load(path: &Path) -> Result<Self, ScenarioError> {
-        let text =
-            std::fs::read_to_string(path).map_err(|source| ScenarioError::Io { path: path.to_owned(), source })?;
+        let text = read_text(path, TEXT).map_err(|source| ScenarioError::Io { path: path.to_owned(), source })?;
         Self::parse(&text, path)
     }
 

@@ -3,6 +3,7 @@
 use super::ranges::within;
 use super::source::Source;
 use super::{Fault, Robot, ScenarioError, ScenarioFile};
+use crate::file::has_memory;
 use crate::terrain::generate::{self, LandPlan};
 use crate::terrain::{Terrain, TerrainError};
 use staya_controller::robot::RobotId;
@@ -98,6 +99,28 @@ fn probability(source: &Source<'_>, field: &str, value: f64) -> Result<(), Scena
     }
     let what = format!("{value} is no probability");
     Err(source.error(field, what, "give a number from 0 to 1"))
+}
+
+/// Bytes that a robot takes at least, by measurement: its agent, what it knows, its packets.
+const ROBOT_BYTES: u64 = 4 << 10;
+/// Bytes that a cell of land takes while a run goes on.
+const CELL_BYTES: u64 = 4;
+
+/// What would not fit into memory is refused before it is asked for: who runs out of it is ended without a word.
+pub(super) fn memory(
+    source: &Source<'_>,
+    file: &ScenarioFile,
+    robots: usize,
+    land: &Terrain,
+) -> Result<(), ScenarioError> {
+    let cells = u64::from(land.width()) * u64::from(land.height());
+    let bytes = robots as u64 * ROBOT_BYTES + cells * CELL_BYTES;
+    if has_memory(bytes) {
+        return Ok(());
+    }
+    let what = format!("{robots} robots and {cells} cells need {} MB of memory, which is not to be had", bytes >> 20);
+    let field = if file.plane.is_some() { "plane" } else { "robots" };
+    Err(source.error(field, what, "give fewer robots or less land, or close other programs"))
 }
 
 pub(super) fn terrain(source: &Source<'_>, file: &ScenarioFile) -> Result<Terrain, ScenarioError> {

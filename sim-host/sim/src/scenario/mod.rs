@@ -31,6 +31,7 @@ pub use schema::{
 pub use source::ScenarioError;
 pub use source::Source;
 
+use crate::file::{TEXT, read_text};
 use crate::radio::RadioParams;
 use crate::terrain::Terrain;
 use crate::world::MoveRules;
@@ -129,8 +130,7 @@ impl Scenario {
     /// # Errors
     /// [`ScenarioError`], naming file, line, field and remedy.
     pub fn load(path: &Path, overrides: &Overrides) -> Result<Self, ScenarioError> {
-        let text =
-            std::fs::read_to_string(path).map_err(|source| ScenarioError::Io { path: path.to_owned(), source })?;
+        let text = read_text(path, TEXT).map_err(|source| ScenarioError::Io { path: path.to_owned(), source })?;
         Self::parse(&text, path, overrides)
     }
 
@@ -173,6 +173,7 @@ impl Scenario {
         };
         let heard = plane.as_ref().map_or(0, PlaneSetup::heard);
         check::numbers(&source, &file, &robots, heard)?;
+        check::memory(&source, &file, robots.len(), &terrain)?;
         let (key, key_remark) = authentication::key(&source, &file, &robots)?.unzip();
         let attacks = authentication::attacks(&source, &file, &robots)?;
         let faults = check::faults(&source, &file, &robots)?;

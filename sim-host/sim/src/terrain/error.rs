@@ -1,6 +1,6 @@
 //! What can be wrong with terrain, reported so that a person can fix it.
 
-use crate::file::{read_remedy, write_remedy};
+use crate::file::{self, read_remedy, write_remedy};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -117,9 +117,19 @@ pub fn parameter_error(what: impl Into<String>, remedy: impl Into<String>) -> Te
     TerrainError::Parameter { what: what.into(), remedy: remedy.into() }
 }
 
+/// Refuses a map whose cells, of so many bytes each while it is read, would not fit into memory.
+pub fn fits(path: &Path, width: u16, height: u16, cell_bytes: u64) -> Result<(), TerrainError> {
+    let bytes = u64::from(width) * u64::from(height) * cell_bytes;
+    if file::has_memory(bytes) {
+        return Ok(());
+    }
+    let what = format!("{width} x {height} cells need {} MB of memory, which is not to be had", bytes >> 20);
+    Err(format_error(path, Place::File, what, "cut a piece out of the map, or close other programs"))
+}
+
 /// The bytes of a file.
 pub fn read(path: &Path) -> Result<Vec<u8>, TerrainError> {
-    std::fs::read(path).map_err(|source| TerrainError::Read { path: path.to_owned(), source })
+    file::read(path, file::MAP).map_err(|source| TerrainError::Read { path: path.to_owned(), source })
 }
 
 /// Writes a file.

@@ -3,7 +3,7 @@
 //! Source: ESRI, "ASCII raster format" (ArcGIS documentation). Files list rows from the north;
 //! [`super::rows`] turns them round.
 
-use super::error::{Place, TerrainError, format_error, parameter_error};
+use super::error::{Place, TerrainError, fits, format_error, parameter_error};
 use super::rows::flip_rows;
 use super::text::{finite, lines, quoted, side, text};
 use std::path::Path;
@@ -114,6 +114,7 @@ pub fn parse_heights(bytes: &[u8], path: &Path) -> Result<Heights, TerrainError>
     let no_data = header.no_data.unwrap_or(-9999.0);
 
     let wanted = usize::from(width) * usize::from(height);
+    fits(path, width, height, 8)?;
     let mut metres = Vec::new();
     let mut last = first_line;
     for (line, row) in rows {

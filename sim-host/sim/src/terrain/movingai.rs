@@ -4,7 +4,7 @@
 //! rows from the north; [`super::rows`] turns them round.
 
 use super::Terrain;
-use super::error::{Place, TerrainError, format_error, read};
+use super::error::{Place, TerrainError, fits, format_error, read};
 use super::rows::{flip_row, flip_rows};
 use super::text::{finite, integer, lines, quoted, side, text};
 use staya_controller::grid::{BLOCKED, Cell};
@@ -25,6 +25,7 @@ pub fn parse_map(bytes: &[u8], path: &Path, swamp: u8) -> Result<Terrain, Terrai
     let text = text(bytes, path)?;
     let mut rows = lines(text);
     let (width, height) = header(&mut rows, path)?;
+    fits(path, width, height, 2)?;
     let mut cells = Vec::new();
     let mut found = 0;
     let mut last = 0;

@@ -8,6 +8,7 @@ use crate::scene::Scene;
 use miniz_oxide::inflate::decompress_to_vec_with_limit;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
+use staya_sim::file::open;
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::ops::Range;
@@ -58,7 +59,7 @@ impl Reader {
     /// # Errors
     /// The file cannot be read, is no recording, or is damaged. One that ends within a block is read up to it.
     pub fn open(path: &Path) -> Result<Self, RecordingError> {
-        let file = File::open(path).map_err(RecordingError::reading(path))?;
+        let file = open(path).map_err(RecordingError::reading(path))?;
         Self::new(BufReader::with_capacity(1 << 16, file), path)
     }
 }

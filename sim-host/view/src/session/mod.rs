@@ -16,6 +16,7 @@ use crate::server::{Client, FromPage, Server};
 use memory::Memory;
 use message::Wanted;
 use staya_sim::engine::{Operated, operated};
+use staya_sim::file::{TEXT, read_text};
 use staya_sim::scenario::{Intervention, Overrides, Scenario, ScenarioError};
 use staya_sim::world::Misplaced;
 use std::collections::{BTreeMap, HashMap, VecDeque};
@@ -84,8 +85,7 @@ impl Session {
     /// # Errors
     /// [`SessionError`].
     pub fn open(path: &Path, overrides: &Overrides, is_paused: bool) -> Result<Self, SessionError> {
-        let text =
-            std::fs::read_to_string(path).map_err(|source| ScenarioError::Io { path: path.to_owned(), source })?;
+        let text = read_text(path, TEXT).map_err(|source| ScenarioError::Io { path: path.to_owned(), source })?;
         Self::new(text, path, overrides, is_paused)
     }
 

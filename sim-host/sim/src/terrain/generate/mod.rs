@@ -9,6 +9,7 @@ pub use by_metrics::{ByMetrics, by_metrics};
 
 use super::error::{TerrainError, parameter_error};
 use super::{MAX_SIDE, Terrain};
+use crate::file::has_memory;
 use staya_controller::grid::Norm;
 use staya_controller::rand::Rng;
 
@@ -35,6 +36,19 @@ impl LandPlan {
             return Err(parameter_error(
                 format!("a landscape of {} x {} cells", self.width, self.height),
                 format!("each side must be 1..={MAX_SIDE}"),
+            ));
+        }
+        // A cell, and its number in a drawing of lots.
+        let bytes = 5 * u64::from(self.cells());
+        if !has_memory(bytes) {
+            return Err(parameter_error(
+                format!(
+                    "a landscape of {} x {} cells needs {} MB of memory, which is not to be had",
+                    self.width,
+                    self.height,
+                    bytes >> 20
+                ),
+                "give shorter sides, or close other programs",
             ));
         }
         if self.classes == 0 {

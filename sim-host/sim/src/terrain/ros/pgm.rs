@@ -1,6 +1,6 @@
 //! Grey pictures: PGM, plain (P2) and raw (P5), 8 or 16 bits.
 
-use super::super::error::{MAX_SIDE, Place, TerrainError, format_error};
+use super::super::error::{MAX_SIDE, Place, TerrainError, fits, format_error};
 use std::path::Path;
 
 /// A grey picture, first row at the top.
@@ -43,6 +43,7 @@ pub fn parse_pgm(bytes: &[u8], path: &Path) -> Result<Picture, TerrainError> {
     }
     let [width, height, largest] = header;
     let wanted = usize::from(width) * usize::from(height);
+    fits(path, width, height, 4)?;
     let mut pixels = Vec::new();
     let truncated = "it is truncated: fetch it again, or correct the header";
     if is_raw {
