@@ -11,6 +11,7 @@ mavsdk = pytest.importorskip("mavsdk")
 
 from mavsdk import ComponentType, Configuration, Mavsdk  # noqa: E402
 from mavsdk.plugins.action import Action, ActionError  # noqa: E402
+from mavsdk.plugins.mission import Mission, MissionItem, MissionPlan  # noqa: E402
 from mavsdk.plugins.offboard import Offboard, VelocityNedYaw  # noqa: E402
 from mavsdk.plugins.param import Param  # noqa: E402
 from mavsdk.plugins.telemetry import Telemetry  # noqa: E402
@@ -133,3 +134,58 @@ def test_takeoff_and_landing(connect):
     wait_until(lambda: abs(telemetry.position().relative_altitude_m - 4.0) < 0.2 and telemetry.in_air(), 15, "the height")
     action.land()
     wait_until(lambda: not telemetry.armed() and not telemetry.in_air(), 15, "the landing")
+
+
+def item(north, east, height, **wanted):
+    """A place of a mission as MAVSDK's examples give it: with a speed, and nothing of a camera."""
+    latitude, longitude = degrees(north, east)
+    nan = math.nan
+    usual = dict(
+        latitude_deg=latitude,
+        longitude_deg=longitude,
+        relative_altitude_m=height,
+        speed_m_s=10.0,
+        is_fly_through=True,
+        gimbal_pitch_deg=nan,
+        gimbal_yaw_deg=nan,
+        camera_action=MissionItem.CameraAction.NONE,
+        loiter_time_s=nan,
+        camera_photo_interval_s=nan,
+        acceptance_radius_m=nan,
+        yaw_deg=nan,
+        camera_photo_distance_m=nan,
+        vehicle_action=MissionItem.VehicleAction.NONE,
+    )
+    return MissionItem(**{**usual, **wanted})
+
+
+def fly_mission(system, plan, returns):
+    """Uploads, arms, starts and waits for the end, as MAVSDK's examples do."""
+    mission, action, telemetry = Mission(system), Action(system), Telemetry(system)
+    wait_until(lambda: telemetry.health().is_global_position_ok, 15, "a position")
+    mission.set_return_to_launch_after_mission(returns)
+    mission.upload_mission(MissionPlan(plan))
+    action.arm()
+    mission.start_mission()
+    wait_until(mission.is_mission_finished, 40, "the end of the mission")
+    progress = mission.mission_progress()
+    assert progress.current == progress.total == len(plan)
+    return telemetry
+
+
+def test_missions_with_speeds_run_to_their_end(connect, tmp_path):
+    scenario = tmp_path / "one.toml"
+    scenario.write_text(ONE)
+    (system,) = connect(scenario, 1).values()
+    # The first item is the place where it stands: MAVSDK sends no home, and item 0 is taken for it, as ArduPilot does.
+    plan = [item(0.0, 3.0, 0.0), item(4.0, 3.0, 0.0, loiter_time_s=0.5), item(4.0, 6.0, 0.0, is_fly_through=False)]
+    telemetry = fly_mission(system, plan, False)
+    assert near(telemetry, 4.0, 6.0, 1.5)
+
+
+def test_a_mission_in_the_air_with_a_camera_returns(connect):
+    systems = connect("scenarios/bridge-fly.toml", 4, "--disarmed")
+    photo = dict(camera_action=MissionItem.CameraAction.TAKE_PHOTO, gimbal_pitch_deg=20.0, gimbal_yaw_deg=60.0)
+    plan = [item(0.0, 0.0, 5.0), item(0.0, 4.0, 5.0, **photo), item(4.0, 4.0, 6.0)]
+    telemetry = fly_mission(systems[1], plan, True)
+    wait_until(lambda: not telemetry.armed() and not telemetry.in_air(), 40, "the landing at home")

@@ -286,7 +286,7 @@ impl Vehicle {
         super::mission::ack(from, MAV_MISSION_TYPE_MISSION, result)
     }
 
-    fn change_speed(&mut self, speed_mps: f32, out: &mut Out) -> Result<(), Refusal> {
+    pub(super) fn change_speed(&mut self, speed_mps: f32, out: &mut Out) -> Result<(), Refusal> {
         let speed = Meaning::Controller(Parameter::Speed);
         if self.parameters.get(speed).is_none() {
             return Err(MAV_RESULT_UNSUPPORTED);
@@ -339,6 +339,7 @@ impl Vehicle {
         let is_known = match item.command {
             MAV_CMD_NAV_WAYPOINT => true,
             MAV_CMD_NAV_RETURN_TO_LAUNCH => return MAV_MISSION_ACCEPTED,
+            _ if item.has_no_place() && !self.model.in_formation => return item.fault(),
             MAV_CMD_NAV_LAND if self.model.flies => return MAV_MISSION_ACCEPTED,
             MAV_CMD_NAV_TAKEOFF => self.model.flies,
             _ => false,
@@ -367,7 +368,7 @@ impl Vehicle {
             return Err(MAV_RESULT_DENIED);
         }
         // Item 0 is no goal, and after the last one it begins anew.
-        if self.mission.current() == 0 {
+        if self.mission.current() == 0 || self.mission.is_complete() {
             self.mission.set_current(1);
         }
         self.enter(FlightMode::Auto, out);

@@ -8,51 +8,132 @@ use staya_mavlink::constants::*;
 use staya_mavlink::dialect::*;
 use staya_mavlink::frame::Sender;
 
+/// A mission's second parameter is wrong.
+pub(super) const MAV_MISSION_INVALID_PARAM2: u8 = 7;
+/// Waits for so many seconds where it is.
+const NAV_DELAY: u16 = 93;
+/// What is for a camera or a gimbal, by name: mounts, triggers, gimbal managers, pictures, videos. Here are none, and a mission goes on without.
+const OF_CAMERAS: [u16; 9] = [204, 205, 206, 1000, 1001, 2000, 2001, 2500, 2501];
+
+impl Item {
+    /// Seconds to wait, at the place or without one.
+    fn wait_s(&self) -> f32 {
+        let [wait_s, ..] = self.params;
+        if wait_s.is_finite() { wait_s } else { 0.0 }
+    }
+
+    /// Whether it is done where the vehicle happens to be; its place, if it has one, means nothing.
+    pub(super) fn has_no_place(&self) -> bool {
+        matches!(self.command, NAV_DELAY | MAV_CMD_DO_CHANGE_SPEED) || OF_CAMERAS.contains(&self.command)
+    }
+
+    /// What is wrong with one that has no place; 0: nothing. Speeds below 0 leave it as it is.
+    pub(super) fn fault(&self) -> u8 {
+        let [first, second, ..] = self.params;
+        match self.command {
+            NAV_DELAY if !(0.0..f32::INFINITY).contains(&first) => MAV_MISSION_INVALID_PARAM1,
+            MAV_CMD_DO_CHANGE_SPEED if !second.is_finite() || second == 0.0 => MAV_MISSION_INVALID_PARAM2,
+            _ => MAV_MISSION_ACCEPTED,
+        }
+    }
+}
+
 impl Vehicle {
-    /// Sends it to the present item's place.
+    /// Sends it to the present item's place. What is done at once is done, and the item after it begins: at most as many as there are.
     pub(super) fn begin_item(&mut self, out: &mut Out) {
         self.there_since_us = None;
-        let item = self.mission.item(self.mission.current()).copied();
-        let Some(item) = item else {
-            return self.stop_mission(out);
-        };
-        match item.command {
-            MAV_CMD_NAV_RETURN_TO_LAUNCH => self.enter(FlightMode::Return, out),
-            MAV_CMD_NAV_LAND => self.enter(FlightMode::Land, out),
-            _ => match self.item_place(&item).and_then(|place| self.goal(place)) {
-                Some(wish) => out.actions.push(Action::Wish(wish)),
-                None => self.stop_mission(out),
-            },
+        loop {
+            let item = self.mission.item(self.mission.current()).copied();
+            let Some(item) = item else {
+                return self.stop_mission(out);
+            };
+            match item.command {
+                MAV_CMD_NAV_RETURN_TO_LAUNCH => {
+                    self.mission.complete();
+                    return self.enter(FlightMode::Return, out);
+                }
+                MAV_CMD_NAV_LAND => {
+                    self.enter(FlightMode::Land, out);
+                    self.is_landing_item = true;
+                    return;
+                }
+                NAV_DELAY => return out.actions.push(Action::Wish(Wish::Hold)),
+                MAV_CMD_DO_CHANGE_SPEED => self.limit_speed(item.params[1], out),
+                command if OF_CAMERAS.contains(&command) => {
+                    self.text(out, Kind::Setpoint, MAV_SEVERITY_NOTICE, "no camera, no gimbal: left out");
+                }
+                _ => {
+                    return match self.item_place(&item).and_then(|place| self.goal(place)) {
+                        Some(wish) => out.actions.push(Action::Wish(wish)),
+                        None => self.stop_mission(out),
+                    };
+                }
+            }
+            if !self.finish_item(out) {
+                return;
+            }
+        }
+    }
+
+    /// The present item is done: whether there is another one.
+    fn finish_item(&mut self, out: &mut Out) -> bool {
+        let seq = self.mission.current();
+        out.messages.push(MavMessage::MISSION_ITEM_REACHED(MISSION_ITEM_REACHED_DATA { seq }));
+        let goes_on = self.mission.set_current(seq + 1);
+        if !goes_on {
+            // It stays where it is.
+            self.mission.complete();
+            self.is_on_mission = false;
+            out.actions.push(Action::Wish(Wish::Hold));
+            self.text(out, Kind::News, MAV_SEVERITY_INFO, "mission done: holding");
+        }
+        goes_on
+    }
+
+    /// The speed of an item; one beyond the body's is the body's.
+    fn limit_speed(&mut self, speed_mps: f32, out: &mut Out) {
+        let most_mps = self.model.max_speed_mps;
+        if speed_mps > most_mps {
+            let text = format!("mission wants {speed_mps} m/s, has {most_mps}");
+            self.text(out, Kind::Setpoint, MAV_SEVERITY_NOTICE, &text);
+        }
+        if speed_mps > 0.0 {
+            // On the grid there are no speeds, and nothing to change.
+            let _ = self.change_speed(speed_mps.min(most_mps), out);
+        }
+    }
+
+    /// It has landed: the mission's last item, if it was one.
+    pub(super) fn finish_landing(&mut self, out: &mut Out) {
+        if core::mem::take(&mut self.is_landing_item) {
+            self.mission.complete();
+            let seq = self.mission.current();
+            out.messages.push(MavMessage::MISSION_ITEM_REACHED(MISSION_ITEM_REACHED_DATA { seq }));
         }
     }
 
     /// The next item, when it has been at the present one for long enough.
     pub(super) fn go_on_with_mission(&mut self, out: &mut Out) {
-        let seq = self.mission.current();
-        let item = self.mission.item(seq).copied();
-        let Some((item, place)) = item.and_then(|item| Some((item, self.item_place(&item)?))) else {
+        let Some(item) = self.mission.item(self.mission.current()).copied() else {
             return;
         };
-        let [hold_s, near_m, ..] = item.params;
-        let near_m = if near_m.is_finite() { near_m } else { 0.0 };
-        if !self.is_at(place, near_m.into()) {
+        let is_there = if item.has_no_place() {
+            true
+        } else {
+            let [_, near_m, ..] = item.params;
+            let near_m = if near_m.is_finite() { near_m } else { 0.0 };
+            self.item_place(&item).is_some_and(|place| self.is_at(place, near_m.into()))
+        };
+        if !is_there {
             return;
         }
         let now = self.sample.time_us;
         let since = *self.there_since_us.get_or_insert(now);
-        let hold_s = if hold_s.is_finite() { hold_s } else { 0.0 };
-        if ((now - since) as f64) < libm::round(f64::from(hold_s) * 1e6) {
+        if ((now - since) as f64) < libm::round(f64::from(item.wait_s()) * 1e6) {
             return;
         }
-        let reached = MISSION_ITEM_REACHED_DATA { seq };
-        out.messages.push(MavMessage::MISSION_ITEM_REACHED(reached));
-        if self.mission.set_current(seq + 1) {
+        if self.finish_item(out) {
             self.begin_item(out);
-        } else {
-            // It stays where it is.
-            self.is_on_mission = false;
-            out.actions.push(Action::Wish(Wish::Hold));
-            self.text(out, Kind::News, MAV_SEVERITY_INFO, "mission done: holding");
         }
     }
 

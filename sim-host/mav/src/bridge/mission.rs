@@ -133,6 +133,8 @@ pub struct Mission {
     items: Vec<Item>,
     /// The item that is next, or under way.
     current: u16,
+    /// Its last item was done, or begun if that is to return.
+    is_complete: bool,
     upload: Option<Upload>,
 }
 
@@ -166,9 +168,20 @@ impl Mission {
     pub fn set_current(&mut self, seq: u16) -> bool {
         let is_there = seq < self.len();
         if is_there {
-            self.current = seq;
+            (self.current, self.is_complete) = (seq, false);
         }
         is_there
+    }
+
+    /// Takes note that it is gone through.
+    pub const fn complete(&mut self) {
+        self.is_complete = true;
+    }
+
+    /// Whether it was gone through since it was loaded, or since somebody chose an item.
+    #[must_use]
+    pub const fn is_complete(&self) -> bool {
+        self.is_complete
     }
 
     /// A client begins to send a mission.
@@ -221,7 +234,7 @@ impl Mission {
         }
         self.items = core::mem::take(&mut upload.items);
         self.upload = None;
-        self.current = 1.min(self.len() - 1);
+        (self.current, self.is_complete) = (1.min(self.len() - 1), false);
         ack(from, MAV_MISSION_TYPE_MISSION, MAV_MISSION_ACCEPTED)
     }
 

@@ -78,11 +78,12 @@ impl Vehicle {
             MISSION_CURRENT_DATA::ID => MavMessage::MISSION_CURRENT(MISSION_CURRENT_DATA {
                 seq: self.mission.current(),
                 total: self.mission.len().saturating_sub(1),
-                // 1 none, 2 not started, 3 under way.
-                mission_state: match (self.mission.is_empty(), self.is_on_mission) {
-                    (true, _) => 1,
-                    (false, false) => 2,
-                    (false, true) => 3,
+                // MISSION_STATE: none, under way, complete, not started.
+                mission_state: match () {
+                    () if self.mission.is_empty() => 1,
+                    () if self.is_on_mission || self.is_landing_item => 3,
+                    () if self.mission.is_complete() => 5,
+                    () => 2,
                 },
                 mission_mode: if self.is_on_mission { 1 } else { 2 },
             }),

@@ -66,6 +66,8 @@ pub struct Vehicle {
     /// Its mission is under way, since this simulated time at the present item's place.
     pub(super) is_on_mission: bool,
     pub(super) there_since_us: Option<u64>,
+    /// It lands because an item of its mission says so.
+    pub(super) is_landing_item: bool,
     /// When a text of each kind was last sent, and the time now.
     texts: [Option<u64>; Kind::COUNT],
     pub(super) now_us: u64,
@@ -113,6 +115,7 @@ impl Vehicle {
             starts_armed,
             is_on_mission: false,
             there_since_us: None,
+            is_landing_item: false,
             texts: [None; Kind::COUNT],
             now_us: 0,
             model,
@@ -417,7 +420,7 @@ impl Vehicle {
             self.text(out, Kind::News, MAV_SEVERITY_INFO, &text);
         }
         self.mode = mode;
-        self.is_on_mission = false;
+        (self.is_on_mission, self.is_landing_item) = (false, false);
         self.begin(out);
     }
 
@@ -475,6 +478,7 @@ impl Vehicle {
             FlightMode::Land if self.is_at([x, y, 0.0], 0.0) => {
                 self.is_armed = false;
                 self.begin(out);
+                self.finish_landing(out);
                 self.text(out, Kind::News, MAV_SEVERITY_INFO, "landed, disarmed");
             }
             FlightMode::Return if self.model.flies => {

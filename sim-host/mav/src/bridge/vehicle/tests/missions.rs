@@ -1,6 +1,7 @@
 //! Missions, and orders of the dialect.
 
 use super::*;
+use crate::bridge::items::MAV_MISSION_INVALID_PARAM2;
 
 #[test]
 fn missions_are_gone_through_item_by_item() {
@@ -36,6 +37,73 @@ fn missions_are_gone_through_item_by_item() {
     assert_eq!(bench.command(MAV_CMD_DO_SET_MODE, two(1.0, 15.0)), MAV_RESULT_ACCEPTED);
     assert!(!bench.vehicle.is_on_mission);
     assert_eq!(bench.command(MAV_CMD_DO_SET_MISSION_CURRENT, first(9.0)), MAV_RESULT_DENIED);
+}
+
+fn reached(out: &Out) -> Vec<u16> {
+    let messages = out.messages.iter().filter_map(|message| match message {
+        MavMessage::MISSION_ITEM_REACHED(reached) => Some(reached.seq),
+        _ => None,
+    });
+    messages.collect()
+}
+
+/// As MAVSDK makes them: each place with a speed, and what is for a camera, behind it.
+#[test]
+fn speeds_waits_and_cameras_are_items_that_are_done_on_the_way() {
+    let mut bench = Bench::new(model());
+    let order = |seq, command, param1, param2| MISSION_ITEM_INT_DATA {
+        command,
+        param1,
+        param2,
+        frame: 2,
+        z: NAN,
+        ..item(seq, 0.0, 0.0)
+    };
+    let items = [
+        item(0, 0.0, 0.0),
+        order(1, MAV_CMD_DO_CHANGE_SPEED, 1.0, 0.5),
+        item(2, 10.0, 0.0),
+        order(3, MAV_CMD_DO_CHANGE_SPEED, 1.0, 10.0),
+        order(4, 93, 0.2, -1.0),
+        order(5, 2000, 0.0, 0.0),
+        order(6, MAV_CMD_DO_CHANGE_SPEED, 1.0, -1.0),
+    ];
+    assert_eq!(load(&mut bench, &items), MAV_MISSION_ACCEPTED);
+    assert_eq!(bench.command(MAV_CMD_MISSION_START, [NAN; 7]), MAV_RESULT_ACCEPTED);
+    assert_eq!(reached(&bench.out), [1]);
+    assert!(bench.out.actions.contains(&Action::Set(Parameter::Speed, 0.5)));
+    assert!((place_mm(bench.wish())[0] - 10_000).abs() < 10);
+    // The body goes 2 m/s.
+    let out = bench.tick(|sample| sample.position_m = [10.0, 0.0, 0.0]);
+    assert_eq!(reached(out), [2, 3]);
+    assert!(out.actions.contains(&Action::Set(Parameter::Speed, 2.0)));
+    assert_eq!(bench.texts(), ["mission wants 10 m/s, has 2"]);
+    assert_eq!(bench.wish(), Some(Wish::Hold));
+    assert!(reached(bench.tick(|_| {})).is_empty());
+    assert!(reached(bench.tick(|_| {})).is_empty());
+    assert_eq!(reached(bench.tick(|_| {})), [4, 5, 6]);
+    assert!(!bench.vehicle.is_on_mission && bench.texts().contains(&"mission done: holding".to_owned()));
+    for (bad, fault) in [
+        (order(1, MAV_CMD_DO_CHANGE_SPEED, 1.0, NAN), MAV_MISSION_INVALID_PARAM2),
+        (order(1, MAV_CMD_DO_CHANGE_SPEED, 1.0, 0.0), MAV_MISSION_INVALID_PARAM2),
+        (order(1, 93, -1.0, 12.0), MAV_MISSION_INVALID_PARAM1),
+        (order(1, 93, f32::INFINITY, 0.0), MAV_MISSION_INVALID_PARAM1),
+    ] {
+        assert_eq!(load(&mut bench, &[item(0, 0.0, 0.0), bad]), fault);
+    }
+}
+
+#[test]
+fn a_landing_at_the_end_of_a_mission_is_reached_on_the_ground() {
+    let mut bench = Bench::new(flying());
+    bench.tick(|sample| sample.position_m = [0.0, 0.0, 5.0]);
+    let landing = MISSION_ITEM_INT_DATA { command: MAV_CMD_NAV_LAND, ..item(1, 0.0, 0.0) };
+    assert_eq!(load(&mut bench, &[item(0, 0.0, 0.0), landing]), MAV_MISSION_ACCEPTED);
+    assert_eq!(bench.command(MAV_CMD_MISSION_START, NONE), MAV_RESULT_ACCEPTED);
+    assert_eq!(bench.vehicle.mode, FlightMode::Land);
+    assert!(reached(bench.tick(|_| {})).is_empty());
+    assert_eq!(reached(bench.tick(|sample| sample.position_m[2] = 0.0)), [1]);
+    assert!(!bench.vehicle.is_armed);
 }
 
 #[test]
