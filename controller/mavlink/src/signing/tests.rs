@@ -185,7 +185,7 @@ fn a_frame_of_the_far_future_mutes_nobody_and_shuts_nobody_out() {
     for clock in [None, Some(NOW)] {
         for _ in 0..3 {
             let mut receiver = Signing::<2>::new(key(), 0, NOW);
-            clock.map(|now| receiver.advance_to(now));
+            receiver.advance_to(clock.unwrap_or(0));
             let mut true_sender = Signing::<1>::new(key(), 0, NOW);
             for n in 0..3 {
                 assert_eq!(judged(&mut receiver, &evil), Verdict::Ahead);
@@ -203,7 +203,7 @@ fn a_frame_of_the_far_future_mutes_nobody_and_shuts_nobody_out() {
 fn the_lead_is_a_minute_on_the_clock_a_month_without_one_or_as_set() {
     let with = |clock: Option<u64>, lead: Option<u64>| {
         let mut receiver = Signing::<2>::new(key(), 0, NOW);
-        clock.map(|clock| receiver.advance_to(clock));
+        receiver.advance_to(clock.unwrap_or(0));
         match lead {
             Some(lead) => receiver.with_lead(lead),
             None => receiver,

@@ -12,6 +12,7 @@ mod items;
 mod mission;
 mod model;
 mod params;
+mod report;
 mod streams;
 mod swarm;
 mod telemetry;
@@ -21,6 +22,7 @@ mod vehicle;
 
 pub use model::{FlightMode, Sample, VehicleModel};
 pub use params::{Meaning, NotSet, Parameters};
+pub use report::{BridgeReport, LineReport};
 pub use streams::Streams;
-pub use swarm::{BridgeError, BridgeReport, LineReport, Options, Swarm};
+pub use swarm::{BridgeError, Options, Swarm};
 pub use vehicle::{Action, Out, Vehicle};
