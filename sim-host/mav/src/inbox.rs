@@ -1,7 +1,7 @@
 //! Frames that wait to be served: every peer in turn, so that one who says too much waits himself and nobody else does.
 
-use super::traffic::{Peer, Received};
 use std::collections::{HashMap, VecDeque};
+use std::net::SocketAddr;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -10,6 +10,26 @@ pub(super) const QUEUE: usize = 512;
 /// Messages that one peer can have answered in a second, and at once.
 const ANSWERS_PER_S: u32 = 1000;
 const ANSWERS_AT_ONCE: u32 = 1000;
+
+/// Somebody at the other end of a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Peer {
+    /// Of a socket.
+    Address(SocketAddr),
+    /// Of a serial port.
+    Wire,
+}
+
+/// A frame that came in.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Received {
+    /// Over which line, by its number in [`Lines::open`](super::Lines::open).
+    pub line: usize,
+    /// From whom.
+    pub peer: Peer,
+    /// One whole frame: see [`staya_mavlink::frame::RawFrame`].
+    pub frame: Vec<u8>,
+}
 
 /// A line and who is heard there; `None`: all who are not known yet.
 type Source = (usize, Option<Peer>);
@@ -119,7 +139,6 @@ impl Waiting {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::net::SocketAddr;
 
     fn from(port: u16, frame: u8) -> Received {
         let peer = Peer::Address(SocketAddr::from(([127, 0, 0, 1], port)));

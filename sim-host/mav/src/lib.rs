@@ -16,6 +16,7 @@ mod traffic;
 mod udp;
 
 pub use endpoint::{Endpoint, EndpointError};
+pub use inbox::{Peer, Received};
 pub use lines::{Lines, OpenError};
 pub use tlog::{Tlog, TlogError};
-pub use traffic::{Counts, Peer, Received};
+pub use traffic::Counts;

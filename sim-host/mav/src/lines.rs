@@ -1,8 +1,8 @@
 //! Several lines, one queue of frames.
 
 use super::endpoint::Endpoint;
-use super::inbox::Inbox;
-use super::traffic::{Counts, Outgoing, Peer, Received, Shared};
+use super::inbox::{Inbox, Peer, Received};
+use super::traffic::{Counts, Outgoing, Shared};
 use super::{stream, udp};
 use std::io;
 use std::net::SocketAddr;

@@ -1,6 +1,7 @@
 //! Lines of bytes: TCP and serial ports.
 
-use super::traffic::{GLANCE, Outgoing, Peer, Shared};
+use super::inbox::Peer;
+use super::traffic::{GLANCE, Outgoing, Shared};
 use staya_serial::SerialPort;
 use std::collections::HashMap;
 use std::io::{self, ErrorKind, Read, Write};

@@ -1,6 +1,6 @@
 //! What goes over a line, whatever its kind: who is at the other end, frames that come in, counts of both ways.
 
-use super::inbox::Inbox;
+use super::inbox::{Inbox, Peer, Received};
 use staya_mavlink::frame::{Scan, scan};
 use std::io;
 use std::net::SocketAddr;
@@ -10,26 +10,6 @@ use std::time::Duration;
 
 /// How often those who wait look whether they are still wanted.
 pub(super) const GLANCE: Duration = Duration::from_millis(50);
-
-/// Somebody at the other end of a line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Peer {
-    /// Of a socket.
-    Address(SocketAddr),
-    /// Of a serial port.
-    Wire,
-}
-
-/// A frame that came in.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Received {
-    /// Over which line, by its number in [`Lines::open`](super::Lines::open).
-    pub line: usize,
-    /// From whom.
-    pub peer: Peer,
-    /// One whole frame: see [`staya_mavlink::frame::RawFrame`].
-    pub frame: Vec<u8>,
-}
 
 /// What a line has carried.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]

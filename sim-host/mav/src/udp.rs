@@ -1,6 +1,7 @@
 //! Lines of datagrams.
 
-use super::traffic::{GLANCE, Outgoing, Peer, Shared};
+use super::inbox::Peer;
+use super::traffic::{GLANCE, Outgoing, Shared};
 use socket2::SockRef;
 use std::collections::HashMap;
 use std::io;

@@ -1,0 +1,108 @@
+//! Links only if no panic is reachable from what firmware may have besides the steps of `nopanic`: an operator who takes a robot over,
+//! parameters that change while it runs, every kind of number that a part can compute with, and MAVLink messages of any kind. Works as `nopanic`
+//! does; it is not meant to be run.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+staya_firmware::entry!(program::run);
+
+#[cfg(target_os = "none")]
+mod program {
+    use core::hint::black_box;
+
+    // On one part: there are so many kinds of agents that each part would take its minutes, and what can panic in them does not depend on it.
+    #[cfg(part = "stm32f405")]
+    mod agents {
+        use core::hint::black_box;
+        use staya_cases::{Case, Probe};
+        use staya_controller::agent::{Agent, Commanded, Guidance, Inputs, Outputs, Parameter, Safety, Wish};
+        use staya_controller::scalar::{Fast32, Q16, Scalar};
+        use staya_controller::time::Instant;
+        use staya_controller::wire::Wire;
+
+        /// Changes an agent's parameters, and has an operator take it over.
+        struct Operator;
+
+        /// Only steps it.
+        struct Opaque;
+
+        impl<S: Scalar> Probe<S> for Opaque {
+            fn step<G: Guidance<S>, A: Safety<S>, W: Wire, const N: usize>(
+                &mut self,
+                agent: &mut Agent<S, G, N, A, W>,
+                inputs: &Inputs<'_, S, G::Input<'_>>,
+                now: Instant,
+                workspace: &mut G::Workspace,
+            ) -> Outputs<S> {
+                let (agent, inputs) = (black_box(agent), black_box(inputs));
+                black_box(agent.step(inputs, black_box(now), black_box(workspace)))
+            }
+        }
+
+        impl<S: Scalar> Probe<S> for Operator {
+            fn step<G: Guidance<S>, A: Safety<S>, W: Wire, const N: usize>(
+                &mut self,
+                agent: &mut Agent<S, G, N, A, W>,
+                inputs: &Inputs<'_, S, G::Input<'_>>,
+                now: Instant,
+                workspace: &mut G::Workspace,
+            ) -> Outputs<S> {
+                // There is none, which the optimiser does not know.
+                let mut commanded = black_box(None::<Agent<S, Commanded<S, G>, N, A, W>>);
+                if let Some(agent) = black_box(&mut commanded) {
+                    tune(agent);
+                    black_box(agent.guidance_mut().command(black_box(Wish::Own)).is_ok());
+                    black_box(agent.guidance_mut().wish());
+                    let (inputs, workspace) = (black_box(inputs), black_box(&mut *workspace));
+                    let _ = black_box(agent.step(inputs, black_box(now), workspace));
+                }
+                let (agent, inputs) = (black_box(agent), black_box(inputs));
+                tune(agent);
+                black_box(agent.step(inputs, black_box(now), black_box(workspace)))
+            }
+        }
+
+        fn tune<S: Scalar, G: Guidance<S>, A: Safety<S>, W: Wire, const N: usize>(agent: &mut Agent<S, G, N, A, W>) {
+            let parameter = black_box(Parameter::Radius);
+            black_box(black_box(&mut *agent).set_parameter(parameter, black_box(1.0)));
+            black_box(black_box(&*agent).parameter(parameter));
+            black_box((parameter.range(), parameter.unit(), parameter.what()));
+        }
+
+        pub fn run() {
+            for &case in black_box(Case::ALL) {
+                black_box(case.run::<f32, _>(&mut Operator));
+                black_box(case.run::<f64, _>(&mut Opaque));
+                black_box(case.run::<Fast32, _>(&mut Opaque));
+                black_box(case.run::<Q16, _>(&mut Opaque));
+            }
+        }
+    }
+
+    /// Bytes from a line, as messages of whatever kind.
+    fn messages() {
+        let mut rest = black_box(&[1; 300][..]);
+        while let Some(frame) = staya_mavlink::frame::next_frame(&mut rest) {
+            black_box((frame.sender(), frame.is_known()));
+            black_box(frame.message());
+        }
+    }
+
+    pub fn run() -> ! {
+        #[cfg(part = "stm32f405")]
+        agents::run();
+        messages();
+        loop {
+            core::hint::spin_loop();
+        }
+    }
+
+    #[panic_handler]
+    fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+        unsafe extern "C" {
+            /// Defined nowhere.
+            fn staya_panic_is_reachable() -> !;
+        }
+        // SAFETY: never called: a program in which this call is left does not link.
+        unsafe { staya_panic_is_reachable() }
+    }
+}
