@@ -1,6 +1,6 @@
 //! A vehicle goes from item to item of its mission.
 
-use super::mission::Item;
+use super::mission::{Item, MAV_MISSION_INVALID_PARAM2};
 use super::model::FlightMode;
 use super::vehicle::{Action, Kind, Out, Vehicle};
 use staya_controller::agent::Wish;
@@ -8,8 +8,6 @@ use staya_mavlink::constants::*;
 use staya_mavlink::dialect::*;
 use staya_mavlink::frame::Sender;
 
-/// A mission's second parameter is wrong.
-pub(super) const MAV_MISSION_INVALID_PARAM2: u8 = 7;
 /// Waits for so many seconds where it is.
 const NAV_DELAY: u16 = 93;
 /// What is for a camera or a gimbal, by name: mounts, triggers, gimbal managers, pictures, videos. Here are none, and a mission goes on without.

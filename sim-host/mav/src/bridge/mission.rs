@@ -8,6 +8,8 @@ use staya_mavlink::frame::Sender;
 
 /// Items that a vehicle has room for.
 pub const ITEMS: u16 = 128;
+/// An item's second parameter is wrong.
+pub(super) const MAV_MISSION_INVALID_PARAM2: u8 = 7;
 /// After so long an item is asked for again, microseconds.
 const PATIENCE_US: u64 = 700_000;
 /// So often an item is asked for.

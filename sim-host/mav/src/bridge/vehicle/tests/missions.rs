@@ -1,7 +1,7 @@
 //! Missions, and orders of the dialect.
 
 use super::*;
-use crate::bridge::items::MAV_MISSION_INVALID_PARAM2;
+use crate::bridge::mission::MAV_MISSION_INVALID_PARAM2;
 
 #[test]
 fn missions_are_gone_through_item_by_item() {
