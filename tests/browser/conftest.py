@@ -12,9 +12,9 @@ from playwright.sync_api import sync_playwright
 
 ROOT = Path(__file__).resolve().parents[2]
 STAYA = os.environ.get("STAYA", str(ROOT / "target/debug/staya"))
-CHROMIUM = os.environ.get("CHROMIUM", shutil.which("chromium") or "chromium")
+CHROMIUM = shutil.which(os.environ.get("CHROMIUM", "chromium"))
 # Rendering by software: the machines that run this have no GPU.
-OPTIONS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+OPTIONS = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 
 
 def until(condition, timeout: float = 30.0, what: str = "it"):
@@ -32,7 +32,9 @@ def until(condition, timeout: float = 30.0, what: str = "it"):
 @pytest.fixture(scope="session")
 def browser():
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=OPTIONS)
+        # As root Chromium has no sandbox.
+        sandbox = os.geteuid() != 0
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=OPTIONS, chromium_sandbox=sandbox)
         yield browser
         browser.close()
 

@@ -1,11 +1,15 @@
 """The page of `staya view` in Chromium: what it shows is what runs, and what is done in it is done to the robots."""
 
+import http.server
 import json
+import math
 import re
 import subprocess
+import threading
 import urllib.error
 import urllib.request
 
+import pytest
 from conftest import ROOT, STAYA, until
 
 SIX = "scenarios/six-robots.toml"
@@ -16,16 +20,37 @@ def tick(page) -> int:
     return page.evaluate("staya.currentTick")
 
 
-def pixels(page, index: int) -> list[float]:
-    """Where a robot is on the page."""
-    place = "(([x, y, z]) => staya.project(x, y, z ?? 0))(Array.from(staya.place(%d)))"
-    at = page.evaluate(place % index)
-    return [at["x"], at["y"]] if isinstance(at, dict) else at[:2]
+def on_page(page, place: list[float]) -> list[float]:
+    """Where a place of the world is on the page, pixels."""
+    return page.evaluate("([x, y, z]) => staya.project(x, y, z ?? 0)", place)[:2]
 
 
-def final_hash(*arguments) -> str:
+def place_of(page, index: int) -> list[float]:
+    """Where a robot is, metres."""
+    return page.evaluate("index => Array.from(staya.place(index))", index)
+
+
+def select(page, index: int):
+    page.mouse.click(*on_page(page, place_of(page, index)))
+    until(lambda: page.evaluate("staya.robot?.index") == index, what="its panel")
+
+
+def seek(page, wanted: int):
+    page.evaluate("tick => staya.send({ do: 'seek', tick })", wanted)
+    until(lambda: tick(page) == wanted and page.evaluate("staya.state.paused"), what=f"going to tick {wanted}")
+
+
+def play_to_the_end(page):
+    page.evaluate("staya.send({ do: 'speed', x: null })")
+    page.keyboard.press(" ")
+    until(lambda: page.evaluate("staya.state.at_end"), what="the end")
+    until(lambda: tick(page) == page.evaluate("staya.state.tick"), what="the last frame")
+
+
+def summary(*arguments) -> dict:
+    """What a run without a page says of itself."""
     said = subprocess.run([STAYA, "run", *arguments, "--json", "-q"], cwd=ROOT, capture_output=True, check=True)
-    return json.loads(said.stdout)["trace_hash"]
+    return json.loads(said.stdout)
 
 
 def test_it_moves_and_its_figures_are_those_of_the_run(view, look, tmp_path):
@@ -42,21 +67,57 @@ def test_it_moves_and_its_figures_are_those_of_the_run(view, look, tmp_path):
     stands = until(lambda: tick(page) == page.evaluate("staya.state.tick") and tick(page), what="the last frame")
     page.wait_for_timeout(300)
     assert tick(page) == stands
-    shown = page.evaluate("staya.lastFigures")
-    assert shown["hash"] == final_hash(SIX, "--ticks", str(stands), "--out", str(tmp_path))
+    assert page.locator("#tick").text_content() == f"tick {stands}"
+    shown, run = page.evaluate("staya.lastFigures"), summary(SIX, "--ticks", str(stands), "--out", str(tmp_path))
+    assert [shown["hash"], shown["collisions"]] == [run["trace_hash"], run["collisions"]]
+    assert shown["arrived"] == run["arrived"]
 
 
 def test_a_selected_robot_tells_what_it_knows(view, look):
     page = look(view(SWAP).url)
-    until(lambda: tick(page) > 20, what="ticks")
-    page.keyboard.press(" ")
-    until(lambda: page.evaluate("staya.state.paused"), what="a pause")
-    page.wait_for_timeout(300)
-    page.mouse.click(*pixels(page, 4))
-    until(lambda: page.evaluate("staya.robot?.index") == 4, what="its panel")
-    robot = page.evaluate("staya.robot")
+    until(lambda: tick(page) > 70, what="ticks")
+    # All sixteen are near enough to each other by then to be heard.
+    seek(page, 70)
+    select(page, 4)
+    robot = until(lambda: (robot := page.evaluate("staya.robot")) and robot["tick"] == 70 and robot, what="its tick")
     assert len(robot["neighbors"]) == 15 and robot["orca"]["lines"]
     assert page.get_by_text("Robot 5", exact=True).first.is_visible()
+
+
+def test_a_robot_arrives_where_its_goal_was_dragged(view, look):
+    page = look(view(SWAP, "--paused").url)
+    select(page, 4)
+    was, wanted = page.evaluate("Array.from(staya.target(4))"), [2.7, 0.5, 0]
+    assert math.dist(was[:2], wanted[:2]) > 1
+    page.mouse.move(*on_page(page, was))
+    page.mouse.down()
+    page.mouse.move(*on_page(page, [1, 1, 0]), steps=3)
+    page.mouse.move(*on_page(page, wanted), steps=3)
+    page.mouse.up()
+    page.keyboard.press(".")
+    until(lambda: tick(page) == 1, what="a step")
+    target = page.evaluate("Array.from(staya.target(4))")
+    assert math.dist(target[:2], wanted[:2]) < 0.05
+    play_to_the_end(page)
+    assert page.evaluate("staya.lastFigures.arrived") == 16
+    assert math.dist(place_of(page, 4)[:2], target[:2]) < 0.05
+
+
+def test_a_slider_changes_a_parameter_in_the_controllers(view, look):
+    page = look(view(SWAP, "--paused").url)
+    select(page, 4)
+    before = page.evaluate("staya.robot.parameters.horizon_s")
+    greatest = page.evaluate("staya.scene.parameters.find(each => each.name === 'horizon_s').greatest")
+    assert before < greatest
+    panel = page.locator("#parameters-panel")
+    if panel.get_attribute("open") is None:
+        panel.locator("summary").click()
+    panel.locator("label.slider", has=page.get_by_text("horizon", exact=True)).locator("input").press("End")
+    page.locator("#step").click()
+    until(lambda: page.evaluate("staya.robot.parameters.horizon_s") == greatest, what="the change")
+    # Nobody was singled out.
+    select(page, 9)
+    assert page.evaluate("staya.robot.parameters.horizon_s") == greatest
 
 
 def test_what_is_done_by_the_page_is_saved_and_done_again(view, look, tmp_path):
@@ -67,16 +128,14 @@ def test_what_is_done_by_the_page_is_saved_and_done_again(view, look, tmp_path):
         {"kind": "solid", "solid": {"kind": "circle", "center_m": [0, 3.5], "radius_m": 0.3}},
     ]:
         page.evaluate("order => staya.send({ do: 'order', order })", order)
-    page.evaluate("staya.send({ do: 'speed', x: null })")
-    page.keyboard.press(" ")
-    until(lambda: page.evaluate("staya.state.at_end"), what="the end")
-    end = until(lambda: tick(page) == page.evaluate("staya.state.tick") and page.evaluate("staya.lastFigures.hash"))
+    play_to_the_end(page)
+    end = page.evaluate("staya.lastFigures.hash")
     with page.expect_download() as download:
         page.get_by_label("Save as a scenario").click()
     saved = tmp_path / "saved.toml"
     download.value.save_as(saved)
     assert re.search(rf"Trace hash after tick \d+: {end}", saved.read_text())
-    assert final_hash(str(saved), "--out", str(tmp_path / "out")) == end
+    assert summary(str(saved), "--out", str(tmp_path / "out"))["trace_hash"] == end
 
 
 def test_strangers_get_nothing(view):
@@ -98,19 +157,59 @@ def test_strangers_get_nothing(view):
         assert "script-src 'self' 'nonce-" in answer.headers["Content-Security-Policy"]
 
 
+@pytest.fixture
+def elsewhere():
+    """The address of a page of another origin."""
+
+    class Empty(http.server.BaseHTTPRequestHandler):
+        def do_GET(self):
+            self.send_response(200)
+            self.send_header("Content-Type", "text/html")
+            self.end_headers()
+
+        def log_message(self, *_):
+            pass
+
+    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), Empty) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        yield f"http://127.0.0.1:{server.server_port}/"
+        server.shutdown()
+
+
+def test_only_its_own_page_gets_a_socket(browser, view, elsewhere):
+    url = view(SIX, "--paused").url
+    live = url.replace("http://", "ws://").replace("/?", "/live?")
+    wrong = re.sub("token=.*", "token=" + 32 * "0", live)
+    page = browser.new_page()
+    for address, socket, how in [(url, live, "open"), (url, wrong, "error"), (elsewhere, live, "error")]:
+        page.goto(address)
+        ended = page.evaluate(
+            """url => new Promise(resolve => {
+                const socket = new WebSocket(url);
+                socket.onopen = () => resolve("open");
+                socket.onerror = () => resolve("error");
+            })""",
+            socket,
+        )
+        assert ended == how, (address, socket)
+    page.close()
+
+
 def test_recordings_play_from_a_server_and_from_one_file(view, look, tmp_path):
     recording, page_file = tmp_path / "six.staya", tmp_path / "six.html"
     run = [STAYA, "run", SIX, "--out", tmp_path / "out", "--record", recording, "-q"]
     subprocess.run(run, cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
     subprocess.run([STAYA, "page", recording, "--out", page_file, "-q"], check=True, stdout=subprocess.DEVNULL)
     assert page_file.stat().st_size < 1_000_000
-    for url in [view(recording, "--paused").url, page_file.as_uri()]:
-        page = look(url)
+    # The file comes from the disk, and would complain if it asked the network for anything.
+    for url, options in [(view(recording, "--paused").url, {}), (page_file.as_uri(), {"offline": True})]:
+        page = look(url, **options)
         assert page.evaluate("staya.scene.mode") == "recording"
-        page.evaluate("staya.send({ do: 'seek', tick: 400 })")
-        until(lambda: tick(page) == 400, what="going to tick 400")
+        seek(page, 400)
+        before = page.screenshot()
         page.keyboard.press(" ")
         until(lambda: tick(page) > 405, what="ticks")
+        assert page.screenshot() != before
 
 
 def test_it_fits_a_phone_in_light_and_dark(view, look):

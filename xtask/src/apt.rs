@@ -10,6 +10,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+/// Where programs are. Chromium's has a script of the same name in `usr/bin`, which starts what is installed.
+const PROGRAMS: [&str; 3] = ["usr/lib/chromium", "usr/bin", "usr/sbin"];
+
 /// What apt would do for some packages.
 #[derive(Debug, Default, PartialEq, Eq)]
 struct Installation {
@@ -34,6 +37,7 @@ pub fn unpack(repo: &Repo, packages: &[&str], programs: &[&str]) -> Result<(), S
     }
     relink(&root, &root).map_err(|error| format!("{}: {error}", root.display()))?;
     fs::remove_dir_all(&archives).map_err(|error| format!("{}: {error}", archives.display()))?;
+    write_fonts(repo, &root)?;
     println!("Unpacked into {}", root.display());
     // The scripts come last: what has one is complete.
     make(&repo.tools())?;
@@ -123,9 +127,33 @@ fn link(_: &Path, _: &Path) -> std::io::Result<()> {
     Ok(()) // where there is apt, there is Unix
 }
 
+/// Where it says which fonts there are: those that came along, so that a picture is the same on every machine.
+fn fonts(repo: &Repo) -> PathBuf {
+    home(repo).join("fonts.conf")
+}
+
+/// Writes that file. Fontconfig's own way to another root, `FONTCONFIG_SYSROOT`, does not do: Chromium then opens the
+/// same paths outside of it.
+fn write_fonts(repo: &Repo, root: &Path) -> Result<(), String> {
+    let text = format!(
+        "<?xml version=\"1.0\"?>\n\
+         <!DOCTYPE fontconfig SYSTEM \"urn:fontconfig:fonts.dtd\">\n\
+         <fontconfig>\n\
+         <dir>{}</dir>\n\
+         <include ignore_missing=\"yes\">{}</include>\n\
+         <cachedir>{}</cachedir>\n\
+         </fontconfig>\n",
+        root.join("usr/share/fonts").display(),
+        root.join("etc/fonts/conf.d").display(),
+        home(repo).join("cache/fonts").display(),
+    );
+    let file = fonts(repo);
+    fs::write(&file, text).map_err(|error| format!("{}: {error}", file.display()))
+}
+
 /// A script that starts a program with the libraries that were unpacked beside it.
 fn write_script(repo: &Repo, root: &Path, name: &str) -> Result<(), String> {
-    let places = ["usr/bin", "usr/sbin"].map(|folder| root.join(folder).join(name));
+    let places = PROGRAMS.map(|folder| root.join(folder).join(name));
     let program = places.iter().find(|place| place.exists());
     let program = program.ok_or_else(|| format!("the packages hold no {name}"))?;
     let libraries: Vec<String> = libraries(root).iter().map(|folder| folder.display().to_string()).collect();
@@ -134,9 +162,11 @@ fn write_script(repo: &Repo, root: &Path, name: &str) -> Result<(), String> {
          # Starts a program that `cargo xtask` unpacked, with its libraries.\n\
          export LD_LIBRARY_PATH='{}'\"${{LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}}\"\n\
          export WIRESHARK_DATA_DIR='{}'\n\
+         export FONTCONFIG_FILE='{}'\n\
          exec '{}' \"$@\"\n",
         libraries.join(":"),
         root.join("usr/share/wireshark").display(),
+        fonts(repo).display(),
         program.display()
     );
     let script = repo.tools().join(name);

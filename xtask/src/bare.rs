@@ -2,7 +2,8 @@
 //!
 //! debootstrap makes a root of its own with a C compiler and nothing else. A package in it excludes those of the emulators and of
 //! Debian's Rust, as the `qemu-utils` of backports excludes the former. There this program, with the Rust that runs it, must find
-//! emulators and compiler, and run firmware on emulated parts; afterwards exactly those packages must be installed that were before.
+//! emulators and compiler, and run firmware on emulated parts; with Python besides, it must find a browser and show it pages.
+//! Afterwards exactly those packages must be installed that were before.
 
 use crate::apt;
 use crate::repo::{Repo, output_of, run};
@@ -12,8 +13,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 const NAME: &str = "a bare Debian";
-/// What a user has to have, as the README says.
-const PREREQUISITES: &str = "gcc,libc6-dev,ca-certificates";
+/// What a user has to have, as the README says, and Python, which alone would be installed.
+const PREREQUISITES: &str = "gcc,libc6-dev,ca-certificates,python3,python3-venv";
 /// Excludes what must be fetched.
 const IN_THE_WAY: &str = "Package: in-the-way\n\
     Version: 1\n\
@@ -32,8 +33,8 @@ mount -t proc proc "$BARE/proc"
 exec chroot "$BARE" env --ignore-environment CI=true HOME=/root CARGO_HOME=/cargo CARGO_TARGET_DIR=/build \
     PATH=/rust/bin:/usr/sbin:/usr/bin:/sbin:/bin sh -ec "cd /repo; $1"
 "#;
-/// What must work there: parts with both emulators.
-const COMMANDS: [&str; 2] = ["qemu", "faults nrf51 riscv32"];
+/// What must work there: parts with both emulators, and a browser.
+const COMMANDS: [&str; 3] = ["qemu", "faults nrf51 riscv32", "browser"];
 /// Lists what is installed.
 const INSTALLED: [&str; 3] = ["dpkg-query", "--show", "--showformat=${Package} ${Version}\\n"];
 
@@ -115,7 +116,7 @@ impl Bare {
         make.args(["--variant=minbase", "--include", PREREQUISITES]);
         run(make.arg(&self.codename).arg(&self.root).arg(&self.mirror))?;
         self.write("etc/apt/sources.list", &self.sources)?;
-        for file in ["/etc/resolv.conf", "/etc/hosts", "/etc/ssl/certs/ca-certificates.crt"] {
+        for file in ["/etc/resolv.conf", "/etc/hosts", "/etc/ssl/certs/ca-certificates.crt", "/etc/pip.conf"] {
             // Not every machine has each.
             let _ = fs::copy(file, self.root.join(file.trim_start_matches('/')));
         }

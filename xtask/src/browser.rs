@@ -1,54 +1,59 @@
 //! `cargo xtask browser`: the page of `staya view` in a real browser.
-//!
-//! Not yet a part of `cargo xtask test`: a browser is 150 MB of packages, and has been seen to work from `target/tools` on no bare
-//! machine yet.
 
 use crate::apt;
-use crate::clients::{closing_line, prepare};
-use crate::repo::{Repo, output_of, run, run_reading};
-use crate::report::Report;
+use crate::python::{self, pytest};
+use crate::repo::{Repo, output_of, run};
+use crate::report::{Counts, Report};
+use std::path::PathBuf;
 
 const NAME: &str = "pages in a browser";
 const TESTS: &str = "tests/browser";
-const CHROMIUM: &str = "chromium";
-const REMEDY: &str = "on Debian run, as root, `apt-get update && apt-get install chromium`; \
-    what Python needs comes from PyPI (tests/browser/requirements.txt)";
+/// Chromium without windows, and what it shows text with.
+const PACKAGES: [&str; 4] = [CHROMIUM, "chromium-common", "fontconfig-config", "fonts-dejavu-core"];
+const CHROMIUM: &str = "chromium-headless-shell";
+const REMEDY: &str = "on Debian run, as root, `apt-get update && apt-get install chromium-headless-shell`";
 
 /// The command: builds the program, and runs the tests with it.
 pub fn run_command(repo: &Repo, report: &mut Report) {
     let mut build = repo.cargo(&["build", "--locked", "--package", "staya"]);
-    if !report.step("staya for its pages", || run(&mut build)) {
-        return report.skip(NAME, "the program was not built");
+    if report.step("staya for its pages", || run(&mut build)) {
+        return run_tests(repo, report);
     }
-    if output_of(repo.command(CHROMIUM).arg("--version")).is_none()
-        && let Err(reason) = apt::install(repo, &[CHROMIUM])
-    {
-        return report.skip(NAME, &format!("no {CHROMIUM} ({reason}); {REMEDY}"));
-    }
-    let python = match prepare(repo) {
-        Ok(python) => python,
-        Err(reason) => return report.skip(NAME, &reason),
-    };
-    let mut pip = repo.command(&python);
-    pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]);
-    pip.args(["--requirement", &format!("{TESTS}/requirements.txt")]);
-    if let Err(reason) = run(&mut pip) {
-        return report.skip(NAME, &format!("pip could not install {TESTS}/requirements.txt ({reason}); {REMEDY}"));
-    }
+    report.skip(NAME, "the program was not built");
+}
+
+/// Makes browser and environment ready, and runs the tests with the program that there is.
+pub fn run_tests(repo: &Repo, report: &mut Report) {
     report.part(NAME, || {
+        let python = match prepare(repo) {
+            Ok(python) => python,
+            Err(reason) => {
+                println!("skipped: {reason}");
+                return (Counts { skipped: 1, ..Counts::default() }, reason);
+            }
+        };
         let mut tests = repo.command(&python);
         tests.args(["-m", "pytest", "-q", TESTS, "--color", "no", "--timeout", "120"]);
         let program = format!("staya{}", std::env::consts::EXE_SUFFIX);
-        tests.env("STAYA", repo.target.join("debug").join(program));
-        let mut counts = None;
-        let ended = run_reading(&mut tests, |line| counts = closing_line(line).or(counts));
-        let mut counts = counts.unwrap_or_default();
-        match ended {
-            Ok(()) => (counts, String::new()),
-            Err(reason) => {
-                counts.failed = counts.failed.max(1);
-                (counts, format!("pytest: {reason}, see above"))
-            }
-        }
+        tests.env("STAYA", repo.target.join("debug").join(program)).env("CHROMIUM", CHROMIUM);
+        pytest(&mut tests, "")
     });
+}
+
+/// Browser and environment. Returns the Python that drives it; the error says what is missing.
+fn prepare(repo: &Repo) -> Result<PathBuf, String> {
+    chromium(repo)?;
+    let python = python::environment(repo)?;
+    python::install(repo, &python, &format!("{TESTS}/requirements.txt"), &[])?;
+    Ok(python)
+}
+
+/// Makes sure that the browser is there: unpacks it on Debian. The error says why it is not.
+fn chromium(repo: &Repo) -> Result<(), String> {
+    let starts = || output_of(repo.command(CHROMIUM).arg("--version")).is_some();
+    if starts() {
+        return Ok(());
+    }
+    apt::unpack(repo, &PACKAGES, &[CHROMIUM]).map_err(|reason| format!("no {CHROMIUM} ({reason}); {REMEDY}"))?;
+    if starts() { Ok(()) } else { Err(format!("{CHROMIUM} does not start; {REMEDY}")) }
 }

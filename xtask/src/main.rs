@@ -24,6 +24,7 @@ mod fuzz;
 mod layers;
 mod minimal;
 mod part;
+mod python;
 mod qemu;
 mod repo;
 mod report;

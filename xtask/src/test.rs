@@ -49,6 +49,11 @@ pub fn run(repo: &Repo, report: &mut Report, extent: Extent) {
         crate::swarms::run_short(repo, report, &mut toolchains);
         return crate::emulated::run(repo, report);
     }
+    if is_compiled {
+        crate::browser::run_tests(repo, report);
+    } else {
+        crate::browser::run_command(repo, report);
+    }
     crate::swarms::run(repo, report, &mut toolchains);
     crate::size::run(repo, report, &mut toolchains, false);
     crate::faults::run(repo, report, &mut toolchains);
