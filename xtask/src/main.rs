@@ -46,9 +46,9 @@ Usage: cargo xtask COMMAND
 
   check           formatting, layers, what documents name, clippy and rustdoc, warnings denied
   test [--all]    the tests: on the host, by MAVLink clients, on emulated parts; with --all also the long proofs: each program
-                  on each part, debug builds, budgets, ten parts for 1000 steps, peers, fuzz targets on random bytes
+                  on each part, debug builds, budgets, ten parts for 1000 steps, pages in a browser, peers, fuzz targets on random bytes
   ci              check, then test --all
-  bare            emulators, compiler and emulated parts in a bare Debian of its own; needs root
+  bare            emulators, compiler, emulated parts and a browser in a bare Debian of its own; needs root
   bench [NAME]    benchmarks, also beside peer crates (those whose name contains NAME): medians, ratios, goals
   bless [NAME]    rewrite golden files by running the tests whose name contains NAME (default: golden)
   fuzz [--seconds N]
