@@ -33,7 +33,7 @@ pub fn run_tests(repo: &Repo, report: &mut Report) {
             }
         };
         let mut tests = repo.command(&python);
-        tests.args(["-m", "pytest", "-q", TESTS, "--color", "no", "--timeout", "120"]);
+        tests.args(["-m", "pytest", "-q", TESTS, "--color", "no", "--timeout", "120", "-p", "no:cacheprovider"]);
         let program = format!("staya{}", std::env::consts::EXE_SUFFIX);
         tests.env("STAYA", repo.target.join("debug").join(program)).env("CHROMIUM", CHROMIUM);
         pytest(&mut tests, "")

@@ -6,6 +6,7 @@ use crate::repo::{Repo, run};
 use crate::report::Report;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::{Child, Stdio};
 
 /// Cargo's profile for what goes on a part, and the one to debug with.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -72,6 +73,20 @@ pub fn run_command(repo: &Repo, report: &mut Report, request: &Request<'_>) {
         let Request { profile, bins, .. } = request;
         build_some(repo, report, &mut toolchains, part, *profile, bins);
     }
+}
+
+/// Begins to build every program for all parts, with what others leave of the processors; the caller waits for its end. What it
+/// cannot build is reported when it is built as a step.
+pub fn begin(repo: &Repo, toolchains: &mut Toolchains) -> Option<Child> {
+    // What has to be fetched is fetched first: packages are unpacked by one program at a time.
+    let parts = PARTS.iter().filter(|part| toolchains.find(repo, part.target).is_ok());
+    let parts: Vec<&str> = parts.map(|part| part.name).collect();
+    if parts.is_empty() {
+        return None;
+    }
+    let mut command = repo.command("nice");
+    command.args(["-n", "19"]).arg(std::env::current_exe().ok()?).arg("firmware").args(parts);
+    command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().ok()
 }
 
 /// Builds every program for a part as one step. Returns whether the ELF files are there.

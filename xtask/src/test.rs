@@ -3,7 +3,7 @@
 use crate::device::Toolchains;
 use crate::extent::{Extent, LONG};
 use crate::repo::Repo;
-use crate::report::Report;
+use crate::report::{Counts, Report};
 use crate::tally::counted;
 
 /// Tests in a module of this name read data beside the repository, which CI has.
@@ -37,6 +37,9 @@ pub fn run(repo: &Repo, report: &mut Report, extent: Extent) {
     if std::env::var_os(SEED.0).is_none() {
         tests.env(SEED.0, SEED.1);
     }
+    let mut toolchains = Toolchains::default();
+    // Tests wait more than they compute, the clients' most of all.
+    let firmware = (extent == Extent::All).then(|| crate::firmware::begin(repo, &mut toolchains)).flatten();
     report.part("tests on the host", || counted(&mut tests, &why_skipped));
     if is_compiled {
         // The program's own tests have brought it.
@@ -44,7 +47,6 @@ pub fn run(repo: &Repo, report: &mut Report, extent: Extent) {
     } else {
         crate::clients::run_command(repo, report, None, extent);
     }
-    let mut toolchains = Toolchains::default();
     if extent == Extent::Short {
         crate::swarms::run_short(repo, report, &mut toolchains);
         return crate::emulated::run(repo, report);
@@ -53,6 +55,12 @@ pub fn run(repo: &Repo, report: &mut Report, extent: Extent) {
         crate::browser::run_tests(repo, report);
     } else {
         crate::browser::run_command(repo, report);
+    }
+    if let Some(mut firmware) = firmware {
+        report.part("the rest of the firmware, begun during the tests", || {
+            let _ = firmware.wait();
+            (Counts::default(), String::new())
+        });
     }
     crate::swarms::run(repo, report, &mut toolchains);
     crate::size::run(repo, report, &mut toolchains, false);
