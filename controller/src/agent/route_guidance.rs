@@ -4,6 +4,7 @@ use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Statu
 use super::travel::{Travel, on_grid, reachable_goal};
 use super::tunable::Tunable as _;
 use super::{OnGrid, Parameter};
+use crate::cost::Gain;
 use crate::grid::{Cell, Dir, Window};
 use crate::list;
 use crate::rand::Rng;
@@ -100,8 +101,14 @@ impl<const CELLS: usize, const M: usize, const L: usize> RouteGuidance<CELLS, M,
         let mut weights = weights.ok()?;
         if is_redirected {
             weights = self.travel.without_last(weights);
+            // There already, or no other way on: into any free cell.
+            if cell == target || weights.best().is_none() {
+                weights = self.travel.without_last(params.open_moves(window, cell));
+            }
         }
-        Some(Travel::order(&weights, self.sharpness, 8, rng))
+        // Whoever asked may stand where the best way out begins: not the same one each time.
+        let sharpness = if is_redirected { Sharpness::HalvedPer(Gain::ONE) } else { self.sharpness };
+        Some(Travel::order(&weights, sharpness, 8, rng))
     }
 }
 

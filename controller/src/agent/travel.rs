@@ -76,7 +76,10 @@ impl Travel {
             return None;
         }
         let wanted = cell + choice.offset();
-        let to = occupant(input, wanted)?;
+        // In the plane two may have come into one cell: the one with the smaller number asks sooner, so that not
+        // both make way at once.
+        let beside = || occupant(input, cell).filter(|&other| self.attempts >= if input.id < other { 2 } else { 3 } * PATIENCE);
+        let to = occupant(input, wanted).or_else(beside)?;
         self.attempts = 0;
         Some(Ask { to, kind: RequestKind::Redirect })
     }

@@ -10,7 +10,7 @@
 //! target can be reached at all. So each wall is left nearer than it was met, and of distances there are finitely many.
 
 use super::RouteParams;
-use crate::grid::{BLOCKED, Cell, Dir, Window};
+use crate::grid::{Cell, Dir, Window};
 use serde::Serialize;
 
 /// How the robot comes nearer to its target than it ever was, whatever the walls.
@@ -47,7 +47,7 @@ impl Escape {
         target: Cell,
     ) -> Option<Dir> {
         let here = cell.distance_squared(target);
-        let is_open = |dir: Dir| is_open(params, window, cell, dir);
+        let is_open = |dir: Dir| params.opens(window, cell, dir);
         if self.met.is_none_or(|met| here < met) {
             self.met = None;
             let distance = |dir: &Dir| (cell + dir.offset()).distance_squared(target);
@@ -79,12 +79,4 @@ fn ahead(cell: Cell, target: Cell) -> Dir {
         (false, _, true) => Dir::North,
         (false, _, false) => Dir::South,
     }
-}
-
-/// Whether the land allows the move.
-fn is_open(params: &RouteParams, window: &Window<'_>, cell: Cell, dir: Dir) -> bool {
-    let Cell { x, y } = dir.offset();
-    let passable = |dx, dy| window.get(cell + Cell::new(dx, dy)).is_some_and(|u| u != BLOCKED);
-    let corners = !dir.is_diagonal() || params.corner_cutting || passable(x, 0) && passable(0, y);
-    corners && passable(x, y)
 }

@@ -25,8 +25,8 @@ pub use learned::LearnedCosts;
 pub use router::{PLAN, Replan, Router};
 pub use visits::VisitMemory;
 
-use crate::cost::Gain;
-use crate::grid::{Cell, Norm};
+use crate::cost::{EXCLUDED, Gain, TICK, Weights};
+use crate::grid::{Cell, Dir, Norm, Window};
 use crate::names::named;
 use serde::{Deserialize, Serialize};
 
@@ -88,6 +88,21 @@ impl Default for RouteParams {
             a2: Gain::from_int(3),
             a3: Gain::from_int(3),
         }
+    }
+}
+
+impl RouteParams {
+    /// Whether the land allows the move from `cell`, as far as the window shows it.
+    fn opens(&self, window: &Window<'_>, cell: Cell, dir: Dir) -> bool {
+        let Cell { x, y } = dir.offset();
+        let passable = |dx, dy| window.is_passable(cell + Cell::new(dx, dy));
+        let corners = !dir.is_diagonal() || self.corner_cutting || passable(x, 0) && passable(0, y);
+        corners && passable(x, y)
+    }
+
+    /// Every move that the land allows from `cell`, wherever it leads: for one who shall only go aside.
+    pub(crate) fn open_moves(&self, window: &Window<'_>, cell: Cell) -> Weights {
+        Weights::new(Dir::MOVES.map(|dir| if self.opens(window, cell, dir) { TICK } else { EXCLUDED }))
     }
 }
 
