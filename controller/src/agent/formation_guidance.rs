@@ -395,7 +395,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             moves.clear();
         }
         let choice = moves.first().copied().unwrap_or_default();
-        let blocked = self.travel.note(input, cell, choice);
+        let blocked = self.travel.note(input, cell, choice, 0);
         if status.waits_for.is_none() && !status.is_at_goal {
             // Asks hold three: for the pace, and these two.
             list::extend(&mut asks, blocked);

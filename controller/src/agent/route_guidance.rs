@@ -146,7 +146,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const L: usize> Guidance<S> 
             action: Action::Moves(moves),
             status,
             target,
-            asks: list::collect(self.travel.note(input, cell, choice)),
+            asks: list::collect(self.travel.note(input, cell, choice, self.router.idle())),
             ..Decision::default()
         })
     }

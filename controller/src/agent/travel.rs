@@ -6,7 +6,8 @@ use super::guidance::{Ask, BadInput, GuidanceInput};
 use crate::cost::Weights;
 use crate::grid::{BLOCKED, Cell, Dir, Window};
 use crate::rand::Rng;
-use crate::robot::RobotId;
+use crate::neighbor::Neighbor;
+use crate::robot::Mode;
 use crate::shuffle::{Sharpness, weighted_shuffle};
 use crate::wire::RequestKind;
 use heapless::Vec;
@@ -65,29 +66,35 @@ impl Travel {
         moves
     }
 
-    /// Takes note of what was chosen in `cell`, and returns the request to whoever has stood in the
-    /// way for too long.
-    pub(super) fn note<S>(&mut self, input: &GuidanceInput<'_, S>, cell: Cell, choice: Dir) -> Option<Ask> {
+    /// Takes note of what was chosen in `cell`, and returns the request to whoever has stood in the way for too long.
+    /// `idle`: moves since it was nearest to its target.
+    pub(super) fn note<S>(&mut self, input: &GuidanceInput<'_, S>, cell: Cell, choice: Dir, idle: u8) -> Option<Ask> {
         let is_waiting = self.cell == Some(cell) && choice != Dir::Stay;
         self.attempts = if is_waiting { self.attempts.saturating_add(1) } else { 0 };
         self.cell = Some(cell);
         self.choice = choice;
-        if self.attempts < PATIENCE {
+        let patience = |other: &Neighbor<S>| {
+            if other.cell != cell {
+                // One that has arrived does not go by itself, and the robot may try other ways between its attempts.
+                return if other.mode == Mode::Arrived && idle > PATIENCE { 0 } else { PATIENCE };
+            }
+            // In the plane two may have come into one cell, and mostly get past each other. If not, the one with the
+            // smaller number asks first: if both made way at once, they would meet again.
+            if input.id < other.id { 2 * PATIENCE } else { 3 * PATIENCE }
+        };
+        let wanted = cell + choice.offset();
+        let to = occupant(input, wanted).or_else(|| occupant(input, cell))?;
+        if choice == Dir::Stay || self.attempts < patience(to) {
             return None;
         }
-        let wanted = cell + choice.offset();
-        // In the plane two may have come into one cell: the one with the smaller number asks sooner, so that not
-        // both make way at once.
-        let beside = || occupant(input, cell).filter(|&other| self.attempts >= if input.id < other { 2 } else { 3 } * PATIENCE);
-        let to = occupant(input, wanted).or_else(beside)?;
         self.attempts = 0;
-        Some(Ask { to, kind: RequestKind::Redirect })
+        Some(Ask { to: to.id, kind: RequestKind::Redirect })
     }
 }
 
 /// Who was last heard in a cell.
-fn occupant<S>(input: &GuidanceInput<'_, S>, cell: Cell) -> Option<RobotId> {
-    input.neighbors.iter().find(|neighbor| neighbor.cell == cell).map(|neighbor| neighbor.id)
+fn occupant<'a, S>(input: &GuidanceInput<'a, S>, cell: Cell) -> Option<&'a Neighbor<S>> {
+    input.neighbors.iter().find(|neighbor| neighbor.cell == cell)
 }
 
 /// The cell of a robot on the grid, and the land that it sees.

@@ -88,6 +88,11 @@ impl<const M: usize, const L: usize> Router<M, L> {
         &self.visits
     }
 
+    /// Moves since it was nearest to its target, up to 255.
+    pub(crate) const fn idle(&self) -> u8 {
+        self.idle
+    }
+
     /// Tells where the robot is and where it is heading; to be called each step. A changed cell
     /// counts as a visit and as a move of the planned chain, a target that moves by more than the window forgets the visits.
     pub fn observe(&mut self, params: &RouteParams, cell: Cell, target: Cell) {
