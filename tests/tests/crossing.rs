@@ -4,7 +4,9 @@ use staya_controller::agent::SafetyKind;
 use staya_papers::crossing::cases::{self, Case};
 use staya_papers::crossing::{Conditions, doorway, swap};
 use staya_papers::experiment::Experiment as _;
-use staya_tests::golden;
+use staya_sim::scenario::{Overrides, Scenario};
+use staya_tests::{golden, root, run};
+use std::fs;
 
 #[test]
 fn golden_swap() {
@@ -49,5 +51,19 @@ fn golden_crossing_of_each_kind() {
         let plan = cases::Plan { cases: vec![case], robots: Some(few(case)), seeds: 2, ..cases::Plan::default() };
         let report = plan.measure().expect("a sound plan");
         golden(&format!("crossing-{}", case.name()), &report.to_string());
+    }
+}
+
+/// Of these, two came into one cell of a corridor and pressed on for ever, or met somebody who had arrived in it.
+#[test]
+fn discs_that_route_among_walls_all_arrive() {
+    let path = root().join("scenarios/twenty-discs.toml");
+    let text = fs::read_to_string(&path).unwrap();
+    let crowd = text.replace("count = 20", "count = 40");
+    for (text, seed, robots) in [(&text, 2, 20), (&text, 9, 20), (&crowd, 5, 40)] {
+        let overrides = Overrides { seed: Some(seed), ticks: Some(2000) };
+        let scenario = Scenario::parse(text, &path, &overrides).unwrap();
+        let outcome = run(&scenario).0;
+        assert_eq!((outcome.arrived, outcome.collisions), (robots, 0), "seed {seed}");
     }
 }

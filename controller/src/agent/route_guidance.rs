@@ -142,11 +142,13 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const L: usize> Guidance<S> 
             moves = open.unwrap_or_default();
         }
         let choice = moves.first().copied().unwrap_or_default();
+        // Who makes way and cannot asks on.
+        let idle = if makes_way { u8::MAX } else { self.router.idle() };
         Ok(Decision {
             action: Action::Moves(moves),
             status,
             target,
-            asks: list::collect(self.travel.note(input, cell, choice, self.router.idle())),
+            asks: list::collect(self.travel.note(input, cell, choice, idle)),
             ..Decision::default()
         })
     }

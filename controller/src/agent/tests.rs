@@ -401,6 +401,7 @@ mod commanded;
 mod double;
 mod faults;
 mod flocks;
+mod make_way;
 mod nonsense;
 mod nonsense_in_plane;
 mod plane;
