@@ -1,0 +1,80 @@
+//! Who stands in the way is asked to make way, and does, wherever there is room.
+
+use super::*;
+
+/// A corridor one cell wide, from west to east through the own window.
+fn corridor() -> [u8; 121] {
+    let mut cells = [BLOCKED; 121];
+    cells[55..66].fill(1);
+    cells
+}
+
+fn request_of(out: &Outputs<f32>) -> Option<(RobotId, RequestKind)> {
+    sent(out).into_iter().find_map(|frame| match frame.message {
+        Message::Request(request) => Some((request.to, request.kind)),
+        _ => None,
+    })
+}
+
+/// At which step robot 2, at one place after the other of `way` in a corridor, asks robot `other` at `place`.
+fn asks(other: u32, place: Cell, mode: Mode, way: &[Cell]) -> Option<u16> {
+    let (mut agent, mut ws) = (route_agent(2), workspace());
+    agent.assign_goal(Cell::new(60, 5));
+    (0..20).find(|&n| {
+        let beacon = Beacon { cell: place, mode, ..Beacon::default() };
+        let inbox = bytes(other, 0, n, &[Message::Beacon(beacon)]);
+        let at = way[usize::from(n) % way.len()];
+        let out = agent.step(&inputs(&corridor(), at, &inbox), tick(n.into()), &mut ws);
+        request_of(&out).is_some_and(|request| request == (RobotId(other), RequestKind::Redirect))
+    })
+}
+
+#[test]
+fn of_two_in_one_cell_the_smaller_number_asks_first() {
+    let here = Cell::new(5, 5);
+    assert_eq!(asks(3, here, Mode::Cruise, &[here]), Some(8));
+    assert_eq!(asks(1, here, Mode::Cruise, &[here]), Some(12));
+}
+
+#[test]
+fn one_that_has_arrived_is_asked_by_one_that_comes_back_to_it_again_and_again() {
+    let dance = [Cell::new(5, 5), Cell::new(4, 5)];
+    assert!(asks(1, Cell::new(6, 5), Mode::Arrived, &dance).is_some());
+    assert_eq!(asks(1, Cell::new(6, 5), Mode::Cruise, &dance), None, "it will go by itself");
+}
+
+#[test]
+fn who_has_no_other_way_on_goes_back() {
+    let (mut agent, mut ws) = (route_agent(2), workspace());
+    agent.assign_goal(Cell::new(60, 5));
+    let step = |agent: &mut RouteAgent, ws: &mut _, inbox: &[u8], n| match agent
+        .step(&inputs(&corridor(), Cell::new(5, 5), inbox), tick(n), ws)
+        .command
+    {
+        Command::Move(moves) => moves,
+        Command::Hold | Command::Velocity(_) => heapless::Vec::new(),
+    };
+    assert_eq!(step(&mut agent, &mut ws, &[], 0)[0], Dir::East);
+    let inbox = bytes(1, 0, 0, &[stop(1, 2, 0, RequestKind::Redirect)]);
+    assert_eq!(step(&mut agent, &mut ws, &inbox, 1), [Dir::West]);
+    assert_eq!(step(&mut agent, &mut ws, &[], 2)[0], Dir::East, "once is enough");
+}
+
+#[test]
+fn who_has_arrived_takes_one_free_cell_or_another() {
+    let mut first = Vec::new();
+    for seed in 0..32 {
+        let mut agent = RouteAgent::new(
+            &AgentConfig { seed, ..config(2) },
+            RouteGuidance::new(RouteParams::default()),
+            Unguarded,
+            Postcard,
+        );
+        agent.assign_goal(Cell::new(5, 5));
+        let inbox = bytes(1, 0, 0, &[stop(1, 2, 0, RequestKind::Redirect)]);
+        let out = agent.step(&inputs(&corridor(), Cell::new(5, 5), &inbox), tick(0), &mut workspace());
+        let Command::Move(moves) = out.command else { panic!("{seed}: {:?}", out.command) };
+        first.push(moves[0]);
+    }
+    assert!(first.contains(&Dir::East) && first.contains(&Dir::West), "{first:?}");
+}
