@@ -1,10 +1,14 @@
 //! `staya companion CONFIG.toml`: the controller beside autopilots.
 
+mod page;
+
+use crate::view::WatchArgs;
 use anyhow::Result;
 use clap::Args;
+use page::Page;
 use staya_console::{Ended, Global, Stop, print, print_json};
 use staya_mav::Tlog;
-use staya_mav::companion::{Config, Options, run};
+use staya_mav::companion::{Config, Options, Sight, run};
 use std::path::PathBuf;
 
 /// Steer ArduPilot or PX4 vehicles as a swarm.
@@ -28,6 +32,8 @@ pub struct CompanionArgs {
     /// Sign all messages on the links with the key in this file, and hear only signed ones; instead of link_key.
     #[arg(long, value_name = "FILE")]
     link_key: Option<PathBuf>,
+    #[command(flatten)]
+    page: WatchArgs,
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
@@ -55,7 +61,14 @@ impl CompanionArgs {
             tlog: self.tlog.as_deref().map(Tlog::create).transpose()?,
         };
         let stop = Stop::on_ctrl_c()?;
-        let report = run(&config, &mut options, || !stop.is_requested())?;
+        let page = self.page.watcher(&config.scenario)?;
+        let mut page = page.map(|watcher| Page::new(watcher, &config.scenario)).transpose()?;
+        let look = |sight: &Sight<'_>| {
+            if let Some(page) = &mut page {
+                page.look(sight);
+            }
+        };
+        let report = run(&config, &mut options, || !stop.is_requested(), look)?;
         if global.json {
             print_json(&report)?;
         } else {

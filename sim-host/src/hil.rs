@@ -6,13 +6,14 @@ mod firmware;
 use crate::run::ScenarioArgs;
 use anyhow::{Context as _, Result, bail};
 use clap::Args;
-use devices::{DevicePlan, OnDevices};
+use devices::{DevicePlan, Log, OnDevices};
 use serde::Serialize;
 use staya_console::{Ended, Global, Progress, Stop, print, print_json};
 use staya_runner::{Device, LineFaults, Options, Part, Reset, Spread, Statistics};
 use staya_sim::engine::{Moment, Outcome, simulate, simulate_with};
 use staya_sim::record::RobotRow;
 use staya_sim::scenario::Scenario;
+use staya_view::watch::{About, DeviceFigures, Insight};
 use std::fmt::Write as _;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -200,8 +201,10 @@ impl HilArgs {
         let mut pace = self.real_time.then(|| Pace::new(scenario.tick_s()));
         let mut page = self.page.watcher(scenario)?;
         let mut watch = |moment: &Moment<'_>, robots: &mut dyn Iterator<Item = RobotRow>| {
-            if let Some(page) = &mut page {
-                page.tick(moment, robots);
+            if let Some(page) = &mut page
+                && page.is_due()
+            {
+                page.show(moment, robots, &log);
             }
             progress.set(moment.row.tick.into(), || format!("ticks, {} of {count} robots arrived", moment.arrived));
             if stop.is_requested() || log.trouble().is_some() {
@@ -240,6 +243,21 @@ impl HilArgs {
             trouble,
             devices: log.statistics(),
         })
+    }
+}
+
+impl Insight for Log {
+    fn about(&self, index: usize) -> About {
+        let device = self.load(index).map(|load| DeviceFigures {
+            instructions: load.instructions,
+            most_instructions: load.most_instructions,
+            ticks: load.ticks,
+            stack: load.stack_bytes,
+            mismatches: load.mismatches,
+            steps: load.steps,
+            resets: load.resets,
+        });
+        About { device, ..About::default() }
     }
 }
 

@@ -3,6 +3,7 @@
 mod also;
 mod summary;
 
+use crate::view::WatchArgs;
 use also::{Also, AlsoArgs};
 use anyhow::{Context as _, Result, anyhow};
 use clap::Args;
@@ -12,6 +13,7 @@ use staya_sim::engine::{Moment, Outcome, simulate};
 use staya_sim::record::{self, History, Options, Recorder, Results, RobotRow, write_summary};
 use staya_sim::scenario::{Overrides, Scenario};
 use staya_view::recording::RecordingError;
+use staya_view::watch::Watcher;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -66,6 +68,8 @@ pub struct RunArgs {
     out: Option<PathBuf>,
     #[command(flatten)]
     also: AlsoArgs,
+    #[command(flatten)]
+    page: WatchArgs,
 }
 
 impl RunArgs {
@@ -77,7 +81,8 @@ impl RunArgs {
         let scenario = self.scenario.load()?;
         let out = self.out.clone().unwrap_or_else(|| Path::new("out").join(&scenario.name));
         let stop = Stop::on_ctrl_c()?;
-        let summary = run(&scenario, &out, &self.also, &stop, global)?;
+        let page = self.page.watcher(&scenario)?;
+        let summary = run(&scenario, &out, &self.also, page, &stop, global)?;
         if global.json {
             print_json(&summary)?;
         } else {
@@ -93,8 +98,15 @@ pub fn summary(scenario: &Scenario, outcome: &Outcome) -> impl serde::Serialize 
 }
 
 /// Runs a scenario and leaves everything about it in `out`; what was there before stays until all of it is written.
-fn run(scenario: &Scenario, out: &Path, also: &AlsoArgs, stop: &Stop, global: &Global) -> Result<Summary> {
-    let also = Also::begin(also, scenario)?;
+fn run(
+    scenario: &Scenario,
+    out: &Path,
+    also: &AlsoArgs,
+    page: Option<Watcher>,
+    stop: &Stop,
+    global: &Global,
+) -> Result<Summary> {
+    let also = Also::begin(also, scenario, page)?;
     let results = Results::begin(out)?;
     let whole = run_into(scenario, results.dir(), out, also, stop, global).and_then(|summary| {
         write_summary(results.dir(), &summary)?;
@@ -163,7 +175,7 @@ fn simulate_recorded(
     let mut failed: Option<anyhow::Error> = None;
     let count = scenario.robots.len();
     let watch = |moment: &Moment<'_>, robots: &mut dyn Iterator<Item = RobotRow>| {
-        let done = if also.is_idle() {
+        let done = if !also.wants_rows() {
             recorder.tick(moment.row, robots).map_err(Into::into)
         } else {
             let rows: Vec<_> = robots.collect();

@@ -8,10 +8,13 @@ use staya_console::{Ended, Global, Stop, print, print_json};
 use staya_sim::scenario::Scenario;
 use staya_view::page;
 use staya_view::playback::Playback;
-use staya_view::server::Server;
+use staya_view::server::{ServeError, Server};
 use staya_view::session::Session;
 use staya_view::watch::Watcher;
+use std::fs::OpenOptions;
+use std::io::{self, Write as _};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
+use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 /// Where pages are served.
@@ -31,7 +34,7 @@ impl ListenArgs {
     ///
     /// # Errors
     /// The address cannot be listened on.
-    pub fn serve(&self, global: &Global) -> Result<Server> {
+    fn serve(&self, global: &Global) -> Result<Page> {
         let server = Server::start(self.listen, page::served()?)?;
         if !server.address().ip().is_loopback() {
             eprintln!(
@@ -45,17 +48,36 @@ impl ListenArgs {
         } else {
             print(&format!("{url}\n"))?;
         }
-        if !self.no_open {
-            open(&url);
-        }
-        Ok(server)
+        let way_in = if self.no_open { None } else { open(&url, server.address().port()) };
+        Ok(Page { server, _way_in: way_in })
+    }
+}
+
+/// A page that is served.
+struct Page {
+    server: Server,
+    _way_in: Option<WayIn>,
+}
+
+impl Page {
+    const fn server(&self) -> &Server {
+        &self.server
+    }
+
+    /// Ends it.
+    ///
+    /// # Errors
+    /// It had ended by itself.
+    fn end(self) -> Result<(), ServeError> {
+        if self.server.is_alive() { Ok(()) } else { Err(ServeError::Ended) }
     }
 }
 
 /// Pages that look on.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct WatchArgs {
-    /// Serve a page that shows the run while it goes on.
+    /// Serve a page that looks on while this goes on, and ends with it; to take hold of a run, or to look at a short one, there is
+    /// `staya view`. Nobody waits for the page, and nothing becomes different by it.
     #[arg(long, help_heading = "A page that looks on")]
     view: bool,
     /// Address and port of the page; port 0: any that is free. Beyond this machine (0.0.0.0) whoever has the address that is
@@ -80,7 +102,7 @@ impl WatchArgs {
             return Ok(None);
         }
         let watcher = Watcher::new(Server::start(self.listen, page::served()?)?, scenario)?;
-        eprintln!("{}", watcher.url());
+        eprintln!("{}", watcher.server().url());
         Ok(Some(watcher))
     }
 }
@@ -128,7 +150,9 @@ impl ViewArgs {
             if self.speed.is_some() {
                 session.set_speed(self.speed);
             }
-            session.run(&self.listen.serve(global)?, &is_stopped);
+            let page = self.listen.serve(global)?;
+            session.run(page.server(), &|| is_stopped() || !page.server().is_alive());
+            page.end()?;
         } else {
             let mut playback = Playback::open(path, self.paused)?;
             if let Some(at) = playback.torn_at() {
@@ -138,22 +162,82 @@ impl ViewArgs {
             if self.speed.is_some() {
                 playback.set_speed(self.speed);
             }
-            playback.run(&self.listen.serve(global)?, &is_stopped).context("the recording cannot be played on")?;
+            let page = self.listen.serve(global)?;
+            let over = || is_stopped() || !page.server().is_alive();
+            playback.run(page.server(), &over).context("the recording cannot be played on")?;
+            page.end()?;
         }
         Ok(Ended::by(&stop))
     }
 }
 
+/// A file that leads a browser to the page: what stands in a command line, everybody on the machine can read. It is gone
+/// with this.
+struct WayIn(PathBuf);
+
+impl WayIn {
+    /// Makes it for this user alone.
+    ///
+    /// # Errors
+    /// It cannot be written, or there is one of that name.
+    fn new(url: &str, port: u16) -> io::Result<Self> {
+        let path = std::env::temp_dir().join(format!("staya-{}-{port}.html", std::process::id()));
+        let mut options = OpenOptions::new();
+        options.write(true).create_new(true);
+        #[cfg(unix)]
+        std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+        let mut file = options.open(&path)?;
+        let this = Self(path);
+        write!(
+            file,
+            "<!doctype html><meta charset=\"utf-8\"><meta name=\"referrer\" content=\"no-referrer\">\
+             <meta http-equiv=\"refresh\" content=\"0; url={url}\"><title>Staya</title><a href=\"{url}\">The page</a>\n"
+        )?;
+        Ok(this)
+    }
+}
+
+impl Drop for WayIn {
+    fn drop(&mut self) {
+        // At worst it leads to a page that is gone.
+        let _ = std::fs::remove_file(&self.0);
+    }
+}
+
 /// Opens a browser where there is one; the address has been printed in any case.
-fn open(url: &str) {
+fn open(url: &str, port: u16) -> Option<WayIn> {
     let has_screen = ["DISPLAY", "WAYLAND_DISPLAY"].iter().any(|name| std::env::var_os(name).is_some());
     let mut command = match std::env::consts::OS {
         "macos" => Command::new("open"),
         "windows" => Command::new("explorer"),
         _ if has_screen => Command::new("xdg-open"),
-        _ => return,
+        _ => return None,
     };
-    let command = command.arg(url).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    let way_in = WayIn::new(url, port).ok()?;
+    let command = command.arg(&way_in.0).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     // Without a browser there is still the address.
-    drop(command.spawn());
+    command.spawn().ok().map(|_| way_in)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_way_in_is_its_users_alone_and_goes_with_the_page() {
+        let url = "http://127.0.0.1:1/?token=0123abcd";
+        let way_in = WayIn::new(url, 1).expect("it can be written");
+        let path = way_in.0.clone();
+        let text = std::fs::read_to_string(&path).expect("it is there");
+        assert!(text.contains(&format!("0; url={url}\"")) && !path.to_string_lossy().contains("0123abcd"), "{text}");
+        #[cfg(unix)]
+        {
+            let mode = std::os::unix::fs::PermissionsExt::mode(&path.metadata().expect("it is there").permissions());
+            assert_eq!(mode & 0o777, 0o600);
+        }
+        // What is there already may be somebody else's.
+        assert!(WayIn::new(url, 1).is_err() && path.exists());
+        drop(way_in);
+        assert!(!path.exists());
+    }
 }

@@ -8,7 +8,7 @@ use crate::channel::Channel;
 use crate::config::{DeviceConfig, Options};
 use crate::device::Device;
 use crate::line::micros;
-use crate::statistics::Statistics;
+use crate::statistics::{Load, Statistics};
 use crate::unit::Unit;
 use staya_controller::agent::{AnyInputs, Setup, Task};
 use staya_controller::time::Instant;
@@ -155,6 +155,11 @@ impl Fleet {
     #[must_use]
     pub fn statistics(&self) -> Vec<Statistics> {
         self.units.iter().map(Unit::statistics).collect()
+    }
+
+    /// What the last steps cost each device, in the order in which they were started. O(devices).
+    pub fn loads(&self) -> impl Iterator<Item = Load> {
+        self.units.iter().map(Unit::load)
     }
 
     fn now_us(&self) -> u64 {

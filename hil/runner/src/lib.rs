@@ -51,4 +51,4 @@ pub use fleet::Fleet;
 pub use line::LineFaults;
 pub use mismatch::Mismatch;
 pub use part::Part;
-pub use statistics::{Spread, Statistics};
+pub use statistics::{Load, Spread, Statistics};

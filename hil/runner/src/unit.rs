@@ -5,7 +5,7 @@ use crate::channel::Channel;
 use crate::config::{DeviceConfig, Options};
 use crate::line::{Line, micros};
 use crate::mismatch::Mismatch;
-use crate::statistics::{Collector, Spread, Statistics};
+use crate::statistics::{Collector, Load, Spread, Statistics};
 use staya_controller::agent::{AnyInputs, Setup, Task};
 use staya_controller::time::Instant;
 use staya_link::capacities::Capacities;
@@ -310,7 +310,7 @@ impl Unit {
         let tally = &mut self.tally;
         tally.steps += 1;
         tally.round_trip_us.push(narrow(round_trip));
-        tally.ticks.push(stepped.cost.ticks);
+        tally.took(stepped.cost.ticks);
         tally.stack_bytes = tally.stack_bytes.max(stepped.cost.stack_bytes);
         let on_device = stepped.result;
         self.answer = Some(if on_device.is_identical(&expected.result) {
@@ -357,6 +357,12 @@ impl Unit {
     /// What came of the last [`Unit::send`].
     pub fn answer(&mut self) -> Option<Answer> {
         self.answer.take()
+    }
+
+    pub fn load(&self) -> Load {
+        let is_emulated = self.channel.part.is_some();
+        let clock = self.hello.as_ref().map(|hello| hello.ticks_per_second);
+        self.tally.load(clock.filter(|_| is_emulated))
     }
 
     pub fn statistics(&self) -> Statistics {

@@ -5,7 +5,7 @@
 
 use staya_controller::agent::{AnyInputs, Setup, Task};
 use staya_controller::time::Instant;
-use staya_runner::{Answer, Cause, Device, DeviceConfig, Fleet, LineFaults, Options, Reset, Statistics};
+use staya_runner::{Answer, Cause, Device, DeviceConfig, Fleet, LineFaults, Load, Options, Reset, Statistics};
 use staya_sim::engine::{Decision, ExternalController, Status};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -28,6 +28,8 @@ pub struct Log(Arc<Mutex<Entries>>);
 struct Entries {
     trouble: Option<String>,
     statistics: Vec<Statistics>,
+    /// Robots' numbers in the scenario, and what the last step cost their devices.
+    loads: Vec<(usize, Load)>,
 }
 
 impl Log {
@@ -40,6 +42,14 @@ impl Log {
     #[must_use]
     pub fn trouble(&self) -> Option<String> {
         self.entries().trouble.clone()
+    }
+
+    /// What the last step cost the device of robot `index`, if it runs on one.
+    #[must_use]
+    pub fn load(&self, index: usize) -> Option<Load> {
+        let entries = self.entries();
+        let at = entries.loads.binary_search_by_key(&index, |(robot, _)| *robot).ok()?;
+        entries.loads.get(at).map(|(_, load)| *load)
     }
 
     /// Figures of each device once the run is over.
@@ -113,6 +123,8 @@ impl OnDevices {
             return;
         };
         let answers = fleet.collect();
+        let robots = self.plan.devices.iter().map(|(robot, _)| *robot);
+        self.log.entries().loads = robots.zip(fleet.loads()).collect();
         for (at, answer) in std::mem::take(&mut self.asked).into_iter().zip(answers) {
             match answer {
                 Answer::Decided(result) => {

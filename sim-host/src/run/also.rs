@@ -1,4 +1,4 @@
-//! Files that a run makes besides its results: recordings, MCAP files, moving pictures.
+//! What a run makes besides its results: recordings, MCAP files, moving pictures, a page that looks on.
 
 use anyhow::Result;
 use clap::Args;
@@ -11,6 +11,7 @@ use staya_view::frame::{FrameData, Framer};
 use staya_view::mcap::McapWriter;
 use staya_view::recording::{RecordingError, RunRecorder};
 use staya_view::scene::{Mode, Scene};
+use staya_view::watch::Watcher;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
@@ -38,12 +39,13 @@ pub struct AlsoArgs {
     gif_seconds: u32,
 }
 
-/// The files under way.
+/// The files under way, and the page.
 pub struct Also<'a> {
     args: &'a AlsoArgs,
     scenario: &'a Scenario,
     recording: Option<RunRecorder<File>>,
     mcap: Option<Mcap>,
+    page: Option<Watcher>,
 }
 
 /// An MCAP file, and the latest moment.
@@ -59,7 +61,7 @@ impl<'a> Also<'a> {
     ///
     /// # Errors
     /// One cannot be written.
-    pub fn begin(args: &'a AlsoArgs, scenario: &'a Scenario) -> Result<Self> {
+    pub fn begin(args: &'a AlsoArgs, scenario: &'a Scenario, page: Option<Watcher>) -> Result<Self> {
         let recording = match &args.record {
             Some(path) => Some(RunRecorder::new(create(path)?, path, scenario, args.record_every)?),
             None => None,
@@ -77,12 +79,12 @@ impl<'a> Also<'a> {
             // Better now than after the run.
             write_atomically(path, b"")?;
         }
-        Ok(Self { args, scenario, recording, mcap })
+        Ok(Self { args, scenario, recording, mcap, page })
     }
 
-    /// Whether there is nothing to do at each tick.
-    pub const fn is_idle(&self) -> bool {
-        self.recording.is_none() && self.mcap.is_none()
+    /// Whether anybody wants to know where robots are at this tick. Hears what pages say.
+    pub fn wants_rows(&mut self) -> bool {
+        self.recording.is_some() || self.mcap.is_some() || self.page.as_mut().is_some_and(Watcher::is_due)
     }
 
     /// What is written.
@@ -105,6 +107,9 @@ impl<'a> Also<'a> {
             if *is_written {
                 writer.frame(frame)?;
             }
+        }
+        if let Some(page) = &mut self.page {
+            page.tick(moment, &mut rows.iter().copied());
         }
         Ok(())
     }

@@ -1,26 +1,113 @@
-//! A run that goes on by itself, and pages that look at it: with devices, over a bridge, or for its results.
+//! A run that goes on by itself, and pages that look at it: for its results, with devices, over a bridge, or of vehicles.
+//!
+//! Pages cannot do anything to such a run, and cost it nothing while there are none: whoever drives it asks [`Watcher::is_due`] now and
+//! then, and makes a picture only if a page wants one.
 
-use crate::frame::{FrameData, Framer};
+use crate::frame::{FrameData, Framer, NO_WAIT, NOBODY};
 use crate::scene::{Mode, Scene};
-use crate::server::{FromPage, Server};
+use crate::server::{Client, FromPage, Server};
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD;
+use serde::{Deserialize, Serialize};
 use serde_json::json;
-use staya_sim::engine::Moment;
+use staya_sim::engine::{Known, Moment};
 use staya_sim::record::RobotRow;
 use staya_sim::scenario::Scenario;
+use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 /// Least time between two frames.
 const FRAME: Duration = Duration::from_millis(16);
+/// Words of pages that are heard at a time; those that talk faster are left by the server.
+const WORDS: usize = 64;
+/// Longest word of a page that only looks on, bytes.
+const LONGEST: usize = 256;
+
+/// What a page that looks on can ask for; the rest it may say, and nothing comes of it.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(tag = "do", rename_all = "lowercase")]
+enum Wanted {
+    Select {
+        robot: Option<usize>,
+    },
+    Links {
+        on: bool,
+    },
+    Seen {
+        frames: u64,
+    },
+    #[serde(other)]
+    Other,
+}
+
+/// What a page looks at.
+#[derive(Clone, Copy, Debug, Default)]
+struct Looks {
+    robot: Option<usize>,
+    links: bool,
+}
+
+/// What is known of a robot beside its row.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct About {
+    /// Others as it knows them, in world coordinates; `None`: that is not known here.
+    pub known: Option<Vec<Known>>,
+    /// Of the device that its controller runs on.
+    pub device: Option<DeviceFigures>,
+    /// Names and values of whatever else there is, for people.
+    pub facts: Vec<(&'static str, String)>,
+}
+
+/// What a step costs a device.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct DeviceFigures {
+    /// Instructions of the last step; `None` before the first one, and of boards, which do not count them.
+    pub instructions: Option<u64>,
+    /// Of the step that took most.
+    pub most_instructions: Option<u64>,
+    /// Ticks of the device's clock in the last step.
+    pub ticks: Option<u32>,
+    /// The most stack that a step touched, bytes.
+    pub stack: u32,
+    /// Steps in which it and its shadow differed.
+    pub mismatches: u64,
+    /// Steps that it decided.
+    pub steps: u64,
+    /// Times that it started anew.
+    pub resets: u64,
+}
+
+/// What a run knows of its robots beside their rows.
+pub trait Insight {
+    /// Of a robot, by its index.
+    fn about(&self, _index: usize) -> About {
+        About::default()
+    }
+
+    /// Whether the row of a robot was measured; otherwise others have said so.
+    fn is_measured(&self, _index: usize) -> bool {
+        true
+    }
+
+    /// Who is heard by whom, sender and receiver; `None`: that is not known here.
+    fn links(&self) -> Option<Vec<[u32; 2]>> {
+        None
+    }
+}
+
+/// Nothing is known.
+impl Insight for () {}
 
 /// Shows pages what comes by.
 #[derive(Debug)]
 pub struct Watcher {
     server: Server,
     scene: String,
+    ids: Vec<u32>,
     framer: Framer,
     frame: FrameData,
     bytes: Vec<u8>,
-    pages: usize,
+    pages: BTreeMap<Client, Looks>,
     shown: Instant,
 }
 
@@ -30,52 +117,140 @@ impl Watcher {
     /// # Errors
     /// The scene has no form as JSON.
     pub fn new(server: Server, scenario: &Scenario) -> Result<Self, serde_json::Error> {
+        let now = Instant::now();
         Ok(Self {
             server,
             scene: serde_json::to_string(&Scene::new(scenario, Mode::Watch))?,
+            ids: scenario.robots.iter().map(|robot| robot.id.0).collect(),
             framer: Framer::new(scenario),
             frame: FrameData::default(),
             bytes: Vec::new(),
-            pages: 0,
-            shown: Instant::now(),
+            pages: BTreeMap::new(),
+            shown: now.checked_sub(FRAME).unwrap_or(now),
         })
     }
 
-    /// The address of the page.
+    /// The server of the pages.
     #[must_use]
-    pub fn url(&self) -> String {
-        self.server.url()
+    pub const fn server(&self) -> &Server {
+        &self.server
     }
 
-    /// Looks at a tick; `robots` are asked for only if a page wants to see them now. O(1) otherwise.
+    /// Pages that look on.
+    #[must_use]
+    pub fn pages(&self) -> usize {
+        self.pages.len()
+    }
+
+    /// Hears what pages say, a bounded number of short words, and says whether one wants a picture now.
+    pub fn is_due(&mut self) -> bool {
+        for _ in 0..WORDS {
+            let Some(word) = self.server.next(Duration::ZERO) else { break };
+            self.hear(word);
+        }
+        !self.pages.is_empty() && self.shown.elapsed() >= FRAME
+    }
+
+    /// Looks at a tick; `robots` are asked for only if a page wants to see them now.
     pub fn tick(&mut self, moment: &Moment<'_>, robots: &mut dyn Iterator<Item = RobotRow>) {
-        while let Some(word) = self.server.next(Duration::ZERO) {
-            match word {
-                FromPage::Opened(client) => {
-                    self.pages += 1;
-                    self.server.begin_anew(Some(client), self.scene.clone());
-                }
-                FromPage::Closed(_) => self.pages -= 1,
-                FromPage::Said(client, text) => {
-                    let seen = serde_json::from_str::<serde_json::Value>(&text);
-                    let frames = seen.ok().and_then(|seen| seen.get("frames")?.as_u64());
-                    frames.into_iter().for_each(|frames| self.server.seen(client, frames));
-                }
-            }
+        if self.is_due() {
+            self.show(moment, robots, &());
         }
-        let now = Instant::now();
-        if self.pages == 0 || now.duration_since(self.shown) < FRAME {
-            return;
-        }
-        self.shown = now;
+    }
+
+    /// Shows all pages a moment. O(bodies).
+    pub fn show(&mut self, moment: &Moment<'_>, robots: impl Iterator<Item = RobotRow>, insight: &dyn Insight) {
+        self.shown = Instant::now();
         self.framer.fill(&mut self.frame, moment, robots);
         self.frame.encode(&mut self.bytes);
         self.server.show(self.bytes.clone());
-        let tick = moment.row.tick;
+        let tick = self.frame.tick;
         let state = json!({
             "type": "state", "paused": false, "speed": null, "tick": tick, "first": tick, "last": tick,
-            "clients": self.pages, "at_end": false,
+            "clients": self.pages.len(), "at_end": false,
         });
         self.server.say(None, state.to_string());
+        let mut links = None;
+        for (client, looks) in &self.pages {
+            let robot = looks.robot.filter(|index| *index < self.ids.len());
+            if let Some(index) = robot {
+                self.server.say(Some(*client), self.robot(index, insight));
+            }
+            if looks.links
+                && let Some(links) = links.get_or_insert_with(|| insight.links().map(|pairs| self.links(&pairs)))
+            {
+                self.server.say(Some(*client), links.clone());
+            }
+        }
+    }
+
+    fn hear(&mut self, word: FromPage) {
+        match word {
+            FromPage::Opened(client) => {
+                self.pages.insert(client, Looks::default());
+                self.server.begin_anew(Some(client), self.scene.clone());
+            }
+            FromPage::Closed(client) => {
+                self.pages.remove(&client);
+            }
+            FromPage::Said(client, text) => {
+                let wanted = Some(&text).filter(|text| text.len() <= LONGEST).map(|text| serde_json::from_str(text));
+                let looks = self.pages.entry(client).or_default();
+                match wanted {
+                    Some(Ok(Wanted::Select { robot })) => looks.robot = robot,
+                    Some(Ok(Wanted::Links { on })) => looks.links = on,
+                    Some(Ok(Wanted::Seen { frames })) => self.server.seen(client, frames),
+                    Some(Ok(Wanted::Other)) => {}
+                    Some(Err(_)) | None => self.server.dismiss(client),
+                }
+            }
+        }
+    }
+
+    /// Everything about one robot, at the moment of the last frame.
+    fn robot(&self, index: usize, insight: &dyn Insight) -> String {
+        let frame = &self.frame;
+        let About { known, device, facts } = insight.about(index);
+        let neighbors = known.map(|known| {
+            let known = known.iter().map(|known| self.neighbor(known, insight));
+            known.collect::<Vec<_>>()
+        });
+        json!({
+            "type": "robot",
+            "index": index,
+            "id": self.ids.get(index),
+            "tick": frame.tick,
+            "mode": frame.mode.get(index),
+            "wait": frame.wait.get(index).filter(|wait| **wait != NO_WAIT),
+            "leader": frame.leader.get(index).filter(|leader| **leader != NOBODY),
+            "neighbors": neighbors,
+            "device": device,
+            "facts": facts,
+        })
+        .to_string()
+    }
+
+    fn neighbor(&self, known: &Known, insight: &dyn Insight) -> serde_json::Value {
+        let origin_m = self.framer.origin_m();
+        let position_m = [0, 1, 2].map(|axis| known.position_m[axis] - origin_m[axis]);
+        let index = self.ids.binary_search(&known.id.0).ok();
+        let truth_m =
+            index.filter(|index| insight.is_measured(*index)).and_then(|index| self.frame.position_m.get(index));
+        let error_m = truth_m.map(|truth_m| {
+            let off = [0, 1, 2].map(|axis| position_m[axis] - f64::from(truth_m[axis]));
+            libm::sqrt(off.iter().map(|x| x * x).sum())
+        });
+        json!({
+            "id": known.id.0, "index": index, "position_m": position_m, "velocity_mps": known.velocity_mps,
+            "age_s": known.age_s, "error_m": error_m,
+        })
+    }
+
+    fn links(&self, pairs: &[[u32; 2]]) -> String {
+        let bytes: Vec<u8> = pairs.iter().flat_map(|[from, to]| [*from, to << 2]).flat_map(u32::to_le_bytes).collect();
+        json!({ "type": "links", "tick": self.frame.tick, "pairs": BASE64_STANDARD.encode(bytes) }).to_string()
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -132,23 +132,25 @@ export class Controls {
   connection(is) {
     this.is = is;
     this.showStatus();
-    if (is !== "open") this.app.announce("Connection lost");
+    if (is !== "open") this.app.announce(is === "over" ? "Ended" : "Connection lost");
   }
 
   showStatus() {
     const { state, scene } = this.app;
     const [is, text] =
-      this.is === "lost"
-        ? ["lost", "Disconnected"]
-        : this.is === "failed"
-          ? ["lost", "Unreadable"]
-          : !scene || !state
-            ? ["", "Connecting"]
-            : state.at_end && state.paused
-              ? ["", "At the end"]
-              : state.paused
-                ? ["paused", "Paused"]
-                : ["running", scene.mode === "watch" ? "Watching" : "Running"];
+      this.is === "over"
+        ? ["", "Ended"]
+        : this.is === "lost"
+          ? ["lost", "Disconnected"]
+          : this.is === "failed"
+            ? ["lost", "Unreadable"]
+            : !scene || !state
+              ? ["", "Connecting"]
+              : state.at_end && state.paused
+                ? ["", "At the end"]
+                : state.paused
+                  ? ["paused", "Paused"]
+                  : ["running", scene.mode === "watch" ? "Watching" : "Running"];
     const chip = element("status");
     chip.dataset.is = is;
     const kind = scene?.mode === "recording" && is !== "lost" ? "Recording · " : "";
@@ -285,19 +287,21 @@ export class Controls {
         if (app.scene?.mode !== "recording") document.querySelector("[data-layer='links']").click();
       },
       Escape: () => {
-        if (app.pointer.drag) app.pointer.cancel();
+        if (app.pointer.corners.length) app.pointer.choose("polygon");
+        else if (app.pointer.drag) app.pointer.cancel();
         else if (app.pointer.tool !== "select") app.pointer.choose("select");
         else app.select(null);
       },
     };
-    const tools = ["select", "goal", "move", "wall", "circle", "erase", "paint"];
+    const tools = ["select", "goal", "move", "wall", "circle", "polygon", "erase", "paint"];
+    if (app.pointer.corners.length && !onControl) keys.Enter = () => app.pointer.close();
     if (event.key === " " && !(onControl && onControl.id !== "timeline")) this.playOrPause();
     else if (pan && !onControl) {
       app.pointer.touched = true;
       app.follow = false;
       this.follow();
       app.camera.pan(pan[0] * PAN_PIXELS, pan[1] * PAN_PIXELS);
-    } else if (/^[1-7]$/.test(event.key)) app.pointer.choose(tools[event.key - 1]);
+    } else if (/^[1-8]$/.test(event.key)) app.pointer.choose(tools[event.key - 1]);
     else if (keys[event.key]) keys[event.key]();
     else return;
     event.preventDefault();

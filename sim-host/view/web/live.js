@@ -4,6 +4,8 @@ import { fromBase64, parseFrame } from "staya/frame.js";
 
 const FIRST_RETRY_MS = 500;
 const LAST_RETRY_MS = 8000;
+/** The server goes away: there is nothing to come back to. */
+const OVER = 1001;
 
 export class Live {
   constructor(listener) {
@@ -25,7 +27,11 @@ export class Live {
       this.frames = 0;
       this.listener.onConnection("open");
     };
-    socket.onclose = () => {
+    socket.onclose = ({ code }) => {
+      if (code === OVER) {
+        this.listener.onConnection("over");
+        return;
+      }
       this.listener.onConnection("lost", Math.round(this.retry / 1000));
       setTimeout(() => this.start(), this.retry);
       this.retry = Math.min(2 * this.retry, LAST_RETRY_MS);

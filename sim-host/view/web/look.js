@@ -72,6 +72,29 @@ export function packed(hex, alpha = 1) {
   return ((Math.round(alpha * 255) << 24) | (b << 16) | (g << 8) | r) >>> 0;
 }
 
+const THEME = "staya-theme";
+
+/** The theme that the user chose last, or undefined. A view has another port each time, and ports have storages of their own but no
+    cookies of their own; files have storage only. */
+function chosenTheme() {
+  const known = (theme) => (["dark", "light"].includes(theme) ? theme : undefined);
+  try {
+    return known(document.cookie.match(`${THEME}=(\\w+)`)?.[1]) ?? known(localStorage.getItem(THEME));
+  } catch {
+    // Somebody does not want anything to be remembered.
+    return undefined;
+  }
+}
+
+function rememberTheme(theme) {
+  try {
+    document.cookie = `${THEME}=${theme}; path=/; max-age=31536000; samesite=strict`;
+    localStorage.setItem(THEME, theme);
+  } catch {
+    // As above.
+  }
+}
+
 export class Look {
   constructor() {
     this.layers = {};
@@ -86,9 +109,10 @@ export class Look {
     this.crowded = false;
     this.words = { modes: [], waits: [] };
     const wish = matchMedia("(prefers-color-scheme: dark)");
-    this.dark = wish.matches;
+    const theme = () => chosenTheme() ?? (wish.matches ? "dark" : "light");
+    this.dark = theme() === "dark";
     wish.addEventListener("change", () => {
-      this.dark = wish.matches;
+      this.dark = theme() === "dark";
       this.onTheme?.();
     });
     this.read();
@@ -96,6 +120,7 @@ export class Look {
 
   toggleTheme() {
     this.dark = !this.dark;
+    rememberTheme(this.dark ? "dark" : "light");
     this.onTheme?.();
   }
 

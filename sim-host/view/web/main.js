@@ -177,6 +177,8 @@ class App {
       this.banner(this.lack);
       if (this.selected !== null) this.send({ do: "select", robot: this.selected });
       if (this.look.layers.links) this.send({ do: "links", on: true });
+    } else if (is === "over") {
+      this.banner("What this page showed has ended in its terminal. This is the last picture of it.");
     } else {
       this.banner(
         `No connection to staya view${this.scene ? "" : " yet"}. Is it still running in its terminal? Start it again and ` +

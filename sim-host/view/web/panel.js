@@ -133,11 +133,16 @@ export class Panel {
       );
     }
     if (robot.boot !== undefined) fact("starts", String(robot.boot));
+    for (const [name, value] of robot.facts ?? []) fact(name, value);
     if (robot.sent !== undefined) fact("bytes sent, heard", `${thousands(robot.sent)}, ${thousands(robot.heard)}`);
-    if (robot.device) {
-      fact("instructions", thousands(robot.device.instructions));
-      fact("stack", `${thousands(robot.device.stack)} bytes`);
-      fact("mismatches", String(robot.device.mismatches));
+    const { device } = robot;
+    if (device) {
+      if (device.instructions !== null) {
+        fact("instructions", `${thousands(device.instructions)}, at most ${thousands(device.most_instructions)}`);
+      } else if (device.ticks !== null) fact("clock ticks", thousands(device.ticks));
+      fact("stack", `at most ${thousands(device.stack)} bytes`);
+      fact("mismatches", `${thousands(device.mismatches)} in ${thousands(device.steps)} steps`);
+      if (device.resets) fact("resets", thousands(device.resets));
     }
     this.facts.replaceChildren(...facts);
   }

@@ -10,6 +10,7 @@ const HINTS = {
   move: "Drag an obstacle",
   wall: "Drag a wall",
   circle: "Drag from the middle to the edge",
+  polygon: "Click the corners, and the first one again (or Enter) to close it",
   erase: "Click an obstacle to remove it",
   paint: "Paint cells",
 };
@@ -20,6 +21,8 @@ export class Pointer {
     this.canvas = canvas;
     this.tool = "select";
     this.paintClass = 0;
+    // Of the polygon that is being drawn.
+    this.corners = [];
     this.pointers = new Map();
     this.drag = null;
     // Whether the click that is about to come has chosen a robot.
@@ -55,6 +58,7 @@ export class Pointer {
     const button = document.querySelector(`[data-tool="${tool}"]`);
     if (!this.app.live || (!button.offsetParent && tool !== "select")) return;
     this.tool = tool;
+    this.corners = [];
     this.cancel();
     for (const each of document.querySelectorAll("[data-tool]")) each.setAttribute("aria-pressed", each === button);
     document.getElementById("tool-hint").hidden = tool === "select";
@@ -85,7 +89,7 @@ export class Pointer {
 
   cancel() {
     this.drag = null;
-    this.app.view.sketch = null;
+    this.app.view.sketch = this.corners.length ? { kind: "polygon", points: this.corners } : null;
     this.canvas.classList.remove("dragging");
     this.app.dirty = true;
   }
@@ -121,6 +125,7 @@ export class Pointer {
       }
       const place = app.camera.unproject(at[0], at[1]);
       if (this.tool === "wall" || this.tool === "circle") return { kind: this.tool, from: place };
+      if (this.tool === "polygon") return { kind: "polygon" };
       if (this.tool === "paint") return { kind: "paint", last: null };
       if (this.tool === "erase") return { kind: "erase" };
       if (this.tool === "move") {
@@ -277,6 +282,9 @@ export class Pointer {
         }
         break;
       }
+      case "polygon":
+        this.corner(place, at);
+        break;
       case "move":
         if (drag.moved) app.order({ kind: "move", index: drag.solid.index, by_m: drag.shifted });
         break;
@@ -288,9 +296,35 @@ export class Pointer {
     }
   }
 
+  /** One corner more, or the end of the polygon. */
+  corner(place, at) {
+    const { corners } = this;
+    const near = (corner, pixels) => {
+      const seen = corner && this.app.camera.project(corner[0], corner[1], 0);
+      return seen && Math.hypot(seen[0] - at[0], seen[1] - at[1]) < pixels;
+    };
+    if (near(corners[0], HANDLE_PIXELS) && corners.length > 1) this.close();
+    else if (place && !near(corners.at(-1), LEAST_WALL_PIXELS)) corners.push(place);
+  }
+
+  /** Makes an obstacle of the corners so far. */
+  close() {
+    const { app, corners } = this;
+    if (corners.length >= 3) {
+      app.order({ kind: "solid", solid: { kind: "polygon", points_m: corners.map((corner) => corner.slice(0, 2)) } });
+    } else app.toast("A polygon has three corners at least.");
+    this.corners = [];
+    this.cancel();
+  }
+
   hover(at) {
     const { app } = this;
     if (!app.scene) return;
+    if (this.corners.length) {
+      const place = at && app.camera.unproject(at[0], at[1]);
+      app.view.sketch = { kind: "polygon", points: place ? [...this.corners, place] : this.corners };
+      app.dirty = true;
+    }
     const robot = at && app.pick(at[0], at[1], 8);
     if (robot !== app.view.hovered) {
       app.view.hovered = robot;

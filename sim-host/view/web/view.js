@@ -339,6 +339,19 @@ export class View {
       context.globalAlpha = 1;
       context.stroke();
       this.write(metres(radius), a[0], a[1] + 4);
+    } else if (sketch.kind === "polygon") {
+      const points = sketch.points.map(([x, y]) => app.camera.project(x, y, 0)).filter(Boolean);
+      if (!points.length) return;
+      context.beginPath();
+      for (const [x, y] of points) context.lineTo(x, y);
+      context.closePath();
+      context.globalAlpha = 0.2;
+      context.fill();
+      context.globalAlpha = 1;
+      context.stroke();
+      context.beginPath();
+      context.arc(points[0][0], points[0][1], 5, 0, 2 * Math.PI);
+      context.fill();
     }
   }
 

@@ -2,14 +2,14 @@
 
 use staya_controller::agent::{
     Agent, AgentConfig, AnyGuidance, AnySafety, AnySurroundings, Command, Commanded, GridWorkspace, HALF_PLANES,
-    InCells, LEARNED, NEIGHBORS, Outputs, Parameter, TEMPLATE, VISITS, Wish,
+    InCells, LEARNED, NEIGHBORS, Outputs, Parameter, TEMPLATE, VISITS, Wait, Wish,
 };
 use staya_controller::agent::{GuidanceKind, SafetyKind};
-use staya_controller::geom::Vec3;
-use staya_controller::robot::Mode;
+use staya_controller::geom::{Position, Vec3};
+use staya_controller::robot::{Mode, RobotId};
 use staya_controller::time::{self, Instant};
 use staya_controller::wire::Wire;
-use staya_sim::engine::{Ground, PlaneGround, Senses, WIDE};
+use staya_sim::engine::{self, Ground, Known, PlaneGround, Senses, WIDE};
 use staya_sim::scenario::Scenario;
 use std::sync::Arc;
 use std::time::Duration;
@@ -52,6 +52,8 @@ pub struct Controller<W> {
     radius_m: f64,
     /// What it commanded last, if it steers.
     commanded_mps: Option<[f64; 3]>,
+    /// When and where it stepped last.
+    stepped: Option<(Instant, Position, [f64; 3])>,
 }
 
 impl<W: Wire> Controller<W> {
@@ -91,6 +93,7 @@ impl<W: Wire> Controller<W> {
             lag_s,
             radius_m: f64::from(config.radius_m),
             commanded_mps: None,
+            stepped: None,
         }
     }
 
@@ -103,6 +106,31 @@ impl<W: Wire> Controller<W> {
     #[must_use]
     pub fn mode(&self) -> Mode {
         self.agent.mode()
+    }
+
+    /// Whom it follows; 0: nobody.
+    #[must_use]
+    pub const fn leader(&self) -> RobotId {
+        self.agent.leader()
+    }
+
+    /// What it waits for, if it does not get on.
+    #[must_use]
+    pub const fn wait(&self) -> Option<Wait> {
+        self.out.wait
+    }
+
+    /// Where it is to go, metres, if that is a place.
+    #[must_use]
+    pub fn goal_m(&self) -> Option<[f64; 3]> {
+        self.brake.map(|brake| brake.place_m)
+    }
+
+    /// Whom it knew at its last step, and where. O(neighbours).
+    #[must_use]
+    pub fn known(&self) -> Vec<Known> {
+        let stepped = self.stepped.iter();
+        stepped.flat_map(|&(now, own, own_m)| engine::known(self.agent.neighbors(), own, own_m, now)).collect()
     }
 
     /// How many others it knows.
@@ -145,6 +173,7 @@ impl<W: Wire> Controller<W> {
         let _ = self.agent.set_parameter(Parameter::Radius, radius_m.clamp(least, greatest));
         // The robot's clock wraps; steps are far closer to each other.
         let now = Instant::from_micros(now.as_micros() as u32);
+        self.stepped = Some((now, inputs.state.position, position_m));
         self.agent.step_into(&inputs, now, &mut self.workspace, &mut self.out);
         self.commanded_mps = steers.then(|| self.velocity_mps());
         &self.out

@@ -21,5 +21,5 @@ pub use kind::Kind;
 pub use medium::{Medium, MediumError, MediumSetup};
 pub use offboard::{AUTOPILOT, COMPONENT, Entry, Event, Fix, OffboardCounters, OffboardStateMachine, Rules, State};
 pub use report::{CompanionReport, VehicleReport};
-pub use run::{Options, RunError, run};
+pub use run::{Options, RunError, Seen, Sight, run};
 pub use seal::{Seal, SealError};

@@ -2,7 +2,10 @@
 
 mod machine;
 mod shown;
+mod sight;
 mod telling;
+
+pub use sight::{Seen, Sight};
 
 use super::config::{Config, VehicleSetup};
 use super::controller::{Body, Controller};
@@ -124,12 +127,18 @@ struct Companions<'a> {
     has_said_farewell: bool,
 }
 
-/// Runs the companions of a configuration until the time is over or `is_wanted` says no. Nothing else ends it, and whatever does, steered vehicles are
+/// Runs the companions of a configuration until the time is over or `is_wanted` says no. `look` is called again
+/// and again between two duties, and must be quick. Nothing else ends it, and whatever does, steered vehicles are
 /// told to stand: a log that cannot be written is told on standard error, to the vehicles' ground stations, and in the report.
 ///
 /// # Errors
 /// What cannot be opened at the start, and a dry run that cannot be shown; an autopilot that is not there is none.
-pub fn run(config: &Config, options: &mut Options, is_wanted: impl Fn() -> bool) -> Result<CompanionReport, RunError> {
+pub fn run(
+    config: &Config,
+    options: &mut Options,
+    is_wanted: impl Fn() -> bool,
+    mut look: impl FnMut(&Sight<'_>),
+) -> Result<CompanionReport, RunError> {
     let seal = config.key.as_deref().map(Seal::read).transpose()?;
     let link_key = config.link_key.as_deref().map(KeyFile::read).transpose()?;
     let remarks =
@@ -145,7 +154,7 @@ pub fn run(config: &Config, options: &mut Options, is_wanted: impl Fn() -> bool)
         began: Instant::now(),
     };
     let mut companions = Companions::new(config, options, seal.as_ref(), link_key, Box::new(host));
-    let (seconds, interrupted) = companions.run(is_wanted);
+    let (seconds, interrupted) = companions.run(is_wanted, &mut look);
     companions.say_farewell();
     companions.close_log();
     match companions.output_error.take() {
@@ -233,7 +242,7 @@ impl<'a> Companions<'a> {
     }
 
     /// Goes on until the time is over or nobody wants it; returns for how many seconds, and whether it was interrupted.
-    fn run(&mut self, is_wanted: impl Fn() -> bool) -> (f64, bool) {
+    fn run(&mut self, is_wanted: impl Fn() -> bool, look: &mut dyn FnMut(&Sight<'_>)) -> (f64, bool) {
         let limit = self.options.seconds.map(Duration::from_secs_f64);
         let mut interrupted = false;
         while limit.is_none_or(|limit| self.now() < limit) && self.output_error.is_none() {
@@ -242,6 +251,7 @@ impl<'a> Companions<'a> {
                 break;
             }
             self.turn();
+            look(&self.sight());
         }
         (self.now().as_secs_f64(), interrupted)
     }

@@ -5,9 +5,12 @@ use super::witness::Asked;
 use super::{Engine, Ground, HostLaw, Tick};
 use staya_controller::agent::{AnySafety, AnySurroundings, Command, Commanded, GridWorkspace, Guidance, Parameter};
 use staya_controller::cost::TICK;
+use staya_controller::geom::Position;
 use staya_controller::grid::Cell;
 use staya_controller::names::Named as _;
+use staya_controller::neighbor::Neighbor;
 use staya_controller::robot::RobotId;
+use staya_controller::time::Instant;
 
 /// Another robot, as a robot knows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,6 +23,26 @@ pub struct Known {
     pub velocity_mps: [f64; 3],
     /// Seconds since it was heard.
     pub age_s: f64,
+}
+
+/// Whom an agent knows, `now`, by number. `own` is where it is by its own reckoning, `own_m` the same place in the world. O(neighbours).
+pub fn known<'a>(
+    neighbors: &'a [Neighbor<f32>],
+    own: Position,
+    own_m: [f64; 3],
+    now: Instant,
+) -> impl Iterator<Item = Known> + 'a {
+    neighbors.iter().map(move |other| {
+        let longest = other.age(now).unwrap_or_default();
+        let way = other.offset_at(own, now, longest);
+        let way = [way.x, way.y, way.z].map(f64::from);
+        Known {
+            id: other.id,
+            position_m: [0, 1, 2].map(|axis| own_m[axis] + way[axis]),
+            velocity_mps: [other.velocity_mps.x, other.velocity_mps.y, other.velocity_mps.z].map(f64::from),
+            age_s: f64::from(longest.as_micros()) / 1e6,
+        }
+    })
 }
 
 /// What a robot sees of the land, and what ways cost in it.
@@ -113,17 +136,6 @@ where
         let out = agent.step(&inputs, now, &mut workspace);
         let own = inputs.state.position;
         let own_m = self.ground.motion(index, self.tick).position_m;
-        let known = agent.neighbors().iter().map(|other| {
-            let longest = other.age(now).unwrap_or_default();
-            let way = other.offset_at(own, now, longest);
-            let way = [way.x, way.y, way.z].map(f64::from);
-            Known {
-                id: other.id,
-                position_m: [0, 1, 2].map(|axis| own_m[axis] + way[axis]),
-                velocity_mps: [other.velocity_mps.x, other.velocity_mps.y, other.velocity_mps.z].map(f64::from),
-                age_s: f64::from(longest.as_micros()) / 1e6,
-            }
-        });
         let window = match &inputs.surroundings {
             AnySurroundings::OnGrid(grid) => grid.window,
             AnySurroundings::InCells(cells) => cells.grid.window,
@@ -154,7 +166,7 @@ where
         });
         let parameters = Parameter::NAMES.iter();
         Inspection {
-            known: known.collect(),
+            known: known(agent.neighbors(), own, own_m, now).collect(),
             land,
             choice,
             parameters: parameters

@@ -27,7 +27,7 @@ use external::External;
 pub use external::{Decision, ExternalController};
 pub use grid::Grid;
 pub use ground::{Ground, HostLaw, StateWords};
-pub use inspect::{Choice, Inspection, Known, Permitted, Scratchpad, SeenLand};
+pub use inspect::{Choice, Inspection, Known, Permitted, Scratchpad, SeenLand, known};
 pub use intervene::Change;
 pub use operator::{Observation, Operated, operated};
 pub use plane::{PlaneGround, Senses};

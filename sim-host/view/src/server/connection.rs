@@ -8,7 +8,8 @@ use std::collections::VecDeque;
 use std::io::{ErrorKind, Read as _, Write as _};
 use std::time::Instant;
 use tungstenite::handshake::derive_accept_key;
-use tungstenite::protocol::{Role, WebSocketConfig};
+use tungstenite::protocol::frame::coding::CloseCode;
+use tungstenite::protocol::{CloseFrame, Role, WebSocketConfig};
 use tungstenite::{Bytes, Error, Message, Utf8Bytes, WebSocket};
 
 /// Longest message of a page, bytes.
@@ -79,13 +80,14 @@ impl Connection {
         }
     }
 
-    /// Takes it off the poll.
-    pub fn end(self, registry: &Registry) {
+    /// Takes it off the poll; `is_over`: because nothing is served any more, which a page is told.
+    pub fn end(self, registry: &Registry, is_over: bool) {
         match self.stream {
             // It is closed in any case.
             Some(Stream::Plain(mut stream)) => drop(registry.deregister(&mut stream)),
             Some(Stream::Socket(mut socket)) => {
-                let _ = socket.close(None);
+                let farewell = CloseFrame { code: CloseCode::Away, reason: "over".into() };
+                let _ = socket.close(is_over.then_some(farewell));
                 let _ = socket.flush();
                 drop(registry.deregister(socket.get_mut()));
             }

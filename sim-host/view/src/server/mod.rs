@@ -15,7 +15,7 @@ use request::Rules;
 use std::collections::BTreeMap;
 use std::io;
 use std::net::SocketAddr;
-use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, SyncSender, channel, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -81,6 +81,9 @@ pub enum ServeError {
     /// No events, no randomness, no thread.
     #[error("cannot serve pages: {0}")]
     System(io::Error),
+    /// The thread is gone.
+    #[error("the page is not served any more; start the command again, and report what it said above")]
+    Ended,
 }
 
 /// Serves pages until it is dropped.
@@ -140,10 +143,26 @@ impl Server {
         format!("http://{}/?token={}", self.address, self.token)
     }
 
-    /// The next thing that a page did; waits for it as long as `patience`.
+    /// The next thing that a page did; waits for it as long as `patience`, also when there will never be one again.
     #[must_use]
     pub fn next(&self, patience: Duration) -> Option<FromPage> {
-        self.heard.recv_timeout(patience).ok()
+        if patience.is_zero() {
+            return self.heard.try_recv().ok();
+        }
+        match self.heard.recv_timeout(patience) {
+            Ok(what) => Some(what),
+            Err(RecvTimeoutError::Timeout) => None,
+            Err(RecvTimeoutError::Disconnected) => {
+                std::thread::sleep(patience);
+                None
+            }
+        }
+    }
+
+    /// Whether it serves pages; if not, something in its thread went wrong, and never will again.
+    #[must_use]
+    pub fn is_alive(&self) -> bool {
+        self.thread.as_ref().is_some_and(|thread| !thread.is_finished())
     }
 
     /// Says something to a page, or to all.
@@ -230,7 +249,8 @@ impl Pages {
                 }
             }
             if self.pass_on() {
-                return;
+                let registry = self.poll.registry();
+                return self.connections.into_values().for_each(|connection| connection.end(registry, true));
             }
             let now = Instant::now();
             let late: Vec<usize> = self.of(|connection| connection.is_late(now)).collect();
@@ -317,7 +337,7 @@ impl Pages {
     fn close(&mut self, number: usize) {
         if let Some(connection) = self.connections.remove(&number) {
             let was_live = connection.is_live();
-            connection.end(self.poll.registry());
+            connection.end(self.poll.registry(), false);
             if was_live {
                 // If the run hears nothing any more, it hears of nobody's leaving either.
                 let _ = self.heard.try_send(FromPage::Closed(Client(number)));

@@ -121,3 +121,19 @@ fn a_port_that_is_taken_is_named_with_the_remedy() {
     let error = Server::start(server.address(), Vec::new()).expect_err("it is taken").to_string();
     assert!(error.contains(&server.address().to_string()) && error.contains("--listen"), "{error}");
 }
+
+#[test]
+fn when_the_thread_is_gone_waiting_still_takes_its_time() {
+    let server = server();
+    assert!(server.is_alive());
+    server.send(ToPages::End);
+    let began = Instant::now();
+    while server.is_alive() && began.elapsed() < Duration::from_secs(10) {
+        std::thread::yield_now();
+    }
+    assert!(!server.is_alive());
+    let began = Instant::now();
+    assert_eq!(server.next(Duration::from_millis(50)), None);
+    assert!(began.elapsed() >= Duration::from_millis(50), "a busy loop");
+    assert_eq!(server.next(Duration::ZERO), None);
+}

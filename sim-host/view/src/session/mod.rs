@@ -71,6 +71,8 @@ pub struct Session {
     catches_up_to: Option<u32>,
     /// What is asked for in the meantime.
     deferred: VecDeque<(Client, Wanted)>,
+    /// Whether anybody has had a way to go: otherwise nothing but its last tick ends the run.
+    has_work: bool,
     /// Whether the end of the run has been seen.
     is_over: bool,
     pages: BTreeMap<Client, Looks>,
@@ -112,6 +114,7 @@ impl Session {
             events: HashMap::new(),
             catches_up_to: None,
             deferred: VecDeque::new(),
+            has_work: false,
             is_over: false,
             pages: BTreeMap::new(),
             is_new: true,
@@ -173,7 +176,7 @@ impl Session {
         self.memory.forget_from(tick + 1);
         self.step();
         self.take_frame();
-        let is_over = self.engine.is_over() || self.tick >= self.scenario.ticks;
+        let is_over = self.is_at_end();
         if is_over && !self.is_over {
             self.pace.pause();
             self.tell(server);
@@ -181,9 +184,15 @@ impl Session {
         self.is_over = is_over;
     }
 
+    /// Whether all have arrived that had a way to go, or it is the last tick.
+    fn is_at_end(&self) -> bool {
+        self.tick >= self.scenario.ticks || (self.has_work && self.engine.is_over())
+    }
+
     fn step(&mut self) {
         self.engine.advance();
         self.tick += 1;
+        self.has_work |= !self.engine.is_over();
         for index in 0..self.scenario.robots.len() {
             for event in self.engine.events(index) {
                 let events = self.events.entry(index).or_default();
@@ -205,7 +214,7 @@ impl Session {
             return self.step();
         }
         self.catches_up_to = None;
-        self.is_over = self.engine.is_over() || self.tick >= self.scenario.ticks;
+        self.is_over = self.is_at_end();
         self.engine.log_receptions(self.wants_links());
         self.take_frame_of_past();
         self.begin_anew(None, server);
@@ -221,7 +230,7 @@ impl Session {
     fn go_back_to(&mut self, tick: u32) {
         if tick < self.tick {
             match operated(&self.scenario) {
-                Ok(engine) => (self.engine, self.tick) = (engine, 0),
+                Ok(engine) => (self.engine, self.tick, self.has_work) = (engine, 0, false),
                 // They could be placed before.
                 Err(_) => return,
             }

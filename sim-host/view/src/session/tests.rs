@@ -234,3 +234,18 @@ fn new_runs_take_the_place_of_old_ones() {
     run.say(&json!({ "do": "restart", "seed": 5 }));
     assert_eq!(run.text("scene")["seed"], 5);
 }
+
+#[test]
+fn where_nobody_has_anywhere_to_go_it_runs_on_until_somebody_has() {
+    let nowhere = "name = \"t\"\nseed = 3\nticks = 100000\ntick_s = 0.05\n[radio]\nrange_m = 9\n\
+         [plane]\nradius_m = 0.2\nmax_speed_mps = 1\n[[plane.robots.list]]\nstart_m = [0, 0]\n";
+    let mut run = Running::new(nowhere);
+    run.text("scene");
+    run.say(&json!({ "do": "speed", "x": null }));
+    run.say(&json!({ "do": "play" }));
+    run.state(|state| state["paused"] == false && state["at_end"] == false && state["tick"].as_u64() > Some(20));
+    run.say(&json!({ "do": "order", "order": { "kind": "goal", "robot": 0, "place_m": [1, 0, 0] } }));
+    let state = run.state(|state| state["at_end"] == true);
+    assert_eq!(state["paused"], true);
+    assert!(state["tick"].as_u64() < Some(100_000), "{state}");
+}

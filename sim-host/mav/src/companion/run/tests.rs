@@ -250,7 +250,7 @@ fn fly(config: &Config, failing: Option<(Call, Failure)>) -> (World, Option<Comp
     let world = Rc::new(RefCell::new(World::new(failing)));
     let mut companions = Companions::new(config, &options, None, None, Box::new(Shared(Rc::clone(&world))));
     let ended = catch_unwind(AssertUnwindSafe(move || {
-        let (seconds, interrupted) = companions.run(|| true);
+        let (seconds, interrupted) = companions.run(|| true, &mut |_| {});
         companions.say_farewell();
         companions.report(config, seconds, interrupted)
     }));
@@ -332,7 +332,7 @@ fn rehearse(failing: Option<(Call, Failure)>) -> (World, f64) {
     let world = Rc::new(RefCell::new(World::new(failing)));
     let config = config();
     let mut companions = Companions::new(&config, &options, None, None, Box::new(Shared(Rc::clone(&world))));
-    let (seconds, _) = companions.run(|| true);
+    let (seconds, _) = companions.run(|| true, &mut |_| {});
     companions.has_said_farewell = true;
     drop(companions);
     (Rc::into_inner(world).expect("the loop has ended").into_inner(), seconds)

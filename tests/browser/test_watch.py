@@ -1,0 +1,87 @@
+"""Pages that look on at a run which goes on by itself, and what a page remembers."""
+
+import subprocess
+
+import pytest
+
+from conftest import ROOT, STAYA, View, until
+
+CIRCLE = "scenarios/swap-circle.toml"
+
+
+@pytest.fixture
+def watched():
+    """A function that starts a command with `--view` and gives its address; each is ended by its own process id."""
+    started = []
+
+    def start(*arguments) -> str:
+        command = [STAYA, *map(str, arguments), "--view"]
+        child = subprocess.Popen(command, cwd=ROOT, stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        started.append(child)
+        return until(lambda: next((line.strip() for line in child.stderr if "token=" in line), None), what="an address")
+
+    yield start
+    for child in started:
+        child.terminate()
+        child.wait(10)
+
+
+def middle(page, x: float, y: float) -> list[float]:
+    return page.evaluate("([x, y]) => staya.project(x, y)", [x, y])
+
+
+def test_a_page_looks_on_and_says_when_it_is_over(watched, look):
+    url = watched("bridge", "scenarios/bridge.toml", "--mavlink", "udpout:127.0.0.1:9", "--seconds", "6", "-q")
+    page = look(url)
+    assert page.evaluate("staya.scene.mode") == "watch"
+    first = page.evaluate("staya.currentTick")
+    until(lambda: page.evaluate("staya.currentTick") > first, what="a tick")
+    # There is nothing to take hold of.
+    assert not page.locator("#play").is_visible() and not page.locator("#tools").is_visible()
+    page.keyboard.press("n")
+    until(lambda: page.evaluate("staya.robot?.index") == 0, what="its panel")
+    until(lambda: page.locator("#status").inner_text() == "Ended", what="the end")
+    assert "last picture" in page.locator("#banner").inner_text()
+
+
+def test_the_theme_that_was_chosen_is_there_the_next_time_on_any_port(browser):
+    context = browser.new_context(color_scheme="light")
+    themes = []
+    for _ in range(2):
+        view = View(CIRCLE, "--paused")
+        try:
+            page = context.new_page()
+            page.goto(view.url)
+            until(lambda: page.evaluate("window.staya?.frames.drawn > 0"), what="a picture")
+            themes.append(page.evaluate("document.documentElement.dataset.theme"))
+            if len(themes) == 1:
+                page.keyboard.press("d")
+                until(lambda: page.evaluate("document.documentElement.dataset.theme") == "dark", what="the dark")
+            page.close()
+        finally:
+            view.close()
+    context.close()
+    assert themes == ["light", "dark"]
+
+
+def test_a_polygon_is_drawn_corner_by_corner(view, look):
+    page = look(view(CIRCLE, "--paused").url)
+    before = len(page.evaluate("staya.scene.solids"))
+    page.keyboard.press("6")
+    west, south, east, north = page.evaluate("staya.scene.bounds_m")
+    x, y, side = (west + east) / 2, (south + north) / 2, (east - west) / 12
+    # Two corners and Escape are nothing.
+    for corner in [(x, y), (x + side, y)]:
+        page.mouse.click(*middle(page, *corner))
+    page.keyboard.press("Escape")
+    for corner in [(x, y), (x + side, y), (x + side / 2, y + side), (x, y)]:
+        page.mouse.click(*middle(page, *corner))
+    until(lambda: len(page.evaluate("staya.scene.solids")) == before + 3, what="three walls")
+    # The same by Enter.
+    for corner in [(x - side, y), (x - side / 2, y), (x - side, y + side), (x - 2 * side, y + side)]:
+        page.mouse.click(*middle(page, *corner))
+    page.keyboard.press("Enter")
+    until(lambda: len(page.evaluate("staya.scene.solids")) == before + 7, what="four walls more")
+    walls = page.evaluate("staya.scene.solids")[before:]
+    assert all(wall["kind"] == "segment" for wall in walls)
+    assert abs(walls[0]["from_m"][0] - x) < side / 10 and abs(walls[0]["from_m"][1] - y) < side / 10
