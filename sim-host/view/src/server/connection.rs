@@ -29,6 +29,8 @@ pub(super) enum Outcome {
     Goes,
     /// It has become a page's.
     Opened,
+    /// It asked for what it does not get, and is being told so.
+    Refused,
     /// It is over.
     Ended,
 }
@@ -126,8 +128,9 @@ impl Connection {
                         return self.upgrade(&key);
                     }
                     let until = *until;
-                    self.state = State::Answering { left: answer(&request, files), at: 0, until };
-                    return Outcome::Goes;
+                    let (left, is_refusal) = answer(&request, files);
+                    self.state = State::Answering { left, at: 0, until };
+                    return if is_refusal { Outcome::Refused } else { Outcome::Goes };
                 }
             }
             // What is said while an answer goes out is not heard.
@@ -248,8 +251,8 @@ fn read_words(socket: &mut WebSocket<TcpStream>, hear: &mut dyn FnMut(String) ->
     }
 }
 
-/// What a request gets that asks for no WebSocket, or for one more than there can be.
-fn answer(request: &Request, files: &[File]) -> Vec<u8> {
+/// What a request gets that asks for no WebSocket, or for one more than there can be; and whether that is not what it asked for.
+fn answer(request: &Request, files: &[File]) -> (Vec<u8>, bool) {
     let file = match request {
         Request::File(name) => files.iter().find(|file| file.name == name),
         _ => None,
@@ -280,5 +283,5 @@ fn answer(request: &Request, files: &[File]) -> Vec<u8> {
     )
     .into_bytes();
     answer.extend(text.into_bytes());
-    answer
+    (answer, file.is_none())
 }

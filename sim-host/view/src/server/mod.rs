@@ -37,6 +37,17 @@ const WAKER: Token = Token(1);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Client(usize);
 
+/// Connections so far, and what became of those that got nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// All of them.
+    pub connections: u64,
+    /// Those that asked for what they do not get: no request, a wrong token, another origin, one page too many.
+    pub refused: u64,
+    /// Those that were left: too slow to say what they want, pages that do not read or talk without end, and the oldest of too many.
+    pub left: u64,
+}
+
 /// What comes from pages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FromPage {
@@ -94,6 +105,7 @@ pub struct Server {
     heard: Receiver<FromPage>,
     outgoing: Sender<ToPages>,
     latest: Arc<Mutex<Option<Bytes>>>,
+    counts: Arc<Mutex<Counts>>,
     waker: Arc<Waker>,
     thread: Option<JoinHandle<()>>,
 }
@@ -114,6 +126,7 @@ impl Server {
         let (heard_in, heard) = sync_channel(UNHEARD);
         let (outgoing, out) = channel();
         let latest = Arc::new(Mutex::new(None));
+        let counts = Arc::new(Mutex::new(Counts::default()));
         let rules = Rules { address, token: token.clone() };
         let pages = Pages {
             poll,
@@ -125,16 +138,23 @@ impl Server {
             heard: heard_in,
             out,
             latest: Arc::clone(&latest),
+            counts: Arc::clone(&counts),
         };
         let thread = std::thread::Builder::new().name("pages".to_owned()).spawn(move || pages.run());
         let thread = Some(thread.map_err(ServeError::System)?);
-        Ok(Self { address, token, heard, outgoing, latest, waker, thread })
+        Ok(Self { address, token, heard, outgoing, latest, counts, waker, thread })
     }
 
     /// Where it listens.
     #[must_use]
     pub const fn address(&self) -> SocketAddr {
         self.address
+    }
+
+    /// What became of connections so far.
+    #[must_use]
+    pub fn counts(&self) -> Counts {
+        *lock(&self.counts)
     }
 
     /// The address of the page, with the token.
@@ -209,9 +229,9 @@ impl Drop for Server {
     }
 }
 
-/// The frame is whole, whatever became of the thread that put it there.
-fn lock(latest: &Mutex<Option<Bytes>>) -> MutexGuard<'_, Option<Bytes>> {
-    latest.lock().unwrap_or_else(PoisonError::into_inner)
+/// What is in there is whole, whatever became of the thread that put it there.
+fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// 128 random bits in hexadecimal digits.
@@ -233,6 +253,7 @@ struct Pages {
     heard: SyncSender<FromPage>,
     out: Receiver<ToPages>,
     latest: Arc<Mutex<Option<Bytes>>>,
+    counts: Arc<Mutex<Counts>>,
 }
 
 impl Pages {
@@ -254,6 +275,7 @@ impl Pages {
             }
             let now = Instant::now();
             let late: Vec<usize> = self.of(|connection| connection.is_late(now)).collect();
+            lock(&self.counts).left += late.len() as u64;
             late.into_iter().for_each(|number| self.close(number));
         }
     }
@@ -265,9 +287,11 @@ impl Pages {
     fn accept(&mut self) {
         // Until there is nobody more; a connection that is gone already is none.
         while let Ok((mut stream, _)) = self.listener.accept() {
+            lock(&self.counts).connections += 1;
             if self.connections.len() >= CONNECTIONS {
                 let oldest = self.of(|connection| !connection.is_live()).next();
                 let Some(oldest) = oldest else { continue };
+                lock(&self.counts).left += 1;
                 self.close(oldest);
             }
             let number = self.next;
@@ -292,6 +316,7 @@ impl Pages {
             let mut hear = |text: String| heard.try_send(FromPage::Said(Client(number), text)).is_ok();
             match connection.read(&self.rules, &self.files, has_room, &mut hear) {
                 Outcome::Goes => {}
+                Outcome::Refused => lock(&self.counts).refused += 1,
                 Outcome::Opened => is_done = self.heard.try_send(FromPage::Opened(Client(number))).is_err(),
                 Outcome::Ended => is_done = true,
             }
