@@ -188,10 +188,10 @@ impl WayIn {
         std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
         let mut file = options.open(&path)?;
         let this = Self(path);
-        write!(
+        writeln!(
             file,
             "<!doctype html><meta charset=\"utf-8\"><meta name=\"referrer\" content=\"no-referrer\">\
-             <meta http-equiv=\"refresh\" content=\"0; url={url}\"><title>Staya</title><a href=\"{url}\">The page</a>\n"
+             <meta http-equiv=\"refresh\" content=\"0; url={url}\"><title>Staya</title><a href=\"{url}\">The page</a>"
         )?;
         Ok(this)
     }

@@ -2,15 +2,20 @@
 //! machine.
 
 use crate::clients;
-use crate::repo::{Repo, run as run_to_end};
+use crate::repo::{Repo, output_of, run as run_to_end};
 use crate::report::{Counts, Report};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 const PEERS: &str = "tests/peers";
-/// The one benchmark that is no criterion's.
+/// Those that are no criterion's.
 const BRIDGE: &str = "bridge";
+const VIEW: &str = "view";
+/// Runs of one scenario with a page that nobody looks at, each beside one without; a ratio of one pair tells of the machine, their median of the page.
+const PAIRS: usize = 9;
+/// That median at most.
+const VIEW_COSTS: f64 = 1.03;
 
 /// What a benchmark should reach.
 enum Goal {
@@ -34,12 +39,64 @@ const GOALS: [(&str, Goal); 7] = [
 
 /// Runs the benchmarks whose name contains `name` and judges their medians.
 pub fn run(repo: &Repo, report: &mut Report, name: Option<&str>) {
-    if name != Some(BRIDGE) {
+    if !matches!(name, Some(BRIDGE | VIEW)) {
         criterion(repo, report, name);
     }
     if name.is_none_or(|name| BRIDGE.contains(name)) {
         bridge(repo, report);
     }
+    if name.is_none_or(|name| VIEW.contains(name)) {
+        view(repo, report);
+    }
+}
+
+/// The program as users have it; `what` it is for.
+fn release(repo: &Repo, report: &mut Report, what: &str) -> Option<PathBuf> {
+    let mut build = repo.cargo(&["build", "--release", "--locked", "--package", "staya"]);
+    let program = format!("staya{}", std::env::consts::EXE_SUFFIX);
+    report.step(what, || run_to_end(&mut build)).then(|| repo.target.join("release").join(program))
+}
+
+/// What a page costs a run that nobody looks at, and how many pictures a second there are of how many robots; the benchmark judges these.
+fn view(repo: &Repo, report: &mut Report) {
+    const NAME: &str = "a run with a page, nobody looking";
+    let Some(program) = release(repo, report, "staya for its pages") else {
+        return report.skip(NAME, "the program was not built");
+    };
+    report.part(NAME, || {
+        let mut ratios = Vec::new();
+        for pair in 0..PAIRS {
+            // By turns, so that a machine that becomes slower is slower for both.
+            let mut seconds = [0.0; 2];
+            for with_page in [pair % 2, 1 - pair % 2] {
+                let page: &[&str] = if with_page == 1 { &["--view"] } else { &[] };
+                let mut run = repo.command(&program);
+                run.args(["run", "scenarios/twenty-discs.toml", "--json", "-q", "--out"])
+                    .arg(repo.target.join("bench-view"));
+                let said = output_of(run.args(page));
+                match said.as_deref().and_then(|json| number(json, "wall_seconds")) {
+                    Some(wall) => seconds[with_page] = wall,
+                    None => return (Counts { failed: 1, ..Counts::default() }, "`staya run` failed".to_owned()),
+                }
+            }
+            println!("without {:.3} s, with a page {:.3} s", seconds[0], seconds[1]);
+            ratios.push(seconds[1] / seconds[0]);
+        }
+        ratios.sort_by(f64::total_cmp);
+        let median = ratios[PAIRS / 2];
+        let is_met = median <= VIEW_COSTS;
+        let note = format!("{median:.3} times as long (median of {PAIRS} pairs), at most {VIEW_COSTS}");
+        (Counts { passed: is_met.into(), failed: (!is_met).into(), ..Counts::default() }, note)
+    });
+    let bench = repo.cargo(&["bench", "--locked", "--package", "staya-view", "--bench", "view"]);
+    report.command("pictures a second", bench);
+}
+
+/// The number in a field of printed JSON.
+fn number(json: &str, field: &str) -> Option<f64> {
+    let (_, value) = json.split_once(&format!("\"{field}\":"))?;
+    let end = value.find([',', '}'])?;
+    value.get(..end)?.trim().parse().ok()
 }
 
 /// Messages through `staya bridge` beside pymavlink; the script judges.
@@ -49,14 +106,12 @@ fn bridge(repo: &Repo, report: &mut Report) {
         Ok(python) => python,
         Err(reason) => return report.skip(NAME, &reason),
     };
-    let mut build = repo.cargo(&["build", "--release", "--locked", "--package", "staya"]);
-    if !report.step("staya for the bridge", || run_to_end(&mut build)) {
+    let Some(program) = release(repo, report, "staya for the bridge") else {
         return report.skip(NAME, "the program was not built");
-    }
-    let program = format!("staya{}", std::env::consts::EXE_SUFFIX);
+    };
     let mut bench = repo.command(&python);
     bench.arg("tests/python/bench_bridge.py");
-    bench.env("STAYA", repo.target.join("release").join(program));
+    bench.env("STAYA", program);
     report.command(NAME, bench);
 }
 
@@ -64,7 +119,7 @@ fn criterion(repo: &Repo, report: &mut Report, name: Option<&str>) {
     let home = repo.target.join("criterion");
     let start = SystemTime::now();
     // Only targets that are benchmarks: a library's own tests need no release build.
-    let own = repo.cargo(&["bench", "--locked", "--workspace", "--bench", "*"]);
+    let own = repo.cargo(&["bench", "--locked", "--workspace", "--exclude", "staya-view", "--bench", "*"]);
     let peers = repo.cargo_in(PEERS, &["bench", "--locked", "--bench", "*"]);
     for (what, mut bench) in [("benchmarks", own), ("benchmarks beside peers", peers)] {
         bench.env("CRITERION_HOME", &home);
@@ -148,9 +203,7 @@ fn folders(parent: &Path) -> Vec<String> {
 /// The median's point estimate in criterion's estimates.json.
 fn median(json: &str) -> Option<f64> {
     let (_, median) = json.split_once("\"median\"")?;
-    let (_, value) = median.split_once("\"point_estimate\":")?;
-    let end = value.find([',', '}'])?;
-    value.get(..end)?.trim().parse().ok()
+    number(median, "point_estimate")
 }
 
 /// Nanoseconds for people.
