@@ -2,7 +2,7 @@
 
 mod page;
 
-use crate::view::WatchArgs;
+use crate::watch::WatchArgs;
 use anyhow::Result;
 use clap::Args;
 use page::Page;

@@ -40,7 +40,7 @@ pub struct HilArgs {
     #[arg(long)]
     real_time: bool,
     #[command(flatten)]
-    page: crate::view::WatchArgs,
+    page: crate::watch::WatchArgs,
     /// Folder with firmware, PART/lockstep [default: $STAYA_FIRMWARE, or the repository's target/firmware (`cargo run` there builds
     /// it when needed), or ~/.local/share/staya/firmware].
     #[arg(long, value_name = "DIR")]

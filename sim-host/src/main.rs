@@ -12,6 +12,7 @@ mod page;
 mod run;
 mod terrain;
 mod view;
+mod watch;
 
 use anyhow::{Context as _, Result};
 use clap::{Parser, Subcommand};
@@ -34,8 +35,9 @@ struct Cli {
 enum Command {
     /// Run a scenario.
     Run(run::RunArgs),
-    /// Make one HTML file of a run, for any browser, without server or network.
+    /// Look at a run in the browser, and take hold of it; or play a recording.
     View(view::ViewArgs),
+    /// Make one HTML file of a run, for any browser, without server or network.
     Page(page::PageArgs),
     /// Run some robots of a scenario as firmware, on emulated microcontrollers or boards.
     Hil(hil::HilArgs),

@@ -3,7 +3,7 @@
 mod also;
 mod summary;
 
-use crate::view::WatchArgs;
+use crate::watch::WatchArgs;
 use also::{Also, AlsoArgs};
 use anyhow::{Context as _, Result, anyhow};
 use clap::Args;

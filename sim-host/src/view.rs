@@ -5,12 +5,10 @@ use anyhow::{Context as _, Result};
 use clap::Args;
 use serde::Serialize;
 use staya_console::{Ended, Global, Stop, print, print_json};
-use staya_sim::scenario::Scenario;
 use staya_view::page;
 use staya_view::playback::Playback;
 use staya_view::server::{ServeError, Server};
 use staya_view::session::Session;
-use staya_view::watch::Watcher;
 use std::fs::OpenOptions;
 use std::io::{self, Write as _};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
@@ -70,40 +68,6 @@ impl Page {
     /// It had ended by itself.
     fn end(self) -> Result<(), ServeError> {
         if self.server.is_alive() { Ok(()) } else { Err(ServeError::Ended) }
-    }
-}
-
-/// Pages that look on.
-#[derive(Args, Clone, Copy, Debug)]
-pub struct WatchArgs {
-    /// Serve a page that looks on while this goes on, and ends with it; to take hold of a run, or to look at a short one, there is
-    /// `staya view`. Nobody waits for the page, and nothing becomes different by it.
-    #[arg(long, help_heading = "A page that looks on")]
-    view: bool,
-    /// Address and port of the page; port 0: any that is free. Beyond this machine (0.0.0.0) whoever has the address that is
-    /// printed, with its token, can watch, unencrypted.
-    #[arg(
-        long,
-        value_name = "ADDRESS",
-        requires = "view",
-        default_value_t = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 0),
-        help_heading = "A page that looks on"
-    )]
-    listen: SocketAddr,
-}
-
-impl WatchArgs {
-    /// Begins to serve the page if it is wanted, and says where on standard error.
-    ///
-    /// # Errors
-    /// The address cannot be listened on.
-    pub fn watcher(&self, scenario: &Scenario) -> Result<Option<Watcher>> {
-        if !self.view {
-            return Ok(None);
-        }
-        let watcher = Watcher::new(Server::start(self.listen, page::served()?)?, scenario)?;
-        eprintln!("{}", watcher.server().url());
-        Ok(Some(watcher))
     }
 }
 
