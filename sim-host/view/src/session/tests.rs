@@ -43,7 +43,11 @@ impl Running {
         let stops = Arc::clone(&stop);
         // The engine does not change threads: the session is made where it runs.
         let thread = std::thread::spawn(move || session.run(&server, &|| stops.load(Ordering::Relaxed)));
-        let (page, _) = tungstenite::connect(&url).expect("it lets its pages in");
+        let (mut page, _) = tungstenite::connect(&url).expect("it lets its pages in");
+        if let MaybeTlsStream::Plain(stream) = page.get_mut() {
+            // What never comes is an error, not a test that never ends.
+            stream.set_read_timeout(Some(Duration::from_secs(60))).expect("a time");
+        }
         Self { page, stop, thread: Some(thread), url, last: None }
     }
 
@@ -241,7 +245,8 @@ fn where_nobody_has_anywhere_to_go_it_runs_on_until_somebody_has() {
          [plane]\nradius_m = 0.2\nmax_speed_mps = 1\n[[plane.robots.list]]\nstart_m = [0, 0]\n";
     let mut run = Running::new(nowhere);
     run.text("scene");
-    run.say(&json!({ "do": "speed", "x": null }));
+    // 2000 ticks a second: neither over before a page sees it, nor long on the way.
+    run.say(&json!({ "do": "speed", "x": 100 }));
     run.say(&json!({ "do": "play" }));
     run.state(|state| state["paused"] == false && state["at_end"] == false && state["tick"].as_u64() > Some(20));
     run.say(&json!({ "do": "order", "order": { "kind": "goal", "robot": 0, "place_m": [1, 0, 0] } }));
