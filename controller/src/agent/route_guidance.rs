@@ -4,7 +4,7 @@ use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Statu
 use super::travel::{Travel, on_grid, reachable_goal};
 use super::tunable::Tunable as _;
 use super::{OnGrid, Parameter};
-use crate::cost::Gain;
+use crate::cost::{Gain, Weights};
 use crate::grid::{Cell, Dir, Window};
 use crate::list;
 use crate::rand::Rng;
@@ -97,13 +97,18 @@ impl<const CELLS: usize, const M: usize, const L: usize> RouteGuidance<CELLS, M,
             let dir = self.router.follow(params, field, window, cell, target, others).ok()?;
             return Some(list::collect([dir]));
         }
-        let weights = self.router.weights(params, field, window, cell, target, others);
-        let mut weights = weights.ok()?;
+        let aside = |weights: Weights| self.travel.without_last(weights);
+        let mut weights = if is_redirected && cell == target {
+            // It is there, and needs no way on.
+            Weights::CLOSED
+        } else {
+            self.router.weights(params, field, window, cell, target, others).ok()?
+        };
         if is_redirected {
-            weights = self.travel.without_last(weights);
-            // There already, or no other way on: into any free cell.
-            if cell == target || weights.best().is_none() {
-                weights = self.travel.without_last(params.open_moves(window, cell));
+            weights = aside(weights);
+            // No other way on: into any free cell.
+            if weights.best().is_none() {
+                weights = aside(params.open_moves(window, cell));
             }
         }
         // Whoever asked may stand where the best way out begins: not the same one each time.

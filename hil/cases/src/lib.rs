@@ -23,6 +23,7 @@ mod worst;
 pub use swarms::Case;
 pub use worst::WorstCase;
 
+use core::hint::black_box;
 use staya_controller::agent::{Agent, Guidance, HALF_PLANES, Inputs, NEIGHBORS, Outputs, Safety};
 use staya_controller::scalar::{Q16, Scalar};
 use staya_controller::time::Instant;
@@ -54,6 +55,23 @@ impl<S: Scalar> Probe<S> for Unmeasured {
         workspace: &mut G::Workspace,
     ) -> Outputs<S> {
         agent.step(inputs, now, workspace)
+    }
+}
+
+/// Measures nothing, and hides from the optimiser what goes into a step and what becomes of it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Opaque;
+
+impl<S: Scalar> Probe<S> for Opaque {
+    fn step<G: Guidance<S>, A: Safety<S>, W: Wire, const N: usize>(
+        &mut self,
+        agent: &mut Agent<S, G, N, A, W>,
+        inputs: &Inputs<'_, S, G::Input<'_>>,
+        now: Instant,
+        workspace: &mut G::Workspace,
+    ) -> Outputs<S> {
+        let (agent, inputs) = (black_box(agent), black_box(inputs));
+        black_box(agent.step(inputs, black_box(now), black_box(workspace)))
     }
 }
 

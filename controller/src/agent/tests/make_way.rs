@@ -61,20 +61,25 @@ fn who_has_no_other_way_on_goes_back() {
 }
 
 #[test]
-fn who_has_arrived_takes_one_free_cell_or_another() {
-    let mut first = Vec::new();
-    for seed in 0..32 {
-        let mut agent = RouteAgent::new(
-            &AgentConfig { seed, ..config(2) },
-            RouteGuidance::new(RouteParams::default()),
-            Unguarded,
-            Postcard,
-        );
-        agent.assign_goal(Cell::new(5, 5));
-        let inbox = bytes(1, 0, 0, &[stop(1, 2, 0, RequestKind::Redirect)]);
-        let out = agent.step(&inputs(&corridor(), Cell::new(5, 5), &inbox), tick(0), &mut workspace());
-        let Command::Move(moves) = out.command else { panic!("{seed}: {:?}", out.command) };
-        first.push(moves[0]);
+fn who_has_arrived_takes_one_free_cell_or_another_in_a_closed_room_too() {
+    let mut closed = corridor();
+    // Nothing leads out of what it sees.
+    (closed[55], closed[65]) = (BLOCKED, BLOCKED);
+    for cells in [corridor(), closed] {
+        let mut first = Vec::new();
+        for seed in 0..32 {
+            let mut agent = RouteAgent::new(
+                &AgentConfig { seed, ..config(2) },
+                RouteGuidance::new(RouteParams::default()),
+                Unguarded,
+                Postcard,
+            );
+            agent.assign_goal(Cell::new(5, 5));
+            let inbox = bytes(1, 0, 0, &[stop(1, 2, 0, RequestKind::Redirect)]);
+            let out = agent.step(&inputs(&cells, Cell::new(5, 5), &inbox), tick(0), &mut workspace());
+            let Command::Move(moves) = out.command else { panic!("{seed}: {:?}", out.command) };
+            first.push(moves[0]);
+        }
+        assert!(first.contains(&Dir::East) && first.contains(&Dir::West), "{first:?}");
     }
-    assert!(first.contains(&Dir::East) && first.contains(&Dir::West), "{first:?}");
 }

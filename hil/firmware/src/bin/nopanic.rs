@@ -12,38 +12,13 @@ staya_firmware::entry!(program::run);
 mod program {
     use core::hint::black_box;
     #[cfg(not(part = "nrf51"))]
-    use staya_cases::Probe;
-    #[cfg(not(part = "nrf51"))]
-    use staya_controller::{
-        agent::{Agent, Guidance, Inputs, Outputs, Safety},
-        scalar::Scalar,
-        time::Instant,
-        wire::Wire,
-    };
+    use staya_cases::Opaque;
     // Only its inbox is cut: how long it is makes no difference to the code.
     #[cfg(not(part = "nrf51"))]
     use staya_link::robot::{Large as Robot, SMALL_INBOX};
     #[cfg(part = "nrf51")]
     use staya_link::robot::{SMALL_INBOX, Small as Robot};
     use staya_link::session::{About, Meter, Reaction, Session, content_bytes};
-
-    /// Hides from the optimiser what goes into a step and what becomes of it.
-    #[cfg(not(part = "nrf51"))]
-    struct Opaque;
-
-    #[cfg(not(part = "nrf51"))]
-    impl<S: Scalar> Probe<S> for Opaque {
-        fn step<G: Guidance<S>, A: Safety<S>, W: Wire, const N: usize>(
-            &mut self,
-            agent: &mut Agent<S, G, N, A, W>,
-            inputs: &Inputs<'_, S, G::Input<'_>>,
-            now: Instant,
-            workspace: &mut G::Workspace,
-        ) -> Outputs<S> {
-            let (agent, inputs) = (black_box(agent), black_box(inputs));
-            black_box(agent.step(inputs, black_box(now), black_box(workspace)))
-        }
-    }
 
     pub fn run() -> ! {
         // The flash of the small part holds the link with its agent that can be anything, and not each kind of agent beside it.

@@ -13,7 +13,7 @@ mod program {
     #[cfg(part = "stm32f405")]
     mod agents {
         use core::hint::black_box;
-        use staya_cases::{Case, Probe};
+        use staya_cases::{Case, Opaque, Probe};
         use staya_controller::agent::{Agent, Commanded, Guidance, Inputs, Outputs, Parameter, Safety, Wish};
         use staya_controller::scalar::{Fast32, Q16, Scalar};
         use staya_controller::time::Instant;
@@ -21,22 +21,6 @@ mod program {
 
         /// Changes an agent's parameters, and has an operator take it over.
         struct Operator;
-
-        /// Only steps it.
-        struct Opaque;
-
-        impl<S: Scalar> Probe<S> for Opaque {
-            fn step<G: Guidance<S>, A: Safety<S>, W: Wire, const N: usize>(
-                &mut self,
-                agent: &mut Agent<S, G, N, A, W>,
-                inputs: &Inputs<'_, S, G::Input<'_>>,
-                now: Instant,
-                workspace: &mut G::Workspace,
-            ) -> Outputs<S> {
-                let (agent, inputs) = (black_box(agent), black_box(inputs));
-                black_box(agent.step(inputs, black_box(now), black_box(workspace)))
-            }
-        }
 
         impl<S: Scalar> Probe<S> for Operator {
             fn step<G: Guidance<S>, A: Safety<S>, W: Wire, const N: usize>(

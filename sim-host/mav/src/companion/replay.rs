@@ -98,20 +98,8 @@ impl Recording {
 
 mod needs_shared {
     use super::*;
+    use crate::companion::offboard::tests::RULES;
     use crate::companion::offboard::{Doubt, Entry, State};
-
-    const RULES: Rules = Rules {
-        entry: Entry::Wait,
-        arm: false,
-        takeoff: false,
-        altitude_m: None,
-        keeps_altitude: true,
-        stale: Duration::from_secs(1),
-        link_lost: Duration::from_secs(3),
-        setpoint_every: Duration::from_millis(50),
-        position_hz: 10.0,
-        rehearses: false,
-    };
 
     fn is_setpoint(message: &MavMessage) -> bool {
         matches!(message, MavMessage::SET_POSITION_TARGET_LOCAL_NED(_))

@@ -4,17 +4,18 @@ mod machine;
 mod shown;
 mod sight;
 mod telling;
+mod vehicle;
 
 pub use sight::{Seen, Sight};
 
 use super::config::{Config, VehicleSetup};
-use super::controller::{Body, Controller};
+use super::controller::Controller;
 use super::medium::{Medium, MediumError, MediumSetup, tunnel, tunnelled};
 use super::offboard::{AUTOPILOT, COMPONENT, Event, OffboardStateMachine, Rules, State, status_text};
 use super::report::CompanionReport;
 use super::seal::{Seal, SealError};
-use crate::geo::{Origin, enu, ned};
-use crate::{Lines, OpenError, Peer, Received, Tlog, TlogError};
+use crate::geo::{Origin, ned};
+use crate::{Lines, OpenError, Received, Tlog, TlogError};
 use machine::{Host, Machine};
 use staya_controller::robot::Mode;
 use staya_mavlink::any::AnyWire;
@@ -27,11 +28,10 @@ use staya_sim::radio::HostWire;
 use std::io::{self, Write as _};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
+use vehicle::{Vehicle, is_within};
 
 /// Longest wait for a frame when packets may come from the LAN meanwhile, and else.
 const GLANCES: [Duration; 2] = [Duration::from_millis(5), Duration::from_millis(20)];
-/// Bytes of packets that wait for an agent's next step; the rest is lost, as on a radio.
-const INBOX: usize = 16 * 1024;
 /// Setpoints to stand, and the time between them, at the end.
 const FAREWELLS: (u32, Duration) = (5, Duration::from_millis(40));
 
@@ -71,30 +71,6 @@ pub enum RunError {
     /// What would be sent cannot be shown.
     #[error("cannot write to standard output: {0}")]
     Output(io::Error),
-}
-
-/// A vehicle and its companion.
-struct Vehicle {
-    setup: VehicleSetup,
-    /// How fast it can be, m/s, and how far from where it was known to be last, metres.
-    max_speed_mps: f64,
-    error_m: f64,
-    offboard: OffboardStateMachine,
-    controller: Controller<HostWire>,
-    /// Where its autopilot was heard.
-    peer: Option<Peer>,
-    /// Whether it was told that signatures do not match.
-    is_signing_told: bool,
-    sequence: u8,
-    /// When a dry run showed a velocity last.
-    shown: Option<Duration>,
-    inbox: Vec<u8>,
-    next_step: Duration,
-    has_arrived: bool,
-    /// It is so far from the origin that it is not steered.
-    is_far: bool,
-    heard: u64,
-    refused: u64,
 }
 
 /// A line to autopilots.
@@ -161,12 +137,6 @@ pub fn run(
         Some(error) => Err(RunError::Output(error)),
         None => Ok(companions.report(config, seconds, interrupted)),
     }
-}
-
-/// Whether a body is so near the origin, along the ground.
-fn is_within(body: &Body, reach_m: f64) -> bool {
-    let [x, y, _] = body.position_m;
-    x * x + y * y <= reach_m * reach_m
 }
 
 /// A dry run asks for no positions: those that come anyway are good for longer.
@@ -487,30 +457,6 @@ impl Drop for Companions<'_> {
         if !self.has_said_farewell {
             self.say_farewell();
         }
-    }
-}
-
-impl Vehicle {
-    /// Packets for the next step.
-    fn listen(&mut self, frames: &[u8]) {
-        if self.inbox.len() + frames.len() <= INBOX {
-            self.inbox.extend_from_slice(frames);
-        }
-    }
-
-    /// Where it is by now, and how fast. Whose telemetry is old or not to be believed is somewhere about its last place, the farther off the older that is, up to
-    /// `error_m`: told to stop, it has rolled on, or a pilot drives it.
-    fn body(&self, origin: &Origin, now: Duration) -> Option<Body> {
-        let last = self.offboard.fix()?;
-        let at = origin.to_enu_m(&last.place)?;
-        let age_s = now.saturating_sub(last.at).as_secs_f64();
-        if self.offboard.fresh_fix(now).is_none() {
-            let error_m = (self.max_speed_mps * age_s).min(self.error_m);
-            return Some(Body { position_m: at, velocity_mps: [0.0; 3], error_m });
-        }
-        let velocity_mps = enu(last.velocity_ned_mps);
-        let position_m = [0, 1, 2].map(|axis| at[axis] + velocity_mps[axis] * age_s);
-        Some(Body { position_m, velocity_mps, error_m: 0.0 })
     }
 }
 

@@ -477,4 +477,4 @@ impl OffboardStateMachine {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -6,7 +6,8 @@ use staya_mavlink::dialect::{
     LOCAL_POSITION_NED_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
 
-const RULES: Rules = Rules {
+/// As a configuration that says nothing has them.
+pub(crate) const RULES: Rules = Rules {
     entry: Entry::Wait,
     arm: false,
     takeoff: false,

@@ -1,8 +1,8 @@
 mod replayed;
 
 use super::*;
-use crate::Counts;
 use crate::geo::Global;
+use crate::{Counts, Peer};
 use staya_mavlink::dialect::{GLOBAL_POSITION_INT_DATA, HEARTBEAT_DATA};
 use std::cell::RefCell;
 use std::collections::VecDeque;

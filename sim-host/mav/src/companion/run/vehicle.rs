@@ -1,0 +1,66 @@
+//! A vehicle and its companion, as the loop has them.
+
+use crate::Peer;
+use crate::companion::config::VehicleSetup;
+use crate::companion::controller::{Body, Controller};
+use crate::companion::offboard::OffboardStateMachine;
+use crate::geo::{Origin, enu};
+use staya_sim::radio::HostWire;
+use std::time::Duration;
+
+/// Bytes of packets that wait for an agent's next step; the rest is lost, as on a radio.
+const INBOX: usize = 16 * 1024;
+
+/// A vehicle and its companion.
+pub struct Vehicle {
+    pub setup: VehicleSetup,
+    /// How fast it can be, m/s, and how far from where it was known to be last, metres.
+    pub max_speed_mps: f64,
+    pub error_m: f64,
+    pub offboard: OffboardStateMachine,
+    pub controller: Controller<HostWire>,
+    /// Where its autopilot was heard.
+    pub peer: Option<Peer>,
+    /// Whether it was told that signatures do not match.
+    pub is_signing_told: bool,
+    pub sequence: u8,
+    /// When a dry run showed a velocity last.
+    pub shown: Option<Duration>,
+    pub inbox: Vec<u8>,
+    pub next_step: Duration,
+    pub has_arrived: bool,
+    /// It is so far from the origin that it is not steered.
+    pub is_far: bool,
+    pub heard: u64,
+    pub refused: u64,
+}
+
+impl Vehicle {
+    /// Packets for the next step.
+    pub fn listen(&mut self, frames: &[u8]) {
+        if self.inbox.len() + frames.len() <= INBOX {
+            self.inbox.extend_from_slice(frames);
+        }
+    }
+
+    /// Where it is by now, and how fast. Whose telemetry is old or not to be believed is somewhere about its last place, the farther off the older that is, up to
+    /// `error_m`: told to stop, it has rolled on, or a pilot drives it.
+    pub fn body(&self, origin: &Origin, now: Duration) -> Option<Body> {
+        let last = self.offboard.fix()?;
+        let at = origin.to_enu_m(&last.place)?;
+        let age_s = now.saturating_sub(last.at).as_secs_f64();
+        if self.offboard.fresh_fix(now).is_none() {
+            let error_m = (self.max_speed_mps * age_s).min(self.error_m);
+            return Some(Body { position_m: at, velocity_mps: [0.0; 3], error_m });
+        }
+        let velocity_mps = enu(last.velocity_ned_mps);
+        let position_m = [0, 1, 2].map(|axis| at[axis] + velocity_mps[axis] * age_s);
+        Some(Body { position_m, velocity_mps, error_m: 0.0 })
+    }
+}
+
+/// Whether a body is so near the origin, along the ground.
+pub fn is_within(body: &Body, reach_m: f64) -> bool {
+    let [x, y, _] = body.position_m;
+    x * x + y * y <= reach_m * reach_m
+}
