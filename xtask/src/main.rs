@@ -24,6 +24,7 @@ mod fuzz;
 mod layers;
 mod minimal;
 mod part;
+mod plants;
 mod python;
 mod qemu;
 mod repo;
@@ -61,7 +62,8 @@ Usage: cargo xtask COMMAND
   firmware [--debug] [--bin NAME] [PART...]
                   the programs of hil/firmware, or one of them, for stm32f405, nrf51, riscv32 (default: all): target/firmware/PART/BIN
   size [--json]   what the firmware takes on each part: flash, RAM, stack, instructions a step; against hil/budgets.toml
-  swarms          the canned swarms give the same hashes on the host and on every part; no panic in the firmware
+  swarms          the canned swarms give the same hashes on the host and on every part
+  plants          panics planted in a copy of the firmware's sources, one at a time: the linker must refuse each
   qemu            the emulators of the parts; fetches them on Debian
   help            this text
 
@@ -118,6 +120,7 @@ fn main() -> ExitCode {
                 return ExitCode::from(2);
             }
         },
+        ["plants"] => plants::run_command(&repo, &mut report),
         ["qemu"] => qemu::run(&repo, &mut report),
         ["size"] => size::run(&repo, &mut report, &mut Toolchains::default(), false),
         ["size", "--json"] => size::run(&repo, &mut report, &mut Toolchains::default(), true),

@@ -1,18 +1,15 @@
-//! The canned swarms on every target: the same hashes, and no panic in the firmware.
+//! The canned swarms on every target: the same hashes.
 
 use crate::device::Toolchains;
 use crate::emulate;
 use crate::firmware::{self, Profile};
-use crate::part::{PARTS, Part, part};
+use crate::part::{PARTS, Part};
 use crate::repo::{Repo, output_of, run as run_command, shown};
 use crate::report::Report;
 use std::fs;
-use std::process::Stdio;
 
 /// What all must give: `case number hash steps` in each line. The tests on the host compare it too, and write it.
 const TABLE: &str = "tests/golden/cases.txt";
-/// What the panic handler of `nopanic` calls, and nobody defines.
-const SYMBOL: &str = "staya_panic_is_reachable";
 /// Cases with tables for which the small part has no flash.
 const LARGE: [&str; 3] = ["orca_template_8k", "orca_template_16k", "orca_template_64k"];
 /// Steps of one agent in the worst company, with more neighbours than the small part has room for.
@@ -35,7 +32,6 @@ pub fn run(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains) {
             on_part(repo, report, toolchains, part, *profile, &[]);
         }
     }
-    panics(repo, report, toolchains);
 }
 
 /// Programs that show on each part what matters most: devices in lockstep, canned swarms; and, on the part that has room for all
@@ -120,39 +116,10 @@ fn differences(wanted: &[&str], got: &[&str]) -> Vec<String> {
         .collect()
 }
 
-/// That `nopanic` links was seen when the firmware was built. That it would not with a panic is seen here.
-fn panics(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains) {
-    let name = "firmware with a panic does not link";
-    let Some(part) = part("stm32f405") else {
-        return;
-    };
-    let toolchain = match toolchains.find(repo, part.target) {
-        Ok(toolchain) => toolchain,
-        Err(reason) => return report.skip(name, &reason),
-    };
-    report.step(name, || {
-        let mut build = toolchain.cargo(repo, part.target, "build");
-        build.args(["--locked", "--profile", "firmware"]);
-        build.args(["--package", "staya-firmware", "--bin", "nopanic"]);
-        build.args(["--features", "reachable-panic"]);
-        println!("$ {}", shown(&build));
-        let output = build.stdout(Stdio::null()).output();
-        let output = output.map_err(|error| format!("cannot start: {error}"))?;
-        let said = String::from_utf8_lossy(&output.stderr);
-        if output.status.success() {
-            Err(String::from("it links"))
-        } else if said.contains(&format!("undefined symbol: {SYMBOL}")) {
-            Ok(())
-        } else {
-            print!("{said}");
-            Err(format!("it fails, but not for want of {SYMBOL}"))
-        }
-    });
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::part::part;
 
     #[test]
     fn every_row_that_differs_or_is_missing_is_told() {

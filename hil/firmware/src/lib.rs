@@ -56,12 +56,38 @@ macro_rules! faults_go_over_the_link {
     };
 }
 
+/// An exception of the processor is said over the link as a fault, then the part starts anew.
+#[macro_export]
+macro_rules! exceptions_go_over_the_link {
+    () => {
+        $crate::on_exception!($crate::fault::over_the_link);
+    };
+}
+
 /// A panic and an exception of the processor are printed, and end the emulator with exit code 101.
 /// On a board they are printed over RTT, and the part stops.
 #[macro_export]
 macro_rules! faults_are_printed {
     () => {
         $crate::on_fault!($crate::fault::printed);
+    };
+}
+
+/// No panic is left: the panic handler calls a function that exists nowhere, which the linker notices unless the optimiser has
+/// thrown the handler out.
+#[macro_export]
+macro_rules! panics_do_not_link {
+    () => {
+        #[cfg(target_os = "none")]
+        #[panic_handler]
+        fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+            unsafe extern "C" {
+                /// Defined nowhere.
+                fn staya_panic_is_reachable() -> !;
+            }
+            // SAFETY: never called: a program in which this call is left does not link.
+            unsafe { staya_panic_is_reachable() }
+        }
     };
 }
 
@@ -76,6 +102,15 @@ macro_rules! on_fault {
             $report($crate::fault::Panic(info))
         }
 
+        $crate::on_exception!($report);
+    };
+}
+
+/// Gives exceptions to `$report`, a `fn(impl Display) -> !`.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! on_exception {
+    ($report:path) => {
         #[cfg(all(target_os = "none", target_arch = "arm"))]
         #[cortex_m_rt::exception]
         unsafe fn HardFault(frame: &cortex_m_rt::ExceptionFrame) -> ! {

@@ -59,26 +59,43 @@ mod console {
     }
 }
 
+/// `rtt_init!` would do it, but for a check that it runs once, which is a panic.
 #[cfg(target_arch = "arm")]
 mod rtt {
-    use rtt_target::{ChannelMode, UpChannel, rtt_init};
+    use core::mem::MaybeUninit;
+    use core::ptr::addr_of_mut;
+    use rtt_target::rtt::{RttChannel, RttHeader};
+    use rtt_target::{ChannelMode, UpChannel};
 
+    /// What a debugger looks for in memory: the header, then the channels that it counts.
+    #[repr(C)]
+    struct Block {
+        header: RttHeader,
+        up: RttChannel,
+    }
+
+    // SAFETY: the name that debuggers have for it, and nobody else.
+    #[unsafe(export_name = "_SEGGER_RTT")]
+    static mut BLOCK: MaybeUninit<Block> = MaybeUninit::uninit();
+    static mut BYTES: [u8; 256] = [0; 256];
     static mut UP: Option<UpChannel> = None;
 
     pub fn start() {
-        let channels = rtt_init! {
-            up: {
-                0: { size: 256, mode: ChannelMode::NoBlockTrim, name: "defmt" }
-            }
-        };
-        // SAFETY: once, at the start, before anything writes.
-        unsafe { *core::ptr::addr_of_mut!(UP) = Some(channels.up.0) };
+        // SAFETY: once, at the start, before anything writes; zeros are a block without channels. The header comes last: a
+        // debugger may look at any time.
+        unsafe {
+            let block = addr_of_mut!(BLOCK).cast::<Block>();
+            block.write_bytes(0, 1);
+            (*block).up.init(c"defmt".as_ptr().cast(), ChannelMode::NoBlockTrim, addr_of_mut!(BYTES));
+            (*block).header.init(1, 0);
+            *addr_of_mut!(UP) = Some(UpChannel::new(addr_of_mut!((*block).up)));
+        }
     }
 
     pub fn write(bytes: &[u8]) {
         critical_section::with(|_| {
             // SAFETY: interrupts are off, and there is one core.
-            if let Some(up) = unsafe { &mut *core::ptr::addr_of_mut!(UP) } {
+            if let Some(up) = unsafe { &mut *addr_of_mut!(UP) } {
                 up.write(bytes);
             }
         });

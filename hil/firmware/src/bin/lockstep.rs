@@ -2,11 +2,19 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 staya_firmware::entry!(program::run);
+// What is flashed has no panic, which the linker has seen: start-up, interrupts, logs and exceptions included. Built for debugging it
+// has those of the checks that are on then.
+#[cfg(debug_assertions)]
 staya_firmware::faults_go_over_the_link!();
+#[cfg(not(debug_assertions))]
+staya_firmware::panics_do_not_link!();
+#[cfg(not(debug_assertions))]
+staya_firmware::exceptions_go_over_the_link!();
 
 #[cfg(target_os = "none")]
 mod program {
     use core::ptr::addr_of_mut;
+    use staya_firmware::fault;
     use staya_firmware::runtime::{self, Start};
     use staya_firmware::stack::{self, Painted};
     use staya_link::message::Cost;
@@ -87,7 +95,7 @@ mod program {
             let painted = self.painted.take();
             if painted.is_some_and(|painted| !painted.has_room()) {
                 // What lies below the stack is not to be trusted any more.
-                panic!("stack overflow: all of {} bytes used", stack::size());
+                fault::over_the_link(format_args!("stack overflow: all of {} bytes used", stack::size()));
             }
             Cost { ticks, stack_bytes: painted.map_or(0, |painted| painted.deepest()) }
         }

@@ -4,6 +4,7 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 staya_firmware::entry!(program::run);
+staya_firmware::panics_do_not_link!();
 
 #[cfg(target_os = "none")]
 mod program {
@@ -53,15 +54,5 @@ mod program {
                 black_box(wire.decode(frame).is_ok());
             }
         }
-    }
-
-    #[panic_handler]
-    fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
-        unsafe extern "C" {
-            /// Defined nowhere.
-            fn staya_panic_is_reachable() -> !;
-        }
-        // SAFETY: never called: a program in which this call is left does not link.
-        unsafe { staya_panic_is_reachable() }
     }
 }

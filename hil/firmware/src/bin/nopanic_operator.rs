@@ -4,6 +4,7 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 staya_firmware::entry!(program::run);
+staya_firmware::panics_do_not_link!();
 
 #[cfg(target_os = "none")]
 mod program {
@@ -78,15 +79,5 @@ mod program {
         loop {
             core::hint::spin_loop();
         }
-    }
-
-    #[panic_handler]
-    fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
-        unsafe extern "C" {
-            /// Defined nowhere.
-            fn staya_panic_is_reachable() -> !;
-        }
-        // SAFETY: never called: a program in which this call is left does not link.
-        unsafe { staya_panic_is_reachable() }
     }
 }

@@ -3,6 +3,7 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 staya_firmware::entry!(program::run);
+staya_firmware::panics_do_not_link!();
 
 #[cfg(target_os = "none")]
 mod program {
@@ -191,15 +192,5 @@ mod program {
             let params = OutlineParams { tolerance_m: any(), gap_m: any(), point_m: any() };
             black_box(outline::<S, 16>(&scan, any(), &params, is_robot));
         }
-    }
-
-    #[panic_handler]
-    fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
-        unsafe extern "C" {
-            /// Defined nowhere.
-            fn staya_panic_is_reachable() -> !;
-        }
-        // SAFETY: never called: a program in which this call is left does not link.
-        unsafe { staya_panic_is_reachable() }
     }
 }

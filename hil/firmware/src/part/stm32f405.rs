@@ -17,6 +17,9 @@ pub static RECEIVED: Ring<1024> = Ring::new();
 const HSI_HZ: u32 = 16_000_000;
 const HSE_HZ: u32 = number(env!("STAYA_HSE_HZ"));
 const PLL_HZ: u32 = 168_000_000;
+/// Pins of port A.
+const TX_PIN: usize = 9;
+const RX_PIN: usize = 10;
 /// How often a bit that tells of an oscillator is read before it counts as missing: tens of
 /// milliseconds at 16 MHz; crystals need a few, the PLL 0.3.
 const PATIENCE: u32 = 50_000;
@@ -100,12 +103,17 @@ fn usart(bus_hz: u32) {
     RCC.apb2enr().modify(|enable| enable.set_usart1en(true));
     // A clock that was just turned on needs two cycles (section 7.3.14): reading back takes them.
     let _ = RCC.apb2enr().read();
-    for pin in [9, 10] {
-        GPIOA.afr(1).modify(|afr| afr.set_afr(pin - 8, 7)); // AF7: USART1
-        GPIOA.moder().modify(|moder| moder.set_moder(pin, gpio::vals::Moder::ALTERNATE));
-    }
+    // Written out: in a loop the compiler could not see that the registers have these fields.
+    GPIOA.afr(1).modify(|afr| {
+        afr.set_afr(TX_PIN - 8, 7); // AF7: USART1
+        afr.set_afr(RX_PIN - 8, 7);
+    });
+    GPIOA.moder().modify(|moder| {
+        moder.set_moder(TX_PIN, gpio::vals::Moder::ALTERNATE);
+        moder.set_moder(RX_PIN, gpio::vals::Moder::ALTERNATE);
+    });
     // An open input would read noise.
-    GPIOA.pupdr().modify(|pupdr| pupdr.set_pupdr(10, gpio::vals::Pupdr::PULL_UP));
+    GPIOA.pupdr().modify(|pupdr| pupdr.set_pupdr(RX_PIN, gpio::vals::Pupdr::PULL_UP));
     // Sixteen samples per bit: the register holds the ratio in sixteenths, so bus / baud.
     USART1.brr().write(|brr| brr.0 = (bus_hz + BAUD / 2) / BAUD);
     USART1.cr1().write(|cr1| {

@@ -1,0 +1,227 @@
+//! Firmware with a panic does not link: panics are planted in a copy of the sources, one at a time, and the linker must refuse each.
+//!
+//! That the sources as they are link, without one, is seen whenever the firmware is built.
+
+use crate::device::{Toolchain, Toolchains};
+use crate::part::{Part, part};
+use crate::repo::{Repo, shown};
+use crate::report::Report;
+use std::fs;
+use std::path::Path;
+use std::process::Stdio;
+
+/// What the panic handler calls, and nobody defines.
+const SYMBOL: &str = "staya_panic_is_reachable";
+/// The part whose firmware has all of them.
+const PART: &str = "stm32f405";
+/// Where the copy is, in the target folder.
+const COPY: &str = "planted";
+/// What the copy consists of: manifests, sources and their pages, linker scripts, MAVLink's messages.
+const FOLDERS: [&str; 6] = ["controller", "examples", "hil", "sim-host", "tests", "xtask"];
+const FILES: [&str; 3] = ["Cargo.toml", "Cargo.lock", "memory.x"];
+const ENDINGS: [&str; 5] = ["rs", "toml", "md", "x", "xml"];
+
+/// Where code is that logs.
+const LOGGED: [&str; 2] = ["controller", "hil"];
+
+/// A mistake of the kind that people make.
+struct Plant {
+    name: &'static str,
+    file: &'static str,
+    /// Stands there once.
+    right: &'static str,
+    wrong: &'static str,
+    /// The program that must not link then.
+    bin: &'static str,
+    /// Whether that takes minutes.
+    is_long: bool,
+}
+
+/// Each kind of code that the proof is for.
+const PLANTS: [Plant; 6] = [
+    Plant {
+        name: "the UART's ring",
+        file: "hil/firmware/src/ring.rs",
+        right: "self.bytes.get(tail)?.load(",
+        wrong: "self.bytes[tail].load(",
+        bin: "lockstep",
+        is_long: false,
+    },
+    Plant {
+        name: "the UART's interrupt",
+        file: "hil/firmware/src/part/stm32f405.rs",
+        right: "RECEIVED.push(byte);",
+        wrong: "RECEIVED.push(byte.checked_add(1).unwrap());",
+        bin: "lockstep",
+        is_long: false,
+    },
+    Plant {
+        name: "start-up",
+        file: "hil/firmware/src/part/stm32f405.rs",
+        right: "    if !comes(|| RCC.cr().read().pllrdy()) {",
+        wrong: "    assert!(comes(|| RCC.cr().read().pllrdy()));\n    if false {",
+        bin: "lockstep",
+        is_long: false,
+    },
+    Plant {
+        name: "lockstep itself",
+        file: "hil/firmware/src/bin/lockstep.rs",
+        right: "fault::over_the_link(format_args!(\"stack overflow: all of {} bytes used\", stack::size()));",
+        wrong: "panic!(\"stack overflow: all of {} bytes used\", stack::size());",
+        bin: "lockstep",
+        is_long: false,
+    },
+    Plant {
+        name: "logs",
+        file: "hil/firmware/src/log.rs",
+        right: "if let Some(place) = self.bytes.get_mut(self.used) {",
+        wrong: "{\n                let place = &mut self.bytes[self.used];",
+        bin: "lockstep",
+        is_long: false,
+    },
+    Plant {
+        name: "an operator's orders",
+        file: "controller/src/agent/commanded.rs",
+        right: "self.wish = wish;",
+        wrong: "self.wish = [wish][core::hint::black_box(1)];",
+        bin: "nopanic_operator",
+        is_long: true,
+    },
+];
+
+/// The command: all of them.
+pub fn run_command(repo: &Repo, report: &mut Report) {
+    plant(repo, report, &mut Toolchains::default(), |_| true);
+}
+
+/// Those that take no minutes.
+pub fn run(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains) {
+    plant(repo, report, toolchains, |plant| !plant.is_long);
+}
+
+fn plant(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains, is_wanted: impl Fn(&Plant) -> bool) {
+    let Some(part) = part(PART) else {
+        return;
+    };
+    let toolchain = toolchains.find(repo, part.target);
+    for plant in PLANTS.iter().filter(|plant| is_wanted(plant)) {
+        let name = format!("a panic in {} does not link", plant.name);
+        match &toolchain {
+            Err(reason) => report.skip(&name, reason),
+            Ok(toolchain) => drop(report.step(&name, || is_refused(repo, toolchain, part, plant))),
+        }
+    }
+}
+
+/// That no source names one of the macros of `defmt` that panic: those have a panic of their own, of which the linker is told that it is in
+/// order (`hil/firmware/build.rs`).
+pub fn check_logs(root: &Path) -> Result<(), String> {
+    let mut files = Vec::new();
+    for folder in LOGGED {
+        list(root, folder, &mut files).map_err(|error| format!("{folder}: {error}"))?;
+    }
+    for name in files {
+        let text = fs::read_to_string(root.join(&name)).map_err(|error| format!("{name}: {error}"))?;
+        if let Some(found) = panicking_log(&text) {
+            return Err(format!("{name}: `{found}` panics behind the proof's back; log, and go on or reset"));
+        }
+    }
+    Ok(())
+}
+
+/// The first macro of `defmt` in a text that is not for logging or deriving only.
+fn panicking_log(text: &str) -> Option<&str> {
+    const PANICS: [&str; 7] = ["panic", "assert", "unwrap", "expect", "todo", "unreachable", "unimplemented"];
+    text.match_indices("defmt::").find_map(|(at, crate_name)| {
+        let name = text.get(at + crate_name.len()..)?;
+        let is_one = PANICS.iter().any(|panics| name.starts_with(panics));
+        is_one.then(|| text.get(at..).and_then(|rest| rest.split(['!', '(', ';']).next())).flatten()
+    })
+}
+
+fn is_refused(repo: &Repo, toolchain: &Toolchain, part: &Part, plant: &Plant) -> Result<(), String> {
+    let copy = repo.target.join(COPY);
+    copy_sources(&repo.root, &copy, plant).map_err(|error| format!("{}: {error}", copy.display()))??;
+    let mut build = toolchain.cargo(repo, part.target, "build");
+    build.current_dir(&copy).args(["--locked", "--profile", "firmware"]);
+    build.args(["--package", "staya-firmware", "--bin", plant.bin]);
+    println!("$ {}", shown(&build));
+    let output = build.stdout(Stdio::null()).output();
+    let output = output.map_err(|error| format!("cannot start: {error}"))?;
+    let said = String::from_utf8_lossy(&output.stderr);
+    if output.status.success() {
+        Err(String::from("it links"))
+    } else if said.contains(&format!("undefined symbol: {SYMBOL}")) {
+        Ok(())
+    } else {
+        print!("{said}");
+        Err(format!("it fails, but not for want of {SYMBOL}"))
+    }
+}
+
+/// The sources with the plant in them. What is as it should be is left alone, so that cargo builds only what differs.
+fn copy_sources(root: &Path, copy: &Path, plant: &Plant) -> std::io::Result<Result<(), String>> {
+    let mut files: Vec<String> = FILES.map(String::from).into();
+    for folder in FOLDERS {
+        list(root, folder, &mut files)?;
+    }
+    let mut is_planted = false;
+    for name in files {
+        let mut bytes = fs::read(root.join(&name))?;
+        if name == plant.file {
+            let text = String::from_utf8_lossy(&bytes);
+            if text.matches(plant.right).count() != 1 {
+                return Ok(Err(format!("{name}: not once `{}`: bring PLANTS up to date", plant.right)));
+            }
+            bytes = text.replace(plant.right, plant.wrong).into_bytes();
+            is_planted = true;
+        }
+        let to = copy.join(&name);
+        if fs::read(&to).is_ok_and(|there| there == bytes) {
+            continue;
+        }
+        fs::create_dir_all(to.parent().unwrap_or(copy))?;
+        fs::write(&to, bytes)?;
+    }
+    Ok(if is_planted { Ok(()) } else { Err(format!("no {}: bring PLANTS up to date", plant.file)) })
+}
+
+/// Adds the files of a folder and all within it, as paths from `root`; what builds leave there is left out.
+fn list(root: &Path, folder: &str, files: &mut Vec<String>) -> std::io::Result<()> {
+    for entry in fs::read_dir(root.join(folder))? {
+        let entry = entry?;
+        let Ok(name) = entry.file_name().into_string() else {
+            continue;
+        };
+        let path = format!("{folder}/{name}");
+        if entry.file_type()?.is_dir() {
+            if name != "target" {
+                list(root, &path, files)?;
+            }
+        } else if Path::new(&name).extension().is_some_and(|end| ENDINGS.iter().any(|known| end == *known)) {
+            files.push(path);
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn logs_that_panic_are_found() {
+        assert_eq!(panicking_log("defmt::info!(1); #[derive(defmt::Format)]"), None);
+        assert_eq!(panicking_log("defmt::info!(1); defmt::unwrap!(x)"), Some("defmt::unwrap"));
+        assert_eq!(panicking_log("defmt::assert_eq!(1, 2)"), Some("defmt::assert_eq"));
+    }
+
+    #[test]
+    fn every_plant_has_its_place() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        for plant in &PLANTS {
+            let text = fs::read_to_string(root.join(plant.file)).expect(plant.file);
+            assert_eq!(text.matches(plant.right).count(), 1, "{}", plant.name);
+        }
+    }
+}
