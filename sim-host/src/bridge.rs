@@ -4,7 +4,7 @@ use anyhow::Result;
 use clap::Args;
 use staya_console::{Ended, Global, Progress, Stop, print, print_json};
 use staya_mav::Endpoint;
-use staya_mav::bridge::{BridgeReport, Options, Swarm};
+use staya_mav::bridge::{BridgeReport, Options, Refused, Swarm};
 use staya_mav::geo::{Global as Place, Origin};
 use staya_mavlink::signing::Signing;
 use staya_sim::key::{KeyFile, timestamp};
@@ -199,11 +199,14 @@ fn table(name: &str, report: &BridgeReport) -> Result<String, std::fmt::Error> {
         false => commands.join(", "),
     };
     line("commands", commands)?;
+    let Refused { unsigned, forged, replayed, ahead, no_room, unanswerable } = report.refused;
+    let (heard, ignored, refused) = (report.frames_heard, report.frames_ignored, report.frames_refused);
+    line("frames", format!("{heard} heard, {ignored} for nobody here, {} still waiting", report.frames_waiting))?;
     line(
-        "frames dropped",
+        "frames refused",
         format!(
-            "{} for nobody here, {} without a good signature, {} of these from too far ahead",
-            report.frames_ignored, report.frames_refused, report.frames_ahead
+            "{refused}: {unsigned} unsigned, {forged} forged, {replayed} replayed, {ahead} too far ahead, {no_room} of new \
+             senders without room, {unanswerable} that could not be answered"
         ),
     )?;
     if report.is_exhausted {

@@ -91,6 +91,11 @@ impl Inbox {
         }
     }
 
+    /// Frames that wait.
+    pub(super) fn len(&self) -> u64 {
+        self.lock().queues.values().map(|queue| queue.len() as u64).sum()
+    }
+
     /// Puts so many messages on the account of whoever was served last. Who has too many there is not served for a while.
     pub(super) fn charge(&self, answers: usize) {
         let mut waiting = self.lock();

@@ -138,8 +138,9 @@ impl Lines {
     }
 }
 
-impl Drop for Lines {
-    fn drop(&mut self) {
+impl Lines {
+    /// Ends all lines; nothing comes in any more, and what waits can still be received and counted.
+    pub fn close(&mut self) {
         for line in &self.lines {
             line.shared.closed.store(true, Ordering::Relaxed);
         }
@@ -149,6 +150,18 @@ impl Drop for Lines {
                 let _ = thread.join();
             }
         }
+    }
+
+    /// Frames that have come in and were not received yet.
+    #[must_use]
+    pub fn waiting(&self) -> u64 {
+        self.inbox.len()
+    }
+}
+
+impl Drop for Lines {
+    fn drop(&mut self) {
+        self.close();
     }
 }
 

@@ -22,7 +22,7 @@ mod vehicle;
 
 pub use model::{FlightMode, Sample, VehicleModel};
 pub use params::{Meaning, NotSet, Parameters};
-pub use report::{BridgeReport, LineReport};
+pub use report::{BridgeReport, LineReport, Refused};
 pub use streams::Streams;
 pub use swarm::{BridgeError, Options, Swarm};
 pub use vehicle::{Action, Out, Vehicle};

@@ -26,7 +26,34 @@ pub struct LineReport {
     pub bytes_out_per_s: f64,
 }
 
-/// What came of it.
+/// Frames that were refused, by reason.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Refused {
+    /// Without a signature.
+    pub unsigned: u64,
+    /// Signed with another key, or changed on the way.
+    pub forged: u64,
+    /// Heard before, or too old.
+    pub replayed: u64,
+    /// With a timestamp too far ahead of the clock.
+    pub ahead: u64,
+    /// Of a sender that is not known, when there was no room for another one.
+    pub no_room: u64,
+    /// Signed and new, but no timestamp was left to sign an answer with.
+    pub unanswerable: u64,
+}
+
+impl Refused {
+    /// All of them.
+    #[must_use]
+    pub const fn total(&self) -> u64 {
+        let Self { unsigned, forged, replayed, ahead, no_room, unanswerable } = *self;
+        unsigned + forged + replayed + ahead + no_room + unanswerable
+    }
+}
+
+/// What came of it. Of the frames that came in over all lines, each is counted once: `frames_in` is `frames_heard`, `frames_ignored`,
+/// `frames_refused`, `lost_in` and `frames_waiting` together.
 #[derive(Clone, Debug, Serialize)]
 pub struct BridgeReport {
     /// Robots, each a vehicle.
@@ -41,12 +68,18 @@ pub struct BridgeReport {
     pub deadlines_missed: u32,
     /// The longest from when a tick was due until its work was done, seconds.
     pub slowest_seconds: f64,
-    /// Frames for vehicles that there are none of, or from no client.
+    /// Frames for one or more of the vehicles, and heartbeats.
+    pub frames_heard: u64,
+    /// Frames for vehicles that there are none of, or of messages that are not known here.
     pub frames_ignored: u64,
     /// Frames refused for their signature, or for having none; those of the future among them.
     pub frames_refused: u64,
+    /// Why they were.
+    pub refused: Refused,
     /// Frames refused for a timestamp too far ahead of the clock.
     pub frames_ahead: u64,
+    /// Frames that had come in and whose turn had not come at the end.
+    pub frames_waiting: u64,
     /// Whether too few timestamps are left to sign with, so that nothing is obeyed any more: a new key is needed.
     pub is_exhausted: bool,
     /// Answers to commands, by result.

@@ -6,7 +6,7 @@
 use super::budget::Budget;
 use super::model::{Sample, VehicleModel};
 use super::params::Parameters;
-use super::report::{BridgeReport, LineReport, name};
+use super::report::{BridgeReport, LineReport, Refused, name};
 use super::streams::Streams;
 use super::vehicle::{Action, Out, Vehicle};
 use crate::geo::Origin;
@@ -14,7 +14,7 @@ use crate::{Counts, Endpoint, Lines, OpenError, Received, Tlog, TlogError};
 use staya_mavlink::dialect::MavMessage;
 use staya_mavlink::frame::{MAX_FRAME_LEN, RawFrame, Sender, encode_message};
 use staya_mavlink::mavlink_core::Message as _;
-use staya_mavlink::signing::Signing;
+use staya_mavlink::signing::{Signing, Verdict};
 use staya_sim::engine::{Moment, Operated, operated};
 use staya_sim::key::timestamp;
 use staya_sim::record::RobotRow;
@@ -102,8 +102,9 @@ pub struct Swarm {
     first: usize,
     listing: Budget,
     complained_us: Option<u64>,
+    heard: u64,
     ignored: u64,
-    refused: u64,
+    refused: Refused,
     commands: BTreeMap<&'static str, u64>,
     out: Out,
 }
@@ -161,8 +162,9 @@ impl Swarm {
             first: 0,
             listing,
             complained_us: None,
+            heard: 0,
             ignored: 0,
-            refused: 0,
+            refused: Refused::default(),
             commands: BTreeMap::new(),
             out: Out::default(),
         })
@@ -245,13 +247,23 @@ impl Swarm {
 
     /// One frame that came in; how many messages it was answered with.
     fn take(&mut self, received: &Received) -> Result<usize, BridgeError> {
+        // Lines hand on whole frames only.
         let Some(frame) = RawFrame::new(&received.frame) else {
+            self.ignored += 1;
             return Ok(0);
         };
-        if let Some(signing) = &mut self.options.signing
-            && !signing.verify(&frame).is_accepted()
-        {
-            self.refused += 1;
+        let verdict = self.options.signing.as_mut().map_or(Verdict::Unsigned, |signing| signing.verify(&frame));
+        let reasons = &mut self.refused;
+        let reason = match verdict {
+            Verdict::Authentic | Verdict::Unsigned => None,
+            Verdict::RefusedUnsigned => Some(&mut reasons.unsigned),
+            Verdict::Forged => Some(&mut reasons.forged),
+            Verdict::Replayed => Some(&mut reasons.replayed),
+            Verdict::Ahead => Some(&mut reasons.ahead),
+            Verdict::NoRoom => Some(&mut reasons.no_room),
+        };
+        if let Some(reason) = reason {
+            *reason += 1;
             return Ok(0);
         }
         let Some(message) = frame.message() else {
@@ -264,7 +276,7 @@ impl Swarm {
             log.add(&received.frame)?;
         }
         if self.is_exhausted() {
-            self.refused += 1;
+            self.refused.unanswerable += 1;
             return Ok(0);
         }
         let mut answers = 0;
@@ -282,7 +294,7 @@ impl Swarm {
                 answers += self.carry_out(index)?;
             }
         }
-        self.ignored += u64::from(is_for_some && !is_heard);
+        *(if is_heard || !is_for_some { &mut self.heard } else { &mut self.ignored }) += 1;
         Ok(answers)
     }
 
@@ -402,8 +414,10 @@ impl Swarm {
         Ok(answers)
     }
 
-    fn report(&self) -> BridgeReport {
+    /// The figures; nothing comes in any more while they are added up.
+    fn report(mut self) -> BridgeReport {
         let wall_seconds = self.began.elapsed().as_secs_f64();
+        self.lines.close();
         let line = |at: usize| {
             let Counts { frames_in, bytes_in, frames_out, bytes_out, junk_bytes, lost_in, lost_out } =
                 self.lines.counts(at);
@@ -428,9 +442,12 @@ impl Swarm {
             wall_seconds,
             deadlines_missed: self.missed,
             slowest_seconds: self.slowest.as_secs_f64(),
+            frames_heard: self.heard,
             frames_ignored: self.ignored,
-            frames_refused: self.refused,
-            frames_ahead: self.options.signing.as_ref().map_or(0, |signing| signing.counts().ahead.into()),
+            frames_refused: self.refused.total(),
+            refused: self.refused,
+            frames_ahead: self.refused.ahead,
+            frames_waiting: self.lines.waiting(),
             is_exhausted: self.is_exhausted(),
             commands: self.commands.clone(),
             lines: (0..self.lines.len()).map(line).collect(),

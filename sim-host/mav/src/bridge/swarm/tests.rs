@@ -102,10 +102,18 @@ fn arm(system: u8) -> MavMessage {
 /// Runs the swarm beside a test, and gives its figures.
 fn beside(swarm: Swarm, test: impl FnOnce()) -> BridgeReport {
     let is_over = AtomicBool::new(false);
+    /// Also when the test fails: it would wait for ever.
+    struct Ends<'a>(&'a AtomicBool);
+    impl Drop for Ends<'_> {
+        fn drop(&mut self) {
+            self.0.store(true, Ordering::Relaxed);
+        }
+    }
     std::thread::scope(|scope| {
         let run = scope.spawn(|| swarm.run(|_| is_over.load(Ordering::Relaxed)));
+        let ends = Ends(&is_over);
         test();
-        is_over.store(true, Ordering::Relaxed);
+        drop(ends);
         run.join().expect("no panic").expect("a report")
     })
 }
@@ -187,4 +195,36 @@ fn who_floods_costs_the_others_no_answer() {
     // The flooder has had no more answers than it can pay for: first as a stranger, then as a peer.
     let answers = report.commands.values().sum::<u64>().saturating_sub(client.said);
     assert!((answers as f64) < 2.0 * (1100.0 + 1000.0 * report.wall_seconds), "{answers} in {}", report.wall_seconds);
+}
+
+/// Each frame that came in is in the report once, by what became of it.
+#[test]
+fn every_frame_is_accounted_for() {
+    let (swarm, address) = ten(Some(Signing::new(key(), 0, timestamp())));
+    let mut client = Client::new(address, Some(Signing::new(key(), 1, timestamp())));
+    let mut stranger = Client::new(address, None);
+    let mut forger = Client::new(address, Some(Signing::new(Key::of_passphrase(b"another"), 2, timestamp())));
+    let mut hasty = Client::new(address, Some(Signing::new(key(), 3, LAST - 100)));
+    let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA::DEFAULT);
+    let report = beside(swarm, || {
+        assert!(client.is_obeyed());
+        let recorded = client.framed(&heartbeat);
+        for _ in 0..4 {
+            client.socket.send_to(&recorded, address).expect("sent");
+        }
+        (0..5).for_each(|_| stranger.say(&heartbeat));
+        (0..6).for_each(|_| forger.say(&heartbeat));
+        (0..7).for_each(|_| hasty.say(&heartbeat));
+        // For nobody here.
+        (0..8).for_each(|_| client.say(&arm(77)));
+        assert!(client.is_obeyed());
+        std::thread::sleep(Duration::from_millis(300));
+    });
+    let refused = Refused { unsigned: 5, forged: 6, replayed: 3, ahead: 7, ..Refused::default() };
+    assert_eq!((report.refused, report.frames_refused), (refused, 21));
+    assert_eq!(report.frames_ignored, 8);
+    // The first of the recorded ones is new, and so is what was said to be obeyed.
+    assert_eq!(report.frames_heard, 1 + client.said - 8);
+    let lines = report.lines.iter().map(|line| line.frames_in - line.lost_in).sum::<u64>();
+    assert_eq!(lines, report.frames_heard + report.frames_ignored + report.frames_refused + report.frames_waiting);
 }
