@@ -30,6 +30,7 @@ mod qemu;
 mod repo;
 mod report;
 mod size;
+mod soak;
 mod swarms;
 mod tally;
 mod test;
@@ -62,6 +63,9 @@ Usage: cargo xtask COMMAND
   firmware [--debug] [--bin NAME] [PART...]
                   the programs of hil/firmware, or one of them, for stm32f405, nrf51, riscv32 (default: all): target/firmware/PART/BIN
   size [--json]   what the firmware takes on each part: flash, RAM, stack, instructions a step; against hil/budgets.toml
+  soak [--minutes N] [--json FILE] [PART...]
+                  bridges, companions and firmware at once among clients that mean no good (default: 3 minutes), or some of
+                  flood, key, companion, hil: memory, deadlines, every frame accounted for
   swarms          the canned swarms give the same hashes on the host and on every part
   plants          panics planted in a copy of the firmware's sources, one at a time: the linker must refuse each
   qemu            the emulators of the parts; fetches them on Debian
@@ -124,6 +128,13 @@ fn main() -> ExitCode {
         ["qemu"] => qemu::run(&repo, &mut report),
         ["size"] => size::run(&repo, &mut report, &mut Toolchains::default(), false),
         ["size", "--json"] => size::run(&repo, &mut report, &mut Toolchains::default(), true),
+        ["soak", arguments @ ..] => match soak::Request::read(arguments) {
+            Some(request) => soak::run_command(&repo, &mut report, &request),
+            None => {
+                eprint!("xtask: no such part or option\n\n{HELP}");
+                return ExitCode::from(2);
+            }
+        },
         ["swarms"] => swarms::run(&repo, &mut report, &mut Toolchains::default()),
         [] => {
             eprint!("{HELP}");

@@ -68,6 +68,7 @@ pub fn run(repo: &Repo, report: &mut Report, extent: Extent) {
     crate::faults::run(repo, report, &mut toolchains);
     crate::emulated::run(repo, report);
     crate::emulated::run_ten(repo, report);
+    crate::soak::run_short(repo, report);
     crate::example::run(repo, report);
     let mut peers = repo.cargo_in("tests/peers", &["test", "--locked"]);
     report.part("same results as peers", || counted(&mut peers, ""));

@@ -19,6 +19,8 @@ const DELAY_MS: i32 = 500;
 const MEMORY: Duration = Duration::from_millis(5_000);
 /// Time between two things that happen: numbers must not come round while packets are in the air.
 const STEP_MS: i32 = 100;
+/// All times are multiples of it.
+const GRAIN_MS: i32 = 10;
 /// A robot that was silent for so long is forgotten by whoever listens to it.
 const SILENCE_MS: i32 = 3_000;
 
@@ -240,9 +242,21 @@ impl World {
         self.start + Duration::from_millis(self.now_ms)
     }
 
+    /// Lets time pass, in steps of [`GRAIN_MS`] as far as anybody can tell: only those are taken in which something can happen, and the ones before,
+    /// in which nothing may.
     fn pass(&mut self, span_ms: i32) {
-        for _ in 0..span_ms / 10 {
-            self.now_ms += 10;
+        let end_ms = self.now_ms + span_ms / GRAIN_MS * GRAIN_MS;
+        while self.now_ms < end_ms {
+            let next_ms = self.next_ms().map_or(end_ms, |next_ms| next_ms.min(end_ms));
+            if next_ms - GRAIN_MS > self.now_ms {
+                self.now_ms = next_ms - GRAIN_MS;
+                let (now_ms, now) = (self.now_ms, self.now());
+                for robot in &mut self.robots {
+                    assert_eq!(robot.requests.poll(now), None, "due before it said");
+                    robot.check(now_ms, now);
+                }
+            }
+            self.now_ms = next_ms;
             let (now_ms, now) = (self.now_ms, self.now());
             self.air.retain(|packet| now_ms - packet.sent_ms < DELAY_MS);
             for (which, robot) in self.robots.iter_mut().enumerate() {
@@ -250,6 +264,20 @@ impl World {
                 robot.check(now_ms, now);
             }
         }
+    }
+
+    /// When something can happen next: a request is due, or the time of what was asked is up.
+    fn next_ms(&self) -> Option<i32> {
+        let now = self.now();
+        let moments = self.robots.iter().flat_map(|robot| {
+            let due = robot.requests.poll_at(now).map(|due| {
+                let left_us = due.since(now).as_micros();
+                self.now_ms + (left_us + GRAIN_MS * 1000 - 1) / 1000 / GRAIN_MS * GRAIN_MS
+            });
+            let ends = robot.lines.values().map(|line| line.until_ms);
+            due.into_iter().chain(ends.filter(|until_ms| *until_ms > self.now_ms))
+        });
+        moments.map(|moment| moment.max(self.now_ms + GRAIN_MS)).min()
     }
 
     fn deliver(&mut self, which: usize, keep: bool) {
