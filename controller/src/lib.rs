@@ -32,6 +32,7 @@ extern crate std;
 #[cfg(feature = "agent")]
 pub mod agent;
 #[cfg(feature = "auth")]
+#[cfg_attr(not(test), warn(clippy::arithmetic_side_effects))]
 pub mod auth;
 pub mod body;
 pub mod cost;
@@ -61,6 +62,8 @@ pub mod supervisor;
 pub mod template;
 pub mod time;
 #[cfg(feature = "wire")]
+// Numbers from the air: where one is added to, it is meant to wrap, or the reason is there why it cannot.
+#[cfg_attr(not(test), warn(clippy::arithmetic_side_effects))]
 pub mod wire;
 
 /// Every public error is a [`core::error::Error`].
@@ -80,3 +83,13 @@ const _: () = {
         is_error::<agent::WrongTask>();
     }
 };
+
+/// Of the profile that tests are built with.
+#[cfg(all(test, debug_assertions))]
+mod tests {
+    #[test]
+    #[should_panic(expected = "overflow")]
+    fn tests_run_with_overflow_checks() {
+        core::hint::black_box(core::hint::black_box(u8::MAX) + 1);
+    }
+}

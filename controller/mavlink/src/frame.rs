@@ -90,6 +90,7 @@ enum Fault {
 ///
 /// Bounded work: O(n), and for each byte that begins a header that could be, one checksum of at most 280 bytes.
 #[must_use]
+#[expect(clippy::arithmetic_side_effects, reason = "at most the length of `bytes`")]
 pub fn scan(bytes: &[u8], is_whole: bool) -> Scan<'_> {
     let mut junk = 0;
     while let Some(rest) = bytes.get(junk..).filter(|rest| !rest.is_empty()) {
@@ -106,6 +107,7 @@ pub fn scan(bytes: &[u8], is_whole: bool) -> Scan<'_> {
 /// then. For bytes that no more will follow.
 ///
 /// Bounded work: that of [`scan`].
+#[expect(clippy::arithmetic_side_effects, reason = "both lie within `rest`")]
 pub fn next_frame<'a>(rest: &mut &'a [u8]) -> Option<RawFrame<'a>> {
     match scan(rest, true) {
         Scan::Frame { junk, frame } => {
@@ -171,6 +173,7 @@ fn parse(bytes: &[u8]) -> Result<RawFrame<'_>, Fault> {
 }
 
 /// Payload, checksum and the frame's length.
+#[expect(clippy::arithmetic_side_effects, reason = "10, 255, 2 and 13 bytes at most")]
 fn body(bytes: &[u8], header: usize, len: u8, is_signed: bool) -> Result<(&[u8], u16, usize), Fault> {
     let end = header + usize::from(len);
     let payload = bytes.get(header..end).ok_or(Fault::Short)?;
@@ -297,6 +300,7 @@ pub fn encode_message<const N: usize>(
     write(sender, id, MavMessage::extra_crc(id), &payload, len, out)
 }
 
+#[expect(clippy::arithmetic_side_effects, reason = "lengths within a frame")]
 fn write<const N: usize>(
     sender: Sender,
     id: u32,

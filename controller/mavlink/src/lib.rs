@@ -27,9 +27,14 @@
 extern crate std;
 
 pub mod any;
+// Numbers from the air: where one is added to, it is meant to wrap, or the reason is there why it cannot.
+#[cfg_attr(not(test), warn(clippy::arithmetic_side_effects))]
 pub mod frame;
+#[cfg_attr(not(test), warn(clippy::arithmetic_side_effects))]
 pub mod signed;
+#[cfg_attr(not(test), warn(clippy::arithmetic_side_effects))]
 pub mod signing;
+#[cfg_attr(not(test), warn(clippy::arithmetic_side_effects))]
 pub mod wire;
 
 /// What `mavlink-bindgen` made.

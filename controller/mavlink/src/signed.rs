@@ -40,6 +40,7 @@ impl<const N: usize> Wire for Signed<N> {
     }
 
     /// Also [`EncodeError::Exhausted`] when no timestamp is left.
+    #[expect(clippy::arithmetic_side_effects, reason = "lengths within a frame")]
     fn encode<const M: usize>(
         &mut self,
         header: Header,

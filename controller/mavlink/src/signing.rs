@@ -245,6 +245,7 @@ impl<const N: usize> Signing<N> {
     /// See [`SignError`]; the frame is as it was.
     ///
     /// Bounded work: SHA-256 over at most 307 bytes.
+    #[expect(clippy::arithmetic_side_effects, reason = "10, 255 and 2")]
     pub fn sign(&mut self, frame: &mut [u8]) -> Result<[u8; SIGNATURE_LEN], SignError> {
         let total = frame.len();
         let [START_V2, len, flags, .., low, high] = &mut *frame else {
@@ -322,6 +323,7 @@ impl<const N: usize> Signing<N> {
 
 /// How the checksum of a frame with `len` bytes of payload changes when its flag is set. A checksum is linear in the bits that it covers, so this needs
 /// neither them nor the message's definition.
+#[expect(clippy::arithmetic_side_effects, reason = "10 less 3, 255 and 1")]
 fn flag_in_checksum(len: u8) -> u16 {
     let mut digest = CRC.digest_with_initial(0);
     digest.update(&[SIGNED]);

@@ -316,6 +316,7 @@ fn ack(data: &STAYA_ACK_DATA) -> Parts {
     Ok((data.boot, data.sequence, Message::Ack(ack)))
 }
 
+#[expect(clippy::arithmetic_side_effects, reason = "at most as many as a part has entries")]
 fn template(part: &TemplateAssignment, boot: u8, sequence: u16) -> Result<STAYA_TEMPLATE_DATA, EncodeError> {
     let mut data = STAYA_TEMPLATE_DATA {
         sequence,
@@ -376,6 +377,7 @@ fn robot(system: u8) -> RobotId {
 }
 
 /// 0: stays; 1 to 8: the move of that number less one.
+#[expect(clippy::arithmetic_side_effects, reason = "an index is at most 7")]
 const fn heading(dir: Dir) -> u8 {
     match dir {
         Dir::Stay => 0,
@@ -383,6 +385,7 @@ const fn heading(dir: Dir) -> u8 {
     }
 }
 
+#[expect(clippy::arithmetic_side_effects, reason = "1 to 8")]
 fn dir(heading: u8) -> Option<Dir> {
     match heading {
         0 => Some(Dir::Stay),

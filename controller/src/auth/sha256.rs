@@ -26,6 +26,7 @@ impl Sha256 {
     }
 
     /// Goes on after `blocks` whole blocks that led to `state`.
+    #[expect(clippy::arithmetic_side_effects, reason = "called with 0 and 1")]
     pub(super) const fn from_state(state: [u32; 8], blocks: u64) -> Self {
         Self { state, block: [0; BLOCK], len: blocks * BLOCK as u64 }
     }
@@ -44,6 +45,7 @@ impl Sha256 {
 
     /// The hash of everything taken in.
     #[must_use]
+    #[expect(clippy::arithmetic_side_effects, reason = "64 less 8")]
     pub fn finish(mut self) -> [u8; 32] {
         let bits = self.len.wrapping_mul(8).to_be_bytes();
         self.push(0x80);

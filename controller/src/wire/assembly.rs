@@ -94,6 +94,7 @@ impl TemplateAssignment {
     }
 
     /// Entries of the whole template: exact for the last part, otherwise the least possible.
+    #[expect(clippy::arithmetic_side_effects, reason = "a part has at most 255 before it, of few entries each")]
     fn total(&self) -> usize {
         if self.is_last() {
             self.start() + self.entries.len()
@@ -177,6 +178,7 @@ impl<const F: usize> TemplateAssembler<F> {
     /// newer.
     ///
     /// Bounded work: O(`F`).
+    #[expect(clippy::arithmetic_side_effects, reason = "as in `total`")]
     pub fn put(&mut self, part: &TemplateAssignment) -> Result<Option<Template<F>>, PartError> {
         part.check(F)?;
         if self.newest.admit(part.version) {

@@ -81,6 +81,7 @@ impl Wire for Postcard {
         decode(frame)
     }
 
+    #[expect(clippy::arithmetic_side_effects, reason = "lengths of parts of `rest`, and its delimiter")]
     fn next_frame<'a>(&self, rest: &mut &'a [u8]) -> Option<&'a [u8]> {
         let frame = frames(rest).next();
         let end = frame.map_or(rest.len(), |frame| {

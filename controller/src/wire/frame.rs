@@ -327,6 +327,7 @@ pub fn frames(inbox: &[u8]) -> impl Iterator<Item = &[u8]> {
     inbox.split(|byte| *byte == 0).filter(|piece| !piece.is_empty())
 }
 
+#[expect(clippy::arithmetic_side_effects, reason = "lengths within a frame")]
 fn write<const N: usize>(
     header: Header,
     message: &Message,
@@ -358,6 +359,7 @@ fn write<const N: usize>(
 }
 
 /// Writes the content and returns its length; `None` when `content` is too short.
+#[expect(clippy::arithmetic_side_effects, reason = "lengths within a frame")]
 fn fill(
     header: Header,
     message: &Message,
@@ -390,6 +392,7 @@ fn stuff(content: &mut [u8]) -> u8 {
 }
 
 /// The inverse of [`stuff`]; `None` when the chain of distances misses the end.
+#[expect(clippy::arithmetic_side_effects, reason = "`next` is within the content, and a step is at most 255")]
 fn unstuff(first: u8, content: &mut [u8]) -> Option<()> {
     let mut next = usize::from(first).checked_sub(1)?;
     while let Some(byte) = content.get_mut(next) {

@@ -11,6 +11,7 @@ use crate::time::{Duration, Instant};
 impl<S: Scalar> Neighbor<S> {
     /// The robot `id` as its beacon, received at `now`, describes it.
     #[must_use]
+    #[expect(clippy::arithmetic_side_effects, reason = "an `Instant` wraps, as is meant")]
     pub fn from_beacon(id: RobotId, beacon: &Beacon, now: Instant) -> Self {
         Self {
             id,
@@ -33,6 +34,7 @@ impl<S: Scalar> Neighbor<S> {
     /// The robot `id` as its compact beacon, received at `now`, describes it: at height 0, without
     /// a leader, standing in `cell`, which the caller finds from the position if it uses cells.
     #[must_use]
+    #[expect(clippy::arithmetic_side_effects, reason = "16 bits times 10 within 32")]
     pub fn from_compact(id: RobotId, beacon: &CompactBeacon, cell: Cell, now: Instant) -> Self {
         let [x, y] = beacon.position_mm;
         let [vx, vy] = beacon.velocity_mmps.map(i32::from);

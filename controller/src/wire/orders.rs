@@ -84,6 +84,7 @@ impl<const S: usize> Orders<S> {
     }
 
     /// Judges a request to this robot that came in a frame with `header`. O(`S`).
+    #[expect(clippy::arithmetic_side_effects, reason = "an `Instant` wraps, as is meant")]
     pub fn receive(&mut self, header: Header, request: &Request, now: Instant) -> Answer {
         self.forget_old(now);
         let order = Order {

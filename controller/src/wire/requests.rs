@@ -137,6 +137,7 @@ impl<const P: usize> Requests<P> {
     /// # Errors
     /// [`AskError::Full`] when `P` other requests are on their way, [`AskError::Nobody`] when
     /// `to` is nobody.
+    #[expect(clippy::arithmetic_side_effects, reason = "an `Instant` wraps, as is meant")]
     pub fn ask(
         &mut self,
         to: RobotId,
@@ -170,6 +171,7 @@ impl<const P: usize> Requests<P> {
 
     /// The next thing to do at `now`; call until `None`, which comes after at most 2 `P` calls
     /// (when [`Retry::interval`] is more than 0). O(`P`) each.
+    #[expect(clippy::arithmetic_side_effects, reason = "an `Instant` wraps, as is meant")]
     pub fn poll(&mut self, now: Instant) -> Option<Due> {
         let retry = self.retry;
         let pending = self.pending.iter_mut().find(|pending| pending.is_due(retry, now))?;

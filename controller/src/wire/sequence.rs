@@ -105,6 +105,7 @@ impl SequenceWindow {
 
     /// How many frames between the newest and this newer one have not come.
     #[must_use]
+    #[expect(clippy::arithmetic_side_effects, reason = "it is more than 0 there")]
     pub const fn skipped(&self, header: Header) -> u16 {
         let ahead = header.sequence.wrapping_sub(self.newest);
         if self.seen == 0 || header.boot != self.boot || ahead.cast_signed() <= 0 { 0 } else { ahead - 1 }
