@@ -125,7 +125,7 @@ class Judge:
     def deadlines(self, process, missed, ticks, tick_s, slowest_s):
         waited = process.samples[-1]["waited_s"]
         self.says(process.name, "no deadline is missed", missed <= waited / tick_s,
-                  f"{missed} of {ticks} ticks of {tick_s * 1e3:.0f} ms, {slowest_s * 1e3:.1f} ms at most; {waited:.1f} s of waiting for a processor explain {int(waited / tick_s)}")
+                  f"{missed} in {ticks} ticks of {tick_s * 1e3:.0f} ms, {slowest_s * 1e3:.1f} ms at most; {waited:.1f} s of waiting for a processor explain {int(waited / tick_s)}")
 
 
 def free_port():
@@ -154,12 +154,22 @@ class Clients:
 
     def __init__(self):
         self.context = multiprocessing.get_context("spawn")
-        self.over, self.found, self.running = self.context.Event(), self.context.Manager().dict(), []
+        self.manager = self.context.Manager()
+        self.over, self.found, self.running = self.context.Event(), self.manager.dict(), []
+        self.ready, self.go = self.context.Semaphore(0), self.context.Event()
 
     def start(self, name, work, *arguments):
-        process = self.context.Process(target=_work, args=(self.found, name, work, self.over, *arguments), daemon=True)
+        shared = (self.found, self.ready, self.go, self.over)
+        process = self.context.Process(target=_work, args=(shared, name, work, *arguments), daemon=True)
         process.start()
         self.running.append(process)
+
+    def begin(self):
+        """Lets them go when all are there: on a busy machine that takes a while."""
+        for _ in self.running:
+            if not self.ready.acquire(timeout=120):
+                raise SystemExit("a client did not start")
+        self.go.set()
 
     def end(self):
         self.over.set()
@@ -168,9 +178,12 @@ class Clients:
         return dict(self.found)
 
 
-def _work(found, name, work, over, *arguments):
+def _work(shared, name, work, *arguments):
+    found, ready, go, over = shared
     # Ctrl-C is for the one who started it.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    ready.release()
+    go.wait()
     found[name] = work(over, *arguments)
 
 
@@ -361,7 +374,8 @@ class Companion:
         judge.says(self.name, "its last word is to stand", stood < stand() == len(self.vehicles), f"{stand()} of {len(self.vehicles)} vehicles, {stood} before the end")
         [noise] = report["links"]
         sent = self.found["junk"]["bytes"]
-        judge.says(self.name, "junk is counted", noise["junk_bytes"] + noise["bytes_in"] >= sent > 0 and noise["junk_bytes"] > sent // 2, f"{sent} bytes, {noise['junk_bytes']} counted with what the links damaged")
+        is_counted = noise["junk_bytes"] + noise["bytes_in"] >= sent > 0 and noise["junk_bytes"] > sent // 2
+        judge.says(self.name, "junk is counted", is_counted, f"{sent} bytes, {noise['junk_bytes']} counted with what the links damaged")
         judge.memory(process)
 
 
@@ -376,6 +390,7 @@ class Hil:
         self.trouble = None
 
     def attack(self):
+        self.clients = Clients()
         self.thread = threading.Thread(target=self._run, daemon=True)
         self.thread.start()
 
@@ -386,7 +401,8 @@ class Hil:
                 resets = [word for tick in self.RESETS for word in ("--reset", tick)]
                 process = Process(
                     f"hil-{seed}", self.folder, "hil", "scenarios/six-robots.toml", "--device", "qemu:stm32f405", "--devices", self.DEVICES, "--ticks", self.TICKS,
-                    "--seed", seed, "--bit-errors", "1e-4", "--loss", "0.01", *resets, "--down", self.DOWN, "--firmware", os.environ.get("STAYA_FIRMWARE", ROOT / "target/firmware"), "--json", "-q",
+                    "--seed", seed, "--bit-errors", "1e-4", "--loss", "0.01", *resets, "--down", self.DOWN,
+                    "--firmware", os.environ.get("STAYA_FIRMWARE", ROOT / "target/firmware"), "--json", "-q",
                 )
                 self.processes.append(process)
                 # It comes to its end, also when the others have come to theirs.
@@ -414,7 +430,8 @@ class Hil:
         left = [child for child in started if Path(f"/proc/{child}").exists()]
         judge.says(self.name, "no emulator is left behind", started and not left, f"{len(left)} of {len(started)} that were seen")
         most = [max(sample["bytes"] for sample in process.samples) for process in self.processes if process.samples]
-        judge.says(self.name, "a later run takes no more memory", most and max(most) - most[0] < GROWTH, f"{most[0] / (1 << 20):.1f} MiB at most in the first, {max(most) / (1 << 20):.1f} in all")
+        judge.says(self.name, "a later run takes no more memory", most and max(most) - most[0] < GROWTH,
+                   f"{most[0] / (1 << 20):.1f} MiB at most in the first, {max(most) / (1 << 20):.1f} in all")
 
 
 PARTS = {part.name: part for part in (Flood, Key, Companion, Hil)}
@@ -443,6 +460,8 @@ def main():
         wait(QUIET_S)
         for part in parts:
             part.attack()
+        for part in parts:
+            part.clients.begin()
         wait(60 * options.minutes)
         for part in parts:
             part.stop()
