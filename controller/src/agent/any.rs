@@ -3,7 +3,7 @@
 
 use super::cell_follower::CellFollower;
 use super::flock_guidance::{BoidsGuidance, GoalFlockGuidance, LatticeGuidance};
-use super::formation_guidance::FormationGuidance;
+use super::formation_guidance::{FormationGuidance, FormationInPlane};
 use super::guidance::{BadInput, Decision, Guidance, GuidanceInput, Teamwork, ToAny};
 use super::orca_safety::{FlySafety, OrcaSafety};
 use super::other_safety::PushOutSafety;
@@ -30,7 +30,7 @@ pub enum AnyGuidance<S, const CELLS: usize, const M: usize, const F: usize, cons
     GoalFlock(GoalFlockGuidance<S>),
     Boids(BoidsGuidance<S>),
     Route(CellFollower<S, RouteGuidance<CELLS, M, L>>),
-    Formation(CellFollower<S, FormationGuidance<CELLS, M, F, L>>),
+    Formation(FormationInPlane<S, CELLS, M, F, L>),
     RouteOnGrid(RouteGuidance<CELLS, M, L>),
     FormationOnGrid(FormationGuidance<CELLS, M, F, L>),
 }
@@ -51,7 +51,7 @@ macro_rules! each {
     };
 }
 
-impl<S, const CELLS: usize, const M: usize, const F: usize, const L: usize> Teamwork
+impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usize> Teamwork
     for AnyGuidance<S, CELLS, M, F, L>
 {
     fn redirect(&mut self) {

@@ -44,6 +44,16 @@ impl<S: Scalar, G> CellFollower<S, G> {
         Self { law, speed_mps, last: None }
     }
 
+    /// The speed at which it cruises, m/s.
+    pub(super) const fn speed_mps(&self) -> S {
+        self.speed_mps
+    }
+
+    /// Makes the law decide in the next step whatever the robot does.
+    pub(super) fn decide_anew(&mut self) {
+        self.last = None;
+    }
+
     /// The law of the grid, for what it can tell of itself.
     #[must_use]
     pub const fn inside(&self) -> &G {

@@ -26,6 +26,9 @@ use heapless::Vec;
 use serde::Serialize;
 
 mod foresight;
+mod in_plane;
+
+pub use in_plane::FormationInPlane;
 
 /// Moves that a robot of a formation tries: its best and the next best. One that is crowded out of
 /// both waits; trying all eight it would run away from its place.
@@ -258,9 +261,9 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize> Formati
 }
 
 /// Whether a robot follows oneself, as far as its leaders were heard. Numbers fall along the chain, so that it ends.
-fn comes_after<S>(input: &GuidanceInput<'_, S>, other: &Seen) -> bool {
+fn comes_after<S>(input: &GuidanceInput<'_, S>, other: RobotId, leader: RobotId) -> bool {
     let heard = |id: RobotId| input.neighbor(id);
-    let chain = successors(Some((other.id, other.leader)), |&(id, leader)| {
+    let chain = successors(Some((other, leader)), |&(id, leader)| {
         heard(leader).filter(|next| leader != input.id && next.id < id).map(|next| (next.id, next.leader))
     });
     chain.last().is_some_and(|(_, leader)| leader.is_somebody())
@@ -363,7 +366,9 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             let goes_on = |mode: Mode| mode.gives_way() && mode != Mode::Arrived;
             let able = found.members.iter();
             let able =
-                able.filter(|member| !goes_alone && goes_on(member.seen.mode) && comes_after(input, &member.seen));
+                able.filter(|Member { seen, .. }| {
+                    !goes_alone && goes_on(seen.mode) && comes_after(input, seen.id, seen.leader)
+                });
             let behind = able.map(|member| {
                 let off = member.seen.cell - (cell + member.offset);
                 lag(off, self.travel.choice())

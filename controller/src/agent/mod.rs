@@ -126,7 +126,7 @@ pub use cell_follower::CellFollower;
 pub use commanded::{Commanded, Wish};
 pub use config::AgentConfig;
 pub use flock_guidance::{BoidsGuidance, GOALS, GoalFlockGuidance, LatticeGuidance};
-pub use formation_guidance::FormationGuidance;
+pub use formation_guidance::{FormationGuidance, FormationInPlane};
 pub use guidance::{
     Action, Ask, BadInput, Decision, Destination, Guidance, GuidanceInput, Roams, Status, Teamwork, ToAny, ToCells,
     ToWaypoints,

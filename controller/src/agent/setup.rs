@@ -5,7 +5,7 @@
 use super::any::{AnyGuidance, AnyHalfPlanes, AnySafety};
 use super::cell_follower::CellFollower;
 use super::flock_guidance::{BoidsGuidance, GoalFlockGuidance, LatticeGuidance};
-use super::formation_guidance::FormationGuidance;
+use super::formation_guidance::{FormationGuidance, FormationInPlane};
 use super::orca_safety::{FlySafety, OrcaSafety};
 use super::other_safety::PushOutSafety;
 use super::route_guidance::RouteGuidance;
@@ -314,7 +314,7 @@ impl GuidanceSetup {
                 let guidance =
                     FormationGuidance::new(route.params, *formation, template.clone()).sharpness(route.sharpness);
                 match speed_mps {
-                    Some(speed) => AnyGuidance::Formation(CellFollower::new(guidance, cast(*speed))),
+                    Some(speed) => AnyGuidance::Formation(FormationInPlane::new(guidance, cast(*speed))),
                     None => AnyGuidance::FormationOnGrid(guidance),
                 }
             }

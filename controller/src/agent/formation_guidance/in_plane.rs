@@ -1,0 +1,281 @@
+//! Travelling in formation in the plane: places are points that move with the top leader. The ways around what is closed
+//! are those of the grid.
+
+use super::{FormationGuidance, comes_after};
+use crate::agent::beside::{Beside, Claim};
+use crate::agent::cell_follower::CellFollower;
+use crate::agent::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
+use crate::agent::route_guidance::GridWorkspace;
+use crate::agent::{InCells, Parameter, Wait};
+use crate::formation::{Drive, behind, is_straight};
+use crate::geom::Vec2;
+use crate::grid::{BLOCKED, Cell, Window};
+use crate::neighbor::Neighbor;
+use crate::rand::Rng;
+use crate::robot::{Mode, RobotId};
+use crate::scalar::Scalar;
+use crate::template::{Template, TemplateEntry};
+use crate::wire::{RequestKind, TemplateAssignment};
+use serde::Serialize;
+
+/// A leader that stands for others is slower than that, thousandths of its highest speed.
+const SLOW: i32 = 100;
+
+/// [`FormationGuidance`] on a body that moves in the plane; see [`crate::formation::Drive`] for the law.
+///
+/// Who leads, who is followed, who is asked and given up: all that is as on the grid, decided as often as
+/// [`CellFollower`] does. In each step besides, a follower goes for its place as a point, with its leader's velocity, and
+/// the top leader goes straight to its goal where the land in sight is even, at the pace of the slowest whom it hears. Where
+/// the straight way is closed or dear, both go by the cells.
+#[derive(Clone, Debug, Serialize)]
+pub struct FormationInPlane<S, const CELLS: usize, const M: usize, const F: usize, const L: usize = 0> {
+    cells: CellFollower<S, FormationGuidance<CELLS, M, F, L>>,
+    beside: Beside<S>,
+    /// What it wished last as a leader, m/s.
+    wish_mps: Vec2<S>,
+    /// How long it has waited for others on end, seconds.
+    waited_s: S,
+    is_there: bool,
+}
+
+/// What a robot knows in a step of where it is and what it can do.
+struct Step<'a, S> {
+    window: Window<'a>,
+    cell: Cell,
+    offset_m: Vec2<S>,
+    cell_m: S,
+    drive: Drive<S>,
+}
+
+impl<S: Scalar> Step<'_, S> {
+    /// The way to the middle of a cell, metres.
+    fn to_middle(&self, cell: Cell) -> Vec2<S> {
+        metres(cell - self.cell, self.cell_m) - self.offset_m
+    }
+
+    fn is_straight(&self, way_m: Vec2<S>, is_good: &dyn Fn(Cell) -> bool) -> bool {
+        is_straight(&self.window, (self.cell, self.offset_m, self.cell_m), way_m, is_good)
+    }
+
+    /// Whether a follower can go straight: all is open, and nothing is dearer than twice where it is.
+    fn is_open(&self, way_m: Vec2<S>) -> bool {
+        let own = self.window.get(self.cell).unwrap_or(BLOCKED);
+        self.is_straight(way_m, &|cell| {
+            self.window.get(cell).is_some_and(|u| u != BLOCKED && (cell == self.cell || u <= own.saturating_mul(2)))
+        })
+    }
+
+    /// Whether a leader can go straight: no cell in sight is easier than those under its way and under the others' places
+    /// beside it.
+    fn is_even(&self, way_m: Vec2<S>, entries: &[TemplateEntry]) -> bool {
+        let least = self.window.cells().iter().copied().filter(|&u| u != BLOCKED).min();
+        let is_dear = |cell: Cell| self.window.get(cell).is_some_and(|u| u != BLOCKED && Some(u) > least);
+        let is_even = |cell: Cell| {
+            self.window.is_passable(cell) && !is_dear(cell) && !entries.iter().any(|entry| is_dear(cell + entry.offset))
+        };
+        self.is_straight(way_m, &is_even)
+    }
+}
+
+impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usize> FormationInPlane<S, CELLS, M, F, L> {
+    /// `law` in the plane, cruising at `speed_mps`. The body's own limit holds too, less a tenth for the top leader.
+    #[must_use]
+    pub const fn new(law: FormationGuidance<CELLS, M, F, L>, speed_mps: S) -> Self {
+        Self {
+            cells: CellFollower::new(law, speed_mps),
+            beside: Beside::NEW,
+            wish_mps: Vec2::ZERO,
+            waited_s: S::ZERO,
+            is_there: false,
+        }
+    }
+
+    /// The law of the grid, for what it can tell of itself.
+    #[must_use]
+    pub const fn inside(&self) -> &FormationGuidance<CELLS, M, F, L> {
+        self.cells.inside()
+    }
+
+    /// Whom the robot follows, and the way from its place to the own one, cells; `None`: it leads, or goes by itself.
+    fn leader<'a>(&self, input: &GuidanceInput<'a, S>, view: &Template<F>) -> Option<(&'a Neighbor<S>, Cell)> {
+        let law = self.inside();
+        let (id, offset) = law.top(input, view)?;
+        let keeps_touch = law.behind <= law.formation.patience;
+        input.neighbor(id).filter(|_| keeps_touch).map(|leader| (leader, offset))
+    }
+
+    /// The pace and the way of a robot in each step, made of what it would do from cell to cell.
+    fn refine(
+        &mut self,
+        input: &GuidanceInput<'_, S>,
+        here: &InCells<'_, S>,
+        decision: &mut Decision<S>,
+    ) -> Result<(), BadInput> {
+        let Action::Velocity { wish_mps: by_cells_mps, .. } = decision.action else { return Ok(()) };
+        let step = Step {
+            window: here.grid.window.ok_or(BadInput)?,
+            cell: here.grid.cell.cell,
+            offset_m: here.in_cell.offset_m,
+            cell_m: here.in_cell.cell_m,
+            drive: Drive::new(&input.body, input.body.max_speed_mps),
+        };
+        let view = self.inside().view(input.neighbors);
+        let to_goal_m = step.to_middle(decision.target);
+        let status = &mut decision.status;
+        let is_straight;
+        let mut wish_mps;
+        if let Some((leader, offset)) = self.leader(input, &view) {
+            let has_arrived = leader.mode == Mode::Arrived;
+            let (way_m, place_mps) = if has_arrived {
+                (to_goal_m, Vec2::ZERO)
+            } else {
+                let at = leader.offset_at(input.state.position, input.now, input.ages.expire_after).xy();
+                (at + metres(offset, step.cell_m), leader.velocity_mps.xy())
+            };
+            is_straight = step.is_open(way_m);
+            wish_mps = if is_straight { step.drive.follow(way_m, place_mps) } else { by_cells_mps.xy() };
+            status.is_off_place = way_m.norm() > step.drive.halt_m() * S::HALF;
+            status.is_at_goal = has_arrived && self.comes_to_rest(input, to_goal_m, &step.drive, status, &mut wish_mps);
+            self.wish_mps = input.body.velocity_mps.xy();
+            self.waited_s = S::ZERO;
+        } else {
+            is_straight = step.is_even(to_goal_m, &view.entries);
+            let way_m = if is_straight { to_goal_m } else { by_cells_mps.xy() };
+            let ahead = way_m.normalized().unwrap_or_default();
+            let lag_m = self.lag_to_wait_for(input, &view, &step, ahead);
+            let cruise_mps = self.cells.speed_mps();
+            let speed = step.drive.leads_at(lag_m, to_goal_m.norm()).min(cruise_mps);
+            wish_mps = step.drive.gently(self.wish_mps.clamp_norm(input.body.max_speed_mps), ahead * speed);
+            self.wish_mps = wish_mps;
+            let slow_mps = step.drive.max_speed_mps * S::from_milli(SLOW);
+            let stands = lag_m >= step.drive.halt_m() && wish_mps.norm() < slow_mps;
+            status.waits_for = stands.then_some(Wait::Formation);
+            status.is_at_goal = self.comes_to_rest(input, to_goal_m, &step.drive, status, &mut wish_mps);
+        }
+        if status.makes_way || status.recovers {
+            return Ok(());
+        }
+        if is_straight {
+            status.is_stuck = false;
+            decision.asks.retain(|ask| ask.kind != RequestKind::Redirect);
+        }
+        decision.action = Action::Velocity { wish_mps: wish_mps.extend(S::ZERO), way_m: None };
+        Ok(())
+    }
+
+    /// Whether the robot is at its goal, `way_m` off, or beside it if somebody else stands there; who has to let another one
+    /// go there first wishes so.
+    fn comes_to_rest(
+        &mut self,
+        input: &GuidanceInput<'_, S>,
+        way_m: Vec2<S>,
+        drive: &Drive<S>,
+        status: &mut Status,
+        wish_mps: &mut Vec2<S>,
+    ) -> bool {
+        let tolerance_m = drive.tolerance_m(self.is_there);
+        let claim = self.beside.claim(input, way_m.extend(S::ZERO), tolerance_m);
+        if let Claim::Yields(room_m) = claim {
+            let away = -way_m.normalized().unwrap_or_default();
+            *wish_mps = if way_m.norm() < room_m { away * drive.max_speed_mps } else { Vec2::ZERO };
+        }
+        let is_beside = claim == Claim::IsBeside;
+        if is_beside {
+            status.waits_for = Some(Wait::Place);
+        }
+        self.is_there = way_m.norm() <= tolerance_m || is_beside;
+        self.is_there
+    }
+
+    /// How far others are behind as far as this leader waits for them, metres: not longer than its patience lasts, and not
+    /// for anybody if it goes by itself.
+    fn lag_to_wait_for(
+        &mut self,
+        input: &GuidanceInput<'_, S>,
+        view: &Template<F>,
+        step: &Step<'_, S>,
+        ahead: Vec2<S>,
+    ) -> S {
+        let law = self.inside();
+        let lag_m = if law.leader.is_somebody() { S::ZERO } else { self.lag_m(input, view, step, ahead) };
+        let crossing_s = step.cell_m.checked_div(self.cells.speed_mps()).unwrap_or(S::ZERO);
+        let patience_s = crossing_s * S::from_i32(self.inside().formation.patience.into());
+        let has_to_stand = lag_m >= step.drive.halt_m();
+        self.waited_s = if has_to_stand { (self.waited_s + input.body.step_s).min(patience_s) } else { S::ZERO };
+        if self.waited_s < patience_s { lag_m } else { S::ZERO }
+    }
+
+    /// How far the last of those who follow is behind its place, metres. O(F N).
+    fn lag_m(&self, input: &GuidanceInput<'_, S>, view: &Template<F>, step: &Step<'_, S>, ahead: Vec2<S>) -> S {
+        let goes_on = |other: &&Neighbor<S>| other.mode.gives_way() && other.mode != Mode::Arrived;
+        let follows = |other: &&Neighbor<S>| comes_after(input, other.id, other.leader);
+        let lag = |other: &Neighbor<S>| {
+            let Some(entry) = view.entries.iter().find(|entry| entry.id == other.id) else {
+                // Nobody told where its place is, but it says that it is not there.
+                return if other.mode == Mode::Forming { step.drive.halt_m() * S::HALF } else { S::ZERO };
+            };
+            let at = other.offset_at(input.state.position, input.now, input.ages.stale_after).xy();
+            behind(at - metres(entry.offset, step.cell_m), ahead)
+        };
+        input.neighbors.iter().filter(goes_on).filter(follows).map(lag).fold(S::ZERO, S::max)
+    }
+}
+
+/// A difference of cells in metres.
+fn metres<S: Scalar>(cells: Cell, cell_m: S) -> Vec2<S> {
+    Vec2::new(S::from_i32(cells.x.into()) * cell_m, S::from_i32(cells.y.into()) * cell_m)
+}
+
+impl<S, const CELLS: usize, const M: usize, const F: usize, const L: usize> Teamwork
+    for FormationInPlane<S, CELLS, M, F, L>
+where
+    S: Scalar,
+{
+    fn redirect(&mut self) {
+        self.cells.redirect();
+    }
+
+    fn assign_template(&mut self, part: &TemplateAssignment, is_anew: bool) -> bool {
+        self.cells.assign_template(part, is_anew)
+    }
+
+    fn goal_offset(&self) -> Cell {
+        self.cells.goal_offset()
+    }
+
+    fn needs(&self, id: RobotId) -> bool {
+        self.cells.needs(id)
+    }
+}
+
+impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usize> Guidance<S>
+    for FormationInPlane<S, CELLS, M, F, L>
+{
+    type Input<'a> = InCells<'a, S>;
+    type Destination = ToCells;
+    type Workspace = GridWorkspace<CELLS>;
+
+    fn decide(
+        &mut self,
+        input: &GuidanceInput<'_, S>,
+        here: &InCells<'_, S>,
+        rng: &mut Rng,
+        workspace: &mut Self::Workspace,
+    ) -> Result<Decision<S>, BadInput> {
+        if input.neighbor(self.inside().leader).is_none() && self.inside().leader.is_somebody() {
+            // It has fallen silent: whom to follow is decided now.
+            self.cells.decide_anew();
+        }
+        let mut decision = self.cells.decide(input, here, rng, workspace)?;
+        self.refine(input, here, &mut decision)?;
+        Ok(decision)
+    }
+
+    fn parameter(&self, parameter: Parameter) -> Option<S> {
+        self.cells.parameter(parameter)
+    }
+
+    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
+        self.cells.tune(parameter, value)
+    }
+}
