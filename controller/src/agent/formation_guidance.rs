@@ -8,7 +8,7 @@ use super::tunable::Tunable;
 use super::{OnGrid, Parameter, Wait};
 use crate::cost::Weights;
 use crate::formation::{
-    Anchor, FormationParams, Found, GraphDistance, Member, Pace, Ranks, Recovery, Seen, aim, blended, def, distances,
+    Anchor, Footprint, FormationParams, Found, GraphDistance, Member, Pace, Ranks, Recovery, Seen, aim, blended, def, distances,
     find_leader, find_neighbors, graph_distance, lag, should_stay,
 };
 use crate::grid::{Cell, Dir, Window};
@@ -60,6 +60,9 @@ pub struct FormationGuidance<const CELLS: usize, const M: usize, const F: usize,
     waited: u16,
     /// Decisions on end in which it was behind, or not there yet when the top leader was.
     behind: u16,
+    /// Nobody falls behind, as in the plane: the slowest makes the pace.
+    #[serde(skip)]
+    is_rigid: bool,
 }
 
 /// What a follower steers by.
@@ -92,6 +95,7 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize> Formati
             has_asked: false,
             waited: 0,
             behind: 0,
+            is_rigid: false,
         }
     }
 
@@ -176,8 +180,9 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize> Formati
         let shown = if self.formation.footprint == 0 || found.members.is_empty() {
             None
         } else {
-            let (around, share) = ((cell, self.route.radius), self.formation.footprint);
-            blended(window, around, &view.entries, share, land)
+            let around = (cell, self.route.radius);
+            let footprint = if self.is_rigid { Footprint::Dearest } else { Footprint::Mean(self.formation.footprint) };
+            blended(window, around, &view.entries, footprint, land)
         };
         let shown = shown.as_ref().unwrap_or(window);
         let others = input.neighbors.iter().map(|neighbor| neighbor.cell);

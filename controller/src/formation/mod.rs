@@ -45,7 +45,7 @@ pub use measure::{FormationError, GraphDistance, graph_distance};
 pub use neighbors::{Found, Member, Seen, find_leader, find_neighbors};
 pub use places::{Drive, behind, is_straight};
 pub use ranks::Ranks;
-pub use steering::{Anchor, Pace, aim, blended, def, deviation, distances, lag, should_stay};
+pub use steering::{Anchor, Footprint, Pace, aim, blended, def, deviation, distances, lag, should_stay};
 
 use crate::cost::Gain;
 use crate::names::named;

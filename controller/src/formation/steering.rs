@@ -138,9 +138,20 @@ impl Pace {
     }
 }
 
+/// What land under the others' places counts in the price of a cell for their leader.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Footprint {
+    /// The mean over them counts so many sixteenths, the leader's own cell the rest: those who are slowed down fall
+    /// behind and come after.
+    Mean(u8),
+    /// The dearest cell of all, the leader's own included: nobody falls behind, all go at the pace of the slowest.
+    Dearest,
+}
+
 /// Writes into `out` what the land within `radius` cells of `center` costs the whole formation when its
-/// top leader stands there: the leader's own cell and, with `footprint` sixteenths, the mean over the
-/// cells of the others' places that the window shows and that are passable. Walls stay walls; where no
+/// top leader stands there: the leader's own cell and those of the others' places that the window shows and that are
+/// passable, as `footprint` says. Walls stay walls; where no
 /// place is in sight the own cell counts alone. O(cells * entries).
 ///
 /// `None`: `out` is too short for (2 radius + 1)^2 cells, or for as many of them as the window shows.
@@ -149,27 +160,28 @@ pub fn blended<'a>(
     window: &Window<'_>,
     (center, radius): (Cell, u8),
     entries: &[TemplateEntry],
-    footprint: u8,
+    footprint: Footprint,
     out: &'a mut [u8],
 ) -> Option<Window<'a>> {
     let (origin, width, height) = window.cut(center, radius);
     let out = out.get_mut(..usize::from(width) * usize::from(height))?;
-    let share = u32::from(footprint.min(16));
     let rows = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
     for (price, (x, y)) in out.iter_mut().zip(rows) {
         let cell = origin + Cell::new(x.cast_signed(), y.cast_signed());
         let own = window.get(cell).unwrap_or(BLOCKED);
-        let (sum, count) =
-            entries.iter().fold((0_u32, 0_u32), |(sum, count), entry| match window.get(cell + entry.offset) {
-                Some(u) if u != BLOCKED => (sum + u32::from(u), count + 1),
-                _ => (sum, count),
-            });
-        *price = match (sum * share).checked_div(count) {
-            Some(others) if own != BLOCKED => {
-                // Sixteenths, rounded to nearest; at least 1, as both parts are.
-                ((u32::from(own) * (16 - share) + others + 8) >> 4).clamp(1, 255) as u8
+        let others = entries.iter().filter_map(|entry| window.get(cell + entry.offset)).filter(|&u| u != BLOCKED);
+        *price = match footprint {
+            _ if own == BLOCKED => own,
+            Footprint::Dearest => others.fold(own, u8::max),
+            Footprint::Mean(share) => {
+                let share = u32::from(share.min(16));
+                let (sum, count) = others.fold((0_u32, 0_u32), |(sum, count), u| (sum + u32::from(u), count + 1));
+                match (sum * share).checked_div(count) {
+                    // Sixteenths, rounded to nearest; at least 1, as both parts are.
+                    Some(others) => ((u32::from(own) * (16 - share) + others + 8) >> 4).clamp(1, 255) as u8,
+                    None => own,
+                }
             }
-            _ => own,
         };
     }
     Window::new(out, origin, width, height)

@@ -168,16 +168,17 @@ fn land_is_priced_for_all_who_would_cross_it() {
     let entry = TemplateEntry { offset: Cell::new(2, 0), id: RobotId(2), hops: 1 };
     let mut out = [0; 4];
     let mut price =
-        |share| blended(&window, (Cell::new(20, 5), 3), &[entry], share, &mut out).unwrap().cells().to_vec();
-    assert_eq!(price(0), cells);
+        |footprint| blended(&window, (Cell::new(20, 5), 3), &[entry], footprint, &mut out).unwrap().cells().to_vec();
+    assert_eq!(price(Footprint::Mean(0)), cells);
     // West cell: half of 1 and 9. Second: the wall behind counts not. Walls stay.
-    assert_eq!(price(8), [5, 1, 9, BLOCKED]);
-    assert_eq!(price(16), [9, 1, 9, BLOCKED]);
+    assert_eq!(price(Footprint::Mean(8)), [5, 1, 9, BLOCKED]);
+    assert_eq!(price(Footprint::Mean(16)), [9, 1, 9, BLOCKED]);
+    assert_eq!(price(Footprint::Dearest), [9, 1, 9, BLOCKED]);
     let around = (Cell::new(20, 5), 1);
-    assert!(blended(&window, around, &[entry], 8, &mut [0; 1]).is_none());
+    assert!(blended(&window, around, &[entry], Footprint::Dearest, &mut [0; 1]).is_none());
     // A larger window than the search needs: only its part is priced, all of it is looked at.
     let mut near = [0; 2];
-    let near = blended(&window, around, &[entry], 16, &mut near).unwrap();
+    let near = blended(&window, around, &[entry], Footprint::Mean(16), &mut near).unwrap();
     assert_eq!((near.origin(), near.cells()), (Cell::new(20, 5), &[9, 1][..]));
 }
 

@@ -65,6 +65,14 @@ impl<S: Scalar> Step<'_, S> {
         })
     }
 
+    /// How fast the others can be where their places are, as far as that is in sight, m/s.
+    fn slowest_mps(&self, entries: &[TemplateEntry]) -> S {
+        let price = |cell: Cell| self.window.get(cell).filter(|&u| u != BLOCKED);
+        let own = price(self.cell).unwrap_or(1);
+        let dearest = entries.iter().filter_map(|entry| price(self.cell + entry.offset)).fold(own, u8::max);
+        self.drive.max_speed_mps * S::from_ratio(own.into(), dearest.into())
+    }
+
     /// Whether a leader can go straight: no cell in sight is easier than those under its way and under the others' places
     /// beside it.
     fn is_even(&self, way_m: Vec2<S>, entries: &[TemplateEntry]) -> bool {
@@ -80,7 +88,8 @@ impl<S: Scalar> Step<'_, S> {
 impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usize> FormationInPlane<S, CELLS, M, F, L> {
     /// `law` in the plane, cruising at `speed_mps`. The body's own limit holds too, less a tenth for the top leader.
     #[must_use]
-    pub const fn new(law: FormationGuidance<CELLS, M, F, L>, speed_mps: S) -> Self {
+    pub fn new(mut law: FormationGuidance<CELLS, M, F, L>, speed_mps: S) -> Self {
+        law.is_rigid = true;
         Self {
             cells: CellFollower::new(law, speed_mps),
             beside: Beside::NEW,
@@ -139,12 +148,14 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             self.wish_mps = input.body.velocity_mps.xy();
             self.waited_s = S::ZERO;
         } else {
-            is_straight = step.is_even(to_goal_m, &view.entries);
+            let is_near = to_goal_m.norm() < step.cell_m && step.is_open(to_goal_m);
+            is_straight = is_near || step.is_even(to_goal_m, &view.entries);
             let way_m = if is_straight { to_goal_m } else { by_cells_mps.xy() };
             let ahead = way_m.normalized().unwrap_or_default();
             let lag_m = self.lag_to_wait_for(input, &view, &step, ahead);
             let cruise_mps = self.cells.speed_mps();
-            let speed = step.drive.leads_at(lag_m, to_goal_m.norm()).min(cruise_mps);
+            let slowest_mps = cruise_mps.min(step.slowest_mps(&view.entries));
+            let speed = step.drive.leads_at(lag_m, to_goal_m.norm()).min(slowest_mps);
             wish_mps = step.drive.gently(self.wish_mps.clamp_norm(input.body.max_speed_mps), ahead * speed);
             self.wish_mps = wish_mps;
             let slow_mps = step.drive.max_speed_mps * S::from_milli(SLOW);
@@ -214,7 +225,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
                 // Nobody told where its place is, but it says that it is not there.
                 return if other.mode == Mode::Forming { step.drive.halt_m() * S::HALF } else { S::ZERO };
             };
-            let at = other.offset_at(input.state.position, input.now, input.ages.stale_after).xy();
+            let at = other.offset_at(input.state.position, input.now, input.ages.expire_after).xy();
             behind(at - metres(entry.offset, step.cell_m), ahead)
         };
         input.neighbors.iter().filter(goes_on).filter(follows).map(lag).fold(S::ZERO, S::max)
