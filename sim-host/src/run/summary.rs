@@ -42,6 +42,12 @@ pub struct Summary {
     /// The same, graph placed by the best-fitting translation.
     formation_error_per_agent_best_fit: Option<f64>,
     graph_distance_mean: Option<f64>,
+    /// Robots of a formation in the plane off their places by robot 1, metres, after the first 10 s: the mean, the largest, and
+    /// whose and when that was; null: on the grid, or no formation.
+    place_error_mean_m: Option<f64>,
+    place_error_worst_m: Option<f64>,
+    place_error_worst_robot: Option<u32>,
+    place_error_worst_s: Option<f64>,
     /// Least distance between the surfaces of two bodies, metres; null: on the grid, or nobody came near.
     least_gap_m: Option<f64>,
     /// Least distance between a body and an obstacle, metres.
@@ -137,6 +143,10 @@ impl Summary {
             formation_error_per_agent: formation.map(|f| f.error_per_agent),
             formation_error_per_agent_best_fit: formation.map(|f| f.best_fit_error_per_agent),
             graph_distance_mean: formation.map(|f| f.graph_distance),
+            place_error_mean_m: outcome.place_error.map(|error| error.mean_m),
+            place_error_worst_m: outcome.place_error.map(|error| error.worst_m),
+            place_error_worst_robot: outcome.place_error.map(|error| error.robot),
+            place_error_worst_s: outcome.place_error.map(|error| error.at_s),
             least_gap_m: finite(outcome.clearance.map(|c| c.bodies_m)),
             least_obstacle_gap_m: finite(outcome.clearance.map(|c| c.solids_m)),
             least_intruder_gap_m: finite(outcome.clearance.map(|c| c.intruders_m)),
@@ -181,6 +191,15 @@ impl Summary {
         {
             line("formation error", format!("{error:.3} cells per robot ({best_fit:.3} by best fit)"))?;
             line("graph distance", format!("{distance:.3}"))?;
+        }
+        if let (Some(mean), Some(worst), Some(robot), Some(at_s)) = (
+            self.place_error_mean_m,
+            self.place_error_worst_m,
+            self.place_error_worst_robot,
+            self.place_error_worst_s,
+        ) {
+            let worst = format!("at most {worst:.3} m (robot {robot} after {at_s:.1} s)");
+            line("off their places", format!("after 10 s, {worst}, {mean:.3} m on average"))?;
         }
         if self.washed > 0 {
             line("in downwash", self.washed.to_string())?;

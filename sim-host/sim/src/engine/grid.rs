@@ -5,7 +5,7 @@ use super::body::Kinematics;
 use super::ground::{Ground, StateWords};
 use super::hash::grid_words;
 use super::intervene::Change;
-use crate::metrics::{FormationMeter, Keeping};
+use crate::metrics::{FormationMeter, Keeping, in_cells};
 use crate::record::Motion;
 use crate::scenario::{Robot, Scenario};
 use crate::terrain::Terrain;
@@ -36,7 +36,7 @@ impl Grid {
         let meter = scenario
             .formation
             .as_ref()
-            .map(|graph| FormationMeter::new(graph, scenario.formation_params.eps, world.terrain()));
+            .map(|graph| FormationMeter::new(graph, scenario.formation_params.eps, world.terrain(), scenario.tick_s()));
         Ok(Self {
             kinematics: Kinematics::new(world.terrain(), scenario.tick_s()),
             robots: scenario.numbered(),
@@ -152,8 +152,9 @@ impl Ground for Grid {
     }
 
     fn keeping(&mut self, counts: bool) -> Option<Keeping> {
-        let (meter, bodies) = (self.meter.as_mut()?, self.world.bodies());
-        Some(if counts { meter.measure(bodies) } else { meter.look(bodies) })
+        let meter = self.meter.as_mut()?;
+        let bodies: Vec<_> = self.world.bodies().iter().map(|body| in_cells(body.cell)).collect();
+        Some(if counts { meter.measure(&bodies) } else { meter.look(&bodies) })
     }
 
     fn mean_keeping(&self) -> Option<Keeping> {

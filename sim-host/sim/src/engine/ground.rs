@@ -2,7 +2,7 @@
 
 use super::inspect::Scratchpad;
 use super::{Change, Status};
-use crate::metrics::Keeping;
+use crate::metrics::{Keeping, PlaceError};
 use crate::record::Motion;
 use crate::terrain::Terrain;
 use crate::world::Refusal;
@@ -63,6 +63,11 @@ pub trait Ground: Send + Sync {
 
     /// The mean of what [`Ground::keeping`] counted.
     fn mean_keeping(&self) -> Option<Keeping> {
+        None
+    }
+
+    /// How far bodies were from their places in a formation, in metres; `None` on the grid, where places are cells.
+    fn place_error(&self) -> Option<PlaceError> {
         None
     }
 

@@ -488,6 +488,7 @@ where
             throttled: self.throttled,
             waits: self.waits.counts(),
             formation: self.ground.mean_keeping(),
+            place_error: self.ground.place_error(),
             clearance: self.ground.clearance(),
             trace_hash: hash::sum(&self.chains),
         }

@@ -3,6 +3,7 @@
 use super::Status;
 use super::ground::{Ground, StateWords};
 use super::intervene::Change;
+use crate::metrics::{FormationMeter, Keeping, PlaceError};
 use crate::radio;
 use crate::record::Motion;
 use crate::scenario::{Order, PlaneSetup, Robot, Scenario, Target, goals};
@@ -32,6 +33,7 @@ pub struct PlaneGround {
     clearance: Clearance,
     /// After the last tick, metres.
     gap_m: Option<f64>,
+    meter: Option<FormationMeter>,
     robots: Vec<Robot>,
     radius: u8,
     tick_us: u32,
@@ -74,6 +76,9 @@ impl PlaneGround {
         Self {
             clearance: Clearance::FREE,
             gap_m: None,
+            meter: scenario.formation.as_ref().map(|graph| {
+                FormationMeter::new(graph, scenario.formation_params.eps, &scenario.terrain, scenario.tick_s())
+            }),
             plane,
             robots: scenario.numbered(),
             radius: scenario.route.params.radius,
@@ -227,6 +232,26 @@ impl Ground for PlaneGround {
         self.clearance.add(&now);
         self.gap_m = Some(now.bodies_m).filter(|gap_m| gap_m.is_finite());
         now.overlaps + now.intrusions
+    }
+
+    fn keeping(&mut self, counts: bool) -> Option<Keeping> {
+        let (meter, cell_m) = (self.meter.as_mut()?, self.plane.terrain()?.cell_m);
+        let places = self.plane.discs().iter().map(|disc| [disc.position_m[0] / cell_m, disc.position_m[1] / cell_m]);
+        let places: Vec<_> = places.collect();
+        Some(if counts { meter.measure(&places) } else { meter.look(&places) })
+    }
+
+    fn mean_keeping(&self) -> Option<Keeping> {
+        self.meter.as_ref().and_then(FormationMeter::mean)
+    }
+
+    fn place_error(&self) -> Option<PlaceError> {
+        self.meter.as_ref().and_then(FormationMeter::place_error)
+    }
+
+    fn formation_error(&self, index: usize) -> f64 {
+        let errors = self.meter.as_ref().map_or(&[][..], FormationMeter::errors);
+        errors.get(index).copied().unwrap_or(f64::NAN)
     }
 
     fn clearance(&self) -> Option<Clearance> {

@@ -2,7 +2,7 @@
 
 use super::witness::Witness;
 use super::{Engine, ExternalController, Grid, Ground, HostLaw, PlaneGround};
-use crate::metrics::Keeping;
+use crate::metrics::{Keeping, PlaceError};
 use crate::metrics::waits::WaitCount;
 use crate::record::{PacketCounts, RobotRow, TickRow};
 use crate::scenario::Scenario;
@@ -68,6 +68,8 @@ pub struct Outcome {
     pub waits: Vec<WaitCount>,
     /// Means over the run; `None` without a formation.
     pub formation: Option<Keeping>,
+    /// How far robots in the plane were from their places once they had had time to form.
+    pub place_error: Option<PlaceError>,
     /// How near bodies came to each other and to obstacles; `None` on the grid, where bodies have no size.
     pub clearance: Option<Clearance>,
     /// The same for equal traces, on any machine and any number of threads.

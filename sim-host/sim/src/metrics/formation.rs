@@ -1,0 +1,284 @@
+//! How well a formation is kept (KUZ section 6).
+
+use crate::scenario::Formation;
+use crate::terrain::Terrain;
+use staya_controller::grid::Cell;
+
+/// How well a formation is kept at one moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Keeping {
+    /// Mean over the robots of |desired - actual|, cells, when the graph is placed on where the top
+    /// leader (robot 1) is. The leader itself counts, with 0.
+    pub error_per_agent: f64,
+    /// The same when the graph is placed by the translation that fits all robots best (least
+    /// squares): tells a formation that is out of shape from one that only lags behind its leader.
+    pub best_fit_error_per_agent: f64,
+    /// Graph distance, see [`FormationMeter`].
+    pub graph_distance: f64,
+}
+
+impl std::ops::AddAssign for Keeping {
+    fn add_assign(&mut self, other: Self) {
+        self.error_per_agent += other.error_per_agent;
+        self.best_fit_error_per_agent += other.best_fit_error_per_agent;
+        self.graph_distance += other.graph_distance;
+    }
+}
+
+/// How long a formation may take to form before its error counts, seconds.
+pub const FORMED_AFTER_S: f64 = 10.0;
+
+/// How far robots in the plane were from their places by robot 1, after the first [`FORMED_AFTER_S`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlaceError {
+    /// Over robots (robot 1 counts, with 0) and ticks, metres.
+    pub mean_m: f64,
+    /// The largest of any robot in any tick, metres.
+    pub worst_m: f64,
+    /// Whose that was, by its place from 1; 0 if all were in place.
+    pub robot: u32,
+    /// When it was, seconds.
+    pub at_s: f64,
+}
+
+/// Measures a formation tick by tick: the formation error dPhi = (1/T) sum over robots and ticks of
+/// |desired - actual|, here per robot, and the graph distance.
+///
+/// The graph distance is dist = m0 + m1 + kappa * sum of |desired - actual| over the common vertices,
+/// with kappa = 1 / diagonal of the map and the graph placed on the top leader. A vertex is common
+/// when its robot is within `eps` cells (along either axis, as in algorithm 5) of its place. m0
+/// counts the places that are missed. m1 counts those of them near which (`eps` again) another
+/// robot stands that has itself lost its place: without that condition every robot of a formation
+/// narrower than eps would stand in for all others.
+#[derive(Clone, Debug)]
+pub struct FormationMeter {
+    places: Vec<[f64; 2]>,
+    eps: f64,
+    /// 1 / diagonal of the map, 1/cells.
+    kappa: f64,
+    ticks: u32,
+    sum: Keeping,
+    errors: Vec<f64>,
+    missing: Vec<usize>,
+    cell_m: f64,
+    tick_s: f64,
+    steady: Steady,
+}
+
+/// Sums over the ticks after the first [`FORMED_AFTER_S`].
+#[derive(Clone, Copy, Debug)]
+struct Steady {
+    ticks: u32,
+    sum: f64,
+    worst: PlaceError,
+}
+
+impl FormationMeter {
+    /// A meter that has measured nothing yet.
+    #[must_use]
+    pub fn new(formation: &Formation, eps: u8, terrain: &Terrain, tick_s: f64) -> Self {
+        let [width, height] = [terrain.width(), terrain.height()].map(|side| f64::from(side) - 1.0);
+        let diagonal = (width * width + height * height).sqrt().max(1.0);
+        Self {
+            places: formation.places.iter().map(|&place| in_cells(place)).collect(),
+            eps: eps.into(),
+            kappa: 1.0 / diagonal,
+            ticks: 0,
+            sum: Keeping { error_per_agent: 0.0, best_fit_error_per_agent: 0.0, graph_distance: 0.0 },
+            errors: Vec::new(),
+            missing: Vec::new(),
+            cell_m: terrain.cell_m,
+            tick_s,
+            steady: Steady { ticks: 0, sum: 0.0, worst: PlaceError { mean_m: 0.0, worst_m: 0.0, robot: 0, at_s: 0.0 } },
+        }
+    }
+
+    /// Takes one tick into the means; see [`FormationMeter::look`].
+    ///
+    /// # Panics
+    /// When there are no bodies, or more of them than places.
+    pub fn measure(&mut self, bodies: &[[f64; 2]]) -> Keeping {
+        let now = self.look(bodies);
+        self.sum += now;
+        self.ticks += 1;
+        let at_s = f64::from(self.ticks) * self.tick_s;
+        if at_s > FORMED_AFTER_S {
+            let Steady { ticks, sum, worst } = &mut self.steady;
+            *ticks += 1;
+            *sum += now.error_per_agent;
+            for (robot, error) in (1..).zip(&self.errors) {
+                let error_m = error * self.cell_m;
+                if error_m > worst.worst_m {
+                    *worst = PlaceError { worst_m: error_m, robot, at_s, ..*worst };
+                }
+            }
+        }
+        now
+    }
+
+    /// How far robots were from their places after the first [`FORMED_AFTER_S`]; `None` when the run was shorter.
+    #[must_use]
+    pub fn place_error(&self) -> Option<PlaceError> {
+        let Steady { ticks, sum, worst } = self.steady;
+        (ticks > 0).then(|| PlaceError { mean_m: sum / f64::from(ticks) * self.cell_m, ..worst })
+    }
+
+    /// How the formation is kept right now; `bodies[i]` is where the robot of place i is, in cells. O(n), and O(m^2) for
+    /// m lost robots.
+    ///
+    /// # Panics
+    /// When there are no bodies, or more of them than places.
+    pub fn look(&mut self, bodies: &[[f64; 2]]) -> Keeping {
+        let top = offset(bodies[0], self.places[0]);
+        self.errors.clear();
+        self.missing.clear();
+        let (mut graph, mut mean) = (0.0, [0.0; 2]);
+        for (index, &body) in bodies.iter().enumerate() {
+            let [x, y] = offset(body, self.places[index]);
+            let off = [x - top[0], y - top[1]];
+            mean = [mean[0] + x, mean[1] + y];
+            let error = length(off);
+            self.errors.push(error);
+            if off.iter().all(|d| d.abs() <= self.eps) {
+                graph += self.kappa * error;
+            } else {
+                self.missing.push(index);
+            }
+        }
+        let count = bodies.len() as f64;
+        let mean = mean.map(|sum| sum / count);
+        let fit: f64 = bodies
+            .iter()
+            .zip(&self.places)
+            .map(|(&body, &place)| {
+                let [x, y] = offset(body, place);
+                length([x - mean[0], y - mean[1]])
+            })
+            .sum();
+        Keeping {
+            error_per_agent: self.errors.iter().sum::<f64>() / count,
+            best_fit_error_per_agent: fit / count,
+            graph_distance: graph + (self.missing.len() + self.taken(bodies, top)) as f64,
+        }
+    }
+
+    /// How many of the missed places have another lost robot near them.
+    fn taken(&self, bodies: &[[f64; 2]], top: [f64; 2]) -> usize {
+        let is_near = |place: usize, robot: usize| {
+            let [x, y] = offset(bodies[robot], self.places[place]);
+            (x - top[0]).abs() <= self.eps && (y - top[1]).abs() <= self.eps
+        };
+        let missing = self.missing.iter();
+        missing.filter(|&&place| self.missing.iter().any(|&robot| is_near(place, robot))).count()
+    }
+
+    /// Distance of each robot from its place when it was looked at last, cells, graph on the top leader.
+    #[must_use]
+    pub fn errors(&self) -> &[f64] {
+        &self.errors
+    }
+
+    /// The means over all ticks so far; `None` before the first.
+    #[must_use]
+    pub fn mean(&self) -> Option<Keeping> {
+        let ticks = f64::from(self.ticks);
+        (self.ticks > 0).then(|| Keeping {
+            error_per_agent: self.sum.error_per_agent / ticks,
+            best_fit_error_per_agent: self.sum.best_fit_error_per_agent / ticks,
+            graph_distance: self.sum.graph_distance / ticks,
+        })
+    }
+}
+
+/// A cell's middle, in cells from that of (0, 0).
+pub(crate) fn in_cells(cell: Cell) -> [f64; 2] {
+    [cell.x, cell.y].map(f64::from)
+}
+
+fn offset(body: [f64; 2], place: [f64; 2]) -> [f64; 2] {
+    [body[0] - place[0], body[1] - place[1]]
+}
+
+fn length([x, y]: [f64; 2]) -> f64 {
+    (x * x + y * y).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bodies(cells: &[(i16, i16)]) -> Vec<[f64; 2]> {
+        cells.iter().map(|&(x, y)| in_cells(Cell::new(x, y))).collect()
+    }
+
+    fn meter(places: &[(i16, i16)], eps: u8) -> FormationMeter {
+        let formation = Formation {
+            places: places.iter().map(|&(x, y)| Cell::new(x, y)).collect(),
+            edges: Vec::new(),
+            templates: Vec::new(),
+        };
+        // Diagonal: 5 cells.
+        FormationMeter::new(&formation, eps, &Terrain::flat(5, 4), 4.0)
+    }
+
+    #[test]
+    fn a_formation_in_place_has_no_error_anywhere_on_the_map() {
+        let mut meter = meter(&[(0, 0), (-3, 0), (0, -3)], 2);
+        for (x, y) in [(0, 0), (30, -7), (i16::MAX, i16::MAX)] {
+            let now = meter.measure(&bodies(&[(x, y), (x - 3, y), (x, y - 3)]));
+            let none = Keeping { error_per_agent: 0.0, best_fit_error_per_agent: 0.0, graph_distance: 0.0 };
+            assert_eq!(now, none);
+            assert_eq!(meter.errors(), [0.0; 3]);
+        }
+    }
+
+    #[test]
+    fn errors_are_per_robot_and_mean_over_ticks() {
+        let mut meter = meter(&[(0, 0), (-3, 0)], 5);
+        assert!(meter.mean().is_none());
+        // Robot 2 is off by (3, 4), half of which a translation explains.
+        let now = meter.measure(&bodies(&[(10, 10), (10, 14)]));
+        assert_eq!(meter.errors(), [0.0, 5.0]);
+        assert_eq!((now.error_per_agent, now.best_fit_error_per_agent), (2.5, 2.5));
+        assert_eq!(now.graph_distance, 1.0);
+        meter.measure(&bodies(&[(10, 10), (7, 10)]));
+        meter.look(&bodies(&[(10, 10), (90, 90)]));
+        let mean = meter.mean().expect("two ticks");
+        assert_eq!((mean.error_per_agent, mean.graph_distance), (1.25, 0.5));
+    }
+
+    #[test]
+    fn best_fit_does_not_blame_all_for_a_leader_that_runs_ahead() {
+        let mut meter = meter(&[(0, 0), (-3, 0), (-6, 0), (-9, 0)], 5);
+        let now = meter.measure(&bodies(&[(14, 0), (7, 0), (4, 0), (1, 0)]));
+        assert_eq!(now.error_per_agent, 3.0);
+        assert_eq!(now.best_fit_error_per_agent, 1.5);
+    }
+
+    #[test]
+    fn graph_distance_counts_missing_places_and_strangers_on_them() {
+        let places = [(0, 0), (-3, 0), (-6, 0)];
+        // The place of robot 2 is missed; robot 3 is near it but has its own: only m0.
+        let now = meter(&places, 3).measure(&bodies(&[(10, 0), (90, 0), (4, 0)]));
+        assert_eq!(now.graph_distance, 1.0);
+        // Robots 2 and 3 have changed places: m0 = m1 = 2.
+        let now = meter(&places, 2).measure(&bodies(&[(10, 0), (4, 0), (7, 0)]));
+        assert_eq!(now.graph_distance, 4.0);
+        // Just within eps.
+        let now = meter(&places, 3).measure(&bodies(&[(10, 0), (4, 0), (7, 0)]));
+        assert!((now.graph_distance - 6.0 / 5.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn errors_in_metres_count_when_the_formation_has_had_time_to_form() {
+        let mut meter = meter(&[(0, 0), (-3, 0)], 5);
+        for away in [90, 90] {
+            meter.measure(&bodies(&[(10, 10), (away, 10)]));
+            assert_eq!(meter.place_error(), None, "8 s at most");
+        }
+        meter.measure(&bodies(&[(10, 10), (7, 10)]));
+        meter.measure(&[[10.0, 10.0], [7.0, 10.5]]);
+        let error = PlaceError { mean_m: 0.125, worst_m: 0.5, robot: 2, at_s: 16.0 };
+        assert_eq!(meter.place_error(), Some(error));
+    }
+}
