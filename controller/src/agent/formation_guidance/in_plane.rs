@@ -144,6 +144,11 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             is_straight = step.is_open(way_m);
             wish_mps = if is_straight { step.drive.follow(way_m, place_mps) } else { by_cells_mps.xy() };
             status.is_off_place = way_m.norm() > step.drive.halt_m() * S::HALF;
+            // Who is ahead or aside lets the others go on.
+            let ahead = place_mps.normalized().unwrap_or_default();
+            if behind(-way_m, ahead) < step.drive.halt_m() {
+                decision.asks.retain(|ask| ask.kind != RequestKind::Stop);
+            }
             status.is_at_goal = has_arrived && self.comes_to_rest(input, to_goal_m, &step.drive, status, &mut wish_mps);
             self.wish_mps = input.body.velocity_mps.xy();
             self.waited_s = S::ZERO;

@@ -232,9 +232,26 @@ fn unreached(count: usize, edges: &BTreeSet<(u16, u16)>) -> Option<usize> {
 
 fn placed(source: &Source<'_>, entry: &FormationEntry, graph: &Formation) -> Result<Vec<Entry>, ScenarioError> {
     let shifted = |[x, y]: [i16; 2], by: Cell| Some(Cell::new(x.checked_add(by.x)?, y.checked_add(by.y)?));
-    (1..)
-        .zip(&graph.places)
-        .map(|(number, &place)| match (shifted(entry.start, place), shifted(entry.goal, place)) {
+    let count = graph.places.len();
+    match (&entry.start, &entry.starts) {
+        (Some(_), None) => {}
+        (None, Some(starts)) if starts.len() == count => {}
+        (None, Some(starts)) => {
+            let what = format!("{} starts for {count} robots", starts.len());
+            return Err(source.error("robots.formation.starts", what, "give one for each robot, by their numbers"));
+        }
+        _ => {
+            let remedy = "give start, of robot 1, or starts, of all, and not both";
+            return Err(source.error("robots.formation", "it is not clear where they start", remedy));
+        }
+    }
+    let start = |index: usize, place: Cell| match (&entry.starts, entry.start) {
+        (Some(starts), _) => starts.get(index).copied().map(cell),
+        (None, start) => shifted(start?, place),
+    };
+    let placed = |(index, &place): (usize, &Cell)| {
+        let number = index as u32 + 1;
+        match (start(index, place), shifted(entry.goal, place)) {
             (Some(start), Some(goal)) => Ok(Entry {
                 robot: Robot { id: RobotId(number), start, goal },
                 field: "robots.formation".to_owned(),
@@ -245,8 +262,9 @@ fn placed(source: &Source<'_>, entry: &FormationEntry, graph: &Formation) -> Res
                 format!("robot {number} would be outside of any map"),
                 "give a smaller formation or another start and goal",
             )),
-        })
-        .collect()
+        }
+    };
+    graph.places.iter().enumerate().map(placed).collect()
 }
 
 fn from_scen(source: &Source<'_>, entry: &ScenEntry, terrain: &Terrain) -> Result<Vec<Entry>, ScenarioError> {

@@ -216,8 +216,10 @@ pub struct FormationEntry {
     pub places: Option<Vec<[i16; 2]>>,
     /// With `places`: pairs of robot numbers that are neighbours in the formation's graph.
     pub edges: Option<Vec<[u32; 2]>>,
-    /// The cell where robot 1, the top leader, starts.
-    pub start: [i16; 2],
+    /// The cell where robot 1, the top leader, starts, and the others in their places around it.
+    pub start: Option<[i16; 2]>,
+    /// Instead of `start`: the cell where each robot starts, by its number; they form on the way.
+    pub starts: Option<Vec<[i16; 2]>>,
     /// The cell where robot 1 should go; the others go to their places around it.
     pub goal: [i16; 2],
 }
