@@ -8,8 +8,8 @@ use super::tunable::Tunable;
 use super::{OnGrid, Parameter, Wait};
 use crate::cost::Weights;
 use crate::formation::{
-    Anchor, Footprint, FormationParams, Found, GraphDistance, Member, Pace, Ranks, Recovery, Seen, aim, blended, def, distances,
-    find_leader, find_neighbors, graph_distance, lag, should_stay,
+    Anchor, Footprint, FormationParams, Found, GraphDistance, Member, Pace, Ranks, Recovery, Seen, aim, blended, def,
+    distances, find_leader, find_neighbors, graph_distance, lag, should_stay,
 };
 use crate::grid::{Cell, Dir, Window};
 use crate::list;
@@ -370,10 +370,9 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             // Nor who follows somebody else, nor anybody by one who has lost touch.
             let goes_on = |mode: Mode| mode.gives_way() && mode != Mode::Arrived;
             let able = found.members.iter();
-            let able =
-                able.filter(|Member { seen, .. }| {
-                    !goes_alone && goes_on(seen.mode) && comes_after(input, seen.id, seen.leader)
-                });
+            let able = able.filter(|Member { seen, .. }| {
+                !goes_alone && goes_on(seen.mode) && comes_after(input, seen.id, seen.leader)
+            });
             let behind = able.map(|member| {
                 let off = member.seen.cell - (cell + member.offset);
                 lag(off, self.travel.choice())

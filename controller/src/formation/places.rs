@@ -2,7 +2,7 @@
 //!
 //! The law is proportional control with feed-forward of the leader's velocity, as in any text on leader and follower
 //! formations (J. P. Desai, J. Ostrowski and V. Kumar 1998); the top leader goes no faster than the slowest follows.
-//! All gains come from one time, in which the body can get going ([`Drive::response_s`]): no gain is larger than
+//! All gains come from one time, in which the body can get going ([`Drive`]): no gain is larger than
 //! its reciprocal, so that a body that lags behind its commands by up to as long comes to its place without
 //! swinging about it. News of others are old by the radio's delay, but these loops close over the own body.
 
@@ -23,57 +23,58 @@ const AT_REST: i32 = 250;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Drive<S> {
-    /// The highest speed, m/s; more than 0.
-    pub max_speed_mps: S,
-    /// Own radius, metres.
-    pub radius_m: S,
-    /// From one decision to the next, seconds.
-    pub step_s: S,
-    /// The time to get to the highest speed, seconds; at least [`STEPS`] steps.
-    pub response_s: S,
+    max_speed_mps: S,
+    radius_m: S,
+    step_s: S,
+    /// 1/T, where T is the time to get to the highest speed, or some steps if that is longer, 1/s.
+    rate: S,
+    halt_m: S,
 }
 
 impl<S: Scalar> Drive<S> {
-    /// Of a body that goes at `max_speed_mps` at most.
+    /// Of a body at the highest speed that it can have where it is.
     #[must_use]
-    pub fn new(body: &Body<S>, max_speed_mps: S) -> Self {
-        let by_inertia = max_speed_mps.checked_div(body.max_acceleration_mps2).unwrap_or(S::ZERO);
-        let response_s = by_inertia.max(body.step_s * S::from_i32(STEPS));
-        Self { max_speed_mps, radius_m: body.radius_m, step_s: body.step_s, response_s }
+    pub fn new(body: &Body<S>) -> Self {
+        let Body { max_speed_mps, max_acceleration_mps2, radius_m, step_s, .. } = *body;
+        let by_inertia = max_speed_mps.checked_div(max_acceleration_mps2).unwrap_or(S::ZERO);
+        let response_s = by_inertia.max(step_s * S::from_i32(STEPS));
+        let rate = S::ONE.checked_div(response_s).unwrap_or(S::ZERO);
+        let halt_m = radius_m + max_speed_mps * response_s * S::HALF;
+        Self { max_speed_mps, radius_m, step_s, rate, halt_m }
     }
 
-    /// The lag at which a leader stands, metres; half of it is too far from one's place to count as being there.
+    /// The lag at which a leader stands, metres: the own radius, and half of the way in which a body gets going. Half of it is
+    /// too far from a place to count as being there.
     #[must_use]
-    pub fn halt_m(&self) -> S {
-        self.radius_m + self.max_speed_mps * self.response_s * S::HALF
+    pub const fn halt_m(&self) -> S {
+        self.halt_m
     }
 
     /// How near counts as being at the goal, metres, if the robot was there before or not.
     #[must_use]
     pub fn tolerance_m(&self, was_there: bool) -> S {
-        let near_m = self.radius_m * S::from_milli(AT_REST);
-        if was_there { near_m + near_m } else { near_m }
+        self.radius_m * S::from_milli(if was_there { 2 * AT_REST } else { AT_REST })
     }
 
     /// The velocity towards a place `way_m` off that moves at `place_mps`. At most the highest speed.
     #[must_use]
     pub fn follow(&self, way_m: Vec2<S>, place_mps: Vec2<S>) -> Vec2<S> {
-        let correction = way_m * S::ONE.checked_div(self.response_s).unwrap_or(S::ZERO);
-        (place_mps + correction.clamp_norm(self.max_speed_mps)).clamp_norm(self.max_speed_mps)
+        let correction_mps = (way_m * self.rate).clamp_norm(self.max_speed_mps);
+        (place_mps + correction_mps).clamp_norm(self.max_speed_mps)
     }
 
     /// The top leader's speed, m/s: with a reserve for the others, slower in proportion to how far the last of them is
     /// behind, and so that it comes to rest `left_m` ahead with half of the braking that a body has.
     #[must_use]
     pub fn leads_at(&self, lag_m: S, left_m: S) -> S {
-        let most = self.max_speed_mps;
-        let reserved = most * S::from_milli(1000 - RESERVE);
-        let behind = lag_m.checked_div(self.halt_m()).unwrap_or(S::ONE).clamp(S::ZERO, S::ONE);
-        let near = left_m.checked_div(self.response_s).unwrap_or(S::ZERO);
-        let half = most * S::HALF;
+        let reserved = self.max_speed_mps * S::from_milli(1000 - RESERVE);
+        let room_m = (self.halt_m - lag_m).max(S::ZERO);
+        let speed = (reserved * room_m).checked_div(self.halt_m).unwrap_or(S::ZERO);
+        let half = self.max_speed_mps * S::HALF;
+        let near = left_m * self.rate;
         // v^2 = (V/2)^2 + 2 (V/2T) (d - VT/2), as a slope that ends where the proportional law begins.
-        let before_goal = if near <= half { near } else { (most * near - half * half).sqrt() };
-        (reserved * (S::ONE - behind)).min(before_goal)
+        let before_goal = if near <= half { near } else { ((near + near - half) * half).sqrt() };
+        speed.min(before_goal)
     }
 
     /// The velocity nearest to `wish_mps` that a leader takes after `before_mps`: it gets going and turns half as
@@ -82,8 +83,7 @@ impl<S: Scalar> Drive<S> {
     pub fn gently(&self, before_mps: Vec2<S>, wish_mps: Vec2<S>) -> Vec2<S> {
         let change = wish_mps - before_mps;
         let brakes = change.dot(before_mps) < S::ZERO;
-        let share = self.step_s.checked_div(self.response_s).unwrap_or(S::ONE);
-        let most = self.max_speed_mps * share * if brakes { S::ONE } else { S::HALF };
+        let most = self.max_speed_mps * self.step_s * self.rate * if brakes { S::ONE } else { S::HALF };
         before_mps + change.clamp_norm(most)
     }
 }

@@ -192,12 +192,9 @@ impl Summary {
             line("formation error", format!("{error:.3} cells per robot ({best_fit:.3} by best fit)"))?;
             line("graph distance", format!("{distance:.3}"))?;
         }
-        if let (Some(mean), Some(worst), Some(robot), Some(at_s)) = (
-            self.place_error_mean_m,
-            self.place_error_worst_m,
-            self.place_error_worst_robot,
-            self.place_error_worst_s,
-        ) {
+        if let (Some(mean), Some(worst), Some(robot), Some(at_s)) =
+            (self.place_error_mean_m, self.place_error_worst_m, self.place_error_worst_robot, self.place_error_worst_s)
+        {
             let worst = format!("at most {worst:.3} m (robot {robot} after {at_s:.1} s)");
             line("off their places", format!("after 10 s, {worst}, {mean:.3} m on average"))?;
         }

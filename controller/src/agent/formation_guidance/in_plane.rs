@@ -18,9 +18,6 @@ use crate::template::{Template, TemplateEntry};
 use crate::wire::{RequestKind, TemplateAssignment};
 use serde::Serialize;
 
-/// A leader that stands for others is slower than that, thousandths of its highest speed.
-const SLOW: i32 = 100;
-
 /// [`FormationGuidance`] on a body that moves in the plane; see [`crate::formation::Drive`] for the law.
 ///
 /// Who leads, who is followed, who is asked and given up: all that is as on the grid, decided as often as
@@ -33,8 +30,8 @@ pub struct FormationInPlane<S, const CELLS: usize, const M: usize, const F: usiz
     beside: Beside<S>,
     /// What it wished last as a leader, m/s.
     wish_mps: Vec2<S>,
-    /// How long it has waited for others on end, seconds.
-    waited_s: S,
+    /// How far it would have gone while it waited for others on end, metres.
+    waited_m: S,
     is_there: bool,
 }
 
@@ -66,11 +63,11 @@ impl<S: Scalar> Step<'_, S> {
     }
 
     /// How fast the others can be where their places are, as far as that is in sight, m/s.
-    fn slowest_mps(&self, entries: &[TemplateEntry]) -> S {
+    fn slowest_mps(&self, own_mps: S, entries: &[TemplateEntry]) -> S {
         let price = |cell: Cell| self.window.get(cell).filter(|&u| u != BLOCKED);
         let own = price(self.cell).unwrap_or(1);
         let dearest = entries.iter().filter_map(|entry| price(self.cell + entry.offset)).fold(own, u8::max);
-        self.drive.max_speed_mps * S::from_ratio(own.into(), dearest.into())
+        own_mps * S::from_ratio(own.into(), dearest.into())
     }
 
     /// Whether a leader can go straight: no cell in sight is easier than those under its way and under the others' places
@@ -85,7 +82,9 @@ impl<S: Scalar> Step<'_, S> {
     }
 }
 
-impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usize> FormationInPlane<S, CELLS, M, F, L> {
+impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usize>
+    FormationInPlane<S, CELLS, M, F, L>
+{
     /// `law` in the plane, cruising at `speed_mps`. The body's own limit holds too, less a tenth for the top leader.
     #[must_use]
     pub fn new(mut law: FormationGuidance<CELLS, M, F, L>, speed_mps: S) -> Self {
@@ -94,7 +93,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             cells: CellFollower::new(law, speed_mps),
             beside: Beside::NEW,
             wish_mps: Vec2::ZERO,
-            waited_s: S::ZERO,
+            waited_m: S::ZERO,
             is_there: false,
         }
     }
@@ -126,7 +125,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             cell: here.grid.cell.cell,
             offset_m: here.in_cell.offset_m,
             cell_m: here.in_cell.cell_m,
-            drive: Drive::new(&input.body, input.body.max_speed_mps),
+            drive: Drive::new(&input.body),
         };
         let view = self.inside().view(input.neighbors);
         let to_goal_m = step.to_middle(decision.target);
@@ -151,20 +150,19 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             }
             status.is_at_goal = has_arrived && self.comes_to_rest(input, to_goal_m, &step.drive, status, &mut wish_mps);
             self.wish_mps = input.body.velocity_mps.xy();
-            self.waited_s = S::ZERO;
+            self.waited_m = S::ZERO;
         } else {
             let is_near = to_goal_m.norm() < step.cell_m && step.is_open(to_goal_m);
             is_straight = is_near || step.is_even(to_goal_m, &view.entries);
             let way_m = if is_straight { to_goal_m } else { by_cells_mps.xy() };
             let ahead = way_m.normalized().unwrap_or_default();
             let lag_m = self.lag_to_wait_for(input, &view, &step, ahead);
-            let cruise_mps = self.cells.speed_mps();
-            let slowest_mps = cruise_mps.min(step.slowest_mps(&view.entries));
+            let slowest_mps = step.slowest_mps(input.body.max_speed_mps, &view.entries).min(self.cells.speed_mps());
             let speed = step.drive.leads_at(lag_m, to_goal_m.norm()).min(slowest_mps);
-            wish_mps = step.drive.gently(self.wish_mps.clamp_norm(input.body.max_speed_mps), ahead * speed);
+            wish_mps = step.drive.gently(self.wish_mps, ahead * speed);
             self.wish_mps = wish_mps;
-            let slow_mps = step.drive.max_speed_mps * S::from_milli(SLOW);
-            let stands = lag_m >= step.drive.halt_m() && wish_mps.norm() < slow_mps;
+            // In the time in which it would have gone as far, it has braked.
+            let stands = lag_m >= step.drive.halt_m() && self.waited_m > step.drive.halt_m() + step.drive.halt_m();
             status.waits_for = stands.then_some(Wait::Formation);
             status.is_at_goal = self.comes_to_rest(input, to_goal_m, &step.drive, status, &mut wish_mps);
         }
@@ -193,7 +191,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         let claim = self.beside.claim(input, way_m.extend(S::ZERO), tolerance_m);
         if let Claim::Yields(room_m) = claim {
             let away = -way_m.normalized().unwrap_or_default();
-            *wish_mps = if way_m.norm() < room_m { away * drive.max_speed_mps } else { Vec2::ZERO };
+            *wish_mps = if way_m.norm() < room_m { away * input.body.max_speed_mps } else { Vec2::ZERO };
         }
         let is_beside = claim == Claim::IsBeside;
         if is_beside {
@@ -214,11 +212,11 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
     ) -> S {
         let law = self.inside();
         let lag_m = if law.leader.is_somebody() { S::ZERO } else { self.lag_m(input, view, step, ahead) };
-        let crossing_s = step.cell_m.checked_div(self.cells.speed_mps()).unwrap_or(S::ZERO);
-        let patience_s = crossing_s * S::from_i32(self.inside().formation.patience.into());
+        let patience_m = step.cell_m * S::from_i32(self.inside().formation.patience.into());
         let has_to_stand = lag_m >= step.drive.halt_m();
-        self.waited_s = if has_to_stand { (self.waited_s + input.body.step_s).min(patience_s) } else { S::ZERO };
-        if self.waited_s < patience_s { lag_m } else { S::ZERO }
+        let waits_m = self.cells.speed_mps() * input.body.step_s;
+        self.waited_m = if has_to_stand { (self.waited_m + waits_m).min(patience_m) } else { S::ZERO };
+        if self.waited_m < patience_m { lag_m } else { S::ZERO }
     }
 
     /// How far the last of those who follow is behind its place, metres. O(F N).

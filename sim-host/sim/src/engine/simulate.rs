@@ -2,8 +2,8 @@
 
 use super::witness::Witness;
 use super::{Engine, ExternalController, Grid, Ground, HostLaw, PlaneGround};
-use crate::metrics::{Keeping, PlaceError};
 use crate::metrics::waits::WaitCount;
+use crate::metrics::{Keeping, PlaceError};
 use crate::record::{PacketCounts, RobotRow, TickRow};
 use crate::scenario::Scenario;
 use crate::terrain::Terrain;
