@@ -43,6 +43,7 @@ mod tests;
 
 pub use measure::{FormationError, GraphDistance, graph_distance};
 pub use neighbors::{Found, Member, Seen, find_leader, find_neighbors};
+pub(crate) use places::scaled;
 pub use places::{Drive, behind, is_straight};
 pub use ranks::Ranks;
 pub use steering::{Anchor, Footprint, Pace, aim, blended, def, deviation, distances, lag, should_stay};

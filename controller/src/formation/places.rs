@@ -25,6 +25,8 @@ const AT_REST: i32 = 250;
 pub struct Drive<S> {
     max_speed_mps: S,
     radius_m: S,
+    /// Half of it: what the gentle half of the law goes by.
+    half_mps: S,
     step_s: S,
     /// 1/T, where T is the time to get to the highest speed, or some steps if that is longer, 1/s.
     rate: S,
@@ -39,8 +41,9 @@ impl<S: Scalar> Drive<S> {
         let by_inertia = max_speed_mps.checked_div(max_acceleration_mps2).unwrap_or(S::ZERO);
         let response_s = by_inertia.max(step_s * S::from_i32(STEPS));
         let rate = S::ONE.checked_div(response_s).unwrap_or(S::ZERO);
-        let halt_m = radius_m + max_speed_mps * response_s * S::HALF;
-        Self { max_speed_mps, radius_m, step_s, rate, halt_m }
+        let half_mps = max_speed_mps * S::HALF;
+        let halt_m = radius_m + half_mps * response_s;
+        Self { max_speed_mps, radius_m, half_mps, step_s, rate, halt_m }
     }
 
     /// The lag at which a leader stands, metres: the own radius, and half of the way in which a body gets going. Half of it is
@@ -59,8 +62,14 @@ impl<S: Scalar> Drive<S> {
     /// The velocity towards a place `way_m` off that moves at `place_mps`. At most the highest speed.
     #[must_use]
     pub fn follow(&self, way_m: Vec2<S>, place_mps: Vec2<S>) -> Vec2<S> {
-        let correction_mps = (way_m * self.rate).clamp_norm(self.max_speed_mps);
+        let correction_mps = scaled(way_m, self.rate).clamp_norm(self.max_speed_mps);
         (place_mps + correction_mps).clamp_norm(self.max_speed_mps)
+    }
+
+    /// Whether a robot is so far behind a place `way_m` off that goes on at `place_mps` that its leader should stand.
+    #[must_use]
+    pub fn is_far_behind(&self, way_m: Vec2<S>, place_mps: Vec2<S>) -> bool {
+        dot(way_m, place_mps) > self.max_speed_mps * self.halt_m
     }
 
     /// The top leader's speed, m/s: with a reserve for the others, slower in proportion to how far the last of them is
@@ -70,7 +79,7 @@ impl<S: Scalar> Drive<S> {
         let reserved = self.max_speed_mps * S::from_milli(1000 - RESERVE);
         let room_m = (self.halt_m - lag_m).max(S::ZERO);
         let speed = (reserved * room_m).checked_div(self.halt_m).unwrap_or(S::ZERO);
-        let half = self.max_speed_mps * S::HALF;
+        let half = self.half_mps;
         let near = left_m * self.rate;
         // v^2 = (V/2)^2 + 2 (V/2T) (d - VT/2), as a slope that ends where the proportional law begins.
         let before_goal = if near <= half { near } else { ((near + near - half) * half).sqrt() };
@@ -82,41 +91,55 @@ impl<S: Scalar> Drive<S> {
     #[must_use]
     pub fn gently(&self, before_mps: Vec2<S>, wish_mps: Vec2<S>) -> Vec2<S> {
         let change = wish_mps - before_mps;
-        let brakes = change.dot(before_mps) < S::ZERO;
-        let most = self.max_speed_mps * self.step_s * self.rate * if brakes { S::ONE } else { S::HALF };
+        let half = self.half_mps * self.step_s * self.rate;
+        let most = if dot(change, before_mps) < S::ZERO { half + half } else { half };
         before_mps + change.clamp_norm(most)
     }
+}
+
+// Each once for all of this law: inlined, products of fixed-point numbers are long.
+
+#[inline(never)]
+fn dot<S: Scalar>(a: Vec2<S>, b: Vec2<S>) -> S {
+    a.dot(b)
+}
+
+/// `v * s`.
+#[inline(never)]
+pub(crate) fn scaled<S: Scalar>(v: Vec2<S>, s: S) -> Vec2<S> {
+    v * s
 }
 
 /// How far `off_m` (actual minus desired) is behind for a formation that goes in direction `ahead`, metres: who is ahead
 /// or aside loses nothing when the others go on.
 #[must_use]
 pub fn behind<S: Scalar>(off_m: Vec2<S>, ahead: Vec2<S>) -> S {
-    (-off_m.dot(ahead)).max(S::ZERO)
+    (-dot(off_m, ahead)).max(S::ZERO)
 }
 
 /// Whether all cells under the straight way `way_m` are as `is_good` wants them, as far as the window shows them: of a robot
 /// `offset_m` off the middle of its `cell`. Looks at a point each half cell, O(width + height) of them.
 #[must_use]
+#[inline(never)]
 pub fn is_straight<S: Scalar>(
     window: &Window<'_>,
     (cell, offset_m, cell_m): (Cell, Vec2<S>, S),
     way_m: Vec2<S>,
     is_good: &dyn Fn(Cell) -> bool,
 ) -> bool {
-    let Some(ahead) = way_m.normalized() else { return true };
-    let step_m = cell_m * S::HALF;
-    let steps = way_m.norm().checked_div(step_m).and_then(S::floor_to_i32).unwrap_or(i32::MAX);
-    let most = 2 * (i32::from(window.width()) + i32::from(window.height()));
-    let index = |at: S| {
-        let cells = at.checked_div(cell_m)? + S::HALF;
-        i16::try_from(cells.floor_to_i32()?).ok()
+    /// A cell is 2^6 parts; half of it 2^5.
+    const PARTS: u32 = 6;
+    let Some(per_m) = S::from_i32(1 << PARTS).checked_div(cell_m) else { return false };
+    let parts = |length_m: Vec2<S>| {
+        let parts = scaled(length_m, per_m);
+        Some((parts.x.floor_to_i32()?, parts.y.floor_to_i32()?))
     };
-    let under = |way: Vec2<S>| {
-        let at = offset_m + way;
-        Some(cell + Cell::new(index(at.x)?, index(at.y)?)).filter(|&at| window.get(at).is_some())
+    let (Some((x, y)), Some((dx, dy))) = (parts(offset_m), parts(way_m)) else { return false };
+    let points = (dx.saturating_abs().max(dy.saturating_abs()) >> (PARTS - 1)).saturating_add(1);
+    let index = |from: i32, way: i32, point: i32| {
+        let moved = way.saturating_mul(point).checked_div(points).unwrap_or(0);
+        (from.saturating_add(moved).saturating_add(1 << (PARTS - 1)) >> PARTS) as i16
     };
-    let on_way = (1..=steps.min(most)).map(|step| ahead * (step_m * S::from_i32(step)));
-    // The end is not on a half cell; what is out of sight ends the look.
-    on_way.map_while(under).all(is_good) && under(way_m).is_none_or(is_good)
+    let on_way = (1..=points).map(|point| cell + Cell::new(index(x, dx, point), index(y, dy, point)));
+    on_way.take_while(|&cell| window.get(cell).is_some()).all(is_good)
 }

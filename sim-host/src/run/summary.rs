@@ -48,6 +48,9 @@ pub struct Summary {
     place_error_worst_m: Option<f64>,
     place_error_worst_robot: Option<u32>,
     place_error_worst_s: Option<f64>,
+    /// The time until the last one arrived over what the slowest would need by itself: straight to its goal on easy land,
+    /// getting going and braking as hard as it can; null: no formation in the plane, or not all arrived.
+    time_over_free_time: Option<f64>,
     /// Least distance between the surfaces of two bodies, metres; null: on the grid, or nobody came near.
     least_gap_m: Option<f64>,
     /// Least distance between a body and an obstacle, metres.
@@ -117,6 +120,23 @@ fn finite(value: Option<f64>) -> Option<f64> {
     value.filter(|value| value.is_finite())
 }
 
+/// The longest that a robot of a formation in the plane would need by itself, seconds.
+fn free_seconds(scenario: &Scenario) -> Option<f64> {
+    let plane = scenario.plane.as_ref().filter(|_| scenario.formation.is_some())?;
+    let free = plane.starts.iter().enumerate().filter_map(|(index, start)| {
+        let group = plane.group(index);
+        let goal_m = start.places.first()?.position_m;
+        let off = [0, 1].map(|axis| goal_m[axis] - start.position_m[axis]);
+        let (way_m, speed) = (off[0].hypot(off[1]), group.cruise_mps);
+        let by_inertia = speed / group.abilities.max_acceleration_mps2;
+        // A way too short to get going has no top.
+        let most_m = speed * by_inertia;
+        let short = 2.0 * by_inertia * (way_m / most_m).sqrt();
+        Some(if way_m < most_m { short } else { way_m / speed + by_inertia })
+    });
+    free.fold(None, |longest: Option<f64>, free| Some(longest.map_or(free, |longest| longest.max(free))))
+}
+
 impl Summary {
     /// Of a run that left these files; how long it took and whether it was stopped is for the caller to add.
     pub fn new(scenario: &Scenario, outcome: &Outcome, files: Vec<PathBuf>) -> Self {
@@ -147,6 +167,10 @@ impl Summary {
             place_error_worst_m: outcome.place_error.map(|error| error.worst_m),
             place_error_worst_robot: outcome.place_error.map(|error| error.robot),
             place_error_worst_s: outcome.place_error.map(|error| error.at_s),
+            time_over_free_time: units.iter().max().and_then(|&last| {
+                let free_s = free_seconds(scenario).filter(|_| outcome.arrived == scenario.robots.len())?;
+                Some(seconds(last as f64) / free_s)
+            }),
             least_gap_m: finite(outcome.clearance.map(|c| c.bodies_m)),
             least_obstacle_gap_m: finite(outcome.clearance.map(|c| c.solids_m)),
             least_intruder_gap_m: finite(outcome.clearance.map(|c| c.intruders_m)),
@@ -197,6 +221,9 @@ impl Summary {
         {
             let worst = format!("at most {worst:.3} m (robot {robot} after {at_s:.1} s)");
             line("off their places", format!("after 10 s, {worst}, {mean:.3} m on average"))?;
+        }
+        if let Some(ratio) = self.time_over_free_time {
+            line("time", format!("{ratio:.3} times of what the slowest needs by itself, straight"))?;
         }
         if self.washed > 0 {
             line("in downwash", self.washed.to_string())?;

@@ -7,7 +7,7 @@ use crate::agent::cell_follower::CellFollower;
 use crate::agent::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
 use crate::agent::route_guidance::GridWorkspace;
 use crate::agent::{InCells, Parameter, Wait};
-use crate::formation::{Drive, behind, is_straight};
+use crate::formation::{Drive, behind, is_straight, scaled};
 use crate::geom::Vec2;
 use crate::grid::{BLOCKED, Cell, Window};
 use crate::neighbor::Neighbor;
@@ -15,6 +15,7 @@ use crate::rand::Rng;
 use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
 use crate::template::{Template, TemplateEntry};
+use crate::time::Duration;
 use crate::wire::{RequestKind, TemplateAssignment};
 use serde::Serialize;
 
@@ -30,8 +31,8 @@ pub struct FormationInPlane<S, const CELLS: usize, const M: usize, const F: usiz
     beside: Beside<S>,
     /// What it wished last as a leader, m/s.
     wish_mps: Vec2<S>,
-    /// How far it would have gone while it waited for others on end, metres.
-    waited_m: S,
+    /// How long it has waited for others on end.
+    waited: Duration,
     is_there: bool,
 }
 
@@ -45,9 +46,20 @@ struct Step<'a, S> {
 }
 
 impl<S: Scalar> Step<'_, S> {
+    /// A difference of cells in metres.
+    fn metres(&self, cells: Cell) -> Vec2<S> {
+        Vec2::new(S::from_i32(cells.x.into()) * self.cell_m, S::from_i32(cells.y.into()) * self.cell_m)
+    }
+
     /// The way to the middle of a cell, metres.
     fn to_middle(&self, cell: Cell) -> Vec2<S> {
-        metres(cell - self.cell, self.cell_m) - self.offset_m
+        self.metres(cell - self.cell) - self.offset_m
+    }
+
+    /// The way to the place so many cells off another robot, metres, if that has gone on as it last said.
+    #[inline(never)]
+    fn beside(&self, input: &GuidanceInput<'_, S>, other: &Neighbor<S>, offset: Cell) -> Vec2<S> {
+        other.offset_at(input.state.position, input.now, input.ages.expire_after).xy() + self.metres(offset)
     }
 
     fn is_straight(&self, way_m: Vec2<S>, is_good: &dyn Fn(Cell) -> bool) -> bool {
@@ -93,7 +105,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             cells: CellFollower::new(law, speed_mps),
             beside: Beside::NEW,
             wish_mps: Vec2::ZERO,
-            waited_m: S::ZERO,
+            waited: Duration::ZERO,
             is_there: false,
         }
     }
@@ -112,6 +124,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         input.neighbor(id).filter(|_| keeps_touch).map(|leader| (leader, offset))
     }
 
+    #[inline(never)]
     /// The pace and the way of a robot in each step, made of what it would do from cell to cell.
     fn refine(
         &mut self,
@@ -137,20 +150,18 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             let (way_m, place_mps) = if has_arrived {
                 (to_goal_m, Vec2::ZERO)
             } else {
-                let at = leader.offset_at(input.state.position, input.now, input.ages.expire_after).xy();
-                (at + metres(offset, step.cell_m), leader.velocity_mps.xy())
+                (step.beside(input, leader, offset), leader.velocity_mps.xy())
             };
             is_straight = step.is_open(way_m);
             wish_mps = if is_straight { step.drive.follow(way_m, place_mps) } else { by_cells_mps.xy() };
-            status.is_off_place = way_m.norm() > step.drive.halt_m() * S::HALF;
+            status.is_off_place = way_m.norm() > step.drive.halt_m();
             // Who is ahead or aside lets the others go on.
-            let ahead = place_mps.normalized().unwrap_or_default();
-            if behind(-way_m, ahead) < step.drive.halt_m() {
+            if !step.drive.is_far_behind(way_m, place_mps) {
                 decision.asks.retain(|ask| ask.kind != RequestKind::Stop);
             }
             status.is_at_goal = has_arrived && self.comes_to_rest(input, to_goal_m, &step.drive, status, &mut wish_mps);
             self.wish_mps = input.body.velocity_mps.xy();
-            self.waited_m = S::ZERO;
+            self.waited = Duration::ZERO;
         } else {
             let is_near = to_goal_m.norm() < step.cell_m && step.is_open(to_goal_m);
             is_straight = is_near || step.is_even(to_goal_m, &view.entries);
@@ -159,10 +170,9 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             let lag_m = self.lag_to_wait_for(input, &view, &step, ahead);
             let slowest_mps = step.slowest_mps(input.body.max_speed_mps, &view.entries).min(self.cells.speed_mps());
             let speed = step.drive.leads_at(lag_m, to_goal_m.norm()).min(slowest_mps);
-            wish_mps = step.drive.gently(self.wish_mps, ahead * speed);
+            wish_mps = step.drive.gently(self.wish_mps, scaled(ahead, speed));
             self.wish_mps = wish_mps;
-            // In the time in which it would have gone as far, it has braked.
-            let stands = lag_m >= step.drive.halt_m() && self.waited_m > step.drive.halt_m() + step.drive.halt_m();
+            let stands = lag_m >= step.drive.halt_m() && wish_mps == Vec2::ZERO;
             status.waits_for = stands.then_some(Wait::Formation);
             status.is_at_goal = self.comes_to_rest(input, to_goal_m, &step.drive, status, &mut wish_mps);
         }
@@ -210,34 +220,36 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         step: &Step<'_, S>,
         ahead: Vec2<S>,
     ) -> S {
-        let law = self.inside();
-        let lag_m = if law.leader.is_somebody() { S::ZERO } else { self.lag_m(input, view, step, ahead) };
-        let patience_m = step.cell_m * S::from_i32(self.inside().formation.patience.into());
+        if self.inside().leader.is_somebody() {
+            return S::ZERO;
+        }
+        let lag_m = lag_m(input, view, step, ahead);
+        let patience = Duration::from_millis(i32::from(self.inside().formation.patience) * 1000);
         let has_to_stand = lag_m >= step.drive.halt_m();
-        let waits_m = self.cells.speed_mps() * input.body.step_s;
-        self.waited_m = if has_to_stand { (self.waited_m + waits_m).min(patience_m) } else { S::ZERO };
-        if self.waited_m < patience_m { lag_m } else { S::ZERO }
-    }
-
-    /// How far the last of those who follow is behind its place, metres. O(F N).
-    fn lag_m(&self, input: &GuidanceInput<'_, S>, view: &Template<F>, step: &Step<'_, S>, ahead: Vec2<S>) -> S {
-        let goes_on = |other: &&Neighbor<S>| other.mode.gives_way() && other.mode != Mode::Arrived;
-        let follows = |other: &&Neighbor<S>| comes_after(input, other.id, other.leader);
-        let lag = |other: &Neighbor<S>| {
-            let Some(entry) = view.entries.iter().find(|entry| entry.id == other.id) else {
-                // Nobody told where its place is, but it says that it is not there.
-                return if other.mode == Mode::Forming { step.drive.halt_m() * S::HALF } else { S::ZERO };
-            };
-            let at = other.offset_at(input.state.position, input.now, input.ages.expire_after).xy();
-            behind(at - metres(entry.offset, step.cell_m), ahead)
-        };
-        input.neighbors.iter().filter(goes_on).filter(follows).map(lag).fold(S::ZERO, S::max)
+        let waited = self.waited.as_micros().saturating_add(input.tick.as_micros());
+        self.waited = if has_to_stand { Duration::from_micros(waited) } else { Duration::ZERO };
+        if self.waited <= patience {
+            return lag_m;
+        }
+        self.waited = patience;
+        S::ZERO
     }
 }
 
-/// A difference of cells in metres.
-fn metres<S: Scalar>(cells: Cell, cell_m: S) -> Vec2<S> {
-    Vec2::new(S::from_i32(cells.x.into()) * cell_m, S::from_i32(cells.y.into()) * cell_m)
+/// How far the last of those who follow is behind its place, metres. O(F log N).
+fn lag_m<S: Scalar, const F: usize>(
+    input: &GuidanceInput<'_, S>,
+    view: &Template<F>,
+    step: &Step<'_, S>,
+    ahead: Vec2<S>,
+) -> S {
+    let lag = |entry: &TemplateEntry| {
+        let other = input.neighbor(entry.id)?;
+        let goes_on = other.mode.gives_way() && other.mode != Mode::Arrived;
+        let follows = goes_on && comes_after(input, other.id, other.leader);
+        follows.then(|| behind(step.beside(input, other, Cell::default() - entry.offset), ahead))
+    };
+    view.entries.iter().filter_map(lag).fold(S::ZERO, S::max)
 }
 
 impl<S, const CELLS: usize, const M: usize, const F: usize, const L: usize> Teamwork
