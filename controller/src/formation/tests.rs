@@ -264,3 +264,128 @@ proptest! {
         prop_assert!(lag >= length / 2);
     }
 }
+
+mod in_plane {
+    use super::super::{Drive, behind, is_straight};
+    use crate::body::Body;
+    use crate::geom::{Vec2, Vec3};
+    use crate::grid::{BLOCKED, Cell, Window};
+    use crate::robot::RobotId;
+    use proptest::prelude::*;
+
+    /// One metre, 2 m/s, 1 m/s^2 in steps of a tenth of a second: two seconds to get going.
+    fn body() -> Body<f32> {
+        Body {
+            id: RobotId(1),
+            velocity_mps: Vec3::ZERO,
+            radius_m: 1.0,
+            max_speed_mps: 2.0,
+            max_acceleration_mps2: 1.0,
+            step_s: 0.1,
+        }
+    }
+
+    #[test]
+    fn in_place_a_follower_goes_as_its_leader_does() {
+        let drive = Drive::new(&body());
+        let leader = Vec2::new(1.2, -0.7);
+        assert_eq!(drive.follow(Vec2::ZERO, leader), leader);
+        // A metre behind, half a metre a second faster; never above its speed.
+        assert_eq!(drive.follow(Vec2::new(1.0, 0.0), Vec2::new(1.0, 0.0)), Vec2::new(1.5, 0.0));
+        assert!((drive.follow(Vec2::new(90.0, 9.0), leader).norm() - 2.0).abs() < 1e-5);
+        assert_eq!(drive.follow(Vec2::new(f32::NAN, 0.0), Vec2::ZERO), Vec2::ZERO);
+    }
+
+    #[test]
+    fn a_leader_keeps_a_reserve_waits_in_proportion_and_comes_to_rest() {
+        let drive = Drive::new(&body());
+        assert_eq!(drive.halt_m(), 3.0);
+        assert!((drive.leads_at(0.0, 90.0) - 1.8).abs() < 1e-6);
+        assert!((drive.leads_at(1.5, 90.0) - 0.9).abs() < 1e-6);
+        assert_eq!((drive.leads_at(3.0, 90.0), drive.leads_at(9.0, 90.0)), (0.0, 0.0));
+        assert_eq!((drive.leads_at(0.0, 0.0), drive.leads_at(0.0, 1.0)), (0.0, 0.5));
+        // Without inertia ten steps take the place of the time to get going.
+        let drive = Drive::new(&Body { max_acceleration_mps2: f32::MAX, ..body() });
+        assert_eq!(drive.halt_m(), 2.0);
+    }
+
+    #[test]
+    fn who_is_ahead_or_aside_is_not_behind() {
+        let north = Vec2::new(0.0, 1.0);
+        assert_eq!(behind(Vec2::new(0.0, -3.0), north), 3.0);
+        assert_eq!(behind(Vec2::new(9.0, 0.0), north), 0.0);
+        assert_eq!(behind(Vec2::new(9.0, 5.0), north), 0.0);
+        let drive = Drive::new(&body());
+        assert!(drive.is_far_behind(Vec2::new(0.0, 3.1), north * 2.0));
+        assert!(!drive.is_far_behind(Vec2::new(0.0, 2.9), north * 2.0));
+        assert!(!drive.is_far_behind(Vec2::new(50.0, -1.0), north * 2.0));
+    }
+
+    #[test]
+    fn a_wall_on_the_straight_way_closes_it_and_one_out_of_sight_does_not() {
+        // One row of five cells of 2 m, a wall in the fourth; the robot in the second, half a metre east of its middle.
+        let cells = [1, 1, 1, BLOCKED, 1];
+        let window = Window::new(&cells, Cell::new(10, 7), 5, 1).unwrap();
+        let here = (Cell::new(11, 7), Vec2::new(0.5_f32, 0.0), 2.0);
+        let is_open = |way| is_straight(&window, here, way, &|cell| window.is_passable(cell));
+        assert!(is_open(Vec2::new(2.4, 0.0)));
+        assert!(!is_open(Vec2::new(2.6, 0.0)));
+        assert!(!is_open(Vec2::new(400.0, 0.0)), "behind the wall");
+        assert!(is_open(Vec2::new(-400.0, 0.0)), "beyond the window");
+        assert!(is_open(Vec2::ZERO));
+        let nonsense = (Cell::new(11, 7), Vec2::ZERO, 0.0);
+        assert!(!is_straight(&window, nonsense, Vec2::new(1.0, 0.0), &|_| true));
+    }
+
+    /// Where a body with inertia, a lag of a whole response time and a radio that is late ends up beside a leader that
+    /// starts, goes and stops.
+    fn follows(lag_s: f32, delay: usize) -> (f32, f32) {
+        let (body, step_s) = (body(), 0.1);
+        let mut leader = (Vec2::new(0.0, 0.0), Vec2::ZERO);
+        let mut own = (Vec2::new(-3.0, 4.0), Vec2::ZERO);
+        let mut told = std::vec::Vec::new();
+        let (mut worst, mut overshoot) = (0.0_f32, 0.0_f32);
+        for step in 0..900 {
+            let drive = Drive::new(&body);
+            leader.1 = drive.gently(leader.1, Vec2::new(drive.leads_at(0.0, 100.0 - leader.0.x), 0.0));
+            told.push(leader);
+            let (at, velocity) = told[told.len().saturating_sub(delay + 1)];
+            let place = at + velocity * (step_s * (delay as f32)).min(step_s * step as f32);
+            let wish = drive.follow(place - own.0, velocity);
+            let answer = (wish - own.1) * (step_s / lag_s).min(1.0);
+            own.1 = own.1 + answer.clamp_norm(body.max_acceleration_mps2 * step_s);
+            own.0 = own.0 + own.1 * step_s;
+            leader.0 = leader.0 + leader.1 * step_s;
+            let off = own.0 - leader.0;
+            overshoot = overshoot.max(-off.y);
+            if step > 150 {
+                worst = worst.max(off.norm());
+            }
+        }
+        (worst, overshoot)
+    }
+
+    #[test]
+    fn a_body_that_lags_comes_to_its_place_without_swinging_about_it() {
+        for delay in 0..=4 {
+            for lag_s in [0.1, 0.5, 1.0] {
+                let (worst, overshoot) = follows(lag_s, delay);
+                assert!(
+                    worst < 0.7 && overshoot < 0.6,
+                    "lag {lag_s} s, delay {delay}: {worst} m, over by {overshoot} m"
+                );
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn no_wish_is_faster_than_the_body(x: u32, y: u32, vx: u32, vy: u32, lag: u32, left: u32) {
+            let [x, y, vx, vy, lag, left] = [x, y, vx, vy, lag, left].map(f32::from_bits);
+            let drive = Drive::new(&body());
+            prop_assert!(drive.follow(Vec2::new(x, y), Vec2::new(vx, vy)).norm() <= 2.0001);
+            let speed = drive.leads_at(lag, left.abs());
+            prop_assert!(!(speed > 1.8001), "{speed}");
+        }
+    }
+}

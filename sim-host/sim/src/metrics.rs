@@ -8,7 +8,7 @@ mod formation;
 pub mod waits;
 
 pub(crate) use formation::in_cells;
-pub use formation::{FORMED_AFTER_S, FormationMeter, Keeping, PlaceError};
+pub use formation::{FORMED_AFTER_S, FormationMeter, Keeping, PlaceError, free_formation_s};
 
 /// When each robot came to its target for good.
 #[derive(Clone, Debug)]

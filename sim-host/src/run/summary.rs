@@ -4,6 +4,7 @@ use serde::Serialize;
 use staya_controller::agent::Wait;
 use staya_controller::grid::UNIT;
 use staya_sim::engine::Outcome;
+use staya_sim::metrics::free_formation_s;
 use staya_sim::metrics::waits::WaitCount;
 use staya_sim::record::PacketCounts;
 use staya_sim::scenario::Scenario;
@@ -120,23 +121,6 @@ fn finite(value: Option<f64>) -> Option<f64> {
     value.filter(|value| value.is_finite())
 }
 
-/// The longest that a robot of a formation in the plane would need by itself, seconds.
-fn free_seconds(scenario: &Scenario) -> Option<f64> {
-    let plane = scenario.plane.as_ref().filter(|_| scenario.formation.is_some())?;
-    let free = plane.starts.iter().enumerate().filter_map(|(index, start)| {
-        let group = plane.group(index);
-        let goal_m = start.places.first()?.position_m;
-        let off = [0, 1].map(|axis| goal_m[axis] - start.position_m[axis]);
-        let (way_m, speed) = (off[0].hypot(off[1]), group.cruise_mps);
-        let by_inertia = speed / group.abilities.max_acceleration_mps2;
-        // A way too short to get going has no top.
-        let most_m = speed * by_inertia;
-        let short = 2.0 * by_inertia * (way_m / most_m).sqrt();
-        Some(if way_m < most_m { short } else { way_m / speed + by_inertia })
-    });
-    free.fold(None, |longest: Option<f64>, free| Some(longest.map_or(free, |longest| longest.max(free))))
-}
-
 impl Summary {
     /// Of a run that left these files; how long it took and whether it was stopped is for the caller to add.
     pub fn new(scenario: &Scenario, outcome: &Outcome, files: Vec<PathBuf>) -> Self {
@@ -168,7 +152,7 @@ impl Summary {
             place_error_worst_robot: outcome.place_error.map(|error| error.robot),
             place_error_worst_s: outcome.place_error.map(|error| error.at_s),
             time_over_free_time: units.iter().max().and_then(|&last| {
-                let free_s = free_seconds(scenario).filter(|_| outcome.arrived == scenario.robots.len())?;
+                let free_s = free_formation_s(scenario).filter(|_| outcome.arrived == scenario.robots.len())?;
                 Some(seconds(last as f64) / free_s)
             }),
             least_gap_m: finite(outcome.clearance.map(|c| c.bodies_m)),

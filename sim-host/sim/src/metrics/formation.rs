@@ -1,6 +1,6 @@
 //! How well a formation is kept (KUZ section 6).
 
-use crate::scenario::Formation;
+use crate::scenario::{Formation, Scenario};
 use crate::terrain::Terrain;
 use staya_controller::grid::Cell;
 
@@ -193,6 +193,25 @@ impl FormationMeter {
 /// A cell's middle, in cells from that of (0, 0).
 pub(crate) fn in_cells(cell: Cell) -> [f64; 2] {
     [cell.x, cell.y].map(f64::from)
+}
+
+/// The longest that a robot of a formation in the plane would need by itself, straight to its goal on easy land, getting going
+/// and braking as hard as it can, seconds; `None` without such a formation.
+#[must_use]
+pub fn free_formation_s(scenario: &Scenario) -> Option<f64> {
+    let plane = scenario.plane.as_ref().filter(|_| scenario.formation.is_some())?;
+    let free = plane.starts.iter().enumerate().filter_map(|(index, start)| {
+        let group = plane.group(index);
+        let goal_m = start.places.first()?.position_m;
+        let off = [0, 1].map(|axis| goal_m[axis] - start.position_m[axis]);
+        let (way_m, speed) = (length(off), group.cruise_mps);
+        let by_inertia = speed / group.abilities.max_acceleration_mps2;
+        // A way too short to get going has no top.
+        let most_m = speed * by_inertia;
+        let short = 2.0 * by_inertia * libm::sqrt(way_m / most_m);
+        Some(if way_m < most_m { short } else { way_m / speed + by_inertia })
+    });
+    free.fold(None, |longest: Option<f64>, free| Some(longest.map_or(free, |longest| longest.max(free))))
 }
 
 fn offset(body: [f64; 2], place: [f64; 2]) -> [f64; 2] {
