@@ -71,9 +71,8 @@ fn scene(name: &str, changes: Changes<'_>, seed: u64) -> Scenario {
     let path = staya_tests::root().join("companions/formation.toml");
     let mut text = std::fs::read_to_string(path).expect("the scenario");
     for (start, line) in changes {
-        let with = |old: &str| if old.starts_with(start) { *line } else { old };
         assert!(text.lines().any(|old| old.starts_with(start)), "no line begins with {start}");
-        text = text.lines().map(|old| with(old).to_owned() + "\n").collect();
+        text = text.lines().map(|old| if old.starts_with(start) { *line } else { old }.to_owned() + "\n").collect();
     }
     let overrides = Overrides { seed: Some(seed), ticks: None };
     let parsed = Scenario::parse(&text, Path::new("formation.toml"), &overrides);

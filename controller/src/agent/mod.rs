@@ -7,7 +7,7 @@
 //! | guidance law | told besides own state and inbox | where to go | command |
 //! | --- | --- | --- | --- |
 //! | [`RouteGuidance`], [`FormationGuidance`] | [`OnGrid`] | [`Agent::assign_goal`] | [`Command::Move`] |
-//! | the same within [`CellFollower`] | [`InCells`] | [`Agent::assign_goal`] | [`Command::Velocity`] |
+//! | [`RouteGuidance`] within [`CellFollower`], [`FormationInPlane`] | [`InCells`] | [`Agent::assign_goal`] | [`Command::Velocity`] |
 //! | [`WaypointGuidance`], [`GoalFlockGuidance`] | [`InPlane`] | [`Agent::assign_waypoint`] | [`Command::Velocity`] |
 //! | [`LatticeGuidance`] | [`InPlane`] | [`Agent::assign_waypoint`], or nowhere: it flocks | [`Command::Velocity`] |
 //! | [`BoidsGuidance`] | [`InPlane`] | nowhere: it roams | [`Command::Velocity`] |

@@ -3,6 +3,9 @@
 //!
 //! Source: A. V. Kuznetsov 2017 (KUZ), section 7, algorithms 2 and 5 to 7; section 6 for the measures. Read section 7
 //! first.
+//! In the plane robots follow places that are points: [`Drive`], in `places.rs`. What is said below of cells holds for the grid, and in the plane for
+//! ways around what is closed.
+//!
 //! Everything here is a pure function on slices; what a robot remembers is [`Pace`] and its
 //! [`Template`](crate::template::Template). Lengths are integers in [`UNIT`](crate::grid::UNIT)s per cell,
 //! costs those of [`crate::cost`].
@@ -98,11 +101,11 @@ pub struct FormationParams {
     /// the time that its move and the news of it take.
     pub lead: u8,
     /// How much of a cell's price for the top leader is the land under the others' places when it
-    /// stands there, sixteenths: 0 only its own, 16 only theirs.
+    /// stands there, sixteenths: 0 only its own, 16 only theirs. In the plane, unless it is 0, the dearest cell of all counts.
     pub footprint: u8,
     /// Decisions for which a leader waits on end, and for which a follower is behind on end, before each goes on for
     /// itself until they are together again. Smaller ones part the formation at every obstacle; larger ones let it
-    /// stand the longer for a robot that has no way.
+    /// stand the longer for a robot that has no way. In the plane a leader waits for so many seconds.
     pub patience: u16,
     /// Whether a dead robot's place is closed by those behind it ([`Ranks`]) or stays empty. Kept places keep everybody at
     /// the distances that were wanted; closed ones leave no gap behind the leader and keep the formation within reach of its
