@@ -1,7 +1,7 @@
 //! Formations in the plane: how far from their places robots are, and how long they take.
 //!
-//! `cargo test -p staya-tests --test formation_plane -- --nocapture` prints the figures of all scenes. The law was made on
-//! [`TUNED`] alone; of the other scenes only the bounds were set after they had been seen.
+//! `cargo test -p staya-tests --test formation_plane -- --nocapture` prints the figures of all scenes. The law was made
+//! on [`TUNED`] alone; of the other scenes only the bounds were set after they had been seen.
 
 use staya_controller::grid::UNIT;
 use staya_sim::engine::Outcome;
@@ -10,7 +10,8 @@ use staya_sim::scenario::{Overrides, Scenario};
 use staya_tests::{run, scenario};
 use std::path::Path;
 
-/// What differs from `companions/formation.toml`: lines that take the place of those that begin alike, or come after them.
+/// What differs from `companions/formation.toml`: lines that take the place of those that begin alike, or come after
+/// them.
 type Changes<'a> = &'a [(&'a str, &'a str)];
 
 /// A name, the scene, and the bounds: metres after the first 10 s, and times of the free time.
@@ -109,8 +110,8 @@ fn so_do_others() {
     SCENES.iter().for_each(keeps_to);
 }
 
-/// Rovers in a line, 8 and 12 m apart, as autopilots start them: each has its place in the time that the last one needs to
-/// drive there, and half as long again.
+/// Rovers in a line, 8 and 12 m apart, as autopilots start them: each has its place in the time that the last one needs
+/// to drive there, and half as long again.
 #[test]
 fn those_that_start_elsewhere_form_on_the_way() {
     let line = "starts = [[20, 20], [23, 20], [25, 20], [28, 20], [30, 20], [33, 20]]";

@@ -46,8 +46,8 @@ impl<S: Scalar> Drive<S> {
         Self { max_speed_mps, radius_m, half_mps, step_s, rate, halt_m }
     }
 
-    /// The lag at which a leader stands, metres: the own radius, and half of the way in which a body gets going. Half of it is
-    /// too far from a place to count as being there.
+    /// The lag at which a leader stands, metres: the own radius, and half of the way in which a body gets going. Half
+    /// of it is too far from a place to count as being there.
     #[must_use]
     pub const fn halt_m(&self) -> S {
         self.halt_m
@@ -110,15 +110,15 @@ pub(crate) fn scaled<S: Scalar>(v: Vec2<S>, s: S) -> Vec2<S> {
     v * s
 }
 
-/// How far `off_m` (actual minus desired) is behind for a formation that goes in direction `ahead`, metres: who is ahead
-/// or aside loses nothing when the others go on.
+/// How far `off_m` (actual minus desired) is behind for a formation that goes in direction `ahead`, metres: who is
+/// ahead or aside loses nothing when the others go on.
 #[must_use]
 pub fn behind<S: Scalar>(off_m: Vec2<S>, ahead: Vec2<S>) -> S {
     (-dot(off_m, ahead)).max(S::ZERO)
 }
 
-/// Whether all cells under the straight way `way_m` are as `is_good` wants them, as far as the window shows them: of a robot
-/// `offset_m` off the middle of its `cell`. Looks at a point each half cell, O(width + height) of them.
+/// Whether all cells under the straight way `way_m` are as `is_good` wants them, as far as the window shows them: of a
+/// robot `offset_m` off the middle of its `cell`. Looks at a point each half cell, O(width + height) of them.
 #[must_use]
 #[inline(never)]
 pub fn is_straight<S: Scalar>(

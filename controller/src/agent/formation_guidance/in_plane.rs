@@ -1,5 +1,5 @@
-//! Travelling in formation in the plane: places are points that move with the top leader. The ways around what is closed
-//! are those of the grid.
+//! Travelling in formation in the plane: places are points that move with the top leader. The ways around what is
+//! closed are those of the grid.
 
 use super::{FormationGuidance, comes_after};
 use crate::agent::beside::{Beside, Claim};
@@ -22,9 +22,9 @@ use serde::Serialize;
 /// [`FormationGuidance`] on a body that moves in the plane; see [`crate::formation::Drive`] for the law.
 ///
 /// Who leads, who is followed, who is asked and given up: all that is as on the grid, decided as often as
-/// [`CellFollower`] does. In each step besides, a follower goes for its place as a point, with its leader's velocity, and
-/// the top leader goes straight to its goal where the land in sight is even, at the pace of the slowest whom it hears. Where
-/// the straight way is closed or dear, both go by the cells.
+/// [`CellFollower`] does. In each step besides, a follower goes for its place as a point, with its leader's velocity,
+/// and the top leader goes straight to its goal where the land in sight is even, at the pace of the slowest whom it
+/// hears. Where the straight way is closed or dear, both go by the cells.
 #[derive(Clone, Debug, Serialize)]
 pub struct FormationInPlane<S, const CELLS: usize, const M: usize, const F: usize, const L: usize = 0> {
     cells: CellFollower<S, FormationGuidance<CELLS, M, F, L>>,
@@ -82,8 +82,8 @@ impl<S: Scalar> Step<'_, S> {
         own_mps * S::from_ratio(own.into(), dearest.into())
     }
 
-    /// Whether a leader can go straight: no cell in sight is easier than those under its way and under the others' places
-    /// beside it.
+    /// Whether a leader can go straight: no cell in sight is easier than those under its way and under the others'
+    /// places beside it.
     fn is_even(&self, way_m: Vec2<S>, entries: &[TemplateEntry]) -> bool {
         let least = self.window.cells().iter().copied().filter(|&u| u != BLOCKED).min();
         let is_dear = |cell: Cell| self.window.get(cell).is_some_and(|u| u != BLOCKED && Some(u) > least);
@@ -124,8 +124,8 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         input.neighbor(id).filter(|_| keeps_touch).map(|leader| (leader, offset))
     }
 
-    #[inline(never)]
     /// The pace and the way of a robot in each step, made of what it would do from cell to cell.
+    #[inline(never)]
     fn refine(
         &mut self,
         input: &GuidanceInput<'_, S>,
@@ -187,8 +187,8 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         Ok(())
     }
 
-    /// Whether the robot is at its goal, `way_m` off, or beside it if somebody else stands there; who has to let another one
-    /// go there first wishes so.
+    /// Whether the robot is at its goal, `way_m` off, or beside it if somebody else stands there; who has to let
+    /// another one go there first wishes so.
     fn comes_to_rest(
         &mut self,
         input: &GuidanceInput<'_, S>,
@@ -211,8 +211,8 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         self.is_there
     }
 
-    /// How far others are behind as far as this leader waits for them, metres: not longer than its patience lasts, and not
-    /// for anybody if it goes by itself.
+    /// How far others are behind as far as this leader waits for them, metres: not longer than its patience lasts, and
+    /// not for anybody if it goes by itself.
     fn lag_to_wait_for(
         &mut self,
         input: &GuidanceInput<'_, S>,

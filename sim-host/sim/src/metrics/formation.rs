@@ -123,8 +123,8 @@ impl FormationMeter {
         (ticks > 0).then(|| PlaceError { mean_m: sum / f64::from(ticks) * self.cell_m, ..worst })
     }
 
-    /// How the formation is kept right now; `bodies[i]` is where the robot of place i is, in cells. O(n), and O(m^2) for
-    /// m lost robots.
+    /// How the formation is kept right now; `bodies[i]` is where the robot of place i is, in cells. O(n), and O(m^2)
+    /// for m lost robots.
     ///
     /// # Panics
     /// When there are no bodies, or more of them than places.
@@ -195,8 +195,8 @@ pub(crate) fn in_cells(cell: Cell) -> [f64; 2] {
     [cell.x, cell.y].map(f64::from)
 }
 
-/// The longest that a robot of a formation in the plane would need by itself, straight to its goal on easy land, getting going
-/// and braking as hard as it can, seconds; `None` without such a formation.
+/// The longest that a robot of a formation in the plane would need by itself, straight to its goal on easy land,
+/// getting going and braking as hard as it can, seconds; `None` without such a formation.
 #[must_use]
 pub fn free_formation_s(scenario: &Scenario) -> Option<f64> {
     let plane = scenario.plane.as_ref().filter(|_| scenario.formation.is_some())?;
