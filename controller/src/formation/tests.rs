@@ -337,8 +337,8 @@ mod in_plane {
         assert!(!is_straight(&window, nonsense, Vec2::new(1.0, 0.0), &|_| true));
     }
 
-    /// Where a body with inertia, a lag of a whole response time and a radio that is late ends up beside a leader that
-    /// starts, goes and stops.
+    /// How far a body that lags ends up from its place beside a leader that does not, and that starts, goes and stops, and
+    /// how far beyond it, when news are so many steps old.
     fn follows(lag_s: f32, delay: usize) -> (f32, f32) {
         let (body, step_s) = (body(), 0.1);
         let mut leader = (Vec2::new(0.0, 0.0), Vec2::ZERO);
@@ -384,7 +384,7 @@ mod in_plane {
             let [x, y, vx, vy, lag, left] = [x, y, vx, vy, lag, left].map(f32::from_bits);
             let drive = Drive::new(&body());
             prop_assert!(drive.follow(Vec2::new(x, y), Vec2::new(vx, vy)).norm() <= 2.0001);
-            let speed = drive.leads_at(lag, left.abs());
+            let speed = drive.leads_at(lag.abs(), left.abs());
             prop_assert!(!(speed > 1.8001), "{speed}");
         }
     }
