@@ -1,4 +1,4 @@
-//! The command line: `staya run | view | page | hil | bridge | companion | terrain | orca | experiment`.
+//! The command line: `staya run | sweep | view | page | hil | bridge | companion | terrain | orca | experiment`.
 //!
 //! A new command is a module with a `clap::Args` struct and `run(&self, &Global) -> Result<Ended>`,
 //! and one line in `Command`. Results go to standard output, progress and errors to standard
@@ -10,6 +10,7 @@ mod companion;
 mod hil;
 mod page;
 mod run;
+mod sweep;
 mod terrain;
 mod view;
 mod watch;
@@ -35,6 +36,8 @@ struct Cli {
 enum Command {
     /// Run a scenario.
     Run(run::RunArgs),
+    /// Run a scenario thousands of times, with other values in its fields, on this machine or on a cluster.
+    Sweep(sweep::SweepArgs),
     /// Look at a run in the browser, and take hold of it; or play a recording.
     View(view::ViewArgs),
     /// Make one HTML file of a run, for any browser, without server or network.
@@ -80,6 +83,7 @@ fn run(cli: &Cli) -> Result<Ended> {
     }
     match &cli.command {
         Command::Run(args) => args.run(&cli.global),
+        Command::Sweep(args) => args.run(&cli.global),
         Command::View(args) => args.run(&cli.global),
         Command::Page(args) => args.run(&cli.global),
         Command::Hil(args) => args.run(&cli.global),

@@ -1,7 +1,6 @@
 //! `staya run SCENARIO`: one run, its figures and its pictures.
 
 mod also;
-mod summary;
 
 use crate::watch::WatchArgs;
 use also::{Also, AlsoArgs};
@@ -12,12 +11,12 @@ use staya_plot::{motion_pictures, run_pictures};
 use staya_sim::engine::{Moment, Outcome, simulate};
 use staya_sim::record::{self, History, Options, Recorder, Results, RobotRow, write_summary};
 use staya_sim::scenario::{Overrides, Scenario};
+use staya_sim::summary::Summary;
 use staya_view::recording::RecordingError;
 use staya_view::watch::Watcher;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use summary::Summary;
 
 /// Which scenario, and what of it is otherwise.
 #[derive(Args, Clone, Debug)]

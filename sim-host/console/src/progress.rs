@@ -77,6 +77,11 @@ impl Progress {
         Self { bar, lines: (!terminal && !global.quiet).then(Instant::now) }
     }
 
+    /// There are `total` steps, as turns out.
+    pub fn of(&mut self, total: u64) {
+        self.bar.set_length(total);
+    }
+
     /// `done` steps are behind; `message` says what is worth watching.
     pub fn set(&mut self, done: u64, message: impl FnOnce() -> String) {
         self.bar.set_position(done);

@@ -26,5 +26,4 @@ pub mod optimal;
 pub mod options;
 pub mod orca;
 pub mod route;
-pub mod stats;
 pub mod walk;

@@ -7,7 +7,6 @@
 
 use crate::experiment::{Experiment, GoesOn, in_parallel};
 use crate::optimal;
-use crate::stats::Summary;
 use crate::walk::{Task, Walker, holds};
 use anyhow::{Context as _, Result, ensure};
 use clap::ValueEnum;
@@ -16,6 +15,7 @@ use staya_controller::grid::UNIT;
 use staya_controller::route::{Replan, RouteParams};
 use staya_sim::terrain::movingai::{Query, parse_map, parse_scen};
 use staya_sim::terrain::{Terrain, read};
+use staya_stats::Summary;
 use std::fmt::{self, Display, Formatter};
 use std::path::{Path, PathBuf};
 

@@ -1,6 +1,6 @@
 //! Pictures as SVG and PNG, on machines without fonts or displays.
 //!
-//! [`Chart`] and [`Panels`] draw data; [`run_pictures`] draws what happened in a run; [`flock`] draws robots in the plane at
+//! [`Chart`], [`Panels`] and [`HeatMap`] draw data; [`run_pictures`] draws what happened in a run; [`flock`] draws robots in the plane at
 //! some moments. All make a
 //! [`canvas::Canvas`], a list of shapes, which is written once as SVG and once, through
 //! `tiny-skia` and letters that are compiled in, as PNG. Drawing asks for no clock and no
@@ -12,6 +12,7 @@ pub mod colour;
 mod crowd;
 pub mod flock;
 mod font;
+pub mod heat;
 mod layout;
 mod look;
 mod map;
@@ -29,6 +30,7 @@ mod trajectories;
 mod write;
 
 pub use chart::{Chart, Series};
+pub use heat::HeatMap;
 pub use motion::{motion_pictures, motion_sheet};
 pub use panels::Panels;
 pub use run::run_pictures;

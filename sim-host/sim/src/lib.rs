@@ -2,7 +2,7 @@
 //!
 //! [`scenario`] reads what to simulate, [`terrain`] the land, [`engine`] runs every robot's
 //! [`staya_controller::agent::Agent`] through two-phase ticks over [`world`] and [`radio`],
-//! [`metrics`] measures, [`record`] keeps what happened. [`nearby`] tells who is near whom, [`key`] reads the secret of a swarm.
+//! [`metrics`] measures, [`record`] keeps what happened, [`summary`] has the figures. [`nearby`] tells who is near whom, [`key`] reads the secret of a swarm.
 
 pub mod engine;
 pub mod file;
@@ -12,5 +12,6 @@ pub mod nearby;
 pub mod radio;
 pub mod record;
 pub mod scenario;
+pub mod summary;
 pub mod terrain;
 pub mod world;

@@ -4,9 +4,9 @@ use super::watch::{Frame, Run};
 use super::{Case, Plan, Reference};
 use crate::experiment::Maybe;
 use crate::options::word;
-use crate::stats::quantile;
 use serde::Serialize;
 use staya_sim::metrics::flock::{AlphaLimits, AlphaVerdict, FlockMeasure, alpha_flocking};
+use staya_stats::quantile;
 use std::fmt::{self, Display, Formatter};
 
 /// One run.

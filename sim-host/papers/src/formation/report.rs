@@ -2,9 +2,9 @@
 
 use super::{Crossing, Plan, ROBOTS, Run, Way};
 use crate::experiment::Maybe;
-use crate::stats::{LogFit, Summary, mean};
 use serde::Serialize;
 use staya_controller::grid::UNIT;
+use staya_stats::{LogFit, Summary, mean};
 use std::fmt::{self, Display, Formatter};
 
 /// The six on all landscapes of a point, one way to cross them.

@@ -4,9 +4,9 @@ use super::Plan;
 use super::watch::{Frame, Run};
 use crate::experiment::Maybe;
 use crate::options::word;
-use crate::stats::mean;
 use serde::Serialize;
 use staya_controller::agent::SafetyKind;
+use staya_stats::mean;
 use std::fmt::{self, Display, Formatter};
 
 /// One K1 and one R_nbh: means over the runs.

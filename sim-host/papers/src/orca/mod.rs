@@ -4,7 +4,6 @@
 pub mod pictures;
 mod view;
 
-use crate::stats::{mean, quantile};
 use serde::Serialize;
 use staya_controller::geom::Vec2;
 use staya_controller::orca::{
@@ -12,6 +11,7 @@ use staya_controller::orca::{
     VoxelTable16k, VoxelTable64k,
 };
 use staya_controller::rand::Rng;
+use staya_stats::{mean, quantile};
 use std::f64::consts::TAU;
 use std::fmt;
 

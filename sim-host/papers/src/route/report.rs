@@ -3,13 +3,13 @@
 use super::{Coefficient, Land, Plan, Run, ticks};
 use crate::experiment::Maybe;
 use crate::options::word;
-use crate::stats::{Goodness, Histogram, NortonRice, Summary, mean};
 use rayon::prelude::*;
 use serde::Serialize;
 use staya_controller::cost::Gain;
 use staya_controller::grid::Norm;
 use staya_controller::route::RouteParams;
 use staya_sim::terrain::metrics::obstacles_of_entropy;
+use staya_stats::{Goodness, Histogram, NortonRice, Summary, mean};
 use std::fmt::{self, Display, Formatter};
 
 /// Bins of the histograms of arrival times.

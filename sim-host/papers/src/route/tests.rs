@@ -32,7 +32,7 @@ fn all(plan: &Plan) -> Vec<Vec<Run>> {
 fn mean_loss(results: &[Vec<Run>]) -> f64 {
     let runs = results.iter().flatten();
     let losses: Vec<f64> = runs.map(|run| run.walks[0].cost as f64 / run.optimal_cost as f64 - 1.0).collect();
-    crate::stats::mean(&losses).unwrap()
+    staya_stats::mean(&losses).unwrap()
 }
 
 #[test]

@@ -84,6 +84,29 @@ impl<'a> Source<'a> {
         }
     }
 
+    /// An error about what stands at a place of the text.
+    pub fn error_at(
+        &self,
+        span: Range<usize>,
+        field: &str,
+        what: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> ScenarioError {
+        ScenarioError::Field {
+            path: self.path.to_owned(),
+            line: line_of(self.text, Some(span)),
+            field: field.to_owned(),
+            what: what.into(),
+            remedy: remedy.into(),
+        }
+    }
+
+    /// The fields and where they stand.
+    #[must_use]
+    pub fn root(&self) -> &DeTable<'a> {
+        self.root.get_ref()
+    }
+
     /// What serde says of a field, said with file, line and field; `list` is where all fields are listed.
     pub fn serde_error(&self, error: &toml::de::Error, list: &str) -> ScenarioError {
         let mut field = String::new();

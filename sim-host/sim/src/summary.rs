@@ -1,13 +1,14 @@
 //! The figures of a run, for programs and for readers.
 
+use crate::engine::Outcome;
+use crate::metrics::free_formation_s;
+use crate::metrics::waits::WaitCount;
+use crate::record::PacketCounts;
+use crate::scenario::Scenario;
 use serde::Serialize;
 use staya_controller::agent::Wait;
 use staya_controller::grid::UNIT;
-use staya_sim::engine::Outcome;
-use staya_sim::metrics::free_formation_s;
-use staya_sim::metrics::waits::WaitCount;
-use staya_sim::record::PacketCounts;
-use staya_sim::scenario::Scenario;
+use staya_controller::names::Named;
 use std::fmt::{Display, Formatter, Write as _};
 use std::path::{Path, PathBuf};
 
@@ -123,6 +124,7 @@ fn finite(value: Option<f64>) -> Option<f64> {
 
 impl Summary {
     /// Of a run that left these files; how long it took and whether it was stopped is for the caller to add.
+    #[must_use]
     pub fn new(scenario: &Scenario, outcome: &Outcome, files: Vec<PathBuf>) -> Self {
         let units: Vec<u64> = outcome.arrival_times.iter().flatten().copied().collect();
         let seconds = |units: f64| units / f64::from(UNIT) * scenario.tick_s();
@@ -165,7 +167,68 @@ impl Summary {
         }
     }
 
+    /// 16 hex digits; equal for equal traces.
+    #[must_use]
+    pub fn trace_hash(&self) -> &str {
+        &self.trace_hash
+    }
+
+    /// The figures that say how the run went and are numbers, by their names in `summary.json`, always the same and in
+    /// the same order: `packets.sent`; those of one reason to wait as `waits.radio.robots`. `None`: the run has none
+    /// such. A truth is 1 or 0.
+    #[must_use]
+    pub fn figures(&self) -> Vec<(String, Option<f64>)> {
+        let packets = &self.packets;
+        let mut figures: Vec<_> = [
+            ("robots", Some(self.robots as f64)),
+            ("ticks", Some(f64::from(self.ticks))),
+            ("sim_seconds", Some(self.sim_seconds)),
+            ("arrived", Some(self.arrived as f64)),
+            ("arrival_mean_seconds", self.arrival_mean_seconds),
+            ("arrival_last_seconds", self.arrival_last_seconds),
+            ("collisions", Some(self.collisions as f64)),
+            ("packets.sent", Some(packets.sent as f64)),
+            ("packets.delivered", Some(packets.delivered as f64)),
+            ("packets.lost", Some(packets.lost as f64)),
+            ("packets.corrupted", Some(packets.corrupted as f64)),
+            ("packets.rejected", Some(packets.rejected as f64)),
+            ("packets.unsigned", Some(packets.unsigned as f64)),
+            ("packets.forged", Some(packets.forged as f64)),
+            ("packets.replayed", Some(packets.replayed as f64)),
+            ("is_authenticated", Some(f64::from(u8::from(self.is_authenticated)))),
+            ("packets_throttled", Some(self.packets_throttled as f64)),
+            ("formation_error_per_agent", self.formation_error_per_agent),
+            ("formation_error_per_agent_best_fit", self.formation_error_per_agent_best_fit),
+            ("graph_distance_mean", self.graph_distance_mean),
+            ("least_gap_m", self.least_gap_m),
+            ("least_obstacle_gap_m", self.least_obstacle_gap_m),
+            ("least_intruder_gap_m", self.least_intruder_gap_m),
+            ("intruder_overlaps", Some(self.intruder_overlaps as f64)),
+            ("washed", Some(self.washed as f64)),
+        ]
+        .map(|(name, value)| (name.to_owned(), finite(value)))
+        .into();
+        for &(name, reason) in Wait::NAMES {
+            // Who did not wait is not in the list.
+            let waited = self.waits.iter().find(|waited| waited.reason == reason);
+            let of = |figure: fn(&Waited) -> f64| Some(waited.map_or(0.0, figure));
+            figures.extend(
+                [
+                    ("robots", of(|w| w.robots as f64)),
+                    ("at_the_end", of(|w| w.at_the_end as f64)),
+                    ("robot_seconds", of(|w| w.robot_seconds)),
+                    ("longest_seconds", of(|w| w.longest_seconds)),
+                ]
+                .map(|(figure, value)| (format!("waits.{name}.{figure}"), value)),
+            );
+        }
+        figures
+    }
+
     /// The figures for a reader.
+    ///
+    /// # Errors
+    /// Never: text takes every line.
     pub fn table(&self, out: &Path) -> Result<String, std::fmt::Error> {
         let mut text = String::new();
         let robot_ticks = self.robots as f64 * f64::from(self.ticks);
@@ -244,5 +307,55 @@ impl Summary {
             writeln!(text, "  {}", name.display())?;
         }
         Ok(text)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::simulate;
+    use crate::scenario::Overrides;
+    use serde_json::Value;
+    use std::collections::BTreeMap;
+    use std::ops::ControlFlow;
+
+    const DUEL: &str = "name = 'duel'\nticks = 40\ntick_s = 0.1\n[plane]\nradius_m = 0.3\nmax_speed_mps = 1\n\
+        [plane.robots.circle]\ncount = 4\nradius_m = 3\n";
+
+    /// Numbers and truths of a JSON object, by dotted names.
+    fn flat(prefix: &str, value: &Value, found: &mut BTreeMap<String, Option<f64>>) {
+        let dotted = |name: &str| if prefix.is_empty() { name.to_owned() } else { format!("{prefix}.{name}") };
+        match value {
+            Value::Object(fields) => fields.iter().for_each(|(name, value)| flat(&dotted(name), value, found)),
+            Value::Array(waits) => waits.iter().for_each(|wait| {
+                if let Some(reason) = wait["for"].as_str() {
+                    flat(&dotted(reason), wait, found);
+                }
+            }),
+            Value::Number(number) => drop(found.insert(prefix.to_owned(), number.as_f64())),
+            Value::Bool(truth) => drop(found.insert(prefix.to_owned(), Some(f64::from(u8::from(*truth))))),
+            Value::Null => drop(found.insert(prefix.to_owned(), None)),
+            Value::String(_) => {}
+        }
+    }
+
+    #[test]
+    fn figures_are_all_the_numbers_of_the_summary() {
+        let scenario = Scenario::parse(DUEL, "duel.toml".as_ref(), &Overrides::default()).expect("a scenario");
+        let outcome = simulate(&scenario, |_, _| ControlFlow::Continue(())).expect("room for four");
+        let summary = Summary::new(&scenario, &outcome, Vec::new());
+        let mut written = BTreeMap::new();
+        flat("", &serde_json::to_value(&summary).expect("JSON"), &mut written);
+        // What was asked for and how fast the machine was say nothing of how the run went.
+        for name in ["seed", "wall_seconds", "interrupted"] {
+            assert!(written.remove(name).is_some(), "{name}");
+        }
+        let figures: BTreeMap<_, _> = summary.figures().into_iter().collect();
+        for (name, value) in &written {
+            assert_eq!(figures.get(name), Some(value), "{name}");
+        }
+        for (name, value) in figures.iter().filter(|(name, _)| !written.contains_key(*name)) {
+            assert!(name.starts_with("waits.") && *value == Some(0.0), "{name} is not in summary.json");
+        }
     }
 }

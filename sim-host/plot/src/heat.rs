@@ -1,0 +1,190 @@
+//! A figure over two axes: a table of coloured squares with a scale beside it.
+
+use super::canvas::{Anchor, Canvas, Stroke, Text};
+use super::colour::{INK, MUTED, WHITE};
+use super::crowd::colour;
+use super::font;
+use super::layout::heading;
+use super::ticks;
+
+const PAD: f64 = 14.0;
+const TITLE: f64 = 15.0;
+const LABEL: f64 = 12.5;
+const SMALL: f64 = 11.5;
+/// Width of the scale.
+const BAR: f64 = 16.0;
+/// Shades of the scale.
+const SHADES: u32 = 64;
+/// From the squares to the scale.
+const GAP: f64 = 18.0;
+
+/// Squares in columns and rows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeatMap {
+    /// What it shows.
+    pub title: String,
+    /// A small line below; may be empty.
+    pub note: String,
+    /// What columns are.
+    pub x_label: String,
+    /// What rows are.
+    pub y_label: String,
+    /// The value of each column, from left to right.
+    pub columns: Vec<String>,
+    /// The value of each row, from the bottom up.
+    pub rows: Vec<String>,
+    /// The figure in each square, row by row from the bottom; `None`: there is none, and the square stays white.
+    pub values: Vec<Option<f64>>,
+}
+
+impl HeatMap {
+    /// Draws it, 720 x 480 units.
+    #[must_use]
+    pub fn draw(&self) -> Canvas {
+        let [width, height] = [720.0, 480.0];
+        let mut canvas = Canvas::new(width, height, &self.title);
+        heading(&mut canvas, &self.title, TITLE, [PAD, PAD + TITLE], width - 2.0 * PAD);
+        let (note, size) = font::fit(&self.note, SMALL, false, width - 2.0 * PAD);
+        let below = PAD + TITLE + 7.0 + SMALL;
+        canvas.text(Text { colour: MUTED, ..Text::new([PAD, below], size, Anchor::Start, note) });
+        let found = self.values.iter().flatten().copied().filter(|value| value.is_finite());
+        let ends = found.fold(None, |ends: Option<[f64; 2]>, value| match ends {
+            None => Some([value; 2]),
+            Some([low, high]) => Some([f64::min(low, value), f64::max(high, value)]),
+        });
+        let Some([low, high]) = ends else {
+            let middle = [width / 2.0, height / 2.0];
+            canvas.text(Text { colour: MUTED, ..Text::new(middle, LABEL, Anchor::Middle, "no data") });
+            return canvas;
+        };
+        let [low, high] = ticks::sound(low, high);
+        let marks = ticks::linear(low, high, 6);
+        let widest = |labels: &mut dyn Iterator<Item = &String>| {
+            labels.map(|label| font::width(label, SMALL, false)).fold(0.0, f64::max)
+        };
+        let left = PAD + LABEL * 1.8 + widest(&mut self.rows.iter()).min(160.0) + 10.0;
+        let right = width - PAD - widest(&mut marks.iter().map(|mark| &mark.label)) - 10.0 - BAR - GAP;
+        let (top, bottom) = (below + 14.0, height - PAD - LABEL * 1.6 - SMALL - 12.0);
+        let plot = [left, top, right - left, bottom - top];
+        let share = |value: f64| (value - low) / (high - low);
+        self.squares(&mut canvas, plot, &share);
+        self.names(&mut canvas, plot, height);
+        let at = |share: f64| bottom - share * (bottom - top);
+        for shade in 0..SHADES {
+            let [from, to] = [shade, shade + 1].map(|edge| f64::from(edge) / f64::from(SHADES));
+            canvas.rectangle([right + GAP, at(to), BAR, at(from) - at(to)], Some(colour((from + to) / 2.0)), None);
+        }
+        for mark in marks {
+            let y = at(share(mark.value));
+            canvas.line(vec![[right + GAP + BAR, y], [right + GAP + BAR + 4.0, y]], Stroke::new(INK, 1.0));
+            let place = [right + GAP + BAR + 8.0, y];
+            canvas.text(Text { colour: MUTED, ..Text::new(place, SMALL, Anchor::Start, mark.label) }.centred());
+        }
+        canvas
+    }
+
+    /// The squares, each with its figure where that fits.
+    fn squares(&self, canvas: &mut Canvas, [left, top, width, height]: [f64; 4], share: &dyn Fn(f64) -> f64) {
+        let [across, up] = [width / self.columns.len() as f64, height / self.rows.len() as f64];
+        for (index, value) in self.values.iter().enumerate() {
+            let Some(value) = value.filter(|value| value.is_finite()) else {
+                continue;
+            };
+            let (column, row) = (index % self.columns.len(), index / self.columns.len());
+            let [x, y] = [left + column as f64 * across, top + height - (row + 1) as f64 * up];
+            canvas.rectangle([x, y, across, up], Some(colour(share(value))), Some(Stroke::new(WHITE, 1.0)));
+            let text = short(value);
+            if font::width(&text, SMALL, false) + 8.0 <= across && SMALL + 4.0 <= up {
+                let ink = if share(value) > 0.45 { WHITE } else { INK };
+                let middle = [x + across / 2.0, y + up / 2.0];
+                canvas.text(Text { colour: ink, ..Text::new(middle, SMALL, Anchor::Middle, text) }.centred());
+            }
+        }
+        canvas.rectangle([left, top, width, height], None, Some(Stroke::new(INK, 1.0)));
+    }
+
+    /// What columns and rows are; of names that would cover each other only some.
+    fn names(&self, canvas: &mut Canvas, [left, top, width, height]: [f64; 4], picture: f64) {
+        let [across, up] = [width / self.columns.len() as f64, height / self.rows.len() as f64];
+        let widest = self.columns.iter().map(|label| font::width(label, SMALL, false)).fold(0.0, f64::max);
+        let every = ((widest + 10.0) / across).ceil().max(1.0) as usize;
+        for (index, label) in self.columns.iter().enumerate().step_by(every) {
+            let at = [left + (index as f64 + 0.5) * across, top + height + 7.0 + SMALL];
+            canvas.text(Text { colour: MUTED, ..Text::new(at, SMALL, Anchor::Middle, label) });
+        }
+        let every = ((SMALL + 3.0) / up).ceil().max(1.0) as usize;
+        for (index, label) in self.rows.iter().enumerate().step_by(every) {
+            let at = [left - 8.0, top + height - (index as f64 + 0.5) * up];
+            let (label, size) = font::fit(label, SMALL, false, 160.0);
+            canvas.text(Text { colour: MUTED, ..Text::new(at, size, Anchor::End, label) }.centred());
+        }
+        let (label, size) = font::fit(&self.x_label, LABEL, false, width);
+        canvas.text(Text::new([left + width / 2.0, picture - PAD - 1.0], size, Anchor::Middle, label));
+        let (label, size) = font::fit(&self.y_label, LABEL, false, height);
+        let at = [PAD + LABEL * 0.8, top + height / 2.0];
+        canvas.text(Text { upwards: true, ..Text::new(at, size, Anchor::Middle, label) });
+    }
+}
+
+/// Three digits, or all of a whole number's.
+fn short(value: f64) -> String {
+    let size = value.abs();
+    if size >= 1e6 || (size < 1e-3 && size > 0.0) {
+        format!("{value:.1e}")
+    } else if libm::trunc(value) == value || size >= 100.0 {
+        format!("{value:.0}")
+    } else {
+        format!("{value:.*}", if size >= 10.0 { 1 } else { 2 })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::canvas::Shape;
+
+    fn map(columns: usize, rows: usize, value: impl Fn(usize) -> Option<f64>) -> HeatMap {
+        let names = |count: usize| (0..count).map(|number| number.to_string()).collect();
+        HeatMap {
+            title: "Arrived".into(),
+            note: String::new(),
+            x_label: "loss".into(),
+            y_label: "delay".into(),
+            columns: names(columns),
+            rows: names(rows),
+            values: (0..columns * rows).map(value).collect(),
+        }
+    }
+
+    fn texts(canvas: &Canvas) -> Vec<&str> {
+        let text = |shape| if let &Shape::Text(ref text) = shape { Some(text.text.as_str()) } else { None };
+        canvas.shapes.iter().filter_map(text).collect()
+    }
+
+    #[test]
+    fn each_square_that_has_a_figure_is_coloured_and_says_it() {
+        let canvas = map(3, 2, |index| (index != 4).then_some(10.25 * index as f64)).draw();
+        let said = texts(&canvas);
+        for figure in ["0", "10.2", "20.5", "30.8", "51.2"] {
+            assert!(said.contains(&figure), "{figure} {said:?}");
+        }
+        assert!(!said.contains(&"41"), "{said:?}");
+        // The lowest row is the first: its squares are below the others.
+        let place = |figure: &str| {
+            canvas.shapes.iter().find_map(|shape| match shape {
+                Shape::Text(text) if text.text == figure => Some(text.at[1]),
+                _ => None,
+            })
+        };
+        assert!(place("10.2") > place("51.2"));
+    }
+
+    #[test]
+    fn nothing_and_one_value_and_many_can_be_drawn() {
+        assert!(texts(&map(2, 2, |_| None).draw()).contains(&"no data"));
+        assert!(texts(&map(1, 1, |_| Some(f64::NAN)).draw()).contains(&"no data"));
+        assert!(texts(&map(1, 1, |_| Some(7.0)).draw()).contains(&"7"));
+        let many = map(100, 100, |index| Some(index as f64)).draw();
+        assert!(texts(&many).len() < 200, "{}", texts(&many).len());
+    }
+}

@@ -1,0 +1,273 @@
+use super::*;
+use proptest::prelude::*;
+use std::fs;
+use tempfile::TempDir;
+
+const SCENARIO: &str = "name = 'duel'\nseed = 9\nticks = 20\ntick_s = 0.1\n\n[radio]\nrange_m = 5\n\n[plane]\nradius_m = 0.2\n\
+    max_speed_mps = 1\n\n[plane.robots.circle]\ncount = 4\nradius_m = 3\n";
+
+/// A folder with that scenario.
+fn folder() -> TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("duel.toml"), SCENARIO).expect("room");
+    folder
+}
+
+fn parse(folder: &TempDir, text: &str) -> Result<Plan, String> {
+    let text = format!("name = 'p'\nscenario = 'duel.toml'\n{text}");
+    let path = folder.path().join("plan.toml");
+    Plan::parse(&text, &path).map_err(|error| {
+        let said = error.to_string();
+        said.strip_prefix(&folder.path().display().to_string())
+            .map_or_else(|| said.clone(), |rest| rest[1..].to_owned())
+    })
+}
+
+fn plan(text: &str) -> Plan {
+    parse(&folder(), text).unwrap_or_else(|what| panic!("{what}"))
+}
+
+fn error(text: &str) -> String {
+    parse(&folder(), text).expect_err("something is wrong")
+}
+
+/// The values of an axis, as a table has them.
+fn values(plan: &Plan, axis: &str) -> Vec<String> {
+    plan.values(axis).expect("an axis").iter().map(ToString::to_string).collect()
+}
+
+#[test]
+fn axes_are_crossed_in_the_order_of_the_file_and_seeds_change_first() {
+    let plan = plan("seeds = [7, 5]\n[axes]\nradio.loss = [0.5, 0]\nradio.delay_ms = [1, 2, 3]\n");
+    assert_eq!(plan.axes().collect::<Vec<_>>(), ["radio.loss", "radio.delay_ms"]);
+    assert_eq!((plan.runs(), plan.seeds()), (12, 2));
+    let run = |number| {
+        let run = plan.run(number);
+        (run.point, run.values.iter().map(|value| value.to_string()).collect::<Vec<_>>().join(" "), run.seed)
+    };
+    assert_eq!(run(0), (0, "0.5 1".into(), 7));
+    assert_eq!(run(1), (0, "0.5 1".into(), 5));
+    assert_eq!(run(2), (1, "0.5 2".into(), 7));
+    assert_eq!(run(6), (3, "0 1".into(), 7));
+    assert_eq!(run(11), (5, "0 3".into(), 5));
+}
+
+#[test]
+fn a_run_is_the_scenario_with_its_values() {
+    let plan =
+        plan("seeds = { from = 40, count = 2 }\n[set]\nticks = 33\n[axes]\nplane.robots.circle.count = [2, 6]\n");
+    let scenario = plan.scenario(&plan.run(3)).expect("a scenario");
+    assert_eq!((scenario.robots.len(), scenario.seed, scenario.ticks), (6, 41, 33));
+    // Without seeds it is the scenario's own.
+    let folder = folder();
+    let plan = parse(&folder, "[axes]\nradio.loss = [0, 1]\n").expect("a plan");
+    assert_eq!((plan.runs(), plan.run(1).seed), (2, 9));
+}
+
+#[test]
+fn ranges_have_their_ends_and_neat_values() {
+    for (range, expected) in [
+        ("{ from = 0, to = 0.3, count = 4 }", "0 0.1 0.2 0.3"),
+        ("{ from = 0.1, to = 0.7, step = 0.2 }", "0.1 0.3 0.5 0.7"),
+        ("{ from = 0, to = 0.55, step = 0.2 }", "0 0.2 0.4"),
+        ("{ from = 0.9, to = 0.5, step = -0.2 }", "0.9 0.7 0.5"),
+        ("{ from = 0.001, to = 1, count = 4, log = true }", "0.001 0.01 0.1 1"),
+        ("{ from = 1, to = 0.25, count = 3, log = true }", "1 0.5 0.25"),
+        ("{ from = 0, to = 1, count = 5, whole = true }", "0 1"),
+    ] {
+        let plan = plan(&format!("[axes]\nradio.loss = {range}\n"));
+        assert_eq!(values(&plan, "radio.loss").join(" "), expected, "{range}");
+    }
+}
+
+#[test]
+fn zipped_fields_advance_together() {
+    let plan = plan("[[zip]]\nradio.loss = [0, 0.5]\nradio.delay_ms = [9, 8]\n[[zip]]\nradio.range_m = [1, 2, 3]\n");
+    assert_eq!(plan.runs(), 6);
+    let at = |number| plan.run(number).values.iter().map(|value| value.to_string()).collect::<Vec<_>>().join(" ");
+    assert_eq!((at(0), at(2), at(3)), ("0 9 1".into(), "0 9 3".into(), "0.5 8 1".into()));
+}
+
+#[test]
+fn samples_are_a_function_of_their_seed() {
+    let text = |seed: u32, kind: &str| {
+        format!(
+            "[[sample]]\nkind = '{kind}'\ncount = 20\nseed = {seed}\n[sample.axes]\n\
+             radio.loss = {{ from = 0.2, to = 0.4 }}\nradio.delay_ms = {{ from = 1, to = 1000, log = true }}\n\
+             plane.robots.circle.count = {{ from = 2, to = 6, whole = true }}\nradio.range_m = [3, 8]\n"
+        )
+    };
+    for kind in ["random", "latin_hypercube"] {
+        let [a, b, c] = [1, 1, 2].map(|seed| plan(&text(seed, kind)));
+        assert_eq!(a.runs(), 20);
+        assert_eq!(values(&a, "radio.loss"), values(&b, "radio.loss"));
+        assert_ne!(values(&a, "radio.loss"), values(&c, "radio.loss"));
+        let within = |axis: &str, low: f64, high: f64| {
+            a.values(axis).expect("an axis").iter().filter_map(Value::number).all(|value| (low..=high).contains(&value))
+        };
+        assert!(within("radio.loss", 0.2, 0.4) && within("radio.delay_ms", 1.0, 1000.0));
+        assert!(within("plane.robots.circle.count", 2.0, 6.0));
+        let ranges = values(&a, "radio.range_m");
+        assert!(ranges.iter().any(|value| value == "3") && ranges.iter().any(|value| value == "8"));
+    }
+    // Half of the parts of equal ratios are below their geometric mean.
+    let even = plan(&text(3, "latin_hypercube"));
+    let delays = even.values("radio.delay_ms").expect("an axis").iter().filter_map(Value::number);
+    assert_eq!(delays.filter(|&delay| delay < 31.62).count(), 10);
+}
+
+#[test]
+fn what_is_wrong_is_said_with_plan_line_and_field() {
+    let axes = |text: &str| error(&format!("[axes]\n{text}\n"));
+    for (said, expected) in [
+        (axes("radio.los = [1]"), "plan.toml:4: radio.los: unknown field `los`"),
+        (axes("radoi.loss = [1]"), "plan.toml:4: radoi.loss: unknown field `radoi`"),
+        (
+            axes("radio.delay_ms = [1]\nradio.loss = [0.1, 1.5]"),
+            "plan.toml:5: radio.loss: 1.5 is no probability; give a",
+        ),
+        (axes("name = ['a', 'b']"), "plan.toml:4: name: it is a text, and no run depends on it; leave it out"),
+        (
+            axes("radio.format = { from = 1, to = 2, count = 2 }"),
+            "plan.toml:4: radio.format: it is a text, which has no range",
+        ),
+        (axes("radio.loss = ['a']"), "plan.toml:4: radio.loss: invalid type: string \"a\", expected a number"),
+        (axes("radio.loss = [[1]]"), "plan.toml:4: radio.loss: [1] is neither a number nor a word"),
+        (axes("radio = [1]"), "plan.toml:4: radio: it is a list or a table; name a field in it"),
+        (axes("seed = [1, 2]"), "plan.toml:4: seed: seeds are no axis; give `seeds`"),
+        (axes("radio.loss = 0.5"), "plan.toml:4: radio.loss: one value is no axis"),
+        (axes("radio.loss = []"), "plan.toml:4: radio.loss: there are no values"),
+        (axes("radio.loss = [0.1, 0.10]"), "plan.toml:4: radio.loss: 0.1 stands there twice"),
+        (axes("radio.loss = { from = 0, to = 1 }"), "plan.toml:4: radio.loss: it is not clear how many"),
+        (axes("radio.loss = { from = 0, to = 1, count = 1 }"), "plan.toml:4: radio.loss: 1 values are no range"),
+        (axes("radio.loss = { from = 0, to = 1, step = -1 }"), "plan.toml:4: radio.loss: steps of -1 do not lead"),
+        (axes("radio.loss = { from = 0, to = 1, step = 0 }"), "plan.toml:4: radio.loss: steps of 0 do not lead"),
+        (axes("radio.loss = { from = 0, to = nan, count = 2 }"), "plan.toml:4: radio.loss: 0 to NaN is no range"),
+        (
+            axes("radio.loss = { from = 0, to = 1, count = 2, log = true }"),
+            "plan.toml:4: radio.loss: 0 to 1 has no equal ratios",
+        ),
+        (axes("radio.loss = { from = 0, to = 1, counts = 2 }"), "plan.toml:4: radio.loss: unknown field `counts`"),
+        (axes("\"radio loss\" = [1]"), "plan.toml:4: radio loss: it is no name of a field"),
+        (axes("ticks.x = [1]"), "plan.toml:4: ticks.x: ticks is no table in the scenario"),
+        (axes("\"plane.group[0].count\" = [1]"), "plan.toml:4: plane.group[0].count: group is no list in the scenario"),
+        (
+            axes("plane.radius_m = [0.2, 9]"),
+            "duel.toml:13: plane.robots: robots 1 and 2 overlap at the start (with plane.radius_m = 9 of",
+        ),
+        (error("[set]\nradio.loss = 7\n[axes]\nradio.loss = [0]"), "plan.toml:4: radio.loss: it is named twice"),
+        (error("[set]\nradio.loss = [7]"), "plan.toml:4: radio.loss: [7] is neither a number nor a word"),
+        (
+            error("[[zip]]\nradio.loss = [0, 1]\nradio.delay_ms = [1]"),
+            "plan.toml:5: zip[0]: 2 values of radio.loss cannot",
+        ),
+        (error("[[zip]]"), "plan.toml:3: zip[0]: there are no fields"),
+        (error("[[sample]]\nkind = 'random'\ncount = 0\naxes = {}"), "plan.toml:5: sample[0].count: 0 samples"),
+        (
+            error("[[sample]]\nkind = 'sobol'\ncount = 3\naxes = {}"),
+            "plan.toml:4: sample[0].kind: unknown variant `sobol`",
+        ),
+        (error("seeds = 0"), "plan.toml:3: seeds: there is none"),
+        (error("seeds = [1, 2, 1]"), "plan.toml:3: seeds: 1 stands there twice"),
+        (error("seeds = 2000000"), "plan.toml:3: seeds: there are too many"),
+        (error("seeds = 'all'"), "plan.toml:3: seeds: invalid seeds, expected a number"),
+        (
+            error("measures = ['arrivd']"),
+            "plan.toml:3: measures[0]: arrivd is no figure of summary.json; give some of robots",
+        ),
+        (error("measures = ['arrived', 'arrived']"), "plan.toml:3: measures[1]: arrived stands there twice"),
+        (error("measures = []"), "plan.toml:3: measures: there is none"),
+        (
+            error("[[plot]]\nfigure = 'arrived'\nover = 'radio.loss'"),
+            "plan.toml:5: plot[0].over: radio.loss is no axis",
+        ),
+        (error("axs = 1"), "plan.toml:3: axs: unknown field `axs`"),
+        (error("[axes"), "plan.toml:3: "),
+    ] {
+        assert!(said.starts_with(expected), "{said}\n{expected}");
+    }
+    let huge =
+        axes("radio.loss = { from = 0, to = 1, count = 2000 }\nradio.delay_ms = { from = 0, to = 1, count = 2000 }");
+    assert!(huge.starts_with("plan.toml:3: axes: more than a million runs"), "{huge}");
+}
+
+#[test]
+fn a_wrong_scenario_is_named_with_its_own_line() {
+    let folder = folder();
+    fs::write(folder.path().join("duel.toml"), SCENARIO.replace("range_m", "range")).expect("room");
+    let said = parse(&folder, "[axes]\nradio.loss = [0]").expect_err("a wrong field");
+    assert!(said.starts_with("duel.toml:7: radio.range: unknown field `range`"), "{said}");
+    fs::write(folder.path().join("duel.toml"), "name = ").expect("room");
+    assert!(parse(&folder, "").expect_err("no TOML").starts_with("duel.toml:1: "));
+    fs::remove_file(folder.path().join("duel.toml")).expect("mine");
+    assert!(parse(&folder, "").expect_err("no file").starts_with("plan.toml:2: scenario: "));
+}
+
+#[test]
+fn words_can_be_listed_where_a_field_chooses_among_them() {
+    let plan = plan("[axes]\nradio.format = ['postcard', 'mavlink']\n");
+    assert_eq!(values(&plan, "radio.format"), ["postcard", "mavlink"]);
+    assert!(error("[axes]\nradio.format = ['postcard', 'morse']").contains("unknown variant `morse`"));
+}
+
+#[test]
+fn a_fingerprint_is_of_what_runs_depend_on_and_of_nothing_else() {
+    let folder = folder();
+    let of = |text: &str| parse(&folder, text).expect("a plan").fingerprint();
+    let text = "seeds = 2\n[axes]\nradio.loss = [0, 0.5]\n";
+    let first = of(text);
+    assert_eq!(of(&text.replace("seeds", "# remark\nseeds").replace("[0, 0.5]", "[0,0.5] # all")), first);
+    for other in [
+        text.replace("0.5", "0.6"),
+        text.replace("= 2", "= 3"),
+        text.replace("loss", "duplicate"),
+        text.replace("seeds", "measures = ['arrived']\nseeds"),
+        format!("{text}[set]\nticks = 21\n"),
+    ] {
+        assert_ne!(of(&other), first, "{other}");
+    }
+    fs::write(folder.path().join("duel.toml"), SCENARIO.replace("ticks = 20", "ticks = 21")).expect("room");
+    assert_ne!(of(text), first);
+    fs::write(folder.path().join("duel.toml"), SCENARIO.replace("[plane]", "# more\n[plane]")).expect("room");
+    assert_eq!(of(text), first);
+}
+
+#[test]
+fn a_map_that_changes_makes_another_plan() {
+    let folder = folder();
+    let land = |rows: &str| format!("type octile\nheight 2\nwidth 3\nmap\n{rows}\n");
+    fs::write(folder.path().join("land.map"), land("...\n...")).expect("room");
+    let scenario =
+        "name = 'walk'\nticks = 5\n[terrain]\nfile = 'land.map'\n[[robots.list]]\nstart = [0, 0]\ngoal = [2, 0]\n";
+    fs::write(folder.path().join("duel.toml"), scenario).expect("room");
+    let of = || parse(&folder, "[axes]\nradio.loss = [0, 0.5]\n").expect("a plan").fingerprint();
+    let first = of();
+    fs::write(folder.path().join("land.map"), land(".@.\n...")).expect("room");
+    assert_ne!(of(), first);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// Whatever stands in a plan, it is a plan or an error, and its numbers are all different runs.
+    #[test]
+    fn each_number_is_another_run(
+        losses in proptest::collection::btree_set(0u32..100, 1..5),
+        delays in proptest::collection::btree_set(0u32..100, 1..4),
+        seeds in 1u32..4,
+        samples in 1u32..4,
+    ) {
+        let list = |values: &std::collections::BTreeSet<u32>| format!("{values:?}").replace('{', "[").replace('}', "]");
+        let losses = list(&losses.iter().copied().collect());
+        let plan = plan(&format!(
+            "seeds = {seeds}\n[axes]\nradio.jitter_ms = {losses}\nradio.delay_ms = {}\n[[sample]]\nkind = 'random'\ncount = {samples}\n\
+             [sample.axes]\nradio.loss = {{ from = 0, to = 1 }}\n", list(&delays),
+        ));
+        let mut seen = std::collections::BTreeSet::new();
+        for number in 0..plan.runs() {
+            let run = plan.run(number);
+            prop_assert_eq!(run.number, number);
+            prop_assert!(seen.insert((run.values.iter().map(|v| v.to_string()).collect::<Vec<_>>(), run.seed)));
+        }
+    }
+}

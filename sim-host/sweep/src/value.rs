@@ -1,0 +1,132 @@
+//! A value that a plan gives to a field.
+
+use std::fmt::{self, Display, Formatter};
+
+/// A number, a truth or a word: what stands in a field of a scenario and in a cell of a table.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// A whole number: for fields of either kind of number.
+    Whole(i64),
+    /// Any other number.
+    Number(f64),
+    /// `true` or `false`.
+    Truth(bool),
+    /// One of the words that a field chooses among, or a file's name.
+    Word(String),
+}
+
+/// Beyond this, not every whole number is a double.
+const EXACT: f64 = 9_007_199_254_740_992.0;
+
+impl Value {
+    /// What a plan's text says; the error says what is wrong with it.
+    pub(crate) fn read(value: &toml::Value) -> Result<Self, String> {
+        match value {
+            toml::Value::Integer(number) => Ok(Self::Whole(*number)),
+            toml::Value::Float(number) if number.is_nan() => Err("nan is no value".to_owned()),
+            toml::Value::Float(number) => Ok(Self::Number(*number)),
+            toml::Value::Boolean(truth) => Ok(Self::Truth(*truth)),
+            toml::Value::String(word) => {
+                let is_cell = !word.is_empty() && !word.contains([',', '"']) && !word.contains(char::is_control);
+                if is_cell { Ok(Self::Word(word.clone())) } else { Err(format!("{word:?} has no place in a table")) }
+            }
+            other => Err(format!("{other} is neither a number nor a word")),
+        }
+    }
+
+    /// A number that was computed: a whole one if it is one.
+    pub(crate) fn of(number: f64) -> Self {
+        let is_whole = libm::trunc(number) == number && number.abs() < EXACT;
+        if is_whole { Self::Whole(number as i64) } else { Self::Number(number) }
+    }
+
+    /// As a number, if it is one.
+    #[must_use]
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Self::Whole(number) => Some(*number as f64),
+            Self::Number(number) => Some(*number),
+            Self::Truth(_) | Self::Word(_) => None,
+        }
+    }
+
+    /// As TOML has it.
+    pub(crate) fn toml(&self) -> toml::Value {
+        match self {
+            Self::Whole(number) => toml::Value::Integer(*number),
+            Self::Number(number) => toml::Value::Float(*number),
+            Self::Truth(truth) => toml::Value::Boolean(*truth),
+            Self::Word(word) => toml::Value::String(word.clone()),
+        }
+    }
+}
+
+impl Display for Value {
+    /// As tables have it; numbers read back to the bit.
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Whole(number) => write!(f, "{number}"),
+            Self::Number(number) => Figure(Some(*number)).fmt(f),
+            Self::Truth(truth) => write!(f, "{truth}"),
+            Self::Word(word) => f.write_str(word),
+        }
+    }
+}
+
+/// A figure in a table: the shortest text that reads back to the same bits; nothing if there is none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Figure(pub Option<f64>);
+
+impl Figure {
+    /// What a cell says; `None` if it is no figure.
+    #[must_use]
+    pub fn read(cell: &str) -> Option<Self> {
+        if cell.is_empty() { Some(Self(None)) } else { cell.parse().ok().map(|number| Self(Some(number))) }
+    }
+}
+
+impl Display for Figure {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            None => Ok(()),
+            Some(number) => {
+                let text = format!("{number:?}");
+                f.write_str(text.strip_suffix(".0").unwrap_or(&text))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn numbers_are_short_and_words_plain() {
+        for (value, text) in [
+            (Value::of(3.0), "3"),
+            (Value::Number(3.0), "3"),
+            (Value::of(-0.25), "-0.25"),
+            (Value::Number(1e-7), "1e-7"),
+            (Value::Number(f64::INFINITY), "inf"),
+            (Value::Truth(true), "true"),
+            (Value::Word("mavlink".into()), "mavlink"),
+        ] {
+            assert_eq!(value.to_string(), text);
+        }
+        for bad in ["a,b", "say \"so\"", "", "a\nb"] {
+            assert!(Value::read(&toml::Value::String(bad.into())).is_err(), "{bad:?}");
+        }
+        assert!(Value::read(&toml::Value::Float(f64::NAN)).is_err());
+        assert!(Value::read(&toml::Value::Array(Vec::new())).is_err());
+    }
+
+    proptest! {
+        #[test]
+        fn figures_read_back_to_the_bit(number in any::<f64>().prop_filter("has a value", |x| !x.is_nan())) {
+            let read = Figure::read(&Figure(Some(number)).to_string()).and_then(|figure| figure.0);
+            prop_assert_eq!(read.map(f64::to_bits), Some(number.to_bits()));
+        }
+    }
+}
