@@ -44,6 +44,16 @@ pub fn unpack(repo: &Repo, packages: &[&str], programs: &[&str]) -> Result<(), S
     programs.iter().try_for_each(|name| write_script(repo, &root, name))
 }
 
+/// A folder by this name among the libraries that were unpacked.
+pub fn unpacked(repo: &Repo, name: &str) -> Option<PathBuf> {
+    libraries(&home(repo).join("unpacked")).into_iter().find(|folder| folder.ends_with(name))
+}
+
+/// The script that starts an unpacked program, if there is one.
+pub fn script(repo: &Repo, name: &str) -> Option<PathBuf> {
+    Some(repo.tools().join(name)).filter(|script| script.is_file())
+}
+
 /// Installs packages, as root, if nothing that is installed has to go or change for it. The error says why not.
 pub fn install(repo: &Repo, packages: &[&str]) -> Result<(), String> {
     if !is_root(repo) {
@@ -174,14 +184,15 @@ fn write_script(repo: &Repo, root: &Path, name: &str) -> Result<(), String> {
     written.map_err(|error| format!("{}: {error}", script.display()))
 }
 
+/// Lets a file be run.
 #[cfg(unix)]
-fn make_executable(script: &Path) -> std::io::Result<()> {
+pub fn make_executable(script: &Path) -> std::io::Result<()> {
     use std::os::unix::fs::PermissionsExt;
     fs::set_permissions(script, fs::Permissions::from_mode(0o755))
 }
 
 #[cfg(not(unix))]
-fn make_executable(_: &Path) -> std::io::Result<()> {
+pub fn make_executable(_: &Path) -> std::io::Result<()> {
     Ok(()) // where there is apt, there is Unix
 }
 

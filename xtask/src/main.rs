@@ -11,6 +11,7 @@ mod browser;
 mod check;
 mod circles;
 mod clients;
+mod cluster;
 mod debian;
 mod device;
 mod documents;
@@ -48,7 +49,7 @@ Usage: cargo xtask COMMAND
 
   check           formatting, layers, what documents name, clippy and rustdoc, warnings denied
   test [--all]    the tests: on the host, by MAVLink clients, on emulated parts; with --all also the long proofs: each program
-                  on each part, debug builds, budgets, ten parts for 1000 steps, pages in a browser, peers, fuzz targets on random bytes
+                  on each part, debug builds, budgets, ten parts for 1000 steps, pages in a browser, sweeps on Slurm, peers, fuzz targets on random bytes
   ci              check, then test --all
   bare            emulators, compiler, emulated parts and a browser in a bare Debian of its own; needs root
   bench [NAME]    benchmarks, also beside peer crates (those whose name contains NAME): medians, ratios, goals
@@ -57,6 +58,7 @@ Usage: cargo xtask COMMAND
                   each fuzz target for N seconds (default: 60), if nightly Rust and cargo-fuzz are there
   browser         the page of `staya view` in Chromium, driven from Python
   clients [NAME]  MAVLink clients (pymavlink, MAVSDK, MAVProxy, tshark) against staya, from Python: all tests or those whose names contain NAME
+  cluster         sweeps on Slurm and GNU parallel, on this machine: the same rows as without them
   faults [PART...]
                   firmware that goes wrong on purpose says why and starts anew, on each part (default: all)
   example         the example firmware of examples/stm32f4
@@ -108,6 +110,7 @@ fn main() -> ExitCode {
             clients::run_command(&repo, &mut report, Some(name), Extent::All);
         }
         ["browser"] => browser::run_command(&repo, &mut report),
+        ["cluster"] => cluster::run_command(&repo, &mut report),
         ["example"] => example::run(&repo, &mut report),
         ["fuzz"] => fuzz::run(&repo, &mut report, fuzz::SECONDS),
         ["fuzz", "--seconds", n] if n.parse().is_ok_and(|n: u32| n > 0) => {
