@@ -10,8 +10,10 @@ use std::path::{Path, PathBuf};
 
 /// Most values of an axis that are shown one by one; more are gathered in parts.
 const MOST: usize = 24;
-/// Equal parts of an axis with more values.
-const PARTS: usize = 12;
+/// Least and most equal parts of an axis with more values.
+const PARTS: [usize; 2] = [4, 12];
+/// Runs that a part, or a square of two, has on average if there are enough.
+const RUNS: usize = 4;
 /// Most curves in one picture.
 const CURVES: usize = 6;
 /// Most pictures that nobody asked for.
@@ -83,8 +85,9 @@ pub fn draw(plan: &Plan, merged: &Merged, plot: &PlotTable, folder: &Path) -> Re
             Some((values(row.run, over), and.map(|axis| values(row.run, axis)), value))
         })
         .collect();
-    let x = Levels::new(plan, over);
-    let y = and.map(|axis| Levels::new(plan, axis));
+    let parts = if and.is_some() { (rows.len() / RUNS).isqrt() } else { rows.len() / RUNS };
+    let levels = |axis| Levels::new(plan, axis, parts.clamp(PARTS[0], PARTS[1]));
+    let (x, y) = (levels(over), and.map(levels));
     let picture = Picture { plan, plot, rows, x, y };
     let stem = folder.join(picture.file_name());
     match &picture.y {
@@ -109,7 +112,7 @@ struct Levels {
 }
 
 impl Levels {
-    fn new(plan: &Plan, axis: usize) -> Self {
+    fn new(plan: &Plan, axis: usize, parts: usize) -> Self {
         let name = plan.axes().nth(axis).unwrap_or_default();
         let mut values: Vec<Value> = plan.values(name).unwrap_or_default().to_vec();
         let is_log = plan.is_log(axis);
@@ -133,7 +136,7 @@ impl Levels {
                 let [low, high] = ends;
                 if is_log { low * libm::pow(high / low, share) } else { low + (high - low) * share }
             };
-            numbers = (0..PARTS).map(|part| at((part as f64 + 0.5) / PARTS as f64)).collect();
+            numbers = (0..parts).map(|part| at((part as f64 + 0.5) / parts as f64)).collect();
         }
         let name = |number: &f64| if is_parts { short(*number) } else { Figure(Some(*number)).to_string() };
         Self { names: numbers.iter().map(name).collect(), numbers: Some(numbers), is_parts, is_log, ends }
@@ -151,7 +154,7 @@ impl Levels {
         let [low, high] = self.ends;
         let share =
             if self.is_log { libm::log(number / low) / libm::log(high / low) } else { (number - low) / (high - low) };
-        ((share * PARTS as f64) as usize).min(PARTS - 1)
+        ((share * self.names.len() as f64) as usize).min(self.names.len() - 1)
     }
 }
 
