@@ -280,8 +280,14 @@ fn on_slurm(sweep: &Sweep<'_>) -> Result<(), String> {
     within(PATIENCE, is_failed).ok_or("Slurm has not noticed that the task is dead")?;
     let requeue = || output_of(&mut slurm("scontrol", &["requeue", &name]));
     within(PATIENCE, requeue).ok_or("the task cannot be put back into the queue")?;
+    // Slurm would let it wait for two minutes.
+    let at_once = || output_of(&mut slurm("scontrol", &["update", &format!("JobId={name}"), "StartTime=now"]));
+    within(PATIENCE, at_once).ok_or("the task cannot be told to begin")?;
     let is_over = || output_of(&mut slurm("squeue", &["--noheader"])).filter(String::is_empty);
-    within(PATIENCE, is_over).ok_or("the tasks do not come to an end")?;
+    within(PATIENCE, is_over).ok_or_else(|| {
+        let said = output_of(&mut slurm("squeue", &[])).unwrap_or_default();
+        format!("the tasks do not come to an end: {said}")
+    })?;
     let said = output_of(&mut slurm("scontrol", &["show", "job", &name])).unwrap_or_default();
     if !(said.contains("Restarts=1") && said.contains("JobState=COMPLETED")) {
         return Err(format!("task {task} was not done again: {said}"));
