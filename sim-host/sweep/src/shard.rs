@@ -23,7 +23,7 @@ use std::time::{Duration, Instant};
 pub const FOLDER: &str = "shards";
 /// Where it is written how long runs took: that differs from machine to machine, and is no part of a row.
 const TIMES: &str = "times";
-/// Rows are on the disk, not only with the system, after at most this time.
+/// Least time from one wait for the disk to the next.
 const SYNC: Duration = Duration::from_secs(2);
 
 /// One of several equal parts of a plan.

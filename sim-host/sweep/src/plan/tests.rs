@@ -246,6 +246,20 @@ fn a_map_that_changes_makes_another_plan() {
     assert_ne!(of(), first);
 }
 
+#[test]
+fn each_field_of_a_plan_is_in_the_documentation() {
+    let fields = include_str!("table.rs").lines().filter_map(|line| line.strip_prefix("    pub ")?.split_once(": "));
+    let fields: Vec<&str> = fields.map(|(name, _)| name).collect();
+    assert!(fields.len() > 15, "{fields:?}");
+    let page = include_str!("../../../../docs/sweeps.md");
+    for field in fields {
+        let is_named = ["`", "[", "[[", " ", "{ "]
+            .iter()
+            .any(|before| ["`", "]", " ", " }"].iter().any(|after| page.contains(&format!("{before}{field}{after}"))));
+        assert!(is_named, "{field} is not in docs/sweeps.md");
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
