@@ -272,7 +272,7 @@ impl PlotArgs {
     fn run(&self, global: &Global) -> Result<Ended> {
         let (plan, out) = self.target.load()?;
         let plot = PlotTable { figure: self.figure.clone(), over: self.over.clone(), and: self.and.clone() };
-        pictures::check(&plan, &plot)
+        plan.check_plot(&plot)
             .map_err(|(field, what, remedy)| SweepError::new(format_args!("--{field}"), what, remedy))?;
         let merged = Merged::reread(&plan, &out.join(ROWS))?;
         let files = pictures::draw(&plan, &merged, &plot, &out.join("plots"))?;

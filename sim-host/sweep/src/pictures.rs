@@ -19,32 +19,6 @@ const CURVES: usize = 6;
 /// Most pictures that nobody asked for.
 const UNASKED: usize = 8;
 
-/// Whether a picture can be drawn; else which field of it is wrong, what, and what to do.
-///
-/// # Errors
-/// It names no figure or no axis of the plan.
-pub fn check(plan: &Plan, plot: &PlotTable) -> Result<(), (&'static str, String, String)> {
-    let list = |names: &mut dyn Iterator<Item = &str>| match names.collect::<Vec<_>>() {
-        names if names.is_empty() => "there is none".to_owned(),
-        names => format!("give one of {}", names.join(", ")),
-    };
-    if !plan.measures().contains(&plot.figure) {
-        let what = format!("{} is not measured", plot.figure);
-        let remedy = list(&mut plan.measures().iter().map(String::as_str));
-        return Err(("figure", what, remedy));
-    }
-    for (field, axis) in [("over", Some(&plot.over)), ("and", plot.and.as_ref())] {
-        if let Some(axis) = axis.filter(|axis| plan.find(axis).is_none()) {
-            let what = format!("{axis} is no axis of the plan");
-            return Err((field, what, list(&mut plan.axes())));
-        }
-    }
-    if plot.and.as_ref() == Some(&plot.over) {
-        return Err(("and", format!("{} is both axes", plot.over), "give another one, or leave it out".to_owned()));
-    }
-    Ok(())
-}
-
 /// The pictures of a plan: those that it asks for, else its first figures over its first two axes.
 #[must_use]
 pub fn plots(plan: &Plan) -> Vec<PlotTable> {
@@ -70,7 +44,7 @@ pub fn plots(plan: &Plan) -> Vec<PlotTable> {
 /// A file cannot be written.
 ///
 /// # Panics
-/// When the plan has no such figure or axis: see [`check`].
+/// When the plan has no such figure or axis: see [`Plan::check_plot`].
 pub fn draw(plan: &Plan, merged: &Merged, plot: &PlotTable, folder: &Path) -> Result<Vec<PathBuf>, Error> {
     let figure = plan.measures().iter().position(|name| *name == plot.figure).expect("a figure that was checked");
     let find = |axis: &String| plan.find(axis).expect("an axis that was checked");

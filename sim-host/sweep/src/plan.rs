@@ -184,6 +184,32 @@ impl Plan {
         &self.measures
     }
 
+    /// Whether a picture can be drawn; else which field of it is wrong, what, and what to do.
+    ///
+    /// # Errors
+    /// It names no figure or no axis of the plan.
+    pub fn check_plot(&self, plot: &PlotTable) -> Result<(), (&'static str, String, String)> {
+        let list = |names: &mut dyn Iterator<Item = &str>| match names.collect::<Vec<_>>() {
+            names if names.is_empty() => "there is none".to_owned(),
+            names => format!("give one of {}", names.join(", ")),
+        };
+        if !self.measures().contains(&plot.figure) {
+            let what = format!("{} is not measured", plot.figure);
+            let remedy = list(&mut self.measures().iter().map(String::as_str));
+            return Err(("figure", what, remedy));
+        }
+        for (field, axis) in [("over", Some(&plot.over)), ("and", plot.and.as_ref())] {
+            if let Some(axis) = axis.filter(|axis| self.find(axis).is_none()) {
+                let what = format!("{axis} is no axis of the plan");
+                return Err((field, what, list(&mut self.axes())));
+            }
+        }
+        if plot.and.as_ref() == Some(&plot.over) {
+            return Err(("and", format!("{} is both axes", plot.over), "give another one, or leave it out".to_owned()));
+        }
+        Ok(())
+    }
+
     /// What tells plans apart that mean other runs or rows, as 16 hex digits.
     #[must_use]
     pub fn fingerprint(&self) -> String {
@@ -355,7 +381,7 @@ fn check_measures(
 
 fn check_plots(source: &Source<'_>, plan: &Plan, plots: Vec<PlotTable>) -> Result<Vec<PlotTable>, ScenarioError> {
     for (index, plot) in plots.iter().enumerate() {
-        crate::pictures::check(plan, plot)
+        plan.check_plot(plot)
             .map_err(|(field, what, remedy)| source.error(&format!("plot[{index}].{field}"), what, remedy))?;
     }
     Ok(plots)
