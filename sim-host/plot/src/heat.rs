@@ -157,8 +157,11 @@ mod tests {
     }
 
     fn texts(canvas: &Canvas) -> Vec<&str> {
-        let text = |shape| if let &Shape::Text(ref text) = shape { Some(text.text.as_str()) } else { None };
-        canvas.shapes.iter().filter_map(text).collect()
+        let text = canvas.shapes.iter().filter_map(|shape| match shape {
+            Shape::Text(text) => Some(text.text.as_str()),
+            _ => None,
+        });
+        text.collect()
     }
 
     #[test]
