@@ -1,5 +1,5 @@
 use super::*;
-use crate::stats::{Summary, quantile};
+use crate::{Summary, quantile};
 use libm::{cos, fabs};
 use std::f64::consts::TAU;
 
