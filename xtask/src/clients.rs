@@ -46,9 +46,19 @@ pub fn run_tests(repo: &Repo, report: &mut Report, only: Option<&str>, extent: E
     });
 }
 
-/// An environment with what the clients need, up to date. Returns its Python; the error says why there is none.
-pub fn prepare(repo: &Repo) -> Result<PathBuf, String> {
+/// An environment with pytest, pymavlink and the dialect, up to date. Returns its Python; the error says why there is none.
+pub fn environment(repo: &Repo) -> Result<PathBuf, String> {
     let python = python::environment(repo)?;
+    python::install(repo, &python, &format!("{TESTS}/requirements.txt"), &[])?;
+    let mut dialect = repo.command(&python);
+    run(dialect.arg(format!("{TESTS}/dialect.py")))
+        .map_err(|reason| format!("the dialect could not be made for Python ({reason})"))?;
+    Ok(python)
+}
+
+/// The same with all that clients need.
+pub fn prepare(repo: &Repo) -> Result<PathBuf, String> {
+    let python = environment(repo)?;
     if output_of(repo.command(TSHARK).arg("--version")).is_none() {
         // For root it reads its data and scripts from where it was built for, and nowhere else. Without it one test is skipped.
         let unpack = |_| apt::unpack(repo, &[TSHARK], &[TSHARK]);
@@ -56,10 +66,6 @@ pub fn prepare(repo: &Repo) -> Result<PathBuf, String> {
             println!("no {TSHARK} ({reason}); on Debian run, as root, `apt-get update && apt-get install {TSHARK}`");
         }
     }
-    python::install(repo, &python, &format!("{TESTS}/requirements.txt"), &[])?;
     python::install(repo, &python, &format!("{TESTS}/mavproxy.txt"), &["--no-deps"])?;
-    let mut dialect = repo.command(&python);
-    run(dialect.arg(format!("{TESTS}/dialect.py")))
-        .map_err(|reason| format!("the dialect could not be made for Python ({reason})"))?;
     Ok(python)
 }

@@ -4,6 +4,7 @@
 //! started) and [`report`] (what passed, and the closing line).
 
 mod apt;
+mod autopilots;
 mod bare;
 mod bench;
 mod bless;
@@ -51,6 +52,8 @@ Usage: cargo xtask COMMAND
   test [--all]    the tests: on the host, by MAVLink clients, on emulated parts; with --all also the long proofs: each program
                   on each part, debug builds, budgets, ten parts for 1000 steps, pages in a browser, sweeps on Slurm, peers, fuzz targets on random bytes
   ci              check, then test --all
+  autopilots [--rover PATH] [--copter PATH] [--defaults FOLDER] [NAME]
+                  flights of `staya companion` with the simulation of ArduPilot that you have built (docs/autopilots.md); never part of `ci`
   bare            emulators, compiler, emulated parts and a browser in a bare Debian of its own; needs root
   bench [NAME]    benchmarks, also beside peer crates (those whose name contains NAME): medians, ratios, goals
   bless [NAME]    rewrite golden files by running the tests whose name contains NAME (default: golden)
@@ -100,6 +103,13 @@ fn main() -> ExitCode {
             check::run(&repo, &mut report);
             test::run(&repo, &mut report, Extent::All);
         }
+        ["autopilots", arguments @ ..] => match autopilots::Request::read(arguments) {
+            Some(request) => autopilots::run_command(&repo, &mut report, &request),
+            None => {
+                eprint!("xtask: autopilots takes --rover PATH, --copter PATH, --defaults FOLDER and a NAME\n\n{HELP}");
+                return ExitCode::from(2);
+            }
+        },
         ["bare"] => bare::run_command(&repo, &mut report),
         ["bench"] => bench::run(&repo, &mut report, None),
         ["bench", name] if !name.starts_with('-') => bench::run(&repo, &mut report, Some(name)),

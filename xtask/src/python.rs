@@ -33,14 +33,29 @@ pub fn install(repo: &Repo, python: &Path, list: &str, options: &[&str]) -> Resu
     run(&mut pip).map_err(|reason| format!("pip could not install {list} from PyPI ({reason})"))
 }
 
-/// Runs tests and reads how many did what. The note says what went wrong, else `why_skipped` if any were.
+/// Before figures that a test prints for the closing table.
+const FIGURES: &str = "figures: ";
+
+/// Runs tests and reads how many did what. The note says what went wrong, else `why_skipped` if any were; and the figures that
+/// were found last.
 pub fn pytest(tests: &mut Command, why_skipped: &str) -> (Counts, String) {
-    let mut counts = None;
-    let ended = run_reading(tests, |line| counts = closing_line(line).or(counts));
+    let (mut counts, mut figures) = (None, None);
+    let ended = run_reading(tests, |line| {
+        counts = closing_line(line).or(counts);
+        figures = line.strip_prefix(FIGURES).map(String::from).or_else(|| figures.take());
+    });
+    let note = |why: &str| {
+        [Some(why), figures.as_deref()]
+            .into_iter()
+            .flatten()
+            .filter(|part| !part.is_empty())
+            .collect::<Vec<_>>()
+            .join(": ")
+    };
     match (ended, counts) {
-        (Ok(()), Some(counts)) if counts.skipped > 0 => (counts, String::from(why_skipped)),
-        (Ok(()), Some(counts)) => (counts, String::new()),
-        (Err(_), Some(counts)) if counts.failed > 0 => (counts, String::from("see above")),
+        (Ok(()), Some(counts)) if counts.skipped > 0 => (counts, note(why_skipped)),
+        (Ok(()), Some(counts)) => (counts, note("")),
+        (Err(_), Some(counts)) if counts.failed > 0 => (counts, note("see above")),
         (ended, counts) => {
             let reason = ended.err().unwrap_or_else(|| String::from("no closing line"));
             let mut counts = counts.unwrap_or_default();

@@ -1,0 +1,140 @@
+"""What fails while six rovers of ArduPilot cross: pilots act, autopilots restart, GPS and companions fail."""
+
+import os
+import signal
+import time
+
+from conftest import ROOT, wait_until
+from flight import GOALS, STARTS, arrive, figures, fly, least, moving, needs  # noqa: F401
+
+pytestmark = needs("rover")
+# Whom it befalls, and how long after setting off: it is on its way to the others then.
+ONE, AFTER_S = 3, 4.0
+OTHERS = [number for number in range(1, 7) if number != ONE]
+
+
+def test_the_pilots_hold_is_respected_until_guided_is_chosen_again(fly, free_port):
+    with fly.vehicles("rover", STARTS, free_port) as simulation:
+        companion = fly.companion(fly.example("six-rovers-crossing.toml"))
+        begun = moving(simulation, time.time())
+        time.sleep(AFTER_S)
+        held = simulation[ONE].choose("HOLD")
+        companion.wait_for(f"robot {ONE}: the pilot steers")
+        others = arrive(simulation, GOALS, 120, numbers=OTHERS, within=4.0)
+        time.sleep(5.0)
+        assert simulation[ONE].mode == simulation[ONE].modes["HOLD"], "it was taken back"
+        still = simulation[ONE].between(held + 5.0)
+        guided = simulation[ONE].choose("GUIDED")
+        companion.wait_for(f"robot {ONE}: arrived", 60)
+        there = arrive(simulation, GOALS, 60)
+        words = least(simulation, begun)
+        companion.finish()
+        # As the companion's own log has the times.
+        beat = next(at for at, m in companion.messages() if m.get_type() == "HEARTBEAT" and m.get_srcSystem() == ONE and m.custom_mode == 4)
+        times = [at for at, _ in companion.setpoints(ONE)]
+        last = max(at for at in times if at < guided - 0.5)
+        again = min(at for at in times if at > last)
+        figures(f"last setpoint {1e3 * (beat - last):.0f} ms before the first heartbeat with HOLD; none for {again - last:.1f} s, then {1e3 * (again - guided):.0f} ms after "
+                f"GUIDED; the others were there after {others - begun:.1f} s, it {there - guided:.1f} s after GUIDED, {words}")
+        assert last <= beat + 0.001, f"a setpoint {last - beat} s after the heartbeat"
+        assert max(truth.speed for truth in still) < 0.2
+
+
+def test_an_autopilot_that_restarts_waits_for_its_pilot(fly, free_port):
+    with fly.vehicles("rover", STARTS, free_port) as simulation:
+        companion = fly.companion(fly.example("six-rovers-crossing.toml"))
+        begun = moving(simulation, time.time())
+        time.sleep(AFTER_S)
+        one = simulation[ONE]
+        os.kill(one.process.child.pid, signal.SIGKILL)
+        killed = time.time()
+        last = one.truth[-1]
+        # Its simulation begins anew where the vehicle stands by then.
+        one.start = (last.east, last.north)
+        one.process.wait()
+        one.switch_on(speedup=1)
+        others = arrive(simulation, GOALS, 150, numbers=OTHERS, within=4.0)
+        companion.wait_for("the autopilot has restarted", 60)
+        simulation.ready([one])
+        time.sleep(2.0)
+        assert not one.is_armed and one.mode != one.modes["GUIDED"]
+        one.choose("GUIDED")
+        one.arm()
+        guided = time.time()
+        there = arrive(simulation, GOALS, 90)
+        words = least(simulation, begun)
+        report = companion.finish()
+        times = [at for at, _ in companion.setpoints(ONE)]
+        # Until the link is lost, the companion knows of nothing.
+        pause = [at for at in times if killed + 3.5 < at < guided - 1.0]
+        figures(f"the others were there after {others - begun:.1f} s; setpoints to it ended {max(at for at in times if at < killed + 3.5) - killed:.1f} s after its death and "
+                f"began again when its pilot had armed; it was there {there - guided:.1f} s later, {words}")
+        assert pause == [], f"{len(pause)} setpoints without its pilot"
+        assert report["vehicles"][ONE - 1]["restarts"] == 1
+
+
+def test_a_vehicle_without_gps_stands_and_says_so(fly, free_port):
+    with fly.vehicles("rover", STARTS, free_port) as simulation:
+        companion = fly.companion(fly.example("six-rovers-crossing.toml"))
+        begun = moving(simulation, time.time())
+        time.sleep(AFTER_S)
+        one = simulation[ONE]
+        one.set("SIM_GPS1_ENABLE", 0)
+        lost = time.time()
+        companion.wait_for(f"robot {ONE}: position not trusted", 10)
+        told = time.time()
+        wait_until(lambda: one.truth[-1].speed < 0.2, 10, "standing")
+        stood = time.time()
+        others = arrive(simulation, GOALS, 150, numbers=OTHERS, within=14.0)
+        rolled = one.place(stood - 0.2)
+        words = least(simulation, begun)
+        near, *_ = simulation.nearest(stood, time.time(), only=ONE)
+        companion.finish()
+        after = [m for at, m in companion.setpoints(ONE) if at > told + 0.1]
+        figures(f"said so {told - lost:.2f} s after GPS ended, stood after {stood - lost:.1f} s; the others stood after {others - begun:.1f} s, {words}, {near:.2f} m to it then")
+        assert all((m.vx, m.vy, m.vz) == (0.0, 0.0, 0.0) for m in after)
+        # Where it stands by the truth, though its own estimate drifts.
+        assert rolled is not None and abs(one.truth[-1].east - rolled[0]) < 2.0
+
+
+def test_others_keep_clear_of_a_vehicle_whose_companion_dies(fly, free_port):
+    """Each companion has a process, as on vehicles; one is killed as by a power failure."""
+    with fly.vehicles("rover", STARTS, free_port) as simulation:
+        lan = [free_port(), free_port()]
+        companions = []
+        for mine, numbers in ((0, [ONE]), (1, OTHERS)):
+            air = f'[air]\nbind = "127.0.0.1:{lan[mine]}"\npeers = ["127.0.0.1:{lan[1 - mine]}"]'
+            config = fly.config(ROOT / "companions/crossing.toml", "ardupilot-rover", 'entry = "once"\narm = true', air, numbers)
+            companions.append(fly.companion(config))
+        begun = moving(simulation, time.time())
+        time.sleep(AFTER_S)
+        one = simulation[ONE]
+        os.kill(companions[0].process.child.pid, signal.SIGKILL)
+        killed, at, speed = time.time(), one.truth[-1], one.truth[-1].speed
+        wait_until(lambda: one.truth[-1].speed < 0.1, 15, "standing")
+        stood = time.time()
+        rolled = ((one.truth[-1].east - at.east) ** 2 + (one.truth[-1].north - at.north) ** 2) ** 0.5
+        time.sleep(30.0)
+        words = least(simulation, begun)
+        near, *_ = simulation.nearest(killed, time.time(), only=ONE)
+        companions[1].finish()
+        figures(f"killed at {speed:.2f} m/s it went on for {rolled:.1f} m and {stood - killed:.1f} s; {words}, {near:.2f} m to it from then on; "
+                f"30 s later the others are {[round(simulation[n].off(GOALS[n - 1])) for n in OTHERS]} m from their goals")
+
+
+def test_a_companion_that_pauses_goes_on(fly, free_port):
+    with fly.vehicles("rover", STARTS, free_port) as simulation:
+        companion = fly.companion(fly.example("six-rovers-crossing.toml"))
+        begun = moving(simulation, time.time())
+        time.sleep(AFTER_S)
+        os.kill(companion.process.child.pid, signal.SIGSTOP)
+        try:
+            time.sleep(5.0)
+            paused = max(vehicle.truth[-1].speed for vehicle in simulation.vehicles)
+        finally:
+            os.kill(companion.process.child.pid, signal.SIGCONT)
+        ended = arrive(simulation, GOALS, 120)
+        words = least(simulation, begun)
+        companion.finish()
+        figures(f"stopped for 5 s, at the end of which they stood ({paused:.2f} m/s at most); all there in {ended - begun:.1f} s, {words}")
+        assert paused < 0.3
