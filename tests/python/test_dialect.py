@@ -20,7 +20,7 @@ def value(text):
     return numbers if "," in text else numbers[0]
 
 
-@pytest.mark.parametrize("file, count", [("common.xml", 47), ("ardupilotmega.xml", 1)])
+@pytest.mark.parametrize("file, count", [("common.xml", 48), ("ardupilotmega.xml", 1)])
 def test_public_messages_are_those_of_the_public_dialect(dialect, file, count):
     ours = mavparse.MAVXML(str(MESSAGES / file), wire_protocol_version=mavparse.PROTOCOL_2_0)
     assert len(ours.message) >= count

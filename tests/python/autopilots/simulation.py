@@ -230,7 +230,7 @@ class Autopilot:
 class Simulation:
     """Vehicles and the thread that listens to them, as long as the `with` lasts."""
 
-    RATES = {1: 2, 24: 2, 33: 10, 108: TRUTH_HZ, 193: 2, 245: 4}
+    RATES = {1: 2, 24: 2, 33: 10, 108: TRUTH_HZ, 124: 2, 193: 2, 245: 4}
 
     def __init__(self, vehicles):
         self.vehicles = list(vehicles)

@@ -97,15 +97,27 @@ def test_a_vehicle_without_gps_stands_and_says_so(fly, free_port):
         assert rolled is not None and abs(one.truth[-1].east - rolled[0]) < 2.0
 
 
+def test_a_vehicle_with_a_second_receiver_goes_on_when_its_first_fails(fly, free_port):
+    second = "SIM_GPS2_ENABLE 1\nGPS2_TYPE 1\nGPS_AUTO_SWITCH 1\n"
+    with fly.vehicles("rover", [(0.0, 0.0)], free_port, parameters=second) as simulation:
+        one = simulation[1]
+        goal = (30.0, 0.0)
+        companion = fly.companion(fly.config(fly.scenario([((0.0, 0.0), goal)]), "ardupilot-rover", 'entry = "once"\narm = true'))
+        begun = moving(simulation, time.time())
+        time.sleep(AFTER_S)
+        one.set("SIM_GPS1_ENABLE", 0)
+        ended = arrive(simulation, [goal], 60)
+        companion.finish()
+        doubts = [line for line in companion.process.output().splitlines() if "not trusted" in line]
+        first, other = one.last["GPS_RAW_INT"][1].fix_type, one.last["GPS2_RAW"][1].fix_type
+        figures(f"its first receiver (fix type {first}) fails on the way, its second has fix type {other}: there in {ended - begun:.1f} s, doubts: {doubts or 'none'}")
+        assert first < 3 <= other and not any("GPS has lost its fix" in line for line in doubts)
+
+
 def test_others_keep_clear_of_a_vehicle_whose_companion_dies(fly, free_port):
     """Each companion has a process, as on vehicles; one is killed as by a power failure."""
     with fly.vehicles("rover", STARTS, free_port) as simulation:
-        lan = [free_port(), free_port()]
-        companions = []
-        for mine, numbers in ((0, [ONE]), (1, OTHERS)):
-            air = f'[air]\nbind = "127.0.0.1:{lan[mine]}"\npeers = ["127.0.0.1:{lan[1 - mine]}"]'
-            config = fly.config(ROOT / "companions/crossing.toml", "ardupilot-rover", 'entry = "once"\narm = true', air, numbers)
-            companions.append(fly.companion(config))
+        companions = in_two_processes(fly, free_port)
         begun = moving(simulation, time.time())
         time.sleep(AFTER_S)
         one = simulation[ONE]
@@ -123,18 +135,49 @@ def test_others_keep_clear_of_a_vehicle_whose_companion_dies(fly, free_port):
 
 
 def test_a_companion_that_pauses_goes_on(fly, free_port):
+    """The one of one vehicle, in a process of its own; the others make room meanwhile."""
+    with fly.vehicles("rover", STARTS, free_port) as simulation:
+        companions = in_two_processes(fly, free_port)
+        begun = moving(simulation, time.time())
+        time.sleep(AFTER_S)
+        paused = pause(companions[0], [simulation[ONE]])
+        ended = arrive(simulation, GOALS, 120)
+        words = least(simulation, begun)
+        for companion in companions:
+            companion.finish()
+        figures(f"its companion stopped for 5 s, at the end of which it stood ({paused:.2f} m/s); all there in {ended - begun:.1f} s, {words}")
+        assert paused < 0.3
+
+
+def test_vehicles_without_anybody_roll_out_and_go_on_afterwards(fly, free_port):
+    """One process for all is stopped for 5 s: for 3 of them nobody keeps vehicles apart, so how near they come is not judged."""
     with fly.vehicles("rover", STARTS, free_port) as simulation:
         companion = fly.companion(fly.example("six-rovers-crossing.toml"))
         begun = moving(simulation, time.time())
         time.sleep(AFTER_S)
-        os.kill(companion.process.child.pid, signal.SIGSTOP)
-        try:
-            time.sleep(5.0)
-            paused = max(vehicle.truth[-1].speed for vehicle in simulation.vehicles)
-        finally:
-            os.kill(companion.process.child.pid, signal.SIGCONT)
-        ended = arrive(simulation, GOALS, 120)
-        words = least(simulation, begun)
+        paused = pause(companion, simulation.vehicles)
+        distance, *_ = simulation.nearest(begun, time.time())
+        ended = arrive(simulation, GOALS, 150)
         companion.finish()
-        figures(f"stopped for 5 s, at the end of which they stood ({paused:.2f} m/s at most); all there in {ended - begun:.1f} s, {words}")
+        figures(f"all stopped for 5 s in the middle: they stood by then ({paused:.2f} m/s at most), {distance:.2f} m apart at least; all there in {ended - begun:.1f} s")
         assert paused < 0.3
+
+
+def pause(companion, vehicles):
+    """Stops its process for 5 s; returns the highest speed at the end of that."""
+    os.kill(companion.process.child.pid, signal.SIGSTOP)
+    try:
+        time.sleep(5.0)
+        return max(vehicle.truth[-1].speed for vehicle in vehicles)
+    finally:
+        os.kill(companion.process.child.pid, signal.SIGCONT)
+
+
+def in_two_processes(fly, free_port):
+    """A companion for the one, and one for the others, which hear each other by UDP."""
+    lan, companions = [free_port(), free_port()], []
+    for mine, numbers in ((0, [ONE]), (1, OTHERS)):
+        air = f'[air]\nbind = "127.0.0.1:{lan[mine]}"\npeers = ["127.0.0.1:{lan[1 - mine]}"]'
+        config = fly.config(ROOT / "companions/crossing.toml", "ardupilot-rover", 'entry = "once"\narm = true', air, numbers)
+        companions.append(fly.companion(config))
+    return companions

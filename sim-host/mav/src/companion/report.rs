@@ -47,6 +47,8 @@ pub struct LineReport {
     pub trouble: Option<String>,
     /// Frames refused for want of a signature that is right and new.
     pub refused: u32,
+    /// No timestamp is left to sign with: nothing more was sent on it.
+    pub is_exhausted: bool,
 }
 
 /// The figures of `staya companion`.
@@ -98,11 +100,12 @@ impl fmt::Display for CompanionReport {
                 vehicle.packets_refused,
             )?;
         }
-        for LineReport { link, counts, trouble, refused } in &self.links {
+        for LineReport { link, counts, trouble, refused, is_exhausted } in &self.links {
             let trouble = trouble.as_ref().map_or_else(String::new, |why| format!("; no connection: {why}"));
+            let mute = if *is_exhausted { "; no timestamp left to sign with: mute, a new key is needed" } else { "" };
             writeln!(
                 f,
-                "  {link}: {} frames in, {} out, {} bytes of junk, {} lost, {refused} refused{trouble}",
+                "  {link}: {} frames in, {} out, {} bytes of junk, {} lost, {refused} refused{trouble}{mute}",
                 counts.frames_in,
                 counts.frames_out,
                 counts.junk_bytes,

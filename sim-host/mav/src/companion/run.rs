@@ -35,6 +35,8 @@ const GLANCES: [Duration; 2] = [Duration::from_millis(5), Duration::from_millis(
 /// Setpoints to stand, and the time between them, at the end.
 const FAREWELLS: (u32, Duration) = (5, Duration::from_millis(40));
 
+/// With so few timestamps left to sign with, ground stations are told: afterwards nobody can be.
+const FEW_TIMESTAMPS: u64 = 1000;
 /// Between two looks at whether lines are connected.
 const LOOK: Duration = Duration::from_secs(1);
 /// How old positions may be in a dry run at least.
@@ -78,6 +80,8 @@ struct Link {
     name: String,
     /// Why it has no connection, as far as that was told.
     trouble: Option<String>,
+    /// Whether it was told that its timestamps come to their end.
+    is_end_told: bool,
 }
 
 struct Companions<'a> {
@@ -199,7 +203,11 @@ impl<'a> Companions<'a> {
             glance: if is_lan { lan } else { else_ },
             is_tunnel: config.air == MediumSetup::Tunnel,
             machine,
-            links: config.lines.iter().map(|line| Link { name: line.to_string(), trouble: None }).collect(),
+            links: config
+                .lines
+                .iter()
+                .map(|line| Link { name: line.to_string(), trouble: None, is_end_told: false })
+                .collect(),
             next_look: Duration::ZERO,
             vehicles: config.vehicles.iter().map(vehicle).collect(),
             signing,
@@ -251,6 +259,7 @@ impl<'a> Companions<'a> {
             }
         });
         self.look_at_links(now);
+        self.look_at_timestamps();
         for index in 0..self.vehicles.len() {
             self.step(index);
             self.poll(index);

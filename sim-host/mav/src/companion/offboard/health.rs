@@ -13,6 +13,8 @@ use std::time::Duration;
 
 /// How long all must be well until it is believed again.
 pub const WELL_FOR: Duration = Duration::from_secs(5);
+/// A receiver's report that is older counts for nothing.
+const REPORT_VALID: Duration = Duration::from_secs(2);
 /// From here on ArduPilot's own failsafe (`FS_EKF_THRESH`) takes an innovation for too large.
 const EKF_LIMIT: f32 = 0.8;
 /// From here on PX4's estimator refuses what sensors say.
@@ -21,7 +23,7 @@ const ESTIMATOR_LIMIT: f32 = 1.0;
 /// Why a position is not believed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Doubt {
-    /// `GPS_RAW_INT`: there was a fix in three dimensions, and there is none any more.
+    /// `GPS_RAW_INT`, `GPS2_RAW`: there was a fix in three dimensions, and no receiver has one any more.
     Gps,
     /// `EKF_STATUS_REPORT` or `ESTIMATOR_STATUS`: no place, no velocity, or innovations that are too large.
     Estimator,
@@ -45,6 +47,8 @@ impl Doubt {
 #[derive(Clone, Debug, Default)]
 pub struct Health {
     had_fix: bool,
+    /// When each of two receivers had a fix last.
+    fixed_at: [Option<Duration>; 2],
     /// By the places in [`Doubt`].
     is_bad: [bool; 3],
     well_at: Duration,
@@ -63,12 +67,8 @@ impl Health {
     /// Takes a message in; the doubt that is new with it.
     pub fn hear(&mut self, message: &MavMessage, now: Duration) -> Option<Doubt> {
         let (doubt, is_bad) = match message {
-            MavMessage::GPS_RAW_INT(gps) => {
-                let has_fix = gps.fix_type >= GPS_FIX_TYPE_3D_FIX;
-                self.had_fix |= has_fix;
-                // Who never had one goes by something else.
-                (Doubt::Gps, self.had_fix && !has_fix)
-            }
+            MavMessage::GPS_RAW_INT(gps) => (Doubt::Gps, self.has_lost_fix(0, gps.fix_type, now)),
+            MavMessage::GPS2_RAW(gps) => (Doubt::Gps, self.has_lost_fix(1, gps.fix_type, now)),
             MavMessage::EKF_STATUS_REPORT(ekf) => {
                 let bad = ESTIMATOR_CONST_POS_MODE | EKF_UNINITIALIZED | EKF_GPS_GLITCHING;
                 let innovations = [ekf.velocity_variance, ekf.pos_horiz_variance].map(|share| share / EKF_LIMIT);
@@ -98,6 +98,17 @@ impl Health {
             self.well_at = now + WELL_FOR;
         }
         is_new.then_some(doubt)
+    }
+
+    /// Whether, with this report of a receiver, there is no fix any more. Who never had one goes by something else.
+    fn has_lost_fix(&mut self, receiver: usize, fix_type: u8, now: Duration) -> bool {
+        let has_fix = fix_type >= GPS_FIX_TYPE_3D_FIX;
+        if let Some(fixed_at) = self.fixed_at.get_mut(receiver) {
+            *fixed_at = has_fix.then_some(now);
+        }
+        self.had_fix |= has_fix;
+        let is_fixed = |at: &Option<Duration>| at.is_some_and(|at| now.saturating_sub(at) <= REPORT_VALID);
+        self.had_fix && !self.fixed_at.iter().any(is_fixed)
     }
 
     /// Whether its positions can be believed.

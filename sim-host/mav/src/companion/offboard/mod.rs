@@ -39,6 +39,8 @@ const HEARTBEAT: Duration = Duration::from_secs(1);
 const QUIET: Duration = Duration::from_secs(5);
 /// A time since boot that is earlier by more is another boot; by less, a message that was overtaken.
 const OVERTAKEN_MS: i32 = 2000;
+/// So many messages on end, each later than the one before and none in order, were not overtaken: the autopilot restarted soon after its start.
+const BEHIND: u8 = 4;
 /// A time since boot that is later by more is another boot, whose clock wrapped.
 const DAY_MS: i32 = 86_400_000;
 /// Who climbs no faster has come to the end of a takeoff, m/s.
@@ -170,6 +172,8 @@ pub struct OffboardStateMachine {
     is_of_boot: bool,
     health: Health,
     boot_ms: Option<u32>,
+    /// The last message that seemed overtaken, by its time since boot, and how many came on end.
+    behind: Option<(u32, u8)>,
     /// Velocity from `LOCAL_POSITION_NED`, which is finer, and when.
     velocity: Option<(Duration, [f64; 3])>,
     landed: Option<u8>,
@@ -206,6 +210,7 @@ impl OffboardStateMachine {
             is_of_boot: false,
             health: Health::default(),
             boot_ms: None,
+            behind: None,
             velocity: None,
             landed: None,
             may_enter: rules.entry == Entry::Once,
@@ -310,11 +315,19 @@ impl OffboardStateMachine {
     fn is_in_order(&mut self, boot_ms: u32) -> bool {
         let since = self.boot_ms.map(|last| boot_ms.wrapping_sub(last).cast_signed());
         match since {
-            Some(ms) if (-OVERTAKEN_MS..0).contains(&ms) => return false,
+            Some(ms) if (-OVERTAKEN_MS..0).contains(&ms) => {
+                let rising = self.behind.filter(|(last, _)| boot_ms > *last);
+                let count = rising.map_or(1, |(_, count)| count.saturating_add(1));
+                self.behind = Some((boot_ms, count));
+                if count < BEHIND {
+                    return false;
+                }
+                self.restarted();
+            }
             Some(ms) if !(0..=DAY_MS).contains(&ms) => self.restarted(),
             _ => {}
         }
-        self.boot_ms = Some(boot_ms);
+        (self.boot_ms, self.behind) = (Some(boot_ms), None);
         true
     }
 

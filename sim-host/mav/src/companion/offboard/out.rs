@@ -3,7 +3,7 @@
 use super::{AUTOPILOT, Kind};
 use staya_mavlink::dialect::{
     COMMAND_LONG_DATA, EKF_STATUS_REPORT_DATA, ESTIMATOR_STATUS_DATA, EXTENDED_SYS_STATE_DATA,
-    GLOBAL_POSITION_INT_DATA, GPS_RAW_INT_DATA, HEARTBEAT_DATA, LOCAL_POSITION_NED_DATA, MavMessage,
+    GLOBAL_POSITION_INT_DATA, GPS_RAW_INT_DATA, GPS2_RAW_DATA, HEARTBEAT_DATA, LOCAL_POSITION_NED_DATA, MavMessage,
     SET_POSITION_TARGET_LOCAL_NED_DATA, STATUSTEXT_DATA, SYS_STATUS_DATA,
 };
 use staya_mavlink::mavlink_core::MessageData as _;
@@ -78,7 +78,7 @@ pub fn intervals(system: u8, kind: Kind, position_hz: f64) -> impl Iterator<Item
 pub fn health_intervals(system: u8, kind: Kind) -> impl Iterator<Item = MavMessage> {
     const HEALTH_HZ: f64 = 4.0;
     let estimator = if kind.is_px4() { ESTIMATOR_STATUS_DATA::ID } else { EKF_STATUS_REPORT_DATA::ID };
-    let ids = [estimator, GPS_RAW_INT_DATA::ID, SYS_STATUS_DATA::ID];
+    let ids = [estimator, GPS_RAW_INT_DATA::ID, GPS2_RAW_DATA::ID, SYS_STATUS_DATA::ID];
     ids.into_iter().map(move |id| interval(system, id, HEALTH_HZ))
 }
 

@@ -1,6 +1,6 @@
 //! What a person is told: lines as things happen, and the figures at the end.
 
-use super::{Companions, LOOK, Vehicle, shown};
+use super::{Companions, FEW_TIMESTAMPS, LOOK, Vehicle, shown, status_text};
 use crate::companion::config::Config;
 use crate::companion::offboard::{AUTOPILOT, State};
 use crate::companion::report::{CompanionReport, LineReport, VehicleReport};
@@ -8,6 +8,7 @@ use staya_controller::agent::Event as AgentEvent;
 use staya_controller::robot::Mode;
 use staya_mavlink::dialect::MavMessage;
 use staya_mavlink::frame::Sender;
+use staya_mavlink::signing::Signing;
 use std::time::Duration;
 
 /// Between two velocities that a dry run shows.
@@ -63,6 +64,25 @@ impl Companions<'_> {
         }
     }
 
+    /// Says, once for each link and to its vehicles' ground stations, that soon nothing can be signed any more.
+    pub(super) fn look_at_timestamps(&mut self) {
+        for line in 0..self.links.len() {
+            let is_ending = self.signing_of(line).is_some_and(|signing| signing.left() < FEW_TIMESTAMPS);
+            if !is_ending || std::mem::replace(&mut self.links[line].is_end_told, true) {
+                continue;
+            }
+            self.say(&format!(
+                "staya: {}: hardly a timestamp is left to sign with: a new key is needed",
+                self.links[line].name
+            ));
+            for index in 0..self.vehicles.len() {
+                if self.vehicles[index].setup.line == line {
+                    self.send(index, &status_text("staya: a new link key is needed, soon mute", true));
+                }
+            }
+        }
+    }
+
     /// A hint, once, that one of the vehicles signs what it says (`is_open`: and nobody here does), or does not with this key.
     pub(super) fn tell_of_signing(&mut self, line: usize, sender: Sender, is_open: bool) {
         let is_it = |vehicle: &Vehicle| {
@@ -87,6 +107,13 @@ impl Companions<'_> {
             AgentEvent::NeighborLost(id) => self.tell(index, &format!("has lost robot {id}")),
             AgentEvent::DuplicateId(id) => self.tell(index, &format!("two robots have number {id}: give one another")),
             AgentEvent::NobodyHeard => self.tell(index, "hears nobody any more"),
+            AgentEvent::Muted => {
+                self.tell(
+                    index,
+                    "mute: no counter or timestamp is left for its packets, a new key is needed (air.key)",
+                );
+                self.send(index, &status_text("staya: mute, a new swarm key is needed", true));
+            }
             AgentEvent::NoRoute => self.tell(index, "finds no way"),
             AgentEvent::ModeChanged { to: Mode::Fault, .. }
                 if self.vehicles[index].offboard.state() == State::Steering =>
@@ -95,6 +122,10 @@ impl Companions<'_> {
             }
             _ => {}
         }
+    }
+
+    fn signing_at(&self, line: usize) -> Option<&Signing> {
+        self.signing.as_ref()?.get(line)
     }
 
     pub(super) fn report(&self, config: &Config, seconds: f64, interrupted: bool) -> CompanionReport {
@@ -116,11 +147,8 @@ impl Companions<'_> {
             link: endpoint.to_string(),
             counts: self.machine.counts(line),
             trouble: self.machine.trouble(line),
-            refused: self
-                .signing
-                .as_ref()
-                .and_then(|signing| signing.get(line))
-                .map_or(0, |signing| signing.counts().refused()),
+            refused: self.signing_at(line).map_or(0, |signing| signing.counts().refused()),
+            is_exhausted: self.signing_at(line).is_some_and(|signing| signing.left() == 0),
         });
         CompanionReport {
             scenario: config.scenario.name.clone(),

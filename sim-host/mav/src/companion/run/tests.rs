@@ -326,6 +326,25 @@ fn even_a_defect_of_its_own_does_not_leave_vehicles_going() {
     }
 }
 
+#[test]
+fn timestamps_that_come_to_their_end_are_told_before_nobody_can_be() {
+    let config = config();
+    let options = Options { seconds: Some(SECONDS), ..Options::default() };
+    let world = Rc::new(RefCell::new(World::new(None)));
+    let mut companions = Companions::new(&config, &options, None, None, Box::new(Shared(Rc::clone(&world))));
+    let last = (1 << 48) - 1;
+    companions.signing = Some(vec![Signing::new(staya_controller::auth::Key::new([7; 32]), 0, last - 3)]);
+    let (seconds, _) = companions.run(|| true, &mut |_| {});
+    let report = companions.report(&config, seconds, false);
+    drop(companions);
+    let world = world.borrow();
+    assert_eq!(world.lines.iter().filter(|line| line.contains("hardly a timestamp is left")).count(), 1);
+    for rover in &world.rovers {
+        assert_eq!(rover.warnings, ["staya: a new link key is needed, soon mute"]);
+    }
+    assert!(report.links[0].is_exhausted && report.to_string().contains("no timestamp left to sign with"), "{report}");
+}
+
 /// A dry run; how many seconds it took.
 fn rehearse(failing: Option<(Call, Failure)>) -> (World, f64) {
     let options = Options { seconds: Some(SECONDS), dry_run: true, ..Options::default() };

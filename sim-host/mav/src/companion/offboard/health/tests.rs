@@ -1,5 +1,7 @@
 use super::*;
-use staya_mavlink::dialect::{EKF_STATUS_REPORT_DATA, ESTIMATOR_STATUS_DATA, GPS_RAW_INT_DATA, SYS_STATUS_DATA};
+use staya_mavlink::dialect::{
+    EKF_STATUS_REPORT_DATA, ESTIMATOR_STATUS_DATA, GPS_RAW_INT_DATA, GPS2_RAW_DATA, SYS_STATUS_DATA,
+};
 
 const SOUND: u16 = ESTIMATOR_ATTITUDE | ESTIMATOR_VELOCITY_HORIZ | ESTIMATOR_POS_HORIZ_ABS;
 
@@ -9,6 +11,10 @@ fn s(seconds: f64) -> Duration {
 
 fn gps(fix_type: u8) -> MavMessage {
     MavMessage::GPS_RAW_INT(GPS_RAW_INT_DATA { fix_type, ..GPS_RAW_INT_DATA::DEFAULT })
+}
+
+fn second_gps(fix_type: u8) -> MavMessage {
+    MavMessage::GPS2_RAW(GPS2_RAW_DATA { fix_type, ..GPS2_RAW_DATA::DEFAULT })
 }
 
 fn ekf(flags: u16, pos_horiz_variance: f32) -> MavMessage {
@@ -47,6 +53,32 @@ fn a_fix_that_is_lost_is_a_doubt_and_one_that_never_was_is_none() {
     assert_eq!(health.hear(&gps(2), s(3.0)), Some(Doubt::Gps));
     assert_eq!(health.hear(&gps(2), s(4.0)), None, "told once");
     assert!(!health.is_trusted(s(100.0)));
+}
+
+#[test]
+fn one_receiver_of_two_is_enough_while_it_speaks() {
+    let mut health = Health::default();
+    for (seconds, message, doubt) in [
+        (1.0, gps(3), None),
+        (1.1, second_gps(3), None),
+        (1.5, gps(1), None),
+        (3.0, second_gps(3), None),
+        (4.9, gps(1), None),
+        // The second one has fallen silent.
+        (5.1, gps(1), Some(Doubt::Gps)),
+        (5.2, second_gps(3), None),
+        (11.0, second_gps(3), None),
+        (11.1, gps(0), None),
+        (11.2, second_gps(1), Some(Doubt::Gps)),
+    ] {
+        assert_eq!(health.hear(&message, s(seconds)), doubt, "{seconds} {message:?}");
+    }
+    // Who has only a second one goes by that.
+    let mut second = Health::default();
+    assert_eq!(second.hear(&gps(0), s(0.5)), None);
+    assert_eq!(second.hear(&second_gps(6), s(1.0)), None);
+    assert_eq!(second.hear(&gps(0), s(1.5)), None);
+    assert_eq!(second.hear(&second_gps(0), s(2.0)), Some(Doubt::Gps));
 }
 
 #[test]

@@ -234,7 +234,7 @@ fn a_dry_run_shows_what_it_would_ask_for_and_then_velocities() {
         bench.fix();
         sent.extend(bench.run(1.0));
     }
-    for (command, times) in [(out::DO_SET_MODE, 1), (out::ARM_DISARM, 1), (out::NAV_TAKEOFF, 1), (511, 6)] {
+    for (command, times) in [(out::DO_SET_MODE, 1), (out::ARM_DISARM, 1), (out::NAV_TAKEOFF, 1), (511, 7)] {
         assert_eq!(commands(&sent, command), times, "{command}");
     }
     let states = bench.events().iter().filter(|event| matches!(event, Event::State { .. })).count();

@@ -1,0 +1,146 @@
+//! What the autopilot says, and in which order.
+
+use super::*;
+
+#[test]
+fn telemetry_is_asked_for_again_after_a_restart_and_while_it_comes_too_slowly() {
+    let mut bench = Bench::rover(RULES);
+    bench.reports = true;
+    assert_eq!(commands(&bench.run(10.0), 511), 6, "once: it comes as it should");
+    bench.boot_ms = 0;
+    assert_eq!(commands(&bench.run(2.0), 511), 6);
+    bench.fixes = false;
+    assert!(commands(&bench.run(9.0), 511) >= 4);
+    let mut copter = Bench::new(Kind::ArduCopter, RULES, 0, ARMED);
+    assert_eq!(commands(&copter.run(2.0), 511), 7, "and whether it flies");
+}
+
+#[test]
+fn an_autopilot_that_says_nothing_of_its_estimator_is_asked_a_few_times_and_believed() {
+    let mut bench = Bench::rover(RULES);
+    assert_eq!(commands(&bench.run(60.0), 511), 2 + 3 * 4);
+    assert_eq!(bench.state(), State::Steering);
+    assert_eq!(bench.events().iter().filter(|event| **event == Event::NoHealth).count(), 1);
+}
+
+#[test]
+fn a_doubt_stops_it_with_the_very_message_and_for_a_while_after_its_end() {
+    let mut bench = Bench::rover(RULES);
+    bench.reports = true;
+    bench.run(2.0);
+    let known = bench.offboard.fix();
+    bench.ekf_flags = 0x27;
+    bench.ekf();
+    assert_eq!(bench.state(), State::Distrusted);
+    assert_eq!(bench.offboard.fresh_fix(bench.now), None);
+    let sent = bench.run(3.0);
+    let stops = setpoints(&sent);
+    assert!(stops.len() >= 58 && stops.iter().all(stands));
+    assert_eq!((bench.offboard.fix(), bench.offboard.tally().doubts), (known, 1));
+    bench.ekf_flags = 0x33F;
+    bench.run(4.7);
+    assert_eq!(bench.state(), State::Distrusted);
+    bench.run(0.5);
+    assert_eq!(bench.state(), State::Steering);
+    assert!(bench.offboard.fresh_fix(bench.now).is_some());
+}
+
+#[test]
+fn a_position_that_is_not_believed_is_none_to_begin_with() {
+    let mut bench = Bench::new(Kind::ArduRover, Rules { arm: true, ..ONCE }, MANUAL, DISARMED);
+    bench.ekf_flags = 0xA7;
+    bench.reports = true;
+    bench.ekf();
+    let sent = bench.run(10.0);
+    assert_eq!(bench.state(), State::Pilot);
+    assert_eq!(commands(&sent, out::DO_SET_MODE), 0, "it asks only for what it could use");
+    (bench.mode, bench.base) = (GUIDED, ARMED);
+    let sent = bench.run(3.0);
+    assert_eq!((bench.state(), setpoints(&sent).len()), (State::NoPosition, 0));
+}
+
+#[test]
+fn overtaken_messages_are_left_out_and_clocks_may_wrap() {
+    let mut bench = Bench::rover(RULES);
+    bench.boot_ms = u32::MAX - 500;
+    bench.run(2.0);
+    assert_eq!(bench.offboard.tally().restarts, 0, "the clock wrapped");
+    let before = bench.offboard.tally().positions;
+    bench.boot_ms -= 1000;
+    bench.fix();
+    assert_eq!(bench.offboard.tally().positions, before, "an old position");
+    bench.boot_ms += 1000;
+    // 2000 ms back is overtaken, 2001 a restart.
+    bench.fix();
+    bench.boot_ms = bench.boot_ms.wrapping_sub(2000);
+    bench.fix();
+    assert_eq!(bench.offboard.tally().restarts, 0);
+    bench.boot_ms = bench.boot_ms.wrapping_sub(1);
+    bench.fix();
+    assert_eq!(bench.offboard.tally().restarts, 1);
+    // An autopilot that had run for 30 days begins anew: seen as a jump ahead.
+    bench.boot_ms = 30 * 86_400_000;
+    bench.fix();
+    let restarts = bench.offboard.tally().restarts;
+    bench.boot_ms = 1000;
+    bench.fix();
+    assert_eq!(bench.offboard.tally().restarts, restarts + 1);
+}
+
+#[test]
+fn zero_zero_is_no_position() {
+    let mut bench = Bench::rover(RULES);
+    bench.fixes = false;
+    let nowhere = MavMessage::GLOBAL_POSITION_INT(GLOBAL_POSITION_INT_DATA::DEFAULT);
+    bench.offboard.hear(&nowhere, bench.now);
+    bench.run(1.0);
+    assert_eq!(bench.state(), State::NoPosition);
+    assert_eq!(bench.offboard.fix(), None);
+}
+
+#[test]
+fn velocity_is_the_finer_one_while_it_is_fresh() {
+    let mut bench = Bench::rover(RULES);
+    let local = |vx| {
+        MavMessage::LOCAL_POSITION_NED(LOCAL_POSITION_NED_DATA {
+            time_boot_ms: 60_000,
+            vx,
+            ..LOCAL_POSITION_NED_DATA::DEFAULT
+        })
+    };
+    bench.offboard.hear(&local(0.123), bench.now);
+    bench.offboard.hear(&local(f32::NAN), bench.now);
+    bench.fix();
+    let velocity = |bench: &Bench| bench.offboard.fix().unwrap().velocity_ned_mps[0];
+    assert!((velocity(&bench) - 0.123).abs() < 1e-6);
+    bench.now += Duration::from_millis(201);
+    bench.fix();
+    assert!((velocity(&bench) - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_restart_within_two_seconds_of_the_boot_is_none_that_was_overtaken() {
+    let mut bench = Bench::rover(RULES);
+    bench.boot_ms = 0;
+    bench.run(1.9);
+    assert_eq!((bench.state(), bench.offboard.tally().restarts), (State::Steering, 0));
+    bench.boot_ms = 0;
+    bench.run(1.0);
+    assert_eq!((bench.state(), bench.offboard.tally().restarts), (State::Restarted, 1));
+    // Old ones among new ones are no restart, however many.
+    let mut bench = Bench::rover(RULES);
+    bench.run(1.0);
+    for _ in 0..20 {
+        let now = bench.boot_ms;
+        bench.boot_ms = now - 900;
+        bench.fix();
+        bench.boot_ms = now + 10;
+        bench.fix();
+    }
+    // Nor are some that come one behind the other, the latest first.
+    for behind in 1..20 {
+        bench.boot_ms -= behind;
+        bench.fix();
+    }
+    assert_eq!(bench.offboard.tally().restarts, 0);
+}
