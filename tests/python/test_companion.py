@@ -12,7 +12,8 @@ from pathlib import Path
 import pytest
 from companion_setup import RADIUS, STAND, ends_well, rate, write_config, write_scenario
 from conftest import wait_until
-from fake_autopilot import GUIDED, ORIGIN, PILOT, Faults, Fleet, Line, Server, Vehicle
+from fake_autopilot import GUIDED, ORIGIN, PILOT, Fleet, Vehicle
+from fake_line import Faults, Line, Server
 
 
 @pytest.fixture

@@ -8,7 +8,8 @@ import time
 import pytest
 from companion_setup import RADIUS, ends_well, write_config, write_scenario
 from conftest import wait_until
-from fake_autopilot import GUIDED, Fleet, Line, Vehicle
+from fake_autopilot import GUIDED, Fleet, Vehicle
+from fake_line import Line
 
 SPEED = 1.5
 # Metres between the two at the start: at full speed they are in the middle after four seconds.

@@ -7,7 +7,8 @@ import time
 import pytest
 from companion_setup import RADIUS, ends_well, write_config, write_scenario
 from conftest import wait_until
-from fake_autopilot import GUIDED, PILOT, Faults, Fleet, Line, Vehicle
+from fake_autopilot import GUIDED, PILOT, Fleet, Vehicle
+from fake_line import Faults, Line
 
 
 def circle(count, radius):

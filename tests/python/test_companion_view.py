@@ -6,7 +6,8 @@ import struct
 
 from companion_setup import RADIUS, ends_well, write_config, write_scenario
 from conftest import wait_until
-from fake_autopilot import GUIDED, Fleet, Line, Vehicle
+from fake_autopilot import GUIDED, Fleet, Vehicle
+from fake_line import Line
 from page_client import Page
 
 ROBOTS = [((0.0, 0.0), (12.0, 0.0)), ((12.0, 0.2), (0.0, 0.2)), ((6.0, 30.0), (6.0, 30.0))]
