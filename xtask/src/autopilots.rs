@@ -7,7 +7,8 @@ use crate::report::Report;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-const TESTS: &str = "tests/python/autopilots";
+/// Where pytest's settings are, from which it counts the names of tests.
+const TOP: &str = "tests/python";
 /// Seconds that one flight may take; a loaded machine needs long until all have positions.
 const LONGEST: &str = "900";
 const REMEDY: &str = "build ArduPilot's simulation (docs/autopilots.md) and name it";
@@ -130,7 +131,7 @@ pub fn run_command(repo: &Repo, report: &mut Report, request: &Request<'_>) {
             tests
         };
         let mut list = start();
-        list.arg("--collect-only").args(kind.files.iter().map(|file| format!("{TESTS}/{file}")));
+        list.arg("--collect-only").args(kind.files.iter().map(|file| format!("{TOP}/autopilots/{file}")));
         list.args(request.name.into_iter().flat_map(|name| ["-k", name]));
         for test in names(&mut list) {
             // One at a time: they go by the clock.
@@ -144,7 +145,7 @@ pub fn run_command(repo: &Repo, report: &mut Report, request: &Request<'_>) {
 fn names(list: &mut Command) -> Vec<String> {
     let mut names = Vec::new();
     // Without any it says so, and that is all there is to say.
-    let _ = run_reading(list, |line| names.extend(line.contains("::test_").then(|| line.to_string())));
+    let _ = run_reading(list, |line| names.extend(line.contains("::test_").then(|| format!("{TOP}/{line}"))));
     names
 }
 
