@@ -125,7 +125,7 @@ def rates(companion, simulation, until):
     return found
 
 
-def moving(simulation, begun, timeout=30.0):
+def moving(simulation, begun, timeout=60.0):
     """Waits until all vehicles are on their way; returns when the first was."""
 
     def all_are():
