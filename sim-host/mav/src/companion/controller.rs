@@ -4,7 +4,7 @@ use staya_controller::agent::{
     Agent, AgentConfig, AnyGuidance, AnySafety, AnySurroundings, Command, Commanded, GridWorkspace, HALF_PLANES,
     InCells, LEARNED, NEIGHBORS, Outputs, Parameter, TEMPLATE, VISITS, Wait, Wish,
 };
-use staya_controller::agent::{GuidanceKind, SafetyKind};
+use staya_controller::agent::{GuidanceKind, SafetyKind, SafetySetup};
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::robot::{Mode, RobotId};
 use staya_controller::time::{self, Instant};
@@ -57,14 +57,23 @@ pub struct Controller<W> {
 }
 
 impl<W: Wire> Controller<W> {
-    /// Of robot number `index` of the scenario, whose robots are on `ground`; `boot` differs from start to start.
+    /// Of robot number `index` of the scenario, whose robots are on `ground`; `boot` differs from start to start. Others that fall silent get as much more
+    /// room as the scenario says, and at least `error_m` metres: an autopilot without its companion goes on for a while.
     #[must_use]
-    pub fn new(scenario: &Scenario, ground: &Arc<PlaneGround>, index: usize, boot: u8, lag_s: f64, wire: W) -> Self {
+    pub fn new(
+        scenario: &Scenario,
+        ground: &Arc<PlaneGround>,
+        index: usize,
+        boot: u8,
+        [lag_s, error_m]: [f64; 2],
+        wire: W,
+    ) -> Self {
         let tick = time::Duration::from_micros(i32::try_from(scenario.tick_us).unwrap_or(i32::MAX));
         let config = AgentConfig { boot, seed: scenario.seed, ..ground.config(index, tick) };
         // Nobody wishes places here, so neither speed nor tolerance counts.
         let guidance = Commanded::new(scenario.guidance(index).guidance(), 0.0, 0.0);
-        let mut agent = Box::new(Agent::new(&config, guidance, scenario.safety(index).safety(), wire));
+        let mut agent =
+            Box::new(Agent::new(&config, guidance, with_room(scenario.safety(index), error_m).safety(), wire));
         // A law that has no use for its task says so; the scenario was checked for that.
         let _ = agent.assign(&ground.task(index, 0));
         let plane = scenario.plane.as_ref();
@@ -219,6 +228,14 @@ fn speed_before(brake: &Brake, position_m: [f64; 3], acceleration_mps2: f64, lag
         distance_m / (2.0 * lag_s)
     };
     slow.max(fast)
+}
+
+/// The same, but those who were lost get at least `error_m` metres of room.
+fn with_room(mut safety: SafetySetup, error_m: f64) -> SafetySetup {
+    if let SafetySetup::Orca { inflation, .. } | SafetySetup::Fly { inflation, .. } = &mut safety {
+        inflation.max_m = inflation.max_m.max(error_m as f32);
+    }
+    safety
 }
 
 #[cfg(test)]

@@ -180,7 +180,7 @@ impl<'a> Companions<'a> {
                 &ground,
                 setup.index,
                 boot,
-                config.lag_s,
+                [config.lag_s, config.error_m],
                 seal.map_or_else(|| HostWire::new(format), |seal| seal.wire(format)),
             ),
             peer: None,

@@ -10,7 +10,7 @@ fn brains(count: usize) -> Vec<Controller<Postcard>> {
     let scenario = Scenario::load(&path, &Overrides::default()).unwrap();
     let plane = scenario.plane.as_ref().unwrap();
     let ground = Arc::new(PlaneGround::new(&scenario, plane));
-    let controller = |index| Controller::new(&scenario, &ground, index, 1, 0.5, Postcard);
+    let controller = |index| Controller::new(&scenario, &ground, index, 1, [0.5, 10.0], Postcard);
     (0..count).map(controller).collect()
 }
 
@@ -113,4 +113,18 @@ fn braking_is_faster_far_away_and_never_slower_than_what_ends_in_the_tolerance()
     let v = speed(10.0);
     assert!((v * v + v * 0.5 - 10.0).abs() < 1e-9, "{v}");
     assert_eq!(speed_before(&brake, [5.0, 0.0, 0.0], 1.0, 0.0), f64::INFINITY);
+}
+
+#[test]
+fn who_falls_silent_gets_the_room_in_which_a_vehicle_rolls_out() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../companions/crossing.toml");
+    let scenario = Scenario::load(&path, &Overrides::default()).unwrap();
+    let max_m = |safety| match safety {
+        SafetySetup::Orca { inflation, .. } => inflation.max_m,
+        other => panic!("{other:?}"),
+    };
+    let usual = scenario.safety(0);
+    assert_eq!(max_m(usual), 1.0, "a radius, as for robots that stop at once");
+    assert_eq!(max_m(with_room(usual, 10.0)), 10.0);
+    assert_eq!(max_m(with_room(with_room(usual, 12.0), 10.0)), 12.0, "what the scenario says, if that is more");
 }
