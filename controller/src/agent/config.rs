@@ -1,7 +1,7 @@
 //! What a robot's agent knows of itself from its start.
 
 use super::Silence;
-use crate::neighbor::Ages;
+use crate::neighbor::{Ages, Claims};
 use crate::robot::RobotId;
 use crate::scalar::{Scalar, cast};
 use crate::time::Duration;
@@ -39,6 +39,8 @@ pub struct AgentConfig<S> {
     pub stop_valid: Duration,
     /// What it makes of silence.
     pub silence: Silence<S>,
+    /// What others may say of themselves and be believed.
+    pub claims: Claims<S>,
     /// The flock that it is of. Those of other flocks are nothing but in the way of one that [flocks](crate::flock). Any number;
     /// 0 too is a flock, of all who are in none. A robot in formation has 0: what says the flock on the air says its
     /// place there ([`Beacon::slot`](crate::wire::Beacon::slot)).
@@ -62,6 +64,7 @@ impl<S: Scalar> AgentConfig<S> {
             retry: self.retry,
             stop_valid: self.stop_valid,
             silence: self.silence.cast(),
+            claims: self.claims.cast(),
             flock: self.flock,
         }
     }
@@ -70,7 +73,7 @@ impl<S: Scalar> AgentConfig<S> {
     /// nothing and may be 0.
     ///
     /// The rest: seed 0, flock 0, a beacon each tick, news stale after 4 and forgotten after 30 ticks, requests resent every
-    /// 3 ticks, stops for 12 ticks, no inertia, no latency. Robots that go by velocities on real radios need their
+    /// 3 ticks, stops for 12 ticks, no inertia, no latency, and whatever others say of themselves is believed. Robots that go by velocities on real radios need their
     /// [`latency`](Self::latency) besides.
     #[must_use]
     pub const fn new(id: RobotId, radius_m: S, tick: Duration) -> Self {
@@ -87,6 +90,7 @@ impl<S: Scalar> AgentConfig<S> {
             retry: Retry { attempts: 5, interval: tick.saturating_mul(3) },
             stop_valid: tick.saturating_mul(12),
             silence: Silence::DEFAULT,
+            claims: Claims::ANY,
             flock: 0,
         }
     }

@@ -3,6 +3,7 @@
 use super::{AnySurroundings, Wait};
 use crate::geom::{Position, Vec3};
 use crate::grid::{Cell, Dir};
+use crate::neighbor::Claim;
 use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
 use crate::time::Instant;
@@ -104,6 +105,14 @@ pub enum Event {
     /// again when that one is found again after it was lost. What such robots do: the second one is kept clear of as
     /// [`RobotId::double`], and by that number it is lost.
     DuplicateId(RobotId),
+    /// A robot says of itself what is beyond [`AgentConfig::claims`](super::AgentConfig::claims). Said when it begins; of numbers that no
+    /// robot has, once in a step.
+    Overclaimed {
+        /// Who.
+        id: RobotId,
+        /// What.
+        claim: Claim,
+    },
     /// The robot says nothing any more: its format has no counter or timestamp left to authenticate frames with
     /// ([`EncodeError::Exhausted`](crate::wire::EncodeError)). Said for each beacon that was due; a new key ends it.
     Muted,
@@ -138,6 +147,33 @@ impl Refused {
     }
 }
 
+/// Beacons that said what is beyond [`AgentConfig::claims`](super::AgentConfig::claims).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Overclaims {
+    /// A number that no robot has; refused.
+    pub numbers: u16,
+    /// A radius that was cut.
+    pub radii: u16,
+    /// A velocity that was cut.
+    pub speeds: u16,
+    /// A place where the robot cannot be yet; refused.
+    pub jumps: u16,
+}
+
+impl Overclaims {
+    /// Counts one.
+    pub(super) fn count(&mut self, claim: Claim) {
+        let count = match claim {
+            Claim::Number => &mut self.numbers,
+            Claim::Radius => &mut self.radii,
+            Claim::Speed => &mut self.speeds,
+            Claim::Jump => &mut self.jumps,
+        };
+        *count = count.saturating_add(1);
+    }
+}
+
 /// What one step gives.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -154,6 +190,8 @@ pub struct Outputs<S> {
     pub rejected: u16,
     /// How many of the refused were not authentic.
     pub refused: Refused,
+    /// What was heard and not believed, or not all of it.
+    pub overclaims: Overclaims,
     /// Bytes for the radio: frames of the agent's wire format; postcard's end with a zero byte each.
     pub outbox: Vec<u8, OUTBOX>,
     /// What happened; the oldest ones when more than [`EVENTS`].
@@ -168,6 +206,7 @@ impl<S> Outputs<S> {
         (self.command, self.wait) = (Command::Hold, None);
         (self.received, self.rejected) = (0, 0);
         self.refused = Refused::default();
+        self.overclaims = Overclaims::default();
         self.outbox.clear();
         self.events.clear();
         self.call_again = Instant::default();

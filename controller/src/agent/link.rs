@@ -6,7 +6,7 @@ use super::silence::Company;
 use super::{AgentConfig, CellState, Last, Waypoint};
 use crate::geom::{Position, Vec3};
 use crate::grid::Cell;
-use crate::neighbor::{Ages, LossEstimate, Neighbor, NeighborTable, Put};
+use crate::neighbor::{Ages, Claim, Claims, Doubt, LossEstimate, Neighbor, NeighborTable, Put, Suspects};
 use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
@@ -52,6 +52,7 @@ pub(super) struct Link<S, const N: usize, W> {
     said: Said,
     pub(super) table: NeighborTable<S, N>,
     pub(super) company: Company,
+    suspects: Suspects,
     loss: LossEstimate,
     /// One window per entry of the table.
     windows: Vec<(RobotId, SequenceWindow), N>,
@@ -65,13 +66,14 @@ pub(super) struct Link<S, const N: usize, W> {
     has_sent: bool,
 }
 
-/// Own position, when what arrives was said, how fast others can be (if that is known), how often they speak, and who must
-/// stay in a full table.
+/// Own position, when what arrives was said, how fast others can be (if that is known), how often they speak, what they may say of
+/// themselves, and who must stay in a full table.
 pub(super) struct Listener<'a, S> {
     pub(super) position: Position,
     pub(super) heard_at: Instant,
     pub(super) fastest_mps: Option<S>,
     pub(super) period: Duration,
+    pub(super) claims: &'a Claims<S>,
     pub(super) needs: &'a dyn Fn(RobotId) -> bool,
 }
 
@@ -83,6 +85,7 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
             said: Said::new(),
             table: NeighborTable::new(ages),
             company: Company::Unknown,
+            suspects: Suspects::new(),
             loss: LossEstimate::new(),
             windows: Vec::new(),
             requests: Requests::new(id, boot, retry),
@@ -150,7 +153,7 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
             Ok(frame) => Some(frame),
         };
         let frame = frame.and_then(|frame| {
-            let id = self.known_as(&frame, listener)?;
+            let id = self.known_as(&frame, listener, out)?;
             let arrival = self.arrival(id, frame.header, out)?;
             Some((frame, id, arrival))
         });
@@ -161,9 +164,9 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
     }
 
     /// Whose frame it is: as whom its sender is known here, which is the number that it says unless two have it. `None` for an
-    /// own one that comes back.
-    fn known_as(&mut self, frame: &Frame, listener: &Listener<'_, S>) -> Option<RobotId> {
-        let (header, own) = (frame.header, self.header);
+    /// own one that comes back, and for a beacon of a number or a place that is not believed.
+    fn known_as(&mut self, frame: &Frame, listener: &Listener<'_, S>, out: &mut Outputs<S>) -> Option<RobotId> {
+        let (header, own, place) = (frame.header, self.header, place(&frame.message));
         if header.sender == own.sender {
             let is_other = self.said.is_other(own, header, &frame.message);
             if is_other && is_ahead(own, header) {
@@ -172,37 +175,78 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
             }
             return is_other.then_some(own.sender.double());
         }
-        let is_double = match (place(&frame.message), listener.fastest_mps) {
-            (Some(place), Some(fastest_mps)) => self.is_double(header, place, listener, fastest_mps),
-            _ => false,
+        let Some(place) = place else {
+            return Some(header.sender);
         };
-        Some(if is_double { header.sender.double() } else { header.sender })
+        if header.sender > listener.claims.last {
+            if out.overclaims.numbers == 0 {
+                report(out, Event::Overclaimed { id: header.sender, claim: Claim::Number });
+            }
+            out.overclaims.count(Claim::Number);
+            return None;
+        }
+        let is_double = listener.fastest_mps.is_some_and(|fastest| self.is_double(header, place, listener, fastest));
+        let id = if is_double { header.sender.double() } else { header.sender };
+        self.is_believed(id, header, place, listener, out).then_some(id)
+    }
+
+    /// What is known of a robot, the lost left out.
+    fn known(&self, id: RobotId) -> Option<&Neighbor<S>> {
+        let all = self.table.as_slice();
+        all.binary_search_by_key(&id, |known| known.id).ok().and_then(|at| all.get(at))
+    }
+
+    /// How much time a robot has had since it was heard as `known`: by the clock, or by its sequence numbers if its news were held back.
+    fn time_since(&self, known: &Neighbor<S>, header: Header, listener: &Listener<'_, S>) -> Duration {
+        let window = self.windows.iter().find(|(id, _)| *id == known.id);
+        let frames = window.map_or(0, |(_, window)| window.distance(header));
+        let counted = listener.period.saturating_mul(frames.into());
+        counted.max(known.age(listener.heard_at).unwrap_or(Duration::ZERO))
     }
 
     /// Whether a beacon is the second one's of two other robots with one number.
     fn is_double(&self, header: Header, place: Position, listener: &Listener<'_, S>, fastest_mps: S) -> bool {
         let at = listener.heard_at;
-        let all = self.table.as_slice();
-        let known = |id| all.binary_search_by_key(&id, |known| known.id).ok().and_then(|at| all.get(at));
         // Doubles are behind all others.
-        let has_doubles = all.last().is_some_and(|last| last.id.doubled().is_some());
-        let double = if has_doubles { known(header.sender.double()) } else { None };
-        match (known(header.sender), double) {
+        let has_doubles = self.table.as_slice().last().is_some_and(|last| last.id.doubled().is_some());
+        let double = if has_doubles { self.known(header.sender.double()) } else { None };
+        match (self.known(header.sender), double) {
             // Then it is the only one that is heard.
             (None, _) => false,
-            (Some(known), None) => {
-                let window = self.windows.iter().find(|(id, _)| *id == header.sender);
-                let frames = window.map_or(0, |(_, window)| window.distance(header));
-                let counted = listener.period.saturating_mul(frames.into());
-                let time = counted.max(known.age(at).unwrap_or(Duration::ZERO));
-                !is_within(place, known, time, fastest_mps)
-            }
+            (Some(known), None) => !is_within(place, known, self.time_since(known, header, listener), fastest_mps),
             (Some(known), Some(double)) => {
                 let longest = self.table.ages().stale_after;
                 let distance = |known: &Neighbor<S>| known.offset_at(place, at, longest).length_key();
                 distance(double) < distance(known)
             }
         }
+    }
+
+    /// Whether the robot that is known as `id` can be at `place`, or has been there for long enough.
+    fn is_believed(
+        &mut self,
+        id: RobotId,
+        header: Header,
+        place: Position,
+        listener: &Listener<'_, S>,
+        out: &mut Outputs<S>,
+    ) -> bool {
+        let claims = listener.claims;
+        // A second one of a number comes from where the first one is.
+        let Some(known) = self.known(id).or_else(|| self.known(header.sender)) else {
+            return true;
+        };
+        if claims.can_go(known.position, place, self.time_since(known, header, listener)) {
+            self.suspects.clear(id);
+            return true;
+        }
+        out.overclaims.count(Claim::Jump);
+        let longest = self.table.ages().stale_after.max(claims.settle);
+        let doubt = self.suspects.judge(id, place, listener.heard_at, claims, longest);
+        if doubt == Doubt::Begins {
+            report(out, Event::Overclaimed { id: header.sender, claim: Claim::Jump });
+        }
+        doubt == Doubt::Settled
     }
 
     /// How a frame stands to those before it; `None` for one to refuse.
@@ -303,13 +347,28 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
 
     fn keep(
         &mut self,
-        neighbor: Neighbor<S>,
+        mut neighbor: Neighbor<S>,
         header: Header,
         now: Instant,
         listener: &Listener<'_, S>,
         out: &mut Outputs<S>,
     ) {
-        let id = neighbor.id;
+        let (id, claims) = (neighbor.id, listener.claims);
+        let (is_large, is_fast) = claims.cut(&mut neighbor);
+        if is_large || is_fast {
+            // Of one that lies all the time, the first lie is news.
+            let known = self.known(id);
+            let was_large = known.is_some_and(|known| known.radius_m >= claims.max_radius_m);
+            let was_fast = known.is_some_and(|known| known.velocity_mps.norm() >= claims.max_speed_mps * S::HALF);
+            for (is, was, claim) in [(is_large, was_large, Claim::Radius), (is_fast, was_fast, Claim::Speed)] {
+                if is {
+                    out.overclaims.count(claim);
+                }
+                if is && !was {
+                    report(out, Event::Overclaimed { id: header.sender, claim });
+                }
+            }
+        }
         self.company = Company::Heard(neighbor.heard);
         let put = self.table.put(neighbor, listener.position, now, listener.needs);
         if let Put::Evicted(evicted) = put {

@@ -108,6 +108,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
                 heard_at,
                 fastest_mps,
                 period: config.beacon_period,
+                claims: &config.claims,
                 needs: &|id| id == leader || id == config.id.double() || guidance.needs(id),
             };
             match link.hear(bytes, now, &listener, out) {

@@ -397,6 +397,7 @@ fn time_may_wrap() {
 }
 
 mod cell_follower;
+mod claims;
 mod commanded;
 mod double;
 mod faults;

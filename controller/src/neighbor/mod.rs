@@ -14,6 +14,7 @@ use crate::time::{Duration, Instant};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
+mod claims;
 mod loss;
 mod nearby;
 mod room;
@@ -21,6 +22,7 @@ mod room;
 mod tests;
 mod tie;
 
+pub use claims::{Claim, Claims, Doubt, Suspects};
 pub use loss::LossEstimate;
 pub use nearby::{Nearby, StalenessInflation, add_lost, nearest};
 pub use room::Room;
@@ -172,7 +174,8 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
     /// 2. else the one farthest from `own`, if the newcomer is nearer or protected;
     /// 3. else the newcomer is refused.
     ///
-    /// Ties go to the smaller id. Distances are taken at the extrapolated positions; an unknown
+    /// A [double](RobotId::double) only ever takes the place of another one, so that nobody crowds out robots by speaking in the
+    /// names of others. Ties go to the smaller id. Distances are taken at the extrapolated positions; an unknown
     /// distance (NaN) is the largest. So the content after a burst of beacons does not depend on
     /// their order (unless more than `N` of them are protected).
     pub fn put(
@@ -220,7 +223,10 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
         now: Instant,
         protect: impl Fn(RobotId) -> bool,
     ) -> Option<RobotId> {
-        let candidates = || self.entries.iter().filter(|entry| entry.is_lost || !protect(entry.id));
+        let is_double = newcomer.id.doubled().is_some();
+        let may_go =
+            |entry: &&Neighbor<S>| entry.is_lost || !protect(entry.id) && (!is_double || entry.id.doubled().is_some());
+        let candidates = || self.entries.iter().filter(may_go);
         // An age beyond half the clock's range is older than any that can be told.
         let age = |entry: &Neighbor<S>| entry.age(now).unwrap_or(Duration::MAX);
         let stalest = candidates()

@@ -6,7 +6,7 @@ use core::fmt;
 use heapless::Vec;
 use staya_controller::agent::{
     AnyAgent, AnySurroundings, CELLS, Command, GridWorkspace, HALF_PLANES, InCell, InCells, InPlane, Inputs,
-    KinematicState, LEARNED, NEIGHBORS, OnGrid, Outputs, Refused, Setup, Task, VISITS, Wait, WrongTask,
+    KinematicState, LEARNED, NEIGHBORS, OnGrid, Outputs, Overclaims, Refused, Setup, Task, VISITS, Wait, WrongTask,
 };
 use staya_controller::obstacle::Obstacle;
 use staya_controller::robot::RobotId;
@@ -166,6 +166,7 @@ impl<
                 received: 0,
                 rejected: 0,
                 refused: Refused { unsigned: 0, forged: 0, replayed: 0, no_room: 0 },
+                overclaims: Overclaims { numbers: 0, radii: 0, speeds: 0, jumps: 0 },
                 outbox: Vec::new(),
                 events: Vec::new(),
                 call_again: Instant::from_micros(0),
@@ -312,6 +313,7 @@ fn in_f32<S: Scalar>(outputs: &Outputs<S>) -> Outputs<f32> {
         received: outputs.received,
         rejected: outputs.rejected,
         refused: outputs.refused,
+        overclaims: outputs.overclaims,
         outbox: outputs.outbox.clone(),
         events: outputs.events.clone(),
         call_again: outputs.call_again,

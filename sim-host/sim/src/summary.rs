@@ -300,6 +300,13 @@ impl Summary {
                 format!("{} unsigned, {} forged, {} replayed", packets.unsigned, packets.forged, packets.replayed),
             )?;
         }
+        let lies = &packets.overclaims;
+        if lies.sum() > 0 {
+            line(
+                "beyond belief",
+                format!("{} numbers, {} radii, {} speeds, {} jumps", lies.numbers, lies.radii, lies.speeds, lies.jumps),
+            )?;
+        }
         line("trace hash", self.trace_hash.clone())?;
         writeln!(text, "written to {}", out.display())?;
         for file in &self.files {

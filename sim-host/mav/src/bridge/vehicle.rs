@@ -194,6 +194,10 @@ impl Vehicle {
                 let text = format!("two robots have number {id}");
                 self.text(out, Kind::News, MAV_SEVERITY_WARNING, &text);
             }
+            Event::Overclaimed { id, claim } => {
+                let text = format!("robot {id} claims {claim}");
+                self.text(out, Kind::Neighbor, MAV_SEVERITY_WARNING, &text);
+            }
             Event::NobodyHeard => self.text(out, Kind::News, MAV_SEVERITY_WARNING, "nobody is heard any more"),
             Event::Muted => {
                 let text = "robot is mute: it needs a new key";

@@ -69,7 +69,7 @@ impl<W: Wire> Controller<W> {
         wire: W,
     ) -> Self {
         let tick = time::Duration::from_micros(i32::try_from(scenario.tick_us).unwrap_or(i32::MAX));
-        let config = AgentConfig { boot, seed: scenario.seed, ..ground.config(index, tick) };
+        let config = AgentConfig { boot, seed: scenario.seed, claims: scenario.claims, ..ground.config(index, tick) };
         // Nobody wishes places here, so neither speed nor tolerance counts.
         let guidance = Commanded::new(scenario.guidance(index).guidance(), 0.0, 0.0);
         let mut agent =

@@ -14,6 +14,7 @@ use anyhow::{Result, anyhow, ensure};
 use staya_controller::agent::{RouteSetup, TEMPLATE};
 use staya_controller::formation::FormationParams;
 use staya_controller::grid::{Cell, Norm, UNIT};
+use staya_controller::neighbor::Claims;
 use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;
 use staya_controller::route::{Replan, RouteParams};
@@ -206,6 +207,7 @@ impl Plan {
             key_remark: None,
             interventions: Vec::new(),
             misnumbered: Vec::new(),
+            claims: Claims::ANY,
             attacks: Vec::new(),
         }
     }

@@ -1,23 +1,34 @@
-//! An attacker with a radio like the robots' own, but without their key.
+//! An attacker with a radio like the robots' own: without their key, or an insider, who has taken a robot with its keys.
 
 use crate::radio::{self, HostWire};
-use crate::scenario::{Attack, AttackKind};
+use crate::scenario::{Attack, AttackKind, Lie, Scenario};
 use heapless::Vec as Bounded;
-use staya_controller::agent::OUTBOX;
 use staya_controller::auth::Key;
 use staya_controller::grid::Cell;
-use staya_controller::robot::RobotId;
-use staya_controller::wire::{Format, GoalAssignment, Header, Message, WaypointAssignment, Wire};
+use staya_controller::robot::{Mode, RobotId};
+use staya_controller::time::Instant;
+use staya_controller::wire::{Beacon, GoalAssignment, Header, MAX_FRAME_LEN, Message, WaypointAssignment, Wire};
 use std::collections::VecDeque;
+use std::f64::consts::TAU;
 
-/// The start number that it claims to be at: so high that only the missing key gives it away.
+/// The start number that it claims to be at without the key: so high that only the missing key gives it away.
 const STARTS: u8 = u8::MAX;
+/// That of an insider: one after those of the robot's own that it takes the place of.
+const TAKEN: u8 = 1;
+/// How far from the lure an insider's robots are that do not exist, metres.
+const RING_M: f64 = 1.5;
 
 /// What it is doing.
 pub(super) struct Attacker {
     attack: Attack,
     cell_m: f64,
+    tick_us: u32,
+    /// The numbers of its robots that do not exist are those behind this one.
+    last: u32,
+    /// Of the body whose place an insider has taken, millimetres.
+    radius_mm: u16,
     wire: HostWire,
+    starts: u8,
     /// Of its next frame.
     sequence: u16,
     version: u8,
@@ -27,14 +38,24 @@ pub(super) struct Attacker {
 }
 
 impl Attacker {
-    /// One among robots that speak `format`, on cells of `cell_m`.
-    pub(super) fn new(attack: &Attack, format: Format, cell_m: f64) -> Self {
+    /// One in a scenario.
+    pub(super) fn new(attack: &Attack, scenario: &Scenario) -> Self {
         let guess = Key::of_passphrase(b"guessed");
-        let key = Some(&guess).filter(|_| attack.kind == AttackKind::Forge);
+        let (key, starts) = match attack.kind {
+            AttackKind::Forge => (Some(&guess), STARTS),
+            AttackKind::Insider => (scenario.key.as_ref(), TAKEN),
+            AttackKind::Replay | AttackKind::Unsigned => (None, STARTS),
+        };
+        let index = scenario.robots.binary_search_by_key(&attack.claims, |robot| robot.id);
+        let radius_m = index.ok().zip(scenario.plane.as_ref()).map_or(0.0, |(at, plane)| plane.group(at).radius_m);
         Self {
-            attack: *attack,
-            cell_m,
-            wire: radio::wire(format, key, STARTS),
+            attack: attack.clone(),
+            cell_m: scenario.terrain.cell_m,
+            tick_us: scenario.tick_us,
+            last: scenario.usual_claims().last.0,
+            radius_mm: libm::round(radius_m * 1000.0) as u16,
+            wire: radio::wire(scenario.radio.format, key, starts),
+            starts,
             sequence: 0,
             version: 0,
             heard: VecDeque::new(),
@@ -73,7 +94,50 @@ impl Attacker {
                 }
             }
             AttackKind::Forge | AttackKind::Unsigned if is_active => self.lure(),
-            AttackKind::Forge | AttackKind::Unsigned => {}
+            AttackKind::Insider if is_active => {
+                for lie in self.attack.lies.clone() {
+                    self.lie(lie, tick);
+                }
+            }
+            AttackKind::Forge | AttackKind::Unsigned | AttackKind::Insider => {}
+        }
+    }
+
+    fn lie(&mut self, lie: Lie, tick: u32) {
+        let Attack { place_m, lure_m, claims, ghosts, .. } = self.attack;
+        let [x_m, y_m] = lure_m;
+        let honest = self.beacon(place_m, tick);
+        match lie {
+            Lie::Orders => self.lure(),
+            Lie::Radius => self.say(claims, Beacon { radius_mm: u16::MAX, ..self.beacon(lure_m, tick) }),
+            Lie::Speed => {
+                let way = [0, 1].map(|axis| lure_m[axis] - place_m[axis]);
+                let length = libm::hypot(way[0], way[1]).max(1e-9);
+                let [vx, vy] = way.map(|way| libm::round(way / length * 32_000.0) as i16);
+                self.say(claims, Beacon { velocity_mmps: [vx, vy, 0], ..honest });
+            }
+            Lie::Jump => self.say(claims, if tick % 2 == 0 { honest } else { self.beacon(lure_m, tick) }),
+            Lie::Ghosts => {
+                for number in 0..ghosts {
+                    let angle = TAU * f64::from(number) / f64::from(ghosts);
+                    let at_m = [x_m + RING_M * libm::cos(angle), y_m + RING_M * libm::sin(angle)];
+                    self.say(RobotId(self.last + 1 + u32::from(number)), self.beacon(at_m, tick));
+                }
+            }
+        }
+    }
+
+    /// One that stands somewhere.
+    fn beacon(&self, [x_m, y_m]: [f64; 2], tick: u32) -> Beacon {
+        let cell = self.cell([x_m, y_m]);
+        Beacon {
+            time: Instant::from_micros(tick.wrapping_mul(self.tick_us)),
+            position_mm: [millis(x_m), millis(y_m), 0],
+            radius_mm: self.radius_mm,
+            cell,
+            target: cell,
+            mode: Mode::Hold,
+            ..Beacon::default()
         }
     }
 
@@ -81,27 +145,31 @@ impl Attacker {
     fn lure(&mut self) {
         self.version = self.version.wrapping_add(1);
         let [x_m, y_m] = self.attack.lure_m;
-        let cell = |m: f64| libm::floor(m / self.cell_m) as i16;
-        let mm = |m: f64| libm::round(m * 1000.0) as i32;
-        self.say(&Message::Goal(GoalAssignment {
-            to: RobotId::NOBODY,
-            version: self.version,
-            target: Cell::new(cell(x_m), cell(y_m)),
-        }));
-        self.say(&Message::Waypoint(WaypointAssignment {
-            to: RobotId::NOBODY,
-            version: self.version,
-            index: 0,
-            position_mm: [mm(x_m), mm(y_m), 0],
-            velocity_mmps: [0; 3],
-        }));
+        let (to, version, target) = (RobotId::NOBODY, self.version, self.cell([x_m, y_m]));
+        self.tell(self.attack.claims, &Message::Goal(GoalAssignment { to, version, target }));
+        let position_mm = [millis(x_m), millis(y_m), 0];
+        let place = WaypointAssignment { to, version, index: 0, position_mm, velocity_mmps: [0; 3] };
+        self.tell(self.attack.claims, &Message::Waypoint(place));
     }
 
-    fn say(&mut self, message: &Message) {
-        let header = Header { boot: STARTS, sender: self.attack.claims, sequence: self.sequence };
+    fn cell(&self, place_m: [f64; 2]) -> Cell {
+        let [x, y] = place_m.map(|m| libm::floor(m / self.cell_m) as i16);
+        Cell::new(x, y)
+    }
+
+    fn say(&mut self, sender: RobotId, beacon: Beacon) {
+        self.tell(sender, &Message::Beacon(beacon));
+    }
+
+    fn tell(&mut self, sender: RobotId, message: &Message) {
+        let header = Header { boot: self.starts, sender, sequence: self.sequence };
         self.sequence = self.sequence.wrapping_add(1);
-        let mut frame = Bounded::<u8, OUTBOX>::new();
-        self.wire.encode(header, message, &mut frame).expect("the scenario was checked for its number");
+        let mut frame = Bounded::<u8, { 2 * MAX_FRAME_LEN }>::new();
+        self.wire.encode(header, message, &mut frame).expect("the scenario was checked for its numbers");
         self.outbox.extend_from_slice(&frame);
     }
+}
+
+fn millis(m: f64) -> i32 {
+    libm::round(m * 1000.0) as i32
 }

@@ -48,6 +48,7 @@ use staya_controller::agent::{
 };
 use staya_controller::auth::Key;
 use staya_controller::grid::Cell;
+use staya_controller::neighbor::Claims;
 use staya_controller::robot::{Mode, RobotId};
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::Format;
@@ -148,6 +149,7 @@ pub struct Engine<W, G, A> {
     seed: u64,
     format: Format,
     key: Option<Key>,
+    claims: Claims<f32>,
     tick_us: u32,
     tick: u32,
     robots: Vec<Robot>,
@@ -187,9 +189,9 @@ where
     /// [`Scenario::robots`], at its first start and at each restart.
     pub fn new(scenario: &Scenario, ground: W, brains: impl Fn(usize) -> (G, A) + Send + Sync + 'static) -> Self {
         let robots = scenario.robots.clone();
-        let (format, cell_m) = (scenario.radio.format, scenario.terrain.cell_m);
+        let format = scenario.radio.format;
         let attackers = scenario.attacks.iter();
-        let attackers = attackers.map(|attack| Attacker::new(attack, format, cell_m));
+        let attackers = attackers.map(|attack| Attacker::new(attack, scenario));
         let attackers: Vec<_> = attackers.collect();
         let ids = robots.iter().map(|robot| robot.id);
         let intruders: Vec<_> = ground.heard().map(|(disc, _)| Intruder::new(disc, format)).collect();
@@ -202,6 +204,7 @@ where
             seed: scenario.seed,
             format,
             key: scenario.key.clone(),
+            claims: scenario.claims,
             tick_us: scenario.tick_us,
             tick: 0,
             faults: scenario.faults.clone(),
@@ -237,7 +240,7 @@ where
     /// What the computer of robot `index` must know at its start number `boot`.
     fn config(&self, index: usize, boot: u8) -> AgentConfig<f32> {
         let tick = Duration::from_micros(i32::try_from(self.tick_us).unwrap_or(i32::MAX));
-        AgentConfig { boot, seed: self.seed, ..self.ground.config(index, tick) }
+        AgentConfig { boot, seed: self.seed, claims: self.claims, ..self.ground.config(index, tick) }
     }
 
     /// Computer number `index` with its own agent, started now.
@@ -388,7 +391,7 @@ where
                     target: agent.target().unwrap_or(status.target),
                     wait: out.wait,
                 };
-                PacketCounts::refused(out.rejected, out.refused)
+                PacketCounts::refused(out.rejected, out.refused, out.overclaims)
             })
             .reduce(PacketCounts::default, |one, other| one + other)
     }

@@ -133,20 +133,11 @@ impl History {
         self.ticks
     }
 
-    pub(super) const fn with_capacity(max_samples: usize) -> Self {
+    pub(super) fn with_capacity(max_samples: usize) -> Self {
         Self {
             frames: Vec::new(),
             series: Vec::new(),
-            totals: PacketCounts {
-                sent: 0,
-                delivered: 0,
-                lost: 0,
-                corrupted: 0,
-                rejected: 0,
-                unsigned: 0,
-                forged: 0,
-                replayed: 0,
-            },
+            totals: PacketCounts::default(),
             ticks: 0,
             samples: 0,
             latest: Frame { tick: 0, time_s: 0.0, samples: Vec::new() },

@@ -17,7 +17,7 @@ pub use history::{Frame, History, Sample, SeriesPoint};
 
 use file::LineFile;
 use serde::{Deserialize, Serialize};
-use staya_controller::agent::{Refused, Wait};
+use staya_controller::agent::{Overclaims, Refused, Wait};
 use staya_controller::grid::Cell;
 use staya_controller::robot::Mode;
 use std::ops::{Add, AddAssign};
@@ -90,17 +90,56 @@ pub struct PacketCounts {
     pub forged: u64,
     /// Refused because it was heard before, or was older than what was; the radio's own repetitions included.
     pub replayed: u64,
+    /// Beacons that said what no robot can be.
+    pub overclaims: ClaimCounts,
+}
+
+/// Beacons that were not believed, or not all of what they said.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ClaimCounts {
+    /// Refused for a number that no robot has.
+    pub numbers: u64,
+    /// With a radius that was cut.
+    pub radii: u64,
+    /// With a velocity that was cut.
+    pub speeds: u64,
+    /// Refused for a place where the robot cannot be yet.
+    pub jumps: u64,
+}
+
+impl ClaimCounts {
+    /// How many in all.
+    #[must_use]
+    pub const fn sum(&self) -> u64 {
+        self.numbers + self.radii + self.speeds + self.jumps
+    }
+}
+
+impl AddAssign for ClaimCounts {
+    fn add_assign(&mut self, other: Self) {
+        self.numbers += other.numbers;
+        self.radii += other.radii;
+        self.speeds += other.speeds;
+        self.jumps += other.jumps;
+    }
 }
 
 impl PacketCounts {
-    /// What a robot refused in a step, and why, and nothing else.
+    /// What a robot refused or did not believe in a step, and why, and nothing else.
     #[must_use]
-    pub fn refused(rejected: u16, why: Refused) -> Self {
+    pub fn refused(rejected: u16, why: Refused, lies: Overclaims) -> Self {
         Self {
             rejected: rejected.into(),
             unsigned: why.unsigned.into(),
             forged: why.forged.into(),
             replayed: why.replayed.into(),
+            overclaims: ClaimCounts {
+                numbers: lies.numbers.into(),
+                radii: lies.radii.into(),
+                speeds: lies.speeds.into(),
+                jumps: lies.jumps.into(),
+            },
             ..Self::default()
         }
     }
@@ -119,6 +158,7 @@ impl AddAssign for PacketCounts {
         self.unsigned += other.unsigned;
         self.forged += other.forged;
         self.replayed += other.replayed;
+        self.overclaims += other.overclaims;
         self.sent += other.sent;
         self.delivered += other.delivered;
         self.lost += other.lost;

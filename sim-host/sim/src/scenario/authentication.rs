@@ -2,7 +2,7 @@
 
 use super::ranges::within;
 use super::source::Source;
-use super::{Attack, AttackKind, AttackTable, Robot, ScenarioError, ScenarioFile};
+use super::{Attack, AttackKind, AttackTable, Lie, Robot, ScenarioError, ScenarioFile};
 use crate::key::{self, KeyFile};
 use crate::radio::PEERS;
 use staya_controller::auth::Key;
@@ -73,9 +73,20 @@ fn attack(
     table: &AttackTable,
     field: &str,
 ) -> Result<Attack, ScenarioError> {
+    let is_insider = table.kind == AttackKind::Insider;
+    if is_insider == table.lies.is_empty() {
+        let remedy = "an \"insider\" lies: give lies, one or more of \"orders\", \"radius\", \"speed\", \"jump\", \"ghosts\"; nobody else does";
+        return Err(source.error(field, "it is not clear what it says", remedy));
+    }
+    let has_ghosts = table.lies.contains(&Lie::Ghosts);
+    let ghosts = table.ghosts.unwrap_or(16);
+    if table.ghosts.is_some() && !has_ghosts || !(1..=100).contains(&ghosts) {
+        let remedy = "give 1 to 100, with lies = [\"ghosts\"]";
+        return Err(source.error(&format!("{field}.ghosts"), "these are no ghosts", remedy));
+    }
     let lure_m = match (table.kind, table.lure_m, table.delay_s) {
         (AttackKind::Replay, None, _) => [0.0; 2],
-        (AttackKind::Forge | AttackKind::Unsigned, Some(lure_m), None) => lure_m,
+        (AttackKind::Forge | AttackKind::Unsigned | AttackKind::Insider, Some(lure_m), None) => lure_m,
         (AttackKind::Replay, Some(_), _) => {
             let remedy = "leave lure_m out, or choose another kind";
             return Err(source.error(field, "a replay says what others have said", remedy));
@@ -106,6 +117,14 @@ fn attack(
         let remedy = format!("give 1 to {}", most.0);
         return Err(source.error(&format!("{field}.claims"), "this is no robot's number", remedy));
     }
+    if is_insider && robots.binary_search_by_key(&claims, |robot| robot.id).is_err() {
+        let remedy = "give the number of a robot of this scenario";
+        return Err(source.error(&format!("{field}.claims"), format!("there is no robot {claims} to take"), remedy));
+    }
+    if has_ghosts && claims.0.max(last.0) + u32::from(ghosts) > most.0 {
+        let remedy = format!("give fewer; numbers end at {}", most.0);
+        return Err(source.error(&format!("{field}.ghosts"), "there are no numbers for so many", remedy));
+    }
     Ok(Attack {
         kind: table.kind,
         place_m: table.place_m,
@@ -114,5 +133,7 @@ fn attack(
         lure_m,
         claims,
         delay_ticks: tick("delay_s", table.delay_s.unwrap_or(10.0))?,
+        lies: table.lies.clone(),
+        ghosts: if has_ghosts { ghosts } else { 0 },
     })
 }

@@ -5,6 +5,7 @@
 
 mod authentication;
 mod check;
+mod claims;
 mod intervention;
 mod params;
 mod plane;
@@ -14,6 +15,7 @@ mod schema;
 mod setup;
 mod source;
 
+pub use claims::ClaimsTable;
 pub use intervention::{Intervention, InterventionTable, with_interventions};
 pub use params::{FormationTable, GridTable, RouteTable};
 pub(crate) use plane::goals;
@@ -25,8 +27,9 @@ pub use plane::{
 pub use ranges::within;
 pub use robots::{Formation, Robot};
 pub use schema::{
-    AttackKind, AttackTable, AuthenticationTable, Crop, EntropyTable, FaultTable, FormationEntry, MisnumberedTable,
-    NaturalTable, RobotEntry, RobotsTable, ScatteredEntry, ScenEntry, ScenarioFile, TerrainTable, UniformTable,
+    AttackKind, AttackTable, AuthenticationTable, Crop, EntropyTable, FaultTable, FormationEntry, Lie,
+    MisnumberedTable, NaturalTable, RobotEntry, RobotsTable, ScatteredEntry, ScenEntry, ScenarioFile, TerrainTable,
+    UniformTable,
 };
 pub use source::ScenarioError;
 pub use source::Source;
@@ -38,6 +41,7 @@ use crate::world::MoveRules;
 use staya_controller::agent::{GuidanceSetup, RouteSetup};
 use staya_controller::auth::Key;
 use staya_controller::formation::FormationParams;
+use staya_controller::neighbor::Claims;
 use staya_controller::robot::RobotId;
 use std::path::Path;
 
@@ -65,7 +69,7 @@ pub struct Fault {
 }
 
 /// Somebody who wants the robots to go elsewhere.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Attack {
     /// What it does.
     pub kind: AttackKind,
@@ -81,6 +85,10 @@ pub struct Attack {
     pub claims: RobotId,
     /// Ticks from what it hears to its repetition.
     pub delay_ticks: u32,
+    /// What an insider says.
+    pub lies: Vec<Lie>,
+    /// How many robots of an insider's do not exist.
+    pub ghosts: u8,
 }
 
 /// A checked scenario, ready to run.
@@ -120,7 +128,9 @@ pub struct Scenario {
     pub key: Option<Key>,
     /// What the owner of the key's file should know, as a line for people.
     pub key_remark: Option<String>,
-    /// Those who have no key.
+    /// What robots may say of themselves and be believed.
+    pub claims: Claims<f32>,
+    /// Those who want something else.
     pub attacks: Vec<Attack>,
 }
 
@@ -182,14 +192,14 @@ impl Scenario {
         check::formation_only(&source, &file)?;
         let route = params::routing(&source, &file.route, &file.grid)?;
         let formation_params = params::formation(&source, &file.formation)?;
-        Ok(Self {
-            name: file.name,
+        let mut scenario = Self {
+            name: file.name.clone(),
             seed: file.seed,
             ticks: file.ticks,
             tick_us: ranges::micros(file.tick_s),
             terrain,
             rules: MoveRules { norm: file.grid.norm, corner_cutting: file.grid.corner_cutting },
-            radio: file.radio,
+            radio: file.radio.clone(),
             robots,
             formation,
             plane,
@@ -200,8 +210,11 @@ impl Scenario {
             misnumbered,
             key,
             key_remark: key_remark.flatten(),
+            claims: Claims::ANY,
             attacks,
-        })
+        };
+        scenario.claims = claims::said(&source, &file, &scenario.robots, scenario.usual_claims())?;
+        Ok(scenario)
     }
 
     /// What who runs it should know: lines for people, about the key's file and about gains that are dangerous.

@@ -3,6 +3,7 @@
 //! Cells are `[x, y]` from the south-west corner of the (cropped) map, x east and y north. Times are
 //! simulated. File names are relative to the scenario file.
 
+use super::claims::ClaimsTable;
 use super::intervention::InterventionTable;
 use super::params::{FormationTable, GridTable, RouteTable};
 use super::plane::PlaneTable;
@@ -57,6 +58,9 @@ pub struct ScenarioFile {
     pub misnumbered: Vec<MisnumberedTable>,
     /// The robots' common key. Without this table everybody is believed.
     pub authentication: Option<AuthenticationTable>,
+    /// What robots may say of themselves and be believed.
+    #[serde(default)]
+    pub claims: ClaimsTable,
     /// Radios at the roadside whose owners want the robots to go elsewhere.
     #[serde(default)]
     pub attack: Vec<AttackTable>,
@@ -288,13 +292,31 @@ pub enum AttackKind {
     Forge,
     /// Sends the same orders without tag or signature.
     Unsigned,
+    /// Has a robot, with all that the robot knows, and lies with its keys.
+    Insider,
+}
+
+/// What an insider says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Lie {
+    /// Orders everybody to the lure.
+    Orders,
+    /// That its robot is as large as a beacon can say, at the lure.
+    Radius,
+    /// That it goes as fast as a beacon can say, from where it stands to the lure.
+    Speed,
+    /// That it is at the lure in one tick and where it stands in the next one.
+    Jump,
+    /// That there are further robots, around the lure.
+    Ghosts,
 }
 
 /// `[[attack]]`: a radio like those of the robots, and nobody's friend.
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AttackTable {
-    /// `"replay"`, `"forge"` or `"unsigned"`.
+    /// `"replay"`, `"forge"`, `"unsigned"` or `"insider"`.
     pub kind: AttackKind,
     /// Where it stands, metres from the south-west corner.
     pub place_m: [f64; 2],
@@ -303,10 +325,15 @@ pub struct AttackTable {
     pub from_s: f64,
     /// When it ends. Default: never.
     pub to_s: Option<f64>,
-    /// Where it orders the robots to, metres; not for `"replay"`.
+    /// Where it orders the robots to, or what an insider lies about, metres; not for `"replay"`.
     pub lure_m: Option<[f64; 2]>,
     /// The robot in whose name it speaks. Default: the last one.
     pub claims: Option<u32>,
     /// Seconds from what it hears to its repetition. Default: 10; only for `"replay"`.
     pub delay_s: Option<f64>,
+    /// What an `"insider"` says: one or more of `"orders"`, `"radius"`, `"speed"`, `"jump"`, `"ghosts"`.
+    #[serde(default)]
+    pub lies: Vec<Lie>,
+    /// How many robots there are that do not exist, 1 to 100. Default: 16; only for `"ghosts"`.
+    pub ghosts: Option<u8>,
 }

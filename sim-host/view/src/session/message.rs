@@ -120,6 +120,7 @@ pub(super) fn event(event: &Event) -> String {
         Event::NeighborRebooted(id) => format!("robot {id} started anew"),
         Event::NobodyHeard => "nobody is heard".to_owned(),
         Event::DuplicateId(id) => format!("two robots have the number {id}"),
+        Event::Overclaimed { id, claim } => format!("robot {id} claims what cannot be: {claim}"),
         Event::Muted => "mute: no counter or timestamp is left, a new key is needed".to_owned(),
     }
 }

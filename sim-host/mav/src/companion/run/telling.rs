@@ -106,6 +106,9 @@ impl Companions<'_> {
             AgentEvent::NeighborFound(id) => self.tell(index, &format!("hears robot {}", id.0)),
             AgentEvent::NeighborLost(id) => self.tell(index, &format!("has lost robot {id}")),
             AgentEvent::DuplicateId(id) => self.tell(index, &format!("two robots have number {id}: give one another")),
+            AgentEvent::Overclaimed { id, claim } => {
+                self.tell(index, &format!("does not believe robot {id}: it claims {claim}"));
+            }
             AgentEvent::NobodyHeard => self.tell(index, "hears nobody any more"),
             AgentEvent::Muted => {
                 self.tell(

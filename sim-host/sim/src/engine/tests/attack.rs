@@ -5,6 +5,7 @@ use crate::scenario::{Overrides, Scenario};
 use std::ops::ControlFlow;
 use std::path::Path;
 
+const INSIDER: &str = include_str!("../../../../../scenarios/insider.toml");
 const HIJACK: &str = include_str!("../../../../../scenarios/hijack.toml");
 
 fn run(text: &str) -> Outcome {
@@ -68,5 +69,38 @@ fn without_a_key_orders_of_strangers_are_followed() {
         let outcome = run(&text);
         assert_eq!(outcome.arrived < 6, is_followed, "{kind}");
         assert_eq!(outcome.trace_hash != alone.trace_hash, is_followed, "{kind}");
+    }
+}
+
+/// Bounds on what robots claim: an insider's lies cost those about him nothing, and without bounds they do.
+#[test]
+fn who_lies_of_itself_holds_nobody_up() {
+    let in_time = 250;
+    let text = INSIDER.replace("ticks = 1200", &format!("ticks = {in_time}"));
+    let silent = run(&without(&text, "attack"));
+    assert_eq!((silent.arrived, silent.packets.overclaims.sum()), (12, 0), "{:?}", silent.packets);
+    for (lies, is_late) in [("\"radius\"", true), ("\"speed\"", true), ("\"ghosts\", \"jump\"", false)] {
+        let mut lied = text.replace("\"radius\", \"speed\", \"jump\", \"ghosts\"", lies);
+        if !lies.contains("ghosts") {
+            lied = lied.replace("ghosts = 20\n", "");
+        }
+        let bounded = run(&lied);
+        assert_eq!(bounded.arrived, 12, "{lies}");
+        assert!(bounded.packets.overclaims.sum() > 30, "{lies}: {:?}", bounded.packets.overclaims);
+        let open = run(&lied.replace("bounded = true", "bounded = false"));
+        assert_eq!((open.arrived < 12, open.packets.overclaims.sum()), (is_late, 0), "{lies}");
+    }
+}
+
+#[test]
+fn no_honest_robot_meets_the_bounds() {
+    let texts = [
+        include_str!("../../../../../scenarios/mixed.toml"),
+        include_str!("../../../../../scenarios/blackout.toml"),
+        include_str!("../../../../../scenarios/two-flocks.toml"),
+    ];
+    for text in texts {
+        let counted = run(text).packets.overclaims;
+        assert_eq!(counted.sum(), 0, "{counted:?}");
     }
 }

@@ -28,6 +28,7 @@ use spec::Spec;
 use staya_controller::agent::{GuidanceKind, RouteSetup};
 use staya_controller::formation::FormationParams;
 use staya_controller::grid::Cell;
+use staya_controller::neighbor::Claims;
 use staya_controller::robot::RobotId;
 
 /// Robots that a plane can hold.
@@ -123,7 +124,7 @@ impl Scenario {
     /// from 1 in the order of their starts.
     #[must_use]
     pub fn in_plane(name: &str, seed: u64, ticks: u32, radio: RadioParams, setup: PlaneSetup) -> Self {
-        Self {
+        let mut scenario = Self {
             name: name.to_owned(),
             seed,
             ticks,
@@ -141,8 +142,11 @@ impl Scenario {
             misnumbered: Vec::new(),
             key: None,
             key_remark: None,
+            claims: Claims::ANY,
             attacks: Vec::new(),
-        }
+        };
+        scenario.claims = scenario.usual_claims();
+        scenario
     }
 }
 

@@ -1,0 +1,155 @@
+//! What others say of themselves beyond what can be.
+
+use super::plane::{Robot, STEP, body_at, one_step_late, orca, step_number, waypoint};
+use super::*;
+use crate::neighbor::{Claim, Claims};
+
+type Listener = Robot<f32, WaypointGuidance<f32>, OrcaSafety<f32, 16>>;
+
+const CLAIMS: Claims<f32> = Claims {
+    max_radius_m: 0.4,
+    max_speed_mps: 2.0,
+    slack_m: 0.8,
+    settle: Duration::from_micros(4 * STEP.as_micros()),
+    last: RobotId(20),
+};
+
+fn listener(claims: Claims<f32>) -> Listener {
+    Robot::new(&AgentConfig { claims, ..one_step_late(7) }, waypoint(), orca(), [0.0; 2])
+}
+
+fn beacon(x_mm: i32, change: impl FnOnce(&mut Beacon)) -> Message {
+    let Message::Beacon(mut beacon) = body_at([x_mm, 0], [0, 0], Mode::Hold) else {
+        panic!("a beacon");
+    };
+    change(&mut beacon);
+    Message::Beacon(beacon)
+}
+
+fn frame(sender: u32, sequence: u16, message: &Message) -> Vec<u8> {
+    let mut out = heapless::Vec::<u8, 64>::new();
+    encode(Header { boot: 0, sender: RobotId(sender), sequence }, message, &mut out).unwrap();
+    out.to_vec()
+}
+
+fn claims(out: &Outputs<f32>) -> Vec<(u32, Claim)> {
+    let claims = out.events.iter().filter_map(|event| match event {
+        Event::Overclaimed { id, claim } => Some((id.0, *claim)),
+        _ => None,
+    });
+    claims.collect()
+}
+
+fn where_is(robot: &Listener, id: u32) -> Option<i32> {
+    let known = robot.agent.neighbors().iter().find(|known| known.id == RobotId(id));
+    known.map(|known| known.position.mm[0])
+}
+
+#[test]
+fn what_is_within_the_bounds_is_believed_word_for_word() {
+    let mut robot = listener(CLAIMS);
+    for n in 0..50_i32 {
+        // Two metres a second, to and fro, and a jump within the slack.
+        let x_mm = 5000 + 200 * (n % 20 - 10).abs() + if n == 33 { 700 } else { 0 };
+        let said = beacon(x_mm, |beacon| (beacon.radius_mm, beacon.velocity_mmps) = (400, [2000, 0, 0]));
+        let out = robot.step(step_number(n), &frame(20, n as u16, &said));
+        assert_eq!(out.overclaims, Overclaims::default(), "step {n}");
+        assert_eq!(where_is(&robot, 20), Some(x_mm), "step {n}");
+        let known = robot.agent.neighbors()[0];
+        assert_eq!((known.radius_m, known.velocity_mps.x), (0.4, 2.0));
+    }
+}
+
+#[test]
+fn a_radius_and_a_speed_beyond_are_cut_told_once_and_counted_each_time() {
+    let mut robot = listener(CLAIMS);
+    let mut told = Vec::new();
+    for n in 0..10 {
+        let lie = beacon(9000, |beacon| (beacon.radius_mm, beacon.velocity_mmps) = (65_000, [-30_000, 0, 30_000]));
+        let out = robot.step(step_number(n), &frame(3, n as u16, &lie));
+        assert_eq!((out.overclaims.radii, out.overclaims.speeds, out.received), (1, 1, 1));
+        told.extend(claims(&out));
+        let known = robot.agent.neighbors()[0];
+        assert_eq!(known.radius_m, 0.4);
+        assert!((known.velocity_mps.norm() - 2.0).abs() < 1e-3, "{:?}", known.velocity_mps);
+    }
+    assert_eq!(told, [(3, Claim::Radius), (3, Claim::Speed)]);
+    // Once it has been honest, a lie is news again.
+    let _ = robot.step(step_number(10), &frame(3, 10, &beacon(9000, |_| ())));
+    let lie = beacon(9000, |beacon| beacon.radius_mm = 65_000);
+    assert_eq!(claims(&robot.step(step_number(11), &frame(3, 11, &lie))), [(3, Claim::Radius)]);
+}
+
+#[test]
+fn numbers_that_no_robot_has_crowd_nobody_out() {
+    let mut robot = listener(CLAIMS);
+    let truth: Vec<u8> = (1..=6).flat_map(|id| frame(id, 0, &beacon(5000 + 1000 * id as i32, |_| ()))).collect();
+    let ghosts: Vec<u8> = (21..40).flat_map(|id| frame(id, 0, &beacon(3000 + 10 * id as i32, |_| ()))).collect();
+    let out = robot.step(step_number(0), &[truth, ghosts].concat());
+    assert_eq!((out.received, out.rejected, out.overclaims.numbers), (6, 19, 19));
+    assert_eq!(claims(&out), [(21, Claim::Number)], "once a step");
+    let known: Vec<_> = robot.agent.neighbors().iter().map(|known| known.id.0).collect();
+    assert_eq!(known, [1, 2, 3, 4, 5, 6]);
+}
+
+/// Somebody who knows the numbers of others fills the table with their doubles: they push each other out, and nobody else.
+#[test]
+fn doubles_crowd_nobody_out() {
+    let mut robot = listener(Claims::ANY);
+    let truth = |n| (11..=18).flat_map(move |id| frame(id, n, &beacon(1000 * id as i32, |_| ()))).collect::<Vec<u8>>();
+    let _ = robot.step(step_number(0), &truth(0));
+    let ghosts: Vec<u8> = (11..=18).flat_map(|id| frame(id, 2, &beacon(-3000 - 10 * id as i32, |_| ()))).collect();
+    let _ = robot.step(step_number(1), &[truth(1), ghosts].concat());
+    let known: Vec<_> = robot.agent.neighbors().iter().map(|known| known.id.0).collect();
+    assert_eq!(known, [11, 12, 13, 14, 15, 16, 17, 18]);
+}
+
+#[test]
+fn who_jumps_is_as_good_as_silent_until_it_has_settled() {
+    let mut robot = listener(CLAIMS);
+    let _ = robot.step(step_number(0), &frame(3, 0, &beacon(9000, |_| ())));
+    let mut told = Vec::new();
+    for n in 1..=5 {
+        let out = robot.step(step_number(n), &frame(3, n as u16, &beacon(-7000 + 100 * n, |_| ())));
+        told.extend(claims(&out));
+        let (jumps, received) = if n <= 4 { (1, 0) } else { (1, 1) };
+        assert_eq!((out.overclaims.jumps, out.received), (jumps, received), "step {n}");
+        assert_eq!(where_is(&robot, 3), Some(9000), "step {n}");
+    }
+    assert_eq!(told, [(3, Claim::Jump)]);
+    // The place of before is kept clear of too, as with two robots of one number.
+    assert_eq!(robot.agent.neighbors().len(), 2);
+    let out = robot.step(step_number(6), &frame(3, 6, &beacon(-6400, |_| ())));
+    assert_eq!((out.overclaims.jumps, out.received), (0, 1), "believed");
+}
+
+#[test]
+fn who_jumps_all_the_time_is_never_believed() {
+    let mut robot = listener(CLAIMS);
+    let _ = robot.step(step_number(0), &frame(3, 0, &beacon(9000, |_| ())));
+    for n in 1..20 {
+        let x_mm = if n % 3 == 0 { -4000 } else { 4000 - 3000 * (n % 2) };
+        let out = robot.step(step_number(n), &frame(3, n as u16, &beacon(x_mm, |_| ())));
+        assert_eq!((out.overclaims.jumps, robot.agent.neighbors().len()), (1, 1), "step {n}");
+        assert_eq!(where_is(&robot, 3), Some(9000));
+    }
+}
+
+/// Packets that were held back do not count as a jump: the sequence says how much time there was.
+#[test]
+fn news_that_were_held_back_are_no_jump() {
+    let mut robot = listener(CLAIMS);
+    let _ = robot.step(step_number(0), &frame(3, 0, &beacon(9000, |_| ())));
+    let out = robot.step(step_number(1), &frame(3, 30, &beacon(11_500, |_| ())));
+    assert_eq!((out.overclaims, out.received), (Overclaims::default(), 1));
+    assert_eq!(where_is(&robot, 3), Some(11_500));
+}
+
+#[test]
+fn without_bounds_everything_is_believed() {
+    let mut robot = listener(Claims::ANY);
+    let huge = beacon(80_000, |beacon| (beacon.radius_mm, beacon.velocity_mmps) = (65_000, [-30_000, 0, 0]));
+    let out = robot.step(step_number(0), &frame((1 << 31) - 1, 0, &huge));
+    assert_eq!((out.overclaims, out.received), (Overclaims::default(), 1));
+    assert_eq!(robot.agent.neighbors()[0].radius_m, 65.0);
+}
