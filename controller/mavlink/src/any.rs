@@ -9,7 +9,8 @@ use serde::{Serialize, Serializer};
 use staya_controller::auth::Key;
 use staya_controller::robot::RobotId;
 use staya_controller::wire::{
-    DecodeError, EncodeError, Format, Frame, FromFormat, Header, MAX_TAGGED_ROBOT, Message, Postcard, Sealed, Wire,
+    DecodeError, EncodeError, Format, Frame, FromFormat, Header, KeyPhase, MAX_TAGGED_ROBOT, Message, Postcard, Sealed,
+    Wire,
 };
 
 /// A wire format that is known only when the program runs: open, or with a key if `S` and `G` are where [`Sealed`] and
@@ -149,6 +150,10 @@ where
 
     fn decode(&mut self, frame: &[u8]) -> Result<Frame, DecodeError> {
         each!(self, wire => wire.decode(frame))
+    }
+
+    fn held(&self) -> Option<(u16, KeyPhase)> {
+        each!(self, wire => wire.held())
     }
 
     fn next_frame<'a>(&self, rest: &mut &'a [u8]) -> Option<&'a [u8]> {

@@ -149,6 +149,9 @@ impl Counts {
 pub struct Signing<const N: usize = STREAMS> {
     #[serde(skip)]
     key: Key,
+    /// The key before or after it, while it changes.
+    #[serde(skip)]
+    also: Option<Key>,
     link: u8,
     /// Of the next frame.
     timestamp: u64,
@@ -166,6 +169,7 @@ impl<const N: usize> Signing<N> {
     pub const fn new(key: Key, link: u8, timestamp: u64) -> Self {
         Self {
             key,
+            also: None,
             link,
             timestamp,
             clock: None,
@@ -199,6 +203,23 @@ impl<const N: usize> Signing<N> {
     pub const fn with_lead(mut self, lead: u64) -> Self {
         self.lead = Some(lead);
         self
+    }
+
+    /// From now on frames that are signed with this key are authentic too; one at most, besides that which signs.
+    pub fn hear(&mut self, key: Key) {
+        self.also = Some(key);
+    }
+
+    /// Signs with the key of [`Self::hear`] from now on, and goes on hearing the one before.
+    pub const fn speak(&mut self) {
+        if let Some(also) = &mut self.also {
+            core::mem::swap(also, &mut self.key);
+        }
+    }
+
+    /// Does not hear the key any more that it does not sign with.
+    pub fn forget(&mut self) {
+        self.also = None;
     }
 
     /// How many more frames can be signed at this timestamp. 0: [`SignError::Exhausted`].
@@ -263,13 +284,13 @@ impl<const N: usize> Signing<N> {
         let [a, b, c, d, e, f, _, _] = self.timestamp.to_le_bytes();
         self.timestamp = self.timestamp.saturating_add(1);
         let stamp = [self.link, a, b, c, d, e, f];
-        let [p, q, r, s, t, u] = self.value(frame, &stamp);
+        let [p, q, r, s, t, u] = value_of(&self.key, frame, &stamp);
         Ok([self.link, a, b, c, d, e, f, p, q, r, s, t, u])
     }
 
     /// Judges a frame, counts it, and remembers it if it is authentic.
     ///
-    /// Bounded work: SHA-256 over at most 307 bytes, and O(N).
+    /// Bounded work: SHA-256 over at most 307 bytes, twice while the key changes, and O(N).
     pub fn verify(&mut self, frame: &RawFrame<'_>) -> Verdict {
         let verdict = self.judge(frame);
         self.counts.count(verdict);
@@ -287,7 +308,9 @@ impl<const N: usize> Signing<N> {
             };
         };
         let &[link, a, b, c, d, e, f, ref value @ ..] = signature;
-        if !is_same(&self.value(signed, &[link, a, b, c, d, e, f]), value) {
+        let stamp = [link, a, b, c, d, e, f];
+        let mut keys = [Some(&self.key), self.also.as_ref()].into_iter().flatten();
+        if !keys.any(|key| is_same(&value_of(key, signed, &stamp), value)) {
             return Verdict::Forged;
         }
         let timestamp = u64::from_le_bytes([a, b, c, d, e, f, 0, 0]);
@@ -309,16 +332,16 @@ impl<const N: usize> Signing<N> {
             Freshness::NoRoom => Verdict::NoRoom,
         }
     }
+}
 
-    /// The value of a signature of these bytes.
-    fn value(&self, frame: &[u8], stamp: &[u8; 7]) -> [u8; 6] {
-        let mut hash = Sha256::new();
-        hash.update(self.key.as_bytes());
-        hash.update(frame);
-        hash.update(stamp);
-        let [a, b, c, d, e, f, ..] = hash.finish();
-        [a, b, c, d, e, f]
-    }
+/// The value of a signature of these bytes.
+fn value_of(key: &Key, frame: &[u8], stamp: &[u8; 7]) -> [u8; 6] {
+    let mut hash = Sha256::new();
+    hash.update(key.as_bytes());
+    hash.update(frame);
+    hash.update(stamp);
+    let [a, b, c, d, e, f, ..] = hash.finish();
+    [a, b, c, d, e, f]
 }
 
 /// How the checksum of a frame with `len` bytes of payload changes when its flag is set. A checksum is linear in the bits that it covers, so this needs

@@ -11,8 +11,8 @@ use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 use crate::wire::{
-    Arrival, Beacon, DecodeError, Due, EncodeError, Frame, Header, Message, Newest, Orders, Request, RequestKind,
-    Requests, Retry, SequenceWindow, TemplateAssignment, Wire,
+    Arrival, Beacon, DecodeError, Due, EncodeError, Frame, Header, KeyHeld, Message, Newest, Orders, Request,
+    RequestKind, Requests, Retry, SequenceWindow, TemplateAssignment, Wire,
 };
 use heapless::Vec;
 use serde::Serialize;
@@ -96,6 +96,10 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
             beacon_due: Instant::from_micros(0),
             has_sent: false,
         }
+    }
+
+    pub(super) const fn wire(&self) -> &W {
+        &self.wire
     }
 
     pub(super) const fn wire_mut(&mut self) -> &mut W {
@@ -337,6 +341,11 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
                             at: listener.heard_at,
                         },
                     });
+                }
+            }
+            Message::Key(key) if is_mine(key.to) => {
+                if let Some((generation, phase)) = self.wire.held() {
+                    self.say_early(&Message::KeyHeld(KeyHeld { to: sender, generation, phase }), out);
                 }
             }
             // An old beacon, or for somebody else.

@@ -68,6 +68,12 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         &mut self.safety
     }
 
+    /// The wire format.
+    #[must_use]
+    pub const fn wire(&self) -> &W {
+        self.link.wire()
+    }
+
     /// The wire format, to tell it what it must know besides: MAVLink's signatures the time.
     pub const fn wire_mut(&mut self) -> &mut W {
         self.link.wire_mut()

@@ -5,10 +5,12 @@
 
 mod guard;
 mod hmac;
+mod keys;
 mod sha256;
 
 pub use guard::{Freshness, ReplayGuard};
 pub use hmac::Mac;
+pub use keys::{Master, SEED_LEN, Seed, WRAPPED_LEN};
 pub use sha256::Sha256;
 
 use core::fmt;

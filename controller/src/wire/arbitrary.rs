@@ -105,5 +105,10 @@ pub fn message() -> impl Strategy<Value = Message> {
     let place = place.prop_map(|(to, [version, index], (position_mm, velocity_mmps))| {
         Message::Waypoint(WaypointAssignment { to, version, index, position_mm, velocity_mmps })
     });
-    prop_oneof![beacon(), compact(), request, ack, template(), goal, place]
+    let phase = || prop_oneof![Just(KeyPhase::Hear), Just(KeyPhase::Speak), Just(KeyPhase::Forget)];
+    let key = (robot(), any::<u16>(), phase(), any::<[u8; 32]>())
+        .prop_map(|(to, generation, phase, wrapped)| Message::Key(KeyAssignment { to, generation, phase, wrapped }));
+    let held = (robot(), any::<u16>(), phase())
+        .prop_map(|(to, generation, phase)| Message::KeyHeld(KeyHeld { to, generation, phase }));
+    prop_oneof![beacon(), compact(), request, ack, template(), goal, place, key, held]
 }

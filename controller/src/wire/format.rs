@@ -4,7 +4,7 @@
 //! format keeps between frames (counters, keys) is a part of the agent's state, and so of its digest; one that keeps nothing
 //! adds nothing to either.
 
-use super::{Beacon, DecodeError, EncodeError, Frame, Header, Message, decode, encode, frames};
+use super::{Beacon, DecodeError, EncodeError, Frame, Header, KeyPhase, Message, decode, encode, frames};
 use crate::names::named;
 use heapless::Vec;
 use serde::Serialize;
@@ -34,6 +34,11 @@ pub trait Wire: Clone + core::fmt::Debug + Serialize {
     /// # Errors
     /// What is wrong with it, see [`DecodeError`]; any bytes at all give an answer.
     fn decode(&mut self, frame: &[u8]) -> Result<Frame, DecodeError>;
+
+    /// How far the robot is with the keys that it was sent, for who sends them; `None` for a format without keys of its own.
+    fn held(&self) -> Option<(u16, KeyPhase)> {
+        None
+    }
 
     /// Takes the next frame off `rest`, or bytes between frames that [`Wire::decode`] will refuse, so that damage is counted.
     /// `None` when nothing is left; otherwise `rest` is shorter than before.

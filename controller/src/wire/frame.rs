@@ -31,7 +31,8 @@
 //! Cortex-M0 (`opt-level = "s"`, one link-time unit), and no panic is reachable from them.
 
 use super::message::{
-    Ack, Beacon, CompactBeacon, GoalAssignment, Message, Request, TEMPLATE_PART, TemplateAssignment, WaypointAssignment,
+    Ack, Beacon, CompactBeacon, GoalAssignment, KeyAssignment, KeyHeld, Message, Request, TEMPLATE_PART,
+    TemplateAssignment, WaypointAssignment,
 };
 use crate::robot::RobotId;
 use core::fmt;
@@ -92,6 +93,16 @@ impl WaypointAssignment {
     pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 1 + 1 + 3 * 4 + 3 * 2;
 }
 
+impl KeyAssignment {
+    /// Bytes of a frame that carries one, at most: tag and delimiter included.
+    pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 2 + 1 + 32;
+}
+
+impl KeyHeld {
+    /// Bytes of a frame that carries one, at most: tag and delimiter included.
+    pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 2 + 1;
+}
+
 /// Bytes of any frame, at most: tag and delimiter included.
 pub const MAX_FRAME_LEN: usize = {
     let lens = [
@@ -102,6 +113,8 @@ pub const MAX_FRAME_LEN: usize = {
         TemplateAssignment::MAX_FRAME_LEN,
         GoalAssignment::MAX_FRAME_LEN,
         WaypointAssignment::MAX_FRAME_LEN,
+        KeyAssignment::MAX_FRAME_LEN,
+        KeyHeld::MAX_FRAME_LEN,
     ];
     let mut max = 0;
     let mut rest = lens.as_slice();
@@ -195,7 +208,7 @@ pub enum DecodeError {
     Version(u8),
     /// Sound, but without the tag or signature that is asked for.
     Unsigned,
-    /// Sound, but its tag or signature is not of the key that is asked for.
+    /// Sound, but its tag or signature is not of the key that is asked for: an order that is not of the robot's own key, too.
     Forged,
     /// Authentic, but recorded: seen before, or older than what was.
     Replayed,

@@ -170,6 +170,46 @@ pub struct WaypointAssignment {
     pub velocity_mmps: [i16; 3],
 }
 
+/// What a robot is to do with a key of the swarm's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum KeyPhase {
+    /// Hear who speaks with it, too.
+    Hear,
+    /// Speak with it.
+    Speak,
+    /// Hear nobody any more who speaks with an earlier one.
+    Forget,
+}
+
+/// A new key of the swarm's for one robot, sealed with that robot's own; said again until [`KeyHeld`] comes back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct KeyAssignment {
+    /// Who it is for.
+    pub to: RobotId,
+    /// Counts the swarm's keys, from 0 for the first.
+    #[serde(with = "fixint")]
+    pub generation: u16,
+    /// What to do with it.
+    pub phase: KeyPhase,
+    /// The seed that it is made of, encrypted for that robot: see `auth::Seed`.
+    pub wrapped: [u8; 32],
+}
+
+/// "So far I am": the answer to a [`KeyAssignment`], sealed with the robot's own key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct KeyHeld {
+    /// Who had sent it.
+    pub to: RobotId,
+    /// The latest generation that it has.
+    #[serde(with = "fixint")]
+    pub generation: u16,
+    /// What it does with it.
+    pub phase: KeyPhase,
+}
+
 /// Everything that a frame can carry.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -188,4 +228,32 @@ pub enum Message {
     Goal(GoalAssignment),
     /// A place.
     Waypoint(WaypointAssignment),
+    /// A key.
+    Key(KeyAssignment),
+    /// How far its receiver is with it.
+    KeyHeld(KeyHeld),
+}
+
+impl Message {
+    /// Whom it is for; `None` for what is for everybody.
+    #[must_use]
+    pub const fn addressee(&self) -> Option<RobotId> {
+        let to = match self {
+            Self::Beacon(_) | Self::Compact(_) => return None,
+            Self::Request(request) => request.to,
+            Self::Ack(ack) => ack.to,
+            Self::Template(part) => part.to,
+            Self::Goal(goal) => goal.to,
+            Self::Waypoint(place) => place.to,
+            Self::Key(key) => key.to,
+            Self::KeyHeld(held) => held.to,
+        };
+        if to.is_somebody() { Some(to) } else { None }
+    }
+
+    /// Whether it is for an operator, and for nobody else, to say.
+    #[must_use]
+    pub const fn is_order(&self) -> bool {
+        matches!(self, Self::Template(_) | Self::Goal(_) | Self::Waypoint(_) | Self::Key(_))
+    }
 }

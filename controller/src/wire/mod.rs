@@ -6,8 +6,12 @@ mod frame;
 mod heard;
 mod message;
 mod newest;
+#[cfg(feature = "auth")]
+mod operator;
 mod orders;
 mod requests;
+#[cfg(feature = "auth")]
+mod ring;
 #[cfg(feature = "auth")]
 mod sealed;
 mod sequence;
@@ -19,12 +23,16 @@ pub use frame::{
     decode_verified, encode, encode_tagged, frames,
 };
 pub use message::{
-    Ack, Beacon, CompactBeacon, GoalAssignment, Message, Request, RequestKind, TEMPLATE_PART, TemplateAssignment,
-    WaypointAssignment,
+    Ack, Beacon, CompactBeacon, GoalAssignment, KeyAssignment, KeyHeld, KeyPhase, Message, Request, RequestKind,
+    TEMPLATE_PART, TemplateAssignment, WaypointAssignment,
 };
 pub use newest::Newest;
+#[cfg(feature = "auth")]
+pub use operator::OperatorWire;
 pub use orders::{Answer, Orders};
 pub use requests::{AskError, Due, Requests, Retry};
+#[cfg(feature = "auth")]
+pub use ring::{Ring, Signer};
 #[cfg(feature = "auth")]
 pub use sealed::{PEERS, REACH_STARTS, Sealed};
 pub use sequence::{Arrival, SEQUENCE_SPAN, SequenceWindow};

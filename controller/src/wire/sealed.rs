@@ -1,7 +1,9 @@
 //! Frames that only who has the key can make, and nobody can repeat: [`Sealed`].
 
 use super::frame::{decode_verified, encode_tagged};
-use super::{Beacon, DecodeError, EncodeError, Frame, Header, Message, Postcard, TAG_LEN, Wire};
+use super::{
+    Beacon, DecodeError, EncodeError, Frame, Header, KeyPhase, Message, Postcard, Ring, Signer, TAG_LEN, Wire,
+};
 use crate::auth::{Freshness, Key, Mac, ReplayGuard, is_same};
 use crate::robot::RobotId;
 use heapless::Vec;
@@ -56,11 +58,10 @@ pub const REACH_STARTS: u32 = 1024;
 /// The state that serde sees does not hold the key.
 #[derive(Clone, Debug, Serialize)]
 pub struct Sealed<const N: usize = PEERS> {
-    #[serde(skip)]
-    mac: Mac,
-    epoch: u32,
-    /// The sequence number of the last frame.
-    last: u16,
+    ring: Ring,
+    /// The own number, where the robot has a key of its own.
+    own: RobotId,
+    epochs: Epochs,
     guard: ReplayGuard<N>,
 }
 
@@ -68,13 +69,31 @@ impl<const N: usize> Sealed<N> {
     /// For a robot at its start number `starts`, counted in lasting memory from 0; `None` from 2^20 on.
     #[must_use]
     pub fn at_start(key: &Key, starts: u32) -> Option<Self> {
-        Some(Self { mac: Mac::new(key), epoch: epoch_of(starts)?, last: 0, guard: ReplayGuard::new() })
+        Self::with_ring(Ring::new(key), RobotId::NOBODY, starts)
+    }
+
+    /// The same for robot `own` with these keys. If one of them is its own, it takes orders ([`Message::is_order`]) and keys from nobody but who has that, and
+    /// hears what others say to each other under theirs as somebody else's.
+    #[must_use]
+    pub fn with_ring(ring: Ring, own: RobotId, starts: u32) -> Option<Self> {
+        Some(Self { ring, own, epochs: Epochs::at_start(starts)?, guard: ReplayGuard::new() })
+    }
+
+    /// The keys that it has.
+    #[must_use]
+    pub const fn ring(&self) -> &Ring {
+        &self.ring
+    }
+
+    /// The same, for hosts that change them by other ways than the radio.
+    pub const fn ring_mut(&mut self) -> &mut Ring {
+        &mut self.ring
     }
 
     /// Refuses frames of unknown robots from before their start number `starts`. From 2^20 on nothing changes.
     pub fn refuse_before(&mut self, starts: u32) {
         if let Some(epoch) = epoch_of(starts) {
-            self.guard.set_floor(counter(epoch, 0));
+            self.guard.set_floor(domain(Signer::Swarm(self.ring.generation())) | counter(epoch, 0));
         }
     }
 
@@ -89,17 +108,68 @@ impl<const N: usize> Sealed<N> {
         &mut self.guard
     }
 
-    /// The latest counter that is believed of a sender.
+    /// The latest counter that is believed of a sender, whatever the key.
     fn latest(&self, sender: RobotId) -> u64 {
-        let known = self.guard.newest(sender.0).unwrap_or(self.guard.floor());
-        known.max(counter(self.epoch, 0)).saturating_add(counter(REACH_STARTS << WRAP_BITS, 0))
+        let known = self.guard.newest(sender.0).unwrap_or(self.guard.floor()) & COUNTED;
+        known.max(counter(self.epochs.epoch, 0)).saturating_add(counter(REACH_STARTS << WRAP_BITS, 0))
     }
 
-    /// The first bytes of the code.
-    fn code(&self, content: &[u8], epoch: [u8; EPOCH_LEN]) -> [u8; TAG_LEN - EPOCH_LEN] {
-        let [a, b, c, d, ..] = self.mac.of(&[content, &epoch]);
-        [a, b, c, d]
+    /// Whether somebody who has the key by which it was made may say this, to this robot.
+    fn judge(&self, frame: &Frame, signer: Option<Signer>) -> Result<Signer, DecodeError> {
+        let own = self.ring.own();
+        let is_elses = frame.message.addressee().is_some_and(|to| to != self.own);
+        match signer {
+            Some(Signer::Swarm(_)) if own.is_some() && frame.message.is_order() => Err(DecodeError::Forged),
+            Some(signer) => Ok(signer),
+            // Under somebody else's own key.
+            None if own.is_some() && is_elses => Err(DecodeError::Foreign),
+            None => Err(DecodeError::Forged),
+        }
     }
+}
+
+/// The numbers under which frames are sealed: none comes twice.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Epochs {
+    epoch: u32,
+    /// The sequence number of the last frame.
+    last: u16,
+}
+
+impl Epochs {
+    /// `None` from 2^20 starts on.
+    pub(super) fn at_start(starts: u32) -> Option<Self> {
+        Some(Self { epoch: epoch_of(starts)?, last: 0 })
+    }
+
+    /// Appends a frame sealed with a key. Also [`EncodeError::Exhausted`] when the sequence has wrapped 4095 times since the start.
+    pub(super) fn seal<const M: usize>(
+        &mut self,
+        mac: &Mac,
+        header: Header,
+        message: &Message,
+        out: &mut Vec<u8, M>,
+    ) -> Result<usize, EncodeError> {
+        let has_wrapped = header.sequence < self.last;
+        let epoch = self.epoch.wrapping_add(has_wrapped.into());
+        if has_wrapped && epoch & ((1 << WRAP_BITS) - 1) == 0 {
+            return Err(EncodeError::Exhausted);
+        }
+        let seal = |content: &[u8]| {
+            let epoch = epoch.to_le_bytes();
+            let ([a, b, c, d], [e, f, g, h]) = (epoch, code(mac, content, epoch));
+            [a, b, c, d, e, f, g, h]
+        };
+        let len = encode_tagged(header, message, seal, out)?;
+        (self.epoch, self.last) = (epoch, header.sequence);
+        Ok(len)
+    }
+}
+
+/// The first bytes of the code.
+pub(super) fn code(mac: &Mac, content: &[u8], epoch: [u8; EPOCH_LEN]) -> [u8; TAG_LEN - EPOCH_LEN] {
+    let [a, b, c, d, ..] = mac.of(&[content, &epoch]);
+    [a, b, c, d]
 }
 
 /// The first epoch of a start.
@@ -107,8 +177,21 @@ const fn epoch_of(starts: u32) -> Option<u32> {
     if starts >> (u32::BITS - WRAP_BITS) == 0 { Some(starts << WRAP_BITS) } else { None }
 }
 
+/// The part of a counter that a sender counts; above it is the generation of the key, so that nothing that was made with an earlier one is fresh after
+/// it, and nobody can use up the numbers of a key that he does not have.
+const COUNTED: u64 = (1 << 48) - 1;
+
+/// What is counted above [`COUNTED`].
+const fn domain(signer: Signer) -> u64 {
+    let number = match signer {
+        Signer::Swarm(generation) => generation,
+        Signer::Operator => u16::MAX,
+    };
+    (number as u64) << 48
+}
+
 /// What never comes twice.
-const fn counter(epoch: u32, sequence: u16) -> u64 {
+pub(super) const fn counter(epoch: u32, sequence: u16) -> u64 {
     (epoch as u64) << u16::BITS | sequence as u64
 }
 
@@ -124,39 +207,44 @@ impl<const N: usize> Wire for Sealed<N> {
         message: &Message,
         out: &mut Vec<u8, M>,
     ) -> Result<usize, EncodeError> {
-        let has_wrapped = header.sequence < self.last;
-        let epoch = self.epoch.wrapping_add(has_wrapped.into());
-        if has_wrapped && epoch & ((1 << WRAP_BITS) - 1) == 0 {
-            return Err(EncodeError::Exhausted);
-        }
-        let seal = |content: &[u8]| {
-            let epoch = epoch.to_le_bytes();
-            let ([a, b, c, d], [e, f, g, h]) = (epoch, self.code(content, epoch));
-            [a, b, c, d, e, f, g, h]
+        let mac = match message {
+            Message::KeyHeld(_) => self.ring.own().unwrap_or(self.ring.speaks()),
+            _ => self.ring.speaks(),
         };
-        let len = encode_tagged(header, message, seal, out)?;
-        (self.epoch, self.last) = (epoch, header.sequence);
-        Ok(len)
+        self.epochs.seal(mac, header, message, out)
     }
 
+    /// A key that it was sent is in use when the frame is returned. Bounded work: [`Mac::of`] once for who speaks the same key, up to three times else, and
+    /// twelve blocks of SHA-256 for a key.
     fn decode(&mut self, frame: &[u8]) -> Result<Frame, DecodeError> {
-        let mut epoch = 0;
+        let (mut epoch, mut signer) = (0, None);
         let frame = decode_verified(frame, |content, tag| {
-            let [a, b, c, d, code @ ..] = tag.ok_or(DecodeError::Unsigned)?;
+            let [a, b, c, d, sent @ ..] = tag.ok_or(DecodeError::Unsigned)?;
             let bytes = [a, b, c, d];
             epoch = u32::from_le_bytes(bytes);
-            if is_same(&self.code(content, bytes), &code) { Ok(()) } else { Err(DecodeError::Forged) }
+            signer = self.ring.signer(|mac| is_same(&code(mac, content, bytes), &sent));
+            // Who it is for is said in what cannot be verified here.
+            if signer.is_some() || self.ring.own().is_some() { Ok(()) } else { Err(DecodeError::Forged) }
         })?;
+        let signer = self.judge(&frame, signer)?;
         let Header { sender, sequence, .. } = frame.header;
         let counted = counter(epoch, sequence);
         if counted > self.latest(sender) {
             return Err(DecodeError::Ahead);
         }
-        match self.guard.admit(sender.0, counted) {
-            Freshness::New | Freshness::Late => Ok(frame),
-            Freshness::Replayed => Err(DecodeError::Replayed),
-            Freshness::NoRoom => Err(DecodeError::NoRoom),
+        match self.guard.admit(sender.0, domain(signer) | counted) {
+            Freshness::New | Freshness::Late => {}
+            Freshness::Replayed => return Err(DecodeError::Replayed),
+            Freshness::NoRoom => return Err(DecodeError::NoRoom),
         }
+        match &frame.message {
+            Message::Key(told) if self.ring.own().is_some() && !self.ring.apply(told) => Err(DecodeError::Forged),
+            _ => Ok(frame),
+        }
+    }
+
+    fn held(&self) -> Option<(u16, KeyPhase)> {
+        self.ring.own().map(|_| self.ring.held())
     }
 
     fn next_frame<'a>(&self, rest: &mut &'a [u8]) -> Option<&'a [u8]> {

@@ -49,6 +49,8 @@ pub(super) fn frame() -> impl Strategy<Value = (Header, Message)> {
                 }
             }
             Message::Waypoint(waypoint) => waypoint.to = to,
+            Message::Key(key) => key.to = to,
+            Message::KeyHeld(held) => held.to = to,
             Message::Compact(_) => {}
         }
         let header = Header { boot, sender, sequence };

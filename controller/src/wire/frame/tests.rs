@@ -85,6 +85,8 @@ fn bound(message: &Message) -> usize {
         Message::Template(_) => TemplateAssignment::MAX_FRAME_LEN,
         Message::Goal(_) => GoalAssignment::MAX_FRAME_LEN,
         Message::Waypoint(_) => WaypointAssignment::MAX_FRAME_LEN,
+        Message::Key(_) => KeyAssignment::MAX_FRAME_LEN,
+        Message::KeyHeld(_) => KeyHeld::MAX_FRAME_LEN,
     }
 }
 

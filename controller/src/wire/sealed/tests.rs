@@ -204,7 +204,7 @@ fn a_full_table_refuses_new_senders_and_an_attacker_cannot_fill_it() {
 /// A frame of any epoch, as who has the key can make it.
 fn said_in(epoch: u32, header: Header) -> StdVec<u8> {
     let mut by = sealed(0);
-    by.epoch = epoch;
+    by.epochs.epoch = epoch;
     said(&mut by, header)
 }
 

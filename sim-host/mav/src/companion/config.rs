@@ -71,6 +71,8 @@ struct AirTable {
     tunnel: bool,
     /// A key file: with it packets are sealed, and only sealed ones are heard. Default: none.
     key: Option<PathBuf>,
+    /// With a key: how long the old one is heard too when the file changes, seconds; the new one is spoken after half of that. Default: 60.
+    overlap_s: Option<f64>,
 }
 
 /// `[rules]`.
@@ -167,6 +169,8 @@ pub struct Config {
     pub air: MediumSetup,
     /// Where the key of packets is.
     pub key: Option<PathBuf>,
+    /// How long two keys of packets are good when the file changes.
+    pub overlap: Duration,
     /// Where the key of links is.
     pub link_key: Option<PathBuf>,
     /// The lines to autopilots, each once.
@@ -215,6 +219,8 @@ impl Config {
         let Some(plane) = scenario.plane.clone() else {
             return Err(no_plane(&source));
         };
+        let overlap_s = file.air.overlap_s.unwrap_or(60.0);
+        within(&source, "air.overlap_s", overlap_s, 2.0, 86_400.0, "seconds")?;
         let beside = |path: &PathBuf| source.folder().join(path);
         Ok(Self {
             scenario,
@@ -222,6 +228,7 @@ impl Config {
             origin,
             air,
             key: file.air.key.as_ref().map(beside),
+            overlap: Duration::from_secs_f64(overlap_s),
             link_key: file.link_key.as_ref().map(beside),
             lines,
             vehicles,

@@ -12,6 +12,7 @@ mod offboard;
 #[cfg(test)]
 mod replay;
 mod report;
+mod roll;
 mod run;
 mod seal;
 

@@ -13,6 +13,7 @@ use super::controller::Controller;
 use super::medium::{Medium, MediumError, MediumSetup, tunnel, tunnelled};
 use super::offboard::{AUTOPILOT, COMPONENT, Event, OffboardStateMachine, Rules, State, status_text};
 use super::report::CompanionReport;
+use super::roll::{Roll, Turn};
 use super::seal::{Seal, SealError};
 use crate::geo::{Origin, ned};
 use crate::{Lines, OpenError, Received, Tlog, TlogError};
@@ -99,6 +100,8 @@ struct Companions<'a> {
     /// One for each line, with a key for links.
     signing: Option<Vec<Signing>>,
     wire: AnyWire,
+    /// Of the packets' key.
+    roll: Roll,
     options: &'a Options,
     /// Why the log is incomplete.
     log_error: Option<TlogError>,
@@ -131,6 +134,7 @@ pub fn run(
         lines: Lines::open(&config.lines)?,
         medium: Medium::open(&config.air)?,
         tlog: options.tlog.take(),
+        key: seal.as_ref().map(Seal::watch),
         began: Instant::now(),
     };
     let mut companions = Companions::new(config, options, seal.as_ref(), link_key, Box::new(host));
@@ -212,6 +216,7 @@ impl<'a> Companions<'a> {
             vehicles: config.vehicles.iter().map(vehicle).collect(),
             signing,
             wire: AnyWire::new(format),
+            roll: Roll::new(config.overlap, seal.is_some_and(Seal::has_old)),
             options,
             log_error: None,
             output_error: None,
@@ -260,10 +265,29 @@ impl<'a> Companions<'a> {
         });
         self.look_at_links(now);
         self.look_at_timestamps();
+        self.roll_key(now);
         for index in 0..self.vehicles.len() {
             self.step(index);
             self.poll(index);
         }
+    }
+
+    /// Follows the file of the packets' key.
+    fn roll_key(&mut self, now: Duration) {
+        let turn = match self.machine.new_key() {
+            None => self.roll.turn(now),
+            Some(Ok(key)) => Some(self.roll.begin(now, key)),
+            Some(Err(error)) => return self.say(&format!("staya: {error}; the key before stays")),
+        };
+        let Some(turn) = turn else { return };
+        for vehicle in &mut self.vehicles {
+            self.roll.apply(&turn, vehicle.controller.wire_mut());
+        }
+        self.say(match turn {
+            Turn::Hear(_) => "staya: a new key: hears it, and speaks the old one",
+            Turn::Speak => "staya: speaks the new key, and hears the old one too",
+            Turn::Forget => "staya: the old key is over",
+        });
     }
 
     fn signing_of(&mut self, line: usize) -> Option<&mut Signing> {

@@ -1,5 +1,6 @@
 //! The key with which agents speak to each other, and the number of the start that goes with it.
 
+use super::roll::{KeyWatch, Roll, Turn};
 use staya_controller::auth::Key;
 use staya_controller::wire::{Format, Sealed};
 use staya_sim::file::{read_remedy, write_remedy};
@@ -8,6 +9,7 @@ use staya_sim::radio::HostWire;
 use std::fs::File;
 use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// Why agents cannot speak with a key.
 #[derive(Debug, thiserror::Error)]
@@ -55,7 +57,10 @@ pub enum SealError {
 /// A key and the number of this start, which no later one on this machine will have: [`Sealed`] says why.
 #[derive(Clone, Debug)]
 pub struct Seal {
+    path: PathBuf,
     key: Key,
+    /// The one before, from the file with `.old` behind its name.
+    old: Option<Key>,
     starts: u32,
     /// What its owner should know of the key's file.
     pub remark: Option<String>,
@@ -80,15 +85,21 @@ fn replace(path: &Path, text: &str) -> std::io::Result<()> {
 }
 
 impl Seal {
-    /// Reads the key in `path`, and the number of starts in the file of the same name with `.starts` behind it, where the next one is left.
+    /// Reads the key in `path`, the one before if there is a file of the same name with `.old` behind it, and the number of starts in that with `.starts`,
+    /// where the next one is left.
     ///
     /// # Errors
     /// [`SealError`], naming the file and the remedy.
     pub fn read(path: &Path) -> Result<Self, SealError> {
         let KeyFile { key, remark } = KeyFile::read(path)?;
-        let mut name = path.as_os_str().to_owned();
-        name.push(".starts");
-        let path = PathBuf::from(name);
+        let beside = |ending| {
+            let mut name = path.as_os_str().to_owned();
+            name.push(ending);
+            PathBuf::from(name)
+        };
+        let (file, before) = (path.to_path_buf(), beside(".old"));
+        let old = if before.exists() { Some(KeyFile::read(&before)?.key).filter(|old| *old != key) } else { None };
+        let path = beside(".starts");
         let starts = match std::fs::read_to_string(&path) {
             Ok(text) => text.strip_suffix('\n').and_then(|line| line.trim().parse::<u32>().ok()),
             Err(error) if error.kind() == ErrorKind::NotFound => return Err(SealError::Missing { path }),
@@ -101,14 +112,33 @@ impl Seal {
         if let Err(source) = replace(&path, &format!("{}\n", starts + 1)) {
             return Err(SealError::Write { path, source });
         }
-        Ok(Self { key, starts, remark })
+        Ok(Self { path: file, key, old, starts, remark })
     }
 
-    /// What an agent speaks in a format, so that only who has the key is heard.
+    /// What an agent speaks in a format, so that only who has the key is heard, or the one before.
     #[must_use]
     pub fn wire(&self, format: Format) -> HostWire {
-        let wire = HostWire::keyed(format, &self.key, self.starts, 0, key::timestamp());
-        wire.expect("the number of starts was looked at when it was read")
+        let wire = HostWire::keyed(format, self.old.as_ref().unwrap_or(&self.key), self.starts, 0, key::timestamp());
+        let mut wire = wire.expect("the number of starts was looked at when it was read");
+        if self.has_old() {
+            let mut roll = Roll::new(Duration::ZERO, false);
+            for turn in [roll.begin(Duration::ZERO, self.key.clone()), Turn::Speak] {
+                roll.apply(&turn, &mut wire);
+            }
+        }
+        wire
+    }
+
+    /// Whether there is a key before this one.
+    #[must_use]
+    pub const fn has_old(&self) -> bool {
+        self.old.is_some()
+    }
+
+    /// Watches the key's file from now on.
+    #[must_use]
+    pub fn watch(&self) -> KeyWatch {
+        KeyWatch::start(self.path.clone(), self.key.clone())
     }
 }
 

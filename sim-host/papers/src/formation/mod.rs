@@ -205,6 +205,7 @@ impl Plan {
             faults: Vec::new(),
             key: None,
             key_remark: None,
+            keeping: None,
             interventions: Vec::new(),
             misnumbered: Vec::new(),
             claims: Claims::ANY,

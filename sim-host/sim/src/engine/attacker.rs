@@ -7,7 +7,9 @@ use staya_controller::auth::Key;
 use staya_controller::grid::Cell;
 use staya_controller::robot::{Mode, RobotId};
 use staya_controller::time::Instant;
-use staya_controller::wire::{Beacon, GoalAssignment, Header, MAX_FRAME_LEN, Message, WaypointAssignment, Wire};
+use staya_controller::wire::{
+    Beacon, Frame, GoalAssignment, Header, KeyHeld, MAX_FRAME_LEN, Message, Ring, WaypointAssignment, Wire,
+};
 use std::collections::VecDeque;
 use std::f64::consts::TAU;
 
@@ -77,6 +79,32 @@ impl Attacker {
         &self.outbox
     }
 
+    /// The robot that it takes in this tick, if it does.
+    pub(super) fn takes(&self, tick: u32) -> Option<RobotId> {
+        let is_now = self.attack.kind == AttackKind::Insider && tick == self.attack.from_tick;
+        is_now.then_some(self.attack.claims)
+    }
+
+    /// Has from now on the keys that the robot had.
+    pub(super) fn take(&mut self, ring: Option<&Ring>) {
+        if let Some(ring) = ring {
+            self.wire = radio::ring_wire(ring.clone(), self.attack.claims, self.starts);
+        }
+    }
+
+    /// An insider does with keys what the robot would have done, if it still gets any.
+    fn keep_up(&mut self, inbox: &[u8]) {
+        let mut rest = inbox;
+        while let Some(frame) = self.wire.next_frame(&mut rest) {
+            if let Ok(Frame { header, message: Message::Key(_), .. }) = self.wire.decode(frame)
+                && let Some((generation, phase)) = self.wire.held()
+            {
+                let held = KeyHeld { to: header.sender, generation, phase };
+                self.tell(self.attack.claims, &Message::KeyHeld(held));
+            }
+        }
+    }
+
     /// Hears what arrived and decides what to send.
     pub(super) fn act(&mut self, tick: u32, inbox: &[u8]) {
         self.outbox.clear();
@@ -95,6 +123,7 @@ impl Attacker {
             }
             AttackKind::Forge | AttackKind::Unsigned if is_active => self.lure(),
             AttackKind::Insider if is_active => {
+                self.keep_up(inbox);
                 for lie in self.attack.lies.clone() {
                     self.lie(lie, tick);
                 }

@@ -18,6 +18,7 @@ mod hash;
 mod inspect;
 mod intervene;
 mod intruder;
+mod keeper;
 mod operator;
 mod plane;
 mod simulate;
@@ -42,6 +43,7 @@ use attacker::Attacker;
 use hash::Chain;
 use intervene::Tuned;
 use intruder::Intruder;
+use keeper::Keeper;
 use rayon::prelude::*;
 use staya_controller::agent::{
     Agent, AgentConfig, AnyInputs, Command, Event, Inputs, NEIGHBORS, OUTBOX, Safety, Setup, Wait,
@@ -51,7 +53,7 @@ use staya_controller::grid::Cell;
 use staya_controller::neighbor::Claims;
 use staya_controller::robot::{Mode, RobotId};
 use staya_controller::time::{Duration, Instant};
-use staya_controller::wire::Format;
+use staya_controller::wire::{Format, Ring};
 use std::collections::VecDeque;
 
 /// Robots that a thread takes at least at a time: less would cost more in handing out than in work.
@@ -166,10 +168,12 @@ pub struct Engine<W, G, A> {
     commands: Vec<Command<f32>>,
     statuses: Vec<Status>,
     chains: Vec<Chain>,
-    /// Of the robots, then of the attackers and of the intruders.
+    /// Of the robots, then of the attackers, of the intruders and of the keeper of keys.
     positions_m: Vec<[f64; 2]>,
     attackers: Vec<Attacker>,
     intruders: Vec<Intruder>,
+    keeper: Option<Keeper>,
+    master: Option<Key>,
     external: Option<External>,
     keeps_events: bool,
     arrivals: Arrivals,
@@ -197,9 +201,12 @@ where
         let intruders: Vec<_> = ground.heard().map(|(disc, _)| Intruder::new(disc, format)).collect();
         let ids = ids.chain((0..attackers.len()).map(Attacker::id));
         let ids = ids.chain(intruders.iter().map(|intruder| intruder.id));
+        let keeper = Keeper::new(scenario);
+        let ids = ids.chain(keeper.iter().map(|_| Keeper::id()));
         let mut positions_m = vec![[0.0; 2]; robots.len()];
         positions_m.extend(attackers.iter().map(Attacker::place_m));
         positions_m.extend(intruders.iter().map(|intruder| intruder.position_m));
+        positions_m.extend(keeper.iter().map(Keeper::place_m));
         let mut engine = Self {
             seed: scenario.seed,
             format,
@@ -221,6 +228,8 @@ where
             positions_m,
             attackers,
             intruders,
+            keeper,
+            master: scenario.keeping.as_ref().map(|keeping| keeping.master.clone()),
             external: None,
             keeps_events: false,
             arrivals: Arrivals::new(robots.len()),
@@ -246,7 +255,15 @@ where
     /// Computer number `index` with its own agent, started now.
     fn start(&self, index: usize, boot: u8) -> Computer<G, A> {
         let (guidance, safety) = (self.brains)(index);
-        let wire = radio::wire(self.format, self.key.as_ref(), boot);
+        let wire = match &self.master {
+            None => radio::wire(self.format, self.key.as_ref(), boot),
+            // Its lasting memory has the key that it spoke last.
+            Some(master) => {
+                let ring = self.computers.get(index).and_then(|computer| ring(computer.agent.as_ref()?.wire()));
+                let stored = ring.and_then(|ring| ring.seeds()[0].map(|(generation, seed)| (generation, seed.clone())));
+                radio::own_wire(master, self.config(index, boot).id, stored, boot)
+            }
+        };
         let mut agent = Agent::new(&self.config(index, boot), guidance, safety, wire);
         // A law that has no use for its task says so; the scenario was checked for that.
         let _ = agent.assign(&self.ground.task(index, self.tick));
@@ -292,12 +309,14 @@ where
         self.attack();
         self.intrude();
 
+        self.keep_keys();
         let (computers, attackers, intruders) = (&self.computers, &self.attackers, &self.intruders);
+        let keeper = self.keeper.as_ref().map_or(&[][..], Keeper::outbox);
         let outbox = |index: usize| match computers.get(index) {
             Some(computer) => computer.outbox.as_slice(),
             None => match attackers.get(index - computers.len()) {
                 Some(attacker) => attacker.outbox(),
-                None => intruders[index - computers.len() - attackers.len()].outbox(),
+                None => intruders.get(index - computers.len() - attackers.len()).map_or(keeper, Intruder::outbox),
             },
         };
         let carried = self.radio.carry(self.tick, &self.positions_m, outbox);
@@ -323,7 +342,21 @@ where
     fn attack(&mut self) {
         let robots = self.robots.len();
         for (at, attacker) in self.attackers.iter_mut().enumerate() {
+            if let Some(taken) = attacker.takes(self.tick)
+                && let Ok(index) = self.robots.binary_search_by_key(&taken, |robot| robot.id)
+            {
+                let agent = self.computers[index].agent.as_ref();
+                attacker.take(agent.and_then(|agent| ring(agent.wire())));
+            }
             attacker.act(self.tick, self.radio.inbox(robots + at));
+        }
+    }
+
+    /// Whoever has the master hears and speaks.
+    fn keep_keys(&mut self) {
+        let at = self.robots.len() + self.attackers.len() + self.intruders.len();
+        if let Some(keeper) = &mut self.keeper {
+            keeper.act(self.tick, self.radio.inbox(at));
         }
     }
 
@@ -495,6 +528,14 @@ where
             clearance: self.ground.clearance(),
             trace_hash: hash::sum(&self.chains),
         }
+    }
+}
+
+/// The keys in a format that has more than one.
+fn ring(wire: &HostWire) -> Option<&Ring> {
+    match wire {
+        HostWire::Sealed(sealed) => Some(sealed.ring()),
+        _ => None,
     }
 }
 

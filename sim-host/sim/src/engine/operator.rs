@@ -9,8 +9,9 @@ use crate::terrain::Terrain;
 use crate::world::plane::{Disc, Solid};
 use crate::world::{Misplaced, Refusal};
 use staya_controller::agent::{Commanded, Event, Parameter, Wish};
+use staya_controller::auth::Master;
 use staya_controller::robot::RobotId;
-use staya_controller::wire::{Header, Message, Wire as _};
+use staya_controller::wire::{Header, Message, OperatorWire, Wire as _};
 use staya_mavlink::frame::MAX_FRAME_LEN;
 
 /// What an operator can see of a robot: what the robot itself knows.
@@ -114,7 +115,11 @@ where
     let row = engine.first_row();
     let key = scenario.key.as_ref();
     let (wire, number) = radio::operator(scenario.radio.format, key, 1);
-    Box::new(OperatedEngine { engine, row, wire, number: key.map(|_| number), sequence: 0 })
+    let own = scenario.keeping.as_ref().and_then(|keeping| {
+        let (_, id) = radio::operator(scenario.radio.format, key, 0);
+        OperatorWire::at_start(Master::new(&keeping.master), id, 0)
+    });
+    Box::new(OperatedEngine { engine, row, wire, own, number: key.map(|_| number), sequence: 0 })
 }
 
 /// A swarm, and what its operator speaks.
@@ -123,6 +128,8 @@ struct OperatedEngine<W, G> {
     /// The swarm's line of the record after the last tick.
     row: TickRow,
     wire: HostWire,
+    /// For robots that have keys of their own.
+    own: Option<OperatorWire<1>>,
     /// As whom it speaks if the robots have a key; otherwise as whom it is told to.
     number: Option<RobotId>,
     /// Of the next frame.
@@ -164,6 +171,13 @@ where
 
     fn tell(&mut self, index: usize, header: Header, message: &Message) {
         let mut frame = heapless::Vec::<u8, MAX_FRAME_LEN>::new();
+        if let Some(own) = &mut self.own {
+            let robot = self.engine.config(index, 0).id;
+            if self.engine.is_up(index) && own.say(robot, message, &mut frame).is_ok() {
+                self.engine.computers[index].mail.extend_from_slice(&frame);
+            }
+            return;
+        }
         let header = Header { sender: self.number.unwrap_or(header.sender), sequence: self.sequence, ..header };
         self.sequence = self.sequence.wrapping_add(1);
         // What the controller's messages can be fits.

@@ -11,7 +11,7 @@ mod params;
 mod wire;
 
 pub use params::{Burst, RadioParams};
-pub use wire::{HostWire, PEERS, operator, wire};
+pub use wire::{HostWire, PEERS, operator, own_wire, ring_wire, wire};
 
 use fate::{Fates, Verdict};
 use medium::Medium;

@@ -1,8 +1,8 @@
 //! What robots speak: a wire format, with a key or without one.
 
-use staya_controller::auth::Key;
+use staya_controller::auth::{Key, Master, Seed};
 use staya_controller::robot::RobotId;
-use staya_controller::wire::{Format, Sealed};
+use staya_controller::wire::{Format, Ring, Sealed};
 use staya_mavlink::any::{self, AnyWire};
 use staya_mavlink::signed::Signed;
 use staya_mavlink::signing::MINUTE;
@@ -19,6 +19,21 @@ pub type HostWire = AnyWire<Box<Sealed<PEERS>>, Box<Signed<PEERS>>>;
 #[must_use]
 pub fn wire(format: Format, key: Option<&Key>, starts: u8) -> HostWire {
     on_link(format, key, starts, 0)
+}
+
+/// What robot `id` speaks that has a key of its own, with the swarm's key of a generation that it had stored, or with the first one.
+#[must_use]
+pub fn own_wire(master: &Key, id: RobotId, stored: Option<(u16, Seed)>, starts: u8) -> HostWire {
+    let master = Master::new(master);
+    let (generation, seed) = stored.unwrap_or_else(|| (0, master.seed(0)));
+    ring_wire(Ring::of_generation(generation, &seed).with_own(&master.own_key(id)), id, starts)
+}
+
+/// What who has these keys speaks.
+#[must_use]
+pub fn ring_wire(ring: Ring, id: RobotId, starts: u8) -> HostWire {
+    let sealed = Sealed::with_ring(ring, id, starts.into()).expect("a byte is less than 2^20");
+    HostWire::Sealed(Box::new(sealed))
 }
 
 /// What an operator beside the robots speaks, and his number: see [`any::operator`] for the `link`.

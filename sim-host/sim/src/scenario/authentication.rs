@@ -2,45 +2,54 @@
 
 use super::ranges::within;
 use super::source::Source;
-use super::{Attack, AttackKind, AttackTable, Lie, Robot, ScenarioError, ScenarioFile};
+use super::{
+    Attack, AttackKind, AttackTable, AuthenticationTable, Keeping, Lie, Robot, Roll, ScenarioError, ScenarioFile,
+};
 use crate::key::{self, KeyFile};
 use crate::radio::PEERS;
-use staya_controller::auth::Key;
+use staya_controller::auth::{Key, Master};
 use staya_controller::robot::RobotId;
+use staya_controller::wire::Format;
 use staya_mavlink::any::max_robot;
+use std::path::Path;
 
 /// Metres from the corner that a place may have: what a packet can say.
 const FARTHEST_M: f64 = 2_000_000.0;
 
-/// The robots' key and what is to be said of its file, if there is one.
-pub(super) fn key(
-    source: &Source<'_>,
-    file: &ScenarioFile,
-    robots: &[Robot],
-) -> Result<Option<(Key, Option<String>)>, ScenarioError> {
+/// The robots' keys, if they have any.
+pub(super) fn key(source: &Source<'_>, file: &ScenarioFile, robots: &[Robot]) -> Result<Option<Keys>, ScenarioError> {
     let Some(table) = &file.authentication else {
         return Ok(None);
     };
-    let found = match (&table.key_file, &table.key) {
-        (Some(name), None) => {
-            let read = KeyFile::read(&source.folder().join(name)).map_err(|error| {
-                let remedy = "file names are relative to the scenario file";
-                source.error("authentication.key_file", error.to_string(), remedy)
-            })?;
-            (read.key, read.remark)
-        }
-        (None, Some(text)) => {
-            let key = key::parse(text).map_err(|(_, problem)| {
-                let remedy = "give 64 hexadecimal digits, or \"passphrase: \" and words";
-                source.error("authentication.key", problem, remedy)
-            })?;
-            (key, None)
-        }
+    let from_file = |field: &str, name: &Path| {
+        let read = KeyFile::read(&source.folder().join(name)).map_err(|error| {
+            let remedy = "file names are relative to the scenario file";
+            source.error(&format!("authentication.{field}"), error.to_string(), remedy)
+        })?;
+        Ok((read.key, read.remark))
+    };
+    let from_text = |field: &str, text: &str| {
+        let key = key::parse(text).map_err(|(_, problem)| {
+            let remedy = "give 64 hexadecimal digits, or \"passphrase: \" and words";
+            source.error(&format!("authentication.{field}"), problem, remedy)
+        })?;
+        Ok((key, None))
+    };
+    let (found, has_master) = match (&table.key_file, &table.key, &table.master_file, &table.master) {
+        (Some(name), None, None, None) => (from_file("key_file", name)?, false),
+        (None, Some(text), None, None) => (from_text("key", text)?, false),
+        (None, None, Some(name), None) => (from_file("master_file", name)?, true),
+        (None, None, None, Some(text)) => (from_text("master", text)?, true),
         _ => {
-            let remedy = "give exactly one of key_file, key";
+            let remedy = "give exactly one of key_file, key, master_file, master";
             return Err(source.error("authentication", "it is not clear which key is meant", remedy));
         }
     };
+    let keeping = if has_master { Some(keeping(source, file, table, robots, &found.0)?) } else { None };
+    if keeping.is_none() && (!table.roll.is_empty() || table.overlap_s.is_some() || table.place_m.is_some()) {
+        let remedy = "give master_file or master, or leave roll, overlap_s and place_m out";
+        return Err(source.error("authentication", "who has one key cannot be sent another one", remedy));
+    }
     // And two operators.
     if robots.len() + 2 > PEERS {
         let problem = format!("{} robots are too many: nobody forgets whom he has heard", robots.len());
@@ -53,7 +62,58 @@ pub(super) fn key(
         let remedy = format!("give numbers up to {}", most.0);
         return Err(source.error("authentication", problem, remedy));
     }
-    Ok(Some(found))
+    let (key, remark) = found;
+    let key = if has_master { Master::new(&key).seed(0).key(0) } else { key };
+    Ok(Some(Keys { key, remark, keeping }))
+}
+
+/// What the file says of keys.
+pub(super) struct Keys {
+    /// The swarm's first one.
+    pub key: Key,
+    /// What is to be said of its file.
+    pub remark: Option<String>,
+    pub keeping: Option<Keeping>,
+}
+
+/// What the operator does who has the master.
+fn keeping(
+    source: &Source<'_>,
+    file: &ScenarioFile,
+    table: &AuthenticationTable,
+    robots: &[Robot],
+    master: &Key,
+) -> Result<Keeping, ScenarioError> {
+    if file.radio.format != Format::Postcard {
+        let remedy = "give radio.format = \"postcard\", or a key instead of a master";
+        return Err(source.error("authentication.master", "MAVLink's signatures have one key", remedy));
+    }
+    if file.plane.as_ref().is_some_and(|plane| !plane.order.is_empty()) {
+        let remedy = "give each robot its goal by [[intervention]], or a key instead of a master";
+        return Err(source.error("plane.order", "robots with keys of their own take no order to all", remedy));
+    }
+    let place_m = table.place_m.unwrap_or_default();
+    for value in place_m {
+        within(source, "authentication.place_m", value, -FARTHEST_M, FARTHEST_M, "metres")?;
+    }
+    let ticks = |field: &str, seconds: f64| {
+        within(source, &format!("authentication.{field}"), seconds, 0.0, 1e9, "seconds")?;
+        Ok(libm::ceil(seconds / file.tick_s) as u32)
+    };
+    let mut rolls = Vec::new();
+    for (index, roll) in table.roll.iter().enumerate() {
+        let revoke: Vec<_> = roll.revoke.iter().map(|&number| RobotId(number)).collect();
+        let stranger = revoke.iter().find(|id| robots.binary_search_by_key(*id, |robot| robot.id).is_err());
+        if let Some(stranger) = stranger {
+            let field = format!("authentication.roll[{index}].revoke");
+            let remedy = "give numbers of robots of this scenario";
+            return Err(source.error(&field, format!("there is no robot {stranger}"), remedy));
+        }
+        rolls.push(Roll { tick: ticks(&format!("roll[{index}].at_s"), roll.at_s)?, revoke });
+    }
+    rolls.sort_by_key(|roll| roll.tick);
+    let overlap_ticks = ticks("overlap_s", table.overlap_s.unwrap_or(5.0))?;
+    Ok(Keeping { master: master.clone(), place_m, overlap_ticks, rolls })
 }
 
 /// The attackers.

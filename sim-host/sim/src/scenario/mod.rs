@@ -28,8 +28,8 @@ pub use ranges::within;
 pub use robots::{Formation, Robot};
 pub use schema::{
     AttackKind, AttackTable, AuthenticationTable, Crop, EntropyTable, FaultTable, FormationEntry, Lie,
-    MisnumberedTable, NaturalTable, RobotEntry, RobotsTable, ScatteredEntry, ScenEntry, ScenarioFile, TerrainTable,
-    UniformTable,
+    MisnumberedTable, NaturalTable, RobotEntry, RobotsTable, RollTable, ScatteredEntry, ScenEntry, ScenarioFile,
+    TerrainTable, UniformTable,
 };
 pub use source::ScenarioError;
 pub use source::Source;
@@ -91,6 +91,28 @@ pub struct Attack {
     pub ghosts: u8,
 }
 
+/// Who has what all keys are made of, and what he does with it.
+#[derive(Clone, Debug)]
+pub struct Keeping {
+    /// His secret.
+    pub master: Key,
+    /// Where his radio stands, metres.
+    pub place_m: [f64; 2],
+    /// Ticks for which he waits at most, in each phase of a roll.
+    pub overlap_ticks: u32,
+    /// By rising tick.
+    pub rolls: Vec<Roll>,
+}
+
+/// The swarm gets another key.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Roll {
+    /// When it begins.
+    pub tick: u32,
+    /// Who does not get it, nor any later one.
+    pub revoke: Vec<RobotId>,
+}
+
 /// A checked scenario, ready to run.
 #[derive(Clone, Debug)]
 pub struct Scenario {
@@ -126,6 +148,8 @@ pub struct Scenario {
     pub misnumbered: Vec<(RobotId, RobotId)>,
     /// What all robots share; `None`: they believe everybody.
     pub key: Option<Key>,
+    /// The operator, if each robot has a key of its own.
+    pub keeping: Option<Keeping>,
     /// What the owner of the key's file should know, as a line for people.
     pub key_remark: Option<String>,
     /// What robots may say of themselves and be believed.
@@ -184,7 +208,9 @@ impl Scenario {
         let heard = plane.as_ref().map_or(0, PlaneSetup::heard);
         check::numbers(&source, &file, &robots, heard)?;
         check::memory(&source, &file, robots.len(), &terrain)?;
-        let (key, key_remark) = authentication::key(&source, &file, &robots)?.unzip();
+        let keys = authentication::key(&source, &file, &robots)?;
+        let (key, key_remark, keeping) =
+            keys.map_or((None, None, None), |keys| (Some(keys.key), keys.remark, keys.keeping));
         let attacks = authentication::attacks(&source, &file, &robots)?;
         let faults = check::faults(&source, &file, &robots)?;
         let interventions = intervention::interventions(&source, &file, &robots)?;
@@ -209,7 +235,8 @@ impl Scenario {
             interventions,
             misnumbered,
             key,
-            key_remark: key_remark.flatten(),
+            key_remark,
+            keeping,
             claims: Claims::ANY,
             attacks,
         };

@@ -280,6 +280,28 @@ pub struct AuthenticationTable {
     pub key_file: Option<PathBuf>,
     /// The same text, for demonstrations: a scenario is no place for a secret.
     pub key: Option<String>,
+    /// Instead of a key, such a file with the operator's secret: each robot then has a key of its own too, under which alone it takes orders and keys.
+    pub master_file: Option<PathBuf>,
+    /// The same text, for demonstrations.
+    pub master: Option<String>,
+    /// With a master: where the operator's radio stands, metres. Default: the south-west corner.
+    pub place_m: Option<[f64; 2]>,
+    /// With a master: how long the operator waits at most for all robots to answer, in each phase of a roll, seconds. Default: 5.
+    pub overlap_s: Option<f64>,
+    /// With a master: when the swarm gets another key.
+    #[serde(default)]
+    pub roll: Vec<RollTable>,
+}
+
+/// `[[authentication.roll]]`
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RollTable {
+    /// When the operator begins, seconds after the start.
+    pub at_s: f64,
+    /// Robots that do not get this key, nor any later one.
+    #[serde(default)]
+    pub revoke: Vec<u32>,
 }
 
 /// What an attacker does.

@@ -1,7 +1,9 @@
 //! What the loop needs of the machine that it runs on. Nothing here can end it: what fails is told, or lost as on a radio.
 
 use crate::companion::medium::Medium;
+use crate::companion::roll::KeyWatch;
 use crate::{Counts, Lines, Peer, Received, Tlog, TlogError};
+use staya_controller::auth::Key;
 use std::io::{self, Write as _};
 use std::time::{Duration, Instant};
 
@@ -46,6 +48,11 @@ pub trait Machine {
     /// When its last part cannot be written.
     fn close_log(&mut self) -> Result<(), TlogError>;
 
+    /// Another key in the file of the packets' key, or what is wrong with that file.
+    fn new_key(&mut self) -> Option<Result<Key, String>> {
+        None
+    }
+
     /// A line on standard output.
     ///
     /// # Errors
@@ -65,6 +72,7 @@ pub struct Host {
     pub lines: Lines,
     pub medium: Medium,
     pub tlog: Option<Tlog>,
+    pub key: Option<KeyWatch>,
 }
 
 impl Machine for Host {
@@ -113,6 +121,10 @@ impl Machine for Host {
 
     fn close_log(&mut self) -> Result<(), TlogError> {
         self.tlog.take().map_or(Ok(()), Tlog::finish)
+    }
+
+    fn new_key(&mut self) -> Option<Result<Key, String>> {
+        self.key.as_ref()?.news()
     }
 
     fn show(&mut self, line: &str) -> io::Result<()> {

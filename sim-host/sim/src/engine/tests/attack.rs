@@ -1,11 +1,13 @@
 //! Attackers without the key change nothing, in either wire format; without authentication they take the swarm away.
 
-use crate::engine::{Outcome, simulate};
+use crate::engine::{Moment, Outcome, simulate};
+use crate::record::RobotRow;
 use crate::scenario::{Overrides, Scenario};
 use std::ops::ControlFlow;
 use std::path::Path;
 
 const INSIDER: &str = include_str!("../../../../../scenarios/insider.toml");
+const REVOKED: &str = include_str!("../../../../../scenarios/revoked.toml");
 const HIJACK: &str = include_str!("../../../../../scenarios/hijack.toml");
 
 fn run(text: &str) -> Outcome {
@@ -102,5 +104,56 @@ fn no_honest_robot_meets_the_bounds() {
     for text in texts {
         let counted = run(text).packets.overclaims;
         assert_eq!(counted.sum(), 0, "{counted:?}");
+    }
+}
+
+/// What a robot that is taken can do until it is revoked, and after that.
+#[test]
+fn a_robot_that_is_taken_gives_no_orders_and_is_out_once_the_key_has_rolled() {
+    let revoked = run(REVOKED);
+    assert_eq!(revoked.arrived, 5, "all but the one that was taken");
+    let (before, after) = (10, 25);
+    // Two orders and a beacon a second, refused or lost, by five robots; then nothing of it is believed.
+    let refused = revoked.packets.forged;
+    assert!(refused > u64::from(revoked.ticks - after) * 5 * 2, "{:?}", revoked.packets);
+
+    let without_roll = without(REVOKED, "authentication.roll");
+    let kept = run(&without_roll);
+    assert!(kept.packets.forged < refused, "its beacons are believed for ever");
+    assert!(kept.packets.forged > u64::from(after - before) * 5, "its orders are not");
+
+    let goal_m = [50.5, 20.5];
+    assert_eq!(ends_at_m(REVOKED), goal_m);
+    // With one key for all, it leads the swarm away.
+    let one_key = without_roll.replace("master = \"", "key = \"");
+    let one_key = one_key.replace("place_m = [30, 0]\n", "").replace("overlap_s = 20\n", "");
+    assert_ne!(ends_at_m(&one_key), goal_m);
+}
+
+/// Where the top leader is in the end, metres.
+fn ends_at_m(text: &str) -> [f64; 2] {
+    let scenario = Scenario::parse(text, Path::new("revoked.toml"), &Overrides::default());
+    let mut end_m = [0.0; 2];
+    let watch = |_: &Moment<'_>, rows: &mut dyn Iterator<Item = RobotRow>| {
+        let [x, y, _] = rows.next().expect("the first robot").motion.position_m;
+        end_m = [x, y];
+        ControlFlow::Continue(())
+    };
+    simulate(&scenario.expect("sound"), watch).expect("free places");
+    end_m
+}
+
+/// Nobody is taken: rolling costs nothing, whatever the radio loses.
+#[test]
+fn a_roll_changes_no_ones_way() {
+    let quiet = without(&without(REVOKED, "attack"), "fault");
+    let quiet = quiet.replace("revoke = [6]", "");
+    for loss in ["loss = 0", "loss = 0.4"] {
+        let text = quiet.replace("loss = 0.2", loss);
+        let (rolled, still) = (run(&text), run(&without(&text, "authentication.roll")));
+        assert_eq!((rolled.arrived, still.arrived), (6, 6), "{loss}");
+        if loss == "loss = 0" {
+            assert_eq!((rolled.trace_hash, rolled.packets.forged), (still.trace_hash, 0));
+        }
     }
 }

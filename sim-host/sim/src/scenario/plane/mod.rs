@@ -142,6 +142,7 @@ impl Scenario {
             misnumbered: Vec::new(),
             key: None,
             key_remark: None,
+            keeping: None,
             claims: Claims::ANY,
             attacks: Vec::new(),
         };

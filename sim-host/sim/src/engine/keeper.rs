@@ -1,0 +1,105 @@
+//! The operator who keeps the keys: sends each robot the swarm's next key under the robot's own, and hears how far it is.
+
+use crate::radio;
+use crate::scenario::{Roll, Scenario};
+use staya_controller::auth::Master;
+use staya_controller::robot::RobotId;
+use staya_controller::wire::{KeyPhase, OperatorWire, Postcard, Wire as _};
+use std::collections::{HashMap, HashSet, VecDeque};
+
+/// Ticks between two tries to reach who has not answered.
+const AGAIN_TICKS: u32 = 5;
+/// Tries after which those who have answered are told again: one of them may have started anew.
+const ROUNDS: u32 = 20;
+
+/// The operator's radio.
+pub(super) struct Keeper {
+    wire: OperatorWire<{ radio::PEERS }>,
+    place_m: [f64; 2],
+    robots: Vec<RobotId>,
+    rolls: VecDeque<Roll>,
+    revoked: HashSet<RobotId>,
+    generation: u16,
+    phase: KeyPhase,
+    /// When this phase is over, whoever has answered.
+    until: u32,
+    overlap_ticks: u32,
+    held: HashMap<RobotId, (u16, KeyPhase)>,
+    outbox: Vec<u8>,
+}
+
+impl Keeper {
+    /// The operator of a scenario in which robots have keys of their own.
+    pub(super) fn new(scenario: &Scenario) -> Option<Self> {
+        let keeping = scenario.keeping.as_ref()?;
+        let (_, id) = radio::operator(scenario.radio.format, scenario.key.as_ref(), 1);
+        let wire = OperatorWire::at_start(Master::new(&keeping.master), id, 0)?;
+        Some(Self {
+            wire,
+            place_m: keeping.place_m,
+            robots: scenario.numbered().iter().map(|robot| robot.id).collect(),
+            rolls: keeping.rolls.iter().cloned().collect(),
+            revoked: HashSet::new(),
+            generation: 0,
+            phase: KeyPhase::Forget,
+            until: 0,
+            overlap_ticks: keeping.overlap_ticks,
+            held: HashMap::new(),
+            outbox: Vec::new(),
+        })
+    }
+
+    /// Its number on the air; never in a frame.
+    pub(super) const fn id() -> RobotId {
+        RobotId(u32::MAX - 1_000_000)
+    }
+
+    pub(super) const fn place_m(&self) -> [f64; 2] {
+        self.place_m
+    }
+
+    /// What it sends in this tick.
+    pub(super) fn outbox(&self) -> &[u8] {
+        &self.outbox
+    }
+
+    /// Hears what arrived and decides what to send.
+    pub(super) fn act(&mut self, tick: u32, inbox: &[u8]) {
+        self.outbox.clear();
+        let mut rest = inbox;
+        while let Some(frame) = Postcard.next_frame(&mut rest) {
+            if let Ok((robot, held)) = self.wire.hear(frame) {
+                self.held.insert(robot, (held.generation, held.phase));
+            }
+        }
+        while let Some(roll) = self.rolls.front().filter(|roll| roll.tick <= tick) {
+            self.revoked.extend(roll.revoke.iter().copied());
+            self.rolls.pop_front();
+            (self.generation, self.phase) = (self.generation + 1, KeyPhase::Hear);
+            self.until = tick + self.overlap_ticks;
+        }
+        if self.generation == 0 {
+            return;
+        }
+        let wanted = (self.generation, self.phase);
+        let is_done = |robot: &RobotId| self.held.get(robot).is_some_and(|held| *held >= wanted);
+        let all: Vec<_> = self.robots.iter().copied().filter(|robot| !self.revoked.contains(robot)).collect();
+        if (all.iter().all(is_done) || tick >= self.until) && self.phase != KeyPhase::Forget {
+            self.phase = if self.phase == KeyPhase::Hear { KeyPhase::Speak } else { KeyPhase::Forget };
+            self.until = tick + self.overlap_ticks;
+            return;
+        }
+        if !tick.is_multiple_of(AGAIN_TICKS) {
+            return;
+        }
+        let tells_all = tick.is_multiple_of(AGAIN_TICKS * ROUNDS);
+        let late = all.iter().filter(|robot| tells_all || !is_done(robot));
+        let mut frame = heapless::Vec::<u8, 64>::new();
+        for &robot in late {
+            frame.clear();
+            if self.wire.send_key(robot, self.generation, self.phase, &mut frame).is_ok() {
+                self.outbox.extend_from_slice(&frame);
+            }
+        }
+    }
+}
