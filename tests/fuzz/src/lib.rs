@@ -4,12 +4,14 @@
 //! looks for bytes that make it panic (`cargo xtask fuzz`); the tests here try random ones and those
 //! that once did.
 
+mod keys;
 mod mavlink;
 mod requests;
 mod sealed;
 mod templates;
 mod wire;
 
+pub use keys::keys;
 pub use mavlink::mavlink_decode;
 pub use requests::requests_model;
 pub use sealed::sealed;
@@ -41,6 +43,11 @@ mod tests {
     #[test]
     fn mavlink_decode_holds_for_random_bytes() {
         on_random_bytes(mavlink_decode, 20_000, 300);
+    }
+
+    #[test]
+    fn keys_holds_for_random_bytes() {
+        on_random_bytes(keys, 1_000, 400);
     }
 
     #[test]

@@ -10,8 +10,9 @@ staya_firmware::panics_do_not_link!();
 mod program {
     use core::hint::black_box;
     use heapless::Vec;
-    use staya_controller::auth::{KEY_LEN, Key};
-    use staya_controller::wire::{Beacon, Header, Message, Sealed, Wire};
+    use staya_controller::auth::{KEY_LEN, Key, Master};
+    use staya_controller::robot::RobotId;
+    use staya_controller::wire::{Beacon, Header, KeyPhase, Message, OperatorWire, Ring, Sealed, Wire};
     use staya_mavlink::frame::next_frame;
     use staya_mavlink::signed::Signed;
     use staya_mavlink::signing::Signing;
@@ -28,8 +29,27 @@ mod program {
                 }
                 black_box(sealed.guard_mut().import(black_box(1), black_box(1)));
             }
+            let master = Master::new(&key());
+            let id = RobotId(black_box(1));
+            let generation = black_box(1);
+            let ring = Ring::of_generation(generation, &master.seed(generation)).with_own(&master.own_key(id));
+            if let Some(mut sealed) = Sealed::<8>::with_ring(ring, id, starts) {
+                talk(&mut sealed);
+                black_box(sealed.ring().seeds()[0].is_some());
+                sealed.ring_mut().hear_key(black_box(2), &key());
+                sealed.ring_mut().speak(black_box(2));
+                sealed.ring_mut().forget_before(black_box(2));
+            }
+            if let Some(mut operator) = OperatorWire::<8>::at_start(master, id, starts) {
+                let mut out = Vec::<u8, 64>::new();
+                black_box(operator.send_key(id, generation, KeyPhase::Speak, black_box(&mut out)).is_ok());
+                black_box(operator.hear(black_box(&[1; 60])).is_ok());
+            }
             let mut signed = Signed::<8>::new(Signing::new(key(), black_box(0), black_box(1)));
             signed.signing_mut().advance_to(black_box(1));
+            signed.signing_mut().hear(key());
+            signed.signing_mut().speak();
+            signed.signing_mut().forget();
             talk(&mut signed);
             let mut signing = Signing::<8>::new(key(), 0, black_box(1)).with_unsigned(black_box(&[109]));
             let mut bytes = [0; 300];
