@@ -46,6 +46,7 @@ fn longest_result() -> StepResult {
             received: u16::MAX,
             rejected: u16::MAX,
             refused: Refused { unsigned: u16::MAX, forged: u16::MAX, replayed: u16::MAX, no_room: u16::MAX },
+            overclaims: Overclaims { numbers: u16::MAX, radii: u16::MAX, speeds: u16::MAX, jumps: u16::MAX },
             outbox: core::iter::repeat_n(0xFF, OUTBOX).collect(),
             events: core::iter::repeat_n(event, EVENTS).collect(),
             call_again: LAST,
@@ -104,6 +105,7 @@ fn longest_setup_fits() {
         &mut agent.ages.expire_after,
         &mut agent.retry.interval,
         &mut agent.stop_valid,
+        &mut agent.claims.settle,
     ] {
         *span = LATE;
     }
