@@ -291,6 +291,7 @@ proptest! {
             received: counts.0,
             rejected: counts.1,
             refused: Refused { forged: counts.0, replayed: counts.1, ..Refused::default() },
+            overclaims: Overclaims { numbers: counts.0, jumps: counts.1, ..Overclaims::default() },
             outbox: outbox.iter().copied().collect(),
             events: numbers.iter().map(event).collect(),
             call_again: Instant::from_micros(counts.2),

@@ -7,7 +7,9 @@ const TICK: Duration = Duration::from_millis(100);
 
 fn brains(count: usize) -> Vec<Controller<Postcard>> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../companions/crossing.toml");
-    let scenario = Scenario::load(&path, &Overrides::default()).unwrap();
+    let mut scenario = Scenario::load(&path, &Overrides::default()).unwrap();
+    // As a companion's configuration does by its `rules.error_m`.
+    scenario.claims.max_radius_m += 10.0;
     let plane = scenario.plane.as_ref().unwrap();
     let ground = Arc::new(PlaneGround::new(&scenario, plane));
     let controller = |index| Controller::new(&scenario, &ground, index, 1, [0.5, 10.0], Postcard);
