@@ -8,8 +8,8 @@
 //! damage. Everything else between frames comes out of [`Wire::next_frame`] as one piece, which [`Wire::decode`] refuses, so that it counts.
 
 use crate::dialect::{
-    STAYA_ACK_DATA, STAYA_BEACON_DATA, STAYA_COMPACT_DATA, STAYA_GOAL_DATA, STAYA_KEY_DATA, STAYA_KEY_HELD_DATA,
-    STAYA_PLACE_DATA, STAYA_REQUEST_DATA, STAYA_TEMPLATE_DATA,
+    STAYA_ACK_DATA, STAYA_BEACON_DATA, STAYA_COMPACT_DATA, STAYA_GOAL_DATA, STAYA_PLACE_DATA, STAYA_REQUEST_DATA,
+    STAYA_TEMPLATE_DATA,
 };
 use crate::frame::{self, Full, RawFrame, Scan, Sender, scan};
 use heapless::Vec;
@@ -20,8 +20,8 @@ use staya_controller::robot::{Mode, RobotId};
 use staya_controller::template::TemplateEntry;
 use staya_controller::time::Instant;
 use staya_controller::wire::{
-    Ack, Beacon, CompactBeacon, DecodeError, EncodeError, Frame, GoalAssignment, Header, KeyAssignment, KeyHeld,
-    KeyPhase, Message, Request, RequestKind, TEMPLATE_PART, TemplateAssignment, WaypointAssignment, Wire,
+    Ack, Beacon, CompactBeacon, DecodeError, EncodeError, Frame, GoalAssignment, Header, Message, Request, RequestKind,
+    TEMPLATE_PART, TemplateAssignment, WaypointAssignment, Wire,
 };
 
 /// The component that robots speak as: an onboard computer (`MAV_COMP_ID_ONBOARD_COMPUTER`).
@@ -199,18 +199,8 @@ pub fn encode<const N: usize>(header: Header, message: &Message, out: &mut Vec<u
             };
             frame::encode(sender, &data, out)
         }
-        Message::Key(key) => {
-            let KeyAssignment { to, generation, phase, wrapped } = *key;
-            let target_system = system(to)?;
-            let data = STAYA_KEY_DATA { sequence, generation, boot, target_system, phase: phase as u8, wrapped };
-            frame::encode(sender, &data, out)
-        }
-        Message::KeyHeld(held) => {
-            let KeyHeld { to, generation, phase } = *held;
-            let target_system = system(to)?;
-            let data = STAYA_KEY_HELD_DATA { sequence, generation, boot, target_system, phase: phase as u8 };
-            frame::encode(sender, &data, out)
-        }
+        // MAVLink's signatures have one key: see `Sealed` for robots with keys of their own.
+        Message::Key(_) | Message::KeyHeld(_) => return Err(EncodeError::Full),
     };
     written.map_err(|Full| EncodeError::Full)
 }
@@ -253,18 +243,6 @@ pub fn decode(bytes: &[u8]) -> Result<Frame, DecodeError> {
                 velocity_mmps: [data.vx_mmps, data.vy_mmps, data.vz_mmps],
             };
             (data.boot, data.sequence, Message::Waypoint(place))
-        }
-        STAYA_KEY_DATA::ID => {
-            let data: STAYA_KEY_DATA = body(&raw)?;
-            let (to, generation, wrapped) = (robot(data.target_system), data.generation, data.wrapped);
-            let phase = phase(data.phase).ok_or(DecodeError::Body)?;
-            (data.boot, data.sequence, Message::Key(KeyAssignment { to, generation, phase, wrapped }))
-        }
-        STAYA_KEY_HELD_DATA::ID => {
-            let data: STAYA_KEY_HELD_DATA = body(&raw)?;
-            let (to, generation) = (robot(data.target_system), data.generation);
-            let phase = phase(data.phase).ok_or(DecodeError::Body)?;
-            (data.boot, data.sequence, Message::KeyHeld(KeyHeld { to, generation, phase }))
         }
         _ => return Err(DecodeError::Foreign),
     };
@@ -416,10 +394,6 @@ fn dir(heading: u8) -> Option<Dir> {
         1..=8 => Some(Dir::from_index(heading - 1)),
         _ => None,
     }
-}
-
-fn phase(number: u8) -> Option<KeyPhase> {
-    [KeyPhase::Hear, KeyPhase::Speak, KeyPhase::Forget].get(usize::from(number)).copied()
 }
 
 fn mode(number: u8) -> Option<Mode> {
