@@ -348,6 +348,15 @@ impl SafetySetup {
         }
     }
 
+    /// This build has all that the layer needs: see [`AnyHalfPlanes::is_built`].
+    #[must_use]
+    pub const fn is_built(&self) -> bool {
+        match self {
+            Self::Orca { source, .. } => source.is_built(),
+            Self::None | Self::Fly { .. } | Self::PushOut { .. } => true,
+        }
+    }
+
     /// The safety layer, just started.
     #[must_use]
     pub fn safety<S: Scalar, const K: usize>(&self) -> AnySafety<S, K> {

@@ -33,6 +33,8 @@ pub enum Refusal {
     Nobody,
     /// It does not speak this format.
     Format(Format),
+    /// It has no table of this size.
+    Table,
     /// The guidance law has no use for the task.
     Task,
     /// A search of so many cells.
@@ -59,6 +61,7 @@ impl fmt::Display for Refusal {
             Self::Format(format) => {
                 write!(f, "this firmware was built without {}", format.name())
             }
+            Self::Table => f.write_str("this firmware was built without the voxel table of 64 KiB"),
             Self::Task => fmt::Display::fmt(&WrongTask, f),
             Self::Search { needs, room } => {
                 write!(f, "a search of {needs} cells, and room for {room}")
@@ -232,6 +235,9 @@ impl<
         let (needs, room) = (setup.cells(), CELLS);
         if needs > room {
             return Err(Refusal::Search { needs, room });
+        }
+        if !setup.safety.is_built() {
+            return Err(Refusal::Table);
         }
         self.outputs = Outputs::default();
         let wire = W::from_format(setup.format).ok_or(Refusal::Format(setup.format))?;

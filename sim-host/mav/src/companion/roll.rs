@@ -4,7 +4,7 @@ use staya_controller::auth::Key;
 use staya_sim::key::KeyFile;
 use staya_sim::radio::HostWire;
 use std::path::PathBuf;
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::sync::mpsc::{Receiver, channel};
 use std::thread;
 use std::time::Duration;
 
@@ -108,10 +108,7 @@ impl KeyWatch {
 
     /// What it found since it was asked last.
     pub fn news(&self) -> Option<Result<Key, String>> {
-        match self.0.try_recv() {
-            Ok(news) => Some(news),
-            Err(TryRecvError::Empty | TryRecvError::Disconnected) => None,
-        }
+        self.0.try_recv().ok()
     }
 }
 

@@ -145,7 +145,7 @@ impl Attacker {
                 let [vx, vy] = way.map(|way| libm::round(way / length * 32_000.0) as i16);
                 self.say(claims, Beacon { velocity_mmps: [vx, vy, 0], ..honest });
             }
-            Lie::Jump => self.say(claims, if tick % 2 == 0 { honest } else { self.beacon(lure_m, tick) }),
+            Lie::Jump => self.say(claims, if tick.is_multiple_of(2) { honest } else { self.beacon(lure_m, tick) }),
             Lie::Ghosts => {
                 for number in 0..ghosts {
                     let angle = TAU * f64::from(number) / f64::from(ghosts);
