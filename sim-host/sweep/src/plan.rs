@@ -56,7 +56,7 @@ pub struct Run<'a> {
 }
 
 impl Plan {
-    /// Reads a plan, and checks it with its scenario: see [`Plan::check`].
+    /// Reads a plan, and checks it with its scenario (`plan/check.rs`).
     ///
     /// # Errors
     /// The file, line and field that are wrong, and what to do.
