@@ -77,7 +77,6 @@ def test_rovers_that_stand_keep_their_heading(fly, free_port, model):
 FORMED_S, WANTED_ERROR_M, WANTED_SHARE = 10.0, 1.0, 1.2
 
 
-@pytest.mark.xfail(reason="the law for formations steers from cell to cell: docs/limits.md", strict=False)
 def test_six_rovers_hold_their_formation(fly, free_port):
     """Two rows of three with 8 m between, 160 m to the north-east; the origin is that of the example."""
     places = [(-8.0 * (i % 3), -8.0 * (i // 3)) for i in range(6)]
