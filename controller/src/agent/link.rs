@@ -236,8 +236,9 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
         out: &mut Outputs<S>,
     ) -> bool {
         let claims = listener.claims;
-        // A second one of a number comes from where the first one is.
-        let Some(known) = self.known(id).or_else(|| self.known(header.sender)) else {
+        // A second one of a number is kept clear of from the first, as a double is, and so is the first one; where either goes from
+        // there is looked at.
+        let Some(known) = self.known(id) else {
             return true;
         };
         if claims.can_go(known.position, place, self.time_since(known, header, listener)) {

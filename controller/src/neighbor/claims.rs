@@ -19,7 +19,7 @@ const SUSPECTS: usize = 4;
 /// | --- | --- |
 /// | a radius above [`max_radius_m`](Self::max_radius_m) | it is taken for that |
 /// | a velocity above [`max_speed_mps`](Self::max_speed_mps) | it is shortened to that |
-/// | a place that it cannot have come to since it was heard | the beacon is refused, and the robot is as good as silent: room is left for where it can be. Once it has said places for [`settle`](Self::settle) that it can have gone between, it is believed again |
+/// | a place that it cannot have come to since it was heard | where robots keep clear of each other by velocities it may be a second robot of that number, and both places are kept clear of from then on; a jump from either, and any on the grid: the beacon is refused, and the robot is as good as silent: room is left for where it can be. Once it has said places for [`settle`](Self::settle) that it can have gone between, it is believed again |
 /// | a number above [`last`](Self::last) | the beacon is refused |
 ///
 /// A bound that is smaller than the truth lets a robot run into a larger or faster one: in doubt, leave it wide.

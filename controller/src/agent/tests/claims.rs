@@ -104,22 +104,25 @@ fn doubles_crowd_nobody_out() {
     assert_eq!(known, [11, 12, 13, 14, 15, 16, 17, 18]);
 }
 
+/// The first jump may be a second robot of that number: it is kept clear of at once, and so is the place of before. What jumps
+/// from there is refused.
 #[test]
-fn who_jumps_is_as_good_as_silent_until_it_has_settled() {
+fn who_jumps_again_is_as_good_as_silent_until_it_has_settled() {
     let mut robot = listener(CLAIMS);
     let _ = robot.step(step_number(0), &frame(3, 0, &beacon(9000, |_| ())));
+    let out = robot.step(step_number(1), &frame(3, 1, &beacon(-7000, |_| ())));
+    assert_eq!((out.overclaims.jumps, out.received, robot.agent.neighbors().len()), (0, 1, 2));
+    let double = RobotId(3).double().0;
     let mut told = Vec::new();
-    for n in 1..=5 {
-        let out = robot.step(step_number(n), &frame(3, n as u16, &beacon(-7000 + 100 * n, |_| ())));
+    for n in 2..=6 {
+        let out = robot.step(step_number(n), &frame(3, n as u16, &beacon(-2000 + 100 * n, |_| ())));
         told.extend(claims(&out));
-        let (jumps, received) = if n <= 4 { (1, 0) } else { (1, 1) };
-        assert_eq!((out.overclaims.jumps, out.received), (jumps, received), "step {n}");
-        assert_eq!(where_is(&robot, 3), Some(9000), "step {n}");
+        let (received, place) = if n <= 5 { (0, -7000) } else { (1, -1400) };
+        assert_eq!((out.overclaims.jumps, out.received), (1, received), "step {n}");
+        assert_eq!((where_is(&robot, 3), where_is(&robot, double)), (Some(9000), Some(place)), "step {n}");
     }
     assert_eq!(told, [(3, Claim::Jump)]);
-    // The place of before is kept clear of too, as with two robots of one number.
-    assert_eq!(robot.agent.neighbors().len(), 2);
-    let out = robot.step(step_number(6), &frame(3, 6, &beacon(-6400, |_| ())));
+    let out = robot.step(step_number(7), &frame(3, 7, &beacon(-1300, |_| ())));
     assert_eq!((out.overclaims.jumps, out.received), (0, 1), "believed");
 }
 
@@ -127,11 +130,12 @@ fn who_jumps_is_as_good_as_silent_until_it_has_settled() {
 fn who_jumps_all_the_time_is_never_believed() {
     let mut robot = listener(CLAIMS);
     let _ = robot.step(step_number(0), &frame(3, 0, &beacon(9000, |_| ())));
-    for n in 1..20 {
-        let x_mm = if n % 3 == 0 { -4000 } else { 4000 - 3000 * (n % 2) };
+    let _ = robot.step(step_number(1), &frame(3, 1, &beacon(-9000, |_| ())));
+    for n in 2..20 {
+        let x_mm = 4000 - 3000 * (n % 2);
         let out = robot.step(step_number(n), &frame(3, n as u16, &beacon(x_mm, |_| ())));
-        assert_eq!((out.overclaims.jumps, robot.agent.neighbors().len()), (1, 1), "step {n}");
-        assert_eq!(where_is(&robot, 3), Some(9000));
+        assert_eq!((out.overclaims.jumps, robot.agent.neighbors().len()), (1, 2), "step {n}");
+        assert_eq!((where_is(&robot, 3), where_is(&robot, RobotId(3).double().0)), (Some(9000), Some(-9000)));
     }
 }
 

@@ -121,7 +121,8 @@ fn early_end_keeps_a_beginning_of_every_point() {
     let full = all(&plan);
     for (some, full) in some.iter().zip(&full) {
         assert_eq!(some[..], full[..some.len()]);
-        assert_eq!(some.len(), 64);
+        // What was under way when it was told to stop is finished.
+        assert!((64..150).contains(&some.len()), "{}", some.len());
     }
     let none = plan.carry_out(|_| false).unwrap();
     assert!(plan.report(&none).points.is_empty());

@@ -171,6 +171,9 @@ pub const FIGURES: &str = r#"{
     "packets": {
       "type": "object",
       "description": "of this tick, by their fate",
+      "properties": {
+        "overclaims": { "type": "object", "additionalProperties": { "type": "integer", "minimum": 0 } }
+      },
       "additionalProperties": { "type": "integer", "minimum": 0 }
     },
     "formation_error": { "type": ["number", "null"], "description": "mean distance from the places in the formation, cells" },
