@@ -145,11 +145,11 @@ pub enum AnyHalfPlanes {
 }
 
 impl AnyHalfPlanes {
-    /// Its table is in this build: that of 64 KiB needs the feature `large-tables`, and without it the formula stands in,
+    /// Its table is in this build: those of more than 2 KiB need the feature `large-tables`, and without it the formula stands in,
     /// as safe. Whoever is told by others what to be refuses what is not here.
     #[must_use]
     pub const fn is_built(self) -> bool {
-        cfg!(feature = "large-tables") || !matches!(self, Self::Template64k)
+        cfg!(feature = "large-tables") || matches!(self, Self::Analytic | Self::Template2k)
     }
 }
 
@@ -166,13 +166,15 @@ impl<S: Scalar> HalfSpaces<S> for AnyHalfPlanes {
         match self {
             Self::Analytic => orca::half_plane(own, disc, params),
             Self::Template2k => orca::VoxelTable2k.half_space(own, disc, params),
+            #[cfg(feature = "large-tables")]
             Self::Template8k => orca::VoxelTable8k.half_space(own, disc, params),
+            #[cfg(feature = "large-tables")]
             Self::Template16k => orca::VoxelTable16k.half_space(own, disc, params),
             #[cfg(feature = "large-tables")]
             Self::Template64k => orca::VoxelTable64k.half_space(own, disc, params),
             // What is configured from outside was refused before: see `is_built`.
             #[cfg(not(feature = "large-tables"))]
-            Self::Template64k => orca::half_plane(own, disc, params),
+            Self::Template8k | Self::Template16k | Self::Template64k => orca::half_plane(own, disc, params),
         }
     }
 }

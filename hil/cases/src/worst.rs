@@ -8,10 +8,12 @@ use crate::{Probe, Summary};
 use heapless::Vec;
 use serde::Serialize;
 use staya_controller::agent::{
-    Agent, AgentConfig, BoidsGuidance, CELLS, CellState, FlySafety, FormationGuidance, GoalFlockGuidance,
-    GridWorkspace, Guidance, InPlane, Inputs, KinematicState, LatticeGuidance, OnGrid, OrcaSafety, PushOutSafety,
-    RouteGuidance, Safety, TEMPLATE, ToCells, Unguarded, VISITS, Waypoint, WaypointGuidance,
+    Agent, AgentConfig, BoidsGuidance, CELLS, CellState, FormationGuidance, GoalFlockGuidance, GridWorkspace, Guidance,
+    InPlane, Inputs, KinematicState, LatticeGuidance, OnGrid, OrcaSafety, RouteGuidance, Safety, TEMPLATE, ToCells,
+    Unguarded, VISITS, Waypoint, WaypointGuidance,
 };
+#[cfg(feature = "large-tables")]
+use staya_controller::agent::{FlySafety, PushOutSafety};
 use staya_controller::flock::boids::BoidsParams;
 use staya_controller::flock::goal::GoalParams;
 use staya_controller::flock::lattice::LatticeParams;
@@ -24,6 +26,7 @@ use staya_controller::obstacle::Obstacle;
 use staya_controller::orca::VoxelTable64k;
 use staya_controller::orca::{Analytic, VoxelTable2k};
 use staya_controller::orca::{AvoidParams, HalfSpaces};
+#[cfg(feature = "large-tables")]
 use staya_controller::push_out::PushOutParams;
 use staya_controller::rand::Rng;
 use staya_controller::robot::{Mode, RobotId};
@@ -62,8 +65,10 @@ pub enum WorstCase {
     #[cfg(feature = "large-tables")]
     OrcaTemplate64k,
     /// ORCA in space in such a crowd.
+    #[cfg(feature = "large-tables")]
     Fly,
     /// Push-out in such a crowd.
+    #[cfg(feature = "large-tables")]
     PushOut,
     /// The alpha flock with everybody in range.
     Lattice,
@@ -83,7 +88,9 @@ impl WorstCase {
         Self::OrcaTemplate2k,
         #[cfg(feature = "large-tables")]
         Self::OrcaTemplate64k,
+        #[cfg(feature = "large-tables")]
         Self::Fly,
+        #[cfg(feature = "large-tables")]
         Self::PushOut,
         Self::Lattice,
         Self::GoalFlock,
@@ -101,7 +108,9 @@ impl WorstCase {
             Self::OrcaTemplate2k => "worst_orca_template_2k",
             #[cfg(feature = "large-tables")]
             Self::OrcaTemplate64k => "worst_orca_template_64k",
+            #[cfg(feature = "large-tables")]
             Self::Fly => "worst_fly",
+            #[cfg(feature = "large-tables")]
             Self::PushOut => "worst_push_out",
             Self::Lattice => "worst_lattice",
             Self::GoalFlock => "worst_goal_flock",
@@ -119,10 +128,12 @@ impl WorstCase {
             Self::OrcaTemplate2k => orca::<S, _, P, N, K>(VoxelTable2k, probe),
             #[cfg(feature = "large-tables")]
             Self::OrcaTemplate64k => orca::<S, _, P, N, K>(VoxelTable64k, probe),
+            #[cfg(feature = "large-tables")]
             Self::Fly => {
                 let safety = FlySafety::<S, K>::in_space(AvoidParams::default(), inflation());
                 in_crowd::<S, _, _, P, N>(waypoint(), safety, probe)
             }
+            #[cfg(feature = "large-tables")]
             Self::PushOut => {
                 let safety = PushOutSafety::new(PushOutParams::new(S::from_milli(400)));
                 in_crowd::<S, _, _, P, N>(waypoint(), safety, probe)

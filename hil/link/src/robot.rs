@@ -61,7 +61,7 @@ impl fmt::Display for Refusal {
             Self::Format(format) => {
                 write!(f, "this firmware was built without {}", format.name())
             }
-            Self::Table => f.write_str("this firmware was built without the voxel table of 64 KiB"),
+            Self::Table => f.write_str("this firmware was built without voxel tables of more than 2 KiB"),
             Self::Task => fmt::Display::fmt(&WrongTask, f),
             Self::Search { needs, room } => {
                 write!(f, "a search of {needs} cells, and room for {room}")
