@@ -82,7 +82,14 @@ impl<S: Scalar> Drive<S> {
         let half = self.half_mps;
         let near = left_m * self.rate;
         // v^2 = (V/2)^2 + 2 (V/2T) (d - VT/2), as a slope that ends where the proportional law begins.
-        let before_goal = if near <= half { near } else { ((near + near - half) * half).sqrt() };
+        // What is no distance is no way to go.
+        let before_goal = if near > half {
+            ((near + near - half) * half).sqrt()
+        } else if near > S::ZERO {
+            near
+        } else {
+            S::ZERO
+        };
         speed.min(before_goal)
     }
 

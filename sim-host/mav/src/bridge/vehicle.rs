@@ -7,7 +7,7 @@
 use super::files;
 use super::mission::{Item, Mission};
 use super::model::{FlightMode, Sample, VehicleModel};
-use super::params::{Meaning, NotSet, Parameters};
+use super::params::{Meaning, Parameters};
 use super::streams::Streams;
 use crate::geo::FAR_M;
 use staya_controller::agent::{Event, Parameter, Waypoint, Wish};
@@ -19,6 +19,8 @@ use staya_mavlink::dialect::*;
 use staya_mavlink::frame::Sender;
 use staya_mavlink::mavlink_core::Message as _;
 use std::sync::Arc;
+
+mod tuning;
 
 /// Texts of one kind come at most once in this time, microseconds.
 const TEXT_EVERY_US: u64 = 2_000_000;
@@ -360,44 +362,6 @@ impl Vehicle {
         // 0: all components. There is one here.
         let is_here = component.is_none_or(|to| to == 0 || to == MAV_COMP_ID_AUTOPILOT1);
         is_mine && is_addressed && is_here
-    }
-
-    fn unknown_parameter(&mut self, out: &mut Out) {
-        self.text(out, Kind::Parameter, MAV_SEVERITY_WARNING, "no such parameter");
-    }
-
-    fn set_parameter(&mut self, wanted: &PARAM_SET_DATA, out: &mut Out) {
-        let Some(index) = self.parameters.find(&wanted.param_id) else {
-            return self.unknown_parameter(out);
-        };
-        let set = self.parameters.set(index, wanted.param_value);
-        // What it is now, whether it was changed or not.
-        let told = self.parameters.message(index);
-        out.messages.extend(told.map(MavMessage::PARAM_VALUE));
-        match set {
-            Ok(Meaning::Controller(parameter)) => {
-                out.actions.push(Action::Set(parameter, wanted.param_value));
-            }
-            Ok(Meaning::SetpointTimeout) => {}
-            Err(NotSet::OutOf([least, greatest])) => {
-                let name = String::from_utf8_lossy(&*wanted.param_id).into_owned();
-                let name = name.trim_end_matches('\0');
-                let text = format!("{name}: {least} to {greatest}");
-                self.text(out, Kind::News, MAV_SEVERITY_WARNING, &text);
-            }
-            Err(NotSet::Unknown) => self.unknown_parameter(out),
-        }
-    }
-
-    /// The controller did not take a value, since it does not go with the others (or it is down): says what holds.
-    pub(super) fn set_back(&mut self, parameter: Parameter, value: Option<f32>, out: &mut Out) {
-        let meaning = Meaning::Controller(parameter);
-        let Some(index) = value.and_then(|value| self.parameters.set_back(meaning, value)) else {
-            return;
-        };
-        out.messages.extend(self.parameters.message(index).map(MavMessage::PARAM_VALUE));
-        let text = format!("{} does not go with the other parameters", parameter.name());
-        self.text(out, Kind::News, MAV_SEVERITY_WARNING, &text);
     }
 
     /// Microseconds since its computer started, simulated.

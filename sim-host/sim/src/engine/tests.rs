@@ -1,4 +1,5 @@
 use super::*;
+use crate::record::RobotRow;
 use crate::scenario::Overrides;
 use proptest::prelude::*;
 use staya_controller::agent::{

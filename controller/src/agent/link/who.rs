@@ -1,0 +1,124 @@
+//! As whom a sender is known, and what of it is believed.
+
+use super::super::double::{is_ahead, is_within, place};
+use super::super::io::{Event, Outputs};
+use super::{Link, Listener, report};
+use crate::geom::Position;
+use crate::neighbor::{Claim, Claims, Doubt, Neighbor};
+use crate::robot::RobotId;
+use crate::scalar::Scalar;
+use crate::time::Duration;
+use crate::wire::{Frame, Header, Wire};
+
+impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
+    /// Whose frame it is: as whom its sender is known here, which is the number that it says unless two have it. `None` for an
+    /// own one that comes back, and for a beacon of a number or a place that is not believed.
+    pub(super) fn known_as(
+        &mut self,
+        frame: &Frame,
+        listener: &Listener<'_, S>,
+        out: &mut Outputs<S>,
+    ) -> Option<RobotId> {
+        let (header, own, place) = (frame.header, self.header, place(&frame.message));
+        if header.sender == own.sender {
+            let is_other = self.said.is_other(own, header, &frame.message);
+            if is_other && is_ahead(own, header) {
+                (self.header.boot, self.header.sequence) = (header.boot, header.sequence.wrapping_add(1));
+                self.requests.set_boot(header.boot);
+            }
+            return is_other.then_some(own.sender.double());
+        }
+        let Some(place) = place else {
+            return Some(header.sender);
+        };
+        if header.sender > listener.claims.last {
+            if out.overclaims.numbers == 0 {
+                report(out, Event::Overclaimed { id: header.sender, claim: Claim::Number });
+            }
+            out.overclaims.count(Claim::Number);
+            return None;
+        }
+        let is_double = listener.fastest_mps.is_some_and(|fastest| self.is_double(header, place, listener, fastest));
+        let id = if is_double { header.sender.double() } else { header.sender };
+        self.is_believed(id, header, place, listener, out).then_some(id)
+    }
+
+    /// What is known of a robot, the lost left out.
+    fn known(&self, id: RobotId) -> Option<&Neighbor<S>> {
+        let all = self.table.as_slice();
+        all.binary_search_by_key(&id, |known| known.id).ok().and_then(|at| all.get(at))
+    }
+
+    /// How much time a robot has had since it was heard as `known`: by the clock, or by its sequence numbers if its news were held back.
+    fn time_since(&self, known: &Neighbor<S>, header: Header, listener: &Listener<'_, S>) -> Duration {
+        let window = self.windows.iter().find(|(id, _)| *id == known.id);
+        let frames = window.map_or(0, |(_, window)| window.distance(header));
+        let counted = listener.period.saturating_mul(frames.into());
+        counted.max(known.age(listener.heard_at).unwrap_or(Duration::ZERO))
+    }
+
+    /// Whether a beacon is the second one's of two other robots with one number.
+    fn is_double(&self, header: Header, place: Position, listener: &Listener<'_, S>, fastest_mps: S) -> bool {
+        let at = listener.heard_at;
+        // Doubles are behind all others.
+        let has_doubles = self.table.as_slice().last().is_some_and(|last| last.id.doubled().is_some());
+        let double = if has_doubles { self.known(header.sender.double()) } else { None };
+        match (self.known(header.sender), double) {
+            // Then it is the only one that is heard.
+            (None, _) => false,
+            (Some(known), None) => !is_within(place, known, self.time_since(known, header, listener), fastest_mps),
+            (Some(known), Some(double)) => {
+                let longest = self.table.ages().stale_after;
+                let distance = |known: &Neighbor<S>| known.offset_at(place, at, longest).length_key();
+                distance(double) < distance(known)
+            }
+        }
+    }
+
+    /// Whether the robot that is known as `id` can be at `place`, or has been there for long enough.
+    fn is_believed(
+        &mut self,
+        id: RobotId,
+        header: Header,
+        place: Position,
+        listener: &Listener<'_, S>,
+        out: &mut Outputs<S>,
+    ) -> bool {
+        let claims = listener.claims;
+        // A second one of a number is kept clear of from the first, as a double is, and so is the first one; where either goes from
+        // there is looked at.
+        let Some(known) = self.known(id) else {
+            return true;
+        };
+        if claims.can_go(known.position, place, self.time_since(known, header, listener)) {
+            self.suspects.clear(id);
+            return true;
+        }
+        out.overclaims.count(Claim::Jump);
+        let longest = self.table.ages().stale_after.max(claims.settle);
+        let doubt = self.suspects.judge(id, place, listener.heard_at, claims, longest);
+        if doubt == Doubt::Begins {
+            report(out, Event::Overclaimed { id: header.sender, claim: Claim::Jump });
+        }
+        doubt == Doubt::Settled
+    }
+
+    /// Cuts what a robot says of its size and speed down to what is believed. Of one that lies all the time, the first lie is news.
+    pub(super) fn cut(&self, said: &mut Neighbor<S>, claims: &Claims<S>, out: &mut Outputs<S>) {
+        let (is_large, is_fast) = claims.cut(said);
+        if !is_large && !is_fast {
+            return;
+        }
+        let known = self.known(said.id);
+        let was_large = known.is_some_and(|known| known.radius_m >= claims.max_radius_m);
+        let was_fast = known.is_some_and(|known| known.velocity_mps.norm() >= claims.max_speed_mps * S::HALF);
+        for (is, was, claim) in [(is_large, was_large, Claim::Radius), (is_fast, was_fast, Claim::Speed)] {
+            if is {
+                out.overclaims.count(claim);
+            }
+            if is && !was {
+                report(out, Event::Overclaimed { id: said.id.doubled().unwrap_or(said.id), claim });
+            }
+        }
+    }
+}

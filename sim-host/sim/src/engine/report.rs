@@ -1,0 +1,104 @@
+//! What a run in motion says of itself: its records, what watchers see, what came of it.
+
+use super::{Engine, HostLaw, Moment, Outcome, hash};
+use crate::engine::Ground;
+use crate::metrics::Keeping;
+use crate::record::{PacketCounts, RobotRow, TickRow};
+use staya_controller::agent::Safety;
+
+impl<W, G, A> Engine<W, G, A>
+where
+    W: Ground,
+    G: HostLaw,
+    A: Safety<f32> + Send,
+{
+    /// The swarm's line of the record before the first tick.
+    pub(super) fn first_row(&mut self) -> TickRow {
+        let keeping = self.ground.keeping(false);
+        self.row(keeping, PacketCounts::default())
+    }
+
+    /// The swarm's line of the record, with `packets` of the tick that is over.
+    pub(super) fn row(&self, keeping: Option<Keeping>, packets: PacketCounts) -> TickRow {
+        TickRow {
+            tick: self.tick,
+            time_s: self.seconds(),
+            formation_error_per_agent: keeping.map_or(f64::NAN, |k| k.error_per_agent),
+            graph_distance: keeping.map_or(f64::NAN, |k| k.graph_distance),
+            packets,
+        }
+    }
+
+    /// The robots' lines of the record, by rising number, as of now.
+    pub fn rows(&self) -> impl Iterator<Item = RobotRow> {
+        self.statuses.iter().enumerate().map(|(index, status)| RobotRow {
+            id: self.robots[index].id.0,
+            motion: self.ground.motion(index, self.tick),
+            mode: status.mode,
+            leader: status.leader.0,
+            target: status.target,
+            target_m: self.ground.target_m(index, self.tick, status),
+            wait: status.wait,
+            formation_error_cells: self.ground.formation_error(index) as f32,
+        })
+    }
+
+    /// What a watcher sees of the swarm, with its line of the record.
+    pub(crate) fn moment<'a>(&'a self, row: &'a TickRow) -> Moment<'a> {
+        Moment {
+            row,
+            arrived: self.arrivals.count(),
+            waiting: self.waits.now(),
+            collisions: self.collisions,
+            gap_m: self.ground.gap_m(),
+            intruders: self.ground.intruders(),
+            goals_m: self.ground.goals_m(self.tick),
+            land: self.ground.terrain(),
+            solids: self.ground.solids(),
+            trace_hash: hash::sum(&self.chains),
+        }
+    }
+
+    /// Ticks done.
+    #[must_use]
+    pub const fn ticks(&self) -> u32 {
+        self.tick
+    }
+
+    /// Simulated time, seconds.
+    #[must_use]
+    pub fn seconds(&self) -> f64 {
+        f64::from(self.tick) * f64::from(self.tick_us) / 1e6
+    }
+
+    /// Whether all robots stand at their targets and know it, and nobody is going to do anything about it.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        self.interventions.is_empty() && self.arrivals.is_complete()
+    }
+
+    /// The ground with its bodies.
+    #[must_use]
+    pub const fn ground(&self) -> &W {
+        &self.ground
+    }
+
+    /// What came of it so far.
+    #[must_use]
+    pub fn outcome(&self) -> Outcome {
+        Outcome {
+            ticks: self.tick,
+            seconds: self.seconds(),
+            arrived: self.arrivals.count(),
+            arrival_times: self.arrivals.times().to_vec(),
+            collisions: self.collisions,
+            packets: self.packets,
+            throttled: self.throttled,
+            waits: self.waits.counts(),
+            formation: self.ground.mean_keeping(),
+            place_error: self.ground.place_error(),
+            clearance: self.ground.clearance(),
+            trace_hash: hash::sum(&self.chains),
+        }
+    }
+}
