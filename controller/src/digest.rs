@@ -28,6 +28,31 @@ pub const fn chained(before: u64, next: u64) -> u64 {
     state.0
 }
 
+/// State that no digest counts, for `#[serde(with = "uncounted")]`: keys, and what says nothing more than the rest. It is to
+/// be kept and moved all the same.
+#[cfg(feature = "state")]
+pub mod uncounted {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub(super) const NAME: &str = "$uncounted";
+
+    /// As it is, but for digests.
+    ///
+    /// # Errors
+    /// The serializer's.
+    pub fn serialize<T: Serialize + ?Sized, Z: Serializer>(value: &T, serializer: Z) -> Result<Z::Ok, Z::Error> {
+        serializer.serialize_newtype_struct(NAME, value)
+    }
+
+    /// What [`serialize`] wrote.
+    ///
+    /// # Errors
+    /// The deserializer's.
+    pub fn deserialize<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
+        T::deserialize(deserializer)
+    }
+}
+
 struct Digest(u64);
 
 impl Digest {
@@ -140,7 +165,11 @@ impl ser::Serializer for &mut Digest {
         Ok(())
     }
 
-    fn serialize_newtype_struct<T: Serialize + ?Sized>(self, _: &'static str, value: &T) -> Result<(), NotWalked> {
+    fn serialize_newtype_struct<T: Serialize + ?Sized>(self, _name: &'static str, value: &T) -> Result<(), NotWalked> {
+        #[cfg(feature = "state")]
+        if _name == uncounted::NAME {
+            return Ok(());
+        }
         value.serialize(self)
     }
 

@@ -5,6 +5,7 @@ use serde::Serialize;
 
 /// What the next mode depends on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Situation {
     /// The motors are off, or somebody else steers.

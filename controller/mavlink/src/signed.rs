@@ -11,6 +11,7 @@ use staya_controller::wire::{DecodeError, EncodeError, Frame, Header, Message, W
 ///
 /// It costs 13 bytes a frame. [`Signing`] says what timestamps a robot without a clock takes after a start, and what is accepted.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct Signed<const N: usize = STREAMS> {
     signing: Signing<N>,
 }

@@ -75,6 +75,7 @@ impl Verdict {
 
 /// How many frames were what; counts stay at their end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Counts {
     /// [`Verdict::Authentic`].
@@ -146,11 +147,14 @@ impl Counts {
 ///
 /// The state that serde sees does not hold the key.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct Signing<const N: usize = STREAMS> {
-    #[serde(skip)]
+    #[cfg_attr(feature = "state", serde(with = "staya_controller::digest::uncounted"))]
+    #[cfg_attr(not(feature = "state"), serde(skip))]
     key: Key,
     /// The key before or after it, while it changes.
-    #[serde(skip)]
+    #[cfg_attr(feature = "state", serde(with = "staya_controller::digest::uncounted"))]
+    #[cfg_attr(not(feature = "state"), serde(skip))]
     also: Option<Key>,
     link: u8,
     /// Of the next frame.
@@ -159,8 +163,16 @@ pub struct Signing<const N: usize = STREAMS> {
     clock: Option<u64>,
     lead: Option<u64>,
     streams: ReplayGuard<N>,
+    #[cfg_attr(feature = "state", serde(deserialize_with = "none_unsigned"))]
     may_be_unsigned: &'static [u32],
     counts: Counts,
+}
+
+/// Who is heard without a signature is the program's, and has no place in a state: there is none.
+#[cfg(feature = "state")]
+fn none_unsigned<'de, D: serde::Deserializer<'de>>(from: D) -> Result<&'static [u32], D::Error> {
+    use serde::Deserialize as _;
+    heapless::Vec::<u32, 0>::deserialize(from).map(|_| &[][..])
 }
 
 impl<const N: usize> Signing<N> {

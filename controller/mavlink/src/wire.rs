@@ -36,6 +36,7 @@ pub const BEACON_LEN: usize = AROUND + STAYA_BEACON_DATA::ENCODED_LEN;
 
 /// MAVLink 2 frames without signature. It keeps nothing; signatures of others are not looked at.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct Mavlink;
 
 impl Wire for Mavlink {

@@ -34,6 +34,7 @@ const SLOW: i32 = 100;
 ///   [`BY_DISTANCE`] the nearest, until [`BY_NUMBER`] the smallest number (each can be nearest to its own place). The other
 ///   ones leave him the room that he needs. Then all try again.
 #[derive(Clone, Debug, Default, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub(super) struct Beside<S> {
     /// The least distance to the goal so far, metres; 0: it has not looked yet.
     nearest_m: S,

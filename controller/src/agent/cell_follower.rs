@@ -23,6 +23,7 @@ const LEAVES_AT: i32 = 750;
 /// for longer than a cell: who shall give way, and how to get past each other, the law decides by its prices and
 /// requests.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct CellFollower<S, G> {
     law: G,
     speed_mps: S,
@@ -31,6 +32,7 @@ pub struct CellFollower<S, G> {
 
 /// What the law decided last.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 struct Last<S> {
     cell: Cell,
     at: Instant,

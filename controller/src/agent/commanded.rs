@@ -14,6 +14,7 @@ use serde::Serialize;
 
 /// What an operator wants of a robot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Wish<S> {
     /// Its own behaviour.
@@ -48,6 +49,7 @@ pub enum Wish<S> {
 /// It only wishes, as any guidance law does: the safety layer behind it keeps the robot clear of others whatever the
 /// operator wants. Robots that follow this one see by its beacon that it left its formation.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct Commanded<S, G> {
     inside: G,
     wish: Wish<S>,

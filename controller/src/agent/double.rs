@@ -33,6 +33,7 @@ const _: () = assert!(SAID.is_power_of_two());
 
 /// The last beacons of one's own, by sequence number: a few bits of what they said.
 #[derive(Clone, Copy, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub(super) struct Said([u16; SAID]);
 
 impl Said {

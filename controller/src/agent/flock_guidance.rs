@@ -17,6 +17,7 @@ pub const GOALS: usize = WAYPOINTS;
 /// The alpha flock (R. Olfati-Saber 2006, OLF): robots at equal distances that follow a reference, if they are given
 /// one as waypoint 0.
 #[derive(Clone, Copy, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct LatticeGuidance<S> {
     params: LatticeParams<S>,
     reference: Option<Waypoint<S>>,
@@ -88,6 +89,7 @@ impl<S: Scalar> Guidance<S> for LatticeGuidance<S> {
 /// The goal flock (V. E. and V. V. Pavlovsky, PAV): to the middle of the goals together, there each robot draws one of
 /// them. Goals stay where they are until they are given anew: the velocity of a [`Waypoint`] counts for nothing here.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct GoalFlockGuidance<S> {
     params: GoalParams<S>,
     arrival_m: S,
@@ -172,6 +174,7 @@ impl<S: Scalar> Guidance<S> for GoalFlockGuidance<S> {
 /// Boids (V. A. Starovoitova 2018, STA): even speed, headings that follow the neighbours'. In the open plane; what the
 /// torus of the paper adds is the world's matter.
 #[derive(Clone, Copy, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct BoidsGuidance<S> {
     params: BoidsParams<S>,
     speed_mps: S,

@@ -38,6 +38,7 @@ const ALTERNATIVES: usize = 2;
 ///
 /// Without a template the robot travels alone.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct FormationGuidance<const CELLS: usize, const M: usize, const F: usize, const L: usize = 0> {
     route: RouteParams,
     formation: FormationParams,
@@ -61,7 +62,8 @@ pub struct FormationGuidance<const CELLS: usize, const M: usize, const F: usize,
     /// Decisions on end in which it was behind, or not there yet when the top leader was.
     behind: u16,
     /// Nobody falls behind, as in the plane: the slowest makes the pace.
-    #[serde(skip)]
+    #[cfg_attr(feature = "state", serde(with = "crate::digest::uncounted"))]
+    #[cfg_attr(not(feature = "state"), serde(skip))]
     is_rigid: bool,
 }
 

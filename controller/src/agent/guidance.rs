@@ -229,6 +229,7 @@ impl<'a, S> GuidanceInput<'a, S> {
 
 /// What a guidance law decided.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[must_use]
 pub struct Decision<S> {
@@ -248,6 +249,7 @@ pub struct Decision<S> {
 
 /// What to do until the next decision.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Action<S> {
     /// To stand.
@@ -280,6 +282,7 @@ impl<S> Action<S> {
 
 /// How a robot stands to where it should be.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Status {
     /// It is where it should be, or beside.
@@ -298,6 +301,7 @@ pub struct Status {
 
 /// A request that a guidance law wants made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Ask {
     /// To whom.

@@ -46,6 +46,7 @@ pub(super) enum News<S> {
 
 /// What the link keeps between steps.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub(super) struct Link<S, const N: usize, W> {
     /// The format of the frames.
     wire: W,

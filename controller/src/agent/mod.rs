@@ -190,6 +190,7 @@ const _: () = assert!(matches!(BYTES, [4408, 4680, 2008, 2720]));
 /// on the grid of a processor share; on a 64-bit host 4408, 4680, 2008 and 2720. The build fails when one of them
 /// changes unnoticed.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct Agent<S, G, const N: usize, A = Unguarded, W = Postcard> {
     config: AgentConfig<S>,
     guidance: G,
@@ -205,6 +206,7 @@ pub struct Agent<S, G, const N: usize, A = Unguarded, W = Postcard> {
 
 /// Where to go.
 #[derive(Clone, Copy, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 enum Goal {
     /// This robot, wherever its place in a formation is.
     Own(Cell),
@@ -214,6 +216,7 @@ enum Goal {
 
 /// What stays of a decision.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 struct Last {
     situation: Situation,
     target: Cell,

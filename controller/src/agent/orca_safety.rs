@@ -12,6 +12,11 @@ use serde::Serialize;
 
 /// An [`Avoider`]: in the plane, where heights are left alone, or in space, as its source of constraints says.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[cfg_attr(
+    feature = "state",
+    serde(bound(deserialize = "P: serde::Deserialize<'de>, Avoider<S, K, P>: serde::Deserialize<'de>"))
+)]
 pub struct OrcaSafety<S: Scalar, const K: usize, P: HalfSpaces<S> = Analytic> {
     avoider: Avoider<S, K, P>,
     inflation: StalenessInflation<S>,

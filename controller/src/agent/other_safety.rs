@@ -12,6 +12,7 @@ use serde::Serialize;
 /// Push-out (V. E. and V. V. Pavlovsky, PAV): steps that lead too near are put right, but only against where others are
 /// now.
 #[derive(Clone, Copy, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct PushOutSafety<S> {
     params: PushOutParams<S>,
 }

@@ -45,6 +45,7 @@ impl<const CELLS: usize> GridWorkspace<CELLS> {
 
 /// Windowed routing to the own goal; remembers visits of `M` cells.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct RouteGuidance<const CELLS: usize, const M: usize, const L: usize = 0> {
     params: RouteParams,
     replan: Replan,

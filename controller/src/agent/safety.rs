@@ -55,6 +55,7 @@ pub trait Safety<S: Scalar> {
 
 /// No safety layer: the wish is the command. For robots that move cell by cell, and to see what a layer is worth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Unguarded;
 

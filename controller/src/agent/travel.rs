@@ -18,6 +18,7 @@ pub(super) const PATIENCE: u8 = 4;
 
 /// What a robot remembers of its last decisions.
 #[derive(Clone, Debug, Default, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub(super) struct Travel {
     /// Where it decided last.
     cell: Option<Cell>,

@@ -18,6 +18,7 @@ const PASSED_RADII: i32 = 3;
 /// It goes by at most [`WAYPOINTS`] waypoints in the order of their numbers. Number 0 begins a course (what was before is
 /// forgotten), the next number lengthens it, and one that is there already is moved. The last one is its goal.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct WaypointGuidance<S> {
     course: Vec<Waypoint<S>, WAYPOINTS, u8>,
     /// The one that it heads for.

@@ -29,6 +29,7 @@ impl Freshness {
 
 /// What is remembered of one sender; 16 bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 struct Peer {
     newest: u64,
     /// Bit k: the frame `newest - k` was seen.
@@ -49,6 +50,7 @@ struct Peer {
 /// wants to close this gap stores [`Self::export`] in lasting memory, from time to time or when the power goes, and gives it back with
 /// [`Self::import`]; or raises [`Self::set_floor`] above what was recorded on earlier days.
 #[derive(Clone, Debug, Default, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct ReplayGuard<const N: usize> {
     /// By sender, rising.
     peers: Vec<Peer, N>,

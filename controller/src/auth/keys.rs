@@ -47,6 +47,7 @@ impl Master {
 
 /// What the swarm's key of one generation is made of; 128 bits that nobody guesses.
 #[derive(Clone, PartialEq, Eq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Seed([u8; SEED_LEN]);
 
 impl Seed {

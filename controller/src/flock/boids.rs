@@ -23,6 +23,7 @@ use serde::Serialize;
 
 /// A largest turn, as what rotates by it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 struct Turn<S> {
     cos: S,
     sin: S,
@@ -63,6 +64,7 @@ impl<S: Scalar> Turn<S> {
 
 /// Parameters of boids, made by [`BoidsParams::new`], which computes what a step would compute again and again.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct BoidsParams<S> {
     crowded: u64,
@@ -70,7 +72,8 @@ pub struct BoidsParams<S> {
     turn: Turn<S>,
     turn_away: Turn<S>,
     /// What they were made of; says nothing more than the others.
-    #[serde(skip)]
+    #[cfg_attr(feature = "state", serde(with = "crate::digest::uncounted"))]
+    #[cfg_attr(not(feature = "state"), serde(skip))]
     values: [S; 4],
 }
 

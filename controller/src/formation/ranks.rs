@@ -17,6 +17,7 @@ use serde::Serialize;
 /// Holds where robot i + 1 has place i, as in [`Template::from_graph`]; others keep their places. The paper (A. V. Kuznetsov 2017) has no
 /// such rule: there the place of a missing robot stays empty.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Ranks {
     /// The place held instead of one's own, and how far that is off, cells.

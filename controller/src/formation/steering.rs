@@ -111,6 +111,7 @@ pub fn def(cell: Cell, members: &[Member]) -> Dir {
 
 /// Whether the top leader waits: hysteresis around r0 (KUZ algorithm 2).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Pace {
     waits: bool,

@@ -117,6 +117,7 @@ fn is_longer<S: Scalar>(vector: Vec3<S>, length: S) -> bool {
 
 /// A robot whose places are in doubt.
 #[derive(Clone, Copy, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 struct Suspect {
     id: RobotId,
     /// Where it says that it is.
@@ -128,6 +129,7 @@ struct Suspect {
 
 /// Who has jumped of late; 100 bytes.
 #[derive(Clone, Debug, Default, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct Suspects(Vec<Suspect, SUSPECTS, u8>);
 
 /// What a jump is worth.

@@ -23,6 +23,7 @@ const MOST_PERIODS: i32 = 64;
 ///
 /// 8 bytes; constant work per frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct LossEstimate {
     /// Frames of theirs, heard or not.

@@ -33,6 +33,7 @@ const LEAVES_FROM: i32 = 750;
 
 /// One robot as last heard.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Neighbor<S> {
     /// Who it is.
@@ -146,6 +147,7 @@ pub enum Put {
 ///
 /// Bytes: `N` times those of [`Neighbor`] (60 for `f32` and fixed point) and 16 more.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct NeighborTable<S, const N: usize> {
     entries: Vec<Neighbor<S>, N, u16>,
     ages: Ages,

@@ -15,6 +15,7 @@ use serde::Serialize;
 
 /// How the robot comes nearer to its target than it ever was, whatever the walls.
 #[derive(Clone, Copy, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub(super) struct Escape {
     /// Squared distance to the target where the wall was met; `None` while no wall is in the way.
     met: Option<u64>,

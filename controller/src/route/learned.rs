@@ -9,6 +9,7 @@ use serde::Serialize;
 ///
 /// When full, the cell farthest from the robot is forgotten. Memory: 8 bytes a cell.
 #[derive(Clone, Debug, Default, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct LearnedCosts<const L: usize> {
     costs: Vec<(Cell, Cost), L>,
 }

@@ -42,6 +42,7 @@ named! {
 /// after 20 moves (100 with a memory) the robot walks along it until it is nearer than ever. So it arrives wherever
 /// there is a way that it may go undisturbed, with any gains, `M` and `L`.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct Router<const M: usize, const L: usize = 0> {
     visits: VisitMemory<M>,
     here: Option<Cell>,

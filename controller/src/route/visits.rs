@@ -8,6 +8,7 @@ use serde::Serialize;
 ///
 /// When full, the cell that was entered longest ago is forgotten. Memory: 6 bytes a cell.
 #[derive(Clone, Debug, Default, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct VisitMemory<const M: usize> {
     /// In order of the last entry, oldest first.
     visits: Vec<(Cell, u8), M>,

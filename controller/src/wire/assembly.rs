@@ -128,8 +128,10 @@ impl TemplateAssignment {
 /// part of an older version is passed over. Versions that are lost in the air are no matter: the
 /// sender resends, or sends a newer one.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct TemplateAssembler<const F: usize> {
     #[serde(serialize_with = "as_slice")]
+    #[cfg_attr(feature = "state", serde(deserialize_with = "of_slice"))]
     entries: [TemplateEntry; F],
     /// Bit p: part p is there.
     there: u64,
@@ -144,6 +146,14 @@ pub struct TemplateAssembler<const F: usize> {
 /// Arrays of any length are not serde's.
 fn as_slice<const F: usize, Z: Serializer>(entries: &[TemplateEntry; F], serializer: Z) -> Result<Z::Ok, Z::Error> {
     entries.as_slice().serialize(serializer)
+}
+
+/// What [`as_slice`] wrote.
+#[cfg(feature = "state")]
+fn of_slice<'de, const F: usize, D: serde::Deserializer<'de>>(from: D) -> Result<[TemplateEntry; F], D::Error> {
+    let entries: Vec<TemplateEntry, F> = serde::Deserialize::deserialize(from)?;
+    let count = entries.len();
+    entries.into_array().map_err(|_| serde::de::Error::invalid_length(count, &"as many entries as there is room for"))
 }
 
 impl<const F: usize> Default for TemplateAssembler<F> {

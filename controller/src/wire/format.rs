@@ -65,6 +65,7 @@ pub trait FromFormat: Wire {
 
 /// The frames of this crate: postcard within COBS, see [`encode`] and [`decode`]; without a tag. It keeps nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct Postcard;
 
 impl Wire for Postcard {

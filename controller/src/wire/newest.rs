@@ -9,6 +9,7 @@ use serde::Serialize;
 /// [`Newest::forget`] when a [`SequenceWindow`](super::SequenceWindow) says
 /// [`Arrival::Rebooted`](super::Arrival::Rebooted), or when it forgets the sender.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Newest {
     version: Option<u8>,

@@ -27,6 +27,7 @@ pub struct Answer {
 
 /// The latest request on one matter (to stand or not; the direction) of one origin by one sender.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 struct Order {
     sender: RobotId,
     origin: RobotId,
@@ -67,6 +68,7 @@ impl Order {
 /// Time is compared by wrapped difference: [`Orders::is_stopped`] should be called at least every half
 /// hour. After a longer pause no stop stands, but a repeat may be taken for a new request.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct Orders<const S: usize> {
     lines: Vec<Order, S>,
     memory: Duration,

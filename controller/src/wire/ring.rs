@@ -6,11 +6,14 @@ use serde::Serialize;
 
 /// The swarm's key of one generation.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 struct Group {
     generation: u16,
-    #[serde(skip)]
+    #[cfg_attr(feature = "state", serde(with = "crate::digest::uncounted"))]
+    #[cfg_attr(not(feature = "state"), serde(skip))]
     mac: Mac,
-    #[serde(skip)]
+    #[cfg_attr(feature = "state", serde(with = "crate::digest::uncounted"))]
+    #[cfg_attr(not(feature = "state"), serde(skip))]
     seed: Option<Seed>,
 }
 
@@ -35,11 +38,13 @@ pub enum Signer {
 /// A phase that comes without those before it brings them along, so that a robot that was off takes one message. Nothing goes back: of two generations
 /// the later one stays, and who is told of an earlier one changes nothing.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct Ring {
     speaks: Group,
     /// The generation before, or the one to come.
     also: Option<Group>,
-    #[serde(skip)]
+    #[cfg_attr(feature = "state", serde(with = "crate::digest::uncounted"))]
+    #[cfg_attr(not(feature = "state"), serde(skip))]
     own: Option<Mac>,
 }
 

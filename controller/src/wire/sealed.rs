@@ -57,6 +57,7 @@ pub const REACH_STARTS: u32 = 1024;
 ///
 /// The state that serde sees does not hold the key.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct Sealed<const N: usize = PEERS> {
     ring: Ring,
     /// The own number, where the robot has a key of its own.
@@ -130,6 +131,7 @@ impl<const N: usize> Sealed<N> {
 
 /// The numbers under which frames are sealed: none comes twice.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub(super) struct Epochs {
     epoch: u32,
     /// The sequence number of the last frame.

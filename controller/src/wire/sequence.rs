@@ -54,6 +54,7 @@ impl Arrival {
 /// are best counted in lasting memory; one drawn at random equals the previous one (and makes
 /// the robot wait until it is forgotten) once in 256 starts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SequenceWindow {
     /// Bit k: the frame `newest - k` was seen. 0: none was, ever.

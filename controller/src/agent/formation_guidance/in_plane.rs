@@ -26,6 +26,7 @@ use serde::Serialize;
 /// and the top leader goes straight to its goal where the land in sight is even, at the pace of the slowest whom it
 /// hears. Where the straight way is closed or dear, both go by the cells.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct FormationInPlane<S, const CELLS: usize, const M: usize, const F: usize, const L: usize = 0> {
     cells: CellFollower<S, FormationGuidance<CELLS, M, F, L>>,
     beside: Beside<S>,

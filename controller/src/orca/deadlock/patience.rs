@@ -20,6 +20,7 @@ const BACK: i32 = 2_000;
 
 /// What a robot remembers of how it gets ahead.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct Patience<S> {
     /// The mean velocity of late, or the one to back off with, m/s; zero: nothing yet.
     course_mps: Vec2<S>,

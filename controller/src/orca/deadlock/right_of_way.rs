@@ -60,6 +60,7 @@ const PATIENCE_OF_RANK: i32 = 1_667;
 
 /// What a robot remembers of the gap before it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct RightOfWay<S> {
     /// Which way the last robot seen in the gap went: whether as this one wants to.
     last_went_ahead: Option<bool>,

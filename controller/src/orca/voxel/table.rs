@@ -40,6 +40,7 @@ macro_rules! voxel_table {
     ($(#[$doc:meta])* $name:ident: $levels:literal x $directions:literal) => {
         $(#[$doc])*
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+        #[cfg_attr(feature = "state", derive(serde::Deserialize))]
         pub struct $name;
 
         impl VoxelTable for $name {
