@@ -23,6 +23,7 @@ pub const WRAPPED_LEN: usize = 2 * SEED_LEN;
 
 /// What only the operator has: every other key is made of it.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Master(Mac);
 
 impl Master {

@@ -34,6 +34,12 @@ impl Arrivals {
         self.count = self.count + usize::from(now.is_some()) - usize::from(before.is_some());
     }
 
+    /// When robot number `index` arrived is as it was at another time.
+    pub(crate) fn set(&mut self, index: usize, at: Option<u64>) {
+        let before = std::mem::replace(&mut self.at[index], at);
+        self.count = self.count + usize::from(at.is_some()) - usize::from(before.is_some());
+    }
+
     /// How many robots stand at their targets.
     #[must_use]
     pub const fn count(&self) -> usize {

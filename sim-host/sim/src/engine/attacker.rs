@@ -3,6 +3,7 @@
 use crate::radio::{self, HostWire};
 use crate::scenario::{Attack, AttackKind, Lie, Scenario};
 use heapless::Vec as Bounded;
+use serde::Serialize;
 use staya_controller::auth::Key;
 use staya_controller::grid::Cell;
 use staya_controller::robot::{Mode, RobotId};
@@ -39,6 +40,9 @@ pub(super) struct Attacker {
     outbox: Vec<u8>,
 }
 
+/// What [`Attacker::state`] gave.
+pub(super) type AttackerState = (HostWire, u16, u8, VecDeque<(u32, Vec<u8>)>);
+
 impl Attacker {
     /// One in a scenario.
     pub(super) fn new(attack: &Attack, scenario: &Scenario) -> Self {
@@ -63,6 +67,16 @@ impl Attacker {
             heard: VecDeque::new(),
             outbox: Vec::new(),
         }
+    }
+
+    /// What of it changes.
+    pub(super) fn state(&self) -> impl Serialize {
+        (&self.wire, self.sequence, self.version, &self.heard)
+    }
+
+    /// Puts it back.
+    pub(super) fn restore(&mut self, (wire, sequence, version, heard): AttackerState) {
+        (self.wire, self.sequence, self.version, self.heard) = (wire, sequence, version, heard);
     }
 
     /// Its number on the air, where it is one of `index` others; never in a frame.

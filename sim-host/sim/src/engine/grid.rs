@@ -9,11 +9,13 @@ use crate::metrics::{FormationMeter, Keeping, in_cells};
 use crate::record::Motion;
 use crate::scenario::{Robot, Scenario};
 use crate::terrain::Terrain;
-use crate::world::{Misplaced, Refusal, World};
+use crate::world::{Body, Misplaced, Refusal, World};
+use serde::{Deserialize, Serialize};
 use staya_controller::agent::{AgentConfig, AnyInputs, AnySurroundings, CellState, Command, Inputs, OnGrid, Task};
-use staya_controller::grid::{Cell, UNIT};
+use staya_controller::grid::{Cell, Dir, UNIT};
 use staya_controller::robot::Mode;
 use staya_controller::time::Duration;
+use std::collections::BTreeMap;
 
 /// Bodies that hold a cell each.
 pub struct Grid {
@@ -21,6 +23,7 @@ pub struct Grid {
     kinematics: Kinematics,
     robots: Vec<Robot>,
     meter: Option<FormationMeter>,
+    changed: Changed,
     radius: u8,
     tick_us: u32,
 }
@@ -41,6 +44,7 @@ impl Grid {
             kinematics: Kinematics::new(world.terrain(), scenario.tick_s()),
             robots: scenario.numbered(),
             meter,
+            changed: Changed::new(),
             radius: scenario.route.params.radius,
             tick_us: scenario.tick_us,
             world,
@@ -52,6 +56,35 @@ impl Grid {
     pub const fn world(&self) -> &World {
         &self.world
     }
+}
+
+/// Cells of the land that are no longer as they were.
+pub(super) type Changed = BTreeMap<(i16, i16), u8>;
+
+/// What of a body changes.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct GridBody {
+    cell: Cell,
+    entered_by: Dir,
+    free_at: u64,
+    goal: Cell,
+}
+
+/// Puts back what a meter had measured.
+pub(super) fn restore_meter(
+    meter: &mut Option<FormationMeter>,
+    measured: Option<FormationMeter>,
+) -> Result<(), &'static str> {
+    let is_same = match (&*meter, &measured) {
+        (Some(meter), Some(measured)) => meter.is_of(measured),
+        (None, None) => true,
+        _ => false,
+    };
+    if !is_same {
+        return Err("it is of another formation");
+    }
+    *meter = measured;
+    Ok(())
 }
 
 /// The moment at which `tick` begins.
@@ -69,6 +102,39 @@ pub(super) fn busy(free_at: u64, now_units: u64, tick_us: u32) -> Duration {
 
 impl Ground for Grid {
     type Scratch = Vec<u8>;
+    type Body = GridBody;
+    type Shared = (Option<FormationMeter>, Changed);
+
+    fn body(&self, index: usize) -> GridBody {
+        let Body { cell, entered_by, free_at, .. } = self.world.bodies()[index];
+        GridBody { cell, entered_by, free_at, goal: self.robots[index].goal }
+    }
+
+    fn set_body(&mut self, index: usize, body: GridBody) -> Result<(), &'static str> {
+        let GridBody { cell, entered_by, free_at, goal } = body;
+        if !self.world.put(index, cell, entered_by, free_at) {
+            return Err("its body is in a wall or off the map");
+        }
+        self.robots[index].goal = goal;
+        Ok(())
+    }
+
+    fn shared(&self) -> Self::Shared {
+        (self.meter.clone(), self.changed.clone())
+    }
+
+    fn set_shared(&mut self, (meter, changed): Self::Shared) -> Result<(), &'static str> {
+        restore_meter(&mut self.meter, meter)?;
+        for (&(x, y), &class) in &changed {
+            self.world.put_cell(Cell::new(x, y), class);
+        }
+        self.changed = changed;
+        Ok(())
+    }
+
+    fn is_sound(&self) -> bool {
+        self.world.is_sound()
+    }
 
     fn sense<'a>(&'a self, index: usize, tick: u32, cells: &'a mut Self::Scratch) -> AnyInputs<'a, f32> {
         let body = &self.world.bodies()[index];
@@ -139,7 +205,11 @@ impl Ground for Grid {
 
     fn change(&mut self, _: u32, change: Change<'_>) -> Result<(), Refusal> {
         match change {
-            Change::Cell([x, y], class) => self.world.set_cell(Cell::new(x, y), class),
+            Change::Cell([x, y], class) => {
+                self.world.set_cell(Cell::new(x, y), class)?;
+                self.changed.insert((x, y), class);
+                Ok(())
+            }
             _ => Err(Refusal::new("kind", "these robots go from cell to cell", "change cells of the land instead")),
         }
     }

@@ -7,6 +7,8 @@ use crate::record::Motion;
 use crate::terrain::Terrain;
 use crate::world::Refusal;
 use crate::world::plane::{Clearance, Disc, Solid};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use staya_controller::agent::{AgentConfig, AnyInputs, AnySurroundings, Command, Guidance, Task, WAYPOINTS};
 use staya_controller::grid::Cell;
 use staya_controller::time::Duration;
@@ -15,6 +17,34 @@ use staya_controller::time::Duration;
 pub trait Ground: Send + Sync {
     /// Scratch memory of a thread for [`Ground::sense`].
     type Scratch: Default + Send;
+
+    /// What of a body changes.
+    type Body: Serialize + DeserializeOwned;
+    /// What else of the world does.
+    type Shared: Serialize + DeserializeOwned;
+
+    /// Body `index`, with what the world keeps of it.
+    fn body(&self, index: usize) -> Self::Body;
+
+    /// Puts it back. Until all are, bodies may be in each other's places.
+    ///
+    /// # Errors
+    /// No body of this world can be so.
+    fn set_body(&mut self, index: usize, body: Self::Body) -> Result<(), &'static str>;
+
+    /// The world but for its bodies.
+    fn shared(&self) -> Self::Shared;
+
+    /// Puts it back into a world before its first tick.
+    ///
+    /// # Errors
+    /// It is of another world.
+    fn set_shared(&mut self, shared: Self::Shared) -> Result<(), &'static str>;
+
+    /// Whether bodies are as they can be, together.
+    fn is_sound(&self) -> bool {
+        true
+    }
 
     /// What the robot of body `index` senses at the start of `tick`; the inbox is empty.
     fn sense<'a>(&'a self, index: usize, tick: u32, scratch: &'a mut Self::Scratch) -> AnyInputs<'a, f32>;

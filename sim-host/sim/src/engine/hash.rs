@@ -1,6 +1,7 @@
 //! The fingerprint of a run: equal traces, equal hashes, on any machine and any number of threads.
 
 use crate::world::Body;
+use serde::{Deserialize, Serialize};
 use staya_controller::rand::Rng;
 use staya_controller::robot::{Mode, RobotId};
 
@@ -8,7 +9,7 @@ use staya_controller::robot::{Mode, RobotId};
 const START: u32 = 0x0048_0001;
 
 /// One robot's hash of everything it did: a chain of its states.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Chain(u64);
 
 impl Chain {

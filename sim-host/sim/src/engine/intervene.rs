@@ -4,6 +4,7 @@ use super::{Engine, Ground, HostLaw};
 use crate::scenario::{Fault, Intervention};
 use crate::world::Refusal;
 use crate::world::plane::Shape;
+use serde::{Deserialize, Serialize};
 use staya_controller::agent::{Parameter, Safety};
 use staya_controller::robot::RobotId;
 
@@ -28,7 +29,7 @@ pub enum Change<'a> {
 }
 
 /// A parameter that was changed, of one robot or of all.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Tuned {
     robot: Option<usize>,
     parameter: Parameter,

@@ -3,6 +3,7 @@
 use crate::radio::{self, HostWire};
 use crate::world::plane::Disc;
 use heapless::Vec as Bounded;
+use serde::Serialize;
 use staya_controller::agent::OUTBOX;
 use staya_controller::grid::Cell;
 use staya_controller::robot::{Mode, RobotId};
@@ -23,12 +24,25 @@ pub(super) struct Intruder {
     outbox: Vec<u8>,
 }
 
+/// What [`Intruder::state`] gave.
+pub(super) type IntruderState = (HostWire, u16);
+
 impl Intruder {
     /// One among robots that speak `format` without a key.
     pub fn new(disc: &Disc, format: Format) -> Self {
         let [x, y, _] = disc.position_m;
         let wire = radio::wire(format, None, 0);
         Self { id: disc.id, position_m: [x, y], wire, sequence: 0, outbox: Vec::new() }
+    }
+
+    /// What of it changes.
+    pub fn state(&self) -> impl Serialize {
+        (&self.wire, self.sequence)
+    }
+
+    /// Puts it back.
+    pub fn restore(&mut self, (wire, sequence): IntruderState) {
+        (self.wire, self.sequence) = (wire, sequence);
     }
 
     /// What it sends in this tick.

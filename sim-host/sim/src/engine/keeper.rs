@@ -5,7 +5,8 @@ use crate::scenario::{Roll, Scenario};
 use staya_controller::auth::Master;
 use staya_controller::robot::RobotId;
 use staya_controller::wire::{KeyPhase, OperatorWire, Postcard, Wire as _};
-use std::collections::{HashMap, HashSet, VecDeque};
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 /// Ticks between two tries to reach who has not answered.
 const AGAIN_TICKS: u32 = 5;
@@ -18,14 +19,26 @@ pub(super) struct Keeper {
     place_m: [f64; 2],
     robots: Vec<RobotId>,
     rolls: VecDeque<Roll>,
-    revoked: HashSet<RobotId>,
+    revoked: BTreeSet<RobotId>,
     generation: u16,
     phase: KeyPhase,
     /// When this phase is over, whoever has answered.
     until: u32,
     overlap_ticks: u32,
-    held: HashMap<RobotId, (u16, KeyPhase)>,
+    held: BTreeMap<RobotId, (u16, KeyPhase)>,
     outbox: Vec<u8>,
+}
+
+/// What [`Keeper::state`] gave.
+#[derive(Deserialize)]
+pub(super) struct KeeperState {
+    wire: Box<OperatorWire<{ radio::PEERS }>>,
+    rolls_left: usize,
+    revoked: BTreeSet<RobotId>,
+    generation: u16,
+    phase: KeyPhase,
+    until: u32,
+    held: BTreeMap<RobotId, (u16, KeyPhase)>,
 }
 
 impl Keeper {
@@ -39,12 +52,12 @@ impl Keeper {
             place_m: keeping.place_m,
             robots: scenario.numbered().iter().map(|robot| robot.id).collect(),
             rolls: keeping.rolls.iter().cloned().collect(),
-            revoked: HashSet::new(),
+            revoked: BTreeSet::new(),
             generation: 0,
             phase: KeyPhase::Forget,
             until: 0,
             overlap_ticks: keeping.overlap_ticks,
-            held: HashMap::new(),
+            held: BTreeMap::new(),
             outbox: Vec::new(),
         })
     }
@@ -61,6 +74,21 @@ impl Keeper {
     /// What it sends in this tick.
     pub(super) fn outbox(&self) -> &[u8] {
         &self.outbox
+    }
+
+    /// What of it changes.
+    pub(super) fn state(&self) -> impl Serialize {
+        let Self { wire, rolls, revoked, generation, phase, until, held, .. } = self;
+        (wire, rolls.len(), revoked, generation, phase, until, held)
+    }
+
+    /// Puts it back.
+    pub(super) fn restore(&mut self, state: KeeperState) {
+        let left = self.rolls.len().saturating_sub(state.rolls_left);
+        self.rolls.drain(..left);
+        let KeeperState { wire, revoked, generation, phase, until, held, .. } = state;
+        self.wire = *wire;
+        (self.revoked, self.generation, self.phase, self.until, self.held) = (revoked, generation, phase, until, held);
     }
 
     /// Hears what arrived and decides what to send.

@@ -23,6 +23,7 @@ mod operator;
 mod plane;
 mod report;
 mod simulate;
+mod state;
 mod witness;
 
 use external::External;
@@ -33,6 +34,7 @@ pub use inspect::{Choice, Inspection, Known, Permitted, Scratchpad, SeenLand, kn
 pub use intervene::Change;
 pub use operator::{Observation, Operated, operated};
 pub use plane::{PlaneGround, Senses};
+pub use state::{State, StateError};
 pub use simulate::{Moment, Outcome, WIDE, Watch, simulate, simulate_with};
 
 use crate::metrics::Arrivals;
@@ -46,6 +48,7 @@ use intervene::Tuned;
 use intruder::Intruder;
 use keeper::Keeper;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
     Agent, AgentConfig, AnyInputs, Command, Event, Inputs, NEIGHBORS, OUTBOX, Safety, Setup, Wait,
 };
@@ -82,7 +85,7 @@ struct Computer<G, A> {
 }
 
 /// What the rest of the engine needs to know of a robot after its decision.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Status {
     /// What it is doing.
     pub mode: Mode,

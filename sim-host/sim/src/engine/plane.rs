@@ -1,6 +1,11 @@
 //! The plane (or space) as ground of the engine.
 
+mod state;
+
+pub use state::{PlaneBody, PlaneShared};
+
 use super::Status;
+use super::grid::Changed;
 use super::ground::{Ground, StateWords};
 use super::intervene::Change;
 use crate::metrics::{FormationMeter, Keeping, PlaceError};
@@ -34,6 +39,7 @@ pub struct PlaneGround {
     /// After the last tick, metres.
     gap_m: Option<f64>,
     meter: Option<FormationMeter>,
+    changed: Changed,
     robots: Vec<Robot>,
     radius: u8,
     tick_us: u32,
@@ -76,6 +82,7 @@ impl PlaneGround {
         Self {
             clearance: Clearance::FREE,
             gap_m: None,
+            changed: Changed::new(),
             meter: scenario.formation.as_ref().map(|graph| {
                 FormationMeter::new(graph, scenario.formation_params.eps, &scenario.terrain, scenario.tick_s())
             }),
@@ -208,6 +215,24 @@ pub struct Senses {
 
 impl Ground for PlaneGround {
     type Scratch = Senses;
+    type Body = PlaneBody;
+    type Shared = PlaneShared;
+
+    fn body(&self, index: usize) -> PlaneBody {
+        self.body_now(index)
+    }
+
+    fn set_body(&mut self, index: usize, body: PlaneBody) -> Result<(), &'static str> {
+        self.put_body(index, body)
+    }
+
+    fn shared(&self) -> PlaneShared {
+        self.shared_now()
+    }
+
+    fn set_shared(&mut self, shared: PlaneShared) -> Result<(), &'static str> {
+        self.put_shared(shared)
+    }
 
     fn sense<'a>(&'a self, index: usize, _: u32, senses: &'a mut Senses) -> AnyInputs<'a, f32> {
         let disc = &self.plane.discs()[index];
@@ -415,7 +440,11 @@ impl Ground for PlaneGround {
             }
             Change::Move(index, by_m) => self.plane.move_solid(index, by_m),
             Change::Remove(index) => self.plane.remove_solid(index),
-            Change::Cell([x, y], class) => self.plane.set_cell(Cell::new(x, y), class),
+            Change::Cell([x, y], class) => {
+                self.plane.set_cell(Cell::new(x, y), class)?;
+                self.changed.insert((x, y), class);
+                Ok(())
+            }
         }
     }
 

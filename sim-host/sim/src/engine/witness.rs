@@ -1,6 +1,6 @@
 //! A safety layer that can tell what it was asked and what it answered.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use staya_controller::agent::{Parameter, Safety, SafetyInput};
 use staya_controller::body::Body;
 use staya_controller::geom::Vec3;
@@ -22,7 +22,7 @@ pub struct Asked {
 }
 
 /// Layer `A`, which tells nothing unless [`Witness::listen`] was called: the same state and the same answers either way.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Witness<A> {
     inside: A,

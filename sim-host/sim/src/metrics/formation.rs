@@ -2,10 +2,11 @@
 
 use crate::scenario::{Formation, Scenario};
 use crate::terrain::Terrain;
+use serde::{Deserialize, Serialize};
 use staya_controller::grid::Cell;
 
 /// How well a formation is kept at one moment.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Keeping {
     /// Mean over the robots of |desired - actual|, cells, when the graph is placed on where the top
     /// leader (robot 1) is. The leader itself counts, with 0.
@@ -29,7 +30,7 @@ impl std::ops::AddAssign for Keeping {
 pub const FORMED_AFTER_S: f64 = 10.0;
 
 /// How far robots in the plane were from their places by robot 1, after the first [`FORMED_AFTER_S`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlaceError {
     /// Over robots (robot 1 counts, with 0) and ticks, metres.
     pub mean_m: f64,
@@ -50,7 +51,7 @@ pub struct PlaceError {
 /// counts the places that are missed. m1 counts those of them near which (`eps` again) another
 /// robot stands that has itself lost its place: without that condition every robot of a formation
 /// narrower than eps would stand in for all others.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct FormationMeter {
     places: Vec<[f64; 2]>,
     eps: f64,
@@ -66,7 +67,7 @@ pub struct FormationMeter {
 }
 
 /// Sums over the ticks after the first [`FORMED_AFTER_S`].
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Steady {
     ticks: u32,
     sum: f64,
@@ -91,6 +92,11 @@ impl FormationMeter {
             tick_s,
             steady: Steady { ticks: 0, sum: 0.0, worst: PlaceError { mean_m: 0.0, worst_m: 0.0, robot: 0, at_s: 0.0 } },
         }
+    }
+
+    /// Whether it measures the same formation as another one.
+    pub(crate) fn is_of(&self, other: &Self) -> bool {
+        self.places == other.places && self.errors.len() <= self.places.len()
     }
 
     /// Takes one tick into the means; see [`FormationMeter::look`].

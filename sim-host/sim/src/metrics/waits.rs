@@ -1,5 +1,6 @@
 //! Who waited for what, and for how long.
 
+use serde::{Deserialize, Serialize};
 use staya_controller::agent::Wait;
 use staya_controller::names::Named;
 
@@ -19,8 +20,8 @@ pub struct WaitCount {
 }
 
 /// What one robot waits for.
-#[derive(Clone, Copy, Debug, Default)]
-struct Robot {
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Robot {
     wait: Option<Wait>,
     /// For so many ticks.
     ticks: u32,
@@ -63,6 +64,37 @@ impl Waits {
                 count.robot_ticks += 1;
                 count.longest_ticks = count.longest_ticks.max(robot.ticks);
             }
+        }
+    }
+
+    /// The account of robot number `index`.
+    pub(crate) fn robot(&self, index: usize) -> Robot {
+        self.robots[index]
+    }
+
+    /// Puts it back.
+    pub(crate) fn set_robot(&mut self, index: usize, robot: Robot) {
+        let before = std::mem::replace(&mut self.robots[index], robot);
+        for (bit, count) in self.counts.iter_mut().enumerate() {
+            let of = |robot: &Robot| {
+                let waits = robot.wait == Some(count.wait);
+                (usize::from(waits), usize::from(robot.seen & (1 << bit) != 0))
+            };
+            let ((now_before, seen_before), (now, seen)) = (of(&before), of(&robot));
+            count.now = count.now + now - now_before;
+            count.robots = count.robots + seen - seen_before;
+        }
+    }
+
+    /// For each reason the ticks of all robots together, and of the longest time on end.
+    pub(crate) fn ticks(&self) -> Vec<(u64, u32)> {
+        self.counts.iter().map(|count| (count.robot_ticks, count.longest_ticks)).collect()
+    }
+
+    /// Puts them back.
+    pub(crate) fn set_ticks(&mut self, ticks: &[(u64, u32)]) {
+        for (count, &(robot_ticks, longest_ticks)) in self.counts.iter_mut().zip(ticks) {
+            (count.robot_ticks, count.longest_ticks) = (robot_ticks, longest_ticks);
         }
     }
 

@@ -77,6 +77,15 @@ impl Fates {
         self.loss = q32(loss);
     }
 
+    /// As it is kept.
+    pub(super) const fn loss_q32(&self) -> u32 {
+        self.loss
+    }
+
+    pub(super) const fn set_loss_q32(&mut self, loss: u32) {
+        self.loss = loss;
+    }
+
     /// The generator of everything that happens to `packet` at `receiver`.
     pub(super) fn draws(&self, packet: &Packet, receiver: RobotId, tick: u32) -> Rng {
         Rng::keyed(packet.key, packet.number, receiver.0, tick)

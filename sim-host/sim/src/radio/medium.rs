@@ -82,6 +82,25 @@ impl Medium {
         self.range_m = range_m;
     }
 
+    pub(super) const fn range_m(&self) -> f64 {
+        self.range_m
+    }
+
+    /// What sender `index` may still send; `None`: as much as it likes.
+    pub(super) fn tokens(&self, index: usize) -> Option<u64> {
+        self.buckets.as_ref().map(|buckets| buckets.tokens[index])
+    }
+
+    /// The same from now on; whether there is a bound just as here.
+    pub(super) fn set_tokens(&mut self, index: usize, tokens: Option<u64>) -> bool {
+        match (&mut self.buckets, tokens) {
+            (Some(buckets), Some(tokens)) => buckets.tokens[index] = tokens.min(buckets.capacity),
+            (None, None) => {}
+            _ => return false,
+        }
+        true
+    }
+
     /// Replaces the packets with those that the robots send in `tick`.
     pub(super) fn fill<'a>(
         &mut self,

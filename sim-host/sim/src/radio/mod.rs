@@ -8,20 +8,22 @@
 mod fate;
 mod medium;
 mod params;
+mod state;
 mod wire;
 
 pub use params::{Burst, RadioParams};
+pub(crate) use state::{End, Weather};
 pub use wire::{HostWire, PEERS, operator, own_wire, ring_wire, wire};
 
 use fate::{Fates, Verdict};
 use medium::Medium;
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use staya_controller::robot::RobotId;
 use std::ops::{Add, AddAssign};
 
 /// What became of packets. Each receiver in range counts on its own.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counts {
     /// Packets that robots put on the air.
     pub sent: u64,
@@ -55,7 +57,7 @@ impl AddAssign for Counts {
 }
 
 /// A packet on its way to one receiver. Arrivals are ordered by time, then by sender.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 struct Held {
     /// When it arrives, microseconds after the start.
     due_us: u64,

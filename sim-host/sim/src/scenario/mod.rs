@@ -38,6 +38,7 @@ use crate::file::{TEXT, read_text};
 use crate::radio::RadioParams;
 use crate::terrain::Terrain;
 use crate::world::MoveRules;
+use serde::{Deserialize, Serialize};
 use staya_controller::agent::{GuidanceSetup, RouteSetup};
 use staya_controller::auth::Key;
 use staya_controller::formation::FormationParams;
@@ -58,7 +59,7 @@ pub struct Overrides {
 }
 
 /// A robot that goes down for a while.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Fault {
     /// Which one.
     pub robot: RobotId,

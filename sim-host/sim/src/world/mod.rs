@@ -130,6 +130,33 @@ impl World {
         &self.terrain
     }
 
+    /// Puts body `index` where and as it was at another time; whoever is in its cell is to be put elsewhere, too. Checks nothing but the map.
+    pub(crate) fn put(&mut self, index: usize, cell: Cell, entered_by: Dir, free_at: u64) -> bool {
+        let Some(to) = self.terrain.index(cell).filter(|_| self.terrain.is_passable(cell)) else {
+            return false;
+        };
+        let own = index as u32 + 1;
+        if let Some(from) = self.terrain.index(self.bodies[index].cell)
+            && self.occupancy[from] == own
+        {
+            self.occupancy[from] = 0;
+        }
+        self.occupancy[to] = own;
+        let id = self.bodies[index].id;
+        self.bodies[index] = Body { id, cell, entered_by, free_at };
+        true
+    }
+
+    /// Whether each body has its cell for itself.
+    pub(crate) fn is_sound(&self) -> bool {
+        self.bodies.iter().enumerate().all(|(index, body)| self.body_at(body.cell) == Some(index))
+    }
+
+    /// Changes a cell of the land, whoever is there.
+    pub(crate) fn put_cell(&mut self, cell: Cell, class: u8) {
+        self.terrain.set(cell, class);
+    }
+
     /// Changes a cell of the land; 0 is a wall.
     ///
     /// # Errors

@@ -25,6 +25,7 @@ use crate::terrain::Terrain;
 use crate::world::MoveRules;
 use crate::world::plane::Solid;
 use spec::Spec;
+use serde::{Deserialize, Serialize};
 use staya_controller::agent::{GuidanceKind, RouteSetup};
 use staya_controller::formation::FormationParams;
 use staya_controller::grid::Cell;
@@ -35,7 +36,7 @@ use staya_controller::robot::RobotId;
 const MAX_ROBOTS: u32 = 1_000_000;
 
 /// An operator's order to all robots.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Order {
     /// The tick in which it arrives.
     pub tick: u32,

@@ -8,6 +8,7 @@ use super::spec::Spec;
 use super::table::{CloudEntry, Place, PlaneRobotEntry, PlaneRobots};
 use super::{checks, within};
 use crate::terrain::Terrain;
+use serde::{Deserialize, Serialize};
 use staya_controller::grid::Cell;
 use staya_controller::rand::Rng;
 use std::collections::HashMap;
@@ -29,7 +30,7 @@ pub struct Start {
 }
 
 /// A place to go to.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Target {
     /// Where it is at the start of the run, or of an order, metres.
     pub position_m: [f64; 3],

@@ -14,6 +14,7 @@ pub use solid::narrow;
 use super::{Refusal, set_cell};
 use crate::nearby::{Cells, Query, Search, Space};
 use crate::terrain::Terrain;
+use serde::{Deserialize, Serialize};
 use staya_controller::agent::Command;
 use staya_controller::body::Body as Limits;
 use staya_controller::geom::Vec3;
@@ -63,7 +64,7 @@ pub struct Plane {
 }
 
 /// How near bodies are to each other and to obstacles.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Clearance {
     /// Least distance between the surfaces of two bodies, metres, negative when they overlap; infinite when no two are
     /// within three radii of each other.
@@ -150,6 +151,26 @@ impl Plane {
     #[must_use]
     pub fn solids(&self) -> &[Solid] {
         &self.solids
+    }
+
+    /// Puts body `index`, behind the robots' an intruder's, where it was at another time, with the velocity that it had.
+    pub(crate) fn put(&mut self, index: usize, position_m: [f64; 3], velocity_mps: [f64; 3]) {
+        let intruders = self.intruders.iter_mut();
+        if let Some(disc) = self.discs.iter_mut().chain(intruders).nth(index) {
+            (disc.position_m, disc.velocity_mps) = (position_m, velocity_mps);
+        }
+    }
+
+    /// Replaces all obstacles.
+    pub(crate) fn put_solids(&mut self, solids: Vec<Solid>) {
+        self.solids = solids;
+    }
+
+    /// Changes a cell of the land, whoever is there.
+    pub(crate) fn put_cell(&mut self, cell: Cell, class: u8) {
+        if let Some(terrain) = &mut self.terrain {
+            terrain.set(cell, class);
+        }
     }
 
     /// Puts obstacles behind those that there are, wherever bodies are.

@@ -1,11 +1,12 @@
 //! What stands in the plane and does not move.
 
 use super::shape::Shape;
+use serde::{Deserialize, Serialize};
 use staya_controller::geom::{Vec2, Vec3};
 use staya_controller::obstacle::Obstacle;
 
 /// An obstacle in world coordinates, metres.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Solid {
     /// An upright wall of no thickness between two points.
     Wall([[f64; 2]; 2]),

@@ -1,0 +1,93 @@
+//! What of the plane changes, to be kept and moved.
+
+use super::{PlaneGround, frames};
+use crate::engine::grid::{Changed, restore_meter};
+use crate::metrics::FormationMeter;
+use crate::scenario::{Order, Target};
+use crate::world::plane::{Clearance, Solid};
+use serde::{Deserialize, Serialize};
+use staya_controller::grid::Cell;
+
+/// What of a body changes, and what its robot is told when it starts anew.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct PlaneBody {
+    position_m: [f64; 3],
+    velocity_mps: [f64; 3],
+    goal: Cell,
+    places: Vec<Target>,
+    since: u32,
+}
+
+/// What is of the whole plane.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct PlaneShared {
+    clearance: Clearance,
+    gap_m: Option<f64>,
+    meter: Option<FormationMeter>,
+    changed: Changed,
+    solids: Vec<Solid>,
+    orders: Vec<Order>,
+    /// Where intruders are, and how they go.
+    intruders: Vec<[[f64; 3]; 2]>,
+}
+
+fn is_finite(vectors: &[[f64; 3]]) -> bool {
+    vectors.as_flattened().iter().all(|x| x.is_finite())
+}
+
+impl PlaneGround {
+    pub(super) fn body_now(&self, index: usize) -> PlaneBody {
+        let disc = &self.plane.discs()[index];
+        PlaneBody {
+            position_m: disc.position_m,
+            velocity_mps: disc.velocity_mps,
+            goal: self.robots[index].goal,
+            places: self.setup.starts[index].places.clone(),
+            since: self.since[index],
+        }
+    }
+
+    pub(super) fn put_body(&mut self, index: usize, body: PlaneBody) -> Result<(), &'static str> {
+        let PlaneBody { position_m, velocity_mps, goal, places, since } = body;
+        if !is_finite(&[position_m, velocity_mps]) {
+            return Err("its body is nowhere");
+        }
+        self.plane.put(index, position_m, velocity_mps);
+        self.robots[index].goal = goal;
+        self.setup.starts[index].places = places;
+        self.since[index] = since;
+        Ok(())
+    }
+
+    pub(super) fn shared_now(&self) -> PlaneShared {
+        let intruders = self.plane.intruders().iter();
+        PlaneShared {
+            clearance: self.clearance,
+            gap_m: self.gap_m,
+            meter: self.meter.clone(),
+            changed: self.changed.clone(),
+            solids: self.plane.solids().to_vec(),
+            orders: self.setup.orders.clone(),
+            intruders: intruders.map(|disc| [disc.position_m, disc.velocity_mps]).collect(),
+        }
+    }
+
+    pub(super) fn put_shared(&mut self, shared: PlaneShared) -> Result<(), &'static str> {
+        let PlaneShared { clearance, gap_m, meter, changed, solids, orders, intruders } = shared;
+        if intruders.len() != self.plane.intruders().len() || !is_finite(intruders.as_flattened()) {
+            return Err("it has other intruders");
+        }
+        restore_meter(&mut self.meter, meter)?;
+        for (&(x, y), &class) in &changed {
+            self.plane.put_cell(Cell::new(x, y), class);
+        }
+        for (index, [position_m, velocity_mps]) in (self.plane.discs().len()..).zip(intruders) {
+            self.plane.put(index, position_m, velocity_mps);
+        }
+        (self.clearance, self.gap_m, self.changed) = (clearance, gap_m, changed);
+        self.plane.put_solids(solids);
+        self.orders = frames(&orders, self.format, self.key.as_ref());
+        self.setup.orders = orders;
+        Ok(())
+    }
+}

@@ -1,0 +1,299 @@
+//! A robot's whole state as bytes, and a run's.
+//!
+//! What never changes in a run is not in it: the engine that takes it back was made of the same scenario. The bytes are
+//! postcard's, of this version of the program; numbers keep their bits. Keys are in them.
+
+use super::{Computer, Engine, Ground, HostLaw, Status};
+use crate::engine::attacker::AttackerState;
+use crate::engine::hash::Chain;
+use crate::engine::intervene::Tuned;
+use crate::engine::intruder::IntruderState;
+use crate::engine::keeper::KeeperState;
+use crate::metrics::waits;
+use crate::radio::{End, HostWire, Weather};
+use crate::record::PacketCounts;
+use crate::scenario::Fault;
+use rayon::prelude::*;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use staya_controller::agent::{Agent, Command, NEIGHBORS, Safety};
+use staya_controller::robot::RobotId;
+use thiserror::Error;
+
+/// What can be kept and put back.
+pub trait State: Serialize + DeserializeOwned + Sync {}
+
+impl<T: Serialize + DeserializeOwned + Sync> State for T {}
+
+/// Bytes that are no state, or not one of this engine's.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("byte {at}: {what}; {remedy}")]
+pub struct StateError {
+    /// Where in the bytes, from 0.
+    pub at: usize,
+    what: String,
+    remedy: &'static str,
+}
+
+const ANEW: &str = "take another checkpoint, or start anew";
+const SAME: &str = "restore it with the scenario, and the program, that made it";
+
+impl StateError {
+    fn new(at: usize, what: impl Into<String>, remedy: &'static str) -> Self {
+        Self { at, what: what.into(), remedy }
+    }
+}
+
+/// Bytes under way, and how far they are read.
+struct Reader<'a> {
+    all: &'a [u8],
+    rest: &'a [u8],
+}
+
+impl<'a> Reader<'a> {
+    const fn new(all: &'a [u8]) -> Self {
+        Self { all, rest: all }
+    }
+
+    const fn at(&self) -> usize {
+        self.all.len() - self.rest.len()
+    }
+
+    /// The next value, which is `what`.
+    fn read<T: DeserializeOwned>(&mut self, what: &str) -> Result<T, StateError> {
+        let mut from = postcard::Deserializer::from_bytes(self.rest);
+        let value = T::deserialize(&mut from);
+        // Where it came to a stop; at worst where it began.
+        let rest = from.finalize().unwrap_or(self.rest);
+        let stopped_at = self.all.len() - rest.len();
+        match value {
+            Ok(value) => {
+                self.rest = rest;
+                Ok(value)
+            }
+            Err(postcard::Error::DeserializeUnexpectedEnd) => {
+                let what = format!("{what} is cut off");
+                Err(StateError::new(self.all.len(), what, ANEW))
+            }
+            Err(error) => Err(StateError::new(stopped_at, format!("{what} makes no sense: {error}"), ANEW)),
+        }
+    }
+}
+
+/// Appends a value.
+fn write(value: &impl Serialize, bytes: &mut Vec<u8>) {
+    // Sequences here know their lengths, and memory takes every byte.
+    let done = postcard::to_extend(value, std::mem::take(bytes));
+    *bytes = done.expect("states have a form");
+}
+
+/// What of a robot changes, but for its agent.
+#[derive(Serialize, Deserialize)]
+struct Robot<B> {
+    mail: Vec<u8>,
+    boot: u8,
+    epoch: u32,
+    down_until: u32,
+    sent_bytes: u64,
+    heard_bytes: u64,
+    status: Status,
+    chain: Chain,
+    command: Command<f32>,
+    arrived: Option<u64>,
+    waits: waits::Robot,
+    body: B,
+}
+
+/// What is of the whole run.
+#[derive(Serialize, Deserialize)]
+struct Whole<S> {
+    seed: u64,
+    robots: usize,
+    tick: u32,
+    /// Those that are still to come.
+    interventions: usize,
+    faults: Vec<Fault>,
+    tuned: Vec<Tuned>,
+    collisions: u64,
+    packets: PacketCounts,
+    throttled: u64,
+    waited: Vec<(u64, u32)>,
+    weather: Weather,
+    ground: S,
+}
+
+impl<W, G, A> Engine<W, G, A>
+where
+    W: Ground,
+    G: HostLaw + State,
+    A: Safety<f32> + Send + State,
+{
+    /// Appends everything that belongs to robot `index` and changes: its body, its computer with agent and mail, its hash, its
+    /// accounts, its end of the radio. To be called between ticks. O(bytes).
+    ///
+    /// # Panics
+    /// When there is no such robot.
+    pub fn pack(&self, index: usize, bytes: &mut Vec<u8>) {
+        let computer = &self.computers[index];
+        write(&(self.robots[index].id, &computer.agent), bytes);
+        let robot = Robot {
+            mail: computer.mail.clone(),
+            boot: computer.boot,
+            epoch: computer.epoch,
+            down_until: computer.down_until,
+            sent_bytes: computer.sent_bytes,
+            heard_bytes: computer.heard_bytes,
+            status: self.statuses[index],
+            chain: self.chains[index],
+            command: self.commands[index].clone(),
+            arrived: self.arrivals.times()[index],
+            waits: self.waits.robot(index),
+            body: self.ground.body(index),
+        };
+        write(&robot, bytes);
+        write(&self.radio.end(index), bytes);
+    }
+
+    /// Puts back what [`Engine::pack`] wrote of the same robot in an engine of the same scenario, and says how many bytes that were. O(bytes).
+    ///
+    /// Robots can be put back one by one: until all are, two may be in one cell.
+    ///
+    /// # Errors
+    /// The bytes are damaged, or of another robot; the robot may be put back in part then.
+    ///
+    /// # Panics
+    /// When there is no such robot.
+    pub fn unpack(&mut self, index: usize, bytes: &[u8]) -> Result<usize, StateError> {
+        let mut from = Reader::new(bytes);
+        let own = self.robots[index].id;
+        let id: RobotId = from.read("the number of a robot")?;
+        if id != own {
+            let what = format!("this is robot {}, not robot {}", id.0, own.0);
+            return Err(StateError::new(0, what, SAME));
+        }
+        let agent: Option<Agent<f32, G, NEIGHBORS, A, HostWire>> = from.read("an agent")?;
+        let at = from.at();
+        let robot: Robot<W::Body> = from.read("a robot")?;
+        let unfit = |at: usize| move |what: &'static str| StateError::new(at, what, SAME);
+        self.ground.set_body(index, robot.body).map_err(unfit(at))?;
+        let at = from.at();
+        let end: End = from.read("an end of the radio")?;
+        self.radio.set_end(index, end).map_err(unfit(at))?;
+        let Robot { mail, boot, epoch, down_until, sent_bytes, heard_bytes, .. } = robot;
+        self.computers[index] = Computer {
+            agent,
+            outbox: heapless::Vec::new(),
+            events: Vec::new(),
+            mail,
+            boot,
+            epoch,
+            down_until,
+            sent_bytes,
+            heard_bytes,
+        };
+        self.statuses[index] = robot.status;
+        self.chains[index] = robot.chain;
+        self.commands[index] = robot.command;
+        self.arrivals.set(index, robot.arrived);
+        self.waits.set_robot(index, robot.waits);
+        Ok(from.at())
+    }
+
+    /// Appends the whole run as it is between two ticks. O(bytes).
+    ///
+    /// # Errors
+    /// Some of its robots run elsewhere.
+    pub fn save(&self, bytes: &mut Vec<u8>) -> Result<(), StateError> {
+        if self.external.is_some() {
+            return Err(StateError::new(bytes.len(), "some robots run elsewhere", "run all of them here"));
+        }
+        let whole = Whole {
+            seed: self.seed,
+            robots: self.robots.len(),
+            tick: self.tick,
+            interventions: self.interventions.len(),
+            faults: self.faults.clone(),
+            tuned: self.tuned.clone(),
+            collisions: self.collisions,
+            packets: self.packets,
+            throttled: self.throttled,
+            waited: self.waits.ticks(),
+            weather: self.radio.weather(),
+            ground: self.ground.shared(),
+        };
+        write(&whole, bytes);
+        for attacker in &self.attackers {
+            write(&attacker.state(), bytes);
+        }
+        for intruder in &self.intruders {
+            write(&intruder.state(), bytes);
+        }
+        if let Some(keeper) = &self.keeper {
+            write(&keeper.state(), bytes);
+        }
+        for index in self.robots.len()..self.positions_m.len() {
+            write(&self.radio.end(index), bytes);
+        }
+        for index in 0..self.robots.len() {
+            self.pack(index, bytes);
+        }
+        write(&self.digest(), bytes);
+        Ok(())
+    }
+
+    /// Goes on where [`Engine::save`] was called, in an engine of the same scenario that has made no tick.
+    ///
+    /// # Errors
+    /// The bytes are damaged, or of another scenario or program; this engine is of no use then.
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), StateError> {
+        let mut from = Reader::new(bytes);
+        if self.tick > 0 || self.external.is_some() {
+            return Err(StateError::new(0, "this run is under way", "restore into one before its first tick"));
+        }
+        let whole: Whole<W::Shared> = from.read("the head of the run")?;
+        if (whole.seed, whole.robots) != (self.seed, self.robots.len()) {
+            let what = format!("it is of {} robots and seed {}", whole.robots, whole.seed);
+            return Err(StateError::new(0, what, SAME));
+        }
+        let unfit = |what: &'static str| StateError::new(0, what, SAME);
+        self.ground.set_shared(whole.ground).map_err(unfit)?;
+        self.tick = whole.tick;
+        let done = self.interventions.len().saturating_sub(whole.interventions);
+        self.interventions.drain(..done);
+        (self.faults, self.tuned) = (whole.faults, whole.tuned);
+        (self.collisions, self.packets, self.throttled) = (whole.collisions, whole.packets, whole.throttled);
+        self.waits.set_ticks(&whole.waited);
+        self.radio.set_weather(whole.weather);
+        for attacker in &mut self.attackers {
+            attacker.restore(from.read::<AttackerState>("an attacker")?);
+        }
+        for intruder in &mut self.intruders {
+            intruder.restore(from.read::<IntruderState>("an intruder")?);
+        }
+        if let Some(keeper) = &mut self.keeper {
+            keeper.restore(from.read::<KeeperState>("the keeper of keys")?);
+        }
+        for index in self.robots.len()..self.positions_m.len() {
+            let at = from.at();
+            let end: End = from.read("an end of the radio")?;
+            self.radio.set_end(index, end).map_err(|what| StateError::new(at, what, SAME))?;
+        }
+        for index in 0..self.robots.len() {
+            let at = from.at();
+            let read = self.unpack(index, from.rest).map_err(|error| StateError { at: at + error.at, ..error })?;
+            from.rest = &from.rest[read..];
+        }
+        let at = from.at();
+        let digest: u64 = from.read("the digest of the robots")?;
+        if digest != self.digest() || !self.ground.is_sound() || !from.rest.is_empty() {
+            return Err(StateError::new(at, "what was restored is not what was saved", SAME));
+        }
+        Ok(())
+    }
+
+    /// Of all agents together.
+    fn digest(&self) -> u64 {
+        let agents = self.computers.par_iter().filter_map(|computer| computer.agent.as_ref());
+        agents.map(Agent::digest).reduce(|| 0, u64::wrapping_add)
+    }
+}
