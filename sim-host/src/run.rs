@@ -1,14 +1,17 @@
 //! `staya run SCENARIO`: one run, its figures and its pictures.
 
 mod also;
+mod checkpoint;
 
 use crate::watch::WatchArgs;
 use also::{Also, AlsoArgs};
 use anyhow::{Context as _, Result, anyhow};
+use checkpoint::{CheckpointArgs, Checkpoints};
 use clap::Args;
 use staya_console::{Ended, Global, Progress, Stop, print, print_json};
 use staya_plot::{motion_pictures, run_pictures};
-use staya_sim::engine::{Moment, Outcome, simulate};
+use staya_sim::checkpoint::{Checkpoint, Place};
+use staya_sim::engine::{Moment, Outcome, Unable, simulate, simulate_from};
 use staya_sim::record::{self, History, Options, Recorder, Results, RobotRow, write_summary};
 use staya_sim::scenario::{Overrides, Scenario};
 use staya_sim::summary::Summary;
@@ -66,6 +69,8 @@ pub struct RunArgs {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
+    checkpoint: CheckpointArgs,
+    #[command(flatten)]
     also: AlsoArgs,
     #[command(flatten)]
     page: WatchArgs,
@@ -80,8 +85,20 @@ impl RunArgs {
         let scenario = self.scenario.load()?;
         let out = self.out.clone().unwrap_or_else(|| Path::new("out").join(&scenario.name));
         let stop = Stop::on_ctrl_c()?;
+        let from = self.checkpoint.from.as_ref().map(|path| Checkpoint::open(path, &scenario)).transpose()?;
+        if let Some(from) = &from
+            && self.also.begins_anew()
+        {
+            eprintln!("what --record and --mcap write begins after tick {}", from.tick());
+        }
+        let before_seconds = from.as_ref().map_or(0.0, Checkpoint::wall_seconds);
+        let checkpoints = self.checkpoint.checkpoint.map(|every| {
+            let place = Place::new(out.with_added_extension("checkpoint"), &scenario);
+            Checkpoints::new(every, place, before_seconds)
+        });
         let page = self.page.watcher(&scenario)?;
-        let summary = run(&scenario, &out, &self.also, page, &stop, global)?;
+        let task = Task { scenario: &scenario, out: &out, from, checkpoints, stop: &stop };
+        let summary = run(task, &self.also, page, global)?;
         if global.json {
             print_json(&summary)?;
         } else {
@@ -96,18 +113,22 @@ pub fn summary(scenario: &Scenario, outcome: &Outcome) -> impl serde::Serialize 
     Summary::new(scenario, outcome, Vec::new())
 }
 
-/// Runs a scenario and leaves everything about it in `out`; what was there before stays until all of it is written.
-fn run(
-    scenario: &Scenario,
-    out: &Path,
-    also: &AlsoArgs,
-    page: Option<Watcher>,
-    stop: &Stop,
-    global: &Global,
-) -> Result<Summary> {
-    let also = Also::begin(also, scenario, page)?;
+/// What to run, from where to where.
+struct Task<'a> {
+    scenario: &'a Scenario,
+    /// The folder for its results.
+    out: &'a Path,
+    from: Option<Checkpoint>,
+    checkpoints: Option<Checkpoints>,
+    stop: &'a Stop,
+}
+
+/// Runs a scenario and leaves everything about it in its folder; what was there before stays until all of it is written.
+fn run(task: Task<'_>, also: &AlsoArgs, page: Option<Watcher>, global: &Global) -> Result<Summary> {
+    let also = Also::begin(also, task.scenario, page)?;
+    let out = task.out;
     let results = Results::begin(out)?;
-    let whole = run_into(scenario, results.dir(), out, also, stop, global).and_then(|summary| {
+    let whole = run_into(task, results.dir(), also, global).and_then(|summary| {
         write_summary(results.dir(), &summary)?;
         Ok(summary)
     });
@@ -127,19 +148,17 @@ fn run(
     }
 }
 
-/// The same in folder `dir`, which will be `out`; without `summary.json`.
-fn run_into(
-    scenario: &Scenario,
-    dir: &Path,
-    out: &Path,
-    mut also: Also<'_>,
-    stop: &Stop,
-    global: &Global,
-) -> Result<Summary> {
-    let recorder = Recorder::new(dir, Options::default())?;
+/// The same in folder `dir`, which will be the results'; without `summary.json`.
+fn run_into(task: Task<'_>, dir: &Path, mut also: Also<'_>, global: &Global) -> Result<Summary> {
+    let Task { scenario, out, mut from, mut checkpoints, stop } = task;
+    let recorder = match &mut from {
+        Some(from) => from.recorder(dir)?,
+        None => Recorder::new(dir, Options::default())?,
+    };
     let began = Instant::now();
-    let (outcome, history) = simulate_recorded(scenario, recorder, &mut also, stop, global)?;
-    let wall_seconds = began.elapsed().as_secs_f64();
+    let (outcome, history) =
+        simulate_recorded(scenario, recorder, &mut also, from.as_ref(), checkpoints.as_mut(), stop, global)?;
+    let wall_seconds = from.map_or(0.0, |from| from.wall_seconds()) + began.elapsed().as_secs_f64();
     let edges: Vec<_> = match &scenario.formation {
         Some(formation) => {
             let id = |place: u16| u32::from(place) + 1;
@@ -167,13 +186,15 @@ fn simulate_recorded(
     scenario: &Scenario,
     mut recorder: Recorder,
     also: &mut Also<'_>,
+    from: Option<&Checkpoint>,
+    mut checkpoints: Option<&mut Checkpoints>,
     stop: &Stop,
     global: &Global,
 ) -> Result<(Outcome, History)> {
     let mut progress = Progress::new(&scenario.name, scenario.ticks.into(), global);
     let mut failed: Option<anyhow::Error> = None;
     let count = scenario.robots.len();
-    let watch = |moment: &Moment<'_>, robots: &mut dyn Iterator<Item = RobotRow>| {
+    let mut watch = |moment: &Moment<'_>, robots: &mut dyn Iterator<Item = RobotRow>| {
         let done = if !also.wants_rows() {
             recorder.tick(moment.row, robots).map_err(Into::into)
         } else {
@@ -187,9 +208,19 @@ fn simulate_recorded(
         }
         let Moment { arrived, waiting, .. } = *moment;
         progress.set(moment.row.tick.into(), || format!("ticks, {arrived} of {count} robots arrived, {waiting} wait"));
-        if stop.is_requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        let is_stopped = stop.is_requested();
+        if let Some(checkpoints) = &mut checkpoints {
+            checkpoints.tick(moment, &mut recorder, is_stopped);
+        }
+        if is_stopped { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
-    let outcome = simulate(scenario, watch).context("the robots cannot be placed")?;
+    let outcome = match from {
+        None => simulate(scenario, watch).context("the robots cannot be placed")?,
+        Some(from) => simulate_from(scenario, from.state(), &mut watch).map_err(|unable| match unable {
+            Unable::State(error) => from.refused(error).into(),
+            misplaced => anyhow!(misplaced).context("the robots cannot be placed"),
+        })?,
+    };
     progress.finish();
     match failed {
         Some(error) => {

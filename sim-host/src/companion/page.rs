@@ -128,6 +128,7 @@ impl Shown {
             solids: &[],
             goals_m: Default::default(),
             trace_hash: 0,
+            run: None,
         };
         watcher.show(&moment, (0..self.robots.len()).map(|index| swarm.row(index)), &swarm);
     }

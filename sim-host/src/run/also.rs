@@ -39,6 +39,13 @@ pub struct AlsoArgs {
     gif_seconds: u32,
 }
 
+impl AlsoArgs {
+    /// Whether there are files that hold nothing of what was before a checkpoint.
+    pub const fn begins_anew(&self) -> bool {
+        self.record.is_some() || self.mcap.is_some()
+    }
+}
+
 /// The files under way, and the page.
 pub struct Also<'a> {
     args: &'a AlsoArgs,

@@ -34,8 +34,8 @@ pub use inspect::{Choice, Inspection, Known, Permitted, Scratchpad, SeenLand, kn
 pub use intervene::Change;
 pub use operator::{Observation, Operated, operated};
 pub use plane::{PlaneGround, Senses};
-pub use state::{State, StateError};
-pub use simulate::{Moment, Outcome, WIDE, Watch, simulate, simulate_with};
+pub use simulate::{Moment, Outcome, Unable, WIDE, Watch, simulate, simulate_from, simulate_with};
+pub use state::{Saves, State, StateError};
 
 use crate::metrics::Arrivals;
 use crate::metrics::waits::Waits;

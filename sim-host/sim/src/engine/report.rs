@@ -56,6 +56,7 @@ where
             land: self.ground.terrain(),
             solids: self.ground.solids(),
             trace_hash: hash::sum(&self.chains),
+            run: None,
         }
     }
 

@@ -1,5 +1,6 @@
 //! A whole scenario with the guidance that it asks for.
 
+use super::state::{Saves, State, StateError};
 use super::witness::Witness;
 use super::{Engine, ExternalController, Grid, Ground, HostLaw, PlaneGround};
 use crate::metrics::waits::WaitCount;
@@ -14,6 +15,7 @@ use staya_controller::agent::{
 };
 use std::collections::HashMap;
 use std::ops::ControlFlow;
+use thiserror::Error;
 
 /// Cells of a search for windows up to radius 16 with their border: (2 * 16 + 3)^2.
 pub const WIDE: usize = 1225;
@@ -44,6 +46,8 @@ pub struct Moment<'a> {
     pub goals_m: [Option<[f64; 3]>; WAYPOINTS],
     /// Of the run so far, as in [`Outcome::trace_hash`].
     pub trace_hash: u64,
+    /// The run itself, to be saved; `None` where it is none that could be.
+    pub run: Option<&'a dyn Saves>,
 }
 
 /// What came of a run.
@@ -104,6 +108,29 @@ pub fn simulate_with(
         AnyEngine::Plane(engine) => go(scenario, *engine, external, watch),
         AnyEngine::Narrow(engine) => go(scenario, *engine, external, watch),
         AnyEngine::Wide(engine) => go(scenario, *engine, external, watch),
+    })
+}
+
+/// Why a run cannot begin.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum Unable {
+    /// Its robots cannot be placed.
+    #[error(transparent)]
+    Misplaced(#[from] Misplaced),
+    /// It cannot go on from this state.
+    #[error(transparent)]
+    State(#[from] StateError),
+}
+
+/// Goes on with a run from what [`Saves::save`] gave, as [`simulate`] would have; `watch` sees the ticks after that.
+///
+/// # Errors
+/// See [`Grid::new`] and [`Engine::restore`].
+pub fn simulate_from(scenario: &Scenario, state: &[u8], watch: &mut Watch<'_>) -> Result<Outcome, Unable> {
+    Ok(match AnyEngine::new(scenario)? {
+        AnyEngine::Plane(engine) => go_on(scenario, *engine, state, watch)?,
+        AnyEngine::Narrow(engine) => go_on(scenario, *engine, state, watch)?,
+        AnyEngine::Wide(engine) => go_on(scenario, *engine, state, watch)?,
     })
 }
 
@@ -177,18 +204,51 @@ fn go<W, G, A>(
 ) -> Outcome
 where
     W: Ground,
-    G: HostLaw,
-    A: Safety<f32> + Send,
+    G: HostLaw + State,
+    A: Safety<f32> + Send + State,
 {
+    let is_here = external.is_none();
     if let Some(controllers) = external {
         engine = engine.with_external(scenario, controllers);
     }
-    let mut row = engine.first_row();
-    loop {
-        let flow = watch(&engine.moment(&row), &mut engine.rows());
-        if flow.is_break() || engine.is_over() || engine.ticks() >= scenario.ticks {
-            return engine.outcome();
-        }
-        row = engine.step();
+    let row = engine.first_row();
+    let moment = Moment { run: is_here.then_some(&engine as &dyn Saves), ..engine.moment(&row) };
+    if watch(&moment, &mut engine.rows()).is_break() {
+        return engine.outcome();
     }
+    ticks(scenario, engine, watch)
+}
+
+/// Ticks until the end, from another moment than the first.
+fn go_on<W, G, A>(
+    scenario: &Scenario,
+    mut engine: Engine<W, G, A>,
+    state: &[u8],
+    watch: &mut Watch<'_>,
+) -> Result<Outcome, StateError>
+where
+    W: Ground,
+    G: HostLaw + State,
+    A: Safety<f32> + Send + State,
+{
+    engine.restore(state)?;
+    Ok(ticks(scenario, engine, watch))
+}
+
+/// Ticks until the end; the moment before the first of them has been seen.
+fn ticks<W, G, A>(scenario: &Scenario, mut engine: Engine<W, G, A>, watch: &mut Watch<'_>) -> Outcome
+where
+    W: Ground,
+    G: HostLaw + State,
+    A: Safety<f32> + Send + State,
+{
+    let is_here = engine.external.is_none();
+    while !engine.is_over() && engine.ticks() < scenario.ticks {
+        let row = engine.step();
+        let moment = Moment { run: is_here.then_some(&engine as &dyn Saves), ..engine.moment(&row) };
+        if watch(&moment, &mut engine.rows()).is_break() {
+            break;
+        }
+    }
+    engine.outcome()
 }

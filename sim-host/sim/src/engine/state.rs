@@ -18,12 +18,39 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{Agent, Command, NEIGHBORS, Safety};
 use staya_controller::robot::RobotId;
+use std::fmt;
 use thiserror::Error;
 
 /// What can be kept and put back.
 pub trait State: Serialize + DeserializeOwned + Sync {}
 
 impl<T: Serialize + DeserializeOwned + Sync> State for T {}
+
+/// A run that can be saved.
+pub trait Saves {
+    /// See [`Engine::save`].
+    ///
+    /// # Errors
+    /// See there.
+    fn save(&self, bytes: &mut Vec<u8>) -> Result<(), StateError>;
+}
+
+impl fmt::Debug for dyn Saves + '_ {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("run")
+    }
+}
+
+impl<W, G, A> Saves for Engine<W, G, A>
+where
+    W: Ground,
+    G: HostLaw + State,
+    A: Safety<f32> + Send + State,
+{
+    fn save(&self, bytes: &mut Vec<u8>) -> Result<(), StateError> {
+        Self::save(self, bytes)
+    }
+}
 
 /// Bytes that are no state, or not one of this engine's.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
@@ -41,6 +68,12 @@ const SAME: &str = "restore it with the scenario, and the program, that made it"
 impl StateError {
     fn new(at: usize, what: impl Into<String>, remedy: &'static str) -> Self {
         Self { at, what: what.into(), remedy }
+    }
+
+    /// The same where so many bytes stand before.
+    #[must_use]
+    pub fn after(self, bytes: usize) -> Self {
+        Self { at: self.at.saturating_add(bytes), ..self }
     }
 }
 
@@ -280,7 +313,7 @@ where
         }
         for index in 0..self.robots.len() {
             let at = from.at();
-            let read = self.unpack(index, from.rest).map_err(|error| StateError { at: at + error.at, ..error })?;
+            let read = self.unpack(index, from.rest).map_err(|error| error.after(at))?;
             from.rest = &from.rest[read..];
         }
         let at = from.at();

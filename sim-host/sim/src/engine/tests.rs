@@ -338,3 +338,4 @@ mod intervene;
 mod intruder;
 mod operator;
 mod plane;
+mod state;

@@ -101,6 +101,19 @@ impl LineFile {
         Ok(this)
     }
 
+    /// Goes on with a file that ends with a whole block.
+    pub fn resume(path: &Path) -> Result<Self, Error> {
+        let file = File::options().append(true).open(path).map_err(Error::new("open", path))?;
+        let written = file.metadata().map_err(Error::new("read", path))?.len();
+        Ok(Self { file, path: path.to_owned(), pending: Vec::new(), written })
+    }
+
+    /// The file, and its bytes once all that has gathered is written.
+    pub fn written(&mut self) -> Result<(PathBuf, u64), Error> {
+        self.flush()?;
+        Ok((self.path.clone(), self.written))
+    }
+
     /// Where to append; the block is complete at the next [`LineFile::end_block`].
     pub const fn pending(&mut self) -> &mut Vec<u8> {
         &mut self.pending

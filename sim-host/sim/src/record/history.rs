@@ -1,6 +1,7 @@
 //! What pictures need of a run, in bounded memory.
 
 use super::{PacketCounts, RobotRow, TickRow};
+use serde::{Deserialize, Serialize};
 use staya_controller::grid::Cell;
 use staya_controller::robot::Mode;
 
@@ -8,7 +9,7 @@ use staya_controller::robot::Mode;
 const SERIES_POINTS: usize = 1 << 14;
 
 /// One robot in one frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
     /// World position, metres.
     pub position_m: [f64; 2],
@@ -28,7 +29,7 @@ impl From<RobotRow> for Sample {
 }
 
 /// All robots after one tick.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
     /// Number of the tick.
     pub tick: u32,
@@ -39,7 +40,7 @@ pub struct Frame {
 }
 
 /// The swarm as a whole over one or more ticks.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SeriesPoint {
     /// First tick.
     pub tick: u32,
@@ -87,7 +88,7 @@ impl From<&TickRow> for SeriesPoint {
 ///
 /// Memory is bounded whatever the run's length: see [`super::Options::history_samples`]; the
 /// series holds at most 16,384 points.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct History {
     frames: Vec<Frame>,
     series: Vec<SeriesPoint>,

@@ -20,8 +20,9 @@ use serde::{Deserialize, Serialize};
 use staya_controller::agent::{Overclaims, Refused, Wait};
 use staya_controller::grid::Cell;
 use staya_controller::robot::Mode;
+use std::io::ErrorKind;
 use std::ops::{Add, AddAssign};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Where a body is and how it moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -185,6 +186,9 @@ impl Default for Options {
     }
 }
 
+/// What of a [`Recorder`] is in no file.
+pub type Saved = (u32, History);
+
 /// Collects a run, tick by tick.
 #[derive(Debug)]
 pub struct Recorder {
@@ -217,6 +221,34 @@ impl Recorder {
             }),
             history: History::with_capacity(options.history_samples),
         })
+    }
+
+    /// What a recorder was that is gone: `trace.csv` and `series.csv` are in `out_dir` as [`Recorder::written`] had them, all else is
+    /// what [`Recorder::saved`] gave.
+    ///
+    /// # Errors
+    /// A file cannot be opened or made.
+    pub fn resumed(out_dir: &Path, (trace_every, history): Saved) -> Result<Self, Error> {
+        csv::write_schemas(out_dir)?;
+        let trace = LineFile::resume(&out_dir.join("trace.csv"))?;
+        let series = LineFile::resume(&out_dir.join("series.csv"))?;
+        Ok(Self { files: Some(Files { trace, series, trace_every }), history })
+    }
+
+    /// What is in no file.
+    pub fn saved(&self) -> impl Serialize {
+        (self.files.as_ref().map_or(0, |files| files.trace_every), &self.history)
+    }
+
+    /// `trace.csv` and `series.csv` with their lengths, once all that is in memory is in them.
+    ///
+    /// # Errors
+    /// They cannot be written, or there are none.
+    pub fn written(&mut self) -> Result<[(PathBuf, u64); 2], Error> {
+        let Some(files) = &mut self.files else {
+            return Err(Error::new("read", Path::new("trace.csv"))(ErrorKind::NotFound.into()));
+        };
+        Ok([files.trace.written()?, files.series.written()?])
     }
 
     /// A recorder that keeps only the history.

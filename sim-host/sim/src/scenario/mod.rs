@@ -6,6 +6,7 @@
 mod authentication;
 mod check;
 mod claims;
+mod fingerprint;
 mod intervention;
 mod params;
 mod plane;

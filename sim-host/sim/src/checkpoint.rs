@@ -1,0 +1,338 @@
+//! A run's checkpoint: one file with all that it takes to go on, to the same trace hash and the same records.
+//!
+//! ```text
+//! "staya checkpoint" format:u32, then head, state, history, trace.csv and series.csv so far, each as
+//! length:u64 bytes crc32:u32, of length and bytes
+//! ```
+//!
+//! Integers are little-endian; head, state and history are postcard's. A file comes into being whole: it is written beside
+//! its place, synced and renamed; the one before it stays as `FILE.old`. Keys of the scenario are in it, so only its
+//! owner may read it.
+
+use crate::engine::{Saves, StateError};
+use crate::file::{self, read_remedy};
+use crate::record::{self, Recorder};
+use crate::scenario::Scenario;
+use crc32fast::Hasher;
+use serde::{Deserialize, Serialize};
+use std::ffi::OsString;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, ErrorKind, Read, Seek as _, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+const MAGIC: &[u8; 16] = b"staya checkpoint";
+/// Of the file; raised when head, state or history get another form.
+const FORMAT: u32 = 1;
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+/// What the file holds, in order.
+const PARTS: [&str; 5] = ["head", "state", "history", "trace.csv", "series.csv"];
+const FIRST: u64 = MAGIC.len() as u64 + 4;
+
+/// A file that is no checkpoint of this scenario, or is damaged.
+#[derive(Debug, Error)]
+#[error("{}: {what}; {remedy}", path.display())]
+pub struct CheckpointError {
+    path: PathBuf,
+    what: String,
+    remedy: String,
+}
+
+/// Of what a checkpoint is.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Head {
+    version: String,
+    scenario: String,
+    fingerprint: u64,
+    tick: u32,
+    wall_seconds: f64,
+}
+
+/// Where checkpoints of a run go.
+#[derive(Clone, Debug)]
+pub struct Place {
+    path: PathBuf,
+    scenario: String,
+    fingerprint: u64,
+}
+
+impl Place {
+    /// The file for a run of this scenario.
+    #[must_use]
+    pub fn new(path: PathBuf, scenario: &Scenario) -> Self {
+        Self { path, scenario: scenario.name.clone(), fingerprint: scenario.fingerprint() }
+    }
+
+    /// The file.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes a checkpoint of a run that is at `tick` and has taken so long. Until it is whole, the one before it stays; then that is
+    /// `FILE.old`.
+    ///
+    /// # Errors
+    /// It cannot be written, or the records so far cannot be read. The one before it is as it was.
+    ///
+    /// # Panics
+    /// Some robots of the run are elsewhere.
+    pub fn write(
+        &self,
+        tick: u32,
+        wall_seconds: f64,
+        run: &dyn Saves,
+        recorder: &mut Recorder,
+    ) -> Result<(), record::Error> {
+        let mut state = Vec::new();
+        run.save(&mut state).expect("all robots are here");
+        let head = Head {
+            version: VERSION.to_owned(),
+            scenario: self.scenario.clone(),
+            fingerprint: self.fingerprint,
+            tick,
+            wall_seconds,
+        };
+        let parts = [encoded(&head), state, encoded(&recorder.saved())];
+        let [trace, series] = recorder.written()?;
+        let temporary = beside(&self.path, &format!(".{}.tmp", std::process::id()));
+        let done = (|| {
+            let mut out = BufWriter::new(create_private(&temporary)?);
+            out.write_all(MAGIC)?;
+            out.write_all(&FORMAT.to_le_bytes())?;
+            for part in &parts {
+                write_part(&mut out, part.len() as u64, &mut part.as_slice())?;
+            }
+            for (path, length) in [trace, series] {
+                write_part(&mut out, length, &mut File::open(path)?)?;
+            }
+            out.into_inner()?.sync_all()?;
+            self.replace(&temporary)
+        })();
+        done.map_err(|error| {
+            // The error that matters is the first one.
+            let _ = fs::remove_file(&temporary);
+            record::Error::new("write", &self.path)(error)
+        })
+    }
+
+    /// The whole new file becomes the checkpoint, the checkpoint the old one; there is one at each moment.
+    fn replace(&self, temporary: &Path) -> io::Result<()> {
+        let link = beside(&self.path, &format!(".old.{}.tmp", std::process::id()));
+        let old = beside(&self.path, ".old");
+        let kept = fs::hard_link(&self.path, &link).and_then(|()| fs::rename(&link, &old));
+        match kept {
+            Err(error) if error.kind() == ErrorKind::NotFound => {}
+            // Where there are no links; a rename shows for a moment.
+            Err(_) => fs::rename(&self.path, &old)?,
+            Ok(()) => {}
+        }
+        fs::rename(temporary, &self.path)?;
+        // So that the names are on the disk, too; not every system can.
+        let folder = self.path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        let _ = File::open(folder.unwrap_or(Path::new("."))).and_then(|folder| folder.sync_all());
+        Ok(())
+    }
+}
+
+fn encoded(value: &impl Serialize) -> Vec<u8> {
+    postcard::to_extend(value, Vec::new()).expect("it has a form")
+}
+
+fn beside(path: &Path, end: &str) -> PathBuf {
+    let mut name = OsString::from(path.file_name().unwrap_or_default());
+    name.push(end);
+    path.with_file_name(name)
+}
+
+fn create_private(path: &Path) -> io::Result<File> {
+    let mut options = OpenOptions::new();
+    options.write(true).create(true).truncate(true);
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+    options.open(path)
+}
+
+fn write_part(out: &mut impl Write, length: u64, from: &mut dyn Read) -> io::Result<()> {
+    let mut crc = Hasher::new();
+    let size = length.to_le_bytes();
+    crc.update(&size);
+    out.write_all(&size)?;
+    copy(length, from, &mut crc, out)?;
+    out.write_all(&crc.finalize().to_le_bytes())
+}
+
+/// Copies so many bytes.
+fn copy(length: u64, from: &mut dyn Read, crc: &mut Hasher, out: &mut dyn Write) -> io::Result<()> {
+    let mut block = [0; 1 << 16];
+    let mut left = length;
+    while left > 0 {
+        let most = usize::try_from(left).unwrap_or(usize::MAX).min(block.len());
+        let block = &mut block[..most];
+        from.read_exact(block)?;
+        crc.update(block);
+        out.write_all(block)?;
+        left -= most as u64;
+    }
+    Ok(())
+}
+
+/// A part of a file.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    /// Of its first byte.
+    at: u64,
+    length: u64,
+}
+
+/// A checkpoint that was read and is whole, of this scenario and this program.
+#[derive(Debug)]
+pub struct Checkpoint {
+    path: PathBuf,
+    file: File,
+    parts: [Part; PARTS.len()],
+    head: Head,
+    state: Vec<u8>,
+}
+
+impl Checkpoint {
+    /// Opens a checkpoint of a run of `scenario`, which may be longer than it was. Reads all of it once.
+    ///
+    /// # Errors
+    /// It cannot be read, is damaged or cut off, of another program's version or another scenario.
+    pub fn open(path: &Path, scenario: &Scenario) -> Result<Self, CheckpointError> {
+        let error = |what: String, remedy: &str| CheckpointError {
+            path: path.to_owned(),
+            what,
+            remedy: remedy.to_owned(),
+        };
+        let of_io = |source: io::Error| error(source.to_string(), read_remedy(&source));
+        let old = beside(path, ".old");
+        let other = if old.exists() { format!("take {}", old.display()) } else { "start anew".to_owned() };
+        let mut file = file::open(path).map_err(of_io)?;
+        let size = file.metadata().map_err(of_io)?.len();
+        let cut = |at: u64, part: &str| error(format!("byte {at}: it ends in its {part}"), &other);
+        let mut first = [0; FIRST as usize];
+        if size >= FIRST {
+            file.read_exact(&mut first).map_err(of_io)?;
+        }
+        let Some(format) = first.strip_prefix(MAGIC) else {
+            return Err(error("byte 0: this is no checkpoint".to_owned(), "name a file that `staya run --checkpoint` made"));
+        };
+        if format != FORMAT.to_le_bytes() {
+            let what = format!("byte {}: it is of another version of the program", MAGIC.len());
+            return Err(error(what, "go on with the program that made it, or start anew"));
+        }
+        let mut parts = [Part { at: 0, length: 0 }; PARTS.len()];
+        let mut kept = [Vec::new(), Vec::new()];
+        let mut at = FIRST;
+        for (index, name) in PARTS.into_iter().enumerate() {
+            let mut number = [0; 8];
+            if size - at < 8 {
+                return Err(cut(size, name));
+            }
+            file.read_exact(&mut number).map_err(of_io)?;
+            let length = u64::from_le_bytes(number);
+            if length > (size - at - 8).saturating_sub(4) {
+                // Or its length is damaged; the rest cannot be found either way.
+                return Err(cut(size, name));
+            }
+            parts[index] = Part { at: at + 8, length };
+            let mut crc = Hasher::new();
+            crc.update(&number);
+            let done = match kept.get_mut(index) {
+                Some(bytes) => copy(length, &mut file, &mut crc, bytes),
+                None => copy(length, &mut file, &mut crc, &mut io::sink()),
+            };
+            done.map_err(of_io)?;
+            let mut expected = [0; 4];
+            file.read_exact(&mut expected).map_err(of_io)?;
+            if crc.finalize().to_le_bytes() != expected {
+                let what = format!("bytes {at} to {}: its {name} is damaged", at + 11 + length);
+                return Err(error(what, &other));
+            }
+            at += 12 + length;
+        }
+        if at < size {
+            return Err(error(format!("byte {at}: there is more than a checkpoint"), &other));
+        }
+        let [head, state] = kept;
+        let in_head = format!("byte {}", parts[0].at);
+        let head: Head = postcard::from_bytes(&head)
+            .map_err(|_| error(format!("{in_head}: its head makes no sense"), &other))?;
+        if head.version != VERSION {
+            let what = format!("{in_head}: it is of version {}, this is {VERSION}", head.version);
+            return Err(error(what, "go on with the program that made it, or start anew"));
+        }
+        if head.fingerprint != scenario.fingerprint() {
+            let what = match head.scenario == scenario.name {
+                true => format!("{in_head}: `{}` has changed since (or its seed, map or key)", scenario.name),
+                false => format!("{in_head}: it is of the scenario `{}`, not of `{}`", head.scenario, scenario.name),
+            };
+            return Err(error(what, "name the scenario as it was run; only `ticks` may differ"));
+        }
+        if head.tick > scenario.ticks {
+            let what = format!("{in_head}: it is at tick {}, where this run is over", head.tick);
+            return Err(error(what, "raise `ticks`, or take an earlier one"));
+        }
+        Ok(Self { path: path.to_owned(), file, parts, head, state })
+    }
+
+    /// The tick that the run is at.
+    #[must_use]
+    pub const fn tick(&self) -> u32 {
+        self.head.tick
+    }
+
+    /// How long the run has taken until then, seconds.
+    #[must_use]
+    pub const fn wall_seconds(&self) -> f64 {
+        self.head.wall_seconds
+    }
+
+    /// The state of the run, for [`simulate_from`](crate::engine::simulate_from).
+    #[must_use]
+    pub fn state(&self) -> &[u8] {
+        &self.state
+    }
+
+    /// What the engine says of the state, said with the file.
+    #[must_use]
+    pub fn refused(&self, error: StateError) -> CheckpointError {
+        let begin = usize::try_from(self.parts[1].at).unwrap_or(usize::MAX);
+        CheckpointError {
+            path: self.path.clone(),
+            what: error.after(begin).to_string(),
+            remedy: "it may be of another build of this version".to_owned(),
+        }
+    }
+
+    /// A recorder that goes on in folder `dir` where this one was.
+    ///
+    /// # Errors
+    /// The records so far cannot be read, or not be written there.
+    pub fn recorder(&mut self, dir: &Path) -> Result<Recorder, record::Error> {
+        let reading = |error: io::Error| record::Error::new("read", &self.path)(error);
+        let mut bytes = Vec::new();
+        part(&mut self.file, self.parts[2], &mut bytes).map_err(reading)?;
+        let saved = postcard::from_bytes(&bytes)
+            .map_err(|error| reading(io::Error::new(ErrorKind::InvalidData, format!("its history: {error}"))))?;
+        record::make_dir(dir)?;
+        for (name, index) in [("trace.csv", 3), ("series.csv", 4)] {
+            let path = dir.join(name);
+            let mut out = BufWriter::new(File::create(&path).map_err(record::Error::new("make", &path))?);
+            let copied = part(&mut self.file, self.parts[index], &mut out).and_then(|()| out.flush());
+            copied.map_err(record::Error::new("write", &path))?;
+        }
+        Recorder::resumed(dir, saved)
+    }
+}
+
+/// Reads a part of a file.
+fn part(file: &mut File, part: Part, out: &mut dyn Write) -> io::Result<()> {
+    file.seek(SeekFrom::Start(part.at))?;
+    copy(part.length, file, &mut Hasher::new(), out)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,171 @@
+use super::*;
+use crate::engine::{Moment, simulate, simulate_from};
+use crate::record::{Options, RobotRow};
+use crate::scenario::Overrides;
+use std::ops::ControlFlow;
+
+const TEXT: &str = "name = \"t\"\nticks = 12\ntick_s = 0.5\n[terrain]\ncell_m = 2\n\
+    uniform = { width = 20, height = 20, classes = 1 }\n[robots]\nlist = [{ start = [3, 3], goal = [16, 3] }]\n";
+
+fn scenario(rest: &str, overrides: &Overrides) -> Scenario {
+    Scenario::parse(&format!("{TEXT}{rest}"), Path::new("t.toml"), overrides).expect("a good scenario")
+}
+
+fn of(rest: &str) -> Scenario {
+    scenario(rest, &Overrides::default())
+}
+
+/// Runs a scenario with records in `dir/whole`, with checkpoints after `ticks` in `dir/checkpoint`.
+fn run(dir: &Path, scenario: &Scenario, ticks: &[u32]) -> Place {
+    let place = Place::new(dir.join("checkpoint"), scenario);
+    let mut recorder = Recorder::new(dir.join("whole"), Options::default()).expect("it can be made");
+    simulate(scenario, |moment: &Moment<'_>, robots: &mut dyn Iterator<Item = RobotRow>| {
+        recorder.tick(moment.row, robots).expect("it can be written");
+        if ticks.contains(&moment.row.tick) {
+            let run = moment.run.expect("it is a run");
+            place.write(moment.row.tick, 1.5, run, &mut recorder).expect("it can be written");
+        }
+        ControlFlow::Continue(())
+    })
+    .expect("robots can be placed");
+    recorder.finish().expect("it can be written");
+    place
+}
+
+#[test]
+fn records_go_on_to_the_same_bytes() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let scenario = of("");
+    let place = run(dir.path(), &scenario, &[5]);
+    let mut from = Checkpoint::open(place.path(), &scenario).expect("it is whole");
+    assert_eq!((from.tick(), from.wall_seconds()), (5, 1.5));
+    let again = dir.path().join("again");
+    let mut recorder = from.recorder(&again).expect("it can be made");
+    simulate_from(&scenario, from.state(), &mut |moment, robots| {
+        recorder.tick(moment.row, robots).expect("it can be written");
+        ControlFlow::Continue(())
+    })
+    .expect("it goes on");
+    let history = recorder.finish().expect("it can be written");
+    assert_eq!(history.ticks(), 13);
+    for name in ["trace.csv", "series.csv", "trace.schema.json", "series.schema.json"] {
+        let [one, other] = ["whole", "again"].map(|folder| fs::read(dir.path().join(folder).join(name)).expect(name));
+        assert!(one == other, "{name}");
+    }
+}
+
+#[test]
+fn the_last_two_are_kept_and_nothing_else() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let scenario = of("");
+    let place = run(dir.path(), &scenario, &[2, 4, 6]);
+    let tick = |path: &Path| Checkpoint::open(path, &scenario).expect("it is whole").tick();
+    assert_eq!((tick(place.path()), tick(&dir.path().join("checkpoint.old"))), (6, 4));
+    assert_eq!(fs::read_dir(dir.path()).expect("a folder").count(), 3);
+}
+
+#[cfg(unix)]
+#[test]
+fn only_its_owner_may_read_it() {
+    use std::os::unix::fs::PermissionsExt as _;
+    let dir = tempfile::tempdir().expect("a folder");
+    let place = run(dir.path(), &of(""), &[2]);
+    assert_eq!(fs::metadata(place.path()).expect("it is there").permissions().mode() & 0o777, 0o600);
+}
+
+#[test]
+fn what_is_damaged_or_cut_off_is_refused_by_file_and_byte() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let scenario = of("");
+    let place = run(dir.path(), &scenario, &[1]);
+    let whole = fs::read(place.path()).expect("it is there");
+    let refused = |bytes: &[u8]| {
+        fs::write(place.path(), bytes).expect("it can be written");
+        let error = Checkpoint::open(place.path(), &scenario).expect_err("it is damaged").to_string();
+        assert!(error.starts_with(place.path().to_str().expect("UTF-8")) && error.contains(": byte"), "{error}");
+        error
+    };
+    for at in 0..whole.len() {
+        let mut bytes = whole.clone();
+        bytes[at] ^= 1 << (at % 8);
+        refused(&bytes);
+        refused(&whole[..at]);
+    }
+    assert!(refused(&[&whole[..], b"x"].concat()).contains("there is more"));
+    fs::write(dir.path().join("checkpoint.old"), &whole).expect("it can be written");
+    assert!(refused(&whole[..whole.len() - 1]).contains("take "));
+    fs::write(place.path(), &whole).expect("it can be written");
+    Checkpoint::open(place.path(), &scenario).expect("it is whole");
+}
+
+#[test]
+fn another_scenario_is_refused_and_a_longer_run_is_not() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let scenario = of("");
+    let place = run(dir.path(), &scenario, &[5]);
+    let refused = |scenario: &Scenario| {
+        Checkpoint::open(place.path(), scenario).expect_err("it is of another one").to_string()
+    };
+    for rest in ["[radio]\nloss = 0.1\n", "[authentication]\nkey = \"passphrase: of the tests\"\n"] {
+        assert!(refused(&of(rest)).contains("`t` has changed"), "{rest}");
+    }
+    let with = |overrides: Overrides| self::scenario("", &overrides);
+    assert!(refused(&with(Overrides { seed: Some(2), ..Overrides::default() })).contains("has changed"));
+    let mut named = of("");
+    named.name = "u".to_owned();
+    named.seed = 7;
+    assert!(refused(&named).contains("of the scenario `t`, not of `u`"));
+    let ticks = |ticks| with(Overrides { ticks: Some(ticks), ..Overrides::default() });
+    assert!(refused(&ticks(4)).contains("at tick 5"));
+    Checkpoint::open(place.path(), &ticks(500)).expect("a longer run");
+}
+
+#[test]
+fn another_version_of_the_program_is_refused() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let scenario = of("");
+    let place = run(dir.path(), &scenario, &[1]);
+    let whole = fs::read(place.path()).expect("it is there");
+    let mut other = whole.clone();
+    other[MAGIC.len()] += 1;
+    fs::write(place.path(), &other).expect("it can be written");
+    let error = Checkpoint::open(place.path(), &scenario).expect_err("another format").to_string();
+    assert!(error.contains("another version of the program"), "{error}");
+    let mut other = whole[..FIRST as usize].to_vec();
+    let mut head: Head = {
+        let length = u64::from_le_bytes(whole[20..28].try_into().expect("8 bytes")) as usize;
+        postcard::from_bytes(&whole[28..28 + length]).expect("a head")
+    };
+    let old = encoded(&head).len();
+    head.version = "0.0.1".to_owned();
+    let head = encoded(&head);
+    write_part(&mut other, head.len() as u64, &mut head.as_slice()).expect("memory");
+    other.extend_from_slice(&whole[28 + old + 4..]);
+    fs::write(place.path(), &other).expect("it can be written");
+    let error = Checkpoint::open(place.path(), &scenario).expect_err("another version").to_string();
+    assert!(error.contains("version 0.0.1, this is"), "{error}");
+}
+
+#[cfg(unix)]
+#[test]
+fn what_cannot_be_written_leaves_the_one_before() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let scenario = of("");
+    let place = run(dir.path(), &scenario, &[3]);
+    let before = fs::read(place.path()).expect("it is there");
+    // A device that is always full takes the place of the temporary file.
+    let temporary = beside(place.path(), &format!(".{}.tmp", std::process::id()));
+    std::os::unix::fs::symlink("/dev/full", &temporary).expect("a link");
+    let mut recorder = Recorder::new(dir.path().join("again"), Options::default()).expect("it can be made");
+    let mut failed = None;
+    simulate(&scenario, |moment: &Moment<'_>, robots: &mut dyn Iterator<Item = RobotRow>| {
+        recorder.tick(moment.row, robots).expect("it can be written");
+        failed = place.write(moment.row.tick, 0.0, moment.run.expect("a run"), &mut recorder).err();
+        ControlFlow::Break(())
+    })
+    .expect("robots can be placed");
+    let error = failed.expect("the disk is full").to_string();
+    assert!(error.contains("free some space") && error.contains("checkpoint"), "{error}");
+    assert!(fs::read(place.path()).expect("it is there") == before);
+    assert!(!temporary.exists());
+}

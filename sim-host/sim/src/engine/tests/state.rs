@@ -1,0 +1,258 @@
+//! What goes on from a saved state is what would have been.
+
+use super::super::simulate::AnyEngine;
+use super::super::state::State;
+use super::*;
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
+
+/// Does the same with whatever engine a scenario has.
+macro_rules! with_engines {
+    ($scenario:expr, $check:ident($($rest:expr),*)) => {{
+        let make = || AnyEngine::new($scenario).expect("robots can be placed");
+        match make() {
+            AnyEngine::Plane(_) => $check(
+                &|| match make() { AnyEngine::Plane(engine) => engine, _ => unreachable!() }, $($rest),*),
+            AnyEngine::Narrow(_) => $check(
+                &|| match make() { AnyEngine::Narrow(engine) => engine, _ => unreachable!() }, $($rest),*),
+            AnyEngine::Wide(_) => $check(
+                &|| match make() { AnyEngine::Wide(engine) => engine, _ => unreachable!() }, $($rest),*),
+        }
+    }};
+}
+
+/// Everything that records could hold of a tick.
+fn seen<W: Ground, G: HostLaw, A: Safety<f32> + Send>(engine: &Engine<W, G, A>, row: &TickRow) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    format!("{:?}", engine.moment(row)).hash(&mut hasher);
+    for robot in engine.rows() {
+        format!("{robot:?}").hash(&mut hasher);
+    }
+    hasher.finish()
+}
+
+/// Runs `ticks` ticks, and from each of the ticks `at` on once more from what was saved there.
+fn goes_on<W, G, A>(make: &dyn Fn() -> Box<Engine<W, G, A>>, name: &str, ticks: u32, at: &[u32])
+where
+    W: Ground,
+    G: HostLaw + State,
+    A: Safety<f32> + Send + State,
+{
+    let mut engine = make();
+    engine.first_row();
+    let (mut rows, mut saved) = (Vec::new(), Vec::new());
+    for tick in 0..ticks {
+        if at.contains(&tick) {
+            let mut bytes = Vec::new();
+            engine.save(&mut bytes).expect("all robots are here");
+            saved.push((tick, bytes));
+        }
+        let row = engine.step();
+        rows.push(seen(&engine, &row));
+    }
+    let whole = format!("{:?}", engine.outcome());
+    for (tick, bytes) in saved {
+        let mut engine = make();
+        engine.restore(&bytes).unwrap_or_else(|error| panic!("{name} at {tick}: {error}"));
+        let mut again = Vec::new();
+        engine.save(&mut again).expect("all robots are here");
+        assert!(again == bytes, "{name} at {tick}: saved twice, it is not the same");
+        for expected in &rows[tick as usize..] {
+            let row = engine.step();
+            assert_eq!(seen(&engine, &row), *expected, "{name} saved at {tick}, at {}", row.tick);
+        }
+        assert_eq!(format!("{:?}", engine.outcome()), whole, "{name} saved at {tick}");
+    }
+}
+
+/// Moves each robot of a run at `tick` out as bytes and in again, into an engine that is at the same tick but whose robots stand at their starts.
+fn moves<W, G, A>(make: &dyn Fn() -> Box<Engine<W, G, A>>, name: &str, tick: u32, ticks: u32)
+where
+    W: Ground,
+    G: HostLaw + State,
+    A: Safety<f32> + Send + State,
+{
+    let (mut one, mut other) = (make(), make());
+    for _ in 0..tick {
+        one.step();
+        other.step();
+    }
+    // The other's robots become those of the start, one by one, then those of now: no order, and nobody's cell, matters.
+    let fresh = make();
+    let mut bytes = Vec::new();
+    for index in 0..one.robots.len() {
+        bytes.clear();
+        fresh.pack(index, &mut bytes);
+        assert_eq!(other.unpack(index, &bytes), Ok(bytes.len()), "{name}");
+    }
+    for index in (0..one.robots.len()).rev() {
+        bytes.clear();
+        one.pack(index, &mut bytes);
+        let length = bytes.len();
+        bytes.extend_from_slice(b"what follows is somebody else's");
+        assert_eq!(other.unpack(index, &bytes), Ok(length), "{name}");
+    }
+    for _ in tick..ticks {
+        let (row, expected) = (other.step(), one.step());
+        assert_eq!(seen(&other, &row), seen(&one, &expected), "{name} at {}", row.tick);
+    }
+    assert_eq!(format!("{:?}", other.outcome()), format!("{:?}", one.outcome()), "{name}");
+}
+
+/// Robots times ticks of a check: enough for what happens, and done in seconds.
+const WORK: usize = 30_000;
+/// More are too many for a test; `scenarios/scale-small.toml` has all that `scale.toml` has.
+const MOST: usize = 2_000;
+
+fn everything(scenario: &Scenario, name: &str) {
+    let ticks = (WORK / scenario.robots.len()).clamp(20, 500) as u32;
+    let ticks = ticks.min(scenario.ticks);
+    let at = [1, ticks / 3, ticks - 2];
+    with_engines!(scenario, goes_on(name, ticks, &at));
+    with_engines!(scenario, moves(name, ticks / 2, ticks));
+}
+
+#[test]
+fn every_scenario_goes_on_from_what_was_saved() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
+    let mut count = 0;
+    for entry in std::fs::read_dir(folder).expect("the folder is there") {
+        let path = entry.expect("it can be read").path();
+        if path.extension().is_some_and(|extension| extension == "toml") {
+            let scenario = Scenario::load(&path, &Overrides::default()).expect("a good scenario");
+            if scenario.robots.len() <= MOST {
+                everything(&scenario, &scenario.name);
+                count += 1;
+            }
+        }
+    }
+    assert!(count > 20, "{count} scenarios");
+}
+
+const KEY: &str = "[authentication]\nkey = \"passphrase: of the tests\"\n";
+
+#[test]
+fn every_fault_of_the_radio_in_every_format_goes_on() {
+    let faults = [
+        "delay_ms = 700\njitter_ms = 2500\n",
+        "duplicate = 0.4\nreorder = 0.5\nreorder_ms = 1800\n",
+        "loss = 0.3\nburst = { share = 0.3, mean_ms = 2000 }\nblackout_s = [[3, 6]]\n",
+        "bit_error_rate = 0.002\nbandwidth_bytes_per_s = 90\n",
+    ];
+    for (index, fault) in faults.into_iter().enumerate() {
+        for format in ["postcard", "mavlink"] {
+            let key = if index % 2 == 0 { KEY } else { "" };
+            let rest = format!("[radio]\nformat = \"{format}\"\n{fault}{key}[[fault]]\nrobot = 2\nat_s = 2\ndown_s = 1.5\n");
+            let scenario = scenario(TWO, &rest);
+            with_engines!(&scenario, goes_on(&rest, 30, &[3, 5, 9, 20]));
+            with_engines!(&scenario, moves(&rest, 6, 30));
+        }
+    }
+}
+
+#[test]
+fn what_somebody_did_to_a_run_goes_on() {
+    let on_grid = scenario(
+        TWO,
+        "[[intervention]]\nat_s = 1\ndo = { kind = \"cell\", cell = [9, 9], class = 0 }\n\
+         [[intervention]]\nat_s = 2\ndo = { kind = \"goal\", robot = 1, place_m = [31, 31, 0] }\n\
+         [[intervention]]\nat_s = 3\ndo = { kind = \"down\", robot = 2, for_s = 2 }\n\
+         [[intervention]]\nat_s = 4\ndo = { kind = \"radio\", loss = 0.5, range_m = 7 }\n",
+    );
+    with_engines!(&on_grid, goes_on("grid", 40, &[1, 3, 5, 7, 8, 9, 12]));
+    let text = std::fs::read_to_string(
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/six-discs.toml"),
+    )
+    .expect("it is there");
+    let text = format!(
+        "{text}\n[[intervention]]\nat_s = 1\ndo = {{ kind = \"solid\", solid = {{ kind = \"circle\", center_m = [3, 4], radius_m = 0.4 }} }}\n\
+         [[intervention]]\nat_s = 2\ndo = {{ kind = \"move\", index = 0, by_m = [0.3, 0.1] }}\n\
+         [[intervention]]\nat_s = 3\ndo = {{ kind = \"goal\", robot = 1, place_m = [1, 1, 0] }}\n\
+         [[intervention]]\nat_s = 4\ndo = {{ kind = \"parameter\", name = \"speed_mps\", value = 0.5 }}\n\
+         [[intervention]]\nat_s = 5\ndo = {{ kind = \"down\", robot = 2, for_s = 1 }}\n"
+    );
+    let in_plane = Scenario::parse(&text, Path::new("t.toml"), &Overrides::default()).expect("a good scenario");
+    let at = [5, 15, 25, 35, 45, 55, 65].map(|tenths| tenths * 100_000 / in_plane.tick_us);
+    with_engines!(&in_plane, goes_on("plane", at[6] + 20, &at));
+}
+
+#[test]
+fn a_damaged_state_is_refused_or_at_least_does_no_harm() {
+    fn check<W, G, A>(make: &dyn Fn() -> Box<Engine<W, G, A>>, whole: &str)
+    where
+        W: Ground,
+        G: HostLaw + State,
+        A: Safety<f32> + Send + State,
+    {
+        let mut engine = make();
+        for _ in 0..4 {
+            engine.step();
+        }
+        let mut bytes = Vec::new();
+        engine.save(&mut bytes).expect("all robots are here");
+        for end in 0..bytes.len() {
+            let error = make().restore(&bytes[..end]).expect_err(whole);
+            assert!(error.at <= end, "{error}");
+        }
+        let mut refused = 0;
+        for at in 0..bytes.len() {
+            bytes[at] ^= 1 << (at % 8);
+            refused += usize::from(make().restore(&bytes).is_err());
+            bytes[at] ^= 1 << (at % 8);
+        }
+        // Checkpoints have a checksum; this is what is found without it.
+        assert!(refused * 2 > bytes.len(), "{refused} of {}", bytes.len());
+        assert!(make().restore(&bytes).is_ok());
+        assert!(engine.restore(&bytes).expect_err(whole).to_string().contains("under way"));
+    }
+    let small = scenario(TWO, "[radio]\njitter_ms = 900\n");
+    with_engines!(&small, check("a part is no state"));
+}
+
+#[test]
+fn a_state_of_others_is_refused() {
+    fn check<W, G, A>(make: &dyn Fn() -> Box<Engine<W, G, A>>, seed: u64)
+    where
+        W: Ground,
+        G: HostLaw + State,
+        A: Safety<f32> + Send + State,
+    {
+        let (mut one, mut other) = (make(), make());
+        let mut bytes = Vec::new();
+        one.pack(0, &mut bytes);
+        let error = other.unpack(1, &bytes).expect_err("it is another robot").to_string();
+        assert!(error.contains("robot 1, not robot 2"), "{error}");
+        bytes.clear();
+        one.seed = seed;
+        one.save(&mut bytes).expect("all robots are here");
+        let error = other.restore(&bytes).expect_err("it has another seed").to_string();
+        assert!(error.contains("2 robots and seed 99"), "{error}");
+    }
+    with_engines!(&scenario(TWO, ""), check(99));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    #[test]
+    fn any_small_run_goes_on(
+        robots in 2_u32..12,
+        seed in 0_u64..1000,
+        loss in 0.0_f64..0.6,
+        jitter_ms in 0_u32..2000,
+        range_m in 3.0_f64..60.0,
+        at in 0_u32..40,
+        plan in 0_usize..4,
+    ) {
+        let robots = format!("scattered = {{ count = {robots}, travel = 12 }}");
+        let key = ["", KEY, "", KEY][plan];
+        let format = ["postcard", "postcard", "mavlink", "mavlink"][plan];
+        let rest = format!(
+            "[radio]\nformat = \"{format}\"\nrange_m = {range_m}\nloss = {loss}\njitter_ms = {jitter_ms}\n{key}\
+             [[fault]]\nrobot = 1\nat_s = 4\ndown_s = 3\n"
+        );
+        let mut scenario = scenario(&robots, &rest);
+        scenario.seed = seed;
+        with_engines!(&scenario, goes_on("random", 50, &[at]));
+        with_engines!(&scenario, moves("random", at, 50));
+    }
+}

@@ -1,0 +1,75 @@
+//! What a run depends on, as one number.
+
+use super::{Keeping, Scenario};
+use staya_controller::auth::Key;
+use std::fmt::{self, Debug, Write as _};
+
+/// FNV-1a of 64 bits over text.
+struct Fingerprint(u64);
+
+impl Fingerprint {
+    fn mix(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01B3);
+        }
+    }
+
+    fn add(&mut self, value: &impl Debug) {
+        // It takes every text.
+        let _ = write!(self, "{value:?}\n");
+    }
+
+    fn key(&mut self, key: Option<&Key>) {
+        self.add(&key.is_some());
+        self.mix(key.map_or(&[][..], |key| key.as_bytes()));
+    }
+}
+
+impl fmt::Write for Fingerprint {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        self.mix(text.as_bytes());
+        Ok(())
+    }
+}
+
+impl Scenario {
+    /// The same for scenarios whose runs go the same way as far as both last: everything counts but its name, its number of
+    /// ticks and what is only for people. O(cells + robots).
+    #[must_use]
+    pub fn fingerprint(&self) -> u64 {
+        let Self {
+            name: _,
+            seed,
+            ticks: _,
+            tick_us,
+            terrain,
+            rules,
+            radio,
+            robots,
+            formation,
+            plane,
+            route,
+            formation_params,
+            faults,
+            interventions,
+            misnumbered,
+            key,
+            keeping,
+            key_remark: _,
+            claims,
+            attacks,
+        } = self;
+        let mut all = Fingerprint(0xCBF2_9CE4_8422_2325);
+        all.mix(terrain.cells());
+        all.add(&(terrain.width(), terrain.height(), terrain.cell_m, terrain.origin_m));
+        all.add(&(seed, tick_us, rules, radio, robots, formation, plane, route, formation_params));
+        all.add(&(faults, interventions, misnumbered, claims, attacks));
+        // Debug texts keep secrets.
+        all.key(key.as_ref());
+        all.key(keeping.as_ref().map(|keeping| &keeping.master));
+        if let Some(Keeping { master: _, place_m, overlap_ticks, rolls }) = keeping {
+            all.add(&(place_m, overlap_ticks, rolls));
+        }
+        all.0
+    }
+}
