@@ -341,6 +341,26 @@ mod tests {
         assert_eq!(digest(&-f64::NAN), digest(&f64::NAN));
     }
 
+    #[cfg(feature = "state")]
+    #[test]
+    fn what_is_uncounted_is_kept_and_does_not_count() {
+        #[derive(Serialize, serde::Deserialize, PartialEq, Debug)]
+        struct Robot {
+            #[serde(with = "uncounted")]
+            key: [u8; 4],
+            place: i32,
+        }
+        #[derive(Serialize)]
+        struct Seen {
+            place: i32,
+        }
+        let [one, other] = [[1, 2, 3, 4], [5; 4]].map(|key| Robot { key, place: 7 });
+        assert_eq!(digest(&one), digest(&other));
+        assert_eq!(digest(&one), digest(&Seen { place: 7 }));
+        let bytes = postcard::to_vec::<_, 16>(&one).expect("there is room");
+        assert_eq!(postcard::from_bytes::<Robot>(&bytes).expect("they are whole"), one);
+    }
+
     #[test]
     fn order_counts_in_a_chain() {
         assert_ne!(chained(chained(0, 1), 2), chained(chained(0, 2), 1));

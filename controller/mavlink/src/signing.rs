@@ -145,7 +145,7 @@ impl Counts {
 /// that have one, hears none of them until its owner tells it the time. To exhaust it takes a thousand frames, each a month ahead of the last, all signed
 /// with the key.
 ///
-/// The state that serde sees does not hold the key.
+/// The state that serde sees does not hold the key, but with the feature `state`, where it is the whole state.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct Signing<const N: usize = STREAMS> {

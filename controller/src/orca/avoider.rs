@@ -116,7 +116,9 @@ impl<S: Scalar> HalfSpaces<S> for InSpace<S> {
 #[cfg_attr(feature = "state", derive(serde::Deserialize))]
 #[cfg_attr(
     feature = "state",
-    serde(bound(deserialize = "P: serde::Deserialize<'de>, <P::Velocity as Dimension>::Memory: serde::Deserialize<'de>"))
+    serde(bound(
+        deserialize = "P: serde::Deserialize<'de>, <P::Velocity as Dimension>::Memory: serde::Deserialize<'de>"
+    ))
 )]
 pub struct Avoider<S: Scalar, const K: usize, P: HalfSpaces<S> = Analytic> {
     params: AvoidParams<S>,

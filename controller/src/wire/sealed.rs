@@ -55,7 +55,7 @@ pub const REACH_STARTS: u32 = 1024;
 /// [`Self::refuse_before`] with it: then no frame of an earlier mission is believed, even by receivers that have forgotten everything.
 /// What else survives the receiver's restart is its owner's choice: [`ReplayGuard::export`] through [`Self::guard`].
 ///
-/// The state that serde sees does not hold the key.
+/// The state that serde sees does not hold the key, but with the feature `state`, where it is the whole state.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct Sealed<const N: usize = PEERS> {

@@ -201,11 +201,8 @@ impl Checkpoint {
     /// # Errors
     /// It cannot be read, is damaged or cut off, of another program's version or another scenario.
     pub fn open(path: &Path, scenario: &Scenario) -> Result<Self, CheckpointError> {
-        let error = |what: String, remedy: &str| CheckpointError {
-            path: path.to_owned(),
-            what,
-            remedy: remedy.to_owned(),
-        };
+        let error =
+            |what: String, remedy: &str| CheckpointError { path: path.to_owned(), what, remedy: remedy.to_owned() };
         let of_io = |source: io::Error| error(source.to_string(), read_remedy(&source));
         let old = beside(path, ".old");
         let other = if old.exists() { format!("take {}", old.display()) } else { "start anew".to_owned() };
@@ -217,7 +214,10 @@ impl Checkpoint {
             file.read_exact(&mut first).map_err(of_io)?;
         }
         let Some(format) = first.strip_prefix(MAGIC) else {
-            return Err(error("byte 0: this is no checkpoint".to_owned(), "name a file that `staya run --checkpoint` made"));
+            return Err(error(
+                "byte 0: this is no checkpoint".to_owned(),
+                "name a file that `staya run --checkpoint` made",
+            ));
         };
         if format != FORMAT.to_le_bytes() {
             let what = format!("byte {}: it is of another version of the program", MAGIC.len());
@@ -258,8 +258,8 @@ impl Checkpoint {
         }
         let [head, state] = kept;
         let in_head = format!("byte {}", parts[0].at);
-        let head: Head = postcard::from_bytes(&head)
-            .map_err(|_| error(format!("{in_head}: its head makes no sense"), &other))?;
+        let head: Head =
+            postcard::from_bytes(&head).map_err(|_| error(format!("{in_head}: its head makes no sense"), &other))?;
         if head.version != VERSION {
             let what = format!("{in_head}: it is of version {}, this is {VERSION}", head.version);
             return Err(error(what, "go on with the program that made it, or start anew"));

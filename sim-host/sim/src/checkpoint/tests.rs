@@ -103,9 +103,8 @@ fn another_scenario_is_refused_and_a_longer_run_is_not() {
     let dir = tempfile::tempdir().expect("a folder");
     let scenario = of("");
     let place = run(dir.path(), &scenario, &[5]);
-    let refused = |scenario: &Scenario| {
-        Checkpoint::open(place.path(), scenario).expect_err("it is of another one").to_string()
-    };
+    let refused =
+        |scenario: &Scenario| Checkpoint::open(place.path(), scenario).expect_err("it is of another one").to_string();
     for rest in ["[radio]\nloss = 0.1\n", "[authentication]\nkey = \"passphrase: of the tests\"\n"] {
         assert!(refused(&of(rest)).contains("`t` has changed"), "{rest}");
     }

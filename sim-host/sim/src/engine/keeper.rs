@@ -2,10 +2,10 @@
 
 use crate::radio;
 use crate::scenario::{Roll, Scenario};
+use serde::{Deserialize, Serialize};
 use staya_controller::auth::Master;
 use staya_controller::robot::RobotId;
 use staya_controller::wire::{KeyPhase, OperatorWire, Postcard, Wire as _};
-use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 /// Ticks between two tries to reach who has not answered.

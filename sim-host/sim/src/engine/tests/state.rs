@@ -141,7 +141,8 @@ fn every_fault_of_the_radio_in_every_format_goes_on() {
     for (index, fault) in faults.into_iter().enumerate() {
         for format in ["postcard", "mavlink"] {
             let key = if index % 2 == 0 { KEY } else { "" };
-            let rest = format!("[radio]\nformat = \"{format}\"\n{fault}{key}[[fault]]\nrobot = 2\nat_s = 2\ndown_s = 1.5\n");
+            let rest =
+                format!("[radio]\nformat = \"{format}\"\n{fault}{key}[[fault]]\nrobot = 2\nat_s = 2\ndown_s = 1.5\n");
             let scenario = scenario(TWO, &rest);
             with_engines!(&scenario, goes_on(&rest, 30, &[3, 5, 9, 20]));
             with_engines!(&scenario, moves(&rest, 6, 30));
@@ -159,10 +160,8 @@ fn what_somebody_did_to_a_run_goes_on() {
          [[intervention]]\nat_s = 4\ndo = { kind = \"radio\", loss = 0.5, range_m = 7 }\n",
     );
     with_engines!(&on_grid, goes_on("grid", 40, &[1, 3, 5, 7, 8, 9, 12]));
-    let text = std::fs::read_to_string(
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/six-discs.toml"),
-    )
-    .expect("it is there");
+    let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/six-discs.toml"))
+        .expect("it is there");
     let text = format!(
         "{text}\n[[intervention]]\nat_s = 1\ndo = {{ kind = \"solid\", solid = {{ kind = \"circle\", center_m = [3, 4], radius_m = 0.4 }} }}\n\
          [[intervention]]\nat_s = 2\ndo = {{ kind = \"move\", index = 0, by_m = [0.3, 0.1] }}\n\
