@@ -16,7 +16,7 @@ impl Fingerprint {
 
     fn add(&mut self, value: &impl Debug) {
         // It takes every text.
-        let _ = write!(self, "{value:?}\n");
+        let _ = writeln!(self, "{value:?}");
     }
 
     fn key(&mut self, key: Option<&Key>) {
