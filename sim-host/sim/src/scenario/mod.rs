@@ -21,9 +21,9 @@ pub use intervention::{Intervention, InterventionTable, with_interventions};
 pub use params::{FormationTable, GridTable, RouteTable};
 pub(crate) use plane::goals;
 pub use plane::{
-    BallEntry, BoidsTable, CircleEntry, CloudEntry, GoalFlockTable, GroupTable, HalfSpaceEntry, Intruder,
+    BallEntry, BallsEntry, BoidsTable, CircleEntry, CloudEntry, GoalFlockTable, GroupTable, HalfSpaceEntry, Intruder,
     IntruderEntry, LatticeTable, OrcaTable, Order, OrderEntry, Place, PlaneRobotEntry, PlaneRobots, PlaneSetup,
-    PlaneTable, PushOutTable, RobotGroup, Start, Target, WallEntry, circle_starts,
+    PlaneTable, PushOutTable, RobotGroup, ScatteredDiscs, Start, Target, WallEntry, circle_starts,
 };
 pub use ranges::within;
 pub use robots::{Formation, Robot};

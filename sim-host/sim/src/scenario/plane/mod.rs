@@ -3,6 +3,7 @@
 mod checks;
 mod flocks;
 mod group;
+mod scattered;
 mod spec;
 mod starts;
 mod table;
@@ -176,6 +177,7 @@ pub(super) fn build(
     }
     let spec = Spec::general(table);
     let mut general = spec.build(source, file)?;
+    let solids = solids(source, file, table)?;
     let (mut groups, mut starts) = (Vec::new(), Vec::new());
     match (cells, &table.robots, table.group.is_empty()) {
         (Some(robots), None, true) => {
@@ -183,8 +185,14 @@ pub(super) fn build(
             starts = starts::on_land(robots, terrain);
         }
         (None, own, no_groups) if own.is_some() || !no_groups => {
-            let mut placing =
-                starts::Placing { source, file, general_m: general.radius_m, groups: &mut groups, starts: &mut starts };
+            let mut placing = starts::Placing {
+                source,
+                file,
+                general_m: general.radius_m,
+                solids: &solids,
+                groups: &mut groups,
+                starts: &mut starts,
+            };
             if let Some(robots) = own {
                 placing.place(&spec, None, robots)?;
             }
@@ -212,7 +220,7 @@ pub(super) fn build(
         general,
         groups,
         has_terrain: terrain.is_some(),
-        solids: solids(source, table)?,
+        solids,
         intruders: intruders(source, table)?,
         starts,
         orders: Vec::new(),
@@ -245,7 +253,7 @@ fn intruders(source: &Source<'_>, table: &PlaneTable) -> Result<Vec<Intruder>, S
     Ok(intruders)
 }
 
-fn solids(source: &Source<'_>, table: &PlaneTable) -> Result<Vec<Solid>, ScenarioError> {
+fn solids(source: &Source<'_>, file: &ScenarioFile, table: &PlaneTable) -> Result<Vec<Solid>, ScenarioError> {
     let mut solids = Vec::new();
     for (index, wall) in table.wall.iter().enumerate() {
         let is_sound = wall.points_m.iter().flatten().all(|x| x.abs() <= checks::FAR_M);
@@ -267,6 +275,7 @@ fn solids(source: &Source<'_>, table: &PlaneTable) -> Result<Vec<Solid>, Scenari
         within(source, &field, ball.radius_m, 0.001, 1e6, "metres")?;
         solids.push(Solid::Ball { center_m: ball.center_m.0, radius_m: ball.radius_m });
     }
+    solids.extend(scattered::balls(source, &table.balls, file.seed)?);
     for (index, entry) in table.half_space.iter().enumerate() {
         let field = format!("plane.half_space[{index}].point_m");
         checks::place(source, &field, entry.point_m)?;

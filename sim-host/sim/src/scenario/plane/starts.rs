@@ -6,12 +6,13 @@ use super::check_count as count;
 use super::group::RobotGroup;
 use super::spec::Spec;
 use super::table::{CloudEntry, Place, PlaneRobotEntry, PlaneRobots};
+use super::scattered::{self, TRIES, Taken, between, unit};
 use super::{checks, within};
 use crate::terrain::Terrain;
+use crate::world::plane::Solid;
 use serde::{Deserialize, Serialize};
 use staya_controller::grid::Cell;
 use staya_controller::rand::Rng;
-use std::collections::HashMap;
 
 /// Keep the draws of this module apart from all others.
 const STARTS: u32 = 0x0053_0003;
@@ -59,6 +60,8 @@ pub(super) struct Placing<'a> {
     pub file: &'a ScenarioFile,
     /// Radius of robots of the general group, metres.
     pub general_m: f64,
+    /// What stands in the plane.
+    pub solids: &'a [Solid],
     /// All groups but the general one.
     pub groups: &'a mut Vec<RobotGroup>,
     /// All robots so far.
@@ -75,12 +78,12 @@ impl Placing<'_> {
     /// Places the robots of a group (`None`: the general one), which `spec` describes.
     pub fn place(&mut self, spec: &Spec, group: Option<usize>, robots: &PlaneRobots) -> Result<(), ScenarioError> {
         let (source, table) = (self.source, format!("{}.robots", spec.table()));
-        let mut placed = match (&robots.list, &robots.circle, &robots.cloud) {
-            (Some(list), None, None) => {
+        let mut placed = match (&robots.list, &robots.circle, &robots.cloud, &robots.scattered) {
+            (Some(list), None, None, None) => {
                 checks::list(source, spec, list)?;
                 return self.list(spec, group, list);
             }
-            (None, Some(circle), None) => {
+            (None, Some(circle), None, None) => {
                 count(source, &format!("{table}.circle.count"), circle.count)?;
                 let field = format!("{table}.circle.radius_m");
                 within(source, &field, circle.radius_m, 0.001, 1e6, "metres")?;
@@ -88,7 +91,7 @@ impl Placing<'_> {
                 within(source, &field, circle.noise_m, 0.0, 1e6, "metres")?;
                 circle_starts(circle.count, circle.radius_m, circle.noise_m, self.file.seed)
             }
-            (None, None, Some(cloud)) => {
+            (None, None, Some(cloud), None) => {
                 count(source, &format!("{table}.cloud.count"), cloud.count)?;
                 checks::cloud(source, spec, cloud)?;
                 self.cloud(spec, cloud).ok_or_else(|| {
@@ -99,8 +102,12 @@ impl Placing<'_> {
                     )
                 })?
             }
+            (None, None, None, Some(scattered)) => {
+                count(source, &format!("{table}.scattered.count"), scattered.count)?;
+                scattered::starts(source, spec, scattered, &self.others(), self.solids, self.file.seed)?
+            }
             _ => {
-                let remedy = "give exactly one of list, circle, cloud";
+                let remedy = "give exactly one of list, circle, cloud, scattered";
                 return Err(source.error(&table, "it is not clear who takes part", remedy));
             }
         };
@@ -125,13 +132,18 @@ impl Placing<'_> {
         Ok(())
     }
 
-    /// Evenly between the corners without overlaps; `None` when there is no room.
-    fn cloud(&self, spec: &Spec, cloud: &CloudEntry) -> Option<Vec<Start>> {
+    /// Places and radii, metres, of all robots so far.
+    fn others(&self) -> Vec<([f64; 3], f64)> {
         let others = self.starts.iter().map(|start| {
             let radius_m = start.group.map_or(self.general_m, |group| self.groups[group].radius_m);
             (start.position_m, radius_m)
         });
-        cloud_starts(cloud, spec.radius_m, self.file.seed, &others.collect::<Vec<_>>())
+        others.collect()
+    }
+
+    /// Evenly between the corners without overlaps; `None` when there is no room.
+    fn cloud(&self, spec: &Spec, cloud: &CloudEntry) -> Option<Vec<Start>> {
+        cloud_starts(cloud, spec.radius_m, self.file.seed, &self.others())
     }
 }
 
@@ -155,24 +167,9 @@ pub fn circle_starts(count: u32, radius_m: f64, noise_m: f64, seed: u64) -> Vec<
         .collect()
 }
 
-/// Evenly on [0, 1).
-fn unit(rng: &mut Rng) -> f64 {
-    (rng.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
-}
-
-/// Draws of a place before the cloud is refused as too crowded.
-const TRIES: u32 = 1000;
-
 /// Evenly between the corners without overlaps, beside `others` (places and radii, metres), which are few; `None` when
 /// there is no room.
 fn cloud_starts(cloud: &CloudEntry, radius_m: f64, seed: u64, others: &[([f64; 3], f64)]) -> Option<Vec<Start>> {
-    let between = |rng: &mut Rng, from: Place, to: Place| {
-        let mut place = [0.0; 3];
-        for (axis, place) in place.iter_mut().enumerate() {
-            *place = from.0[axis] + (to.0[axis] - from.0[axis]) * unit(rng);
-        }
-        place
-    };
     let places: Vec<_> = cloud
         .goals_m
         .iter()
@@ -185,25 +182,14 @@ fn cloud_starts(cloud: &CloudEntry, radius_m: f64, seed: u64, others: &[([f64; 3
             squared >= (radius_m + other_m) * (radius_m + other_m)
         })
     };
-    let mut taken = HashMap::<[i64; 3], Vec<[f64; 3]>>::new();
-    let bucket = |place: [f64; 3]| place.map(|x| libm::floor(x / (2.0 * radius_m)) as i64);
-    let is_free = |taken: &HashMap<[i64; 3], Vec<[f64; 3]>>, place: [f64; 3]| {
-        let [x, y, z] = bucket(place);
-        let around = (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| (dx, dy)));
-        let around = around.flat_map(|(dx, dy)| (-1..=1).map(move |dz| [x + dx, y + dy, z + dz]));
-        let mut near = around.filter_map(|at| taken.get(&at)).flatten();
-        !near.any(|other| {
-            let squared: f64 = (0..3).map(|i| (place[i] - other[i]) * (place[i] - other[i])).sum();
-            squared < 4.0 * radius_m * radius_m
-        })
-    };
+    let mut taken = Taken::new(2.0 * radius_m);
     (0..cloud.count)
         .map(|index| {
             let mut rng = Rng::keyed(seed, STARTS, first + index, 1);
             let position_m = (0..TRIES)
                 .map(|_| between(&mut rng, cloud.from_m, cloud.to_m))
-                .find(|&place| is_free(&taken, place) && is_clear(place))?;
-            taken.entry(bucket(position_m)).or_default().push(position_m);
+                .find(|&place| taken.is_free(place) && is_clear(place))?;
+            taken.take(position_m);
             let (from, to) = (cloud.velocity_from_mps, cloud.velocity_to_mps);
             let velocity_mps = between(&mut rng, from, to);
             Some(Start { position_m, velocity_mps, places: places.clone(), group: None })

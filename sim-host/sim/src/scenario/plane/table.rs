@@ -42,6 +42,9 @@ pub struct PlaneTable {
     /// Balls (in the plane: discs).
     #[serde(default)]
     pub ball: Vec<BallEntry>,
+    /// Balls at random places.
+    #[serde(default)]
+    pub balls: Vec<BallsEntry>,
     /// Half-spaces.
     #[serde(default)]
     pub half_space: Vec<HalfSpaceEntry>,
@@ -80,6 +83,8 @@ pub struct PlaneRobots {
     pub circle: Option<CircleEntry>,
     /// Robots at random places, all with the same goals.
     pub cloud: Option<CloudEntry>,
+    /// Robots at random places, each with a goal of its own.
+    pub scattered: Option<ScatteredDiscs>,
 }
 
 /// One robot of `plane.robots.list`.
@@ -217,6 +222,23 @@ pub struct CloudEntry {
     pub goal_velocity_mps: Place,
 }
 
+/// `plane.robots.scattered`.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ScatteredDiscs {
+    /// How many.
+    pub count: u32,
+    /// Starts and goals are drawn evenly between these corners, metres, and again while they are too near to others.
+    pub from_m: Place,
+    /// See `from_m`.
+    pub to_m: Place,
+    /// Goals are at most so far away along each axis, metres. Default: anywhere between the corners.
+    #[serde(default = "infinite")]
+    pub travel_m: f64,
+    /// Least distance of two starts, and of two goals, metres; as much as two radii, or more. Default: three radii.
+    pub spacing_m: Option<f64>,
+}
+
 /// `[[plane.wall]]`.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -236,6 +258,23 @@ pub struct BallEntry {
     pub center_m: Place,
     /// Its radius, metres.
     pub radius_m: f64,
+}
+
+/// `[[plane.balls]]`.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BallsEntry {
+    /// How many.
+    pub count: u32,
+    /// Radius of each, metres.
+    pub radius_m: f64,
+    /// Centres are drawn evenly between these corners, metres.
+    pub from_m: Place,
+    /// See `from_m`.
+    pub to_m: Place,
+    /// Least distance of two of their surfaces, metres. Default: 0.
+    #[serde(default)]
+    pub gap_m: f64,
 }
 
 /// `[[plane.half_space]]`.

@@ -1,0 +1,145 @@
+//! What is at random places: robots, each with a goal of its own, and balls.
+
+use super::super::ScenarioError;
+use super::super::source::Source;
+use super::spec::Spec;
+use super::starts::{Start, Target};
+use super::table::{BallsEntry, Place, ScatteredDiscs};
+use super::{check_count, checks, within};
+use crate::world::plane::Solid;
+use staya_controller::agent::GuidanceKind;
+use staya_controller::rand::Rng;
+use std::collections::HashMap;
+
+/// Keep the draws of this module apart from all others.
+const SCATTERED: u32 = 0x0053_0004;
+const BALLS: u32 = 0x0053_0005;
+
+/// Draws of a place before the scenario is refused as too crowded.
+pub(super) const TRIES: u32 = 1000;
+
+/// Evenly on [0, 1).
+pub(super) fn unit(rng: &mut Rng) -> f64 {
+    (rng.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+/// Evenly between two corners.
+pub(super) fn between(rng: &mut Rng, from: Place, to: Place) -> [f64; 3] {
+    let mut place = [0.0; 3];
+    for (axis, place) in place.iter_mut().enumerate() {
+        *place = from.0[axis] + (to.0[axis] - from.0[axis]) * unit(rng);
+    }
+    place
+}
+
+/// Places that are taken, none of which may be nearer to another one than so many metres. O(1) a place.
+pub(super) struct Taken {
+    spacing_m: f64,
+    buckets: HashMap<[i64; 3], Vec<[f64; 3]>>,
+}
+
+impl Taken {
+    pub(super) fn new(spacing_m: f64) -> Self {
+        Self { spacing_m, buckets: HashMap::new() }
+    }
+
+    fn bucket(&self, place: [f64; 3]) -> [i64; 3] {
+        place.map(|x| libm::floor(x / self.spacing_m) as i64)
+    }
+
+    pub(super) fn is_free(&self, place: [f64; 3]) -> bool {
+        let [x, y, z] = self.bucket(place);
+        let around = (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| (dx, dy)));
+        let around = around.flat_map(|(dx, dy)| (-1..=1).map(move |dz| [x + dx, y + dy, z + dz]));
+        let mut near = around.filter_map(|at| self.buckets.get(&at)).flatten();
+        !near.any(|other| {
+            let squared: f64 = (0..3).map(|i| (place[i] - other[i]) * (place[i] - other[i])).sum();
+            squared < self.spacing_m * self.spacing_m
+        })
+    }
+
+    pub(super) fn take(&mut self, place: [f64; 3]) {
+        self.buckets.entry(self.bucket(place)).or_default().push(place);
+    }
+}
+
+/// Robots with goals, none of them in a solid, or nearer than a radius to one; the starts also clear of `others` (places
+/// and radii, metres).
+pub(super) fn starts(
+    source: &Source<'_>,
+    spec: &Spec,
+    entry: &ScatteredDiscs,
+    others: &[([f64; 3], f64)],
+    solids: &[Solid],
+    seed: u64,
+) -> Result<Vec<Start>, ScenarioError> {
+    let table = format!("{}.robots.scattered", spec.table());
+    let field = |name: &str| format!("{table}.{name}");
+    if !matches!(spec.guidance, GuidanceKind::Waypoint | GuidanceKind::Lattice | GuidanceKind::GoalFlock) {
+        let what = format!("robots with guidance \"{}\" have no goals", spec.guidance.name());
+        return Err(source.error(&table, what, "give a cloud, or guidance \"waypoint\""));
+    }
+    let (least_m, spacing_m) = (2.0 * spec.radius_m, entry.spacing_m.unwrap_or(3.0 * spec.radius_m));
+    within(source, &field("spacing_m"), spacing_m, least_m, 1e6, "metres")?;
+    within(source, &field("travel_m"), entry.travel_m, 0.001, f64::INFINITY, "metres")?;
+    let [low, high] = corners(source, &table, entry.from_m, entry.to_m)?;
+    let is_outside = |place: [f64; 3]| solids.iter().all(|solid| solid.distance_m(place) >= least_m);
+    let is_beside = |place: [f64; 3]| {
+        others.iter().all(|(other, other_m)| {
+            let squared: f64 = (0..3).map(|i| (place[i] - other[i]) * (place[i] - other[i])).sum();
+            squared >= (spec.radius_m + other_m) * (spec.radius_m + other_m)
+        })
+    };
+    let (mut taken, mut aims) = (Taken::new(spacing_m), Taken::new(spacing_m));
+    let (first, mut starts) = (others.len() as u32, Vec::with_capacity(entry.count as usize));
+    for index in 0..entry.count {
+        let mut rng = Rng::keyed(seed, SCATTERED, first + index, 0);
+        let mut draw = |low, high, taken: &mut Taken, is_start: bool| {
+            let mut places = (0..TRIES).map(|_| between(&mut rng, Place(low), Place(high)));
+            let place = places.find(|&at| taken.is_free(at) && is_outside(at) && (!is_start || is_beside(at)));
+            place.inspect(|&place| taken.take(place)).ok_or_else(|| {
+                let what = format!("robot {} finds no free {}", first + index + 1, if is_start { "start" } else { "goal" });
+                source.error(&table, what, "give fewer robots, less spacing_m, more travel_m or corners farther apart")
+            })
+        };
+        let position_m = draw(low, high, &mut taken, true)?;
+        let from_m = std::array::from_fn(|axis| low[axis].max(position_m[axis] - entry.travel_m));
+        let to_m = std::array::from_fn(|axis| high[axis].min(position_m[axis] + entry.travel_m));
+        let goal = Target { position_m: draw(from_m, to_m, &mut aims, false)?, velocity_mps: [0.0; 3] };
+        starts.push(Start { position_m, velocity_mps: [0.0; 3], places: vec![goal], group: None });
+    }
+    Ok(starts)
+}
+
+/// Balls of `[[plane.balls]]`.
+pub(super) fn balls(source: &Source<'_>, entries: &[BallsEntry], seed: u64) -> Result<Vec<Solid>, ScenarioError> {
+    let mut balls = Vec::new();
+    for (number, entry) in (0..).zip(entries) {
+        let table = format!("plane.balls[{number}]");
+        let field = |name: &str| format!("{table}.{name}");
+        check_count(source, &field("count"), entry.count)?;
+        within(source, &field("radius_m"), entry.radius_m, 0.001, 1e6, "metres")?;
+        within(source, &field("gap_m"), entry.gap_m, 0.0, 1e6, "metres")?;
+        let [low, high] = corners(source, &table, entry.from_m, entry.to_m)?;
+        let mut taken = Taken::new(2.0 * entry.radius_m + entry.gap_m);
+        for index in 0..entry.count {
+            let mut rng = Rng::keyed(seed, BALLS, number, index);
+            let mut places = (0..TRIES).map(|_| between(&mut rng, Place(low), Place(high)));
+            let center_m = places.find(|&place| taken.is_free(place)).ok_or_else(|| {
+                let what = format!("ball {index} of {} finds no room", entry.count);
+                source.error(&table, what, "give fewer balls, less gap_m or corners farther apart")
+            })?;
+            taken.take(center_m);
+            balls.push(Solid::Ball { center_m, radius_m: entry.radius_m });
+        }
+    }
+    Ok(balls)
+}
+
+/// The lower and the upper corner of a box.
+fn corners(source: &Source<'_>, table: &str, from: Place, to: Place) -> Result<[[f64; 3]; 2], ScenarioError> {
+    checks::place(source, &format!("{table}.from_m"), from)?;
+    checks::place(source, &format!("{table}.to_m"), to)?;
+    let axes = |pick: fn(f64, f64) -> f64| std::array::from_fn(|axis| pick(from.0[axis], to.0[axis]));
+    Ok([axes(f64::min), axes(f64::max)])
+}
