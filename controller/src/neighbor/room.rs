@@ -106,12 +106,18 @@ impl<S: Scalar> Room<'_, S> {
         let step_s = self.body.step_s;
         let mut v = if is_hidden { Vec3::ZERO } else { velocity_mps };
         for _ in 0..ROUNDS {
+            let mut is_turned = false;
             for limit in &limits {
                 let (closing, side) = limit.closing(v);
                 let most = limit.room_m.checked_div(step_s).unwrap_or(S::ZERO) - side;
                 if closing > most && closing > S::ZERO {
                     v -= limit.ahead * (closing - most.max(S::ZERO));
+                    is_turned = true;
                 }
+            }
+            // The next round would do as little.
+            if !is_turned {
+                break;
             }
         }
         // The safety layer has seen to them, unless the way is another one.

@@ -78,7 +78,9 @@ impl PlaneGround {
             downwash: 1.0,
         });
         let intruders = intruders.collect();
+        let sights = setup.kinds().map(|group| group.sight_m + group.radius_m);
         let plane = Plane::new(land, setup.solids.clone(), discs.collect()).with_intruders(intruders);
+        let plane = plane.with_sight(sights.fold(0.0, f64::max));
         Self {
             clearance: Clearance::FREE,
             gap_m: None,
@@ -121,8 +123,8 @@ impl PlaneGround {
         // Who says nothing is seen as what stands where he is.
         let silent = self.plane.intruders().iter().filter(|intruder| !intruder.id.is_somebody());
         let silent = silent.map(|disc| Solid::Ball { center_m: disc.position_m, radius_m: disc.radius_m });
-        let near = self.plane.solids().iter().copied().chain(silent);
-        let near = near.filter(|solid| solid.distance_m(position_m) <= sight_m);
+        let silent = silent.filter(|solid| solid.distance_m(position_m) <= sight_m);
+        let near = self.plane.solids_near(position_m, sight_m).copied().chain(silent);
         obstacles.extend(near.map(|solid| narrow(&solid.seen_from(position_m))));
         let place = self.in_cell(position_m);
         let window =

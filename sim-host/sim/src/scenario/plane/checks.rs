@@ -6,7 +6,7 @@ use super::spec::Spec;
 use super::table::{CloudEntry, Place, PlaneRobotEntry};
 use super::{PlaneSetup, check_count};
 use crate::nearby::{Cells, Query, Search, Space};
-use crate::world::plane::Solid;
+use crate::world::plane::{Solid, Solids};
 use staya_controller::agent::{GOALS, GuidanceKind, WAYPOINTS};
 
 /// Farthest from the origin along each axis, metres: places go over the air as millimetres in 32 bits.
@@ -146,13 +146,15 @@ pub(super) fn starts(source: &Source<'_>, setup: &PlaneSetup) -> Result<(), Scen
 
 /// No robot starts in an obstacle or in an intruder.
 pub(super) fn outside(source: &Source<'_>, setup: &PlaneSetup) -> Result<(), ScenarioError> {
+    let largest_m = setup.kinds().map(|group| group.radius_m).fold(0.0, f64::max);
+    let solids = Solids::new(setup.solids.clone(), largest_m);
     for (index, start) in setup.starts.iter().enumerate() {
         let (place, radius_m) = (start.position_m, setup.group(index).radius_m);
         let is_in = |solid: &Solid| solid.distance_m(place) < radius_m - 1e-6;
         let intruders = setup.intruders.iter();
         let intruders =
             intruders.map(|intruder| Solid::Ball { center_m: intruder.position_m, radius_m: intruder.radius_m });
-        let what = if setup.solids.iter().any(is_in) {
+        let what = if solids.near(place, radius_m).any(is_in) {
             format!("robot {} starts in an obstacle", index + 1)
         } else if intruders.into_iter().any(|intruder| is_in(&intruder)) {
             format!("robot {} starts in an intruder", index + 1)

@@ -6,7 +6,7 @@ use super::spec::Spec;
 use super::starts::{Start, Target};
 use super::table::{BallsEntry, Place, ScatteredDiscs};
 use super::{check_count, checks, within};
-use crate::world::plane::Solid;
+use crate::world::plane::{Solid, Solids};
 use staya_controller::agent::GuidanceKind;
 use staya_controller::rand::Rng;
 use std::collections::HashMap;
@@ -63,7 +63,7 @@ impl Taken {
     }
 }
 
-/// Robots with goals, none of them in a solid, or nearer than a radius to one; the starts also clear of `others` (places
+/// Robots with goals, none nearer than two radii to a solid; the starts also clear of `others` (places
 /// and radii, metres).
 pub(super) fn starts(
     source: &Source<'_>,
@@ -83,7 +83,8 @@ pub(super) fn starts(
     within(source, &field("spacing_m"), spacing_m, least_m, 1e6, "metres")?;
     within(source, &field("travel_m"), entry.travel_m, 0.001, f64::INFINITY, "metres")?;
     let [low, high] = corners(source, &table, entry.from_m, entry.to_m)?;
-    let is_outside = |place: [f64; 3]| solids.iter().all(|solid| solid.distance_m(place) >= least_m);
+    let solids = Solids::new(solids.to_vec(), least_m);
+    let is_outside = |place| solids.near(place, least_m).all(|solid| solid.distance_m(place) >= least_m);
     let is_beside = |place: [f64; 3]| {
         others.iter().all(|(other, other_m)| {
             let squared: f64 = (0..3).map(|i| (place[i] - other[i]) * (place[i] - other[i])).sum();
@@ -98,7 +99,8 @@ pub(super) fn starts(
             let mut places = (0..TRIES).map(|_| between(&mut rng, Place(low), Place(high)));
             let place = places.find(|&at| taken.is_free(at) && is_outside(at) && (!is_start || is_beside(at)));
             place.inspect(|&place| taken.take(place)).ok_or_else(|| {
-                let what = format!("robot {} finds no free {}", first + index + 1, if is_start { "start" } else { "goal" });
+                let what =
+                    format!("robot {} finds no free {}", first + index + 1, if is_start { "start" } else { "goal" });
                 source.error(&table, what, "give fewer robots, less spacing_m, more travel_m or corners farther apart")
             })
         };

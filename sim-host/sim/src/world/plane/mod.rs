@@ -6,14 +6,17 @@
 
 mod shape;
 mod solid;
+mod solids;
 
 pub use shape::{FAR_M, Shape};
 pub use solid::Solid;
 pub use solid::narrow;
+pub use solids::Solids;
 
 use super::{Refusal, set_cell};
-use crate::nearby::{Cells, Query, Search, Space};
+use crate::nearby::{Cells, Found, Query, Search, Space};
 use crate::terrain::Terrain;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::Command;
 use staya_controller::body::Body as Limits;
@@ -54,13 +57,15 @@ pub struct Abilities {
 #[derive(Clone, Debug)]
 pub struct Plane {
     terrain: Option<Terrain>,
-    solids: Vec<Solid>,
+    solids: Solids,
     discs: Vec<Disc>,
     intruders: Vec<Disc>,
     centers: Vec<[f64; 3]>,
     index: Cells<f64, 3>,
     /// How far neighbours are looked for, metres.
     reach_m: f64,
+    /// Radius of the largest body, metres.
+    largest_m: f64,
 }
 
 /// How near bodies are to each other and to obstacles.
@@ -107,6 +112,12 @@ impl Clearance {
     }
 }
 
+/// Bodies that a thread takes at least at a time.
+const BATCH: usize = 256;
+
+/// Obstacles are looked for within so many radii of the largest body at least.
+const CLOSE: f64 = 4.0;
+
 /// Less overlap than this is rounding, metres.
 const ROUNDING_M: f64 = 1e-9;
 
@@ -119,11 +130,12 @@ impl Plane {
         let reach_m = largest_m * (2.0 * highest).max(3.0);
         Self {
             terrain,
-            solids,
+            solids: Solids::new(solids, CLOSE * largest_m),
             intruders: Vec::new(),
             centers: Vec::with_capacity(discs.len()),
             index: Cells::new(Space::OPEN, reach_m.max(1e-3)),
             reach_m,
+            largest_m,
             discs,
         }
     }
@@ -132,6 +144,14 @@ impl Plane {
     #[must_use]
     pub fn with_intruders(mut self, intruders: Vec<Disc>) -> Self {
         self.intruders = intruders;
+        self
+    }
+
+    /// The same whose obstacles are quickly found from so far away, metres.
+    #[must_use]
+    pub fn with_sight(mut self, sight_m: f64) -> Self {
+        let reach_m = sight_m.max(self.solids.reach_m());
+        self.solids = Solids::new(self.solids.all().to_vec(), reach_m);
         self
     }
 
@@ -150,7 +170,12 @@ impl Plane {
     /// The obstacles.
     #[must_use]
     pub fn solids(&self) -> &[Solid] {
-        &self.solids
+        self.solids.all()
+    }
+
+    /// The obstacles within `within_m` of a place, metres, in their order. O(those within sight and a few around it).
+    pub fn solids_near(&self, place_m: [f64; 3], within_m: f64) -> impl Iterator<Item = &Solid> {
+        self.solids.near(place_m, within_m).filter(move |solid| solid.distance_m(place_m) <= within_m)
     }
 
     /// Puts body `index`, behind the robots' an intruder's, where it was at another time, with the velocity that it had.
@@ -163,7 +188,7 @@ impl Plane {
 
     /// Replaces all obstacles.
     pub(crate) fn put_solids(&mut self, solids: Vec<Solid>) {
-        self.solids = solids;
+        self.solids = Solids::new(solids);
     }
 
     /// Changes a cell of the land, whoever is there.
@@ -175,7 +200,7 @@ impl Plane {
 
     /// Puts obstacles behind those that there are, wherever bodies are.
     pub fn add_solids(&mut self, solids: impl IntoIterator<Item = Solid>) {
-        self.solids.extend(solids);
+        self.solids.change(|all| all.extend(solids));
     }
 
     /// Moves an obstacle at once.
@@ -183,10 +208,12 @@ impl Plane {
     /// # Errors
     /// There are not so many.
     pub fn move_solid(&mut self, index: usize, by_m: [f64; 2]) -> Result<(), Refusal> {
-        let count = self.solids.len();
-        let solid = self.solids.get_mut(index).ok_or_else(|| no_solid(index, count))?;
-        *solid = solid.moved(by_m);
-        Ok(())
+        self.solids.change(|all| {
+            let count = all.len();
+            let solid = all.get_mut(index).ok_or_else(|| no_solid(index, count))?;
+            *solid = solid.moved(by_m);
+            Ok(())
+        })
     }
 
     /// Takes an obstacle away; those behind it move up.
@@ -194,10 +221,10 @@ impl Plane {
     /// # Errors
     /// There are not so many.
     pub fn remove_solid(&mut self, index: usize) -> Result<(), Refusal> {
-        if index >= self.solids.len() {
-            return Err(no_solid(index, self.solids.len()));
+        if index >= self.solids().len() {
+            return Err(no_solid(index, self.solids().len()));
         }
-        self.solids.remove(index);
+        self.solids.change(|all| all.remove(index));
         Ok(())
     }
 
@@ -230,14 +257,7 @@ impl Plane {
     /// worst land.
     #[must_use]
     pub fn max_speed_mps(&self, abilities: &Abilities, position_m: [f64; 3]) -> f64 {
-        let cell = self.cell(position_m);
-        let land = cell.zip(self.terrain.as_ref());
-        let ticks = match land.map(|(cell, terrain)| terrain.get(cell)) {
-            None => 1,
-            Some(BLOCKED) => 9,
-            Some(ticks) => ticks,
-        };
-        abilities.max_speed_mps / f64::from(ticks)
+        max_speed_mps(self.terrain(), abilities, position_m)
     }
 
     /// Moves the bodies for one tick as their robots command; `commands[i]` belongs to body `i`. A body goes at even speed
@@ -247,75 +267,112 @@ impl Plane {
     /// When there are fewer commands than bodies.
     pub fn advance(&mut self, commands: &[Command<f32>]) {
         assert!(commands.len() >= self.discs.len(), "a command for each body");
-        for (index, command) in commands.iter().enumerate().take(self.discs.len()) {
+        let land = self.terrain.as_ref();
+        self.discs.par_iter_mut().zip(commands).with_min_len(BATCH).for_each(|(disc, command)| {
             let wish = match *command {
                 Command::Velocity(v) => Vec3::new(v.x.into(), v.y.into(), v.z.into()),
                 Command::Hold | Command::Move(_) => Vec3::ZERO,
             };
-            let disc = self.discs[index];
             let [vx, vy, vz] = disc.velocity_mps;
             let limits = Limits {
                 id: disc.id,
                 velocity_mps: Vec3::new(vx, vy, vz),
                 radius_m: disc.radius_m,
-                max_speed_mps: self.max_speed_mps(&disc.abilities, disc.position_m),
+                max_speed_mps: max_speed_mps(land, &disc.abilities, disc.position_m),
                 max_acceleration_mps2: disc.abilities.max_acceleration_mps2,
                 step_s: disc.abilities.step_s,
             };
             let v = limits.reach(wish);
-            self.discs[index].velocity_mps = [v.x, v.y, v.z];
-        }
-        for disc in self.discs.iter_mut().chain(&mut self.intruders) {
-            for (place, speed) in disc.position_m.iter_mut().zip(disc.velocity_mps) {
-                *place += speed * disc.abilities.step_s;
-            }
-        }
+            disc.velocity_mps = [v.x, v.y, v.z];
+            disc.go();
+        });
+        self.intruders.iter_mut().for_each(Disc::go);
     }
 
-    /// How near bodies are to each other, to obstacles and to intruders now. O(bodies x (neighbours + obstacles +
-    /// intruders)).
+    /// How near bodies are to each other, to obstacles and to intruders now. O(bodies x (neighbours + obstacles near by +
+    /// intruders)); when no body is near an obstacle, O(bodies x obstacles).
     pub fn clearance(&mut self) -> Clearance {
         self.centers.clear();
         self.centers.extend(self.discs.iter().map(|disc| disc.position_m));
         self.index.rebuild(&self.centers);
-        let mut clearance = Clearance::FREE;
-        let mut found = Vec::new();
-        for (number, disc) in (0..).zip(&self.discs) {
-            let query = Query { at: disc.position_m, radius: self.reach_m, most: usize::MAX, except: Some(number) };
-            self.index.within(&query, &mut found);
-            for near in &found {
-                let other = &self.discs[near.index as usize];
-                let gap = near.distance_squared.sqrt() - disc.radius_m - other.radius_m;
-                clearance.bodies_m = clearance.bodies_m.min(gap);
-                if near.index < number {
-                    continue;
-                }
-                if gap < -ROUNDING_M {
-                    clearance.overlaps += 1;
-                } else if is_washed(disc, other) {
-                    clearance.washed += 1;
-                }
-            }
-            let gaps = self.solids.iter().map(|solid| solid.distance_m(disc.position_m));
-            let gap = gaps.fold(f64::INFINITY, f64::min) - disc.radius_m;
-            clearance.solids_m = clearance.solids_m.min(gap);
-            let is_in_wall = self
-                .cell(disc.position_m)
-                .zip(self.terrain.as_ref())
-                .is_some_and(|(cell, terrain)| terrain.get(cell) == BLOCKED);
-            if gap < -ROUNDING_M || is_in_wall {
-                clearance.intrusions += 1;
-            }
-            for intruder in &self.intruders {
-                let way = [0, 1, 2].map(|axis| intruder.position_m[axis] - disc.position_m[axis]);
-                let distance = libm::sqrt(way.iter().map(|x| x * x).sum());
-                let gap = distance - disc.radius_m - intruder.radius_m;
-                clearance.intruders_m = clearance.intruders_m.min(gap);
-                clearance.intruder_overlaps += u64::from(gap < -ROUNDING_M);
-            }
+        let close_m = self.solids.reach_m();
+        let bodies = || self.discs.par_iter().enumerate().with_min_len(BATCH);
+        let mut clearance = bodies().map_init(Vec::new, |found, (number, _)| self.clearance_of(number, found)).reduce(
+            || Clearance::FREE,
+            |mut one, other| {
+                one.add(&other);
+                one
+            },
+        );
+        // Whoever was not looked at is farther off than that.
+        if !self.solids().is_empty() && clearance.solids_m > close_m - self.largest_m {
+            let gaps = bodies().map(|(_, disc)| self.solid_gap_m(disc, f64::INFINITY));
+            clearance.solids_m = gaps.reduce(|| f64::INFINITY, f64::min);
         }
         clearance
     }
+
+    /// How far the nearest of the obstacles within `within_m` is from a body's surface, metres.
+    fn solid_gap_m(&self, disc: &Disc, within_m: f64) -> f64 {
+        let gaps = self.solids.near(disc.position_m, within_m).map(|solid| solid.distance_m(disc.position_m));
+        gaps.fold(f64::INFINITY, f64::min) - disc.radius_m
+    }
+
+    /// What one body adds to it: each pair counts with its first body.
+    fn clearance_of(&self, number: usize, found: &mut Vec<Found<f64, 3>>) -> Clearance {
+        let disc = &self.discs[number];
+        // There are no more than 2^32 - 1.
+        let number = number as u32;
+        let mut clearance = Clearance::FREE;
+        let query = Query { at: disc.position_m, radius: self.reach_m, most: usize::MAX, except: Some(number) };
+        self.index.within(&query, found);
+        for near in found.iter() {
+            let other = &self.discs[near.index as usize];
+            let gap = near.distance_squared.sqrt() - disc.radius_m - other.radius_m;
+            clearance.bodies_m = clearance.bodies_m.min(gap);
+            if near.index < number {
+                continue;
+            }
+            if gap < -ROUNDING_M {
+                clearance.overlaps += 1;
+            } else if is_washed(disc, other) {
+                clearance.washed += 1;
+            }
+        }
+        let gap = self.solid_gap_m(disc, self.solids.reach_m());
+        clearance.solids_m = gap;
+        let land = self.terrain.as_ref();
+        let cell = self.cell(disc.position_m).zip(land);
+        let is_in_wall = cell.is_some_and(|(cell, terrain)| terrain.get(cell) == BLOCKED);
+        clearance.intrusions = u64::from(gap < -ROUNDING_M || is_in_wall);
+        for intruder in &self.intruders {
+            let way = [0, 1, 2].map(|axis| intruder.position_m[axis] - disc.position_m[axis]);
+            let distance = libm::sqrt(way.iter().map(|x| x * x).sum());
+            let gap = distance - disc.radius_m - intruder.radius_m;
+            clearance.intruders_m = clearance.intruders_m.min(gap);
+            clearance.intruder_overlaps += u64::from(gap < -ROUNDING_M);
+        }
+        clearance
+    }
+}
+
+impl Disc {
+    /// Goes on for a tick as it goes.
+    fn go(&mut self) {
+        for (place, speed) in self.position_m.iter_mut().zip(self.velocity_mps) {
+            *place += speed * self.abilities.step_s;
+        }
+    }
+}
+
+/// See [`Plane::max_speed_mps`].
+fn max_speed_mps(land: Option<&Terrain>, abilities: &Abilities, [x, y, _]: [f64; 3]) -> f64 {
+    let ticks = match land.and_then(|land| Some(land.get(land.cell_at([x, y])?))) {
+        None => 1,
+        Some(BLOCKED) => 9,
+        Some(ticks) => ticks,
+    };
+    abilities.max_speed_mps / f64::from(ticks)
 }
 
 fn no_solid(index: usize, count: usize) -> Refusal {
