@@ -1,15 +1,20 @@
 //! One whole step of the robot in the middle of a formation of nine: it hears eight beacons, searches
 //! its window of radius 5 (once; with reflexive prediction once more per neighbour in sight) and says its
 //! own beacon. It is free to move in every step, so that every step decides.
+//!
+//! And one of a disc in the plane that goes to a waypoint behind ORCA, among eight others that come and go.
 
 use core::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use staya_controller::agent::{
-    AgentConfig, CELLS, CellState, FormationAgent, FormationGuidance, GridWorkspace, Inputs, KinematicState, OnGrid,
-    RouteAgent, RouteGuidance, Unguarded,
+    AgentConfig, CELLS, CellState, FormationAgent, FormationGuidance, GridWorkspace, InPlane, Inputs, KinematicState,
+    OnGrid, OrcaAgent, OrcaSafety, RouteAgent, RouteGuidance, Unguarded, Waypoint, WaypointGuidance,
 };
 use staya_controller::formation::{FormationParams, Prediction};
+use staya_controller::geom::{Position, Vec3};
 use staya_controller::grid::{Cell, Dir, Window};
+use staya_controller::neighbor::StalenessInflation;
+use staya_controller::orca::AvoidParams;
 use staya_controller::rand::Rng;
 use staya_controller::robot::{Mode, RobotId};
 use staya_controller::route::RouteParams;
@@ -79,7 +84,6 @@ fn agent_step(c: &mut Criterion) {
         },
         inbox: &inboxes[step % inboxes.len()],
     };
-    let now = |step: usize| Instant::from_micros(step as u32 * TICK.as_micros().cast_unsigned());
     let mut workspace = GridWorkspace::<CELLS>::new();
     let mut group = c.benchmark_group("agent_step");
     for (name, prediction) in [("constant_velocity", Prediction::Constant), ("reflexive", Prediction::Reflexive)] {
@@ -111,5 +115,68 @@ fn agent_step(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, agent_step);
+/// Steps until eight discs on eight circles are where they were.
+const ROUND: usize = 256;
+
+/// What a disc hears in each step: eight others, each on a small circle of its own at 1 to 3 m, at half a metre a second.
+fn in_plane_inboxes() -> Vec<Vec<u8>> {
+    let turn = |step: usize, robot: usize| (step % ROUND) as f64 / ROUND as f64 * core::f64::consts::TAU + robot as f64;
+    let milli = |metres: f64| libm::round(metres * 1e3) as i32;
+    let beacon = |step: usize, robot: usize| {
+        let (bearing, turn) = (robot as f64 * 0.785, turn(step, robot));
+        let (far_m, wide_m) = (1.0 + robot as f64 * 0.28, 0.3);
+        let place = |out: f64, around: f64| milli(far_m * out + wide_m * around);
+        let pace = |along: f64| milli(0.5 * along) as i16;
+        Beacon {
+            time: now(step),
+            position_mm: [place(libm::cos(bearing), libm::cos(turn)), place(libm::sin(bearing), libm::sin(turn)), 0],
+            velocity_mmps: [pace(-libm::sin(turn)), pace(libm::cos(turn)), 0],
+            radius_mm: 200,
+            mode: Mode::Cruise,
+            ..Beacon::default()
+        }
+    };
+    // As many as sequence numbers exist: they may go round.
+    (0..=u16::MAX)
+        .map(|sequence| {
+            let mut bytes = heapless::Vec::<u8, 512>::new();
+            for robot in 0..8 {
+                let header = Header { boot: 0, sender: RobotId(robot as u32 + 2), sequence };
+                encode(header, &Message::Beacon(beacon(sequence.into(), robot)), &mut bytes).unwrap();
+            }
+            bytes.to_vec()
+        })
+        .collect()
+}
+
+fn now(step: usize) -> Instant {
+    Instant::from_micros((step as u32).wrapping_mul(TICK.as_micros().cast_unsigned()))
+}
+
+fn agent_step_in_plane(c: &mut Criterion) {
+    let inboxes = in_plane_inboxes();
+    let config = AgentConfig { seed: 1, latency: TICK, ..AgentConfig::new(RobotId(1), 0.2, TICK) };
+    let inflation = StalenessInflation { growth_mps: 0.5, max_m: 0.2 };
+    let safety = OrcaSafety::new(AvoidParams::default(), inflation);
+    let mut agent = OrcaAgent::new(&config, WaypointGuidance::new(0.5, 0.02), safety, Postcard);
+    let goal = Waypoint::fixed(Position::from_mm([20_000, 3_000, 0]));
+    assert!(agent.assign_waypoint(0, &goal));
+    // It stays where it is, so that the scene is the same in each round.
+    let inputs = |step: usize| Inputs {
+        state: KinematicState { velocity_mps: Vec3::new(0.3, 0.1, 0.0), ..KinematicState::default() },
+        surroundings: InPlane { max_speed_mps: 0.5, obstacles: &[] },
+        inbox: &inboxes[step % inboxes.len()],
+    };
+    let mut step = 0;
+    c.bench_function("agent_step_in_plane", |bencher| {
+        bencher.iter(|| {
+            step += 1;
+            black_box(agent.step(black_box(&inputs(step)), now(step), &mut ()))
+        });
+    });
+    // Not when another benchmark was asked for.
+    assert!(step == 0 || agent.neighbors().len() == 8);
+}
+
+criterion_group!(benches, agent_step, agent_step_in_plane);
 criterion_main!(benches);

@@ -71,23 +71,24 @@ impl<S: Scalar, const K: usize> Walls<S, K> {
         if width == 0 || height == 0 {
             return Some(walls);
         }
-        // West sides of cells from south to north, then south sides from west to east.
+        // West sides of cells from south to north, then south sides from west to east. All of them are in the window.
+        let (cells, row) = (window.cells(), usize::from(window.width()));
         for x in first.x.saturating_add(1)..=last.x {
-            let is_side = |y| is_side(window, Cell::new(x, y), Cell::new(-1, 0));
-            walls.join((first.y, last.y), is_side, |y| Cell::new(x, y));
+            let begin = window.index(Cell::new(x, first.y))?;
+            walls.join((first.y, last.y), sides(cells, begin, row, 1), |y| Cell::new(x, y));
         }
         for y in first.y.saturating_add(1)..=last.y {
-            let is_side = |x| is_side(window, Cell::new(x, y), Cell::new(0, -1));
-            walls.join((first.x, last.x), is_side, |x| Cell::new(x, y));
+            let begin = window.index(Cell::new(first.x, y))?;
+            walls.join((first.x, last.x), sides(cells, begin, 1, row), |x| Cell::new(x, y));
         }
         Some(walls)
     }
 
     /// Adds what is one wall along a line of the grid; `corner` is the corner before a side.
-    fn join(&mut self, (first, last): (i16, i16), is_side: impl Fn(i16) -> bool, corner: impl Fn(i16) -> Cell) {
+    fn join(&mut self, (first, last): (i16, i16), sides: impl Iterator<Item = bool>, corner: impl Fn(i16) -> Cell) {
         let mut begin = None;
-        for at in first..=last {
-            match (is_side(at), begin) {
+        for (at, is_side) in (first..=last).zip(sides) {
+            match (is_side, begin) {
                 (true, None) => begin = Some(at),
                 (false, Some(from)) => {
                     self.add(corner(from), corner(at));
@@ -126,10 +127,16 @@ impl<S: Scalar, const K: usize> Walls<S, K> {
     }
 }
 
-/// Whether the side of `cell` towards its neighbour parts what is blocked from what is passable.
-fn is_side(window: &Window<'_>, cell: Cell, neighbor: Cell) -> bool {
-    let known = (window.get(cell), window.get(cell + neighbor));
-    matches!(known, (Some(a), Some(b)) if (a == BLOCKED) != (b == BLOCKED))
+/// Whether the sides of cells towards the cells `back` places before them part what is blocked from what is passable: of
+/// the cell at `begin`, then of the one `step` places on, and so on.
+fn sides(cells: &[u8], begin: usize, step: usize, back: usize) -> impl Iterator<Item = bool> {
+    let is_blocked = |at: usize| cells.get(at).map(|&cell| cell == BLOCKED);
+    let mut at = begin;
+    core::iter::from_fn(move || {
+        let is_side = is_blocked(at)? != is_blocked(at.wrapping_sub(back))?;
+        at = at.wrapping_add(step);
+        Some(is_side)
+    })
 }
 
 #[cfg(all(test, feature = "fixed"))]

@@ -5,7 +5,7 @@ use super::super::source::Source;
 use super::spec::Spec;
 use super::starts::{Start, Target};
 use super::table::{BallsEntry, Place, ScatteredDiscs};
-use super::{check_count, checks, within};
+use super::{checks, within};
 use crate::world::plane::{Solid, Solids};
 use staya_controller::agent::GuidanceKind;
 use staya_controller::rand::Rng;
@@ -119,7 +119,7 @@ pub(super) fn balls(source: &Source<'_>, entries: &[BallsEntry], seed: u64) -> R
     for (number, entry) in (0..).zip(entries) {
         let table = format!("plane.balls[{number}]");
         let field = |name: &str| format!("{table}.{name}");
-        check_count(source, &field("count"), entry.count)?;
+        within(source, &field("count"), entry.count.into(), 1.0, 1e6, "balls")?;
         within(source, &field("radius_m"), entry.radius_m, 0.001, 1e6, "metres")?;
         within(source, &field("gap_m"), entry.gap_m, 0.0, 1e6, "metres")?;
         let [low, high] = corners(source, &table, entry.from_m, entry.to_m)?;

@@ -106,6 +106,31 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         (with("safety = \"luck\"\n"), "s.toml:6: plane.safety: unknown variant `luck`"),
         (with("colour = 1\n"), "s.toml:6: plane.colour: unknown field `colour`"),
         (robots("list = [{ start_m = [0] }]"), "s.toml:7: plane.robots.list[0].start_m: expected [x, y] or [x, y, z]"),
+        // At random places.
+        (
+            robots("scattered = { count = 200, from_m = [0, 0], to_m = [3, 3] }"),
+            "s.toml:7: plane.robots.scattered: robot",
+        ),
+        (
+            robots("scattered = { count = 2, from_m = [0, 0], to_m = [9, 9], spacing_m = 0.1 }"),
+            "s.toml:7: plane.robots.scattered.spacing_m: 0.1 is out of range; give 0.4 to",
+        ),
+        (
+            robots("scattered = { count = 2, from_m = [0, 0], to_m = [9, 9], travel_m = 0 }"),
+            "s.toml:7: plane.robots.scattered.travel_m: 0 is out of range",
+        ),
+        (
+            robots("scattered = { count = 2, from_m = [0, 0], to_m = [9e9, 9] }"),
+            "s.toml:7: plane.robots.scattered.to_m: this is too far away",
+        ),
+        (
+            after("[[plane.balls]]\ncount = 50\nradius_m = 1\nfrom_m = [9, 9]\nto_m = [12, 12]\n"),
+            "s.toml:8: plane.balls[0]: ball",
+        ),
+        (
+            after("[[plane.balls]]\ncount = 0\nradius_m = 1\nfrom_m = [9, 9]\nto_m = [12, 12]\n"),
+            "s.toml:9: plane.balls[0].count: 0 is out of range; give 1 to 1000000 balls",
+        ),
         // Who takes part.
         (format!("{HEAD}{PLANE}"), "s.toml:3: plane.robots: it is not clear who takes part; give either plane.robots"),
         (robots(""), "s.toml:6: plane.robots: it is not clear who takes part; give exactly one of"),
@@ -432,4 +457,31 @@ fn gains_of_a_lattice_bear_its_radio_and_gains_that_do_not_are_remarked_on() {
     assert!((alpha / gamma - 50.0).abs() < 1e-3 && said.is_empty());
     let (_, _, said) = gains("", "algorithm = 2\nc_gamma = 1");
     assert!(said[0].contains("c_gamma = 1: in algorithm 2"), "{said:?}");
+}
+
+#[test]
+fn scattered_robots_have_goals_of_their_own_apart_from_each_other_and_from_balls() {
+    let text = format!(
+        "{HEAD}{PLANE}[plane.robots]\nscattered = {{ count = 200, from_m = [0, 0], to_m = [20, 20], travel_m = 5 }}\n\
+         [[plane.balls]]\ncount = 20\nradius_m = 0.5\nfrom_m = [0, 0]\nto_m = [20, 20]\ngap_m = 1\n"
+    );
+    let setup = setup(&text);
+    assert_eq!((setup.starts.len(), setup.solids.len()), (200, 20));
+    let starts: Vec<_> = setup.starts.iter().map(|start| start.position_m).collect();
+    let goals: Vec<_> = setup.starts.iter().map(|start| start.places[0].position_m).collect();
+    let apart = |one: &[f64; 3], other: &[f64; 3]| libm::hypot(one[0] - other[0], one[1] - other[1]);
+    for places in [&starts, &goals] {
+        for (index, one) in places.iter().enumerate() {
+            assert!(one[..2].iter().all(|x| (0.0..=20.0).contains(x)) && one[2] == 0.0);
+            assert!(places[..index].iter().all(|other| apart(one, other) >= 0.6), "{one:?}");
+            assert!(setup.solids.iter().all(|solid| solid.distance_m(*one) >= 0.4), "{one:?}");
+        }
+    }
+    let ways = starts.iter().zip(&goals).map(|(start, goal)| [0, 1].map(|axis| (start[axis] - goal[axis]).abs()));
+    let ways: Vec<_> = ways.collect();
+    assert!(ways.iter().flatten().all(|&way| way <= 5.0) && ways.iter().flatten().any(|&way| way > 4.0));
+    for (index, one) in setup.solids.iter().enumerate() {
+        let Solid::Ball { center_m, .. } = one else { panic!("no ball") };
+        assert!(setup.solids[..index].iter().all(|other| other.distance_m(*center_m) >= 1.5), "{one:?}");
+    }
 }

@@ -116,3 +116,25 @@ fn who_is_below_another_one_is_in_its_downwash_and_who_is_beside_it_is_not() {
     assert_eq!(washed(3.0, 0.0, -0.9), (0, 1));
     assert_eq!(washed(1.0, 0.0, -1.1), (0, 0));
 }
+
+/// Obstacles far away and near by, so many that they have a grid: the least gap and who overlaps are those of a look at all.
+#[test]
+fn the_nearest_of_many_obstacles_counts_wherever_it_is() {
+    let ball = |x: f64, y: f64| Solid::Ball { center_m: [x, y, 0.0], radius_m: 1.0 };
+    let solids: Vec<_> = (0..400).map(|index| ball(f64::from(index % 20) * 9.0, f64::from(index / 20) * 9.0)).collect();
+    for at in [[4.5, 4.5], [3.0, 0.5], [-60.0, 20.0], [500.0, -500.0], [90.2, 89.9]] {
+        let discs = vec![disc(1, at[0], at[1]), disc(2, at[0] - 40.0, at[1] - 40.0)];
+        let gap = |disc: &Disc| {
+            let gaps = solids.iter().map(|solid| solid.distance_m(disc.position_m));
+            gaps.fold(f64::INFINITY, f64::min) - disc.radius_m
+        };
+        let gaps: Vec<_> = discs.iter().map(gap).collect();
+        let mut plane = Plane::new(None, solids.clone(), discs.clone());
+        for sight_m in [0.0, 7.0, 1000.0] {
+            plane = plane.with_sight(sight_m);
+            let clearance = plane.clearance();
+            assert_eq!(clearance.solids_m, gaps[0].min(gaps[1]), "{at:?} {sight_m}");
+            assert_eq!(clearance.intrusions, gaps.iter().filter(|&&gap| gap < -1e-9).count() as u64, "{at:?}");
+        }
+    }
+}
