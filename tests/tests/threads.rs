@@ -46,3 +46,8 @@ fn a_flock_in_the_plane_is_the_same_on_any_number_of_threads() {
     same_on_any_number("boids", Some(60));
     same_on_any_number("goal-flock", Some(60));
 }
+
+#[test]
+fn a_thousand_discs_among_pillars_are_the_same_on_any_number_of_threads() {
+    same_on_any_number("scale-plane-small", Some(30));
+}
