@@ -188,7 +188,7 @@ impl Plane {
 
     /// Replaces all obstacles.
     pub(crate) fn put_solids(&mut self, solids: Vec<Solid>) {
-        self.solids = Solids::new(solids);
+        self.solids.change(|all| *all = solids);
     }
 
     /// Changes a cell of the land, whoever is there.
