@@ -25,6 +25,7 @@ mod firmware;
 mod fuzz;
 mod layers;
 mod minimal;
+mod mpi;
 mod part;
 mod plants;
 mod python;
@@ -62,6 +63,7 @@ Usage: cargo xtask COMMAND
   browser         the page of `staya view` in Chromium, driven from Python
   clients [NAME]  MAVLink clients (pymavlink, MAVSDK, MAVProxy, tshark) against staya, from Python: all tests or those whose names contain NAME
   cluster         sweeps on Slurm and GNU parallel, on this machine: the same rows as without them
+  mpi             one world over ranks of OpenMPI, on this machine: the trace hash of one process; a rank that dies
   faults [PART...]
                   firmware that goes wrong on purpose says why and starts anew, on each part (default: all)
   example         the example firmware of examples/stm32f4
@@ -121,6 +123,7 @@ fn main() -> ExitCode {
         }
         ["browser"] => browser::run_command(&repo, &mut report),
         ["cluster"] => cluster::run_command(&repo, &mut report),
+        ["mpi"] => mpi::run_command(&repo, &mut report),
         ["example"] => example::run(&repo, &mut report),
         ["fuzz"] => fuzz::run(&repo, &mut report, fuzz::SECONDS),
         ["fuzz", "--seconds", n] if n.parse().is_ok_and(|n: u32| n > 0) => {

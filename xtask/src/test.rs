@@ -54,9 +54,11 @@ pub fn run(repo: &Repo, report: &mut Report, extent: Extent) {
     if is_compiled {
         crate::browser::run_tests(repo, report);
         crate::cluster::run_tests(repo, report);
+        crate::mpi::run_tests(repo, report);
     } else {
         crate::browser::run_command(repo, report);
         crate::cluster::run_command(repo, report);
+        crate::mpi::run_command(repo, report);
     }
     if let Some(mut firmware) = firmware {
         report.part("the rest of the firmware, begun during the tests", || {

@@ -9,6 +9,10 @@
 //! its place, synced and renamed; the one before it stays as `FILE.old`. Keys of the scenario are in it, so only its
 //! owner may read it.
 
+mod every;
+
+pub use every::Every;
+
 use crate::engine::{Saves, StateError};
 use crate::file::{self, read_remedy};
 use crate::record::{self, Recorder};

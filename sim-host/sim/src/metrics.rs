@@ -40,6 +40,17 @@ impl Arrivals {
         self.count = self.count + usize::from(at.is_some()) - usize::from(before.is_some());
     }
 
+    /// A robot comes from another rank, behind those that are here.
+    pub(crate) fn admit(&mut self) {
+        self.at.push(None);
+    }
+
+    /// Robot number `index` goes to another rank; the last one takes its place.
+    pub(crate) fn dismiss(&mut self, index: usize) {
+        self.set(index, None);
+        self.at.swap_remove(index);
+    }
+
     /// How many robots stand at their targets.
     #[must_use]
     pub const fn count(&self) -> usize {

@@ -1,12 +1,11 @@
 //! When a run writes checkpoints, and where.
 
 use clap::Args;
-use staya_sim::checkpoint::Place;
+use staya_sim::checkpoint::{Every, Place};
 use staya_sim::engine::Moment;
 use staya_sim::record::Recorder;
 use std::path::PathBuf;
-use std::str::FromStr;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// Whether to write checkpoints, and whether to go on from one.
 #[derive(Args, Clone, Debug)]
@@ -19,37 +18,6 @@ pub struct CheckpointArgs {
     /// Go on from a checkpoint of this scenario, to the results of a run without a break.
     #[arg(long, value_name = "FILE")]
     pub from: Option<PathBuf>,
-}
-
-/// How often.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Every {
-    /// Of real time.
-    Time(Duration),
-    /// Ticks.
-    Ticks(u32),
-}
-
-impl FromStr for Every {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let end = text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len());
-        let (number, unit) = text.split_at(end);
-        let seconds = match unit.trim() {
-            "s" => 1,
-            "min" => 60,
-            "h" => 3600,
-            "ticks" => 0,
-            _ => return Err("give a number and its unit: 600s, 10min, 2h or 1000ticks".to_owned()),
-        };
-        let number: u32 = number.parse().map_err(|_| "give a whole number, such as 600s or 1000ticks".to_owned())?;
-        match (number, seconds) {
-            (0, _) => Err("give 1 or more".to_owned()),
-            (ticks, 0) => Ok(Self::Ticks(ticks)),
-            (number, seconds) => Ok(Self::Time(Duration::from_secs(u64::from(number) * seconds))),
-        }
-    }
 }
 
 /// The checkpoints of a run.
@@ -86,22 +54,5 @@ impl Checkpoints {
             eprintln!("checkpoint at tick {tick}: {}", self.place.path().display());
         }
         self.last = Instant::now();
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn how_often_has_a_unit() {
-        let seconds = |seconds| Ok(Every::Time(Duration::from_secs(seconds)));
-        assert_eq!("600s".parse(), seconds(600));
-        assert_eq!("10min".parse(), seconds(600));
-        assert_eq!("2h".parse(), seconds(7200));
-        assert_eq!("1000ticks".parse(), Ok(Every::Ticks(1000)));
-        for wrong in ["", "600", "s", "-1s", "0s", "0ticks", "1.5h", "99999999999s", "5 days"] {
-            assert!(wrong.parse::<Every>().is_err(), "{wrong}");
-        }
     }
 }

@@ -100,10 +100,8 @@ impl Attacker {
     }
 
     /// Has from now on the keys that the robot had.
-    pub(super) fn take(&mut self, ring: Option<&Ring>) {
-        if let Some(ring) = ring {
-            self.wire = radio::ring_wire(ring.clone(), self.attack.claims, self.starts);
-        }
+    pub(super) fn take(&mut self, ring: &Ring) {
+        self.wire = radio::ring_wire(ring.clone(), self.attack.claims, self.starts);
     }
 
     /// An insider does with keys what the robot would have done, if it still gets any.

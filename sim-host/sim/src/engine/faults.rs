@@ -14,8 +14,7 @@ where
     pub(super) fn apply_faults(&mut self) {
         for at in 0..self.faults.len() {
             let fault = self.faults[at];
-            let found = self.robots.binary_search_by_key(&fault.robot, |r| r.id);
-            let Ok(index) = found.as_ref().copied() else {
+            let Some(index) = self.index_of(fault.robot) else {
                 continue;
             };
             if fault.from_tick == self.tick {

@@ -19,11 +19,13 @@ use std::collections::BTreeMap;
 
 /// Bodies that hold a cell each.
 pub struct Grid {
-    world: World,
+    pub(super) world: World,
     kinematics: Kinematics,
     robots: Vec<Robot>,
-    meter: Option<FormationMeter>,
+    pub(super) meter: Option<FormationMeter>,
     changed: Changed,
+    /// The number of each body's robot.
+    pub(super) numbers: Vec<u32>,
     radius: u8,
     tick_us: u32,
 }
@@ -43,6 +45,7 @@ impl Grid {
         Ok(Self {
             kinematics: Kinematics::new(world.terrain(), scenario.tick_s()),
             robots: scenario.numbered(),
+            numbers: (0..scenario.robots.len() as u32).collect(),
             meter,
             changed: Changed::new(),
             radius: scenario.route.params.radius,
@@ -55,6 +58,13 @@ impl Grid {
     #[must_use]
     pub const fn world(&self) -> &World {
         &self.world
+    }
+}
+
+impl Grid {
+    /// The robot of a body.
+    fn number(&self, index: usize) -> usize {
+        self.numbers[index] as usize
     }
 }
 
@@ -107,7 +117,7 @@ impl Ground for Grid {
 
     fn body(&self, index: usize) -> GridBody {
         let Body { cell, entered_by, free_at, .. } = self.world.bodies()[index];
-        GridBody { cell, entered_by, free_at, goal: self.robots[index].goal }
+        GridBody { cell, entered_by, free_at, goal: self.robots[self.number(index)].goal }
     }
 
     fn set_body(&mut self, index: usize, body: GridBody) -> Result<(), &'static str> {
@@ -115,8 +125,13 @@ impl Ground for Grid {
         if !self.world.put(index, cell, entered_by, free_at) {
             return Err("its body is in a wall or off the map");
         }
-        self.robots[index].goal = goal;
+        let number = self.number(index);
+        self.robots[number].goal = goal;
         Ok(())
+    }
+
+    fn note(&mut self, number: usize, body: GridBody) {
+        self.robots[number].goal = body.goal;
     }
 
     fn shared(&self) -> Self::Shared {
@@ -175,12 +190,12 @@ impl Ground for Grid {
         is_there.then_some(body.free_at)
     }
 
-    fn config(&self, index: usize, tick: Duration) -> AgentConfig<f32> {
-        AgentConfig::new(self.robots[index].id, 0.0, tick)
+    fn config(&self, number: usize, tick: Duration) -> AgentConfig<f32> {
+        AgentConfig::new(self.robots[number].id, 0.0, tick)
     }
 
-    fn task(&self, index: usize, _: u32) -> Task {
-        Task::Cell(self.robots[index].goal)
+    fn task(&self, number: usize, _: u32) -> Task {
+        Task::Cell(self.robots[number].goal)
     }
 
     fn terrain(&self) -> Option<&Terrain> {
@@ -192,15 +207,14 @@ impl Ground for Grid {
         terrain.cell_at([x, y]).is_some_and(|cell| terrain.is_passable(cell))
     }
 
-    fn goal_m(&self, index: usize) -> Option<[f64; 3]> {
-        let [x, y] = self.world.terrain().center_m(self.robots[index].goal);
+    fn goal_m(&self, number: usize) -> Option<[f64; 3]> {
+        let [x, y] = self.world.terrain().center_m(self.robots[number].goal);
         Some([x, y, 0.0])
     }
 
-    fn set_goal(&mut self, index: usize, tick: u32, [x, y, _]: [f64; 3]) -> Task {
+    fn set_goal(&mut self, number: usize, _: u32, [x, y, _]: [f64; 3]) {
         // A place of a formation may be off the map: then as near as there is land.
-        self.robots[index].goal = self.world.terrain().nearest_cell([x, y]);
-        self.task(index, tick)
+        self.robots[number].goal = self.world.terrain().nearest_cell([x, y]);
     }
 
     fn change(&mut self, _: u32, change: Change<'_>) -> Result<(), Refusal> {
@@ -231,8 +245,8 @@ impl Ground for Grid {
         self.meter.as_ref().and_then(FormationMeter::mean)
     }
 
-    fn formation_error(&self, index: usize) -> f64 {
+    fn formation_error(&self, number: usize) -> f64 {
         let errors = self.meter.as_ref().map_or(&[][..], FormationMeter::errors);
-        errors.get(index).copied().unwrap_or(f64::NAN)
+        errors.get(number).copied().unwrap_or(f64::NAN)
     }
 }

@@ -13,7 +13,8 @@ use staya_controller::agent::{AgentConfig, AnyInputs, AnySurroundings, Command, 
 use staya_controller::grid::Cell;
 use staya_controller::time::Duration;
 
-/// A world with bodies, as the engine needs it. Bodies are numbered as the robots of the scenario.
+/// A world with bodies, as the engine needs it. `number` is the place of a robot in
+/// [`Scenario::robots`](crate::scenario::Scenario::robots), `index` that of its body here: the same, unless other ranks have other robots.
 pub trait Ground: Send + Sync {
     /// Scratch memory of a thread for [`Ground::sense`].
     type Scratch: Default + Send;
@@ -31,6 +32,9 @@ pub trait Ground: Send + Sync {
     /// # Errors
     /// No body of this world can be so.
     fn set_body(&mut self, index: usize, body: Self::Body) -> Result<(), &'static str>;
+
+    /// What of the body of a robot on another rank is known here, too: where the robot is to go.
+    fn note(&mut self, number: usize, body: Self::Body);
 
     /// The world but for its bodies.
     fn shared(&self) -> Self::Shared;
@@ -65,20 +69,20 @@ pub trait Ground: Send + Sync {
     /// `None` when its robot is not where it should be.
     fn arrival(&self, index: usize, tick: u32, status: &Status) -> Option<u64>;
 
-    /// What robot number `index` of the scenario must know of its body and its radio.
-    fn config(&self, index: usize, tick: Duration) -> AgentConfig<f32>;
+    /// What a robot must know of its body and its radio.
+    fn config(&self, number: usize, tick: Duration) -> AgentConfig<f32>;
 
-    /// What the robot of body `index` has to do if it starts at `tick`.
-    fn task(&self, index: usize, tick: u32) -> Task;
+    /// What a robot has to do if it starts at `tick`.
+    fn task(&self, number: usize, tick: u32) -> Task;
 
     /// Whether a body could stand at a place, metres.
     fn is_open(&self, place_m: [f64; 3]) -> bool;
 
-    /// Where the robot of body `index` is to go, metres; `None`: nowhere in particular.
-    fn goal_m(&self, index: usize) -> Option<[f64; 3]>;
+    /// Where a robot is to go, metres; `None`: nowhere in particular.
+    fn goal_m(&self, number: usize) -> Option<[f64; 3]>;
 
-    /// Gives it another goal from `tick` on, and says what to tell it.
-    fn set_goal(&mut self, index: usize, tick: u32, place_m: [f64; 3]) -> Task;
+    /// Gives it another goal from `tick` on.
+    fn set_goal(&mut self, number: usize, tick: u32, place_m: [f64; 3]);
 
     /// Changes the world itself before `tick`.
     ///
@@ -103,7 +107,7 @@ pub trait Ground: Send + Sync {
 
     /// How far a robot was from its place in the formation when [`Ground::keeping`] last looked, cells; NaN when it
     /// has none.
-    fn formation_error(&self, _index: usize) -> f64 {
+    fn formation_error(&self, _number: usize) -> f64 {
         f64::NAN
     }
 

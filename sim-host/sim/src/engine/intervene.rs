@@ -28,7 +28,7 @@ pub enum Change<'a> {
     Cell([i16; 2], u8),
 }
 
-/// A parameter that was changed, of one robot or of all.
+/// A parameter that was changed, of one robot (its place in the scenario) or of all.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Tuned {
     robot: Option<usize>,
@@ -58,10 +58,10 @@ where
     /// It makes no sense for these robots or this world, or nobody has a use for it.
     pub fn intervene(&mut self, what: &Intervention) -> Result<(), Refusal> {
         what.check(&self.robots)?;
-        let index = what.robot().and_then(|number| self.index_of(number));
+        let number = what.robot().and_then(|id| self.number_of(RobotId(id)));
         match what {
-            Intervention::Goal { place_m, .. } => self.set_goals(index, *place_m),
-            Intervention::Parameter { name, value, .. } => self.tune(index, *name, *value),
+            Intervention::Goal { place_m, .. } => self.set_goals(number, *place_m),
+            Intervention::Parameter { name, value, .. } => self.tune(number, *name, *value),
             Intervention::Down { robot, for_s } => {
                 let ticks = for_s.map_or(f64::INFINITY, |for_s| libm::ceil(for_s * 1e6 / f64::from(self.tick_us)));
                 let to_tick = self.tick.saturating_add(ticks as u32);
@@ -86,25 +86,39 @@ where
         self.ground.change(self.tick, change)
     }
 
-    fn index_of(&self, number: u32) -> Option<usize> {
-        self.robots.binary_search_by_key(&RobotId(number), |robot| robot.id).ok()
+    fn number_of(&self, id: RobotId) -> Option<usize> {
+        self.robots.binary_search_by_key(&id, |robot| robot.id).ok()
     }
 
-    fn set_goals(&mut self, index: Option<usize>, place_m: [f64; 3]) -> Result<(), Refusal> {
+    /// Where a robot is here, if it is.
+    pub(super) fn index_of(&self, id: RobotId) -> Option<usize> {
+        let number = self.number_of(id)?;
+        match self.here.len() == self.robots.len() && self.here[number] as usize == number {
+            true => Some(number),
+            false => self.here.iter().position(|&here| here as usize == number),
+        }
+    }
+
+    fn set_goals(&mut self, number: Option<usize>, place_m: [f64; 3]) -> Result<(), Refusal> {
         if self.external.is_some() {
             return Err(Refusal::new("kind", "some of these robots run elsewhere", "run them here"));
         }
         if !self.ground.is_open(place_m) {
             return Err(Refusal::new("place_m", "nobody can stand there", "give a place on the map and not in a wall"));
         }
-        let shape_of = self.ground.goal_m(0).filter(|_| index.is_none() && self.keeps_shape);
-        let robots = index.map_or(0..self.robots.len(), |index| index..index + 1);
-        let mut is_of_use = false;
-        for index in robots {
-            let own = shape_of.zip(self.ground.goal_m(index));
+        let shape_of = self.ground.goal_m(0).filter(|_| number.is_none() && self.keeps_shape);
+        let robots = number.map_or(0..self.robots.len(), |number| number..number + 1);
+        for number in robots.clone() {
+            let own = shape_of.zip(self.ground.goal_m(number));
             let off_m = own.map_or([0.0; 3], |(first, own)| [0, 1, 2].map(|axis| own[axis] - first[axis]));
-            let task = self.ground.set_goal(index, self.tick, [0, 1, 2].map(|axis| place_m[axis] + off_m[axis]));
-            let is_up = self.is_up(index);
+            self.ground.set_goal(number, self.tick, [0, 1, 2].map(|axis| place_m[axis] + off_m[axis]));
+        }
+        let mut is_of_use = false;
+        for index in 0..self.here.len() {
+            if !robots.contains(&self.number(index)) {
+                continue;
+            }
+            let (task, is_up) = (self.ground.task(self.number(index), self.tick), self.is_up(index));
             let agent = self.computers[index].agent.as_mut();
             // One that is down hears of it when it starts anew.
             is_of_use |= agent.filter(|_| is_up).is_none_or(|agent| agent.assign(&task).is_ok());
@@ -118,14 +132,15 @@ where
     fn tune(&mut self, robot: Option<usize>, parameter: Parameter, value: f32) -> Result<(), Refusal> {
         let tuned = Tuned { robot, parameter, value };
         let mut is_known = false;
-        for (index, computer) in self.computers.iter_mut().enumerate() {
-            if robot.is_none_or(|robot| robot == index)
+        for (&number, computer) in self.here.iter().zip(&mut self.computers) {
+            if robot.is_none_or(|robot| robot == number as usize)
                 && let Some(agent) = &mut computer.agent
             {
                 is_known |= agent.set_parameter(parameter, value);
             }
         }
-        if !is_known {
+        // Elsewhere there may be one.
+        if !is_known && self.here.len() == self.robots.len() {
             let what = format!("no robot that this is for has the parameter {parameter}");
             return Err(Refusal::new("name", what, "give one that its guidance law or its safety layer has"));
         }
@@ -139,9 +154,9 @@ where
     }
 }
 
-/// Gives an agent that starts the parameters that robot `index` has by now.
-pub(super) fn retune(tuned: &[Tuned], index: usize, mut set: impl FnMut(Parameter, f32) -> bool) {
-    for Tuned { parameter, value, .. } in tuned.iter().filter(|tuned| tuned.robot.is_none_or(|robot| robot == index)) {
+/// Gives an agent that starts the parameters that robot number `number` of the scenario has by now.
+pub(super) fn retune(tuned: &[Tuned], number: usize, mut set: impl FnMut(Parameter, f32) -> bool) {
+    for Tuned { parameter, value, .. } in tuned.iter().filter(|tuned| tuned.robot.is_none_or(|robot| robot == number)) {
         set(*parameter, *value);
     }
 }

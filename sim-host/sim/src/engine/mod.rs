@@ -21,6 +21,7 @@ mod intruder;
 mod keeper;
 mod operator;
 mod plane;
+pub mod ranks;
 mod report;
 mod simulate;
 mod state;
@@ -58,7 +59,7 @@ use staya_controller::neighbor::Claims;
 use staya_controller::robot::{Mode, RobotId};
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{Format, Ring};
-use std::collections::VecDeque;
+use std::collections::{HashMap, VecDeque};
 
 /// Robots that a thread takes at least at a time: less would cost more in handing out than in work.
 const BATCH: usize = 64;
@@ -98,6 +99,11 @@ pub struct Status {
 }
 
 impl Status {
+    /// Of a robot before its first step.
+    const fn before(robot: &Robot) -> Self {
+        Self { mode: Mode::Idle, leader: RobotId::NOBODY, target: robot.goal, wait: None }
+    }
+
     /// Its computer is down.
     const fn fall_silent(&mut self) {
         (self.mode, self.leader, self.wait) = (Mode::Fault, RobotId::NOBODY, None);
@@ -158,7 +164,11 @@ pub struct Engine<W, G, A> {
     claims: Claims<f32>,
     tick_us: u32,
     tick: u32,
+    /// All of the scenario, by rising number.
     robots: Vec<Robot>,
+    /// Which of them are here: their places in `robots`, in the order of everything below that is of one robot. All of them in
+    /// order, unless other ranks have the others.
+    here: Vec<u32>,
     faults: Vec<Fault>,
     /// What is still to be done to the run, by rising tick.
     interventions: VecDeque<(u32, Intervention)>,
@@ -177,6 +187,8 @@ pub struct Engine<W, G, A> {
     attackers: Vec<Attacker>,
     intruders: Vec<Intruder>,
     keeper: Option<Keeper>,
+    /// Keys of robots on other ranks that attackers take in this tick.
+    taken: HashMap<RobotId, Ring>,
     master: Option<Key>,
     external: Option<External>,
     keeps_events: bool,
@@ -196,18 +208,32 @@ where
     /// The scenario before its first tick, on `ground`. `brains(i)` makes guidance law and safety layer of robot number `i` in
     /// [`Scenario::robots`], at its first start and at each restart.
     pub fn new(scenario: &Scenario, ground: W, brains: impl Fn(usize) -> (G, A) + Send + Sync + 'static) -> Self {
+        let here = (0..scenario.robots.len() as u32).collect();
+        Self::part(scenario, ground, brains, here, true)
+    }
+
+    /// The same with these robots alone, by their places in [`Scenario::robots`]; `ground` has their bodies in this order. Who is no
+    /// robot and has a radio is here or on another rank.
+    fn part(
+        scenario: &Scenario,
+        ground: W,
+        brains: impl Fn(usize) -> (G, A) + Send + Sync + 'static,
+        here: Vec<u32>,
+        has_others: bool,
+    ) -> Self {
         let robots = scenario.robots.clone();
         let format = scenario.radio.format;
-        let attackers = scenario.attacks.iter();
+        let attackers = scenario.attacks.iter().filter(|_| has_others);
         let attackers = attackers.map(|attack| Attacker::new(attack, scenario));
         let attackers: Vec<_> = attackers.collect();
-        let ids = robots.iter().map(|robot| robot.id);
-        let intruders: Vec<_> = ground.heard().map(|(disc, _)| Intruder::new(disc, format)).collect();
+        let ids = here.iter().map(|&number| robots[number as usize].id);
+        let intruders = ground.heard().filter(|_| has_others);
+        let intruders: Vec<_> = intruders.map(|(disc, _)| Intruder::new(disc, format)).collect();
         let ids = ids.chain((0..attackers.len()).map(Attacker::id));
         let ids = ids.chain(intruders.iter().map(|intruder| intruder.id));
-        let keeper = Keeper::new(scenario);
+        let keeper = Keeper::new(scenario).filter(|_| has_others);
         let ids = ids.chain(keeper.iter().map(|_| Keeper::id()));
-        let mut positions_m = vec![[0.0; 2]; robots.len()];
+        let mut positions_m = vec![[0.0; 2]; here.len()];
         positions_m.extend(attackers.iter().map(Attacker::place_m));
         positions_m.extend(intruders.iter().map(|intruder| intruder.position_m));
         positions_m.extend(keeper.iter().map(Keeper::place_m));
@@ -226,39 +252,50 @@ where
             radio: Radio::new(&scenario.radio, scenario.seed, scenario.tick_us, ids),
             ground,
             computers: Vec::new(),
-            commands: vec![Command::Hold; robots.len()],
+            commands: vec![Command::Hold; here.len()],
             statuses: Vec::new(),
-            chains: robots.iter().map(|robot| Chain::new(robot.id)).collect(),
+            chains: here.iter().map(|&number| Chain::new(robots[number as usize].id)).collect(),
             positions_m,
             attackers,
             intruders,
             keeper,
+            taken: HashMap::new(),
             master: scenario.keeping.as_ref().map(|keeping| keeping.master.clone()),
             external: None,
             keeps_events: false,
-            arrivals: Arrivals::new(robots.len()),
-            waits: Waits::new(robots.len()),
+            arrivals: Arrivals::new(here.len()),
+            waits: Waits::new(here.len()),
             collisions: 0,
             packets: PacketCounts::default(),
             throttled: 0,
             robots,
+            here,
         };
-        engine.computers = (0..engine.robots.len()).map(|index| engine.start(index, 0)).collect();
-        let waiting =
-            |robot: &Robot| Status { mode: Mode::Idle, leader: RobotId::NOBODY, target: robot.goal, wait: None };
-        engine.statuses = engine.robots.iter().map(waiting).collect();
+        engine.computers = (0..engine.here.len()).map(|index| engine.start(index, 0)).collect();
+        engine.statuses = engine.here.iter().map(|&number| Status::before(&engine.robots[number as usize])).collect();
         engine
+    }
+
+    /// The number of a robot that is here.
+    fn id(&self, index: usize) -> RobotId {
+        self.robots[self.number(index)].id
+    }
+
+    /// The place in [`Scenario::robots`] of a robot that is here.
+    fn number(&self, index: usize) -> usize {
+        self.here[index] as usize
     }
 
     /// What the computer of robot `index` must know at its start number `boot`.
     fn config(&self, index: usize, boot: u8) -> AgentConfig<f32> {
         let tick = Duration::from_micros(i32::try_from(self.tick_us).unwrap_or(i32::MAX));
-        AgentConfig { boot, seed: self.seed, claims: self.claims, ..self.ground.config(index, tick) }
+        AgentConfig { boot, seed: self.seed, claims: self.claims, ..self.ground.config(self.number(index), tick) }
     }
 
     /// Computer number `index` with its own agent, started now.
     fn start(&self, index: usize, boot: u8) -> Computer<G, A> {
-        let (guidance, safety) = (self.brains)(index);
+        let number = self.number(index);
+        let (guidance, safety) = (self.brains)(number);
         let wire = match &self.master {
             None => radio::wire(self.format, self.key.as_ref(), boot),
             // Its lasting memory has the key that it spoke last.
@@ -270,8 +307,8 @@ where
         };
         let mut agent = Agent::new(&self.config(index, boot), guidance, safety, wire);
         // A law that has no use for its task says so; the scenario was checked for that.
-        let _ = agent.assign(&self.ground.task(index, self.tick));
-        intervene::retune(&self.tuned, index, |parameter, value| agent.set_parameter(parameter, value));
+        let _ = agent.assign(&self.ground.task(number, self.tick));
+        intervene::retune(&self.tuned, number, |parameter, value| agent.set_parameter(parameter, value));
         self.computer(Some(agent), boot)
     }
 
@@ -291,7 +328,7 @@ where
 
     /// Starts computer number `index` anew, here or elsewhere.
     fn restart(&mut self, index: usize, boot: u8) {
-        let (config, task) = (self.config(index, boot), self.ground.task(index, self.tick));
+        let (config, task) = (self.config(index, boot), self.ground.task(self.number(index), self.tick));
         let robots = self.external.as_mut().and_then(|external| {
             let found = external.robots.iter().find(|(robot, ..)| *robot == index);
             let (_, guidance, safety) = found?;
@@ -314,25 +351,9 @@ where
         self.intrude();
 
         self.keep_keys();
-        let (computers, attackers, intruders) = (&self.computers, &self.attackers, &self.intruders);
-        let keeper = self.keeper.as_ref().map_or(&[][..], Keeper::outbox);
-        let outbox = |index: usize| match computers.get(index) {
-            Some(computer) => computer.outbox.as_slice(),
-            None => match attackers.get(index - computers.len()) {
-                Some(attacker) => attacker.outbox(),
-                None => intruders.get(index - computers.len() - attackers.len()).map_or(keeper, Intruder::outbox),
-            },
-        };
-        let carried = self.radio.carry(self.tick, &self.positions_m, outbox);
-        let packets = PacketCounts {
-            sent: carried.sent,
-            delivered: carried.delivered,
-            lost: carried.lost,
-            corrupted: carried.corrupted,
-            ..refused
-        };
-        self.packets += packets;
-        self.throttled += carried.throttled;
+        let sent = self.send();
+        let carried = self.radio.receive(self.tick, &self.positions_m, &[], sent);
+        let packets = self.count(refused, carried);
 
         self.ground.advance(self.tick, &self.commands);
         self.collisions += self.ground.count_collisions(self.tick);
@@ -342,23 +363,56 @@ where
         self.row(keeping, packets)
     }
 
+    /// Puts on the air what everybody here sends.
+    fn send(&mut self) -> radio::Counts {
+        let (computers, attackers, intruders) = (&self.computers, &self.attackers, &self.intruders);
+        let keeper = self.keeper.as_ref().map_or(&[][..], Keeper::outbox);
+        let outbox = |index: usize| match computers.get(index) {
+            Some(computer) => computer.outbox.as_slice(),
+            None => match attackers.get(index - computers.len()) {
+                Some(attacker) => attacker.outbox(),
+                None => intruders.get(index - computers.len() - attackers.len()).map_or(keeper, Intruder::outbox),
+            },
+        };
+        self.radio.send(self.tick, &self.positions_m, outbox)
+    }
+
+    /// Takes note of a tick's packets.
+    fn count(&mut self, refused: PacketCounts, carried: radio::Counts) -> PacketCounts {
+        let packets = PacketCounts {
+            sent: carried.sent,
+            delivered: carried.delivered,
+            lost: carried.lost,
+            corrupted: carried.corrupted,
+            ..refused
+        };
+        self.packets += packets;
+        self.throttled += carried.throttled;
+        packets
+    }
+
     /// Attackers hear and speak, as robots do.
     fn attack(&mut self) {
-        let robots = self.robots.len();
-        for (at, attacker) in self.attackers.iter_mut().enumerate() {
-            if let Some(taken) = attacker.takes(self.tick)
-                && let Ok(index) = self.robots.binary_search_by_key(&taken, |robot| robot.id)
+        let robots = self.computers.len();
+        for at in 0..self.attackers.len() {
+            if let Some(taken) = self.attackers[at].takes(self.tick)
+                && let Some(ring) = self.ring_of(taken).or_else(|| self.taken.get(&taken).cloned())
             {
-                let agent = self.computers[index].agent.as_ref();
-                attacker.take(agent.and_then(|agent| ring(agent.wire())));
+                self.attackers[at].take(&ring);
             }
-            attacker.act(self.tick, self.radio.inbox(robots + at));
+            self.attackers[at].act(self.tick, self.radio.inbox(robots + at));
         }
+    }
+
+    /// The keys that a robot has that is here.
+    fn ring_of(&self, robot: RobotId) -> Option<Ring> {
+        let agent = self.computers[self.index_of(robot)?].agent.as_ref()?;
+        ring(agent.wire()).cloned()
     }
 
     /// Whoever has the master hears and speaks.
     fn keep_keys(&mut self) {
-        let at = self.robots.len() + self.attackers.len() + self.intruders.len();
+        let at = self.computers.len() + self.attackers.len() + self.intruders.len();
         if let Some(keeper) = &mut self.keeper {
             keeper.act(self.tick, self.radio.inbox(at));
         }
@@ -367,7 +421,7 @@ where
     /// Intruders say where they are.
     fn intrude(&mut self) {
         let now = Instant::from_micros(self.tick.wrapping_mul(self.tick_us));
-        let first = self.robots.len() + self.attackers.len();
+        let first = self.computers.len() + self.attackers.len();
         let positions_m = self.positions_m.iter_mut().skip(first);
         for ((intruder, position_m), (disc, cell)) in
             self.intruders.iter_mut().zip(positions_m).zip(self.ground.heard())

@@ -33,14 +33,16 @@ const WALLS: usize = 16;
 
 /// Bodies that move in the plane or in space.
 pub struct PlaneGround {
-    plane: Plane,
+    pub(super) plane: Plane,
     setup: PlaneSetup,
-    clearance: Clearance,
+    pub(super) clearance: Clearance,
     /// After the last tick, metres.
-    gap_m: Option<f64>,
-    meter: Option<FormationMeter>,
+    pub(super) gap_m: Option<f64>,
+    pub(super) meter: Option<FormationMeter>,
     changed: Changed,
     robots: Vec<Robot>,
+    /// The number of each body's robot.
+    pub(super) numbers: Vec<u32>,
     radius: u8,
     tick_us: u32,
     delay_us: u32,
@@ -56,15 +58,7 @@ impl PlaneGround {
     /// The scenario's bodies at their starts.
     #[must_use]
     pub fn new(scenario: &Scenario, setup: &PlaneSetup) -> Self {
-        let discs = scenario.robots.iter().zip(&setup.starts).enumerate();
-        let discs = discs.map(|(index, (robot, start))| Disc {
-            id: robot.id,
-            radius_m: setup.group(index).radius_m,
-            position_m: start.position_m,
-            velocity_mps: start.velocity_mps,
-            abilities: setup.group(index).abilities,
-            downwash: setup.group(index).downwash(),
-        });
+        let discs = (0..scenario.robots.len()).map(|number| disc(scenario.robots[number].id, setup, number));
         let land = setup.has_terrain.then(|| scenario.terrain.clone());
         // Those who are heard have the numbers behind the robots'; nobody asks for those of the others.
         let last = scenario.robots.last().map_or(0, |robot| robot.id.0);
@@ -90,6 +84,7 @@ impl PlaneGround {
             }),
             plane,
             robots: scenario.numbered(),
+            numbers: (0..scenario.robots.len() as u32).collect(),
             radius: scenario.route.params.radius,
             tick_us: scenario.tick_us,
             delay_us: libm::round(scenario.radio.delay_ms * 1000.0) as u32,
@@ -107,17 +102,17 @@ impl PlaneGround {
         &self.plane
     }
 
-    /// What robot number `index` of the scenario senses where it is, with what velocity it has; the inbox is empty. Places
+    /// What robot number `number` of the scenario senses where it is, with what velocity it has; the inbox is empty. Places
     /// are finite.
     pub fn sense_at<'a>(
         &'a self,
-        index: usize,
+        number: usize,
         position_m: [f64; 3],
         velocity_mps: [f64; 3],
         senses: &'a mut Senses,
     ) -> AnyInputs<'a, f32> {
         let Senses { cells, obstacles } = senses;
-        let group = self.setup.group(index);
+        let group = self.setup.group(number);
         let sight_m = group.sight_m + group.radius_m;
         obstacles.clear();
         // Who says nothing is seen as what stands where he is.
@@ -160,10 +155,20 @@ impl PlaneGround {
         }
     }
 
-    /// What has been ordered before `tick`, for the robot of body `index`; a goal that it was given later stands.
-    fn ordered(&self, index: usize, tick: u32) -> impl Iterator<Item = &Order> {
+    /// What has been ordered before `tick`, for a robot; a goal that it was given later stands.
+    fn ordered(&self, number: usize, tick: u32) -> impl Iterator<Item = &Order> {
         let orders = self.setup.orders.iter().take_while(move |order| order.tick < tick);
-        orders.filter(move |order| order.index > 0 || order.tick >= self.since[index])
+        orders.filter(move |order| order.index > 0 || order.tick >= self.since[number])
+    }
+
+    /// The body of a robot at its start.
+    pub(super) fn disc_of(&self, number: usize, id: RobotId) -> Disc {
+        disc(id, &self.setup, number)
+    }
+
+    /// The robot of a body.
+    fn number(&self, index: usize) -> usize {
+        self.numbers[index] as usize
     }
 
     /// Where in its cell of the land a body is.
@@ -208,6 +213,19 @@ pub(super) fn frames(orders: &[Order], format: Format, key: Option<&Key>) -> Vec
     frames
 }
 
+/// A robot's body at its start.
+fn disc(id: RobotId, setup: &PlaneSetup, number: usize) -> Disc {
+    let (group, start) = (setup.group(number), &setup.starts[number]);
+    Disc {
+        id,
+        radius_m: group.radius_m,
+        position_m: start.position_m,
+        velocity_mps: start.velocity_mps,
+        abilities: group.abilities,
+        downwash: group.downwash(),
+    }
+}
+
 /// What a robot sees.
 #[derive(Default)]
 pub struct Senses {
@@ -228,6 +246,10 @@ impl Ground for PlaneGround {
         self.put_body(index, body)
     }
 
+    fn note(&mut self, number: usize, body: PlaneBody) {
+        self.note_body(number, body);
+    }
+
     fn shared(&self) -> PlaneShared {
         self.shared_now()
     }
@@ -238,7 +260,7 @@ impl Ground for PlaneGround {
 
     fn sense<'a>(&'a self, index: usize, _: u32, senses: &'a mut Senses) -> AnyInputs<'a, f32> {
         let disc = &self.plane.discs()[index];
-        self.sense_at(index, disc.position_m, disc.velocity_mps, senses)
+        self.sense_at(self.number(index), disc.position_m, disc.velocity_mps, senses)
     }
 
     fn motion(&self, index: usize, _: u32) -> Motion {
@@ -276,9 +298,9 @@ impl Ground for PlaneGround {
         self.meter.as_ref().and_then(FormationMeter::place_error)
     }
 
-    fn formation_error(&self, index: usize) -> f64 {
+    fn formation_error(&self, number: usize) -> f64 {
         let errors = self.meter.as_ref().map_or(&[][..], FormationMeter::errors);
-        errors.get(index).copied().unwrap_or(f64::NAN)
+        errors.get(number).copied().unwrap_or(f64::NAN)
     }
 
     fn clearance(&self) -> Option<Clearance> {
@@ -295,47 +317,47 @@ impl Ground for PlaneGround {
 
     fn arrival(&self, index: usize, tick: u32, status: &Status) -> Option<u64> {
         let disc = &self.plane.discs()[index];
-        let has_places = !self.setup.starts[index].places.is_empty();
+        let has_places = !self.setup.starts[self.number(index)].places.is_empty();
         let stands = disc.velocity_mps.iter().all(|v| v.abs() < 1e-3);
         let is_there = status.mode == Mode::Arrived && (has_places || stands);
         is_there.then(|| (u64::from(tick) + 1) * u64::from(UNIT))
     }
 
-    fn config(&self, index: usize, tick: Duration) -> AgentConfig<f32> {
+    fn config(&self, number: usize, tick: Duration) -> AgentConfig<f32> {
         // What is sent in a tick is heard in the next one, or in the first one that does not begin before the delay is over.
         let ticks = self.delay_us.div_ceil(self.tick_us.max(1)).max(1);
         let micros = i32::try_from(ticks * self.tick_us).unwrap_or(i32::MAX);
-        let group = self.setup.group(index);
+        let group = self.setup.group(number);
         AgentConfig {
             max_acceleration_mps2: group.abilities.max_acceleration_mps2 as f32,
             latency: Duration::from_micros(micros),
             silence: group.silence,
             flock: group.flock,
-            ..AgentConfig::new(self.robots[index].id, group.radius_m as f32, tick)
+            ..AgentConfig::new(self.robots[number].id, group.radius_m as f32, tick)
         }
     }
 
-    fn task(&self, index: usize, tick: u32) -> Task {
-        let guidance = self.setup.group(index).guidance.kind();
+    fn task(&self, number: usize, tick: u32) -> Task {
+        let guidance = self.setup.group(number).guidance.kind();
         if guidance.is_on_grid() {
-            return Task::Cell(self.robots[index].goal);
+            return Task::Cell(self.robots[number].goal);
         }
         // One that starts anew is told what has been ordered in the meantime; what is ordered in this tick, it hears.
-        let first = (0..).zip(&self.setup.starts[index].places);
-        let first = first.map(|(number, target)| (number, 0, target));
-        let later = self.ordered(index, tick).map(|order| (order.index, order.tick, &order.target));
+        let first = (0..).zip(&self.setup.starts[number].places);
+        let first = first.map(|(index, target)| (index, 0, target));
+        let later = self.ordered(number, tick).map(|order| (order.index, order.tick, &order.target));
         let mut waypoints = heapless::Vec::<(u8, Waypoint<f32>), WAYPOINTS>::new();
-        for (number, since, target) in first.chain(later) {
+        for (index, since, target) in first.chain(later) {
             let age_s = f64::from(tick - since) * f64::from(self.tick_us) / 1e6;
-            if guidance == GuidanceKind::Waypoint && number == 0 {
+            if guidance == GuidanceKind::Waypoint && index == 0 {
                 // It takes the place of all before it.
                 waypoints.clear();
             }
             let waypoint = waypoint(target, age_s);
-            match waypoints.iter_mut().find(|(known, _)| *known == number) {
+            match waypoints.iter_mut().find(|(known, _)| *known == index) {
                 Some((_, known)) => *known = waypoint,
                 // The scenario was checked for having no more.
-                None => drop(waypoints.push((number, waypoint))),
+                None => drop(waypoints.push((index, waypoint))),
             }
         }
         Task::Waypoints(waypoints)
@@ -371,18 +393,19 @@ impl Ground for PlaneGround {
     }
 
     fn target_m(&self, index: usize, tick: u32, status: &Status) -> Option<[f64; 3]> {
-        let guidance = self.setup.group(index).guidance.kind();
+        let number = self.number(index);
+        let guidance = self.setup.group(number).guidance.kind();
         if guidance.is_on_grid() {
             let land = self.plane.terrain().filter(|land| land.index(status.target).is_some())?;
             let [x, y] = land.center_m(status.target);
             return Some([x, y, 0.0]);
         }
-        let (mut target, mut since) = match &self.setup.starts[index].places[..] {
+        let (mut target, mut since) = match &self.setup.starts[number].places[..] {
             [one] => (one, 0),
             // Of several, robots choose.
             _ => return None,
         };
-        for order in self.ordered(index, tick) {
+        for order in self.ordered(number, tick) {
             if order.index > 0 {
                 return None;
             }
@@ -403,24 +426,23 @@ impl Ground for PlaneGround {
         }
     }
 
-    fn goal_m(&self, index: usize) -> Option<[f64; 3]> {
-        self.setup.starts[index].places.first().map(|target| target.position_m)
+    fn goal_m(&self, number: usize) -> Option<[f64; 3]> {
+        self.setup.starts[number].places.first().map(|target| target.position_m)
     }
 
-    fn set_goal(&mut self, index: usize, tick: u32, place_m: [f64; 3]) -> Task {
-        let guidance = self.setup.group(index).guidance.kind();
+    fn set_goal(&mut self, number: usize, tick: u32, place_m: [f64; 3]) {
+        let guidance = self.setup.group(number).guidance.kind();
         let target = Target { position_m: place_m, velocity_mps: [0.0; 3] };
-        let places = &mut self.setup.starts[index].places;
+        let places = &mut self.setup.starts[number].places;
         match places.first_mut() {
             // One of several goals; for others it takes the place of what is on the way, too.
             Some(first) if guidance == GuidanceKind::GoalFlock => *first = target,
             _ => *places = vec![target],
         }
         if let Some(land) = self.plane.terrain() {
-            self.robots[index].goal = land.nearest_cell([place_m[0], place_m[1]]);
+            self.robots[number].goal = land.nearest_cell([place_m[0], place_m[1]]);
         }
-        self.since[index] = tick;
-        self.task(index, tick)
+        self.since[number] = tick;
     }
 
     fn change(&mut self, tick: u32, change: Change<'_>) -> Result<(), Refusal> {

@@ -32,14 +32,14 @@ where
     /// The robots' lines of the record, by rising number, as of now.
     pub fn rows(&self) -> impl Iterator<Item = RobotRow> {
         self.statuses.iter().enumerate().map(|(index, status)| RobotRow {
-            id: self.robots[index].id.0,
+            id: self.id(index).0,
             motion: self.ground.motion(index, self.tick),
             mode: status.mode,
             leader: status.leader.0,
             target: status.target,
             target_m: self.ground.target_m(index, self.tick, status),
             wait: status.wait,
-            formation_error_cells: self.ground.formation_error(index) as f32,
+            formation_error_cells: self.ground.formation_error(self.number(index)) as f32,
         })
     }
 

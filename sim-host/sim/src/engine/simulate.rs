@@ -20,7 +20,7 @@ use thiserror::Error;
 /// Cells of a search for windows up to radius 16 with their border: (2 * 16 + 3)^2.
 pub const WIDE: usize = 1225;
 /// The largest radius for which [`CELLS`] suffices.
-const NARROW_RADIUS: u8 = 5;
+pub(super) const NARROW_RADIUS: u8 = 5;
 
 /// The swarm after a tick, or (tick 0) before the first one.
 #[derive(Clone, Copy, Debug)]
@@ -165,7 +165,7 @@ impl AnyEngine {
 }
 
 /// Guidance and safety layer of each robot.
-fn agents<const C: usize>(
+pub(super) fn agents<const C: usize>(
     scenario: &Scenario,
 ) -> impl Fn(usize) -> (GuidanceOf<C>, SafetyOf) + Send + Sync + 'static + use<C> {
     let kind = |index| {

@@ -18,6 +18,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{Agent, Command, NEIGHBORS, Safety};
 use staya_controller::robot::RobotId;
+use std::collections::HashMap;
 use std::fmt;
 use thiserror::Error;
 
@@ -168,7 +169,7 @@ where
     /// When there is no such robot.
     pub fn pack(&self, index: usize, bytes: &mut Vec<u8>) {
         let computer = &self.computers[index];
-        write(&(self.robots[index].id, &computer.agent), bytes);
+        write(&(self.id(index), &computer.agent), bytes);
         let robot = Robot {
             mail: computer.mail.clone(),
             boot: computer.boot,
@@ -198,7 +199,7 @@ where
     /// When there is no such robot.
     pub fn unpack(&mut self, index: usize, bytes: &[u8]) -> Result<usize, StateError> {
         let mut from = Reader::new(bytes);
-        let own = self.robots[index].id;
+        let own = self.id(index);
         let id: RobotId = from.read("the number of a robot")?;
         if id != own {
             let what = format!("this is robot {}, not robot {}", id.0, own.0);
@@ -240,6 +241,16 @@ where
         if self.external.is_some() {
             return Err(StateError::new(bytes.len(), "some robots run elsewhere", "run all of them here"));
         }
+        self.save_head(bytes);
+        for index in 0..self.here.len() {
+            self.pack(index, bytes);
+        }
+        write(&self.digest(), bytes);
+        Ok(())
+    }
+
+    /// What of [`Engine::save`] stands before the robots: what is of the whole, and who else has a radio.
+    pub(super) fn save_head(&self, bytes: &mut Vec<u8>) {
         let whole = Whole {
             seed: self.seed,
             robots: self.robots.len(),
@@ -264,14 +275,9 @@ where
         if let Some(keeper) = &self.keeper {
             write(&keeper.state(), bytes);
         }
-        for index in self.robots.len()..self.positions_m.len() {
+        for index in self.here.len()..self.positions_m.len() {
             write(&self.radio.end(index), bytes);
         }
-        for index in 0..self.robots.len() {
-            self.pack(index, bytes);
-        }
-        write(&self.digest(), bytes);
-        Ok(())
     }
 
     /// Goes on where [`Engine::save`] was called, in an engine of the same scenario that has made no tick.
@@ -279,6 +285,14 @@ where
     /// # Errors
     /// The bytes are damaged, or of another scenario or program; this engine is of no use then.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), StateError> {
+        let others = [self.attackers.len(), self.intruders.len(), usize::from(self.keeper.is_some())];
+        let (at, digest) = self.restore_part(bytes, others)?;
+        if digest == self.digest() { Ok(()) } else { Err(Self::differs(at)) }
+    }
+
+    /// The same for the robots that are here, of a run with so many attackers, intruders that are heard and keepers of keys. Returns the
+    /// digest of all robots that was saved, and where.
+    pub(super) fn restore_part(&mut self, bytes: &[u8], others: [usize; 3]) -> Result<(usize, u64), StateError> {
         let mut from = Reader::new(bytes);
         if self.tick > 0 || self.external.is_some() {
             return Err(StateError::new(0, "this run is under way", "restore into one before its first tick"));
@@ -297,35 +311,68 @@ where
         (self.collisions, self.packets, self.throttled) = (whole.collisions, whole.packets, whole.throttled);
         self.waits.set_ticks(&whole.waited);
         self.radio.set_weather(whole.weather);
-        for attacker in &mut self.attackers {
-            attacker.restore(from.read::<AttackerState>("an attacker")?);
+        // Those that are not here are read, and left to the rank that has them.
+        let [attackers, intruders, keepers] = others;
+        for at in 0..attackers {
+            let state = from.read::<AttackerState>("an attacker")?;
+            if let Some(attacker) = self.attackers.get_mut(at) {
+                attacker.restore(state);
+            }
         }
-        for intruder in &mut self.intruders {
-            intruder.restore(from.read::<IntruderState>("an intruder")?);
+        for at in 0..intruders {
+            let state = from.read::<IntruderState>("an intruder")?;
+            if let Some(intruder) = self.intruders.get_mut(at) {
+                intruder.restore(state);
+            }
         }
-        if let Some(keeper) = &mut self.keeper {
-            keeper.restore(from.read::<KeeperState>("the keeper of keys")?);
+        for _ in 0..keepers {
+            let state = from.read::<KeeperState>("the keeper of keys")?;
+            if let Some(keeper) = &mut self.keeper {
+                keeper.restore(state);
+            }
         }
-        for index in self.robots.len()..self.positions_m.len() {
+        for index in (self.here.len()..).take(attackers + intruders + keepers) {
             let at = from.at();
             let end: End = from.read("an end of the radio")?;
-            self.radio.set_end(index, end).map_err(|what| StateError::new(at, what, SAME))?;
+            if index < self.positions_m.len() {
+                self.radio.set_end(index, end).map_err(|what| StateError::new(at, what, SAME))?;
+            }
         }
-        for index in 0..self.robots.len() {
+        let here: HashMap<usize, usize> = (0..self.here.len()).map(|index| (self.number(index), index)).collect();
+        for number in 0..self.robots.len() {
             let at = from.at();
-            let read = self.unpack(index, from.rest).map_err(|error| error.after(at))?;
-            from.rest = &from.rest[read..];
+            let read = match here.get(&number) {
+                Some(&index) => self.unpack(index, from.rest),
+                None => self.skip(number, from.rest),
+            };
+            from.rest = &from.rest[read.map_err(|error| error.after(at))?..];
         }
         let at = from.at();
         let digest: u64 = from.read("the digest of the robots")?;
-        if digest != self.digest() || !self.ground.is_sound() || !from.rest.is_empty() {
+        if !self.ground.is_sound() || !from.rest.is_empty() {
             return Err(StateError::new(at, "what was restored is not what was saved", SAME));
         }
-        Ok(())
+        Ok((at, digest))
+    }
+
+    /// Reads a robot that is not here. Returns how many bytes that were.
+    fn skip(&mut self, number: usize, bytes: &[u8]) -> Result<usize, StateError> {
+        let mut from = Reader::new(bytes);
+        let _: RobotId = from.read("the number of a robot")?;
+        let _: Option<Agent<f32, G, NEIGHBORS, A, HostWire>> = from.read("an agent")?;
+        let robot: Robot<W::Body> = from.read("a robot")?;
+        self.ground.note(number, robot.body);
+        let _: End = from.read("an end of the radio")?;
+        Ok(from.at())
+    }
+
+    /// What was restored is not what was saved.
+    pub(super) fn differs(at: usize) -> StateError {
+        StateError::new(at, "what was restored is not what was saved", SAME)
     }
 
     /// Of all agents together.
-    fn digest(&self) -> u64 {
+    pub(super) fn digest(&self) -> u64 {
         let agents = self.computers.par_iter().filter_map(|computer| computer.agent.as_ref());
         agents.map(Agent::digest).reduce(|| 0, u64::wrapping_add)
     }

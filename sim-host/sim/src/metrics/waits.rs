@@ -86,6 +86,17 @@ impl Waits {
         }
     }
 
+    /// A robot comes from another rank, behind those that are here.
+    pub(crate) fn admit(&mut self) {
+        self.robots.push(Robot::default());
+    }
+
+    /// Robot number `index` goes to another rank with its account; the last one takes its place.
+    pub(crate) fn dismiss(&mut self, index: usize) {
+        self.set_robot(index, Robot::default());
+        self.robots.swap_remove(index);
+    }
+
     /// For each reason the ticks of all robots together, and of the longest time on end.
     pub(crate) fn ticks(&self) -> Vec<(u64, u32)> {
         self.counts.iter().map(|count| (count.robot_ticks, count.longest_ticks)).collect()
@@ -102,6 +113,11 @@ impl Waits {
     #[must_use]
     pub fn now(&self) -> usize {
         self.counts.iter().filter(|count| count.wait != Wait::Place).map(|count| count.now).sum()
+    }
+
+    /// All reasons; robots that have gone to another rank have left their ticks behind.
+    pub(crate) fn all(&self) -> &[WaitCount] {
+        &self.counts
     }
 
     /// The reasons that there were.

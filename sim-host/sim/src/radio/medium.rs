@@ -1,6 +1,7 @@
 //! The packets that are on the air in one tick, by the place they were sent from.
 
 use super::Counts;
+use super::border::Sent;
 use super::params::RadioParams;
 use staya_controller::agent::OUTBOX;
 use staya_controller::rand::Rng;
@@ -19,7 +20,7 @@ pub(super) struct Packet {
     pub(super) number: u32,
     /// The seed of its fates.
     pub(super) key: u64,
-    from_m: [f64; 2],
+    pub(super) from_m: [f64; 2],
     start: u32,
     end: u32,
 }
@@ -140,6 +141,33 @@ impl Medium {
         }
         self.sort();
         counts
+    }
+
+    /// The packets and their bytes.
+    pub(super) fn sent(&self) -> impl Iterator<Item = (&Packet, &[u8])> {
+        self.queue.iter().map(|(_, packet)| (packet, self.bytes(packet)))
+    }
+
+    /// Puts packets on the air that were sent elsewhere in `tick`.
+    pub(super) fn add(&mut self, tick: u32, elsewhere: &[Sent]) {
+        for Sent { sender, number, from_m, bytes } in elsewhere {
+            let key = Rng::keyed(self.seed, PACKET, sender.0, tick).next_u64();
+            let start = self.bytes.len() as u32;
+            self.bytes.extend_from_slice(bytes);
+            let end = self.bytes.len() as u32;
+            let packet = Packet { sender: *sender, number: *number, key, from_m: *from_m, start, end };
+            self.queue.push((self.lattice.cell(*from_m) as u32, packet));
+        }
+        if !elsewhere.is_empty() {
+            self.sort();
+        }
+    }
+
+    /// There are so many senders from now on; those that are new have not sent anything.
+    pub(super) fn resize(&mut self, robots: usize) {
+        if let Some(buckets) = &mut self.buckets {
+            buckets.tokens.resize(robots, buckets.capacity);
+        }
     }
 
     /// Sorts the queue by cell; a counting sort keeps the order of senders within a cell.

@@ -5,12 +5,14 @@
 //! bandwidth do. Everything random about a packet is a function of (seed, tick, sender,
 //! number within the tick, receiver), so that neither threads nor the order of robots matter.
 
+mod border;
 mod fate;
 mod medium;
 mod params;
 mod state;
 mod wire;
 
+pub(crate) use border::Sent;
 pub use params::{Burst, RadioParams};
 pub(crate) use state::{End, Weather};
 pub use wire::{HostWire, PEERS, operator, own_wire, ring_wire, wire};
@@ -162,8 +164,12 @@ impl Radio {
     /// # Panics
     /// When there are fewer positions than robots.
     pub fn carry<'a>(&mut self, tick: u32, positions_m: &[[f64; 2]], outbox: impl Fn(usize) -> &'a [u8]) -> Counts {
-        let ids = self.receivers.iter().map(|receiver| receiver.id);
-        let sent = self.medium.fill(tick, ids, positions_m, outbox);
+        let sent = self.send(tick, positions_m, outbox);
+        self.deliver(tick, positions_m, sent)
+    }
+
+    /// Everybody receives what is on the air.
+    fn deliver(&mut self, tick: u32, positions_m: &[[f64; 2]], sent: Counts) -> Counts {
         let (medium, fates) = (&self.medium, &self.fates);
         let received = self
             .receivers

@@ -4,6 +4,7 @@
 //! who moves first; here the order of a tick is drawn anew each tick from (seed, tick, robot), so that no robot has
 //! precedence for good and the order of robots in memory plays no part.
 
+pub(crate) mod border;
 pub mod plane;
 mod refusal;
 mod window;
@@ -230,11 +231,16 @@ impl World {
         }
         self.occupancy[from_at] = 0;
         self.occupancy[to_at] = index as u32 + 1;
+        self.bodies[index] = self.entered(&body, dir, now);
+    }
+
+    /// A body that is free, after it has left its cell by `dir`.
+    fn entered(&self, body: &Body, dir: Dir, now: u64) -> Body {
         let idle = now - body.free_at;
         let start = if idle < u64::from(UNIT) { body.free_at } else { now };
-        let moved = Body { cell: to, entered_by: dir, ..body };
+        let moved = Body { cell: body.cell + dir.offset(), entered_by: dir, ..*body };
         let free_at = start + self.crossing(&moved);
-        self.bodies[index] = Body { free_at, ..moved };
+        Body { free_at, ..moved }
     }
 
     /// Whether a body in `from` may move by `dir` right now.

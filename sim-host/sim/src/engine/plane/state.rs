@@ -37,26 +37,30 @@ fn is_finite(vectors: &[[f64; 3]]) -> bool {
 
 impl PlaneGround {
     pub(super) fn body_now(&self, index: usize) -> PlaneBody {
-        let disc = &self.plane.discs()[index];
+        let (disc, number) = (&self.plane.discs()[index], self.number(index));
         PlaneBody {
             position_m: disc.position_m,
             velocity_mps: disc.velocity_mps,
-            goal: self.robots[index].goal,
-            places: self.setup.starts[index].places.clone(),
-            since: self.since[index],
+            goal: self.robots[number].goal,
+            places: self.setup.starts[number].places.clone(),
+            since: self.since[number],
         }
     }
 
     pub(super) fn put_body(&mut self, index: usize, body: PlaneBody) -> Result<(), &'static str> {
-        let PlaneBody { position_m, velocity_mps, goal, places, since } = body;
-        if !is_finite(&[position_m, velocity_mps]) {
+        if !is_finite(&[body.position_m, body.velocity_mps]) {
             return Err("its body is nowhere");
         }
-        self.plane.put(index, position_m, velocity_mps);
-        self.robots[index].goal = goal;
-        self.setup.starts[index].places = places;
-        self.since[index] = since;
+        self.plane.put(index, body.position_m, body.velocity_mps);
+        self.note_body(self.number(index), body);
         Ok(())
+    }
+
+    pub(super) fn note_body(&mut self, number: usize, body: PlaneBody) {
+        let PlaneBody { goal, places, since, .. } = body;
+        self.robots[number].goal = goal;
+        self.setup.starts[number].places = places;
+        self.since[number] = since;
     }
 
     pub(super) fn shared_now(&self) -> PlaneShared {

@@ -4,10 +4,12 @@
 //! This is no physics engine: nothing stops a body but its own robot. Bodies pass through each other and through
 //! obstacles, and each such overlap is counted, so that no controller can rely on the world to be safe.
 
+mod border;
 mod shape;
 mod solid;
 mod solids;
 
+pub(crate) use border::Beside;
 pub use shape::{FAR_M, Shape};
 pub use solid::Solid;
 pub use solid::narrow;

@@ -1,0 +1,138 @@
+//! Ranks connected by MPI.
+//!
+//! MPI is called by the main thread alone, the run is in another one: so it hears of a signal while MPI waits for a rank that is dead.
+
+use mpi::datatype::PartitionMut;
+use mpi::request::{WaitGuard, scope};
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::{Communicator as _, CommunicatorCollectives as _, Destination as _, Source as _};
+use staya_console::Stop;
+use staya_sim::engine::ranks::{Exchange, Lost};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::time::{Duration, Instant};
+
+/// Between a signal to end and giving up on ranks that do not answer: mpirun kills a second after its signal.
+const PATIENCE: Duration = Duration::from_millis(300);
+
+/// What the run asks of MPI.
+pub enum Call {
+    Gather(Vec<u8>),
+    Swap(Vec<(usize, Vec<u8>)>, Vec<usize>),
+}
+
+/// The run's end.
+pub struct Link {
+    rank: usize,
+    ranks: usize,
+    calls: Sender<Call>,
+    answers: Receiver<Vec<Vec<u8>>>,
+    stop: Stop,
+}
+
+/// MPI's end.
+pub struct Server {
+    world: SimpleCommunicator,
+    calls: Receiver<Call>,
+    answers: Sender<Vec<Vec<u8>>>,
+}
+
+/// Both ends for this rank.
+pub fn connect(world: SimpleCommunicator, stop: Stop) -> (Link, Server) {
+    let (calls, called) = channel();
+    let (answers, answered) = channel();
+    let number = |number: i32| usize::try_from(number).unwrap_or_default();
+    let (rank, ranks) = (number(world.rank()), number(world.size()));
+    (Link { rank, ranks, calls, answers: answered, stop }, Server { world, calls: called, answers })
+}
+
+impl Link {
+    /// What MPI answers. `whom`: whose answer is awaited.
+    fn call(&self, call: Call, whom: &[usize]) -> Result<Vec<Vec<u8>>, Lost> {
+        let lost = || {
+            let others = (0..self.ranks).filter(|&rank| rank != self.rank);
+            let rank = whom.first().copied().or(others.into_iter().next()).unwrap_or_default();
+            let among = if whom.len() > 1 { "(or another one) " } else { "" };
+            Lost { rank, why: format!("{among}does not answer, and this run was told to end; mpirun says why") }
+        };
+        self.calls.send(call).map_err(|_| lost())?;
+        let mut told = None;
+        loop {
+            match self.answers.recv_timeout(Duration::from_millis(50)) {
+                Ok(answer) => return Ok(answer),
+                Err(RecvTimeoutError::Disconnected) => return Err(lost()),
+                Err(RecvTimeoutError::Timeout) if self.stop.is_requested() => {
+                    if told.get_or_insert_with(Instant::now).elapsed() > PATIENCE {
+                        return Err(lost());
+                    }
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+        }
+    }
+}
+
+impl Exchange for Link {
+    fn rank(&self) -> usize {
+        self.rank
+    }
+
+    fn ranks(&self) -> usize {
+        self.ranks
+    }
+
+    fn gather(&mut self, own: Vec<u8>) -> Result<Vec<Vec<u8>>, Lost> {
+        let others: Vec<_> = (0..self.ranks).filter(|&rank| rank != self.rank).collect();
+        self.call(Call::Gather(own), &others)
+    }
+
+    fn swap(&mut self, out: Vec<(usize, Vec<u8>)>, from: &[usize]) -> Result<Vec<Vec<u8>>, Lost> {
+        if out.is_empty() && from.is_empty() {
+            return Ok(Vec::new());
+        }
+        self.call(Call::Swap(out, from.to_vec()), from)
+    }
+}
+
+impl Server {
+    /// Does what the run asks until it is over.
+    pub fn serve(self) {
+        while let Ok(call) = self.calls.recv() {
+            let answer = match call {
+                Call::Gather(own) => self.gather(&own),
+                Call::Swap(out, from) => self.swap(&out, &from),
+            };
+            if self.answers.send(answer).is_err() {
+                return;
+            }
+        }
+    }
+
+    fn gather(&self, own: &[u8]) -> Vec<Vec<u8>> {
+        // One byte in front: the address of no bytes at all is what OpenMPI takes for MPI_IN_PLACE.
+        let own = &[&[0], own].concat()[..];
+        let ranks = usize::try_from(self.world.size()).unwrap_or_default();
+        let mut lengths = vec![0_i32; ranks];
+        let length = i32::try_from(own.len()).expect("what a rank tells all is short");
+        self.world.all_gather_into(&length, &mut lengths[..]);
+        let starts = lengths.iter().scan(0, |end, &length| {
+            let start = *end;
+            *end += length;
+            Some(start)
+        });
+        let starts: Vec<i32> = starts.collect();
+        let size = |length: i32| usize::try_from(length).unwrap_or_default();
+        let mut all = vec![0_u8; lengths.iter().map(|&length| size(length)).sum()];
+        self.world.all_gather_varcount_into(own, &mut PartitionMut::new(&mut all[..], &lengths[..], &starts[..]));
+        let parts = starts.iter().zip(&lengths);
+        parts.map(|(&start, &length)| all[size(start) + 1..size(start + length)].to_vec()).collect()
+    }
+
+    fn swap(&self, out: &[(usize, Vec<u8>)], from: &[usize]) -> Vec<Vec<u8>> {
+        let at = |rank: usize| self.world.process_at_rank(i32::try_from(rank).unwrap_or(i32::MAX));
+        scope(|scope| {
+            let sends = out.iter().map(|(rank, bytes)| at(*rank).immediate_send(scope, &bytes[..]));
+            let _waits: Vec<_> = sends.map(WaitGuard::from).collect();
+            from.iter().map(|&rank| at(rank).receive_vec::<u8>().0).collect()
+        })
+    }
+}

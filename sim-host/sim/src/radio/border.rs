@@ -1,0 +1,98 @@
+//! Packets that come from elsewhere: a radio of which other ranks have a part.
+
+use super::{Counts, End, Radio, Receiver};
+use serde::{Deserialize, Serialize};
+use staya_controller::robot::RobotId;
+
+/// A packet on the air, for who is not where it was sent.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Sent {
+    pub(crate) sender: RobotId,
+    /// Counts the sender's packets of this tick, those that its bandwidth held back included.
+    pub(crate) number: u32,
+    /// Where it was sent, metres.
+    pub(crate) from_m: [f64; 2],
+    pub(crate) bytes: Vec<u8>,
+}
+
+impl Radio {
+    /// The first half of [`Radio::carry`]: puts on the air what is sent here.
+    pub(crate) fn send<'a>(
+        &mut self,
+        tick: u32,
+        positions_m: &[[f64; 2]],
+        outbox: impl Fn(usize) -> &'a [u8],
+    ) -> Counts {
+        let ids = self.receivers.iter().map(|receiver| receiver.id);
+        self.medium.fill(tick, ids, positions_m, outbox)
+    }
+
+    /// What was sent here, for who is elsewhere and can hear it there.
+    pub(crate) fn sent(&self, is_heard: impl Fn([f64; 2]) -> bool) -> impl Iterator<Item = Sent> {
+        self.medium.sent().filter(move |(packet, _)| is_heard(packet.from_m)).map(|(packet, bytes)| Sent {
+            sender: packet.sender,
+            number: packet.number,
+            from_m: packet.from_m,
+            bytes: bytes.to_vec(),
+        })
+    }
+
+    /// The second half of [`Radio::carry`]: everybody here receives what was sent here and elsewhere in `tick`. Returns what became of it.
+    pub(crate) fn receive(&mut self, tick: u32, positions_m: &[[f64; 2]], elsewhere: &[Sent], sent: Counts) -> Counts {
+        if !self.receivers.is_empty() {
+            self.medium.add(tick, elsewhere);
+        }
+        self.deliver(tick, positions_m, sent)
+    }
+
+    /// Replaces what became of packets so far, and says what it was.
+    pub(crate) const fn replace_total(&mut self, total: Counts) -> Counts {
+        std::mem::replace(&mut self.total, total)
+    }
+
+    /// Farthest distance at which a packet can be received, metres.
+    pub(crate) const fn range_m(&self) -> f64 {
+        self.medium.range_m()
+    }
+
+    /// A robot comes from elsewhere and is number `index`: a receiver that has heard nothing. Those behind it move up.
+    pub(crate) fn admit(&mut self, index: usize, id: RobotId) {
+        let behind = self.take_from(index);
+        self.push(id, None);
+        behind.into_iter().for_each(|(id, end)| self.push(id, Some(end)));
+    }
+
+    /// Robot number `index` goes; the last of the first `robots` takes its place, and those behind it move down.
+    pub(crate) fn dismiss(&mut self, index: usize, robots: usize) {
+        let mut behind = self.take_from(robots - 1).into_iter();
+        if let Some((id, end)) = behind.next()
+            && index + 1 < robots
+        {
+            self.receivers[index] = Receiver { id, ..Receiver::default() };
+            self.put(index, end);
+        }
+        behind.for_each(|(id, end)| self.push(id, Some(end)));
+    }
+
+    /// Takes away the last ones, from number `index` on.
+    fn take_from(&mut self, index: usize) -> Vec<(RobotId, End)> {
+        let bytes = |index| postcard::to_stdvec(&self.end(index)).expect("memory takes every byte");
+        let end = |index| postcard::from_bytes(&bytes(index)).expect("these bytes are an end");
+        let taken = (index..self.receivers.len()).map(|index| (self.receivers[index].id, end(index))).collect();
+        self.receivers.truncate(index);
+        self.medium.resize(index);
+        taken
+    }
+
+    fn push(&mut self, id: RobotId, end: Option<End>) {
+        self.receivers.push(Receiver { id, ..Receiver::default() });
+        self.medium.resize(self.receivers.len());
+        if let Some(end) = end {
+            self.put(self.receivers.len() - 1, end);
+        }
+    }
+
+    fn put(&mut self, index: usize, end: End) {
+        self.set_end(index, end).expect("it is of this radio");
+    }
+}
