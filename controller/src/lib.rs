@@ -26,6 +26,8 @@
     )
 )]
 
+#[cfg(feature = "host")]
+extern crate alloc;
 #[cfg(test)]
 extern crate std;
 

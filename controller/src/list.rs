@@ -3,6 +3,17 @@
 
 use heapless::{LenType, Vec};
 
+/// A list of at most `N` items that is empty or short in nearly all robots: what a dead end taught, requests on their
+/// way. On a part its room is there from the start; on a host with many robots only what is in it takes memory. It is
+/// written as [`heapless::Vec`] is.
+#[cfg(all(not(feature = "host"), any(feature = "route", feature = "wire")))]
+pub(crate) type Seldom<T, const N: usize> = heapless::Vec<T, N>;
+#[cfg(feature = "host")]
+pub(crate) use seldom::Seldom;
+
+#[cfg(feature = "host")]
+mod seldom;
+
 /// Adds items as long as there is room; what has none is dropped.
 pub(crate) fn extend<T, L: LenType, const N: usize>(list: &mut Vec<T, N, L>, items: impl IntoIterator<Item = T>) {
     for item in items {

@@ -68,6 +68,9 @@ pub struct RunArgs {
     /// scenario's name].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Leave out what grows with the robots: trace.csv and the picture of their ways. For swarms of a million.
+    #[arg(long, conflicts_with = "gif")]
+    no_trace: bool,
     #[command(flatten)]
     checkpoint: CheckpointArgs,
     #[command(flatten)]
@@ -97,7 +100,8 @@ impl RunArgs {
             Checkpoints::new(every, place, before_seconds)
         });
         let page = self.page.watcher(&scenario)?;
-        let task = Task { scenario: &scenario, out: &out, from, checkpoints, stop: &stop };
+        let task =
+            Task { scenario: &scenario, out: &out, keeps_robots: !self.no_trace, from, checkpoints, stop: &stop };
         let summary = run(task, &self.also, page, global)?;
         if global.json {
             print_json(&summary)?;
@@ -118,6 +122,8 @@ struct Task<'a> {
     scenario: &'a Scenario,
     /// The folder for its results.
     out: &'a Path,
+    /// Their lines and the picture of their ways.
+    keeps_robots: bool,
     from: Option<Checkpoint>,
     checkpoints: Option<Checkpoints>,
     stop: &'a Stop,
@@ -150,10 +156,12 @@ fn run(task: Task<'_>, also: &AlsoArgs, page: Option<Watcher>, global: &Global) 
 
 /// The same in folder `dir`, which will be the results'; without `summary.json`.
 fn run_into(task: Task<'_>, dir: &Path, mut also: Also<'_>, global: &Global) -> Result<Summary> {
-    let Task { scenario, out, mut from, mut checkpoints, stop } = task;
+    let Task { scenario, out, keeps_robots, mut from, mut checkpoints, stop } = task;
+    // What was left out at first is nowhere.
+    let keeps_robots = keeps_robots && from.as_ref().is_none_or(Checkpoint::keeps_robots);
     let recorder = match &mut from {
-        Some(from) => from.recorder(dir)?,
-        None => Recorder::new(dir, Options::default())?,
+        Some(from) => from.recorder(dir, keeps_robots)?,
+        None => Recorder::new(dir, Options { keeps_robots, ..Options::default() })?,
     };
     let began = Instant::now();
     let (outcome, history) =
@@ -168,6 +176,7 @@ fn run_into(task: Task<'_>, dir: &Path, mut also: Also<'_>, global: &Global) -> 
         None => Vec::new(),
     };
     let names = ["summary.json", "series.csv", "series.schema.json", "trace.csv", "trace.schema.json"];
+    let names = if keeps_robots { &names[..] } else { &names[..3] };
     let mut files: Vec<_> = names.iter().map(|name| out.join(name)).collect();
     let pictures = match &scenario.plane {
         None => run_pictures(&scenario.terrain, &history, &edges, dir)?,

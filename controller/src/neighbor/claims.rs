@@ -100,10 +100,16 @@ impl<S: Scalar> Claims<S> {
         (is_large, is_fast)
     }
 
+    /// Whether a robot can have gone anywhere at any time.
+    #[must_use]
+    pub fn believes_all_places(&self) -> bool {
+        self.max_speed_mps >= S::MAX
+    }
+
     /// Whether a robot can have gone from one place to another in `time`.
     #[must_use]
     pub fn can_go(&self, from: Position, to: Position, time: Duration) -> bool {
-        if self.max_speed_mps >= S::MAX {
+        if self.believes_all_places() {
             return true;
         }
         let most_m = self.max_speed_mps * S::from_micro(time.as_micros().max(0)) + self.slack_m;

@@ -344,7 +344,11 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
 
     fn halves(&self) -> (&[Neighbor<S>], &[Neighbor<S>]) {
         let entries = self.entries.as_slice();
-        let known = entries.partition_point(|entry| !entry.is_lost);
+        // Few robots have lost anybody: who is last tells.
+        let known = match entries.last() {
+            Some(last) if last.is_lost => entries.partition_point(|entry| !entry.is_lost),
+            _ => entries.len(),
+        };
         entries.split_at_checked(known).unwrap_or((entries, &[]))
     }
 

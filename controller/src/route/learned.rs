@@ -2,7 +2,7 @@
 
 use crate::cost::Cost;
 use crate::grid::Cell;
-use heapless::Vec;
+use crate::list::Seldom;
 use serde::Serialize;
 
 /// Least costs to the target of up to `L` cells, each more than the straight way would cost.
@@ -11,14 +11,14 @@ use serde::Serialize;
 #[derive(Clone, Debug, Default, Serialize)]
 #[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct LearnedCosts<const L: usize> {
-    costs: Vec<(Cell, Cost), L>,
+    costs: Seldom<(Cell, Cost), L>,
 }
 
 impl<const L: usize> LearnedCosts<L> {
     /// Nothing learned yet.
     #[must_use]
     pub const fn new() -> Self {
-        Self { costs: Vec::new() }
+        Self { costs: Seldom::new() }
     }
 
     /// The cells with their least costs, in no order.

@@ -4,8 +4,8 @@ use super::escape::Escape;
 use super::{CostField, LearnedCosts, RouteParams, Unreachable, VisitMemory};
 use crate::cost::Weights;
 use crate::grid::{Cell, Dir, Window};
+use crate::list::Seldom;
 use crate::names::named;
-use heapless::Vec;
 use serde::Serialize;
 
 /// Moves that a plan holds; a longer route is planned again after so many.
@@ -48,7 +48,7 @@ pub struct Router<const M: usize, const L: usize = 0> {
     here: Option<Cell>,
     target: Option<Cell>,
     /// The moves to come, last one first, each with the impassability that it was planned for.
-    plan: Vec<(Dir, u8), PLAN>,
+    plan: Seldom<(Dir, u8), PLAN>,
     learned: LearnedCosts<L>,
     /// Impassability of the easiest land seen on the way to this target.
     easiest: u8,
@@ -74,7 +74,7 @@ impl<const M: usize, const L: usize> Router<M, L> {
             visits: VisitMemory::new(),
             here: None,
             target: None,
-            plan: Vec::new(),
+            plan: Seldom::new(),
             learned: LearnedCosts::new(),
             easiest: u8::MAX,
             least: u64::MAX,

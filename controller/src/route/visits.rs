@@ -1,7 +1,7 @@
 //! What the robot remembers of its own way (eq. 9).
 
 use crate::grid::Cell;
-use heapless::Vec;
+use crate::list::Seldom;
 use serde::Serialize;
 
 /// How often the robot entered each of the last `M` different cells.
@@ -11,14 +11,14 @@ use serde::Serialize;
 #[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct VisitMemory<const M: usize> {
     /// In order of the last entry, oldest first.
-    visits: Vec<(Cell, u8), M>,
+    visits: Seldom<(Cell, u8), M>,
 }
 
 impl<const M: usize> VisitMemory<M> {
     /// Nothing visited yet.
     #[must_use]
     pub const fn new() -> Self {
-        Self { visits: Vec::new() }
+        Self { visits: Seldom::new() }
     }
 
     /// Counts one entry into `cell`. O(M).

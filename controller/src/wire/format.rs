@@ -4,7 +4,8 @@
 //! format keeps between frames (counters, keys) is a part of the agent's state, and so of its digest; one that keeps nothing
 //! adds nothing to either.
 
-use super::{Beacon, DecodeError, EncodeError, Frame, Header, KeyPhase, Message, decode, encode, frames};
+use super::frame::next_frame;
+use super::{Beacon, DecodeError, EncodeError, Frame, Header, KeyPhase, Message, decode, encode};
 use crate::names::named;
 use heapless::Vec;
 use serde::Serialize;
@@ -87,16 +88,8 @@ impl Wire for Postcard {
         decode(frame)
     }
 
-    #[expect(clippy::arithmetic_side_effects, reason = "lengths of parts of `rest`, and its delimiter")]
     fn next_frame<'a>(&self, rest: &mut &'a [u8]) -> Option<&'a [u8]> {
-        let frame = frames(rest).next();
-        let end = frame.map_or(rest.len(), |frame| {
-            // Zero bytes in front of it, and its delimiter.
-            let before = rest.iter().take_while(|byte| **byte == 0).count();
-            before + frame.len() + 1
-        });
-        *rest = rest.get(end..).unwrap_or_default();
-        frame
+        next_frame(rest)
     }
 }
 

@@ -4,9 +4,9 @@
 //! The other side is [`Requests`](super::Requests).
 
 use super::{Ack, Header, Request, RequestKind};
+use crate::list::Seldom;
 use crate::robot::RobotId;
 use crate::time::{Duration, Instant};
-use heapless::Vec;
 use serde::Serialize;
 
 /// A request that lies this far behind a newer one on the same matter, or less, is an old one that
@@ -70,7 +70,7 @@ impl Order {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct Orders<const S: usize> {
-    lines: Vec<Order, S>,
+    lines: Seldom<Order, S>,
     memory: Duration,
 }
 
@@ -82,7 +82,7 @@ impl<const S: usize> Orders<S> {
     /// again; less than it takes the asker to use 200 numbers.
     #[must_use]
     pub const fn new(memory: Duration) -> Self {
-        Self { lines: Vec::new(), memory }
+        Self { lines: Seldom::new(), memory }
     }
 
     /// Judges a request to this robot that came in a frame with `header`. O(`S`).

@@ -4,10 +4,10 @@
 //! chain); the papers' requests are never lost, ours are small datagrams over a lossy radio.
 
 use super::{Ack, Request, RequestKind};
+use crate::list::Seldom;
 use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::time::{Duration, Instant};
-use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
 /// Keeps the jitter of resends apart from other uses of randomness.
@@ -103,7 +103,7 @@ impl Pending {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct Requests<const P: usize> {
-    pending: Vec<Pending, P>,
+    pending: Seldom<Pending, P>,
     retry: Retry,
     own: RobotId,
     boot: u8,
@@ -125,7 +125,7 @@ impl<const P: usize> Requests<P> {
     #[must_use]
     pub const fn new(own: RobotId, boot: u8, retry: Retry) -> Self {
         let () = Self::FITS;
-        Self { pending: Vec::new(), retry, own, boot, next: 0 }
+        Self { pending: Seldom::new(), retry, own, boot, next: 0 }
     }
 
     /// Takes on a request to `to` and returns its number; the next [`Requests::poll`] sends it.

@@ -160,8 +160,8 @@ impl RunArgs {
         global: &Global,
     ) -> Result<(Summary, Vec<Sent>)> {
         let mut recorder = match &mut from {
-            Some(from) => from.recorder(dir)?,
-            None => Recorder::new(dir, Options::default())?,
+            Some(from) => from.recorder(dir, !self.no_trace)?,
+            None => Recorder::new(dir, Options { keeps_robots: !self.no_trace, ..Options::default() })?,
         };
         let before_seconds = from.as_ref().map_or(0.0, Checkpoint::wall_seconds);
         let place = Place::new(out.with_added_extension("checkpoint"), scenario);
@@ -210,10 +210,7 @@ impl RunArgs {
     fn files(&self, scenario: &Scenario, history: &History, dir: &Path, out: &Path) -> Result<Vec<PathBuf>> {
         let mut files = ["summary.json", "series.csv", "series.schema.json"].map(|name| out.join(name)).to_vec();
         let trace = ["trace.csv", "trace.schema.json"];
-        if self.no_trace {
-            for name in trace {
-                std::fs::remove_file(dir.join(name)).with_context(|| format!("{}", dir.join(name).display()))?;
-            }
+        if !dir.join("trace.csv").exists() {
             return Ok(files);
         }
         files.extend(trace.map(|name| out.join(name)));

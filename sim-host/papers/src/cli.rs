@@ -10,7 +10,7 @@ pub mod orca;
 mod route;
 
 use crate::experiment::Experiment as _;
-use crate::{boids, goals};
+use crate::{boids, goals, scale};
 use anyhow::Result;
 use clap::{Args, Subcommand};
 use staya_console::{Ended, Global, Stop};
@@ -42,6 +42,8 @@ enum Experiment {
     Flock(Box<flock::FlockArgs>),
     /// 225 robots travel to three goals: how much of a group they stay (Pavlovsky and Pavlovsky).
     Goals(Box<goals::Plan>),
+    /// What a robot costs in time and memory, in swarms of a thousand to a million, on the grid and in the plane.
+    Scale(Box<scale::Plan>),
 }
 
 impl ExperimentArgs {
@@ -64,6 +66,7 @@ impl ExperimentArgs {
                 None => args.plan.command(Some(&args.plan.out), global, &stop),
             },
             Experiment::Goals(plan) => plan.command(Some(&plan.out), global, &stop),
+            Experiment::Scale(plan) => plan.command(Some(&plan.out), global, &stop),
         }
     }
 }

@@ -10,6 +10,7 @@
 //! | [`flock`] | R. Olfati-Saber 2006 (OLF), section VIII: the five simulations |
 //! | [`goals`] | V. E. Pavlovsky and V. V. Pavlovsky (PAV): a group on its way to three goals |
 //! | [`boids`] | V. A. Starovoitova 2018 (STA), section 2.3: boids on a torus, and what finding neighbours costs |
+//! | [`scale`] | none: what a robot costs in swarms of a thousand to a million |
 //!
 //! Each is a plan that implements [`experiment::Experiment`].
 
@@ -26,4 +27,5 @@ pub mod optimal;
 pub mod options;
 pub mod orca;
 pub mod route;
+pub mod scale;
 pub mod walk;

@@ -19,7 +19,8 @@ const COLOURS: usize = 8;
 /// Draws the pictures of one run into `out_dir`, which is made if needed, each as SVG and PNG, and names the
 /// files.
 ///
-/// - `motion`: where robots are, with their ways so far, at four moments from start to end; seen from above;
+/// - `motion`: where robots are, with their ways so far, at four moments from start to end, if the history has frames; seen
+///   from above;
 /// - `packets`: packets per second by their fate, over time.
 ///
 /// O(samples of the history).
@@ -28,7 +29,10 @@ const COLOURS: usize = 8;
 /// The directory or a file cannot be written.
 pub fn motion_pictures(setup: &PlaneSetup, history: &History, out_dir: &Path) -> Result<Vec<PathBuf>, Error> {
     record::make_dir(out_dir)?;
-    let mut files = motion_sheet(setup, history).draw().write(&out_dir.join("motion"))?;
+    let mut files = Vec::new();
+    if !history.frames().is_empty() {
+        files.extend(motion_sheet(setup, history).draw().write(&out_dir.join("motion"))?);
+    }
     files.extend(packets(history).write(&out_dir.join("packets"))?);
     Ok(files)
 }

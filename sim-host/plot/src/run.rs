@@ -16,7 +16,8 @@ const MEANS: usize = 100;
 /// Draws the pictures of one run into `out_dir`, which is made if needed, each as SVG and PNG, and
 /// names the files.
 ///
-/// - `trajectories`: the land, each robot's way, and the formation (`edges` between robot ids) over time;
+/// - `trajectories`: the land, each robot's way, and the formation (`edges` between robot ids) over time,
+///   if the history has frames;
 /// - `formation`: formation error and graph distance over time, only if the run has values of them;
 /// - `packets`: packets per second by their fate, over time.
 ///
@@ -31,9 +32,12 @@ pub fn run_pictures(
     out_dir: &Path,
 ) -> Result<Vec<PathBuf>, Error> {
     record::make_dir(out_dir)?;
-    let stem = out_dir.join("trajectories");
-    let canvas = trajectories::draw(terrain, history, edges).map_err(Error::new("draw", &stem))?;
-    let mut files = canvas.write(&stem)?;
+    let mut files = Vec::new();
+    if !history.frames().is_empty() {
+        let stem = out_dir.join("trajectories");
+        let canvas = trajectories::draw(terrain, history, edges).map_err(Error::new("draw", &stem))?;
+        files.extend(canvas.write(&stem)?);
+    }
     if let Some(panels) = formation(history.series()) {
         files.extend(panels.write(&out_dir.join("formation"))?);
     }

@@ -31,6 +31,8 @@ const FORMAT: u32 = 1;
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// What the file holds, in order.
 const PARTS: [&str; 5] = ["head", "state", "history", "trace.csv", "series.csv"];
+const TRACE: usize = 3;
+const SERIES: usize = 4;
 const FIRST: u64 = MAGIC.len() as u64 + 4;
 
 /// A file that is no checkpoint of this scenario, or is damaged.
@@ -98,7 +100,7 @@ impl Place {
             wall_seconds,
         };
         let parts = [encoded(&head), state, encoded(&recorder.saved())];
-        let [trace, series] = recorder.written()?;
+        let records = recorder.written()?;
         let temporary = beside(&self.path, &format!(".{}.tmp", std::process::id()));
         let done = (|| {
             let mut out = BufWriter::new(create_private(&temporary)?);
@@ -107,8 +109,11 @@ impl Place {
             for part in &parts {
                 write_part(&mut out, part.len() as u64, &mut part.as_slice())?;
             }
-            for (path, length) in [trace, series] {
-                write_part(&mut out, length, &mut File::open(path)?)?;
+            for record in records {
+                match record {
+                    Some((path, length)) => write_part(&mut out, length, &mut File::open(path)?)?,
+                    None => write_part(&mut out, 0, &mut io::empty())?,
+                }
             }
             out.into_inner()?.sync_all()?;
             self.replace(&temporary)
@@ -311,24 +316,34 @@ impl Checkpoint {
         }
     }
 
-    /// A recorder that goes on in folder `dir` where this one was.
+    /// Whether the run kept a line of each robot: one that did not cannot have them from now on.
+    #[must_use]
+    pub const fn keeps_robots(&self) -> bool {
+        self.parts[TRACE].length > 0
+    }
+
+    /// A recorder that goes on in folder `dir` where this one was, with the robots' lines if they are there and wanted.
     ///
     /// # Errors
     /// The records so far cannot be read, or not be written there.
-    pub fn recorder(&mut self, dir: &Path) -> Result<Recorder, record::Error> {
+    pub fn recorder(&mut self, dir: &Path, keeps_robots: bool) -> Result<Recorder, record::Error> {
+        let keeps_robots = keeps_robots && self.keeps_robots();
         let reading = |error: io::Error| record::Error::new("read", &self.path)(error);
         let mut bytes = Vec::new();
         part(&mut self.file, self.parts[2], &mut bytes).map_err(reading)?;
         let saved = postcard::from_bytes(&bytes)
             .map_err(|error| reading(io::Error::new(ErrorKind::InvalidData, format!("its history: {error}"))))?;
         record::make_dir(dir)?;
-        for (name, index) in [("trace.csv", 3), ("series.csv", 4)] {
+        for (name, index) in [("trace.csv", TRACE), ("series.csv", SERIES)] {
+            if index == TRACE && !keeps_robots {
+                continue;
+            }
             let path = dir.join(name);
             let mut out = BufWriter::new(File::create(&path).map_err(record::Error::new("make", &path))?);
             let copied = part(&mut self.file, self.parts[index], &mut out).and_then(|()| out.flush());
             copied.map_err(record::Error::new("write", &path))?;
         }
-        Recorder::resumed(dir, saved)
+        Recorder::resumed(dir, keeps_robots, saved)
     }
 }
 

@@ -10,6 +10,8 @@ pub mod waits;
 pub(crate) use formation::in_cells;
 pub use formation::{FORMED_AFTER_S, FormationMeter, Keeping, PlaceError, free_formation_s};
 
+use rayon::prelude::*;
+
 /// When each robot came to its target for good.
 #[derive(Clone, Debug)]
 pub struct Arrivals {
@@ -24,14 +26,16 @@ impl Arrivals {
         Self { at: vec![None; robots], count: 0 }
     }
 
-    /// Takes note of whether robot number `index` stands at its target now; `free_at` is when its
-    /// body's last crossing ends, in [`UNIT`](staya_controller::grid::UNIT)ths of a tick. A robot
-    /// that leaves its target has not arrived.
-    pub fn note(&mut self, index: usize, is_there: bool, free_at: u64) {
-        let before = self.at[index];
-        let now = is_there.then_some(before.unwrap_or(free_at));
-        self.at[index] = now;
-        self.count = self.count + usize::from(now.is_some()) - usize::from(before.is_some());
+    /// Takes note of who stands at its target now: `free_at(i)` is when the last crossing of robot number i's body ends,
+    /// in [`UNIT`](staya_controller::grid::UNIT)ths of a tick; `None` for one that is not there. A robot that leaves its
+    /// target has not arrived. In parallel.
+    pub fn note(&mut self, free_at: impl Fn(usize) -> Option<u64> + Sync) {
+        let robots = self.at.par_iter_mut().enumerate().with_min_len(256);
+        let count = robots.map(|(index, at)| {
+            *at = free_at(index).map(|free_at| at.unwrap_or(free_at));
+            usize::from(at.is_some())
+        });
+        self.count = count.sum();
     }
 
     /// When robot number `index` arrived is as it was at another time.
@@ -78,14 +82,14 @@ mod tests {
     #[test]
     fn who_leaves_his_target_has_not_arrived() {
         let mut arrivals = Arrivals::new(2);
-        arrivals.note(0, true, 70);
-        arrivals.note(0, true, 700);
+        arrivals.note(|index| (index == 0).then_some(70));
+        arrivals.note(|index| (index == 0).then_some(700));
         assert_eq!((arrivals.count(), arrivals.times()), (1, &[Some(70), None][..]));
-        arrivals.note(0, false, 700);
-        arrivals.note(1, true, 99);
+        arrivals.note(|index| (index == 1).then_some(99));
         assert_eq!((arrivals.count(), arrivals.times()), (1, &[None, Some(99)][..]));
         assert!(!arrivals.is_complete());
-        arrivals.note(0, true, 800);
+        arrivals.note(|index| Some([800, 900][index]));
+        assert_eq!(arrivals.times(), [Some(800), Some(99)]);
         assert!(arrivals.is_complete());
     }
 }

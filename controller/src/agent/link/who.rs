@@ -85,6 +85,10 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
         out: &mut Outputs<S>,
     ) -> bool {
         let claims = listener.claims;
+        // Nobody is ever in doubt then.
+        if claims.believes_all_places() {
+            return true;
+        }
         // A second one of a number is kept clear of from the first, as a double is, and so is the first one; where either goes from
         // there is looked at.
         let Some(known) = self.known(id) else {

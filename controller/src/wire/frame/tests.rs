@@ -369,7 +369,58 @@ fn of_noise_behind_the_crc_one_in_65536_passes_and_fewer_parse() {
     assert!(accepted + passed <= 20, "{accepted} accepted, {passed} passed");
 }
 
+/// What the deserialiser makes of a body, if it is a whole one.
+#[cfg(feature = "host")]
+fn by_postcard(body: &[u8]) -> Option<(Header, Message)> {
+    let (read, trailing) = postcard::take_from_bytes::<(Header, Message)>(body).ok()?;
+    trailing.is_empty().then_some(read)
+}
+
+#[cfg(feature = "host")]
+#[test]
+fn numbers_of_more_than_28_bits_are_left_to_postcard() {
+    for (sender, is_read) in [(1, true), ((1 << 28) - 1, true), (1 << 28, false), (u32::MAX, false)] {
+        let header = Header { sender: RobotId(sender), ..HEADER };
+        let body = &content(VERSION, header, &beacon())[1..];
+        assert_eq!(super::beacon::read(body), is_read.then(|| (header, beacon())), "{sender}");
+        assert_eq!(by_postcard(body), Some((header, beacon())));
+    }
+}
+
+#[cfg(feature = "host")]
 proptest! {
+    #[test]
+    fn a_beacon_is_what_postcard_makes_of_it(
+        header in header(),
+        message in message(),
+        hits in vec((any::<prop::sample::Index>(), any::<u8>()), 0..3),
+        cut in 0..3_usize,
+    ) {
+        let body = &content(VERSION, header, &message)[1..];
+        let is_small = |id: RobotId| id.0 < 1 << 28;
+        if let Message::Beacon(said) = &message
+            && is_small(header.sender) && is_small(said.leader)
+        {
+            prop_assert_eq!(super::beacon::read(body), Some((header, message.clone())));
+        }
+        let mut damaged = body.to_vec();
+        for (at, byte) in hits {
+            *at.get_mut(&mut damaged[..]) = byte;
+        }
+        damaged.truncate(body.len() - cut);
+        if let Some(read) = super::beacon::read(&damaged) {
+            prop_assert_eq!(by_postcard(&damaged), Some(read));
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn a_frame_ends_at_the_first_zero(bytes in vec(prop_oneof![Just(0_u8), Just(1), Just(0x80), any::<u8>()], 0..40)) {
+        let len = bytes.iter().position(|&byte| byte == 0).unwrap_or(bytes.len());
+        prop_assert_eq!(frame_len(&bytes), len);
+    }
+
     #[test]
     fn what_is_sent_is_received(
         header in header(), message in message(), tag in any::<Option<[u8; TAG_LEN]>>()

@@ -17,8 +17,12 @@ fn of(rest: &str) -> Scenario {
 
 /// Runs a scenario with records in `dir/whole`, with checkpoints after `ticks` in `dir/checkpoint`.
 fn run(dir: &Path, scenario: &Scenario, ticks: &[u32]) -> Place {
+    run_with(dir, scenario, ticks, Options::default())
+}
+
+fn run_with(dir: &Path, scenario: &Scenario, ticks: &[u32], options: Options) -> Place {
     let place = Place::new(dir.join("checkpoint"), scenario);
-    let mut recorder = Recorder::new(dir.join("whole"), Options::default()).expect("it can be made");
+    let mut recorder = Recorder::new(dir.join("whole"), options).expect("it can be made");
     simulate(scenario, |moment: &Moment<'_>, robots: &mut dyn Iterator<Item = RobotRow>| {
         recorder.tick(moment.row, robots).expect("it can be written");
         if ticks.contains(&moment.row.tick) {
@@ -40,7 +44,7 @@ fn records_go_on_to_the_same_bytes() {
     let mut from = Checkpoint::open(place.path(), &scenario).expect("it is whole");
     assert_eq!((from.tick(), from.wall_seconds()), (5, 1.5));
     let again = dir.path().join("again");
-    let mut recorder = from.recorder(&again).expect("it can be made");
+    let mut recorder = from.recorder(&again, true).expect("it can be made");
     simulate_from(&scenario, from.state(), &mut |moment, robots| {
         recorder.tick(moment.row, robots).expect("it can be written");
         ControlFlow::Continue(())
@@ -51,6 +55,32 @@ fn records_go_on_to_the_same_bytes() {
     for name in ["trace.csv", "series.csv", "trace.schema.json", "series.schema.json"] {
         let [one, other] = ["whole", "again"].map(|folder| fs::read(dir.path().join(folder).join(name)).expect(name));
         assert!(one == other, "{name}");
+    }
+}
+
+#[test]
+fn without_traces_there_are_none_before_or_after() {
+    let scenario = of("");
+    for (kept, wanted) in [(false, true), (false, false), (true, false)] {
+        let dir = tempfile::tempdir().expect("a folder");
+        let options = Options { keeps_robots: kept, ..Options::default() };
+        let place = run_with(dir.path(), &scenario, &[5], options);
+        let mut from = Checkpoint::open(place.path(), &scenario).expect("it is whole");
+        assert_eq!(from.keeps_robots(), kept);
+        let again = dir.path().join("again");
+        let mut recorder = from.recorder(&again, wanted).expect("it can be made");
+        simulate_from(&scenario, from.state(), &mut |moment, robots| {
+            recorder.tick(moment.row, robots).expect("it can be written");
+            ControlFlow::Continue(())
+        })
+        .expect("it goes on");
+        recorder.finish().expect("it can be written");
+        let mut names: Vec<_> =
+            fs::read_dir(&again).expect("a folder").map(|entry| entry.expect("an entry").file_name()).collect();
+        names.sort();
+        assert_eq!(names, ["series.csv", "series.schema.json"], "{kept} {wanted}");
+        let [one, other] = ["whole", "again"].map(|folder| fs::read(dir.path().join(folder).join("series.csv")));
+        assert_eq!(one.expect("it is there"), other.expect("it is there"));
     }
 }
 

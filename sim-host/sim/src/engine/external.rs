@@ -100,7 +100,7 @@ where
             }
             match external.controllers.collect(index) {
                 Some(decision) => {
-                    computer.outbox = decision.outbox;
+                    computer.outbox.extend_from_slice(&decision.outbox);
                     self.commands[index] = decision.command;
                     self.statuses[index] = decision.status;
                     rejected += u64::from(decision.rejected);

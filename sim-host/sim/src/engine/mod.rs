@@ -51,7 +51,7 @@ use keeper::Keeper;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
-    Agent, AgentConfig, AnyInputs, Command, Event, Inputs, NEIGHBORS, OUTBOX, Safety, Setup, Wait,
+    Agent, AgentConfig, AnyInputs, Command, Event, Inputs, NEIGHBORS, Outputs, Safety, Setup, Wait,
 };
 use staya_controller::auth::Key;
 use staya_controller::grid::Cell;
@@ -69,7 +69,8 @@ const BATCH: usize = 64;
 struct Computer<G, A> {
     /// `None`: elsewhere.
     agent: Option<Agent<f32, G, NEIGHBORS, A, HostWire>>,
-    outbox: heapless::Vec<u8, OUTBOX>,
+    /// What the last step sent: no longer than that.
+    outbox: Vec<u8>,
     /// Of the last step, if somebody wants to know.
     events: Vec<Event>,
     /// What the operator tells it: frames.
@@ -315,7 +316,7 @@ where
     fn computer(&self, agent: Option<Agent<f32, G, NEIGHBORS, A, HostWire>>, boot: u8) -> Computer<G, A> {
         Computer {
             agent,
-            outbox: heapless::Vec::new(),
+            outbox: Vec::new(),
             events: Vec::new(),
             mail: Vec::new(),
             boot,
@@ -443,12 +444,12 @@ where
     fn decide_here(&mut self) -> PacketCounts {
         let (tick, tick_us, keeps_events) = (self.tick, self.tick_us, self.keeps_events);
         let moment = Tick { tick, ground: &self.ground, radio: &self.radio };
-        let scratch = || (G::Workspace::default(), W::Scratch::default(), Vec::new());
+        let scratch = || (G::Workspace::default(), W::Scratch::default(), Vec::new(), Outputs::default());
         let work = (&mut self.computers, &mut self.commands, &mut self.statuses, &mut self.positions_m);
         work.into_par_iter()
             .enumerate()
             .with_min_len(BATCH)
-            .map_init(scratch, |(workspace, senses, heard), (index, (computer, command, status, position_m))| {
+            .map_init(scratch, |(workspace, senses, heard, out), (index, (computer, command, status, position_m))| {
                 let [x, y, _] = moment.ground.motion(index, tick).position_m;
                 *position_m = [x, y];
                 computer.outbox.clear();
@@ -466,16 +467,18 @@ where
                 let Some(agent) = &mut computer.agent else {
                     return PacketCounts::default();
                 };
-                let out = agent.step(&inputs, now, workspace);
+                agent.step_into(&inputs, now, workspace, out);
                 let heard_bytes = inputs.inbox.len() as u64;
                 computer.heard_bytes += heard_bytes;
                 computer.sent_bytes += out.outbox.len() as u64;
-                computer.outbox = out.outbox;
+                // Beacons are about as long as ever: no more memory than that.
+                computer.outbox.reserve_exact(out.outbox.len());
+                computer.outbox.extend_from_slice(&out.outbox);
                 computer.mail.clear();
                 if keeps_events {
                     computer.events.extend_from_slice(&out.events);
                 }
-                *command = out.command;
+                command.clone_from(&out.command);
                 *status = Status {
                     mode: agent.mode(),
                     leader: agent.leader(),
@@ -489,11 +492,11 @@ where
 
     /// Takes note of where everybody is after phase two.
     fn observe(&mut self) {
-        let (ground, tick) = (&self.ground, self.tick);
-        for (index, status) in self.statuses.iter().enumerate() {
-            self.chains[index].extend(&ground.words(index, tick, status));
-            let arrival = ground.arrival(index, tick, status);
-            self.arrivals.note(index, arrival.is_some(), arrival.unwrap_or(0));
+        let (ground, tick, statuses) = (&self.ground, self.tick, &self.statuses);
+        let chains = self.chains.par_iter_mut().enumerate().with_min_len(BATCH);
+        chains.for_each(|(index, chain)| chain.extend(&ground.words(index, tick, &statuses[index])));
+        self.arrivals.note(|index| ground.arrival(index, tick, &statuses[index]));
+        for (index, status) in statuses.iter().enumerate() {
             self.waits.note(index, status.wait);
         }
     }

@@ -216,7 +216,7 @@ where
         let Robot { mail, boot, epoch, down_until, sent_bytes, heard_bytes, .. } = robot;
         self.computers[index] = Computer {
             agent,
-            outbox: heapless::Vec::new(),
+            outbox: Vec::new(),
             events: Vec::new(),
             mail,
             boot,

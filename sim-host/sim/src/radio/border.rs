@@ -1,6 +1,6 @@
 //! Packets that come from elsewhere: a radio of which other ranks have a part.
 
-use super::{Counts, End, Radio, Receiver};
+use super::{BLOCK, Counts, End, Inboxes, Radio, Receiver};
 use serde::{Deserialize, Serialize};
 use staya_controller::robot::RobotId;
 
@@ -23,8 +23,10 @@ impl Radio {
         positions_m: &[[f64; 2]],
         outbox: impl Fn(usize) -> &'a [u8],
     ) -> Counts {
-        let ids = self.receivers.iter().map(|receiver| receiver.id);
-        self.medium.fill(tick, ids, positions_m, outbox)
+        let positions_m = &positions_m[..self.receivers.len()];
+        let outboxes: Vec<_> = (0..self.receivers.len()).map(outbox).collect();
+        let receivers = &self.receivers;
+        self.medium.fill(tick, |index| receivers[index].id, positions_m, &outboxes)
     }
 
     /// What was sent here, for who is elsewhere and can hear it there.
@@ -80,16 +82,22 @@ impl Radio {
         let end = |index| postcard::from_bytes(&bytes(index)).expect("these bytes are an end");
         let taken = (index..self.receivers.len()).map(|index| (self.receivers[index].id, end(index))).collect();
         self.receivers.truncate(index);
-        self.medium.resize(index);
+        self.resize();
         taken
     }
 
     fn push(&mut self, id: RobotId, end: Option<End>) {
         self.receivers.push(Receiver { id, ..Receiver::default() });
-        self.medium.resize(self.receivers.len());
+        self.resize();
         if let Some(end) = end {
             self.put(self.receivers.len() - 1, end);
         }
+    }
+
+    /// As much of everything as there are receivers now.
+    fn resize(&mut self) {
+        self.medium.resize(self.receivers.len());
+        self.inboxes.resize_with(self.receivers.len().div_ceil(BLOCK), Inboxes::new);
     }
 
     fn put(&mut self, index: usize, end: End) {

@@ -3,11 +3,13 @@
 use super::Counts;
 use super::border::Sent;
 use super::params::RadioParams;
+use rayon::prelude::*;
 use staya_controller::agent::OUTBOX;
 use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;
 use staya_controller::wire::Wire;
 use staya_mavlink::any::AnyWire;
+use std::ops::Add;
 
 /// Keeps the draws of this module apart from all others.
 const PACKET: u32 = 0x0052_0001;
@@ -21,8 +23,22 @@ pub(super) struct Packet {
     /// The seed of its fates.
     pub(super) key: u64,
     pub(super) from_m: [f64; 2],
+    /// Where its bytes are: in which [`Part`], from where on, how many.
+    part: u32,
     start: u32,
-    end: u32,
+    length: u16,
+}
+
+/// Senders that a thread takes at a time.
+const PART: usize = 1024;
+
+/// What a part of the senders put on the air.
+#[derive(Clone, Debug, Default)]
+struct Part {
+    bytes: Vec<u8>,
+    /// In order of sender and number, each with its cell.
+    queue: Vec<(u32, Packet)>,
+    counts: Counts,
 }
 
 /// What a robot may still send, in millionths of a byte.
@@ -41,9 +57,8 @@ pub(super) struct Medium {
     seed: u64,
     range_m: f64,
     buckets: Option<Buckets>,
-    bytes: Vec<u8>,
-    /// In order of sender and number, each with its cell.
-    queue: Vec<(u32, Packet)>,
+    /// In order of senders.
+    parts: Vec<Part>,
     /// In order of cell, then of sender and number.
     packets: Vec<Packet>,
     /// Where each cell's packets end in `packets`.
@@ -71,8 +86,7 @@ impl Medium {
             seed,
             range_m: params.range_m,
             buckets,
-            bytes: Vec::new(),
-            queue: Vec::new(),
+            parts: Vec::new(),
             packets: Vec::new(),
             ends: Vec::new(),
             lattice: Lattice::default(),
@@ -102,65 +116,74 @@ impl Medium {
         true
     }
 
-    /// Replaces the packets with those that the robots send in `tick`.
-    pub(super) fn fill<'a>(
+    /// Replaces the packets with those that the robots send in `tick`; `ids`, `positions_m` and `outboxes` are one each.
+    pub(super) fn fill(
         &mut self,
         tick: u32,
-        ids: impl Iterator<Item = RobotId>,
+        ids: impl Fn(usize) -> RobotId + Sync,
         positions_m: &[[f64; 2]],
-        outbox: impl Fn(usize) -> &'a [u8],
+        outboxes: &[&[u8]],
     ) -> Counts {
-        let mut counts = Counts::default();
-        self.bytes.clear();
-        self.queue.clear();
         self.lattice = Lattice::over(positions_m, self.range_m);
         if let Some(buckets) = &mut self.buckets {
             buckets.refill();
         }
-        for (index, (sender, &from_m)) in ids.zip(positions_m).enumerate() {
-            let outbox = outbox(index);
-            if outbox.is_empty() {
-                continue;
-            }
-            let key = Rng::keyed(self.seed, PACKET, sender.0, tick).next_u64();
-            let cell = self.lattice.cell(from_m) as u32;
-            for (number, bytes) in (0..).zip(packets(&self.wire, outbox)) {
-                if let Some(buckets) = &mut self.buckets
-                    && !buckets.take(index, bytes.len())
-                {
-                    counts.throttled += 1;
-                    continue;
+        self.parts.resize_with(outboxes.len().div_ceil(PART), Part::default);
+        let mut buckets: Vec<_> = match &mut self.buckets {
+            Some(buckets) => buckets.tokens.chunks_mut(PART).map(Some).collect(),
+            None => self.parts.iter().map(|_| None).collect(),
+        };
+        let (wire, lattice, seed) = (&self.wire, &self.lattice, self.seed);
+        let parts = (&mut self.parts, &mut buckets, outboxes.par_chunks(PART)).into_par_iter().enumerate();
+        parts.for_each(|(number, (part, tokens, outboxes))| {
+            part.clear();
+            for (at, outbox) in outboxes.iter().enumerate().filter(|(_, outbox)| !outbox.is_empty()) {
+                let index = number * PART + at;
+                let (sender, from_m) = (ids(index), positions_m[index]);
+                let key = Rng::keyed(seed, PACKET, sender.0, tick).next_u64();
+                let cell = lattice.cell(from_m) as u32;
+                for (place, bytes) in (0..).zip(packets(wire, outbox)) {
+                    let tokens = tokens.as_deref_mut().map(|tokens| &mut tokens[at]);
+                    if tokens.is_some_and(|tokens| !take(tokens, bytes.len())) {
+                        part.counts.throttled += 1;
+                        continue;
+                    }
+                    let (start, length) = (part.bytes.len() as u32, bytes.len() as u16);
+                    let packet = Packet { sender, number: place, key, from_m, part: number as u32, start, length };
+                    part.counts.sent += 1;
+                    part.bytes.extend_from_slice(bytes);
+                    part.queue.push((cell, packet));
                 }
-                counts.sent += 1;
-                let start = self.bytes.len() as u32;
-                self.bytes.extend_from_slice(bytes);
-                let end = self.bytes.len() as u32;
-                let packet = Packet { sender, number, key, from_m, start, end };
-                self.queue.push((cell, packet));
             }
-        }
+        });
         self.sort();
-        counts
+        self.parts.iter().map(|part| part.counts).fold(Counts::default(), Add::add)
     }
 
     /// The packets and their bytes.
     pub(super) fn sent(&self) -> impl Iterator<Item = (&Packet, &[u8])> {
-        self.queue.iter().map(|(_, packet)| (packet, self.bytes(packet)))
+        let queue = self.parts.iter().flat_map(|part| &part.queue);
+        queue.map(|(_, packet)| (packet, self.bytes(packet)))
     }
 
     /// Puts packets on the air that were sent elsewhere in `tick`.
     pub(super) fn add(&mut self, tick: u32, elsewhere: &[Sent]) {
-        for Sent { sender, number, from_m, bytes } in elsewhere {
+        if elsewhere.is_empty() {
+            return;
+        }
+        // A part of its own behind those of the senders here, who have it no more in the next tick.
+        let mut part = Part::default();
+        let number = self.parts.len() as u32;
+        for Sent { sender, number: place, from_m, bytes } in elsewhere {
             let key = Rng::keyed(self.seed, PACKET, sender.0, tick).next_u64();
-            let start = self.bytes.len() as u32;
-            self.bytes.extend_from_slice(bytes);
-            let end = self.bytes.len() as u32;
-            let packet = Packet { sender: *sender, number: *number, key, from_m: *from_m, start, end };
-            self.queue.push((self.lattice.cell(*from_m) as u32, packet));
+            let (start, length) = (part.bytes.len() as u32, bytes.len() as u16);
+            part.bytes.extend_from_slice(bytes);
+            let (sender, from_m) = (*sender, *from_m);
+            let packet = Packet { sender, number: *place, key, from_m, part: number, start, length };
+            part.queue.push((self.lattice.cell(from_m) as u32, packet));
         }
-        if !elsewhere.is_empty() {
-            self.sort();
-        }
+        self.parts.push(part);
+        self.sort();
     }
 
     /// There are so many senders from now on; those that are new have not sent anything.
@@ -170,12 +193,13 @@ impl Medium {
         }
     }
 
-    /// Sorts the queue by cell; a counting sort keeps the order of senders within a cell.
+    /// Sorts the packets by cell; a counting sort keeps the order of senders within a cell.
     fn sort(&mut self) {
         let cells = self.lattice.columns * self.lattice.rows;
+        let queue = || self.parts.iter().flat_map(|part| &part.queue);
         self.ends.clear();
         self.ends.resize(cells + 1, 0);
-        for &(cell, _) in &self.queue {
+        for &(cell, _) in queue() {
             self.ends[cell as usize + 1] += 1;
         }
         // Now counts; then begins, which placing turns into ends.
@@ -185,10 +209,10 @@ impl Medium {
             *end = begin;
         }
         self.packets.clear();
-        if let Some(&(_, filler)) = self.queue.first() {
-            self.packets.resize(self.queue.len(), filler);
+        if let Some(&(_, filler)) = queue().next() {
+            self.packets.resize(begin as usize, filler);
         }
-        for &(cell, packet) in &self.queue {
+        for &(cell, packet) in queue() {
             let at = &mut self.ends[cell as usize];
             self.packets[*at as usize] = packet;
             *at += 1;
@@ -224,7 +248,8 @@ impl Medium {
     }
 
     pub(super) fn bytes(&self, packet: &Packet) -> &[u8] {
-        &self.bytes[packet.start as usize..packet.end as usize]
+        let bytes = &self.parts[packet.part as usize].bytes;
+        &bytes[packet.start as usize..][..packet.length.into()]
     }
 }
 
@@ -285,13 +310,22 @@ impl Buckets {
             *tokens = (*tokens + self.per_tick).min(self.capacity);
         }
     }
+}
 
-    fn take(&mut self, index: usize, bytes: usize) -> bool {
-        let price = bytes as u64 * 1_000_000;
-        let enough = self.tokens[index] >= price;
-        if enough {
-            self.tokens[index] -= price;
-        }
-        enough
+/// Takes the price of a packet out of a robot's bucket, if there is enough in it.
+fn take(tokens: &mut u64, bytes: usize) -> bool {
+    let price = bytes as u64 * 1_000_000;
+    let enough = *tokens >= price;
+    if enough {
+        *tokens -= price;
+    }
+    enough
+}
+
+impl Part {
+    fn clear(&mut self) {
+        self.bytes.clear();
+        self.queue.clear();
+        self.counts = Counts::default();
     }
 }

@@ -22,7 +22,7 @@ use medium::Medium;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use staya_controller::robot::RobotId;
-use std::ops::{Add, AddAssign};
+use std::ops::{Add, AddAssign, Range};
 
 /// What became of packets. Each receiver in range counts on its own.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -67,7 +67,7 @@ struct Held {
     sent: u32,
     number: u32,
     copy: u32,
-    /// Where its bytes are in [`Receiver::bytes`].
+    /// Where its bytes are in [`Late::bytes`].
     start: u32,
     length: u32,
 }
@@ -76,15 +76,28 @@ struct Held {
 #[derive(Clone, Debug, Default)]
 struct Receiver {
     id: RobotId,
-    /// What arrived for the robot's next step.
-    inbox: Vec<u8>,
+    /// Where in its block's [`Inboxes`] lies what arrived for the robot's next step.
+    inbox: Range<u32>,
+    /// Where packets are held back.
+    late: Option<Box<Late>>,
+    /// What became of the last tick's packets, if somebody wants to know.
+    log: Option<Vec<(RobotId, Reception)>>,
+}
+
+/// Packets that were sent and have not arrived.
+#[derive(Clone, Debug, Default)]
+struct Late {
     held: Vec<Held>,
     bytes: Vec<u8>,
     /// Takes the bytes of packets that stay held; swapped with `bytes`.
     spare: Vec<u8>,
-    /// What became of the last tick's packets, if somebody wants to know.
-    log: Option<Vec<(RobotId, Reception)>>,
 }
+
+/// Receivers whose inboxes lie in one piece of memory.
+const BLOCK: usize = 64;
+
+/// The inboxes of a block of receivers, one behind the other.
+type Inboxes = Vec<u8>;
 
 /// What became of one packet at one receiver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,6 +116,8 @@ pub struct Radio {
     fates: Fates,
     medium: Medium,
     receivers: Vec<Receiver>,
+    /// Of each block of receivers.
+    inboxes: Vec<Inboxes>,
     /// Sum over all ticks.
     total: Counts,
 }
@@ -115,6 +130,7 @@ impl Radio {
         Self {
             fates: Fates::new(params, seed, tick_us),
             medium: Medium::new(params, seed, tick_us, receivers.len()),
+            inboxes: vec![Inboxes::new(); receivers.len().div_ceil(BLOCK)],
             receivers,
             total: Counts::default(),
         }
@@ -123,7 +139,8 @@ impl Radio {
     /// What robot number `index` (in the order given to [`Radio::new`]) received for its next step.
     #[must_use]
     pub fn inbox(&self, index: usize) -> &[u8] {
-        &self.receivers[index].inbox
+        let Range { start, end } = self.receivers[index].inbox;
+        &self.inboxes[index / BLOCK][start as usize..end as usize]
     }
 
     /// The radio is another one from now on: loss as a probability, range in metres; what is not given stays.
@@ -159,7 +176,7 @@ impl Radio {
     /// next tick. Returns what became of this tick's packets.
     ///
     /// `positions_m[i]` and `outbox(i)` belong to robot number `i`. O(n k) for k robots in range,
-    /// in parallel over receivers; no allocation once buffers have grown.
+    /// in parallel over senders and receivers; once buffers have grown, it allocates 16 bytes a robot.
     ///
     /// # Panics
     /// When there are fewer positions than robots.
@@ -170,15 +187,18 @@ impl Radio {
 
     /// Everybody receives what is on the air.
     fn deliver(&mut self, tick: u32, positions_m: &[[f64; 2]], sent: Counts) -> Counts {
+        let positions_m = &positions_m[..self.receivers.len()];
         let (medium, fates) = (&self.medium, &self.fates);
-        let received = self
-            .receivers
-            .par_iter_mut()
-            .with_min_len(64)
-            .enumerate()
-            .map_init(Vec::new, |heard, (index, receiver)| {
-                medium.heard_at(positions_m[index], receiver.id, heard);
-                receiver.receive(tick, medium, heard, fates)
+        let blocks = (self.receivers.par_chunks_mut(BLOCK), positions_m.par_chunks(BLOCK), &mut self.inboxes);
+        let received = blocks
+            .into_par_iter()
+            .map_init(Vec::new, |heard, (receivers, positions_m, inboxes)| {
+                inboxes.clear();
+                let counts = receivers.iter_mut().zip(positions_m).map(|(receiver, &position_m)| {
+                    medium.heard_at(position_m, receiver.id, heard);
+                    receiver.receive(tick, medium, heard, fates, inboxes)
+                });
+                counts.fold(Counts::default(), Add::add)
             })
             .reduce(Counts::default, Add::add);
         let counts = sent + received;
@@ -188,9 +208,9 @@ impl Radio {
 }
 
 impl Receiver {
-    fn receive(&mut self, tick: u32, medium: &Medium, heard: &[u32], fates: &Fates) -> Counts {
+    fn receive(&mut self, tick: u32, medium: &Medium, heard: &[u32], fates: &Fates, inboxes: &mut Inboxes) -> Counts {
         let mut counts = Counts::default();
-        self.inbox.clear();
+        let begin = inboxes.len();
         if let Some(log) = &mut self.log {
             log.clear();
         }
@@ -209,16 +229,16 @@ impl Receiver {
                 let due_us = fates.due_us(&mut draws, tick);
                 let buffer = match due_us {
                     // Nothing is ever held back: no detour.
-                    None => &mut self.inbox,
-                    Some(_) => &mut self.bytes,
+                    None => &mut *inboxes,
+                    Some(_) => &mut self.late.get_or_insert_default().bytes,
                 };
                 let start = buffer.len();
-                buffer.extend_from_slice(medium.bytes(packet));
+                append(buffer, medium.bytes(packet));
                 counts.delivered += 1;
                 counts.corrupted += u64::from(fates.damage(&mut draws, &mut buffer[start..]));
-                if let Some(due_us) = due_us {
-                    let length = (buffer.len() - start) as u32;
-                    self.held.push(Held {
+                let length = (buffer.len() - start) as u32;
+                if let (Some(due_us), Some(late)) = (due_us, &mut self.late) {
+                    late.held.push(Held {
                         due_us,
                         sender: packet.sender,
                         sent: tick,
@@ -234,12 +254,17 @@ impl Receiver {
                 log.push((packet.sender, if is_damaged { Reception::Damaged } else { Reception::Delivered }));
             }
         }
-        self.release(fates.next_step_us(tick));
+        if let Some(late) = &mut self.late {
+            late.release(fates.next_step_us(tick), inboxes);
+        }
+        self.inbox = begin as u32..inboxes.len() as u32;
         counts
     }
+}
 
+impl Late {
     /// Moves what is due by `now_us` into the inbox, in order of arrival.
-    fn release(&mut self, now_us: u64) {
+    fn release(&mut self, now_us: u64, inbox: &mut Inboxes) {
         if self.held.is_empty() {
             return;
         }
@@ -250,7 +275,7 @@ impl Receiver {
             let start = held.start as usize;
             let bytes = &self.bytes[start..start + held.length as usize];
             if index < due {
-                self.inbox.extend_from_slice(bytes);
+                append(inbox, bytes);
             } else {
                 held.start = self.spare.len() as u32;
                 self.spare.extend_from_slice(bytes);
@@ -259,6 +284,14 @@ impl Receiver {
         self.held.drain(..due);
         std::mem::swap(&mut self.bytes, &mut self.spare);
     }
+}
+
+/// Appends to memory that grows by an eighth: there are too many of these to double any.
+fn append(buffer: &mut Vec<u8>, bytes: &[u8]) {
+    if buffer.capacity() - buffer.len() < bytes.len() {
+        buffer.reserve_exact(bytes.len() + buffer.len() / 8);
+    }
+    buffer.extend_from_slice(bytes);
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! What of the radio changes while it is used: to be kept, and moved.
 
-use super::{Counts, Held, Radio};
+use super::{BLOCK, Counts, Held, Late, Radio};
 use serde::{Deserialize, Serialize};
 
 /// One robot's end of the radio.
@@ -25,7 +25,8 @@ impl Radio {
     /// The end of robot number `index`.
     pub(crate) fn end(&self, index: usize) -> impl Serialize {
         let receiver = &self.receivers[index];
-        (&receiver.inbox, &receiver.held, &receiver.bytes, self.medium.tokens(index))
+        let (held, bytes) = receiver.late.as_ref().map_or((&[][..], &[][..]), |late| (&late.held, &late.bytes));
+        (self.inbox(index), held, bytes, self.medium.tokens(index))
     }
 
     /// Puts it back.
@@ -45,7 +46,12 @@ impl Radio {
             return Err("the bandwidth is bounded there or here, but not in both");
         }
         let receiver = &mut self.receivers[index];
-        (receiver.inbox, receiver.held, receiver.bytes) = (inbox, held, bytes);
+        // What lay there before goes with the next tick.
+        let inboxes = &mut self.inboxes[index / BLOCK];
+        let begin = inboxes.len() as u32;
+        inboxes.extend_from_slice(&inbox);
+        receiver.inbox = begin..inboxes.len() as u32;
+        receiver.late = (!held.is_empty()).then(|| Box::new(Late { held, bytes, spare: Vec::new() }));
         Ok(())
     }
 

@@ -54,23 +54,20 @@ pub fn header(columns: &[Column]) -> String {
     names.join(",") + "\n"
 }
 
-/// Writes `trace.schema.json` and `series.schema.json`.
-pub fn write_schemas(dir: &Path) -> Result<(), Error> {
-    for (name, columns) in [("trace", &TRACE[..]), ("series", &SERIES[..])] {
-        let columns: Vec<_> = columns
-            .iter()
-            .map(|(name, kind, unit, meaning)| {
-                serde_json::json!({ "name": name, "type": kind, "unit": unit, "meaning": meaning })
-            })
-            .collect();
-        let schema = serde_json::json!({
-            "file": format!("{name}.csv"),
-            "format": "CSV: one header line, comma, no quotes, lines end with \\n, an empty field is an unknown value",
-            "columns": columns,
-        });
-        write_atomically(&dir.join(format!("{name}.schema.json")), format!("{schema:#}\n").as_bytes())?;
-    }
-    Ok(())
+/// Writes `NAME.schema.json`.
+pub fn write_schema(dir: &Path, name: &str, columns: &[Column]) -> Result<(), Error> {
+    let columns: Vec<_> = columns
+        .iter()
+        .map(|(name, kind, unit, meaning)| {
+            serde_json::json!({ "name": name, "type": kind, "unit": unit, "meaning": meaning })
+        })
+        .collect();
+    let schema = serde_json::json!({
+        "file": format!("{name}.csv"),
+        "format": "CSV: one header line, comma, no quotes, lines end with \\n, an empty field is an unknown value",
+        "columns": columns,
+    });
+    write_atomically(&dir.join(format!("{name}.schema.json")), format!("{schema:#}\n").as_bytes())
 }
 
 /// Appends the line of one robot.

@@ -177,12 +177,15 @@ pub struct Options {
     /// Robot samples that [`History`] may hold, 32 bytes each. When they run out, every second frame
     /// goes and the interval doubles; the first and the last frame always stay.
     pub history_samples: usize,
+    /// Whether robots are looked at one by one: without, there is neither `trace.csv` nor a frame in the history, and
+    /// recording a tick of a million robots costs no more than one of ten.
+    pub keeps_robots: bool,
 }
 
 impl Default for Options {
     /// The interval by the number of robots, 32 MB of history.
     fn default() -> Self {
-        Self { trace_every: 0, history_samples: 1 << 20 }
+        Self { trace_every: 0, history_samples: 1 << 20, keeps_robots: true }
     }
 }
 
@@ -193,18 +196,28 @@ pub type Saved = (u32, History);
 #[derive(Debug)]
 pub struct Recorder {
     files: Option<Files>,
+    keeps_robots: bool,
     history: History,
 }
 
 #[derive(Debug)]
 struct Files {
-    trace: LineFile,
+    /// `None`: robots are not kept.
+    trace: Option<LineFile>,
     series: LineFile,
     trace_every: u32,
 }
 
+/// Writes the schemas of what a recorder leaves.
+fn write_schemas(dir: &Path, keeps_robots: bool) -> Result<(), Error> {
+    if keeps_robots {
+        csv::write_schema(dir, "trace", &csv::TRACE)?;
+    }
+    csv::write_schema(dir, "series", &csv::SERIES)
+}
+
 impl Recorder {
-    /// A recorder that writes `trace.csv`, `series.csv` and their schemas into `out_dir`, which is
+    /// A recorder that writes `trace.csv` (if it keeps robots), `series.csv` and their schemas into `out_dir`, which is
     /// made if needed; files of an earlier run are replaced.
     ///
     /// # Errors
@@ -212,10 +225,12 @@ impl Recorder {
     pub fn new(out_dir: impl AsRef<Path>, options: Options) -> Result<Self, Error> {
         let dir = out_dir.as_ref();
         file::make_dir(dir)?;
-        csv::write_schemas(dir)?;
+        write_schemas(dir, options.keeps_robots)?;
+        let trace = options.keeps_robots.then(|| LineFile::create(&dir.join("trace.csv"), &csv::header(&csv::TRACE)));
         Ok(Self {
+            keeps_robots: options.keeps_robots,
             files: Some(Files {
-                trace: LineFile::create(&dir.join("trace.csv"), &csv::header(&csv::TRACE))?,
+                trace: trace.transpose()?,
                 series: LineFile::create(&dir.join("series.csv"), &csv::header(&csv::SERIES))?,
                 trace_every: options.trace_every,
             }),
@@ -223,16 +238,16 @@ impl Recorder {
         })
     }
 
-    /// What a recorder was that is gone: `trace.csv` and `series.csv` are in `out_dir` as [`Recorder::written`] had them, all else is
-    /// what [`Recorder::saved`] gave.
+    /// What a recorder was that is gone: `trace.csv` (if it is to keep robots) and `series.csv` are in `out_dir` as
+    /// [`Recorder::written`] had them, all else is what [`Recorder::saved`] gave.
     ///
     /// # Errors
     /// A file cannot be opened or made.
-    pub fn resumed(out_dir: &Path, (trace_every, history): Saved) -> Result<Self, Error> {
-        csv::write_schemas(out_dir)?;
-        let trace = LineFile::resume(&out_dir.join("trace.csv"))?;
+    pub fn resumed(out_dir: &Path, keeps_robots: bool, (trace_every, history): Saved) -> Result<Self, Error> {
+        write_schemas(out_dir, keeps_robots)?;
+        let trace = keeps_robots.then(|| LineFile::resume(&out_dir.join("trace.csv"))).transpose()?;
         let series = LineFile::resume(&out_dir.join("series.csv"))?;
-        Ok(Self { files: Some(Files { trace, series, trace_every }), history })
+        Ok(Self { files: Some(Files { trace, series, trace_every }), keeps_robots, history })
     }
 
     /// What is in no file.
@@ -240,21 +255,23 @@ impl Recorder {
         (self.files.as_ref().map_or(0, |files| files.trace_every), &self.history)
     }
 
-    /// `trace.csv` and `series.csv` with their lengths, once all that is in memory is in them.
+    /// `trace.csv` (if it keeps robots) and `series.csv` with their lengths, once all that is in memory is in them.
     ///
     /// # Errors
     /// They cannot be written, or there are none.
-    pub fn written(&mut self) -> Result<[(PathBuf, u64); 2], Error> {
+    pub fn written(&mut self) -> Result<[Option<(PathBuf, u64)>; 2], Error> {
         let Some(files) = &mut self.files else {
-            return Err(Error::new("read", Path::new("trace.csv"))(ErrorKind::NotFound.into()));
+            return Err(Error::new("read", Path::new("series.csv"))(ErrorKind::NotFound.into()));
         };
-        Ok([files.trace.written()?, files.series.written()?])
+        let trace = files.trace.as_mut().map(LineFile::written).transpose()?;
+        Ok([trace, Some(files.series.written()?)])
     }
 
     /// A recorder that keeps only the history.
     #[must_use]
     pub fn in_memory(options: Options) -> Self {
-        Self { files: None, history: History::with_capacity(options.history_samples) }
+        let history = History::with_capacity(options.history_samples);
+        Self { files: None, keeps_robots: options.keeps_robots, history }
     }
 
     /// Takes one tick. Order of `robots` is kept; it should be the same in each tick. O(robots).
@@ -264,28 +281,34 @@ impl Recorder {
     pub fn tick(&mut self, tick: &TickRow, robots: impl Iterator<Item = RobotRow>) -> Result<(), Error> {
         let first_tick = self.history.first_tick().unwrap_or(tick.tick);
         let frame = self.history.begin_frame(tick);
-        match &mut self.files {
+        let trace = self.files.as_mut().and_then(|files| Some((files.trace.as_mut()?, &mut files.trace_every)));
+        match trace {
+            _ if !self.keeps_robots => {}
             None => frame.samples.extend(robots.map(Sample::from)),
-            Some(files) => {
+            Some((trace, trace_every)) => {
                 let since = tick.tick.wrapping_sub(first_tick);
                 // With a chosen interval the first tick is always due, and tells the number of robots.
-                let due = since.checked_rem(files.trace_every).is_none_or(|r| r == 0);
+                let due = since.checked_rem(*trace_every).is_none_or(|r| r == 0);
                 for robot in robots {
                     if due {
-                        csv::trace_line(files.trace.pending(), tick, &robot);
+                        csv::trace_line(trace.pending(), tick, &robot);
                     }
                     frame.samples.push(Sample::from(robot));
                 }
-                if files.trace_every == 0 {
+                if *trace_every == 0 {
                     let thousands = frame.samples.len().div_ceil(1000).max(1);
-                    files.trace_every = u32::try_from(thousands).unwrap_or(u32::MAX);
+                    *trace_every = u32::try_from(thousands).unwrap_or(u32::MAX);
                 }
-                csv::series_line(files.series.pending(), tick);
-                files.trace.end_block()?;
-                files.series.end_block()?;
+                trace.end_block()?;
             }
         }
-        self.history.end_frame();
+        if let Some(files) = &mut self.files {
+            csv::series_line(files.series.pending(), tick);
+            files.series.end_block()?;
+        }
+        if self.keeps_robots {
+            self.history.end_frame();
+        }
         Ok(())
     }
 
@@ -295,10 +318,14 @@ impl Recorder {
     /// A file cannot be written.
     pub fn finish(mut self) -> Result<History, Error> {
         if let Some(files) = &mut self.files {
-            files.trace.flush()?;
+            if let Some(trace) = &mut files.trace {
+                trace.flush()?;
+            }
             files.series.flush()?;
         }
-        self.history.close();
+        if self.keeps_robots {
+            self.history.close();
+        }
         Ok(self.history)
     }
 }

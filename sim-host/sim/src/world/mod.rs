@@ -13,6 +13,7 @@ pub use refusal::Refusal;
 pub use window::window;
 
 use crate::terrain::Terrain;
+use rayon::prelude::*;
 use staya_controller::agent::Command;
 use staya_controller::grid::{BLOCKED, Cell, Dir, Norm, UNIT};
 use staya_controller::rand::Rng;
@@ -203,13 +204,13 @@ impl World {
         let now = u64::from(tick) * u64::from(UNIT);
         let mut movers = std::mem::take(&mut self.movers);
         movers.clear();
-        for (index, body) in self.bodies.iter().enumerate() {
-            if body.free_at <= now && matches!(commands[index], Command::Move(_)) {
-                let priority = Rng::keyed(self.seed, PRIORITY, body.id.0, tick).next_u64();
-                movers.push((priority, body.id, index as u32));
-            }
-        }
-        movers.sort_unstable();
+        let bodies = self.bodies.par_iter().enumerate().with_min_len(1024);
+        movers.par_extend(bodies.filter_map(|(index, body)| {
+            let moves = body.free_at <= now && matches!(commands[index], Command::Move(_));
+            let priority = || Rng::keyed(self.seed, PRIORITY, body.id.0, tick).next_u64();
+            moves.then(|| (priority(), body.id, index as u32))
+        }));
+        movers.par_sort_unstable();
         for &(_, _, index) in &movers {
             if let Command::Move(preferred) = &commands[index as usize] {
                 self.move_body(index as usize, preferred, now);

@@ -302,7 +302,7 @@ where
             return Ok(());
         }
         let rings: Vec<Option<Ring>> = taken.iter().map(|&robot| self.engine.ring_of(robot)).collect();
-        let heard = self.wire.to_first(encode(&rings))?;
+        let heard = self.wire.gather_first(encode(&rings))?;
         for (rank, bytes) in heard.iter().enumerate() {
             let rings = decode::<Vec<Option<Ring>>>(rank, "keys", bytes)?;
             let rings = taken.iter().zip(rings).filter_map(|(&robot, ring)| Some((robot, ring?)));
@@ -319,7 +319,7 @@ where
         let engine = &self.engine;
         let own = engine.here.iter().enumerate();
         let own = own.filter_map(|(index, &number)| Some((number, engine.ground.place(index)?)));
-        let heard = self.wire.to_first(encode(&own.collect::<Vec<_>>()))?;
+        let heard = self.wire.gather_first(encode(&own.collect::<Vec<_>>()))?;
         let mut places = Vec::<(u32, [f64; 2])>::new();
         for (rank, bytes) in heard.iter().enumerate() {
             places.extend(decode::<Vec<(u32, [f64; 2])>>(rank, "places", bytes)?);
@@ -421,7 +421,7 @@ where
     /// Everybody's lines of the record by rising number, on rank 0.
     fn rows(&mut self) -> Result<Vec<RobotRow>, RankError> {
         let own: Vec<Row> = self.engine.rows().map(Row::from).collect();
-        let heard = self.wire.to_first(encode(&own))?;
+        let heard = self.wire.gather_first(encode(&own))?;
         let mut rows = Vec::<Row>::new();
         for (rank, bytes) in heard.iter().enumerate() {
             rows.extend(decode::<Vec<Row>>(rank, "robots", bytes)?);
@@ -438,7 +438,7 @@ where
         let times = engine.here.iter().copied().zip(engine.arrivals.times().iter().copied());
         let times: Vec<(u32, Option<u64>)> = times.collect();
         let (part, traffic) = (Part::of(engine), self.wire.traffic);
-        let heard = self.wire.to_first(encode(&times))?;
+        let heard = self.wire.gather_first(encode(&times))?;
         let mut times = Vec::<(u32, Option<u64>)>::new();
         for (rank, bytes) in heard.iter().enumerate() {
             times.extend(decode::<Vec<(u32, Option<u64>)>>(rank, "arrivals", bytes)?);

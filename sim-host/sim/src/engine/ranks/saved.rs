@@ -87,7 +87,7 @@ where
         });
         let robots = robots.collect();
         let share = Share { part: Part::of(engine), radio: engine.radio.total(), digest: engine.digest(), robots };
-        let heard = self.wire.to_first(encode(&share))?;
+        let heard = self.wire.gather_first(encode(&share))?;
         if heard.is_empty() {
             return Ok(None);
         }

@@ -43,7 +43,7 @@ impl<'a> Wire<'a> {
     }
 
     /// Rank 0 hears what all have; the others hear nothing.
-    pub(super) fn to_first(&mut self, own: Vec<u8>) -> Result<Vec<Vec<u8>>, RankError> {
+    pub(super) fn gather_first(&mut self, own: Vec<u8>) -> Result<Vec<Vec<u8>>, RankError> {
         if self.rank() > 0 {
             self.traffic.recorded += own.len() as u64;
             self.exchange.swap(vec![(0, own)], &[])?;

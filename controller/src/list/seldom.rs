@@ -1,0 +1,119 @@
+//! A bounded list in memory that it asks for when it is needed.
+
+use alloc::vec::Vec;
+use core::ops::{Deref, DerefMut};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+/// At most `N` items; grows by a few at a time. In place of [`heapless::Vec`], with its functions and its answers.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Seldom<T, const N: usize>(Vec<T>);
+
+/// Items by which a list grows: that many cost less to hold for nothing than to move.
+const STEP: usize = 4;
+
+impl<T, const N: usize> Seldom<T, N> {
+    pub(crate) const fn new() -> Self {
+        Self(Vec::new())
+    }
+
+    pub(crate) fn is_full(&self) -> bool {
+        self.0.len() >= N
+    }
+
+    /// Gives back what has no room.
+    pub(crate) fn push(&mut self, item: T) -> Result<(), T> {
+        if self.is_full() {
+            return Err(item);
+        }
+        if self.0.len() == self.0.capacity() {
+            self.0.reserve_exact(STEP.max(self.0.len() >> 2));
+        }
+        self.0.push(item);
+        Ok(())
+    }
+
+    pub(crate) fn pop(&mut self) -> Option<T> {
+        self.0.pop()
+    }
+
+    pub(crate) fn retain(&mut self, is_kept: impl FnMut(&T) -> bool) {
+        self.0.retain(is_kept);
+    }
+
+    /// Gives its memory back, too.
+    pub(crate) fn clear(&mut self) {
+        self.0 = Vec::new();
+    }
+}
+
+impl<T, const N: usize> Default for Seldom<T, N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<T, const N: usize> Deref for Seldom<T, N> {
+    type Target = [T];
+    fn deref(&self) -> &[T] {
+        &self.0
+    }
+}
+
+impl<T, const N: usize> DerefMut for Seldom<T, N> {
+    fn deref_mut(&mut self) -> &mut [T] {
+        &mut self.0
+    }
+}
+
+impl<'a, T, const N: usize> IntoIterator for &'a Seldom<T, N> {
+    type Item = &'a T;
+    type IntoIter = core::slice::Iter<'a, T>;
+    fn into_iter(self) -> Self::IntoIter {
+        self.0.iter()
+    }
+}
+
+impl<'a, T, const N: usize> IntoIterator for &'a mut Seldom<T, N> {
+    type Item = &'a mut T;
+    type IntoIter = core::slice::IterMut<'a, T>;
+    fn into_iter(self) -> Self::IntoIter {
+        self.0.iter_mut()
+    }
+}
+
+// A sequence with its length, as that of `heapless::Vec`: digests are the same.
+impl<T: Serialize, const N: usize> Serialize for Seldom<T, N> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.deref().serialize(serializer)
+    }
+}
+
+impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Seldom<T, N> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let items = heapless::Vec::<T, N>::deserialize(deserializer)?;
+        Ok(Self(items.into_iter().collect()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::digest::digest;
+
+    #[test]
+    fn it_takes_as_many_as_a_fixed_list_and_reads_the_same() {
+        let (mut seldom, mut fixed) = (Seldom::<u32, 9>::new(), heapless::Vec::<u32, 9>::new());
+        assert_eq!(digest(&seldom), digest(&fixed));
+        for item in 0..12 {
+            assert_eq!(seldom.push(item), fixed.push(item));
+            assert_eq!((&*seldom, seldom.is_full()), (&*fixed, fixed.is_full()));
+            assert_eq!(digest(&seldom), digest(&fixed));
+        }
+        assert_eq!((seldom.pop(), fixed.pop()), (Some(8), Some(8)));
+        seldom.retain(|item| item % 2 == 0);
+        fixed.retain(|item| item % 2 == 0);
+        assert_eq!(*seldom, *fixed);
+        seldom.clear();
+        assert_eq!((seldom.len(), seldom.pop(), Seldom::<u32, 0>::new().push(1)), (0, None, Err(1)));
+    }
+}

@@ -1,0 +1,72 @@
+//! Beacons without a deserialiser: most frames of a swarm are this one message, and a host with many robots spends most
+//! of its time on it. What postcard makes of the bytes that [`read`] takes is the same (a test compares them).
+
+use super::{Header, Message};
+use crate::fixint::Fixed;
+use crate::grid::{Cell, Dir};
+use crate::robot::{Mode, RobotId};
+use crate::time::Instant;
+use crate::wire::Beacon;
+
+/// The modes by their numbers on the wire.
+const MODES: [Mode; 7] =
+    [Mode::Idle, Mode::Forming, Mode::Cruise, Mode::Hold, Mode::Arrived, Mode::Fault, Mode::Passive];
+/// The number of [`Message::Beacon`].
+const BEACON: u8 = 0;
+
+/// Header and beacon of a frame's `body`; `None` for anything else, sound or not, and for numbers from 2^28 on: postcard
+/// judges them.
+pub(super) fn read(body: &[u8]) -> Option<(Header, Message)> {
+    let mut rest = body;
+    let [boot] = take(&mut rest)?;
+    let sender = number(&mut rest)?;
+    let sequence = fixed::<u16, 2>(&mut rest)?;
+    let [BEACON] = take(&mut rest)? else {
+        return None;
+    };
+    let time = fixed::<Instant, 4>(&mut rest)?;
+    let position_mm = [fixed::<i32, 4>(&mut rest)?, fixed::<i32, 4>(&mut rest)?, fixed::<i32, 4>(&mut rest)?];
+    let velocity_mmps = [fixed::<i16, 2>(&mut rest)?, fixed::<i16, 2>(&mut rest)?, fixed::<i16, 2>(&mut rest)?];
+    let radius_mm = fixed::<u16, 2>(&mut rest)?;
+    let cell = cell(&mut rest)?;
+    let [heading] = take(&mut rest)?;
+    let busy_ms = fixed::<u16, 2>(&mut rest)?;
+    let leader = number(&mut rest)?;
+    let [slot, mode] = take(&mut rest)?;
+    let mode = *MODES.get(usize::from(mode))?;
+    let target = self::cell(&mut rest)?;
+    if !rest.is_empty() || !sender.is_somebody() || usize::from(heading) > Dir::Stay.index() {
+        return None;
+    }
+    let heading = Dir::from_index(heading);
+    let beacon =
+        Beacon { time, position_mm, velocity_mmps, radius_mm, cell, heading, busy_ms, leader, slot, mode, target };
+    Some((Header { boot, sender, sequence }, Message::Beacon(beacon)))
+}
+
+fn take<const N: usize>(rest: &mut &[u8]) -> Option<[u8; N]> {
+    let (bytes, after) = rest.split_first_chunk()?;
+    *rest = after;
+    Some(*bytes)
+}
+
+fn fixed<T: Fixed<Bytes = [u8; N]>, const N: usize>(rest: &mut &[u8]) -> Option<T> {
+    take(rest).map(T::from_bytes)
+}
+
+fn cell(rest: &mut &[u8]) -> Option<Cell> {
+    Some(Cell::new(fixed::<i16, 2>(rest)?, fixed::<i16, 2>(rest)?))
+}
+
+/// A robot's number in groups of 7 bits, four at most.
+fn number(rest: &mut &[u8]) -> Option<RobotId> {
+    let mut number = 0;
+    for shift in [0, 7, 14, 21] {
+        let [byte] = take(rest)?;
+        number |= u32::from(byte & 0x7F).wrapping_shl(shift);
+        if byte < 0x80 {
+            return Some(RobotId(number));
+        }
+    }
+    None
+}

@@ -1,0 +1,204 @@
+//! The curve: cost by number of robots.
+
+use super::{Ground, Plan};
+use crate::experiment::Maybe;
+use serde::Serialize;
+use staya_sim::record::{Error, write_atomically};
+use std::fmt::{self, Display, Formatter, Write as _};
+use std::path::{Path, PathBuf};
+
+/// Real time is ten ticks a second.
+const TICK_S: f64 = 0.1;
+
+/// What a swarm took.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Where.
+    pub ground: Ground,
+    /// Robots.
+    pub robots: u32,
+    /// Ticks that were timed, over all runs.
+    pub ticks: u64,
+    /// Wall time of them.
+    pub wall_s: f64,
+    /// Processor time of all threads; `None`: not known.
+    pub processor_s: Option<f64>,
+    /// Resident memory beyond that of the program before the first swarm; `None`: not known.
+    pub memory_bytes: Option<u64>,
+    /// Packets that were decoded in a run, and its fingerprint.
+    pub packets_heard: u64,
+    /// Equal for equal runs.
+    pub hash: u64,
+}
+
+impl Row {
+    pub(super) const fn new(ground: Ground, robots: u32) -> Self {
+        let (processor_s, memory_bytes) = (Some(0.0), None);
+        Self { ground, robots, ticks: 0, wall_s: 0.0, processor_s, memory_bytes, packets_heard: 0, hash: 0 }
+    }
+}
+
+/// One line of the table.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Line {
+    /// Where.
+    pub ground: Ground,
+    /// Robots.
+    pub robots: u32,
+    /// Ticks that were timed, over all runs.
+    pub ticks: u64,
+    /// Wall time per robot and tick, microseconds.
+    pub wall_us: f64,
+    /// Processor time per robot and tick, all threads together, microseconds; null: not known.
+    pub processor_us: Option<f64>,
+    /// Processor time (wall time where that is not known) over that of the smallest swarm.
+    pub ratio: f64,
+    /// Wall time of a tick, seconds.
+    pub tick_s: f64,
+    /// Whether that is real time at 10 Hz.
+    pub is_real_time: bool,
+    /// Resident memory per robot; null: not known. Of small swarms it is mostly the program's.
+    pub bytes: Option<f64>,
+    /// Packets that were decoded, per robot and tick.
+    pub heard: f64,
+    /// Trace hash, 16 hex digits.
+    pub trace_hash: String,
+}
+
+/// What came out.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Seed of the runs.
+    pub seed: u64,
+    /// Threads.
+    pub threads: usize,
+    /// On each ground by rising number of robots.
+    pub lines: Vec<Line>,
+}
+
+impl Report {
+    pub(super) fn new(plan: &Plan, rows: &[Row]) -> Self {
+        let cost_us = |row: &Row| {
+            let robot_ticks = f64::from(row.robots) * row.ticks as f64;
+            let us = |seconds: f64| seconds * 1e6 / robot_ticks;
+            (us(row.wall_s), row.processor_s.map(us))
+        };
+        let line = |row: &Row| {
+            let (wall_us, processor_us) = cost_us(row);
+            let smallest =
+                rows.iter().find(|other| other.ground == row.ground).map_or((wall_us, processor_us), cost_us);
+            let tick_s = wall_us * f64::from(row.robots) / 1e6;
+            let ticks = f64::from(plan.ticks + super::WARM_UP);
+            Line {
+                ground: row.ground,
+                robots: row.robots,
+                ticks: row.ticks,
+                wall_us,
+                processor_us,
+                ratio: processor_us.zip(smallest.1).map_or(wall_us / smallest.0, |(own, first)| own / first),
+                tick_s,
+                is_real_time: tick_s <= TICK_S,
+                bytes: row.memory_bytes.map(|bytes| bytes as f64 / f64::from(row.robots)),
+                heard: row.packets_heard as f64 / (f64::from(row.robots) * ticks),
+                trace_hash: format!("{:016x}", row.hash),
+            }
+        };
+        Self { seed: plan.seed, threads: rayon::current_num_threads(), lines: rows.iter().map(line).collect() }
+    }
+
+    /// Writes `scale.csv` into `dir` and names it.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn write_csv(&self, dir: &Path) -> Result<PathBuf, Error> {
+        let mut text = String::from(
+            "ground,robots,threads,ticks,wall_us,processor_us,ratio,tick_s,bytes_per_robot,packets_heard,trace_hash\n",
+        );
+        let known = |value: Option<f64>, decimals: usize| value.map_or(String::new(), |v| format!("{v:.decimals$}"));
+        for line in &self.lines {
+            // Writing to a string does not fail.
+            let _ = writeln!(
+                text,
+                "{},{},{},{},{:.4},{},{:.3},{:.5},{},{:.3},{}",
+                word(line.ground),
+                line.robots,
+                self.threads,
+                line.ticks,
+                line.wall_us,
+                known(line.processor_us, 4),
+                line.ratio,
+                line.tick_s,
+                known(line.bytes, 0),
+                line.heard,
+                line.trace_hash,
+            );
+        }
+        let path = dir.join("scale.csv");
+        write_atomically(&path, text.as_bytes())?;
+        Ok(path)
+    }
+}
+
+const fn word(ground: Ground) -> &'static str {
+    match ground {
+        Ground::Grid => "grid",
+        Ground::Plane => "plane",
+    }
+}
+
+impl Display for Report {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        writeln!(f, "what a robot costs, {} threads, seed {}", self.threads, self.seed)?;
+        writeln!(f, "(us per robot and tick; ratio: processor time over that of the smallest swarm)\n")?;
+        writeln!(
+            f,
+            "{:<6} {:>8} {:>8} {:>8} {:>10} {:>6} {:>10} {:>9} {:>8}",
+            "ground", "robots", "heard", "wall us", "processor", "ratio", "tick s", "10 Hz", "bytes"
+        )?;
+        for line in &self.lines {
+            writeln!(
+                f,
+                "{:<6} {:>8} {:>8.2} {:>8.3} {:>10} {:>6.2} {:>10.4} {:>9} {:>8}",
+                word(line.ground),
+                line.robots,
+                line.heard,
+                line.wall_us,
+                Maybe(line.processor_us, 3),
+                line.ratio,
+                line.tick_s,
+                if line.is_real_time { "yes" } else { "no" },
+                Maybe(line.bytes, 0),
+            )?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn costs_are_per_robot_and_tick_and_beside_the_smallest_swarm() {
+        let row = |robots, wall_s, processor_s| Row {
+            ticks: 10,
+            wall_s,
+            processor_s,
+            memory_bytes: Some(u64::from(robots) * 3000),
+            ..Row::new(Ground::Grid, robots)
+        };
+        let rows = [row(1000, 0.01, Some(0.02)), row(100_000, 2.0, Some(3.0))];
+        let report = Report::new(&Plan::default(), &rows);
+        let [small, large] = &report.lines[..] else { panic!("two lines") };
+        let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
+        assert!(near(small.wall_us, 1.0) && near(small.ratio, 1.0) && small.is_real_time);
+        assert!(near(large.wall_us, 2.0) && near(large.ratio, 1.5) && near(large.tick_s, 0.2) && !large.is_real_time);
+        assert_eq!(large.bytes, Some(3000.0));
+        let unknown = Report::new(&Plan::default(), &[row(1000, 0.01, None), row(2000, 0.04, None)]);
+        assert!(near(unknown.lines[1].ratio, 2.0));
+        let dir = tempfile::tempdir().unwrap();
+        let text = std::fs::read_to_string(report.write_csv(dir.path()).unwrap()).unwrap();
+        assert_eq!(text.lines().count(), 3);
+        assert!(text.contains("grid,100000,"));
+    }
+}
