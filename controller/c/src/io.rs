@@ -1,0 +1,315 @@
+//! What a step is told and what it gives, as plain structures.
+
+use crate::choices::{self, StayaCommand, StayaEventKind, StayaLaw, StayaMode, StayaShape, StayaWait};
+use crate::memory::{plain, row};
+use crate::setup::StayaCell;
+use crate::status::{Checked, StayaStatus};
+use crate::{Number, OBSTACLES};
+use heapless::Vec;
+use staya_controller::agent::{
+    AnyInputs, AnySurroundings, CellState, Command, EVENTS, Event, InCell, InCells, InPlane, Inputs, KinematicState,
+    OUTBOX, OnGrid, Outputs,
+};
+use staya_controller::geom::{Position, Vec2, Vec3};
+use staya_controller::grid::Window;
+use staya_controller::obstacle::Obstacle;
+use staya_controller::scalar::cast;
+use staya_controller::time::Duration;
+
+/// Bytes that one step can send.
+pub const STAYA_OUTBOX: usize = 256;
+/// Events that one step can report.
+pub const STAYA_EVENTS: usize = 8;
+
+/// Bytes of StayaOutputs, on every machine.
+pub const STAYA_OUTPUTS_SIZE: usize = 444;
+
+const _: () = assert!(STAYA_OUTBOX == OUTBOX && STAYA_EVENTS == EVENTS);
+const _: () = assert!(size_of::<StayaOutputs>() == STAYA_OUTPUTS_SIZE);
+
+/// Something that does not move, seen from the robot's own place, metres.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default)]
+pub struct StayaObstacle {
+    /// StayaShape.
+    pub shape: u32,
+    /// A wall's first end, a ball's centre, a plane's normal.
+    pub x_m: f32,
+    /// See `x_m`.
+    pub y_m: f32,
+    /// See `x_m`.
+    pub z_m: f32,
+    /// A wall's second end.
+    pub x2_m: f32,
+    /// See `x2_m`.
+    pub y2_m: f32,
+    /// A ball's radius, or how far the robot is in front of a plane.
+    pub size_m: f32,
+}
+
+/// What a step is told. All zeros is a robot at the origin that stands, sees nothing and hears nobody.
+///
+/// Robots that go by velocities need `max_speed_mps`; those that cross land in cells `cell` and `window`, and by velocities also
+/// `in_cell_x_m`, `in_cell_y_m` and `cell_m`. The rest plays no part then.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct StayaInputs {
+    /// Own place in the world: east, north, up from an origin that all share, millimetres.
+    pub position_mm: [i32; 3],
+    /// Own velocity in the world, m/s.
+    pub velocity_mps: [f32; 3],
+    /// The robot's clock, microseconds; it wraps after 71.6 minutes.
+    pub now_us: u32,
+    /// How fast the body can go where it is, m/s. With 0 the robot is in STAYA_MODE_FAULT, and stands.
+    pub max_speed_mps: f32,
+    /// Own cell.
+    pub cell: StayaCell,
+    /// Time until it may leave its cell, microseconds; only for moves from cell to cell.
+    pub busy_us: i32,
+    /// Where in its cell it is, metres from the cell's centre.
+    pub in_cell_x_m: f32,
+    /// See `in_cell_x_m`.
+    pub in_cell_y_m: f32,
+    /// Side of a cell, metres.
+    pub cell_m: f32,
+    /// South-west cell of what it sees of the land.
+    pub window_origin: StayaCell,
+    /// Cells from west to east.
+    pub window_width: u16,
+    /// Cells from south to north.
+    pub window_height: u16,
+    /// How hard each cell is to cross, row by row from the south-west: 1 easy, 255 hard, 0 impassable; width * height bytes. Null: it
+    /// sees no land, and is in STAYA_MODE_FAULT.
+    pub window: *const u8,
+    /// What stands in the way, `obstacle_count` of them, at most 32 (16 if the library was built small).
+    pub obstacles: *const StayaObstacle,
+    /// How many of `obstacles` there are.
+    pub obstacle_count: usize,
+    /// What the radio delivered since the last step, `inbox_bytes` of it, in order: whole frames, damaged ones, those of others.
+    pub inbox: *const u8,
+    /// How many bytes of `inbox` there are.
+    pub inbox_bytes: usize,
+}
+
+/// Something that happened.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default)]
+pub struct StayaEvent {
+    /// Which robot it is about; 0 for none.
+    pub robot: u32,
+    /// A cell before.
+    pub before_xy: StayaCell,
+    /// A cell now.
+    pub after_xy: StayaCell,
+    /// StayaEventKind, which says what of the rest counts.
+    pub kind: u8,
+    /// A number before.
+    pub before: u8,
+    /// A number now.
+    pub after: u8,
+}
+
+/// What a step gives.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct StayaOutputs {
+    /// World velocity to go with until the next step, m/s; with STAYA_COMMAND_VELOCITY.
+    pub velocity_mps: [f32; 3],
+    /// When to call again if nothing arrives before: the robot's clock, microseconds.
+    pub call_again_us: u32,
+    /// Whom it follows; 0 for nobody.
+    pub leader: u32,
+    /// The cell that it is going to; with `has_target`.
+    pub target: StayaCell,
+    /// Frames that were heard: sound, not seen before, of somebody else.
+    pub received: u16,
+    /// Frames that were refused: damaged, repeated, not authentic.
+    pub rejected: u16,
+    /// Of those: without a code.
+    pub refused_unsigned: u16,
+    /// Of those: with a code of another key or of another content.
+    pub refused_forged: u16,
+    /// Of those: recorded, repeated, or too far ahead.
+    pub refused_replayed: u16,
+    /// Of those: of senders for whom there is no room.
+    pub refused_no_room: u16,
+    /// Beacons with a number beyond `claims_last_id`.
+    pub overclaimed_numbers: u16,
+    /// Beacons with too large a radius.
+    pub overclaimed_radii: u16,
+    /// Beacons with too high a speed.
+    pub overclaimed_speeds: u16,
+    /// Beacons of places where the robot cannot be yet.
+    pub overclaimed_places: u16,
+    /// Bytes of `outbox`.
+    pub outbox_bytes: u16,
+    /// StayaCommand.
+    pub command: u8,
+    /// Moves to try in this order (StayaDir), `move_count` of them; with STAYA_COMMAND_MOVE.
+    pub moves: [u8; 8],
+    /// How many of `moves` there are.
+    pub move_count: u8,
+    /// What it is doing: StayaMode.
+    pub mode: u8,
+    /// What it waits for: StayaWait.
+    pub wait: u8,
+    /// Whether it has a goal, and so a `target`.
+    pub has_target: u8,
+    /// How many of `events` there are.
+    pub event_count: u8,
+    /// What happened; the oldest ones when there are more.
+    pub events: [StayaEvent; STAYA_EVENTS],
+    /// Bytes for the radio, `outbox_bytes` of them.
+    pub outbox: [u8; STAYA_OUTBOX],
+}
+
+plain!(StayaObstacle, StayaInputs, StayaEvent, StayaOutputs);
+
+/// Three numbers of C's.
+pub(crate) fn vector([x, y, z]: [f32; 3]) -> Vec3<Number> {
+    Vec3::new(cast(x), cast(y), cast(z))
+}
+
+/// Three numbers for C.
+pub(crate) fn array(vector: Vec3<Number>) -> [f32; 3] {
+    [cast(vector.x), cast(vector.y), cast(vector.z)]
+}
+
+impl StayaObstacle {
+    fn obstacle(&self) -> Checked<Obstacle<Number>> {
+        let shape = u8::try_from(self.shape).map_err(|_| StayaStatus::Choice)?;
+        let place = vector([self.x_m, self.y_m, self.z_m]);
+        Ok(match StayaShape::of(shape)? {
+            StayaShape::Wall => Obstacle::Wall([place.xy(), Vec2::new(cast(self.x2_m), cast(self.y2_m))]),
+            StayaShape::Ball => Obstacle::Ball { center_m: place, radius_m: cast(self.size_m) },
+            StayaShape::Plane => Obstacle::Plane { normal: place, distance_m: cast(self.size_m) },
+        })
+    }
+}
+
+/// Obstacles in the library's own numbers.
+pub(crate) fn read_obstacles(from: &[StayaObstacle], to: &mut Vec<Obstacle<Number>, OBSTACLES>) -> Checked<()> {
+    to.clear();
+    for obstacle in from {
+        to.push(obstacle.obstacle()?).map_err(|_| StayaStatus::TooMany)?;
+    }
+    Ok(())
+}
+
+impl StayaInputs {
+    /// What a robot with this law is told.
+    ///
+    /// # Safety
+    /// The pointers are null or misaligned, or lead to as many as is said, which nobody writes to meanwhile.
+    pub(crate) unsafe fn inputs<'a>(
+        &'a self,
+        law: StayaLaw,
+        obstacles: &'a mut Vec<Obstacle<Number>, OBSTACLES>,
+    ) -> Checked<AnyInputs<'a, Number>> {
+        // SAFETY: the caller's promise.
+        let (seen, inbox) = unsafe { (row(self.obstacles, self.obstacle_count)?, row(self.inbox, self.inbox_bytes)?) };
+        read_obstacles(seen, obstacles)?;
+        let plane = InPlane { max_speed_mps: cast(self.max_speed_mps), obstacles: obstacles.as_slice() };
+        let surroundings = match law {
+            StayaLaw::Waypoint | StayaLaw::Lattice | StayaLaw::GoalFlock | StayaLaw::Boids => {
+                AnySurroundings::InPlane(plane)
+            }
+            StayaLaw::RouteOnGrid | StayaLaw::FormationOnGrid => {
+                // SAFETY: the caller's promise.
+                AnySurroundings::OnGrid(unsafe { self.grid(Duration::from_micros(self.busy_us))? })
+            }
+            StayaLaw::Route | StayaLaw::Formation => {
+                if !(self.cell_m > 0.0 && self.cell_m.is_finite()) {
+                    return Err(StayaStatus::Number);
+                }
+                let offset_m = Vec2::new(cast(self.in_cell_x_m), cast(self.in_cell_y_m));
+                AnySurroundings::InCells(InCells {
+                    // SAFETY: the caller's promise.
+                    grid: unsafe { self.grid(Duration::ZERO)? },
+                    plane,
+                    in_cell: InCell { offset_m, cell_m: cast(self.cell_m) },
+                })
+            }
+        };
+        Ok(Inputs { state: self.state(), surroundings, inbox })
+    }
+
+    fn state(&self) -> KinematicState<Number> {
+        KinematicState { position: Position::from_mm(self.position_mm), velocity_mps: vector(self.velocity_mps) }
+    }
+
+    /// # Safety
+    /// As for [`Self::inputs`].
+    unsafe fn grid(&self, busy: Duration) -> Checked<OnGrid<'_>> {
+        let count = usize::from(self.window_width).saturating_mul(self.window_height.into());
+        let window = if self.window.is_null() {
+            None
+        } else {
+            // SAFETY: the caller's promise.
+            let cells = unsafe { row(self.window, count)? };
+            let window = Window::new(cells, self.window_origin.into(), self.window_width, self.window_height);
+            Some(window.ok_or(StayaStatus::Shape)?)
+        };
+        Ok(OnGrid { cell: CellState { cell: self.cell.into(), busy }, window })
+    }
+}
+
+impl StayaEvent {
+    fn of(event: &Event) -> Self {
+        let kind = StayaEventKind::from(event) as u8;
+        let about = Self { kind, ..Self::default() };
+        match *event {
+            Event::ModeChanged { from, to } => {
+                Self { before: StayaMode::from(from) as u8, after: StayaMode::from(to) as u8, ..about }
+            }
+            Event::TargetMoved { from, to } => Self { before_xy: from.into(), after_xy: to.into(), ..about },
+            Event::RequestExpired { to, kind } => Self { robot: to.0, after: choices::request(kind), ..about },
+            Event::Overclaimed { id, claim } => Self { robot: id.0, after: choices::claim(claim), ..about },
+            Event::NeighborFound(id)
+            | Event::NeighborLost(id)
+            | Event::NeighborEvicted(id)
+            | Event::NeighborRebooted(id)
+            | Event::DuplicateId(id) => Self { robot: id.0, ..about },
+            Event::NoRoute | Event::NobodyHeard | Event::Muted => about,
+        }
+    }
+}
+
+impl StayaOutputs {
+    /// Writes what a step gave; what is not said stays 0.
+    pub(crate) fn fill(&mut self, out: &Outputs<Number>) {
+        match &out.command {
+            Command::Hold => self.command = StayaCommand::Hold as u8,
+            Command::Move(moves) => {
+                self.command = StayaCommand::Move as u8;
+                for (to, dir) in self.moves.iter_mut().zip(moves) {
+                    *to = dir.index() as u8;
+                    self.move_count = self.move_count.saturating_add(1);
+                }
+            }
+            Command::Velocity(velocity_mps) => {
+                self.command = StayaCommand::Velocity as u8;
+                self.velocity_mps = array(*velocity_mps);
+            }
+        }
+        self.call_again_us = out.call_again.as_micros();
+        self.wait = StayaWait::from(out.wait) as u8;
+        (self.received, self.rejected) = (out.received, out.rejected);
+        self.refused_unsigned = out.refused.unsigned;
+        self.refused_forged = out.refused.forged;
+        self.refused_replayed = out.refused.replayed;
+        self.refused_no_room = out.refused.no_room;
+        self.overclaimed_numbers = out.overclaims.numbers;
+        self.overclaimed_radii = out.overclaims.radii;
+        self.overclaimed_speeds = out.overclaims.speeds;
+        self.overclaimed_places = out.overclaims.jumps;
+        for (to, event) in self.events.iter_mut().zip(&out.events) {
+            *to = StayaEvent::of(event);
+            self.event_count = self.event_count.saturating_add(1);
+        }
+        for (to, byte) in self.outbox.iter_mut().zip(&out.outbox) {
+            *to = *byte;
+        }
+        self.outbox_bytes = out.outbox.len() as u16;
+    }
+}

@@ -1,0 +1,102 @@
+//! The safety layers that the library was built with, as one type. In a digest each is what is in it, as the laws are.
+
+use crate::{HALF_PLANES, Number};
+use serde::{Serialize, Serializer};
+#[cfg(feature = "space")]
+use staya_controller::agent::FlySafety;
+#[cfg(feature = "push-out")]
+use staya_controller::agent::PushOutSafety;
+use staya_controller::agent::{OrcaSafety, Parameter, Safety, SafetyInput, Unguarded};
+use staya_controller::geom::{Vec2, Vec3};
+use staya_controller::neighbor::StalenessInflation;
+#[cfg(feature = "table")]
+use staya_controller::orca::VoxelTable2k;
+use staya_controller::orca::{HalfPlane, HalfSpaces, MovingBall, Params, half_plane};
+use staya_controller::rand::Rng;
+
+/// Where half-planes come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// The formula.
+    Formula,
+    /// The table of 2 KiB.
+    #[cfg(feature = "table")]
+    Table,
+}
+
+impl Serialize for Source {
+    fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
+        serializer.serialize_unit_struct("Source")
+    }
+}
+
+impl HalfSpaces<Number> for Source {
+    type Velocity = Vec2<Number>;
+
+    fn half_space(
+        &self,
+        own_velocity_mps: Vec2<Number>,
+        disc: &MovingBall<Vec2<Number>>,
+        params: &Params<Number>,
+    ) -> Option<HalfPlane<Number>> {
+        match self {
+            Self::Formula => half_plane(own_velocity_mps, disc, params),
+            #[cfg(feature = "table")]
+            Self::Table => VoxelTable2k.half_space(own_velocity_mps, disc, params),
+        }
+    }
+}
+
+/// A safety layer.
+#[derive(Clone, Debug)]
+#[expect(missing_docs, reason = "StayaSafety says what each is")]
+pub enum Layer {
+    None(Unguarded),
+    Orca(OrcaSafety<Number, HALF_PLANES, Source>),
+    #[cfg(feature = "space")]
+    Fly(FlySafety<Number, HALF_PLANES>),
+    #[cfg(feature = "push-out")]
+    PushOut(PushOutSafety<Number>),
+}
+
+/// Does the same with whatever is inside.
+macro_rules! each {
+    ($any:expr, $inside:ident => $action:expr) => {
+        match $any {
+            Layer::None($inside) => $action,
+            Layer::Orca($inside) => $action,
+            #[cfg(feature = "space")]
+            Layer::Fly($inside) => $action,
+            #[cfg(feature = "push-out")]
+            Layer::PushOut($inside) => $action,
+        }
+    };
+}
+
+impl Serialize for Layer {
+    fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
+        each!(self, layer => layer.serialize(serializer))
+    }
+}
+
+impl Safety<Number> for Layer {
+    fn keep_clear(&mut self, input: &SafetyInput<'_, Number>, rng: &mut Rng) -> Vec3<Number> {
+        each!(self, layer => layer.keep_clear(input, rng))
+    }
+
+    fn inflation(&self) -> Option<StalenessInflation<Number>> {
+        each!(self, layer => Safety::<Number>::inflation(layer))
+    }
+
+    fn waits_for_turn(&self) -> bool {
+        each!(self, layer => Safety::<Number>::waits_for_turn(layer))
+    }
+
+    fn parameter(&self, parameter: Parameter) -> Option<Number> {
+        each!(self, layer => layer.parameter(parameter))
+    }
+
+    fn tune(&mut self, parameter: Parameter, value: Number) -> bool {
+        each!(self, layer => layer.tune(parameter, value))
+    }
+}

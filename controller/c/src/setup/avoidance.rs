@@ -1,0 +1,93 @@
+//! Parameters of what keeps robots clear of each other.
+
+use crate::Number;
+use crate::choices::StayaPushOutModel;
+use crate::memory::plain;
+use crate::status::Checked;
+use staya_controller::neighbor::StalenessInflation;
+use staya_controller::orca::{AvoidParams, DeadlockParams};
+use staya_controller::push_out::{Evasion, PushOutParams};
+use staya_controller::scalar::cast;
+
+/// Optimal reciprocal collision avoidance (J. van den Berg and others 2011).
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct StayaOrca {
+    /// Time ahead for which no collision with a robot may happen, seconds; 1 to 5. Longer gives way earlier and slows crowds.
+    /// Shorter than the body needs to stop (speed / acceleration) is not safe.
+    pub horizon_s: f32,
+    /// The same for obstacles, seconds. A robot slows to (distance / this time) in front of a wall.
+    pub wall_horizon_s: f32,
+    /// Own share of a correction: 0.5 when all do the same. Less is not safe.
+    pub share: f32,
+    /// Kept on top of the radii, metres: the error of what is known of places.
+    pub margin_m: f32,
+    /// How far to the right of the wish to lean while a robot is in the way, radians; 0.4 to 0.6, 0 never.
+    pub lean_rad: f32,
+    /// For how long a gap is left to those whose turn it is: the time for so many own radii at full speed; 4 to 16.
+    pub patience_radii: f32,
+    /// How the ball of a silent robot grows, m/s: the highest speed that others can have. Less is not safe when the radio is bad.
+    pub growth_mps: f32,
+    /// How much the ball of one that stands grows at most, metres.
+    pub growth_max_m: f32,
+    /// In space: how many times as far as beside each other robots keep apart above and below; 1 or more, for quadrotors 2.5.
+    pub downwash: f32,
+}
+
+/// Push-out (V. E. and V. V. Pavlovsky).
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct StayaPushOut {
+    /// Least distance of two centres, and of a centre from an obstacle, metres; more than bodies need by a step's length.
+    pub min_distance_m: f32,
+    /// StayaPushOutModel.
+    pub model: u8,
+    /// Other than 0: only the nearest of the robots in the way is evaded.
+    pub only_nearest: u8,
+}
+
+plain!(StayaOrca, StayaPushOut);
+
+impl StayaOrca {
+    pub(crate) fn defaults() -> Self {
+        let AvoidParams { horizon_s, wall_horizon_s, share, margin_m, deadlock } = AvoidParams::<f32>::default();
+        let DeadlockParams { lean_rad, patience_radii } = deadlock;
+        let [growth_mps, growth_max_m] = [0.5, 0.3];
+        Self {
+            horizon_s,
+            wall_horizon_s,
+            share,
+            margin_m,
+            lean_rad,
+            patience_radii,
+            growth_mps,
+            growth_max_m,
+            downwash: 1.0,
+        }
+    }
+
+    pub(crate) fn params(&self) -> AvoidParams<Number> {
+        AvoidParams {
+            horizon_s: cast(self.horizon_s),
+            wall_horizon_s: cast(self.wall_horizon_s),
+            share: cast(self.share),
+            margin_m: cast(self.margin_m),
+            deadlock: DeadlockParams { lean_rad: cast(self.lean_rad), patience_radii: cast(self.patience_radii) },
+        }
+    }
+
+    pub(crate) fn inflation(&self) -> StalenessInflation<Number> {
+        StalenessInflation { growth_mps: cast(self.growth_mps), max_m: cast(self.growth_max_m) }
+    }
+}
+
+#[cfg(feature = "push-out")]
+impl StayaPushOut {
+    pub(crate) fn params(&self) -> Checked<PushOutParams<Number>> {
+        Ok(PushOutParams {
+            model: StayaPushOutModel::of(self.model)?.into(),
+            evasion: if self.only_nearest == 0 { Evasion::Multiple } else { Evasion::Single },
+            min_distance_m: cast(self.min_distance_m),
+        })
+    }
+}

@@ -1,0 +1,74 @@
+//! The wire formats that the library was built with, as one type. In a digest each is what is in it, as the laws are.
+
+use heapless::Vec;
+use serde::{Serialize, Serializer};
+#[cfg(feature = "auth")]
+use staya_controller::wire::Sealed;
+use staya_controller::wire::{DecodeError, EncodeError, Frame, Header, KeyPhase, Message, Postcard, Wire};
+#[cfg(feature = "mavlink")]
+use staya_mavlink::wire::Mavlink;
+
+/// Senders that a robot with a key remembers, so that nobody can repeat what they said; it hears no others.
+#[cfg(feature = "auth")]
+pub const PEERS: usize = if cfg!(feature = "small") { 16 } else { staya_controller::wire::PEERS };
+
+/// A wire format.
+#[derive(Clone, Debug)]
+#[expect(missing_docs, reason = "StayaWire says what each is")]
+#[cfg_attr(
+    feature = "auth",
+    expect(clippy::large_enum_variant, reason = "a robot without a key leaves the feature out")
+)]
+pub enum Speech {
+    Postcard(Postcard),
+    #[cfg(feature = "mavlink")]
+    Mavlink(Mavlink),
+    #[cfg(feature = "auth")]
+    Sealed(Sealed<PEERS>),
+}
+
+/// Does the same with whatever is inside.
+macro_rules! each {
+    ($any:expr, $inside:ident => $action:expr) => {
+        match $any {
+            Speech::Postcard($inside) => $action,
+            #[cfg(feature = "mavlink")]
+            Speech::Mavlink($inside) => $action,
+            #[cfg(feature = "auth")]
+            Speech::Sealed($inside) => $action,
+        }
+    };
+}
+
+impl Serialize for Speech {
+    fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
+        each!(self, wire => wire.serialize(serializer))
+    }
+}
+
+impl Wire for Speech {
+    fn beacon_len(&self) -> usize {
+        each!(self, wire => wire.beacon_len())
+    }
+
+    fn encode<const N: usize>(
+        &mut self,
+        header: Header,
+        message: &Message,
+        out: &mut Vec<u8, N>,
+    ) -> Result<usize, EncodeError> {
+        each!(self, wire => wire.encode(header, message, out))
+    }
+
+    fn decode(&mut self, frame: &[u8]) -> Result<Frame, DecodeError> {
+        each!(self, wire => wire.decode(frame))
+    }
+
+    fn held(&self) -> Option<(u16, KeyPhase)> {
+        each!(self, wire => wire.held())
+    }
+
+    fn next_frame<'a>(&self, rest: &mut &'a [u8]) -> Option<&'a [u8]> {
+        each!(self, wire => wire.next_frame(rest))
+    }
+}

@@ -1,0 +1,116 @@
+//! What a function answers.
+
+use core::ffi::{CStr, c_char};
+
+/// What a function answers. Nothing has changed unless it is `STAYA_STATUS_OK`, but for `staya_init`, which then leaves no agent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(i32)]
+pub enum StayaStatus {
+    /// It is done.
+    Ok = 0,
+    /// A pointer that is needed is null, or is null with a length above 0.
+    Null = 1,
+    /// A pointer is not aligned as its type asks; memory for agents and avoiders: by STAYA_ALIGN.
+    Alignment = 2,
+    /// The memory is too small: see STAYA_AGENT_SIZE and STAYA_ORCA_SIZE.
+    MemorySize = 3,
+    /// There is no agent, or no avoider, in this memory: call `staya_init`, or `staya_orca_init`.
+    NotThere = 4,
+    /// The structure was not filled by `staya_setup_defaults` of this version of the header.
+    Version = 5,
+    /// The robot's number is 0, which is nobody.
+    Nobody = 6,
+    /// A number that must be above 0, or finite, is not.
+    Number = 7,
+    /// A field that names one of several has another number.
+    Choice = 8,
+    /// The library was built without it: see its features.
+    NotBuilt = 9,
+    /// The guidance law has no use for this task.
+    Task = 10,
+    /// The radius of the search is above STAYA_MAX_RADIUS.
+    Search = 11,
+    /// More of them than there is room for.
+    TooMany = 12,
+    /// The window has no width or no height, or a graph or a template makes no sense.
+    Shape = 13,
+    /// The robot has no such parameter, or the value is out of its range, or does not go with the others.
+    Parameter = 14,
+    /// There is no such name or number.
+    Unknown = 15,
+}
+
+impl StayaStatus {
+    const ALL: [Self; 16] = [
+        Self::Ok,
+        Self::Null,
+        Self::Alignment,
+        Self::MemorySize,
+        Self::NotThere,
+        Self::Version,
+        Self::Nobody,
+        Self::Number,
+        Self::Choice,
+        Self::NotBuilt,
+        Self::Task,
+        Self::Search,
+        Self::TooMany,
+        Self::Shape,
+        Self::Parameter,
+        Self::Unknown,
+    ];
+
+    const fn texts(self) -> (&'static CStr, &'static CStr) {
+        match self {
+            Self::Ok => (c"STAYA_STATUS_OK", c"it is done"),
+            Self::Null => (c"STAYA_STATUS_NULL", c"a pointer that is needed is null"),
+            Self::Alignment => (c"STAYA_STATUS_ALIGNMENT", c"a pointer is not aligned; memory needs STAYA_ALIGN"),
+            Self::MemorySize => {
+                (c"STAYA_STATUS_MEMORY_SIZE", c"the memory is too small: see STAYA_AGENT_SIZE and STAYA_ORCA_SIZE")
+            }
+            Self::NotThere => {
+                (c"STAYA_STATUS_NOT_THERE", c"nothing was made in this memory: call staya_init or staya_orca_init")
+            }
+            Self::Version => {
+                (c"STAYA_STATUS_VERSION", c"call staya_setup_defaults first; header and library must be of one version")
+            }
+            Self::Nobody => (c"STAYA_STATUS_NOBODY", c"0 is nobody's number: robots are 1 and up"),
+            Self::Number => (c"STAYA_STATUS_NUMBER", c"a number that must be above 0, or finite, is not"),
+            Self::Choice => (c"STAYA_STATUS_CHOICE", c"a field that names one of several has another number"),
+            Self::NotBuilt => (c"STAYA_STATUS_NOT_BUILT", c"the library was built without it: see its features"),
+            Self::Task => (c"STAYA_STATUS_TASK", c"the guidance law has no use for this task"),
+            Self::Search => (c"STAYA_STATUS_SEARCH", c"the radius of the search is above STAYA_MAX_RADIUS"),
+            Self::TooMany => (c"STAYA_STATUS_TOO_MANY", c"more of them than there is room for"),
+            Self::Shape => (c"STAYA_STATUS_SHAPE", c"a window, a graph or a template makes no sense"),
+            Self::Parameter => (c"STAYA_STATUS_PARAMETER", c"no such parameter here, or a value that it cannot have"),
+            Self::Unknown => (c"STAYA_STATUS_UNKNOWN", c"there is no such name or number"),
+        }
+    }
+
+    fn of(status: i32) -> Option<Self> {
+        Self::ALL.into_iter().find(|known| *known as i32 == status)
+    }
+}
+
+/// What a function of the inside gives.
+pub(crate) type Checked<T> = Result<T, StayaStatus>;
+
+/// As C sees it.
+pub(crate) fn answer(result: Checked<()>) -> StayaStatus {
+    match result {
+        Ok(()) => StayaStatus::Ok,
+        Err(status) => status,
+    }
+}
+
+/// The name of a status, such as "STAYA_STATUS_NULL". Never null.
+#[unsafe(no_mangle)]
+pub extern "C" fn staya_status_name(status: i32) -> *const c_char {
+    StayaStatus::of(status).map_or(c"(no status)", |known| known.texts().0).as_ptr()
+}
+
+/// What a status means and what to do about it, in a line. Never null.
+#[unsafe(no_mangle)]
+pub extern "C" fn staya_status_text(status: i32) -> *const c_char {
+    StayaStatus::of(status).map_or(c"no status of this library", |known| known.texts().1).as_ptr()
+}

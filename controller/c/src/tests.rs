@@ -1,0 +1,3 @@
+//! The library through its own functions, as C calls them.
+
+mod header;

@@ -1,0 +1,22 @@
+/* The canned swarms on a host. */
+
+#include "platform.h"
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+void print_row(const char *name, uint64_t hash, uint32_t steps)
+{
+    printf("%s f32 %016" PRIx64 " %" PRIu32 "\n", name, hash, steps);
+}
+
+void fail(const char *why)
+{
+    fprintf(stderr, "%s\n", why);
+    exit(1);
+}
+
+int main(void)
+{
+    return run_swarms();
+}

@@ -1,0 +1,79 @@
+/* The canned swarms on an STM32F405 in QEMU: start-up without a vendor's library, output over semihosting. */
+
+#include "platform.h"
+
+extern uint32_t stack_top, bss_start, bss_end, data_start, data_end, data_in_flash;
+
+/* Asks the emulator: Arm's semihosting. */
+static void ask(uint32_t operation, const void *argument)
+{
+    register uint32_t r0 __asm__("r0") = operation;
+    register const void *r1 __asm__("r1") = argument;
+    __asm__ volatile("bkpt 0xAB" : "+r"(r0) : "r"(r1) : "memory");
+}
+
+static void print(const char *text)
+{
+    ask(0x04, text); /* SYS_WRITE0 */
+}
+
+static void end(uint32_t code)
+{
+    const uint32_t reason[2] = {0x20026, code}; /* ADP_Stopped_ApplicationExit */
+    ask(0x20, reason); /* SYS_EXIT_EXTENDED */
+    for (;;) {
+    }
+}
+
+void fail(const char *why)
+{
+    print(why);
+    print("\n");
+    end(1);
+}
+
+void print_row(const char *name, uint64_t hash, uint32_t steps)
+{
+    char digits[17];
+    for (int i = 0; i < 16; i++) {
+        digits[i] = "0123456789abcdef"[(hash >> (60 - 4 * i)) & 15];
+    }
+    digits[16] = 0;
+    print(name);
+    print(" f32 ");
+    print(digits);
+    char decimal[12];
+    int at = 11;
+    decimal[at] = 0;
+    do {
+        decimal[--at] = (char)('0' + steps % 10);
+        steps /= 10;
+    } while (steps != 0);
+    decimal[--at] = ' ';
+    print(&decimal[at]);
+    print("\n");
+}
+
+void reset(void)
+{
+    *(volatile uint32_t *)0xE000ED88 |= 0xFu << 20; /* CPACR: the FPU is on */
+    __asm__ volatile("dsb\nisb" ::: "memory");
+    const uint32_t *from = &data_in_flash;
+    for (uint32_t *to = &data_start; to < &data_end;) {
+        *to++ = *from++;
+    }
+    for (uint32_t *to = &bss_start; to < &bss_end;) {
+        *to++ = 0;
+    }
+    end((uint32_t)run_swarms());
+}
+
+static void fault(void)
+{
+    fail("the processor has met an exception");
+}
+
+__attribute__((section(".vectors"), used)) static const void *const VECTORS[16] = {
+    &stack_top, (const void *)reset, (const void *)fault, (const void *)fault, (const void *)fault,
+    (const void *)fault, (const void *)fault,
+};
