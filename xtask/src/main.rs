@@ -9,6 +9,7 @@ mod bare;
 mod bench;
 mod bless;
 mod browser;
+mod c;
 mod check;
 mod circles;
 mod clients;
@@ -60,6 +61,7 @@ Usage: cargo xtask COMMAND
   bless [NAME]    rewrite golden files by running the tests whose name contains NAME (default: golden)
   fuzz [--seconds N]
                   each fuzz target for N seconds (default: 60), if nightly Rust and cargo-fuzz are there
+  c               the library for C: its programs on this machine, the canned swarms through it on an emulated STM32F405
   browser         the page of `staya view` in Chromium, driven from Python
   clients [NAME]  MAVLink clients (pymavlink, MAVSDK, MAVProxy, tshark) against staya, from Python: all tests or those whose names contain NAME
   cluster         sweeps on Slurm and GNU parallel, on this machine: the same rows as without them
@@ -121,6 +123,7 @@ fn main() -> ExitCode {
         ["clients", name] if !name.starts_with('-') => {
             clients::run_command(&repo, &mut report, Some(name), Extent::All);
         }
+        ["c"] => c::run_command(&repo, &mut report),
         ["browser"] => browser::run_command(&repo, &mut report),
         ["cluster"] => cluster::run_command(&repo, &mut report),
         ["mpi"] => mpi::run_command(&repo, &mut report),

@@ -68,6 +68,7 @@ pub fn run(repo: &Repo, report: &mut Report, extent: Extent) {
     }
     crate::swarms::run(repo, report, &mut toolchains);
     crate::plants::run(repo, report, &mut toolchains);
+    crate::c::run(repo, report, &mut toolchains);
     crate::size::run(repo, report, &mut toolchains, false);
     crate::faults::run(repo, report, &mut toolchains);
     crate::emulated::run(repo, report);

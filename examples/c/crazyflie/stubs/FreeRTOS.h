@@ -1,0 +1,12 @@
+/* Declarations of what the app calls, to compile it where the firmware is not: names and types as in crazyflie-firmware. */
+#ifndef STUB_FREERTOS_H
+#define STUB_FREERTOS_H
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+typedef uint32_t TickType_t;
+typedef long BaseType_t;
+typedef void *QueueHandle_t;
+#define pdTRUE 1
+#define M2T(milliseconds) ((TickType_t)(milliseconds))
+#endif

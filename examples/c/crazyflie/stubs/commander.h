@@ -1,0 +1,2 @@
+#include "stabilizer_types.h"
+void commanderSetSetpoint(setpoint_t *setpoint, int priority);

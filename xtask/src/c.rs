@@ -1,0 +1,198 @@
+//! `cargo xtask c`: the library for C. Its programs on this machine, the canned swarms on an emulated part, templates for firmware of others.
+
+use crate::apt;
+use crate::device::{Toolchain, Toolchains};
+use crate::emulate;
+use crate::firmware::sections;
+use crate::part::{Part, part};
+use crate::repo::{Repo, output_of, run as run_command_line, shown};
+use crate::report::Report;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// What all must give.
+const TABLE: &str = "tests/golden/cases.txt";
+const PART: &str = "stm32f405";
+/// Debian's packages of the compiler for it; no library of C is needed.
+const PACKAGES: [&str; 2] = ["gcc-arm-none-eabi", "binutils-arm-none-eabi"];
+const PROGRAMS: [&str; 3] = ["arm-none-eabi-gcc", "arm-none-eabi-g++", "arm-none-eabi-nm"];
+const REMEDY: &str = "on Debian run, as root, `apt-get update && apt-get install gcc-arm-none-eabi`";
+/// What the sources must pass without a word.
+const STRICT: [&str; 6] = ["-Wall", "-Wextra", "-Werror", "-pedantic", "-Wno-variadic-macros", "-ffp-contract=off"];
+const INCLUDES: [&str; 2] = ["-Icontroller/c/include", "-Icontroller/c/tests"];
+/// What Rust's standard library, which the library has on a host, asks of the system.
+const SYSTEM: [&str; 3] = ["-lm", "-lpthread", "-ldl"];
+/// What the panic handler calls, and nobody defines.
+const PANIC: &str = "staya_panic_is_reachable";
+
+/// The command.
+pub fn run_command(repo: &Repo, report: &mut Report) {
+    run(repo, report, &mut Toolchains::default());
+}
+
+/// On the host, on the emulated part, and for other people's firmware.
+pub fn run(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains) {
+    on_host(repo, report);
+    on_part(repo, report, toolchains);
+}
+
+fn on_host(repo: &Repo, report: &mut Report) {
+    let name = "the library for C, on this machine";
+    for compiler in ["cc", "c++"] {
+        if output_of(repo.command(compiler).arg("--version")).is_none() {
+            return report.skip(name, &format!("no {compiler}; on Debian run, as root, `apt-get install g++`"));
+        }
+    }
+    report.step(name, || {
+        run_command_line(&mut repo.cargo(&["build", "--locked", "--package", "staya-c"]))?;
+        let library = repo.target.join("debug/libstaya_c.a");
+        let swarms = ["controller/c/tests/swarms.c", "controller/c/tests/host.c"];
+        compare(repo, &program(repo, &library, "cc", "-std=c11", &swarms)?)?;
+        for (compiler, standard, source) in
+            [("cc", "-std=c11", "examples/c/orca_circle.c"), ("c++", "-std=c++17", "examples/c/two_robots.cpp")]
+        {
+            print!("{}", program(repo, &library, compiler, standard, &[source])?);
+        }
+        Ok(())
+    });
+}
+
+/// Compiles a program, runs it, and gives what it prints.
+fn program(
+    repo: &Repo,
+    library: &Path,
+    compiler: &str,
+    standard: &str,
+    sources: &[&str],
+) -> Result<String, String> {
+    let folder = folder(repo)?;
+    let name = sources.first().and_then(|source| Path::new(source).file_stem()).unwrap_or_default();
+    let to = folder.join(name);
+    let mut build = repo.command(compiler);
+    build.args([standard, "-O1"]).args(STRICT).args(INCLUDES).args(sources).arg(library).args(SYSTEM);
+    run_command_line(build.arg("-o").arg(&to))?;
+    let mut start = repo.command(&to);
+    println!("$ {}", shown(&start));
+    output_of(&mut start).map(|text| text + "\n").ok_or_else(|| format!("{} fails", to.display()))
+}
+
+fn on_part(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains) {
+    let name = "the library for C, on the emulated stm32f405";
+    let Some(part) = part(PART) else {
+        return;
+    };
+    let ready = compilers(repo).and_then(|()| emulate::prepare(repo, part));
+    match ready.and_then(|()| toolchains.find(repo, part.target)) {
+        Err(reason) => report.skip(name, &reason),
+        Ok(toolchain) => {
+            report.step(name, || {
+                let library = library(repo, &toolchain, part)?;
+                has_no_panic(repo, &library)?;
+                templates(repo)?;
+                let elf = link(repo, &library)?;
+                compare(repo, &emulate::run(repo, part, &elf)?)
+            });
+        }
+    }
+}
+
+/// Makes sure that the compiler for the part is there; unpacks it on Debian.
+fn compilers(repo: &Repo) -> Result<(), String> {
+    let are_there = || PROGRAMS.iter().all(|name| output_of(repo.command(name).arg("--version")).is_some());
+    if are_there() {
+        return Ok(());
+    }
+    apt::unpack(repo, &PACKAGES, &PROGRAMS).map_err(|reason| format!("no arm-none-eabi-gcc ({reason}); {REMEDY}"))?;
+    are_there().then_some(()).ok_or_else(|| format!("no arm-none-eabi-gcc; {REMEDY}"))
+}
+
+/// The library as a user of the part makes it.
+fn library(repo: &Repo, toolchain: &Toolchain, part: &Part) -> Result<PathBuf, String> {
+    let mut build = toolchain.cargo(repo, part.target, "build");
+    run_command_line(build.args(["--locked", "--profile", "firmware", "--package", "staya-c"]))?;
+    Ok(toolchain.target_folder(repo).join(part.target).join("firmware/libstaya_c.a"))
+}
+
+/// Everything that C can call is in the library, and what is left of the panic handler would be undefined in it.
+fn has_no_panic(repo: &Repo, library: &Path) -> Result<(), String> {
+    let symbols = output_of(repo.command("arm-none-eabi-nm").arg("--undefined-only").arg(library));
+    let symbols = symbols.ok_or("arm-none-eabi-nm cannot read the library")?;
+    let own = output_of(repo.command("arm-none-eabi-nm").arg("--defined-only").arg(library)).unwrap_or_default();
+    if !own.contains(" T staya_step") {
+        return Err(String::from("no staya_step in the library"));
+    }
+    if symbols.contains(PANIC) { Err(String::from("a panic is reachable")) } else { Ok(()) }
+}
+
+fn cross(repo: &Repo, compiler: &str) -> Command {
+    let mut build = repo.command(compiler);
+    build.args(["-mcpu=cortex-m4", "-mthumb", "-mfloat-abi=hard", "-mfpu=fpv4-sp-d16", "-ffreestanding", "-Os"]);
+    build.args(STRICT).args(INCLUDES);
+    build
+}
+
+/// The templates compile against declarations of the few functions of their systems that they call.
+fn templates(repo: &Repo) -> Result<(), String> {
+    let folder = folder(repo)?;
+    for (name, source) in [
+        ("crazyflie", "examples/c/crazyflie/src/staya_app.c"),
+        ("esp-idf", "examples/c/esp-idf/main/main.c"),
+    ] {
+        let mut build = cross(repo, "arm-none-eabi-gcc");
+        build.arg(format!("-Iexamples/c/{name}/stubs")).args(["-std=gnu11", "-c", source, "-o"]);
+        run_command_line(build.arg(folder.join(name).with_extension("o")))?;
+    }
+    Ok(())
+}
+
+/// The canned swarms as a program of the part, and what it takes of it.
+fn link(repo: &Repo, library: &Path) -> Result<PathBuf, String> {
+    let elf = folder(repo)?.join("swarms.elf");
+    let mut build = cross(repo, "arm-none-eabi-gcc");
+    build.args(["-std=gnu11", "-nostdlib", "-Wl,--gc-sections", "-Wl,-T,memory.x", "-Wl,-T,controller/c/tests/stm32f405.ld"]);
+    build.args(["controller/c/tests/stm32f405.c", "controller/c/tests/swarms.c"]).arg(library);
+    run_command_line(build.args(["-lgcc", "-o"]).arg(&elf))?;
+    let sizes = sections(&elf)?;
+    println!("{} bytes of flash, {} of RAM for five agents", sizes.flash, sizes.ram);
+    Ok(elf)
+}
+
+/// Compares with the rows of the golden table that C can make.
+fn compare(repo: &Repo, output: &str) -> Result<(), String> {
+    let table = fs::read_to_string(repo.root.join(TABLE)).map_err(|error| format!("{TABLE}: {error}"))?;
+    let faults = foreign(&table, output);
+    let rows = output.lines().count();
+    println!("{rows} rows, {} differ", faults.len());
+    match faults.first() {
+        None if rows == CASES => Ok(()),
+        None => Err(format!("{rows} rows instead of {CASES}")),
+        Some(first) => Err(format!("not in {TABLE}: {first}")),
+    }
+}
+
+/// Canned swarms in controller/c/tests/swarms.c.
+const CASES: usize = 8;
+
+/// Rows that the table does not have.
+fn foreign<'a>(table: &str, output: &'a str) -> Vec<&'a str> {
+    output.lines().filter(|row| !table.lines().any(|known| known == *row)).collect()
+}
+
+fn folder(repo: &Repo) -> Result<PathBuf, String> {
+    let folder = repo.target.join("c");
+    fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    Ok(folder)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_that_differ_are_told() {
+        let table = "a f32 1 2\nb f32 3 4\n";
+        assert!(foreign(table, "b f32 3 4\n").is_empty());
+        assert_eq!(foreign(table, "a f32 1 2\nb f32 3 5\n"), ["b f32 3 5"]);
+    }
+}
