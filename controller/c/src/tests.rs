@@ -1,3 +1,49 @@
 //! The library through its own functions, as C calls them.
 
 mod header;
+mod misuse;
+mod steps;
+
+use crate::agent::{STAYA_AGENT_SIZE, StayaAgent, StayaWaypoint, staya_init};
+use crate::io::{StayaInputs, StayaOutputs};
+use crate::setup::{StayaSetup, staya_setup_defaults};
+use crate::status::StayaStatus;
+use core::mem::MaybeUninit;
+use core::ptr::null_mut;
+
+/// Memory as a C program sets it aside.
+#[repr(align(8))]
+struct Memory([u8; STAYA_AGENT_SIZE]);
+
+impl Memory {
+    /// With anything in it.
+    fn new() -> Box<Self> {
+        Box::new(Self([0xA5; STAYA_AGENT_SIZE]))
+    }
+
+    fn agent(&mut self, setup: &StayaSetup) -> Result<*mut StayaAgent, StayaStatus> {
+        let mut agent = null_mut();
+        // SAFETY: all of it is there, and used by nobody else.
+        let status = unsafe { staya_init((&raw mut self.0).cast(), STAYA_AGENT_SIZE, setup, &mut agent) };
+        assert_eq!(agent.is_null(), status != StayaStatus::Ok);
+        if status == StayaStatus::Ok { Ok(agent) } else { Err(status) }
+    }
+}
+
+fn setup(id: u32) -> StayaSetup {
+    let mut setup = MaybeUninit::uninit();
+    // SAFETY: there is room for one, and it is filled.
+    unsafe {
+        assert_eq!(staya_setup_defaults(setup.as_mut_ptr(), id, 0.1, 50_000), StayaStatus::Ok);
+        setup.assume_init()
+    }
+}
+
+fn nothing() -> (StayaInputs, StayaOutputs) {
+    // SAFETY: numbers and pointers, of all of which zeros are a value.
+    unsafe { (MaybeUninit::zeroed().assume_init(), MaybeUninit::zeroed().assume_init()) }
+}
+
+fn waypoint(x_mm: i32) -> StayaWaypoint {
+    StayaWaypoint { position_mm: [x_mm, 0, 0], ..StayaWaypoint::default() }
+}

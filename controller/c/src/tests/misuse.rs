@@ -1,0 +1,197 @@
+//! What C may do wrong is answered.
+
+use super::{Memory, nothing, setup, waypoint};
+use crate::agent::*;
+use crate::alone::{StayaAvoider, staya_orca_defaults, staya_orca_init, staya_orca_velocity};
+use crate::choices::{StayaLaw, StayaSafety, StayaWire};
+use crate::io::StayaObstacle;
+use crate::parameter::{staya_get_parameter, staya_parameter_name, staya_parameter_range, staya_set_parameter};
+use crate::setup::*;
+use crate::status::{StayaStatus, staya_status_name, staya_status_text};
+use core::ffi::CStr;
+use core::mem::MaybeUninit;
+use core::ptr::{null, null_mut};
+
+#[test]
+fn null_is_refused_by_every_function() {
+    let (setup, mut memory) = (setup(1), Memory::new());
+    let agent = memory.agent(&setup).unwrap();
+    let (inputs, mut out) = nothing();
+    let (mut agents, mut avoider) = (null_mut(), null_mut::<StayaAvoider>());
+    let mut orca = MaybeUninit::uninit();
+    // SAFETY: what is not null is there.
+    let answers = unsafe {
+        assert_eq!(staya_orca_defaults(orca.as_mut_ptr()), StayaStatus::Ok);
+        [
+            staya_setup_defaults(null_mut(), 1, 0.1, 1),
+            staya_init(null_mut(), STAYA_AGENT_SIZE, &setup, &mut agents),
+            staya_init((&raw mut *memory).cast(), STAYA_AGENT_SIZE, &setup, null_mut()),
+            staya_step(null_mut(), &inputs, &mut out),
+            staya_step(agent, null(), &mut out),
+            staya_step(agent, &inputs, null_mut()),
+            staya_assign_waypoint(agent, 0, null()),
+            staya_assign_waypoint(null_mut(), 0, &waypoint(1)),
+            staya_assign_cell(null_mut(), 1, 1),
+            staya_mode(agent, null_mut()),
+            staya_neighbors(agent, null_mut(), 0, null_mut()),
+            staya_neighbors(agent, null_mut(), 1, &mut 0),
+            staya_digest(agent, null_mut()),
+            staya_move(null_mut(), [0.0f32; 3].as_ptr()),
+            staya_get_parameter(agent, 0, null_mut()),
+            staya_set_parameter(null_mut(), 0, 1.0),
+            staya_parameter_range(0, null_mut(), &mut 0.0),
+            staya_lattice_defaults(null_mut(), 1.0),
+            staya_lattice_soften(null_mut(), 0.1, 10.0),
+            staya_formation_from_graph(null_mut(), null(), 0, null(), 0, 0, 1),
+            staya_orca_init(null_mut(), 256, orca.as_ptr(), 0, 1, &mut avoider),
+            staya_orca_velocity(null_mut(), null(), null(), null(), null(), 0, null(), 0, null_mut()),
+        ]
+    };
+    for (index, answer) in answers.into_iter().enumerate() {
+        // An empty graph has no place 0, which comes first.
+        let wanted = if index == 19 { StayaStatus::Shape } else { StayaStatus::Null };
+        assert_eq!(answer, wanted, "number {index}");
+    }
+}
+
+#[test]
+fn memory_that_is_too_small_misaligned_or_empty_holds_no_agent() {
+    let (setup, mut memory) = (setup(1), Memory::new());
+    let base: *mut u8 = (&raw mut *memory).cast();
+    let (bytes, mut agent) = (staya_agent_bytes(), null_mut());
+    assert!(bytes <= STAYA_AGENT_SIZE);
+    // SAFETY: within the memory, or refused.
+    unsafe {
+        assert_eq!(staya_init(base.cast(), bytes - 1, &setup, &mut agent), StayaStatus::MemorySize);
+        assert_eq!(staya_init(base.add(1).cast(), bytes, &setup, &mut agent), StayaStatus::Alignment);
+        assert!(agent.is_null());
+        let mut mode = 9;
+        assert_eq!(staya_mode(base.cast(), &mut mode), StayaStatus::NotThere);
+        assert_eq!(staya_mode(base.add(4).cast(), &mut mode), StayaStatus::Alignment);
+        assert_eq!(staya_init(base.cast(), bytes, &setup, &mut agent), StayaStatus::Ok);
+        assert_eq!((staya_mode(agent, &mut mode), mode), (StayaStatus::Ok, 0));
+        // One that is refused leaves no agent behind.
+        let wrong = StayaSetup { id: 0, ..setup };
+        assert_eq!(staya_init(base.cast(), bytes, &wrong, &mut agent), StayaStatus::Nobody);
+        assert_eq!(staya_mode(base.cast(), &mut mode), StayaStatus::NotThere);
+    }
+}
+
+#[test]
+fn setups_that_make_no_sense_are_refused_by_name() {
+    let good = setup(3);
+    let refused = |change: &dyn Fn(&mut StayaSetup)| {
+        let (mut setup, mut memory) = (good, Memory::new());
+        change(&mut setup);
+        memory.agent(&setup).unwrap_err()
+    };
+    assert_eq!(refused(&|s| s.version = 0), StayaStatus::Version);
+    assert_eq!(refused(&|s| s.tick_us = 0), StayaStatus::Number);
+    assert_eq!(refused(&|s| s.radius_m = f32::NAN), StayaStatus::Number);
+    assert_eq!(refused(&|s| s.speed_mps = 0.0), StayaStatus::Number);
+    assert_eq!(refused(&|s| s.law = 200), StayaStatus::Choice);
+    assert_eq!(refused(&|s| s.safety = 200), StayaStatus::Choice);
+    assert_eq!(refused(&|s| s.wire = 200), StayaStatus::Choice);
+    assert_eq!(refused(&|s| s.orca.horizon_s = 0.0), StayaStatus::Number);
+    let lattice = StayaLaw::Lattice as u8;
+    let with = |law: u8, change: fn(&mut StayaSetup)| {
+        refused(&|s| {
+            s.law = law;
+            change(s);
+        })
+    };
+    #[cfg(feature = "flocks")]
+    {
+        assert_eq!(with(lattice, |s| s.lattice.terms = 0), StayaStatus::Choice);
+        assert_eq!(with(lattice, |s| s.lattice.attraction = -1.0), StayaStatus::Number);
+    }
+    #[cfg(not(feature = "flocks"))]
+    assert_eq!(with(lattice, |_| ()), StayaStatus::NotBuilt);
+    let formation = StayaLaw::Formation as u8;
+    #[cfg(feature = "grid")]
+    {
+        assert_eq!(with(formation, |s| s.route.radius_cells = 6), StayaStatus::Search);
+        assert_eq!(with(formation, |s| s.formation.neighbor_count = 9), StayaStatus::TooMany);
+        assert_eq!(with(formation, |s| s.formation.neighbor_count = 1), StayaStatus::Shape);
+    }
+    #[cfg(not(feature = "grid"))]
+    assert_eq!(with(formation, |_| ()), StayaStatus::NotBuilt);
+    #[cfg(feature = "mavlink")]
+    assert_eq!(refused(&|s| (s.wire, s.id) = (StayaWire::Mavlink as u8, 255)), StayaStatus::Number);
+    #[cfg(not(feature = "mavlink"))]
+    assert_eq!(refused(&|s| s.wire = StayaWire::Mavlink as u8), StayaStatus::NotBuilt);
+    #[cfg(not(feature = "space"))]
+    assert_eq!(refused(&|s| s.safety = StayaSafety::Fly as u8), StayaStatus::NotBuilt);
+    let _ = StayaSafety::Fly;
+}
+
+#[test]
+fn inputs_that_make_no_sense_change_nothing() {
+    let mut memory = Memory::new();
+    let agent = memory.agent(&setup(1)).unwrap();
+    let (mut inputs, mut out) = nothing();
+    out.leader = 77;
+    let many = [StayaObstacle::default(); 33];
+    let digest = |agent| {
+        let mut digest = 0;
+        // SAFETY: there is an agent.
+        assert_eq!(unsafe { staya_digest(agent, &mut digest) }, StayaStatus::Ok);
+        digest
+    };
+    let before = digest(agent);
+    // SAFETY: what is not null is there.
+    unsafe {
+        (inputs.obstacles, inputs.obstacle_count) = (many.as_ptr(), many.len());
+        assert_eq!(staya_step(agent, &inputs, &mut out), StayaStatus::TooMany);
+        let strange = StayaObstacle { shape: 256, ..StayaObstacle::default() };
+        (inputs.obstacles, inputs.obstacle_count) = (&strange, 1);
+        assert_eq!(staya_step(agent, &inputs, &mut out), StayaStatus::Choice);
+        (inputs.obstacles, inputs.obstacle_count) = (null(), 1);
+        assert_eq!(staya_step(agent, &inputs, &mut out), StayaStatus::Null);
+        (inputs.obstacles, inputs.obstacle_count) = (&strange, usize::MAX);
+        assert_eq!(staya_step(agent, &inputs, &mut out), StayaStatus::TooMany);
+        assert_eq!((digest(agent), out.leader), (before, 77));
+        assert_eq!(staya_assign_cell(agent, 1, 1), StayaStatus::Task);
+        assert_eq!(staya_assign_waypoint(agent, 9, &waypoint(1)), StayaStatus::Task);
+        let nowhere = StayaWaypoint { velocity_mps: [f32::NAN; 3], ..waypoint(1) };
+        assert_eq!(staya_assign_waypoint(agent, 0, &nowhere), StayaStatus::Number);
+    }
+}
+
+#[test]
+fn parameters_are_those_of_the_controller() {
+    use staya_controller::agent::Parameter;
+    use staya_controller::names::Named as _;
+    let mut memory = Memory::new();
+    let agent = memory.agent(&setup(1)).unwrap();
+    // SAFETY: names end with a zero, and there is an agent.
+    unsafe {
+        for (number, (name, parameter)) in (0u32..).zip(Parameter::NAMES) {
+            assert_eq!(CStr::from_ptr(staya_parameter_name(number)).to_str(), Ok(*name));
+            let [mut least, mut greatest] = [0.0; 2];
+            assert_eq!(staya_parameter_range(number, &mut least, &mut greatest), StayaStatus::Ok);
+            assert_eq!([least, greatest], parameter.range());
+        }
+        let end = Parameter::NAMES.len() as u32;
+        assert!(staya_parameter_name(end).is_null());
+        assert_eq!(staya_set_parameter(agent, end, 1.0), StayaStatus::Unknown);
+        let (speed, spacing, mut value) = (2, 15, 0.0);
+        assert_eq!(staya_set_parameter(agent, speed, 0.75), StayaStatus::Ok);
+        assert_eq!((staya_get_parameter(agent, speed, &mut value), value), (StayaStatus::Ok, 0.75));
+        assert_eq!(staya_set_parameter(agent, speed, f32::NAN), StayaStatus::Parameter);
+        assert_eq!(staya_set_parameter(agent, spacing, 1.0), StayaStatus::Parameter);
+    }
+}
+
+#[test]
+fn every_status_has_a_name_and_a_text() {
+    // SAFETY: they end with a zero.
+    let text = |pointer| unsafe { CStr::from_ptr(pointer) }.to_str().unwrap();
+    for status in 0..16 {
+        assert!(text(staya_status_name(status)).starts_with("STAYA_STATUS_"), "{status}");
+        assert!(text(staya_status_text(status)).len() > 5);
+    }
+    for none in [-1, 16, i32::MAX] {
+        assert_eq!(text(staya_status_name(none)), "(no status)");
+    }
+}

@@ -1,0 +1,168 @@
+//! Steps through C are the steps of the same agent in Rust; those of the plane are compared by `cargo xtask c`.
+
+use super::{Memory, nothing, setup, waypoint};
+use crate::agent::*;
+use crate::alone::*;
+use crate::choices::{StayaCommand, StayaMode};
+use crate::setup::StayaOrca;
+use crate::status::StayaStatus;
+use core::mem::MaybeUninit;
+use core::ptr::{null, null_mut};
+
+#[test]
+fn two_robots_hear_each_other() {
+    let (mut first, mut second) = (Memory::new(), Memory::new());
+    let agents = [first.agent(&setup(1)).unwrap(), second.agent(&setup(2)).unwrap()];
+    let (mut inputs, mut out) = nothing();
+    let mut air = Vec::new();
+    for tick in 0..3 {
+        for (place, agent) in (0i32..).zip(agents) {
+            (inputs.now_us, inputs.max_speed_mps) = (tick * 50_000, 0.5);
+            inputs.position_mm = [place * 1000, 0, 0];
+            (inputs.inbox, inputs.inbox_bytes) = (air.as_ptr(), air.len());
+            // SAFETY: all is there.
+            unsafe {
+                assert_eq!(staya_assign_waypoint(agent, 0, &waypoint(5000)), StayaStatus::Ok);
+                assert_eq!(staya_step(agent, &inputs, &mut out), StayaStatus::Ok);
+            }
+            assert_eq!((out.command, out.mode), (StayaCommand::Velocity as u8, StayaMode::Cruise as u8));
+            air = out.outbox[..out.outbox_bytes.into()].to_vec();
+        }
+    }
+    let (mut known, mut count) = ([StayaNeighbor::default(); 2], 0);
+    // SAFETY: all is there.
+    let status = unsafe { staya_neighbors(agents[0], known.as_mut_ptr(), known.len(), &mut count) };
+    assert_eq!((status, count, known[0].id, known[0].position_mm), (StayaStatus::Ok, 1, 2, [1000, 0, 0]));
+}
+
+#[test]
+fn orca_alone_keeps_clear_whatever_the_order() {
+    #[repr(align(8))]
+    struct Room([u8; STAYA_ORCA_SIZE]);
+    let mut orca = MaybeUninit::<StayaOrca>::uninit();
+    let body = StayaBody {
+        id: 1,
+        velocity_mps: [1.0, 0.0, 0.0],
+        radius_m: 0.2,
+        max_speed_mps: 1.0,
+        max_acceleration_mps2: f32::MAX,
+        step_s: 0.1,
+    };
+    let other = |id: u32, x: f32| StayaNearby {
+        id,
+        offset_m: [x, 0.05, 0.0],
+        velocity_mps: [-1.0, 0.0, 0.0],
+        radius_m: 0.2,
+        gives_way: 1,
+        is_parked: 0,
+        is_stranger: 0,
+    };
+    // More than count, the nearest one last.
+    let far: Vec<_> = (2..40).rev().map(|id| other(id, id as f32)).collect();
+    let near: Vec<_> = far.iter().rev().copied().collect();
+    let velocity = |all: &[StayaNearby]| {
+        let (mut room, mut avoider, mut best) = (Room([0; STAYA_ORCA_SIZE]), null_mut(), [0.0f32; 3]);
+        let wish = [1.0f32, 0.0, 0.0];
+        // SAFETY: all is there.
+        unsafe {
+            assert_eq!(staya_orca_defaults(orca.as_mut_ptr()), StayaStatus::Ok);
+            let place = (&raw mut room.0).cast();
+            let made = staya_orca_init(place, STAYA_ORCA_SIZE, orca.as_ptr(), 0, 1, &mut avoider);
+            assert_eq!(made, StayaStatus::Ok);
+            let (first, count) = (all.as_ptr(), all.len());
+            let (to, none) = (best.as_mut_ptr(), null());
+            let status = staya_orca_velocity(avoider, &body, wish.as_ptr(), none, first, count, null(), 0, to);
+            assert_eq!(status, StayaStatus::Ok);
+        }
+        best
+    };
+    let mut velocity = velocity;
+    assert_eq!(velocity(&far), velocity(&near));
+    assert_eq!(velocity(&[]), [1.0, 0.0, 0.0]);
+    assert_ne!(velocity(&near), [1.0, 0.0, 0.0]);
+}
+
+/// A formation on the grid, through C and through Rust, over the same land.
+#[cfg(all(feature = "grid", not(feature = "fixed"), not(feature = "small")))]
+#[test]
+fn a_formation_on_the_grid_is_that_of_rust() {
+    use crate::choices::{StayaLaw, StayaSafety};
+    use crate::setup::{StayaCell, StayaEdge, staya_formation_from_graph};
+    use staya_controller::agent::*;
+    use staya_controller::formation::FormationParams;
+    use staya_controller::grid::{Cell, Window};
+    use staya_controller::robot::RobotId;
+    use staya_controller::route::RouteParams;
+    use staya_controller::template::Template;
+    use staya_controller::time::{Duration, Instant};
+    use staya_controller::wire::Postcard;
+
+    let places = [(0, 0), (-2, 0), (0, -2)];
+    let edges = [(0u16, 1u16), (0, 2)];
+    let tick = Duration::from_micros(50_000);
+    let (mut twins, mut memories) = (Vec::new(), Vec::new());
+    for own in 0..3usize {
+        let mut setup = setup(own as u32 + 1);
+        (setup.law, setup.safety, setup.seed) = (StayaLaw::FormationOnGrid as u8, StayaSafety::None as u8, 5);
+        let cells = places.map(|(x, y)| StayaCell { x, y });
+        let graph = edges.map(|(a, b)| StayaEdge { a, b });
+        // SAFETY: all is there.
+        let status =
+            unsafe { staya_formation_from_graph(&mut setup.formation, cells.as_ptr(), 3, graph.as_ptr(), 2, own, 2) };
+        assert_eq!(status, StayaStatus::Ok);
+        let mut memory = Memory::new();
+        memory.agent(&setup).unwrap();
+        memories.push(memory);
+        let template = Template::from_graph(&places.map(|(x, y)| Cell::new(x, y)), &edges, own, 2).unwrap();
+        let law = FormationGuidance::new(RouteParams::default(), FormationParams::default(), template);
+        let config = AgentConfig { seed: 5, ..AgentConfig::new(RobotId(own as u32 + 1), 0.1, tick) };
+        twins.push(FormationAgent::new(&config, law, Unguarded, Postcard));
+    }
+    let land: Vec<u8> = (0..121u32).map(|cell| (cell.wrapping_mul(2_654_435_761) >> 30) as u8 + 1).collect();
+    let (mut workspace, mut said) = (GridWorkspace::new(), vec![Vec::new(); 3]);
+    let mut cells = places.map(|(x, y)| Cell::new(x + 20, y + 20));
+    for (place, (memory, twin)) in places.iter().zip(memories.iter_mut().zip(&mut twins)) {
+        let goal = Cell::new(30 + place.0, 28 + place.1);
+        // SAFETY: there is an agent.
+        assert_eq!(unsafe { staya_assign_cell((&raw mut **memory).cast(), goal.x, goal.y) }, StayaStatus::Ok);
+        twin.assign_goal(goal);
+    }
+    for step in 0..40u32 {
+        let heard: Vec<u8> = said.concat();
+        for own in 0..3 {
+            let (mut inputs, mut out) = nothing();
+            let (cell, origin) = (cells[own], cells[own] - Cell::new(5, 5));
+            inputs.position_mm = [i32::from(cell.x) * 1000, i32::from(cell.y) * 1000, 0];
+            inputs.now_us = step * 50_000;
+            inputs.cell = cell.into();
+            inputs.window_origin = origin.into();
+            (inputs.window_width, inputs.window_height, inputs.window) = (11, 11, land.as_ptr());
+            (inputs.inbox, inputs.inbox_bytes) = (heard.as_ptr(), heard.len());
+            let agent: *mut StayaAgent = (&raw mut *memories[own]).cast();
+            let mut digest = 0;
+            // SAFETY: all is there.
+            unsafe {
+                assert_eq!(staya_step(agent, &inputs, &mut out), StayaStatus::Ok);
+                assert_eq!(staya_digest(agent, &mut digest), StayaStatus::Ok);
+            }
+            let position = staya_controller::geom::Position::from_mm(inputs.position_mm);
+            let own_inputs = Inputs {
+                state: KinematicState { position, ..KinematicState::default() },
+                surroundings: OnGrid {
+                    cell: CellState { cell, busy: Duration::ZERO },
+                    window: Window::new(&land, origin, 11, 11),
+                },
+                inbox: &heard,
+            };
+            let twin = twins[own].step(&own_inputs, Instant::from_micros(step * 50_000), &mut workspace);
+            assert_eq!(out.outbox[..out.outbox_bytes.into()], twin.outbox[..], "step {step} of {own}");
+            assert_eq!(digest, twins[own].digest(), "step {step} of {own}");
+            if let Command::Move(moves) = &twin.command {
+                assert_eq!((out.moves[0], out.move_count), (moves[0].index() as u8, moves.len() as u8));
+                cells[own] = cell + moves[0].offset();
+            }
+            said[own] = twin.outbox.to_vec();
+        }
+    }
+    assert_ne!(cells, places.map(|(x, y)| Cell::new(x + 20, y + 20)), "nobody moved");
+}
