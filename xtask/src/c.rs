@@ -150,7 +150,7 @@ fn templates(repo: &Repo) -> Result<(), String> {
 fn link(repo: &Repo, library: &Path) -> Result<PathBuf, String> {
     let elf = folder(repo)?.join("swarms.elf");
     let mut build = cross(repo, "arm-none-eabi-gcc");
-    build.args(["-std=gnu11", "-nostdlib", "-Wl,--gc-sections", "-Wl,-T,memory.x", "-Wl,-T,controller/c/tests/stm32f405.ld"]);
+    build.args(["-std=gnu11", "-nostdlib", "-Wl,--gc-sections,-z,noexecstack", "-Wl,-T,memory.x", "-Wl,-T,controller/c/tests/stm32f405.ld"]);
     build.args(["controller/c/tests/stm32f405.c", "controller/c/tests/swarms.c"]).arg(library);
     run_command_line(build.args(["-lgcc", "-o"]).arg(&elf))?;
     let sizes = sections(&elf)?;

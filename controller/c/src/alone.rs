@@ -126,9 +126,9 @@ fn nearest(all: &[StayaNearby]) -> Vec<Nearby<Number>, STAYA_NEARBY> {
         }
     }
     let mut nearest = Vec::new();
-    for (_, other) in kept {
+    for (_, other) in kept.as_slice() {
         // As many places as there are.
-        let _ = nearest.push(other);
+        let _ = nearest.push(*other);
     }
     nearest
 }

@@ -5,16 +5,27 @@
 extern uint32_t stack_top, bss_start, bss_end, data_start, data_end, data_in_flash;
 
 /* Asks the emulator: Arm's semihosting. */
-static void ask(uint32_t operation, const void *argument)
+static uint32_t ask(uint32_t operation, const void *argument)
 {
     register uint32_t r0 __asm__("r0") = operation;
     register const void *r1 __asm__("r1") = argument;
     __asm__ volatile("bkpt 0xAB" : "+r"(r0) : "r"(r1) : "memory");
+    return r0;
 }
 
 static void print(const char *text)
 {
-    ask(0x04, text); /* SYS_WRITE0 */
+    static uint32_t out;
+    if (out == 0) {
+        const uint32_t standard_output[3] = {(uint32_t)":tt", 4, 3};
+        out = ask(0x01, standard_output); /* SYS_OPEN, to write */
+    }
+    uint32_t bytes = 0;
+    while (text[bytes] != 0) {
+        bytes++;
+    }
+    const uint32_t write[3] = {out, (uint32_t)text, bytes};
+    ask(0x05, write); /* SYS_WRITE */
 }
 
 static void end(uint32_t code)
@@ -73,7 +84,12 @@ static void fault(void)
     fail("the processor has met an exception");
 }
 
-__attribute__((section(".vectors"), used)) static const void *const VECTORS[16] = {
-    &stack_top, (const void *)reset, (const void *)fault, (const void *)fault, (const void *)fault,
-    (const void *)fault, (const void *)fault,
+union vector {
+    const uint32_t *stack;
+    void (*handler)(void);
+};
+
+__attribute__((section(".vectors"), used)) static const union vector VECTORS[16] = {
+    {.stack = &stack_top}, {.handler = reset}, {.handler = fault}, {.handler = fault},
+    {.handler = fault},    {.handler = fault}, {.handler = fault},
 };
