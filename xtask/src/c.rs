@@ -59,13 +59,7 @@ fn on_host(repo: &Repo, report: &mut Report) {
 }
 
 /// Compiles a program, runs it, and gives what it prints.
-fn program(
-    repo: &Repo,
-    library: &Path,
-    compiler: &str,
-    standard: &str,
-    sources: &[&str],
-) -> Result<String, String> {
+fn program(repo: &Repo, library: &Path, compiler: &str, standard: &str, sources: &[&str]) -> Result<String, String> {
     let folder = folder(repo)?;
     let name = sources.first().and_then(|source| Path::new(source).file_stem()).unwrap_or_default();
     let to = folder.join(name);
@@ -135,10 +129,9 @@ fn cross(repo: &Repo, compiler: &str) -> Command {
 /// The templates compile against declarations of the few functions of their systems that they call.
 fn templates(repo: &Repo) -> Result<(), String> {
     let folder = folder(repo)?;
-    for (name, source) in [
-        ("crazyflie", "examples/c/crazyflie/src/staya_app.c"),
-        ("esp-idf", "examples/c/esp-idf/main/main.c"),
-    ] {
+    for (name, source) in
+        [("crazyflie", "examples/c/crazyflie/src/staya_app.c"), ("esp-idf", "examples/c/esp-idf/main/main.c")]
+    {
         let mut build = cross(repo, "arm-none-eabi-gcc");
         build.arg(format!("-Iexamples/c/{name}/stubs")).args(["-std=gnu11", "-c", source, "-o"]);
         run_command_line(build.arg(folder.join(name).with_extension("o")))?;
@@ -150,7 +143,13 @@ fn templates(repo: &Repo) -> Result<(), String> {
 fn link(repo: &Repo, library: &Path) -> Result<PathBuf, String> {
     let elf = folder(repo)?.join("swarms.elf");
     let mut build = cross(repo, "arm-none-eabi-gcc");
-    build.args(["-std=gnu11", "-nostdlib", "-Wl,--gc-sections,-z,noexecstack", "-Wl,-T,memory.x", "-Wl,-T,controller/c/tests/stm32f405.ld"]);
+    build.args([
+        "-std=gnu11",
+        "-nostdlib",
+        "-Wl,--gc-sections,-z,noexecstack",
+        "-Wl,-T,memory.x",
+        "-Wl,-T,controller/c/tests/stm32f405.ld",
+    ]);
     build.args(["controller/c/tests/stm32f405.c", "controller/c/tests/swarms.c"]).arg(library);
     run_command_line(build.args(["-lgcc", "-o"]).arg(&elf))?;
     let sizes = sections(&elf)?;
