@@ -153,6 +153,7 @@ fn sink(kept: &mut [(u64, Nearby<Number>)]) {
 ///
 /// # Safety
 /// The pointers are null or misaligned, or lead to as many as is said, which nobody writes to meanwhile.
+#[expect(clippy::type_complexity, reason = "cbindgen reads no alias of it")]
 unsafe fn surroundings(
     body: *const StayaBody,
     nearby: *const StayaNearby,
