@@ -1,0 +1,32 @@
+#![doc = include_str!("../README.md")]
+#![no_std]
+// What may panic has no place on a robot; tests may.
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::expect_used,
+        clippy::indexing_slicing,
+        clippy::integer_division_remainder_used,
+        clippy::panic,
+        clippy::std_instead_of_alloc,
+        clippy::std_instead_of_core,
+        clippy::string_slice,
+        clippy::todo,
+        clippy::unimplemented,
+        clippy::unreachable,
+        clippy::unwrap_used
+    )
+)]
+
+#[cfg(test)]
+extern crate std;
+
+mod file;
+mod model;
+mod orca;
+#[cfg(test)]
+mod tests;
+
+pub use file::{FileError, HEADER_LEN, Header, VERSION, checksum};
+pub use model::{Local, Model};
+pub use orca::{PROBES, VoxelNeighbor, obstacles, velocity_half_plane};

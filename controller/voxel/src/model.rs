@@ -1,0 +1,280 @@
+//! A function from its local geometric characteristics (A. Tolok 2016, "The functional voxel method in computer
+//! modelling"; Tolok et al., FVM, eqs. 16 and 17).
+//!
+//! In each node the model keeps the unit vector (cos alpha, cos beta, [..] cos gamma, cos delta) of the plane that
+//! touches the function's graph there: cos alpha x + cos beta y + cos gamma z = cos delta (eq. 16; one more in
+//! front for three variables). Value, gradient and half-plane follow by a few products and one division.
+//!
+//! What differs from the literature, and why:
+//! - Coordinates are relative to the node, and counted in half of the extent along each axis; values are counted in the
+//!   model's unit. With coordinates from one origin cos delta carries the place as well, and far from the origin it
+//!   takes the bits that the value needs.
+//! - Components are signed integers, so that 0 is exactly 0; an M-image has 256 greys, or 65,536, of which none is 0.
+//! - Besides the plane of the nearest node ([`Model::nearest`], the method as it is) there is the blend of the planes
+//!   around ([`Model::blend`]): continuous, and with errors that fall with the square of the step.
+
+use crate::file::{FileError, HEADER_LEN, Header};
+use core::array;
+use serde::{Serialize, Serializer};
+use staya_controller::geom::Vec2;
+use staya_controller::scalar::Scalar;
+
+/// What a model knows of its function in one point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Local<S, const V: usize> {
+    /// The function's value, in its own units.
+    pub value: S,
+    /// Its derivatives.
+    pub gradient: [S; V],
+}
+
+impl<S: Scalar> Local<S, 2> {
+    /// Unit vector that the function grows in: eq. 17, (cos, sin) of the angle. `None` where it is level.
+    #[must_use]
+    pub fn direction(&self) -> Option<Vec2<S>> {
+        let [x, y] = self.gradient;
+        Vec2::new(x, y).normalized()
+    }
+
+    /// Signed distance to the border, where the function is 0, to first order: positive where the function is. `None`
+    /// where it is level.
+    #[must_use]
+    pub fn distance(&self) -> Option<S> {
+        let [x, y] = self.gradient;
+        self.value.checked_div(Vec2::new(x, y).norm())
+    }
+}
+
+/// A function of `V` variables, 2 or 3, from bytes that stay where they are.
+///
+/// Bytes of the model itself: 8 + 13 V and some (`f32`); nothing is copied.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Model<'a, S, const V: usize> {
+    /// The components, node by node.
+    nodes: &'a [u8],
+    /// Bytes of a component, and of a node.
+    component_len: usize,
+    node_len: usize,
+    /// 1 as a component, in `S`: fixed point would not hold sums of products of whole components.
+    one: S,
+    unit: S,
+    axes: [Axis<S>; V],
+    checksum: u32,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Axis<S> {
+    first: S,
+    per_step: S,
+    /// The last node.
+    last: i32,
+    /// Nodes from one along this axis to the next one.
+    stride: usize,
+    /// A step, in half of the extent.
+    scale: S,
+    /// The model's unit of values in half of the extent.
+    slope: S,
+    high: S,
+}
+
+/// Digests of agents hold the model's checksum.
+impl<S, const V: usize> Serialize for Model<'_, S, V> {
+    fn serialize<T: Serializer>(&self, serializer: T) -> Result<T::Ok, T::Error> {
+        serializer.serialize_u32(self.checksum)
+    }
+}
+
+impl<'a, S: Scalar, const V: usize> Model<'a, S, V> {
+    /// The model in these bytes, which `staya voxel build` makes. Checks all of them: O(length), once at the start.
+    ///
+    /// # Errors
+    /// [`FileError`], with the first thing that is wrong; a number that `S` cannot hold is a field that makes no sense.
+    pub fn from_bytes(bytes: &'a [u8]) -> Result<Self, FileError> {
+        let header = Header::read(bytes)?;
+        if usize::from(header.variables) != V {
+            return Err(FileError::Variables { needed: V as u8, found: header.variables });
+        }
+        let one = S::from_ratio(1, 1 << (u32::from(header.depth).saturating_sub(1)));
+        let unit = S::from_f32(header.unit).filter(|&unit| unit > S::ZERO).ok_or(FileError::Field(40))?;
+        let mut stride = 1_usize;
+        let mut axes = [Axis {
+            first: S::ZERO,
+            per_step: S::ZERO,
+            last: 0,
+            stride: 0,
+            scale: S::ZERO,
+            slope: S::ZERO,
+            high: S::ZERO,
+        }; V];
+        let fields = header.nodes.iter().zip(&header.first).zip(&header.step);
+        for ((at, axis), ((&nodes, &first), &step)) in (28_usize..).step_by(4).zip(&mut axes).zip(fields) {
+            let last = i32::from(nodes).saturating_sub(1);
+            let half = 0.5 * last as f32 * step;
+            let number = |number: f32| S::from_f32(number).ok_or(FileError::Field(at));
+            *axis = Axis {
+                first: number(first)?,
+                per_step: number(1.0 / step)?,
+                last,
+                stride,
+                scale: number(2.0 / last as f32)?,
+                slope: number(header.unit / half)?,
+                high: number(first + 2.0 * half)?,
+            };
+            stride = stride.saturating_mul(nodes.into());
+        }
+        Ok(Self {
+            nodes: bytes.get(HEADER_LEN..).unwrap_or(&[]),
+            component_len: header.component_len(),
+            node_len: header.components().saturating_mul(header.component_len()),
+            one,
+            unit,
+            axes,
+            checksum: crate::checksum(bytes),
+        })
+    }
+
+    /// The CRC-32 that the model was checked by: tells models apart.
+    #[must_use]
+    pub const fn checksum(&self) -> u32 {
+        self.checksum
+    }
+
+    /// Bytes in flash.
+    #[must_use]
+    pub const fn bytes(&self) -> usize {
+        self.nodes.len().saturating_add(HEADER_LEN)
+    }
+
+    /// The least and the greatest coordinate along each axis; the model knows nothing outside.
+    #[must_use]
+    pub fn extent(&self) -> [[S; 2]; V] {
+        self.axes.map(|axis| [axis.first, axis.high])
+    }
+
+    /// By the plane of the nearest node: the functional voxel method as it is. Jumps between voxels; the error falls
+    /// with the step in gradients, with its square in values.
+    ///
+    /// `None` outside of the extent, of what is not finite, and where the function is too steep for the depth. Work: one
+    /// node.
+    #[must_use]
+    pub fn nearest(&self, at: [S; V]) -> Option<Local<S, V>> {
+        let (mut node, mut offset) = (0_usize, [S::ZERO; V]);
+        for ((axis, x), offset) in self.axes.iter().zip(at).zip(&mut offset) {
+            let steps = axis.steps(x)?;
+            let index = (steps + S::HALF).floor_to_i32()?.clamp(0, axis.last);
+            node = axis.advance(node, index)?;
+            *offset = (steps - S::from_i32(index)) * axis.scale;
+        }
+        let mut sum = Sum::NONE;
+        self.add(&mut sum, node, S::ONE, &offset)?;
+        self.local(&sum)
+    }
+
+    /// By the planes of the 2^V nodes around, blended: continuous, with errors of the square of the step in values and
+    /// in gradients.
+    ///
+    /// `None` as [`Model::nearest`]. Work: 4 or 8 nodes.
+    #[must_use]
+    pub fn blend(&self, at: [S; V]) -> Option<Local<S, V>> {
+        let (mut node, mut on) = (0_usize, [S::ZERO; V]);
+        for ((axis, x), on) in self.axes.iter().zip(at).zip(&mut on) {
+            let steps = axis.steps(x)?;
+            let index = steps.floor_to_i32()?.clamp(0, axis.last.saturating_sub(1));
+            node = axis.advance(node, index)?;
+            *on = steps - S::from_i32(index);
+        }
+        let mut sum = Sum::NONE;
+        for corner in 0..1_usize << V {
+            let (mut weight, mut node, mut offset) = (S::ONE, node, [S::ZERO; V]);
+            for (bit, ((axis, &on), offset)) in self.axes.iter().zip(&on).zip(&mut offset).enumerate() {
+                let is_next = corner & (1 << bit) != 0;
+                weight = weight * if is_next { on } else { S::ONE - on };
+                *offset = if is_next { on - S::ONE } else { on } * axis.scale;
+                node = node.saturating_add(if is_next { axis.stride } else { 0 });
+            }
+            self.add(&mut sum, node, weight, &offset)?;
+        }
+        self.local(&sum)
+    }
+
+    /// The components of a node, as M-images have them, in -1 to 1: those of the variables, then of the function, then
+    /// the free one. `None` when there is no such node.
+    #[must_use]
+    pub fn node(&self, index: [u16; V]) -> Option<([S; V], [S; 2])> {
+        let mut node = 0_usize;
+        for (axis, index) in self.axes.iter().zip(index) {
+            node = (i32::from(index) <= axis.last).then(|| axis.advance(node, index.into()))??;
+        }
+        self.components(node)
+    }
+
+    /// Adds a node's plane, moved to the point at `offset` from it.
+    #[inline]
+    fn add(&self, sum: &mut Sum<S, V>, node: usize, weight: S, offset: &[S; V]) -> Option<()> {
+        let (slopes, [own, free]) = self.components(node)?;
+        let mut height = -free;
+        for ((slope, &offset), sum) in slopes.into_iter().zip(offset).zip(&mut sum.slopes) {
+            height += slope * offset;
+            *sum += slope * weight;
+        }
+        sum.height += height * weight;
+        // Of planes that are graphs of functions the component is below 0.
+        sum.down -= own * weight;
+        Some(())
+    }
+
+    #[inline]
+    fn components(&self, node: usize) -> Option<([S; V], [S; 2])> {
+        let start = node.checked_mul(self.node_len)?;
+        let bytes = self.nodes.get(start..start.checked_add(self.node_len)?)?;
+        if self.component_len == 1 {
+            self.read(bytes.iter().map(|&byte| i32::from(byte.cast_signed())))
+        } else {
+            let (pairs, _) = bytes.as_chunks::<2>();
+            self.read(pairs.iter().map(|&pair| i32::from(i16::from_le_bytes(pair))))
+        }
+    }
+
+    #[inline]
+    fn read(&self, components: impl Iterator<Item = i32>) -> Option<([S; V], [S; 2])> {
+        let mut components = components.map(|component| S::from_i32(component) * self.one);
+        let slopes = array::from_fn(|_| components.next().unwrap_or(S::ZERO));
+        Some((slopes, [components.next()?, components.next()?]))
+    }
+
+    #[inline]
+    fn local(&self, sum: &Sum<S, V>) -> Option<Local<S, V>> {
+        let per_down = S::ONE.checked_div(sum.down)?;
+        let mut gradient = sum.slopes;
+        for (slope, axis) in gradient.iter_mut().zip(&self.axes) {
+            *slope = *slope * per_down * axis.slope;
+        }
+        Some(Local { value: sum.height * per_down * self.unit, gradient })
+    }
+}
+
+impl<S: Scalar> Axis<S> {
+    /// Steps from the first node; `None` outside.
+    #[inline]
+    fn steps(&self, x: S) -> Option<S> {
+        let is_inside = x >= self.first && x <= self.high;
+        is_inside.then(|| (x - self.first) * self.per_step)
+    }
+
+    /// The node so many nodes on along this axis.
+    #[inline]
+    fn advance(&self, node: usize, index: i32) -> Option<usize> {
+        Some(node.saturating_add(usize::try_from(index).ok()?.saturating_mul(self.stride)))
+    }
+}
+
+/// A plane, or the weighted sum of some.
+struct Sum<S, const V: usize> {
+    slopes: [S; V],
+    height: S,
+    down: S,
+}
+
+impl<S: Scalar, const V: usize> Sum<S, V> {
+    const NONE: Self = Self { slopes: [S::ZERO; V], height: S::ZERO, down: S::ZERO };
+}

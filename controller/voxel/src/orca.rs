@@ -1,0 +1,163 @@
+//! ORCA on functional voxel models: what a model of a velocity obstacle forbids ([`velocity_half_plane`]), of any pair
+//! of robots ([`VoxelNeighbor`]), and of land or a room ([`obstacles`]). Functions are positive inside of what is
+//! forbidden, as the paper's eq. 15.
+
+use crate::model::{Local, Model};
+use heapless::Vec;
+use serde::Serialize;
+use staya_controller::geom::Vec2;
+use staya_controller::obstacle::Obstacle;
+use staya_controller::orca::{HalfPlane, HalfSpaces, MovingBall, Params, half_plane};
+use staya_controller::scalar::Scalar;
+
+/// The half-plane of ORCA by the model of a velocity obstacle over the plane of relative velocities, m/s (FVM, eqs. 12,
+/// 14 and 17): out of the obstacle by the shortest way that the local plane knows, `share` of it the own one.
+///
+/// `None` where the model knows nothing, or the function is level. Unlike [`VoxelNeighbor`] it takes the function
+/// at its word: whether the half-plane forbids all of the obstacle is up to the function. Work: [`Model::blend`].
+#[must_use]
+pub fn velocity_half_plane<S: Scalar>(
+    obstacle: &Model<'_, S, 2>,
+    own_velocity_mps: Vec2<S>,
+    relative_mps: Vec2<S>,
+    share: S,
+) -> Option<HalfPlane<S>> {
+    let local = obstacle.blend([relative_mps.x, relative_mps.y])?;
+    let normal = -local.direction()?;
+    let point = own_velocity_mps + normal * (local.distance()? * share);
+    point.is_finite().then_some(HalfPlane { point, normal })
+}
+
+/// Half-planes of moving neighbours by a model of every velocity obstacle (`staya voxel build neighbor`), for an
+/// [`Avoider`](staya_controller::orca::Avoider).
+///
+/// Turned so that the neighbour is on the x axis, with the disc's centre in the origin and its radius as unit, a
+/// velocity obstacle depends on one number: the sine of its half angle. The model's variables are velocity along and
+/// beside that axis (its mirror image is not kept), and the sine.
+///
+/// **Each half-plane is safe whatever the model says**: of the model only the normal is used (eq. 17), turned to lie between
+/// those of the two legs if it does not, and the border touches the disc: then the whole obstacle is behind it. The
+/// model's error only makes the demanded change of velocity longer. Both robots of a pair read the
+/// same nodes, so that their half-planes are opposite.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct VoxelNeighbor<'a, S: Scalar> {
+    model: Model<'a, S, 3>,
+}
+
+impl<'a, S: Scalar> VoxelNeighbor<'a, S> {
+    /// By this model.
+    #[must_use]
+    pub const fn new(model: Model<'a, S, 3>) -> Self {
+        Self { model }
+    }
+
+    /// The model.
+    #[must_use]
+    pub const fn model(&self) -> &Model<'a, S, 3> {
+        &self.model
+    }
+
+    /// The normal out of the obstacle at the border nearest to `w`, in disc radii from the disc's centre, `w.y >= 0`.
+    fn normal(&self, w: Vec2<S>, sine: S) -> Option<Vec2<S>> {
+        let [[_, right], [_, top], _] = self.model.extent();
+        // What is outside is moved straight to the centre: on the way the nearest border's normal is the same.
+        let times = w.x.abs().checked_div(right)?.max(w.y.checked_div(top)?);
+        let w = if times > S::ONE { w * S::ONE.checked_div(times)? } else { w };
+        let Local { gradient: [x, y, _], .. } = self.model.blend([w.x.clamp(-right, right), w.y.min(top), sine])?;
+        let normal = -Vec2::new(x, y).normalized()?;
+        if normal.y < S::ZERO {
+            return Some(Vec2::new(-S::ONE, S::ZERO));
+        }
+        let is_past_leg = normal.x > -sine;
+        Some(if is_past_leg { Vec2::new(-sine, (S::ONE - sine * sine).sqrt()) } else { normal })
+    }
+}
+
+impl<S: Scalar> HalfSpaces<S> for VoxelNeighbor<'_, S> {
+    type Velocity = Vec2<S>;
+
+    /// By the formula where the model has no answer: robots that overlap have no cone.
+    #[inline(never)]
+    fn half_space(
+        &self,
+        own_velocity_mps: Vec2<S>,
+        disc: &MovingBall<Vec2<S>>,
+        params: &Params<S>,
+    ) -> Option<HalfPlane<S>> {
+        let look_up = || {
+            let (p, r) = (disc.offset_m, disc.radii_m);
+            let v = own_velocity_mps - disc.velocity_mps;
+            let distance = p.norm();
+            let is_sound = v.is_finite() && r > S::ZERO && distance > r && params.horizon_s > S::ZERO;
+            let ahead = if is_sound { p.normalized()? } else { return None };
+            let rate = S::ONE.checked_div(params.horizon_s)?;
+            let radius = r * rate;
+            let per_radius = S::ONE.checked_div(radius)?;
+            let w = v - p * rate;
+            let across = ahead.det(w);
+            let normal = self.normal(Vec2::new(w.dot(ahead), across.abs()) * per_radius, r.checked_div(distance)?)?;
+            // On the axis to the right, as the formula.
+            let side = if across > S::ZERO { normal.y } else { -normal.y };
+            let normal = ahead.rotate(normal.x, side);
+            let point = own_velocity_mps + normal * ((radius - w.dot(normal)) * params.share);
+            point.is_finite().then_some(HalfPlane { point, normal })
+        };
+        look_up().or_else(|| half_plane(own_velocity_mps, disc, params))
+    }
+}
+
+/// Directions that [`obstacles`] looks in, besides the robot's own place.
+pub const PROBES: usize = 8;
+
+/// What stands around a robot by a model of land or a room, metres: planes that touch the nearest borders, for ORCA,
+/// the nearest first.
+///
+/// The plane in the robot's own place is that of the nearest border alone; in a corner the other wall counts too. So the
+/// model is asked at [`PROBES`] places at the distance `reach_m` as well (what the robot covers in a step or two, and its
+/// radius; more sees corners sooner). What is found there counts unless its plane is nearer than the nearest border: then it only touches something round
+/// beside the robot, and would forbid what is free.
+///
+/// `None` where the model knows nothing: stand still, or have a larger model. Work: nine times [`Model::blend`].
+#[must_use]
+pub fn obstacles<S: Scalar>(
+    model: &Model<'_, S, 2>,
+    position_m: Vec2<S>,
+    reach_m: S,
+) -> Option<Vec<Obstacle<S>, { PROBES + 1 }>> {
+    let plane = |offset: Vec2<S>| {
+        let at = position_m + offset;
+        let local = model.blend([at.x, at.y])?;
+        // Out of the obstacle, and how far the robot is in front.
+        let normal = -local.direction()?;
+        let distance = -local.distance()? - offset.dot(normal);
+        Some((normal, distance))
+    };
+    let (normal, nearest) = plane(Vec2::ZERO)?;
+    let mut found = Vec::<(Vec2<S>, S), { PROBES + 1 }>::new();
+    // There is room for all.
+    let _ = found.push((normal, nearest));
+    let diagonal = S::from_ratio(70_711, 100_000);
+    let (one, zero) = (S::ONE, S::ZERO);
+    for (x, y) in [
+        (one, zero),
+        (diagonal, diagonal),
+        (zero, one),
+        (-diagonal, diagonal),
+        (-one, zero),
+        (-diagonal, -diagonal),
+        (zero, -one),
+        (diagonal, -diagonal),
+    ] {
+        let Some((normal, distance)) = plane(Vec2::new(x, y) * reach_m) else {
+            continue;
+        };
+        let is_behind = distance >= nearest - reach_m * S::from_ratio(1, 64);
+        let is_new = found.iter().all(|(other, _)| other.dot(normal) < S::from_ratio(99, 100));
+        if is_behind && is_new {
+            let _ = found.push((normal, distance));
+        }
+    }
+    found.sort_unstable_by(|(_, one), (_, other)| one.order(*other));
+    let plane = |(normal, distance_m): (Vec2<S>, S)| Obstacle::Plane { normal: normal.extend(S::ZERO), distance_m };
+    Some(found.into_iter().map(plane).collect())
+}

@@ -1,0 +1,118 @@
+//! A model of a function: the plane that touches its graph in each node of a grid.
+
+use crate::Function;
+use staya_voxel::{Header, checksum};
+
+/// Where a function is sampled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid<const V: usize> {
+    /// The least and the greatest coordinate along each axis.
+    pub extent: [[f64; 2]; V],
+    /// Nodes along each axis, 2 to 65,535, the first and the last on the extent's ends.
+    pub nodes: [u16; V],
+}
+
+/// Bytes that a model may have: more than any microcontroller has flash for.
+const MOST_BYTES: usize = 64 << 20;
+
+/// Why there is no model.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum BuildError {
+    /// Of variables other than two or three.
+    #[error("models have two or three variables, not {0}")]
+    Variables(usize),
+    /// Bits that components cannot have.
+    #[error("a depth of {0} bits: 4 to 16 are possible")]
+    Depth(u8),
+    /// An axis without sense.
+    #[error("axis {0}: two nodes at least, and an extent from a smaller to a larger number, are needed")]
+    Axis(usize),
+    /// Too large.
+    #[error("{0} bytes are more than the 64 MiB that a model may have: choose fewer nodes")]
+    Size(usize),
+    /// No number there.
+    #[error("the function is no finite number at {0:?}: leave that place out of the extent, or define it there")]
+    NotFinite(Vec<f64>),
+    /// Its slope does not go into so few bits.
+    #[error("the function is too steep at {at:?} for {depth} bits: choose a greater depth")]
+    TooSteep {
+        /// Where.
+        at: Vec<f64>,
+        /// Bits.
+        depth: u8,
+    },
+}
+
+/// The model of a function on a grid, with components of `depth` bits: bytes for `staya_voxel::Model`.
+///
+/// Each node's plane goes through the function's value there; its slopes are differences over half a step to both sides.
+///
+/// # Errors
+/// [`BuildError`].
+pub fn build<const V: usize>(function: &Function<V>, grid: &Grid<V>, depth: u8) -> Result<Vec<u8>, BuildError> {
+    let header = header(grid, depth)?;
+    let step = |axis: usize| f64::from(header.step[axis]);
+    let half: [f64; V] = std::array::from_fn(|axis| 0.5 * step(axis));
+    let scales: [f64; V] = std::array::from_fn(|axis| half[axis] * f64::from(grid.nodes[axis] - 1));
+    let mut planes = Vec::with_capacity(header.count());
+    let mut most = 0.0_f64;
+    for node in 0..header.count() {
+        let mut rest = node;
+        let at: [f64; V] = std::array::from_fn(|axis| {
+            let along = usize::from(grid.nodes[axis]);
+            let index = rest % along;
+            rest /= along;
+            f64::from(header.first[axis]) + step(axis) * index as f64
+        });
+        let (value, gradient) = (function.value(at), function.gradient(at, half));
+        if !(value.is_finite() && gradient.iter().all(|slope| slope.is_finite())) {
+            return Err(BuildError::NotFinite(at.to_vec()));
+        }
+        most = most.max(value.abs());
+        planes.push((at, value, gradient));
+    }
+    let unit = if most > 1e-30 { most as f32 } else { 1.0 };
+    let header = Header { unit, ..header };
+    let mut bytes = header.to_bytes().to_vec();
+    let whole = f64::from((1_u32 << (depth - 1)) - 1);
+    for (at, value, gradient) in planes {
+        let slopes = std::array::from_fn::<f64, V, _>(|axis| gradient[axis] * scales[axis] / f64::from(unit));
+        let free = -value / f64::from(unit);
+        let length = libm::sqrt(slopes.iter().map(|slope| slope * slope).sum::<f64>() + 1.0 + free * free);
+        let level = |component: f64| libm::round(component / length * whole) as i16;
+        let down = level(-1.0);
+        if down == 0 {
+            return Err(BuildError::TooSteep { at: at.to_vec(), depth });
+        }
+        for component in slopes.map(level).into_iter().chain([down, level(free)]) {
+            let pair = component.to_le_bytes();
+            bytes.extend_from_slice(&pair[..header.component_len()]);
+        }
+    }
+    let sum = checksum(&bytes).to_le_bytes();
+    bytes[44..48].copy_from_slice(&sum);
+    Ok(bytes)
+}
+
+fn header<const V: usize>(grid: &Grid<V>, depth: u8) -> Result<Header, BuildError> {
+    if V != 2 && V != 3 {
+        return Err(BuildError::Variables(V));
+    }
+    if !(4..=16).contains(&depth) {
+        return Err(BuildError::Depth(depth));
+    }
+    let mut header =
+        Header { variables: V as u8, depth, nodes: [1; 3], first: [0.0; 3], step: [0.0; 3], unit: 1.0 };
+    for (axis, (&nodes, &[low, high])) in grid.nodes.iter().zip(&grid.extent).enumerate() {
+        let (first, step) = (low as f32, ((high - low) / (f64::from(nodes) - 1.0)) as f32);
+        let is_sound = nodes >= 2 && first.is_finite() && step.is_normal() && step > 0.0;
+        if !is_sound {
+            return Err(BuildError::Axis(axis + 1));
+        }
+        (header.nodes[axis], header.first[axis], header.step[axis]) = (nodes, first, step);
+    }
+    if header.len() > MOST_BYTES {
+        return Err(BuildError::Size(header.len()));
+    }
+    Ok(header)
+}

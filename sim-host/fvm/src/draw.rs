@@ -1,0 +1,202 @@
+//! Models as pictures: M-images, one pixel for each voxel, and a sheet to look at.
+
+use staya_controller::scalar::Scalar;
+use staya_plot::canvas::{Anchor, Canvas, Pixels, Shape, Stroke, Text};
+use staya_plot::colour::{Colour, INK, MUTED, PALETTE, WHITE};
+use staya_voxel::{FileError, HEADER_LEN, Header, Model};
+use std::path::{Path, PathBuf};
+
+/// Why there are no pictures.
+#[derive(Debug, thiserror::Error)]
+pub enum DrawError {
+    /// No model.
+    #[error("{0}")]
+    Model(#[from] FileError),
+    /// Not on its third axis.
+    #[error("a slice at {at}: the model knows {low} to {high} along its third axis")]
+    Slice {
+        /// What was asked for.
+        at: f64,
+        /// The least.
+        low: f64,
+        /// The greatest.
+        high: f64,
+    },
+    /// Not written.
+    #[error("{0}: {1}")]
+    Write(PathBuf, String),
+}
+
+/// Names of the components.
+const NAMES: [&[&str]; 2] = [
+    &["cos alpha", "cos beta", "cos gamma", "cos delta"],
+    &["cos alpha", "cos beta", "cos gamma", "cos epsilon", "cos delta"],
+];
+
+/// Writes a PNG for each component, `STEM-1.png` and so on: one pixel for each voxel, north up, in 8 or 16 bits of
+/// grey from -1, black, to 1, white. Layers of three variables are one above the other, the first at the bottom.
+///
+/// # Errors
+/// [`DrawError`].
+pub fn m_images(bytes: &[u8], stem: &Path) -> Result<Vec<PathBuf>, DrawError> {
+    let header = Header::read(bytes)?;
+    let (width, rows) = (usize::from(header.nodes[0]), usize::from(header.nodes[1]) * usize::from(header.nodes[2]));
+    let (length, components) = (header.component_len(), header.components());
+    let nodes = bytes.get(HEADER_LEN..).unwrap_or(&[]);
+    let mut files = Vec::new();
+    for component in 0..components {
+        let mut grey = Vec::with_capacity(width * rows * length);
+        for row in (0..rows).rev() {
+            for column in 0..width {
+                let at = ((row * width + column) * components + component) * length;
+                // Offset binary, in the upper bits.
+                if length == 1 {
+                    let level = i16::from(nodes[at].cast_signed()) + (1 << (header.depth - 1));
+                    grey.push((level << (8 - header.depth)) as u8);
+                } else {
+                    let level = i32::from(i16::from_le_bytes([nodes[at], nodes[at + 1]])) + (1 << (header.depth - 1));
+                    grey.extend(((level << (16 - header.depth)) as u16).to_be_bytes());
+                }
+            }
+        }
+        let path = suffixed(stem, &format!("-{}.png", component + 1));
+        let failed = |error: &dyn std::fmt::Display| DrawError::Write(path.clone(), error.to_string());
+        let mut picture = Vec::new();
+        let mut encoder = png::Encoder::new(&mut picture, width as u32, rows as u32);
+        encoder.set_color(png::ColorType::Grayscale);
+        encoder.set_depth(if length == 1 { png::BitDepth::Eight } else { png::BitDepth::Sixteen });
+        let mut writer = encoder.write_header().map_err(|error| failed(&error))?;
+        writer.write_image_data(&grey).map_err(|error| failed(&error))?;
+        writer.finish().map_err(|error| failed(&error))?;
+        std::fs::write(&path, picture).map_err(|error| failed(&error))?;
+        files.push(path);
+    }
+    Ok(files)
+}
+
+fn suffixed(stem: &Path, suffix: &str) -> PathBuf {
+    let mut name = stem.as_os_str().to_owned();
+    name.push(suffix);
+    name.into()
+}
+
+const SIDE: f64 = 300.0;
+const GAP: f64 = 34.0;
+const TOP: f64 = 62.0;
+/// Pixels along a picture of values.
+const PIXELS: u32 = 360;
+
+/// A sheet: the values with the border, the distance to first order, and the M-images; of three variables a slice through
+/// the nearest layer to `slice`, the middle one if it is `None`.
+///
+/// # Errors
+/// [`DrawError`].
+pub fn sheet(bytes: &[u8], title: &str, slice: Option<f64>) -> Result<Canvas, DrawError> {
+    if Header::read(bytes)?.variables == 2 {
+        let model = Model::<f64, 2>::from_bytes(bytes)?;
+        let [nx, ny, _] = Header::read(bytes)?.nodes;
+        let [x, y] = model.extent();
+        let value = |x: f64, y: f64| model.blend([x, y]).map(|local| local.value);
+        let distance = |x: f64, y: f64| model.blend([x, y])?.distance();
+        let node = |column: u16, row: u16| model.node([column, row]).map(|(slopes, free)| [&slopes[..], &free].concat());
+        let fields: [Field<'_>; 2] = [("value", &value), ("distance to the border, to first order", &distance)];
+        return Ok(Sheet { extent: [x, y], nodes: [nx, ny], fields: &fields, names: NAMES[0], node: &node }.draw(title));
+    }
+    let model = Model::<f64, 3>::from_bytes(bytes)?;
+    let [nx, ny, nz] = Header::read(bytes)?.nodes;
+    let [x, y, [low, high]] = model.extent();
+    let at = slice.unwrap_or(0.5 * (low + high));
+    if !(low..=high).contains(&at) {
+        return Err(DrawError::Slice { at, low, high });
+    }
+    let layer = libm::round((at - low) / (high - low) * f64::from(nz - 1)) as u16;
+    let value = |x: f64, y: f64| model.blend([x, y, at]).map(|local| local.value);
+    let node = |column: u16, row: u16| model.node([column, row, layer]).map(|(slopes, free)| [&slopes[..], &free].concat());
+    let fields: [Field<'_>; 1] = [("value", &value)];
+    let title = format!("{title}, third variable {at:.3}");
+    Ok(Sheet { extent: [x, y], nodes: [nx, ny], fields: &fields, names: NAMES[1], node: &node }.draw(&title))
+}
+
+/// A picture's title, and its value at a place.
+type Field<'a> = (&'a str, &'a dyn Fn(f64, f64) -> Option<f64>);
+
+struct Sheet<'a> {
+    extent: [[f64; 2]; 2],
+    nodes: [u16; 2],
+    fields: &'a [Field<'a>],
+    names: &'a [&'a str],
+    /// All components of a node.
+    node: &'a dyn Fn(u16, u16) -> Option<Vec<f64>>,
+}
+
+impl Sheet<'_> {
+    fn draw(&self, title: &str) -> Canvas {
+        let [[west, east], [south, north]] = self.extent;
+        let longest = (east - west).max(north - south);
+        let (width, height) = (SIDE * (east - west) / longest, SIDE * (north - south) / longest);
+        let pictures = self.fields.len() + self.names.len();
+        let columns = 3.min(pictures);
+        let rows = pictures.div_ceil(columns);
+        let mut canvas = Canvas::new(
+            GAP + (width + GAP) * columns as f64,
+            TOP + (height + GAP + 16.0) * rows as f64 + 10.0,
+            title,
+        );
+        canvas.text(Text { bold: true, ..Text::new([GAP, 28.0], 16.0, Anchor::Start, title) });
+        let place = |index: usize| {
+            let (row, column) = (index / columns, index % columns);
+            [GAP + (width + GAP) * column as f64, TOP + (height + GAP + 16.0) * row as f64, width, height]
+        };
+        let scale = f64::from(PIXELS) / longest;
+        let [across, up] = [east - west, north - south].map(|side| (libm::round(side * scale) as u32).max(1));
+        for (index, (name, field)) in self.fields.iter().enumerate() {
+            let mut rgba = Vec::new();
+            let most = 0.35 * longest;
+            for row in (0..up).rev() {
+                for column in 0..across {
+                    let along = |pixel: u32, pixels: u32| (f64::from(pixel) + 0.5) / f64::from(pixels);
+                    let (x, y) = (west + (east - west) * along(column, across), south + (north - south) * along(row, up));
+                    rgba.push(field(x, y).map_or([0; 4], |value| contoured(value, most, 1.2 / scale)));
+                }
+            }
+            show(&mut canvas, place(index), name, Pixels { width: across, height: up, rgba });
+        }
+        let [nx, ny] = self.nodes;
+        for (component, name) in self.names.iter().enumerate() {
+            let mut rgba = Vec::new();
+            for row in (0..ny).rev() {
+                for column in 0..nx {
+                    let found = (self.node)(column, row).and_then(|node| node.get(component).copied());
+                    let shade = found.map_or(0, |found| (127.5 + 127.5 * Scalar::clamp(found, -1.0, 1.0)) as u8);
+                    rgba.push([shade, shade, shade, 255]);
+                }
+            }
+            let pixels = Pixels { width: nx.into(), height: ny.into(), rgba };
+            show(&mut canvas, place(self.fields.len() + component), name, pixels);
+        }
+        canvas
+    }
+}
+
+fn show(canvas: &mut Canvas, area: [f64; 4], name: &str, pixels: Pixels) {
+    let [left, top, width, height] = area;
+    canvas.text(Text::new([left + width / 2.0, top - 7.0], 12.5, Anchor::Middle, name));
+    canvas.shapes.push(Shape::Image { area, pixels });
+    canvas.rectangle([left, top, width, height], None, Some(Stroke::new(MUTED, 1.0)));
+}
+
+/// Orange where positive, blue where negative, with lines; `line` is how wide they are, in values.
+fn contoured(value: f64, most: f64, line: f64) -> [u8; 4] {
+    let colour = if value > 0.0 { PALETTE[1] } else { PALETTE[0] };
+    let fill = WHITE.towards(colour, Scalar::min(value.abs() / most, 1.0) * 0.7 + 0.08);
+    let step = 0.25 * most;
+    let off = (value - step * libm::round(value / step)).abs();
+    let Colour { rgb: [red, green, blue], .. } = if value.abs() < line {
+        INK
+    } else if off < 0.5 * line {
+        fill.towards(INK, 0.3)
+    } else {
+        fill
+    };
+    [red, green, blue, 255]
+}

@@ -1,0 +1,19 @@
+#![doc = include_str!("../README.md")]
+
+mod build;
+pub mod cli;
+pub mod draw;
+mod function;
+mod measure;
+mod room;
+pub mod shape;
+pub mod swarm;
+mod template;
+#[cfg(test)]
+mod tests;
+
+pub use build::{BuildError, Grid, build};
+pub use function::{Function, System};
+pub use measure::{Errors, Measured, Reading, measure};
+pub use room::{Room, RoomError};
+pub use template::{Pair, Template, TemplateError, Templated, VelocityForm};

@@ -1,0 +1,166 @@
+//! Functions by name: circle, ball, polygon, room, and velocity obstacles.
+
+use crate::room::{extent, is_polygon};
+use crate::{Function, Room, System, shape};
+
+/// What a model is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Template {
+    /// A disc: centre and radius, metres.
+    Circle([f64; 2], f64),
+    /// A ball: centre and radius, metres.
+    Ball([f64; 3], f64),
+    /// A polygon: its corners, metres.
+    Polygon(Vec<[f64; 2]>),
+    /// A room: positive where no robot can be.
+    Room(Room, System),
+    /// The relative velocities, m/s, that lead one pair of robots to a collision (FVM, eq. 15).
+    VelocityObstacle(Pair, VelocityForm),
+    /// The same for every pair: see [`velocity_obstacle`].
+    Neighbor(VelocityForm),
+}
+
+/// Two robots.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pair {
+    /// Places of A, which decides, and of B, metres.
+    pub places_m: [[f64; 2]; 2],
+    /// Radii, metres.
+    pub radii_m: [f64; 2],
+    /// No collision within this time, seconds.
+    pub horizon_s: f64,
+}
+
+impl Default for Pair {
+    /// The paper's worked example.
+    fn default() -> Self {
+        Self { places_m: [[2.0, -3.0], [-2.0, 3.0]], radii_m: [1.0, 1.0], horizon_s: 2.0 }
+    }
+}
+
+/// How a velocity obstacle is one function.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum VelocityForm {
+    /// The distance to the nearest border: what ORCA asks for.
+    Distance,
+    /// Pr1 and Pr2 and (Pr3 or Pr4) or Disc by R-functions: what the paper has. Zero on the same border; the gradient is
+    /// not everywhere the shortest way out.
+    RFunction(System),
+}
+
+/// Why a template makes no function.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum TemplateError {
+    /// No length.
+    #[error("radius {0}: a finite number above 0 is needed")]
+    Radius(f64),
+    /// No place.
+    #[error("center: finite numbers are needed")]
+    Center,
+    /// No polygon.
+    #[error("corners: three or more, finite, no two in a row the same, are needed")]
+    Corners,
+    /// No cone.
+    #[error("the robots have to be more than {0} m, the sum of their radii, apart, and radii and horizon above 0")]
+    Pair(f64),
+}
+
+/// A function, and where it is worth sampling.
+#[derive(Clone)]
+pub enum Templated {
+    /// Of two variables.
+    Plane(Function<2>, [[f64; 2]; 2]),
+    /// Of three.
+    Space(Function<3>, [[f64; 2]; 3]),
+}
+
+/// Along, beside the axis to the neighbour, in disc radii; sine of the half angle.
+const NEIGHBOR: [[f64; 2]; 3] = [[-2.0, 2.0], [0.0, 2.0], [0.0, 1.0]];
+
+impl Template {
+    /// The function, and its usual extent.
+    ///
+    /// # Errors
+    /// [`TemplateError`].
+    pub fn function(&self) -> Result<Templated, TemplateError> {
+        let sound = |radius: f64| {
+            if radius > 0.0 && radius.is_finite() { Ok(()) } else { Err(TemplateError::Radius(radius)) }
+        };
+        let around = |center: f64, radius: f64| [center - 1.5 * radius, center + 1.5 * radius];
+        Ok(match self {
+            &Self::Circle(center, radius) => {
+                sound(radius)?;
+                if !center.iter().all(|x| x.is_finite()) {
+                    return Err(TemplateError::Center);
+                }
+                Templated::Plane(shape::circle(center, radius), center.map(|x| around(x, radius)))
+            }
+            &Self::Ball(center, radius) => {
+                sound(radius)?;
+                if !center.iter().all(|x| x.is_finite()) {
+                    return Err(TemplateError::Center);
+                }
+                Templated::Space(shape::ball(center, radius), center.map(|x| around(x, radius)))
+            }
+            Self::Polygon(corners) => {
+                if !is_polygon(corners) {
+                    return Err(TemplateError::Corners);
+                }
+                let [[left, right], [bottom, top]] = extent(corners, 0.0);
+                let margin = 0.25 * (right - left).max(top - bottom);
+                Templated::Plane(shape::polygon(corners.clone()), extent(corners, margin))
+            }
+            Self::Room(room, system) => Templated::Plane(room.function(*system), room.extent(0.5)),
+            Self::VelocityObstacle(pair, form) => pair.function(*form)?,
+            &Self::Neighbor(form) => {
+                Templated::Space(Function::new(move |[x, y, sine]| velocity_obstacle(form, x, y, sine)), NEIGHBOR)
+            }
+        })
+    }
+}
+
+impl Pair {
+    fn function(&self, form: VelocityForm) -> Result<Templated, TemplateError> {
+        let [[ax, ay], [bx, by]] = self.places_m;
+        let (x, y) = (bx - ax, by - ay);
+        let (distance, radii) = (libm::hypot(x, y), self.radii_m[0] + self.radii_m[1]);
+        let is_sound = distance > radii && distance.is_finite() && self.radii_m.iter().all(|&r| r > 0.0);
+        if !(is_sound && self.horizon_s > 0.0 && self.horizon_s.is_finite()) {
+            return Err(TemplateError::Pair(radii));
+        }
+        let (tip, unit) = ([x / self.horizon_s, y / self.horizon_s], radii / self.horizon_s);
+        let (ahead, sine) = ([x / distance, y / distance], radii / distance);
+        let half = 1.25 * libm::hypot(tip[0], tip[1]).max(2.0 * unit);
+        let function = Function::new(move |[vx, vy]: [f64; 2]| {
+            let (x, y) = ((vx - tip[0]) / unit, (vy - tip[1]) / unit);
+            let (along, across) = (x * ahead[0] + y * ahead[1], ahead[0] * y - ahead[1] * x);
+            unit * velocity_obstacle(form, along, across.abs(), sine)
+        });
+        Ok(Templated::Plane(function, tip.map(|middle| [middle - half, middle + half])))
+    }
+}
+
+/// The velocity obstacle with its disc's centre in the origin, the disc's radius as unit and the neighbour ahead along x,
+/// by the sine of its half angle: positive inside. `y >= 0`; the other half is its mirror image.
+#[must_use]
+pub fn velocity_obstacle(form: VelocityForm, x: f64, y: f64, sine: f64) -> f64 {
+    let cos = libm::sqrt((1.0 - sine * sine).max(0.0));
+    // Inside of both legs, which touch the disc; beyond the perpendiculars from the disc's centre on them.
+    let (pr1, pr2) = (1.0 + sine * x - cos * y, 1.0 + sine * x + cos * y);
+    let (pr3, pr4) = (cos * x + sine * y, cos * x - sine * y);
+    let disc = 1.0 - libm::hypot(x, y);
+    match form {
+        // Beyond the perpendicular on the nearer leg that leg is nearest, before it the disc.
+        VelocityForm::Distance => {
+            if pr3 > 0.0 {
+                pr1
+            } else {
+                disc
+            }
+        }
+        VelocityForm::RFunction(system) => {
+            let cone = system.and(system.and(pr1, pr2), system.or(pr3, pr4));
+            system.or(cone, disc)
+        }
+    }
+}
