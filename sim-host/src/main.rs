@@ -1,4 +1,4 @@
-//! The command line: `staya run | sweep | view | page | hil | bridge | companion | terrain | orca | experiment`.
+//! The command line: `staya run | sweep | view | page | hil | bridge | companion | terrain | orca | voxel | experiment`.
 //!
 //! A new command is a module with a `clap::Args` struct and `run(&self, &Global) -> Result<Ended>`,
 //! and one line in `Command`. Results go to standard output, progress and errors to standard
@@ -52,6 +52,8 @@ enum Command {
     Terrain(terrain::TerrainArgs),
     /// Draw what ORCA forbids two robots, and measure the tables that it can be looked up in.
     Orca(papers::orca::OrcaArgs),
+    /// Make, draw and measure functional voxel models: functions as tables of planes for a microcontroller.
+    Voxel(staya_fvm::cli::VoxelArgs),
     /// Rerun experiments from papers, and benchmarks.
     Experiment(papers::ExperimentArgs),
 }
@@ -91,6 +93,7 @@ fn run(cli: &Cli) -> Result<Ended> {
         Command::Companion(args) => args.run(&cli.global),
         Command::Terrain(args) => args.run(&cli.global),
         Command::Orca(args) => args.run(&cli.global),
+        Command::Voxel(args) => args.run(&cli.global),
         Command::Experiment(args) => args.run(&cli.global),
     }
 }

@@ -21,7 +21,7 @@ mod tests;
 mod worst;
 
 pub use swarms::Case;
-pub use worst::WorstCase;
+pub use worst::{WorstCase, worst_orca};
 
 use core::hint::black_box;
 use staya_controller::agent::{Agent, Guidance, HALF_PLANES, Inputs, NEIGHBORS, Outputs, Safety};

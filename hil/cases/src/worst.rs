@@ -124,10 +124,10 @@ impl WorstCase {
             Self::Route => on_grid::<S, _, P, N>(RouteGuidance::<CELLS, VISITS>::new(RouteParams::default()), probe),
             Self::Formation => on_grid::<S, _, P, N>(formation(Prediction::Constant), probe),
             Self::FormationReflexive => on_grid::<S, _, P, N>(formation(Prediction::Reflexive), probe),
-            Self::OrcaAnalytic => orca::<S, _, P, N, K>(Analytic, probe),
-            Self::OrcaTemplate2k => orca::<S, _, P, N, K>(VoxelTable2k, probe),
+            Self::OrcaAnalytic => worst_orca::<S, _, P, N, K>(Analytic, probe),
+            Self::OrcaTemplate2k => worst_orca::<S, _, P, N, K>(VoxelTable2k, probe),
             #[cfg(feature = "large-tables")]
-            Self::OrcaTemplate64k => orca::<S, _, P, N, K>(VoxelTable64k, probe),
+            Self::OrcaTemplate64k => worst_orca::<S, _, P, N, K>(VoxelTable64k, probe),
             #[cfg(feature = "large-tables")]
             Self::Fly => {
                 let safety = FlySafety::<S, K>::in_space(AvoidParams::default(), inflation());
@@ -165,7 +165,8 @@ fn waypoint<S: Scalar>() -> WaypointGuidance<S> {
     WaypointGuidance::new(S::ONE, S::from_milli(10))
 }
 
-fn orca<S: Scalar, H: HalfSpaces<S> + Serialize, P: Probe<S>, const N: usize, const K: usize>(
+/// [`WorstCase::OrcaAnalytic`] with half-planes of neighbours from `source`.
+pub fn worst_orca<S: Scalar, H: HalfSpaces<S> + Serialize, P: Probe<S>, const N: usize, const K: usize>(
     source: H,
     probe: &mut P,
 ) -> Summary {

@@ -101,8 +101,7 @@ fn header<const V: usize>(grid: &Grid<V>, depth: u8) -> Result<Header, BuildErro
     if !(4..=16).contains(&depth) {
         return Err(BuildError::Depth(depth));
     }
-    let mut header =
-        Header { variables: V as u8, depth, nodes: [1; 3], first: [0.0; 3], step: [0.0; 3], unit: 1.0 };
+    let mut header = Header { variables: V as u8, depth, nodes: [1; 3], first: [0.0; 3], step: [0.0; 3], unit: 1.0 };
     for (axis, (&nodes, &[low, high])) in grid.nodes.iter().zip(&grid.extent).enumerate() {
         let (first, step) = (low as f32, ((high - low) / (f64::from(nodes) - 1.0)) as f32);
         let is_sound = nodes >= 2 && first.is_finite() && step.is_normal() && step > 0.0;

@@ -1,0 +1,409 @@
+//! `staya voxel build | draw | evaluate | measure | swarm`.
+
+mod options;
+
+use crate::draw::{m_images, sheet};
+use crate::swarm::{Models, Outcome, Source, Swap};
+use crate::{
+    HalfPlaneErrors, Measured, Reading, System, Template, Templated, VelocityForm, build, half_planes, measure,
+};
+use anyhow::{Context as _, Result, anyhow};
+use clap::{Args, Subcommand};
+use options::{TemplateArgs, grid, numbers};
+use serde::Serialize;
+use staya_console::{Ended, Global, print, print_json};
+use staya_sim::record::prepare_dir;
+use staya_voxel::{Header, Local, Model, VoxelNeighbor};
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+/// Functional voxel models: any function of two or three variables as a table of local planes for a microcontroller.
+#[derive(Args, Clone, Debug)]
+pub struct VoxelArgs {
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Clone, Debug, Subcommand)]
+enum Action {
+    /// Make a model: circle, ball, polygon, room, velocity obstacle, or every neighbour's velocity obstacle.
+    Build(Box<BuildArgs>),
+    /// Draw a model's values and M-images (PNG, SVG).
+    Draw(DrawArgs),
+    /// What a model says in a point: value, gradient, distance to the border, and ORCA's half-plane.
+    Evaluate(EvaluateArgs),
+    /// How far models of a template are off the function itself, by resolution and depth.
+    Measure(Box<MeasureArgs>),
+    /// Robots change places in a room, with half-planes of formulas, of ORCA's table, and of models.
+    Swarm(SwarmArgs),
+}
+
+#[derive(Args, Clone, Debug)]
+struct BuildArgs {
+    #[command(flatten)]
+    template: TemplateArgs,
+    /// Nodes along the longest axis.
+    #[arg(long, value_name = "N", default_value_t = 33, value_parser = clap::value_parser!(u16).range(2..))]
+    resolution: u16,
+    /// Bits of each component.
+    #[arg(long, value_name = "BITS", default_value_t = 16, value_parser = clap::value_parser!(u8).range(4..=16))]
+    depth: u8,
+    /// The file to write.
+    #[arg(long, value_name = "FILE", default_value = "model.fvm")]
+    out: PathBuf,
+}
+
+#[derive(Args, Clone, Debug)]
+struct DrawArgs {
+    /// A model, as `staya voxel build` makes it.
+    model: PathBuf,
+    /// The third variable, for models of three; its middle without.
+    #[arg(long, value_name = "Z", allow_hyphen_values = true)]
+    slice: Option<f64>,
+    /// Folder for the pictures.
+    #[arg(long, value_name = "DIR", default_value = "out/voxel")]
+    out: PathBuf,
+}
+
+#[derive(Args, Clone, Debug)]
+struct EvaluateArgs {
+    /// A model, as `staya voxel build` makes it.
+    model: PathBuf,
+    /// Where: two or three numbers with commas.
+    #[arg(value_name = "X,Y[,Z]", allow_hyphen_values = true)]
+    at: String,
+    /// By the plane of the nearest node alone, instead of the blend of those around.
+    #[arg(long)]
+    nearest: bool,
+}
+
+#[derive(Args, Clone, Debug)]
+struct MeasureArgs {
+    #[command(flatten)]
+    template: TemplateArgs,
+    /// Nodes along the longest axis.
+    #[arg(long, value_name = "N,...", value_delimiter = ',', default_value = "9,17,33,65", value_parser = clap::value_parser!(u16).range(2..))]
+    resolution: Vec<u16>,
+    /// Bits of each component.
+    #[arg(long, value_name = "BITS,...", value_delimiter = ',', default_value = "8,12,16", value_parser = clap::value_parser!(u8).range(4..=16))]
+    depth: Vec<u8>,
+    /// Points to compare in.
+    #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    points: u32,
+    /// Equal seeds give equal points.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+#[derive(Args, Clone, Debug)]
+struct SwarmArgs {
+    /// A room as TOML (`outline`, `[[circle]]`, `[[polygon]]`); without, the one of the documentation.
+    #[arg(long, value_name = "FILE")]
+    room: Option<PathBuf>,
+    /// Robots.
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=64))]
+    robots: u32,
+    /// Radius of the circle around the origin that they stand on, metres.
+    #[arg(long, value_name = "M", default_value_t = 2.5)]
+    circle: f32,
+    /// Equal seeds give equal starts.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// A run ends after so long, seconds.
+    #[arg(long, value_name = "S", default_value_t = 60.0)]
+    limit: f32,
+    /// Nodes along the longest axis of the room's model.
+    #[arg(long, value_name = "N", default_value_t = 65, value_parser = clap::value_parser!(u16).range(2..))]
+    room_resolution: u16,
+    /// Nodes along the longest axis of the neighbours' model.
+    #[arg(long, value_name = "N", default_value_t = 17, value_parser = clap::value_parser!(u16).range(2..))]
+    neighbor_resolution: u16,
+    /// Bits of each component of both.
+    #[arg(long, value_name = "BITS", default_value_t = 16, value_parser = clap::value_parser!(u8).range(4..=16))]
+    depth: u8,
+}
+
+impl VoxelArgs {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// Files that cannot be read or written, templates without sense, models that are none.
+    pub fn run(&self, global: &Global) -> Result<Ended> {
+        match &self.action {
+            Action::Build(args) => args.run(global)?,
+            Action::Draw(args) => args.run(global)?,
+            Action::Evaluate(args) => args.run(global)?,
+            Action::Measure(args) => args.run(global)?,
+            Action::Swarm(args) => args.run(global)?,
+        }
+        Ok(Ended::Done)
+    }
+}
+
+/// A template's model.
+fn made(template: &Templated, resolution: u16, depth: u8) -> Result<Vec<u8>> {
+    Ok(match template {
+        Templated::Plane(function, extent) => build(function, &grid(*extent, resolution)?, depth)?,
+        Templated::Space(function, extent) => build(function, &grid(*extent, resolution)?, depth)?,
+    })
+}
+
+fn read(path: &Path) -> Result<Vec<u8>> {
+    std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))
+}
+
+/// What is said of a model.
+#[derive(Debug, Serialize)]
+struct About {
+    file: PathBuf,
+    bytes: usize,
+    variables: u8,
+    depth: u8,
+    nodes: Vec<u16>,
+    first: Vec<f32>,
+    step: Vec<f32>,
+}
+
+impl About {
+    fn of(file: &Path, bytes: &[u8]) -> Result<Self> {
+        let header = Header::read(bytes)?;
+        let axes = usize::from(header.variables);
+        Ok(Self {
+            file: file.to_owned(),
+            bytes: bytes.len(),
+            variables: header.variables,
+            depth: header.depth,
+            nodes: header.nodes[..axes].to_vec(),
+            first: header.first[..axes].to_vec(),
+            step: header.step[..axes].to_vec(),
+        })
+    }
+}
+
+impl BuildArgs {
+    fn run(&self, global: &Global) -> Result<()> {
+        let bytes = made(&self.template.templated()?, self.resolution, self.depth)?;
+        std::fs::write(&self.out, &bytes).with_context(|| format!("cannot write {}", self.out.display()))?;
+        let about = About::of(&self.out, &bytes)?;
+        if global.json {
+            return print_json(&about);
+        }
+        let nodes: Vec<String> = about.nodes.iter().map(ToString::to_string).collect();
+        let out = self.out.display();
+        print(&format!("{out}: {} nodes of {} bits, {} bytes\n", nodes.join(" x "), about.depth, about.bytes))
+    }
+}
+
+impl DrawArgs {
+    fn run(&self, global: &Global) -> Result<()> {
+        let bytes = read(&self.model)?;
+        let name = self.model.file_stem().unwrap_or_default();
+        let title = format!("Functional voxel model {}", name.display());
+        let canvas = sheet(&bytes, &title, self.slice).with_context(|| self.model.display().to_string())?;
+        prepare_dir(&self.out)?;
+        let stem = self.out.join(name);
+        let mut pictures = canvas.write(&stem)?;
+        pictures.extend(m_images(&bytes, &stem)?);
+        if global.json {
+            return print_json(&pictures);
+        }
+        let mut text = String::new();
+        for picture in pictures {
+            writeln!(text, "{}", picture.display())?;
+        }
+        print(&text)
+    }
+}
+
+/// What `evaluate --json` prints.
+#[derive(Debug, Serialize)]
+struct Evaluated {
+    value: f32,
+    gradient: Vec<f32>,
+    /// To the border, to first order; positive where the function is. Of two variables.
+    distance: Option<f32>,
+    /// Out of where the function is positive. Of two variables.
+    normal: Option<[f32; 2]>,
+}
+
+impl EvaluateArgs {
+    fn run(&self, global: &Global) -> Result<()> {
+        let bytes = read(&self.model)?;
+        let about = || self.model.display().to_string();
+        let variables = Header::read(&bytes).with_context(about)?.variables;
+        let at = numbers(&self.at).map_err(|error| anyhow!(error))?;
+        let reading = if self.nearest { Reading::Nearest } else { Reading::Blend };
+        let found = if variables == 2 {
+            let local = local::<2>(&bytes, &at, reading)?;
+            let normal = local.direction().map(|direction| [-direction.x, -direction.y]);
+            Evaluated { value: local.value, gradient: local.gradient.to_vec(), distance: local.distance(), normal }
+        } else {
+            let local = local::<3>(&bytes, &at, reading)?;
+            Evaluated { value: local.value, gradient: local.gradient.to_vec(), distance: None, normal: None }
+        };
+        if global.json {
+            return print_json(&found);
+        }
+        let mut text = format!("value    {}\ngradient {:?}\n", found.value, found.gradient);
+        if let (Some(distance), Some([x, y])) = (found.distance, found.normal) {
+            writeln!(text, "distance {distance}, to first order; positive where the function is")?;
+            writeln!(text, "normal   ({x}, {y}), out of where the function is positive")?;
+        }
+        print(&text)
+    }
+}
+
+fn local<const V: usize>(bytes: &[u8], at: &[f64], reading: Reading) -> Result<Local<f32, V>> {
+    let model = Model::<f32, V>::from_bytes(bytes)?;
+    let at: [f64; V] =
+        at.try_into().map_err(|_| anyhow!("{} numbers for a function of {V} variables: give {V}", at.len()))?;
+    let extent = model.extent();
+    reading
+        .local(&model, at.map(|x| x as f32))
+        .ok_or_else(|| anyhow!("the model knows nothing at {at:?}: its extent is {extent:?}"))
+}
+
+/// One line of the table.
+#[derive(Debug, Serialize)]
+struct Row {
+    nodes: Vec<u16>,
+    depth: u8,
+    bytes: usize,
+    reading: Reading,
+    #[serde(flatten)]
+    errors: Measured,
+    /// Of models of neighbours, blended as ORCA reads them: against the formula.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    half_planes: Option<HalfPlaneErrors>,
+}
+
+impl MeasureArgs {
+    fn run(&self, global: &Global) -> Result<()> {
+        let template = self.template.templated()?;
+        let mut rows = Vec::new();
+        for &resolution in &self.resolution {
+            for &depth in &self.depth {
+                let bytes = made(&template, resolution, depth)?;
+                for reading in [Reading::Nearest, Reading::Blend] {
+                    let errors = self.errors(&template, &bytes, reading)?;
+                    let nodes = About::of(Path::new(""), &bytes)?.nodes;
+                    let half_planes = match reading {
+                        Reading::Blend if self.template.is_neighbor() => {
+                            half_planes(&VoxelNeighbor::new(Model::from_bytes(&bytes)?), self.points, self.seed)
+                        }
+                        _ => None,
+                    };
+                    rows.push(Row { nodes, depth, bytes: bytes.len(), reading, errors, half_planes });
+                }
+            }
+        }
+        if global.json {
+            return print_json(&rows);
+        }
+        let mut text = format!(
+            "{:>12} {:>5} {:>8} {:>8} {:>21} {:>21} {:>28}\n{:>36} {:>21} {:>21} {:>28}\n",
+            "nodes",
+            "bits",
+            "bytes",
+            "reading",
+            "value",
+            "gradient",
+            "angle, degrees",
+            "",
+            "mean      worst",
+            "mean      worst",
+            "mean      p99    worst"
+        );
+        for Row { nodes, depth, bytes, reading, errors, half_planes } in rows {
+            let nodes: Vec<String> = nodes.iter().map(ToString::to_string).collect();
+            let reading = if reading == Reading::Nearest { "nearest" } else { "blend" };
+            let Measured { value, gradient, angle_deg: angle } = errors;
+            writeln!(
+                text,
+                "{:>12} {depth:>5} {bytes:>8} {reading:>8} {:>10.6} {:>10.6} {:>10.5} {:>10.5} {:>10.4} {:>8.3} {:>8.2}",
+                nodes.join("x"),
+                value.mean,
+                value.max,
+                gradient.mean,
+                gradient.max,
+                angle.mean,
+                angle.p99,
+                angle.max
+            )?;
+            if let Some(HalfPlaneErrors { angle_deg: angle, change }) = half_planes {
+                writeln!(
+                    text,
+                    "{:>12} half-planes against the formula: angle mean {:.4}, p99 {:.3}, worst {:.2} degrees; change mean {:.6}, \
+                     worst {:.4} of (R_A + R_B) / tau",
+                    "", angle.mean, angle.p99, angle.max, change.mean, change.max
+                )?;
+            }
+        }
+        print(&text)
+    }
+
+    fn errors(&self, template: &Templated, bytes: &[u8], reading: Reading) -> Result<Measured> {
+        let (points, seed) = (self.points, self.seed);
+        let found = match template {
+            Templated::Plane(function, _) => measure(function, &Model::from_bytes(bytes)?, reading, points, seed),
+            Templated::Space(function, _) => measure(function, &Model::from_bytes(bytes)?, reading, points, seed),
+        };
+        found.ok_or_else(|| anyhow!("nothing could be compared: the function is level, or too steep for the depth"))
+    }
+}
+
+impl SwarmArgs {
+    fn run(&self, global: &Global) -> Result<()> {
+        let room = options::room(self.room.as_deref())?;
+        let model = |template: &Template, resolution| made(&template.function()?, resolution, self.depth);
+        let room_model = model(&Template::Room(room.clone(), System::R1), self.room_resolution)?;
+        let neighbor = model(&Template::Neighbor(VelocityForm::Distance), self.neighbor_resolution)?;
+        let swap = Swap {
+            room,
+            robots: self.robots,
+            circle_m: self.circle,
+            seed: self.seed,
+            limit_s: self.limit,
+            models: Models { room: &room_model, neighbor: &neighbor },
+        };
+        if let Some(robot) = swap.blocked() {
+            return Err(anyhow!(
+                "robot {robot} would start or end in a wall: choose another --circle, or fewer --robots"
+            ));
+        }
+        let mut outcomes = Vec::new();
+        for walls in [Source::Formula, Source::Model] {
+            for neighbors in [Source::Formula, Source::Table, Source::Model] {
+                outcomes.push(swap.run(neighbors, walls)?);
+            }
+        }
+        if global.json {
+            return print_json(&outcomes);
+        }
+        let mut text = format!(
+            "models: room {} bytes, neighbours {} bytes\n{:<10} {:<10} {:>7} {:>8} {:>10} {:>10} {:>8}\n",
+            room_model.len(),
+            neighbor.len(),
+            "neighbours",
+            "walls",
+            "arrived",
+            "time, s",
+            "gap, m",
+            "wall, m",
+            "overlaps"
+        );
+        let name = |source| match source {
+            Source::Formula => "formula",
+            Source::Table => "table",
+            Source::Model => "model",
+        };
+        for Outcome { neighbors, walls, arrived, time_s, gap_m, wall_gap_m, overlaps } in outcomes {
+            let (neighbors, walls) = (name(neighbors), name(walls));
+            writeln!(
+                text,
+                "{neighbors:<10} {walls:<10} {arrived:>7} {time_s:>8.2} {gap_m:>10.4} {wall_gap_m:>10.4} {overlaps:>8}"
+            )?;
+        }
+        print(&text)
+    }
+}

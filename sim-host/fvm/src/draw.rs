@@ -98,7 +98,8 @@ pub fn sheet(bytes: &[u8], title: &str, slice: Option<f64>) -> Result<Canvas, Dr
         let [x, y] = model.extent();
         let value = |x: f64, y: f64| model.blend([x, y]).map(|local| local.value);
         let distance = |x: f64, y: f64| model.blend([x, y])?.distance();
-        let node = |column: u16, row: u16| model.node([column, row]).map(|(slopes, free)| [&slopes[..], &free].concat());
+        let node =
+            |column: u16, row: u16| model.node([column, row]).map(|(slopes, free)| [&slopes[..], &free].concat());
         let fields: [Field<'_>; 2] = [("value", &value), ("distance to the border, to first order", &distance)];
         return Ok(Sheet { extent: [x, y], nodes: [nx, ny], fields: &fields, names: NAMES[0], node: &node }.draw(title));
     }
@@ -111,7 +112,8 @@ pub fn sheet(bytes: &[u8], title: &str, slice: Option<f64>) -> Result<Canvas, Dr
     }
     let layer = libm::round((at - low) / (high - low) * f64::from(nz - 1)) as u16;
     let value = |x: f64, y: f64| model.blend([x, y, at]).map(|local| local.value);
-    let node = |column: u16, row: u16| model.node([column, row, layer]).map(|(slopes, free)| [&slopes[..], &free].concat());
+    let node =
+        |column: u16, row: u16| model.node([column, row, layer]).map(|(slopes, free)| [&slopes[..], &free].concat());
     let fields: [Field<'_>; 1] = [("value", &value)];
     let title = format!("{title}, third variable {at:.3}");
     Ok(Sheet { extent: [x, y], nodes: [nx, ny], fields: &fields, names: NAMES[1], node: &node }.draw(&title))
@@ -137,11 +139,8 @@ impl Sheet<'_> {
         let pictures = self.fields.len() + self.names.len();
         let columns = 3.min(pictures);
         let rows = pictures.div_ceil(columns);
-        let mut canvas = Canvas::new(
-            GAP + (width + GAP) * columns as f64,
-            TOP + (height + GAP + 16.0) * rows as f64 + 10.0,
-            title,
-        );
+        let mut canvas =
+            Canvas::new(GAP + (width + GAP) * columns as f64, TOP + (height + GAP + 16.0) * rows as f64 + 10.0, title);
         canvas.text(Text { bold: true, ..Text::new([GAP, 28.0], 16.0, Anchor::Start, title) });
         let place = |index: usize| {
             let (row, column) = (index / columns, index % columns);
@@ -155,7 +154,8 @@ impl Sheet<'_> {
             for row in (0..up).rev() {
                 for column in 0..across {
                     let along = |pixel: u32, pixels: u32| (f64::from(pixel) + 0.5) / f64::from(pixels);
-                    let (x, y) = (west + (east - west) * along(column, across), south + (north - south) * along(row, up));
+                    let (x, y) =
+                        (west + (east - west) * along(column, across), south + (north - south) * along(row, up));
                     rgba.push(field(x, y).map_or([0; 4], |value| contoured(value, most, 1.2 / scale)));
                 }
             }

@@ -43,11 +43,7 @@ impl System {
         // have the wrong sign.
         let sum = x + y;
         let root = libm::sqrt((x * x + y * y - 2.0 * alpha * x * y).max(0.0));
-        if sum > 0.0 {
-            2.0 * x * y / (sum + root)
-        } else {
-            (sum - root) / (1.0 + alpha)
-        }
+        if sum > 0.0 { 2.0 * x * y / (sum + root) } else { (sum - root) / (1.0 + alpha) }
     }
 
     /// Disjunction: positive where at least one is.

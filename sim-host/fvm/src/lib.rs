@@ -14,6 +14,6 @@ mod tests;
 
 pub use build::{BuildError, Grid, build};
 pub use function::{Function, System};
-pub use measure::{Errors, Measured, Reading, measure};
+pub use measure::{Errors, HalfPlaneErrors, Measured, Reading, half_planes, measure};
 pub use room::{Room, RoomError};
 pub use template::{Pair, Template, TemplateError, Templated, VelocityForm};

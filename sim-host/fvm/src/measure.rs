@@ -2,6 +2,8 @@
 
 use crate::Function;
 use serde::Serialize;
+use staya_controller::geom::Vec2;
+use staya_controller::orca::{HalfSpaces, MovingBall, Params, half_plane};
 use staya_controller::rand::Rng;
 use staya_stats::{mean, quantile};
 use staya_voxel::{Local, Model};
@@ -90,4 +92,52 @@ pub fn measure<const V: usize>(
         }
     }
     Some(Measured { value: Errors::of(&values)?, gradient: Errors::of(&gradients)?, angle_deg: Errors::of(&angles)? })
+}
+
+/// Errors of half-planes of neighbours.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct HalfPlaneErrors {
+    /// Angles between normals, degrees.
+    pub angle_deg: Errors,
+    /// Differences of the demanded changes of velocity, in (R_A + R_B) / tau.
+    pub change: Errors,
+}
+
+/// Compares half-planes from `source` with the formula's, on so many pairs of robots: radii of 0.1 to 0.5 m, up to 5 m apart,
+/// velocities of up to 1.5 m/s along each axis, a horizon of 2 s. `None` without pairs.
+#[must_use]
+pub fn half_planes<P: HalfSpaces<f32, Velocity = Vec2<f32>>>(
+    source: &P,
+    pairs: u32,
+    seed: u64,
+) -> Option<HalfPlaneErrors> {
+    const HORIZON_S: f64 = 2.0;
+    let (mut angles, mut changes) = (Vec::new(), Vec::new());
+    for pair in 0..pairs {
+        let mut rng = Rng::keyed(seed, PURPOSE, pair, 1);
+        let mut number = |low: f64, high: f64| low + (high - low) * f64::from(rng.next_u32()) / f64::from(u32::MAX);
+        let radii_m = number(0.2, 1.0);
+        let (distance, angle) = (number(radii_m + 1e-3, 5.0), number(-180.0, 180.0));
+        let (sin, cos) = libm::sincos(angle.to_radians());
+        let mut vector = || Vec2::new(number(-1.5, 1.5) as f32, number(-1.5, 1.5) as f32);
+        let (own, velocity_mps) = (vector(), vector());
+        let offset_m = Vec2::new((cos * distance) as f32, (sin * distance) as f32);
+        let ball = MovingBall { offset_m, velocity_mps, radii_m: radii_m as f32, tie: Vec2::ZERO };
+        let params = Params { horizon_s: HORIZON_S as f32, separation_s: 0.05, share: 1.0 };
+        let found = source.half_space(own, &ball, &params)?;
+        let wide = |v: Vec2<f32>| Vec2::new(f64::from(v.x), f64::from(v.y));
+        let exact_ball = MovingBall {
+            offset_m: wide(offset_m),
+            velocity_mps: wide(velocity_mps),
+            radii_m: f64::from(ball.radii_m),
+            tie: Vec2::ZERO,
+        };
+        let params = Params { horizon_s: HORIZON_S, separation_s: 0.05, share: 1.0 };
+        let exact = half_plane(wide(own), &exact_ball, &params)?;
+        let normal = wide(found.normal);
+        angles.push(libm::atan2(exact.normal.det(normal), exact.normal.dot(normal)).to_degrees().abs());
+        let change = (wide(found.point) - wide(own)).dot(normal);
+        changes.push((change - exact.penetration(wide(own))).abs() * HORIZON_S / radii_m);
+    }
+    Some(HalfPlaneErrors { angle_deg: Errors::of(&angles)?, change: Errors::of(&changes)? })
 }

@@ -1,0 +1,220 @@
+//! A swarm that changes places in a room, its ORCA by the formulas, by the table, or by functional voxel models.
+
+use crate::Room;
+use serde::Serialize;
+use staya_controller::body::Body;
+use staya_controller::geom::{Vec2, Vec3};
+use staya_controller::neighbor::Nearby;
+use staya_controller::obstacle::Obstacle;
+use staya_controller::orca::{Analytic, AvoidParams, Avoider, HalfSpaces, VoxelTable2k};
+use staya_controller::rand::Rng;
+use staya_controller::robot::{Mode, RobotId};
+use staya_voxel::{FileError, Model, VoxelNeighbor, obstacles};
+use std::f64::consts::TAU;
+
+const RADIUS_M: f32 = 0.12;
+const SPEED_MPS: f32 = 0.8;
+const STEP_S: f32 = 0.05;
+/// How far a robot sees walls.
+const SIGHT_M: f32 = 1.5;
+/// As near as that a robot has arrived.
+const ARRIVED_M: f32 = 0.1;
+const PURPOSE: u32 = u32::from_be_bytes(*b"swap");
+
+/// Where half-planes come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Source {
+    /// The formula.
+    Formula,
+    /// ORCA's own table of 2 KiB.
+    Table,
+    /// A functional voxel model.
+    Model,
+}
+
+/// What happens.
+#[derive(Clone, Debug)]
+pub struct Swap<'a> {
+    /// Where.
+    pub room: Room,
+    /// Robots on the circle, each on its way to the opposite place.
+    pub robots: u32,
+    /// Its radius around the origin, metres.
+    pub circle_m: f32,
+    /// Equal seeds give equal starts: each robot stands up to 20 mm off its place.
+    pub seed: u64,
+    /// A run ends after so long, seconds.
+    pub limit_s: f32,
+    /// The model of the room, and of every neighbour.
+    pub models: Models<'a>,
+}
+
+/// Bytes of models.
+#[derive(Clone, Copy, Debug)]
+pub struct Models<'a> {
+    /// Of [`Template::Room`](crate::Template::Room).
+    pub room: &'a [u8],
+    /// Of [`Template::Neighbor`](crate::Template::Neighbor).
+    pub neighbor: &'a [u8],
+}
+
+/// What came of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Outcome {
+    /// Where neighbours' half-planes came from.
+    pub neighbors: Source,
+    /// Where walls' came from.
+    pub walls: Source,
+    /// Robots that arrived.
+    pub arrived: u32,
+    /// When the last one did, seconds; the limit, if not all did.
+    pub time_s: f32,
+    /// The least distance between two robots' borders, metres.
+    pub gap_m: f32,
+    /// The least distance between a robot's border and a wall, metres, by the room itself.
+    pub wall_gap_m: f32,
+    /// Pairs and ticks of overlap.
+    pub overlaps: u32,
+}
+
+struct Robot<P: HalfSpaces<f32>> {
+    at: Vec2<f32>,
+    velocity: Vec2<f32>,
+    goal: Vec2<f32>,
+    avoider: Avoider<f32, 32, P>,
+    has_arrived: bool,
+}
+
+impl Swap<'_> {
+    /// The first robot, counted from 1, whose place on the circle is not free of walls.
+    #[must_use]
+    pub fn blocked(&self) -> Option<u32> {
+        let function = self.room.function(crate::System::R1);
+        let free = |index| {
+            let Vec2 { x, y } = self.place(index);
+            function.value([x.into(), y.into()]) < -f64::from(RADIUS_M + 0.03)
+        };
+        (0..self.robots).find(|&index| !free(index)).map(|index| index + 1)
+    }
+
+    fn place(&self, index: u32) -> Vec2<f32> {
+        let (sin, cos) = libm::sincos(TAU * f64::from(index) / f64::from(self.robots));
+        Vec2::new(cos as f32, sin as f32) * self.circle_m
+    }
+
+    /// One run.
+    ///
+    /// # Errors
+    /// Models that are none.
+    pub fn run(&self, neighbors: Source, walls: Source) -> Result<Outcome, FileError> {
+        let outcome = match neighbors {
+            Source::Formula => self.go(Analytic, walls)?,
+            Source::Table => self.go(VoxelTable2k, walls)?,
+            Source::Model => self.go(VoxelNeighbor::new(Model::from_bytes(self.models.neighbor)?), walls)?,
+        };
+        Ok(Outcome { neighbors, ..outcome })
+    }
+
+    fn go<P: HalfSpaces<f32, Velocity = Vec2<f32>> + Clone>(&self, by: P, walls: Source) -> Result<Outcome, FileError> {
+        let model = Model::<f32, 2>::from_bytes(self.models.room)?;
+        // What is true, whatever robots go by.
+        let truth = self.room.function(crate::System::R1);
+        let mut robots: Vec<Robot<P>> = (0..self.robots).map(|index| self.robot(index, by.clone())).collect();
+        let mut outcome = Outcome {
+            neighbors: Source::Formula,
+            walls,
+            arrived: 0,
+            time_s: self.limit_s,
+            gap_m: f32::INFINITY,
+            wall_gap_m: f32::INFINITY,
+            overlaps: 0,
+        };
+        let ticks = (self.limit_s / STEP_S) as u32;
+        for tick in 0..ticks {
+            let wished: Vec<_> =
+                (0..robots.len()).map(|own| self.decide(&mut robots, own, tick, walls, &model)).collect();
+            for (robot, velocity) in robots.iter_mut().zip(wished) {
+                robot.velocity = velocity;
+                robot.at = robot.at + velocity * STEP_S;
+                robot.has_arrived = robot.has_arrived || (robot.goal - robot.at).norm() < ARRIVED_M;
+                let inside = truth.value([robot.at.x.into(), robot.at.y.into()]) as f32;
+                outcome.wall_gap_m = outcome.wall_gap_m.min(-inside - RADIUS_M);
+            }
+            for (index, one) in robots.iter().enumerate() {
+                for other in &robots[index + 1..] {
+                    let gap = (one.at - other.at).norm() - 2.0 * RADIUS_M;
+                    outcome.gap_m = outcome.gap_m.min(gap);
+                    outcome.overlaps += u32::from(gap < 0.0);
+                }
+            }
+            outcome.arrived = robots.iter().filter(|robot| robot.has_arrived).count() as u32;
+            if outcome.arrived == self.robots {
+                outcome.time_s = (tick + 1) as f32 * STEP_S;
+                break;
+            }
+        }
+        Ok(outcome)
+    }
+
+    fn robot<P: HalfSpaces<f32>>(&self, index: u32, by: P) -> Robot<P> {
+        let place = self.place(index);
+        let mut rng = Rng::keyed(self.seed, PURPOSE, index, 0);
+        let mut off = || (rng.below(41) as f32 - 20.0) * 0.001;
+        let at = place + Vec2::new(off(), off());
+        let avoider = Avoider::with_source(AvoidParams { margin_m: 0.004, ..AvoidParams::default() }, by);
+        Robot { at, velocity: Vec2::ZERO, goal: -place, avoider, has_arrived: false }
+    }
+
+    fn decide<P: HalfSpaces<f32, Velocity = Vec2<f32>>>(
+        &self,
+        robots: &mut [Robot<P>],
+        own: usize,
+        tick: u32,
+        walls: Source,
+        model: &Model<'_, f32, 2>,
+    ) -> Vec2<f32> {
+        let number = |index: usize| RobotId(index as u32 + 1);
+        let (at, velocity, goal) = (robots[own].at, robots[own].velocity, robots[own].goal);
+        let others = robots.iter().enumerate().filter(|(index, _)| *index != own);
+        let mut nearby: Vec<Nearby<f32>> = others
+            .map(|(index, other)| Nearby {
+                id: number(index),
+                offset_m: (other.at - at).extend(0.0),
+                velocity_mps: other.velocity.extend(0.0),
+                radius_m: RADIUS_M,
+                gives_way: true,
+                mode: Mode::Cruise,
+                is_stranger: false,
+            })
+            .collect();
+        nearby.sort_by(|one, other| one.offset_m.norm().total_cmp(&other.offset_m.norm()));
+        nearby.truncate(16);
+        let around: Vec<Obstacle<f32>> = match walls {
+            // Who is where the model knows nothing goes by neighbours alone: the outcome tells.
+            Source::Model => obstacles(model, at, RADIUS_M + 2.0 * SPEED_MPS * STEP_S)
+                .map(|found| found.iter().copied().collect())
+                .unwrap_or_default(),
+            Source::Formula | Source::Table => {
+                let mut all = self.room.obstacles(at);
+                all.retain(|one| one.nearest_point().is_none_or(|(_, distance)| distance < SIGHT_M));
+                all
+            }
+        };
+        let body = Body {
+            id: number(own),
+            velocity_mps: velocity.extend(0.0),
+            radius_m: RADIUS_M,
+            max_speed_mps: SPEED_MPS,
+            max_acceleration_mps2: f32::MAX,
+            step_s: STEP_S,
+        };
+        let way = goal - at;
+        let wish = Vec2::new(way.x, way.y) * (1.0 / STEP_S);
+        let mut rng = Rng::keyed(self.seed, PURPOSE, own as u32, tick + 1);
+        let wish = wish.clamp_norm(SPEED_MPS);
+        let found = robots[own].avoider.velocity(&body, wish, Some(way), &nearby, &around, &mut rng);
+        let Vec3 { x, y, .. } = found.velocity_mps.extend(0.0);
+        Vec2::new(x, y)
+    }
+}

@@ -74,7 +74,7 @@ pub enum Templated {
     Space(Function<3>, [[f64; 2]; 3]),
 }
 
-/// Along, beside the axis to the neighbour, in disc radii; sine of the half angle.
+/// Along, beside the axis to the neighbour, in disc radii; tangent of half of the half angle.
 const NEIGHBOR: [[f64; 2]; 3] = [[-2.0, 2.0], [0.0, 2.0], [0.0, 1.0]];
 
 impl Template {
@@ -113,7 +113,8 @@ impl Template {
             Self::Room(room, system) => Templated::Plane(room.function(*system), room.extent(0.5)),
             Self::VelocityObstacle(pair, form) => pair.function(*form)?,
             &Self::Neighbor(form) => {
-                Templated::Space(Function::new(move |[x, y, sine]| velocity_obstacle(form, x, y, sine)), NEIGHBOR)
+                let sine = |opening: f64| 2.0 * opening / (1.0 + opening * opening);
+                Templated::Space(Function::new(move |[x, y, t]| velocity_obstacle(form, x, y, sine(t))), NEIGHBOR)
             }
         })
     }

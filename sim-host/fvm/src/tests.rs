@@ -1,0 +1,269 @@
+use crate::draw::{m_images, sheet};
+use crate::swarm::{Models, Source, Swap};
+use crate::*;
+use proptest::prelude::*;
+use staya_controller::geom::Vec2;
+use staya_controller::orca::{HalfPlane, HalfSpaces as _, MovingBall, Params, VelocityObstacle, half_plane};
+use staya_controller::rand::Rng;
+use staya_controller::scalar::Q16;
+use staya_voxel::{Header, Model, VoxelNeighbor, obstacles, velocity_half_plane};
+
+type V = Vec2<f64>;
+
+fn plane(template: &Template, nodes: [u16; 2], depth: u8) -> Vec<u8> {
+    let Templated::Plane(function, extent) = template.function().unwrap() else { panic!("of three variables") };
+    build(&function, &Grid { extent, nodes }, depth).unwrap()
+}
+
+fn space(template: &Template, nodes: [u16; 3], depth: u8) -> Vec<u8> {
+    let Templated::Space(function, extent) = template.function().unwrap() else { panic!("of two variables") };
+    build(&function, &Grid { extent, nodes }, depth).unwrap()
+}
+
+proptest! {
+    /// The sign of an R-function is that of the Boolean operation, also where rounding could turn it.
+    #[test]
+    fn signs_of_r_functions_are_boolean(x in -1e3_f64..1e3, y in -1e3_f64..1e3, tiny in -1e-12_f64..1e-12, alpha in -0.99_f64..1.0) {
+        for system in [System::R0, System::R1, System::Alpha(alpha)] {
+            for (x, y) in [(x, y), (x, tiny), (tiny, y), (x, x), (x, -x)] {
+                prop_assert_eq!(system.and(x, y) > 0.0, x > 0.0 && y > 0.0, "{} {} {}", system, x, y);
+                prop_assert_eq!(system.or(x, y) > 0.0, x > 0.0 || y > 0.0, "{} {} {}", system, x, y);
+                // De Morgan, and order plays no part.
+                prop_assert_eq!(-system.and(x, y), system.or(-x, -y));
+                prop_assert_eq!(system.and(x, y), system.and(y, x));
+            }
+        }
+    }
+
+    #[test]
+    fn r_alpha_goes_from_r_0_to_r_1(x in -9.0_f64..9.0, y in -9.0_f64..9.0) {
+        prop_assert!((System::Alpha(1.0).and(x, y) - System::R1.and(x, y)).abs() < 1e-9);
+        prop_assert!((System::Alpha(0.0).or(x, y) - System::R0.or(x, y)).abs() < 1e-9);
+        prop_assert!((System::R0.and(x, y) - (x + y - libm::hypot(x, y))).abs() < 1e-9);
+        prop_assert_eq!(System::R1.or(x, y), if x > y { x } else { y });
+    }
+
+    /// The template is the controller's own R-function (min and max), and the distance that the formula asks for.
+    #[test]
+    fn velocity_obstacle_agrees_with_the_controllers_formula(seed: u64) {
+        let mut rng = Rng::new(seed);
+        let mut number = |low: f64, high: f64| low + (high - low) * f64::from(rng.next_u32()) / f64::from(u32::MAX);
+        let (x, y, sine) = (number(-2.0, 2.0), number(0.0, 2.0), number(0.01, 0.99));
+        // Radii and horizon of 1: the disc's radius is 1, its centre as far ahead as the neighbour.
+        let offset = V::new(1.0 / sine, 0.0);
+        let exact = VelocityObstacle::new(offset, 1.0, 1.0).unwrap().value(offset + V::new(x, y));
+        let found = template::velocity_obstacle(VelocityForm::RFunction(System::R1), x, y, sine);
+        prop_assert!((found - exact).abs() < 1e-9, "{found} {exact}");
+        let ball = MovingBall { offset_m: offset, velocity_mps: V::ZERO, radii_m: 1.0, tie: V::ZERO };
+        let params = Params { horizon_s: 1.0, separation_s: 1.0, share: 1.0 };
+        let own = offset + V::new(x, y);
+        let change = half_plane(own, &ball, &params).unwrap().penetration(own);
+        let found = template::velocity_obstacle(VelocityForm::Distance, x, y, sine);
+        prop_assert!((found - change).abs() < 1e-9, "{found} {change}");
+    }
+
+    /// Nothing of the velocity obstacle is permitted, whatever the model: a coarse one, a rough one, one of a function with
+    /// other gradients. And both robots of a pair get opposite half-planes.
+    #[test]
+    fn every_half_plane_of_a_neighbor_model_forbids_the_whole_obstacle(seed: u64) {
+        for (form, nodes, depth) in [
+            (VelocityForm::Distance, [17, 9, 5], 16),
+            (VelocityForm::Distance, [5, 3, 2], 6),
+            (VelocityForm::RFunction(System::R0), [9, 5, 3], 8),
+        ] {
+            let bytes = space(&Template::Neighbor(form), nodes, depth);
+            let source = VoxelNeighbor::new(Model::<f64, 3>::from_bytes(&bytes).unwrap());
+            let (own, other) = pair(&mut Rng::new(seed));
+            let params = Params { horizon_s: 2.0, separation_s: 0.05, share: 1.0 };
+            let plane = source.half_space(own, &other, &params).unwrap();
+            prop_assert!((plane.normal.norm() - 1.0).abs() < 1e-9);
+            let obstacle = VelocityObstacle::new(other.offset_m, other.radii_m, 2.0).unwrap();
+            let (tip, radius) = obstacle.disc();
+            let gap = (plane.point - other.velocity_mps - tip).dot(plane.normal) - radius;
+            prop_assert!(gap.abs() < 1e-9, "{gap}");
+            for leg in obstacle.legs() {
+                prop_assert!(leg.dot(plane.normal) < 1e-9, "{}", leg.dot(plane.normal));
+            }
+            let exact = half_plane(own, &other, &params).unwrap().penetration(own);
+            prop_assert!(plane.penetration(own) >= exact - 1e-9);
+            let theirs = MovingBall { offset_m: -other.offset_m, velocity_mps: own, ..other };
+            let theirs = source.half_space(other.velocity_mps, &theirs, &params).unwrap();
+            prop_assert!((plane.normal + theirs.normal).norm() < 1e-9);
+        }
+    }
+}
+
+/// Robots of 0.1 to 0.5 m within 5 m, at up to 1.5 m/s along each axis.
+fn pair(rng: &mut Rng) -> (V, MovingBall<V>) {
+    let mut number = |low: f64, high: f64| low + (high - low) * f64::from(rng.next_u32()) / f64::from(u32::MAX);
+    let radii_m = number(0.2, 1.0);
+    let (distance, angle) = (number(radii_m + 1e-3, 5.0), number(0.0, std::f64::consts::TAU));
+    let (sin, cos) = libm::sincos(angle);
+    let own = V::new(number(-1.5, 1.5), number(-1.5, 1.5));
+    let velocity_mps = V::new(number(-1.5, 1.5), number(-1.5, 1.5));
+    (own, MovingBall { offset_m: V::new(cos, sin) * distance, velocity_mps, radii_m, tie: V::ZERO })
+}
+
+/// FVM's worked example: relative velocity (-1.5, 2.5), the whole correction, half-plane through (1.707107, 0.792893).
+#[test]
+fn worked_example_of_the_paper() {
+    let own = V::new(1.5, 1.0);
+    let relative = V::new(-1.5, 2.5);
+    let off = |plane: HalfPlane<f64>| (plane.point - V::new(1.707107, 0.792893)).norm();
+    for (form, most) in [
+        (VelocityForm::Distance, 1.5e-3),
+        // Deep in the disc the R-function of R_1 is the cone's, not the disc's: the paper's own terms, its own gradient.
+        (VelocityForm::RFunction(System::R1), 1.5e-3),
+    ] {
+        let bytes = plane(&Template::VelocityObstacle(Pair::default(), form), [65, 65], 16);
+        let model = Model::<f64, 2>::from_bytes(&bytes).unwrap();
+        let found = velocity_half_plane(&model, own, relative, 1.0).unwrap();
+        assert!(off(found) < most, "{form:?}: {}", off(found));
+        // Eq. 17.
+        let cos = model.blend([relative.x, relative.y]).unwrap().direction().unwrap().x;
+        assert!((cos + std::f64::consts::FRAC_1_SQRT_2).abs() < 1e-3, "{cos}");
+    }
+    let bytes = space(&Template::Neighbor(VelocityForm::Distance), [33, 17, 9], 16);
+    let source = VoxelNeighbor::new(Model::<f64, 3>::from_bytes(&bytes).unwrap());
+    let other = MovingBall { offset_m: V::new(-4.0, 6.0), velocity_mps: V::new(3.0, -1.5), radii_m: 2.0, tie: V::ZERO };
+    let params = Params { horizon_s: 2.0, separation_s: 0.05, share: 1.0 };
+    let found = source.half_space(own, &other, &params).unwrap();
+    assert!(off(found) < 0.02, "{}", off(found));
+    assert!(found.penetration(own) >= 0.292893 - 1e-6);
+}
+
+/// A smooth function: values and gradients by the blend fall with the square of the step, by the nearest node gradients
+/// with the step. Finite differences are the oracle.
+#[test]
+fn errors_fall_with_resolution_and_with_depth() {
+    let smooth = Function::new(|[x, y]: [f64; 2]| libm::sin(2.0 * x) * libm::cos(y) + 0.3 * x);
+    let errors = |nodes: u16, depth: u8, reading| {
+        let grid = Grid { extent: [[-1.0, 2.0], [0.0, 3.0]], nodes: [nodes, nodes] };
+        let bytes = build(&smooth, &grid, depth).unwrap();
+        measure(&smooth, &Model::from_bytes(&bytes).unwrap(), reading, 4000, 1).unwrap()
+    };
+    for (reading, gradients) in [(Reading::Nearest, 1.8), (Reading::Blend, 3.4)] {
+        let (coarse, fine) = (errors(13, 16, reading), errors(25, 16, reading));
+        for (coarse, fine, least) in [
+            (coarse.value.mean, fine.value.mean, 3.4),
+            (coarse.value.max, fine.value.max, 3.0),
+            (coarse.gradient.mean, fine.gradient.mean, gradients),
+        ] {
+            assert!(coarse / fine > least, "{reading:?}: {coarse} to {fine}");
+        }
+    }
+    let rough = errors(25, 8, Reading::Blend);
+    let fine = errors(25, 12, Reading::Blend);
+    assert!(rough.gradient.mean > 3.0 * fine.gradient.mean && rough.value.mean > 3.0 * fine.value.mean);
+}
+
+#[test]
+fn functions_that_cannot_be_modelled_are_refused_by_place() {
+    let grid = Grid { extent: [[-1.0, 1.0]; 2], nodes: [5, 5] };
+    let refused = |function: &Function<2>, grid: &Grid<2>, depth| build(function, grid, depth).unwrap_err().to_string();
+    let circle = shape::circle([0.0; 2], 1.0);
+    assert!(refused(&circle, &grid, 3).contains("4 to 16"));
+    assert!(refused(&circle, &Grid { nodes: [1, 5], ..grid }, 8).contains("axis 1"));
+    assert!(refused(&circle, &Grid { extent: [[0.0, 1.0], [1.0, 1.0]], ..grid }, 8).contains("axis 2"));
+    assert!(refused(&circle, &Grid { nodes: [60_000, 60_000], ..grid }, 8).contains("64 MiB"));
+    assert!(refused(&Function::new(|[x, _]: [f64; 2]| 1.0 / x), &grid, 8).contains("[0.0, -1.0]"));
+    let step = Function::new(|[x, _]: [f64; 2]| if x > 0.1 { 1.0 } else { 1e-9 });
+    let steep = Grid { extent: [[-1e5, 1e5], [-1.0, 1.0]], nodes: [5, 20_001] };
+    assert!(refused(&step, &Grid { nodes: [20_001, 2], ..steep }, 4).contains("too steep"));
+}
+
+#[test]
+fn rooms_are_read_and_wrong_ones_refused_by_field() {
+    let room = Room::read(
+        "outline = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]\n[[circle]]\ncenter = [1.0, 0.5]\nradius = 0.2",
+    )
+    .unwrap();
+    let function = room.function(System::R0);
+    for (at, is_wall) in [([1.0, 0.5], true), ([1.5, 0.5], false), ([2.1, 0.5], true), ([0.5, -0.1], true)] {
+        assert_eq!(function.value(at) > 0.0, is_wall, "{at:?}");
+    }
+    let refused = |text: &str| Room::read(text).unwrap_err().to_string();
+    assert!(refused("outline = [[0.0, 0.0], [1.0, 0.0]]").contains("outline: three corners"));
+    let square = "outline = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0]]\n";
+    assert!(refused(&format!("{square}[[circle]]\ncenter = [0.0, 0.0]\nradius = 0.0")).contains("circle 1: radius"));
+    assert!(refused(&format!("{square}[[polygon]]\ncorners = []")).contains("polygon 1: corners"));
+    assert!(refused(&format!("{square}door = 1")).contains("line 2"));
+}
+
+#[test]
+fn templates_without_sense_are_refused() {
+    for template in [
+        Template::Circle([0.0; 2], 0.0),
+        Template::Ball([f64::NAN; 3], 1.0),
+        Template::Polygon(vec![[0.0; 2]; 3]),
+        Template::VelocityObstacle(
+            Pair { places_m: [[0.0; 2], [1.0, 0.0]], ..Pair::default() },
+            VelocityForm::Distance,
+        ),
+    ] {
+        assert!(template.function().is_err(), "{template:?}");
+    }
+}
+
+/// In a corner both walls count, beside a pillar one plane does.
+#[test]
+fn obstacles_of_a_room_are_its_walls() {
+    let room = Template::Room(Room::default(), System::R1);
+    let bytes = plane(&room, [129, 100], 16);
+    let model = Model::<f32, 2>::from_bytes(&bytes).unwrap();
+    let around = |x, y| obstacles(&model, Vec2::new(x, y), 0.3).unwrap();
+    let distance = |found: &staya_controller::obstacle::Obstacle<f32>| found.nearest_point().unwrap().1;
+    let corner = around(-3.8, -2.7);
+    assert_eq!(corner.len(), 2, "{corner:?}");
+    assert!((distance(&corner[0]) - 0.2).abs() < 0.02 && (distance(&corner[1]) - 0.3).abs() < 0.02);
+    let pillar = around(-0.8, 0.8);
+    assert_eq!(pillar.len(), 1, "{pillar:?}");
+    assert!((distance(&pillar[0]) - 0.2).abs() < 0.02);
+    assert!(obstacles(&model, Vec2::new(9.0, 0.0), 0.3).is_none());
+}
+
+#[test]
+fn a_swarm_goes_by_models_as_by_formulas() {
+    let room = Room::default();
+    let of_room = plane(&Template::Room(room.clone(), System::R1), [65, 50], 16);
+    let of_neighbor = space(&Template::Neighbor(VelocityForm::Distance), [17, 9, 5], 16);
+    let models = Models { room: &of_room, neighbor: &of_neighbor };
+    let swap = Swap { room, robots: 6, circle_m: 2.5, seed: 1, limit_s: 40.0, models };
+    for (neighbors, walls) in [(Source::Formula, Source::Formula), (Source::Model, Source::Model)] {
+        let outcome = swap.run(neighbors, walls).unwrap();
+        assert_eq!((outcome.arrived, outcome.overlaps), (6, 0), "{outcome:?}");
+        assert!(outcome.wall_gap_m > -0.01, "{outcome:?}");
+    }
+}
+
+#[test]
+fn pictures_hold_the_components() {
+    let folder = tempfile::tempdir().unwrap();
+    for (bytes, count) in [
+        (plane(&Template::Circle([0.0; 2], 1.0), [9, 7], 8), 4),
+        (space(&Template::Ball([0.0; 3], 1.0), [5, 4, 3], 12), 5),
+    ] {
+        let files = m_images(&bytes, &folder.path().join("model")).unwrap();
+        assert_eq!(files.len(), count);
+        let header = Header::read(&bytes).unwrap();
+        let decoder = png::Decoder::new(std::io::BufReader::new(std::fs::File::open(&files[count - 2]).unwrap()));
+        let mut reader = decoder.read_info().unwrap();
+        assert_eq!(reader.info().width, header.nodes[0].into());
+        let mut grey = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut grey).unwrap();
+        // The function's own component is below 0 everywhere: dark.
+        assert!(grey.chunks(header.component_len()).all(|pixel| pixel[0] < 128));
+        assert!(sheet(&bytes, "title", None).unwrap().shapes.len() > 8);
+    }
+    let ball = space(&Template::Ball([0.0; 3], 1.0), [5, 4, 3], 12);
+    assert!(sheet(&ball, "title", Some(7.0)).unwrap_err().to_string().contains("third axis"));
+}
+
+#[test]
+fn fixed_point_reads_models_too() {
+    let bytes = plane(&Template::Circle([0.0; 2], 1.0), [33, 33], 16);
+    let model = Model::<Q16, 2>::from_bytes(&bytes).unwrap();
+    let number = |x: f64| <Q16 as staya_controller::scalar::Scalar>::from_f64(x).unwrap();
+    let found = model.blend([number(0.6), number(0.0)]).unwrap();
+    assert!((staya_controller::scalar::Scalar::to_f64(found.value) - 0.4).abs() < 2e-3);
+}

@@ -16,7 +16,9 @@ mod program {
     use staya_controller::agent::{Agent, Guidance, Inputs, OUTBOX, Outputs, Safety};
     use staya_controller::grid::{Cell, Dir};
     use staya_controller::robot::{Mode, RobotId};
-    use staya_controller::scalar::{Fast32, Q16, Scalar};
+    #[cfg(part = "stm32f405")]
+    use staya_controller::scalar::Fast32;
+    use staya_controller::scalar::{Q16, Scalar};
     use staya_controller::time::Instant;
     use staya_controller::wire::{Beacon, DecodeError, EncodeError, Frame, Header, Message, Postcard, Wire};
     use staya_firmware::{runtime, stack};
@@ -145,9 +147,10 @@ mod program {
             }
             swarms::<f32>("f32", &row);
             worst::<f32, 16, 32>("f32", &row);
-            swarms::<Fast32>("Fast32", &row);
-            worst::<Fast32, 16, 32>("Fast32", &row);
         }
+        // Needs an FPU.
+        #[cfg(part = "stm32f405")]
+        worst::<Fast32, 16, 32>("Fast32", &row);
         swarms::<Q16>("Q16", &row);
         #[cfg(not(part = "nrf51"))]
         worst::<Q16, 16, 32>("Q16", &row);

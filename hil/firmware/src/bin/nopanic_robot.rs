@@ -1,5 +1,5 @@
-//! Links only if no panic is reachable from `staya-robot`: from packets over a line, wheels, odometry and range scans,
-//! in `f32` and in Q16.16. Works as `nopanic` does, which has the steps of the controller; it is not meant to be run.
+//! Links only if no panic is reachable from `staya-robot`, from packets over a line, wheels, odometry and range scans, nor from
+//! `staya-voxel`'s models, in `f32` and in Q16.16. Works as `nopanic` does, which has the steps of the controller; it is not meant to be run.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 staya_firmware::entry!(program::run);
@@ -15,6 +15,7 @@ mod program {
     use staya_controller::geom::{Position, Vec2};
     use staya_controller::grid::{Cell, GridFrame};
     use staya_controller::neighbor::Neighbor;
+    use staya_controller::orca::{HalfSpaces as _, MovingBall, Params};
     use staya_controller::scalar::{Q16, Scalar};
     use staya_controller::time::{Duration, Instant};
     use staya_controller::wire::Postcard;
@@ -26,6 +27,7 @@ mod program {
     use staya_robot::odometry::{Encoder, Odometry};
     use staya_robot::radio::{Framing, PacketLink, Receiver};
     use staya_robot::scan::{LocalMap, MapParams, OutlineParams, Scan, is_neighbor, outline};
+    use staya_voxel::{Model, VoxelNeighbor, obstacles, velocity_half_plane};
 
     pub fn run() -> ! {
         loop {
@@ -35,6 +37,8 @@ mod program {
             let _ = wheels::<Q16>();
             ranges::<f32>();
             ranges::<Q16>();
+            voxels::<f32>();
+            voxels::<Q16>();
         }
     }
 
@@ -191,6 +195,23 @@ mod program {
             black_box(map.window());
             let params = OutlineParams { tolerance_m: any(), gap_m: any(), point_m: any() };
             black_box(outline::<S, 16>(&scan, any(), &params, is_robot));
+        }
+    }
+
+    /// Models in bytes of which nothing is known.
+    fn voxels<S: Scalar>() {
+        let bytes: &[u8] = black_box(&[1; 100]);
+        if let Ok(model) = Model::<S, 2>::from_bytes(bytes) {
+            black_box(model.nearest([any(), any()]));
+            black_box(model.node(black_box([1, 1])));
+            black_box(velocity_half_plane(&model, any_vec(), any_vec(), any()));
+            black_box(obstacles(&model, any_vec(), any()));
+        }
+        if let Ok(model) = Model::<S, 3>::from_bytes(bytes) {
+            black_box(model.nearest([any(), any(), any()]));
+            let ball = MovingBall { offset_m: any_vec(), velocity_mps: any_vec(), radii_m: any(), tie: any_vec() };
+            let params = Params { horizon_s: any(), separation_s: any(), share: any() };
+            black_box(VoxelNeighbor::new(model).half_space(any_vec(), &ball, &params));
         }
     }
 }

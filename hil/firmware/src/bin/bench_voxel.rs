@@ -1,0 +1,149 @@
+//! What functional voxel models cost: a reading of each kind, what a room forbids, one neighbour's half-plane, and whole steps
+//! of an agent in the worst company by them. Prints `case scalar calls median max`: instructions (on a board: clock
+//! cycles). Emulated as `bench`, with `-icount shift=0`.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+staya_firmware::entry!(program::run);
+staya_firmware::faults_are_printed!();
+
+#[cfg(target_os = "none")]
+mod program {
+    use core::hint::black_box;
+    use heapless::Vec;
+    use serde::Serialize;
+    use staya_cases::{Probe, worst_orca};
+    use staya_controller::agent::{Agent, Guidance, Inputs, Outputs, Safety};
+    use staya_controller::geom::Vec2;
+    use staya_controller::orca::{Analytic, HalfSpaces, MovingBall, Params, VoxelTable2k};
+    use staya_controller::rand::Rng;
+    use staya_controller::scalar::{Fast32, Q16, Scalar};
+    use staya_controller::time::Instant;
+    use staya_controller::wire::Wire;
+    use staya_firmware::runtime;
+    use staya_voxel::{Model, VoxelNeighbor, obstacles};
+
+    /// `staya voxel build room --resolution 33 --depth 8` and `--depth 16`.
+    const ROOMS: [(&str, &[u8]); 2] =
+        [("8", include_bytes!("../../models/room-8.fvm")), ("16", include_bytes!("../../models/room-16.fvm"))];
+    /// `staya voxel build neighbor --resolution 17`, the same depths.
+    const NEIGHBORS: [(&str, &[u8]); 2] =
+        [("8", include_bytes!("../../models/neighbor-8.fvm")), ("16", include_bytes!("../../models/neighbor-16.fvm"))];
+    const CALLS: u32 = 256;
+
+    /// Counts ticks.
+    struct Meter {
+        ticks: Vec<u32, { CALLS as usize }>,
+        /// What measuring itself takes.
+        empty: u32,
+    }
+
+    impl Meter {
+        fn new() -> Self {
+            let before = runtime::ticks();
+            Self { ticks: Vec::new(), empty: runtime::ticks().wrapping_sub(before) }
+        }
+
+        #[inline(always)]
+        fn measure<T>(&mut self, work: impl FnOnce() -> T) -> T {
+            let before = runtime::ticks();
+            let out = work();
+            let ticks = runtime::ticks().wrapping_sub(before).saturating_sub(self.empty);
+            // There is room for as many as are measured.
+            let _ = self.ticks.push(ticks);
+            out
+        }
+    }
+
+    impl<S: Scalar> Probe<S> for Meter {
+        fn step<G: Guidance<S>, A: Safety<S>, W: Wire, const N: usize>(
+            &mut self,
+            agent: &mut Agent<S, G, N, A, W>,
+            inputs: &Inputs<'_, S, G::Input<'_>>,
+            now: Instant,
+            workspace: &mut G::Workspace,
+        ) -> Outputs<S> {
+            self.measure(|| agent.step(inputs, now, workspace))
+        }
+    }
+
+    pub fn run() -> ! {
+        all::<f32>("f32");
+        all::<Fast32>("Fast32");
+        all::<Q16>("Q16");
+        runtime::exit(0)
+    }
+
+    fn row(case: &str, [source, depth]: [&str; 2], scalar: &str, mut meter: Meter) {
+        let start = runtime::start();
+        let per_second = if start.emulated { 1_000_000_000 } else { u64::from(start.clock_hz) };
+        let count = |ticks: u32| u64::from(ticks) * per_second / u64::from(start.tick_hz);
+        meter.ticks.sort_unstable();
+        let median = meter.ticks.get(meter.ticks.len() / 2).copied().unwrap_or(0);
+        let most = meter.ticks.last().copied().unwrap_or(0);
+        let calls = meter.ticks.len();
+        runtime::print(format_args!("{case}_{source}{depth} {scalar} {calls} {} {}\n", count(median), count(most)));
+    }
+
+    #[inline(never)]
+    fn all<S: Scalar>(scalar: &str) {
+        for (depth, bytes) in ROOMS {
+            let Ok(model) = Model::<S, 2>::from_bytes(black_box(bytes)) else { continue };
+            readings(&model, depth, scalar);
+        }
+        neighbor::<S, _>("formula", "", scalar, Analytic);
+        neighbor::<S, _>("table_2k", "", scalar, VoxelTable2k);
+        step::<S, _>("formula", "", scalar, Analytic);
+        step::<S, _>("table_2k", "", scalar, VoxelTable2k);
+        for (depth, bytes) in NEIGHBORS {
+            let Ok(model) = Model::<S, 3>::from_bytes(black_box(bytes)) else { continue };
+            neighbor::<S, _>("model_", depth, scalar, VoxelNeighbor::new(model));
+            step::<S, _>("model_", depth, scalar, VoxelNeighbor::new(model));
+        }
+    }
+
+    /// A number within so many thousandths around 0.
+    fn about<S: Scalar>(rng: &mut Rng, milli: i32) -> S {
+        S::from_milli(rng.below(2 * milli.unsigned_abs() + 1) as i32 - milli)
+    }
+
+    #[inline(never)]
+    fn readings<S: Scalar>(model: &Model<'_, S, 2>, depth: &str, scalar: &str) {
+        let (mut nearest, mut blend, mut around) = (Meter::new(), Meter::new(), Meter::new());
+        let mut rng = Rng::new(1);
+        for _ in 0..CALLS {
+            let at = [about::<S>(&mut rng, 3900), about::<S>(&mut rng, 2900)];
+            black_box(nearest.measure(|| black_box(model).nearest(black_box(at))));
+            black_box(blend.measure(|| black_box(model).blend(black_box(at))));
+            let place = Vec2::new(at[0], at[1]);
+            black_box(around.measure(|| obstacles(black_box(model), black_box(place), S::from_milli(300))));
+        }
+        row("room", ["nearest_", depth], scalar, nearest);
+        row("room", ["blend_", depth], scalar, blend);
+        row("room", ["obstacles_", depth], scalar, around);
+    }
+
+    #[inline(never)]
+    fn neighbor<S: Scalar, P: HalfSpaces<S, Velocity = Vec2<S>>>(case: &str, of: &str, scalar: &str, source: P) {
+        let mut meter = Meter::new();
+        let mut rng = Rng::new(1);
+        let params = Params { horizon_s: S::TWO, separation_s: S::from_milli(50), share: S::HALF };
+        while !meter.ticks.is_full() {
+            let mut vector = |milli| Vec2::new(about::<S>(&mut rng, milli), about::<S>(&mut rng, milli));
+            let radii_m = S::from_milli(400);
+            let (offset_m, velocity_mps, own) = (vector(2000), vector(1000), vector(1000));
+            if offset_m.norm() > radii_m {
+                let ball = MovingBall { offset_m, velocity_mps, radii_m, tie: Vec2::ZERO };
+                let ask = || black_box(&source).half_space(black_box(own), black_box(&ball), black_box(&params));
+                black_box(meter.measure(ask));
+            }
+        }
+        row("neighbor", [case, of], scalar, meter);
+    }
+
+    #[inline(never)]
+    fn step<S: Scalar, P: HalfSpaces<S> + Serialize>(case: &str, of: &str, scalar: &str, source: P) {
+        let mut meter = Meter::new();
+        let _ = worst_orca::<S, _, _, 16, 32>(source, &mut meter);
+        row("step", [case, of], scalar, meter);
+    }
+}

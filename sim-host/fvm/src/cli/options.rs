@@ -1,0 +1,169 @@
+//! Templates as options, and numbers as people write them.
+
+use crate::{Grid, Pair, Room, System, Template, Templated, VelocityForm};
+use anyhow::{Context as _, Result, anyhow};
+use clap::{Args, ValueEnum};
+use std::path::{Path, PathBuf};
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Kind {
+    /// A disc (--center X,Y, --radius).
+    Circle,
+    /// A ball, three variables (--center X,Y,Z, --radius).
+    Ball,
+    /// A polygon (--corners).
+    Polygon,
+    /// A room with what stands in it (--room, --system).
+    Room,
+    /// The relative velocities that lead two robots to a collision (--place-a and so on, --form).
+    VelocityObstacle,
+    /// The same for every pair of robots, three variables (--form): half-planes for ORCA.
+    Neighbor,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Form {
+    /// The distance to the nearest border.
+    Distance,
+    /// Pr1 and Pr2 and (Pr3 or Pr4) or Disc by R-functions, as the paper has it.
+    RFunction,
+}
+
+#[derive(Args, Clone, Debug)]
+#[command(allow_negative_numbers = true)]
+pub struct TemplateArgs {
+    /// What of.
+    #[arg(value_enum)]
+    template: Kind,
+    /// Centre of a circle or a ball; zero if it is not given.
+    #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true)]
+    center: Option<String>,
+    /// Radius of a circle or a ball.
+    #[arg(long, default_value_t = 1.0)]
+    radius: f64,
+    /// Corners of a polygon; an L if it is not given.
+    #[arg(
+        long,
+        value_name = "'X,Y X,Y X,Y ...'",
+        allow_hyphen_values = true,
+        default_value = "0,0 3,0 3,1 1,1 1,2 0,2"
+    )]
+    corners: String,
+    /// A room as TOML: `outline = [[x, y], ...]`, `[[circle]]` with `center` and `radius`, `[[polygon]]` with `corners`; without, the
+    /// room of the documentation.
+    #[arg(long, value_name = "FILE")]
+    room: Option<PathBuf>,
+    /// R-functions of rooms and of `--form r-function`: r0, r1 (least and greatest), or alpha of R_alpha.
+    #[arg(long, default_value = "r1", value_parser = |text: &str| text.parse::<System>())]
+    system: System,
+    /// How a velocity obstacle is one function.
+    #[arg(long, value_enum, default_value_t = Form::Distance)]
+    form: Form,
+    /// Position of robot A, which decides, metres.
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, default_value = "2,-3")]
+    place_a: String,
+    /// Position of robot B, metres.
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, default_value = "-2,3")]
+    place_b: String,
+    /// Radii of A and B, metres.
+    #[arg(long, value_name = "A,B", default_value = "1,1")]
+    radii: String,
+    /// tau: no collision within this time, seconds.
+    #[arg(long, default_value_t = 2.0)]
+    horizon: f64,
+    /// The least and the greatest coordinate along each axis, instead of the template's own.
+    #[arg(long, value_name = "X0,X1,Y0,Y1[,Z0,Z1]", allow_hyphen_values = true)]
+    extent: Option<String>,
+}
+
+impl TemplateArgs {
+    /// The function that was asked for.
+    pub fn templated(&self) -> Result<Templated> {
+        let templated = self.template()?.function()?;
+        let Some(extent) = &self.extent else {
+            return Ok(templated);
+        };
+        let wrong = "two numbers for each variable are needed";
+        let ends = numbers(extent).map_err(|error| anyhow!("--extent: {error}"))?;
+        let (pairs, rest) = ends.as_chunks::<2>();
+        let pairs = if rest.is_empty() { pairs } else { &[] };
+        Ok(match templated {
+            Templated::Plane(function, _) => {
+                Templated::Plane(function, pairs.try_into().map_err(|_| anyhow!("--extent: {wrong}, 4 in all"))?)
+            }
+            Templated::Space(function, _) => {
+                Templated::Space(function, pairs.try_into().map_err(|_| anyhow!("--extent: {wrong}, 6 in all"))?)
+            }
+        })
+    }
+
+    /// Whether ORCA's half-planes come of it.
+    pub fn is_neighbor(&self) -> bool {
+        self.template == Kind::Neighbor
+    }
+
+    fn template(&self) -> Result<Template> {
+        let form = match self.form {
+            Form::Distance => VelocityForm::Distance,
+            Form::RFunction => VelocityForm::RFunction(self.system),
+        };
+        Ok(match self.template {
+            Kind::Circle => Template::Circle(self.center("--center")?, self.radius),
+            Kind::Ball => Template::Ball(self.center("--center")?, self.radius),
+            Kind::Polygon => {
+                let corners = self.corners.split_whitespace().map(|corner| fixed("--corners", corner));
+                Template::Polygon(corners.collect::<Result<_>>()?)
+            }
+            Kind::Room => Template::Room(room(self.room.as_deref())?, self.system),
+            Kind::VelocityObstacle => {
+                let places_m = [fixed("--place-a", &self.place_a)?, fixed("--place-b", &self.place_b)?];
+                let radii_m = fixed("--radii", &self.radii)?;
+                Template::VelocityObstacle(Pair { places_m, radii_m, horizon_s: self.horizon }, form)
+            }
+            Kind::Neighbor => Template::Neighbor(form),
+        })
+    }
+
+    fn center<const V: usize>(&self, option: &str) -> Result<[f64; V]> {
+        self.center.as_ref().map_or(Ok([0.0; V]), |center| fixed(option, center))
+    }
+}
+
+/// The room in a file, or that of the documentation.
+pub fn room(file: Option<&Path>) -> Result<Room> {
+    let Some(file) = file else {
+        return Ok(Room::default());
+    };
+    let text = std::fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
+    Room::read(&text).with_context(|| file.display().to_string())
+}
+
+/// Numbers with commas between them.
+pub fn numbers(text: &str) -> Result<Vec<f64>, String> {
+    let number = |word: &str| match word.trim().parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => Err(format!("`{}` is no finite number; numbers with commas are needed, like 1.5,-2", word.trim())),
+    };
+    text.split(',').map(number).collect()
+}
+
+fn fixed<const V: usize>(option: &str, text: &str) -> Result<[f64; V]> {
+    let found = numbers(text).map_err(|error| anyhow!("{option}: {error}"))?;
+    found.try_into().map_err(|_| anyhow!("{option}: `{text}`: {V} numbers with commas are needed"))
+}
+
+/// So many nodes along the longest axis, as far apart along the others, and two at least.
+pub fn grid<const V: usize>(extent: [[f64; 2]; V], resolution: u16) -> Result<Grid<V>> {
+    let sides = extent.map(|[low, high]| high - low);
+    let longest = sides.iter().copied().fold(0.0, f64::max);
+    if !(longest > 0.0 && longest.is_finite()) {
+        return Err(anyhow!(
+            "the extent {extent:?} is empty: from a smaller to a larger number along each axis is needed"
+        ));
+    }
+    let nodes = sides.map(|side| {
+        let steps = libm::round(side / longest * f64::from(resolution - 1));
+        (steps.max(1.0) as u16).saturating_add(1)
+    });
+    Ok(Grid { extent, nodes })
+}
