@@ -7,7 +7,7 @@ use crate::report::Report;
 const OTHERS: [(&str, &[&str]); 2] = [("tests/peers", &[]), ("tests/fuzz", &["--no-default-features"])];
 
 /// What a user's own firmware depends on.
-const PACKAGES: [&str; 3] = ["staya-controller", "staya-mavlink", "staya-robot"];
+const PACKAGES: [&str; 4] = ["staya-controller", "staya-mavlink", "staya-robot", "staya-voxel"];
 
 /// Formatting, layers, lints, documentation; the quick ones first.
 pub fn run(repo: &Repo, report: &mut Report) {

@@ -1,4 +1,5 @@
-//! Approximate `f32` through micromath, for parts that have no flash for libm.
+//! Approximate `f32` through micromath, for parts with an FPU and no time: ORCA takes a fifth fewer instructions on a Cortex-M4F than in
+//! `f32` (`docs/firmware.md`).
 
 use super::{Scalar, sealed};
 use core::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};

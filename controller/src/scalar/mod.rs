@@ -1,7 +1,7 @@
 //! The one numeric trait, and the four numbers that implement it.
 //!
 //! `f32` ships, `f64` is the oracle, [`Q16`] serves parts without an FPU and [`Fast32`] trades
-//! accuracy for code size. Everything beyond + - * goes through [`Scalar`] and hence through the same
+//! accuracy for time. Everything beyond + - * goes through [`Scalar`] and hence through the same
 //! software routines on every target: same bits everywhere.
 //!
 //! NaN fails closed: it passes through arithmetic, `min`, `max` and `clamp` unchanged, is the last

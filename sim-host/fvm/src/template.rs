@@ -113,8 +113,8 @@ impl Template {
             Self::Room(room, system) => Templated::Plane(room.function(*system), room.extent(0.5)),
             Self::VelocityObstacle(pair, form) => pair.function(*form)?,
             &Self::Neighbor(form) => {
-                let sine = |opening: f64| 2.0 * opening / (1.0 + opening * opening);
-                Templated::Space(Function::new(move |[x, y, t]| velocity_obstacle(form, x, y, sine(t))), NEIGHBOR)
+                let leg = |t: f64| [2.0 * t / (1.0 + t * t), (1.0 - t * t) / (1.0 + t * t)];
+                Templated::Space(Function::new(move |[x, y, t]| velocity_obstacle(form, x, y, leg(t))), NEIGHBOR)
             }
         })
     }
@@ -131,34 +131,30 @@ impl Pair {
         }
         let (tip, unit) = ([x / self.horizon_s, y / self.horizon_s], radii / self.horizon_s);
         let (ahead, sine) = ([x / distance, y / distance], radii / distance);
+        let leg = [sine, libm::sqrt(1.0 - sine * sine)];
         let half = 1.25 * libm::hypot(tip[0], tip[1]).max(2.0 * unit);
         let function = Function::new(move |[vx, vy]: [f64; 2]| {
             let (x, y) = ((vx - tip[0]) / unit, (vy - tip[1]) / unit);
             let (along, across) = (x * ahead[0] + y * ahead[1], ahead[0] * y - ahead[1] * x);
-            unit * velocity_obstacle(form, along, across.abs(), sine)
+            unit * velocity_obstacle(form, along, across.abs(), leg)
         });
         Ok(Templated::Plane(function, tip.map(|middle| [middle - half, middle + half])))
     }
 }
 
 /// The velocity obstacle with its disc's centre in the origin, the disc's radius as unit and the neighbour ahead along x,
-/// by the sine of its half angle: positive inside. `y >= 0`; the other half is its mirror image.
+/// by sine and cosine of its half angle: positive inside. `y >= 0`; the other half is its mirror image. (Differences
+/// at y = 0 look a little below: there it goes on as a smooth function.)
 #[must_use]
-pub fn velocity_obstacle(form: VelocityForm, x: f64, y: f64, sine: f64) -> f64 {
-    let cos = libm::sqrt((1.0 - sine * sine).max(0.0));
+pub fn velocity_obstacle(form: VelocityForm, x: f64, y: f64, [sine, cos]: [f64; 2]) -> f64 {
     // Inside of both legs, which touch the disc; beyond the perpendiculars from the disc's centre on them.
     let (pr1, pr2) = (1.0 + sine * x - cos * y, 1.0 + sine * x + cos * y);
     let (pr3, pr4) = (cos * x + sine * y, cos * x - sine * y);
     let disc = 1.0 - libm::hypot(x, y);
     match form {
-        // Beyond the perpendicular on the nearer leg that leg is nearest, before it the disc.
-        VelocityForm::Distance => {
-            if pr3 > 0.0 {
-                pr1
-            } else {
-                disc
-            }
-        }
+        // Beyond the perpendicular on the nearer leg that leg is nearest, as everywhere ahead; before it the disc.
+        VelocityForm::Distance if pr3 > 0.0 || x > 0.0 => pr1,
+        VelocityForm::Distance => disc,
         VelocityForm::RFunction(system) => {
             let cone = system.and(system.and(pr1, pr2), system.or(pr3, pr4));
             system.or(cone, disc)

@@ -19,7 +19,7 @@ mod program {
     use staya_controller::scalar::{Fast32, Q16, Scalar};
     use staya_controller::time::Instant;
     use staya_controller::wire::Wire;
-    use staya_firmware::runtime;
+    use staya_firmware::runtime::{self, Start};
     use staya_voxel::{Model, VoxelNeighbor, obstacles};
 
     /// `staya voxel build room --resolution 33 --depth 8` and `--depth 16`.
@@ -67,14 +67,22 @@ mod program {
     }
 
     pub fn run() -> ! {
-        all::<f32>("f32");
-        all::<Fast32>("Fast32");
-        all::<Q16>("Q16");
+        // Starts the clock that is measured by.
+        let start = &runtime::start();
+        all::<f32>(&Table { scalar: "f32", start });
+        all::<Fast32>(&Table { scalar: "Fast32", start });
+        all::<Q16>(&Table { scalar: "Q16", start });
         runtime::exit(0)
     }
 
-    fn row(case: &str, [source, depth]: [&str; 2], scalar: &str, mut meter: Meter) {
-        let start = runtime::start();
+    /// What the rows of one kind of number have in common.
+    struct Table<'a> {
+        scalar: &'static str,
+        start: &'a Start,
+    }
+
+    fn row(case: &str, [source, depth]: [&str; 2], table: &Table<'_>, mut meter: Meter) {
+        let Table { scalar, start } = *table;
         let per_second = if start.emulated { 1_000_000_000 } else { u64::from(start.clock_hz) };
         let count = |ticks: u32| u64::from(ticks) * per_second / u64::from(start.tick_hz);
         meter.ticks.sort_unstable();
@@ -85,19 +93,19 @@ mod program {
     }
 
     #[inline(never)]
-    fn all<S: Scalar>(scalar: &str) {
+    fn all<S: Scalar>(table: &Table<'_>) {
         for (depth, bytes) in ROOMS {
             let Ok(model) = Model::<S, 2>::from_bytes(black_box(bytes)) else { continue };
-            readings(&model, depth, scalar);
+            readings(&model, depth, table);
         }
-        neighbor::<S, _>("formula", "", scalar, Analytic);
-        neighbor::<S, _>("table_2k", "", scalar, VoxelTable2k);
-        step::<S, _>("formula", "", scalar, Analytic);
-        step::<S, _>("table_2k", "", scalar, VoxelTable2k);
+        neighbor::<S, _>("formula", "", table, Analytic);
+        neighbor::<S, _>("table_2k", "", table, VoxelTable2k);
+        step::<S, _>("formula", "", table, Analytic);
+        step::<S, _>("table_2k", "", table, VoxelTable2k);
         for (depth, bytes) in NEIGHBORS {
             let Ok(model) = Model::<S, 3>::from_bytes(black_box(bytes)) else { continue };
-            neighbor::<S, _>("model_", depth, scalar, VoxelNeighbor::new(model));
-            step::<S, _>("model_", depth, scalar, VoxelNeighbor::new(model));
+            neighbor::<S, _>("model_", depth, table, VoxelNeighbor::new(model));
+            step::<S, _>("model_", depth, table, VoxelNeighbor::new(model));
         }
     }
 
@@ -107,7 +115,7 @@ mod program {
     }
 
     #[inline(never)]
-    fn readings<S: Scalar>(model: &Model<'_, S, 2>, depth: &str, scalar: &str) {
+    fn readings<S: Scalar>(model: &Model<'_, S, 2>, depth: &str, table: &Table<'_>) {
         let (mut nearest, mut blend, mut around) = (Meter::new(), Meter::new(), Meter::new());
         let mut rng = Rng::new(1);
         for _ in 0..CALLS {
@@ -117,13 +125,13 @@ mod program {
             let place = Vec2::new(at[0], at[1]);
             black_box(around.measure(|| obstacles(black_box(model), black_box(place), S::from_milli(300))));
         }
-        row("room", ["nearest_", depth], scalar, nearest);
-        row("room", ["blend_", depth], scalar, blend);
-        row("room", ["obstacles_", depth], scalar, around);
+        row("room", ["nearest_", depth], table, nearest);
+        row("room", ["blend_", depth], table, blend);
+        row("room", ["obstacles_", depth], table, around);
     }
 
     #[inline(never)]
-    fn neighbor<S: Scalar, P: HalfSpaces<S, Velocity = Vec2<S>>>(case: &str, of: &str, scalar: &str, source: P) {
+    fn neighbor<S: Scalar, P: HalfSpaces<S, Velocity = Vec2<S>>>(case: &str, of: &str, table: &Table<'_>, source: P) {
         let mut meter = Meter::new();
         let mut rng = Rng::new(1);
         let params = Params { horizon_s: S::TWO, separation_s: S::from_milli(50), share: S::HALF };
@@ -137,13 +145,13 @@ mod program {
                 black_box(meter.measure(ask));
             }
         }
-        row("neighbor", [case, of], scalar, meter);
+        row("neighbor", [case, of], table, meter);
     }
 
     #[inline(never)]
-    fn step<S: Scalar, P: HalfSpaces<S> + Serialize>(case: &str, of: &str, scalar: &str, source: P) {
+    fn step<S: Scalar, P: HalfSpaces<S> + Serialize>(case: &str, of: &str, table: &Table<'_>, source: P) {
         let mut meter = Meter::new();
         let _ = worst_orca::<S, _, _, 16, 32>(source, &mut meter);
-        row("step", [case, of], scalar, meter);
+        row("step", [case, of], table, meter);
     }
 }

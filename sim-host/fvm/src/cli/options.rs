@@ -156,7 +156,7 @@ fn fixed<const V: usize>(option: &str, text: &str) -> Result<[f64; V]> {
 pub fn grid<const V: usize>(extent: [[f64; 2]; V], resolution: u16) -> Result<Grid<V>> {
     let sides = extent.map(|[low, high]| high - low);
     let longest = sides.iter().copied().fold(0.0, f64::max);
-    if !(longest > 0.0 && longest.is_finite()) {
+    if !(longest > 0.0 && sides.iter().all(|side| side.is_finite())) {
         return Err(anyhow!(
             "the extent {extent:?} is empty: from a smaller to a larger number along each axis is needed"
         ));
@@ -166,4 +166,71 @@ pub fn grid<const V: usize>(extent: [[f64; 2]; V], resolution: u16) -> Result<Gr
         (steps.max(1.0) as u16).saturating_add(1)
     });
     Ok(Grid { extent, nodes })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Debug, Parser)]
+    struct Line {
+        #[command(flatten)]
+        template: TemplateArgs,
+    }
+
+    fn read(words: &str) -> Result<Templated> {
+        let line = Line::try_parse_from(format!("voxel {words}").split_whitespace())?;
+        line.template.templated()
+    }
+
+    #[test]
+    fn every_template_has_a_function_without_options() {
+        for (kind, at, is_plane) in [
+            ("circle", [0.0; 3], true),
+            ("ball", [0.0; 3], false),
+            ("polygon", [0.5, 0.5, 0.0], true),
+            ("room", [-1.5, 0.8, 0.0], true),
+            ("velocity-obstacle", [-1.5, 2.5, 0.0], true),
+            ("neighbor", [1.0, 0.0, 0.5], false),
+        ] {
+            let value = match read(kind).unwrap() {
+                Templated::Plane(function, _) if is_plane => function.value([at[0], at[1]]),
+                Templated::Space(function, _) if !is_plane => function.value(at),
+                _ => panic!("{kind}"),
+            };
+            assert!(value > 0.0, "{kind}: {value}");
+        }
+    }
+
+    #[test]
+    fn options_reach_the_function_and_wrong_ones_name_the_remedy() {
+        let Ok(Templated::Plane(circle, extent)) = read("circle --center -1,2 --radius 0.5 --extent -2,0,1,3") else {
+            panic!("no circle");
+        };
+        assert!((circle.value([-1.0, 2.25]) - 0.25).abs() < 1e-12);
+        assert_eq!(extent, [[-2.0, 0.0], [1.0, 3.0]]);
+        for (words, remedy) in [
+            ("circle --center 1", "2 numbers"),
+            ("ball --center 1,2", "3 numbers"),
+            ("circle --center 1,x", "`x` is no finite number"),
+            ("circle --radius 0", "above 0"),
+            ("circle --extent 1,2,3", "4 in all"),
+            ("ball --extent 1,2,3,4", "6 in all"),
+            ("polygon --corners 1,2", "three or more"),
+            ("room --system r2", "none of r0, r1"),
+            ("room --room /nowhere.toml", "cannot read /nowhere.toml"),
+            ("velocity-obstacle --horizon 0", "horizon above 0"),
+        ] {
+            let Err(error) = read(words) else { panic!("{words}") };
+            assert!(format!("{error:#}").contains(remedy), "{words}: {error:#}");
+        }
+    }
+
+    #[test]
+    fn the_longest_axis_has_the_resolution_and_no_axis_less_than_two_nodes() {
+        assert_eq!(grid([[0.0, 4.0], [0.0, 2.0], [0.0, 1.0]], 17).unwrap().nodes, [17, 9, 5]);
+        assert_eq!(grid([[0.0, 100.0], [0.0, 0.1]], 9).unwrap().nodes, [9, 2]);
+        assert!(grid([[1.0, 1.0], [0.0, 0.0]], 9).is_err() && grid([[0.0, f64::NAN]; 2], 9).is_err());
+    }
 }
