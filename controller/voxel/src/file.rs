@@ -124,15 +124,9 @@ impl Header {
 
     /// Bytes of the whole model; saturates.
     #[must_use]
-    pub fn len(&self) -> usize {
+    pub fn model_len(&self) -> usize {
         let node = self.components().saturating_mul(self.component_len());
         self.count().saturating_mul(node).saturating_add(HEADER_LEN)
-    }
-
-    /// Never: there is a header at least.
-    #[must_use]
-    pub const fn is_empty(&self) -> bool {
-        false
     }
 
     /// As bytes, the checksum zero: [`checksum`] of all, then to be put in bytes 44 to 47.
@@ -180,7 +174,7 @@ impl Header {
             unit: number(40),
         };
         header.check()?;
-        let needed = header.len();
+        let needed = header.model_len();
         if needed != found {
             return Err(FileError::Length { needed, found });
         }

@@ -138,8 +138,7 @@ pub fn obstacles<S: Scalar>(
     };
     let (normal, nearest) = plane(Vec2::ZERO)?;
     let mut found = Vec::<(Vec2<S>, S), { PROBES + 1 }>::new();
-    // There is room for all.
-    let _ = found.push((normal, nearest));
+    insert(&mut found, (normal, nearest));
     let diagonal = S::from_ratio(70_711, 100_000);
     let (one, zero) = (S::ONE, S::ZERO);
     for (x, y) in [
@@ -158,10 +157,25 @@ pub fn obstacles<S: Scalar>(
         let is_behind = distance >= nearest - reach_m * S::from_ratio(1, 64);
         let is_new = found.iter().all(|(other, _)| other.dot(normal) < S::from_ratio(99, 100));
         if is_behind && is_new {
-            let _ = found.push((normal, distance));
+            insert(&mut found, (normal, distance));
         }
     }
-    found.sort_unstable_by(|(_, one), (_, other)| one.order(*other));
-    let plane = |(normal, distance_m): (Vec2<S>, S)| Obstacle::Plane { normal: normal.extend(S::ZERO), distance_m };
-    Some(found.into_iter().map(plane).collect())
+    let mut planes = Vec::new();
+    for (normal, distance_m) in found {
+        let _ = planes.push(Obstacle::Plane { normal: normal.extend(S::ZERO), distance_m });
+    }
+    Some(planes)
+}
+
+/// Adds a plane behind those that are nearer; there is room. By patterns: `swap` and `sort` would leave panics in firmware.
+fn insert<S: Scalar, const N: usize>(found: &mut Vec<(Vec2<S>, S), N>, plane: (Vec2<S>, S)) {
+    let _ = found.push(plane);
+    let mut at = found.len().saturating_sub(1);
+    while let Some(before) = at.checked_sub(1)
+        && let Some([nearer, farther]) = found.get_mut(before..=at)
+        && farther.1 < nearer.1
+    {
+        core::mem::swap(nearer, farther);
+        at = before;
+    }
 }

@@ -110,8 +110,8 @@ fn header<const V: usize>(grid: &Grid<V>, depth: u8) -> Result<Header, BuildErro
         }
         (header.nodes[axis], header.first[axis], header.step[axis]) = (nodes, first, step);
     }
-    if header.len() > MOST_BYTES {
-        return Err(BuildError::Size(header.len()));
+    if header.model_len() > MOST_BYTES {
+        return Err(BuildError::Size(header.model_len()));
     }
     Ok(header)
 }

@@ -16,7 +16,9 @@ mod program {
     use staya_controller::geom::Vec2;
     use staya_controller::orca::{Analytic, HalfSpaces, MovingBall, Params, VoxelTable2k};
     use staya_controller::rand::Rng;
-    use staya_controller::scalar::{Fast32, Q16, Scalar};
+    #[cfg(part = "stm32f405")]
+    use staya_controller::scalar::Fast32;
+    use staya_controller::scalar::{Q16, Scalar};
     use staya_controller::time::Instant;
     use staya_controller::wire::Wire;
     use staya_firmware::runtime::{self, Start};
@@ -26,9 +28,12 @@ mod program {
     const ROOMS: [(&str, &[u8]); 2] =
         [("8", include_bytes!("../../models/room-8.fvm")), ("16", include_bytes!("../../models/room-16.fvm"))];
     /// `staya voxel build neighbor --resolution 17`, the same depths.
-    const NEIGHBORS: [(&str, &[u8]); 2] =
+    const PAIRS: [(&str, &[u8]); 2] =
         [("8", include_bytes!("../../models/neighbor-8.fvm")), ("16", include_bytes!("../../models/neighbor-16.fvm"))];
     const CALLS: u32 = 256;
+    /// In the worst company, as `bench` has it.
+    const NEIGHBORS: usize = if cfg!(part = "nrf51") { 8 } else { 16 };
+    const HALF_PLANES: usize = 2 * NEIGHBORS;
 
     /// Counts ticks.
     struct Meter {
@@ -69,7 +74,9 @@ mod program {
     pub fn run() -> ! {
         // Starts the clock that is measured by.
         let start = &runtime::start();
+        #[cfg(not(part = "nrf51"))]
         all::<f32>(&Table { scalar: "f32", start });
+        #[cfg(part = "stm32f405")]
         all::<Fast32>(&Table { scalar: "Fast32", start });
         all::<Q16>(&Table { scalar: "Q16", start });
         runtime::exit(0)
@@ -102,7 +109,7 @@ mod program {
         neighbor::<S, _>("table_2k", "", table, VoxelTable2k);
         step::<S, _>("formula", "", table, Analytic);
         step::<S, _>("table_2k", "", table, VoxelTable2k);
-        for (depth, bytes) in NEIGHBORS {
+        for (depth, bytes) in PAIRS {
             let Ok(model) = Model::<S, 3>::from_bytes(black_box(bytes)) else { continue };
             neighbor::<S, _>("model_", depth, table, VoxelNeighbor::new(model));
             step::<S, _>("model_", depth, table, VoxelNeighbor::new(model));
@@ -151,7 +158,7 @@ mod program {
     #[inline(never)]
     fn step<S: Scalar, P: HalfSpaces<S> + Serialize>(case: &str, of: &str, table: &Table<'_>, source: P) {
         let mut meter = Meter::new();
-        let _ = worst_orca::<S, _, _, 16, 32>(source, &mut meter);
+        let _ = worst_orca::<S, _, _, NEIGHBORS, HALF_PLANES>(source, &mut meter);
         row("step", [case, of], table, meter);
     }
 }
