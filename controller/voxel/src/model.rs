@@ -107,7 +107,8 @@ impl<'a, S: Scalar, const V: usize> Model<'a, S, V> {
             high: S::ZERO,
         }; V];
         let fields = header.nodes.iter().zip(&header.first).zip(&header.step);
-        for ((at, axis), ((&nodes, &first), &step)) in (28_usize..).step_by(4).zip(&mut axes).zip(fields) {
+        for ((index, axis), ((&nodes, &first), &step)) in axes.iter_mut().enumerate().zip(fields) {
+            let at = index.saturating_mul(4).saturating_add(28);
             let last = i32::from(nodes).saturating_sub(1);
             let half = 0.5 * last as f32 * step;
             let number = |number: f32| S::from_f32(number).ok_or(FileError::Field(at));
@@ -161,7 +162,7 @@ impl<'a, S: Scalar, const V: usize> Model<'a, S, V> {
         let (mut node, mut offset) = (0_usize, [S::ZERO; V]);
         for ((axis, x), offset) in self.axes.iter().zip(at).zip(&mut offset) {
             let steps = axis.steps(x)?;
-            let index = (steps + S::HALF).floor_to_i32()?.clamp(0, axis.last);
+            let index = (steps + S::HALF).floor_to_i32()?.clamp(0, axis.last.max(0));
             node = axis.advance(node, index)?;
             *offset = (steps - S::from_i32(index)) * axis.scale;
         }
@@ -179,7 +180,7 @@ impl<'a, S: Scalar, const V: usize> Model<'a, S, V> {
         let (mut node, mut on) = (0_usize, [S::ZERO; V]);
         for ((axis, x), on) in self.axes.iter().zip(at).zip(&mut on) {
             let steps = axis.steps(x)?;
-            let index = steps.floor_to_i32()?.clamp(0, axis.last.saturating_sub(1));
+            let index = steps.floor_to_i32()?.clamp(0, axis.last.saturating_sub(1).max(0));
             node = axis.advance(node, index)?;
             *on = steps - S::from_i32(index);
         }

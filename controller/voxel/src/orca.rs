@@ -161,7 +161,7 @@ pub fn obstacles<S: Scalar>(
         }
     }
     let mut planes = Vec::new();
-    for (normal, distance_m) in found {
+    for &(normal, distance_m) in &found {
         let _ = planes.push(Obstacle::Plane { normal: normal.extend(S::ZERO), distance_m });
     }
     Some(planes)

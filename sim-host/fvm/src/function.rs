@@ -41,9 +41,9 @@ impl System {
         let alpha = self.alpha();
         // The smaller of the two parts, from the product of both: what remains of the plain difference is rounding, and can
         // have the wrong sign.
-        let sum = x + y;
-        let root = libm::sqrt((x * x + y * y - 2.0 * alpha * x * y).max(0.0));
-        if sum > 0.0 { 2.0 * x * y / (sum + root) } else { (sum - root) / (1.0 + alpha) }
+        let (sum, product) = (x + y, x * y);
+        let root = libm::sqrt((x * x + y * y - 2.0 * alpha * product).max(0.0));
+        if sum > 0.0 { 2.0 * product / (sum + root) } else { (sum - root) / (1.0 + alpha) }
     }
 
     /// Disjunction: positive where at least one is.
