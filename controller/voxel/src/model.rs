@@ -189,7 +189,7 @@ impl<'a, S: Scalar, const V: usize> Model<'a, S, V> {
             let (mut weight, mut node, mut offset) = (S::ONE, node, [S::ZERO; V]);
             for (bit, ((axis, &on), offset)) in self.axes.iter().zip(&on).zip(&mut offset).enumerate() {
                 let is_next = corner & (1 << bit) != 0;
-                weight = weight * if is_next { on } else { S::ONE - on };
+                weight *= if is_next { on } else { S::ONE - on };
                 *offset = if is_next { on - S::ONE } else { on } * axis.scale;
                 node = node.saturating_add(if is_next { axis.stride } else { 0 });
             }

@@ -149,8 +149,8 @@ fn errors_fall_with_resolution_and_with_depth() {
             assert!(coarse / fine > least, "{reading:?}: {coarse} to {fine}");
         }
     }
-    let rough = errors(25, 6, Reading::Blend);
-    let fine = errors(25, 12, Reading::Blend);
+    let rough = errors(97, 6, Reading::Blend);
+    let fine = errors(97, 12, Reading::Blend);
     assert!(rough.gradient.mean > 3.0 * fine.gradient.mean && rough.value.mean > 3.0 * fine.value.mean);
 }
 
