@@ -6,6 +6,7 @@
 //! the signs of its arguments alone.
 
 use std::fmt::{self, Display};
+use std::ops::Not;
 use std::str::FromStr;
 use std::sync::Arc;
 
@@ -119,10 +120,13 @@ impl<const V: usize> Function<V> {
     pub fn or(self, other: Self, system: System) -> Self {
         Self::new(move |at| system.or(self.value(at), other.value(at)))
     }
+}
 
-    /// Positive where this one is negative.
-    #[must_use]
-    pub fn not(self) -> Self {
+/// Positive where the function is negative.
+impl<const V: usize> Not for Function<V> {
+    type Output = Self;
+
+    fn not(self) -> Self {
         Self::new(move |at| -self.value(at))
     }
 }

@@ -101,7 +101,7 @@ impl Room {
     /// Positive where no robot can be: outside of the outline, or in an obstacle.
     #[must_use]
     pub fn function(&self, system: System) -> Function<2> {
-        let walls = shape::polygon(self.outline.clone()).not();
+        let walls = !shape::polygon(self.outline.clone());
         let circles = self.circles.iter().map(|circle| shape::circle(circle.center, circle.radius));
         let polygons = self.polygons.iter().map(|polygon| shape::polygon(polygon.corners.clone()));
         circles.chain(polygons).fold(walls, |all, one| all.or(one, system))

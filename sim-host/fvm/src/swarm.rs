@@ -136,7 +136,7 @@ impl Swap<'_> {
                 (0..robots.len()).map(|own| self.decide(&mut robots, own, tick, walls, &model)).collect();
             for (robot, velocity) in robots.iter_mut().zip(wished) {
                 robot.velocity = velocity;
-                robot.at = robot.at + velocity * STEP_S;
+                robot.at += velocity * STEP_S;
                 robot.has_arrived = robot.has_arrived || (robot.goal - robot.at).norm() < ARRIVED_M;
                 let inside = truth.value([robot.at.x.into(), robot.at.y.into()]) as f32;
                 outcome.wall_gap_m = outcome.wall_gap_m.min(-inside - RADIUS_M);
