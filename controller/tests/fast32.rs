@@ -1,4 +1,5 @@
-//! What `Fast32` costs ORCA in accuracy, which it saves a fifth of the instructions on a Cortex-M4F (`docs/firmware.md`).
+//! What `Fast32` costs ORCA in accuracy, which it saves a fifth of the instructions on a Cortex-M4F
+//! (`docs/firmware.md`).
 #![cfg(all(feature = "orca", feature = "micromath"))]
 
 use core::f64::consts::PI;

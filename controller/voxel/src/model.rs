@@ -155,7 +155,8 @@ impl<'a, S: Scalar, const V: usize> Model<'a, S, V> {
     /// By the plane of the nearest node: the functional voxel method as it is. Jumps between voxels; the error falls
     /// with the step in gradients, with its square in values.
     ///
-    /// `None` outside of the extent, of what is not finite, and where the function is too steep for the depth. Work: one
+    /// `None` outside of the extent, of what is not finite, and where the function is too steep for the depth. Work:
+    /// one
     /// node.
     #[must_use]
     pub fn nearest(&self, at: [S; V]) -> Option<Local<S, V>> {

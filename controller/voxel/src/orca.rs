@@ -36,7 +36,8 @@ pub fn velocity_half_plane<S: Scalar>(
 /// beside that axis (its mirror image is not kept), and the tangent of half of the half angle, in which the legs turn
 /// evenly: over the sine, which comes for free, they turn ever faster up to the end, and errors are twice as large.
 ///
-/// **Each half-plane is safe whatever the model says**: of the model only the normal is used (eq. 17), turned to lie between
+/// **Each half-plane is safe whatever the model says**: of the model only the normal is used (eq. 17), turned to lie
+/// between
 /// those of the two legs if it does not, and the border touches the disc: then the whole obstacle is behind it. The
 /// model's error only makes the demanded change of velocity longer. Both robots of a pair read the
 /// same nodes, so that their half-planes are opposite.
@@ -116,9 +117,12 @@ pub const PROBES: usize = 8;
 /// What stands around a robot by a model of land or a room, metres: planes that touch the nearest borders, for ORCA,
 /// the nearest first.
 ///
-/// The plane in the robot's own place is that of the nearest border alone; in a corner the other wall counts too. So the
-/// model is asked at [`PROBES`] places at the distance `reach_m` as well (what the robot covers in a step or two, and its
-/// radius; more sees corners sooner). What is found there counts unless its plane is nearer than the nearest border: then it only touches something round
+/// The plane in the robot's own place is that of the nearest border alone; in a corner the other wall counts too. So
+/// the
+/// model is asked at [`PROBES`] places at the distance `reach_m` as well (what the robot covers in a step or two, and
+/// its
+/// radius; more sees corners sooner). What is found there counts unless its plane is nearer than the nearest border:
+/// then it only touches something round
 /// beside the robot, and would forbid what is free.
 ///
 /// `None` where the model knows nothing: stand still, or have a larger model. Work: nine times [`Model::blend`].
@@ -167,7 +171,8 @@ pub fn obstacles<S: Scalar>(
     Some(planes)
 }
 
-/// Adds a plane behind those that are nearer; there is room. By patterns: `swap` and `sort` would leave panics in firmware.
+/// Adds a plane behind those that are nearer; there is room. By patterns: `swap` and `sort` would leave panics in
+/// firmware.
 fn insert<S: Scalar, const N: usize>(found: &mut Vec<(Vec2<S>, S), N>, plane: (Vec2<S>, S)) {
     let _ = found.push(plane);
     let mut at = found.len().saturating_sub(1);

@@ -45,7 +45,8 @@ pub enum BuildError {
 
 /// The model of a function on a grid, with components of `depth` bits: bytes for `staya_voxel::Model`.
 ///
-/// Each node's plane goes through the function's value there; its slopes are differences over half a step to both sides.
+/// Each node's plane goes through the function's value there; its slopes are differences over half a step to both
+/// sides.
 ///
 /// # Errors
 /// [`BuildError`].

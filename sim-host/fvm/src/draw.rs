@@ -86,7 +86,8 @@ const TOP: f64 = 62.0;
 /// Pixels along a picture of values.
 const PIXELS: u32 = 360;
 
-/// A sheet: the values with the border, the distance to first order, and the M-images; of three variables a slice through
+/// A sheet: the values with the border, the distance to first order, and the M-images; of three variables a slice
+/// through
 /// the nearest layer to `slice`, the middle one if it is `None`.
 ///
 /// # Errors

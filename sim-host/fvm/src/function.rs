@@ -1,5 +1,6 @@
 //! Functions of two or three variables, and R-functions, which combine them as Boolean operations combine sets (V. L.
-//! Rvachev 1982, "Theory of R-functions and some applications of it"; in English V. Shapiro 2007, "Semi-analytic geometry
+//! Rvachev 1982, "Theory of R-functions and some applications of it"; in English V. Shapiro 2007, "Semi-analytic
+//! geometry
 //! with R-functions", Acta Numerica 16).
 //!
 //! A function stands for the set where it is positive; its zeros are the border. An R-function's sign follows from
@@ -40,7 +41,8 @@ impl System {
             return if x < y || x.is_nan() { x } else { y };
         }
         let alpha = self.alpha();
-        // The smaller of the two parts, from the product of both: what remains of the plain difference is rounding, and can
+        // The smaller of the two parts, from the product of both: what remains of the plain difference is rounding,
+        // and can
         // have the wrong sign.
         let (sum, product) = (x + y, x * y);
         let root = libm::sqrt((x * x + y * y - 2.0 * alpha * product).max(0.0));

@@ -103,7 +103,8 @@ pub struct HalfPlaneErrors {
     pub change: Errors,
 }
 
-/// Compares half-planes from `source` with the formula's, on so many pairs of robots: radii of 0.1 to 0.5 m, up to 5 m apart,
+/// Compares half-planes from `source` with the formula's, on so many pairs of robots: radii of 0.1 to 0.5 m, up to 5
+/// m apart,
 /// velocities of up to 1.5 m/s along each axis, a horizon of 2 s. `None` without pairs.
 #[must_use]
 pub fn half_planes<P: HalfSpaces<f32, Velocity = Vec2<f32>>>(

@@ -43,7 +43,8 @@ impl Default for Pair {
 pub enum VelocityForm {
     /// The distance to the nearest border: what ORCA asks for.
     Distance,
-    /// Pr1 and Pr2 and (Pr3 or Pr4) or Disc by R-functions: what the paper has. Zero on the same border; the gradient is
+    /// Pr1 and Pr2 and (Pr3 or Pr4) or Disc by R-functions: what the paper has. Zero on the same border; the gradient
+    /// is
     /// not everywhere the shortest way out.
     RFunction(System),
 }
@@ -142,7 +143,8 @@ impl Pair {
     }
 }
 
-/// The velocity obstacle with its disc's centre in the origin, the disc's radius as unit and the neighbour ahead along x,
+/// The velocity obstacle with its disc's centre in the origin, the disc's radius as unit and the neighbour ahead
+/// along x,
 /// by sine and cosine of its half angle: positive inside. `y >= 0`; the other half is its mirror image. (Differences
 /// at y = 0 look a little below: there it goes on as a smooth function.)
 #[must_use]

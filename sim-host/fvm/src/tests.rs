@@ -63,7 +63,8 @@ proptest! {
         prop_assert!((found - change).abs() < 1e-9, "{found} {change}");
     }
 
-    /// Nothing of the velocity obstacle is permitted, whatever the model: a coarse one, a rough one, one of a function with
+    /// Nothing of the velocity obstacle is permitted, whatever the model: a coarse one, a rough one, one of a
+    /// function with
     /// other gradients. And both robots of a pair get opposite half-planes.
     #[test]
     fn every_half_plane_of_a_neighbor_model_forbids_the_whole_obstacle(seed: u64) {

@@ -1,4 +1,5 @@
-//! What functional voxel models cost: a reading of each kind, what a room forbids, one neighbour's half-plane, and whole steps
+//! What functional voxel models cost: a reading of each kind, what a room forbids, one neighbour's half-plane, and
+//! whole steps
 //! of an agent in the worst company by them. Prints `case scalar calls median max`: instructions (on a board: clock
 //! cycles). Emulated as `bench`, with `-icount shift=0`.
 #![cfg_attr(target_os = "none", no_std, no_main)]

@@ -49,7 +49,8 @@ pub struct TemplateArgs {
         default_value = "0,0 3,0 3,1 1,1 1,2 0,2"
     )]
     corners: String,
-    /// A room as TOML: `outline = [[x, y], ...]`, `[[circle]]` with `center` and `radius`, `[[polygon]]` with `corners`; without, the
+    /// A room as TOML: `outline = [[x, y], ...]`, `[[circle]]` with `center` and `radius`, `[[polygon]]` with
+    /// `corners`; without, the
     /// room of the documentation.
     #[arg(long, value_name = "FILE")]
     room: Option<PathBuf>,
