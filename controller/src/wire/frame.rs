@@ -359,17 +359,18 @@ pub(super) fn next_frame<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
     (!frame.is_empty()).then_some(frame)
 }
 
-/// Bytes before the first zero: eight at a time (S. E. Anderson, "Bit Twiddling Hacks", "Determine if a word has a zero
-/// byte"; the lowest mark is never a false one).
+/// Bytes before the first zero: a machine word at a time (S. E. Anderson, "Bit Twiddling Hacks", "Determine if a word has
+/// a zero byte"; the lowest mark is never a false one).
 #[expect(clippy::arithmetic_side_effects, reason = "lengths within a slice")]
 fn frame_len(bytes: &[u8]) -> usize {
-    const ONES: u64 = u64::from_le_bytes([1; 8]);
-    let (words, rest) = bytes.as_chunks();
+    const WORD: usize = size_of::<usize>();
+    const ONES: usize = usize::from_le_bytes([1; WORD]);
+    let (words, rest) = bytes.as_chunks::<WORD>();
     for (at, word) in words.iter().enumerate() {
-        let word = u64::from_le_bytes(*word);
+        let word = usize::from_le_bytes(*word);
         let marks = word.wrapping_sub(ONES) & !word & (ONES << 7);
         if marks != 0 {
-            return at * 8 + (marks.trailing_zeros() >> 3) as usize;
+            return at * WORD + (marks.trailing_zeros() >> 3) as usize;
         }
     }
     let within = rest.iter().take_while(|byte| **byte != 0).count();

@@ -9,9 +9,7 @@
 //! its place, synced and renamed; the one before it stays as `FILE.old`. Keys of the scenario are in it, so only its
 //! owner may read it.
 
-mod every;
-
-pub use every::Every;
+pub use crate::engine::Every;
 
 use crate::engine::{Saves, StateError};
 use crate::file::{self, read_remedy};

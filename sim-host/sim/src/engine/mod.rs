@@ -10,6 +10,7 @@
 
 mod attacker;
 mod body;
+mod every;
 mod external;
 mod faults;
 mod grid;
@@ -27,6 +28,7 @@ mod simulate;
 mod state;
 mod witness;
 
+pub use every::Every;
 use external::External;
 pub use external::{Decision, ExternalController};
 pub use grid::Grid;

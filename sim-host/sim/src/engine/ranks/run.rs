@@ -6,7 +6,7 @@ use super::ground::Part as Ground;
 use super::outcome::{Part, Row, Sums};
 use super::region::Region;
 use super::wire::Wire;
-use crate::checkpoint::Every;
+use crate::engine::Every;
 use crate::engine::hash;
 use crate::engine::simulate::agents;
 use crate::engine::{Engine, Grid, HostLaw, Moment, Outcome, PlaneGround, Saves, State, Watch, simulate};

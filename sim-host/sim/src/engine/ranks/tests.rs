@@ -1,5 +1,5 @@
 use super::*;
-use crate::checkpoint::Every;
+use crate::engine::Every;
 use crate::engine::{Moment, Outcome, simulate, simulate_from};
 use crate::record::RobotRow;
 use crate::scenario::{Overrides, Scenario};

@@ -3,6 +3,7 @@
 mod checks;
 mod flocks;
 mod group;
+mod place;
 mod scattered;
 mod spec;
 mod starts;
@@ -15,7 +16,8 @@ pub(super) use flocks::remark;
 mod tests;
 
 pub use group::RobotGroup;
-pub use starts::{Start, Target, circle_starts};
+pub use place::{Start, Target};
+pub use starts::circle_starts;
 pub use table::*;
 
 use super::ranges::within;

@@ -2,8 +2,8 @@
 
 use super::super::ScenarioError;
 use super::super::source::Source;
+use super::place::{Start, Target};
 use super::spec::Spec;
-use super::starts::{Start, Target};
 use super::table::{BallsEntry, Place, ScatteredDiscs};
 use super::{checks, within};
 use crate::world::plane::{Solid, Solids};

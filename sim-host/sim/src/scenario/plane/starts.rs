@@ -4,40 +4,18 @@ use super::super::source::Source;
 use super::super::{Robot, ScenarioError, ScenarioFile};
 use super::check_count as count;
 use super::group::RobotGroup;
+use super::place::{Start, Target};
 use super::scattered::{self, TRIES, Taken, between, unit};
 use super::spec::Spec;
 use super::table::{CloudEntry, Place, PlaneRobotEntry, PlaneRobots};
 use super::{checks, within};
 use crate::terrain::Terrain;
 use crate::world::plane::Solid;
-use serde::{Deserialize, Serialize};
 use staya_controller::grid::Cell;
 use staya_controller::rand::Rng;
 
 /// Keep the draws of this module apart from all others.
 const STARTS: u32 = 0x0053_0003;
-
-/// Where a robot starts and what it is told.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Start {
-    /// World position, metres.
-    pub position_m: [f64; 3],
-    /// World velocity, m/s.
-    pub velocity_mps: [f64; 3],
-    /// The places it is told to go to.
-    pub places: Vec<Target>,
-    /// Its group in [`PlaneSetup::groups`](super::PlaneSetup::groups); `None`: the general one.
-    pub group: Option<usize>,
-}
-
-/// A place to go to.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Target {
-    /// Where it is at the start of the run, or of an order, metres.
-    pub position_m: [f64; 3],
-    /// How it moves, m/s.
-    pub velocity_mps: [f64; 3],
-}
 
 /// Robots of the grid, in the middles of their cells.
 pub(super) fn on_land(robots: &[Robot], terrain: &Terrain) -> Vec<Start> {
