@@ -9,10 +9,10 @@ use staya_stats::Summary;
 use staya_sweep::aggregate::{self, Point};
 use staya_sweep::merge::Merged;
 use staya_sweep::plan::PlotTable;
-use staya_sweep::run::estimate;
+use staya_sweep::run::{estimate, perform};
 use staya_sweep::script::{self, Job};
 use staya_sweep::shard::{Course, Existing, files, perform_shard};
-use staya_sweep::{Plan, Shard, SweepError, Value, pictures};
+use staya_sweep::{Plan, Shard, SweepError, pictures, schema};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -22,6 +22,8 @@ use std::time::Instant;
 const ROWS: &str = "rows.csv";
 /// Their means, medians and intervals.
 const AGGREGATES: &str = "aggregates.csv";
+/// What the columns of the merged rows are.
+const SCHEMA: &str = "rows.schema.json";
 /// Most points in the table on standard output.
 const SHOWN: usize = 40;
 /// Most figures in it.
@@ -217,7 +219,8 @@ impl SweepArgs {
             bar.set(done, String::new);
         };
         let goes_on = || !stop.is_requested();
-        let course = perform_shard(&plan, self.shard, &out, existing, &goes_on, progress);
+        let job = |(): &mut (), run| perform(&plan, run, goes_on);
+        let course = perform_shard(&plan, self.shard, &out, existing, job, progress);
         bar.finish();
         let course = course?;
         tell(&course);
@@ -355,18 +358,19 @@ impl<'a> Report<'a> {
         let (plan, out) = (self.source, self.out);
         make_dir(out)?;
         let points = aggregate::points(plan, merged);
-        for (name, text) in [(ROWS, merged.text(plan)), (AGGREGATES, aggregate::text(plan, &points))] {
+        let aggregates = aggregate::text(plan, &points);
+        for (name, text) in [(ROWS, merged.text(plan)), (SCHEMA, schema(plan)), (AGGREGATES, aggregates)] {
             write_atomically(&out.join(name), text.as_bytes())?;
             self.files.push(out.join(name));
         }
         for plot in pictures::plots(plan) {
             self.files.extend(pictures::draw(plan, merged, &plot, &out.join("plots"))?);
         }
-        let of = |point: &Point<'_>| PointFigures {
+        let of = |point: &Point| PointFigures {
             runs: point.runs,
-            axes: plan.axes().map(str::to_owned).zip(point.values.iter().map(|value| value.to_string())).collect(),
+            axes: plan.axes().map(str::to_owned).zip(point.values.iter().cloned()).collect(),
             figures: plan.measures().iter().cloned().zip(point.figures.iter().copied()).collect(),
-            values: point.values.iter().map(|value: &&Value| value.to_string()).collect(),
+            values: point.values.clone(),
         };
         self.points = points.iter().map(of).collect();
         Ok(())

@@ -10,6 +10,7 @@ pub mod orca;
 mod route;
 
 use crate::experiment::Experiment as _;
+use crate::rows::Keeping;
 use crate::{boids, goals, scale};
 use anyhow::Result;
 use clap::{Args, Subcommand};
@@ -20,6 +21,8 @@ use staya_console::{Ended, Global, Stop};
 pub struct ExperimentArgs {
     #[command(subcommand)]
     experiment: Experiment,
+    #[command(flatten)]
+    keeping: Keeping,
 }
 
 #[derive(Clone, Debug, Subcommand)]
@@ -53,20 +56,21 @@ impl ExperimentArgs {
     /// A parameter out of range, a file that cannot be read or written.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         let stop = Stop::on_ctrl_c()?;
+        let keeping = &self.keeping;
         match &self.experiment {
-            Experiment::Route(args) => args.plan().command(Some(&args.out), global, &stop),
-            Experiment::Formation(args) => args.plan()?.command(Some(&args.out), global, &stop),
-            Experiment::Swap(args) => args.plan().command(Some(&args.out()), global, &stop),
-            Experiment::Doorway(args) => args.plan().command(Some(&args.out()), global, &stop),
-            Experiment::Crossing(args) => args.plan().command(None, global, &stop),
-            Experiment::Movingai(args) => args.plan()?.command(None, global, &stop),
-            Experiment::Boids(plan) => plan.command(Some(&plan.out), global, &stop),
+            Experiment::Route(args) => args.plan().command(&args.out, keeping, global, &stop),
+            Experiment::Formation(args) => args.plan()?.command(&args.out, keeping, global, &stop),
+            Experiment::Swap(args) => args.plan().command(&args.out(), keeping, global, &stop),
+            Experiment::Doorway(args) => args.plan().command(&args.out(), keeping, global, &stop),
+            Experiment::Crossing(args) => args.plan().command(&args.out, keeping, global, &stop),
+            Experiment::Movingai(args) => args.plan()?.command(&args.out, keeping, global, &stop),
+            Experiment::Boids(plan) => plan.command(&plan.out, keeping, global, &stop),
             Experiment::Flock(args) => match args.closing() {
-                Some(closing) => closing.command(None, global, &stop),
-                None => args.plan.command(Some(&args.plan.out), global, &stop),
+                Some(closing) => closing.command(&args.plan.out.join("closing"), keeping, global, &stop),
+                None => args.plan.command(&args.plan.out, keeping, global, &stop),
             },
-            Experiment::Goals(plan) => plan.command(Some(&plan.out), global, &stop),
-            Experiment::Scale(plan) => plan.command(Some(&plan.out), global, &stop),
+            Experiment::Goals(plan) => plan.command(&plan.out, keeping, global, &stop),
+            Experiment::Scale(plan) => plan.command(&plan.out, keeping, global, &stop),
         }
     }
 }

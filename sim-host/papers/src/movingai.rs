@@ -5,17 +5,22 @@
 //! is what they learn of the costs of ways, as far as they can remember it ([`Learning`]), and at last the wall. A map
 //! that is too large for the router's search is answered by the planner ([`optimal`]).
 
-use crate::experiment::{Experiment, GoesOn, in_parallel};
+use crate::experiment::Experiment;
 use crate::optimal;
+use crate::options::word;
+use crate::route::decimal;
+use crate::rows::{Each, Jobs, Record};
 use crate::walk::{Task, Walker, holds};
 use anyhow::{Context as _, Result, ensure};
 use clap::ValueEnum;
 use serde::Serialize;
+use staya_controller::digest::digest;
 use staya_controller::grid::UNIT;
 use staya_controller::route::{Replan, RouteParams};
 use staya_sim::terrain::movingai::{Query, parse_map, parse_scen};
 use staya_sim::terrain::{Terrain, read};
 use staya_stats::Summary;
+use staya_sweep::Value;
 use std::fmt::{self, Display, Formatter};
 use std::path::{Path, PathBuf};
 
@@ -198,20 +203,20 @@ impl Plan {
         }
     }
 
-    fn answers<const M: usize>(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Answer>> {
+    fn answers<const M: usize>(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Answer>>> {
         match self.robots.learning {
-            Learning::None => self.answer::<M, 0>(goes_on),
-            Learning::Cells64 => self.answer::<M, 64>(goes_on),
-            Learning::Cells256 => self.answer::<M, 256>(goes_on),
+            Learning::None => self.answer::<M, 0>(jobs),
+            Learning::Cells64 => self.answer::<M, 64>(jobs),
+            Learning::Cells256 => self.answer::<M, 256>(jobs),
         }
     }
 
-    fn answer<const M: usize, const L: usize>(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Answer>> {
+    fn answer<const M: usize, const L: usize>(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Answer>>> {
         let (land, robots, params) = (&self.benchmark.land, &self.robots, self.params());
-        let job = |walker: &mut Walker<CELLS, M, L>, index: usize| {
+        jobs.each(|walker: &mut Walker<CELLS, M, L>, index, _| {
             let query = &self.benchmark.queries[index];
             if robots.sight == Sight::Map && !holds(CELLS, land) {
-                return Ok(self.planned(query));
+                return Ok(Some(self.planned(query)));
             }
             let task = Task { land, parked: &[], from: query.start, to: query.goal };
             let walk = walker.walk(&task, &params, robots.replan);
@@ -219,18 +224,18 @@ impl Plan {
                 Sight::Map => walker.price(land, &params, query.start, query.goal),
                 Sight::Radius(_) => None,
             };
-            Ok(Answer {
+            Ok(Some(Answer {
                 optimal_cells: query.optimal_length,
                 arrived: walk.arrived,
                 length_cells: cells(walk.length as f64),
                 priced_cells: priced.map(cells),
-            })
-        };
-        in_parallel(self.total(), 64, goes_on, job)
+            }))
+        })
     }
 }
 
 impl Experiment for Plan {
+    const NAME: &'static str = "movingai";
     const UNIT: &'static str = "queries";
     type Run = Answer;
     type Report = Report;
@@ -249,18 +254,58 @@ impl Experiment for Plan {
         Ok(())
     }
 
-    fn total(&self) -> usize {
+    fn points(&self) -> usize {
         self.benchmark.queries.len()
     }
 
-    fn perform(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Vec<Answer>>> {
-        let answers = match self.robots.memory {
-            Memory::Cells16 => self.answers::<16>(goes_on),
-            Memory::Cells64 => self.answers::<64>(goes_on),
-            Memory::Cells256 => self.answers::<256>(goes_on),
-            Memory::Cells1024 => self.answers::<1024>(goes_on),
-        };
-        Ok(vec![answers?])
+    fn runs(&self) -> u32 {
+        1
+    }
+
+    fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
+        let Benchmark { map, land, queries } = &self.benchmark;
+        let Robots { sight, memory, learning, params: _, replan } = self.robots;
+        let RouteParams { radius, exit, norm, corner_cutting, a0, a1, a2, a3 } = self.params();
+        let query = &queries[point];
+        let mut given: Vec<(_, Value)> = vec![
+            ("query", (point as u32 + 1).into()),
+            ("map", map.file_name().unwrap_or_default().to_string_lossy().into_owned().into()),
+            ("land", format!("{:016x}", digest(land.cells())).into()),
+        ];
+        let [start, goal] = [query.start, query.goal].map(|at| [at.x, at.y].map(|c| Value::Whole(c.into())));
+        given.extend(["start_x", "start_y"].into_iter().zip(start));
+        given.extend(["goal_x", "goal_y"].into_iter().zip(goal));
+        given.extend([
+            ("optimal_cells", query.optimal_length.into()),
+            ("radius_cells", if sight == Sight::Map { "map".into() } else { u32::from(radius).into() }),
+            ("visits", (memory.cells() as u32).into()),
+            ("learned", (learning.cells() as u32).into()),
+            ("exit", word(exit).into()),
+            ("replan", word(replan).into()),
+            ("norm", word(norm).into()),
+            ("corner_cutting", corner_cutting.into()),
+        ]);
+        given.extend([("a0", a0), ("a1", a1), ("a2", a2), ("a3", a3)].map(|(name, a)| (name, decimal(a).into())));
+        given
+    }
+
+    /// Nothing is drawn.
+    fn seed(&self, _: usize, _: u32) -> u64 {
+        0
+    }
+
+    fn blank(&self, point: usize, _: u32) -> Answer {
+        let optimal_cells = self.benchmark.queries[point].optimal_length;
+        Answer { optimal_cells, arrived: false, length_cells: 0.0, priced_cells: None }
+    }
+
+    fn perform(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Answer>>> {
+        match self.robots.memory {
+            Memory::Cells16 => self.answers::<16>(jobs),
+            Memory::Cells64 => self.answers::<64>(jobs),
+            Memory::Cells256 => self.answers::<256>(jobs),
+            Memory::Cells1024 => self.answers::<1024>(jobs),
+        }
     }
 
     fn report(&self, answers: &[Vec<Answer>]) -> Report {
@@ -284,6 +329,14 @@ pub struct Answer {
     /// What the router with the whole map in its window took the shortest way to be at the start, cells; `None`
     /// if it found none, or sees only a part.
     pub priced_cells: Option<f64>,
+}
+
+impl Record for Answer {
+    fn figures(&mut self, each: &mut Each<'_>) {
+        each("arrived", "1: the robot reached the goal", &mut self.arrived);
+        each("length_cells", "length of its way, or of what it went until it gave up", &mut self.length_cells);
+        each("priced_cells", "the shortest way as the router took it to be; empty: none", &mut self.priced_cells);
+    }
 }
 
 impl Answer {

@@ -9,6 +9,7 @@ use staya_controller::grid::Norm;
 use staya_controller::names::Named;
 use staya_controller::push_out::{Evasion, Model};
 use staya_controller::route::{ExitRule, Replan, RouteParams};
+use staya_controller::shuffle::Sharpness;
 
 /// A plan as the command line makes it without any option: every default is said once, in its arguments.
 ///
@@ -137,6 +138,15 @@ impl RouteOptions {
             a3: self.a3.unwrap_or(default.a3),
             ..default
         }
+    }
+}
+
+/// The ticks by which a move must cost more to come first half as often; 0: the cheapest always comes first.
+#[must_use]
+pub fn shuffle_ticks(sharpness: Sharpness) -> f64 {
+    match sharpness {
+        Sharpness::Greedy => 0.0,
+        Sharpness::HalvedPer(gain) => f64::from(gain.sixteenths()) / f64::from(Gain::ONE.sixteenths()),
     }
 }
 

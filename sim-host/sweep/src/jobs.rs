@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// Does the jobs `0..count`, as many at once as rayon has threads here.
+/// Does the jobs `0..count`, as many at once as rayon has threads here, and not more than `at_once`.
 ///
 /// Jobs are begun in order, by threads that each have a scratch memory; a job must not depend on what that holds. What is
 /// parallel inside of a job shares the threads that there are too many for jobs, usually none. `take` gets each result
@@ -12,11 +12,12 @@ use std::sync::{Mutex, PoisonError};
 /// handed over, so that what is done is always a beginning of the whole.
 pub fn each<S: Default, T: Send>(
     count: usize,
+    at_once: usize,
     job: impl Fn(&mut S, usize) -> T + Sync,
     take: impl FnMut(usize, T) -> ControlFlow<()> + Send,
 ) {
     let threads = rayon::current_num_threads();
-    let workers = threads.min(count);
+    let workers = threads.min(count).min(at_once.max(1));
     let (next, is_over) = (AtomicUsize::new(0), AtomicBool::new(false));
     let take = Mutex::new(take);
     let work = || {
@@ -58,6 +59,7 @@ mod tests {
             within(threads, || {
                 each(
                     count,
+                    usize::MAX,
                     |(): &mut (), index| 2 * index,
                     |index, double| {
                         assert_eq!(double, 2 * index);
@@ -78,7 +80,7 @@ mod tests {
                 done.push(index);
                 if done.len() < 10 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
             };
-            within(threads, || each(1000, |(): &mut (), _| (), take));
+            within(threads, || each(1000, usize::MAX, |(): &mut (), _| (), take));
             done.sort_unstable();
             assert!((10..10 + threads).contains(&done.len()), "{done:?}");
             assert_eq!(done, (0..done.len()).collect::<Vec<_>>());
@@ -87,11 +89,14 @@ mod tests {
 
     #[test]
     fn a_job_has_one_thread_unless_there_are_too_many_for_jobs() {
-        for (threads, jobs, each_has) in [(4, 8, 1), (4, 4, 1), (4, 3, 1), (4, 2, 2), (4, 1, 4)] {
+        for (threads, jobs, at_once, each_has) in
+            [(4, 8, 8, 1), (4, 4, 4, 1), (4, 3, 8, 1), (4, 2, 8, 2), (4, 1, 8, 4), (4, 8, 1, 4), (4, 3, 2, 2)]
+        {
             let mut inside = Vec::new();
             within(threads, || {
                 each(
                     jobs,
+                    at_once,
                     |(): &mut (), _| rayon::current_num_threads(),
                     |_, n| {
                         inside.push(n);

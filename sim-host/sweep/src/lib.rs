@@ -2,6 +2,7 @@
 //!
 //! | module | |
 //! | --- | --- |
+//! | [`design`] | runs that have numbers: plans of sweeps, and experiments |
 //! | [`plan`] | which fields, which values, which seeds; what is measured |
 //! | [`run`] | one run of a plan: a function of plan and number, and of nothing else |
 //! | [`row`] | what is written down of it |
@@ -13,6 +14,7 @@
 //! | [`jobs`] | jobs in parallel, for sweeps and for experiments |
 
 pub mod aggregate;
+pub mod design;
 mod error;
 mod field;
 pub mod jobs;
@@ -22,14 +24,17 @@ pub mod plan;
 pub mod row;
 pub mod run;
 mod sample;
+mod schema;
 pub mod script;
 pub mod shard;
 mod value;
 
 pub use error::SweepError;
 pub use plan::Plan;
+pub use schema::schema;
 pub use shard::Shard;
-pub use value::Value;
+pub use value::{Figure, Value};
 
-/// The version of this program, as rows have it.
-pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+/// The version of this program, as rows have it: `0.1.0`, and what `build.rs` knows of the commit, as in
+/// `0.1.0+298ef29bca11` or, of sources that were changed since, `0.1.0+298ef29bca11.5f0c2d9a`.
+pub const VERSION: &str = env!("STAYA_VERSION");

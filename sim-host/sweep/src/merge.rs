@@ -1,7 +1,7 @@
 //! The rows of all shards, in order.
 
 use crate::SweepError;
-use crate::plan::Plan;
+use crate::design::Design;
 use crate::row::{Outcome, Row, header};
 use crate::shard::{Rows, read_rows};
 use std::collections::BTreeMap;
@@ -24,7 +24,7 @@ impl Merged {
     ///
     /// # Errors
     /// A file that cannot be read, a row of another plan or version, two rows of one run that differ.
-    pub fn read(plan: &Plan, files: &[PathBuf]) -> Result<Self, SweepError> {
+    pub fn read(plan: &dyn Design, files: &[PathBuf]) -> Result<Self, SweepError> {
         let mut rows: BTreeMap<u64, (Row, &Path, usize)> = BTreeMap::new();
         let mut doubles = 0;
         for file in files {
@@ -64,7 +64,7 @@ impl Merged {
     ///
     /// # Errors
     /// As for [`Merged::read`], and when a run is missing, out of order or there twice.
-    pub fn reread(plan: &Plan, file: &Path) -> Result<Self, SweepError> {
+    pub fn reread(plan: &dyn Design, file: &Path) -> Result<Self, SweepError> {
         let Rows { rows, .. } = read_rows(plan, file)?;
         let again = "merge the shards again: `staya sweep merge`";
         for ((line, row), expected) in rows.iter().zip(0..) {
@@ -88,7 +88,7 @@ impl Merged {
     ///
     /// # Errors
     /// A run is missing.
-    pub fn whole(self, plan: &Plan, place: &Path, remedy: &str) -> Result<Self, SweepError> {
+    pub fn whole(self, plan: &dyn Design, place: &Path, remedy: &str) -> Result<Self, SweepError> {
         let count: u64 = self.missing.iter().map(|(first, last)| last - first + 1).sum();
         if count == 0 {
             return Ok(self);
@@ -107,7 +107,7 @@ impl Merged {
 
     /// As a file.
     #[must_use]
-    pub fn text(&self, plan: &Plan) -> String {
+    pub fn text(&self, plan: &dyn Design) -> String {
         let lines = self.rows.iter().map(|row| row.line(plan));
         [header(plan)].into_iter().chain(lines).map(|line| line + "\n").collect()
     }

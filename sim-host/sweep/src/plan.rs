@@ -5,6 +5,7 @@ mod check;
 mod table;
 
 use crate::SweepError;
+use crate::design::Design;
 use crate::value::Value;
 use axes::Axis;
 use staya_controller::digest::{chained, digest};
@@ -321,6 +322,40 @@ impl Plan {
         let images: Vec<_> = images.collect();
         files.extend(images);
         files
+    }
+}
+
+impl Design for Plan {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn fingerprint(&self) -> String {
+        self.fingerprint()
+    }
+
+    fn runs(&self) -> u64 {
+        self.runs()
+    }
+
+    fn runs_per_point(&self) -> u64 {
+        self.seeds()
+    }
+
+    fn parameters(&self) -> Vec<String> {
+        self.axes().map(str::to_owned).collect()
+    }
+
+    fn values(&self, run: u64) -> Vec<String> {
+        self.run(run).values.iter().map(ToString::to_string).collect()
+    }
+
+    fn seed(&self, run: u64) -> u64 {
+        self.run(run).seed
+    }
+
+    fn figures(&self) -> Vec<String> {
+        self.measures.clone()
     }
 }
 

@@ -1,7 +1,7 @@
 //! What is written down of a run: one line of CSV, the same on every machine.
 
 use crate::VERSION;
-use crate::plan::{Plan, Run};
+use crate::design::Design;
 use crate::value::Figure;
 
 /// A run that is over.
@@ -11,7 +11,7 @@ pub struct Row {
     pub run: u64,
     /// Whether it could be done; if not, it has no figures.
     pub outcome: Outcome,
-    /// The plan's measures, in its order.
+    /// The figures, in the order of the design.
     pub figures: Vec<Figure>,
     /// 16 hex digits; empty: there was no run.
     pub trace_hash: String,
@@ -37,20 +37,21 @@ impl Outcome {
 
 /// The first line of a file, without its end.
 #[must_use]
-pub fn header(plan: &Plan) -> String {
-    let mut names = vec!["run"];
-    names.extend(plan.axes());
-    names.extend(["seed", "outcome"]);
-    names.extend(plan.measures().iter().map(String::as_str));
-    names.extend(["trace_hash", "plan", "version"]);
+pub fn header(plan: &dyn Design) -> String {
+    let own = |name: &str| name.to_owned();
+    let mut names = vec![own("run")];
+    names.extend(plan.parameters());
+    names.extend(["seed", "outcome"].map(own));
+    names.extend(plan.figures());
+    names.extend(["trace_hash", "plan", "version"].map(own));
     names.join(",")
 }
 
 impl Row {
     /// As a line, without its end.
     #[must_use]
-    pub fn line(&self, plan: &Plan) -> String {
-        let mut cells = beginning(&plan.run(self.run));
+    pub fn line(&self, plan: &dyn Design) -> String {
+        let mut cells = beginning(plan, self.run);
         cells.push(self.outcome.name().to_owned());
         cells.extend(self.figures.iter().map(ToString::to_string));
         cells.extend([self.trace_hash.clone(), plan.fingerprint(), VERSION.to_owned()]);
@@ -61,7 +62,7 @@ impl Row {
     ///
     /// # Errors
     /// It is no row, or one of another plan or version.
-    pub fn read(plan: &Plan, line: &str) -> Result<Self, (String, String)> {
+    pub fn read(plan: &dyn Design, line: &str) -> Result<Self, (String, String)> {
         let cells: Vec<&str> = line.split(',').collect();
         let [start @ .., hash, fingerprint, version] = &cells[..] else {
             return Err(damaged("it is no row"));
@@ -79,7 +80,7 @@ impl Row {
         }
         let run = start.first().and_then(|cell| cell.parse().ok()).filter(|&run| run < plan.runs());
         let run: u64 = run.ok_or_else(|| damaged("the plan has no such run"))?;
-        let expected = beginning(&plan.run(run));
+        let expected = beginning(plan, run);
         let Some((own, [outcome, figures @ ..])) = start.split_at_checked(expected.len()) else {
             return Err(damaged("it is too short"));
         };
@@ -88,7 +89,7 @@ impl Row {
         }
         let outcome = [Outcome::Done, Outcome::Impossible].into_iter().find(|known| known.name() == *outcome);
         let outcome = outcome.ok_or_else(|| damaged("nobody knows what became of it"))?;
-        if figures.len() != plan.measures().len() {
+        if figures.len() != plan.figures().len() {
             return Err(damaged("it has not as many figures as the plan"));
         }
         let figures = figures.iter().map(|cell| Figure::read(cell)).collect::<Option<Vec<_>>>();
@@ -98,9 +99,9 @@ impl Row {
 }
 
 /// Number, values and seed.
-fn beginning(run: &Run<'_>) -> Vec<String> {
-    let values = run.values.iter().map(ToString::to_string);
-    [run.number.to_string()].into_iter().chain(values).chain([run.seed.to_string()]).collect()
+fn beginning(plan: &dyn Design, run: u64) -> Vec<String> {
+    let (number, seed) = (run.to_string(), plan.seed(run).to_string());
+    [number].into_iter().chain(plan.values(run)).chain([seed]).collect()
 }
 
 fn damaged(what: &str) -> (String, String) {

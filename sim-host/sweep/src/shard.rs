@@ -4,10 +4,10 @@
 //! are there are true, and the next process does what is missing.
 
 use crate::SweepError;
+use crate::design::Design;
 use crate::jobs;
-use crate::plan::Plan;
 use crate::row::{Outcome, Row, header};
-use crate::run::{Finished, perform};
+use crate::run::Finished;
 use staya_sim::file::{MAP, read};
 use staya_sim::record::{Error, make_dir};
 use std::collections::BTreeSet;
@@ -105,7 +105,7 @@ pub struct Rows {
 ///
 /// # Errors
 /// It cannot be read, or a line is none of this plan and version: file and line.
-pub fn read_rows(plan: &Plan, path: &Path) -> Result<Rows, SweepError> {
+pub fn read_rows(plan: &dyn Design, path: &Path) -> Result<Rows, SweepError> {
     let unreadable = |error: std::io::Error| {
         let remedy = staya_sim::file::read_remedy(&error);
         SweepError::new(path.display(), error.to_string(), remedy)
@@ -165,7 +165,7 @@ struct Appended {
 
 impl Appended {
     /// Appends lines to the shard's file; `whole` bytes of it stay.
-    fn open(plan: &Plan, out: &Path, shard: Shard, existing: Existing) -> Result<(Self, usize), SweepError> {
+    fn open(plan: &dyn Design, out: &Path, shard: Shard, existing: Existing) -> Result<(Self, usize), SweepError> {
         let path = out.join(FOLDER).join(shard.file_name());
         make_dir(&out.join(FOLDER))?;
         make_dir(&out.join(TIMES))?;
@@ -231,16 +231,16 @@ impl Course {
 
 /// Does the runs of a shard that are not there yet, and appends their rows, each when it is done.
 ///
-/// `goes_on` is asked again and again, from any thread; `progress` is told how many are done of how many to do.
+/// `job` makes a run on any thread, or `None` to end everything; `progress` is told how many are done of how many to do.
 ///
 /// # Errors
 /// Rows of another plan or version, rows that are not to be touched, a file that cannot be written. What was done is kept.
-pub fn perform_shard(
-    plan: &Plan,
+pub fn perform_shard<S: Default>(
+    plan: &dyn Design,
     shard: Shard,
     out: &Path,
     existing: Existing,
-    goes_on: &(dyn Fn() -> bool + Sync),
+    job: impl Fn(&mut S, u64) -> Option<Finished> + Sync,
     mut progress: impl FnMut(u64, u64) + Send,
 ) -> Result<Course, SweepError> {
     if existing == Existing::Forget && shard.is_whole() {
@@ -263,7 +263,8 @@ pub fn perform_shard(
         there.extend(done.map(|(_, row)| row.run));
     }
     let (mut file, torn) = Appended::open(plan, out, shard, existing)?;
-    let mine: Vec<u64> = (0..plan.runs()).filter(|&run| shard.has(run)).collect();
+    let mut mine: Vec<u64> = (0..plan.runs()).filter(|&run| shard.has(run)).collect();
+    mine.sort_by_key(|&run| plan.turn(run));
     let missing: Vec<u64> = mine.iter().copied().filter(|run| !there.contains(run)).collect();
     let mut course =
         Course { runs: mine.len() as u64, found: (mine.len() - missing.len()) as u64, torn, ..Course::default() };
@@ -287,7 +288,7 @@ pub fn perform_shard(
         progress(course.done, missing.len() as u64);
         ControlFlow::Continue(())
     };
-    jobs::each(missing.len(), |(): &mut (), index| perform(plan, missing[index], goes_on), take);
+    jobs::each(missing.len(), plan.at_once(), |scratch, index| job(scratch, missing[index]), take);
     file.sync()?;
     match failed {
         Some(error) => Err(error.into()),

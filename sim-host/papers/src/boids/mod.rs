@@ -12,8 +12,9 @@ mod tests;
 
 pub use report::{Report, Row, Timing};
 
-use crate::experiment::{Experiment, GoesOn};
+use crate::experiment::Experiment;
 use crate::options;
+use crate::rows::Jobs;
 use anyhow::{Result, ensure};
 use clap::Args;
 use rayon::prelude::*;
@@ -23,6 +24,7 @@ use staya_controller::neighbor::Nearby;
 use staya_controller::rand::Rng;
 use staya_controller::robot::{Mode, RobotId};
 use staya_sim::nearby::{AllPairs, Cells, Found, Query, Search, Space, Tree};
+use staya_sweep::Value;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -121,7 +123,7 @@ pub struct Plan {
     /// Equal seeds give equal flights.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
-    /// Folder for pictures and table.
+    /// Folder for rows and pictures.
     #[arg(long, value_name = "DIR", default_value = "out/experiment-boids")]
     pub out: PathBuf,
 }
@@ -185,7 +187,7 @@ impl Plan {
     }
 
     /// One line of the table; `None` when it was stopped, since an unfinished one compares nothing.
-    fn row(&self, boids: u32, goes_on: impl Fn() -> bool) -> Option<Row> {
+    fn row(&self, boids: u32, goes_on: &dyn Fn() -> bool) -> Option<Row> {
         let mut row = Row::new(boids, self.steps);
         for method in Method::ALL {
             if !goes_on() {
@@ -196,6 +198,7 @@ impl Plan {
             }
         }
         row.parallel_us_per_boid = self.time_in_parallel(boids);
+        row.settle();
         Some(row)
     }
 
@@ -252,8 +255,9 @@ impl Plan {
 }
 
 impl Experiment for Plan {
+    const NAME: &'static str = "boids";
     const UNIT: &'static str = "lines";
-    const FILES: &'static str = "files";
+    const ALONE: bool = true;
     type Run = Row;
     type Report = Report;
 
@@ -274,19 +278,48 @@ impl Experiment for Plan {
         Ok(())
     }
 
-    fn total(&self) -> usize {
+    fn points(&self) -> usize {
         self.boids.len()
     }
 
-    /// One after the other: what is timed has the machine for itself.
-    fn perform(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Vec<Row>>> {
-        let lines = self.boids.iter().enumerate();
-        let rows = lines.map_while(|(done, &boids)| self.row(boids, || goes_on(done)));
-        Ok(vec![rows.collect()])
+    fn runs(&self) -> u32 {
+        1
+    }
+
+    fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
+        // By name, so that a new field is not forgotten.
+        let Self { boids, steps, most_by_all_pairs, picture_boids: _, picture_steps: _, .. } = self;
+        let Self { area_per_boid, speed, crowded, closest, max_turn, max_turn_away, seed: _, out: _, .. } = self;
+        let number = |value: f32| Value::from(f64::from(value));
+        vec![
+            ("boids", boids[point].into()),
+            ("steps", (*steps).into()),
+            ("all_pairs_up_to", (*most_by_all_pairs).into()),
+            ("area_per_boid", number(*area_per_boid)),
+            ("speed", number(*speed)),
+            ("crowded", number(*crowded)),
+            ("closest", number(*closest)),
+            ("max_turn", number(*max_turn)),
+            ("max_turn_away", number(*max_turn_away)),
+            ("threads", (rayon::current_num_threads() as u32).into()),
+        ]
+    }
+
+    fn seed(&self, _: usize, _: u32) -> u64 {
+        self.seed
+    }
+
+    fn blank(&self, point: usize, _: u32) -> Row {
+        Row::new(self.boids[point], self.steps)
+    }
+
+    fn perform(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Row>>> {
+        jobs.each(|(): &mut (), point, _| Ok(self.row(self.boids[point], &|| jobs.goes_on())))
     }
 
     fn report(&self, rows: &[Vec<Row>]) -> Report {
-        let rows = rows.concat();
+        let mut rows = rows.concat();
+        rows.iter_mut().for_each(Row::tell_hashes);
         // Who stopped the timing does not wait for the picture.
         let is_complete = rows.len() == self.boids.len();
         let picture = if is_complete { self.picture() } else { Vec::new() };
@@ -294,9 +327,7 @@ impl Experiment for Plan {
     }
 
     fn draw(&self, _: &[Vec<Row>], report: &Report, dir: &Path) -> Result<Vec<PathBuf>> {
-        let mut files = vec![report.write_csv(dir)?];
-        files.extend(report.draw(dir)?);
-        Ok(files)
+        Ok(report.draw(dir)?)
     }
 
     fn judge(report: &Report) -> Result<()> {

@@ -2,11 +2,10 @@
 
 use super::{Flock, Method, Plan};
 use crate::experiment::Maybe;
+use crate::rows::{Each, Record};
 use serde::Serialize;
 use staya_sim::metrics::flock::polarisation;
-use staya_sim::record::{Error, write_atomically};
-use std::fmt::{self, Display, Formatter, Write as _};
-use std::path::{Path, PathBuf};
+use std::fmt::{self, Display, Formatter};
 
 /// One search over so many boids.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -34,17 +33,73 @@ pub struct Row {
     pub timings: Vec<Timing>,
     /// Lattice cells with all threads, microseconds per boid and step.
     pub parallel_us_per_boid: f64,
+    /// Whether all searches gave the same trajectories.
+    #[serde(skip)]
+    pub(super) is_equal: bool,
+    /// The hash of the first search.
+    #[serde(skip)]
+    pub(super) hash: u64,
+}
+
+impl Record for Row {
+    fn figures(&mut self, each: &mut Each<'_>) {
+        each("mean_neighbours", "mean number of neighbours in the last step", &mut self.mean_neighbours);
+        for (method, [us_name, ms_name]) in Method::ALL.into_iter().zip([
+            ["us_per_boid.all_pairs", "ms_per_step.all_pairs"],
+            ["us_per_boid.cells", "ms_per_step.cells"],
+            ["us_per_boid.tree", "ms_per_step.tree"],
+        ]) {
+            let found = self.timings.iter().position(|timing| timing.method == method.name());
+            let timing = found.map(|at| &self.timings[at]);
+            let [mut us, mut ms] = [timing.map(|t| t.us_per_boid), timing.map(|t| t.ms_per_step)];
+            each(us_name, "wall time per boid and step on one thread, microseconds; empty: not run", &mut us);
+            each(ms_name, "wall time of the median step, milliseconds", &mut ms);
+            if let (None, Some(us_per_boid), Some(ms_per_step)) = (found, us, ms) {
+                let hash = String::new();
+                self.timings.push(Timing { method: method.name(), us_per_boid, ms_per_step, hash });
+            }
+        }
+        each("us_per_boid.threads", "the same by cells on all threads", &mut self.parallel_us_per_boid);
+        each("equal", "1: all searches gave the same trajectories", &mut self.is_equal);
+    }
+
+    fn trace_hash(&mut self) -> Option<&mut u64> {
+        Some(&mut self.hash)
+    }
 }
 
 impl Row {
     pub(super) const fn new(boids: u32, steps: u32) -> Self {
-        Self { boids, steps, mean_neighbours: 0.0, timings: Vec::new(), parallel_us_per_boid: 0.0 }
+        Self {
+            boids,
+            steps,
+            mean_neighbours: 0.0,
+            timings: Vec::new(),
+            parallel_us_per_boid: 0.0,
+            is_equal: true,
+            hash: 0,
+        }
+    }
+
+    /// What a row says of the hashes.
+    pub(super) fn settle(&mut self) {
+        self.is_equal = self.timings.windows(2).all(|pair| pair[0].hash == pair[1].hash);
+        let first = self.timings.first().and_then(|timing| u64::from_str_radix(&timing.hash, 16).ok());
+        self.hash = first.unwrap_or_default();
+    }
+
+    /// The hashes of what was read of a row; of several that differ the first alone is known.
+    pub(super) fn tell_hashes(&mut self) {
+        let (hash, is_equal) = (format!("{:016x}", self.hash), self.is_equal);
+        for (index, timing) in self.timings.iter_mut().enumerate().filter(|(_, timing)| timing.hash.is_empty()) {
+            timing.hash = if is_equal || index == 0 { hash.clone() } else { String::from("differs") };
+        }
     }
 
     /// Whether all searches gave the same trajectories.
     #[must_use]
-    pub fn is_equal(&self) -> bool {
-        self.timings.windows(2).all(|pair| pair[0].hash == pair[1].hash)
+    pub const fn is_equal(&self) -> bool {
+        self.is_equal
     }
 
     /// Microseconds per boid and step by this search; `None`: not run.
@@ -104,33 +159,6 @@ impl Report {
             rows,
             flocks,
         }
-    }
-
-    /// Writes `boids.csv` into `dir`: a line per number of boids and search. Names the file.
-    ///
-    /// # Errors
-    /// It cannot be written.
-    pub fn write_csv(&self, dir: &Path) -> Result<PathBuf, Error> {
-        let mut text = String::from("boids,steps,mean_neighbours,search,us_per_boid,ms_per_step,hash\n");
-        for row in &self.rows {
-            for timing in &row.timings {
-                // Writing to a string does not fail.
-                let _ = writeln!(
-                    text,
-                    "{},{},{:.3},{},{:.4},{:.4},{}",
-                    row.boids,
-                    row.steps,
-                    row.mean_neighbours,
-                    timing.method,
-                    timing.us_per_boid,
-                    timing.ms_per_step,
-                    timing.hash
-                );
-            }
-        }
-        let path = dir.join("boids.csv");
-        write_atomically(&path, text.as_bytes())?;
-        Ok(path)
     }
 }
 

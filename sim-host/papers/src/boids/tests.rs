@@ -81,15 +81,12 @@ fn plans_that_make_no_sense_are_refused() {
 }
 
 #[test]
-fn pictures_and_table_are_left() {
+fn pictures_are_left() {
     let dir = tempfile::tempdir().expect("a folder");
     let report = small().measure().expect("a plan");
     let files = report.draw(dir.path()).expect("drawn");
     assert_eq!(files.len(), 4);
     assert!(files.iter().all(|file| file.is_file()));
-    let csv = std::fs::read_to_string(report.write_csv(dir.path()).expect("written")).expect("read");
-    assert_eq!(csv.lines().count(), 1 + 9);
-    assert!(csv.lines().all(|line| line.matches(',').count() == 6));
 }
 
 #[test]

@@ -52,7 +52,7 @@ struct Common {
     seeds: u32,
     #[command(flatten)]
     runs: Runs,
-    /// Folder for the pictures [default: out/swap, out/doorway].
+    /// Folder for rows and pictures [default: out/swap, out/doorway].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
@@ -130,6 +130,9 @@ pub struct CrossingArgs {
     seeds: u32,
     #[command(flatten)]
     runs: Runs,
+    /// Folder for the rows.
+    #[arg(long, value_name = "DIR", default_value = "out/crossing")]
+    pub out: PathBuf,
 }
 
 impl CrossingArgs {
@@ -192,7 +195,7 @@ impl SwapArgs {
         }
     }
 
-    /// Folder for the pictures.
+    /// Folder for rows and pictures.
     pub fn out(&self) -> PathBuf {
         self.common.out("swap")
     }
@@ -212,7 +215,7 @@ impl DoorwayArgs {
         }
     }
 
-    /// Folder for the pictures.
+    /// Folder for rows and pictures.
     pub fn out(&self) -> PathBuf {
         self.common.out("doorway")
     }

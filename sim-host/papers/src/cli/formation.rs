@@ -73,7 +73,7 @@ pub struct FormationArgs {
     /// Equal seeds give equal results.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Folder for the pictures.
+    /// Folder for rows and pictures.
     #[arg(long, value_name = "DIR", default_value = "out/experiment-formation")]
     pub out: PathBuf,
 }

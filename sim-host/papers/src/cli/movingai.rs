@@ -28,6 +28,9 @@ pub struct MovingAiArgs {
     learned: Learning,
     #[command(flatten)]
     route: RouteOptions,
+    /// Folder for the rows.
+    #[arg(long, value_name = "DIR", default_value = "out/experiment-movingai")]
+    pub out: PathBuf,
 }
 
 /// Reads a window radius.

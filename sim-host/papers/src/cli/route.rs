@@ -88,7 +88,7 @@ pub struct RouteArgs {
     /// The values to sweep over [default: a selection for each coefficient].
     #[arg(long, value_name = "V,V,...", value_delimiter = ',', value_parser = gain, requires = "sweep")]
     values: Vec<Gain>,
-    /// Folder for the pictures.
+    /// Folder for rows and pictures.
     #[arg(long, value_name = "DIR", default_value = "out/experiment-route")]
     pub out: PathBuf,
 }
@@ -134,6 +134,7 @@ impl RouteArgs {
 mod tests {
     use super::*;
     use crate::experiment::Experiment as _;
+    use crate::rows::Keeping;
     use clap::Parser;
     use staya_console::{Ended, Global, Stop};
     use staya_controller::route::{ExitRule, Replan};
@@ -211,11 +212,11 @@ mod tests {
         let args = read(&words).unwrap();
         let quiet = Global { quiet: true, ..Global::default() };
         let stop = Stop::default();
-        let ended = args.plan().command(Some(&args.out), &quiet, &stop).unwrap();
+        let ended = args.plan().command(&args.out, &Keeping::default(), &quiet, &stop).unwrap();
         assert_eq!(ended, Ended::Done);
         assert!(out.join("figure3.svg").is_file() && out.join("sweep-a2.png").is_file());
         stop.request();
-        let error = args.plan().command(Some(&args.out), &quiet, &stop).unwrap_err();
+        let error = args.plan().command(&args.out, &Keeping::default(), &quiet, &stop).unwrap_err();
         assert!(error.to_string().contains("before any of the landscapes"));
     }
 

@@ -5,8 +5,9 @@
 
 mod scene;
 
-use super::{Conditions, gap, run, whole};
-use crate::experiment::{Experiment, GoesOn, Maybe, by_point, check_runs};
+use super::{Conditions, gap, run};
+use crate::experiment::{Experiment, Maybe, check_runs};
+use crate::rows::{Each, Jobs, Record};
 use anyhow::{Result, ensure};
 use clap::ValueEnum;
 use serde::Serialize;
@@ -14,6 +15,7 @@ use staya_controller::agent::SafetyKind;
 use staya_sim::metrics::flock::FlockMeter;
 use staya_sim::nearby::Space;
 use staya_sim::scenario::Scenario;
+use staya_sweep::Value;
 use std::fmt::{Display, Formatter};
 
 /// What is in whose way.
@@ -184,6 +186,27 @@ pub struct Crossing {
     pub least_gap_m: Option<f64>,
     /// Connected parts of a flock at the end.
     pub parts: Option<usize>,
+    /// Fingerprint of the whole trace.
+    #[serde(skip)]
+    pub hash: u64,
+}
+
+impl Record for Crossing {
+    fn figures(&mut self, each: &mut Each<'_>) {
+        each("robots", "robots that have a goal", &mut self.robots);
+        each("arrived", "robots at their goals at the end; of a flock those past the balls", &mut self.arrived);
+        each("last_s", "when the last one had arrived; empty: not all did, or a flock", &mut self.last_s);
+        each("time_ratio", "the largest time of a robot over its own free time", &mut self.time_ratio);
+        each("overlaps", "overlaps of bodies, and with walls, summed over ticks", &mut self.overlaps);
+        each("deepest_m", "the deepest of them; 0: none", &mut self.deepest_m);
+        each("intruder_overlaps", "overlaps with the intruder, summed over ticks", &mut self.intruder_overlaps);
+        each("least_gap_m", "least gap between two bodies; empty: nobody came near", &mut self.least_gap_m);
+        each("parts", "connected parts of a flock at the end; empty: no flock", &mut self.parts);
+    }
+
+    fn trace_hash(&mut self) -> Option<&mut u64> {
+        Some(&mut self.hash)
+    }
 }
 
 /// What came of it.
@@ -200,7 +223,7 @@ pub struct Report {
 }
 
 impl Plan {
-    fn crossing(&self, case: Case, seed: u64, goes_on: &GoesOn<'_>) -> Option<Crossing> {
+    fn crossing(&self, case: Case, seed: u64, goes_on: &dyn Fn() -> bool) -> Option<Crossing> {
         let scenario = self.scenario(case, seed);
         let (mut places, mut velocities, mut worst) = (Vec::new(), Vec::new(), 0.0_f64);
         let outcome = run(&scenario, goes_on, |robots| {
@@ -239,6 +262,7 @@ impl Plan {
             intruder_overlaps: clearance.intruder_overlaps,
             least_gap_m: gap(clearance.bodies_m),
             parts,
+            hash: outcome.trace_hash,
         })
     }
 }
@@ -267,6 +291,7 @@ fn free_s(scenario: &Scenario) -> impl Iterator<Item = f64> {
 }
 
 impl Experiment for Plan {
+    const NAME: &'static str = "crossing";
     const UNIT: &'static str = "runs";
     type Run = Crossing;
     type Report = Report;
@@ -294,14 +319,52 @@ impl Experiment for Plan {
         Ok(())
     }
 
-    fn total(&self) -> usize {
-        self.cases.len() * self.seeds as usize
+    fn points(&self) -> usize {
+        self.cases.len()
     }
 
-    fn perform(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Vec<Crossing>>> {
-        let crossing =
-            |(): &mut (), point: usize, run| Ok(self.crossing(self.cases[point], self.seed + u64::from(run), goes_on));
-        Ok(whole(by_point(self.cases.len(), self.seeds, 1, goes_on, crossing)?))
+    fn runs(&self) -> u32 {
+        self.seeds
+    }
+
+    fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
+        let Self { cases, robots, noise_m, seeds: _, seed: _, longest_s, blackout_s, size, conditions } = self;
+        let case = cases[point];
+        let own: [(_, Value); 5] = [
+            ("case", case.name().into()),
+            ("robots_of_group", robots.unwrap_or(case.robots()).into()),
+            ("size", (*size).into()),
+            ("longest_s", (*longest_s).into()),
+            ("blackout_s", (*blackout_s).into()),
+        ];
+        own.into_iter().chain(conditions.given(*noise_m)).collect()
+    }
+
+    fn seed(&self, _: usize, run: u32) -> u64 {
+        self.seed + u64::from(run)
+    }
+
+    fn blank(&self, point: usize, run: u32) -> Crossing {
+        Crossing {
+            case: self.cases[point],
+            seed: self.seed(point, run),
+            robots: 0,
+            arrived: 0,
+            last_s: None,
+            time_ratio: None,
+            overlaps: 0,
+            deepest_m: 0.0,
+            intruder_overlaps: 0,
+            least_gap_m: None,
+            parts: None,
+            hash: 0,
+        }
+    }
+
+    fn perform(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Crossing>>> {
+        jobs.each(|(): &mut (), point, run| {
+            Ok(self.crossing(self.cases[point], self.seed(point, run), &|| jobs.goes_on()))
+        })
     }
 
     fn report(&self, runs: &[Vec<Crossing>]) -> Report {

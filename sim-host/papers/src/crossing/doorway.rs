@@ -1,7 +1,8 @@
 //! Two crowds that want through one gap in a wall, in opposite directions.
 
-use super::{Conditions, gap, picture, run, whole};
-use crate::experiment::{Experiment, GoesOn, by_point, check_runs};
+use super::{Conditions, gap, picture, run};
+use crate::experiment::{Experiment, check_runs};
+use crate::rows::{Each, Jobs, Record};
 use anyhow::{Result, ensure};
 use serde::Serialize;
 use staya_controller::rand::Rng;
@@ -9,6 +10,7 @@ use staya_plot::flock::Sheet;
 use staya_sim::record::RobotRow;
 use staya_sim::scenario::{PlaneSetup, Scenario, Start, Target};
 use staya_sim::world::plane::Solid;
+use staya_sweep::Value;
 use std::path::{Path, PathBuf};
 
 /// Radius of a robot, metres.
@@ -60,7 +62,7 @@ impl Default for Plan {
 }
 
 /// One run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Passage {
     /// Width of the gap, metres.
     pub width_m: f64,
@@ -84,6 +86,29 @@ pub struct Passage {
     pub least_wall_gap_m: Option<f64>,
     /// Overlaps of bodies, and of bodies with the wall, summed over ticks.
     pub overlaps: u64,
+    /// Fingerprint of the whole trace.
+    #[serde(skip)]
+    pub hash: u64,
+}
+
+impl Record for Passage {
+    fn figures(&mut self, each: &mut Each<'_>) {
+        let [west, east] = &mut self.through;
+        each("robots", "robots on both sides together", &mut self.robots);
+        each("arrived", "robots at their goals at the end", &mut self.arrived);
+        each("through_from_west", "robots from the west that passed", west);
+        each("through_from_east", "robots from the east that passed", east);
+        each("last_s", "when the last one had arrived; empty: not all did", &mut self.last_s);
+        each("time_ratio", "last arrival over the longest free time", &mut self.time_ratio);
+        each("turns", "changes of direction in the gap", &mut self.turns);
+        each("least_gap_m", "least gap between two bodies; empty: nobody came near", &mut self.least_gap_m);
+        each("least_wall_gap_m", "least gap between a body and the wall", &mut self.least_wall_gap_m);
+        each("overlaps", "overlaps of bodies, and with the wall, summed over ticks", &mut self.overlaps);
+    }
+
+    fn trace_hash(&mut self) -> Option<&mut u64> {
+        Some(&mut self.hash)
+    }
 }
 
 /// What came of it.
@@ -129,7 +154,7 @@ impl Plan {
         self.conditions.scenario("doorway", seed, self.longest_s, setup)
     }
 
-    fn passage(&self, width_m: f64, seed: u64, goes_on: &GoesOn<'_>) -> Option<Passage> {
+    fn passage(&self, width_m: f64, seed: u64, goes_on: &dyn Fn() -> bool) -> Option<Passage> {
         let scenario = self.scenario(width_m, seed);
         let setup = scenario.plane.as_ref()?;
         let mut flow = Flow::new(setup.starts.iter().map(|start| start.position_m[0]));
@@ -157,6 +182,7 @@ impl Plan {
             least_gap_m: gap(clearance.bodies_m),
             least_wall_gap_m: gap(clearance.solids_m),
             overlaps: clearance.overlaps + clearance.intrusions,
+            hash: outcome.trace_hash,
         })
     }
 
@@ -168,6 +194,7 @@ impl Plan {
 }
 
 impl Experiment for Plan {
+    const NAME: &'static str = "doorway";
     const UNIT: &'static str = "runs";
     type Run = Passage;
     type Report = Report;
@@ -183,15 +210,36 @@ impl Experiment for Plan {
         Ok(())
     }
 
-    fn total(&self) -> usize {
-        self.widths_m.len() * self.seeds as usize
+    fn points(&self) -> usize {
+        self.widths_m.len()
     }
 
-    fn perform(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Vec<Passage>>> {
-        let passage = |(): &mut (), point: usize, run| {
-            Ok(self.passage(self.widths_m[point], self.seed + u64::from(run), goes_on))
-        };
-        Ok(whole(by_point(self.widths_m.len(), self.seeds, 1, goes_on, passage)?))
+    fn runs(&self) -> u32 {
+        self.seeds
+    }
+
+    fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
+        let Self { widths_m, robots, noise_m, seeds: _, seed: _, longest_s, conditions } = self;
+        let own: [(_, Value); 3] = [
+            ("width_m", widths_m[point].into()),
+            ("robots_per_side", (*robots).into()),
+            ("longest_s", (*longest_s).into()),
+        ];
+        own.into_iter().chain(conditions.given(*noise_m)).collect()
+    }
+
+    fn seed(&self, _: usize, run: u32) -> u64 {
+        self.seed + u64::from(run)
+    }
+
+    fn blank(&self, point: usize, run: u32) -> Passage {
+        Passage { width_m: self.widths_m[point], seed: self.seed(point, run), ..Passage::default() }
+    }
+
+    fn perform(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Passage>>> {
+        jobs.each(|(): &mut (), point, run| {
+            Ok(self.passage(self.widths_m[point], self.seed(point, run), &|| jobs.goes_on()))
+        })
     }
 
     fn report(&self, runs: &[Vec<Passage>]) -> Report {

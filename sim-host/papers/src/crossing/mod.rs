@@ -9,7 +9,7 @@ pub mod doorway;
 mod report;
 pub mod swap;
 
-use crate::experiment::GoesOn;
+use crate::options::word;
 use anyhow::{Result, ensure};
 use serde::Serialize;
 use staya_controller::agent::SafetyKind;
@@ -23,6 +23,7 @@ use staya_sim::radio::RadioParams;
 use staya_sim::record::{Options, Recorder, RobotRow};
 use staya_sim::scenario::{PlaneSetup, RobotGroup, Scenario};
 use staya_sim::world::plane::Abilities;
+use staya_sweep::Value;
 use std::ops::ControlFlow;
 
 /// What the runs have in common.
@@ -62,6 +63,19 @@ impl Conditions {
         Ok(())
     }
 
+    /// The same as parameters of rows.
+    fn given(&self, noise_m: f64) -> Vec<(&'static str, Value)> {
+        let Self { step_s, speed_mps, range_m, loss, safety } = *self;
+        vec![
+            ("noise_m", noise_m.into()),
+            ("step_s", step_s.into()),
+            ("speed_mps", speed_mps.into()),
+            ("range_m", range_m.into()),
+            ("loss", loss.into()),
+            ("safety", word(safety).into()),
+        ]
+    }
+
     /// Robots of a size that go to places, and count as being there at a distance; metres.
     fn group(&self, radius_m: f64, tolerance_m: f64) -> RobotGroup {
         self.group_at(self.speed_mps, radius_m, tolerance_m)
@@ -93,7 +107,7 @@ impl Conditions {
 /// `None` when `goes_on` says so before its end.
 fn run(
     scenario: &Scenario,
-    goes_on: &GoesOn<'_>,
+    goes_on: &dyn Fn() -> bool,
     mut see: impl FnMut(&mut dyn Iterator<Item = RobotRow>),
 ) -> Option<Outcome> {
     let mut stopped = false;
@@ -103,7 +117,7 @@ fn run(
         see(robots);
         if moment.arrived >= sent {
             ControlFlow::Break(())
-        } else if goes_on(0) {
+        } else if goes_on() {
             ControlFlow::Continue(())
         } else {
             stopped = true;
@@ -126,11 +140,6 @@ fn picture(scenario: &Scenario) -> Sheet {
     let history = recorder.finish().expect(in_memory);
     let setup = scenario.plane.as_ref().expect("it was made in the plane");
     motion_sheet(setup, &history)
-}
-
-/// Runs that came to their end.
-fn whole<T>(runs: Vec<Vec<Option<T>>>) -> Vec<Vec<T>> {
-    runs.into_iter().map(|runs| runs.into_iter().flatten().collect()).collect()
 }
 
 /// Least gap of a run, metres; `None` when nobody came near.

@@ -1,12 +1,14 @@
 //! Robots evenly on a circle, each bound for the opposite side: all ways cross in one point at one time.
 
-use super::{Conditions, gap, picture, run, whole};
-use crate::experiment::{Experiment, GoesOn, by_point, check_runs};
+use super::{Conditions, gap, picture, run};
+use crate::experiment::{Experiment, check_runs};
+use crate::rows::{Each, Jobs, Record};
 use anyhow::{Result, ensure};
 use serde::Serialize;
 use staya_plot::flock::Sheet;
 use staya_plot::{Chart, Series};
 use staya_sim::scenario::{PlaneSetup, Scenario, circle_starts};
+use staya_sweep::Value;
 use std::path::{Path, PathBuf};
 
 /// Radius of a robot, metres.
@@ -54,7 +56,7 @@ pub fn circle_m(robots: u32) -> f64 {
 }
 
 /// One run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Swap {
     /// How many robots.
     pub robots: u32,
@@ -72,6 +74,23 @@ pub struct Swap {
     pub least_gap_m: Option<f64>,
     /// Overlaps, summed over ticks.
     pub overlaps: u64,
+    /// Fingerprint of the whole trace.
+    #[serde(skip)]
+    pub hash: u64,
+}
+
+impl Record for Swap {
+    fn figures(&mut self, each: &mut Each<'_>) {
+        each("arrived", "robots at their goals at the end", &mut self.arrived);
+        each("time_ratio", "last arrival over the free time; empty: not all arrived", &mut self.time_ratio);
+        each("mean_time_ratio", "the same, mean of those that arrived", &mut self.mean_time_ratio);
+        each("least_gap_m", "least gap between two bodies; empty: nobody came near", &mut self.least_gap_m);
+        each("overlaps", "overlapping pairs, summed over ticks", &mut self.overlaps);
+    }
+
+    fn trace_hash(&mut self) -> Option<&mut u64> {
+        Some(&mut self.hash)
+    }
 }
 
 /// All runs of a number of robots.
@@ -112,16 +131,20 @@ impl Plan {
     /// The scenario of one run.
     #[must_use]
     pub fn scenario(&self, robots: u32, seed: u64) -> Scenario {
-        let circle = self.circle_m.unwrap_or_else(|| circle_m(robots));
+        let circle = self.circle_m(robots);
         let starts = circle_starts(robots, circle, self.noise_m, seed);
         let setup = PlaneSetup::new(self.conditions.group(RADIUS_M, TOLERANCE_M), starts);
         let longest_s = self.patience * 2.0 * circle / self.conditions.speed_mps;
         self.conditions.scenario("swap", seed, longest_s, setup)
     }
 
-    fn swap(&self, robots: u32, seed: u64, goes_on: &GoesOn<'_>) -> Option<Swap> {
+    fn circle_m(&self, robots: u32) -> f64 {
+        self.circle_m.unwrap_or_else(|| circle_m(robots))
+    }
+
+    fn swap(&self, robots: u32, seed: u64, goes_on: &dyn Fn() -> bool) -> Option<Swap> {
         let outcome = run(&self.scenario(robots, seed), goes_on, |_| ())?;
-        let circle_m = self.circle_m.unwrap_or_else(|| circle_m(robots));
+        let circle_m = self.circle_m(robots);
         let free_s = 2.0 * circle_m / self.conditions.speed_mps;
         let times: Vec<_> = self.conditions.arrivals_s(&outcome);
         let there: Vec<f64> = times.iter().flatten().copied().collect();
@@ -136,6 +159,7 @@ impl Plan {
             mean_time_ratio: (!there.is_empty()).then(|| there.iter().sum::<f64>() / there.len() as f64 / free_s),
             least_gap_m: gap(clearance.bodies_m),
             overlaps: clearance.overlaps,
+            hash: outcome.trace_hash,
         })
     }
 
@@ -147,6 +171,7 @@ impl Plan {
 }
 
 impl Experiment for Plan {
+    const NAME: &'static str = "swap";
     const UNIT: &'static str = "runs";
     type Run = Swap;
     type Report = Report;
@@ -163,14 +188,35 @@ impl Experiment for Plan {
         Ok(())
     }
 
-    fn total(&self) -> usize {
-        self.robots.len() * self.seeds as usize
+    fn points(&self) -> usize {
+        self.robots.len()
     }
 
-    fn perform(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Vec<Swap>>> {
-        let swap =
-            |(): &mut (), point: usize, run| Ok(self.swap(self.robots[point], self.seed + u64::from(run), goes_on));
-        Ok(whole(by_point(self.robots.len(), self.seeds, 1, goes_on, swap)?))
+    fn runs(&self) -> u32 {
+        self.seeds
+    }
+
+    fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
+        let Self { robots, circle_m: _, noise_m, seeds: _, seed: _, patience, conditions } = self;
+        let circle_m = self.circle_m(robots[point]);
+        let own: [(_, Value); 3] =
+            [("robots", robots[point].into()), ("circle_m", circle_m.into()), ("patience", (*patience).into())];
+        own.into_iter().chain(conditions.given(*noise_m)).collect()
+    }
+
+    fn seed(&self, _: usize, run: u32) -> u64 {
+        self.seed + u64::from(run)
+    }
+
+    fn blank(&self, point: usize, run: u32) -> Swap {
+        let robots = self.robots[point];
+        Swap { robots, circle_m: self.circle_m(robots), seed: self.seed(point, run), ..Swap::default() }
+    }
+
+    fn perform(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Swap>>> {
+        jobs.each(
+            |(): &mut (), point, run| Ok(self.swap(self.robots[point], self.seed(point, run), &|| jobs.goes_on())),
+        )
     }
 
     fn report(&self, runs: &[Vec<Swap>]) -> Report {

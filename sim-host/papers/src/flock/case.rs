@@ -239,7 +239,7 @@ impl Plan {
         let horizon_s = self.horizon_s as f32;
         let arena = Arena {
             name: case.name(),
-            seed: Rng::keyed(self.seed, STARTS, run, case as u32).next_u64(),
+            seed: self.run_seed(case, run),
             step_s: self.step_s,
             seconds: self.seconds.unwrap_or(setting.seconds),
             radius_m,
@@ -267,6 +267,11 @@ impl Plan {
         };
         let setup = arena.setup(starts);
         Ok(arena.scenario(setup))
+    }
+
+    /// The seed of a run's scenario.
+    pub(super) fn run_seed(&self, case: Case, run: u32) -> u64 {
+        Rng::keyed(self.seed, STARTS, run, case as u32).next_u64()
     }
 
     /// c1 of alpha-, beta- and gamma-agents of a case.

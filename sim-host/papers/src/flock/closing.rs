@@ -6,7 +6,9 @@
 
 use super::check_spacing_and_step;
 use crate::arena::{Arena, FASTEST_MPS, uniform};
-use crate::experiment::{Experiment, GoesOn, by_point, check_runs};
+use crate::experiment::{Experiment, check_runs};
+use crate::options::word;
+use crate::rows::{Each, Jobs, Record};
 use anyhow::{Result, ensure};
 use serde::Serialize;
 use staya_controller::agent::{BoidsSetup, GuidanceSetup, SafetyKind};
@@ -19,6 +21,7 @@ use staya_sim::engine::simulate;
 use staya_sim::metrics::flock::gaps;
 use staya_sim::nearby::Space;
 use staya_sim::scenario::{Scenario, Start, Target};
+use staya_sweep::Value;
 use std::fmt::{self, Display, Formatter};
 use std::ops::ControlFlow;
 
@@ -114,8 +117,30 @@ pub struct ClosingReport {
     pub lines: Vec<Line>,
 }
 
-/// Overlapping pairs summed over ticks, and the least distance of centres.
-pub type Met = (usize, f64);
+/// What one run gave.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Met {
+    /// Overlapping pairs, summed over ticks.
+    pub overlaps: usize,
+    /// Least distance of two centres, metres; very large when none came within d.
+    pub least_m: f64,
+    /// Fingerprint of the whole trace.
+    pub hash: u64,
+}
+
+impl Record for Met {
+    fn figures(&mut self, each: &mut Each<'_>) {
+        each("overlaps", "overlapping pairs, summed over ticks", &mut self.overlaps);
+        each("least_pair_m", "least distance of two centres; very large: none came within d", &mut self.least_m);
+    }
+
+    fn trace_hash(&mut self) -> Option<&mut u64> {
+        Some(&mut self.hash)
+    }
+}
+
+/// Bare, and with ORCA.
+const WAYS: [SafetyKind; 2] = [SafetyKind::None, SafetyKind::Orca];
 
 impl Closing {
     /// Radius of a body, metres.
@@ -139,7 +164,7 @@ impl Closing {
     fn scenario(&self, flock: Flock, sides: Sides, speed: f64, safety: SafetyKind, run: u32) -> Scenario {
         let d = self.spacing_m;
         let side_mps = speed * d / 2.0;
-        let seed = Rng::keyed(self.seed, OFFSETS, run, 1).next_u64();
+        let seed = self.run_seed(run);
         let guidance = match flock {
             Flock::Alpha => GuidanceSetup::Lattice { params: LatticeParams::new(d as f32), moves: true },
             Flock::Goal => GuidanceSetup::GoalFlock {
@@ -212,11 +237,21 @@ impl Closing {
         starts
     }
 
+    /// Line and safety layer of a point.
+    fn point(&self, point: usize) -> ((Flock, Sides, f64), SafetyKind) {
+        (self.lines()[point / WAYS.len()], WAYS[point % WAYS.len()])
+    }
+
+    /// That of a run's flocks and radio.
+    fn run_seed(&self, run: u32) -> u64 {
+        Rng::keyed(self.seed, OFFSETS, run, 1).next_u64()
+    }
+
     fn meet(&self, scenario: &Scenario) -> Result<Met> {
         let radii = vec![self.radius_m(); scenario.robots.len()];
         let horizon_m = self.spacing_m;
         let (mut overlaps, mut least_m) = (0, f64::MAX);
-        simulate(scenario, |_, robots| {
+        let outcome = simulate(scenario, |_, robots| {
             let places_m: Vec<[f64; 3]> = robots.map(|robot| robot.motion.position_m).collect();
             let gaps = gaps(&places_m, &radii, &[], horizon_m, Space::OPEN);
             overlaps += gaps.overlapping_pairs;
@@ -225,14 +260,14 @@ impl Closing {
             }
             ControlFlow::Continue(())
         })?;
-        Ok((overlaps, least_m))
+        Ok(Met { overlaps, least_m, hash: outcome.trace_hash })
     }
 }
 
 impl Experiment for Closing {
+    const NAME: &'static str = "closing";
     const UNIT: &'static str = "runs";
-    /// Bare, and with ORCA.
-    type Run = [Met; 2];
+    type Run = Met;
     type Report = ClosingReport;
 
     fn check(&self) -> Result<()> {
@@ -249,41 +284,61 @@ impl Experiment for Closing {
         Ok(())
     }
 
-    fn total(&self) -> usize {
-        self.lines().len() * self.runs as usize
+    fn points(&self) -> usize {
+        self.lines().len() * WAYS.len()
     }
 
-    fn perform(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Vec<[Met; 2]>>> {
-        let lines = self.lines();
-        by_point(lines.len(), self.runs, 8, goes_on, |(): &mut (), line, run| {
-            let (flock, sides, speed) = lines[line];
-            let meet = |safety| self.meet(&self.scenario(flock, sides, speed, safety, run));
-            Ok([meet(SafetyKind::None)?, meet(SafetyKind::Orca)?])
+    fn runs(&self) -> u32 {
+        self.runs
+    }
+
+    fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
+        let Self { speeds: _, runs: _, spacing_m, step_s, seed } = self;
+        let ((flock, sides, speed), safety) = self.point(point);
+        vec![
+            ("flock", format!("{flock:?}").to_lowercase().into()),
+            ("sides", format!("{sides:?}").to_lowercase().into()),
+            ("speed_over_d", speed.into()),
+            ("safety", word(safety).into()),
+            ("spacing_m", (*spacing_m).into()),
+            ("step_s", (*step_s).into()),
+            ("first_seed", seed.to_string().into()),
+        ]
+    }
+
+    fn seed(&self, _: usize, run: u32) -> u64 {
+        self.run_seed(run)
+    }
+
+    fn blank(&self, _: usize, _: u32) -> Met {
+        Met::default()
+    }
+
+    fn perform(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Met>>> {
+        jobs.each(|(): &mut (), point, run| {
+            let ((flock, sides, speed), safety) = self.point(point);
+            Ok(Some(self.meet(&self.scenario(flock, sides, speed, safety, run))?))
         })
     }
 
-    fn report(&self, runs: &[Vec<[Met; 2]>]) -> ClosingReport {
-        let line = |((flock, sides, speed_over_d), runs): (_, &Vec<[Met; 2]>)| {
-            let meeting = |way: usize| Meeting {
-                runs_with_overlap: runs.iter().filter(|run| run[way].0 > 0).count(),
-                overlaps: runs.iter().map(|run| run[way].0).sum(),
-                least_pair_over_d: runs.iter().map(|run| run[way].1).fold(f64::MAX, f64::min) / self.spacing_m,
+    fn report(&self, runs: &[Vec<Met>]) -> ClosingReport {
+        let line = |((flock, sides, speed_over_d), ways): (_, &[Vec<Met>])| {
+            let [bare, orca] = ways else { return None };
+            let runs = bare.len().min(orca.len());
+            let meeting = |met: &[Met]| Meeting {
+                runs_with_overlap: met.iter().filter(|met| met.overlaps > 0).count(),
+                overlaps: met.iter().map(|met| met.overlaps).sum(),
+                least_pair_over_d: met.iter().map(|met| met.least_m).fold(f64::MAX, f64::min) / self.spacing_m,
             };
-            (!runs.is_empty()).then(|| Line {
-                flock,
-                sides,
-                speed_over_d,
-                runs: runs.len(),
-                bare: meeting(0),
-                orca: meeting(1),
-            })
+            let [bare, orca] = [bare, orca].map(|met| meeting(&met[..runs]));
+            (runs > 0).then_some(Line { flock, sides, speed_over_d, runs, bare, orca })
         };
         ClosingReport {
             seed: self.seed,
             spacing_m: self.spacing_m,
             radius_m: self.radius_m(),
             step_s: self.step_s,
-            lines: self.lines().into_iter().zip(runs).filter_map(line).collect(),
+            lines: self.lines().into_iter().zip(runs.chunks(WAYS.len())).filter_map(line).collect(),
         }
     }
 }

@@ -22,12 +22,15 @@ pub use case::Case;
 pub use report::{CaseReport, Report, RunReport};
 pub use watch::Run;
 
-use crate::experiment::{Experiment, GoesOn, by_point, check_runs};
-use crate::options;
+use crate::experiment::{Experiment, check_runs};
+use crate::options::{self, word};
+use crate::rows::Jobs;
 use anyhow::{Result, ensure};
 use clap::{Args, ValueEnum};
+use rayon::prelude::*;
 use staya_controller::agent::SafetyKind;
 use staya_sim::engine::simulate;
+use staya_sweep::Value;
 use std::path::{Path, PathBuf};
 use watch::Watch;
 
@@ -87,7 +90,7 @@ pub struct Plan {
     /// Equal seeds give equal results.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
-    /// Folder for the pictures and series.
+    /// Folder for rows and pictures.
     #[arg(long, value_name = "DIR", default_value = "out/experiment-flock")]
     pub out: PathBuf,
 }
@@ -116,7 +119,9 @@ impl Plan {
             watch.look(moment.row.tick, robots);
             std::ops::ControlFlow::Continue(())
         })?;
-        Ok(watch.finish(outcome.trace_hash))
+        let mut run = watch.finish(outcome.trace_hash);
+        run.verdict = report::verdict(self, case, &run);
+        Ok(run)
     }
 }
 
@@ -128,6 +133,7 @@ fn check_spacing_and_step(spacing_m: f64, step_s: f64) -> Result<()> {
 }
 
 impl Experiment for Plan {
+    const NAME: &'static str = "flock";
     const UNIT: &'static str = "runs";
     type Run = Run;
     type Report = Report;
@@ -154,12 +160,59 @@ impl Experiment for Plan {
         Ok(())
     }
 
-    fn total(&self) -> usize {
-        self.cases.len() * self.runs as usize
+    fn points(&self) -> usize {
+        self.cases.len()
     }
 
-    fn perform(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Vec<Run>>> {
-        by_point(self.cases.len(), self.runs, 1, goes_on, |(): &mut (), case, run| self.run(self.cases[case], run))
+    fn runs(&self) -> u32 {
+        self.runs
+    }
+
+    fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
+        // By name, so that a new field is not forgotten.
+        let Self { cases, runs: _, robots, safety, horizon_s, spacing_m, step_s, seconds, .. } = self;
+        let Self { c_alpha: _, c_beta: _, c_gamma: _, reference, loss, seed, out: _, .. } = self;
+        let case = cases[point];
+        let setting = case.setting();
+        let [c_alpha, c_beta, c_gamma] = self.gains(case).map(Value::from);
+        vec![
+            ("case", case.name().into()),
+            ("robots", robots.unwrap_or(setting.robots).into()),
+            ("safety", word(*safety).into()),
+            ("horizon_s", (*horizon_s).into()),
+            ("spacing_m", (*spacing_m).into()),
+            ("step_s", (*step_s).into()),
+            ("seconds", seconds.unwrap_or(setting.seconds).into()),
+            ("c_alpha", c_alpha),
+            ("c_beta", c_beta),
+            ("c_gamma", c_gamma),
+            ("static_reference", (*reference == Reference::Static).into()),
+            ("loss", (*loss).into()),
+            ("first_seed", seed.to_string().into()),
+        ]
+    }
+
+    /// That of the robots and the radio; starts are a function of the first seed and the run's number.
+    fn seed(&self, point: usize, run: u32) -> u64 {
+        self.run_seed(self.cases[point], run)
+    }
+
+    fn blank(&self, _: usize, _: u32) -> Run {
+        Run::default()
+    }
+
+    /// Rows have no course of the measures, which pictures show: runs that were read of rows are made again for it.
+    fn perform(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Run>>> {
+        let mut runs = jobs.each(|(): &mut (), point, run| self.run(self.cases[point], run).map(Some))?;
+        for (&case, runs) in self.cases.iter().zip(&mut runs) {
+            runs.par_iter_mut().enumerate().filter(|(_, run)| run.trace.is_empty()).try_for_each(|(number, run)| {
+                let again = self.run(case, number as u32)?;
+                ensure!(again.hash == run.hash, "run {number} of {} is not that of its row; begin --anew", case.name());
+                *run = again;
+                Ok(())
+            })?;
+        }
+        Ok(runs)
     }
 
     fn report(&self, runs: &[Vec<Run>]) -> Report {

@@ -1,6 +1,6 @@
 //! The numbers of the flocks.
 
-use super::watch::{Frame, Run};
+use super::watch::{Frame, Run, Verdict};
 use super::{Case, Plan, Reference};
 use crate::experiment::Maybe;
 use crate::options::word;
@@ -173,6 +173,24 @@ fn connected_from(trace: &[Option<FlockMeasure>]) -> Option<usize> {
     let is_apart = |moment: &Option<FlockMeasure>| moment.is_none_or(|m| m.components > 1);
     let from = trace.iter().rposition(is_apart).map_or(0, |last| last + 1);
     (from < trace.len()).then_some(from)
+}
+
+/// What rows say of a run's course.
+pub(super) fn verdict(plan: &Plan, case: Case, run: &Run) -> Verdict {
+    let robots = run.trace.iter().flatten().next().map_or(0, |moment| moment.robots);
+    let report = RunReport::of(plan, case, 0, robots, run);
+    let end = report.end;
+    let at_end = |value: fn(&FlockMeasure) -> f64| end.as_ref().map_or(0.0, value);
+    Verdict {
+        alpha_from: report.alpha.alpha_flocking,
+        connected_from: connected_from(&run.trace),
+        most_parts: report.most_parts,
+        parts: end.map_or(0, |end| end.components),
+        connectivity: at_end(|m| m.connectivity),
+        radius_m: at_end(|m| m.radius_m),
+        deviation_energy: at_end(|m| m.deviation_energy),
+        velocity_mismatch: at_end(|m| m.velocity_mismatch),
+    }
 }
 
 impl RunReport {

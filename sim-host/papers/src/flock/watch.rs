@@ -1,6 +1,7 @@
 //! What is measured during a run.
 
 use super::{Case, Plan};
+use crate::rows::{Each, Record};
 use staya_sim::metrics::flock::{FlockMeasure, FlockMeter, gaps};
 use staya_sim::nearby::Space;
 use staya_sim::record::RobotRow;
@@ -11,7 +12,7 @@ use staya_sim::world::plane::Solid;
 const SETTLED_S: f64 = 2.0;
 
 /// What one run gave.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Run {
     /// The flock before the first tick and after each.
     pub trace: Vec<Option<FlockMeasure>>,
@@ -27,8 +28,58 @@ pub struct Run {
     pub past: usize,
     /// Moments to draw.
     pub frames: Vec<Frame>,
+    /// What rows say of the trace.
+    pub verdict: Verdict,
     /// Of the whole trace.
     pub hash: u64,
+}
+
+/// When it was a flock, and what it was at the end.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Verdict {
+    /// Iteration from which on the conditions of alpha-flocking hold until the end.
+    pub alpha_from: Option<usize>,
+    /// The same of all being connected.
+    pub connected_from: Option<usize>,
+    /// Largest number of parts at any time.
+    pub most_parts: usize,
+    /// Parts at the end.
+    pub parts: usize,
+    /// C at the end.
+    pub connectivity: f64,
+    /// R at the end, metres.
+    pub radius_m: f64,
+    /// E~ at the end.
+    pub deviation_energy: f64,
+    /// K~ at the end, (m/s)^2.
+    pub velocity_mismatch: f64,
+}
+
+impl Record for Run {
+    fn figures(&mut self, each: &mut Each<'_>) {
+        let v = &mut self.verdict;
+        each("alpha_from", "iteration from which on alpha-flocking holds; empty: it does not", &mut v.alpha_from);
+        each("connected_from", "iteration from which on all are connected", &mut v.connected_from);
+        each("most_parts", "largest number of connected parts at any time", &mut v.most_parts);
+        each("parts", "connected parts at the end", &mut v.parts);
+        each("connectivity", "relative connectivity C at the end", &mut v.connectivity);
+        each("radius_m", "cohesion radius R at the end", &mut v.radius_m);
+        each("deviation_energy", "E~ at the end", &mut v.deviation_energy);
+        each("velocity_mismatch", "K~ at the end, (m/s)^2", &mut v.velocity_mismatch);
+        each(
+            "least_pair_m",
+            "least distance of two centres after 2 s; inf: none came within d",
+            &mut self.least_pair_m,
+        );
+        each("overlaps", "overlapping pairs, summed over ticks", &mut self.overlaps);
+        each("least_clearance_m", "least distance of a centre from an obstacle", &mut self.least_clearance_m);
+        each("inside", "robots whose centre was ever in an obstacle", &mut self.inside);
+        each("past", "robots past all obstacles at the end", &mut self.past);
+    }
+
+    fn trace_hash(&mut self) -> Option<&mut u64> {
+        Some(&mut self.hash)
+    }
 }
 
 /// All robots at a moment.
@@ -72,16 +123,7 @@ impl Watch {
             places_m: Vec::new(),
             velocities_mps: Vec::new(),
             was_inside: vec![false; scenario.robots.len()],
-            run: Run {
-                trace: Vec::new(),
-                least_pair_m: f64::INFINITY,
-                overlaps: 0,
-                least_clearance_m: f64::INFINITY,
-                inside: 0,
-                past: 0,
-                frames: Vec::new(),
-                hash: 0,
-            },
+            run: Run { least_pair_m: f64::INFINITY, least_clearance_m: f64::INFINITY, ..Run::default() },
         }
     }
 

@@ -9,7 +9,10 @@ mod report;
 
 pub use report::{Journey, Point, Report, Variants};
 
-use crate::experiment::{Experiment, GoesOn, by_point, check_runs};
+use crate::experiment::{Experiment, check_runs};
+use crate::options::{self, word};
+use crate::route::decimal;
+use crate::rows::{Each, Jobs, Record};
 use anyhow::{Result, anyhow, ensure};
 use staya_controller::agent::{RouteSetup, TEMPLATE};
 use staya_controller::formation::FormationParams;
@@ -26,6 +29,7 @@ use staya_sim::scenario::{Formation, Robot, Scenario};
 use staya_sim::terrain::generate::{self, natural};
 use staya_sim::terrain::{Terrain, TerrainError};
 use staya_sim::world::{Misplaced, MoveRules};
+use staya_sweep::Value;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
@@ -109,7 +113,7 @@ enum Way {
 }
 
 /// What one crossing gave.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Crossing {
     /// Robots that reached their targets.
     pub arrived: usize,
@@ -125,6 +129,28 @@ pub struct Crossing {
     pub worst_error: f64,
     /// Robots in walls or in each other, summed over ticks.
     pub collisions: u64,
+    /// Fingerprint of the whole trace.
+    pub hash: u64,
+}
+
+impl Record for Crossing {
+    fn figures(&mut self, each: &mut Each<'_>) {
+        each("arrived", "robots that reached their targets", &mut self.arrived);
+        each("time_ticks", "when the last one arrived; empty: one did not", &mut self.time_ticks);
+        each("error_cells", "formation error per robot, graph on the top leader; 0: no formation", &mut self.error);
+        each(
+            "best_fit_error_cells",
+            "the same, graph placed by the best-fitting translation",
+            &mut self.best_fit_error,
+        );
+        each("graph_distance", "mean graph distance", &mut self.graph_distance);
+        each("worst_error_cells", "the largest error per robot of any tick", &mut self.worst_error);
+        each("collisions", "robots in walls or in each other, summed over ticks", &mut self.collisions);
+    }
+
+    fn trace_hash(&mut self) -> Option<&mut u64> {
+        Some(&mut self.hash)
+    }
 }
 
 /// What one landscape gave: the crossings in the order of `Plan::ways`.
@@ -167,14 +193,21 @@ impl Plan {
         [Way::Alone, own].into_iter().chain(eps).chain(losses)
     }
 
-    /// The landscape of a run: a function of seed, obstacles and number of the run.
+    /// Obstacles and way of a point.
+    fn point(&self, point: usize) -> (u32, Way) {
+        let ways: Vec<Way> = self.ways().collect();
+        (self.obstacles[point / ways.len()], ways[point % ways.len()])
+    }
+
+    /// The seed of a landscape: a function of seed, obstacles and number of the run.
+    fn landscape_seed(&self, obstacles: u32, run: u32) -> u64 {
+        Rng::keyed(self.seed, LANDSCAPES, obstacles, run).next_u64()
+    }
+
+    /// The landscape of a run.
     fn landscape(&self, obstacles: u32, run: u32) -> Result<Terrain, TerrainError> {
-        let plan = generate::LandPlan {
-            width: self.size,
-            height: self.size,
-            classes: self.classes,
-            seed: Rng::keyed(self.seed, LANDSCAPES, obstacles, run).next_u64(),
-        };
+        let seed = self.landscape_seed(obstacles, run);
+        let plan = generate::LandPlan { width: self.size, height: self.size, classes: self.classes, seed };
         natural(&plan, obstacles, self.hill_norm)
     }
 
@@ -213,29 +246,32 @@ impl Plan {
         }
     }
 
-    fn run(&self, graph: &Formation, obstacles: u32, run: u32) -> Result<Run> {
+    fn crossing(&self, graph: &Formation, (obstacles, way): (u32, Way), run: u32) -> Result<Crossing> {
         let terrain = self.landscape(obstacles, run)?;
         let seed = Rng::keyed(self.seed, RUNS, obstacles, run).next_u64();
-        let scenario = |graph: Option<Formation>, places| self.scenario(terrain.clone(), graph, places, seed);
-        let alone = scenario(None, &graph.places);
-        let mut together = scenario(Some(graph.clone()), &graph.places);
-        self.ways()
-            .map(|way| match way {
-                Way::Alone => cross(&alone),
-                Way::Together { eps, loss } => {
-                    together.formation_params.eps = eps;
-                    together.radio.loss = loss;
-                    cross(&together)
-                }
-            })
-            .map(|crossing| Ok(crossing?))
-            .collect()
+        let formation = (way != Way::Alone).then(|| graph.clone());
+        let mut scenario = self.scenario(terrain, formation, &graph.places, seed);
+        if let Way::Together { eps, loss } = way {
+            scenario.formation_params.eps = eps;
+            scenario.radio.loss = loss;
+        }
+        Ok(cross(&scenario)?)
+    }
+
+    /// The runs by number of obstacles: of each landscape all ways, as far as there are all.
+    fn by_landscape(&self, runs: &[Vec<Crossing>]) -> Vec<Vec<Run>> {
+        let all_ways = |ways: &[Vec<Crossing>]| {
+            let least = ways.iter().map(Vec::len).min().unwrap_or(0);
+            (0..least).map(|run| ways.iter().map(|way| way[run]).collect()).collect()
+        };
+        runs.chunks(self.ways().count()).map(all_ways).collect()
     }
 }
 
 impl Experiment for Plan {
-    const UNIT: &'static str = "landscapes";
-    type Run = Run;
+    const NAME: &'static str = "formation";
+    const UNIT: &'static str = "crossings";
+    type Run = Crossing;
     type Report = Report;
 
     fn check(&self) -> Result<()> {
@@ -261,22 +297,74 @@ impl Experiment for Plan {
         Ok(())
     }
 
-    fn total(&self) -> usize {
-        self.obstacles.len() * self.runs as usize
+    fn points(&self) -> usize {
+        self.obstacles.len() * self.ways().count()
     }
 
-    fn perform(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Vec<Run>>> {
+    fn runs(&self) -> u32 {
+        self.runs
+    }
+
+    fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
+        // By name, so that a new field is not forgotten.
+        let Self { size, classes, hill_norm, spacing, rho, route, formation, sharpness, ticks, seed, .. } = self;
+        let Self { obstacles: _, runs: _, loss: _, other_eps: _, other_losses: _, .. } = self;
+        let (obstacles, way) = self.point(point);
+        let (is_formation, eps, loss) = match way {
+            Way::Alone => (false, formation.eps, 0.0),
+            Way::Together { eps, loss } => (true, eps, loss),
+        };
+        let FormationParams { eps: _, gain, halt_lag, resume_lag, lead, footprint, .. } = *formation;
+        let FormationParams { patience, closes_ranks, prediction, recovery, .. } = *formation;
+        vec![
+            ("obstacles", obstacles.into()),
+            ("formation", is_formation.into()),
+            ("eps_cells", u32::from(eps).into()),
+            ("loss", loss.into()),
+            ("side_cells", u32::from(*size).into()),
+            ("classes", u32::from(*classes).into()),
+            ("hill_norm", word(*hill_norm).into()),
+            ("spacing_cells", u32::from(*spacing).into()),
+            ("rho", u32::from(*rho).into()),
+            ("radius_cells", u32::from(route.radius).into()),
+            ("a0", decimal(route.a0).into()),
+            ("a1", decimal(route.a1).into()),
+            ("a2", decimal(route.a2).into()),
+            ("a3", decimal(route.a3).into()),
+            ("lead_cells", u32::from(lead).into()),
+            ("footprint", u32::from(footprint).into()),
+            ("prediction", word(prediction).into()),
+            ("recovery", word(recovery).into()),
+            ("halt_cells", (f64::from(halt_lag) / f64::from(UNIT)).into()),
+            ("resume_cells", (f64::from(resume_lag) / f64::from(UNIT)).into()),
+            ("gain", decimal(gain).into()),
+            ("patience", u32::from(patience).into()),
+            ("closes_ranks", closes_ranks.into()),
+            ("shuffle_ticks", options::shuffle_ticks(*sharpness).into()),
+            ("longest_ticks", (*ticks).into()),
+            ("first_seed", seed.to_string().into()),
+        ]
+    }
+
+    /// That of the landscape, as `staya terrain` takes it; of robots and radio it is a function of the first seed.
+    fn seed(&self, point: usize, run: u32) -> u64 {
+        self.landscape_seed(self.point(point).0, run)
+    }
+
+    fn blank(&self, _: usize, _: u32) -> Crossing {
+        Crossing::default()
+    }
+
+    fn perform(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Crossing>>> {
         let graph = self.graph()?;
-        by_point(self.obstacles.len(), self.runs, 8, goes_on, |(): &mut (), point, run| {
-            self.run(&graph, self.obstacles[point], run)
-        })
+        jobs.each(|(): &mut (), point, run| self.crossing(&graph, self.point(point), run).map(Some))
     }
 
-    fn report(&self, runs: &[Vec<Run>]) -> Report {
-        Report::of(self, runs)
+    fn report(&self, runs: &[Vec<Crossing>]) -> Report {
+        Report::of(self, &self.by_landscape(runs))
     }
 
-    fn draw(&self, _: &[Vec<Run>], report: &Report, dir: &Path) -> Result<Vec<PathBuf>> {
+    fn draw(&self, _: &[Vec<Crossing>], report: &Report, dir: &Path) -> Result<Vec<PathBuf>> {
         Ok(report.draw(dir)?)
     }
 }
@@ -299,6 +387,7 @@ fn cross(scenario: &Scenario) -> Result<Crossing, Misplaced> {
         graph_distance: keeping.map_or(0.0, |k| k.graph_distance),
         worst_error,
         collisions: outcome.collisions,
+        hash: outcome.trace_hash,
     })
 }
 

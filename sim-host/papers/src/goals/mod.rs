@@ -21,8 +21,9 @@ pub use report::{Point, Report};
 pub use watch::Run;
 
 use crate::arena::{Arena, starts, ticks, uniform};
-use crate::experiment::{Experiment, GoesOn, by_point, check_runs};
-use crate::options;
+use crate::experiment::{Experiment, check_runs};
+use crate::options::{self, word};
+use crate::rows::Jobs;
 use anyhow::{Context as _, Result, ensure};
 use clap::Args;
 use staya_controller::agent::{GuidanceSetup, SafetyKind};
@@ -32,6 +33,7 @@ use staya_controller::push_out::{Evasion, Model, PushOutParams};
 use staya_controller::rand::Rng;
 use staya_sim::engine::simulate;
 use staya_sim::scenario::{Order, Scenario, Target};
+use staya_sweep::Value;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use watch::Watch;
@@ -91,7 +93,7 @@ pub struct Plan {
     /// Equal seeds give equal results.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
-    /// Folder for the pictures.
+    /// Folder for rows and pictures.
     #[arg(long, value_name = "DIR", default_value = "out/experiment-goals")]
     pub out: PathBuf,
 }
@@ -154,6 +156,11 @@ impl Plan {
         self.neighborhoods_m.iter().flat_map(over_k1).collect()
     }
 
+    /// The seed of a run's scenario.
+    fn run_seed(&self, run: u32) -> u64 {
+        Rng::keyed(self.seed, STARTS + 1, run, 0).next_u64()
+    }
+
     fn scenario(&self, k1: f64, neighborhood_m: f64, run: u32) -> Result<Scenario> {
         let targets = self.goals_m().map(|position_m| Target { position_m, velocity_mps: [0.0; 3] });
         let side = START_SIDE * self.min_distance_m * libm::sqrt(f64::from(self.robots)) / 2.0;
@@ -176,7 +183,7 @@ impl Plan {
             neighborhood_m: neighborhood_m as f32,
             ..GoalParams::new(self.min_distance_m as f32, speed_mps as f32)
         };
-        let seed = Rng::keyed(self.seed, STARTS + 1, run, 0).next_u64();
+        let seed = self.run_seed(run);
         let arena = Arena {
             name: "goals",
             seed,
@@ -222,6 +229,7 @@ impl Plan {
 }
 
 impl Experiment for Plan {
+    const NAME: &'static str = "goals";
     const UNIT: &'static str = "runs";
     type Run = Run;
     type Report = Report;
@@ -249,13 +257,57 @@ impl Experiment for Plan {
         Ok(())
     }
 
-    fn total(&self) -> usize {
-        self.points().len() * self.runs as usize
+    fn points(&self) -> usize {
+        self.points().len()
     }
 
-    fn perform(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Vec<Run>>> {
+    fn runs(&self) -> u32 {
+        self.runs
+    }
+
+    fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
+        // By name, so that a new field is not forgotten.
+        let Self { k1: _, k2, k3, neighborhoods_m: _, min_distance_m, robots, runs: _, safety, .. } = self;
+        let Self { model, evasion, seconds, step_s, moves_goal, seed, out: _, .. } = self;
+        let (k1, neighborhood_m) = self.points()[point];
+        vec![
+            ("k1", k1.into()),
+            ("neighborhood_m", neighborhood_m.into()),
+            ("k2", (*k2).into()),
+            ("k3", (*k3).into()),
+            ("min_distance_m", (*min_distance_m).into()),
+            ("robots", (*robots).into()),
+            ("safety", word(*safety).into()),
+            ("model", word(*model).into()),
+            ("evasion", word(*evasion).into()),
+            ("seconds", (*seconds).into()),
+            ("step_s", (*step_s).into()),
+            ("moves_goal", (*moves_goal).into()),
+            ("first_seed", seed.to_string().into()),
+        ]
+    }
+
+    /// That of the robots' draws; starts are a function of the first seed and the run's number.
+    fn seed(&self, _: usize, run: u32) -> u64 {
+        self.run_seed(run)
+    }
+
+    fn blank(&self, _: usize, _: u32) -> Run {
+        Run::default()
+    }
+
+    /// Rows have no moments to draw: where the first run of a point was read of a row, it is made again for them.
+    fn perform(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Run>>> {
         let points = self.points();
-        by_point(points.len(), self.runs, 1, goes_on, |(): &mut (), point, run| self.run(points[point], run))
+        let mut runs = jobs.each(|(): &mut (), point, run| self.run(points[point], run).map(Some))?;
+        for (&point, runs) in points.iter().zip(&mut runs) {
+            if let Some(first) = runs.first_mut().filter(|first| first.frames.is_empty()) {
+                let again = self.run(point, 0)?;
+                ensure!(again.hash == first.hash, "a run is not that of its row; begin --anew");
+                *first = again;
+            }
+        }
+        Ok(runs)
     }
 
     fn report(&self, runs: &[Vec<Run>]) -> Report {

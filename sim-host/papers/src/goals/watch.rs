@@ -2,6 +2,7 @@
 
 use super::Plan;
 use crate::arena::distance_m;
+use crate::rows::{Each, Record};
 use staya_sim::metrics::flock::{FlockMeter, gaps, polarisation};
 use staya_sim::nearby::Space;
 use staya_sim::record::RobotRow;
@@ -14,7 +15,7 @@ const WARM_UP_S: f64 = 5.0;
 pub(super) const MOMENTS: [f64; 6] = [0.0, 0.125, 0.25, 0.375, 0.5, 1.0];
 
 /// What one run gave.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Run {
     /// Means over the way; `None` when it was over before it was looked at.
     pub way: Option<Way>,
@@ -32,6 +33,35 @@ pub struct Run {
     pub frames: Vec<Frame>,
     /// Of the whole trace.
     pub hash: u64,
+}
+
+impl Record for Run {
+    fn figures(&mut self, each: &mut Each<'_>) {
+        // All three or none.
+        let way = self.way;
+        let part = |value: fn(&Way) -> f64| way.as_ref().map(value);
+        let [mut polarisation, mut together, mut spread] =
+            [part(|way| way.polarisation), part(|way| way.together), part(|way| way.spread)];
+        each("polarisation", "length of the mean direction on the way; empty: it was over at once", &mut polarisation);
+        each("together", "share of the largest group on the way", &mut together);
+        each("spread", "radius of the crowd on the way over that at the start", &mut spread);
+        self.way = match (polarisation, together, spread) {
+            (Some(polarisation), Some(together), Some(spread)) => Some(Way { polarisation, together, spread }),
+            _ => None,
+        };
+        let [first, second, third] = &mut self.at_goals;
+        each("gathered", "robots that came to the middle", &mut self.gathered);
+        each("half_gathered_s", "when half of them had; empty: never", &mut self.half_gathered_s);
+        each("at_goal_1", "robots at the first goal at the end", first);
+        each("at_goal_2", "robots at the second goal at the end", second);
+        each("at_goal_3", "robots at the third goal at the end", third);
+        each("least_pair_m", "least distance of two centres; inf: more than R_MinDist", &mut self.least_pair_m);
+        each("overlaps", "overlapping pairs, summed over ticks", &mut self.overlaps);
+    }
+
+    fn trace_hash(&mut self) -> Option<&mut u64> {
+        Some(&mut self.hash)
+    }
 }
 
 /// The crowd on its way, means over ticks.

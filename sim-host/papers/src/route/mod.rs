@@ -19,8 +19,10 @@ mod report;
 
 pub use report::{Arrivals, Loss, Means, Point, Report, Response, decimal};
 
-use crate::experiment::{Experiment, GoesOn, by_point, check_runs};
+use crate::experiment::{Experiment, check_runs};
 use crate::optimal::Planner;
+use crate::options::word;
+use crate::rows::{Each, Jobs, Record};
 use crate::walk::{Task, Walk, Walker};
 use anyhow::{Result, ensure};
 use serde::Serialize;
@@ -31,6 +33,7 @@ use staya_controller::route::{Replan, RouteParams};
 use staya_sim::terrain::generate::{self, natural, uniform};
 use staya_sim::terrain::metrics::Metrics;
 use staya_sim::terrain::{Terrain, TerrainError};
+use staya_sweep::Value;
 use std::path::{Path, PathBuf};
 
 /// Purpose of the random numbers that give each run its landscape.
@@ -184,7 +187,7 @@ impl Default for Plan {
 }
 
 /// What one landscape gave.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Run {
     /// Configuration entropy S of the landscape.
     pub entropy: f64,
@@ -196,6 +199,21 @@ pub struct Run {
     pub optimal_length: u64,
     /// The robot's way with the plan's parameters, then with each of the sweep's.
     pub walks: Vec<Walk>,
+}
+
+impl Record for Run {
+    fn figures(&mut self, each: &mut Each<'_>) {
+        each("entropy", "configuration entropy S of the landscape", &mut self.entropy);
+        each("total_edge", "total edge TE of the landscape", &mut self.total_edge);
+        each("optimal_cost", "travel time of the fastest route, 256ths of a tick", &mut self.optimal_cost);
+        each("optimal_length", "length of the fastest route, 256ths of a cell", &mut self.optimal_length);
+        for walk in &mut self.walks {
+            each("arrived", "1: the robot reached its target", &mut walk.arrived);
+            each("cost", "travel time of the robot, 256ths of a tick", &mut walk.cost);
+            each("length", "length of its way, 256ths of a cell", &mut walk.length);
+            each("moves", "its moves", &mut walk.moves);
+        }
+    }
 }
 
 /// One landscape with both ways across it, to look at.
@@ -244,7 +262,31 @@ impl Plan {
         std::iter::once(self.params).chain(sweep)
     }
 
-    /// The landscape of a run: a function of seed, obstacles and number of the run.
+    /// Land and parameters of a point: each land with each variant.
+    fn point(&self, point: usize) -> (Land, RouteParams) {
+        let variants: Vec<RouteParams> = self.variants().collect();
+        (self.lands[point / variants.len()], variants[point % variants.len()])
+    }
+
+    /// The runs by land: of each landscape the walks of all variants, as far as there are all.
+    fn by_land(&self, runs: &[Vec<Run>]) -> Vec<Vec<Run>> {
+        let all_walks = |variants: &[Vec<Run>]| {
+            let least = variants.iter().map(Vec::len).min().unwrap_or(0);
+            let of = |run: usize| Run {
+                walks: variants.iter().flat_map(|runs| runs[run].walks.clone()).collect(),
+                ..variants[0][run].clone()
+            };
+            (0..least).map(of).collect()
+        };
+        runs.chunks(self.variants().count()).map(all_walks).collect()
+    }
+
+    /// The seed of a landscape: a function of seed, obstacles and number of the run.
+    fn landscape_seed(&self, land: Land, run: u32) -> u64 {
+        Rng::keyed(self.seed, LANDSCAPES, land.obstacles().unwrap_or(u32::MAX), run).next_u64()
+    }
+
+    /// The landscape of a run.
     ///
     /// # Errors
     /// More obstacles than cells, or no classes.
@@ -254,7 +296,7 @@ impl Plan {
             width: self.size,
             height: self.size,
             classes: self.classes,
-            seed: Rng::keyed(self.seed, LANDSCAPES, key, run).next_u64(),
+            seed: self.landscape_seed(land, run),
         };
         match land {
             Land::Uniform => uniform(&plan),
@@ -286,28 +328,38 @@ impl Plan {
         cells.into_iter().collect()
     }
 
-    fn run_one(&self, scratch: &mut Scratch, land: Land, run: u32) -> Result<Run, TerrainError> {
+    fn run_one(
+        &self,
+        scratch: &mut Scratch,
+        (land, params): (Land, RouteParams),
+        run: u32,
+    ) -> Result<Run, TerrainError> {
         let terrain = self.landscape(land, run)?;
         let parked = self.parked(land, run);
-        Ok(self.run_on(scratch, &terrain, &parked).0)
+        Ok(self.run_on(scratch, &terrain, &parked, &params).0)
     }
 
-    fn run_on(&self, Scratch { walker, planner }: &mut Scratch, land: &Terrain, parked: &[Cell]) -> (Run, Vec<Cell>) {
+    fn run_on(
+        &self,
+        Scratch { walker, planner }: &mut Scratch,
+        land: &Terrain,
+        parked: &[Cell],
+        params: &RouteParams,
+    ) -> (Run, Vec<Cell>) {
         let (from, to) = (self.start(), self.target());
-        let RouteParams { norm, corner_cutting, .. } = self.params;
+        let RouteParams { norm, corner_cutting, .. } = *params;
         let metrics = Metrics::of(land);
         // Random land has no walls: there always is a route.
         let optimal = planner.route(land, from, to, norm, corner_cutting);
         let (optimal_cost, optimal_length, cells) =
             optimal.map_or((0, 0, Vec::new()), |route| (route.cost, route.length(norm), route.cells));
         let task = Task { land, parked, from, to };
-        let walks = self.variants().map(|params| walker.walk(&task, &params, self.replan));
         let run = Run {
             entropy: metrics.entropy,
             total_edge: metrics.total_edge,
             optimal_cost,
             optimal_length,
-            walks: walks.collect(),
+            walks: vec![walker.walk(&task, params, self.replan)],
         };
         (run, cells)
     }
@@ -319,6 +371,7 @@ impl Plan {
     /// A landscape cannot be made.
     pub fn example(&self, runs: &[Vec<Run>]) -> Result<Option<Example>, TerrainError> {
         let plan = Self { sweep: Vec::new(), ..self.clone() };
+        let runs = &self.by_land(runs);
         let off = |land: Land| land.obstacles().map_or(u32::MAX, |n| n.abs_diff(SHOWN));
         let by_land = plan.lands.iter().zip(runs);
         let filled = by_land.filter(|(_, runs)| !runs.is_empty());
@@ -335,7 +388,7 @@ impl Plan {
         let land = plan.landscape(*family, number)?;
         let parked = plan.parked(*family, number);
         let mut scratch = Scratch::default();
-        let (run, optimal) = plan.run_on(&mut scratch, &land, &parked);
+        let (run, optimal) = plan.run_on(&mut scratch, &land, &parked, &plan.params);
         Ok(Some(Example {
             family: *family,
             radius: plan.params.radius,
@@ -349,7 +402,8 @@ impl Plan {
 }
 
 impl Experiment for Plan {
-    const UNIT: &'static str = "landscapes";
+    const NAME: &'static str = "route";
+    const UNIT: &'static str = "routes";
     type Run = Run;
     type Report = Report;
 
@@ -369,19 +423,54 @@ impl Experiment for Plan {
         Ok(())
     }
 
-    fn total(&self) -> usize {
-        self.lands.len() * self.runs as usize
+    fn points(&self) -> usize {
+        self.lands.len() * self.variants().count()
     }
 
-    fn perform(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Vec<Run>>> {
-        by_point(self.lands.len(), self.runs, 64, goes_on, |scratch, land, run| {
-            Ok(self.run_one(scratch, self.lands[land], run)?)
-        })
+    fn runs(&self) -> u32 {
+        self.runs
+    }
+
+    fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
+        // By name, so that a new field is not forgotten.
+        let Self { lands: _, runs: _, size, classes, hill_norm, parked, seed, params: _, replan, sweep: _ } = self;
+        let (land, RouteParams { radius, exit, norm, corner_cutting, a0, a1, a2, a3 }) = self.point(point);
+        vec![
+            ("land", land.family().into()),
+            ("obstacles", land.obstacles().map_or(Value::from("-"), Value::from)),
+            ("side_cells", u32::from(*size).into()),
+            ("classes", u32::from(*classes).into()),
+            ("hill_norm", word(*hill_norm).into()),
+            ("parked", (*parked).into()),
+            ("radius_cells", u32::from(radius).into()),
+            ("exit", word(exit).into()),
+            ("replan", word(*replan).into()),
+            ("norm", word(norm).into()),
+            ("corner_cutting", corner_cutting.into()),
+            ("a0", decimal(a0).into()),
+            ("a1", decimal(a1).into()),
+            ("a2", decimal(a2).into()),
+            ("a3", decimal(a3).into()),
+            ("first_seed", seed.to_string().into()),
+        ]
+    }
+
+    /// That of the landscape, as `staya terrain` takes it; of what else is drawn it is a function of the first seed.
+    fn seed(&self, point: usize, run: u32) -> u64 {
+        self.landscape_seed(self.point(point).0, run)
+    }
+
+    fn blank(&self, _: usize, _: u32) -> Run {
+        Run { walks: vec![Walk::default()], ..Run::default() }
+    }
+
+    fn perform(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Run>>> {
+        jobs.each(|scratch, point, run| Ok(Some(self.run_one(scratch, self.point(point), run)?)))
     }
 
     /// The fits take up to a second per point and go in parallel.
     fn report(&self, runs: &[Vec<Run>]) -> Report {
-        Report::of(self, runs)
+        Report::of(self, &self.by_land(runs))
     }
 
     fn draw(&self, runs: &[Vec<Run>], report: &Report, dir: &Path) -> Result<Vec<PathBuf>> {

@@ -18,6 +18,7 @@ pub fn check(plan: &Plan, source: &Source<'_>) -> Result<Vec<String>, ScenarioEr
     let mut wrong = None;
     jobs::each(
         points.len(),
+        usize::MAX,
         |(): &mut (), index| plan.scenario(&plan.run(points[index] * plan.seeds())).map(drop),
         |index, read| match read {
             Ok(()) => ControlFlow::Continue(()),

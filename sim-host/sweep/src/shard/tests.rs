@@ -1,6 +1,8 @@
 use super::*;
 use crate::aggregate;
 use crate::merge::Merged;
+use crate::plan::Plan;
+use crate::run::perform;
 use std::sync::atomic::{AtomicU64, Ordering};
 use tempfile::TempDir;
 
@@ -21,11 +23,20 @@ fn shard(text: &str) -> Shard {
     text.parse().unwrap_or_else(|what| panic!("{what}"))
 }
 
+fn done(
+    plan: &Plan,
+    shard: Shard,
+    out: &Path,
+    existing: Existing,
+    goes_on: &(dyn Fn() -> bool + Sync),
+) -> Result<Course, SweepError> {
+    perform_shard(plan, shard, out, existing, |(): &mut (), run| perform(plan, run, goes_on), |_, _| {})
+}
+
 fn perform_all(plan: &Plan, out: &Path, shards: &[&str], existing: Existing) -> Course {
     let mut last = Course::default();
     for text in shards {
-        last = perform_shard(plan, shard(text), out, existing, &|| true, |_, _| {})
-            .unwrap_or_else(|what| panic!("{what}"));
+        last = done(plan, shard(text), out, existing, &|| true).unwrap_or_else(|what| panic!("{what}"));
         assert_eq!(last.missing(), 0);
     }
     last
@@ -82,7 +93,7 @@ fn an_early_end_keeps_what_is_done_and_resume_does_what_is_missing() {
     let out = folder.path().join("out");
     let asked = AtomicU64::new(0);
     let goes_on = || asked.fetch_add(1, Ordering::Relaxed) < 40;
-    let course = perform_shard(&plan, Shard::default(), &out, Existing::Refuse, &goes_on, |_, _| {}).expect("no error");
+    let course = done(&plan, Shard::default(), &out, Existing::Refuse, &goes_on).expect("no error");
     assert!(course.done > 0 && course.missing() > 0, "{course:?}");
     // Somebody else's part counts too.
     let other = perform_all(&plan, &out, &["2/3"], Existing::Resume);
@@ -102,7 +113,7 @@ fn rows_that_are_there_are_not_touched_without_a_word() {
     let out = folder.path().join("out");
     perform_all(&plan, &out, &["1/2"], Existing::Refuse);
     let refused = |text: &str| {
-        let ended = perform_shard(&plan, shard(text), &out, Existing::Refuse, &|| true, |_, _| {});
+        let ended = done(&plan, shard(text), &out, Existing::Refuse, &|| true);
         ended.expect_err("rows are there").to_string()
     };
     for text in ["1/2", "1/1"] {
@@ -117,12 +128,12 @@ fn rows_that_are_there_are_not_touched_without_a_word() {
     let changed = Plan::parse(&text, &folder.path().join("plan.toml")).expect("a plan");
     let before = fs::read(out.join("shards/1-of-2.csv")).expect("rows");
     for existing in [Existing::Refuse, Existing::Resume] {
-        let ended = perform_shard(&changed, shard("1/2"), &out, existing, &|| true, |_, _| {});
+        let ended = done(&changed, shard("1/2"), &out, existing, &|| true);
         let said = ended.expect_err("another plan").to_string();
         assert!(said.contains("1-of-2.csv:2: it is of another plan (") && said.contains("--anew"), "{said}");
     }
     assert_eq!(fs::read(out.join("shards/1-of-2.csv")).expect("rows"), before);
-    let course = perform_shard(&changed, Shard::default(), &out, Existing::Forget, &|| true, |_, _| {}).expect("room");
+    let course = done(&changed, Shard::default(), &out, Existing::Forget, &|| true).expect("room");
     assert_eq!((course.found, course.done), (0, 18));
     assert_eq!(files(&out).expect("a folder").len(), 1);
 }
