@@ -7,7 +7,7 @@ use staya_console::{Ended, Global, print, print_json};
 use staya_controller::grid::Norm;
 use staya_papers::options;
 use staya_plot::terrain::{draw, scale_for};
-use staya_sim::terrain::generate::{ByMetrics, LandPlan, by_metrics, natural, uniform};
+use staya_sim::terrain::generate::{ByMetrics, Hills, LandPlan, by_metrics, natural_by, uniform};
 use staya_sim::terrain::metrics::{Metrics, obstacles_of_entropy};
 use staya_sim::terrain::{LoadOptions, SlopeRule, Terrain, ros};
 use std::fmt::Write as _;
@@ -68,6 +68,9 @@ struct Generate {
     /// natural: number of least passable cells.
     #[arg(long, default_value_t = 70)]
     obstacles: u32,
+    /// natural: how impassability falls around the least passable cells.
+    #[arg(long, default_value = "even", value_parser = options::hills())]
+    hills: Hills,
     /// natural: how distances are measured.
     #[arg(long, default_value = "euclidean", value_parser = options::norm())]
     norm: Norm,
@@ -204,7 +207,7 @@ impl Generate {
         let plan = LandPlan { width: self.width, height: self.height, classes: self.classes, seed: self.seed };
         let terrain = match (self.kind, self.entropy, self.total_edge) {
             (Kind::Uniform, _, _) => uniform(&plan)?,
-            (Kind::Natural, _, _) => natural(&plan, self.obstacles, self.norm)?,
+            (Kind::Natural, _, _) => natural_by(&plan, self.obstacles, self.norm, self.hills)?,
             (Kind::Entropy, Some(entropy), Some(total_edge)) => by_metrics(
                 &plan,
                 &ByMetrics {

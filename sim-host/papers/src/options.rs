@@ -10,6 +10,7 @@ use staya_controller::names::Named;
 use staya_controller::push_out::{Evasion, Model};
 use staya_controller::route::{ExitRule, Replan, RouteParams};
 use staya_controller::shuffle::Sharpness;
+use staya_sim::terrain::generate::Hills;
 
 /// A plan as the command line makes it without any option: every default is said once, in its arguments.
 ///
@@ -84,6 +85,25 @@ pub(crate) fn recovery() -> impl TypedValueParser<Value = Recovery> {
 /// A norm of the plane.
 pub fn norm() -> impl TypedValueParser<Value = Norm> {
     one_of(&[(Norm::Euclidean, "A diagonal move is sqrt 2 long"), (Norm::Chebyshev, "A diagonal move is 1 long")])
+}
+
+/// What natural land is taken to mean.
+pub fn hills() -> impl TypedValueParser<Value = Hills> {
+    one_of(&[
+        (Hills::Even, "Impassability falls by one each cell"),
+        (Hills::Rounded, "The same with rounded distances"),
+        (Hills::Wide, "It falls by one every second cell"),
+        (Hills::Added, "It falls by one each cell, and hills that overlap add up"),
+        (Hills::Rough, "It falls by 0 to 2 each cell, drawn for every cell"),
+    ])
+}
+
+/// How strictly the order of moves follows their costs: ticks that halve a priority, in sixteenths; 0 is greedy.
+pub fn shuffle(word: &str) -> Result<Sharpness, String> {
+    Ok(match gain(word)? {
+        Gain::ZERO => Sharpness::Greedy,
+        half => Sharpness::HalvedPer(half),
+    })
 }
 
 /// Which cells of a window's border end a route.

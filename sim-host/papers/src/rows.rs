@@ -383,3 +383,6 @@ fn in_memory<S: Default>(
     rows.sort_by_key(|row| row.run);
     rows
 }
+
+#[cfg(test)]
+mod tests;

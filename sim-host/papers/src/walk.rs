@@ -1,9 +1,11 @@
 //! One robot on the move, by nothing but the controller's router.
 
 use staya_controller::agent::VISITS;
-use staya_controller::cost::{EXCLUDED, Gain, Weights};
+use staya_controller::cost::Gain;
 use staya_controller::grid::{BLOCKED, Cell, Dir, Window};
+use staya_controller::rand::Rng;
 use staya_controller::route::{CostField, Replan, RouteParams, Router};
+use staya_controller::shuffle::{Sharpness, weighted_shuffle};
 use staya_sim::terrain::Terrain;
 
 /// Moves after which a robot is lost, per cell of the map's half circumference (width + height).
@@ -56,10 +58,21 @@ impl<const CELLS: usize, const M: usize, const L: usize> Walker<CELLS, M, L> {
     /// Lets a robot walk.
     ///
     /// The router cuts the window to its radius around the robot itself, as on a robot whose sensors see farther. The robot
-    /// takes the cheapest move whose cell no other robot has (KUZ algorithm 4, without the shuffle: nobody else moves,
-    /// so there is no conflict to settle). A walk ends at the target, where no move is left, or after 200 moves per
+    /// takes the cheapest move whose cell no other robot has (KUZ algorithm 4, without the shuffle). A walk ends at the target, where no move is left, or after 200 moves per
     /// cell of width + height.
     pub fn walk(&mut self, task: &Task<'_>, params: &RouteParams, replan: Replan) -> Walk {
+        self.walk_shuffled(task, params, replan, Sharpness::Greedy, &mut Rng::new(0))
+    }
+
+    /// The same with the shuffle (KUZ section 7): the order in which moves are tried is drawn by their weights.
+    pub fn walk_shuffled(
+        &mut self,
+        task: &Task<'_>,
+        params: &RouteParams,
+        replan: Replan,
+        sharpness: Sharpness,
+        rng: &mut Rng,
+    ) -> Walk {
         let mut router = Router::<M, L>::new();
         let mut walk = Walk::default();
         let (land, to) = (task.land, task.to);
@@ -92,7 +105,7 @@ impl<const CELLS: usize, const M: usize, const L: usize> Walker<CELLS, M, L> {
             };
             let dir = planned.or_else(|| {
                 let weights = router.weights(params, field, &window, here, to, others);
-                first_free(&weights.ok()?, is_free)
+                weighted_shuffle(&weights.ok()?, sharpness, rng).into_iter().find(is_free)
             });
             // Land and robots that do not change offer no move later either.
             let Some(dir) = dir else { return walk };
@@ -150,12 +163,6 @@ fn wall(walled: &mut Vec<u8>, land: &Terrain, margin: u16) {
         walled.resize(walled.len() + margin, BLOCKED);
     }
     walled.resize(walled.len() + row * margin, BLOCKED);
-}
-
-/// The cheapest open move into a free cell, the first of equals in the order of [`Dir::MOVES`].
-fn first_free(weights: &Weights, is_free: impl Fn(&Dir) -> bool) -> Option<Dir> {
-    let open = weights.iter().filter(|&(_, cost)| cost != EXCLUDED);
-    open.filter(|(dir, _)| is_free(dir)).min_by_key(|&(_, cost)| cost).map(|(dir, _)| dir)
 }
 
 /// Whether a search in `cells` cells, border included, sees all of the land from anywhere on it.

@@ -7,6 +7,8 @@ use clap::Args;
 use staya_controller::formation::{FormationParams, Prediction, Recovery};
 use staya_controller::grid::{Norm, UNIT};
 use staya_controller::route::RouteParams;
+use staya_controller::shuffle::Sharpness;
+use staya_sim::terrain::generate::Hills;
 use std::path::PathBuf;
 
 /// Six robots in formation on natural land: error, arrivals, travel time (Kuznetsov, section 8, figure 6).
@@ -64,6 +66,12 @@ pub struct FormationArgs {
     /// Classes of impassability.
     #[arg(long, default_value_t = 9)]
     classes: u8,
+    /// What natural land is taken to mean; the paper says it in one sentence (docs/limits.md).
+    #[arg(long, default_value = "even", value_parser = options::hills())]
+    hills: Hills,
+    /// Draw the order of moves (weighted shuffle): what costs so many ticks more comes first half as often; 0 never draws.
+    #[arg(long, value_name = "TICKS", default_value = "0", value_parser = options::shuffle)]
+    shuffle: Sharpness,
     /// How the distance to an obstacle is measured.
     #[arg(long, default_value = "euclidean", value_parser = options::norm())]
     hill_norm: Norm,
@@ -106,6 +114,8 @@ impl FormationArgs {
             runs: self.runs,
             size: self.size,
             classes: self.classes,
+            hills: self.hills,
+            sharpness: self.shuffle,
             hill_norm: self.hill_norm,
             spacing: self.spacing,
             rho: self.rho,

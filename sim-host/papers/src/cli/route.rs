@@ -6,6 +6,8 @@ use clap::{Args, ValueEnum};
 use staya_controller::cost::Gain;
 use staya_controller::grid::Norm;
 use staya_controller::route::RouteParams;
+use staya_controller::shuffle::Sharpness;
+use staya_sim::terrain::generate::Hills;
 use std::path::PathBuf;
 
 /// A kind of landscapes as a word.
@@ -73,6 +75,12 @@ pub struct RouteArgs {
     /// Classes of impassability.
     #[arg(long, default_value_t = 9)]
     classes: u8,
+    /// What natural land is taken to mean; the paper says it in one sentence (docs/limits.md).
+    #[arg(long, default_value = "even", value_parser = options::hills())]
+    hills: Hills,
+    /// Draw the order of moves (weighted shuffle): what costs so many ticks more comes first half as often; 0 never draws.
+    #[arg(long, value_name = "TICKS", default_value = "0", value_parser = options::shuffle)]
+    shuffle: Sharpness,
     /// How the distance to an obstacle is measured.
     #[arg(long, default_value = "euclidean", value_parser = options::norm())]
     hill_norm: Norm,
@@ -120,6 +128,8 @@ impl RouteArgs {
             runs: self.runs,
             size: self.size,
             classes: self.classes,
+            hills: self.hills,
+            sharpness: self.shuffle,
             hill_norm: self.hill_norm,
             parked: self.parked,
             seed: self.seed,
@@ -177,7 +187,9 @@ mod tests {
             runs: 3,
             size: 50,
             classes: 4,
+            hills: Hills::Even,
             hill_norm: Norm::Chebyshev,
+            sharpness: Sharpness::Greedy,
             parked: 8,
             seed: 9,
             params,

@@ -26,7 +26,8 @@ use staya_controller::template::{Template, TemplateError};
 use staya_sim::engine::simulate;
 use staya_sim::radio::RadioParams;
 use staya_sim::scenario::{Formation, Robot, Scenario};
-use staya_sim::terrain::generate::{self, natural};
+use staya_sim::terrain::generate::{self, Hills, natural_by};
+use staya_sim::terrain::metrics::Metrics;
 use staya_sim::terrain::{Terrain, TerrainError};
 use staya_sim::world::{Misplaced, MoveRules};
 use staya_sweep::Value;
@@ -56,6 +57,8 @@ pub struct Plan {
     pub size: u16,
     /// Classes of impassability l, 1 or more.
     pub classes: u8,
+    /// What natural land is taken to mean.
+    pub hills: Hills,
     /// Norm of the distance to an obstacle.
     pub hill_norm: Norm,
     /// Cells from one robot of the formation to the next, 1 to 10.
@@ -88,6 +91,7 @@ impl Default for Plan {
             runs: 100,
             size: 100,
             classes: 9,
+            hills: Hills::Even,
             hill_norm: Norm::Euclidean,
             spacing: 3,
             rho: 3,
@@ -115,6 +119,8 @@ enum Way {
 /// What one crossing gave.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Crossing {
+    /// Configuration entropy S of the landscape.
+    pub entropy: f64,
     /// Robots that reached their targets.
     pub arrived: usize,
     /// When the last one arrived, ticks; `None` when one did not.
@@ -135,6 +141,7 @@ pub struct Crossing {
 
 impl Record for Crossing {
     fn figures(&mut self, each: &mut Each<'_>) {
+        each("entropy", "configuration entropy S of the landscape", &mut self.entropy);
         each("arrived", "robots that reached their targets", &mut self.arrived);
         each("time_ticks", "when the last one arrived; empty: one did not", &mut self.time_ticks);
         each("error_cells", "formation error per robot, graph on the top leader; 0: no formation", &mut self.error);
@@ -208,7 +215,7 @@ impl Plan {
     fn landscape(&self, obstacles: u32, run: u32) -> Result<Terrain, TerrainError> {
         let seed = self.landscape_seed(obstacles, run);
         let plan = generate::LandPlan { width: self.size, height: self.size, classes: self.classes, seed };
-        natural(&plan, obstacles, self.hill_norm)
+        natural_by(&plan, obstacles, self.hill_norm, hills, self.hills)
     }
 
     /// The six on a landscape. The rearmost start one cell from the south-west corner; robot 1 goes to the cell that lies
@@ -255,7 +262,8 @@ impl Plan {
             scenario.formation_params.eps = eps;
             scenario.radio.loss = loss;
         }
-        Ok(cross(&scenario)?)
+        let entropy = Metrics::of(&scenario.terrain).entropy;
+        Ok(Crossing { entropy, ..cross(&scenario)? })
     }
 
     /// The runs by number of obstacles: of each landscape all ways, as far as there are all.
@@ -323,6 +331,7 @@ impl Experiment for Plan {
             ("loss", loss.into()),
             ("side_cells", u32::from(*size).into()),
             ("classes", u32::from(*classes).into()),
+            ("hills", word(*hills).into()),
             ("hill_norm", word(*hill_norm).into()),
             ("spacing_cells", u32::from(*spacing).into()),
             ("rho", u32::from(*rho).into()),
@@ -380,6 +389,7 @@ fn cross(scenario: &Scenario) -> Result<Crossing, Misplaced> {
     let last: Option<u64> = outcome.arrival_times.iter().copied().try_fold(0, |last, at| Some(at?.max(last)));
     let keeping = outcome.formation;
     Ok(Crossing {
+        entropy: 0.0,
         arrived: outcome.arrived,
         time_ticks: last.map(|units| units as f64 / f64::from(UNIT)),
         error: keeping.map_or(0.0, |k| k.error_per_agent),

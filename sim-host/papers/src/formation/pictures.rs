@@ -52,6 +52,8 @@ impl Report {
         }
         let paper = self.axis().map(|n| [n, self.paper.at(n)]).filter(|at| at[1] >= 0.0);
         error = error.with(Series::reference("paper: 0.901 ln(N + 1) - 0.674", paper));
+        let same_entropy = self.points.iter().filter_map(|p| Some([place(p), p.paper_error_at_entropy?]));
+        error = error.with(Series::points("paper, on land of equal entropy S", same_entropy).joined());
         let best_fit = self.points.iter().map(|p| [place(p), p.formation.best_fit_error_per_agent]);
         error = error.with(Series::points("measured, graph placed by best fit", best_fit).joined());
 

@@ -2,8 +2,10 @@
 
 use super::{Crossing, Plan, ROBOTS, Run, Way};
 use crate::experiment::Maybe;
+use crate::options::{shuffle_ticks, word};
 use serde::Serialize;
 use staya_controller::grid::UNIT;
+use staya_sim::terrain::metrics::obstacles_of_entropy;
 use staya_stats::{LogFit, Summary, mean};
 use std::fmt::{self, Display, Formatter};
 
@@ -47,10 +49,18 @@ pub struct Point {
     pub alone_time_ticks: Option<f64>,
     /// In formation as planned.
     pub formation: Journey,
-    /// dPhi / 6 by the paper's curve.
-    pub paper_error_per_agent: f64,
-    /// Ours over the paper's; `null` where the curve is not positive (N = 0, 1).
+    /// Mean configuration entropy S of the landscapes.
+    pub entropy: f64,
+    /// dPhi / 6 by the paper's curve at the same number of obstacles; `null` where the curve is not positive (N = 0, 1).
+    pub paper_error_per_agent: Option<f64>,
+    /// Ours over the paper's at equal N.
     pub error_over_paper: Option<f64>,
+    /// The number of obstacles at which the paper's land has this entropy, N(S) with its constant corrected.
+    pub obstacles_of_entropy: f64,
+    /// dPhi / 6 by the paper's curve there: land of the same entropy, which is smoother here below N = 70.
+    pub paper_error_at_entropy: Option<f64>,
+    /// Ours over the paper's at equal S.
+    pub error_over_paper_at_entropy: Option<f64>,
     /// With other values of eps.
     pub other_eps: Vec<Journey>,
     /// With other losses.
@@ -96,6 +106,10 @@ pub struct Report {
     pub size: u16,
     /// Classes of impassability.
     pub classes: u8,
+    /// What natural land is taken to mean.
+    pub hills: String,
+    /// Ticks that halve the priority of a move; 0: the cheapest always comes first.
+    pub shuffle_ticks: f64,
     /// Cells from one robot to the next.
     pub spacing: u8,
     /// Geodesic radius of the templates.
@@ -125,6 +139,8 @@ impl Report {
             runs: plan.runs,
             size: plan.size,
             classes: plan.classes,
+            hills: word(plan.hills),
+            shuffle_ticks: shuffle_ticks(plan.sharpness),
             spacing: plan.spacing,
             rho: plan.rho,
             radius: plan.route.radius,
@@ -150,14 +166,23 @@ impl Point {
         let formation = journeys.next()?;
         let other_eps: Vec<Journey> = journeys.by_ref().take(plan.other_eps.len()).collect();
         let other_losses = journeys.collect();
-        let paper = LogFit::PAPER.at(f64::from(obstacles));
+        let entropy = mean(&runs.iter().map(|run| run[0].entropy).collect::<Vec<_>>())?;
+        let of_entropy = obstacles_of_entropy(entropy);
+        // A fit says nothing outside of its range.
+        let paper = |obstacles: f64| Some(LogFit::PAPER.at(obstacles)).filter(|error| *error > 0.0);
+        let over = |paper: Option<f64>| Some(formation.error_per_agent.mean / paper?);
+        let (same_obstacles, same_entropy) = (paper(f64::from(obstacles)), paper(of_entropy));
         Some(Self {
             obstacles,
             runs: runs.len(),
             alone_arrived: alone_times.len(),
             alone_time_ticks: mean(&alone_times),
-            paper_error_per_agent: paper,
-            error_over_paper: (paper > 0.0).then(|| formation.error_per_agent.mean / paper),
+            entropy,
+            paper_error_per_agent: same_obstacles,
+            error_over_paper: over(same_obstacles),
+            obstacles_of_entropy: of_entropy,
+            paper_error_at_entropy: same_entropy,
+            error_over_paper_at_entropy: over(same_entropy),
             formation,
             other_eps,
             other_losses,
@@ -196,18 +221,21 @@ impl Display for Report {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "six robots {} cells apart, {size} x {size} cells, {} classes, window radius {}, rho {}, r0 {:.2} cells, seed {}",
+            "six robots {} cells apart, {size} x {size} cells, {} classes, {} hills, window radius {}, rho {}, r0 {:.2} cells, \
+             shuffle {} ticks, seed {}",
             self.spacing,
             self.classes,
+            self.hills,
             self.radius,
             self.rho,
             self.halt_cells,
+            self.shuffle_ticks,
             self.seed,
             size = self.size,
         )?;
         writeln!(
             f,
-            "{:>4}{:>6}{:>9}{:>8}{:>7}{:>8}{:>9}{:>10}{:>9}{:>8}{:>8}{:>7}{:>7}",
+            "{:>4}{:>6}{:>9}{:>8}{:>7}{:>8}{:>9}{:>7}{:>7}{:>7}{:>10}{:>9}{:>8}{:>8}{:>7}{:>7}",
             "N",
             "runs",
             "arrived",
@@ -215,6 +243,9 @@ impl Display for Report {
             "+-",
             "paper",
             "of paper",
+            "S",
+            "N(S)",
+            "of it",
             "best fit",
             "dist",
             "worst",
@@ -226,14 +257,17 @@ impl Display for Report {
             let journey = &point.formation;
             writeln!(
                 f,
-                "{:>4}{:>6}{:>9}{:>8.3}{:>7}{:>8.3}{:>9}{:>10.3}{:>9.3}{:>8.2}{:>8}{:>7}{:>7}",
+                "{:>4}{:>6}{:>9}{:>8.3}{:>7}{:>8}{:>9}{:>7.3}{:>7.1}{:>7}{:>10.3}{:>9.3}{:>8.2}{:>8}{:>7}{:>7}",
                 point.obstacles,
                 point.runs,
                 journey.arrived,
                 journey.error_per_agent.mean,
                 Maybe(journey.error_per_agent.mean_error95, 3),
-                point.paper_error_per_agent,
+                Maybe(point.paper_error_per_agent, 3),
                 Maybe(point.error_over_paper, 2),
+                point.entropy,
+                point.obstacles_of_entropy,
+                Maybe(point.error_over_paper_at_entropy, 2),
                 journey.best_fit_error_per_agent,
                 journey.graph_distance,
                 journey.worst_error,
@@ -242,6 +276,7 @@ impl Display for Report {
                 Maybe(journey.time_ratio, 2),
             )?;
         }
+        f.write_str("of paper: at equal N; of it: at equal entropy S, of the paper's at N(S) obstacles, where its land has that S;\n")?;
         f.write_str("dPhi/6: error per robot, cells; best fit: the same, graph placed by the best-fitting translation; dist: graph distance;\n")?;
         f.write_str("worst: largest error per robot of any tick; alone, time: ticks until the last robot arrived without and in formation\n\n")?;
         if let Some(fit) = self.fit {

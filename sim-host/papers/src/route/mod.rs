@@ -21,7 +21,7 @@ pub use report::{Arrivals, Loss, Means, Point, Report, Response, decimal};
 
 use crate::experiment::{Experiment, check_runs};
 use crate::optimal::Planner;
-use crate::options::word;
+use crate::options::{shuffle_ticks, word};
 use crate::rows::{Each, Jobs, Record};
 use crate::walk::{Task, Walk, Walker};
 use anyhow::{Result, ensure};
@@ -30,7 +30,8 @@ use staya_controller::cost::Gain;
 use staya_controller::grid::{Cell, Norm, UNIT};
 use staya_controller::rand::Rng;
 use staya_controller::route::{Replan, RouteParams};
-use staya_sim::terrain::generate::{self, natural, uniform};
+use staya_controller::shuffle::Sharpness;
+use staya_sim::terrain::generate::{self, Hills, natural_by, uniform};
 use staya_sim::terrain::metrics::Metrics;
 use staya_sim::terrain::{Terrain, TerrainError};
 use staya_sweep::Value;
@@ -40,6 +41,8 @@ use std::path::{Path, PathBuf};
 const LANDSCAPES: u32 = 0x0045_0001;
 /// Purpose of the random numbers that put cells into another order.
 const ORDER: u32 = 0x0045_0002;
+/// Purpose of the random numbers that shuffle moves.
+const MOVES: u32 = 0x0045_0004;
 /// Purpose of the random numbers that place parked robots.
 const PARKED: u32 = 0x0045_0003;
 
@@ -154,6 +157,8 @@ pub struct Plan {
     pub size: u16,
     /// Classes of impassability l, 1 or more.
     pub classes: u8,
+    /// What natural land is taken to mean.
+    pub hills: Hills,
     /// Norm of the distance to an obstacle in natural land.
     pub hill_norm: Norm,
     /// Other robots on each landscape, standing in random cells. The paper has none; without any, a1 is without effect.
@@ -164,6 +169,8 @@ pub struct Plan {
     pub params: RouteParams,
     /// When it searches anew.
     pub replan: Replan,
+    /// How strictly the order of its moves follows their costs. The paper draws it.
+    pub sharpness: Sharpness,
     /// Coefficients to try in other values, on the same landscapes, one at a time.
     pub sweep: Vec<(Coefficient, Gain)>,
 }
@@ -176,11 +183,13 @@ impl Default for Plan {
             runs: 1000,
             size: 100,
             classes: 9,
+            hills: Hills::Even,
             hill_norm: Norm::Euclidean,
             parked: 0,
             seed: 1,
             params: RouteParams::default(),
             replan: Replan::EachCell,
+            sharpness: Sharpness::Greedy,
             sweep: Vec::new(),
         }
     }
@@ -300,9 +309,9 @@ impl Plan {
         };
         match land {
             Land::Uniform => uniform(&plan),
-            Land::Natural(obstacles) => natural(&plan, obstacles, self.hill_norm),
+            Land::Natural(obstacles) => natural_by(&plan, obstacles, self.hill_norm, self.hills),
             Land::Shuffled(obstacles) => {
-                let mut cells = natural(&plan, obstacles, self.hill_norm)?.cells().to_vec();
+                let mut cells = natural_by(&plan, obstacles, self.hill_norm, self.hills)?.cells().to_vec();
                 let mut rng = Rng::keyed(self.seed, ORDER, key, run);
                 // Fisher and Yates: each order is equally likely.
                 for last in (1..cells.len()).rev() {
@@ -336,7 +345,7 @@ impl Plan {
     ) -> Result<Run, TerrainError> {
         let terrain = self.landscape(land, run)?;
         let parked = self.parked(land, run);
-        Ok(self.run_on(scratch, &terrain, &parked, &params).0)
+        Ok(self.run_on(scratch, &terrain, &parked, (&params, self.landscape_seed(land, run))).0)
     }
 
     fn run_on(
@@ -344,7 +353,7 @@ impl Plan {
         Scratch { walker, planner }: &mut Scratch,
         land: &Terrain,
         parked: &[Cell],
-        params: &RouteParams,
+        (params, seed): (&RouteParams, u64),
     ) -> (Run, Vec<Cell>) {
         let (from, to) = (self.start(), self.target());
         let RouteParams { norm, corner_cutting, .. } = *params;
@@ -359,7 +368,13 @@ impl Plan {
             total_edge: metrics.total_edge,
             optimal_cost,
             optimal_length,
-            walks: vec![walker.walk(&task, params, self.replan)],
+            walks: vec![walker.walk_shuffled(
+                &task,
+                params,
+                self.replan,
+                self.sharpness,
+                &mut Rng::keyed(seed, MOVES, 0, 0),
+            )],
         };
         (run, cells)
     }
@@ -388,7 +403,8 @@ impl Plan {
         let land = plan.landscape(*family, number)?;
         let parked = plan.parked(*family, number);
         let mut scratch = Scratch::default();
-        let (run, optimal) = plan.run_on(&mut scratch, &land, &parked, &plan.params);
+        let (run, optimal) =
+            plan.run_on(&mut scratch, &land, &parked, (&plan.params, plan.landscape_seed(*family, number)));
         Ok(Some(Example {
             family: *family,
             radius: plan.params.radius,
@@ -433,13 +449,15 @@ impl Experiment for Plan {
 
     fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
         // By name, so that a new field is not forgotten.
-        let Self { lands: _, runs: _, size, classes, hill_norm, parked, seed, params: _, replan, sweep: _ } = self;
+        let Self { params: _, replan, sweep: _, sharpness, .. } = self;
+        let Self { lands: _, runs: _, size, classes, hills, hill_norm, parked, seed, .. } = self;
         let (land, RouteParams { radius, exit, norm, corner_cutting, a0, a1, a2, a3 }) = self.point(point);
         vec![
             ("land", land.family().into()),
             ("obstacles", land.obstacles().map_or(Value::from("-"), Value::from)),
             ("side_cells", u32::from(*size).into()),
             ("classes", u32::from(*classes).into()),
+            ("hills", word(*hills).into()),
             ("hill_norm", word(*hill_norm).into()),
             ("parked", (*parked).into()),
             ("radius_cells", u32::from(radius).into()),
@@ -451,6 +469,7 @@ impl Experiment for Plan {
             ("a1", decimal(a1).into()),
             ("a2", decimal(a2).into()),
             ("a3", decimal(a3).into()),
+            ("shuffle_ticks", shuffle_ticks(*sharpness).into()),
             ("first_seed", seed.to_string().into()),
         ]
     }

@@ -2,7 +2,7 @@
 
 use super::{Coefficient, Land, Plan, Run, ticks};
 use crate::experiment::Maybe;
-use crate::options::word;
+use crate::options::{shuffle_ticks, word};
 use rayon::prelude::*;
 use serde::Serialize;
 use staya_controller::cost::Gain;
@@ -129,6 +129,10 @@ pub struct Report {
     pub size: u16,
     /// Classes of impassability.
     pub classes: u8,
+    /// What natural land is taken to mean.
+    pub hills: String,
+    /// Ticks that halve the priority of a move; 0: the cheapest always comes first.
+    pub shuffle_ticks: f64,
     /// Norm of hills.
     pub hill_norm: Norm,
     /// Other robots that stand on each landscape.
@@ -198,6 +202,8 @@ impl Report {
             runs: plan.runs,
             size: plan.size,
             classes: plan.classes,
+            hills: word(plan.hills),
+            shuffle_ticks: shuffle_ticks(plan.sharpness),
             hill_norm: plan.hill_norm,
             parked: plan.parked,
             seed: plan.seed,
@@ -261,14 +267,16 @@ impl Display for Report {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "{size} x {size} cells, {} classes, window radius {}, exit {}, a = ({}, {}, {}, {}), seed {}",
+            "{size} x {size} cells, {} classes, {} hills, window radius {}, exit {}, a = ({}, {}, {}, {}), shuffle {} ticks, seed {}",
             self.classes,
+            self.hills,
             self.radius,
             self.exit,
             self.a0,
             self.a1,
             self.a2,
             self.a3,
+            self.shuffle_ticks,
             self.seed,
             size = self.size,
         )?;

@@ -4,8 +4,10 @@
 //! (landscapes of a given configuration entropy and total edge).
 
 mod by_metrics;
+mod hills;
 
 pub use by_metrics::{ByMetrics, by_metrics};
+pub use hills::{Hills, natural_by};
 
 use super::error::{TerrainError, parameter_error};
 use super::{MAX_SIDE, Terrain};
@@ -85,13 +87,7 @@ pub fn uniform(plan: &LandPlan) -> Result<Terrain, TerrainError> {
 /// # Errors
 /// [`TerrainError::Parameter`] for a plan out of range, or more obstacles than cells.
 pub fn natural(plan: &LandPlan, obstacles: u32, norm: Norm) -> Result<Terrain, TerrainError> {
-    plan.check()?;
-    if obstacles > plan.cells() {
-        return Err(parameter_error(
-            format!("{obstacles} obstacles on {} cells", plan.cells()),
-            "give fewer obstacles, or more land",
-        ));
-    }
+    check_obstacles(plan, obstacles)?;
     let width = usize::from(plan.width);
     let mut cells = vec![1; plan.cells() as usize];
     let hill = Hill::new(plan.classes, norm);
@@ -100,6 +96,17 @@ pub fn natural(plan: &LandPlan, obstacles: u32, norm: Norm) -> Result<Terrain, T
         hill.stamp(&mut cells, width, at % width, at / width);
     }
     Terrain::from_cells(plan.width, plan.height, cells)
+}
+
+fn check_obstacles(plan: &LandPlan, obstacles: u32) -> Result<(), TerrainError> {
+    plan.check()?;
+    if obstacles > plan.cells() {
+        return Err(parameter_error(
+            format!("{obstacles} obstacles on {} cells", plan.cells()),
+            "give fewer obstacles, or more land",
+        ));
+    }
+    Ok(())
 }
 
 /// `count` different numbers below `total`, each set of them equally likely, in a random order.

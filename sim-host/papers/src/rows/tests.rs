@@ -1,0 +1,165 @@
+use super::*;
+use crate::crossing::{cases, doorway, swap};
+use crate::flock::{self, closing::Closing};
+use crate::{boids, formation, goals, route};
+use staya_console::{Ended, Global, Stop};
+use std::fs;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Eight runs of a tenth of a second in all, with noise and losses.
+fn plan() -> swap::Plan {
+    let conditions = crate::crossing::Conditions { loss: 0.2, ..Default::default() };
+    swap::Plan { robots: vec![3, 4], seeds: 4, noise_m: 0.02, patience: 2.0, conditions, ..swap::Plan::default() }
+}
+
+fn quiet() -> Global {
+    Global { quiet: true, ..Global::default() }
+}
+
+fn command(out: &Path, keeping: &Keeping) -> Result<Ended> {
+    plan().command(out, keeping, &quiet(), &Stop::default())
+}
+
+fn text(out: &Path, name: &str) -> String {
+    fs::read_to_string(out.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+#[test]
+fn rows_say_what_was_given_and_what_came_of_it() {
+    let dir = tempfile::tempdir().expect("a folder");
+    command(dir.path(), &Keeping::default()).expect("done");
+    let rows = text(dir.path(), ROWS);
+    let lines: Vec<Vec<&str>> = rows.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!(lines.len(), 1 + 8);
+    assert!(lines.iter().all(|cells| cells.len() == lines[0].len()));
+    let column = |name: &str| {
+        let at = lines[0].iter().position(|cell| *cell == name).unwrap_or_else(|| panic!("{name}"));
+        lines[1..].iter().map(|cells| cells[at]).collect::<Vec<_>>()
+    };
+    assert_eq!(column("robots"), ["3", "3", "3", "3", "4", "4", "4", "4"]);
+    assert_eq!(column("seed"), ["1", "2", "3", "4", "1", "2", "3", "4"]);
+    assert_eq!(column("loss"), ["0.2"; 8]);
+    assert!(column("trace_hash").iter().all(|hash| hash.len() == 16));
+    assert!(column("version").iter().all(|version| version.starts_with(env!("CARGO_PKG_VERSION"))));
+    // Figures are those of the report, to the bit.
+    let report = plan().measure().expect("a report");
+    let ratios: Vec<String> = report.runs.iter().map(|run| Figure(run.time_ratio).to_string()).collect();
+    assert_eq!(column("time_ratio"), ratios);
+    let schema: serde_json::Value = serde_json::from_str(&text(dir.path(), "rows.schema.json")).expect("JSON");
+    let names: Vec<&str> =
+        schema["columns"].as_array().expect("columns").iter().filter_map(|c| c["name"].as_str()).collect();
+    assert_eq!(names, lines[0]);
+    assert_eq!(text(dir.path(), AGGREGATES).lines().count(), 1 + 2 * 5);
+}
+
+#[test]
+fn a_part_that_is_resumed_and_shards_give_the_rows_of_one_go() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let out = |name: &str| dir.path().join(name);
+    command(&out("whole"), &Keeping::default()).expect("done");
+    let whole = [ROWS, AGGREGATES].map(|name| text(&out("whole"), name));
+    let same = |name: &str| assert_eq!([ROWS, AGGREGATES].map(|file| text(&out(name), file)), whole, "{name}");
+    // Shards, then the whole; the same again where a line was cut off, as by a kill.
+    for shard in ["2/3", "1/3", "3/3"] {
+        let keeping = Keeping { shard: shard.parse().expect("a shard"), ..Keeping::default() };
+        command(&out("shards"), &keeping).expect("done");
+        assert!(!out("shards").join(ROWS).exists());
+    }
+    let resume = Keeping { resume: true, ..Keeping::default() };
+    command(&out("shards"), &resume).expect("done");
+    same("shards");
+    fs::create_dir_all(out("cut/shards")).expect("room");
+    let rows = text(&out("whole"), "shards/1-of-1.csv");
+    fs::write(out("cut/shards/1-of-1.csv"), &rows[..rows.len() / 2]).expect("room");
+    let refused = command(&out("cut"), &Keeping::default()).expect_err("somebody's hours").to_string();
+    assert!(refused.contains("--resume does the others, --anew forgets these"), "{refused}");
+    command(&out("cut"), &resume).expect("done");
+    same("cut");
+    // What came to its end is replaced; what is of another plan is not taken up.
+    command(&out("cut"), &Keeping::default()).expect("done");
+    same("cut");
+    let other = swap::Plan { noise_m: 0.01, ..plan() };
+    let refused =
+        other.command(&out("cut"), &resume, &quiet(), &Stop::default()).expect_err("another plan").to_string();
+    assert!(refused.contains("it is of another plan"), "{refused}");
+}
+
+#[test]
+fn an_early_end_keeps_what_is_done() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let (asked, keeping, plan) = (AtomicUsize::new(0), Keeping::default(), plan());
+    let goes_on = |_| asked.fetch_add(1, Ordering::Relaxed) < 700;
+    let jobs = Jobs::new(&plan, &goes_on, Some((dir.path(), &keeping)));
+    let some = plan.perform(&jobs).expect("no error");
+    let course = jobs.course().expect("rows are kept");
+    assert!(course.done > 0 && course.missing() > 0, "{course:?}");
+    assert!(some.concat().len() as u64 <= course.done);
+    let all = plan.carry_out(|_| true).expect("no error");
+    for (some, all) in some.iter().zip(&all) {
+        assert_eq!(some[..], all[..some.len()]);
+    }
+    let (always, resume) = (|_| true, Keeping { resume: true, ..Keeping::default() });
+    let jobs = Jobs::new(&plan, &always, Some((dir.path(), &resume)));
+    assert_eq!(plan.perform(&jobs).expect("no error"), all);
+    assert_eq!(jobs.course().expect("rows").found, course.done);
+}
+
+/// Rows of a plan are sound, and tell plans apart.
+fn check<E: Experiment>(plan: &E, other: &E) {
+    plan.check().unwrap_or_else(|what| panic!("{}: {what}", E::NAME));
+    let sheet = Sheet::new(plan);
+    assert_ne!(sheet.fingerprint(), Sheet::new(other).fingerprint(), "{}", E::NAME);
+    let names: Vec<String> = sheet.parameters().into_iter().chain(Design::figures(&sheet)).collect();
+    let mut unique = names.clone();
+    unique.sort_unstable();
+    unique.dedup();
+    assert_eq!(unique.len(), names.len(), "{}: {names:?}", E::NAME);
+    let is_name = |name: &String| name.chars().all(|c| c.is_ascii_alphanumeric() || "._".contains(c));
+    assert!(names.iter().all(is_name), "{}: {names:?}", E::NAME);
+    assert_eq!(sheet.runs(), plan.total() as u64);
+    for run in [0, sheet.runs() - 1] {
+        assert_eq!(sheet.values(run).len(), sheet.parameters().len());
+    }
+    // Points differ in what was given, so that no two rows mean one run.
+    let mut points: Vec<Vec<String>> =
+        (0..plan.points() as u64).map(|p| sheet.values(p * sheet.runs_per_point())).collect();
+    points.sort_unstable();
+    assert!(points.windows(2).all(|pair| pair[0] != pair[1]), "{}", E::NAME);
+    // What is written is read back to the bit.
+    let (point, run) = sheet.place(sheet.runs() - 1);
+    let mut blank = plan.blank(point, run);
+    let mut number = 0.0;
+    blank.figures(&mut |_, _, cell| {
+        number += 1.0;
+        assert!(cell.set(Some(number)) || cell.set(Some(1.0)));
+    });
+    let row = sheet.row(0, &mut blank);
+    let mut read = plan.blank(point, run);
+    assert!(sheet.read(&row, &mut read), "{}", E::NAME);
+    assert_eq!(sheet.row(0, &mut read), row, "{}", E::NAME);
+}
+
+#[test]
+fn rows_of_all_experiments_are_sound() {
+    check(&plan(), &swap::Plan { patience: 3.0, ..plan() });
+    check(&doorway::Plan::default(), &doorway::Plan { robots: 3, ..doorway::Plan::default() });
+    check(&cases::Plan::default(), &cases::Plan { seed: 77, ..cases::Plan::default() });
+    check(&formation::Plan::default(), &formation::Plan { loss: 0.25, ..formation::Plan::default() });
+    check(&route::Plan::default(), &route::Plan { parked: 3, ..route::Plan::default() });
+    check(&goals::Plan::default(), &goals::Plan { k3: 1.0, ..goals::Plan::default() });
+    check(&flock::Plan::default(), &flock::Plan { loss: 0.1, ..flock::Plan::default() });
+    check(&Closing::default(), &Closing { step_s: 0.02, ..Closing::default() });
+    check(&boids::Plan::default(), &boids::Plan { steps: 3, ..boids::Plan::default() });
+}
+
+#[test]
+fn cells_take_what_they_can_be() {
+    let mut count = 3_usize;
+    assert!(!count.set(None) && !count.set(Some(-1.0)) && !count.set(Some(0.5)) && count.set(Some(4.0)));
+    assert_eq!(count, 4);
+    let mut truth = false;
+    assert!(truth.set(Some(1.0)) && truth && !truth.set(Some(2.0)) && !truth.set(None));
+    let mut perhaps = Some(1_u32);
+    assert!(perhaps.set(None) && perhaps.is_none() && !perhaps.set(Some(1.5)) && perhaps.set(Some(2.0)));
+    assert_eq!(perhaps, Some(2));
+}
