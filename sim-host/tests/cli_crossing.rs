@@ -60,7 +60,7 @@ fn parameters_out_of_range_are_refused_in_one_line() {
         (&["swap", "--circle", "-1"], "--circle is out of range"),
         (&["doorway", "--widths", "-1"], "--widths -1 is out of range"),
         (&["doorway", "--robots", "0"], "1..=1000"),
-        (&["doorway", "--out", "/dev/null/x"], "pictures have no place"),
+        (&["doorway", "--out", "/dev/null/x"], "results have no place"),
     ] {
         let ended = staya(&[&["experiment"], arguments].concat());
         let error = String::from_utf8_lossy(&ended.stderr);

@@ -56,7 +56,9 @@ impl Folder {
             fs::read_dir(out.join("plots")).expect("pictures").flatten().map(|e| e.path()).collect();
         pictures.sort();
         assert_eq!(pictures.len(), 6);
-        let files = [out.join("rows.csv"), out.join("aggregates.csv")].into_iter().chain(pictures);
+        let files = [out.join("rows.csv"), out.join("rows.schema.json"), out.join("aggregates.csv")]
+            .into_iter()
+            .chain(pictures);
         files.map(|file| fs::read(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()))).collect()
     }
 

@@ -1,7 +1,7 @@
 //! The rows of experiments: what a sweep writes of its runs ([`staya_sweep::row`]), by the same machine.
 
 use crate::experiment::{Experiment, GoesOn};
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use clap::Args;
 use staya_controller::digest::{chained, digest};
 use staya_sim::record::{Error, write_atomically};
@@ -141,9 +141,11 @@ pub(crate) struct Sheet<'a, E> {
 impl<'a, E: Experiment> Sheet<'a, E> {
     /// Of a plan that was checked.
     pub fn new(plan: &'a E) -> Self {
-        let mut figures = Vec::new();
-        plan.blank(0, 0).figures(&mut |name, meaning, _| figures.push((name, meaning)));
-        let parameters: Vec<_> = plan.given(0).iter().map(|(name, _)| *name).collect();
+        let (mut figures, mut parameters) = (Vec::new(), Vec::new());
+        if plan.points() > 0 {
+            plan.blank(0, 0).figures(&mut |name, meaning, _| figures.push((name, meaning)));
+            parameters.extend(plan.given(0).iter().map(|(name, _)| *name));
+        }
         let mut fingerprint = chained(FORMAT, digest(E::NAME.as_bytes()));
         let mut add = |text: &str| fingerprint = chained(fingerprint, digest(text.as_bytes()));
         parameters.iter().for_each(|name| add(name));
@@ -307,7 +309,8 @@ impl<'a, E: Experiment> Jobs<'a, E> {
             let (point, number) = sheet.place(row.run);
             let mut run = made.remove(&row.run).unwrap_or_else(|| sheet.plan.blank(point, number));
             // Figures are computed of what the rows say, whoever made them.
-            if by_point[point].len() == number as usize && sheet.read(&row, &mut run) {
+            ensure!(sheet.read(&row, &mut run), "run {} has a row that no run gives; begin --anew", row.run);
+            if by_point[point].len() == number as usize {
                 by_point[point].push(run);
             }
         }

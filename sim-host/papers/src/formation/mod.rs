@@ -79,7 +79,7 @@ pub struct Plan {
     pub other_losses: Vec<f64>,
     /// Ticks after which a run is given up.
     pub ticks: u32,
-    /// Equal seeds give equal results.
+    /// Equal seeds give equal results. Parameters were chosen on seed 1, so it is another one by default.
     pub seed: u64,
 }
 
@@ -102,7 +102,7 @@ impl Default for Plan {
             other_eps: vec![1, 2, 3, 5],
             other_losses: vec![0.1, 0.3, 0.6],
             ticks: 10_000,
-            seed: 1,
+            seed: 2,
         }
     }
 }

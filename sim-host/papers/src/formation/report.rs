@@ -9,6 +9,10 @@ use staya_sim::terrain::metrics::obstacles_of_entropy;
 use staya_stats::{LogFit, Summary, mean};
 use std::fmt::{self, Display, Formatter};
 
+/// Fewest obstacles at which the paper's curve is taken at its word: a fit says nothing outside of its range, and towards 0 this
+/// one is negative.
+const LEAST_OF_PAPER: f64 = 10.0;
+
 /// The six on all landscapes of a point, one way to cross them.
 #[derive(Clone, Debug, Serialize)]
 pub struct Journey {
@@ -51,7 +55,7 @@ pub struct Point {
     pub formation: Journey,
     /// Mean configuration entropy S of the landscapes.
     pub entropy: f64,
-    /// dPhi / 6 by the paper's curve at the same number of obstacles; `null` where the curve is not positive (N = 0, 1).
+    /// dPhi / 6 by the paper's curve at the same number of obstacles; `null` below 10, where the curve says nothing.
     pub paper_error_per_agent: Option<f64>,
     /// Ours over the paper's at equal N.
     pub error_over_paper: Option<f64>,
@@ -168,8 +172,7 @@ impl Point {
         let other_losses = journeys.collect();
         let entropy = mean(&runs.iter().map(|run| run[0].entropy).collect::<Vec<_>>())?;
         let of_entropy = obstacles_of_entropy(entropy);
-        // A fit says nothing outside of its range.
-        let paper = |obstacles: f64| Some(LogFit::PAPER.at(obstacles)).filter(|error| *error > 0.0);
+        let paper = |obstacles: f64| (obstacles >= LEAST_OF_PAPER).then(|| LogFit::PAPER.at(obstacles));
         let over = |paper: Option<f64>| Some(formation.error_per_agent.mean / paper?);
         let (same_obstacles, same_entropy) = (paper(f64::from(obstacles)), paper(of_entropy));
         Some(Self {

@@ -3,7 +3,15 @@ use staya_controller::cost::Gain;
 
 /// Small enough for a test, large enough to show something.
 fn small() -> Plan {
-    Plan { obstacles: vec![0, 10], runs: 4, size: 40, other_eps: vec![2], other_losses: vec![0.6], ..Plan::default() }
+    Plan {
+        obstacles: vec![0, 10],
+        runs: 4,
+        size: 40,
+        other_eps: vec![2],
+        other_losses: vec![0.6],
+        seed: 1,
+        ..Plan::default()
+    }
 }
 
 fn report(plan: &Plan) -> Report {

@@ -21,6 +21,7 @@ fn plan() -> Plan {
             a2: Gain::from_int(3),
             a3: Gain::from_int(3),
         },
+        seed: 1,
         ..Plan::default()
     }
 }

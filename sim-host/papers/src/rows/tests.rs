@@ -88,7 +88,7 @@ fn a_part_that_is_resumed_and_shards_give_the_rows_of_one_go() {
 fn an_early_end_keeps_what_is_done() {
     let dir = tempfile::tempdir().expect("a folder");
     let (asked, keeping, plan) = (AtomicUsize::new(0), Keeping::default(), plan());
-    let goes_on = |_| asked.fetch_add(1, Ordering::Relaxed) < 700;
+    let goes_on = |_: usize| asked.fetch_add(1, Ordering::Relaxed) < 700;
     let jobs = Jobs::new(&plan, &goes_on, Some((dir.path(), &keeping)));
     let some = plan.perform(&jobs).expect("no error");
     let course = jobs.course().expect("rows are kept");
@@ -98,7 +98,7 @@ fn an_early_end_keeps_what_is_done() {
     for (some, all) in some.iter().zip(&all) {
         assert_eq!(some[..], all[..some.len()]);
     }
-    let (always, resume) = (|_| true, Keeping { resume: true, ..Keeping::default() });
+    let (always, resume) = (|_: usize| true, Keeping { resume: true, ..Keeping::default() });
     let jobs = Jobs::new(&plan, &always, Some((dir.path(), &resume)));
     assert_eq!(plan.perform(&jobs).expect("no error"), all);
     assert_eq!(jobs.course().expect("rows").found, course.done);
