@@ -288,8 +288,21 @@ impl Experiment for Plan {
 
     fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
         // By name, so that a new field is not forgotten.
-        let Self { boids, steps, most_by_all_pairs, picture_boids: _, picture_steps: _, .. } = self;
-        let Self { area_per_boid, speed, crowded, closest, max_turn, max_turn_away, seed: _, out: _, .. } = self;
+        let Self {
+            boids,
+            steps,
+            most_by_all_pairs,
+            picture_boids: _,
+            picture_steps: _,
+            area_per_boid,
+            speed,
+            crowded,
+            closest,
+            max_turn,
+            max_turn_away,
+            seed: _,
+            out: _,
+        } = self;
         let number = |value: f32| Value::from(f64::from(value));
         vec![
             ("boids", boids[point].into()),

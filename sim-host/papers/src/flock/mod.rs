@@ -170,8 +170,23 @@ impl Experiment for Plan {
 
     fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
         // By name, so that a new field is not forgotten.
-        let Self { cases, runs: _, robots, safety, horizon_s, spacing_m, step_s, seconds, .. } = self;
-        let Self { c_alpha: _, c_beta: _, c_gamma: _, reference, loss, seed, out: _, .. } = self;
+        let Self {
+            cases,
+            runs: _,
+            robots,
+            safety,
+            horizon_s,
+            spacing_m,
+            step_s,
+            seconds,
+            c_alpha: _,
+            c_beta: _,
+            c_gamma: _,
+            reference,
+            loss,
+            seed,
+            out: _,
+        } = self;
         let case = cases[point];
         let setting = case.setting();
         let [c_alpha, c_beta, c_gamma] = self.gains(case).map(Value::from);

@@ -215,7 +215,7 @@ impl Plan {
     fn landscape(&self, obstacles: u32, run: u32) -> Result<Terrain, TerrainError> {
         let seed = self.landscape_seed(obstacles, run);
         let plan = generate::LandPlan { width: self.size, height: self.size, classes: self.classes, seed };
-        natural_by(&plan, obstacles, self.hill_norm, hills, self.hills)
+        natural_by(&plan, obstacles, self.hill_norm, self.hills)
     }
 
     /// The six on a landscape. The rearmost start one cell from the south-west corner; robot 1 goes to the cell that lies
@@ -315,15 +315,41 @@ impl Experiment for Plan {
 
     fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
         // By name, so that a new field is not forgotten.
-        let Self { size, classes, hill_norm, spacing, rho, route, formation, sharpness, ticks, seed, .. } = self;
-        let Self { obstacles: _, runs: _, loss: _, other_eps: _, other_losses: _, .. } = self;
+        let Self {
+            obstacles: _,
+            runs: _,
+            size,
+            classes,
+            hills,
+            hill_norm,
+            spacing,
+            rho,
+            route,
+            formation,
+            sharpness,
+            loss: _,
+            other_eps: _,
+            other_losses: _,
+            ticks,
+            seed,
+        } = self;
         let (obstacles, way) = self.point(point);
         let (is_formation, eps, loss) = match way {
             Way::Alone => (false, formation.eps, 0.0),
             Way::Together { eps, loss } => (true, eps, loss),
         };
-        let FormationParams { eps: _, gain, halt_lag, resume_lag, lead, footprint, .. } = *formation;
-        let FormationParams { patience, closes_ranks, prediction, recovery, .. } = *formation;
+        let FormationParams {
+            eps: _,
+            gain,
+            halt_lag,
+            resume_lag,
+            lead,
+            footprint,
+            patience,
+            closes_ranks,
+            prediction,
+            recovery,
+        } = *formation;
         vec![
             ("obstacles", obstacles.into()),
             ("formation", is_formation.into()),

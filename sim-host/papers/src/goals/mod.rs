@@ -267,8 +267,23 @@ impl Experiment for Plan {
 
     fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
         // By name, so that a new field is not forgotten.
-        let Self { k1: _, k2, k3, neighborhoods_m: _, min_distance_m, robots, runs: _, safety, .. } = self;
-        let Self { model, evasion, seconds, step_s, moves_goal, seed, out: _, .. } = self;
+        let Self {
+            k1: _,
+            k2,
+            k3,
+            neighborhoods_m: _,
+            min_distance_m,
+            robots,
+            runs: _,
+            safety,
+            model,
+            evasion,
+            seconds,
+            step_s,
+            moves_goal,
+            seed,
+            out: _,
+        } = self;
         let (k1, neighborhood_m) = self.points()[point];
         vec![
             ("k1", k1.into()),

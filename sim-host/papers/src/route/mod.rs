@@ -449,8 +449,20 @@ impl Experiment for Plan {
 
     fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
         // By name, so that a new field is not forgotten.
-        let Self { params: _, replan, sweep: _, sharpness, .. } = self;
-        let Self { lands: _, runs: _, size, classes, hills, hill_norm, parked, seed, .. } = self;
+        let Self {
+            lands: _,
+            runs: _,
+            size,
+            classes,
+            hills,
+            hill_norm,
+            parked,
+            seed,
+            params: _,
+            replan,
+            sharpness,
+            sweep: _,
+        } = self;
         let (land, RouteParams { radius, exit, norm, corner_cutting, a0, a1, a2, a3 }) = self.point(point);
         vec![
             ("land", land.family().into()),
