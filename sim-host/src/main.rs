@@ -24,7 +24,7 @@ use std::process::ExitCode;
 
 /// Swarms of robots, each with its own onboard controller, in one world with a lossy radio.
 #[derive(Debug, Parser)]
-#[command(name = "staya", version, propagate_version = true)]
+#[command(name = "staya", version = staya_sweep::VERSION, propagate_version = true)]
 struct Cli {
     #[command(flatten)]
     global: Global,

@@ -214,12 +214,12 @@ impl Record for Run {
     fn figures(&mut self, each: &mut Each<'_>) {
         each("entropy", "configuration entropy S of the landscape", &mut self.entropy);
         each("total_edge", "total edge TE of the landscape", &mut self.total_edge);
-        each("optimal_cost", "travel time of the fastest route, 256ths of a tick", &mut self.optimal_cost);
-        each("optimal_length", "length of the fastest route, 256ths of a cell", &mut self.optimal_length);
+        each("optimal_cost", "travel time of the fastest route, 70ths of a tick", &mut self.optimal_cost);
+        each("optimal_length", "length of the fastest route, 70ths of a cell", &mut self.optimal_length);
         for walk in &mut self.walks {
             each("arrived", "1: the robot reached its target", &mut walk.arrived);
-            each("cost", "travel time of the robot, 256ths of a tick", &mut walk.cost);
-            each("length", "length of its way, 256ths of a cell", &mut walk.length);
+            each("cost", "travel time of the robot, 70ths of a tick", &mut walk.cost);
+            each("length", "length of its way, 70ths of a cell", &mut walk.length);
             each("moves", "its moves", &mut walk.moves);
         }
     }
