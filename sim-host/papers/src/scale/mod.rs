@@ -9,8 +9,9 @@ mod report;
 
 pub use report::{Report, Row};
 
-use crate::experiment::{Experiment, GoesOn};
+use crate::experiment::Experiment;
 use crate::options;
+use crate::rows::Jobs;
 use anyhow::{Result, ensure};
 use clap::{Args, ValueEnum};
 use process::Usage;
@@ -18,6 +19,7 @@ use serde::Serialize;
 use staya_sim::engine::{Moment, simulate};
 use staya_sim::record::RobotRow;
 use staya_sim::scenario::{Overrides, Scenario};
+use staya_sweep::Value;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -97,6 +99,11 @@ impl Plan {
         )
     }
 
+    /// Ground and size of a point; sizes rise.
+    fn point(&self, point: usize) -> (Ground, u32) {
+        (self.ground[point % self.ground.len()], self.robots[point / self.ground.len()])
+    }
+
     /// Runs the swarm as often as is worth timing; `None` when it was stopped.
     fn row(&self, ground: Ground, robots: u32, goes_on: &dyn Fn() -> bool) -> Result<Option<Row>> {
         let scenario = Scenario::parse(&self.text(ground, robots), Path::new("scale.toml"), &Overrides::default())?;
@@ -135,7 +142,9 @@ impl Plan {
 }
 
 impl Experiment for Plan {
+    const NAME: &'static str = "scale";
     const UNIT: &'static str = "swarms";
+    const ALONE: bool = true;
     const FILES: &'static str = "files";
     type Run = Row;
     type Report = Report;
@@ -153,27 +162,47 @@ impl Experiment for Plan {
         Ok(())
     }
 
-    fn total(&self) -> usize {
+    fn points(&self) -> usize {
         self.robots.len() * self.ground.len()
     }
 
+    fn runs(&self) -> u32 {
+        1
+    }
+
+    fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
+        let (ground, robots) = self.point(point);
+        vec![
+            ("ground", Value::Word(report::word(ground).into())),
+            ("robots", Value::Number(f64::from(robots))),
+            ("ticks", Value::Number(f64::from(self.ticks))),
+        ]
+    }
+
+    fn seed(&self, _: usize, _: u32) -> u64 {
+        self.seed
+    }
+
+    fn blank(&self, point: usize, _: u32) -> Row {
+        let (ground, robots) = self.point(point);
+        Row::new(ground, robots)
+    }
+
     /// One after the other: what is timed has the machine for itself.
-    fn perform(&self, goes_on: &GoesOn<'_>) -> Result<Vec<Vec<Row>>> {
+    fn perform(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Row>>> {
         let before = process::memory_bytes();
-        let mut rows = Vec::new();
-        let points = self.robots.iter().flat_map(|&robots| self.ground.iter().map(move |&ground| (ground, robots)));
-        for (done, (ground, robots)) in points.enumerate() {
-            let row = if goes_on(done) { self.row(ground, robots, &|| goes_on(done))? } else { None };
-            let Some(mut row) = row else { break };
+        jobs.each(|(): &mut (), point, _| {
+            let (ground, robots) = self.point(point);
+            let Some(mut row) = self.row(ground, robots, &|| jobs.goes_on())? else { return Ok(None) };
             row.memory_bytes = row.memory_bytes.zip(before).map(|(after, before)| after.saturating_sub(before));
-            rows.push(row);
-        }
-        rows.sort_by_key(|row| self.ground.iter().position(|&ground| ground == row.ground));
-        Ok(vec![rows])
+            Ok(Some(row))
+        })
     }
 
     fn report(&self, rows: &[Vec<Row>]) -> Report {
-        Report::new(self, &rows.concat())
+        let mut rows = rows.concat();
+        rows.sort_by_key(|row| self.ground.iter().position(|&ground| ground == row.ground));
+        Report::new(self, &rows)
     }
 
     fn draw(&self, _: &[Vec<Row>], report: &Report, dir: &Path) -> Result<Vec<PathBuf>> {

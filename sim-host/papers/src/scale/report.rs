@@ -2,6 +2,7 @@
 
 use super::{Ground, Plan};
 use crate::experiment::Maybe;
+use crate::rows::{Each, Record};
 use serde::Serialize;
 use staya_sim::record::{Error, write_atomically};
 use std::fmt::{self, Display, Formatter, Write as _};
@@ -29,6 +30,20 @@ pub struct Row {
     pub packets_heard: u64,
     /// Equal for equal runs.
     pub hash: u64,
+}
+
+impl Record for Row {
+    fn figures(&mut self, each: &mut Each<'_>) {
+        each("timed_ticks", "ticks that were timed, over all runs", &mut self.ticks);
+        each("wall_s", "wall time of them", &mut self.wall_s);
+        each("processor_s", "processor time of all threads; empty: not known", &mut self.processor_s);
+        each("memory_bytes", "resident memory beyond the program's; empty: not known", &mut self.memory_bytes);
+        each("packets_heard", "packets decoded in a run", &mut self.packets_heard);
+    }
+
+    fn trace_hash(&mut self) -> Option<&mut u64> {
+        Some(&mut self.hash)
+    }
 }
 
 impl Row {
@@ -139,7 +154,7 @@ impl Report {
     }
 }
 
-const fn word(ground: Ground) -> &'static str {
+pub(super) const fn word(ground: Ground) -> &'static str {
     match ground {
         Ground::Grid => "grid",
         Ground::Plane => "plane",
