@@ -114,6 +114,9 @@ impl HilArgs {
     /// from its shadow.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         let scenario = self.scenario.load()?;
+        if scenario.published.is_some() {
+            bail!("formation.law = \"paper\" is in no firmware; give \"staya\", or run it without devices");
+        }
         if scenario.key.is_some() {
             bail!(
                 "the robots of {} have a key, and the link does not carry keys to devices; leave [authentication] out",

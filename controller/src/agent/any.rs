@@ -7,6 +7,8 @@ use super::formation_guidance::{FormationGuidance, FormationInPlane};
 use super::guidance::{BadInput, Decision, Guidance, GuidanceInput, Teamwork, ToAny};
 use super::orca_safety::{FlySafety, OrcaSafety};
 use super::other_safety::PushOutSafety;
+#[cfg(feature = "published")]
+use super::published_formation::PublishedFormation;
 use super::route_guidance::{GridWorkspace, RouteGuidance};
 use super::safety::{Safety, SafetyInput, Unguarded};
 use super::waypoint_guidance::WaypointGuidance;
@@ -34,6 +36,8 @@ pub enum AnyGuidance<S, const CELLS: usize, const M: usize, const F: usize, cons
     Formation(FormationInPlane<S, CELLS, M, F, L>),
     RouteOnGrid(RouteGuidance<CELLS, M, L>),
     FormationOnGrid(FormationGuidance<CELLS, M, F, L>),
+    #[cfg(feature = "published")]
+    Published(PublishedFormation<CELLS, M, F>),
 }
 
 /// Does the same with whatever is inside.
@@ -48,6 +52,8 @@ macro_rules! each {
             AnyGuidance::Formation($inside) => $action,
             AnyGuidance::RouteOnGrid($inside) => $action,
             AnyGuidance::FormationOnGrid($inside) => $action,
+            #[cfg(feature = "published")]
+            AnyGuidance::Published($inside) => $action,
         }
     };
 }
@@ -57,6 +63,10 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
 {
     fn redirect(&mut self) {
         each!(self, law => law.redirect());
+    }
+
+    fn note_stop(&mut self, is_asked: bool) {
+        each!(self, law => law.note_stop(is_asked));
     }
 
     fn assign_template(&mut self, part: &TemplateAssignment, is_anew: bool) -> bool {
@@ -104,6 +114,8 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             Self::Formation(law) => law.decide(input, cells()?, rng, workspace),
             Self::RouteOnGrid(law) => law.decide(input, grid()?, rng, workspace),
             Self::FormationOnGrid(law) => law.decide(input, grid()?, rng, workspace),
+            #[cfg(feature = "published")]
+            Self::Published(law) => law.decide(input, grid()?, rng, workspace),
         }
     }
 

@@ -126,6 +126,10 @@ pub trait Teamwork {
     /// "Choose another direction" (A. V. Kuznetsov 2017, KUZ, section 7): excludes the last choice from the next one.
     fn redirect(&mut self) {}
 
+    /// Whether somebody's request to stand holds at the decision that follows. Who follows nobody stands without the law's doing
+    /// ([`Status::recovers`] goes on); a law in which others stand too takes note of it.
+    fn note_stop(&mut self, _is_asked: bool) {}
+
     /// Takes a part of a formation template in; whether the part was of use. `is_anew`: its sender is
     /// another one than before, or has started anew.
     fn assign_template(&mut self, _part: &TemplateAssignment, _is_anew: bool) -> bool {

@@ -6,7 +6,7 @@
 //!
 //! | guidance law | told besides own state and inbox | where to go | command |
 //! | --- | --- | --- | --- |
-//! | [`RouteGuidance`], [`FormationGuidance`] | [`OnGrid`] | [`Agent::assign_goal`] | [`Command::Move`] |
+//! | [`RouteGuidance`], [`FormationGuidance`], `PublishedFormation` | [`OnGrid`] | [`Agent::assign_goal`] | [`Command::Move`] |
 //! | [`RouteGuidance`] within [`CellFollower`], [`FormationInPlane`] | [`InCells`] | [`Agent::assign_goal`] | [`Command::Velocity`] |
 //! | [`WaypointGuidance`], [`GoalFlockGuidance`] | [`InPlane`] | [`Agent::assign_waypoint`] | [`Command::Velocity`] |
 //! | [`LatticeGuidance`] | [`InPlane`] | [`Agent::assign_waypoint`], or nowhere: it flocks | [`Command::Velocity`] |
@@ -104,6 +104,8 @@ mod link;
 mod orca_safety;
 mod other_safety;
 mod parameter;
+#[cfg(feature = "published")]
+mod published_formation;
 mod route_guidance;
 mod safety;
 mod setup;
@@ -135,6 +137,8 @@ pub use io::{AnyInputs, Command, EVENTS, Event, Inputs, KinematicState, OUTBOX, 
 pub use orca_safety::{FlySafety, OrcaSafety};
 pub use other_safety::PushOutSafety;
 pub use parameter::Parameter;
+#[cfg(feature = "published")]
+pub use published_formation::PublishedFormation;
 pub use route_guidance::{GridWorkspace, RouteGuidance};
 pub use safety::{Safety, SafetyInput, Unguarded};
 pub use setup::{AnyAgent, BoidsSetup, GuidanceKind, GuidanceSetup, RouteSetup, SafetyKind, SafetySetup, Setup, Task};

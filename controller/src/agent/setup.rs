@@ -8,6 +8,8 @@ use super::flock_guidance::{BoidsGuidance, GoalFlockGuidance, LatticeGuidance};
 use super::formation_guidance::{FormationGuidance, FormationInPlane};
 use super::orca_safety::{FlySafety, OrcaSafety};
 use super::other_safety::PushOutSafety;
+#[cfg(feature = "published")]
+use super::published_formation::PublishedFormation;
 use super::route_guidance::RouteGuidance;
 use super::safety::Unguarded;
 use super::waypoint_guidance::WaypointGuidance;
@@ -16,6 +18,8 @@ use crate::flock::boids::BoidsParams;
 use crate::flock::goal::GoalParams;
 use crate::flock::lattice::LatticeParams;
 use crate::formation::FormationParams;
+#[cfg(feature = "published")]
+use crate::formation::published::PublishedParams;
 use crate::grid::Cell;
 use crate::names::named;
 use crate::neighbor::StalenessInflation;
@@ -125,6 +129,13 @@ pub enum GuidanceSetup {
         formation: FormationParams,
         template: Template<TEMPLATE>,
         speed_mps: Option<f32>,
+    },
+    /// The paper's formation, cell by cell. Last, so that builds without it read the others.
+    #[cfg(feature = "published")]
+    Published {
+        route: RouteSetup,
+        formation: PublishedParams,
+        template: Template<TEMPLATE>,
     },
 }
 
@@ -264,10 +275,9 @@ impl Setup {
     #[must_use]
     pub fn cells(&self) -> usize {
         match &self.guidance {
-            GuidanceSetup::Route { route, .. } | GuidanceSetup::Formation { route, .. } => {
-                let side = 2 * usize::from(route.params.radius) + 3;
-                side * side
-            }
+            GuidanceSetup::Route { route, .. } | GuidanceSetup::Formation { route, .. } => route.cells(),
+            #[cfg(feature = "published")]
+            GuidanceSetup::Published { route, .. } => route.cells(),
             _ => 0,
         }
     }
@@ -284,6 +294,8 @@ impl GuidanceSetup {
             Self::Boids { .. } => GuidanceKind::Boids,
             Self::Route { .. } => GuidanceKind::Route,
             Self::Formation { .. } => GuidanceKind::Formation,
+            #[cfg(feature = "published")]
+            Self::Published { .. } => GuidanceKind::Formation,
         }
     }
 
@@ -318,11 +330,21 @@ impl GuidanceSetup {
                     None => AnyGuidance::FormationOnGrid(guidance),
                 }
             }
+            #[cfg(feature = "published")]
+            Self::Published { route, formation, template } => AnyGuidance::Published(
+                PublishedFormation::new(route.params, *formation, template.clone()).sharpness(route.sharpness),
+            ),
         }
     }
 }
 
 impl RouteSetup {
+    /// Cells of a search.
+    const fn cells(&self) -> usize {
+        let side = 2 * self.params.radius as usize + 3;
+        side * side
+    }
+
     /// The guidance law on the grid, just started.
     #[must_use]
     pub const fn guidance<const CELLS: usize, const M: usize, const L: usize>(&self) -> RouteGuidance<CELLS, M, L> {

@@ -189,6 +189,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
             ages: self.config.ages,
         };
         self.decisions = self.decisions.wrapping_add(1);
+        self.guidance.note_stop(is_stopped);
         let here = &inputs.surroundings;
         let decision = self.guidance.decide(&input, here, rng, workspace);
         let situation = &mut self.last.situation;

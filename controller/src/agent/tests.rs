@@ -406,6 +406,8 @@ mod make_way;
 mod nonsense;
 mod nonsense_in_plane;
 mod plane;
+#[cfg(feature = "published")]
+mod published;
 mod sealed;
 mod setup;
 mod silence;

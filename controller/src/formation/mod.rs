@@ -10,7 +10,8 @@
 //! [`Template`](crate::template::Template). Lengths are integers in [`UNIT`](crate::grid::UNIT)s per cell,
 //! costs those of [`crate::cost`].
 //!
-//! What differs from the paper, and why (figures: `staya experiment formation`):
+//! The paper's own law is in `published`, behind the feature of that name. What differs from it here, and why (figures: `staya experiment
+//! formation`):
 //! - In the paper each robot weighs the shortest way to its *own* target against its neighbours'
 //!   places. Six robots then take six different ways around a hill, pull at each other, and jam in
 //!   one run of eight. Here the top leader alone chooses the way, and prices land by what the whole
@@ -38,6 +39,8 @@
 mod measure;
 mod neighbors;
 mod places;
+#[cfg(feature = "published")]
+pub mod published;
 mod ranks;
 mod steering;
 
@@ -82,6 +85,9 @@ named! {
     }
 }
 
+/// As [`FormationParams::halt_lag`]: no lag is too large (936 cells, and who is farther than eps, 255 at most, is not waited for).
+pub const NEVER: u16 = u16::MAX;
+
 /// Parameters of formation keeping.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -93,7 +99,7 @@ pub struct FormationParams {
     /// everybody takes the shortest way; large values push robots straight over bad land.
     pub gain: Gain,
     /// How far somebody may fall behind before the top leader waits, [`UNIT`](crate::grid::UNIT)s (r0). Smaller keeps
-    /// the formation tighter and costs time.
+    /// the formation tighter and costs time; [`NEVER`]: nobody waits.
     pub halt_lag: u16,
     /// How near he must have come again before it goes on, [`UNIT`](crate::grid::UNIT)s; at most `halt_lag`.
     pub resume_lag: u16,

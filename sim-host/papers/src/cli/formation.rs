@@ -1,6 +1,6 @@
 //! `staya experiment formation`.
 
-use crate::formation::Plan;
+use crate::formation::{Law, Plan, Published};
 use crate::options;
 use anyhow::{Result, bail};
 use clap::Args;
@@ -33,8 +33,23 @@ pub struct FormationArgs {
     /// Other losses to try on the same landscapes.
     #[arg(long, value_name = "LOSS,...", value_delimiter = ',', default_value = "0.1,0.3,0.6")]
     other_losses: Vec<f64>,
-    /// Do not try other values.
-    #[arg(long, conflicts_with_all = ["other_eps", "other_losses"])]
+    /// Other laws to try on the same landscapes, at each loss.
+    #[arg(long, value_name = "LAW,...", value_delimiter = ',', default_value = "unwaiting,paper", value_enum)]
+    other_laws: Vec<Law>,
+    /// Sum of deviations from all neighbours found that the paper's law takes for too far (much more than r0), cells.
+    #[arg(long, value_name = "CELLS")]
+    paper_halt: Option<f64>,
+    /// Sum that it takes for near enough again (about r0), cells.
+    #[arg(long, value_name = "CELLS")]
+    paper_resume: Option<f64>,
+    /// How robots foresee each other under the paper's law.
+    #[arg(long, default_value = "reflexive", value_parser = options::prediction())]
+    paper_prediction: Prediction,
+    /// Geodesic radius of templates under the paper's law: 1 gives the leaders of figure 5.
+    #[arg(long, default_value_t = Published::default().rho)]
+    paper_rho: u8,
+    /// Do not try other values, nor other laws.
+    #[arg(long, conflicts_with_all = ["other_eps", "other_losses", "other_laws"])]
     only: bool,
     /// How many cells ahead of the top leader's the others aim.
     #[arg(long, value_name = "CELLS", default_value_t = FormationParams::default().lead)]
@@ -100,14 +115,15 @@ impl FormationArgs {
             recovery: self.recovery,
             ..FormationParams::default()
         };
-        if let Some(cells) = self.halt {
-            let units = cells * f64::from(UNIT);
-            if !(0.0..=f64::from(u16::MAX)).contains(&units) {
-                bail!("--halt {cells}; give 0 to {} cells", u32::from(u16::MAX) / UNIT);
-            }
-            formation.halt_lag = libm::round(units) as u16;
-            formation.resume_lag = formation.halt_lag;
+        if let Some(units) = units("--halt", self.halt)? {
+            (formation.halt_lag, formation.resume_lag) = (units, units);
         }
+        let mut published = Published { rho: self.paper_rho, ..Published::default() };
+        let params = &mut published.params;
+        params.eps = self.eps;
+        params.prediction = self.paper_prediction;
+        params.halt = units("--paper-halt", self.paper_halt)?.unwrap_or(params.halt);
+        params.resume = units("--paper-resume", self.paper_resume)?.unwrap_or(params.resume).min(params.halt);
         let is_other = |wanted: bool| wanted && !self.only;
         Ok(Plan {
             obstacles: self.obstacles.clone(),
@@ -124,9 +140,20 @@ impl FormationArgs {
             loss: self.loss,
             other_eps: self.other_eps.iter().copied().filter(|&eps| is_other(eps != self.eps)).collect(),
             other_losses: self.other_losses.iter().copied().filter(|&loss| is_other(loss != self.loss)).collect(),
+            other_laws: if self.only { Vec::new() } else { self.other_laws.clone() },
+            published,
             ticks: self.ticks,
             seed: self.seed,
-            ..Plan::default()
         })
     }
+}
+
+/// A length on the command line in units of the grid.
+fn units(option: &str, cells: Option<f64>) -> Result<Option<u16>> {
+    let Some(cells) = cells else { return Ok(None) };
+    let units = cells * f64::from(UNIT);
+    if !(0.0..=f64::from(u16::MAX)).contains(&units) {
+        bail!("{option} {cells}; give 0 to {} cells", u32::from(u16::MAX) / UNIT);
+    }
+    Ok(Some(libm::round(units) as u16))
 }

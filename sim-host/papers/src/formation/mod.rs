@@ -4,9 +4,11 @@
 //! itself, then in formation with the plan's parameters, then with other values of eps and with a lossy radio. Robots
 //! run the whole simulator: the controller's agents, packets over the radio, bodies that get in each other's way.
 
+mod laws;
 mod pictures;
 mod report;
 
+pub use laws::{Law, LawJourney, Published};
 pub use report::{Journey, Point, Report, Variants};
 
 use crate::experiment::{Experiment, check_runs};
@@ -16,6 +18,7 @@ use crate::rows::{Each, Jobs, Record};
 use anyhow::{Result, anyhow, ensure};
 use staya_controller::agent::{RouteSetup, TEMPLATE};
 use staya_controller::formation::FormationParams;
+use staya_controller::formation::published::PublishedParams;
 use staya_controller::grid::{Cell, Norm, UNIT};
 use staya_controller::neighbor::Claims;
 use staya_controller::rand::Rng;
@@ -77,6 +80,10 @@ pub struct Plan {
     pub other_eps: Vec<u8>,
     /// Other losses to try, 0 to 1.
     pub other_losses: Vec<f64>,
+    /// Other laws to try, at all these losses.
+    pub other_laws: Vec<Law>,
+    /// The paper's law among them.
+    pub published: Published,
     /// Ticks after which a run is given up.
     pub ticks: u32,
     /// Equal seeds give equal results. Parameters were chosen on seed 1, so it is another one by default.
@@ -101,6 +108,8 @@ impl Default for Plan {
             loss: 0.0,
             other_eps: vec![1, 2, 3, 5],
             other_losses: vec![0.1, 0.3, 0.6],
+            other_laws: vec![Law::Unwaiting, Law::Paper],
+            published: Published::default(),
             ticks: 10_000,
             seed: 2,
         }
@@ -114,6 +123,8 @@ enum Way {
     Alone,
     /// In formation.
     Together { eps: u8, loss: f64 },
+    /// In formation under another law.
+    Under { law: Law, loss: f64 },
 }
 
 /// What one crossing gave.
@@ -169,13 +180,20 @@ impl Plan {
     /// # Errors
     /// A radius rho without a template.
     fn graph(&self) -> Result<Formation> {
+        self.graph_within(self.rho)
+    }
+
+    /// The same with templates of another radius rho.
+    ///
+    /// # Errors
+    /// A radius rho without a template.
+    fn graph_within(&self, rho: u8) -> Result<Formation> {
         let spacing = i16::from(self.spacing);
         let places: Vec<Cell> =
             (0..ROBOTS as i16).map(|robot| Cell::new(-spacing * (robot % 3), -spacing * (robot / 3))).collect();
         let templates = (0..ROBOTS)
-            .map(|own| Template::<TEMPLATE>::from_graph(&places, &EDGES, own, self.rho))
+            .map(|own| Template::<TEMPLATE>::from_graph(&places, &EDGES, own, rho))
             .collect::<Result<_, TemplateError>>();
-        let rho = self.rho;
         Ok(Formation {
             templates: templates.map_err(|error: TemplateError| {
                 anyhow!("templates of geodesic radius {rho}: {error:?}; give 1, 2 or 3")
@@ -191,13 +209,15 @@ impl Plan {
         2 * u16::from(self.spacing) + 4
     }
 
-    /// How the six cross each landscape: alone, as planned, with other eps, with other losses.
+    /// How the six cross each landscape: alone, as planned, with other eps, with other losses, under other laws.
     fn ways(&self) -> impl Iterator<Item = Way> + '_ {
         let (own_eps, own_loss) = (self.formation.eps, self.loss);
         let own = Way::Together { eps: own_eps, loss: own_loss };
         let eps = self.other_eps.iter().map(move |&eps| Way::Together { eps, loss: own_loss });
         let losses = self.other_losses.iter().map(move |&loss| Way::Together { eps: own_eps, loss });
-        [Way::Alone, own].into_iter().chain(eps).chain(losses)
+        let all_losses = move || [own_loss].into_iter().chain(self.other_losses.iter().copied());
+        let laws = self.other_laws.iter().flat_map(move |&law| all_losses().map(move |loss| Way::Under { law, loss }));
+        [Way::Alone, own].into_iter().chain(eps).chain(losses).chain(laws)
     }
 
     /// Obstacles and way of a point.
@@ -242,6 +262,7 @@ impl Plan {
             formation: graph,
             route: RouteSetup { params: self.route, replan: Replan::EachCell, sharpness: self.sharpness },
             formation_params: self.formation,
+            published: None,
             faults: Vec::new(),
             key: None,
             key_remark: None,
@@ -258,9 +279,13 @@ impl Plan {
         let seed = Rng::keyed(self.seed, RUNS, obstacles, run).next_u64();
         let formation = (way != Way::Alone).then(|| graph.clone());
         let mut scenario = self.scenario(terrain, formation, &graph.places, seed);
-        if let Way::Together { eps, loss } = way {
-            scenario.formation_params.eps = eps;
-            scenario.radio.loss = loss;
+        match way {
+            Way::Alone => {}
+            Way::Together { eps, loss } => {
+                scenario.formation_params.eps = eps;
+                scenario.radio.loss = loss;
+            }
+            Way::Under { law, loss } => scenario = law.on(self, &scenario, loss)?,
         }
         let entropy = Metrics::of(&scenario.terrain).entropy;
         Ok(Crossing { entropy, ..cross(&scenario)? })
@@ -299,6 +324,8 @@ impl Experiment for Plan {
         }
         ensure!(self.rho > 0, "a geodesic radius rho of 0; give 1, 2 or 3");
         self.graph()?;
+        ensure!(self.published.rho > 0, "a geodesic radius rho of 0 for the paper's law; give 1, 2 or 3");
+        self.graph_within(self.published.rho)?;
         for &obstacles in &self.obstacles {
             self.landscape(obstacles, 0)?;
         }
@@ -330,14 +357,19 @@ impl Experiment for Plan {
             loss: _,
             other_eps: _,
             other_losses: _,
+            other_laws: _,
+            published,
             ticks,
             seed,
         } = self;
         let (obstacles, way) = self.point(point);
-        let (is_formation, eps, loss) = match way {
-            Way::Alone => (false, formation.eps, 0.0),
-            Way::Together { eps, loss } => (true, eps, loss),
+        let (is_formation, law, eps, loss) = match way {
+            Way::Alone => (false, Law::Staya, formation.eps, 0.0),
+            Way::Together { eps, loss } => (true, Law::Staya, eps, loss),
+            Way::Under { law, loss } => (true, law, law.eps(self), loss),
         };
+        let Published { params, rho: paper_rho } = *published;
+        let PublishedParams { eps: _, gain: paper_gain, halt, resume, crowd, prediction: paper_prediction } = params;
         let FormationParams {
             eps: _,
             gain,
@@ -353,6 +385,7 @@ impl Experiment for Plan {
         vec![
             ("obstacles", obstacles.into()),
             ("formation", is_formation.into()),
+            ("law", law.name().into()),
             ("eps_cells", u32::from(eps).into()),
             ("loss", loss.into()),
             ("side_cells", u32::from(*size).into()),
@@ -376,6 +409,12 @@ impl Experiment for Plan {
             ("patience", u32::from(patience).into()),
             ("closes_ranks", closes_ranks.into()),
             ("shuffle_ticks", options::shuffle_ticks(*sharpness).into()),
+            ("paper_rho", u32::from(paper_rho).into()),
+            ("paper_gain", decimal(paper_gain).into()),
+            ("paper_halt_cells", (f64::from(halt) / f64::from(UNIT)).into()),
+            ("paper_resume_cells", (f64::from(resume) / f64::from(UNIT)).into()),
+            ("paper_crowd", u32::from(crowd).into()),
+            ("paper_prediction", word(paper_prediction).into()),
             ("longest_ticks", (*ticks).into()),
             ("first_seed", seed.to_string().into()),
         ]

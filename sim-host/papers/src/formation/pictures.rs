@@ -20,11 +20,14 @@ impl Report {
                 files.extend(self.variants(kind).write(&dir.join(name))?);
             }
         }
+        if let Some(laws) = self.laws_picture() {
+            files.extend(laws.write(&dir.join("laws"))?);
+        }
         Ok(files)
     }
 
     /// The note under the titles.
-    fn note(&self) -> String {
+    pub(super) fn note(&self) -> String {
         format!(
             "six robots {} cells apart, {2} x {2} cells, window radius {1}, {3} runs each",
             self.spacing, self.radius, self.size, self.runs
@@ -32,7 +35,7 @@ impl Report {
     }
 
     /// Numbers of obstacles from 0 to the largest.
-    fn axis(&self) -> impl Iterator<Item = f64> {
+    pub(super) fn axis(&self) -> impl Iterator<Item = f64> {
         let most = self.points.last().map_or(0, |point| point.obstacles);
         (0..=STEPS).map(move |step| f64::from(most) * f64::from(step) / f64::from(STEPS))
     }

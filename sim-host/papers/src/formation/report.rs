@@ -1,5 +1,6 @@
 //! The numbers of the formation experiment, ready to be printed or plotted.
 
+use super::laws::{LawJourney, journeys};
 use super::{Crossing, Plan, ROBOTS, Run, Way};
 use crate::experiment::Maybe;
 use crate::options::{shuffle_ticks, word};
@@ -69,6 +70,8 @@ pub struct Point {
     pub other_eps: Vec<Journey>,
     /// With other losses.
     pub other_losses: Vec<Journey>,
+    /// Under other laws, each at the planned loss and the others.
+    pub other_laws: Vec<LawJourney>,
 }
 
 /// Which variants a table or a plot is about.
@@ -160,16 +163,21 @@ impl Point {
     fn of(plan: &Plan, obstacles: u32, runs: &[Run]) -> Option<Self> {
         let alone: Vec<Option<f64>> = runs.iter().map(|run| run[0].time_ticks).collect();
         let alone_times: Vec<f64> = alone.iter().copied().flatten().collect();
-        let mut journeys = plan.ways().enumerate().filter_map(|(way, kind)| match kind {
-            Way::Alone => None,
-            Way::Together { eps, loss } => {
-                let crossings: Vec<Crossing> = runs.iter().map(|run| run[way]).collect();
-                Journey::of(eps, loss, &crossings, &alone)
-            }
+        let of = |way: usize, eps: u8, loss: f64| {
+            let crossings: Vec<Crossing> = runs.iter().map(|run| run[way]).collect();
+            Journey::of(eps, loss, &crossings, &alone)
+        };
+        let mut together = plan.ways().enumerate().filter_map(|(way, kind)| match kind {
+            Way::Alone | Way::Under { .. } => None,
+            Way::Together { eps, loss } => of(way, eps, loss),
         });
-        let formation = journeys.next()?;
-        let other_eps: Vec<Journey> = journeys.by_ref().take(plan.other_eps.len()).collect();
-        let other_losses = journeys.collect();
+        let formation = together.next()?;
+        let other_eps: Vec<Journey> = together.by_ref().take(plan.other_eps.len()).collect();
+        let other_losses = together.collect();
+        let other_laws = journeys(plan.ways().enumerate().filter_map(|(way, kind)| match kind {
+            Way::Alone | Way::Together { .. } => None,
+            Way::Under { law, loss } => Some((law, of(way, law.eps(plan), loss))),
+        }));
         let entropy = mean(&runs.iter().map(|run| run[0].entropy).collect::<Vec<_>>())?;
         let of_entropy = obstacles_of_entropy(entropy);
         let paper = |obstacles: f64| (obstacles >= LEAST_OF_PAPER).then(|| LogFit::PAPER.at(obstacles));
@@ -189,6 +197,7 @@ impl Point {
             formation,
             other_eps,
             other_losses,
+            other_laws,
         })
     }
 }
@@ -288,7 +297,8 @@ impl Display for Report {
         let paper = self.paper;
         writeln!(f, "paper: dPhi/6 = {:.6} ln(N + 1) {:+.6}, R2 = {:.4}", paper.a, paper.b, paper.r2)?;
         variants(f, self, Variants::Eps)?;
-        variants(f, self, Variants::Loss)
+        variants(f, self, Variants::Loss)?;
+        self.write_laws(f)
     }
 }
 

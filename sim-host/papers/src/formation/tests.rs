@@ -10,6 +10,7 @@ fn small() -> Plan {
         other_eps: vec![2],
         other_losses: vec![0.6],
         seed: 1,
+        other_laws: Vec::new(),
         ..Plan::default()
     }
 }
@@ -48,6 +49,26 @@ fn keeping_a_formation_is_what_makes_the_difference() {
     };
     let error = |plan: &Plan| report(plan).points[1].formation.error_per_agent.mean;
     assert!(error(&small()) < error(&loose));
+}
+
+#[test]
+fn the_papers_law_and_ours_without_waiting_are_beside_ours() {
+    let plan = Plan { obstacles: vec![10], other_laws: vec![Law::Unwaiting, Law::Paper], ..small() };
+    let report = report(&plan);
+    let laws: Vec<(Law, f64)> = report.points[0].other_laws.iter().map(|o| (o.law, o.journey.loss)).collect();
+    assert_eq!(laws, [(Law::Unwaiting, 0.0), (Law::Unwaiting, 0.6), (Law::Paper, 0.0), (Law::Paper, 0.6)]);
+    let ours = &report.points[0].formation;
+    for other in &report.points[0].other_laws {
+        assert_eq!(other.journey.collisions, 0);
+        assert_ne!(other.journey.error_per_agent, ours.error_per_agent, "{:?} is another law", other.law);
+    }
+    let paper = &report.points[0].other_laws[2].journey;
+    assert!(paper.arrived > 0 && paper.error_per_agent.mean < 6.0, "{paper:?}");
+    let text = report.to_string();
+    assert!(text.contains("what our waiting buys") && text.contains("      paper"), "{text}");
+    let dir = tempfile::tempdir().unwrap();
+    let files = report.draw(dir.path()).unwrap();
+    assert!(files.iter().any(|file| file.ends_with("laws.svg")), "{files:?}");
 }
 
 #[test]

@@ -10,9 +10,12 @@
 //! mean direction), the share of robots in the largest group (linked within two R_MinDist), and the crowd's radius (root mean
 //! square) over that of its start. A robot has gathered once it was within [`Plan::arrival_m`] of the middle.
 //!
-//! **What they show.** Order falls where K2 outweighs K1 and a small R_nbh lets the crowd break up. That the group is lost
-//! where K1 is far above K2, as the paper says, they hardly show: who has one goal in common goes one way.
+//! **What they show.** From a dense start (`--start-side 2`) order falls where K2 outweighs K1 and a small R_nbh lets the
+//! crowd break up. That the group is lost where K1 is far above K2, as the paper says, they hardly show: who starts as one
+//! group and has one goal in common goes one way, whatever K2 is. `--start-side 4` draws places farther apart than the
+//! groups' links, so that a group has yet to form.
 
+mod land;
 mod pictures;
 mod report;
 mod watch;
@@ -42,8 +45,6 @@ use watch::Watch;
 const STARTS: u32 = 0x0047_0101;
 /// Where the goals are, in R_MinDist.
 const GOALS: [[f64; 2]; 3] = [[85.0, 0.0], [62.5, 25.0], [62.5, -25.0]];
-/// Side of the square in which robots start, in R_MinDist and per root of their number.
-const START_SIDE: f64 = 2.0;
 /// Where the first goal goes when it moves, in R_MinDist.
 const MOVED: [f64; 2] = [90.0, 20.0];
 
@@ -69,6 +70,13 @@ pub struct Plan {
     /// Number of robots.
     #[arg(long, default_value_t = 225)]
     pub robots: u32,
+    /// Side of the square in which robots start at random, in R_MinDist and per root of their number. At 2 they are one
+    /// group from the start.
+    #[arg(long, default_value_t = 2.0)]
+    pub start_side: f64,
+    /// Round obstacles at random between the start and the goals.
+    #[arg(long, default_value_t = 0)]
+    pub obstacles: u32,
     /// Runs per point, with different starts.
     #[arg(long = "seeds", default_value_t = 1)]
     pub runs: u32,
@@ -120,6 +128,11 @@ impl Plan {
         1.5 * self.min_distance_m * lattice_m.max(2.0)
     }
 
+    /// Half of the side of the square in which robots start, metres.
+    fn start_half_m(&self) -> f64 {
+        self.start_side * self.min_distance_m * libm::sqrt(f64::from(self.robots)) / 2.0
+    }
+
     /// Speed of the robots, m/s: R_MinDist in a second.
     fn speed_mps(&self) -> f64 {
         self.min_distance_m
@@ -163,7 +176,7 @@ impl Plan {
 
     fn scenario(&self, k1: f64, neighborhood_m: f64, run: u32) -> Result<Scenario> {
         let targets = self.goals_m().map(|position_m| Target { position_m, velocity_mps: [0.0; 3] });
-        let side = START_SIDE * self.min_distance_m * libm::sqrt(f64::from(self.robots)) / 2.0;
+        let side = self.start_half_m();
         let starts = starts(
             self.robots,
             self.min_distance_m,
@@ -204,7 +217,7 @@ impl Plan {
                 // A step more than bodies need.
                 min_distance_m: (2.0 * self.radius_m() + speed_mps * self.step_s) as f32,
             },
-            solids: Vec::new(),
+            solids: self.solids(run)?,
         };
         let mut setup = arena.setup(starts);
         if self.moves_goal {
@@ -241,6 +254,8 @@ impl Experiment for Plan {
         for gain in self.k1.iter().chain([&self.k2, &self.k3]) {
             ensure!((-1e6..=1e6).contains(gain), "a gain of {gain}; give a number within +-1,000,000");
         }
+        let side = self.start_side;
+        ensure!((1.2..=20.0).contains(&side), "a start side of {side}; it must be 1.2 to 20");
         let distance_m = self.min_distance_m;
         ensure!((0.1..=30.0).contains(&distance_m), "a least distance of {distance_m} m; it must be 0.1 to 30");
         let least_m = 2.0 * distance_m;
@@ -274,6 +289,8 @@ impl Experiment for Plan {
             neighborhoods_m: _,
             min_distance_m,
             robots,
+            start_side,
+            obstacles,
             runs: _,
             safety,
             model,
@@ -292,6 +309,8 @@ impl Experiment for Plan {
             ("k3", (*k3).into()),
             ("min_distance_m", (*min_distance_m).into()),
             ("robots", (*robots).into()),
+            ("start_side", (*start_side).into()),
+            ("obstacles", (*obstacles).into()),
             ("safety", word(*safety).into()),
             ("model", word(*model).into()),
             ("evasion", word(*evasion).into()),

@@ -61,6 +61,10 @@ pub struct Report {
     pub radius_m: f64,
     /// How near to the middle or to a goal counts, metres.
     pub arrival_m: f64,
+    /// Side of the square of the start, in R_MinDist and per root of the robots' number.
+    pub start_side: f64,
+    /// Obstacles on the way.
+    pub obstacles: u32,
     /// Length of a tick, seconds.
     pub step_s: f64,
     /// Length of a run, seconds.
@@ -86,6 +90,8 @@ impl Report {
             min_distance_m: plan.min_distance_m,
             radius_m: plan.radius_m(),
             arrival_m: plan.arrival_m(),
+            start_side: plan.start_side,
+            obstacles: plan.obstacles,
             step_s: plan.step_s,
             seconds: plan.seconds,
             safety: safety(plan),
@@ -142,12 +148,14 @@ impl Display for Report {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "{} robots, 3 goals, R_MinDist {} m, radius {} m, K2 {}, K3 {}, {} s in steps of {} s, safety {}, seed {}",
+            "{} robots, 3 goals, R_MinDist {} m, radius {} m, K2 {}, K3 {}, start side {}, {} obstacles, {} s in steps of {} s, safety {}, seed {}",
             self.robots,
             self.min_distance_m,
             self.radius_m,
             self.k2,
             self.k3,
+            self.start_side,
+            self.obstacles,
             self.seconds,
             self.step_s,
             self.safety,

@@ -41,7 +41,7 @@ impl Grid {
         let meter = scenario
             .formation
             .as_ref()
-            .map(|graph| FormationMeter::new(graph, scenario.formation_params.eps, world.terrain(), scenario.tick_s()));
+            .map(|graph| FormationMeter::new(graph, scenario.eps(), world.terrain(), scenario.tick_s()));
         Ok(Self {
             kinematics: Kinematics::new(world.terrain(), scenario.tick_s()),
             robots: scenario.numbered(),

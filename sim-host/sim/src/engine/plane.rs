@@ -79,9 +79,10 @@ impl PlaneGround {
             clearance: Clearance::FREE,
             gap_m: None,
             changed: Changed::new(),
-            meter: scenario.formation.as_ref().map(|graph| {
-                FormationMeter::new(graph, scenario.formation_params.eps, &scenario.terrain, scenario.tick_s())
-            }),
+            meter: scenario
+                .formation
+                .as_ref()
+                .map(|graph| FormationMeter::new(graph, scenario.eps(), &scenario.terrain, scenario.tick_s())),
             plane,
             robots: scenario.numbered(),
             numbers: (0..scenario.robots.len() as u32).collect(),

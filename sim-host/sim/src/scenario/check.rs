@@ -6,6 +6,7 @@ use super::{Fault, Robot, ScenarioError, ScenarioFile};
 use crate::file::has_memory;
 use crate::terrain::generate::{self, LandPlan};
 use crate::terrain::{Terrain, TerrainError};
+use staya_controller::formation::published::FormationLaw;
 use staya_controller::robot::RobotId;
 use staya_controller::route::Replan;
 use staya_mavlink::any::max_robot;
@@ -197,12 +198,43 @@ pub(super) fn formation_only(source: &Source<'_>, file: &ScenarioFile) -> Result
             "give robots.formation, or leave this table out",
         ));
     }
+    law_only(source, file)?;
     if in_formation && matches!(file.route.replan, Some(Replan::UntilChanged)) {
         return Err(source.error(
             "route.replan",
             "robots in formation search in each cell",
             "give \"each_cell\", or leave it out",
         ));
+    }
+    Ok(())
+}
+
+/// Refuses what the chosen law of a formation has no use for.
+fn law_only(source: &Source<'_>, file: &ScenarioFile) -> Result<(), ScenarioError> {
+    let is_paper = file.formation.law == Some(FormationLaw::Paper);
+    if is_paper && file.plane.is_some() {
+        let (what, remedy) = ("the paper's law goes from cell to cell", "give \"staya\", or leave [plane] out");
+        return Err(source.error("formation.law", what, remedy));
+    }
+    let foreign: &[&str] =
+        if is_paper { &["waits", "lead", "closes_ranks", "footprint", "recovery"] } else { &["crowd"] };
+    for name in foreign {
+        let field = format!("formation.{name}");
+        if source.stands(&field) {
+            let law = file.formation.law.unwrap_or_default();
+            return Err(source.error(&field, format!("the law \"{law}\" has no use for it"), "leave it out"));
+        }
+    }
+    if file.formation.waits == Some(false) {
+        if file.plane.is_some() {
+            let what = "in the plane nobody waits: the slowest makes the pace";
+            return Err(source.error("formation.waits", what, "leave it out"));
+        }
+        for name in ["formation.halt_cells", "formation.resume_cells"] {
+            if source.stands(name) {
+                return Err(source.error(name, "nobody waits", "leave it out, or waits = false"));
+            }
+        }
     }
     Ok(())
 }

@@ -50,6 +50,7 @@ impl Scenario {
             plane,
             route,
             formation_params,
+            published,
             faults,
             interventions,
             misnumbered,
@@ -62,7 +63,7 @@ impl Scenario {
         let mut all = Fingerprint(0xCBF2_9CE4_8422_2325);
         all.mix(terrain.cells());
         all.add(&(terrain.width(), terrain.height(), terrain.cell_m, terrain.origin_m));
-        all.add(&(seed, tick_us, rules, radio, robots, formation, plane, route, formation_params));
+        all.add(&(seed, tick_us, rules, radio, robots, formation, plane, route, formation_params, published));
         all.add(&(faults, interventions, misnumbered, claims, attacks));
         // Debug texts keep secrets.
         all.key(key.as_ref());

@@ -43,6 +43,7 @@ use serde::{Deserialize, Serialize};
 use staya_controller::agent::{GuidanceSetup, RouteSetup};
 use staya_controller::auth::Key;
 use staya_controller::formation::FormationParams;
+use staya_controller::formation::published::PublishedParams;
 use staya_controller::neighbor::Claims;
 use staya_controller::robot::RobotId;
 use std::path::Path;
@@ -142,6 +143,8 @@ pub struct Scenario {
     pub route: RouteSetup,
     /// How robots keep a formation, if they do.
     pub formation_params: FormationParams,
+    /// How they do instead, if they do as the paper has it: cell by cell only.
+    pub published: Option<PublishedParams>,
     /// Robots that go down.
     pub faults: Vec<Fault>,
     /// What somebody does to the run, by rising tick.
@@ -220,6 +223,7 @@ impl Scenario {
         check::formation_only(&source, &file)?;
         let route = params::routing(&source, &file.route, &file.grid)?;
         let formation_params = params::formation(&source, &file.formation)?;
+        let published = params::published(&source, &file.formation)?;
         let mut scenario = Self {
             name: file.name.clone(),
             seed: file.seed,
@@ -233,6 +237,7 @@ impl Scenario {
             plane,
             route,
             formation_params,
+            published,
             faults,
             interventions,
             misnumbered,

@@ -7,7 +7,8 @@ use super::source::Source;
 use serde::Deserialize;
 use staya_controller::agent::RouteSetup;
 use staya_controller::cost::Gain;
-use staya_controller::formation::{FormationParams, Prediction, Recovery};
+use staya_controller::formation::published::{FormationLaw, PublishedParams};
+use staya_controller::formation::{FormationParams, NEVER, Prediction, Recovery};
 use staya_controller::grid::{Norm, UNIT};
 use staya_controller::route::{ExitRule, Replan, RouteParams};
 use staya_controller::shuffle::Sharpness;
@@ -53,6 +54,8 @@ pub struct RouteTable {
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct FormationTable {
+    /// Which law: `"staya"`, or `"paper"` as A. V. Kuznetsov has it (cell by cell only).
+    pub law: Option<FormationLaw>,
     /// Steps along edges of the formation's graph within which robots are each other's neighbours, 1 or
     /// more; nobody may have more than 8. Default: the largest of 3, 2, 1 that fits.
     pub rho: Option<u8>,
@@ -64,6 +67,10 @@ pub struct FormationTable {
     pub halt_cells: Option<f64>,
     /// How near he must have come again before it goes on, cells; at most `halt_cells`.
     pub resume_cells: Option<f64>,
+    /// Whether the top leader waits for those behind; not with `law = "paper"`, nor in the plane.
+    pub waits: Option<bool>,
+    /// How many may be missing or too many before others are asked to choose another direction; with `law = "paper"`.
+    pub crowd: Option<u8>,
     /// How far ahead of the top leader's cell the others aim, cells.
     pub lead: Option<u8>,
     /// Share of the land under the others' places in what a cell costs the top leader, 0 to 1; rounded
@@ -132,10 +139,38 @@ pub(super) fn formation(source: &Source<'_>, table: &FormationTable) -> Result<F
         within(source, "formation.footprint", share, 0.0, 1.0, "(a share)")?;
         params.footprint = libm::round(share * 16.0) as u8;
     }
+    if table.waits == Some(false) {
+        (params.halt_lag, params.resume_lag) = (NEVER, NEVER);
+    }
     params.closes_ranks = table.closes_ranks.unwrap_or(params.closes_ranks);
     params.prediction = table.prediction.unwrap_or(params.prediction);
     params.recovery = table.recovery.unwrap_or(params.recovery);
     Ok(params)
+}
+
+/// The paper's law, if the robots keep a formation by it.
+pub(super) fn published(source: &Source<'_>, table: &FormationTable) -> Result<Option<PublishedParams>, ScenarioError> {
+    if table.law != Some(FormationLaw::Paper) {
+        return Ok(None);
+    }
+    let mut params = PublishedParams::default();
+    params.eps = table.eps.unwrap_or(params.eps);
+    if let Some(value) = table.gain {
+        params.gain = gain(source, "formation.gain", value)?;
+    }
+    for (field, value, most, param) in [
+        ("halt_cells", table.halt_cells, 900.0, &mut params.halt),
+        ("resume_cells", table.resume_cells, 900.0, &mut params.resume),
+    ] {
+        if let Some(cells) = value {
+            within(source, &format!("formation.{field}"), cells, 0.0, most, "cells")?;
+            *param = units(cells);
+        }
+    }
+    params.resume = params.resume.min(params.halt);
+    params.crowd = table.crowd.unwrap_or(params.crowd);
+    params.prediction = table.prediction.unwrap_or(params.prediction);
+    Ok(Some(params))
 }
 
 fn gain(source: &Source<'_>, field: &str, value: f64) -> Result<Gain, ScenarioError> {

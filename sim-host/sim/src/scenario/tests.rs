@@ -3,7 +3,8 @@ mod readme;
 use super::*;
 use proptest::prelude::*;
 use staya_controller::cost::Gain;
-use staya_controller::formation::FormationParams;
+use staya_controller::formation::published::PublishedParams;
+use staya_controller::formation::{FormationParams, NEVER};
 use staya_controller::grid::Cell;
 use staya_controller::route::{ExitRule, Replan};
 use staya_controller::shuffle::Sharpness;
@@ -308,6 +309,33 @@ fn parameters_of_routes_and_formations_are_checked() {
     ] {
         let refusal = refusal(&with(rest));
         assert!(refusal.starts_with(&format!("s.toml:8: {expected}")), "{refusal}");
+    }
+}
+
+#[test]
+fn a_formation_has_the_law_that_its_file_says() {
+    let with = |rest: &str| {
+        let robots = "formation = { rows = 1, columns = 2, spacing = [1, 1], start = [0, 0], goal = [2, 0] }";
+        format!("{}[formation]\n{rest}", with_robots(robots))
+    };
+    let ours = parse(&with("law = \"staya\"\nwaits = false\n")).expect("good");
+    assert_eq!((ours.published, ours.formation_params.halt_lag), (None, NEVER));
+    let paper = parse(&with("law = \"paper\"\neps = 3\nhalt_cells = 6\nresume_cells = 2\ncrowd = 2\n"));
+    let paper = paper.expect("good");
+    let expected = PublishedParams { eps: 3, halt: 420, resume: 140, crowd: 2, ..PublishedParams::default() };
+    assert_eq!((paper.published, paper.eps()), (Some(expected), 3));
+    assert!(matches!(paper.guidance(1), GuidanceSetup::Published { template, .. } if template.slot == 1));
+    let low = parse(&with("law = \"paper\"\nhalt_cells = 1\n")).expect("good");
+    assert_eq!(low.published.map(|params| params.resume), Some(70), "resume is at most halt");
+    for (rest, expected) in [
+        ("law = \"other\"\n", "law: unknown variant `other`"),
+        ("law = \"paper\"\nlead = 2\n", "lead: the law \"paper\" has no use for it; leave it out"),
+        ("crowd = 2\n", "crowd: the law \"staya\" has no use for it; leave it out"),
+        ("waits = false\nhalt_cells = 3\n", "halt_cells: nobody waits"),
+        ("law = \"paper\"\nhalt_cells = 901\n", "halt_cells: 901 is out of range"),
+    ] {
+        let refusal = refusal(&with(rest));
+        assert!(refusal.contains(&format!("formation.{expected}")), "{refusal}");
     }
 }
 

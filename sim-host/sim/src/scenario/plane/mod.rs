@@ -141,6 +141,7 @@ impl Scenario {
             plane: Some(setup),
             route: RouteSetup::default(),
             formation_params: FormationParams::default(),
+            published: None,
             faults: Vec::new(),
             interventions: Vec::new(),
             misnumbered: Vec::new(),

@@ -1,0 +1,319 @@
+//! Travelling in formation as the paper has it (A. V. Kuznetsov 2017, KUZ, algorithm 2): each robot weighs its own
+//! shortest
+//! way against all neighbours that it finds. To compare ours with, not to travel by: it jams (`staya experiment
+//! formation`).
+//!
+//! Algorithm 2 line by line is [`PublishedFormation::decide`]; what it decides by is in
+//! [`crate::formation::published`]. Where the paper
+//! leaves something open or contradicts itself:
+//! - t = 0 (line 4) is over when everybody of the template was found once: packets take a tick, and are lost.
+//! - Lines 11 and 19 would put the temporary target into the place of the true one when they come again. The true one
+//!   is kept.
+//! - Line 12 heads for the cell that `def` points at, in one of eight directions.
+//! - Who is asked to stop stands, as does whoever passes the request on, but not while it heads for `def`; when its
+//!   own sum is
+//!   about r0 again, it goes on (line 15), whoever else still wants it to stand. On the wire each stop is its asker's,
+//!   so that line 16 lifts
+//!   what oneself has asked for; those farther up judge by their own sums.
+//! - Who has reached its target stands there (eq. 2), and asks nothing.
+//! - `predict` knows the other's target from its beacon; its neighbours are those of the own template.
+//! - Line 24 shuffles anew, which is another draw; with [`Sharpness::Greedy`] it changes nothing. Those missing and
+//!   those too many
+//!   are asked to choose another direction (item 6).
+
+use super::guidance::{Action, Ask, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
+use super::route_guidance::GridWorkspace;
+use super::travel::{on_grid, reachable_goal};
+use super::tunable::Tunable as _;
+use super::{OnGrid, Parameter, Wait};
+use crate::cost::{Gain, Weights};
+use crate::formation::published::{Kept, PublishedParams, smallest_below, sum_of_deviations, sums, sums_of_other};
+use crate::formation::{Found, GraphDistance, Member, Prediction, Seen, def, find_neighbors, graph_distance};
+use crate::grid::{BLOCKED, Cell, Dir, Window};
+use crate::list;
+use crate::neighbor::Neighbor;
+use crate::rand::Rng;
+use crate::robot::{Mode, RobotId};
+use crate::route::{CostField, RouteParams, VisitMemory};
+use crate::scalar::Scalar;
+use crate::shuffle::{Sharpness, weighted_shuffle};
+use crate::template::Template;
+use crate::time::Duration;
+use crate::wire::{RequestKind, TemplateAssembler, TemplateAssignment};
+use serde::Serialize;
+
+/// Travelling in formation as published; remembers visits of `M` cells and a template of `F` neighbours.
+///
+/// Work of a decision: one search of the window, with [`Prediction::Reflexive`] one more per neighbour found.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+pub struct PublishedFormation<const CELLS: usize, const M: usize, const F: usize> {
+    route: RouteParams,
+    formation: PublishedParams,
+    sharpness: Sharpness,
+    template: Template<F>,
+    assembler: TemplateAssembler<F>,
+    visits: VisitMemory<M>,
+    here: Option<Cell>,
+    leader: RobotId,
+    /// Everybody of the template was found once: the leader stays who it is (line 4).
+    has_chosen: bool,
+    /// The temporary target (lines 11 and 19).
+    detour: Option<Cell>,
+    /// It has asked its leader to stop.
+    has_asked: bool,
+    /// Somebody's stop stands.
+    is_stopped: bool,
+    /// What it wanted last, and not again if it was asked to choose another direction.
+    choice: Dir,
+    is_redirected: bool,
+}
+
+impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELLS, M, F> {
+    /// With these parameters and this place in the formation.
+    #[must_use]
+    pub const fn new(route: RouteParams, formation: PublishedParams, template: Template<F>) -> Self {
+        Self {
+            route,
+            formation,
+            sharpness: Sharpness::Greedy,
+            template,
+            assembler: TemplateAssembler::new(),
+            visits: VisitMemory::new(),
+            here: None,
+            leader: RobotId::NOBODY,
+            has_chosen: false,
+            detour: None,
+            has_asked: false,
+            is_stopped: false,
+            choice: Dir::Stay,
+            is_redirected: false,
+        }
+    }
+
+    /// How strictly the order of moves follows their weights: the paper shuffles.
+    #[must_use]
+    pub const fn sharpness(mut self, sharpness: Sharpness) -> Self {
+        self.sharpness = sharpness;
+        self
+    }
+
+    /// How far the neighbours are from what the template wants. O(F N).
+    #[must_use]
+    pub fn graph_distance<S>(&self, cell: Cell, neighbors: &[Neighbor<S>]) -> GraphDistance {
+        let robots = neighbors.iter().map(|other| seen_at(other, other.cell));
+        graph_distance(cell, &find_neighbors(&self.template, cell, self.formation.eps, robots))
+    }
+
+    /// Algorithm 5 with `predict`.
+    #[inline(never)]
+    fn found<S>(
+        &self,
+        input: &GuidanceInput<'_, S>,
+        window: &Window<'_>,
+        cell: Cell,
+        field: &mut CostField<CELLS>,
+    ) -> Found<F> {
+        let robots = input.neighbors.iter().map(|other| seen_at(other, other.cell));
+        let mut found = find_neighbors(&self.template, cell, self.formation.eps, robots);
+        for member in &mut found.members {
+            if let Some(next) = self.predict(input, window, cell, member, field) {
+                member.seen.predicted = next;
+            }
+        }
+        found
+    }
+
+    /// Where another robot will be at the next tick (section 7, item 1); `None`: where it is.
+    fn predict<S>(
+        &self,
+        input: &GuidanceInput<'_, S>,
+        window: &Window<'_>,
+        own: Cell,
+        member: &Member,
+        field: &mut CostField<CELLS>,
+    ) -> Option<Cell> {
+        let seen = &member.seen;
+        let neighbor = input.neighbor(seen.id)?;
+        let is_free = (input.now + input.tick).since(neighbor.busy_until) >= Duration::ZERO;
+        if !is_free || !matches!(seen.mode, Mode::Cruise | Mode::Forming) || neighbor.target == seen.cell {
+            return None;
+        }
+        let is_in_sight = Dir::MOVES.iter().all(|dir| window.get(seen.cell + dir.offset()).is_some());
+        if self.formation.prediction == Prediction::Constant || !is_in_sight {
+            let next = seen.cell + seen.heading.offset();
+            return (window.get(next) != Some(BLOCKED)).then_some(next);
+        }
+        let params = RouteParams { a2: Gain::ZERO, ..self.route };
+        let nobody = core::iter::empty();
+        let ways = field.weights::<0>(&params, window, seen.cell, neighbor.target, nobody, None).ok()?;
+        let cell_of = |id: RobotId| input.neighbor(id).map(|third| third.cell);
+        let price = sums_of_other(self.formation.gain, (member, own), &self.template.entries, cell_of);
+        ways.plus(&price).best().map(|dir| seen.cell + dir.offset())
+    }
+
+    /// Lines 10 to 23: the formation is kept, lost, or found again. `target` is the true one; returns what is asked of
+    /// the own leader, and whether to go
+    /// on in spite of a stop.
+    fn keep(
+        &mut self,
+        (cell, target): (Cell, Cell),
+        (is_leader, sum): (bool, u32),
+        found: &Found<F>,
+    ) -> (Option<RequestKind>, bool) {
+        let kept = self.formation.judge(sum);
+        match kept {
+            Kept::Lost if is_leader => self.detour = Some(cell + def(cell, &found.members).offset()),
+            Kept::Lost => {
+                // Whose leader is not found has no place to head for.
+                let leader = found.members.iter().find(|member| member.seen.id == self.leader);
+                self.detour = leader.map(|member| member.seen.cell - member.offset).or(self.detour);
+            }
+            Kept::Well => self.detour = None,
+            Kept::Fairly => {}
+        }
+        let is_asked_for = kept == Kept::Lost;
+        let ask = match kept {
+            Kept::Lost => Some(RequestKind::Stop),
+            Kept::Well if self.has_asked => Some(RequestKind::Resume),
+            Kept::Well | Kept::Fairly => None,
+        };
+        self.has_asked = is_asked_for || (self.has_asked && ask.is_none());
+        // A detour that is the goal is none.
+        self.detour = self.detour.filter(|&detour| detour != target);
+        (ask, kept == Kept::Well || (is_leader && self.detour.is_some()))
+    }
+
+    /// Line 24 and item 6: whom to ask to choose another direction, the first of those too many and the first missing.
+    fn ask_others<S>(&self, input: &GuidanceInput<'_, S>, found: &Found<F>) -> [Option<Ask>; 2] {
+        if !self.formation.is_crowded(found) {
+            return [None; 2];
+        }
+        let is_found = |id: RobotId| found.members.iter().any(|member| member.seen.id == id);
+        let mut missing = self.template.entries.iter().map(|entry| entry.id);
+        let missing = missing.find(|&id| input.neighbor(id).is_some() && !is_found(id));
+        let surplus = Some(found.surplus).filter(|id| id.is_somebody());
+        [surplus, missing].map(|to| to.map(|to| Ask { to, kind: RequestKind::Redirect }))
+    }
+}
+
+/// A neighbour as the formation sees it.
+const fn seen_at<S>(other: &Neighbor<S>, predicted: Cell) -> Seen {
+    Seen { id: other.id, cell: other.cell, predicted, heading: other.heading, leader: other.leader, mode: other.mode }
+}
+
+impl<const CELLS: usize, const M: usize, const F: usize> Teamwork for PublishedFormation<CELLS, M, F> {
+    fn redirect(&mut self) {
+        self.is_redirected = true;
+    }
+
+    fn note_stop(&mut self, is_asked: bool) {
+        self.is_stopped = is_asked;
+    }
+
+    fn assign_template(&mut self, part: &TemplateAssignment, is_anew: bool) -> bool {
+        if is_anew {
+            self.assembler.forget();
+        }
+        let Ok(whole) = self.assembler.put(part) else { return false };
+        if let Some(template) = whole {
+            self.template = template;
+            (self.leader, self.has_chosen) = (RobotId::NOBODY, false);
+            self.detour = None;
+        }
+        true
+    }
+
+    fn goal_offset(&self) -> Cell {
+        self.template.offset
+    }
+
+    fn needs(&self, id: RobotId) -> bool {
+        self.template.entries.iter().any(|entry| entry.id == id)
+    }
+}
+
+impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S> for PublishedFormation<CELLS, M, F> {
+    type Input<'a> = OnGrid<'a>;
+    type Destination = ToCells;
+    type Workspace = GridWorkspace<CELLS>;
+
+    fn decide(
+        &mut self,
+        input: &GuidanceInput<'_, S>,
+        here: &OnGrid<'_>,
+        rng: &mut Rng,
+        workspace: &mut Self::Workspace,
+    ) -> Result<Decision<S>, BadInput> {
+        let (cell, window) = on_grid(here)?;
+        if self.here != Some(cell) {
+            self.here = Some(cell);
+            self.visits.enter(cell);
+        }
+        let field = &mut workspace.field;
+        let target = reachable_goal(&window, input.goal);
+        let is_redirected = core::mem::take(&mut self.is_redirected);
+        let mut decision = Decision { target, slot: self.template.slot, ..Decision::default() };
+        if cell == target {
+            decision.status.is_at_goal = true;
+            decision.leader = self.leader;
+            return Ok(decision);
+        }
+        // Lines 3 to 6.
+        let found = self.found(input, &window, cell, field);
+        if !self.has_chosen {
+            self.leader = smallest_below(input.id, &found.members);
+            self.has_chosen = found.less == 0;
+        }
+        decision.leader = self.leader;
+        // Lines 2, 7 and 8.
+        let heads_for = reachable_goal(&window, self.detour.unwrap_or(target));
+        let price = sums(self.formation.gain, cell, &found.members);
+        let ways = if heads_for == cell {
+            // It is there: no direction has a weight (algorithm 3, line 6).
+            Some(Weights::CLOSED)
+        } else {
+            let others = input.neighbors.iter().map(|neighbor| neighbor.cell);
+            field.weights(&self.route, &window, cell, heads_for, others, Some(&self.visits)).ok()
+        };
+        decision.status.is_stuck = ways.is_none();
+        let mut weights = ways.unwrap_or(Weights::CLOSED).plus(&price);
+        if is_redirected {
+            weights = weights.without(self.choice);
+        }
+        let mut moves = weighted_shuffle(&weights, self.sharpness, rng);
+        if self.formation.is_crowded(&found) {
+            // Line 25.
+            moves = weighted_shuffle(&weights, self.sharpness, rng);
+        }
+        self.choice = moves.first().copied().unwrap_or_default();
+        // Lines 9 to 23.
+        let sum = sum_of_deviations(cell + self.choice.offset(), &found.members);
+        let is_leader = input.neighbors.iter().any(|other| other.leader == input.id);
+        let (ask, goes_on) = self.keep((cell, target), (is_leader, sum), &found);
+        let ask = ask.filter(|_| self.leader.is_somebody()).map(|kind| Ask { to: self.leader, kind });
+        list::extend(&mut decision.asks, ask);
+        list::extend(&mut decision.asks, self.ask_others(input, &found).into_iter().flatten());
+        let stands = self.is_stopped && !goes_on;
+        decision.status = Status {
+            waits_for: stands.then_some(Wait::Request),
+            recovers: !stands,
+            is_off_place: self.detour.is_some(),
+            ..decision.status
+        };
+        decision.action = Action::Moves(moves);
+        Ok(decision)
+    }
+
+    fn goes_by_velocity(&self) -> bool {
+        false
+    }
+
+    fn parameter(&self, parameter: Parameter) -> Option<S> {
+        self.route.get(parameter)
+    }
+
+    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
+        self.route.tune(parameter, value)
+    }
+}
