@@ -10,7 +10,7 @@ pub mod orca;
 mod route;
 
 use crate::experiment::Experiment as _;
-use crate::rows::Keeping;
+use crate::experiment::rows::Keeping;
 use crate::{boids, goals, scale};
 use anyhow::Result;
 use clap::{Args, Subcommand};

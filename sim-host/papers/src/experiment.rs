@@ -3,7 +3,9 @@
 //! A further experiment is a module with a plan that implements [`Experiment`], and one variant in
 //! [`cli`](crate::cli).
 
-use crate::rows::{Jobs, Keeping, Record};
+pub mod rows;
+
+use self::rows::{Jobs, Keeping, Record};
 use anyhow::{Context as _, Result, bail};
 use serde::Serialize;
 use staya_console::{Ended, Global, Progress, Stop, print, print_json};

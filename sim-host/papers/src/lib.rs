@@ -27,6 +27,5 @@ pub mod optimal;
 pub mod options;
 pub mod orca;
 pub mod route;
-pub mod rows;
 pub mod scale;
 pub mod walk;

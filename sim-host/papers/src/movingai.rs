@@ -6,10 +6,10 @@
 //! that is too large for the router's search is answered by the planner ([`optimal`]).
 
 use crate::experiment::Experiment;
+use crate::experiment::rows::{Each, Jobs, Record};
 use crate::optimal;
 use crate::options::word;
 use crate::route::decimal;
-use crate::rows::{Each, Jobs, Record};
 use crate::walk::{Task, Walker, holds};
 use anyhow::{Context as _, Result, ensure};
 use clap::ValueEnum;

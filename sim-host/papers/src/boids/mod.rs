@@ -13,8 +13,8 @@ mod tests;
 pub use report::{Report, Row, Timing};
 
 use crate::experiment::Experiment;
+use crate::experiment::rows::Jobs;
 use crate::options;
-use crate::rows::Jobs;
 use anyhow::{Result, ensure};
 use clap::Args;
 use rayon::prelude::*;

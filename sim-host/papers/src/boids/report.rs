@@ -2,7 +2,7 @@
 
 use super::{Flock, Method, Plan};
 use crate::experiment::Maybe;
-use crate::rows::{Each, Record};
+use crate::experiment::rows::{Each, Record};
 use serde::Serialize;
 use staya_sim::metrics::flock::polarisation;
 use std::fmt::{self, Display, Formatter};

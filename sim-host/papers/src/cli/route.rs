@@ -144,7 +144,7 @@ impl RouteArgs {
 mod tests {
     use super::*;
     use crate::experiment::Experiment as _;
-    use crate::rows::Keeping;
+    use crate::experiment::rows::Keeping;
     use clap::Parser;
     use staya_console::{Ended, Global, Stop};
     use staya_controller::route::{ExitRule, Replan};

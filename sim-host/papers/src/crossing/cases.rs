@@ -6,8 +6,8 @@
 mod scene;
 
 use super::{Conditions, gap, run};
+use crate::experiment::rows::{Each, Jobs, Record};
 use crate::experiment::{Experiment, Maybe, check_runs};
-use crate::rows::{Each, Jobs, Record};
 use anyhow::{Result, ensure};
 use clap::ValueEnum;
 use serde::Serialize;

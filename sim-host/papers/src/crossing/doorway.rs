@@ -1,8 +1,8 @@
 //! Two crowds that want through one gap in a wall, in opposite directions.
 
 use super::{Conditions, gap, picture, run};
+use crate::experiment::rows::{Each, Jobs, Record};
 use crate::experiment::{Experiment, check_runs};
-use crate::rows::{Each, Jobs, Record};
 use anyhow::{Result, ensure};
 use serde::Serialize;
 use staya_controller::rand::Rng;

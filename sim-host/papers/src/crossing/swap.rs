@@ -1,8 +1,8 @@
 //! Robots evenly on a circle, each bound for the opposite side: all ways cross in one point at one time.
 
 use super::{Conditions, gap, picture, run};
+use crate::experiment::rows::{Each, Jobs, Record};
 use crate::experiment::{Experiment, check_runs};
-use crate::rows::{Each, Jobs, Record};
 use anyhow::{Result, ensure};
 use serde::Serialize;
 use staya_plot::flock::Sheet;

@@ -6,9 +6,9 @@
 
 use super::check_spacing_and_step;
 use crate::arena::{Arena, FASTEST_MPS, uniform};
+use crate::experiment::rows::{Each, Jobs, Record};
 use crate::experiment::{Experiment, check_runs};
 use crate::options::word;
-use crate::rows::{Each, Jobs, Record};
 use anyhow::{Result, ensure};
 use serde::Serialize;
 use staya_controller::agent::{BoidsSetup, GuidanceSetup, SafetyKind};

@@ -22,9 +22,9 @@ pub use case::Case;
 pub use report::{CaseReport, Report, RunReport};
 pub use watch::Run;
 
+use crate::experiment::rows::Jobs;
 use crate::experiment::{Experiment, check_runs};
 use crate::options::{self, word};
-use crate::rows::Jobs;
 use anyhow::{Result, ensure};
 use clap::{Args, ValueEnum};
 use rayon::prelude::*;

@@ -1,7 +1,7 @@
 //! What is measured during a run.
 
 use super::{Case, Plan};
-use crate::rows::{Each, Record};
+use crate::experiment::rows::{Each, Record};
 use staya_sim::metrics::flock::{FlockMeasure, FlockMeter, gaps};
 use staya_sim::nearby::Space;
 use staya_sim::record::RobotRow;

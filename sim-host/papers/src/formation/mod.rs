@@ -11,10 +11,10 @@ mod report;
 pub use laws::{Law, LawJourney, Published};
 pub use report::{Journey, Point, Report, Variants};
 
+use crate::experiment::rows::{Each, Jobs, Record};
 use crate::experiment::{Experiment, check_runs};
 use crate::options::{self, word};
 use crate::route::decimal;
-use crate::rows::{Each, Jobs, Record};
 use anyhow::{Result, anyhow, ensure};
 use staya_controller::agent::{RouteSetup, TEMPLATE};
 use staya_controller::formation::FormationParams;

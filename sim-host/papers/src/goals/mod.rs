@@ -24,9 +24,9 @@ pub use report::{Point, Report};
 pub use watch::Run;
 
 use crate::arena::{Arena, starts, ticks, uniform};
+use crate::experiment::rows::Jobs;
 use crate::experiment::{Experiment, check_runs};
 use crate::options::{self, word};
-use crate::rows::Jobs;
 use anyhow::{Context as _, Result, ensure};
 use clap::Args;
 use staya_controller::agent::{GuidanceSetup, SafetyKind};

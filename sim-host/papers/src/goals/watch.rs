@@ -2,7 +2,7 @@
 
 use super::Plan;
 use crate::arena::distance_m;
-use crate::rows::{Each, Record};
+use crate::experiment::rows::{Each, Record};
 use staya_sim::metrics::flock::{FlockMeter, gaps, polarisation};
 use staya_sim::nearby::Space;
 use staya_sim::record::RobotRow;

@@ -19,10 +19,10 @@ mod report;
 
 pub use report::{Arrivals, Loss, Means, Point, Report, Response, decimal};
 
+use crate::experiment::rows::{Each, Jobs, Record};
 use crate::experiment::{Experiment, check_runs};
 use crate::optimal::Planner;
 use crate::options::{shuffle_ticks, word};
-use crate::rows::{Each, Jobs, Record};
 use crate::walk::{Task, Walk, Walker};
 use anyhow::{Result, ensure};
 use serde::Serialize;

@@ -10,8 +10,8 @@ mod report;
 pub use report::{Report, Row};
 
 use crate::experiment::Experiment;
+use crate::experiment::rows::Jobs;
 use crate::options;
-use crate::rows::Jobs;
 use anyhow::{Result, ensure};
 use clap::{Args, ValueEnum};
 use process::Usage;

@@ -2,7 +2,7 @@
 
 use super::{Ground, Plan};
 use crate::experiment::Maybe;
-use crate::rows::{Each, Record};
+use crate::experiment::rows::{Each, Record};
 use serde::Serialize;
 use staya_sim::record::{Error, write_atomically};
 use std::fmt::{self, Display, Formatter, Write as _};

@@ -1,6 +1,6 @@
 //! The rows of experiments: what a sweep writes of its runs ([`staya_sweep::row`]), by the same machine.
 
-use crate::experiment::{Experiment, GoesOn};
+use super::{Experiment, GoesOn};
 use anyhow::{Result, ensure};
 use clap::Args;
 use staya_controller::digest::{chained, digest};
