@@ -16,7 +16,7 @@ pub enum Template {
     Room(Room, System),
     /// The relative velocities, m/s, that lead one pair of robots to a collision (FVM, eq. 15).
     VelocityObstacle(Pair, VelocityForm),
-    /// The same for every pair: see [`velocity_obstacle`].
+    /// The same for every pair: see `velocity_obstacle`.
     Neighbor(VelocityForm),
 }
 

@@ -8,8 +8,8 @@ mod laws;
 mod pictures;
 mod report;
 
-pub use laws::{Law, LawJourney, Published};
-pub use report::{Journey, Point, Report, Variants};
+pub use laws::{Law, Published};
+pub use report::{Journey, LawJourney, Point, Report, Variants};
 
 use crate::experiment::rows::{Each, Jobs, Record};
 use crate::experiment::{Experiment, check_runs};

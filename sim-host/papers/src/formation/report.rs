@@ -1,6 +1,9 @@
 //! The numbers of the formation experiment, ready to be printed or plotted.
 
-use super::laws::{LawJourney, journeys};
+mod laws;
+
+pub use self::laws::LawJourney;
+use self::laws::journeys;
 use super::{Crossing, Plan, ROBOTS, Run, Way};
 use crate::experiment::Maybe;
 use crate::options::{shuffle_ticks, word};
