@@ -229,7 +229,7 @@ mod tests {
         assert!(out.join("figure3.svg").is_file() && out.join("sweep-a2.png").is_file());
         stop.request();
         let error = args.plan().command(&args.out, &Keeping::default(), &quiet, &stop).unwrap_err();
-        assert!(error.to_string().contains("before any of the landscapes"));
+        assert!(error.to_string().contains("before any of the routes was done"), "{error}");
     }
 
     #[test]

@@ -123,7 +123,7 @@ fn pictures_and_series_are_written() {
 fn closing_speeds_that_break_the_bare_flock_do_not_with_orca_behind_it() {
     let plan = Closing { speeds: vec![1.0, 4.0, 8.0], runs: 4, ..Closing::default() };
     let report = plan.measure().unwrap();
-    assert_eq!((plan.total(), report.lines.len()), (18 * 4, 18));
+    assert_eq!((plan.total(), report.lines.len()), (18 * 4 * 2, 18));
     for line in &report.lines {
         assert_eq!(line.orca.overlaps, 0, "{line:?}");
         assert!(line.orca.least_pair_over_d > 1.0 / 7.0 - 1e-6, "{line:?}");

@@ -80,7 +80,8 @@ fn threads_and_early_ends_change_nothing() {
     };
     let all = on(1);
     assert_eq!(all, on(4));
-    assert_eq!(all.concat().len(), 8);
+    // Eight landscapes: each alone, in formation, with another eps, with another loss.
+    assert_eq!(all.concat().len(), 8 * 4);
     let none = plan.carry_out(|_| false).unwrap();
     assert!(plan.report(&none).points.is_empty());
 }

@@ -122,9 +122,10 @@ fn early_end_keeps_a_beginning_of_every_point() {
     let full = all(&plan);
     for (some, full) in some.iter().zip(&full) {
         assert_eq!(some[..], full[..some.len()]);
-        // What was under way when it was told to stop is finished.
-        assert!((64..150).contains(&some.len()), "{}", some.len());
     }
+    // What was under way when it was told to stop is finished.
+    let made: usize = some.iter().map(Vec::len).sum();
+    assert!((100..plan.total()).contains(&made), "{made}");
     let none = plan.carry_out(|_| false).unwrap();
     assert!(plan.report(&none).points.is_empty());
     assert!(plan.example(&none).unwrap().is_none());
@@ -140,14 +141,15 @@ fn sweep_walks_the_same_landscapes() {
         ],
         ..plan()
     };
-    let results = all(&plan);
+    let runs = all(&plan);
+    let results = plan.by_land(&runs);
     for run in results.iter().flatten() {
         let [own, _, same, lonely] = run.walks[..] else { panic!("one walk per variant") };
         assert_eq!(own, same);
         assert_eq!(own, lonely, "a1 has no effect on a robot alone");
     }
     assert!(results.iter().flatten().any(|run| run.walks[0] != run.walks[1]));
-    let report = plan.report(&results);
+    let report = plan.report(&runs);
     assert_eq!(report.sweep[1].value, 3.0);
     let own = report.points[0].time_loss_percent.unwrap().summary.mean;
     assert_eq!(report.sweep[1].points[0].time_loss_percent, Some(own));

@@ -74,7 +74,9 @@ fn runs_of_every_length_give_their_pictures() {
     for (robots, ticks) in [(0, 0), (0, 1), (1, 1), (1, 2), (3, 40), (12, 3), (13, 3), (201, 3)] {
         let out = dir.path().join(format!("{robots}-{ticks}"));
         let history = history(robots, ticks, 0.5, nan);
-        assert_eq!(names(&land(40), &history, &[], &out), WITHOUT_FORMATION);
+        // Without a frame there are no ways to draw.
+        let ways = if history.frames().is_empty() { 2 } else { 0 };
+        assert_eq!(names(&land(40), &history, &[], &out), WITHOUT_FORMATION[ways..]);
         assert_texts_apart(&trajectories::draw(&land(40), &history, &[]).unwrap());
         assert_texts_apart(&run::packets(&history).draw());
     }
