@@ -16,7 +16,7 @@ mod program {
     use staya_controller::agent::{Agent, Guidance, Inputs, OUTBOX, Outputs, Safety};
     use staya_controller::grid::{Cell, Dir};
     use staya_controller::robot::{Mode, RobotId};
-    #[cfg(part = "stm32f405")]
+    #[cfg(all(part = "stm32f405", not(debug_assertions)))]
     use staya_controller::scalar::Fast32;
     use staya_controller::scalar::{Q16, Scalar};
     use staya_controller::time::Instant;
@@ -148,8 +148,8 @@ mod program {
             swarms::<f32>("f32", &row);
             worst::<f32, 16, 32>("f32", &row);
         }
-        // Needs an FPU.
-        #[cfg(part = "stm32f405")]
+        // Needs an FPU; the flash has no room for it unoptimised.
+        #[cfg(all(part = "stm32f405", not(debug_assertions)))]
         worst::<Fast32, 16, 32>("Fast32", &row);
         swarms::<Q16>("Q16", &row);
         #[cfg(not(part = "nrf51"))]
