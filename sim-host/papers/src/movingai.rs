@@ -5,23 +5,24 @@
 //! is what they learn of the costs of ways, as far as they can remember it ([`Learning`]), and at last the wall. A map
 //! that is too large for the router's search is answered by the planner ([`optimal`]).
 
+mod report;
+
+pub use report::{Answer, Report};
+
 use crate::experiment::Experiment;
-use crate::experiment::rows::{Each, Jobs, Record};
+use crate::experiment::rows::Jobs;
 use crate::optimal;
 use crate::options::word;
 use crate::route::decimal;
 use crate::walk::{Task, Walker, holds};
 use anyhow::{Context as _, Result, ensure};
 use clap::ValueEnum;
-use serde::Serialize;
 use staya_controller::digest::digest;
 use staya_controller::grid::UNIT;
 use staya_controller::route::{Replan, RouteParams};
 use staya_sim::terrain::movingai::{Query, parse_map, parse_scen};
 use staya_sim::terrain::{Terrain, read};
-use staya_stats::Summary;
 use staya_sweep::Value;
-use std::fmt::{self, Display, Formatter};
 use std::path::{Path, PathBuf};
 
 /// Cells of the largest search, border included: 255 x 255, as many as 16-bit numbers can tell apart.
@@ -317,226 +318,5 @@ fn cells(units: f64) -> f64 {
     units / f64::from(UNIT)
 }
 
-/// What one query gave.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Answer {
-    /// The optimal length that the benchmark states, cells.
-    pub optimal_cells: f64,
-    /// Whether the robot reached the goal.
-    pub arrived: bool,
-    /// Length of its way, cells; where it did not arrive, until it gave up.
-    pub length_cells: f64,
-    /// What the router with the whole map in its window took the shortest way to be at the start, cells; `None`
-    /// if it found none, or sees only a part.
-    pub priced_cells: Option<f64>,
-}
-
-impl Record for Answer {
-    fn figures(&mut self, each: &mut Each<'_>) {
-        each("arrived", "1: the robot reached the goal", &mut self.arrived);
-        each("length_cells", "length of its way, or of what it went until it gave up", &mut self.length_cells);
-        each("priced_cells", "the shortest way as the router took it to be; empty: none", &mut self.priced_cells);
-    }
-}
-
-impl Answer {
-    /// By how much the way is longer than the optimal one, percent of it.
-    #[must_use]
-    pub fn loss_percent(&self) -> f64 {
-        percent(self.length_cells, self.optimal_cells)
-    }
-
-    /// By how much the router's price is off the optimal length, percent of it; `None` without a price.
-    #[must_use]
-    pub fn price_error_percent(&self) -> Option<f64> {
-        Some(percent(self.priced_cells?, self.optimal_cells))
-    }
-}
-
-fn percent(ours: f64, optimal: f64) -> f64 {
-    if ours == optimal {
-        return 0.0;
-    }
-    100.0 * (ours - optimal) / optimal
-}
-
-/// The numbers of a benchmark, ready to be printed.
-#[derive(Clone, Debug, Serialize)]
-pub struct Report {
-    /// Always `movingai`.
-    pub experiment: &'static str,
-    /// The map's file.
-    pub map: PathBuf,
-    /// Columns of the map.
-    pub width: u16,
-    /// Rows of the map.
-    pub height: u16,
-    /// Window radius in cells; `null`: the whole map.
-    pub radius: Option<u8>,
-    /// Cells of the visit memory.
-    pub visits: usize,
-    /// Cells of the learned costs.
-    pub learned: usize,
-    /// Queries in the scenario.
-    pub queries: usize,
-    /// Queries answered, fewer after an early end.
-    pub answered: usize,
-    /// Robots that reached their goal.
-    pub arrived: usize,
-    /// Length above the optimal one in percent of it, over the robots that arrived.
-    pub loss_percent: Option<Summary>,
-    /// With the whole map in the window: the largest deviation, either way, of the router's price from the optimal
-    /// length, percent of it.
-    pub worst_price_error_percent: Option<f64>,
-    /// With the whole map in the window: queries for which the router knows no way.
-    pub without_price: Option<usize>,
-}
-
-impl Report {
-    /// The statistics of the answers.
-    #[must_use]
-    pub fn of(benchmark: &Benchmark, robots: &Robots, answers: &[Answer]) -> Self {
-        let losses: Vec<f64> = answers.iter().filter(|answer| answer.arrived).map(Answer::loss_percent).collect();
-        let errors = answers.iter().filter_map(Answer::price_error_percent);
-        let whole = robots.sight == Sight::Map;
-        Self {
-            experiment: "movingai",
-            map: benchmark.map.clone(),
-            width: benchmark.land.width(),
-            height: benchmark.land.height(),
-            radius: match robots.sight {
-                Sight::Radius(radius) => Some(radius),
-                Sight::Map => None,
-            },
-            visits: robots.memory.cells(),
-            learned: robots.learning.cells(),
-            queries: benchmark.queries.len(),
-            answered: answers.len(),
-            arrived: losses.len(),
-            loss_percent: Summary::of(&losses),
-            worst_price_error_percent: errors.map(f64::abs).reduce(f64::max),
-            without_price: whole.then(|| answers.iter().filter(|answer| answer.priced_cells.is_none()).count()),
-        }
-    }
-}
-
-impl Display for Report {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let (width, height) = (self.width, self.height);
-        writeln!(f, "{} ({width} x {height} cells)", self.map.display())?;
-        let radius = self.radius.map_or_else(|| String::from("the whole map"), |r| format!("radius {r}"));
-        writeln!(f, "  window                {radius}")?;
-        writeln!(f, "  visit memory          {} cells", self.visits)?;
-        writeln!(f, "  learned costs         {} cells", self.learned)?;
-        let (answered, queries) = (self.answered, self.queries);
-        writeln!(f, "  queries answered      {answered} of {queries}")?;
-        writeln!(f, "  arrived               {}", self.arrived)?;
-        if let Some(loss) = &self.loss_percent {
-            writeln!(
-                f,
-                "  longer than optimal   {:.2} % on average, median {:.2} %, at most {:.2} %",
-                loss.mean, loss.median, loss.max
-            )?;
-        }
-        if let Some(error) = self.worst_price_error_percent {
-            writeln!(f, "  optimal lengths       met within {error:.4} % for every query with a way")?;
-        }
-        if let Some(without @ 1..) = self.without_price {
-            writeln!(f, "  no way found          {without}")?;
-        }
-        Ok(())
-    }
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use staya_controller::grid::{BLOCKED, Cell};
-
-    const MAP: &str = "type octile\nheight 3\nwidth 4\nmap\n....\n.@@.\n...S\n";
-
-    /// Writes map and scenario; `rows` are the queries without bucket and map.
-    fn files(rows: &[&str]) -> (tempfile::TempDir, PathBuf) {
-        let dir = tempfile::tempdir().unwrap();
-        let scen = dir.path().join("a.map.scen");
-        let queries: String = rows.iter().map(|row| format!("0\tmaps/x/a.map\t{}\n", row.replace(' ', "\t"))).collect();
-        std::fs::write(&scen, format!("version 1\n{queries}")).unwrap();
-        std::fs::write(dir.path().join("a.map"), MAP).unwrap();
-        (dir, scen)
-    }
-
-    fn report(rows: &[&str], sight: Sight) -> Report {
-        let (_dir, scen) = files(rows);
-        let benchmark = Benchmark::load(&scen, None).unwrap();
-        let robots = Robots::new(sight);
-        Plan { benchmark, robots }.measure().unwrap()
-    }
-
-    #[test]
-    fn right_lengths_are_met_and_wrong_ones_show() {
-        // Around the wall without cutting its corners; over swamp at the price of ground; not at all.
-        let right = ["4 3 0 0 3 2 5", "4 3 0 2 3 2 3", "4 3 2 2 2 2 0"];
-        let good = report(&right, Sight::Map);
-        assert_eq!((good.answered, good.arrived, good.without_price), (3, 3, Some(0)));
-        assert!(good.worst_price_error_percent.unwrap() < 1e-9);
-        assert_eq!(good.loss_percent.unwrap().max, 0.0);
-        for wrong in ["4 3 0 0 3 2 4.9", "4 3 0 0 3 2 5.1", "4 3 2 2 2 2 1"] {
-            let bad = report(&[wrong], Sight::Map);
-            assert!(bad.worst_price_error_percent.unwrap() > 1.0, "{wrong}");
-        }
-        let near = report(&right, Sight::Radius(1));
-        assert_eq!(near.worst_price_error_percent, None);
-        assert_eq!(near.without_price, None);
-    }
-
-    #[test]
-    fn files_that_do_not_belong_together_are_named() {
-        let message = |scen: &Path, map: Option<&Path>| Benchmark::load(scen, map).unwrap_err().to_string();
-        let (dir, scen) = files(&["4 3 0 0 3 2 5", "4 4 0 0 3 2 5"]);
-        let size = message(&scen, None);
-        assert!(size.contains("query 2 is for a map of 4 x 4"), "{size}");
-        let (_dir, walled) = files(&["4 3 0 0 1 1 5"]);
-        assert!(message(&walled, None).contains("query 1 starts or ends in a wall"));
-        let (_dir, empty) = files(&[]);
-        assert!(message(&empty, None).contains("no queries"));
-        std::fs::remove_file(dir.path().join("a.map")).unwrap();
-        let missing = message(&scen, None);
-        assert!(missing.contains("maps/x/a.map is not beside it"), "{missing}");
-        assert!(message(&dir.path().join("none.scen"), None).contains("none.scen"));
-        let other = dir.path().join("other.map");
-        assert!(message(&scen, Some(&other)).contains("other.map"));
-    }
-
-    #[test]
-    fn a_map_too_large_for_the_search_is_planned_at_the_optimal_length() {
-        // A wall with a gap at its eastern end, far from the straight way.
-        let mut land = Terrain::flat(300, 260);
-        (0..299).for_each(|x| land.set(Cell::new(x, 100), BLOCKED));
-        let [start, goal] = [Cell::new(298, 0), Cell::new(298, 200)];
-        // Diagonally before the gap and behind it, cutting no corner.
-        let optimal_length = 198.0 + 2.0 * std::f64::consts::SQRT_2;
-        let query = Query { bucket: 0, map: "a.map".into(), width: 300, height: 260, start, goal, optimal_length };
-        let benchmark = Benchmark { map: "a.map".into(), land, queries: vec![query] };
-        let report = Plan { benchmark, robots: Robots::new(Sight::Map) }.measure().unwrap();
-        assert_eq!((report.arrived, report.without_price), (1, Some(0)));
-        assert!(report.worst_price_error_percent.unwrap() < 0.01, "{report}");
-    }
-
-    #[test]
-    fn land_too_large_to_be_seen_at_once_is_refused() {
-        let benchmark =
-            |width, height| Benchmark { map: "a.map".into(), land: Terrain::flat(width, height), queries: vec![] };
-        let answer = |width, height, sight| {
-            let (benchmark, robots) = (benchmark(width, height), Robots::new(sight));
-            Plan { benchmark, robots }.carry_out(|_| true).map_err(|error| error.to_string())
-        };
-        assert!(answer(253, 253, Sight::Map).is_ok());
-        assert!(answer(256, 250, Sight::Map).is_ok());
-        assert!(answer(512, 512, Sight::Map).is_ok());
-        assert!(answer(1000, 1000, Sight::Radius(126)).is_ok());
-        for (width, height) in [(254, 253), (257, 10)] {
-            let error = answer(width, height, Sight::Radius(127)).unwrap_err();
-            assert!(error.contains("choose a smaller radius"), "{error}");
-        }
-    }
-}
+mod tests;

@@ -14,9 +14,11 @@
 //!   with 0, and larger values gain nothing; dL does not change.
 //! - a2 does nothing to dT and dL, but without it 6 to 20 % of the robots circle for ever; 1/2 is enough.
 
+mod coefficient;
 mod pictures;
 mod report;
 
+pub use coefficient::Coefficient;
 pub use report::{Arrivals, Loss, Means, Point, Report, Response, decimal};
 
 use crate::experiment::rows::{Each, Jobs, Record};
@@ -25,7 +27,6 @@ use crate::optimal::Planner;
 use crate::options::{shuffle_ticks, word};
 use crate::walk::{Task, Walk, Walker};
 use anyhow::{Result, ensure};
-use serde::Serialize;
 use staya_controller::cost::Gain;
 use staya_controller::grid::{Cell, Norm, UNIT};
 use staya_controller::rand::Rng;
@@ -92,56 +93,6 @@ impl Land {
             Self::Natural(_) => "natural",
             Self::Shuffled(_) => "shuffled",
             Self::Uniform => "uniform",
-        }
-    }
-}
-
-/// One of the coefficients of the route cost (eqs. 7, 9 and 10).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Coefficient {
-    /// Weight of travel time.
-    A0,
-    /// Price of a cell with another robot in it.
-    A1,
-    /// Price of an earlier visit.
-    A2,
-    /// Price of the distance from the exit to the target.
-    A3,
-}
-
-impl Coefficient {
-    /// The parameters with another value of this coefficient.
-    #[must_use]
-    pub const fn set(self, mut params: RouteParams, value: Gain) -> RouteParams {
-        match self {
-            Self::A0 => params.a0 = value,
-            Self::A1 => params.a1 = value,
-            Self::A2 => params.a2 = value,
-            Self::A3 => params.a3 = value,
-        }
-        params
-    }
-
-    /// Its name in the paper's formulas.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::A0 => "a0",
-            Self::A1 => "a1",
-            Self::A2 => "a2",
-            Self::A3 => "a3",
-        }
-    }
-
-    /// Its value in the parameters.
-    #[must_use]
-    pub const fn get(self, params: &RouteParams) -> Gain {
-        match self {
-            Self::A0 => params.a0,
-            Self::A1 => params.a1,
-            Self::A2 => params.a2,
-            Self::A3 => params.a3,
         }
     }
 }

@@ -26,6 +26,7 @@ pub mod ranks;
 mod report;
 mod simulate;
 mod state;
+mod status;
 mod witness;
 
 pub use every::Every;
@@ -39,6 +40,7 @@ pub use operator::{Observation, Operated, operated};
 pub use plane::{PlaneGround, Senses};
 pub use simulate::{Moment, Outcome, Unable, WIDE, Watch, simulate, simulate_from, simulate_with};
 pub use state::{Saves, State, StateError};
+pub use status::Status;
 
 use crate::metrics::Arrivals;
 use crate::metrics::waits::Waits;
@@ -51,14 +53,12 @@ use intervene::Tuned;
 use intruder::Intruder;
 use keeper::Keeper;
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
-    Agent, AgentConfig, AnyInputs, Command, Event, Inputs, NEIGHBORS, Outputs, Safety, Setup, Wait,
+    Agent, AgentConfig, AnyInputs, Command, Event, Inputs, NEIGHBORS, Outputs, Safety, Setup,
 };
 use staya_controller::auth::Key;
-use staya_controller::grid::Cell;
 use staya_controller::neighbor::Claims;
-use staya_controller::robot::{Mode, RobotId};
+use staya_controller::robot::RobotId;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{Format, Ring};
 use std::collections::{HashMap, VecDeque};
@@ -86,31 +86,6 @@ struct Computer<G, A> {
     /// Since its start.
     sent_bytes: u64,
     heard_bytes: u64,
-}
-
-/// What the rest of the engine needs to know of a robot after its decision.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Status {
-    /// What it is doing.
-    pub mode: Mode,
-    /// Whom it follows.
-    pub leader: RobotId,
-    /// The cell that it heads for.
-    pub target: Cell,
-    /// What it waits for.
-    pub wait: Option<Wait>,
-}
-
-impl Status {
-    /// Of a robot before its first step.
-    const fn before(robot: &Robot) -> Self {
-        Self { mode: Mode::Idle, leader: RobotId::NOBODY, target: robot.goal, wait: None }
-    }
-
-    /// Its computer is down.
-    const fn fall_silent(&mut self) {
-        (self.mode, self.leader, self.wait) = (Mode::Fault, RobotId::NOBODY, None);
-    }
 }
 
 impl<G, A> Computer<G, A> {

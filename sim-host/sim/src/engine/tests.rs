@@ -6,8 +6,9 @@ use staya_controller::agent::{
     Action, AnySurroundings, BadInput, Decision, Guidance, GuidanceInput, Status as Standing, Surroundings as _,
     Teamwork, ToCells, Unguarded,
 };
-use staya_controller::grid::Dir;
+use staya_controller::grid::{Cell, Dir};
 use staya_controller::rand::Rng;
+use staya_controller::robot::Mode;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::{Arc, Mutex};

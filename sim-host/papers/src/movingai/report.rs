@@ -1,0 +1,139 @@
+//! What the queries of a benchmark gave.
+
+use super::{Benchmark, Robots, Sight};
+use crate::experiment::rows::{Each, Record};
+use serde::Serialize;
+use staya_stats::Summary;
+use std::fmt::{self, Display, Formatter};
+use std::path::PathBuf;
+
+/// What one query gave.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Answer {
+    /// The optimal length that the benchmark states, cells.
+    pub optimal_cells: f64,
+    /// Whether the robot reached the goal.
+    pub arrived: bool,
+    /// Length of its way, cells; where it did not arrive, until it gave up.
+    pub length_cells: f64,
+    /// What the router with the whole map in its window took the shortest way to be at the start, cells; `None`
+    /// if it found none, or sees only a part.
+    pub priced_cells: Option<f64>,
+}
+
+impl Record for Answer {
+    fn figures(&mut self, each: &mut Each<'_>) {
+        each("arrived", "1: the robot reached the goal", &mut self.arrived);
+        each("length_cells", "length of its way, or of what it went until it gave up", &mut self.length_cells);
+        each("priced_cells", "the shortest way as the router took it to be; empty: none", &mut self.priced_cells);
+    }
+}
+
+impl Answer {
+    /// By how much the way is longer than the optimal one, percent of it.
+    #[must_use]
+    pub fn loss_percent(&self) -> f64 {
+        percent(self.length_cells, self.optimal_cells)
+    }
+
+    /// By how much the router's price is off the optimal length, percent of it; `None` without a price.
+    #[must_use]
+    pub fn price_error_percent(&self) -> Option<f64> {
+        Some(percent(self.priced_cells?, self.optimal_cells))
+    }
+}
+
+fn percent(ours: f64, optimal: f64) -> f64 {
+    if ours == optimal {
+        return 0.0;
+    }
+    100.0 * (ours - optimal) / optimal
+}
+
+/// The numbers of a benchmark, ready to be printed.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Always `movingai`.
+    pub experiment: &'static str,
+    /// The map's file.
+    pub map: PathBuf,
+    /// Columns of the map.
+    pub width: u16,
+    /// Rows of the map.
+    pub height: u16,
+    /// Window radius in cells; `null`: the whole map.
+    pub radius: Option<u8>,
+    /// Cells of the visit memory.
+    pub visits: usize,
+    /// Cells of the learned costs.
+    pub learned: usize,
+    /// Queries in the scenario.
+    pub queries: usize,
+    /// Queries answered, fewer after an early end.
+    pub answered: usize,
+    /// Robots that reached their goal.
+    pub arrived: usize,
+    /// Length above the optimal one in percent of it, over the robots that arrived.
+    pub loss_percent: Option<Summary>,
+    /// With the whole map in the window: the largest deviation, either way, of the router's price from the optimal
+    /// length, percent of it.
+    pub worst_price_error_percent: Option<f64>,
+    /// With the whole map in the window: queries for which the router knows no way.
+    pub without_price: Option<usize>,
+}
+
+impl Report {
+    /// The statistics of the answers.
+    #[must_use]
+    pub fn of(benchmark: &Benchmark, robots: &Robots, answers: &[Answer]) -> Self {
+        let losses: Vec<f64> = answers.iter().filter(|answer| answer.arrived).map(Answer::loss_percent).collect();
+        let errors = answers.iter().filter_map(Answer::price_error_percent);
+        let whole = robots.sight == Sight::Map;
+        Self {
+            experiment: "movingai",
+            map: benchmark.map.clone(),
+            width: benchmark.land.width(),
+            height: benchmark.land.height(),
+            radius: match robots.sight {
+                Sight::Radius(radius) => Some(radius),
+                Sight::Map => None,
+            },
+            visits: robots.memory.cells(),
+            learned: robots.learning.cells(),
+            queries: benchmark.queries.len(),
+            answered: answers.len(),
+            arrived: losses.len(),
+            loss_percent: Summary::of(&losses),
+            worst_price_error_percent: errors.map(f64::abs).reduce(f64::max),
+            without_price: whole.then(|| answers.iter().filter(|answer| answer.priced_cells.is_none()).count()),
+        }
+    }
+}
+
+impl Display for Report {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let (width, height) = (self.width, self.height);
+        writeln!(f, "{} ({width} x {height} cells)", self.map.display())?;
+        let radius = self.radius.map_or_else(|| String::from("the whole map"), |r| format!("radius {r}"));
+        writeln!(f, "  window                {radius}")?;
+        writeln!(f, "  visit memory          {} cells", self.visits)?;
+        writeln!(f, "  learned costs         {} cells", self.learned)?;
+        let (answered, queries) = (self.answered, self.queries);
+        writeln!(f, "  queries answered      {answered} of {queries}")?;
+        writeln!(f, "  arrived               {}", self.arrived)?;
+        if let Some(loss) = &self.loss_percent {
+            writeln!(
+                f,
+                "  longer than optimal   {:.2} % on average, median {:.2} %, at most {:.2} %",
+                loss.mean, loss.median, loss.max
+            )?;
+        }
+        if let Some(error) = self.worst_price_error_percent {
+            writeln!(f, "  optimal lengths       met within {error:.4} % for every query with a way")?;
+        }
+        if let Some(without @ 1..) = self.without_price {
+            writeln!(f, "  no way found          {without}")?;
+        }
+        Ok(())
+    }
+}
