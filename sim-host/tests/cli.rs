@@ -76,6 +76,29 @@ fn json_is_one_object_with_every_promised_key() {
 }
 
 #[test]
+fn without_traces_a_run_is_the_same_and_none_of_an_earlier_run_stay() {
+    let (_dir, out) = folder();
+    let run = |more: &[&str]| {
+        let file = scenario("figure-5.toml");
+        let arguments = [&["run", &file, "--json", "--quiet", "--out", &out][..], more].concat();
+        let Output { status, stdout, stderr } = staya(&arguments).output().expect("staya starts");
+        assert!(status.success(), "{}", text(&stderr));
+        let json: Value = serde_json::from_slice(&stdout).expect("one JSON object");
+        let names = fs::read_dir(&out).expect("results").map(|entry| entry.expect("an entry").file_name());
+        let mut names: Vec<_> = names.map(|name| name.into_string().expect("UTF-8")).collect();
+        names.sort();
+        (json["trace_hash"].clone(), json["packets"].clone(), names)
+    };
+    let (hash, packets, names) = run(&[]);
+    assert!(names.contains(&"trace.csv".to_owned()), "{names:?}");
+    let (same_hash, same_packets, names) = run(&["--no-trace"]);
+    assert_eq!((same_hash, same_packets), (hash, packets));
+    let left = ["packets.png", "packets.svg", "series.csv", "series.schema.json", "summary.json"];
+    assert!(left.iter().all(|name| names.iter().any(|there| there == name)), "{names:?}");
+    assert!(!names.iter().any(|name| name.starts_with("trace") || name.starts_with("trajectories")), "{names:?}");
+}
+
+#[test]
 fn a_formationless_run_says_null_and_the_command_line_overrides_the_file() {
     let (_dir, out) = folder();
     let path = scenario("moving-ai-20.toml");
