@@ -4,7 +4,7 @@
 use heapless::{LenType, Vec};
 
 /// A list of at most `N` items that is empty or short in nearly all robots: what a dead end taught, requests on their
-/// way. On a part its room is there from the start; on a host with many robots only what is in it takes memory. It is
+/// way, whom one hears. On a part its room is there from the start; on a host with many robots only what is in it takes memory. It is
 /// written as [`heapless::Vec`] is.
 #[cfg(all(not(feature = "host"), any(feature = "route", feature = "wire")))]
 pub(crate) type Seldom<T, const N: usize> = heapless::Vec<T, N>;

@@ -66,6 +66,7 @@ Usage: cargo xtask COMMAND
   clients [NAME]  MAVLink clients (pymavlink, MAVSDK, MAVProxy, tshark) against staya, from Python: all tests or those whose names contain NAME
   cluster         sweeps on Slurm and GNU parallel, on this machine: the same rows as without them
   mpi             one world over ranks of OpenMPI, on this machine: the trace hash of one process; a rank that dies
+  mpi --scaling   times of 200,000 robots on 1, 2 and 4 ranks; on a machine that does nothing else
   faults [PART...]
                   firmware that goes wrong on purpose says why and starts anew, on each part (default: all)
   example         the example firmware of examples/stm32f4
@@ -127,6 +128,7 @@ fn main() -> ExitCode {
         ["browser"] => browser::run_command(&repo, &mut report),
         ["cluster"] => cluster::run_command(&repo, &mut report),
         ["mpi"] => mpi::run_command(&repo, &mut report),
+        ["mpi", "--scaling"] => mpi::run_scaling(&repo, &mut report),
         ["example"] => example::run(&repo, &mut report),
         ["fuzz"] => fuzz::run(&repo, &mut report, fuzz::SECONDS),
         ["fuzz", "--seconds", n] if n.parse().is_ok_and(|n: u32| n > 0) => {

@@ -12,6 +12,8 @@ use std::process::{Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+mod scaling;
+
 const HASHES: &str = "one hash on 1, 2, 3, 4 and 8 ranks";
 const RESUMED: &str = "a checkpoint of three ranks goes on on two, and by one process";
 const KILLED: &str = "a rank that is killed ends the run and leaves its records";
@@ -39,6 +41,14 @@ pub fn run_command(repo: &Repo, report: &mut Report) {
         return run_tests(repo, report);
     }
     skip(report, "the program was not built");
+}
+
+/// The command that measures: an optimised build, on a machine that does nothing else.
+pub fn run_scaling(repo: &Repo, report: &mut Report) {
+    match Mpi::find(repo) {
+        Ok(mpi) => scaling::measure(&mpi, report),
+        Err(reason) => report.skip("scaling", &reason),
+    }
 }
 
 /// Makes MPI ready, builds `staya-mpi` and compares it with the `staya` that there is.
@@ -122,15 +132,24 @@ impl<'a> Mpi<'a> {
     }
 
     fn program(&self, name: &str) -> PathBuf {
-        self.repo.target.join("debug").join(format!("{name}{}", std::env::consts::EXE_SUFFIX))
+        self.program_of("debug", name)
+    }
+
+    fn program_of(&self, profile: &str, name: &str) -> PathBuf {
+        self.repo.target.join(profile).join(format!("{name}{}", std::env::consts::EXE_SUFFIX))
     }
 
     /// `mpirun -n RANKS staya-mpi run`, on this machine alone.
     fn ranks(&self, ranks: u32, arguments: &[&str]) -> Command {
+        self.ranks_of("debug", ranks, arguments)
+    }
+
+    /// The same with the program of another profile.
+    fn ranks_of(&self, profile: &str, ranks: u32, arguments: &[&str]) -> Command {
         let mut command = self.command(&self.mpirun);
         command
             .args(["--allow-run-as-root", "--oversubscribe", "--bind-to", "none", "-n", &ranks.to_string()])
-            .arg(self.program("staya-mpi"))
+            .arg(self.program_of(profile, "staya-mpi"))
             .args(["run", "--quiet", "--json"])
             .args(arguments)
             // Shared memory, no network; and no words of parts that the packages leave out.

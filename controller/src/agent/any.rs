@@ -23,6 +23,13 @@ use crate::scalar::Scalar;
 use crate::wire::TemplateAssignment;
 use serde::{Deserialize, Serialize};
 
+/// A law whose state is larger than that of others. On a part its room is there from the start; on a host with many robots the small
+/// ones do not pay for it.
+#[cfg(not(feature = "host"))]
+type Large<G> = G;
+#[cfg(feature = "host")]
+type Large<G> = alloc::boxed::Box<G>;
+
 /// Any guidance law, on the grid, in the plane or in space.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(feature = "state", derive(serde::Deserialize))]
@@ -32,12 +39,12 @@ pub enum AnyGuidance<S, const CELLS: usize, const M: usize, const F: usize, cons
     Lattice(LatticeGuidance<S>),
     GoalFlock(GoalFlockGuidance<S>),
     Boids(BoidsGuidance<S>),
-    Route(CellFollower<S, RouteGuidance<CELLS, M, L>>),
-    Formation(FormationInPlane<S, CELLS, M, F, L>),
+    Route(Large<CellFollower<S, RouteGuidance<CELLS, M, L>>>),
+    Formation(Large<FormationInPlane<S, CELLS, M, F, L>>),
     RouteOnGrid(RouteGuidance<CELLS, M, L>),
-    FormationOnGrid(FormationGuidance<CELLS, M, F, L>),
+    FormationOnGrid(Large<FormationGuidance<CELLS, M, F, L>>),
     #[cfg(feature = "published")]
-    Published(PublishedFormation<CELLS, M, F>),
+    Published(Large<PublishedFormation<CELLS, M, F>>),
 }
 
 /// Does the same with whatever is inside.

@@ -147,6 +147,71 @@ pub trait Teamwork {
     }
 }
 
+/// A law in memory of its own.
+#[cfg(feature = "host")]
+impl<S: Scalar, G: Guidance<S>> Guidance<S> for alloc::boxed::Box<G> {
+    type Input<'a> = G::Input<'a>;
+    type Destination = G::Destination;
+    type Workspace = G::Workspace;
+
+    fn decide(
+        &mut self,
+        input: &GuidanceInput<'_, S>,
+        here: &Self::Input<'_>,
+        rng: &mut Rng,
+        workspace: &mut Self::Workspace,
+    ) -> Result<Decision<S>, BadInput> {
+        (**self).decide(input, here, rng, workspace)
+    }
+
+    fn goes_to_cells(&self) -> bool {
+        G::goes_to_cells(self)
+    }
+
+    fn goes_by_velocity(&self) -> bool {
+        G::goes_by_velocity(self)
+    }
+
+    fn has_own_goal(&self) -> bool {
+        G::has_own_goal(self)
+    }
+
+    fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool {
+        (**self).assign_waypoint(index, waypoint)
+    }
+
+    fn parameter(&self, parameter: Parameter) -> Option<S> {
+        (**self).parameter(parameter)
+    }
+
+    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
+        (**self).tune(parameter, value)
+    }
+}
+
+#[cfg(feature = "host")]
+impl<G: Teamwork> Teamwork for alloc::boxed::Box<G> {
+    fn redirect(&mut self) {
+        (**self).redirect();
+    }
+
+    fn note_stop(&mut self, is_asked: bool) {
+        (**self).note_stop(is_asked);
+    }
+
+    fn assign_template(&mut self, part: &TemplateAssignment, is_anew: bool) -> bool {
+        (**self).assign_template(part, is_anew)
+    }
+
+    fn goal_offset(&self) -> Cell {
+        (**self).goal_offset()
+    }
+
+    fn needs(&self, id: RobotId) -> bool {
+        (**self).needs(id)
+    }
+}
+
 /// Where a guidance law can be sent: one of [`ToCells`], [`ToWaypoints`], [`Roams`] and [`ToAny`].
 pub trait Destination {
     /// Whether it is a cell of the grid.

@@ -318,7 +318,7 @@ impl GuidanceSetup {
             Self::Route { route, speed_mps } => {
                 let guidance = route.guidance();
                 match speed_mps {
-                    Some(speed) => AnyGuidance::Route(CellFollower::new(guidance, cast(*speed))),
+                    Some(speed) => AnyGuidance::Route(CellFollower::new(guidance, cast(*speed)).into()),
                     None => AnyGuidance::RouteOnGrid(guidance),
                 }
             }
@@ -326,13 +326,13 @@ impl GuidanceSetup {
                 let guidance =
                     FormationGuidance::new(route.params, *formation, template.clone()).sharpness(route.sharpness);
                 match speed_mps {
-                    Some(speed) => AnyGuidance::Formation(FormationInPlane::new(guidance, cast(*speed))),
-                    None => AnyGuidance::FormationOnGrid(guidance),
+                    Some(speed) => AnyGuidance::Formation(FormationInPlane::new(guidance, cast(*speed)).into()),
+                    None => AnyGuidance::FormationOnGrid(guidance.into()),
                 }
             }
             #[cfg(feature = "published")]
             Self::Published { route, formation, template } => AnyGuidance::Published(
-                PublishedFormation::new(route.params, *formation, template.clone()).sharpness(route.sharpness),
+                PublishedFormation::new(route.params, *formation, template.clone()).sharpness(route.sharpness).into(),
             ),
         }
     }

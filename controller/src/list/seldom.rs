@@ -8,8 +8,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Seldom<T, const N: usize>(Vec<T>);
 
-/// Items by which a list grows: that many cost less to hold for nothing than to move.
-const STEP: usize = 4;
+/// Bytes by which a list grows, about: that many cost less to hold for nothing than to move.
+const STEP: usize = 48;
 
 impl<T, const N: usize> Seldom<T, N> {
     pub(crate) const fn new() -> Self {
@@ -26,7 +26,8 @@ impl<T, const N: usize> Seldom<T, N> {
             return Err(item);
         }
         if self.0.len() == self.0.capacity() {
-            self.0.reserve_exact(STEP.max(self.0.len() >> 2));
+            let step = STEP.checked_div(size_of::<T>()).unwrap_or(1).clamp(1, 4);
+            self.0.reserve_exact(step.max(self.0.len() >> 2));
         }
         self.0.push(item);
         Ok(())

@@ -6,7 +6,6 @@ use crate::robot::RobotId;
 use crate::scalar::{Scalar, cast};
 use crate::time::{Duration, Instant};
 use core::fmt;
-use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
 /// Robots whose places are in doubt at a time.
@@ -133,10 +132,15 @@ struct Suspect {
     heard: Instant,
 }
 
-/// Who has jumped of late; 100 bytes.
+#[cfg(not(feature = "host"))]
+type Jumpers = heapless::Vec<Suspect, SUSPECTS, u8>;
+#[cfg(feature = "host")]
+type Jumpers = crate::list::Seldom<Suspect, SUSPECTS>;
+
+/// Who has jumped of late; 100 bytes, with the feature `host` those of who has.
 #[derive(Clone, Debug, Default, Serialize)]
 #[cfg_attr(feature = "state", derive(serde::Deserialize))]
-pub struct Suspects(Vec<Suspect, SUSPECTS, u8>);
+pub struct Suspects(Jumpers);
 
 /// What a jump is worth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -153,7 +157,7 @@ impl Suspects {
     /// Nobody.
     #[must_use]
     pub const fn new() -> Self {
-        Self(Vec::new())
+        Self(Jumpers::new())
     }
 
     /// Judges a robot that says, at `at`, that it is where it cannot have come to. One whose last word is older than `longest` begins anew. O(1).

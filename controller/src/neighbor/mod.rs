@@ -11,7 +11,6 @@ use crate::list::sink_last;
 use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
-use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
 mod claims;
@@ -143,13 +142,19 @@ pub enum Put {
     Refused,
 }
 
+#[cfg(not(feature = "host"))]
+type Entries<S, const N: usize> = heapless::Vec<Neighbor<S>, N, u16>;
+#[cfg(feature = "host")]
+type Entries<S, const N: usize> = crate::list::Seldom<Neighbor<S>, N>;
+
 /// The known robots, at most `N`, sorted by id; behind them the lost ones that are still remembered, by id too.
 ///
-/// Bytes: `N` times those of [`Neighbor`] (60 for `f32` and fixed point) and 16 more.
+/// Bytes: `N` times those of [`Neighbor`] (60 for `f32` and fixed point) and 16 more; with the feature `host` those of the
+/// robots in it.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct NeighborTable<S, const N: usize> {
-    entries: Vec<Neighbor<S>, N, u16>,
+    entries: Entries<S, N>,
     ages: Ages,
     /// The farthest that anybody was heard from while another one was lost, metres; 0: that never was.
     range_m: S,
@@ -159,7 +164,7 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
     /// An empty table.
     #[must_use]
     pub const fn new(ages: Ages) -> Self {
-        Self { entries: Vec::new(), ages, range_m: S::ZERO }
+        Self { entries: Entries::new(), ages, range_m: S::ZERO }
     }
 
     /// The ages that it was built with.
@@ -343,7 +348,7 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
     }
 
     fn halves(&self) -> (&[Neighbor<S>], &[Neighbor<S>]) {
-        let entries = self.entries.as_slice();
+        let entries = &*self.entries;
         // Few robots have lost anybody: who is last tells.
         let known = match entries.last() {
             Some(last) if last.is_lost => entries.partition_point(|entry| !entry.is_lost),
@@ -375,4 +380,5 @@ impl<'a, S: Scalar, const N: usize> IntoIterator for &'a NeighborTable<S, N> {
 
 // Every byte counts 16 times per robot, and a simulated swarm has 100,000 of them.
 const _: () = assert!(size_of::<Neighbor<f32>>() == 60);
+#[cfg(not(feature = "host"))]
 const _: () = assert!(size_of::<NeighborTable<f32, 16>>() == 16 * 60 + 16);

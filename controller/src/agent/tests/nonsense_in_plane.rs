@@ -130,13 +130,13 @@ fn guidance(which: u8, speed: f32, length: f32) -> AnyGuidance<f32, CELLS, VISIT
         }
         4 => {
             let inside = RouteGuidance::new(RouteParams::default());
-            AnyGuidance::Route(CellFollower::new(inside, speed))
+            AnyGuidance::Route(CellFollower::new(inside, speed).into())
         }
         _ => {
             let template = Template::from_graph(&[Cell::new(0, 0), Cell::new(-3, 0)], &[(0, 1)], 1, 2);
             let (route, keeping) = (RouteParams::default(), FormationParams::default());
             let inside = FormationGuidance::new(route, keeping, template.unwrap());
-            AnyGuidance::Formation(FormationInPlane::new(inside, speed))
+            AnyGuidance::Formation(FormationInPlane::new(inside, speed).into())
         }
     }
 }

@@ -175,8 +175,8 @@ impl Ground for Grid {
         self.world.advance(tick, commands);
     }
 
-    fn count_collisions(&mut self, tick: u32) -> u64 {
-        self.world.count_collisions(tick)
+    fn count_collisions(&mut self, _tick: u32) -> u64 {
+        self.world.count_collisions()
     }
 
     fn words(&self, index: usize, tick: u32, status: &Status) -> StateWords {

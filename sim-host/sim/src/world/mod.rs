@@ -80,8 +80,8 @@ pub struct World {
     occupancy: Vec<u32>,
     /// Scratch: who wants to move this tick, by priority.
     movers: Vec<(u64, RobotId, u32)>,
-    /// Per cell: the tick (plus 1) in which the check last saw a body there.
-    seen: Vec<u32>,
+    /// Scratch of the check, a bit a cell: whether it saw a body there. Empty between checks.
+    seen: Vec<u64>,
 }
 
 impl World {
@@ -103,7 +103,7 @@ impl World {
             bodies: Vec::new(),
             occupancy: vec![0; cells],
             movers: Vec::new(),
-            seen: vec![0; cells],
+            seen: vec![0; cells.div_ceil(64)],
         };
         for (robot, cell) in starts {
             world.place(robot, cell)?;
@@ -257,17 +257,19 @@ impl World {
     /// How many bodies stand in a blocked cell, or in a cell that another body already has.
     ///
     /// Looks at the bodies and the terrain alone, not at the bookkeeping that [`World::advance`]
-    /// uses: a check that trusts what it checks finds nothing. Call it once per tick.
-    pub fn count_collisions(&mut self, tick: u32) -> u64 {
-        let stamp = tick.wrapping_add(1);
+    /// uses: a check that trusts what it checks finds nothing. O(robots).
+    pub fn count_collisions(&mut self) -> u64 {
         let mut collisions = 0;
         for body in &self.bodies {
-            match self.terrain.index(body.cell) {
-                Some(at) if self.terrain.cells()[at] != BLOCKED && self.seen[at] != stamp => {
-                    self.seen[at] = stamp;
-                }
+            let at = self.terrain.index(body.cell).filter(|&at| self.terrain.cells()[at] != BLOCKED);
+            let word = at.map(|at| (&mut self.seen[at / 64], 1 << (at % 64)));
+            match word {
+                Some((word, bit)) if *word & bit == 0 => *word |= bit,
                 _ => collisions += 1,
             }
+        }
+        for at in self.bodies.iter().filter_map(|body| self.terrain.index(body.cell)) {
+            self.seen[at / 64] = 0;
         }
         collisions
     }
