@@ -39,8 +39,6 @@ pub fn run(repo: &Repo, report: &mut Report) {
             report.command(&name, repo.cargo_in(folder, &clippy));
         }
     }
-    let header = ["test", "--locked", "--quiet", "--package", "staya-c", "golden_header"];
-    report.command("staya.h is what the sources say", repo.cargo(&header));
     let bare = ["clippy", "--locked", "--package", "staya-c", "--no-default-features", "--", "-D", "warnings"];
     report.command("clippy of the library for C without features", repo.cargo(&bare));
     crate::device::check_features(repo, report);

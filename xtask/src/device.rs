@@ -23,29 +23,44 @@ pub struct Toolchains {
 }
 
 /// Checks the controller with each set of features that its manifest lists, on the part with a Cortex-M4F; on the one
-/// with a Cortex-M0, which has no FPU, with those that have fixed point.
+/// with a Cortex-M0, which has no FPU, with those that have fixed point. Both parts at once: the compiler has one thread for one crate.
 pub fn check_features(repo: &Repo, report: &mut Report) {
     let manifest = std::fs::read_to_string(repo.root.join("controller/Cargo.toml"));
     let sets = feature_sets(&manifest.unwrap_or_default());
     let mut toolchains = Toolchains::default();
-    for part in PARTS.iter().filter(|part| part.target.starts_with("thumb")) {
-        let has_fpu = part.target.ends_with("hf");
-        let fits = |features: &str| has_fpu || features.split(',').any(|feature| feature == "fixed");
-        let name = format!("feature sets of the controller for {}", part.target);
-        match toolchains.find(repo, part.target) {
-            Ok(toolchain) => {
-                report.step(&name, || {
-                    sets.iter().filter(|features| fits(features)).try_for_each(|features| {
+    std::thread::scope(|scope| {
+        let mut checks = Vec::new();
+        for part in PARTS.iter().filter(|part| part.target.starts_with("thumb")) {
+            let has_fpu = part.target.ends_with("hf");
+            let fits = |features: &&String| has_fpu || features.split(',').any(|feature| feature == "fixed");
+            let name = format!("feature sets of the controller for {}", part.target);
+            match toolchains.find(repo, part.target) {
+                Ok(toolchain) => {
+                    // Cargo lets one command at a time into a folder.
+                    let folder = toolchain.target_folder(repo).join("sets").join(part.target);
+                    let commands = sets.iter().filter(fits).map(|features| {
                         let mut check = toolchain.cargo(repo, part.target, "check");
                         check.args(["--locked", "--package", "staya-controller"]);
                         check.args(["--no-default-features", "--features", features]);
-                        crate::repo::run(&mut check).map_err(|reason| format!("`{features}`: {reason}"))
-                    })
-                });
+                        check.env("CARGO_TARGET_DIR", &folder);
+                        (features.clone(), check)
+                    });
+                    let commands: Vec<_> = commands.collect();
+                    checks.push((name, scope.spawn(move || check_each(commands))));
+                }
+                Err(reason) => report.skip(&name, &reason),
             }
-            Err(reason) => report.skip(&name, &reason),
         }
-    }
+        for (name, check) in checks {
+            report.step(&name, || check.join().unwrap_or_else(|_| Err(String::from("the check panicked"))));
+        }
+    });
+}
+
+fn check_each(commands: Vec<(String, Command)>) -> Result<(), String> {
+    commands.into_iter().try_for_each(|(features, mut check)| {
+        crate::repo::run(&mut check).map_err(|reason| format!("`{features}`: {reason}"))
+    })
 }
 
 /// The list `feature-sets` in a manifest's metadata, and the set without any feature.
