@@ -8,7 +8,7 @@ use staya_mav::bridge::{BridgeReport, Options, Refused, Swarm};
 use staya_mav::geo::{Global as Place, Origin};
 use staya_mavlink::signing::Signing;
 use staya_sim::key::{KeyFile, timestamp};
-use staya_sim::scenario::{Overrides, Scenario};
+use staya_sim::scenario::{Overrides, Scenario, Setting};
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
 use std::path::PathBuf;
@@ -54,6 +54,9 @@ pub struct BridgeArgs {
     /// Seed of all random numbers, instead of the scenario's.
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
+    /// Say something else in a field of the scenario, as in radio.loss=0.3 or plane.orca.horizon_s=3; as often as needed.
+    #[arg(long = "set", value_name = "FIELD=VALUE")]
+    settings: Vec<Setting>,
 }
 
 /// A number within limits.
@@ -111,7 +114,7 @@ impl BridgeArgs {
     /// A scenario or key that cannot be read or is wrong, too many robots, a line that cannot be opened, a log that cannot be written.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         let overrides = Overrides { seed: self.seed, ticks: None };
-        let scenario = Scenario::load(&self.scenario, &overrides)?;
+        let scenario = Scenario::load_with(&self.scenario, &overrides, &self.settings)?;
         for remark in scenario.remarks() {
             say(Some(&remark));
         }

@@ -1,4 +1,5 @@
-//! The command line: `staya run | sweep | view | page | hil | bridge | companion | terrain | orca | voxel | experiment`.
+//! The command line: `staya run | sweep | view | page | hil | bridge | companion | terrain | orca | voxel | experiment`,
+//! and `completions | man` for its users' shells.
 //!
 //! A new command is a module with a `clap::Args` struct and `run(&self, &Global) -> Result<Ended>`,
 //! and one line in `Command`. Results go to standard output, progress and errors to standard
@@ -10,13 +11,14 @@ mod companion;
 mod hil;
 mod page;
 mod run;
+mod shell;
 mod sweep;
 mod terrain;
 mod view;
 mod watch;
 
 use anyhow::{Context as _, Result};
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory as _, Parser, Subcommand};
 use staya_console::{Ended, Global};
 use staya_papers::cli as papers;
 use std::io::{self, ErrorKind, Write as _};
@@ -56,6 +58,10 @@ enum Command {
     Voxel(staya_fvm::cli::VoxelArgs),
     /// Rerun experiments from papers, and benchmarks.
     Experiment(papers::ExperimentArgs),
+    /// Print what a shell completes `staya` by.
+    Completions(shell::CompletionsArgs),
+    /// Write a manual page for each command.
+    Man(shell::ManArgs),
 }
 
 /// Parses the command line, runs the command and reports its errors.
@@ -95,6 +101,8 @@ fn run(cli: &Cli) -> Result<Ended> {
         Command::Orca(args) => args.run(&cli.global),
         Command::Voxel(args) => args.run(&cli.global),
         Command::Experiment(args) => args.run(&cli.global),
+        Command::Completions(args) => args.run(Cli::command()),
+        Command::Man(args) => args.run(Cli::command(), &cli.global),
     }
 }
 

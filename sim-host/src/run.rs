@@ -13,7 +13,7 @@ use staya_plot::{motion_pictures, run_pictures};
 use staya_sim::checkpoint::{Checkpoint, Place};
 use staya_sim::engine::{Moment, Outcome, Unable, simulate, simulate_from};
 use staya_sim::record::{self, History, Options, Recorder, Results, RobotRow, write_summary};
-use staya_sim::scenario::{Overrides, Scenario};
+use staya_sim::scenario::{Overrides, Scenario, Setting};
 use staya_sim::summary::Summary;
 use staya_view::recording::RecordingError;
 use staya_view::watch::Watcher;
@@ -32,12 +32,20 @@ pub struct ScenarioArgs {
     /// End after this many ticks, instead of the scenario's number.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     ticks: Option<u32>,
+    /// Say something else in a field of the scenario, as in radio.loss=0.3 or plane.orca.horizon_s=3; as often as needed.
+    #[arg(long = "set", value_name = "FIELD=VALUE")]
+    settings: Vec<Setting>,
 }
 
 impl ScenarioArgs {
     /// The file.
     pub fn path(&self) -> &Path {
         &self.scenario
+    }
+
+    /// Which fields say something else.
+    pub fn settings(&self) -> &[Setting] {
+        &self.settings
     }
 
     /// What is otherwise than in the file.
@@ -50,7 +58,7 @@ impl ScenarioArgs {
     /// # Errors
     /// It cannot be read, or is wrong.
     pub fn load(&self) -> Result<Scenario> {
-        let scenario = Scenario::load(&self.scenario, &self.overrides())?;
+        let scenario = Scenario::load_with(&self.scenario, &self.overrides(), &self.settings)?;
         for remark in scenario.remarks() {
             eprintln!("{remark}");
         }

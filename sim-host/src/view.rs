@@ -5,6 +5,7 @@ use anyhow::{Context as _, Result};
 use clap::Args;
 use serde::Serialize;
 use staya_console::{Ended, Global, Stop, print, print_json};
+use staya_sim::scenario::text_with;
 use staya_view::page;
 use staya_view::playback::Playback;
 use staya_view::server::{ServeError, Server};
@@ -109,8 +110,10 @@ impl ViewArgs {
         let is_stopped = || stop.is_requested();
         let is_scenario = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
         if is_scenario {
-            let mut session = Session::open(path, &self.source.overrides(), self.paused)?;
-            session.scenario().remarks().iter().for_each(|remark| eprintln!("{remark}"));
+            // What is wrong is said of the file as it stands.
+            self.source.load()?;
+            let text = text_with(path, self.source.settings())?;
+            let mut session = Session::new(text, path, &self.source.overrides(), self.paused)?;
             if self.speed.is_some() {
                 session.set_speed(self.speed);
             }

@@ -12,7 +12,7 @@ use staya_sim::engine::ranks::{
 };
 use staya_sim::engine::{Moment, Watch};
 use staya_sim::record::{History, Options, Recorder, Results, RobotRow, write_summary};
-use staya_sim::scenario::{Overrides, Scenario};
+use staya_sim::scenario::{Overrides, Scenario, Setting};
 use staya_sim::summary::Summary;
 use std::fmt::{Display, Formatter, Write as _};
 use std::ops::ControlFlow;
@@ -27,6 +27,9 @@ pub struct RunArgs {
     /// Seed of all random numbers, instead of the scenario's.
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
+    /// Say something else in a field of the scenario, as in radio.loss=0.3 or plane.orca.horizon_s=3; as often as needed.
+    #[arg(long = "set", value_name = "FIELD=VALUE")]
+    settings: Vec<Setting>,
     /// End after this many ticks, instead of the scenario's number.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     ticks: Option<u32>,
@@ -79,7 +82,7 @@ impl RunArgs {
     /// Reads the scenario on all ranks, or on none.
     fn load(&self, link: &mut Link) -> Result<(Scenario, Option<Checkpoint>)> {
         let overrides = Overrides { seed: self.seed, ticks: self.ticks };
-        let loaded = Scenario::load(&self.scenario, &overrides).map_err(anyhow::Error::from);
+        let loaded = Scenario::load_with(&self.scenario, &overrides, &self.settings).map_err(anyhow::Error::from);
         let loaded = loaded.and_then(|scenario| {
             check(&scenario, link.ranks())?;
             let from = self.from.as_ref().map(|path| Checkpoint::open(path, &scenario)).transpose()?;

@@ -16,7 +16,6 @@
 pub mod aggregate;
 pub mod design;
 mod error;
-mod field;
 pub mod jobs;
 pub mod merge;
 pub mod pictures;

@@ -6,6 +6,7 @@
 mod authentication;
 mod check;
 mod claims;
+mod field;
 mod fingerprint;
 mod intervention;
 mod params;
@@ -13,10 +14,12 @@ mod plane;
 mod ranges;
 mod robots;
 mod schema;
+mod setting;
 mod setup;
 mod source;
 
 pub use claims::ClaimsTable;
+pub use field::Field;
 pub use intervention::{Intervention, InterventionTable, with_interventions};
 pub use params::{FormationTable, GridTable, RouteTable};
 pub(crate) use plane::goals;
@@ -32,6 +35,7 @@ pub use schema::{
     MisnumberedTable, NaturalTable, RobotEntry, RobotsTable, RollTable, ScatteredEntry, ScenEntry, ScenarioFile,
     TerrainTable, UniformTable,
 };
+pub use setting::{Setting, text_with};
 pub use source::ScenarioError;
 pub use source::Source;
 

@@ -1,9 +1,9 @@
 //! `axes`, `zip`, `sample` and `set` of a plan: fields and their values.
 
 use super::table::{PlanFile, RangeTable, SampleTable};
-use crate::field::Field;
 use crate::sample::shares;
 use crate::value::Value;
+use staya_sim::scenario::Field;
 use staya_sim::scenario::{ScenarioError, Source};
 use std::ops::Range;
 use toml::de::{DeTable, DeValue};

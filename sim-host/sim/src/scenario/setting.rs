@@ -1,0 +1,144 @@
+//! Fields that somebody says otherwise than the file does: `radio.loss=0.3`.
+
+use super::{Field, Overrides, Scenario, ScenarioError, Source};
+use crate::file::{TEXT, read_text};
+use std::path::Path;
+use std::str::FromStr;
+use toml::Value;
+
+/// A field, and what it says instead.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setting {
+    field: Field,
+    value: Value,
+}
+
+impl FromStr for Setting {
+    type Err = String;
+
+    /// `FIELD=VALUE` with a value as in TOML; what is none is a word, so that shells need no quotes in quotes.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (name, value) = text.split_once('=').ok_or("give FIELD=VALUE, as in radio.loss=0.3")?;
+        let name = name.trim();
+        let field = Field::read(name)
+            .ok_or_else(|| format!("{name:?} names no field; give one as in radio.loss or plane.group[0].count"))?;
+        let table = format!("value = {value}").parse::<toml::Table>().ok();
+        let value = match table.filter(|table| table.len() == 1).and_then(|mut table| table.remove("value")) {
+            Some(value) => value,
+            None => Value::String(value.trim().to_owned()),
+        };
+        Ok(Self { field, value })
+    }
+}
+
+impl Scenario {
+    /// As [`Scenario::load`], with fields that say something else; a later setting of a field is the one that counts.
+    ///
+    /// # Errors
+    /// See [`Scenario::load`]; the line is that of the file, if the field stands there.
+    pub fn load_with(path: &Path, overrides: &Overrides, settings: &[Setting]) -> Result<Self, ScenarioError> {
+        let text = read(path)?;
+        if settings.is_empty() {
+            return Self::parse(&text, path, overrides);
+        }
+        let source = Source::new(path, &text)?;
+        Self::parse(&set(&source, settings)?, path, overrides).map_err(|error| match error {
+            ScenarioError::Field { field, what, remedy, .. } => {
+                let is_set = settings.iter().any(|setting| is_about(&field, setting.field.name()));
+                let by = if is_set { " (by --set)" } else { "" };
+                source.error(&field, format!("{what}{by}"), remedy)
+            }
+            error @ ScenarioError::Io { .. } => error,
+        })
+    }
+}
+
+/// The text of a scenario file with fields that say something else; as it stands there if there are none.
+///
+/// # Errors
+/// The file cannot be read, is no TOML, or has something else where a field's table should be.
+pub fn text_with(path: &Path, settings: &[Setting]) -> Result<String, ScenarioError> {
+    let text = read(path)?;
+    if settings.is_empty() {
+        return Ok(text);
+    }
+    set(&Source::new(path, &text)?, settings)
+}
+
+fn read(path: &Path) -> Result<String, ScenarioError> {
+    read_text(path, TEXT).map_err(|source| ScenarioError::Io { path: path.to_owned(), source })
+}
+
+fn set(source: &Source<'_>, settings: &[Setting]) -> Result<String, ScenarioError> {
+    let mut table: toml::Table =
+        source.text().parse().map_err(|error: toml::de::Error| source.serde_error(&error, super::LIST))?;
+    for Setting { field, value } in settings {
+        field.set(&mut table, value.clone()).map_err(|what| {
+            source.error(field.name(), format!("{what} (by --set)"), "name a field as the scenario's file has it")
+        })?;
+    }
+    Ok(toml::to_string(&table).unwrap_or_default())
+}
+
+/// Whether an error's field is the one that was set, or in it, or around it.
+fn is_about(field: &str, set: &str) -> bool {
+    let is_below =
+        |a: &str, b: &str| a.strip_prefix(b).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']));
+    !field.is_empty() && (is_below(field, set) || is_below(set, field))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SCENARIO: &str = "name = 't'\nticks = 5\n\n[terrain.flat]\nwidth = 9\nheight = 9\n\n[radio]\nloss = 0.1\n\n\
+        [[robots.list]]\nid = 1\nstart = [0, 0]\ngoal = [5, 5]\n";
+
+    fn load(settings: &[&str]) -> Result<Scenario, String> {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("t.toml");
+        std::fs::write(&path, SCENARIO).expect("written");
+        let settings: Vec<Setting> = settings.iter().map(|text| text.parse().expect("a setting")).collect();
+        Scenario::load_with(&path, &Overrides::default(), &settings)
+            .map_err(|error| error.to_string().replace(&format!("{}", path.display()), "t.toml"))
+    }
+
+    #[test]
+    fn a_field_says_something_else_and_the_last_setting_counts() {
+        assert_eq!(load(&[]).expect("sound").ticks, 5);
+        let set = load(&["ticks=7", "radio.range_m = 3.5", "ticks=8", "name=other", "robots.list[0].goal=[6, 5]"]);
+        let set = set.expect("sound");
+        assert_eq!((set.ticks, set.radio.range_m, &*set.name), (8, 3.5, "other"));
+        assert_eq!((set.robots[0].goal.x, set.radio.loss), (6, 0.1));
+    }
+
+    #[test]
+    fn what_is_wrong_names_the_files_line_and_who_said_it() {
+        let error = |settings: &[&str]| load(settings).expect_err("wrong");
+        let loss = error(&["radio.loss=1.5"]);
+        assert!(loss.starts_with("t.toml:9: radio.loss: ") && loss.contains("(by --set)"), "{loss}");
+        let unknown = error(&["radio.lost=1"]);
+        assert!(unknown.contains("lost") && unknown.contains("scenarios/README.md"), "{unknown}");
+        let none = error(&["robots.list[1].goal=[1, 1]"]);
+        assert!(none.contains("list has 1 elements, counted from 0 (by --set)"), "{none}");
+        let word = error(&["ticks=many"]);
+        assert!(word.contains("ticks") && word.contains("expected a whole number"), "{word}");
+        // What is wrong by itself is not blamed on the command line.
+        let other = error(&["radio.range_m=5", "robots.list[0].start=[99, 0]"]);
+        assert!(other.contains("robots.list[0].start"), "{other}");
+    }
+
+    #[test]
+    fn settings_are_read_as_toml_or_as_words() {
+        let value = |text: &str| text.parse::<Setting>().map(|setting| setting.value);
+        assert_eq!(value("a.b=3"), Ok(Value::Integer(3)));
+        assert_eq!(value("a=0.5"), Ok(Value::Float(0.5)));
+        assert_eq!(value("a=true"), Ok(Value::Boolean(true)));
+        assert_eq!(value("a='3'"), Ok(Value::String("3".to_owned())));
+        assert_eq!(value("a=x = 3"), Ok(Value::String("x = 3".to_owned())));
+        assert_eq!(value("a=1\nb=2"), Ok(Value::String("1\nb=2".to_owned())));
+        assert_eq!(value("a="), Ok(Value::String(String::new())));
+        assert!(value("a").is_err_and(|what| what.contains("FIELD=VALUE")));
+        assert!(value("a..b=1").is_err_and(|what| what.contains("names no field")));
+    }
+}
