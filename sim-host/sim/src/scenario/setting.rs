@@ -91,7 +91,7 @@ fn is_about(field: &str, set: &str) -> bool {
 mod tests {
     use super::*;
 
-    const SCENARIO: &str = "name = 't'\nticks = 5\n\n[terrain.flat]\nwidth = 9\nheight = 9\n\n[radio]\nloss = 0.1\n\n\
+    const SCENARIO: &str = "name = 't'\nticks = 5\n\n[terrain]\nuniform = { width = 9, height = 9, classes = 1 }\n\n[radio]\nloss = 0.1\n\n\
         [[robots.list]]\nid = 1\nstart = [0, 0]\ngoal = [5, 5]\n";
 
     fn load(settings: &[&str]) -> Result<Scenario, String> {
@@ -116,7 +116,7 @@ mod tests {
     fn what_is_wrong_names_the_files_line_and_who_said_it() {
         let error = |settings: &[&str]| load(settings).expect_err("wrong");
         let loss = error(&["radio.loss=1.5"]);
-        assert!(loss.starts_with("t.toml:9: radio.loss: ") && loss.contains("(by --set)"), "{loss}");
+        assert!(loss.starts_with("t.toml:8: radio.loss: ") && loss.contains("(by --set)"), "{loss}");
         let unknown = error(&["radio.lost=1"]);
         assert!(unknown.contains("lost") && unknown.contains("scenarios/README.md"), "{unknown}");
         let none = error(&["robots.list[1].goal=[1, 1]"]);
