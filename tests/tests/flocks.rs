@@ -4,7 +4,7 @@
 use staya_controller::agent::SafetyKind;
 use staya_papers::experiment::Experiment as _;
 use staya_papers::flock::closing::Closing;
-use staya_papers::flock::{Case, Plan};
+use staya_papers::flock::{Case, Plan, Reference};
 use staya_papers::goals;
 use staya_sim::metrics::flock::{FlockMeter, polarisation};
 use staya_sim::nearby::Space;
@@ -19,6 +19,7 @@ fn golden_experiment_flock() {
     for safety in [SafetyKind::None, SafetyKind::Orca] {
         let plan = Plan {
             cases: Case::ALL.to_vec(),
+            references: vec![Reference::Moving],
             runs: 1,
             robots: Some(24),
             seconds: Some(15.0),

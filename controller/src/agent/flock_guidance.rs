@@ -5,7 +5,7 @@ use super::tunable::Tunable as _;
 use super::{InPlane, Parameter, WAYPOINTS, Waypoint};
 use crate::flock::boids::BoidsParams;
 use crate::flock::goal::{GoalParams, Goals, Stage, wish};
-use crate::flock::lattice::{LatticeParams, Reference, acceleration};
+use crate::flock::lattice::{LatticeParams, Reference, ReferenceMotion, acceleration};
 use crate::geom::{Position, Vec2, Vec3};
 use crate::rand::Rng;
 use crate::scalar::Scalar;
@@ -21,7 +21,7 @@ pub const GOALS: usize = WAYPOINTS;
 pub struct LatticeGuidance<S> {
     params: LatticeParams<S>,
     reference: Option<Waypoint<S>>,
-    moves: bool,
+    motion: ReferenceMotion<S>,
 }
 
 impl<S: Scalar> LatticeGuidance<S> {
@@ -29,7 +29,13 @@ impl<S: Scalar> LatticeGuidance<S> {
     /// all the same (a static one, as in the paper's obstacle courses).
     #[must_use]
     pub const fn new(params: LatticeParams<S>, moves: bool) -> Self {
-        Self { params, reference: None, moves }
+        Self::following(params, if moves { ReferenceMotion::Dynamic } else { ReferenceMotion::Static })
+    }
+
+    /// With a reference that goes on like this.
+    #[must_use]
+    pub const fn following(params: LatticeParams<S>, motion: ReferenceMotion<S>) -> Self {
+        Self { params, reference: None, motion }
     }
 }
 
@@ -48,14 +54,14 @@ impl<S: Scalar> Guidance<S> for LatticeGuidance<S> {
         (): &mut (),
     ) -> Result<Decision<S>, BadInput> {
         input.can_go()?;
-        let moves = self.moves;
-        let reference = self.reference.as_mut().map(|waypoint| Reference {
-            offset_m: if moves {
+        let motion = self.motion;
+        let reference = self.reference.as_mut().map(|waypoint| {
+            let offset_m = if motion == ReferenceMotion::Dynamic {
                 waypoint.way(input.state.position, input.now)
             } else {
                 waypoint.position.since(input.state.position)
-            },
-            velocity_mps: waypoint.velocity_mps,
+            };
+            Reference { offset_m, velocity_mps: motion.wanted(offset_m, waypoint.velocity_mps) }
         });
         let body = &input.body;
         let change = acceleration(&self.params, body, input.nearby, here.obstacles, reference.as_ref());

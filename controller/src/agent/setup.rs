@@ -16,7 +16,7 @@ use super::waypoint_guidance::WaypointGuidance;
 use super::{Agent, AgentConfig, TEMPLATE, WAYPOINTS, Waypoint};
 use crate::flock::boids::BoidsParams;
 use crate::flock::goal::GoalParams;
-use crate::flock::lattice::LatticeParams;
+use crate::flock::lattice::{LatticeParams, ReferenceMotion};
 use crate::formation::FormationParams;
 #[cfg(feature = "published")]
 use crate::formation::published::PublishedParams;
@@ -107,7 +107,7 @@ pub enum GuidanceSetup {
     },
     Lattice {
         params: LatticeParams<f32>,
-        moves: bool,
+        motion: ReferenceMotion<f32>,
     },
     GoalFlock {
         params: GoalParams<f32>,
@@ -308,7 +308,9 @@ impl GuidanceSetup {
             Self::Waypoint { speed_mps, tolerance_m } => {
                 AnyGuidance::Waypoint(WaypointGuidance::new(cast(*speed_mps), cast(*tolerance_m)))
             }
-            Self::Lattice { params, moves } => AnyGuidance::Lattice(LatticeGuidance::new(params.cast(), *moves)),
+            Self::Lattice { params, motion } => {
+                AnyGuidance::Lattice(LatticeGuidance::following(params.cast(), motion.cast()))
+            }
             Self::GoalFlock { params, arrival_m, seed } => {
                 AnyGuidance::GoalFlock(GoalFlockGuidance::new(params.cast(), cast(*arrival_m), *seed))
             }

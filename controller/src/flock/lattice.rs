@@ -33,6 +33,7 @@
 
 use super::action::{PhiAlpha, PhiBeta, SPACING, SigmaNorm, sigma_1, sigma_norm, sigmoid_shift};
 use super::beta::beta_agent;
+pub use super::reference::ReferenceMotion;
 use crate::body::Body;
 use crate::geom::Vec3;
 use crate::neighbor::{Nearby, tie};
@@ -203,7 +204,7 @@ impl<S: Scalar> LatticeParams<S> {
 /// Where the flock should be (the gamma-agent), as a robot sees it.
 ///
 /// A static one has the same place and velocity for ever, and its velocity need not be zero: the paper's obstacle
-/// courses pull the flock past a fixed point. A moving one is where its velocity has taken it.
+/// courses pull the flock past a fixed point. A moving one is where its velocity has taken it. [`ReferenceMotion`] tells them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Reference<S> {

@@ -11,6 +11,7 @@ pub mod beta;
 pub mod boids;
 pub mod goal;
 pub mod lattice;
+mod reference;
 
 #[cfg(all(test, feature = "fixed", feature = "micromath"))]
 mod tests;

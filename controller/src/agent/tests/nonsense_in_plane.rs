@@ -4,7 +4,7 @@ use super::nonsense::{frame, noise_and_frames};
 use super::*;
 use crate::flock::boids::BoidsParams;
 use crate::flock::goal::GoalParams;
-use crate::flock::lattice::LatticeParams;
+use crate::flock::lattice::{LatticeParams, ReferenceMotion};
 use crate::geom::{Position, Vec2, Vec3};
 use crate::neighbor::StalenessInflation;
 use crate::obstacle::Obstacle;
@@ -119,6 +119,10 @@ fn steps() -> impl Strategy<Value = Vec<Step>> {
 fn guidance(which: u8, speed: f32, length: f32) -> AnyGuidance<f32, CELLS, VISITS, TEMPLATE> {
     match which % 6 {
         0 => AnyGuidance::Waypoint(WaypointGuidance::new(speed, length)),
+        1 if which < 64 => AnyGuidance::Lattice(LatticeGuidance::following(
+            LatticeParams::new(length),
+            ReferenceMotion::Resting(length),
+        )),
         1 => AnyGuidance::Lattice(LatticeGuidance::new(LatticeParams::new(length), which < 128)),
         2 => {
             let params = GoalParams::new(length, speed);

@@ -2,7 +2,7 @@
 
 use super::super::*;
 use crate::flock::goal::GoalParams;
-use crate::flock::lattice::LatticeParams;
+use crate::flock::lattice::{LatticeParams, ReferenceMotion};
 use crate::formation::FormationParams;
 use crate::geom::{Position, Vec3};
 use crate::neighbor::StalenessInflation;
@@ -17,11 +17,12 @@ use heapless::Vec;
 
 const TICK: Duration = Duration::from_millis(50);
 
-fn guidances() -> [GuidanceSetup; 6] {
+fn guidances() -> [GuidanceSetup; 7] {
     let route = RouteSetup { params: RouteParams::default(), replan: Replan::EachCell, sharpness: Sharpness::Greedy };
     [
         GuidanceSetup::Waypoint { speed_mps: 0.5, tolerance_m: 0.01 },
-        GuidanceSetup::Lattice { params: LatticeParams::new(1.0), moves: true },
+        GuidanceSetup::Lattice { params: LatticeParams::new(1.0), motion: ReferenceMotion::Dynamic },
+        GuidanceSetup::Lattice { params: LatticeParams::new(1.0), motion: ReferenceMotion::Resting(7.0) },
         GuidanceSetup::GoalFlock { params: GoalParams::new(0.5, 0.5), arrival_m: 0.3, seed: 9 },
         GuidanceSetup::Boids {
             params: BoidsSetup { crowded_m: 0.3, closest_m: 1.5, max_turn: 0.05, max_turn_away: 0.02 },
@@ -164,7 +165,7 @@ fn searches_need_the_room_that_they_say() {
         let setup = Setup { guidance: guidance.clone(), ..setups().next().unwrap() };
         setup.cells()
     };
-    let [waypoint, _, _, _, route, formation] = guidances();
+    let [waypoint, _, _, _, _, route, formation] = guidances();
     assert_eq!(cells(&waypoint), 0);
     assert_eq!((cells(&route), cells(&formation)), (CELLS, CELLS));
 }

@@ -2,6 +2,7 @@ mod boids;
 mod goal;
 mod lattice;
 mod lattice_properties;
+mod reference;
 mod simulation;
 
 use crate::body::Body;

@@ -23,7 +23,7 @@ use staya_controller::geom::{Vec2, Vec3};
 use staya_controller::neighbor::Nearby;
 use staya_controller::rand::Rng;
 use staya_controller::robot::{Mode, RobotId};
-use staya_sim::nearby::{AllPairs, Cells, Found, Query, Search, Space, Tree};
+use staya_sim::nearby::{AllPairs, Cells, Found, MidpointTree, MutualPairs, Query, Search, Space, Tree};
 use staya_sweep::Value;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -43,23 +43,29 @@ pub const MOST_BY_ALL_PAIRS: u32 = 10_000;
 pub enum Method {
     /// Looks at everybody.
     AllPairs,
+    /// Looks at each pair once.
+    MutualPairs,
     /// Lattice cells.
     Cells,
-    /// A k-d tree.
+    /// A k-d tree, the library's.
     Tree,
+    /// A k-d tree by the sliding midpoint rule, which the paper describes.
+    MidpointTree,
 }
 
 impl Method {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::AllPairs, Self::Cells, Self::Tree];
+    pub const ALL: [Self; 5] = [Self::AllPairs, Self::MutualPairs, Self::Cells, Self::Tree, Self::MidpointTree];
 
     /// What it is called.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::AllPairs => "all pairs",
+            Self::MutualPairs => "pairs once",
             Self::Cells => "lattice cells",
             Self::Tree => "k-d tree",
+            Self::MidpointTree => "midpoint tree",
         }
     }
 
@@ -67,24 +73,28 @@ impl Method {
     fn search(self, space: Space<f32, 2>, radius: f32) -> AnySearch {
         match self {
             Self::AllPairs => AnySearch::AllPairs(AllPairs::new(space)),
+            Self::MutualPairs => AnySearch::MutualPairs(MutualPairs::new(space, radius)),
             // Neighbours of up to 150 among about 3: cells of the radius itself.
             Self::Cells => AnySearch::Cells(Cells::new(space, radius)),
             Self::Tree => AnySearch::Tree(Tree::new(space)),
+            Self::MidpointTree => AnySearch::MidpointTree(MidpointTree::new(space)),
         }
     }
 }
 
-/// One of the three.
+/// One of them.
 #[derive(Clone, Debug)]
 enum AnySearch {
     AllPairs(AllPairs<f32, 2>),
+    MutualPairs(MutualPairs<f32, 2>),
     Cells(Cells<f32, 2>),
     Tree(Tree<f32, 2>),
+    MidpointTree(MidpointTree<f32, 2>),
 }
 
-/// What to do: boids on a torus, three ways to find neighbours, equal flights, and what they cost (Starovoitova, section 2.3).
+/// What to do: boids on a torus, five ways to find neighbours, equal flights, and what they cost (Starovoitova, section 2.3).
 ///
-/// Lengths, turns and area are the paper's.
+/// Lengths, turns and area are the paper's unless told otherwise.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Plan {
     /// Numbers of boids, one line of the table each.
@@ -103,22 +113,22 @@ pub struct Plan {
     #[arg(long, value_name = "STEPS", default_value_t = 2000)]
     pub picture_steps: u32,
     /// Area per boid: the paper's torus of 800 x 600 has 20 boids, and larger ones are like it.
-    #[arg(skip = 800.0 * 600.0 / 20.0)]
+    #[arg(long, value_name = "AREA", default_value_t = 24_000.0)]
     pub area_per_boid: f32,
     /// Way of a boid in a step.
-    #[arg(skip = 2.0_f32)]
+    #[arg(long, value_name = "LENGTH", default_value_t = 2.0)]
     pub speed: f32,
     /// Nearer than this, a boid turns away.
-    #[arg(skip = 30.0_f32)]
+    #[arg(long, value_name = "LENGTH", default_value_t = 30.0)]
     pub crowded: f32,
     /// Up to this far, a neighbour counts.
-    #[arg(skip = 150.0_f32)]
+    #[arg(long, value_name = "LENGTH", default_value_t = 150.0)]
     pub closest: f32,
     /// Largest turn to heading or middle, radians.
-    #[arg(skip = 0.05_f32)]
+    #[arg(long, value_name = "RADIANS", default_value_t = 0.05)]
     pub max_turn: f32,
     /// Largest turn away, radians.
-    #[arg(skip = 0.02_f32)]
+    #[arg(long, value_name = "RADIANS", default_value_t = 0.02)]
     pub max_turn_away: f32,
     /// Equal seeds give equal flights.
     #[arg(long, default_value_t = 1)]
@@ -183,7 +193,7 @@ impl Plan {
     /// Whether this search is used for so many boids.
     #[must_use]
     pub const fn is_run(&self, method: Method, boids: u32) -> bool {
-        !matches!(method, Method::AllPairs) || boids <= self.most_by_all_pairs
+        !matches!(method, Method::AllPairs | Method::MutualPairs) || boids <= self.most_by_all_pairs
     }
 
     /// One line of the table; `None` when it was stopped, since an unfinished one compares nothing.
@@ -208,8 +218,10 @@ impl Plan {
         let seconds = self.seconds_a_step(|| flock.step_by(&mut search));
         let neighbours = match &search {
             AnySearch::AllPairs(search) => flock.neighbours(search),
+            AnySearch::MutualPairs(search) => flock.neighbours(search),
             AnySearch::Cells(search) => flock.neighbours(search),
             AnySearch::Tree(search) => flock.neighbours(search),
+            AnySearch::MidpointTree(search) => flock.neighbours(search),
         };
         *mean_neighbours = neighbours as f64 / f64::from(boids);
         Timing {
@@ -274,6 +286,10 @@ impl Experiment for Plan {
             ("closest", self.closest),
         ] {
             ensure!(value > 0.0 && value.is_finite(), "{name} = {value}; give a number above 0");
+        }
+        for (name, turn) in [("largest turn", self.max_turn), ("largest turn away", self.max_turn_away)] {
+            let is_angle = (0.0..=std::f32::consts::PI).contains(&turn);
+            ensure!(is_angle, "{name} = {turn} radians; give 0 to pi");
         }
         Ok(())
     }
@@ -371,8 +387,10 @@ impl Flock {
     fn step_by(&mut self, search: &mut AnySearch) {
         match search {
             AnySearch::AllPairs(search) => self.step(search),
+            AnySearch::MutualPairs(search) => self.step(search),
             AnySearch::Cells(search) => self.step_by_cells(search),
             AnySearch::Tree(search) => self.step(search),
+            AnySearch::MidpointTree(search) => self.step(search),
         }
     }
 

@@ -46,8 +46,10 @@ impl Record for Row {
         each("mean_neighbours", "mean number of neighbours in the last step", &mut self.mean_neighbours);
         for (method, [us_name, ms_name]) in Method::ALL.into_iter().zip([
             ["us_per_boid.all_pairs", "ms_per_step.all_pairs"],
+            ["us_per_boid.pairs_once", "ms_per_step.pairs_once"],
             ["us_per_boid.cells", "ms_per_step.cells"],
             ["us_per_boid.tree", "ms_per_step.tree"],
+            ["us_per_boid.midpoint_tree", "ms_per_step.midpoint_tree"],
         ]) {
             let found = self.timings.iter().position(|timing| timing.method == method.name());
             let timing = found.map(|at| &self.timings[at]);

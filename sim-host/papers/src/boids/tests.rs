@@ -12,12 +12,12 @@ fn small() -> Plan {
 }
 
 #[test]
-fn three_searches_and_all_threads_give_the_same_trajectories() {
+fn all_searches_and_all_threads_give_the_same_trajectories() {
     let plan = small();
     let report = plan.measure().expect("a plan");
     assert_eq!(report.rows.len(), 3);
     assert!(report.equal);
-    assert!(report.rows.iter().all(|row| row.timings.len() == 3));
+    assert!(report.rows.iter().all(|row| row.timings.len() == 5));
     let hash = &report.rows[2].timings[0].hash;
     let mut flock = plan.flock(60);
     assert_ne!(&format!("{:016x}", flock.hash()), hash);
@@ -61,7 +61,7 @@ fn all_pairs_are_left_out_above_their_limit_and_an_early_end_keeps_whole_rows() 
     assert_eq!((report.rows.len(), report.moments.len()), (2, 0));
     let report = plan.measure().expect("a plan");
     let searches = |row: usize| report.rows[row].timings.len();
-    assert_eq!([searches(0), searches(1), searches(2)], [3, 3, 2]);
+    assert_eq!([searches(0), searches(1), searches(2)], [5, 5, 3]);
     assert_eq!(report.rows[2].us_per_boid("all pairs"), None);
     assert!(report.equal);
 }
@@ -77,7 +77,14 @@ fn plans_that_make_no_sense_are_refused() {
     for value in [0.0, -1.0, f32::NAN, f32::INFINITY] {
         assert!(refused(Plan { closest: value, ..small() }).contains("closest"));
     }
-    Plan::default().check().expect("the paper's");
+    for value in [-0.1, 3.2, f32::NAN] {
+        assert!(refused(Plan { max_turn: value, ..small() }).contains("largest turn"));
+        assert!(refused(Plan { max_turn_away: value, ..small() }).contains("largest turn away"));
+    }
+    let paper = Plan::default();
+    paper.check().expect("the paper's");
+    let values = [paper.area_per_boid, paper.speed, paper.crowded, paper.closest, paper.max_turn, paper.max_turn_away];
+    assert_eq!(values, [24_000.0, 2.0, 30.0, 150.0, 0.05, 0.02]);
 }
 
 #[test]
@@ -97,4 +104,5 @@ fn table_has_a_line_per_number_and_says_what_was_not_run() {
     assert!(text.contains("only up to 5 boids") && text.contains("after 2 steps"));
     let second = text.lines().nth(3).expect("a line");
     assert!(second.split_whitespace().nth(3) == Some("-"), "{second}");
+    assert!(second.split_whitespace().nth(4) == Some("-"), "{second}");
 }

@@ -1,12 +1,12 @@
 //! The five simulations of the paper as scenarios.
 
-use super::{Plan, Reference};
-use crate::arena::{Arena, FASTEST_MPS, normal, starts, uniform};
+use super::{Plan, Point, Reference};
+use crate::arena::{Arena, FASTEST_MPS, distance_m, normal, starts, uniform};
 use anyhow::{Context as _, Result};
 use clap::ValueEnum;
 use serde::Serialize;
 use staya_controller::agent::{GuidanceSetup, SafetyKind};
-use staya_controller::flock::lattice::{Algorithm, Gain, LatticeParams};
+use staya_controller::flock::lattice::{Algorithm, Gain, LatticeParams, ReferenceMotion};
 use staya_controller::orca::AvoidParams;
 use staya_controller::push_out::PushOutParams;
 use staya_controller::rand::Rng;
@@ -15,10 +15,12 @@ use staya_sim::world::plane::Solid;
 
 /// Purpose of the random numbers that give each run its starts.
 const STARTS: u32 = 0x0046_0101;
+/// Purpose of those that give each run its forest.
+const TREES: u32 = 0x0046_0102;
 /// The paper's d: positions and speeds below are in its units, of which d has 7.
 const UNITS: f64 = 7.0;
 
-/// Which of the paper's simulations (OLF section VIII).
+/// Which of the paper's simulations (OLF section VIII), or of two of our own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
 #[serde(rename_all = "lowercase")]
 #[value(rename_all = "lower")]
@@ -33,10 +35,14 @@ pub enum Case {
     Split,
     /// E: 150 robots through a gap, algorithm 3 (figure 11).
     Squeeze,
+    /// Not in the paper: as E, through a gap that one robot fits through, 8/7 d between balls of 30/7 d.
+    Gap,
+    /// Not in the paper: as E, through 30 balls at random places, 8/7 d apart at least.
+    Forest,
 }
 
 impl Case {
-    /// All, in the paper's order.
+    /// The paper's, in its order.
     pub const ALL: [Self; 5] = [Self::Free, Self::Fragment, Self::Rendezvous3d, Self::Split, Self::Squeeze];
 
     /// As the command line and files call it.
@@ -48,6 +54,8 @@ impl Case {
             Self::Rendezvous3d => "rendezvous3d",
             Self::Split => "split",
             Self::Squeeze => "squeeze",
+            Self::Gap => "gap",
+            Self::Forest => "forest",
         }
     }
 
@@ -59,14 +67,16 @@ impl Case {
             Self::Rendezvous3d => "Rendezvous in space by algorithm 2",
             Self::Split => "Split and rejoin by algorithm 3",
             Self::Squeeze => "Squeezing manoeuvre by algorithm 3",
+            Self::Gap => "Through a gap for one by algorithm 3",
+            Self::Forest => "Through a forest by algorithm 3",
         }
     }
 
-    /// Balls in the way: x, y, radius.
-    const fn balls(self) -> &'static [[f64; 3]] {
+    /// Balls in the way of a run: x, y, radius.
+    fn balls(self, seed: u64, run: u32) -> Vec<[f64; 3]> {
         match self {
-            Self::Free | Self::Fragment | Self::Rendezvous3d => &[],
-            Self::Split => &[
+            Self::Free | Self::Fragment | Self::Rendezvous3d => Vec::new(),
+            Self::Split => vec![
                 [100.0, 20.0, 10.0],
                 [110.0, 60.0, 4.0],
                 [120.0, 40.0, 2.0],
@@ -74,8 +84,15 @@ impl Case {
                 [150.0, 40.0, 5.0],
                 [160.0, 0.0, 3.0],
             ],
-            Self::Squeeze => &[[150.0, 30.0, 25.0], [150.0, 100.0, 25.0]],
+            Self::Squeeze => vec![[150.0, 30.0, 25.0], [150.0, 100.0, 25.0]],
+            Self::Gap => vec![[150.0, 26.0, 30.0], [150.0, 94.0, 30.0]],
+            Self::Forest => forest(&mut Rng::keyed(seed, TREES, run, 0)),
         }
+    }
+
+    /// Whether there is anything in the way.
+    pub(super) const fn has_balls(self) -> bool {
+        !matches!(self, Self::Free | Self::Fragment | Self::Rendezvous3d)
     }
 
     /// What the paper's robots do, or where it does not say what works best.
@@ -89,6 +106,7 @@ impl Case {
                 gains: [50.0, 200.0, 1.0],
                 moving: Some(flat(0.0, 0.0, -1.5, -1.5)),
                 fixed: None,
+                obstacle_ratio: 0.6,
                 moments: [0.0, 0.03, 0.08, 0.15, 0.4, 1.0],
             },
             Self::Fragment => Setting {
@@ -98,6 +116,7 @@ impl Case {
                 gains: [1.0, 200.0, 1.0],
                 moving: None,
                 fixed: None,
+                obstacle_ratio: 0.6,
                 moments: [0.0, 0.05, 0.1, 0.2, 0.5, 1.0],
             },
             Self::Rendezvous3d => Setting {
@@ -107,6 +126,7 @@ impl Case {
                 gains: [10.0, 200.0, 0.2],
                 moving: Some(([0.0; 3], [1.0, 0.0, 1.0])),
                 fixed: None,
+                obstacle_ratio: 0.6,
                 moments: [0.0, 0.1, 1.0, 0.0, 0.1, 1.0],
             },
             Self::Split => Setting {
@@ -116,6 +136,7 @@ impl Case {
                 gains: [10.0, 200.0, 2.0],
                 moving: Some(flat(20.0, 20.0, 3.0, 0.0)),
                 fixed: Some(flat(200.0, 30.0, 5.0, 0.0)),
+                obstacle_ratio: 0.6,
                 moments: [0.0, 0.0625, 0.16, 0.25, 0.35, 1.0],
             },
             Self::Squeeze => Setting {
@@ -125,7 +146,14 @@ impl Case {
                 gains: [10.0, 200.0, 2.0],
                 moving: Some(flat(60.0, 60.0, 3.0, 0.0)),
                 fixed: Some(flat(230.0, 60.0, 6.0, 0.0)),
+                obstacle_ratio: 0.6,
                 moments: [0.0, 0.06, 0.115, 0.17, 0.285, 1.0],
+            },
+            Self::Gap => Setting { obstacle_ratio: 3.0 / 7.0, ..Self::Squeeze.setting() },
+            Self::Forest => Setting {
+                fixed: Some(flat(290.0, 60.0, 6.0, 0.0)),
+                obstacle_ratio: 3.0 / 7.0,
+                ..Self::Squeeze.setting()
             },
         }
     }
@@ -149,28 +177,35 @@ impl Case {
                 let mut along = || uniform(rng, -40.0, 80.0);
                 ([along(), along(), 0.0], at_rest)
             }
-            Self::Squeeze => {
+            Self::Squeeze | Self::Gap | Self::Forest => {
                 let mut along = || uniform(rng, 0.0, 120.0);
                 ([along(), along(), 0.0], at_rest)
             }
         }
     }
 
-    /// Obstacles where a robot's spacing is `spacing_m`.
-    pub(super) fn solids(self, spacing_m: f64) -> Vec<Solid> {
+    /// Obstacles of a run where a robot's spacing is `spacing_m`.
+    pub(super) fn solids(self, spacing_m: f64, seed: u64, run: u32) -> Vec<Solid> {
         let unit_m = spacing_m / UNITS;
-        let ball = |&[x, y, radius]: &[f64; 3]| Solid::Ball {
+        let ball = |[x, y, radius]: [f64; 3]| Solid::Ball {
             center_m: [x * unit_m, y * unit_m, 0.0],
             radius_m: radius * unit_m,
         };
-        self.balls().iter().map(ball).collect()
+        self.balls(seed, run).into_iter().map(ball).collect()
     }
+}
 
-    /// The x behind which all obstacles lie behind a robot, metres.
-    pub(super) fn behind_m(self, spacing_m: f64) -> Option<f64> {
-        let ends = self.balls().iter().map(|[x, _, radius]| x + radius);
-        ends.reduce(f64::max).map(|x| x * spacing_m / UNITS)
+/// Thirty balls between the robots and their goal, drawn again until each is 8 from the others.
+fn forest(rng: &mut Rng) -> Vec<[f64; 3]> {
+    let mut trees: Vec<[f64; 3]> = Vec::new();
+    while trees.len() < 30 {
+        let [x, y, radius] = [uniform(rng, 135.0, 230.0), uniform(rng, -20.0, 140.0), uniform(rng, 2.0, 10.0)];
+        let gap = |other: &[f64; 3]| distance_m([x, y, 0.0], [other[0], other[1], 0.0]) - radius - other[2];
+        if trees.iter().all(|other| gap(other) >= 8.0) {
+            trees.push([x, y, radius]);
+        }
     }
+    trees
 }
 
 /// What a case has of its own, in the paper's units.
@@ -185,6 +220,8 @@ pub(super) struct Setting {
     pub moving: Option<([f64; 3], [f64; 3])>,
     /// The paper's static one.
     pub fixed: Option<([f64; 3], [f64; 3])>,
+    /// d' / d.
+    pub obstacle_ratio: f64,
     /// When to draw the flock, shares of the time.
     pub moments: [f64; 6],
 }
@@ -197,13 +234,17 @@ impl Plan {
     }
 
     /// One run of a case.
-    pub(super) fn scenario(&self, case: Case, run: u32) -> Result<Scenario> {
+    pub(super) fn scenario(&self, point: Point, run: u32) -> Result<Scenario> {
+        let Point { case, reference } = point;
         let setting = case.setting();
         let unit_m = self.spacing_m / UNITS;
         let metres = |vector: [f64; 3]| vector.map(|x| x * unit_m);
-        let reference = match setting.fixed {
-            Some(fixed) if self.reference == Reference::Static => Some(fixed),
-            _ => setting.moving,
+        let (reference, motion) = match (setting.fixed, reference) {
+            (Some(fixed), Some(Reference::Static)) => (Some(fixed), ReferenceMotion::Static),
+            (Some(fixed), Some(Reference::Resting)) => {
+                (Some(fixed), ReferenceMotion::Resting((self.rest * self.spacing_m) as f32))
+            }
+            _ => (setting.moving, ReferenceMotion::Dynamic),
         };
         let targets: Vec<Target> = reference
             .iter()
@@ -224,16 +265,18 @@ impl Plan {
         .with_context(|| format!("{robots} robots find no room; give fewer, or another spacing"))?;
         let [alpha, beta, gamma] = self.gains(case);
         let gain = |c1: f64| Gain::critical(c1 as f32);
-        // Algorithm 1 stands in the paper without gains.
-        let alpha = match setting.algorithm {
-            Algorithm::One => Gain { position: alpha as f32, velocity: alpha as f32 },
-            Algorithm::Two | Algorithm::Three => gain(alpha),
+        let damped = |c1: f64, c2: Option<f64>| match c2 {
+            Some(c2) => Gain { position: c1 as f32, velocity: c2 as f32 },
+            None => gain(c1),
         };
+        // Algorithm 1 stands in the paper without gains.
+        let c2_alpha = self.c2_alpha.or((setting.algorithm == Algorithm::One).then_some(alpha));
         let params = LatticeParams {
             algorithm: setting.algorithm,
-            alpha,
+            alpha: damped(alpha, c2_alpha),
             beta: gain(beta),
-            gamma: gain(gamma),
+            gamma: damped(gamma, self.c2_gamma),
+            obstacle_ratio: self.obstacle_ratio(case) as f32,
             ..LatticeParams::new(self.spacing_m as f32)
         };
         let horizon_s = self.horizon_s as f32;
@@ -252,10 +295,7 @@ impl Plan {
             range_m: 3.0 * self.spacing_m,
             loss: self.loss,
             sight_m: 3.0 * self.spacing_m,
-            guidance: GuidanceSetup::Lattice {
-                params,
-                moves: !(self.reference == Reference::Static && setting.fixed.is_some()),
-            },
+            guidance: GuidanceSetup::Lattice { params, motion },
             safety: match (self.safety, case) {
                 // In space only the avoider for space knows of heights.
                 (SafetyKind::Orca, Case::Rendezvous3d) => SafetyKind::Fly,
@@ -263,7 +303,7 @@ impl Plan {
             },
             orca: AvoidParams { horizon_s, wall_horizon_s: horizon_s, ..AvoidParams::default() },
             push_out: PushOutParams::new(1.0),
-            solids: case.solids(self.spacing_m),
+            solids: case.solids(self.spacing_m, self.seed, run),
         };
         let setup = arena.setup(starts);
         Ok(arena.scenario(setup))
@@ -272,6 +312,11 @@ impl Plan {
     /// The seed of a run's scenario.
     pub(super) fn run_seed(&self, case: Case, run: u32) -> u64 {
         Rng::keyed(self.seed, STARTS, run, case as u32).next_u64()
+    }
+
+    /// d' / d of a case.
+    pub(super) fn obstacle_ratio(&self, case: Case) -> f64 {
+        self.obstacle_ratio.unwrap_or(case.setting().obstacle_ratio)
     }
 
     /// c1 of alpha-, beta- and gamma-agents of a case.

@@ -13,7 +13,7 @@ use anyhow::{Result, ensure};
 use serde::Serialize;
 use staya_controller::agent::{BoidsSetup, GuidanceSetup, SafetyKind};
 use staya_controller::flock::goal::GoalParams;
-use staya_controller::flock::lattice::LatticeParams;
+use staya_controller::flock::lattice::{LatticeParams, ReferenceMotion};
 use staya_controller::orca::AvoidParams;
 use staya_controller::push_out::PushOutParams;
 use staya_controller::rand::Rng;
@@ -166,7 +166,10 @@ impl Closing {
         let side_mps = speed * d / 2.0;
         let seed = self.run_seed(run);
         let guidance = match flock {
-            Flock::Alpha => GuidanceSetup::Lattice { params: LatticeParams::new(d as f32), moves: true },
+            Flock::Alpha => {
+                let motion = ReferenceMotion::Dynamic;
+                GuidanceSetup::Lattice { params: LatticeParams::new(d as f32), motion }
+            }
             Flock::Goal => GuidanceSetup::GoalFlock {
                 params: GoalParams::new((d / 2.0) as f32, side_mps as f32),
                 arrival_m: d as f32,

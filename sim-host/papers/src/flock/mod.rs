@@ -1,5 +1,5 @@
 //! The five simulations of R. Olfati-Saber 2006 ("Flocking for multi-agent dynamic systems", IEEE TAC 51(3), section
-//! VIII), and how close a flock may be driven together ([`closing`]).
+//! VIII), two of our own beside them, and how close a flock may be driven together ([`closing`]).
 //!
 //! Every robot is an agent of its own that knows what it hears: beacons over the simulated radio, from the tick before.
 //! The paper's particles know everything at once. Spacing is d metres and a unit of the paper d / 7: any other size
@@ -8,12 +8,15 @@
 //!
 //! **Parameters.** The paper tells no gains. Those here are what worked best of what was tried ([`Plan`] takes others):
 //! (c_alpha, c_gamma) = (50, 1) in A, (10, 0.2) in C; (10, 200, 2) with obstacles, in D and E, behind a reference that moves at 3 units/s
-//! (the paper's stands, with a velocity of 5 or 6: with it the parts of a split flock stay side by side for long). c2 = 2 sqrt(c1).
+//! and, beside it, one that stands and has a velocity of 5 or 6 (the paper's): behind it the parts of a split flock stay apart.
+//! `--reference resting` is the same with a velocity that fades behind it. c2 = 2 sqrt(c1).
 //! Starts are the paper's distributions (of B it tells
-//! none: 20 units of deviation), drawn anew where two bodies would overlap. In space the attitude of a robot is the direction of its velocity, no more.
+//! none: 20 units of deviation), drawn anew where two bodies would overlap. In space the attitude of a robot is that of
+//! its velocity, as in the paper (`metrics::flock::attitude`).
 
 mod case;
 pub mod closing;
+mod ideal;
 mod pictures;
 mod report;
 mod watch;
@@ -28,6 +31,7 @@ use crate::options::{self, word};
 use anyhow::{Result, ensure};
 use clap::{Args, ValueEnum};
 use rayon::prelude::*;
+use serde::Serialize;
 use staya_controller::agent::SafetyKind;
 use staya_sim::engine::simulate;
 use staya_sweep::Value;
@@ -40,7 +44,7 @@ const HORIZON_S: f64 = 0.3;
 /// What to do: the five flocking simulations of Olfati-Saber 2006 (section VIII), each robot an agent that hears packets only.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// Which simulations [default: all].
+    /// Which simulations [default: the paper's five].
     #[arg(
         long = "case",
         value_enum,
@@ -81,9 +85,30 @@ pub struct Plan {
     /// Gain c1 on the reference, instead of the case's own.
     #[arg(long, value_name = "C1")]
     pub c_gamma: Option<f64>,
-    /// Where the reference of D and E is.
-    #[arg(long, value_enum, default_value = "moving")]
-    pub reference: Reference,
+    /// Gain c2 on other robots' velocities, instead of 2 sqrt(c1).
+    #[arg(long, value_name = "C2")]
+    pub c2_alpha: Option<f64>,
+    /// Gain c2 on the reference's velocity, instead of 2 sqrt(c1).
+    #[arg(long, value_name = "C2")]
+    pub c2_gamma: Option<f64>,
+    /// Distance kept from obstacles over spacing (d' / d), instead of the case's own.
+    #[arg(long, value_name = "RATIO")]
+    pub obstacle_ratio: Option<f64>,
+    /// Where the reference of cases with obstacles is: each is a line of the table.
+    #[arg(long = "reference", value_enum, value_delimiter = ',', default_value = "moving,static")]
+    pub references: Vec<Reference>,
+    /// Over which way behind a resting reference its velocity fades, spacings.
+    #[arg(long, value_name = "SPACINGS", default_value_t = 10.0)]
+    pub rest: f64,
+    /// The paper's particles instead of agents: all know everything at once, in doubles, with no limit of speed.
+    #[arg(long, conflicts_with_all = ["safety", "horizon_s", "loss"])]
+    pub ideal: bool,
+    /// Of the ideal ones, how many nearest ones each knows.
+    #[arg(long, value_name = "N", requires = "ideal")]
+    pub nearest: Option<usize>,
+    /// Of the ideal ones, how fast they go at most, in the paper's units.
+    #[arg(long, value_name = "SPEED", requires = "ideal")]
+    pub fastest: Option<f64>,
     /// Loss of packets, 0 to 1.
     #[arg(long, default_value_t = 0.0)]
     pub loss: f64,
@@ -102,25 +127,74 @@ impl Default for Plan {
     }
 }
 
-/// Where the reference of D and E is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+/// Where the reference of cases with obstacles is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
 pub enum Reference {
     /// It goes ahead of the flock.
     Moving,
     /// It stands behind the obstacles, and has a velocity all the same (the paper's).
     Static,
+    /// The same, but its velocity fades behind it: the flock comes to rest.
+    Resting,
+}
+
+impl Reference {
+    /// As the command line and files call it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Moving => "moving",
+            Self::Static => "static",
+            Self::Resting => "resting",
+        }
+    }
+}
+
+/// One line of the table: a case, and one with obstacles by its reference.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Point {
+    case: Case,
+    reference: Option<Reference>,
+}
+
+impl Point {
+    /// What files are called.
+    fn name(self) -> String {
+        match self.reference {
+            Some(reference @ (Reference::Static | Reference::Resting)) => {
+                format!("{}-{}", self.case.name(), reference.name())
+            }
+            _ => self.case.name().to_owned(),
+        }
+    }
 }
 
 impl Plan {
-    fn run(&self, case: Case, number: u32) -> Result<Run> {
-        let scenario = self.scenario(case, number)?;
-        let mut watch = Watch::new(self, case, &scenario, number == 0);
-        let outcome = simulate(&scenario, |moment, robots| {
-            watch.look(moment.row.tick, robots);
-            std::ops::ControlFlow::Continue(())
-        })?;
-        let mut run = watch.finish(outcome.trace_hash);
-        run.verdict = report::verdict(self, case, &run);
+    /// The lines of the table.
+    fn lines(&self) -> Vec<Point> {
+        let of = |&case: &Case| {
+            let references: Vec<Option<Reference>> =
+                if case.has_balls() { self.references.iter().copied().map(Some).collect() } else { vec![None] };
+            references.into_iter().map(move |reference| Point { case, reference })
+        };
+        self.cases.iter().flat_map(of).collect()
+    }
+
+    fn run(&self, point: Point, number: u32) -> Result<Run> {
+        let scenario = self.scenario(point, number)?;
+        let mut watch = Watch::new(self, point.case, &scenario, number == 0);
+        let hash = if self.ideal {
+            ideal::simulate(self, &scenario, |tick, places, velocities| watch.see(tick, places, velocities))?
+        } else {
+            simulate(&scenario, |moment, robots| {
+                watch.look(moment.row.tick, robots);
+                std::ops::ControlFlow::Continue(())
+            })?
+            .trace_hash
+        };
+        let mut run = watch.finish(hash);
+        run.verdict = report::verdict(self, point.case, &run);
         Ok(run)
     }
 }
@@ -149,19 +223,27 @@ impl Experiment for Plan {
         if let Some(seconds) = self.seconds {
             ensure!((1.0..=1e6).contains(&(seconds / self.step_s)), "{seconds} s; a run has 1 to 1,000,000 steps");
         }
-        for gain in [self.c_alpha, self.c_beta, self.c_gamma].into_iter().flatten() {
+        for gain in [self.c_alpha, self.c_beta, self.c_gamma, self.c2_alpha, self.c2_gamma].into_iter().flatten() {
             ensure!((0.0..=1e6).contains(&gain), "a gain of {gain}; it must be 0 to 1,000,000");
         }
         ensure!((0.0..=1.0).contains(&self.loss), "a loss of {}; it must be between 0 and 1", self.loss);
         ensure!(self.safety != SafetyKind::PushOut, "push-out comes with the goal flock; give orca, fly or none");
-        for &case in &self.cases {
-            self.scenario(case, 0)?;
+        ensure!(!self.references.is_empty(), "no references; give one or more");
+        ensure!((0.1..=1e6).contains(&self.rest), "a rest of {} spacings; it must be 0.1 to 1,000,000", self.rest);
+        if let Some(ratio) = self.obstacle_ratio {
+            ensure!((0.01..=4.0).contains(&ratio), "an obstacle ratio of {ratio}; it must be 0.01 to 4");
+        }
+        if let Some(fastest) = self.fastest {
+            ensure!(fastest > 0.0, "a fastest speed of {fastest}; it must be above 0");
+        }
+        for point in self.lines() {
+            self.scenario(point, 0)?;
         }
         Ok(())
     }
 
     fn points(&self) -> usize {
-        self.cases.len()
+        self.lines().len()
     }
 
     fn runs(&self) -> u32 {
@@ -171,7 +253,7 @@ impl Experiment for Plan {
     fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
         // By name, so that a new field is not forgotten.
         let Self {
-            cases,
+            cases: _,
             runs: _,
             robots,
             safety,
@@ -182,13 +264,21 @@ impl Experiment for Plan {
             c_alpha: _,
             c_beta: _,
             c_gamma: _,
-            reference,
+            c2_alpha,
+            c2_gamma,
+            obstacle_ratio: _,
+            references: _,
+            rest,
+            ideal,
+            nearest,
+            fastest,
             loss,
             seed,
             out: _,
         } = self;
-        let case = cases[point];
+        let Point { case, reference } = self.lines()[point];
         let setting = case.setting();
+        let given = |value: Option<f64>| value.map_or_else(|| "".into(), Value::from);
         let [c_alpha, c_beta, c_gamma] = self.gains(case).map(Value::from);
         vec![
             ("case", case.name().into()),
@@ -201,7 +291,14 @@ impl Experiment for Plan {
             ("c_alpha", c_alpha),
             ("c_beta", c_beta),
             ("c_gamma", c_gamma),
-            ("static_reference", (*reference == Reference::Static).into()),
+            ("c2_alpha", given(*c2_alpha)),
+            ("c2_gamma", given(*c2_gamma)),
+            ("obstacle_ratio", self.obstacle_ratio(case).into()),
+            ("reference", reference.map_or("", Reference::name).into()),
+            ("rest", (*rest).into()),
+            ("ideal", (*ideal).into()),
+            ("nearest", given(nearest.map(|n| n as f64))),
+            ("fastest", given(*fastest)),
             ("loss", (*loss).into()),
             ("first_seed", seed.to_string().into()),
         ]
@@ -209,7 +306,7 @@ impl Experiment for Plan {
 
     /// That of the robots and the radio; starts are a function of the first seed and the run's number.
     fn seed(&self, point: usize, run: u32) -> u64 {
-        self.run_seed(self.cases[point], run)
+        self.run_seed(self.lines()[point].case, run)
     }
 
     fn blank(&self, _: usize, _: u32) -> Run {
@@ -218,11 +315,15 @@ impl Experiment for Plan {
 
     /// Rows have no course of the measures, which pictures show: runs that were read of rows are made again for it.
     fn perform(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Run>>> {
-        let mut runs = jobs.each(|(): &mut (), point, run| self.run(self.cases[point], run).map(Some))?;
-        for (&case, runs) in self.cases.iter().zip(&mut runs) {
+        let mut runs = jobs.each(|(): &mut (), point, run| self.run(self.lines()[point], run).map(Some))?;
+        for (point, runs) in self.lines().into_iter().zip(&mut runs) {
             runs.par_iter_mut().enumerate().filter(|(_, run)| run.trace.is_empty()).try_for_each(|(number, run)| {
-                let again = self.run(case, number as u32)?;
-                ensure!(again.hash == run.hash, "run {number} of {} is not that of its row; begin --anew", case.name());
+                let again = self.run(point, number as u32)?;
+                ensure!(
+                    again.hash == run.hash,
+                    "run {number} of {} is not that of its row; begin --anew",
+                    point.name()
+                );
                 *run = again;
                 Ok(())
             })?;

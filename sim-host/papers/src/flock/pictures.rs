@@ -1,7 +1,7 @@
 //! The pictures of the flocks: OLF figures 7 to 12, and the same as a file of numbers.
 
 use super::watch::Frame;
-use super::{Case, CaseReport, Report};
+use super::{Case, CaseReport, Point, Reference, Report};
 use crate::arena::distance_m;
 use staya_plot::flock::{Obstacle, Sheet, Snapshot, View};
 use staya_plot::{Chart, Panels, Series};
@@ -23,8 +23,8 @@ impl Report {
     pub fn draw(&self, dir: &Path) -> Result<Vec<PathBuf>, Error> {
         let mut files = Vec::new();
         for case in &self.cases {
-            let name = case.case.name();
-            files.extend(self.sheet(case).draw().write(&dir.join(name))?);
+            let name = Point { case: case.case, reference: case.reference }.name();
+            files.extend(self.sheet(case).draw().write(&dir.join(&name))?);
             let stem = dir.join(format!("{name}-measures"));
             files.extend(self.measures(case).write(&stem)?);
             let table = stem.with_extension("csv");
@@ -36,8 +36,7 @@ impl Report {
 
     /// Moments of the first run; in space three from above and three from the south.
     fn sheet(&self, case: &CaseReport) -> Sheet {
-        let title =
-            format!("{}: {} robots, d = {} m, safety {}", case.case.title(), case.robots, self.spacing_m, self.safety);
+        let title = format!("{}: {} robots, d = {} m, {}", title(case), case.robots, self.spacing_m, self.who());
         let moments = case.case.setting().moments;
         let mut sheet = Sheet::new(title, 3);
         for (number, share) in (0..).zip(moments) {
@@ -57,7 +56,7 @@ impl Report {
             Solid::Ball { center_m, radius_m } => Some(Obstacle::Disc { centre_m: view.of(center_m), radius_m }),
             Solid::Wall(_) | Solid::Plane { .. } => None,
         };
-        let solids = case.case.solids(self.spacing_m);
+        let solids = case.case.solids(self.spacing_m, self.seed, 0);
         let (is_flat, range_m) = (case.case != Case::Rendezvous3d, 1.2 * self.spacing_m);
         let axis = if view == View::Plan { "" } else { ", from the south" };
         Snapshot {
@@ -99,19 +98,34 @@ impl Report {
             .with(Series::reference("e1 = 0.005", ends(log(0.005))));
         let mismatch = chart("Velocity mismatch", "log10 K~", &|m| log(m.velocity_mismatch))
             .with(Series::reference("e2", ends(still)));
-        let title =
-            format!("{}: {} runs of {} robots, safety {}", case.case.title(), case.runs, case.robots, self.safety);
+        let title = format!("{}: {} runs of {} robots, {}", title(case), case.runs, case.robots, self.who());
+        let hamiltonian = self.hamiltonian(case);
         Panels::new(title)
             .columns(2)
             .with(chart("Relative connectivity", "C", &|m| m.connectivity).y_range(0.0, 1.05))
             .with(chart("Cohesion radius", radius_label, &|m| m.radius_m))
             .with(energy)
             .with(mismatch)
+            .with(hamiltonian)
+    }
+
+    /// H a robot over iterations.
+    fn hamiltonian(&self, case: &CaseReport) -> Chart {
+        let label = format!("iteration ({} s)", self.step_s);
+        let mut chart = Chart::new("Structural Hamiltonian", label, "log10 H / n").size(560.0, 300.0);
+        for (number, energies) in case.energies.iter().enumerate() {
+            let points: Vec<[f64; 2]> =
+                thinned(energies).map(|(at, energy)| [at as f64, libm::log10(*energy)]).collect();
+            let name = if number == 0 { "each run" } else { "" };
+            let series = Series::line(name, points);
+            chart = chart.with(if number == 0 { series } else { series.like_previous() });
+        }
+        chart
     }
 
     fn csv(&self, case: &CaseReport) -> String {
         let mut text = String::from(
-            "run,iteration,time_s,connectivity,components,radius_m,deviation_energy,velocity_mismatch_m2ps2,polarisation\n",
+            "run,iteration,time_s,connectivity,components,radius_m,deviation_energy,velocity_mismatch_m2ps2,polarisation,hamiltonian_per_robot\n",
         );
         for (run, trace) in case.traces.iter().enumerate() {
             for (iteration, moment) in thinned(trace) {
@@ -119,14 +133,15 @@ impl Report {
                 // Memory takes every line.
                 let _ = writeln!(
                     text,
-                    "{run},{iteration},{:.3},{:.6},{},{:.4},{:.8},{:.8},{:.6}",
+                    "{run},{iteration},{:.3},{:.6},{},{:.4},{:.8},{:.8},{:.6},{:.6}",
                     iteration as f64 * self.step_s,
                     m.connectivity,
                     m.components,
                     m.radius_m,
                     m.deviation_energy,
                     m.velocity_mismatch,
-                    m.polarisation
+                    m.polarisation,
+                    case.energies[run][iteration]
                 );
             }
         }
@@ -134,8 +149,18 @@ impl Report {
     }
 }
 
+/// What a case shows, with its reference.
+fn title(case: &CaseReport) -> String {
+    match case.reference {
+        Some(reference) if reference != Reference::Moving => {
+            format!("{}, {} reference", case.case.title(), reference.name())
+        }
+        _ => case.case.title().to_owned(),
+    }
+}
+
 /// Some of the moments, evenly, with the first and the last one.
-fn thinned(trace: &[Option<FlockMeasure>]) -> impl Iterator<Item = (usize, &Option<FlockMeasure>)> {
+fn thinned<T>(trace: &[T]) -> impl Iterator<Item = (usize, &T)> {
     let every = trace.len().div_ceil(POINTS).max(1);
     let last = trace.len().saturating_sub(1);
     let all = trace.iter().enumerate();

@@ -1,7 +1,7 @@
 //! The numbers of the flocks.
 
 use super::watch::{Frame, Run, Verdict};
-use super::{Case, Plan, Reference};
+use super::{Case, Plan, Point, Reference};
 use crate::experiment::Maybe;
 use crate::options::word;
 use serde::Serialize;
@@ -39,6 +39,8 @@ pub struct RunReport {
 pub struct CaseReport {
     /// Which.
     pub case: Case,
+    /// Where its reference is, if it has obstacles.
+    pub reference: Option<Reference>,
     /// Robots of each run.
     pub robots: usize,
     /// Ticks of each run.
@@ -75,8 +77,14 @@ pub struct CaseReport {
     pub inside: usize,
     /// Of all runs.
     pub past: Option<usize>,
+    /// H per robot at the end, mean over runs, in the paper's units.
+    pub hamiltonian: f64,
+    /// Largest rise of H in a tick of any run over what it lost in all.
+    pub hamiltonian_rise: f64,
     /// Each run.
     pub each: Vec<RunReport>,
+    #[serde(skip)]
+    pub(super) energies: Vec<Vec<f64>>,
     #[serde(skip)]
     pub(super) traces: Vec<Vec<Option<FlockMeasure>>>,
     #[serde(skip)]
@@ -102,15 +110,19 @@ pub struct Report {
     pub horizon_s: f64,
     /// Loss of packets.
     pub loss: f64,
-    /// Whether the reference in D and E stands.
-    pub static_reference: bool,
+    /// Whether these are the paper's particles, who know everything at once.
+    pub ideal: bool,
+    /// How many nearest ones each of those knows, if not all.
+    pub nearest: Option<usize>,
+    /// How fast those go at most, in the paper's units.
+    pub fastest: Option<f64>,
     /// By case. Those without a run are left out.
     pub cases: Vec<CaseReport>,
 }
 
 impl Report {
     pub(super) fn of(plan: &Plan, runs: &[Vec<Run>]) -> Self {
-        let cases = plan.cases.iter().zip(runs);
+        let lines = plan.lines().into_iter().zip(runs);
         Self {
             seed: plan.seed,
             runs: plan.runs,
@@ -120,14 +132,17 @@ impl Report {
             safety: word(plan.safety),
             horizon_s: plan.horizon_s,
             loss: plan.loss,
-            static_reference: plan.reference == Reference::Static,
-            cases: cases.filter_map(|(&case, runs)| CaseReport::of(plan, case, runs)).collect(),
+            ideal: plan.ideal,
+            nearest: plan.nearest,
+            fastest: plan.fastest,
+            cases: lines.filter_map(|(point, runs)| CaseReport::of(plan, point, runs)).collect(),
         }
     }
 }
 
 impl CaseReport {
-    fn of(plan: &Plan, case: Case, runs: &[Run]) -> Option<Self> {
+    fn of(plan: &Plan, point: Point, runs: &[Run]) -> Option<Self> {
+        let Point { case, reference } = point;
         let first = runs.first()?;
         let robots = first.trace.iter().flatten().next()?.robots;
         let each: Vec<RunReport> =
@@ -139,6 +154,7 @@ impl CaseReport {
         let least = |value: fn(&RunReport) -> Option<f64>| each.iter().filter_map(value).reduce(f64::min);
         Some(Self {
             case,
+            reference,
             robots,
             ticks: first.trace.len() - 1,
             gains: plan.gains(case),
@@ -161,7 +177,10 @@ impl CaseReport {
             least_clearance_over_d: least(|run| run.least_clearance_over_d),
             inside: each.iter().map(|run| run.inside).sum(),
             past: each.iter().map(|run| run.past).sum(),
+            hamiltonian: runs.iter().map(|run| run.verdict.hamiltonian[1]).sum::<f64>() / runs.len() as f64,
+            hamiltonian_rise: runs.iter().map(|run| run.verdict.hamiltonian_rise).fold(0.0, f64::max),
             traces: runs.iter().map(|run| run.trace.clone()).collect(),
+            energies: runs.iter().map(|run| run.energies.clone()).collect(),
             frames: first.frames.clone(),
             each,
         })
@@ -190,7 +209,16 @@ pub(super) fn verdict(plan: &Plan, case: Case, run: &Run) -> Verdict {
         radius_m: at_end(|m| m.radius_m),
         deviation_energy: at_end(|m| m.deviation_energy),
         velocity_mismatch: at_end(|m| m.velocity_mismatch),
+        hamiltonian: [run.energies.first(), run.energies.last()].map(|energy| energy.copied().unwrap_or(0.0)),
+        hamiltonian_rise: rise(&run.energies),
     }
+}
+
+/// Largest rise in a tick over what was lost in all; 0 when it never rises.
+fn rise(energies: &[f64]) -> f64 {
+    let rise = energies.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+    let lost = energies.first().zip(energies.last()).map_or(0.0, |(first, last)| first - last);
+    if rise > 0.0 && lost > 0.0 { rise / lost } else { rise }
 }
 
 impl RunReport {
@@ -209,7 +237,7 @@ impl RunReport {
             overlaps: run.overlaps,
             least_clearance_over_d: over_d(run.least_clearance_m),
             inside: run.inside,
-            past: case.behind_m(plan.spacing_m).map(|_| run.past),
+            past: case.has_balls().then_some(run.past),
             trace_hash: format!("{:016x}", run.hash),
         }
     }
@@ -227,22 +255,32 @@ fn lattice_radius_m(plan: &Plan, case: Case, robots: usize) -> f64 {
     }
 }
 
+impl Report {
+    /// Who flies.
+    pub(super) fn who(&self) -> String {
+        if !self.ideal {
+            return format!("safety {}, loss {}", self.safety, self.loss);
+        }
+        let nearest = self.nearest.map(|n| format!(", each knows {n}"));
+        let fastest = self.fastest.map(|speed| format!(", at most {speed} units/s"));
+        format!("ideal particles{}{}", nearest.unwrap_or_default(), fastest.unwrap_or_default())
+    }
+}
+
 impl Display for Report {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "d = {} m, radius {:.3} m, step {} s, safety {}, loss {}, seed {}{}",
+            "d = {} m, radius {:.3} m, step {} s, {}, seed {}",
             self.spacing_m,
             self.radius_m,
             self.step_s,
-            self.safety,
-            self.loss,
-            self.seed,
-            if self.static_reference { ", static reference" } else { "" }
+            self.who(),
+            self.seed
         )?;
         writeln!(
             f,
-            "{:<13}{:>7}{:>6}{:>7}{:>7}{:>6}{:>7}{:>8}{:>9}{:>9}{:>5}{:>7}{:>9}{:>8}{:>7}{:>11}",
+            "{:<16}{:>7}{:>6}{:>7}{:>7}{:>6}{:>7}{:>8}{:>9}{:>9}{:>9}{:>9}{:>5}{:>7}{:>9}{:>8}{:>7}{:>11}",
             "case",
             "robots",
             "runs",
@@ -253,6 +291,8 @@ impl Display for Report {
             "R (m)",
             "E~",
             "K~",
+            "H/n",
+            "rise",
             "one",
             "pair/d",
             "overlaps",
@@ -265,8 +305,8 @@ impl Display for Report {
                 case.past.map_or_else(|| String::from("-"), |past| format!("{past}/{}", case.robots * case.runs));
             writeln!(
                 f,
-                "{:<13}{:>7}{:>6}{:>7}{:>7}{:>6}{:>7.3}{:>8.1}{:>9.5}{:>9.5}{:>5}{:>7}{:>9}{:>8}{:>7}{:>11}",
-                case.case.name(),
+                "{:<16}{:>7}{:>6}{:>7}{:>7}{:>6}{:>7.3}{:>8.1}{:>9.5}{:>9.5}{:>9.0}{:>9.1e}{:>5}{:>7}{:>9}{:>8}{:>7}{:>11}",
+                Point { case: case.case, reference: case.reference }.name(),
                 case.robots,
                 case.runs,
                 case.alpha_flocking,
@@ -276,6 +316,8 @@ impl Display for Report {
                 case.radius_m,
                 case.deviation_energy,
                 case.velocity_mismatch,
+                case.hamiltonian,
+                case.hamiltonian_rise,
                 case.one_flock,
                 Maybe(case.least_pair_over_d, 3),
                 case.overlaps,
@@ -286,6 +328,7 @@ impl Display for Report {
         }
         f.write_str("alpha: runs with alpha-flocking at their end (e0 = 0.2, e1 = 0.005, e2 = 0.001), from: iteration, median over them;\n")?;
         f.write_str("conn.: iteration from which on all are connected in every run; C: mean at the end, R, E~, K~: largest at the end; one: runs that end as one flock;\n")?;
+        f.write_str("H/n: structural Hamiltonian a robot (d = 7) at the end, mean; rise: its largest rise in a tick over all that it lost;\n")?;
         f.write_str("pair/d: least distance of centres after 2 s; overlaps: pairs of bodies, over all ticks; clear/d: least distance from an obstacle; inside: robots ever in one\n")?;
         Ok(())
     }

@@ -3,7 +3,14 @@ use super::*;
 
 /// Small enough for a test, large enough to show something.
 fn small(case: Case, robots: u32, seconds: f64) -> Plan {
-    Plan { cases: vec![case], runs: 2, robots: Some(robots), seconds: Some(seconds), ..Plan::default() }
+    Plan {
+        cases: vec![case],
+        references: vec![Reference::Moving],
+        runs: 2,
+        robots: Some(robots),
+        seconds: Some(seconds),
+        ..Plan::default()
+    }
 }
 
 fn report(plan: &Plan) -> CaseReport {
@@ -96,6 +103,11 @@ fn plans_that_cannot_be_carried_out_say_why() {
     assert!(refused(|p| p.step_s = 0.2).contains("0.001 to 0.1"));
     assert!(refused(|p| p.seconds = Some(0.0)).contains("1 to 1,000,000 steps"));
     assert!(refused(|p| p.c_beta = Some(-1.0)).contains("a gain of -1"));
+    assert!(refused(|p| p.c2_gamma = Some(f64::NAN)).contains("a gain of NaN"));
+    assert!(refused(|p| p.references.clear()).contains("give one or more"));
+    assert!(refused(|p| p.rest = 0.0).contains("0.1 to 1,000,000"));
+    assert!(refused(|p| p.obstacle_ratio = Some(5.0)).contains("0.01 to 4"));
+    assert!(refused(|p| p.fastest = Some(0.0)).contains("above 0"));
     assert!(refused(|p| p.loss = 1.5).contains("between 0 and 1"));
     assert!(refused(|p| p.safety = SafetyKind::PushOut).contains("goal flock"));
     let closing = Closing { speeds: vec![10.0], ..Closing::default() };
@@ -115,7 +127,7 @@ fn pictures_and_series_are_written() {
     }
     let series = std::fs::read_to_string(dir.path().join("squeeze-measures.csv")).unwrap();
     let fields = |line: &str| line.split(',').count();
-    assert!(series.lines().all(|line| fields(line) == 9));
+    assert!(series.lines().all(|line| fields(line) == 10));
     assert_eq!(series.lines().count(), 1 + 2 * 101);
 }
 
@@ -136,4 +148,54 @@ fn closing_speeds_that_break_the_bare_flock_do_not_with_orca_behind_it() {
     assert!(breaks(Flock::Alpha, Sides::Groups, 8.0));
     assert!(breaks(Flock::Boids, Sides::Pair, 1.0));
     assert!(breaks(Flock::Boids, Sides::Groups, 8.0));
+}
+
+#[test]
+fn the_law_alone_is_soon_a_flock_with_the_gains_for_it_and_only_loses_energy() {
+    let quick = Plan {
+        ideal: true,
+        c_alpha: Some(70.0),
+        c2_alpha: Some(7.0),
+        c_gamma: Some(2.0),
+        c2_gamma: Some(3.0),
+        ..small(Case::Free, 150, 12.0)
+    };
+    let usual =
+        Plan { c_alpha: None, c2_alpha: None, c_gamma: None, c2_gamma: None, seconds: Some(30.0), ..quick.clone() };
+    let [quick, usual] = [quick, usual].map(|plan| report(&plan));
+    assert_eq!((quick.alpha_flocking, usual.alpha_flocking), (2, 2));
+    assert!(quick.alpha_from_latest.unwrap() < 260, "{:?}", quick.alpha_from_latest);
+    assert!(quick.alpha_from_median.unwrap() < 0.8 * usual.alpha_from_median.unwrap());
+    for case in [&quick, &usual] {
+        assert!(case.hamiltonian_rise < 1e-3, "{}", case.hamiltonian_rise);
+        assert!(case.energies.iter().all(|run| run[0] > run[run.len() - 1] && run.len() == case.ticks + 1));
+    }
+}
+
+#[test]
+fn agents_do_what_the_law_alone_does_unless_it_is_limited() {
+    let agents = report(&small(Case::Free, 30, 15.0));
+    let ideal = Plan { ideal: true, ..small(Case::Free, 30, 15.0) };
+    let law = report(&ideal);
+    // Lattices of the same energy may have other outlines.
+    assert!((agents.hamiltonian / law.hamiltonian - 1.0).abs() < 0.01, "{} {}", agents.hamiltonian, law.hamiltonian);
+    let soon = law.connected_from_latest.unwrap();
+    let slow = report(&Plan { fastest: Some(5.0), ..ideal.clone() });
+    assert!(slow.connected_from_latest.is_none_or(|late| late > soon + 50), "{soon} {:?}", slow.connected_from_latest);
+    let blind = report(&Plan { nearest: Some(0), ..ideal });
+    assert_eq!(blind.alpha_flocking, 0);
+}
+
+#[test]
+fn a_resting_reference_gathers_what_a_static_one_lets_go_apart() {
+    for case in [Case::Split, Case::Squeeze, Case::Forest] {
+        let references = vec![Reference::Static, Reference::Resting];
+        let plan = Plan { references, ideal: true, ..small(case, 60, 150.0) };
+        let report = plan.measure().unwrap();
+        let [apart, together] = &report.cases[..] else { panic!("two lines") };
+        assert_eq!((apart.reference, together.reference), (Some(Reference::Static), Some(Reference::Resting)));
+        assert!(apart.one_flock < 2, "{case:?}: {}", apart.one_flock);
+        assert_eq!((together.one_flock, together.past), (2, Some(120)), "{case:?}");
+        assert_eq!((together.inside, apart.inside), (0, 0));
+    }
 }

@@ -2,7 +2,8 @@
 
 use super::{Case, Plan};
 use crate::experiment::rows::{Each, Record};
-use staya_sim::metrics::flock::{FlockMeasure, FlockMeter, gaps};
+use staya_controller::agent::GuidanceSetup;
+use staya_sim::metrics::flock::{EnergyMeter, FlockMeasure, FlockMeter, gaps};
 use staya_sim::nearby::Space;
 use staya_sim::record::RobotRow;
 use staya_sim::scenario::Scenario;
@@ -16,6 +17,8 @@ const SETTLED_S: f64 = 2.0;
 pub struct Run {
     /// The flock before the first tick and after each.
     pub trace: Vec<Option<FlockMeasure>>,
+    /// The structural Hamiltonian at the same moments, per robot, in the paper's units.
+    pub energies: Vec<f64>,
     /// Least distance of two centres after `SETTLED_S`, metres; infinite when none were within d.
     pub least_pair_m: f64,
     /// Pairs of bodies that overlap, summed over ticks.
@@ -53,6 +56,10 @@ pub struct Verdict {
     pub deviation_energy: f64,
     /// K~ at the end, (m/s)^2.
     pub velocity_mismatch: f64,
+    /// H per robot at the start and at the end, in the paper's units.
+    pub hamiltonian: [f64; 2],
+    /// Largest rise of H in a tick over what it lost in all.
+    pub hamiltonian_rise: f64,
 }
 
 impl Record for Run {
@@ -66,6 +73,10 @@ impl Record for Run {
         each("radius_m", "cohesion radius R at the end", &mut v.radius_m);
         each("deviation_energy", "E~ at the end", &mut v.deviation_energy);
         each("velocity_mismatch", "K~ at the end, (m/s)^2", &mut v.velocity_mismatch);
+        let [first, last] = &mut v.hamiltonian;
+        each("hamiltonian.first", "structural Hamiltonian H per robot at the start, in the paper's units", first);
+        each("hamiltonian.last", "the same at the end", last);
+        each("hamiltonian_rise", "largest rise of H in a tick over what it loses in all", &mut v.hamiltonian_rise);
         each(
             "least_pair_m",
             "least distance of two centres after 2 s; inf: none came within d",
@@ -90,6 +101,15 @@ pub struct Frame {
     pub velocities_mps: Vec<[f64; 3]>,
 }
 
+/// The x behind which all obstacles lie behind a robot, metres.
+fn behind_m(solids: &[Solid]) -> Option<f64> {
+    let end = |solid: &Solid| match *solid {
+        Solid::Ball { center_m, radius_m } => Some(center_m[0] + radius_m),
+        Solid::Wall(_) | Solid::Plane { .. } => None,
+    };
+    solids.iter().filter_map(end).reduce(f64::max)
+}
+
 /// Measures a run as it goes.
 pub struct Watch {
     spacing_m: f64,
@@ -98,6 +118,7 @@ pub struct Watch {
     behind_m: Option<f64>,
     solids: Vec<Solid>,
     meter: FlockMeter<3>,
+    energy: Option<EnergyMeter<3>>,
     /// Ticks to keep.
     wanted: Vec<u32>,
     places_m: Vec<[f64; 3]>,
@@ -111,13 +132,19 @@ impl Watch {
     pub fn new(plan: &Plan, case: Case, scenario: &Scenario, draws: bool) -> Self {
         let spacing_m = plan.spacing_m;
         let moments = case.setting().moments;
+        let solids = scenario.plane.as_ref().map_or_else(Vec::new, |plane| plane.solids.clone());
+        let energy = scenario.plane.as_ref().and_then(|plane| match &plane.general.guidance {
+            GuidanceSetup::Lattice { params, .. } => EnergyMeter::new(&params.cast()),
+            _ => None,
+        });
         let at = |share: f64| libm::round(share * f64::from(scenario.ticks)) as u32;
         Self {
             spacing_m,
             radius_m: plan.radius_m(),
             settled: crate::arena::ticks(SETTLED_S, plan.step_s),
-            behind_m: case.behind_m(spacing_m),
-            solids: case.solids(spacing_m),
+            behind_m: behind_m(&solids),
+            solids,
+            energy,
             meter: FlockMeter::new(spacing_m, 1.2 * spacing_m, Space::OPEN),
             wanted: if draws { moments.map(at).to_vec() } else { Vec::new() },
             places_m: Vec::new(),
@@ -135,8 +162,23 @@ impl Watch {
             self.places_m.push(robot.motion.position_m);
             self.velocities_mps.push(robot.motion.velocity_mps);
         }
+        self.measure(tick);
+    }
+
+    /// The same, of places and velocities.
+    pub fn see(&mut self, tick: u32, places_m: &[[f64; 3]], velocities_mps: &[[f64; 3]]) {
+        self.places_m.clear();
+        self.velocities_mps.clear();
+        self.places_m.extend_from_slice(places_m);
+        self.velocities_mps.extend_from_slice(velocities_mps);
+        self.measure(tick);
+    }
+
+    fn measure(&mut self, tick: u32) {
         let measure = self.meter.look(&self.places_m, &self.velocities_mps);
         self.run.trace.push(measure);
+        let energy = self.energy.as_mut().and_then(|meter| meter.look(&self.places_m, &self.velocities_mps));
+        self.run.energies.push(energy.map_or(f64::NAN, |energy| energy.hamiltonian() / self.places_m.len() as f64));
         self.look_at_pairs(tick);
         for (place, was_inside) in self.places_m.iter().zip(&mut self.was_inside) {
             for solid in &self.solids {

@@ -5,12 +5,16 @@
 //! and STA's field. All sums run in the order of the robots, on one thread: the same figures on any machine.
 //!
 //! [`FlockMeter::look`] measures a moment, [`alpha_flocking`] judges a trace of such moments, [`Gaps`] tells
-//! overlaps.
+//! overlaps, [`EnergyMeter`] the Hamiltonian.
 
+mod attitude;
+mod energy;
 mod gaps;
 #[cfg(test)]
 mod tests;
 
+pub use attitude::attitude;
+pub use energy::{Energy, EnergyMeter};
 pub use gaps::{Gaps, Obstacle, gaps};
 
 use crate::nearby::{Cells, Found, Query, Search as _, Space};

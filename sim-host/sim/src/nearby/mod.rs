@@ -1,14 +1,17 @@
 //! Who is near whom, for everything that the host computes over whole swarms: metrics, experiments without a radio,
 //! benchmarks.
 //!
-//! Three searches with one interface, [`Search`], and equal answers to the bit: [`AllPairs`] is the oracle,
+//! Searches with one interface, [`Search`], and equal answers to the bit: [`AllPairs`] is the oracle,
 //! [`Cells`] is the one to use, [`Tree`] is a k-d tree by a library, which needs no cell size and suffers least from
 //! points that lie very unevenly. In two or three dimensions, in f32 or f64, in the open or on a torus
-//! ([`Space`]).
+//! ([`Space`]). Two more are here to be measured beside them, those that STA describes: [`MutualPairs`] looks at each pair
+//! once, [`MidpointTree`] is the tree of its listing.
 //!
 //! Robots never see any of this: they know what arrives as bytes.
 
 mod cells;
+mod midpoint;
+mod mutual;
 mod nearest;
 mod space;
 #[cfg(test)]
@@ -16,6 +19,8 @@ mod tests;
 mod tree;
 
 pub use cells::Cells;
+pub use midpoint::MidpointTree;
+pub use mutual::MutualPairs;
 pub use nearest::Found;
 pub use space::{Real, Space};
 pub use tree::Tree;

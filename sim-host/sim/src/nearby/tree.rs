@@ -78,7 +78,7 @@ impl<R: Real, const D: usize> Search<R, D> for Tree<R, D> {
 }
 
 /// The centres of a ball and of those of its images around the torus that may reach into it.
-fn images<R: Real, const D: usize>(at: [R; D], radius: R, period: [R; D]) -> Vec<[R; D]> {
+pub(super) fn images<R: Real, const D: usize>(at: [R; D], radius: R, period: [R; D]) -> Vec<[R; D]> {
     let mut balls = vec![at];
     for axis in 0..D {
         let reach = radius + margin(at[axis], radius + period[axis]);

@@ -45,6 +45,21 @@ pub fn heading([x, y, _]: [f32; 3]) -> f64 {
     libm::atan2(y.into(), x.into())
 }
 
+/// A place, and the attitude of a body that looks where it goes: nose first, level from side to side.
+pub fn looking(out: &mut Bytes, at_m: [f64; 3], velocity_mps: [f32; 3]) {
+    let quaternion = quaternion(velocity_mps);
+    out.message(1, |out| vector(out, at_m));
+    out.message(2, |out| (1..).zip(quaternion).for_each(|(number, value)| out.double(number, value)));
+}
+
+/// x, y, z, w of the turn of [`attitude`](staya_sim::metrics::flock::attitude): about z to the heading, then nose up.
+fn quaternion(velocity_mps: [f32; 3]) -> [f64; 4] {
+    let [x, y, z] = velocity_mps.map(f64::from);
+    let (sin, cos) = libm::sincos(heading(velocity_mps) / 2.0);
+    let (down, level) = libm::sincos(-libm::atan2(z, libm::hypot(x, y)) / 2.0);
+    [-sin * down, cos * down, sin * level, cos * level]
+}
+
 /// An entity that takes the place of the one before.
 fn entity(update: &mut Bytes, id: &str, at_ns: u64, fill: impl FnOnce(&mut Bytes)) {
     update.message(2, |out| {
@@ -177,4 +192,31 @@ fn wall(out: &mut Bytes, points_m: &[[f64; 2]], high: f64) {
     });
     let posts = points_m.iter().map(|&point| [at(point, 0.0), at(point, high)]);
     lines(out, OBSTACLE, high / 4.0, sides.chain(posts));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use staya_sim::metrics::flock::attitude;
+
+    /// The columns of the rotation of a unit quaternion.
+    fn columns([x, y, z, w]: [f64; 4]) -> [[f64; 3]; 3] {
+        [
+            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + z * w), 2.0 * (x * z - y * w)],
+            [2.0 * (x * y - z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + x * w)],
+            [2.0 * (x * z + y * w), 2.0 * (y * z - x * w), 1.0 - 2.0 * (x * x + y * y)],
+        ]
+    }
+
+    #[test]
+    fn poses_have_the_attitude_of_their_velocity() {
+        for velocity in [[1.0, 0.0, 0.0], [0.0, -2.0, 0.5], [-1.0, 4.0, -9.0], [0.0, 0.0, 7.0], [3.0, 3.0, 3.0]] {
+            let wanted = attitude(velocity.map(f64::from)).unwrap();
+            let columns = columns(quaternion(velocity));
+            for (got, wanted) in columns.iter().flatten().zip(wanted.iter().flatten()) {
+                assert!((got - wanted).abs() < 1e-12, "{velocity:?}: {columns:?} {wanted:?}");
+            }
+        }
+        assert_eq!(quaternion([0.0; 3]), [0.0, 0.0, 0.0, 1.0]);
+    }
 }

@@ -6,7 +6,7 @@
 //! | `/land` | `foxglove.Grid` | once: a byte a cell, 0 a wall, otherwise ticks to cross it |
 //! | `/obstacles` | `foxglove.SceneUpdate` | once |
 //! | `/bodies` | `foxglove.SceneUpdate` | each moment: robots and intruders |
-//! | `/poses` | `foxglove.PosesInFrame` | each moment: robots, then intruders, looking where they go |
+//! | `/poses` | `foxglove.PosesInFrame` | each moment: robots, then intruders, looking where they go, in space also up and down |
 //! | `/goals` | `foxglove.SceneUpdate` | when they change: crosses |
 //! | `/events` | `foxglove.Log` | when a robot's mode changes |
 //! | `/figures` | `staya.Figures` (JSON) | each moment |
@@ -22,7 +22,7 @@ use crate::recording::RecordingError;
 use crate::scene::{MODES, Scene};
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
-use draw::{pose, stamp, vector};
+use draw::{looking, pose, stamp, vector};
 use mcap::records::MessageHeader;
 use mcap::{McapError, WriteOptions};
 use proto::Bytes;
@@ -114,7 +114,7 @@ impl<W: Write + Seek> McapWriter<W> {
         poses.message(1, |out| stamp(out, at_ns));
         poses.text(2, draw::FRAME);
         for (position_m, velocity_mps) in frame.position_m.iter().zip(&frame.velocity_mps) {
-            poses.message(3, |out| pose(out, position_m.map(f64::from), draw::heading(*velocity_mps)));
+            poses.message(3, |out| looking(out, position_m.map(f64::from), *velocity_mps));
         }
         self.send(POSES, at_ns, &poses.0)?;
         let goals: Vec<_> = frame.target_m.iter().take(robots).map(|goal| goal.map(f32::to_bits)).collect();

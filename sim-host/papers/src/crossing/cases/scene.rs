@@ -2,7 +2,7 @@
 
 use super::{Case, Plan};
 use staya_controller::agent::{GuidanceSetup, RouteSetup, SafetyKind};
-use staya_controller::flock::lattice::LatticeParams;
+use staya_controller::flock::lattice::{LatticeParams, ReferenceMotion};
 use staya_controller::grid::{BLOCKED, Cell};
 use staya_controller::orca::AvoidParams;
 use staya_controller::push_out::PushOutParams;
@@ -121,7 +121,7 @@ impl Plan {
                 let news_s = self.conditions.step_s as f32;
                 let rate_hz = ((1.0 - self.conditions.loss) / self.conditions.step_s) as f32;
                 let params = LatticeParams::new(SPACING_M as f32).stable_for(news_s, rate_hz);
-                group.guidance = GuidanceSetup::Lattice { params, moves: true };
+                group.guidance = GuidanceSetup::Lattice { params, motion: ReferenceMotion::Dynamic };
                 group
             }
             _ => group,

@@ -1,3 +1,6 @@
+mod attitude;
+mod energy;
+
 use super::*;
 use proptest::prelude::*;
 

@@ -6,7 +6,7 @@ use super::spec::Spec;
 use crate::radio::RadioParams;
 use staya_controller::agent::{BoidsSetup, GuidanceKind, GuidanceSetup};
 use staya_controller::flock::goal::GoalParams;
-use staya_controller::flock::lattice::{Algorithm, Gain, LatticeParams};
+use staya_controller::flock::lattice::{Algorithm, Gain, LatticeParams, ReferenceMotion};
 
 /// Robots among each other over the goal in algorithm 2: see `LatticeParams::gamma`.
 const GAMMA_OF_TWO: f32 = 50.0;
@@ -73,7 +73,23 @@ pub(super) fn lattice(
             *param = Gain::critical(gain as f32);
         }
     }
-    Ok(Some(GuidanceSetup::Lattice { params, moves: given.goal_moves.unwrap_or(true) }))
+    if let Some(ratio) = given.obstacle_ratio {
+        spec.within(source, "lattice.obstacle_ratio", ratio, [0.01, 4.0], "spacings")?;
+        params.obstacle_ratio = ratio as f32;
+    }
+    let motion = match (given.goal_moves, given.goal_rest_m) {
+        (Some(false), None) => ReferenceMotion::Static,
+        (_, None) => ReferenceMotion::Dynamic,
+        (Some(false), Some(within_m)) => {
+            spec.within(source, "lattice.goal_rest_m", within_m, [0.01, 1e6], "metres")?;
+            ReferenceMotion::Resting(within_m as f32)
+        }
+        (_, Some(_)) => {
+            let (what, remedy) = ("a goal that moves gives no rest", "give goal_moves = false, or leave it out");
+            return Err(source.error(&spec.field(source, "lattice.goal_rest_m"), what, remedy));
+        }
+    };
+    Ok(Some(GuidanceSetup::Lattice { params, motion }))
 }
 
 /// What is dangerous about gains that are asked for, for people; nothing if they bear what this radio does.

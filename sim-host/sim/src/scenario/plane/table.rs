@@ -371,6 +371,10 @@ pub struct LatticeTable {
     pub c_gamma: Option<f64>,
     /// Whether the goal moves with its velocity (a dynamic gamma-agent) or stays although it has one. Default: true.
     pub goal_moves: Option<bool>,
+    /// Over which way behind a goal that stays its velocity fades, metres: the flock comes to rest within it. Default: never.
+    pub goal_rest_m: Option<f64>,
+    /// Distance kept from obstacles over spacing (d' / d). Default: 0.6.
+    pub obstacle_ratio: Option<f64>,
 }
 
 /// `[plane.goal_flock]` (PAV).

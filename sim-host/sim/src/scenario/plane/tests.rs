@@ -1,3 +1,4 @@
+mod flocks;
 mod groups;
 
 use super::super::Overrides;

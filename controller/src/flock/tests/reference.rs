@@ -1,0 +1,44 @@
+use super::vec3;
+use crate::flock::lattice::ReferenceMotion;
+
+const EAST: [f64; 3] = [6.0, 0.0, 0.0];
+
+fn wanted(motion: ReferenceMotion<f64>, offset: [f64; 3]) -> f64 {
+    let velocity = motion.wanted(vec3(offset), vec3(EAST));
+    assert_eq!((velocity.y, velocity.z), (0.0, 0.0));
+    velocity.x
+}
+
+#[test]
+fn a_velocity_fades_behind_a_resting_reference_and_behind_no_other() {
+    let resting = ReferenceMotion::Resting(70.0);
+    // Before it and beside it all of it, behind it less with the way along the velocity alone.
+    let expected = [(50.0, 6.0), (0.0, 6.0), (-35.0, 3.0), (-69.3, 0.06), (-70.0, 0.0), (-1e9, 0.0)];
+    for (offset, speed) in expected {
+        for side in [0.0, -400.0] {
+            let got = wanted(resting, [offset, side, 3.0]);
+            assert!((got - speed).abs() < 1e-9, "{offset}: {got}");
+            assert_eq!(wanted(ReferenceMotion::Static, [offset, side, 3.0]), 6.0);
+            assert_eq!(wanted(ReferenceMotion::Dynamic, [offset, side, 3.0]), 6.0);
+        }
+    }
+}
+
+#[test]
+fn a_rest_without_a_way_is_at_the_reference_and_nonsense_moves_nobody() {
+    for none in [0.0, -1.0, f64::NAN] {
+        assert_eq!(wanted(ReferenceMotion::Resting(none), [-1.0, 0.0, 0.0]), 0.0);
+        assert_eq!(wanted(ReferenceMotion::Resting(none), [1.0, 0.0, 0.0]), 6.0);
+    }
+    let stands = ReferenceMotion::Resting(70.0).wanted(vec3([-5.0, 0.0, 0.0]), vec3([0.0; 3]));
+    assert_eq!(stands, vec3::<f64>([0.0; 3]));
+}
+
+#[test]
+fn flags_of_before_have_the_digest_of_before() {
+    use crate::digest::digest;
+    assert_eq!(digest(&ReferenceMotion::<f32>::Static), digest(&false));
+    assert_eq!(digest(&ReferenceMotion::<f32>::Dynamic), digest(&true));
+    let resting = |within: f32| digest(&ReferenceMotion::Resting(within));
+    assert_ne!(resting(7.0), resting(8.0));
+}

@@ -1,0 +1,141 @@
+//! The energy of an alpha flock (OLF section V): what algorithms 1 and 2 can only lose.
+
+use super::{mean, minus, squared};
+use crate::nearby::{Cells, Found, Query, Search as _, Space};
+use serde::Serialize;
+use staya_controller::flock::action::{PhiAlpha, SPACING, sigma_norm, sigmoid_shift};
+use staya_controller::flock::lattice::{Algorithm, LatticeParams};
+
+/// Intervals of the pair potential's table.
+const INTERVALS: usize = 4096;
+
+/// The energy of a flock at one moment, in the paper's units (a spacing is 7, a second 1, a mass 1).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Energy {
+    /// K: half the squared velocities relative to their mean.
+    pub kinetic: f64,
+    /// c1 V: the pair potential over all pairs times the robots' gain; those beyond the range count as at the range.
+    pub lattice: f64,
+    /// c1 J: half the squared distances from the centroid times the reference's gain; 0 but in algorithm 2.
+    pub reference: f64,
+}
+
+impl Energy {
+    /// The structural Hamiltonian (eq. 36): H = V + K in algorithm 1, with the reference's part in algorithm 2.
+    #[must_use]
+    pub fn hamiltonian(&self) -> f64 {
+        self.kinetic + self.lattice + self.reference
+    }
+}
+
+/// Computes the energy of flocks with certain parameters; keeps its buffers between moments.
+///
+/// H falls along every solution of algorithms 1 and 2 in free space (eq. 41 and the proof of theorem 2):
+/// dH/dt = -c2 v' L v - c2 v' v with the gains on velocities of robots and reference. Gains on positions stand before
+/// V and J, which the paper has without (V) or calls lambda (J). Obstacles, and a pull that is bounded as in algorithm
+/// 3, have no part in it: there it may rise.
+#[derive(Clone, Debug)]
+pub struct EnergyMeter<const D: usize> {
+    units: f64,
+    range_m: f64,
+    alpha: f64,
+    gamma: f64,
+    r_alpha: f64,
+    /// psi_alpha at even distances from 0 to r_alpha, in the sigma norm.
+    psi: Vec<f64>,
+    cells: Cells<f64, D>,
+    found: Vec<Found<f64, D>>,
+}
+
+impl<const D: usize> EnergyMeter<D> {
+    /// A meter for such flocks; `None` for parameters that are not sound.
+    #[must_use]
+    pub fn new(params: &LatticeParams<f64>) -> Option<Self> {
+        let c = sigmoid_shift(params.attraction, params.repulsion).filter(|_| params.is_sound())?;
+        let d = f64::from(SPACING);
+        let range = d * params.range_ratio;
+        let phi = PhiAlpha {
+            r_alpha: sigma_norm(range * range).sigma,
+            d_alpha: sigma_norm(d * d).sigma,
+            a: params.attraction,
+            b: params.repulsion,
+            c,
+        };
+        Some(Self {
+            units: d / params.spacing_m,
+            range_m: params.range_m(),
+            alpha: params.alpha.position,
+            gamma: if params.algorithm == Algorithm::Two { params.gamma.position } else { 0.0 },
+            r_alpha: phi.r_alpha,
+            psi: pair_potential(&phi),
+            cells: Cells::new(Space::OPEN, params.range_m()),
+            found: Vec::new(),
+        })
+    }
+
+    /// psi_alpha (eq. 16) of two robots whose distance is `z` in the sigma norm: 0 at the spacing, even beyond the
+    /// range. Within 1e-6 of the integral.
+    #[must_use]
+    pub fn pair(&self, z: f64) -> f64 {
+        let place = (z / self.r_alpha).clamp(0.0, 1.0) * INTERVALS as f64;
+        let below = (place as usize).min(INTERVALS - 1);
+        let share = place - below as f64;
+        self.psi[below] * (1.0 - share) + self.psi[below + 1] * share
+    }
+
+    /// The energy of robots at these places, metres, with these velocities, m/s. `None` when there are none or something is not
+    /// finite. O(n + edges).
+    ///
+    /// # Panics
+    /// When there are not as many velocities as places.
+    pub fn look(&mut self, places_m: &[[f64; D]], velocities_mps: &[[f64; D]]) -> Option<Energy> {
+        assert_eq!(places_m.len(), velocities_mps.len(), "one velocity a robot");
+        let is_sound = |vectors: &[[f64; D]]| vectors.iter().flatten().all(|c| c.is_finite());
+        if places_m.is_empty() || !is_sound(places_m) || !is_sound(velocities_mps) {
+            return None;
+        }
+        let n = places_m.len() as f64;
+        let beyond = self.pair(self.r_alpha);
+        // All pairs as if beyond the range, then what those within it have less.
+        let mut potential = beyond * n * (n - 1.0) / 2.0;
+        self.cells.rebuild(places_m);
+        for (robot, &at) in (0..).zip(places_m) {
+            let query = Query { at, radius: self.range_m, most: usize::MAX, except: Some(robot) };
+            self.cells.within(&query, &mut self.found);
+            for other in self.found.iter().filter(|other| other.index > robot) {
+                let squared = other.distance_squared * self.units * self.units;
+                potential += self.pair(sigma_norm(squared).sigma) - beyond;
+            }
+        }
+        let spread = |vectors: &[[f64; D]]| {
+            let middle = mean(vectors);
+            let halves = vectors.iter().map(|&vector| squared(minus(vector, middle)) / 2.0);
+            halves.sum::<f64>() * self.units * self.units
+        };
+        Some(Energy {
+            kinetic: spread(velocities_mps),
+            lattice: self.alpha * potential,
+            reference: if self.gamma > 0.0 { self.gamma * spread(places_m) } else { 0.0 },
+        })
+    }
+}
+
+/// The integral of phi_alpha from d_alpha on, at even places from 0 to r_alpha, by Simpson's rule.
+fn pair_potential(phi: &PhiAlpha<f64>) -> Vec<f64> {
+    let step = phi.r_alpha / INTERVALS as f64;
+    let force = |z: f64| phi.at(z, phi.adjacency(z));
+    let over = |from: f64, to: f64| (force(from) + 4.0 * force((from + to) / 2.0) + force(to)) * (to - from) / 6.0;
+    let mut sum = 0.0;
+    let mut psi = vec![0.0];
+    for interval in 0..INTERVALS {
+        let from = interval as f64 * step;
+        sum += over(from, from + step);
+        psi.push(sum);
+    }
+    // So far from 0 on; at d_alpha, its least, it is 0.
+    let interval = (phi.d_alpha / step) as usize;
+    let from = interval as f64 * step;
+    let least = psi[interval] + over(from, phi.d_alpha);
+    psi.iter_mut().for_each(|value| *value -= least);
+    psi
+}
