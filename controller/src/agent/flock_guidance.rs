@@ -9,6 +9,7 @@ use crate::flock::lattice::{LatticeParams, Reference, ReferenceMotion, accelerat
 use crate::geom::{Position, Vec2, Vec3};
 use crate::rand::Rng;
 use crate::scalar::Scalar;
+use crate::time::Instant;
 use serde::Serialize;
 
 /// Goals that a robot of a goal flock has room for.
@@ -93,7 +94,7 @@ impl<S: Scalar> Guidance<S> for LatticeGuidance<S> {
 }
 
 /// The goal flock (V. E. and V. V. Pavlovsky, PAV): to the middle of the goals together, there each robot draws one of
-/// them. Goals stay where they are until they are given anew: the velocity of a [`Waypoint`] counts for nothing here.
+/// them. Goals may move, by velocities of their own: the middle moves along, and who has drawn one follows it.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(feature = "state", derive(serde::Deserialize))]
 pub struct GoalFlockGuidance<S> {
@@ -101,13 +102,25 @@ pub struct GoalFlockGuidance<S> {
     arrival_m: S,
     seed: u64,
     goals: Goals<GOALS>,
+    /// Those of them that move.
+    moving: [Option<Waypoint<S>>; GOALS],
 }
 
 impl<S: Scalar> GoalFlockGuidance<S> {
     /// `arrival_m`: how near counts as being there; a crowd needs room, so about the neighbourhood. `seed`: of the draws.
     #[must_use]
     pub const fn new(params: GoalParams<S>, arrival_m: S, seed: u64) -> Self {
-        Self { params, arrival_m, seed, goals: Goals::new() }
+        Self { params, arrival_m, seed, goals: Goals::new(), moving: [None; GOALS] }
+    }
+
+    /// Takes moving goals to where they are at `now`. Goals that stand keep their very place.
+    fn follow_goals(&mut self, own: Position, now: Instant) {
+        for (index, waypoint) in self.moving.iter_mut().enumerate() {
+            let place = waypoint.as_mut().and_then(|waypoint| own.moved(waypoint.way(own, now)));
+            if let Some(place) = place {
+                let _ = self.goals.set_goal(index, place);
+            }
+        }
     }
 
     /// Where the robot is on its way.
@@ -143,6 +156,7 @@ impl<S: Scalar> Guidance<S> for GoalFlockGuidance<S> {
     ) -> Result<Decision<S>, BadInput> {
         input.can_go()?;
         let own = input.state.position;
+        self.follow_goals(own, input.now);
         let _ = self.goals.update(own, self.arrival_m, self.seed, input.id);
         let goal = self.goals.current();
         let wish_mps = wish(&self.params, &input.body, own, goal, input.nearby);
@@ -156,8 +170,12 @@ impl<S: Scalar> Guidance<S> for GoalFlockGuidance<S> {
 
     fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool {
         let (index, position) = (usize::from(index), waypoint.position);
-        self.goals.set_goal(index, position)
-            || (index == self.goals.as_slice().len() && self.goals.push(position).is_ok())
+        let is_taken = self.goals.set_goal(index, position)
+            || (index == self.goals.as_slice().len() && self.goals.push(position).is_ok());
+        if let Some(moving) = self.moving.get_mut(index).filter(|_| is_taken) {
+            *moving = (waypoint.velocity_mps != Vec3::ZERO).then_some(*waypoint);
+        }
+        is_taken
     }
 
     fn has_own_goal(&self) -> bool {

@@ -5,13 +5,14 @@
 mod crossing;
 mod flock;
 mod formation;
+mod goals;
 mod movingai;
 pub mod orca;
 mod route;
 
 use crate::experiment::Experiment as _;
 use crate::experiment::rows::Keeping;
-use crate::{boids, goals, scale};
+use crate::{boids, scale};
 use anyhow::Result;
 use clap::{Args, Subcommand};
 use staya_console::{Ended, Global, Stop};
@@ -43,8 +44,8 @@ enum Experiment {
     Boids(Box<boids::Plan>),
     /// The five flocking simulations of Olfati-Saber 2006, and flocks driven at each other.
     Flock(Box<flock::FlockArgs>),
-    /// 225 robots travel to three goals: how much of a group they stay (Pavlovsky and Pavlovsky).
-    Goals(Box<goals::Plan>),
+    /// 225 robots travel to three goals: how much of a group they are, and gains tuned (Pavlovsky and Pavlovsky).
+    Goals(Box<goals::GoalsArgs>),
     /// What a robot costs in time and memory, in swarms of a thousand to a million, on the grid and in the plane.
     Scale(Box<scale::Plan>),
 }
@@ -69,7 +70,10 @@ impl ExperimentArgs {
                 Some(closing) => closing.command(&args.plan.out.join("closing"), keeping, global, &stop),
                 None => args.plan.command(&args.plan.out, keeping, global, &stop),
             },
-            Experiment::Goals(plan) => plan.command(&plan.out, keeping, global, &stop),
+            Experiment::Goals(args) => match args.tuning() {
+                Some(tuning) => tuning.command(&args.plan.out.join("tuned"), keeping, global, &stop),
+                None => args.plan.command(&args.plan.out, keeping, global, &stop),
+            },
             Experiment::Scale(plan) => plan.command(&plan.out, keeping, global, &stop),
         }
     }

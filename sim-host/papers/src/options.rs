@@ -28,7 +28,7 @@ pub(crate) fn word(value: impl Named) -> String {
 }
 
 /// Takes one of these values by its name, and says in `--help` what it is.
-fn one_of<T: Named + Send + Sync>(values: &'static [(T, &'static str)]) -> impl TypedValueParser<Value = T> {
+pub(crate) fn one_of<T: Named + Send + Sync>(values: &'static [(T, &'static str)]) -> impl TypedValueParser<Value = T> {
     let possible = values.iter().map(|(value, help)| {
         // A few bytes for the time that the program runs.
         let possible = PossibleValue::new(&*word(*value).leak()).alias(value.name());

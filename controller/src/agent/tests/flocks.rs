@@ -99,6 +99,28 @@ fn a_goal_flock_goes_to_the_middle_and_then_to_goals_of_its_own() {
 }
 
 #[test]
+fn a_goal_flock_follows_goals_that_move() {
+    let mut robot =
+        Robot::new(&one_step_late(1), GoalFlockGuidance::new(GoalParams::new(0.5, 1.0), 1.0, 7), Unguarded, [0.0; 2]);
+    let goal = |at, velocity_mps| Waypoint { velocity_mps, ..place(10_000, at) };
+    let north = crate::geom::Vec3::new(0.0, 0.4, 0.0);
+    assert!(robot.agent.assign_waypoint(0, &goal(2_000, north)));
+    assert!(robot.agent.assign_waypoint(1, &goal(-2_000, north)));
+    let mut robots = [robot];
+    run(&mut robots, 0..600);
+    let [robot] = &mut robots;
+    let Stage::Goal(drawn) = robot.agent.guidance().stage() else { panic!("still at {:?}", robot.at_m) };
+    let was_m = [2.0, -2.0][drawn];
+    // A minute.
+    assert!(distance(robot.at_m, [10.0, was_m + 0.4 * 60.0]) <= 0.6, "{:?}", robot.at_m);
+    // Given anew, it stands.
+    let index = u8::try_from(drawn).unwrap();
+    assert!(robot.agent.assign_waypoint(index, &place(10_000, 0)));
+    run(&mut robots, 600..1600);
+    assert!(distance(robots[0].at_m, [10.0, 0.0]) <= 0.6, "{:?}", robots[0].at_m);
+}
+
+#[test]
 fn boids_keep_their_speed_and_take_on_one_heading() {
     let new = |id, at_m, velocity_mps| {
         let params = BoidsParams::new(0.3, 30.0, 0.05, 0.02);

@@ -1,15 +1,22 @@
 //! What is measured on the way to the goals.
 
 use super::Plan;
-use crate::arena::distance_m;
+use super::scene::{Scene, middle_m};
+use super::setting::Setting;
 use crate::experiment::rows::{Each, Record};
 use staya_sim::metrics::flock::{FlockMeter, gaps, polarisation};
 use staya_sim::nearby::Space;
-use staya_sim::record::RobotRow;
-use staya_sim::scenario::Scenario;
 
 /// The first seconds do not count: robots start at rest.
 const WARM_UP_S: f64 = 5.0;
+/// The way is over when this share of the robots has gathered: from then on robots draw goals and part, and crowd
+/// around the middle, and neither says anything about the group.
+const WAY_ENDS: f64 = 0.1;
+/// Robots within so much of each other, in R_MinDist, are one group: beyond it r3 ends.
+const LINK: f64 = 2.0;
+/// Robots within so much, in R_MinDist, are company: the paper's R_nbh, whatever R_nbh is, so that runs can be
+/// compared.
+const COMPANY: f64 = 4.0;
 
 /// Shares of the time at which the first run is drawn.
 pub(super) const MOMENTS: [f64; 6] = [0.0, 0.125, 0.25, 0.375, 0.5, 1.0];
@@ -24,7 +31,7 @@ pub struct Run {
     /// Time until half of them were, seconds.
     pub half_gathered_s: Option<f64>,
     /// Robots at each goal at the end.
-    pub at_goals: [usize; 3],
+    pub at_goals: [usize; 4],
     /// Least distance of two centres, metres; infinite when none were within R_MinDist.
     pub least_pair_m: f64,
     /// Pairs of bodies that overlap, summed over ticks.
@@ -37,24 +44,28 @@ pub struct Run {
 
 impl Record for Run {
     fn figures(&mut self, each: &mut Each<'_>) {
-        // All three or none.
+        // All or none.
         let way = self.way;
         let part = |value: fn(&Way) -> f64| way.as_ref().map(value);
-        let [mut polarisation, mut together, mut spread] =
-            [part(|way| way.polarisation), part(|way| way.together), part(|way| way.spread)];
+        let [mut polarisation, mut together, mut company, mut spread] =
+            [part(|way| way.polarisation), part(|way| way.together), part(|way| way.company), part(|way| way.spread)];
         each("polarisation", "length of the mean direction on the way; empty: it was over at once", &mut polarisation);
         each("together", "share of the largest group on the way", &mut together);
+        each("company", "robots within four R_MinDist of a robot on the way, mean", &mut company);
         each("spread", "radius of the crowd on the way over that at the start", &mut spread);
-        self.way = match (polarisation, together, spread) {
-            (Some(polarisation), Some(together), Some(spread)) => Some(Way { polarisation, together, spread }),
+        self.way = match (polarisation, together, company, spread) {
+            (Some(polarisation), Some(together), Some(company), Some(spread)) => {
+                Some(Way { polarisation, together, company, spread })
+            }
             _ => None,
         };
-        let [first, second, third] = &mut self.at_goals;
+        let [first, second, third, fourth] = &mut self.at_goals;
         each("gathered", "robots that came to the middle", &mut self.gathered);
         each("half_gathered_s", "when half of them had; empty: never", &mut self.half_gathered_s);
         each("at_goal_1", "robots at the first goal at the end", first);
         each("at_goal_2", "robots at the second goal at the end", second);
         each("at_goal_3", "robots at the third goal at the end", third);
+        each("at_goal_4", "robots at the fourth goal at the end", fourth);
         each("least_pair_m", "least distance of two centres; inf: more than R_MinDist", &mut self.least_pair_m);
         each("overlaps", "overlapping pairs, summed over ticks", &mut self.overlaps);
     }
@@ -71,6 +82,8 @@ pub struct Way {
     pub polarisation: f64,
     /// Share of all robots in the largest group.
     pub together: f64,
+    /// Robots within four R_MinDist of a robot, mean over all.
+    pub company: f64,
     /// Root mean square distance from the centroid over that at the start.
     pub spread: f64,
 }
@@ -85,11 +98,16 @@ pub struct Frame {
 
 /// Measures a run as it goes.
 pub struct Watch<'a> {
-    plan: &'a Plan,
+    scene: &'a Scene,
+    arrival_m: f64,
+    radius_m: f64,
+    min_distance_m: f64,
+    step_s: f64,
     /// Ticks to keep.
     wanted: Vec<u32>,
     warm_up: u32,
-    meter: FlockMeter<2>,
+    groups: FlockMeter<2>,
+    company: FlockMeter<2>,
     has_gathered: Vec<bool>,
     places_m: Vec<[f64; 2]>,
     velocities_mps: Vec<[f64; 2]>,
@@ -101,52 +119,42 @@ pub struct Watch<'a> {
 
 impl<'a> Watch<'a> {
     /// `draws`: whether to keep moments for pictures.
-    pub fn new(plan: &'a Plan, scenario: &Scenario, draws: bool) -> Self {
-        let at = |share: f64| libm::round(share * f64::from(scenario.ticks)) as u32;
-        let spacing_m = plan.min_distance_m;
+    pub fn new(plan: &Plan, setting: &Setting, scene: &'a Scene, draws: bool) -> Self {
+        let ticks = crate::arena::ticks(plan.seconds, plan.step_s);
+        let at = |share: f64| libm::round(share * f64::from(ticks)) as u32;
+        let unit = plan.min_distance_m;
         Self {
-            plan,
+            scene,
+            arrival_m: setting.arrival() * unit,
+            radius_m: plan.radius_m(),
+            min_distance_m: unit,
+            step_s: plan.step_s,
             wanted: if draws { MOMENTS.map(at).to_vec() } else { Vec::new() },
             warm_up: crate::arena::ticks(WARM_UP_S, plan.step_s),
-            meter: FlockMeter::new(spacing_m, 2.0 * spacing_m, Space::OPEN),
-            has_gathered: vec![false; scenario.robots.len()],
+            groups: FlockMeter::new(unit, LINK * unit, Space::OPEN),
+            company: FlockMeter::new(unit, COMPANY * unit, Space::OPEN),
+            has_gathered: vec![false; scene.starts.len()],
             places_m: Vec::new(),
             velocities_mps: Vec::new(),
             first_spread_m: 0.0,
             sum: Way::default(),
             looks: 0,
-            run: Run {
-                way: None,
-                gathered: 0,
-                half_gathered_s: None,
-                at_goals: [0; 3],
-                least_pair_m: f64::INFINITY,
-                overlaps: 0,
-                frames: Vec::new(),
-                hash: 0,
-            },
+            run: Run { least_pair_m: f64::INFINITY, ..Run::default() },
         }
     }
 
     /// Looks at all robots after a tick.
-    pub fn look(&mut self, tick: u32, robots: &mut dyn Iterator<Item = RobotRow>) {
-        let arrival_m = self.plan.arrival_m();
-        let goals_m = self.plan.goals_at(tick);
-        let mean = |axis: usize| goals_m.iter().map(|goal| goal[axis]).sum::<f64>() / 3.0;
-        let middle_m = [mean(0), mean(1), 0.0];
-        self.places_m.clear();
-        self.velocities_mps.clear();
-        self.run.at_goals = [0; 3];
-        for (robot, has_gathered) in robots.zip(&mut self.has_gathered) {
-            let [x, y, _] = robot.motion.position_m;
-            let [vx, vy, _] = robot.motion.velocity_mps;
-            self.places_m.push([x, y]);
-            self.velocities_mps.push([vx, vy]);
-            let off_m = |place_m: [f64; 3]| distance_m(robot.motion.position_m, place_m);
-            *has_gathered |= off_m(middle_m) <= arrival_m;
-            let nearest = (0..3).map(|goal| (off_m(goals_m[goal]), goal)).min_by(|a, b| a.0.total_cmp(&b.0));
+    pub fn look(&mut self, tick: u32, places_m: Vec<[f64; 2]>, velocities_mps: Vec<[f64; 2]>) {
+        let goals_m = self.scene.goals_at(tick);
+        let middle_m = middle_m(&goals_m);
+        (self.places_m, self.velocities_mps) = (places_m, velocities_mps);
+        self.run.at_goals = [0; 4];
+        for (&[x, y], has_gathered) in self.places_m.iter().zip(&mut self.has_gathered) {
+            let off_m = |place_m: [f64; 3]| libm::hypot(x - place_m[0], y - place_m[1]);
+            *has_gathered |= off_m(middle_m) <= self.arrival_m;
+            let nearest = (0..).zip(&goals_m).map(|(goal, &at)| (off_m(at), goal)).min_by(|a, b| a.0.total_cmp(&b.0));
             // As the robot itself rounds.
-            if let Some((_, goal)) = nearest.filter(|(off, _)| *off <= arrival_m + 0.01) {
+            if let Some((_, goal)) = nearest.filter(|(off, _): &(f64, usize)| *off <= self.arrival_m + 0.01) {
                 self.run.at_goals[goal] += usize::from(*has_gathered);
             }
         }
@@ -162,9 +170,9 @@ impl<'a> Watch<'a> {
     }
 
     fn look_at_pairs(&mut self) {
-        let radius_m = self.plan.radius_m();
+        let radius_m = self.radius_m;
         let radii = vec![radius_m; self.places_m.len()];
-        let horizon_m = self.plan.min_distance_m - 2.0 * radius_m;
+        let horizon_m = self.min_distance_m - 2.0 * radius_m;
         let gaps = gaps(&self.places_m, &radii, &[], horizon_m, Space::OPEN);
         self.run.overlaps += gaps.overlapping_pairs;
         if let Some(gap_m) = gaps.between_robots_m {
@@ -176,21 +184,24 @@ impl<'a> Watch<'a> {
         let robots = self.has_gathered.len();
         self.run.gathered = self.has_gathered.iter().filter(|has| **has).count();
         if 2 * self.run.gathered >= robots && self.run.half_gathered_s.is_none() {
-            self.run.half_gathered_s = Some(f64::from(tick) * self.plan.step_s);
+            self.run.half_gathered_s = Some(f64::from(tick) * self.step_s);
         }
         let spread_m = spread(&self.places_m);
         if tick == 0 {
             self.first_spread_m = spread_m;
         }
-        if tick < self.warm_up || self.run.half_gathered_s.is_some() {
+        if tick < self.warm_up || self.run.gathered as f64 >= WAY_ENDS * robots as f64 {
             return;
         }
         let on_way = self.velocities_mps.iter().zip(&self.has_gathered);
         let on_way: Vec<[f64; 2]> = on_way.filter(|(_, has)| !**has).map(|(v, _)| *v).collect();
-        let largest =
-            self.meter.look(&self.places_m, &self.velocities_mps).map_or(0, |measure| measure.largest_component);
+        let groups = self.groups.look(&self.places_m, &self.velocities_mps);
+        let largest = groups.map_or(0, |measure| measure.largest_component);
+        let company = self.company.look(&self.places_m, &self.velocities_mps);
+        let pairs = company.map_or(0, |measure| measure.edges);
         self.sum.polarisation += polarisation(&on_way);
         self.sum.together += largest as f64 / robots as f64;
+        self.sum.company += 2.0 * pairs as f64 / robots as f64;
         self.sum.spread += spread_m / self.first_spread_m;
         self.looks += 1;
     }
@@ -201,6 +212,7 @@ impl<'a> Watch<'a> {
         self.run.way = (self.looks > 0).then(|| Way {
             polarisation: self.sum.polarisation / looks,
             together: self.sum.together / looks,
+            company: self.sum.company / looks,
             spread: self.sum.spread / looks,
         });
         self.run.hash = hash;

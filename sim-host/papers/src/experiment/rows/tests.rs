@@ -146,7 +146,7 @@ fn rows_of_all_experiments_are_sound() {
     check(&cases::Plan::default(), &cases::Plan { seed: 77, ..cases::Plan::default() });
     check(&formation::Plan::default(), &formation::Plan { loss: 0.25, ..formation::Plan::default() });
     check(&route::Plan::default(), &route::Plan { parked: 3, ..route::Plan::default() });
-    check(&goals::Plan::default(), &goals::Plan { k3: 1.0, ..goals::Plan::default() });
+    check(&goals::Plan::default(), &goals::Plan { k3: vec![1.0], ..goals::Plan::default() });
     check(&flock::Plan::default(), &flock::Plan { loss: 0.1, ..flock::Plan::default() });
     check(&Closing::default(), &Closing { step_s: 0.02, ..Closing::default() });
     check(&boids::Plan::default(), &boids::Plan { steps: 3, ..boids::Plan::default() });

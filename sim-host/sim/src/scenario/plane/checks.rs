@@ -31,20 +31,6 @@ pub(super) fn velocity(source: &Source<'_>, field: &str, velocity: Place) -> Res
     Err(source.error(field, "this is too fast", remedy))
 }
 
-/// The velocity of a goal.
-pub(super) fn goal_velocity(
-    source: &Source<'_>,
-    field: &str,
-    guidance: GuidanceKind,
-    given: Place,
-) -> Result<(), ScenarioError> {
-    if guidance == GuidanceKind::GoalFlock && given.0 != [0.0; 3] {
-        let what = "goals of guidance \"goal_flock\" do not move";
-        return Err(source.error(field, what, "leave it out"));
-    }
-    velocity(source, field, given)
-}
-
 /// How many goals robots have room for.
 pub(crate) const fn goals(guidance: GuidanceKind) -> u8 {
     match guidance {
@@ -114,8 +100,7 @@ pub(super) fn cloud(source: &Source<'_>, spec: &Spec, cloud: &CloudEntry) -> Res
     for (index, goal) in cloud.goals_m.iter().enumerate() {
         place(source, &format!("{}[{index}]", field("goals_m")), *goal)?;
     }
-    let moves = cloud.goal_velocity_mps;
-    goal_velocity(source, &field("goal_velocity_mps"), spec.guidance, moves)
+    velocity(source, &field("goal_velocity_mps"), cloud.goal_velocity_mps)
 }
 
 /// No two robots overlap, however they were placed.

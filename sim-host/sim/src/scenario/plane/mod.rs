@@ -312,10 +312,7 @@ fn orders(
             return Err(source.error(&field, what, remedy));
         }
         checks::place(source, &format!("plane.order[{index}].place_m"), order.place_m)?;
-        let field = format!("plane.order[{index}].velocity_mps");
-        for &guidance in &guidances {
-            checks::goal_velocity(source, &field, guidance, order.velocity_mps)?;
-        }
+        checks::velocity(source, &format!("plane.order[{index}].velocity_mps"), order.velocity_mps)?;
         orders.push(Order {
             tick: libm::ceil(order.at_s / file.tick_s) as u32,
             index: order.goal,

@@ -1,0 +1,164 @@
+//! Where a run begins: places of robots, goals and obstacles, drawn by its number.
+
+use super::setting::Setting;
+use super::{Plan, STARTS};
+use crate::arena::{distance_m, starts, ticks, uniform};
+use anyhow::{Context as _, Result, bail};
+use staya_controller::rand::Rng;
+use staya_sim::scenario::{Start, Target};
+use staya_sim::world::plane::Solid;
+
+/// The middle of the goals, in R_MinDist.
+const MIDDLE: [f64; 2] = [70.0, 0.0];
+/// How far goals are from it.
+const AROUND: f64 = 25.0;
+/// Goals drawn at random are within so much of the middle, and so much apart.
+const GOAL_FIELD: [f64; 2] = [40.0, 25.0];
+/// Where the first goal goes when it moves.
+const MOVED: [f64; 2] = [90.0, 20.0];
+/// Where obstacles end, well before the goals.
+const LAST: f64 = 50.0;
+/// Room between the start and obstacles, and between these.
+const ROOM: f64 = 3.0;
+/// Radii of obstacles.
+const RADII: [f64; 2] = [1.0, 3.0];
+/// Draws of a place before nothing fits any more.
+const TRIES: u32 = 1000;
+
+/// Where a run begins.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// The robots, which are told the goals.
+    pub starts: Vec<Start>,
+    /// Discs.
+    pub solids: Vec<Solid>,
+    /// The goals at the start, metres.
+    goals_m: Vec<[f64; 3]>,
+    velocity_mps: [f64; 3],
+    /// The tick in which the first one moves, if it does, and where to.
+    moves: Option<(u32, [f64; 3])>,
+    step_s: f64,
+}
+
+impl Scene {
+    /// That of a run.
+    ///
+    /// # Errors
+    /// There is no room for so many robots, goals or obstacles.
+    pub fn new(plan: &Plan, setting: &Setting, run: u32) -> Result<Self> {
+        let unit = plan.min_distance_m;
+        let goals_m = goals(plan, setting, run)?;
+        let velocity_mps = [0.0, setting.goal_speed_mps, 0.0];
+        let targets: Vec<Target> = goals_m.iter().map(|&position_m| Target { position_m, velocity_mps }).collect();
+        let side = setting.start_half() * unit;
+        let starts = starts(
+            setting.robots,
+            unit,
+            &targets,
+            |robot| Rng::keyed(plan.seed, STARTS, run, robot),
+            |rng| {
+                let place = [uniform(rng, -side, side), uniform(rng, -side, side), 0.0];
+                (place, [0.0; 3])
+            },
+        )
+        .with_context(|| format!("{} robots find no room; give fewer", setting.robots))?;
+        let moves_at = ticks(plan.seconds / 4.0, plan.step_s);
+        let moved_m = [MOVED[0] * unit, MOVED[1] * unit, 0.0];
+        Ok(Self {
+            starts,
+            solids: solids(plan, setting, run)?,
+            goals_m,
+            velocity_mps,
+            moves: plan.moves_goal.then_some((moves_at, moved_m)),
+            step_s: plan.step_s,
+        })
+    }
+
+    /// Where the goals are after a tick, metres.
+    #[must_use]
+    pub fn goals_at(&self, tick: u32) -> Vec<[f64; 3]> {
+        let after = |place_m: [f64; 3], since: u32| {
+            let span_s = f64::from(tick.saturating_sub(since)) * self.step_s;
+            std::array::from_fn(|axis| place_m[axis] + self.velocity_mps[axis] * span_s)
+        };
+        let mut goals_m: Vec<[f64; 3]> = self.goals_m.iter().map(|&place_m| after(place_m, 0)).collect();
+        if let Some((at, place_m)) = self.moves.filter(|(at, _)| tick > *at) {
+            goals_m[0] = after(place_m, at);
+        }
+        goals_m
+    }
+
+    /// The order that moves the first goal: its tick, and the goal as it is from then on.
+    #[must_use]
+    pub fn order(&self) -> Option<(u32, Target)> {
+        self.moves.map(|(tick, position_m)| (tick, Target { position_m, velocity_mps: self.velocity_mps }))
+    }
+}
+
+/// How far robots go straight until they have gathered, in R_MinDist: from the middle of the start to where the
+/// middle of the goals begins. Goals drawn at random are about as far away.
+pub fn way(setting: &Setting) -> f64 {
+    MIDDLE[0] - setting.arrival()
+}
+
+/// The middle of some goals, metres.
+pub fn middle_m(goals_m: &[[f64; 3]]) -> [f64; 3] {
+    let mean = |axis: usize| goals_m.iter().map(|goal| goal[axis]).sum::<f64>() / goals_m.len() as f64;
+    [mean(0), mean(1), 0.0]
+}
+
+/// The goals: evenly around their middle (one: there), or at random with the run's number.
+fn goals(plan: &Plan, setting: &Setting, run: u32) -> Result<Vec<[f64; 3]>> {
+    let unit = plan.min_distance_m;
+    let place_m = |x: f64, y: f64| [(MIDDLE[0] + x) * unit, (MIDDLE[1] + y) * unit, 0.0];
+    if !plan.random_goals {
+        let around = if setting.goals == 1 { 0.0 } else { AROUND };
+        let at = |goal: u32| {
+            let (sin, cos) = libm::sincos(std::f64::consts::TAU * f64::from(goal) / f64::from(setting.goals));
+            place_m(around * cos, around * sin)
+        };
+        return Ok((0..setting.goals).map(at).collect());
+    }
+    let [within, apart] = GOAL_FIELD;
+    let mut goals_m: Vec<[f64; 3]> = Vec::new();
+    let mut rng = Rng::keyed(plan.seed, STARTS + 3, run, 0);
+    while goals_m.len() < setting.goals as usize {
+        let is_apart = |at: [f64; 3]| goals_m.iter().all(|other| distance_m(*other, at) >= apart * unit);
+        let draws = (0..TRIES).map(|_| [uniform(&mut rng, -within, within), uniform(&mut rng, -within, within)]);
+        let found = draws
+            .filter(|[x, y]| x * x + y * y <= within * within)
+            .map(|[x, y]| place_m(x, y))
+            .find(|&at| is_apart(at));
+        goals_m.push(found.with_context(|| format!("{} goals find no room at random; give fewer", setting.goals))?);
+    }
+    Ok(goals_m)
+}
+
+/// Discs between the start and the goals that the crowd has to go around, with ways between them: the paper's scenes
+/// have some, and do not say which.
+fn solids(plan: &Plan, setting: &Setting, run: u32) -> Result<Vec<Solid>> {
+    let unit = plan.min_distance_m;
+    let half = setting.start_half();
+    let first = half + ROOM;
+    let mut discs: Vec<([f64; 3], f64)> = Vec::new();
+    for number in 0..setting.obstacles {
+        let mut rng = Rng::keyed(plan.seed, STARTS + 2, run, number);
+        let drawn = (0..TRIES).find_map(|_| {
+            let radius = uniform(&mut rng, RADII[0], RADII[1]);
+            let (west, east) = (first + radius, LAST - radius);
+            let center = [uniform(&mut rng, west, east), uniform(&mut rng, -half, half), 0.0];
+            let is_free = |&(other, size): &([f64; 3], f64)| distance_m(other, center) >= radius + size + ROOM;
+            (west < east && discs.iter().all(is_free)).then_some((center, radius))
+        });
+        let Some(disc) = drawn else {
+            bail!(
+                "{} obstacles find no room before the goals; give fewer, fewer robots, or a smaller start side",
+                setting.obstacles
+            );
+        };
+        discs.push(disc);
+    }
+    let solid =
+        |(center, radius): ([f64; 3], f64)| Solid::Ball { center_m: center.map(|c| c * unit), radius_m: radius * unit };
+    Ok(discs.into_iter().map(solid).collect())
+}

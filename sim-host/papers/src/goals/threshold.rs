@@ -1,0 +1,154 @@
+//! Threshold evaluation (PAV, conclusion): from which K1 / K2 on a crowd is no longer one group but a set of separate
+//! robots.
+//!
+//! The paper's program "evaluates and chooses thresholds" of its constants between the two, and tells neither how nor
+//! any value. Here the order of a group is what it has more than independent robots: the share of its largest group,
+//! and its company, less those of the same runs with K2 = 0 and all else equal. A curve of that over K1 / K2 has a
+//! peak; the threshold is where, behind the peak, half of it is left for the first time, between two points in equal
+//! ratios.
+
+use super::setting::{Setting, short, varying};
+use crate::experiment::Maybe;
+use serde::Serialize;
+use std::fmt::{self, Formatter};
+
+/// What a point has more than independent robots.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Gain {
+    pub setting: Setting,
+    pub together: Option<f64>,
+    pub company: Option<f64>,
+}
+
+/// Where one curve over K1 / K2 loses the group.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Threshold {
+    /// What the curve's points have in common; its gains K1 and K2 are 0.
+    #[serde(skip)]
+    pub setting: Setting,
+    /// The parameters in which curves differ, in words.
+    pub curve: String,
+    /// Of the share of the largest group.
+    pub together: Crossing,
+    /// Of the number of robots around a robot.
+    pub company: Crossing,
+}
+
+/// A curve's peak, and where half of it is left.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Crossing {
+    /// Its greatest value: so much more than independent robots have.
+    pub peak: Option<f64>,
+    /// The K1 / K2 of that.
+    pub peak_k1_over_k2: Option<f64>,
+    /// The K1 / K2 from which on less than half of the peak is left; `null`: in no point swept, or no peak above 0.
+    pub k1_over_k2: Option<f64>,
+}
+
+impl Crossing {
+    /// Of points (K1 / K2, value) in ascending order.
+    #[must_use]
+    pub fn of(curve: &[[f64; 2]]) -> Self {
+        // The first of equals.
+        let mut best: Option<usize> = None;
+        for (index, [_, value]) in curve.iter().enumerate() {
+            if best.is_none_or(|best| *value > curve[best][1]) {
+                best = Some(index);
+            }
+        }
+        let Some(best) = best else {
+            return Self::default();
+        };
+        let [ratio, peak] = curve[best];
+        let half = peak / 2.0;
+        let mut steps = curve[best..].windows(2).filter(|_| peak > 0.0);
+        let step = steps.find(|step| step[1][1] <= half);
+        let crossed = step.map(|step| {
+            let [[x, y], [next_x, next_y]] = [step[0], step[1]];
+            let part = (y - half) / (y - next_y);
+            // From 0 there are no equal ratios.
+            if x > 0.0 { x * libm::pow(next_x / x, part) } else { next_x * part }
+        });
+        Self { peak: Some(peak), peak_k1_over_k2: Some(ratio), k1_over_k2: crossed }
+    }
+}
+
+/// The thresholds of all curves that have three points or more.
+pub(super) fn of(points: &[Gain]) -> Vec<Threshold> {
+    let mut curves: Vec<Setting> = Vec::new();
+    for point in points {
+        let common = point.setting.without_gains();
+        if !curves.contains(&common) {
+            curves.push(common);
+        }
+    }
+    let differ = varying(&curves);
+    let thresholds = curves.iter().map(|&setting| {
+        let own = || points.iter().filter(move |point| point.setting.without_gains() == setting);
+        let crossing = |value: fn(&Gain) -> Option<f64>| {
+            let values = own().filter_map(|point| Some([point.setting.ratio()?, value(point)?]));
+            let mut curve: Vec<[f64; 2]> = values.filter(|[ratio, _]| *ratio >= 0.0).collect();
+            curve.sort_by(|a, b| a[0].total_cmp(&b[0]));
+            (curve.len(), Crossing::of(&curve))
+        };
+        let (count, together) = crossing(|point| point.together);
+        let given = setting.given();
+        let words = differ
+            .iter()
+            .filter(|place| **place > 1)
+            .map(|&place| format!("{} {}", short(given[place].0), given[place].1));
+        let curve = words.collect::<Vec<_>>().join(", ");
+        (count, Threshold { setting, curve, together, company: crossing(|point| point.company).1 })
+    });
+    thresholds.filter(|(count, _)| *count >= 3).map(|(_, threshold)| threshold).collect()
+}
+
+/// The thresholds as a table; nothing when there are none.
+pub(super) fn table(f: &mut Formatter<'_>, thresholds: &[Threshold]) -> fmt::Result {
+    if thresholds.is_empty() {
+        return Ok(());
+    }
+    writeln!(
+        f,
+        "\nthresholds: the K1/K2 behind the peak at which half is left of what a group has more than independent robots (K2 = 0)"
+    )?;
+    writeln!(f, "{:<40}{:>28}{:>28}", "", "together", "company")?;
+    let heads = format!("{:>9}{:>8}{:>11}", "peak", "at", "threshold");
+    writeln!(f, "{:<40}{heads}{heads}", "curve")?;
+    for threshold in thresholds {
+        write!(f, "{:<40}", if threshold.curve.is_empty() { "all" } else { &threshold.curve })?;
+        for (crossing, digits) in [(&threshold.together, 3), (&threshold.company, 1)] {
+            write!(
+                f,
+                "{:>9}{:>8}{:>11}",
+                Maybe(crossing.peak, digits),
+                Maybe(crossing.peak_k1_over_k2, 2),
+                Maybe(crossing.k1_over_k2, 2)
+            )?;
+        }
+        writeln!(f)?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn half_of_a_peak_is_left_behind_it_in_equal_ratios() {
+        let curve = [[0.0, 0.2], [0.25, 0.8], [1.0, 0.6], [4.0, 0.2], [16.0, 0.1]];
+        let crossing = Crossing::of(&curve);
+        assert_eq!((crossing.peak, crossing.peak_k1_over_k2), (Some(0.8), Some(0.25)));
+        // 0.4 is half of the way from 0.6 at 1 to 0.2 at 4.
+        let at = crossing.k1_over_k2.unwrap();
+        assert!((at - 2.0).abs() < 1e-9, "{at}");
+    }
+
+    #[test]
+    fn what_does_not_fall_or_is_no_more_than_independent_robots_has_no_threshold() {
+        assert_eq!(Crossing::of(&[[0.1, 0.9], [1.0, 0.9], [10.0, 0.9]]).k1_over_k2, None);
+        assert_eq!(Crossing::of(&[[0.1, -0.1], [1.0, -0.3], [10.0, -0.9]]).k1_over_k2, None);
+        assert_eq!(Crossing::of(&[]).peak, None);
+    }
+}
