@@ -2,6 +2,7 @@
 //! rewrites them.
 
 use staya_controller::agent::SafetyKind;
+use staya_controller::names::Named as _;
 use staya_papers::experiment::Experiment as _;
 use staya_papers::flock::closing::Closing;
 use staya_papers::flock::{Case, Plan, Reference};
@@ -74,28 +75,39 @@ fn golden_experiment_closing() {
 
 #[test]
 fn golden_experiment_goals() {
+    let all = goals::Knowledge::All;
+    let packets = goals::Knowledge::Packets;
     let mut text = String::new();
-    for safety in [SafetyKind::None, SafetyKind::Orca, SafetyKind::PushOut] {
+    for (knowledge, safety) in [
+        (all, SafetyKind::PushOut),
+        (packets, SafetyKind::None),
+        (packets, SafetyKind::Orca),
+        (packets, SafetyKind::PushOut),
+    ] {
         let plan = goals::Plan {
-            k1: vec![0.0, 50.0, 150.0],
+            k1: vec![50.0, 150.0],
+            k2: vec![0.0, 50.0],
             neighborhoods_m: vec![40.0],
-            robots: 30,
+            robots: vec![30],
+            knows: vec![knowledge],
+            safeties: vec![safety],
             seconds: 150.0,
             step_s: 0.2,
-            safety,
             moves_goal: true,
             ..goals::Plan::default()
         };
         let report = plan.measure().expect("a sound plan");
-        writeln!(text, "safety {}", report.safety).expect("memory");
+        writeln!(text, "knows {}, safety {}", knowledge.name(), safety.name()).expect("memory");
         for point in &report.points {
             let of = |value: Option<f64>| value.unwrap_or(f64::NAN);
             writeln!(
                 text,
-                "K1 {:>3}  order {:.4}  together {:.4}  spread {:.4}  gathered {:.3}  arrived {:.3}  pair {:.4}  overlaps {:>4}  hash {}",
-                point.k1,
+                "K1 {:>3}  K2 {:>2}  order {:.4}  together {:.4}  company {:.4}  spread {:.4}  gathered {:.3}  arrived {:.3}  pair {:.4}  overlaps {:>4}  hash {}",
+                point.setting.k1,
+                point.setting.k2,
                 of(point.polarisation),
                 of(point.together),
+                of(point.company),
                 of(point.spread),
                 point.gathered,
                 point.arrived,
