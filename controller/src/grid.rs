@@ -250,6 +250,13 @@ impl<'a> Window<'a> {
         self.cells.get(self.index(cell)?).copied()
     }
 
+    /// All cells with their impassability, row by row from the south-west corner. Those beyond the range of coordinates are its last.
+    pub fn iter(&self) -> impl Iterator<Item = (Cell, u8)> + '_ {
+        let rows = (0..self.height).flat_map(|y| (0..self.width).map(move |x| (x, y)));
+        let cell = |(x, y): (u16, u16)| self.origin + Cell::new(x.cast_signed(), y.cast_signed());
+        rows.map(cell).zip(self.cells.iter().copied())
+    }
+
     /// Whether `cell` is known and passable.
     #[must_use]
     pub fn is_passable(&self, cell: Cell) -> bool {
@@ -322,6 +329,13 @@ mod tests {
     fn window_refuses_a_slice_of_the_wrong_length() {
         assert!(Window::new(&[1; 5], Cell::default(), 2, 3).is_none());
         assert!(Window::new(&[], Cell::default(), 0, 0).is_some());
+    }
+
+    #[test]
+    fn window_shows_each_cell_where_it_is() {
+        let window = Window::new(&[1, 2, 3, 4, 5, BLOCKED], Cell::new(-1, 10), 3, 2).unwrap();
+        assert_eq!(window.iter().count(), 6);
+        assert!(window.iter().all(|(cell, u)| window.get(cell) == Some(u)));
     }
 
     #[test]

@@ -187,7 +187,7 @@ fn run_into(task: Task<'_>, dir: &Path, mut also: Also<'_>, global: &Global) -> 
     let names = if keeps_robots { &names[..] } else { &names[..3] };
     let mut files: Vec<_> = names.iter().map(|name| out.join(name)).collect();
     let pictures = match &scenario.plane {
-        None => run_pictures(&scenario.terrain, &history, &edges, dir)?,
+        None => run_pictures(&scenario.terrain, &scenario.changing_cells(), &history, &edges, dir)?,
         Some(setup) => motion_pictures(setup, &history, dir)?,
     };
     files.extend(pictures.iter().map(|file| out.join(file.strip_prefix(dir).unwrap_or(file))));

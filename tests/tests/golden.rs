@@ -110,6 +110,11 @@ fn golden_figure_6() {
 }
 
 #[test]
+fn golden_gate() {
+    check("gate", None);
+}
+
+#[test]
 fn golden_moving_ai_20() {
     check("moving-ai-20", None);
 }

@@ -11,6 +11,7 @@
 
 mod escape;
 mod field;
+mod known;
 mod learned;
 mod router;
 mod visits;
@@ -21,6 +22,7 @@ mod escape_tests;
 mod tests;
 
 pub use field::{CostField, Unreachable};
+pub use known::{LandMemory, SUPPOSED_CLOSED, supposed};
 pub use learned::LearnedCosts;
 pub use router::{PLAN, Replan, Router};
 pub use visits::VisitMemory;

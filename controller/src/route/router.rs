@@ -188,7 +188,7 @@ impl<const M: usize, const L: usize> Router<M, L> {
     ) -> Result<Dir, Unreachable> {
         // A way out is found anew in each cell.
         let is_anew = self.escapes() || L > 0 && self.idle > 0;
-        if is_anew || !self.plan_holds(window, from, others.clone()) {
+        if is_anew || !self.plan_holds(params, window, from, others.clone()) {
             let weights = self.weights(params, field, window, from, target, others)?;
             if is_anew {
                 self.plan.clear();
@@ -212,13 +212,21 @@ impl<const M: usize, const L: usize> Router<M, L> {
         }
     }
 
-    /// Whether the land on the chain is as planned, as far as the window shows it, and nobody is in the way.
-    fn plan_holds(&self, window: &Window<'_>, from: Cell, others: impl IntoIterator<Item = Cell> + Clone) -> bool {
+    /// Whether the land on the chain is as planned, as far as the window shows it, no corner beside it has closed, and nobody is
+    /// in the way.
+    fn plan_holds(
+        &self,
+        params: &RouteParams,
+        window: &Window<'_>,
+        from: Cell,
+        others: impl IntoIterator<Item = Cell> + Clone,
+    ) -> bool {
         let mut cell = from;
         !self.plan.is_empty()
             && self.plan.iter().rev().all(|&(dir, u)| {
+                let is_open = params.opens(window, cell, dir);
                 cell = cell + dir.offset();
-                window.get(cell) == Some(u) && others.clone().into_iter().all(|other| other != cell)
+                is_open && window.get(cell) == Some(u) && others.clone().into_iter().all(|other| other != cell)
             })
     }
 

@@ -134,6 +134,23 @@ fn plan_is_followed_until_something_changes_on_it() {
     assert_ne!(follow(&mut router, &cells, here, &[]), Dir::East);
 }
 
+#[test]
+fn plan_does_not_hold_when_a_corner_beside_it_closes() {
+    let params = RouteParams { radius: 3, ..RouteParams::default() };
+    let mut cells = [1; 49];
+    let target = Cell::new(6, 6);
+    let mut router = Router::<8>::new();
+    let mut field = CostField::<81>::new();
+    let mut follow = |router: &mut Router<8>, cells: &[u8], here| {
+        let window = Window::new(cells, Cell::default(), 7, 7).unwrap();
+        router.observe(&params, here, target);
+        router.follow(&params, &mut field, &window, here, target, []).unwrap()
+    };
+    assert_eq!(follow(&mut router, &cells, Cell::new(3, 3)), Dir::NorthEast);
+    cells[4 * 7 + 5] = BLOCKED;
+    assert_eq!(follow(&mut router, &cells, Cell::new(4, 4)), Dir::North);
+}
+
 /// Gains at their ends: costs as far apart as can be take no longer and say the same.
 #[test]
 fn extreme_gains_neither_close_the_way_nor_take_for_ever() {

@@ -221,7 +221,7 @@ impl RunArgs {
         let edges = scenario.formation.iter().flat_map(|formation| &formation.edges);
         let edges: Vec<_> = edges.map(|&(a, b)| (id(a), id(b))).collect();
         let pictures = match &scenario.plane {
-            None => run_pictures(&scenario.terrain, history, &edges, dir)?,
+            None => run_pictures(&scenario.terrain, &scenario.changing_cells(), history, &edges, dir)?,
             Some(setup) => motion_pictures(setup, history, dir)?,
         };
         files.extend(pictures.iter().map(|file| out.join(file.strip_prefix(dir).unwrap_or(file))));

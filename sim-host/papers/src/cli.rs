@@ -12,7 +12,7 @@ mod route;
 
 use crate::experiment::Experiment as _;
 use crate::experiment::rows::Keeping;
-use crate::{boids, scale};
+use crate::{boids, scale, scouting};
 use anyhow::Result;
 use clap::{Args, Subcommand};
 use staya_console::{Ended, Global, Stop};
@@ -30,6 +30,8 @@ pub struct ExperimentArgs {
 enum Experiment {
     /// Windowed routing against the global optimum on random land (Kuznetsov, figures 2 to 4).
     Route(Box<route::RouteArgs>),
+    /// What a map is worth on land that changes, with some of it blank or wrong.
+    Scouting(Box<scouting::Plan>),
     /// Six robots in formation on natural land: error, arrivals, travel time (Kuznetsov, section 8, figure 6).
     Formation(Box<formation::FormationArgs>),
     /// Robots on a circle, each bound for the opposite side: who arrives, how late, how near they come.
@@ -60,6 +62,7 @@ impl ExperimentArgs {
         let keeping = &self.keeping;
         match &self.experiment {
             Experiment::Route(args) => args.plan().command(&args.out, keeping, global, &stop),
+            Experiment::Scouting(plan) => plan.command(&plan.out, keeping, global, &stop),
             Experiment::Formation(args) => args.plan()?.command(&args.out, keeping, global, &stop),
             Experiment::Swap(args) => args.plan().command(&args.out(), keeping, global, &stop),
             Experiment::Doorway(args) => args.plan().command(&args.out(), keeping, global, &stop),

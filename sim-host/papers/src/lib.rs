@@ -3,6 +3,7 @@
 //! | module | paper |
 //! | --- | --- |
 //! | [`route`] | A. V. Kuznetsov 2017 (KUZ), section 5: windowed routing against the global optimum on random land |
+//! | [`scouting`] | KUZ, section 3: the same on land that changes, with maps that are blank or wrong in part |
 //! | [`formation`] | KUZ, section 8: six robots in formation |
 //! | [`movingai`] | N. Sturtevant 2012: the queries of the Moving AI benchmark |
 //! | [`crossing`] | van den Berg et al. 2011 (ORCA): swaps over a circle, and doorways |
@@ -28,4 +29,5 @@ pub mod options;
 pub mod orca;
 pub mod route;
 pub mod scale;
+pub mod scouting;
 pub mod walk;

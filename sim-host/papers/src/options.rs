@@ -115,7 +115,7 @@ fn exit() -> impl TypedValueParser<Value = ExitRule> {
 }
 
 /// When to search anew.
-fn replan() -> impl TypedValueParser<Value = Replan> {
+pub(crate) fn replan() -> impl TypedValueParser<Value = Replan> {
     one_of(&[
         (Replan::EachCell, "In each cell (algorithm 1)"),
         (Replan::UntilChanged, "At the end of the planned way or when something changed on it (KUZ section 3)"),

@@ -4,6 +4,7 @@ use super::chart::{Chart, Series};
 use super::colour::{self, Colour, WHITE};
 use super::panels::Panels;
 use super::{ticks, trajectories};
+use staya_controller::grid::Cell;
 use staya_sim::record::{self, Error, History, PacketCounts, SeriesPoint};
 use staya_sim::terrain::Terrain;
 use std::path::{Path, PathBuf};
@@ -16,7 +17,7 @@ const MEANS: usize = 100;
 /// Draws the pictures of one run into `out_dir`, which is made if needed, each as SVG and PNG, and
 /// names the files.
 ///
-/// - `trajectories`: the land, each robot's way, and the formation (`edges` between robot ids) over time,
+/// - `trajectories`: the land at the start, the cells that change on it (`changing`), each robot's way, and the formation (`edges` between robot ids) over time,
 ///   if the history has frames;
 /// - `formation`: formation error and graph distance over time, only if the run has values of them;
 /// - `packets`: packets per second by their fate, over time.
@@ -27,6 +28,7 @@ const MEANS: usize = 100;
 /// The directory or a file cannot be written.
 pub fn run_pictures(
     terrain: &Terrain,
+    changing: &[Cell],
     history: &History,
     edges: &[(u32, u32)],
     out_dir: &Path,
@@ -35,7 +37,7 @@ pub fn run_pictures(
     let mut files = Vec::new();
     if !history.frames().is_empty() {
         let stem = out_dir.join("trajectories");
-        let canvas = trajectories::draw(terrain, history, edges).map_err(Error::new("draw", &stem))?;
+        let canvas = trajectories::draw(terrain, changing, history, edges).map_err(Error::new("draw", &stem))?;
         files.extend(canvas.write(&stem)?);
     }
     if let Some(panels) = formation(history.series()) {

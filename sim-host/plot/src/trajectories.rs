@@ -42,11 +42,11 @@ struct Way {
     target_m: Option<[f64; 2]>,
 }
 
-/// Draws the picture.
+/// Draws the picture; `changing` are cells that do not stay as `terrain` has them, by rising cell.
 ///
 /// # Errors
 /// The picture would have too many pixels.
-pub fn draw(terrain: &Terrain, history: &History, edges: &[(u32, u32)]) -> io::Result<Canvas> {
+pub fn draw(terrain: &Terrain, changing: &[Cell], history: &History, edges: &[(u32, u32)]) -> io::Result<Canvas> {
     let ways = ways(terrain, history.frames());
     let view = view(terrain, &ways);
     let crowd = (ways.len() > CROWD).then(|| {
@@ -64,16 +64,24 @@ pub fn draw(terrain: &Terrain, history: &History, edges: &[(u32, u32)]) -> io::R
     let mut line = Text::new([PAD, PAD + 34.0], size, Anchor::Start, note);
     line.colour = MUTED;
     canvas.text(line);
-    let keys = match &crowd {
+    let mut keys = match &crowd {
         Some(density) => crowd_keys(density, ways.len()),
         None => keys(&ways, with_edges),
     };
+    if !changing.is_empty() {
+        keys.push((Key::Changing, "land that changes".into()));
+    }
     let top = legend(&mut canvas, &keys, PAD + 42.0, width - PAD) + 8.0;
 
     let map = Map::new(&view, [PAD, top]);
     canvas.height = top + map.area[3] + map::FOOTER + 6.0;
     canvas.clip(Some(map.area));
     map.ground(&mut canvas);
+    // Cells are by column: one rectangle for those above each other.
+    for cells in changing.chunk_by(|below, cell| below.x == cell.x && below.y + 1 == cell.y) {
+        let ([left, bottom], high) = (map.place(corner_m(terrain, cells[0])), map.cell * cells.len() as f64);
+        canvas.rectangle([left, bottom - high, map.cell, high], Some(CHANGING), None);
+    }
     if let Some(density) = crowd {
         map.image(&mut canvas, density.pixels());
         if ways.len() <= MAX_ENDS {
@@ -90,6 +98,15 @@ pub fn draw(terrain: &Terrain, history: &History, edges: &[(u32, u32)]) -> io::R
     map.frame(&mut canvas);
     map.footer(&mut canvas, PAD, width - PAD);
     Ok(canvas)
+}
+
+/// Over land that changes.
+const CHANGING: Colour = colour::PALETTE[1].with_alpha(110);
+
+/// The south-west corner of a cell.
+fn corner_m(terrain: &Terrain, cell: Cell) -> [f64; 2] {
+    let [x, y] = terrain.origin_m;
+    [x + f64::from(cell.x) * terrain.cell_m, y + f64::from(cell.y) * terrain.cell_m]
 }
 
 fn title(frames: &[Frame], robots: usize) -> String {
@@ -366,6 +383,7 @@ enum Key {
     Formation,
     Density,
     Dot(Colour),
+    Changing,
 }
 
 fn keys(ways: &BTreeMap<u32, Way>, with_edges: bool) -> Vec<(Key, String)> {
@@ -404,7 +422,7 @@ fn legend(canvas: &mut Canvas, keys: &[(Key, String)], top: f64, right: f64) -> 
     for (key, name) in keys {
         let sample = match key {
             Key::Way(_) => 22.0,
-            Key::Start | Key::Target | Key::Dot(_) => 12.0,
+            Key::Start | Key::Target | Key::Dot(_) | Key::Changing => 12.0,
             Key::Formation | Key::Density => 50.0,
         };
         let width = sample + 6.0 + font::width(name, SMALL, false) * OTHER_FONTS;
@@ -416,6 +434,7 @@ fn legend(canvas: &mut Canvas, keys: &[(Key, String)], top: f64, right: f64) -> 
         let middle = [x + sample / 2.0, y];
         match key {
             Key::Way(stroke) => canvas.line(vec![[x + 1.0, y], [x + sample - 1.0, y]], *stroke),
+            Key::Changing => canvas.rectangle([x, y - 6.0, sample, 12.0], Some(CHANGING), None),
             Key::Start => ring(canvas, middle, 4.5, INK),
             Key::Target => cross(canvas, middle, 4.5, INK),
             Key::Dot(colour) => canvas.circle(middle, 3.0, Some(*colour), None),

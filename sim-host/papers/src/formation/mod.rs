@@ -255,6 +255,8 @@ impl Plan {
             ticks: self.ticks,
             tick_us: TICK_US,
             terrain,
+            changes: Vec::new(),
+            scouting: None,
             rules: MoveRules { norm: self.route.norm, corner_cutting: self.route.corner_cutting },
             radio: RadioParams { range_m: f64::INFINITY, ..RadioParams::default() },
             robots: robots.collect(),

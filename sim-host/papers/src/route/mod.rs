@@ -53,7 +53,7 @@ const SHOWN: u32 = 130;
 /// Largest window radius of the experiment.
 pub const MAX_RADIUS: u8 = 31;
 /// Cells of the largest window with its border.
-const CELLS: usize = {
+pub(crate) const CELLS: usize = {
     let side = 2 * MAX_RADIUS as usize + 3;
     side * side
 };

@@ -56,7 +56,7 @@ fn land(side: u16) -> Terrain {
 }
 
 fn names(terrain: &Terrain, history: &History, edges: &[(u32, u32)], dir: &Path) -> Vec<String> {
-    let files = run_pictures(terrain, history, edges, dir).unwrap();
+    let files = run_pictures(terrain, &[], history, edges, dir).unwrap();
     assert_readable(&files);
     let names = files.iter().map(|path| {
         assert_eq!(path.parent(), Some(dir));
@@ -77,7 +77,7 @@ fn runs_of_every_length_give_their_pictures() {
         // Without a frame there are no ways to draw.
         let ways = if history.frames().is_empty() { 2 } else { 0 };
         assert_eq!(names(&land(40), &history, &[], &out), WITHOUT_FORMATION[ways..]);
-        assert_texts_apart(&trajectories::draw(&land(40), &history, &[]).unwrap());
+        assert_texts_apart(&trajectories::draw(&land(40), &[], &history, &[]).unwrap());
         assert_texts_apart(&run::packets(&history).draw());
     }
     let out = dir.path().join("formation");
@@ -91,7 +91,7 @@ fn the_same_run_gives_the_same_bytes() {
     let dir = tempfile::tempdir().unwrap();
     let history = history(6, 50, 0.6, 0.5);
     let draw = |name: &str| {
-        let files = run_pictures(&land(60), &history, &[(1, 2)], &dir.path().join(name)).unwrap();
+        let files = run_pictures(&land(60), &[], &history, &[(1, 2)], &dir.path().join(name)).unwrap();
         let bytes = files.iter().map(|path| std::fs::read(path).unwrap());
         bytes.collect::<Vec<_>>()
     };
@@ -103,11 +103,11 @@ fn a_directory_that_cannot_be_made_is_named() {
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join("taken");
     std::fs::write(&file, "").unwrap();
-    let error = run_pictures(&land(4), &history(1, 2, 1.0, 1.0), &[], &file).unwrap_err();
+    let error = run_pictures(&land(4), &[], &history(1, 2, 1.0, 1.0), &[], &file).unwrap_err();
     assert!(error.to_string().contains("taken"), "{error}");
     let out = dir.path().join("out");
     std::fs::create_dir_all(out.join("packets.svg")).unwrap();
-    let error = run_pictures(&land(4), &history(1, 2, 1.0, 1.0), &[], &out).unwrap_err();
+    let error = run_pictures(&land(4), &[], &history(1, 2, 1.0, 1.0), &[], &out).unwrap_err();
     assert_eq!(error.path(), out.join("packets.svg"));
 }
 
@@ -163,7 +163,7 @@ fn north_is_up_walls_are_dark_and_the_way_has_its_colour() {
         recorder.tick(&tick(now, f64::NAN), robots.into_iter()).unwrap();
     }
     let history = recorder.finish().unwrap();
-    let canvas = trajectories::draw(&terrain, &history, &[]).unwrap();
+    let canvas = trajectories::draw(&terrain, &[], &history, &[]).unwrap();
     let dir = tempfile::tempdir().unwrap();
     let files = canvas.write(&dir.path().join("t")).unwrap();
     let (width, _, bytes) = decode(&files[1]);
@@ -186,7 +186,7 @@ fn north_is_up_walls_are_dark_and_the_way_has_its_colour() {
 
 #[test]
 fn a_small_part_of_a_large_map_is_shown_alone() {
-    let text = |side: u16| format!("{:?}", trajectories::draw(&land(side), &history(2, 20, 1.0, 1.0), &[]));
+    let text = |side: u16| format!("{:?}", trajectories::draw(&land(side), &[], &history(2, 20, 1.0, 1.0), &[]));
     assert!(text(300).contains("part of a map of 300 × 300"));
     assert!(!text(30).contains("part of"));
 }
@@ -198,7 +198,7 @@ fn crowds_and_noisy_land_stay_small() {
     for robots in [6, 200, 201, 2000, 100_000] {
         let dir = tempfile::tempdir().unwrap();
         let history = history(robots, 12, 3.0, f64::NAN);
-        for path in run_pictures(&terrain, &history, &[(1, 2)], dir.path()).unwrap() {
+        for path in run_pictures(&terrain, &[], &history, &[(1, 2)], dir.path()).unwrap() {
             let bytes = std::fs::metadata(&path).unwrap().len();
             assert!(bytes < 2_000_000, "{robots} robots: {} {bytes}", path.display());
         }
@@ -219,7 +219,7 @@ fn long_wild_ways_stay_small_too() {
     }
     let history = recorder.finish().unwrap();
     let dir = tempfile::tempdir().unwrap();
-    let files = run_pictures(&land(256), &history, &[], dir.path()).unwrap();
+    let files = run_pictures(&land(256), &[], &history, &[], dir.path()).unwrap();
     assert_readable(&files);
     assert!(std::fs::metadata(&files[0]).unwrap().len() < 5_000_000);
 }

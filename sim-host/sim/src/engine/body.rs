@@ -1,7 +1,7 @@
 //! Bodies in metres: between two cells while they cross, as the robot's sensors would see it.
 
 use crate::terrain::Terrain;
-use crate::world::{Body, World};
+use crate::world::Body;
 use staya_controller::agent::KinematicState;
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Dir, GridFrame, UNIT};
@@ -40,14 +40,14 @@ impl Kinematics {
 
     /// The body at `now_units`. It holds its new cell from the start of a crossing, but gets to the
     /// cell's centre only at its end, at even speed. A body that may still go on without losing
-    /// the fraction of a tick (see [`World::advance`]) keeps its speed.
-    pub(super) fn pose(&self, world: &World, body: &Body, now_units: u64) -> Pose {
+    /// the fraction of a tick (see [`World::advance`](crate::world::World::advance)) keeps its speed.
+    pub(super) fn pose(&self, body: &Body, now_units: u64) -> Pose {
         let center = self.frame.center(body.cell);
         let at_rest = Pose { position_m: [center.x, center.y], velocity_mps: [0.0; 2] };
         if body.entered_by == Dir::Stay || body.free_at + u64::from(UNIT) <= now_units {
             return at_rest;
         }
-        let crossing = world.crossing(body) as f64;
+        let crossing = body.crossing as f64;
         let left = body.free_at.saturating_sub(now_units) as f64 / crossing;
         let step = body.entered_by.offset();
         let step_m = [f64::from(step.x), f64::from(step.y)].map(|d| d * self.frame.cell_m);
@@ -62,7 +62,7 @@ impl Kinematics {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::MoveRules;
+    use crate::world::{MoveRules, World};
     use staya_controller::agent::Command;
     use staya_controller::grid::Cell;
     use staya_controller::robot::RobotId;
@@ -76,7 +76,7 @@ mod tests {
         let kinematics = Kinematics::new(&terrain, 0.5);
         let starts = [(RobotId(1), Cell::new(0, 0))];
         let mut world = World::new(terrain, MoveRules::default(), 0, starts).expect("free");
-        let pose = |world: &World, ticks: u64| kinematics.pose(world, &world.bodies()[0], ticks * u64::from(UNIT));
+        let pose = |world: &World, ticks: u64| kinematics.pose(&world.bodies()[0], ticks * u64::from(UNIT));
         let start = Pose { position_m: [105.0, -5.0], velocity_mps: [0.0; 2] };
         assert_eq!(pose(&world, 0), start);
         let east = Command::Move([Dir::East].into_iter().collect());
@@ -87,5 +87,9 @@ mod tests {
             assert_eq!(now.position_m, [x, -5.0], "after {ticks} ticks");
             assert_eq!(now.velocity_mps, [speed, 0.0], "after {ticks} ticks");
         }
+        // Land that changes under it changes nothing for it.
+        let before = pose(&world, 12);
+        world.change(&[(Cell::new(1, 0), 9)]);
+        assert_eq!(pose(&world, 12), before);
     }
 }

@@ -9,6 +9,7 @@ use crate::metrics::{FormationMeter, Keeping, in_cells};
 use crate::record::Motion;
 use crate::scenario::{Robot, Scenario};
 use crate::terrain::Terrain;
+use crate::world::scouts::{Memory, Scouts};
 use crate::world::{Body, Misplaced, Refusal, World};
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{AgentConfig, AnyInputs, AnySurroundings, CellState, Command, Inputs, OnGrid, Task};
@@ -24,6 +25,8 @@ pub struct Grid {
     robots: Vec<Robot>,
     pub(super) meter: Option<FormationMeter>,
     changed: Changed,
+    /// What robots know of land that they do not see.
+    pub(super) scouts: Option<Scouts>,
     /// The number of each body's robot.
     pub(super) numbers: Vec<u32>,
     radius: u8,
@@ -48,6 +51,7 @@ impl Grid {
             numbers: (0..scenario.robots.len() as u32).collect(),
             meter,
             changed: Changed::new(),
+            scouts: scenario.scouts(),
             radius: scenario.route.params.radius,
             tick_us: scenario.tick_us,
             world,
@@ -62,6 +66,14 @@ impl Grid {
 }
 
 impl Grid {
+    /// Robots take note of what they have seen in this tick.
+    pub(super) fn look(&mut self) {
+        if let Some(scouts) = &mut self.scouts {
+            let bodies = self.world.bodies();
+            scouts.observe(self.world.terrain(), |index| Some(bodies[index].cell));
+        }
+    }
+
     /// The robot of a body.
     fn number(&self, index: usize) -> usize {
         self.numbers[index] as usize
@@ -77,7 +89,10 @@ pub struct GridBody {
     cell: Cell,
     entered_by: Dir,
     free_at: u64,
+    crossing: u64,
+    is_shut_in: bool,
     goal: Cell,
+    seen: Option<Memory>,
 }
 
 /// Puts back what a meter had measured.
@@ -116,14 +131,20 @@ impl Ground for Grid {
     type Shared = (Option<FormationMeter>, Changed);
 
     fn body(&self, index: usize) -> GridBody {
-        let Body { cell, entered_by, free_at, .. } = self.world.bodies()[index];
-        GridBody { cell, entered_by, free_at, goal: self.robots[self.number(index)].goal }
+        let Body { id: _, cell, entered_by, free_at, crossing, is_shut_in } = self.world.bodies()[index];
+        let goal = self.robots[self.number(index)].goal;
+        let seen = self.scouts.as_ref().map(|scouts| scouts.memory(index).clone());
+        GridBody { cell, entered_by, free_at, crossing, is_shut_in, goal, seen }
     }
 
     fn set_body(&mut self, index: usize, body: GridBody) -> Result<(), &'static str> {
-        let GridBody { cell, entered_by, free_at, goal } = body;
-        if !self.world.put(index, cell, entered_by, free_at) {
+        let GridBody { cell, entered_by, free_at, crossing, is_shut_in, goal, seen } = body;
+        let id = self.world.bodies()[index].id;
+        if !self.world.put(index, Body { id, cell, entered_by, free_at, crossing, is_shut_in }) {
             return Err("its body is in a wall or off the map");
+        }
+        if let (Some(scouts), Some(seen)) = (&mut self.scouts, seen) {
+            scouts.put(index, seen);
         }
         let number = self.number(index);
         self.robots[number].goal = goal;
@@ -154,10 +175,13 @@ impl Ground for Grid {
     fn sense<'a>(&'a self, index: usize, tick: u32, cells: &'a mut Self::Scratch) -> AnyInputs<'a, f32> {
         let body = &self.world.bodies()[index];
         Inputs {
-            state: self.kinematics.pose(&self.world, body, units(tick)).into(),
+            state: self.kinematics.pose(body, units(tick)).into(),
             surroundings: AnySurroundings::OnGrid(OnGrid {
                 cell: CellState { cell: body.cell, busy: busy(body.free_at, units(tick), self.tick_us) },
-                window: self.world.window(body.cell, self.radius, cells),
+                window: match &self.scouts {
+                    None => self.world.window(body.cell, self.radius, cells),
+                    Some(scouts) => scouts.window(self.world.terrain(), index, body.cell, cells),
+                },
             }),
             inbox: &[],
         }
@@ -165,13 +189,20 @@ impl Ground for Grid {
 
     fn motion(&self, index: usize, tick: u32) -> Motion {
         let body = &self.world.bodies()[index];
-        let pose = self.kinematics.pose(&self.world, body, units(tick));
+        let pose = self.kinematics.pose(body, units(tick));
         let [x, y] = pose.position_m;
         let [vx, vy] = pose.velocity_mps;
         Motion { cell: body.cell, position_m: [x, y, 0.0], velocity_mps: [vx, vy, 0.0] }
     }
 
+    fn forget(&mut self, index: usize) {
+        if let Some(scouts) = &mut self.scouts {
+            scouts.put(index, Memory::new());
+        }
+    }
+
     fn advance(&mut self, tick: u32, commands: &[Command<f32>]) {
+        self.look();
         self.world.advance(tick, commands);
     }
 
@@ -222,6 +253,11 @@ impl Ground for Grid {
             Change::Cell([x, y], class) => {
                 self.world.set_cell(Cell::new(x, y), class)?;
                 self.changed.insert((x, y), class);
+                Ok(())
+            }
+            Change::Land(cells) => {
+                self.world.change(cells);
+                self.changed.extend(cells.iter().map(|&(cell, class)| ((cell.x, cell.y), class)));
                 Ok(())
             }
             _ => Err(Refusal::new("kind", "these robots go from cell to cell", "change cells of the land instead")),

@@ -50,6 +50,9 @@ pub trait Ground: Send + Sync {
         true
     }
 
+    /// The robot of body `index` forgets what it has seen: its computer starts anew.
+    fn forget(&mut self, _index: usize) {}
+
     /// What the robot of body `index` senses at the start of `tick`; the inbox is empty.
     fn sense<'a>(&'a self, index: usize, tick: u32, scratch: &'a mut Self::Scratch) -> AnyInputs<'a, f32>;
 

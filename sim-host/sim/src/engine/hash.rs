@@ -45,7 +45,14 @@ mod tests {
     use super::*;
     use staya_controller::grid::{Cell, Dir};
 
-    const BODY: Body = Body { id: RobotId(1), cell: Cell::new(3, 4), entered_by: Dir::East, free_at: 70 };
+    const BODY: Body = Body {
+        id: RobotId(1),
+        cell: Cell::new(3, 4),
+        entered_by: Dir::East,
+        free_at: 70,
+        crossing: 70,
+        is_shut_in: false,
+    };
 
     fn chain(steps: &[(u32, Body, Mode)]) -> Chain {
         let mut chain = Chain::new(RobotId(1));

@@ -6,6 +6,7 @@ use crate::world::Refusal;
 use crate::world::plane::Shape;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{Parameter, Safety};
+use staya_controller::grid::Cell;
 use staya_controller::robot::RobotId;
 
 /// A change of the world itself.
@@ -26,6 +27,9 @@ pub enum Change<'a> {
     Remove(usize),
     /// See [`Intervention::Cell`].
     Cell([i16; 2], u8),
+    /// Cells of the land, each with what it becomes, by a rule of the scenario
+    /// ([`LandChange`](crate::terrain::change::LandChange)): whoever is in one that closes may leave it, and nobody enters.
+    Land(&'a [(Cell, u8)]),
 }
 
 /// A parameter that was changed, of one robot (its place in the scenario) or of all.
@@ -42,6 +46,17 @@ where
     G: HostLaw,
     A: Safety<f32> + Send,
 {
+    /// Changes the land as the scenario has it for this tick.
+    pub(super) fn change_land(&mut self) {
+        for (number, rule) in self.changes.iter().enumerate().filter(|(_, rule)| rule.is_due(self.tick)) {
+            let due = self.ground.terrain().map(|land| rule.due(number, self.seed, self.tick, land));
+            if let Some(cells) = due.filter(|cells| !cells.is_empty()) {
+                // There is land.
+                let _ = self.ground.change(self.tick, Change::Land(&cells));
+            }
+        }
+    }
+
     /// Does what the scenario has for this tick.
     pub(super) fn apply_interventions(&mut self) {
         while let Some((_, what)) = self.interventions.front().filter(|(tick, _)| *tick <= self.tick) {

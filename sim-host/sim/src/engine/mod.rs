@@ -47,6 +47,7 @@ use crate::metrics::waits::Waits;
 use crate::radio::{self, HostWire, Radio};
 use crate::record::{PacketCounts, TickRow};
 use crate::scenario::{Fault, Intervention, Robot, Scenario};
+use crate::terrain::change::LandChange;
 use attacker::Attacker;
 use hash::Chain;
 use intervene::Tuned;
@@ -148,6 +149,8 @@ pub struct Engine<W, G, A> {
     /// order, unless other ranks have the others.
     here: Vec<u32>,
     faults: Vec<Fault>,
+    /// How the land changes.
+    changes: Vec<LandChange>,
     /// What is still to be done to the run, by rising tick.
     interventions: VecDeque<(u32, Intervention)>,
     tuned: Vec<Tuned>,
@@ -223,6 +226,7 @@ where
             tick_us: scenario.tick_us,
             tick: 0,
             faults: scenario.faults.clone(),
+            changes: scenario.changes.clone(),
             interventions: scenario.interventions.iter().cloned().collect(),
             tuned: Vec::new(),
             keeps_shape: scenario.formation.is_some(),
@@ -306,6 +310,7 @@ where
 
     /// Starts computer number `index` anew, here or elsewhere.
     fn restart(&mut self, index: usize, boot: u8) {
+        self.ground.forget(index);
         let (config, task) = (self.config(index, boot), self.ground.task(self.number(index), self.tick));
         let robots = self.external.as_mut().and_then(|external| {
             let found = external.robots.iter().find(|(robot, ..)| *robot == index);
@@ -322,6 +327,7 @@ where
 
     /// One tick. Returns what the swarm as a whole looks like after it.
     pub fn step(&mut self) -> TickRow {
+        self.change_land();
         self.apply_interventions();
         self.apply_faults();
         let refused = self.decide();

@@ -1,7 +1,10 @@
 //! The plane (or space) as ground of the engine.
 
+mod orders;
 mod state;
 
+pub(super) use orders::frames;
+use orders::waypoint;
 pub use state::{PlaneBody, PlaneShared};
 
 use super::Status;
@@ -9,13 +12,13 @@ use super::grid::Changed;
 use super::ground::{Ground, StateWords};
 use super::intervene::Change;
 use crate::metrics::{FormationMeter, Keeping, PlaceError};
-use crate::radio;
 use crate::record::Motion;
 use crate::scenario::{Order, PlaneSetup, Robot, Scenario, Target, goals};
 use crate::terrain::Terrain;
 use crate::world::Refusal;
 use crate::world::plane::{Clearance, Disc, Plane, Solid, narrow};
-use crate::world::window;
+use crate::world::scouts::{Memory, Scouts};
+use crate::world::window_but;
 use staya_controller::agent::{
     AgentConfig, AnyInputs, AnySurroundings, CellState, Command, GuidanceKind, InCell, InCells, InPlane, Inputs,
     KinematicState, OnGrid, Task, WAYPOINTS, Waypoint,
@@ -25,8 +28,8 @@ use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Cell, GridFrame, UNIT};
 use staya_controller::obstacle::{Obstacle, grid_walls};
 use staya_controller::robot::{Mode, RobotId};
-use staya_controller::time::{Duration, Instant};
-use staya_controller::wire::{Format, Header, Message, WaypointAssignment, Wire};
+use staya_controller::time::Duration;
+use staya_controller::wire::Format;
 
 /// Walls of the land that a robot sees at a time.
 const WALLS: usize = 16;
@@ -40,6 +43,8 @@ pub struct PlaneGround {
     pub(super) gap_m: Option<f64>,
     pub(super) meter: Option<FormationMeter>,
     changed: Changed,
+    /// What robots know of land that they do not see.
+    pub(super) scouts: Option<Scouts>,
     robots: Vec<Robot>,
     /// The number of each body's robot.
     pub(super) numbers: Vec<u32>,
@@ -79,6 +84,7 @@ impl PlaneGround {
             clearance: Clearance::FREE,
             gap_m: None,
             changed: Changed::new(),
+            scouts: scenario.scouts(),
             meter: scenario
                 .formation
                 .as_ref()
@@ -103,17 +109,16 @@ impl PlaneGround {
         &self.plane
     }
 
-    /// What robot number `number` of the scenario senses where it is, with what velocity it has; the inbox is empty. Places
-    /// are finite.
+    /// What the robot of body `index` would sense at a place with a velocity; the inbox is empty. Places are finite.
     pub fn sense_at<'a>(
         &'a self,
-        number: usize,
+        index: usize,
         position_m: [f64; 3],
         velocity_mps: [f64; 3],
         senses: &'a mut Senses,
     ) -> AnyInputs<'a, f32> {
-        let Senses { cells, obstacles } = senses;
-        let group = self.setup.group(number);
+        let Senses { cells, known, obstacles } = senses;
+        let group = self.setup.group(self.number(index));
         let sight_m = group.sight_m + group.radius_m;
         obstacles.clear();
         // Who says nothing is seen as what stands where he is.
@@ -123,9 +128,10 @@ impl PlaneGround {
         let near = self.plane.solids_near(position_m, sight_m).copied().chain(silent);
         obstacles.extend(near.map(|solid| narrow(&solid.seen_from(position_m))));
         let place = self.in_cell(position_m);
-        let window =
-            place.zip(self.plane.terrain()).and_then(|((cell, _, _), land)| window(land, cell, self.radius, cells));
-        if let (Some((cell, off, cell_m)), Some(window)) = (place, &window) {
+        let here = place.map(|(cell, ..)| cell).zip(self.plane.terrain());
+        let sight = self.scouts.as_ref().map_or(self.radius, Scouts::sight);
+        let seen = here.and_then(|(cell, land)| window_but(land, cell, sight, self.plane.shut(index), cells));
+        if let (Some((cell, off, cell_m)), Some(window)) = (place, &seen) {
             // The frame as seen from the robot.
             let origin = |cells: i16, axis: usize| -off[axis] - (f64::from(cells) + 0.5) * cell_m;
             let frame = GridFrame {
@@ -135,7 +141,11 @@ impl PlaneGround {
             let walls = grid_walls::<f32, WALLS>(window, &frame, Vec2::ZERO, sight_m as f32);
             obstacles.extend(walls);
         }
-        let max_speed_mps = self.plane.max_speed_mps(&group.abilities, position_m) as f32;
+        let window = match &self.scouts {
+            None => seen,
+            Some(scouts) => here.and_then(|(cell, land)| scouts.window(land, index, cell, known)),
+        };
+        let max_speed_mps = self.plane.max_speed_mps(index, position_m) as f32;
         let plane = InPlane { max_speed_mps, obstacles };
         let [vx, vy, vz] = velocity_mps.map(|v| v as f32);
         Inputs {
@@ -184,36 +194,6 @@ impl PlaneGround {
     }
 }
 
-/// The operator's orders as frames; those of one tick together.
-pub(super) fn frames(orders: &[Order], format: Format, key: Option<&Key>) -> Vec<(u32, Vec<u8>)> {
-    let mut frames = Vec::<(u32, Vec<u8>)>::new();
-    // Each index counts by itself: what is newer may be at most half of all versions ahead.
-    let mut versions = [0_u8; 256];
-    let (mut wire, sender) = radio::operator(format, key, 0);
-    let mut sequence = 0_u16;
-    for order in orders {
-        let version = &mut versions[usize::from(order.index)];
-        *version = version.wrapping_add(1);
-        let milli = |x: f64| libm::round(x * 1000.0);
-        let place = WaypointAssignment {
-            to: RobotId::NOBODY,
-            version: *version,
-            index: order.index,
-            position_mm: order.target.position_m.map(|x| milli(x) as i32),
-            velocity_mmps: order.target.velocity_mps.map(|x| milli(x) as i16),
-        };
-        let header = Header { boot: 0, sender, sequence };
-        sequence = sequence.wrapping_add(1);
-        let mut bytes = heapless::Vec::<u8, 64>::new();
-        wire.encode(header, &Message::Waypoint(place), &mut bytes).expect("a frame has at most 60 bytes");
-        match frames.last_mut() {
-            Some((tick, frame)) if *tick == order.tick => frame.extend_from_slice(&bytes),
-            _ => frames.push((order.tick, bytes.to_vec())),
-        }
-    }
-    frames
-}
-
 /// A robot's body at its start.
 fn disc(id: RobotId, setup: &PlaneSetup, number: usize) -> Disc {
     let (group, start) = (setup.group(number), &setup.starts[number]);
@@ -231,6 +211,7 @@ fn disc(id: RobotId, setup: &PlaneSetup, number: usize) -> Disc {
 #[derive(Default)]
 pub struct Senses {
     cells: Vec<u8>,
+    known: Vec<u8>,
     obstacles: Vec<Obstacle<f32>>,
 }
 
@@ -260,8 +241,8 @@ impl Ground for PlaneGround {
     }
 
     fn sense<'a>(&'a self, index: usize, _: u32, senses: &'a mut Senses) -> AnyInputs<'a, f32> {
-        let disc = &self.plane.discs()[index];
-        self.sense_at(self.number(index), disc.position_m, disc.velocity_mps, senses)
+        let Disc { position_m, velocity_mps, .. } = self.plane.discs()[index];
+        self.sense_at(index, position_m, velocity_mps, senses)
     }
 
     fn motion(&self, index: usize, _: u32) -> Motion {
@@ -273,7 +254,17 @@ impl Ground for PlaneGround {
         }
     }
 
+    fn forget(&mut self, index: usize) {
+        if let Some(scouts) = &mut self.scouts {
+            scouts.put(index, Memory::new());
+        }
+    }
+
     fn advance(&mut self, _: u32, commands: &[Command<f32>]) {
+        if let (Some(scouts), Some(land)) = (&mut self.scouts, self.plane.terrain()) {
+            let (plane, discs) = (&self.plane, self.plane.discs());
+            scouts.observe(land, |index| plane.cell(discs[index].position_m));
+        }
         self.plane.advance(commands);
     }
 
@@ -470,6 +461,11 @@ impl Ground for PlaneGround {
                 self.changed.insert((x, y), class);
                 Ok(())
             }
+            Change::Land(cells) => {
+                self.plane.change(cells);
+                self.changed.extend(cells.iter().map(|&(cell, class)| ((cell.x, cell.y), class)));
+                Ok(())
+            }
         }
     }
 
@@ -481,19 +477,5 @@ impl Ground for PlaneGround {
     fn orders(&self, tick: u32) -> Option<&[u8]> {
         let at = self.orders.binary_search_by_key(&tick, |(tick, _)| *tick).ok()?;
         Some(&self.orders[at].1)
-    }
-}
-
-/// A target as it is `age_s` after it was set, at the start of a robot's clock.
-fn waypoint(target: &Target, age_s: f64) -> Waypoint<f32> {
-    let mut at = target.position_m;
-    for (at, v) in at.iter_mut().zip(target.velocity_mps) {
-        *at += v * age_s;
-    }
-    let [vx, vy, vz] = target.velocity_mps.map(|v| v as f32);
-    Waypoint {
-        position: Position::from_metres(at).unwrap_or_default(),
-        velocity_mps: Vec3::new(vx, vy, vz),
-        at: Instant::from_micros(0),
     }
 }

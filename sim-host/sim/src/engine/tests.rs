@@ -337,6 +337,7 @@ mod attack;
 mod external;
 mod intervene;
 mod intruder;
+mod land;
 mod operator;
 mod plane;
 mod state;

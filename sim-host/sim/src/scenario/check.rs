@@ -2,7 +2,7 @@
 
 use super::ranges::within;
 use super::source::Source;
-use super::{Fault, Robot, ScenarioError, ScenarioFile};
+use super::{Crop, Fault, Robot, ScenarioError, ScenarioFile, TerrainTable};
 use crate::file::has_memory;
 use crate::terrain::generate::{self, LandPlan};
 use crate::terrain::{Terrain, TerrainError};
@@ -10,6 +10,7 @@ use staya_controller::formation::published::FormationLaw;
 use staya_controller::robot::RobotId;
 use staya_controller::route::Replan;
 use staya_mavlink::any::max_robot;
+use std::path::Path;
 
 pub(super) fn general(source: &Source<'_>, file: &ScenarioFile) -> Result<(), ScenarioError> {
     let allowed = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
@@ -135,10 +136,7 @@ pub(super) fn terrain(source: &Source<'_>, file: &ScenarioFile) -> Result<Terrai
         seed: seed.unwrap_or(file.seed),
     };
     let (field, made) = match (&table.file, table.uniform, table.natural, table.entropy) {
-        (Some(name), None, None, None) => {
-            let path = source.folder().join(name);
-            ("terrain.file", Terrain::load_with(&path, &table.load))
-        }
+        (Some(name), None, None, None) => ("terrain.file", load(source, table, name)),
         (None, Some(t), None, None) => {
             let plan = plan(t.width, t.height, t.classes, t.seed);
             ("terrain.uniform", generate::uniform(&plan))
@@ -167,17 +165,31 @@ pub(super) fn terrain(source: &Source<'_>, file: &ScenarioFile) -> Result<Terrai
         }
     };
     let made = made.map_err(|error| terrain_error(source, field, &error))?;
-    let mut terrain = match table.crop {
-        None => made,
-        Some(crop) => made
-            .crop(crop.x, crop.y, crop.width, crop.height)
-            .map_err(|error| terrain_error(source, "terrain.crop", &error))?,
-    };
+    let mut terrain = cropped(source, table, made)?;
     if let Some(cell_m) = table.cell_m {
         within(source, "terrain.cell_m", cell_m, 0.001, 100_000.0, "metres")?;
         terrain.cell_m = cell_m;
     }
     Ok(terrain)
+}
+
+/// Another map of the same land, read as the land's own.
+pub(super) fn map(source: &Source<'_>, file: &ScenarioFile, name: &Path) -> Result<Terrain, ScenarioError> {
+    let usual = TerrainTable::default();
+    let table = file.terrain.as_ref().unwrap_or(&usual);
+    let made = load(source, table, name).map_err(|error| terrain_error(source, "scouting.map", &error))?;
+    cropped(source, table, made)
+}
+
+fn load(source: &Source<'_>, table: &TerrainTable, name: &Path) -> Result<Terrain, TerrainError> {
+    Terrain::load_with(&source.folder().join(name), &table.load)
+}
+
+fn cropped(source: &Source<'_>, table: &TerrainTable, made: Terrain) -> Result<Terrain, ScenarioError> {
+    let Some(Crop { x, y, width, height }) = table.crop else {
+        return Ok(made);
+    };
+    made.crop(x, y, width, height).map_err(|error| terrain_error(source, "terrain.crop", &error))
 }
 
 fn terrain_error(source: &Source<'_>, field: &str, error: &TerrainError) -> ScenarioError {

@@ -1,6 +1,6 @@
 //! What a run depends on, as one number.
 
-use super::{Keeping, Scenario};
+use super::{Keeping, Scenario, Scouting};
 use staya_controller::auth::Key;
 use std::fmt::{self, Debug, Write as _};
 
@@ -43,6 +43,8 @@ impl Scenario {
             ticks: _,
             tick_us,
             terrain,
+            changes,
+            scouting,
             rules,
             radio,
             robots,
@@ -65,6 +67,13 @@ impl Scenario {
         all.add(&(terrain.width(), terrain.height(), terrain.cell_m, terrain.origin_m));
         all.add(&(seed, tick_us, rules, radio, robots, formation, plane, route, formation_params, published));
         all.add(&(faults, interventions, misnumbered, claims, attacks));
+        if !changes.is_empty() {
+            all.add(changes);
+        }
+        if let Some(Scouting { map, sight }) = scouting {
+            all.mix(map.cells());
+            all.add(sight);
+        }
         // Debug texts keep secrets.
         all.key(key.as_ref());
         all.key(keeping.as_ref().map(|keeping| &keeping.master));

@@ -167,7 +167,7 @@ pub(super) fn interventions(
 }
 
 /// The first tick that does not begin before a time; exact for times that are whole ticks, whatever their decimals.
-fn tick(at_s: f64, tick_s: f64) -> u32 {
+pub(super) fn tick(at_s: f64, tick_s: f64) -> u32 {
     let tick_us = f64::from(micros(tick_s).max(1));
     libm::ceil(libm::round(at_s * 1e6) / tick_us) as u32
 }

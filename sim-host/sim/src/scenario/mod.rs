@@ -9,11 +9,13 @@ mod claims;
 mod field;
 mod fingerprint;
 mod intervention;
+mod land;
 mod params;
 mod plane;
 mod ranges;
 mod robots;
 mod schema;
+mod scouting;
 mod setting;
 mod setup;
 mod source;
@@ -31,9 +33,9 @@ pub use plane::{
 pub use ranges::within;
 pub use robots::{Formation, Robot};
 pub use schema::{
-    AttackKind, AttackTable, AuthenticationTable, Crop, EntropyTable, FaultTable, FormationEntry, Lie,
-    MisnumberedTable, NaturalTable, RobotEntry, RobotsTable, RollTable, ScatteredEntry, ScenEntry, ScenarioFile,
-    TerrainTable, UniformTable,
+    AttackKind, AttackTable, AuthenticationTable, ChangeTable, Crop, DriftTable, EntropyTable, FaultTable,
+    FormationEntry, Lie, MisnumberedTable, NaturalTable, RobotEntry, RobotsTable, RollTable, ScatteredEntry, ScenEntry,
+    ScenarioFile, ScoutingTable, TerrainTable, UniformTable,
 };
 pub use setting::{Setting, text_with};
 pub use source::ScenarioError;
@@ -42,7 +44,9 @@ pub use source::Source;
 use crate::file::{TEXT, read_text};
 use crate::radio::RadioParams;
 use crate::terrain::Terrain;
+use crate::terrain::change::LandChange;
 use crate::world::MoveRules;
+pub use crate::world::scouts::Scouting;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{GuidanceSetup, RouteSetup};
 use staya_controller::auth::Key;
@@ -133,6 +137,10 @@ pub struct Scenario {
     pub tick_us: u32,
     /// The land; one flat cell when bodies in the plane have none.
     pub terrain: Terrain,
+    /// How it changes while the run goes on.
+    pub changes: Vec<LandChange>,
+    /// What robots know of it before they see it; `None`: nothing, and they remember no more than their laws do.
+    pub scouting: Option<Scouting>,
     /// How bodies move.
     pub rules: MoveRules,
     /// The radio.
@@ -223,9 +231,12 @@ impl Scenario {
         let attacks = authentication::attacks(&source, &file, &robots)?;
         let faults = check::faults(&source, &file, &robots)?;
         let interventions = intervention::interventions(&source, &file, &robots)?;
+        let changes = land::changes(&source, &file, &terrain)?;
         let misnumbered = check::misnumbered(&source, &file, &robots)?;
         check::formation_only(&source, &file)?;
-        let route = params::routing(&source, &file.route, &file.grid)?;
+        let route = params::routing(&source, &file)?;
+        let land = Some(&terrain).filter(|_| file.terrain.is_some());
+        let scouting = scouting::scouting(&source, &file, land, params::sight(&file))?;
         let formation_params = params::formation(&source, &file.formation)?;
         let published = params::published(&source, &file.formation)?;
         let mut scenario = Self {
@@ -234,6 +245,8 @@ impl Scenario {
             ticks: file.ticks,
             tick_us: ranges::micros(file.tick_s),
             terrain,
+            changes,
+            scouting,
             rules: MoveRules { norm: file.grid.norm, corner_cutting: file.grid.corner_cutting },
             radio: file.radio.clone(),
             robots,

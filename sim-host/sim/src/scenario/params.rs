@@ -1,9 +1,9 @@
 //! `[route]` and `[formation]`: how the robots choose their ways. All fields are optional; their
 //! defaults are the controller's, as listed in scenarios/README.md (which a test compares).
 
-use super::ScenarioError;
 use super::ranges::within;
 use super::source::Source;
+use super::{ScenarioError, ScenarioFile};
 use serde::Deserialize;
 use staya_controller::agent::RouteSetup;
 use staya_controller::cost::Gain;
@@ -86,19 +86,30 @@ pub struct FormationTable {
     pub recovery: Option<Recovery>,
 }
 
-pub(super) fn routing(source: &Source<'_>, table: &RouteTable, grid: &GridTable) -> Result<RouteSetup, ScenarioError> {
+/// How far robots see, cells in each direction.
+pub(super) fn sight(file: &ScenarioFile) -> u8 {
+    file.route.radius.unwrap_or(RouteParams::default().radius)
+}
+
+pub(super) fn routing(source: &Source<'_>, file: &ScenarioFile) -> Result<RouteSetup, ScenarioError> {
+    let (table, grid) = (&file.route, &file.grid);
     let usual = RouteParams::default();
     let gain = |name: &str, value: Option<f64>, usual: Gain| match value {
         None => Ok(usual),
         Some(value) => gain(source, &format!("route.{name}"), value),
     };
-    let radius = table.radius.unwrap_or(usual.radius);
+    let mut radius = sight(file);
     if !(1..=MAX_RADIUS).contains(&radius) {
         return Err(source.error(
             "route.radius",
             format!("a window of radius {radius} is out of range"),
             format!("give 1 to {MAX_RADIUS} cells"),
         ));
+    }
+    if let Some(scouting) = &file.scouting {
+        let wide = scouting.radius.unwrap_or(MAX_RADIUS);
+        within(source, "scouting.radius", wide.into(), radius.into(), MAX_RADIUS.into(), "cells")?;
+        radius = wide;
     }
     let params = RouteParams {
         radius,

@@ -31,6 +31,8 @@ pub struct ScenarioFile {
     pub tick_s: f64,
     /// The land; may be left out with `[plane]`.
     pub terrain: Option<TerrainTable>,
+    /// What robots know of the land before they see it. Default: nothing.
+    pub scouting: Option<ScoutingTable>,
     /// Rules of the grid.
     #[serde(default)]
     pub grid: GridTable,
@@ -79,7 +81,7 @@ const fn one() -> f64 {
 }
 
 /// `[terrain]`: exactly one of `file`, `uniform`, `natural`, `entropy`.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TerrainTable {
     /// A map: `.map` (Moving AI), `.asc` (ESRI heights), `.yaml` (ROS map_server).
@@ -97,6 +99,49 @@ pub struct TerrainTable {
     pub crop: Option<Crop>,
     /// Side of a cell in metres, more than 0. Default: what the map says, else 1.
     pub cell_m: Option<f64>,
+    /// How the land changes while the run goes on.
+    #[serde(default)]
+    pub change: Vec<ChangeTable>,
+}
+
+/// `[[terrain.change]]`: exactly one of `class`, `drift`; at most one of `cells`, `rectangle`, `polygon_m` (one with `class`).
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ChangeTable {
+    /// When, seconds after the start; before the tick that begins then, or the next one. Default: 0.
+    #[serde(default)]
+    pub at_s: f64,
+    /// It happens again after so many seconds. Default: once.
+    pub every_s: Option<f64>,
+    /// With `class`: after so many seconds the cells are again as the map has them; less than `every_s`. Default: never.
+    pub for_s: Option<f64>,
+    /// Cells, each by itself.
+    pub cells: Option<Vec<[i16; 2]>>,
+    /// All cells of a rectangle.
+    pub rectangle: Option<Crop>,
+    /// All cells whose middle is in a polygon with these corners, metres.
+    pub polygon_m: Option<Vec<[f64; 2]>>,
+    /// What the cells become: ticks to cross one, 1 to 255; 0: closed.
+    pub class: Option<u8>,
+    /// Some of the cells become slower or faster instead.
+    pub drift: Option<DriftTable>,
+}
+
+/// `drift` of `[[terrain.change]]`.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DriftTable {
+    /// How many of the cells are drawn each time, as a share of them, 0 to 1; one at least.
+    pub share: f64,
+    /// By how many ticks they become slower or faster to cross, 1 to 254. Default: 1.
+    #[serde(default = "one_class")]
+    pub step: u8,
+    /// The slowest that a cell becomes, ticks. Default: the slowest of the map.
+    pub classes: Option<u8>,
+}
+
+const fn one_class() -> u8 {
+    1
 }
 
 /// `terrain.uniform`.
@@ -165,6 +210,26 @@ const fn nine() -> u8 {
 
 const fn hundredth() -> f64 {
     0.01
+}
+
+/// `[scouting]`.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ScoutingTable {
+    /// An old map: a file like that of `[terrain]`, read and cropped in the same way. Default: the land as it is at the start.
+    pub map: Option<PathBuf>,
+    /// Share of the map's patches that are unknown, 0 to 1. Default: 0.
+    pub unknown: f64,
+    /// Share of the map's patches that show what is elsewhere on it, 0 to 1. Default: 0.
+    pub wrong: f64,
+    /// Cells along each side of a patch, 1 to 1000. Default: 1.
+    pub patch_cells: Option<u16>,
+    /// What robots take unknown cells for: ticks to cross one, 1 to 255. Default: the median of the map.
+    pub assumed: Option<u8>,
+    /// Seed of what is unknown and wrong. Default: the scenario's.
+    pub seed: Option<u64>,
+    /// How far robots plan on what they know, cells in each direction, 1 to 16, not less than `route.radius`. Default: 16.
+    pub radius: Option<u8>,
 }
 
 /// A rectangle of cells: `{ x, y, width, height }`, x and y being its south-west corner.

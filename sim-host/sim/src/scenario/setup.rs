@@ -1,7 +1,10 @@
 //! The controller's setup of each robot of a scenario.
 
-use super::Scenario;
+use super::{Intervention, Scenario};
+use crate::terrain::change::ChangeKind;
+use crate::world::scouts::Scouts;
 use staya_controller::agent::{GuidanceSetup, SafetySetup};
+use staya_controller::grid::Cell;
 
 impl Scenario {
     /// How robot number `index` goes.
@@ -25,6 +28,28 @@ impl Scenario {
             *template = own.cloned().unwrap_or_default();
         }
         guidance
+    }
+
+    /// The cells that rules of the scenario, or somebody, make something else, by rising cell; not those that drift. O(cells).
+    #[must_use]
+    pub fn changing_cells(&self) -> Vec<Cell> {
+        let by_rule = self.changes.iter().flat_map(|rule| match &rule.kind {
+            ChangeKind::Become { cells, .. } => &cells[..],
+            ChangeKind::Drift { .. } => &[],
+        });
+        let by_hand = self.interventions.iter().filter_map(|(_, what)| match what {
+            Intervention::Cell { cell: [x, y], .. } => Some(Cell::new(*x, *y)),
+            _ => None,
+        });
+        let mut cells: Vec<Cell> = by_rule.map(|(cell, _)| *cell).chain(by_hand).collect();
+        cells.sort_unstable();
+        cells.dedup();
+        cells
+    }
+
+    /// What all robots know of the land before they see it, if they know any.
+    pub(crate) fn scouts(&self) -> Option<Scouts> {
+        self.scouting.as_ref().map(|known| Scouts::new(known, self.route.params.radius, self.robots.len()))
     }
 
     /// How far from its place a member of the formation counts as found, cells.

@@ -1,15 +1,18 @@
 //! The land: a grid of impassability, where it comes from, what describes it.
 //!
 //! Files: [`movingai`] (`.map`, `.scen`), [`esri`] heights (`.asc`) through [`slope`], [`ros`] (`.yaml` with `.pgm`; also
-//! the format that Staya writes). [`Terrain::load`] chooses by extension. [`generate`] makes random land, and
-//! [`metrics`] describes it.
+//! the format that Staya writes). [`Terrain::load`] chooses by extension. [`generate`] makes random land,
+//! [`metrics`] describes it, [`change`] has what becomes of it in a run, and [`scouted`] what
+//! maps of it show.
 
+pub mod change;
 pub mod esri;
 pub mod generate;
 pub mod metrics;
 pub mod movingai;
 pub mod ros;
 pub mod rows;
+pub mod scouted;
 pub mod slope;
 
 mod error;

@@ -187,7 +187,7 @@ impl World {
 
     /// A body comes from another rank, behind those that are here; where it is, [`World::put`] has to say.
     pub(crate) fn admit(&mut self, id: RobotId) {
-        self.bodies.push(Body { id, cell: NOWHERE, entered_by: Dir::Stay, free_at: 0 });
+        self.bodies.push(Body::at_rest(id, NOWHERE));
     }
 
     /// A body goes to another rank; the last one takes its place.

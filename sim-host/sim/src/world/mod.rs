@@ -7,10 +7,11 @@
 pub(crate) mod border;
 pub mod plane;
 mod refusal;
+pub mod scouts;
 mod window;
 
 pub use refusal::Refusal;
-pub use window::window;
+pub use window::{known_window, window, window_but};
 
 use crate::terrain::Terrain;
 use rayon::prelude::*;
@@ -44,6 +45,17 @@ pub struct Body {
     pub entered_by: Dir,
     /// When it may leave, in [`UNIT`]ths of a tick after the start.
     pub free_at: u64,
+    /// Length of its last crossing, [`UNIT`]ths of a tick: the land may have changed since. 0 for a body that never moved.
+    pub crossing: u64,
+    /// The cell was closed while it was there: it may leave, and nobody enters.
+    pub is_shut_in: bool,
+}
+
+impl Body {
+    /// One that has not moved yet.
+    pub(crate) const fn at_rest(id: RobotId, cell: Cell) -> Self {
+        Self { id, cell, entered_by: Dir::Stay, free_at: 0, crossing: 0, is_shut_in: false }
+    }
 }
 
 /// A start that the world refuses.
@@ -121,7 +133,7 @@ impl World {
             let second = robot;
             return Err(Misplaced::Overlap { first, second, cell });
         }
-        self.bodies.push(Body { id: robot, cell, entered_by: Dir::Stay, free_at: 0 });
+        self.bodies.push(Body::at_rest(robot, cell));
         self.occupancy[at] = self.bodies.len() as u32;
         Ok(())
     }
@@ -133,8 +145,9 @@ impl World {
     }
 
     /// Puts body `index` where and as it was at another time; whoever is in its cell is to be put elsewhere, too. Checks nothing but the map.
-    pub(crate) fn put(&mut self, index: usize, cell: Cell, entered_by: Dir, free_at: u64) -> bool {
-        let Some(to) = self.terrain.index(cell).filter(|_| self.terrain.is_passable(cell)) else {
+    pub(crate) fn put(&mut self, index: usize, body: Body) -> bool {
+        let may_be_there = body.is_shut_in || self.terrain.is_passable(body.cell);
+        let Some(to) = self.terrain.index(body.cell).filter(|_| may_be_there) else {
             return false;
         };
         let own = index as u32 + 1;
@@ -145,7 +158,7 @@ impl World {
         }
         self.occupancy[to] = own;
         let id = self.bodies[index].id;
-        self.bodies[index] = Body { id, cell, entered_by, free_at };
+        self.bodies[index] = Body { id, ..body };
         true
     }
 
@@ -159,7 +172,17 @@ impl World {
         self.terrain.set(cell, class);
     }
 
-    /// Changes a cell of the land; 0 is a wall.
+    /// Changes cells of the land, whoever is there: in a cell that closes a body is shut in, which it may leave.
+    pub fn change(&mut self, cells: &[(Cell, u8)]) {
+        for &(cell, class) in cells {
+            self.terrain.set(cell, class);
+            if let Some(index) = self.body_at(cell) {
+                self.bodies[index].is_shut_in = class == BLOCKED;
+            }
+        }
+    }
+
+    /// Changes a cell of the land by hand; 0 is a wall.
     ///
     /// # Errors
     /// There is no such cell, or somebody is in it.
@@ -179,15 +202,6 @@ impl World {
     pub fn body_at(&self, cell: Cell) -> Option<usize> {
         let at = self.terrain.index(cell)?;
         (self.occupancy[at] as usize).checked_sub(1)
-    }
-
-    /// Length of the body's last crossing, [`UNIT`]ths of a tick; 0 for a body that never moved.
-    #[must_use]
-    pub fn crossing(&self, body: &Body) -> u64 {
-        match body.entered_by {
-            Dir::Stay => 0,
-            dir => u64::from(dir.length(self.rules.norm)) * u64::from(self.terrain.get(body.cell)),
-        }
     }
 
     /// Moves the bodies as their robots command; `commands[i]` belongs to body `i`.
@@ -239,9 +253,9 @@ impl World {
     fn entered(&self, body: &Body, dir: Dir, now: u64) -> Body {
         let idle = now - body.free_at;
         let start = if idle < u64::from(UNIT) { body.free_at } else { now };
-        let moved = Body { cell: body.cell + dir.offset(), entered_by: dir, ..*body };
-        let free_at = start + self.crossing(&moved);
-        Body { free_at, ..moved }
+        let cell = body.cell + dir.offset();
+        let crossing = u64::from(dir.length(self.rules.norm)) * u64::from(self.terrain.get(cell));
+        Body { id: body.id, cell, entered_by: dir, free_at: start + crossing, crossing, is_shut_in: false }
     }
 
     /// Whether a body in `from` may move by `dir` right now.
@@ -254,14 +268,15 @@ impl World {
             && (self.rules.corner_cutting || !dir.is_diagonal() || (passable(to.x, from.y) && passable(from.x, to.y)))
     }
 
-    /// How many bodies stand in a blocked cell, or in a cell that another body already has.
+    /// How many bodies stand in a blocked cell in which they were not shut, or in a cell that another body already has.
     ///
     /// Looks at the bodies and the terrain alone, not at the bookkeeping that [`World::advance`]
     /// uses: a check that trusts what it checks finds nothing. O(robots).
     pub fn count_collisions(&mut self) -> u64 {
         let mut collisions = 0;
         for body in &self.bodies {
-            let at = self.terrain.index(body.cell).filter(|&at| self.terrain.cells()[at] != BLOCKED);
+            let is_open = |at: &usize| self.terrain.cells()[*at] != BLOCKED || body.is_shut_in;
+            let at = self.terrain.index(body.cell).filter(is_open);
             let word = at.map(|at| (&mut self.seen[at / 64], 1 << (at % 64)));
             match word {
                 Some((word, bit)) if *word & bit == 0 => *word |= bit,

@@ -1,8 +1,9 @@
-//! What a robot sees of the terrain.
+//! What a robot sees of the terrain, and what it knows of it.
 
 use super::World;
 use crate::terrain::Terrain;
 use staya_controller::grid::{BLOCKED, Cell, Window};
+use staya_controller::route::{LandMemory, supposed};
 
 impl World {
     /// The square of `2 * radius + 1` cells a side around `cell`, written into `buffer`. Cells
@@ -17,6 +18,52 @@ impl World {
 /// As [`World::window`], of any land.
 #[must_use]
 pub fn window<'a>(terrain: &Terrain, cell: Cell, radius: u8, buffer: &'a mut Vec<u8>) -> Option<Window<'a>> {
+    window_but(terrain, cell, radius, &[], buffer)
+}
+
+/// The same with some cells another way: later ones count.
+#[must_use]
+pub fn window_but<'a>(
+    terrain: &Terrain,
+    cell: Cell,
+    radius: u8,
+    but: &[(Cell, u8)],
+    buffer: &'a mut Vec<u8>,
+) -> Option<Window<'a>> {
+    let origin = copy(terrain, cell, radius, buffer)?;
+    let side = 2 * u16::from(radius) + 1;
+    put(buffer, origin, side, but.iter().copied());
+    Window::new(buffer, origin, side, side)
+}
+
+/// What a robot takes the land around `cell` to be that sees so far and plans on windows so wide (`[sight, radius]`): `land` as far as it
+/// sees, what it remembers beyond that, and else its map, both of them the size of the land. `None` off the map. O(radius^2 + N).
+#[must_use]
+pub fn known_window<'a, const N: usize>(
+    land: &Terrain,
+    (map, memory): (&Terrain, &LandMemory<N>),
+    cell: Cell,
+    [sight, radius]: [u8; 2],
+    buffer: &'a mut Vec<u8>,
+) -> Option<Window<'a>> {
+    let origin = copy(map, cell, radius, buffer)?;
+    let side = 2 * u16::from(radius) + 1;
+    let closed = |at: usize| origin + Cell::new((at % usize::from(side)) as i16, (at / usize::from(side)) as i16);
+    for (at, class) in buffer.iter_mut().enumerate().filter(|(_, class)| **class == BLOCKED) {
+        // Where the map ends is certain.
+        if map.index(closed(at)).is_some() {
+            *class = supposed(*class);
+        }
+    }
+    memory.overlay(origin, side, buffer);
+    let reach = i16::from(sight.min(radius));
+    let rows = (-reach..=reach).flat_map(|y| (-reach..=reach).map(move |x| Cell::new(x, y)));
+    put(buffer, origin, side, rows.map(|off| cell + off).map(|cell| (cell, land.get(cell))));
+    Window::new(buffer, origin, side, side)
+}
+
+/// Writes the land into `buffer`, row by row, and answers with the window's south-west cell.
+fn copy(terrain: &Terrain, cell: Cell, radius: u8, buffer: &mut Vec<u8>) -> Option<Cell> {
     terrain.index(cell)?;
     let reach = i16::from(radius);
     let side = 2 * u16::from(radius) + 1;
@@ -35,7 +82,17 @@ pub fn window<'a>(terrain: &Terrain, cell: Cell, radius: u8, buffer: &'a mut Vec
         buffer.extend_from_slice(&row[columns.clone()]);
         buffer.resize(buffer.len() + after, BLOCKED);
     }
-    Window::new(buffer, origin, side, side)
+    Some(origin)
+}
+
+/// Writes cells into a window that was copied; those outside are ignored.
+fn put(buffer: &mut [u8], origin: Cell, side: u16, cells: impl Iterator<Item = (Cell, u8)>) {
+    for (cell, class) in cells {
+        let at = |at: i16, from: i16| u16::try_from(i32::from(at) - i32::from(from)).ok().filter(|&at| at < side);
+        if let (Some(x), Some(y)) = (at(cell.x, origin.x), at(cell.y, origin.y)) {
+            buffer[usize::from(y) * usize::from(side) + usize::from(x)] = class;
+        }
+    }
 }
 
 /// The part of `at - reach ..= at + reach` inside `0..length`, and how much of it lies before and after.

@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 use staya_sim::engine::Moment;
 use staya_sim::record::RobotRow;
 use staya_sim::scenario::{Intervention, Scenario};
+use staya_sim::terrain::change::LandChange;
 use std::path::Path;
 
 /// Takes the moments of a run, and writes those that are due: every so many ticks, and the last one.
@@ -21,6 +22,10 @@ pub struct RunRecorder<W: Sink> {
     scene: Scene,
     /// Ticks before which somebody changes the land or what stands in it, the latest first.
     changes: Vec<u32>,
+    /// By which the land changes by itself.
+    rules: Vec<LandChange>,
+    /// The tick of the last moment.
+    seen: u32,
     orders: Vec<Value>,
 }
 
@@ -44,6 +49,8 @@ impl<W: Sink> RunRecorder<W> {
             every: every.max(1),
             scene,
             changes,
+            rules: scenario.changes.clone(),
+            seen: 0,
             orders,
         })
     }
@@ -58,7 +65,9 @@ impl<W: Sink> RunRecorder<W> {
         while self.changes.last().is_some_and(|at| *at < tick) {
             self.changes.pop();
         }
-        if self.changes.len() < known {
+        let has_new_land = (self.seen..tick).any(|at| self.rules.iter().any(|rule| rule.is_due(at)));
+        self.seen = tick;
+        if has_new_land || self.changes.len() < known {
             let origin_m = self.scene.origin_m;
             self.scene.land = moment.land.map(|land| scene::land(land, origin_m));
             self.scene.solids = scene::solids(moment.solids, self.scene.kind == scene::Kind::Space, origin_m);

@@ -4,8 +4,10 @@ use crate::frame::tests::frames;
 use crate::scene::{Mode, Scene};
 use proptest::prelude::*;
 use serde_json::json;
+use staya_sim::engine::simulate;
 use staya_sim::scenario::{Overrides, Scenario};
 use std::io::Cursor;
+use std::ops::ControlFlow;
 
 fn scene() -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/swap-circle.toml");
@@ -87,6 +89,29 @@ fn a_scene_that_changes_holds_from_there_on() {
     let mut reader = read(&bytes).unwrap();
     assert!(!reader.scene_text_at(1).unwrap().contains("\"other\""));
     assert!(reader.scene_text_at(2).unwrap().contains("\"other\""));
+}
+
+#[test]
+fn land_that_changes_by_itself_is_shown_as_it_is() {
+    let text = "name = \"t\"\nticks = 12\n[terrain]\nuniform = { width = 4, height = 1, classes = 1 }\n\
+        [[terrain.change]]\nat_s = 4\nfor_s = 3\nclass = 0\ncells = [[2, 0]]\n[robots]\nlist = [{ start = [0, 0], goal = [3, 0] }]\n\
+        [[fault]]\nrobot = 1\nat_s = 0\ndown_s = 9\n";
+    let scenario = Scenario::parse(text, Path::new("t.toml"), &Overrides::default()).unwrap();
+    let mut recorder = RunRecorder::new(Vec::new(), Path::new("a.rec"), &scenario, 1).unwrap();
+    simulate(&scenario, |moment, robots| {
+        recorder.tick(moment, robots).unwrap();
+        ControlFlow::Continue(())
+    })
+    .unwrap();
+    let bytes = recorder.finish(&json!({})).unwrap();
+    let mut reader = read(&bytes).unwrap();
+    let mut land = |tick| {
+        let scene: serde_json::Value = serde_json::from_str(&reader.scene_text_at(tick).unwrap()).unwrap();
+        scene["land"]["cells"].as_str().unwrap().to_owned()
+    };
+    let (open, closed) = (land(4), land(5));
+    assert_ne!(open, closed, "it closes before the tick that begins at 4 s");
+    assert_eq!([land(0), land(7), land(8), land(12)], [&open, &closed, &open, &open].map(String::from));
 }
 
 #[test]

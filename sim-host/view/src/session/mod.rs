@@ -27,6 +27,8 @@ use std::time::{Duration, Instant};
 const FRAME: Duration = Duration::from_millis(16);
 /// Time between two states that nobody asked for.
 const STATE: Duration = Duration::from_millis(500);
+/// Least time between two scenes of land that changes by itself.
+const SCENE: Duration = Duration::from_millis(250);
 /// Events of a robot that are kept.
 const EVENTS: usize = 20;
 /// Rows of figures that a page is told at first.
@@ -77,6 +79,9 @@ pub struct Session {
     is_over: bool,
     pages: BTreeMap<Client, Looks>,
     is_new: bool,
+    /// Whether the land has changed since it was shown.
+    has_new_land: bool,
+    scene_told: Instant,
     shown: Instant,
     told: Instant,
 }
@@ -118,6 +123,8 @@ impl Session {
             is_over: false,
             pages: BTreeMap::new(),
             is_new: true,
+            has_new_land: false,
+            scene_told: now,
             shown: now,
             told: now,
         };
@@ -190,6 +197,7 @@ impl Session {
     }
 
     fn step(&mut self) {
+        self.has_new_land |= self.scenario.changes.iter().any(|rule| rule.is_due(self.tick));
         self.engine.advance();
         self.tick += 1;
         self.has_work |= !self.engine.is_over();
@@ -261,6 +269,10 @@ impl Session {
         let now = Instant::now();
         if now.duration_since(self.told) >= STATE {
             self.tell(server);
+        }
+        if self.has_new_land && self.catches_up_to.is_none() && now.duration_since(self.scene_told) >= SCENE {
+            (self.has_new_land, self.scene_told) = (false, now);
+            server.say(None, self.scene());
         }
         if !self.is_new || self.pages.is_empty() || now.duration_since(self.shown) < FRAME {
             return;
@@ -419,6 +431,7 @@ impl Session {
     /// What a page must know before frames mean anything to it.
     fn begin_anew(&mut self, to: Option<Client>, server: &Server) {
         server.begin_anew(to, self.scene());
+        self.has_new_land &= to.is_some();
         if let Some(rows) = self.rows(ROWS) {
             server.say(to, rows);
         }

@@ -187,6 +187,23 @@ fn a_selected_robot_shows_what_it_knows() {
 }
 
 #[test]
+fn land_that_changes_by_itself_is_sent_to_pages() {
+    let mut run = Running::new(
+        "name = \"t\"\nticks = 50\n[terrain]\nuniform = { width = 9, height = 1, classes = 1 }\n\
+         [[terrain.change]]\nat_s = 2\nclass = 0\ncells = [[5, 0]]\n[robots]\nlist = [{ start = [0, 0], goal = [8, 0] }]\n",
+    );
+    let cells = |scene: &Value| scene["land"]["cells"].as_str().expect("there is land").to_owned();
+    let first = cells(&run.text("scene"));
+    for _ in 0..3 {
+        run.say(&json!({ "do": "step" }));
+    }
+    let then = cells(&run.text("scene"));
+    assert_ne!(first, then);
+    run.say(&json!({ "do": "seek", "tick": 1 }));
+    assert_eq!(cells(&run.text("scene")), first, "before the change it is as it was");
+}
+
+#[test]
 fn wrong_words_are_answered_and_strangers_are_left() {
     let mut run = Running::new(IN_PLANE);
     run.text("scene");

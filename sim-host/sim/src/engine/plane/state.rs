@@ -5,6 +5,7 @@ use crate::engine::grid::{Changed, restore_meter};
 use crate::metrics::FormationMeter;
 use crate::scenario::{Order, Target};
 use crate::world::plane::{Clearance, Solid};
+use crate::world::scouts::Memory;
 use serde::{Deserialize, Serialize};
 use staya_controller::grid::Cell;
 
@@ -16,6 +17,8 @@ pub struct PlaneBody {
     goal: Cell,
     places: Vec<Target>,
     since: u32,
+    shut: Vec<(Cell, u8)>,
+    seen: Option<Memory>,
 }
 
 /// What is of the whole plane.
@@ -44,14 +47,20 @@ impl PlaneGround {
             goal: self.robots[number].goal,
             places: self.setup.starts[number].places.clone(),
             since: self.since[number],
+            shut: self.plane.shut(index).to_vec(),
+            seen: self.scouts.as_ref().map(|scouts| scouts.memory(index).clone()),
         }
     }
 
-    pub(super) fn put_body(&mut self, index: usize, body: PlaneBody) -> Result<(), &'static str> {
+    pub(super) fn put_body(&mut self, index: usize, mut body: PlaneBody) -> Result<(), &'static str> {
         if !is_finite(&[body.position_m, body.velocity_mps]) {
             return Err("its body is nowhere");
         }
         self.plane.put(index, body.position_m, body.velocity_mps);
+        self.plane.put_shut(index, std::mem::take(&mut body.shut));
+        if let (Some(scouts), Some(seen)) = (&mut self.scouts, body.seen.take()) {
+            scouts.put(index, seen);
+        }
         self.note_body(self.number(index), body);
         Ok(())
     }

@@ -6,6 +6,7 @@ use crate::engine::{Grid, Ground, PlaneGround};
 use crate::metrics::{FormationMeter, Keeping, in_cells};
 use crate::world::border::{Beside, DEPTH, Settled};
 use crate::world::plane::{self, Clearance};
+use crate::world::scouts::Scouts;
 use staya_controller::agent::Command;
 use staya_controller::grid::Cell;
 use staya_controller::robot::RobotId;
@@ -76,16 +77,19 @@ fn measure(meter: Option<&mut FormationMeter>, places: &[[f64; 2]], counts: bool
 impl Part for Grid {
     fn keep(&mut self, here: &[u32]) {
         self.world.keep(here);
+        self.scouts.iter_mut().for_each(|scouts| scouts.keep(here.len()));
         self.numbers = here.to_vec();
     }
 
     fn admit(&mut self, number: u32, id: RobotId) {
         self.world.admit(id);
+        self.scouts.iter_mut().for_each(Scouts::admit);
         self.numbers.push(number);
     }
 
     fn dismiss(&mut self, index: usize) {
         self.world.dismiss(index);
+        self.scouts.iter_mut().for_each(|scouts| scouts.dismiss(index));
         self.numbers.swap_remove(index);
     }
 
@@ -106,6 +110,7 @@ impl Part for Grid {
         wishes: &[(usize, Vec<u8>)],
         talk: &mut dyn Talk,
     ) -> Result<(), RankError> {
+        self.look();
         let mut beside = Vec::<Beside>::new();
         for (rank, bytes) in wishes {
             beside.extend(decode::<Vec<Beside>>(*rank, "bodies", bytes)?);
@@ -163,16 +168,19 @@ impl Part for Grid {
 impl Part for PlaneGround {
     fn keep(&mut self, here: &[u32]) {
         self.plane.keep(here);
+        self.scouts.iter_mut().for_each(|scouts| scouts.keep(here.len()));
         self.numbers = here.to_vec();
     }
 
     fn admit(&mut self, number: u32, id: RobotId) {
         self.plane.admit(self.disc_of(number as usize, id));
+        self.scouts.iter_mut().for_each(Scouts::admit);
         self.numbers.push(number);
     }
 
     fn dismiss(&mut self, index: usize) {
         self.plane.dismiss(index);
+        self.scouts.iter_mut().for_each(|scouts| scouts.dismiss(index));
         self.numbers.swap_remove(index);
     }
 

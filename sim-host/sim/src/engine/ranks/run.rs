@@ -222,6 +222,7 @@ where
     fn step(&mut self) -> Result<(TickRow, Sums), RankError> {
         self.agree_on_cells()?;
         let engine = &mut self.engine;
+        engine.change_land();
         engine.apply_interventions();
         engine.apply_faults();
         let refused = engine.decide();

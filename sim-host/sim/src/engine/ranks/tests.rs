@@ -105,9 +105,21 @@ const PLANE: &str = "name = 'plane'\nseed = 5\nticks = 80\ntick_s = 0.1\n[radio]
     [[intervention]]\nat_s = 1\ndo = { kind = 'solid', solid = { kind = 'circle', center_m = [1, 1], radius_m = 0.5 } }\n\
     [[intervention]]\nat_s = 2\ndo = { kind = 'goal', robot = 9, place_m = [2, 2, 0] }\n";
 
+/// Land that changes under the crowd, of which its robots have an old map.
+const CHANGES: &str = "[scouting]\nradius = 9\nunknown = 0.2\nwrong = 0.2\npatch_cells = 3\n[[terrain.change]]\nat_s = 3\nevery_s = 9\n\
+    for_s = 5\nclass = 0\nrectangle = { x = 12, y = 5, width = 6, height = 20 }\n\
+    [[terrain.change]]\nevery_s = 2\ndrift = { share = 0.05, step = 2 }\n";
+
+/// The same of discs.
+const PLANE_CHANGES: &str = "name = 'plane-on-land'\nseed = 5\nticks = 120\ntick_s = 0.1\n[radio]\nrange_m = 4\n\
+    [terrain]\nuniform = { width = 20, height = 12, classes = 2 }\n[[terrain.change]]\nat_s = 2\nfor_s = 4\nclass = 0\n\
+    rectangle = { x = 7, y = 0, width = 5, height = 11 }\n[scouting]\nunknown = 0.3\nwrong = 0.2\n\
+    [plane]\nradius_m = 0.2\nmax_speed_mps = 1\nguidance = 'route'\n[robots.scattered]\ncount = 30\n";
+
 #[test]
 fn every_fault_of_a_radio_and_every_intervention_is_the_same_over_ranks() {
-    for text in [GRID, PLANE] {
+    let changing = format!("{GRID}{CHANGES}");
+    for text in [GRID, PLANE, &changing, PLANE_CHANGES] {
         compare(text.lines().next().unwrap_or_default(), &parse(text), &[2, 3, 5]);
     }
 }

@@ -175,6 +175,23 @@ fn what_somebody_did_to_a_run_goes_on() {
 }
 
 #[test]
+fn land_that_changes_and_what_robots_have_seen_of_it_goes_on() {
+    let changes = "[[terrain.change]]\nat_s = 2\nevery_s = 4\nfor_s = 2\nclass = 0\nrectangle = { x = 4, y = 3, width = 6, height = 1 }\n\
+        [[terrain.change]]\nevery_s = 1\ndrift = { share = 0.2, classes = 4 }\n\
+        [scouting]\nradius = 8\nunknown = 0.5\nassumed = 3\n[[fault]]\nrobot = 2\nat_s = 3\ndown_s = 2\n";
+    let on_grid = scenario(TWO, changes);
+    with_engines!(&on_grid, goes_on("grid", 40, &[1, 4, 5, 7, 8, 9, 12]));
+    with_engines!(&on_grid, moves("grid", 9, 40));
+    let in_plane = "tick_s = 0.1\nname = \"t\"\nticks = 200\n[terrain]\nuniform = { width = 12, height = 6, classes = 2 }\n\
+        [[terrain.change]]\nat_s = 2\nfor_s = 3\nclass = 0\nrectangle = { x = 2, y = 0, width = 4, height = 6 }\n\
+        [plane]\nradius_m = 0.2\nmax_speed_mps = 1\nguidance = \"route\"\n[scouting]\nunknown = 0.5\n\
+        [robots]\nlist = [{ start = [1, 2], goal = [10, 2] }, { start = [10, 3], goal = [1, 3] }]\n";
+    let in_plane = Scenario::parse(in_plane, Path::new("t.toml"), &Overrides::default()).expect("a good scenario");
+    with_engines!(&in_plane, goes_on("plane", 80, &[5, 19, 21, 25, 30, 49, 52]));
+    with_engines!(&in_plane, moves("plane", 30, 60));
+}
+
+#[test]
 fn a_damaged_state_is_refused_or_at_least_does_no_harm() {
     fn check<W, G, A>(make: &dyn Fn() -> Box<Engine<W, G, A>>, whole: &str)
     where

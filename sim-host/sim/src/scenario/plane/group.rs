@@ -160,7 +160,7 @@ impl Spec {
         if !self.guidance.is_on_grid() {
             return Ok(waypoint(cruise_mps, tolerance_m));
         }
-        let (route, speed_mps) = (params::routing(source, &file.route, &file.grid)?, Some(cruise_mps as f32));
+        let (route, speed_mps) = (params::routing(source, file)?, Some(cruise_mps as f32));
         if self.guidance == GuidanceKind::Route {
             return Ok(GuidanceSetup::Route { route, speed_mps });
         }

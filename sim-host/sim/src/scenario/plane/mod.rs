@@ -134,6 +134,8 @@ impl Scenario {
             ticks,
             tick_us: super::ranges::micros(setup.general.abilities.step_s),
             terrain: Terrain::flat(1, 1),
+            changes: Vec::new(),
+            scouting: None,
             rules: MoveRules::default(),
             radio,
             robots: setup.robots(),

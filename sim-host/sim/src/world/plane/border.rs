@@ -23,16 +23,19 @@ impl Plane {
     /// Keeps these bodies alone, by their places, in this order. What counts as near is what did before.
     pub(crate) fn keep(&mut self, here: &[u32]) {
         self.discs = here.iter().map(|&index| self.discs[index as usize]).collect();
+        self.shut = vec![Vec::new(); here.len()];
     }
 
     /// A body comes from another rank, behind those that are here.
     pub(crate) fn admit(&mut self, disc: Disc) {
         self.discs.push(disc);
+        self.shut.push(Vec::new());
     }
 
     /// A body goes to another rank; the last one takes its place.
     pub(crate) fn dismiss(&mut self, index: usize) {
         self.discs.swap_remove(index);
+        self.shut.swap_remove(index);
     }
 
     /// What [`Plane::clearance`], which was called before, does not see: pairs of a body here and one of another rank. An overlap is counted

@@ -25,6 +25,7 @@ use staya_controller::body::Body as Limits;
 use staya_controller::geom::Vec3;
 use staya_controller::grid::{BLOCKED, Cell};
 use staya_controller::robot::RobotId;
+use std::collections::HashMap;
 
 /// A robot's body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,6 +62,8 @@ pub struct Plane {
     terrain: Option<Terrain>,
     solids: Solids,
     discs: Vec<Disc>,
+    /// By body: cells that were closed while it was there, as they were. It may leave them, and nobody enters.
+    shut: Vec<Vec<(Cell, u8)>>,
     intruders: Vec<Disc>,
     centers: Vec<[f64; 3]>,
     index: Cells<f64, 3>,
@@ -80,7 +83,7 @@ pub struct Clearance {
     pub solids_m: f64,
     /// Pairs of bodies that overlap.
     pub overlaps: u64,
-    /// Bodies that overlap an obstacle, or whose centre is in a blocked cell.
+    /// Bodies that overlap an obstacle, or whose centre is in a blocked cell that was not closed around them.
     pub intrusions: u64,
     /// Least distance between a body's surface and an intruder's, metres; infinite without intruders.
     pub intruders_m: f64,
@@ -134,6 +137,7 @@ impl Plane {
             terrain,
             solids: Solids::new(solids, CLOSE * largest_m),
             intruders: Vec::new(),
+            shut: vec![Vec::new(); discs.len()],
             centers: Vec::with_capacity(discs.len()),
             index: Cells::new(Space::OPEN, reach_m.max(1e-3)),
             reach_m,
@@ -200,6 +204,31 @@ impl Plane {
         }
     }
 
+    /// Changes cells of the land, whoever is there: what closes around a body stays open to it until it is out.
+    /// O(bodies x cells under one + cells).
+    pub fn change(&mut self, cells: &[(Cell, u8)]) {
+        let Some(terrain) = &mut self.terrain else { return };
+        let before: HashMap<Cell, u8> = cells.iter().map(|&(cell, _)| (cell, terrain.get(cell))).collect();
+        cells.iter().for_each(|&(cell, class)| terrain.set(cell, class));
+        for (disc, shut) in self.discs.iter().zip(&mut self.shut) {
+            shut.retain(|&(cell, _)| !terrain.is_passable(cell));
+            let closed = cells_under(terrain, disc).filter(|&cell| !terrain.is_passable(cell));
+            let closed = closed.filter_map(|cell| Some((cell, *before.get(&cell)?)));
+            shut.extend(closed.filter(|&(_, class)| class != BLOCKED));
+        }
+    }
+
+    /// The cells that were closed while body `index` was there and in which it still is, as they were.
+    #[must_use]
+    pub fn shut(&self, index: usize) -> &[(Cell, u8)] {
+        &self.shut[index]
+    }
+
+    /// Puts back what [`Plane::shut`] gave.
+    pub(crate) fn put_shut(&mut self, index: usize, shut: Vec<(Cell, u8)>) {
+        self.shut[index] = shut;
+    }
+
     /// Puts obstacles behind those that there are, wherever bodies are.
     pub fn add_solids(&mut self, solids: impl IntoIterator<Item = Solid>) {
         self.solids.change(|all| all.extend(solids));
@@ -255,11 +284,10 @@ impl Plane {
         self.terrain.as_ref()?.cell_at([x, y])
     }
 
-    /// How fast a body with these abilities can go at a place, m/s. In a blocked cell, where it should not be, as on the
-    /// worst land.
+    /// How fast body `index` can go at a place, m/s. In a blocked cell, where it should not be, as on the worst land.
     #[must_use]
-    pub fn max_speed_mps(&self, abilities: &Abilities, position_m: [f64; 3]) -> f64 {
-        max_speed_mps(self.terrain(), abilities, position_m)
+    pub fn max_speed_mps(&self, index: usize, position_m: [f64; 3]) -> f64 {
+        max_speed_mps(self.terrain(), &self.shut[index], &self.discs[index].abilities, position_m)
     }
 
     /// Moves the bodies for one tick as their robots command; `commands[i]` belongs to body `i`. A body goes at even speed
@@ -270,7 +298,8 @@ impl Plane {
     pub fn advance(&mut self, commands: &[Command<f32>]) {
         assert!(commands.len() >= self.discs.len(), "a command for each body");
         let land = self.terrain.as_ref();
-        self.discs.par_iter_mut().zip(commands).with_min_len(BATCH).for_each(|(disc, command)| {
+        let bodies = self.discs.par_iter_mut().zip(&mut self.shut).zip(commands).with_min_len(BATCH);
+        bodies.for_each(|((disc, shut), command)| {
             let wish = match *command {
                 Command::Velocity(v) => Vec3::new(v.x.into(), v.y.into(), v.z.into()),
                 Command::Hold | Command::Move(_) => Vec3::ZERO,
@@ -280,13 +309,17 @@ impl Plane {
                 id: disc.id,
                 velocity_mps: Vec3::new(vx, vy, vz),
                 radius_m: disc.radius_m,
-                max_speed_mps: max_speed_mps(land, &disc.abilities, disc.position_m),
+                max_speed_mps: max_speed_mps(land, shut, &disc.abilities, disc.position_m),
                 max_acceleration_mps2: disc.abilities.max_acceleration_mps2,
                 step_s: disc.abilities.step_s,
             };
             let v = limits.reach(wish);
             disc.velocity_mps = [v.x, v.y, v.z];
             disc.go();
+            if let Some(land) = land.filter(|_| !shut.is_empty()) {
+                let under: Vec<Cell> = cells_under(land, disc).collect();
+                shut.retain(|(cell, _)| under.contains(cell));
+            }
         });
         self.intruders.iter_mut().for_each(Disc::go);
     }
@@ -345,7 +378,8 @@ impl Plane {
         clearance.solids_m = gap;
         let land = self.terrain.as_ref();
         let cell = self.cell(disc.position_m).zip(land);
-        let is_in_wall = cell.is_some_and(|(cell, terrain)| terrain.get(cell) == BLOCKED);
+        let is_shut = |cell: Cell| self.shut[number as usize].iter().any(|&(shut, _)| shut == cell);
+        let is_in_wall = cell.is_some_and(|(cell, terrain)| terrain.get(cell) == BLOCKED && !is_shut(cell));
         clearance.intrusions = u64::from(gap < -ROUNDING_M || is_in_wall);
         for intruder in &self.intruders {
             let way = [0, 1, 2].map(|axis| intruder.position_m[axis] - disc.position_m[axis]);
@@ -368,13 +402,34 @@ impl Disc {
 }
 
 /// See [`Plane::max_speed_mps`].
-fn max_speed_mps(land: Option<&Terrain>, abilities: &Abilities, [x, y, _]: [f64; 3]) -> f64 {
-    let ticks = match land.and_then(|land| Some(land.get(land.cell_at([x, y])?))) {
+fn max_speed_mps(land: Option<&Terrain>, shut: &[(Cell, u8)], abilities: &Abilities, [x, y, _]: [f64; 3]) -> f64 {
+    let class = |land: &Terrain| {
+        let cell = land.cell_at([x, y])?;
+        let before = shut.iter().find(|(shut, _)| *shut == cell);
+        Some(before.map_or_else(|| land.get(cell), |&(_, class)| class))
+    };
+    let ticks = match land.and_then(class) {
         None => 1,
         Some(BLOCKED) => 9,
         Some(ticks) => ticks,
     };
     abilities.max_speed_mps / f64::from(ticks)
+}
+
+/// The cells of the land under a body. O(cells).
+fn cells_under(land: &Terrain, disc: &Disc) -> impl Iterator<Item = Cell> {
+    let ([x, y, _], r) = (disc.position_m, disc.radius_m);
+    let (low, high) = (land.nearest_cell([x - r, y - r]), land.nearest_cell([x + r, y + r]));
+    let (cell_m, origin_m) = (land.cell_m, land.origin_m);
+    let all = (low.y..=high.y).flat_map(move |row| (low.x..=high.x).map(move |column| Cell::new(column, row)));
+    all.filter(move |cell| {
+        // From the centre to the nearest place of the cell.
+        let off = |at: f64, cells: i16, axis: usize| {
+            let west = origin_m[axis] + f64::from(cells) * cell_m;
+            (west - at).max(at - west - cell_m).max(0.0)
+        };
+        libm::hypot(off(x, cell.x, 0), off(y, cell.y, 1)) <= r
+    })
 }
 
 fn no_solid(index: usize, count: usize) -> Refusal {

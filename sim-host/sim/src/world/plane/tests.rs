@@ -50,7 +50,7 @@ fn rough_land_slows_down_and_walls_are_no_place_to_be() {
     terrain.set(Cell::new(2, 0), BLOCKED);
     let discs = vec![disc(1, 5.0, 5.0), disc(2, 15.0, 5.0), disc(3, -5.0, 5.0), disc(4, 25.0, 5.0)];
     let mut plane = Plane::new(Some(terrain), vec![], discs);
-    let speeds: Vec<f64> = [5.0, 15.0, -5.0].map(|x| plane.max_speed_mps(&ABILITIES, [x, 5.0, 0.0])).into();
+    let speeds: Vec<f64> = [5.0, 15.0, -5.0].map(|x| plane.max_speed_mps(0, [x, 5.0, 0.0])).into();
     assert_eq!(speeds, [2.0, 0.5, 2.0]);
     assert_eq!(plane.clearance().intrusions, 1);
     assert_eq!(plane.cell([15.0, 5.0, 3.0]), Some(Cell::new(1, 0)));

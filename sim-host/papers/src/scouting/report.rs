@@ -1,0 +1,123 @@
+//! The numbers of the experiment, as a table.
+
+use super::{Known, Plan, Run};
+use crate::experiment::Maybe;
+use serde::Serialize;
+use staya_stats::{Summary, mean};
+use std::fmt::{self, Display, Formatter};
+
+/// One point: what a robot knows, on land that changes so fast.
+#[derive(Clone, Debug, Serialize)]
+pub struct Point {
+    /// `sight`, `map` or `far sight`.
+    pub known: &'static str,
+    /// Share of the map that is blank.
+    pub unknown: Option<f64>,
+    /// Share of the map that shows what is elsewhere.
+    pub wrong: Option<f64>,
+    /// Share of the cells that change by a tick in each tick.
+    pub drift_per_tick: f64,
+    /// Landscapes.
+    pub runs: usize,
+    /// Robots that reached their target.
+    pub arrived: usize,
+    /// dT: mean travel time above the least of who knows all, percent of it.
+    pub time_loss_percent: Option<f64>,
+    /// Half the 95 % interval of that mean.
+    pub error95_percent: Option<f64>,
+    /// Mean number of cells remembered at the end.
+    pub remembered: Option<f64>,
+}
+
+/// Everything that the experiment reports.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Always `scouting`.
+    pub experiment: &'static str,
+    /// Landscapes asked for per point.
+    pub runs: u32,
+    /// Obstacles of each.
+    pub obstacles: u32,
+    /// Cells along each side.
+    pub size: u16,
+    /// How far robots see, cells.
+    pub sight: u8,
+    /// How far they plan on a map, cells.
+    pub map_radius: u8,
+    /// Cells along each side of what is blank or wrong.
+    pub patch_cells: u16,
+    /// Seed.
+    pub seed: u64,
+    /// The points, those of one knowledge after each other; those without a run are missing.
+    pub points: Vec<Point>,
+}
+
+impl Report {
+    pub(super) fn of(plan: &Plan, runs: &[Vec<Run>]) -> Self {
+        let points = runs.iter().enumerate().filter(|(_, runs)| !runs.is_empty());
+        Self {
+            experiment: "scouting",
+            runs: plan.runs,
+            obstacles: plan.obstacles,
+            size: plan.size,
+            sight: plan.sight,
+            map_radius: plan.map_radius,
+            patch_cells: plan.patch_cells,
+            seed: plan.seed,
+            points: points.map(|(at, runs)| point(plan.point(at), runs)).collect(),
+        }
+    }
+}
+
+fn point((known, drift_per_tick): (Known, f64), runs: &[Run]) -> Point {
+    let arrived = runs.iter().filter(|run| run.arrived);
+    let loss = |run: &Run| 100.0 * (run.cost as f64 - run.least_cost as f64) / run.least_cost as f64;
+    let losses: Vec<f64> = arrived.map(loss).collect();
+    let summary = Summary::of(&losses);
+    let remembered: Vec<f64> = runs.iter().map(|run| run.remembered.into()).collect();
+    Point {
+        known: known.name(),
+        unknown: known.shares().map(|[unknown, _]| unknown),
+        wrong: known.shares().map(|[_, wrong]| wrong),
+        drift_per_tick,
+        runs: runs.len(),
+        arrived: losses.len(),
+        time_loss_percent: summary.map(|summary| summary.mean),
+        error95_percent: summary.and_then(|summary| summary.mean_error95),
+        remembered: mean(&remembered),
+    }
+}
+
+impl Display for Report {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let (size, sight, wide) = (self.size, self.sight, self.map_radius);
+        writeln!(
+            f,
+            "{size} x {size} cells, {} obstacles, 9 classes, sight {sight}, maps of radius {wide}, patches of {}, seed {}",
+            self.obstacles, self.patch_cells, self.seed
+        )?;
+        writeln!(
+            f,
+            "{:<10}{:>9}{:>7}{:>12}{:>7}{:>9}{:>8}{:>7}{:>12}",
+            "known", "unknown", "wrong", "drift/tick", "runs", "arrived", "dT %", "+-", "remembered"
+        )?;
+        for point in &self.points {
+            let [unknown, wrong] = [point.unknown, point.wrong].map(|share| Maybe(share, 2));
+            writeln!(
+                f,
+                "{:<10}{unknown:>9}{wrong:>7}{:>12}{:>7}{:>9}{:>8}{:>7}{:>12}",
+                point.known,
+                point.drift_per_tick,
+                point.runs,
+                point.arrived,
+                Maybe(point.time_loss_percent, 2),
+                Maybe(point.error95_percent, 2),
+                Maybe(point.remembered, 0),
+            )?;
+        }
+        f.write_str(
+            "dT: travel time above the least of who knows all land at all times to come; +-: half the 95 % interval of its mean\n\
+             sight: plans on what it sees; map: on a map too, and on what it has seen; far sight: sees as far as maps reach\n",
+        )
+    }
+}

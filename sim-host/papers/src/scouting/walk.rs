@@ -1,0 +1,90 @@
+//! One robot on land that changes, by what it knows of it.
+
+use super::Run;
+use crate::route::CELLS;
+use staya_controller::agent::VISITS;
+use staya_controller::grid::{Cell, UNIT};
+use staya_controller::route::{CostField, Replan, RouteParams, Router};
+use staya_sim::terrain::Terrain;
+use staya_sim::terrain::change::{LandChange, change};
+use staya_sim::world::scouts::Memory;
+use staya_sim::world::{known_window, window};
+
+/// Moves after which a robot is lost, per cell of the map's half circumference.
+const PATIENCE: usize = 200;
+
+/// What a robot knows.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Knowledge<'a> {
+    /// Its map; without one it plans on what it sees.
+    pub map: Option<&'a Terrain>,
+    /// How far it sees, cells.
+    pub sight: u8,
+}
+
+/// Land as it is at the start, how it changes, and the seed of that.
+pub(super) type Changing<'a> = (&'a Terrain, &'a [LandChange], u64);
+
+/// Scratch memory for walks.
+#[derive(Default)]
+pub(super) struct Scout {
+    field: Box<CostField<CELLS>>,
+    known: Vec<u8>,
+    seen: Vec<u8>,
+}
+
+impl Scout {
+    /// Lets a robot walk: it crosses a cell at the pace that the cell has when it enters, as robots of the simulator do. A walk ends at
+    /// the target, where no move is left, or after 200 moves per cell of width + height.
+    pub fn walk(
+        &mut self,
+        (land, changes, seed): Changing<'_>,
+        [from, to]: [Cell; 2],
+        knowledge: &Knowledge<'_>,
+        params: &RouteParams,
+        replan: Replan,
+    ) -> Run {
+        let (mut land, mut ticks) = (land.clone(), 0..);
+        let (mut router, mut memory) = (Router::<VISITS>::new(), Memory::new());
+        let (mut here, mut run) = (from, Run::default());
+        let limit = PATIENCE * (usize::from(land.width()) + usize::from(land.height()));
+        let mut next = ticks.next();
+        while (run.moves as usize) < limit {
+            // It decides at the first tick after it has come.
+            let now = run.cost.div_ceil(u64::from(UNIT));
+            while let Some(tick) = next.filter(|&tick| u64::from(tick) <= now) {
+                change(&mut land, changes, seed, tick, |_, _| ());
+                next = ticks.next();
+            }
+            router.observe(params, here, to);
+            run.arrived = here == to;
+            if run.arrived {
+                break;
+            }
+            let planned = match knowledge.map {
+                None => window(&land, here, params.radius, &mut self.known),
+                Some(map) => {
+                    if let Some(seen) = window(&land, here, knowledge.sight, &mut self.seen) {
+                        memory.observe(here, &seen, |cell| map.get(cell));
+                    }
+                    let radii = [knowledge.sight, params.radius];
+                    known_window(&land, (map, &memory), here, radii, &mut self.known)
+                }
+            };
+            let Some(planned) = planned else { break };
+            let dir = match replan {
+                Replan::EachCell => router
+                    .weights(params, &mut self.field, &planned, here, to, [])
+                    .ok()
+                    .and_then(|weights| weights.best()),
+                Replan::UntilChanged => router.follow(params, &mut self.field, &planned, here, to, []).ok(),
+            };
+            let Some(dir) = dir else { break };
+            here = here + dir.offset();
+            run.cost += u64::from(dir.length(params.norm)) * u64::from(land.get(here));
+            run.moves += 1;
+        }
+        run.remembered = memory.iter().count() as u32;
+        run
+    }
+}

@@ -1,0 +1,54 @@
+//! The operator's orders, and targets, as robots are told of them.
+
+use crate::radio;
+use crate::scenario::{Order, Target};
+use staya_controller::agent::Waypoint;
+use staya_controller::auth::Key;
+use staya_controller::geom::{Position, Vec3};
+use staya_controller::robot::RobotId;
+use staya_controller::time::Instant;
+use staya_controller::wire::{Format, Header, Message, WaypointAssignment, Wire};
+
+/// The operator's orders as frames; those of one tick together.
+pub(in crate::engine) fn frames(orders: &[Order], format: Format, key: Option<&Key>) -> Vec<(u32, Vec<u8>)> {
+    let mut frames = Vec::<(u32, Vec<u8>)>::new();
+    // Each index counts by itself: what is newer may be at most half of all versions ahead.
+    let mut versions = [0_u8; 256];
+    let (mut wire, sender) = radio::operator(format, key, 0);
+    let mut sequence = 0_u16;
+    for order in orders {
+        let version = &mut versions[usize::from(order.index)];
+        *version = version.wrapping_add(1);
+        let milli = |x: f64| libm::round(x * 1000.0);
+        let place = WaypointAssignment {
+            to: RobotId::NOBODY,
+            version: *version,
+            index: order.index,
+            position_mm: order.target.position_m.map(|x| milli(x) as i32),
+            velocity_mmps: order.target.velocity_mps.map(|x| milli(x) as i16),
+        };
+        let header = Header { boot: 0, sender, sequence };
+        sequence = sequence.wrapping_add(1);
+        let mut bytes = heapless::Vec::<u8, 64>::new();
+        wire.encode(header, &Message::Waypoint(place), &mut bytes).expect("a frame has at most 60 bytes");
+        match frames.last_mut() {
+            Some((tick, frame)) if *tick == order.tick => frame.extend_from_slice(&bytes),
+            _ => frames.push((order.tick, bytes.to_vec())),
+        }
+    }
+    frames
+}
+
+/// A target as it is `age_s` after it was set, at the start of a robot's clock.
+pub(super) fn waypoint(target: &Target, age_s: f64) -> Waypoint<f32> {
+    let mut at = target.position_m;
+    for (at, v) in at.iter_mut().zip(target.velocity_mps) {
+        *at += v * age_s;
+    }
+    let [vx, vy, vz] = target.velocity_mps.map(|v| v as f32);
+    Waypoint {
+        position: Position::from_metres(at).unwrap_or_default(),
+        velocity_mps: Vec3::new(vx, vy, vz),
+        at: Instant::from_micros(0),
+    }
+}
