@@ -1,7 +1,7 @@
 //! `staya-mpi run SCENARIO`: the results of `staya run`, by many processes.
 
 use crate::link::Link;
-use anyhow::{Context as _, Result, anyhow};
+use anyhow::{Result, anyhow};
 use clap::Args;
 use serde::Serialize;
 use staya_console::{Ended, Global, Progress, Stop, print, print_json};

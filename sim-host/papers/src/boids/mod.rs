@@ -5,11 +5,13 @@
 //! [`nearby`](staya_sim::nearby) from the same start; the trajectories must be equal to the bit, and the time they take
 //! is measured on one thread.
 
+mod method;
 mod pictures;
 mod report;
 #[cfg(test)]
 mod tests;
 
+pub use method::Method;
 pub use report::{Report, Row, Timing};
 
 use crate::experiment::Experiment;
@@ -17,13 +19,14 @@ use crate::experiment::rows::Jobs;
 use crate::options;
 use anyhow::{Result, ensure};
 use clap::Args;
+use method::AnySearch;
 use rayon::prelude::*;
 use staya_controller::flock::boids::{BoidsParams, Torus};
 use staya_controller::geom::{Vec2, Vec3};
 use staya_controller::neighbor::Nearby;
 use staya_controller::rand::Rng;
 use staya_controller::robot::{Mode, RobotId};
-use staya_sim::nearby::{AllPairs, Cells, Found, MidpointTree, MutualPairs, Query, Search, Space, Tree};
+use staya_sim::nearby::{Cells, Found, Query, Search, Space};
 use staya_sweep::Value;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -37,60 +40,6 @@ const PIECE: usize = 256;
 /// The most boids that are searched by looking at all pairs, unless a plan says otherwise: 10,000 already take about
 /// a second a step, 100,000 would take a hundred.
 pub const MOST_BY_ALL_PAIRS: u32 = 10_000;
-
-/// Which search finds the neighbours.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
-    /// Looks at everybody.
-    AllPairs,
-    /// Looks at each pair once.
-    MutualPairs,
-    /// Lattice cells.
-    Cells,
-    /// A k-d tree, the library's.
-    Tree,
-    /// A k-d tree by the sliding midpoint rule, which the paper describes.
-    MidpointTree,
-}
-
-impl Method {
-    /// All of them.
-    pub const ALL: [Self; 5] = [Self::AllPairs, Self::MutualPairs, Self::Cells, Self::Tree, Self::MidpointTree];
-
-    /// What it is called.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::AllPairs => "all pairs",
-            Self::MutualPairs => "pairs once",
-            Self::Cells => "lattice cells",
-            Self::Tree => "k-d tree",
-            Self::MidpointTree => "midpoint tree",
-        }
-    }
-
-    /// A search in this space for queries of this radius.
-    fn search(self, space: Space<f32, 2>, radius: f32) -> AnySearch {
-        match self {
-            Self::AllPairs => AnySearch::AllPairs(AllPairs::new(space)),
-            Self::MutualPairs => AnySearch::MutualPairs(MutualPairs::new(space, radius)),
-            // Neighbours of up to 150 among about 3: cells of the radius itself.
-            Self::Cells => AnySearch::Cells(Cells::new(space, radius)),
-            Self::Tree => AnySearch::Tree(Tree::new(space)),
-            Self::MidpointTree => AnySearch::MidpointTree(MidpointTree::new(space)),
-        }
-    }
-}
-
-/// One of them.
-#[derive(Clone, Debug)]
-enum AnySearch {
-    AllPairs(AllPairs<f32, 2>),
-    MutualPairs(MutualPairs<f32, 2>),
-    Cells(Cells<f32, 2>),
-    Tree(Tree<f32, 2>),
-    MidpointTree(MidpointTree<f32, 2>),
-}
 
 /// What to do: boids on a torus, five ways to find neighbours, equal flights, and what they cost (Starovoitova, section 2.3).
 ///
