@@ -4,7 +4,7 @@
 //!
 //! Modules use only what stands before them:
 //! numbers, geometry, names and what robots are called ([`names`], [`scalar`], [`geom`], [`time`], [`rand`], [`grid`],
-//! [`cost`], [`shuffle`], [`obstacle`], [`robot`], [`auth`]) < what is known of oneself and of others ([`body`],
+//! [`cost`], [`shuffle`], [`obstacle`], [`land`], [`robot`], [`auth`]) < what is known of oneself and of others ([`body`],
 //! [`neighbor`], [`template`], [`wire`]) < behaviours ([`route`], [`formation`], [`orca`], [`flock`], [`push_out`];
 //! they never import each other) < composition ([`supervisor`], [`agent`]).
 #![no_std]
@@ -46,6 +46,8 @@ pub mod flock;
 pub mod formation;
 pub mod geom;
 pub mod grid;
+#[cfg(any(feature = "route", feature = "wire"))]
+pub mod land;
 mod list;
 pub mod names;
 pub mod neighbor;

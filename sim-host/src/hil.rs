@@ -117,6 +117,9 @@ impl HilArgs {
         if scenario.published.is_some() {
             bail!("formation.law = \"paper\" is in no firmware; give \"staya\", or run it without devices");
         }
+        if scenario.maps.is_some() {
+            bail!("maps.share is in no firmware for devices; leave [maps] out, or run it without devices");
+        }
         if scenario.key.is_some() {
             bail!(
                 "the robots of {} have a key, and the link does not carry keys to devices; leave [authentication] out",

@@ -37,6 +37,11 @@ fn robots_among_walls_are_the_same_on_any_number_of_threads() {
 }
 
 #[test]
+fn robots_that_share_maps_are_the_same_on_any_number_of_threads() {
+    same_on_any_number("shared-maps", Some(200));
+}
+
+#[test]
 fn a_thousand_robots_are_the_same_on_any_number_of_threads() {
     same_on_any_number("scale-small", Some(30));
 }

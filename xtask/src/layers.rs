@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 const LAYERS: [&[&str]; 4] = [
     &[
         "names", "scalar", "digest", "geom", "time", "rand", "grid", "cost", "shuffle", "list", "fixint", "obstacle",
-        "robot", "auth",
+        "land", "robot", "auth",
     ],
     &["body", "neighbor", "template", "wire"],
     &["route", "formation", "orca", "flock", "push_out"],

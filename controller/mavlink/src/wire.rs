@@ -8,14 +8,15 @@
 //! damage. Everything else between frames comes out of [`Wire::next_frame`] as one piece, which [`Wire::decode`] refuses, so that it counts.
 
 use crate::dialect::{
-    STAYA_ACK_DATA, STAYA_BEACON_DATA, STAYA_COMPACT_DATA, STAYA_GOAL_DATA, STAYA_PLACE_DATA, STAYA_REQUEST_DATA,
-    STAYA_TEMPLATE_DATA,
+    STAYA_ACK_DATA, STAYA_BEACON_DATA, STAYA_COMPACT_DATA, STAYA_GOAL_DATA, STAYA_LAND_DATA, STAYA_PLACE_DATA,
+    STAYA_REQUEST_DATA, STAYA_TEMPLATE_DATA,
 };
 use crate::frame::{self, Full, RawFrame, Scan, Sender, scan};
 use heapless::Vec;
 use mavlink_core::MessageData;
 use serde::Serialize;
 use staya_controller::grid::{Cell, Dir};
+use staya_controller::land::LandPatch;
 use staya_controller::robot::{Mode, RobotId};
 use staya_controller::template::TemplateEntry;
 use staya_controller::time::Instant;
@@ -200,6 +201,11 @@ pub fn encode<const N: usize>(header: Header, message: &Message, out: &mut Vec<u
             };
             frame::encode(sender, &data, out)
         }
+        Message::Land(patch) => {
+            let Cell { x: corner_x, y: corner_y } = patch.corner;
+            let data = STAYA_LAND_DATA { sequence, corner_x, corner_y, boot, tiles: patch.bytes() };
+            frame::encode(sender, &data, out)
+        }
         // MAVLink's signatures have one key: see `Sealed` for robots with keys of their own.
         Message::Key(_) | Message::KeyHeld(_) => return Err(EncodeError::Full),
     };
@@ -244,6 +250,11 @@ pub fn decode(bytes: &[u8]) -> Result<Frame, DecodeError> {
                 velocity_mmps: [data.vx_mmps, data.vy_mmps, data.vz_mmps],
             };
             (data.boot, data.sequence, Message::Waypoint(place))
+        }
+        STAYA_LAND_DATA::ID => {
+            let data: STAYA_LAND_DATA = body(&raw)?;
+            let corner = Cell::new(data.corner_x, data.corner_y);
+            (data.boot, data.sequence, Message::Land(LandPatch::from_bytes(corner, data.tiles)))
         }
         _ => return Err(DecodeError::Foreign),
     };

@@ -5,6 +5,7 @@ use super::waypoint_guidance::WaypointGuidance;
 use super::{Parameter, Surroundings, Wait, Waypoint, WrongTask};
 use crate::geom::Vec3;
 use crate::grid::Cell;
+use crate::land::LandPatch;
 use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
@@ -142,6 +143,14 @@ impl<S, G: Teamwork> Teamwork for Commanded<S, G> {
 
     fn assign_template(&mut self, part: &TemplateAssignment, is_anew: bool) -> bool {
         self.inside.assign_template(part, is_anew)
+    }
+
+    fn hear_land(&mut self, patch: &LandPatch) {
+        self.inside.hear_land(patch);
+    }
+
+    fn say_land(&mut self, now: Instant) -> Option<LandPatch> {
+        self.inside.say_land(now)
     }
 
     fn goal_offset(&self) -> Cell {

@@ -188,7 +188,7 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize> Formati
         };
         let shown = shown.as_ref().unwrap_or(window);
         let others = input.neighbors.iter().map(|neighbor| neighbor.cell);
-        self.router.weights(&self.route, field, shown, cell, target, others).ok()
+        self.router.weights_over(&self.route, field, shown, (cell, target), others, input.land).ok()
     }
 
     /// The way of a follower to its place.

@@ -4,6 +4,7 @@ use super::{KinematicState, Parameter, Surroundings, Wait, Waypoint};
 use crate::body::Body;
 use crate::geom::Vec3;
 use crate::grid::{Cell, Dir};
+use crate::land::{FarLand, LandPatch};
 use crate::neighbor::{Ages, Nearby, Neighbor};
 use crate::rand::Rng;
 use crate::robot::RobotId;
@@ -141,6 +142,14 @@ pub trait Teamwork {
         Cell::default()
     }
 
+    /// Takes in what somebody says of the land.
+    fn hear_land(&mut self, _patch: &LandPatch) {}
+
+    /// What to tell others of the land, behind each beacon.
+    fn say_land(&mut self, _now: Instant) -> Option<LandPatch> {
+        None
+    }
+
     /// Whether a full neighbour table must keep this robot.
     fn needs(&self, _id: RobotId) -> bool {
         false
@@ -275,6 +284,8 @@ pub struct GuidanceInput<'a, S> {
     pub neighbors: &'a [Neighbor<S>],
     /// How old news may be.
     pub ages: Ages,
+    /// What is known of the land beyond the window: see [`MapSharing`](super::MapSharing).
+    pub land: Option<&'a dyn FarLand>,
 }
 
 impl<S: Scalar> GuidanceInput<'_, S> {

@@ -6,6 +6,7 @@ use super::silence::Company;
 use super::{AgentConfig, CellState, Last, Waypoint};
 use crate::geom::{Position, Vec3};
 use crate::grid::Cell;
+use crate::land::LandPatch;
 use crate::neighbor::{Ages, Claims, LossEstimate, Neighbor, NeighborTable, Put, Suspects};
 use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
@@ -40,6 +41,8 @@ pub(super) enum News<S> {
     Template { part: TemplateAssignment, is_anew: bool },
     /// A goal for the top leader of this robot's formation.
     Goal(Cell),
+    /// Land that somebody knows of.
+    Land(LandPatch),
     /// A waypoint, number `index` of several; once it is taken, [`Link::placed`] wants to know.
     Waypoint { index: u8, version: u8, waypoint: Waypoint<S> },
 }
@@ -260,6 +263,7 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
                     });
                 }
             }
+            Message::Land(patch) => return Some(News::Land(patch)),
             Message::Key(key) if is_mine(key.to) => {
                 if let Some((generation, phase)) = self.wire.held() {
                     self.say_early(&Message::KeyHeld(KeyHeld { to: sender, generation, phase }), out);
@@ -321,12 +325,13 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
         self.orders.is_stopped(now)
     }
 
-    /// Sends requests that are due, then the beacon if it is due.
+    /// Sends requests that are due, then the beacon if it is due, and land behind it if there is room.
     pub(super) fn speak(
         &mut self,
         now: Instant,
         period: Duration,
         beacon: impl FnOnce() -> Beacon,
+        land: impl FnOnce() -> Option<LandPatch>,
         out: &mut Outputs<S>,
     ) {
         // Twice as many polls as requests always empty the list.
@@ -344,6 +349,10 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
             self.said.note(self.header.sequence, &beacon);
             if self.say(&beacon, 0, out) == Err(EncodeError::Exhausted) {
                 report(out, Event::Muted);
+            }
+            if let Some(patch) = land() {
+                // What finds no room is told again when its turn comes.
+                let _ = self.say(&Message::Land(patch), 0, out);
             }
             self.has_sent = true;
             self.beacon_due = now + period;

@@ -101,6 +101,7 @@ mod formation_guidance;
 mod guidance;
 mod io;
 mod link;
+mod map_sharing;
 mod orca_safety;
 mod other_safety;
 mod parameter;
@@ -134,6 +135,7 @@ pub use guidance::{
     ToWaypoints,
 };
 pub use io::{AnyInputs, Command, EVENTS, Event, Inputs, KinematicState, OUTBOX, Outputs, Overclaims, Refused};
+pub use map_sharing::MapSharing;
 pub use orca_safety::{FlySafety, OrcaSafety};
 pub use other_safety::PushOutSafety;
 pub use parameter::Parameter;
@@ -165,6 +167,9 @@ pub const NEIGHBORS: usize = 16;
 pub const VISITS: usize = 64;
 /// Costs that an agent of default capacity learns: 2 KiB. With 0 it gets out of dead ends along their walls.
 pub const LEARNED: usize = 256;
+/// Tiles in a map of default capacity, for robots that share what they see: 128 x 128 cells around the robot, 3 KiB and 6 KiB of
+/// stack while it decides.
+pub const MAP_TILES: usize = 1024;
 /// Neighbours in a template of default capacity.
 pub const TEMPLATE: usize = 8;
 

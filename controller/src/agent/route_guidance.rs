@@ -103,7 +103,7 @@ impl<const CELLS: usize, const M: usize, const L: usize> RouteGuidance<CELLS, M,
             // It is there, and needs no way on.
             Weights::CLOSED
         } else {
-            self.router.weights(params, field, window, cell, target, others).ok()?
+            self.router.weights_over(params, field, window, (cell, target), others, input.land).ok()?
         };
         if is_redirected {
             weights = aside(weights);

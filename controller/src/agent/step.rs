@@ -114,6 +114,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
             match link.hear(bytes, now, &listener, out) {
                 None => {}
                 Some(News::Redirect) => guidance.redirect(),
+                Some(News::Land(patch)) => guidance.hear_land(&patch),
                 // To a robot that goes elsewhere it means nothing.
                 Some(News::Goal(_)) if !guidance.goes_to_cells() => {}
                 Some(News::Goal(top)) => {
@@ -187,6 +188,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
             nearby,
             neighbors: self.link.table.as_slice(),
             ages: self.config.ages,
+            land: None,
         };
         self.decisions = self.decisions.wrapping_add(1);
         self.guidance.note_stop(is_stopped);
@@ -323,7 +325,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
 
     #[inline(never)]
     fn speak(&mut self, inputs: &Inputs<'_, S, G::Input<'_>>, now: Instant, out: &mut Outputs<S>) {
-        let Self { config, last, .. } = self;
+        let Self { config, last, guidance, .. } = self;
         let mode = self.mode;
         // What it does from now on is of more use to others than what it did.
         let velocity_mps = match out.command {
@@ -333,7 +335,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         let on_grid = inputs.surroundings.on_grid();
         let on_grid = on_grid.map_or_else(CellState::default, |grid| grid.cell);
         let beacon = || beacon(config, last, mode, &inputs.state, on_grid, velocity_mps, now);
-        self.link.speak(now, config.beacon_period, beacon, out);
+        self.link.speak(now, config.beacon_period, beacon, || guidance.say_land(now), out);
         // A robot that is free decides anew after a tick at the latest.
         let busy = on_grid.busy;
         let decision = now + if busy > Duration::ZERO { busy } else { config.tick };

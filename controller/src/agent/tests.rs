@@ -403,6 +403,7 @@ mod double;
 mod faults;
 mod flocks;
 mod make_way;
+mod map_sharing;
 mod nonsense;
 mod nonsense_in_plane;
 mod plane;

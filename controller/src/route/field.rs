@@ -8,6 +8,7 @@
 use super::{ExitRule, RouteParams, VisitMemory, ray_exit};
 use crate::cost::{Cost, EXCLUDED, Weights};
 use crate::grid::{BLOCKED, Cell, DIAGONAL, Dir, Norm, UNIT, Window};
+use crate::land::Outlook;
 
 mod learning;
 mod queue;
@@ -54,6 +55,15 @@ impl<const CELLS: usize> Default for CostField<CELLS> {
     fn default() -> Self {
         Self::new()
     }
+}
+
+/// What is known of what lies beyond the window.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Beyond<'a> {
+    /// What the ways from some cells cost at least.
+    pub learned: &'a [(Cell, Cost)],
+    /// What the land is like there.
+    pub land: Option<&'a Outlook<'a>>,
 }
 
 /// The window as the search sees it, between [`CostField::load`] and the end of a query.
@@ -109,11 +119,11 @@ impl<const CELLS: usize> CostField<CELLS> {
         others: impl IntoIterator<Item = Cell>,
         visits: Option<&VisitMemory<M>>,
     ) -> Result<Weights, Unreachable> {
-        self.weights_knowing(params, window, (from, target), others, visits, &[])
+        self.weights_knowing(params, window, (from, target), others, visits, &Beyond::default())
     }
 
-    /// [`CostField::weights`] of a robot that has learned what exits cost at least. O(w + h) for each of `learned`
-    /// more.
+    /// [`CostField::weights`] of a robot that knows something of what is beyond the window. O(w + h) for each cell that it has
+    /// learned of more.
     pub(super) fn weights_knowing<const M: usize>(
         &mut self,
         params: &RouteParams,
@@ -121,7 +131,7 @@ impl<const CELLS: usize> CostField<CELLS> {
         (from, target): (Cell, Cell),
         others: impl IntoIterator<Item = Cell>,
         visits: Option<&VisitMemory<M>>,
-        learned: &[(Cell, Cost)],
+        beyond: &Beyond<'_>,
     ) -> Result<Weights, Unreachable> {
         self.load(params, window, from);
         let occupied = params.a1.of(UNIT);
@@ -131,7 +141,7 @@ impl<const CELLS: usize> CostField<CELLS> {
         for (cell, count) in visits.into_iter().flat_map(VisitMemory::iter) {
             self.add_extra(cell, params.a2.of(UNIT * u32::from(count)));
         }
-        self.solve(params, from, target, learned)
+        self.solve(params, from, target, beyond)
     }
 
     /// [`Self::weights`] on the window that was loaded. Not inlined: firmware pays for it once.
@@ -141,7 +151,7 @@ impl<const CELLS: usize> CostField<CELLS> {
         params: &RouteParams,
         from: Cell,
         target: Cell,
-        learned: &[(Cell, Cost)],
+        beyond: &Beyond<'_>,
     ) -> Result<Weights, Unreachable> {
         let from_index = self.index(from).ok_or(Unreachable)?;
         let query = Query { params, from: from_index, from_cell: from, target };
@@ -155,7 +165,7 @@ impl<const CELLS: usize> CostField<CELLS> {
         match params.exit {
             ExitRule::Best => {
                 self.begin(&query);
-                self.offer_border(&query, learned);
+                self.offer_border(&query, beyond);
                 self.search(&query);
             }
             ExitRule::Ray => {
@@ -413,9 +423,9 @@ impl<const CELLS: usize> CostField<CELLS> {
         }
     }
 
-    /// Makes every border cell an exit, priced by its distance to the target (eq. 10), or by what was learned if that
-    /// is more.
-    fn offer_border(&mut self, query: &Query<'_>, learned: &[(Cell, Cost)]) {
+    /// Makes every border cell an exit, priced by its distance to the target (eq. 10) and what is known of the land
+    /// there, or by what was learned if that is more.
+    fn offer_border(&mut self, query: &Query<'_>, beyond: &Beyond<'_>) {
         let Query { params, target, .. } = *query;
         let distance = |cell: Cell| cell.distance(target, params.norm);
         // Where prices would leave the range of costs, all are less by the least of them.
@@ -425,8 +435,13 @@ impl<const CELLS: usize> CostField<CELLS> {
             if params.a3.of(farthest) < EXCLUDED >> 1 { 0 } else { self.border().map(distance).min().unwrap_or(0) };
         for cell in self.border() {
             if let Some(at) = self.index(cell) {
-                let known = learned.iter().find(|&&(at, _)| at == cell).map_or(0, |&(_, cost)| cost);
-                self.offer(at, params.a3.of(distance(cell) - base).max(known.min(EXCLUDED - 1)));
+                let known = beyond.learned.iter().find(|&&(at, _)| at == cell).map_or(0, |&(_, cost)| cost);
+                let straight = params.a3.of(distance(cell) - base);
+                let price = beyond.land.map_or(straight, |land| {
+                    let price = i64::from(straight).saturating_add(land.surplus(cell));
+                    price.clamp(0, (EXCLUDED - 1).into()) as Cost
+                });
+                self.offer(at, price.max(known.min(EXCLUDED - 1)));
             }
         }
     }

@@ -1,9 +1,11 @@
 //! The route of one robot: what it remembers between steps.
 
 use super::escape::Escape;
+use super::field::Beyond;
 use super::{CostField, LearnedCosts, RouteParams, Unreachable, VisitMemory};
 use crate::cost::Weights;
 use crate::grid::{Cell, Dir, Window};
+use crate::land::{FarLand, Gains};
 use crate::list::Seldom;
 use crate::names::named;
 use serde::Serialize;
@@ -151,6 +153,23 @@ impl<const M: usize, const L: usize> Router<M, L> {
         target: Cell,
         others: impl IntoIterator<Item = Cell> + Clone,
     ) -> Result<Weights, Unreachable> {
+        self.weights_over(params, field, window, (from, target), others, None)
+    }
+
+    /// [`Router::weights`] of a robot that may know `land` beyond its window, and prices the exits by it instead of learning.
+    /// With no tile known the price is the same. Work: besides, [`FarLand::look`].
+    ///
+    /// # Errors
+    /// [`Unreachable`] when no exit of the window can be reached.
+    pub fn weights_over<const CELLS: usize>(
+        &mut self,
+        params: &RouteParams,
+        field: &mut CostField<CELLS>,
+        window: &Window<'_>,
+        (from, target): (Cell, Cell),
+        others: impl IntoIterator<Item = Cell> + Clone,
+        land: Option<&dyn FarLand>,
+    ) -> Result<Weights, Unreachable> {
         if self.escapes() {
             let mut weights = field.weights(params, window, from, target, others, Some(&self.visits))?;
             let escape = self.escape.get_or_insert(Escape::new());
@@ -160,7 +179,7 @@ impl<const M: usize, const L: usize> Router<M, L> {
             return Ok(weights);
         }
         let is_alone = || others.clone().into_iter().all(|other| other.chebyshev(from) > u32::from(params.radius));
-        if L > 0 && self.idle > 0 && is_alone() {
+        if L > 0 && self.idle > 0 && land.is_none() && is_alone() {
             field.load(params, window, from);
             let (easiest, has_walls) = field.land();
             self.easiest = self.easiest.min(easiest);
@@ -168,8 +187,19 @@ impl<const M: usize, const L: usize> Router<M, L> {
                 return field.learn(params, (from, target), self.easiest, &mut self.learned);
             }
         }
-        let learned = self.learned.as_slice();
-        field.weights_knowing(params, window, (from, target), others, Some(&self.visits), learned)
+        let beyond = Beyond { learned: self.learned.as_slice(), land: None };
+        let mut weights = None;
+        if let Some(land) = land {
+            let gains = Gains { a0: params.a0, a3: params.a3, norm: params.norm };
+            land.look(&gains, target, &mut |outlook| {
+                let beyond = Beyond { land: Some(outlook), ..beyond };
+                let visits = Some(&self.visits);
+                weights = Some(field.weights_knowing(params, window, (from, target), others.clone(), visits, &beyond));
+            });
+        }
+        weights.unwrap_or_else(|| {
+            field.weights_knowing(params, window, (from, target), others, Some(&self.visits), &beyond)
+        })
     }
 
     /// The next move of the planned chain, planned anew when there is none or something on it

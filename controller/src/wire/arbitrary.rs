@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::grid::{Cell, Dir};
+use crate::land::LandPatch;
 use crate::robot::{Mode, RobotId};
 use crate::template::TemplateEntry;
 use crate::time::Instant;
@@ -110,5 +111,7 @@ pub fn message() -> impl Strategy<Value = Message> {
         .prop_map(|(to, generation, phase, wrapped)| Message::Key(KeyAssignment { to, generation, phase, wrapped }));
     let held = (robot(), any::<u16>(), phase())
         .prop_map(|(to, generation, phase)| Message::KeyHeld(KeyHeld { to, generation, phase }));
-    prop_oneof![beacon(), compact(), request, ack, template(), goal, place, key, held]
+    let land =
+        (cell(), any::<[u8; 32]>()).prop_map(|(corner, bytes)| Message::Land(LandPatch::from_bytes(corner, bytes)));
+    prop_oneof![beacon(), compact(), request, ack, template(), goal, place, key, held, land]
 }

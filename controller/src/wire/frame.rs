@@ -34,6 +34,7 @@ use super::message::{
     Ack, Beacon, CompactBeacon, GoalAssignment, KeyAssignment, KeyHeld, Message, Request, TEMPLATE_PART,
     TemplateAssignment, WaypointAssignment,
 };
+use crate::land::{LandPatch, PATCH_TILES};
 use crate::robot::RobotId;
 use core::fmt;
 use crc::{CRC_16_IBM_SDLC, Crc, Table};
@@ -108,6 +109,11 @@ impl KeyHeld {
     pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 2 + 1;
 }
 
+impl LandPatch {
+    /// Bytes of a frame that carries one, at most: tag and delimiter included.
+    pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + CELL + PATCH_TILES;
+}
+
 /// Bytes of any frame, at most: tag and delimiter included.
 pub const MAX_FRAME_LEN: usize = {
     let lens = [
@@ -120,6 +126,7 @@ pub const MAX_FRAME_LEN: usize = {
         WaypointAssignment::MAX_FRAME_LEN,
         KeyAssignment::MAX_FRAME_LEN,
         KeyHeld::MAX_FRAME_LEN,
+        LandPatch::MAX_FRAME_LEN,
     ];
     let mut max = 0;
     let mut rest = lens.as_slice();

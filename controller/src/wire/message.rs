@@ -1,11 +1,13 @@
 //! The messages, in integers: millimetres, millimetres per second, microseconds, cells.
 //!
 //! The order and the types of the fields are the wire format (postcard): what is marked `fixint`
-//! takes its full width, everything else is a byte or a varint. A change here is a new
-//! [`VERSION`](super::VERSION).
+//! takes its full width, everything else is a byte or a varint. A change of what is here is a new
+//! [`VERSION`](super::VERSION); a further message at the end of [`Message`] is not: who does not know it refuses it
+//! ([`DecodeError::Body`](super::DecodeError::Body)) and hears all others.
 
 use crate::fixint;
 use crate::grid::{Cell, Dir};
+use crate::land::LandPatch;
 use crate::robot::{Mode, RobotId};
 use crate::template::TemplateEntry;
 use crate::time::Instant;
@@ -232,6 +234,8 @@ pub enum Message {
     Key(KeyAssignment),
     /// How far its receiver is with it.
     KeyHeld(KeyHeld),
+    /// Land that the sender knows of.
+    Land(LandPatch),
 }
 
 impl Message {
@@ -239,7 +243,7 @@ impl Message {
     #[must_use]
     pub const fn addressee(&self) -> Option<RobotId> {
         let to = match self {
-            Self::Beacon(_) | Self::Compact(_) => return None,
+            Self::Beacon(_) | Self::Compact(_) | Self::Land(_) => return None,
             Self::Request(request) => request.to,
             Self::Ack(ack) => ack.to,
             Self::Template(part) => part.to,

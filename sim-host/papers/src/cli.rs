@@ -61,7 +61,10 @@ impl ExperimentArgs {
         let stop = Stop::on_ctrl_c()?;
         let keeping = &self.keeping;
         match &self.experiment {
-            Experiment::Route(args) => args.plan().command(&args.out, keeping, global, &stop),
+            Experiment::Route(args) => match args.share() {
+                Some(plan) => plan.command(&args.out.join("share"), keeping, global, &stop),
+                None => args.plan().command(&args.out, keeping, global, &stop),
+            },
             Experiment::Scouting(plan) => plan.command(&plan.out, keeping, global, &stop),
             Experiment::Formation(args) => args.plan()?.command(&args.out, keeping, global, &stop),
             Experiment::Swap(args) => args.plan().command(&args.out(), keeping, global, &stop),

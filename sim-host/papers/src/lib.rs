@@ -11,6 +11,7 @@
 //! | [`flock`] | R. Olfati-Saber 2006 (OLF), section VIII: the five simulations |
 //! | [`goals`] | V. E. Pavlovsky and V. V. Pavlovsky (PAV): a group on its way to three goals |
 //! | [`boids`] | V. A. Starovoitova 2018 (STA), section 2.3: boids on a torus, and what finding neighbours costs |
+//! | [`share`] | none: what maps shared over the radio do to routes |
 //! | [`scale`] | none: what a robot costs in swarms of a thousand to a million |
 //!
 //! Each is a plan that implements [`experiment::Experiment`].
@@ -30,4 +31,5 @@ pub mod orca;
 pub mod route;
 pub mod scale;
 pub mod scouting;
+pub mod share;
 pub mod walk;

@@ -98,7 +98,9 @@ fn any_message() -> impl Strategy<Value = Message> {
     let place = place.prop_map(|(to, [version, index], (position_mm, velocity_mmps))| {
         Message::Waypoint(WaypointAssignment { to, version, index, position_mm, velocity_mmps })
     });
-    prop_oneof![beacon, compact, request, ack, template, goal, place]
+    let land =
+        (cell(), any::<[u8; 32]>()).prop_map(|(corner, bytes)| Message::Land(LandPatch::from_bytes(corner, bytes)));
+    prop_oneof![beacon, compact, request, ack, template, goal, place, land]
 }
 
 proptest! {

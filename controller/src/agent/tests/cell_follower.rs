@@ -64,6 +64,7 @@ type Told = (GuidanceInput<'static, f32>, InCells<'static, f32>);
 /// Looks like what it is: a body in a cell of 2 m, somewhat off its centre.
 fn told(cell: Cell, offset_m: [f32; 2], max_speed_mps: f32, n: i32) -> Told {
     let input = GuidanceInput {
+        land: None,
         id: RobotId(1),
         now: Instant::from_micros(0) + STEP.saturating_mul(n),
         tick: STEP,

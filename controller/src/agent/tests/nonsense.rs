@@ -51,7 +51,9 @@ pub(super) fn frame() -> impl Strategy<Value = (Header, Message)> {
             Message::Waypoint(waypoint) => waypoint.to = to,
             Message::Key(key) => key.to = to,
             Message::KeyHeld(held) => held.to = to,
-            Message::Compact(_) => {}
+            // Beside the robot, or anywhere.
+            Message::Land(patch) if to == OWN => patch.corner = crate::land::tile_of(here),
+            Message::Compact(_) | Message::Land(_) => {}
         }
         let header = Header { boot, sender, sequence };
         (header, message)

@@ -87,6 +87,7 @@ fn bound(message: &Message) -> usize {
         Message::Waypoint(_) => WaypointAssignment::MAX_FRAME_LEN,
         Message::Key(_) => KeyAssignment::MAX_FRAME_LEN,
         Message::KeyHeld(_) => KeyHeld::MAX_FRAME_LEN,
+        Message::Land(_) => LandPatch::MAX_FRAME_LEN,
     }
 }
 

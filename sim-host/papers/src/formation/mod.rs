@@ -272,6 +272,7 @@ impl Plan {
             interventions: Vec::new(),
             misnumbered: Vec::new(),
             claims: Claims::ANY,
+            maps: None,
             attacks: Vec::new(),
         }
     }

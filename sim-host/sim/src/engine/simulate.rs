@@ -11,7 +11,8 @@ use crate::terrain::Terrain;
 use crate::world::Misplaced;
 use crate::world::plane::{Clearance, Disc, Solid};
 use staya_controller::agent::{
-    AnyGuidance, AnySafety, CELLS, Commanded, HALF_PLANES, LEARNED, Safety, TEMPLATE, VISITS, WAYPOINTS,
+    AnyGuidance, AnySafety, CELLS, Commanded, HALF_PLANES, LEARNED, MAP_TILES, MapSharing, Safety, TEMPLATE, VISITS,
+    WAYPOINTS,
 };
 use std::collections::HashMap;
 use std::ops::ControlFlow;
@@ -135,7 +136,8 @@ pub fn simulate_from(scenario: &Scenario, state: &[u8], watch: &mut Watch<'_>) -
 }
 
 /// What a robot's agent is made of: any guidance with searches of up to `C` cells, which an operator may take over, and any safety layer.
-pub(super) type GuidanceOf<const C: usize> = Commanded<f32, AnyGuidance<f32, C, VISITS, TEMPLATE, LEARNED>>;
+pub(super) type GuidanceOf<const C: usize> =
+    Commanded<f32, MapSharing<AnyGuidance<f32, C, VISITS, TEMPLATE, LEARNED>, MAP_TILES>>;
 pub(super) type SafetyOf = Witness<AnySafety<f32, HALF_PLANES>>;
 
 /// The engines that there are. Only here are they made of generic code, so that it is compiled once.
@@ -189,9 +191,13 @@ pub(super) fn agents<const C: usize>(
         })
     });
     let of_robots: Vec<usize> = of_robots.collect();
+    let maps = scenario.maps;
     move |index| {
         let (guidance, safety, speed_mps, tolerance_m) = &kinds[of_robots[index]];
-        (Commanded::new(guidance.guidance(), *speed_mps, *tolerance_m), Witness::new(safety.safety()))
+        // Who goes by no land has none to tell of.
+        let maps = maps.filter(|_| guidance.kind().is_on_grid());
+        let law = MapSharing::new(guidance.guidance(), maps);
+        (Commanded::new(law, *speed_mps, *tolerance_m), Witness::new(safety.safety()))
     }
 }
 

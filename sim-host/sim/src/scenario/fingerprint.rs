@@ -51,6 +51,7 @@ impl Scenario {
             formation,
             plane,
             route,
+            maps,
             formation_params,
             published,
             faults,
@@ -73,6 +74,10 @@ impl Scenario {
         if let Some(Scouting { map, sight }) = scouting {
             all.mix(map.cells());
             all.add(sight);
+        }
+        // Runs of before had none.
+        if let Some(maps) = maps {
+            all.add(maps);
         }
         // Debug texts keep secrets.
         all.key(key.as_ref());

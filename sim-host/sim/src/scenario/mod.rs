@@ -10,6 +10,7 @@ mod field;
 mod fingerprint;
 mod intervention;
 mod land;
+mod maps;
 mod params;
 mod plane;
 mod ranges;
@@ -23,6 +24,7 @@ mod source;
 pub use claims::ClaimsTable;
 pub use field::Field;
 pub use intervention::{Intervention, InterventionTable, with_interventions};
+pub use maps::MapsTable;
 pub use params::{FormationTable, GridTable, RouteTable};
 pub(crate) use plane::goals;
 pub use plane::{
@@ -52,6 +54,7 @@ use staya_controller::agent::{GuidanceSetup, RouteSetup};
 use staya_controller::auth::Key;
 use staya_controller::formation::FormationParams;
 use staya_controller::formation::published::PublishedParams;
+use staya_controller::land::MapParams;
 use staya_controller::neighbor::Claims;
 use staya_controller::robot::RobotId;
 use std::path::Path;
@@ -153,6 +156,8 @@ pub struct Scenario {
     pub plane: Option<PlaneSetup>,
     /// How robots find their ways.
     pub route: RouteSetup,
+    /// How robots share what they see of the land, if they do.
+    pub maps: Option<MapParams>,
     /// How robots keep a formation, if they do.
     pub formation_params: FormationParams,
     /// How they do instead, if they do as the paper has it: cell by cell only.
@@ -237,6 +242,7 @@ impl Scenario {
         let route = params::routing(&source, &file)?;
         let land = Some(&terrain).filter(|_| file.terrain.is_some());
         let scouting = scouting::scouting(&source, &file, land, params::sight(&file))?;
+        let maps = maps::sharing(&source, &file, &route, plane.as_ref())?;
         let formation_params = params::formation(&source, &file.formation)?;
         let published = params::published(&source, &file.formation)?;
         let mut scenario = Self {
@@ -253,6 +259,7 @@ impl Scenario {
             formation,
             plane,
             route,
+            maps,
             formation_params,
             published,
             faults,

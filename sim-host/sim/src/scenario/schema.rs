@@ -5,6 +5,7 @@
 
 use super::claims::ClaimsTable;
 use super::intervention::InterventionTable;
+use super::maps::MapsTable;
 use super::params::{FormationTable, GridTable, RouteTable};
 use super::plane::PlaneTable;
 use crate::radio::RadioParams;
@@ -46,6 +47,9 @@ pub struct ScenarioFile {
     /// How robots find their ways.
     #[serde(default)]
     pub route: RouteTable,
+    /// What robots tell each other of the land.
+    #[serde(default)]
+    pub maps: MapsTable,
     /// How robots keep a formation.
     #[serde(default)]
     pub formation: FormationTable,

@@ -351,6 +351,34 @@ fn what_only_formations_use_is_refused_without_one() {
 }
 
 #[test]
+fn maps_are_shared_where_somebody_goes_by_land() {
+    let list = with_robots("list = [{ start = [0, 0], goal = [2, 0] }]");
+    let with = |rest: &str| format!("{list}{rest}");
+    assert_eq!(parse(&list).expect("good").maps, None);
+    let silent = parse(&with("[maps]\nshare = false\n")).expect("good");
+    assert_eq!((silent.maps, silent.fingerprint()), (None, parse(&list).expect("good").fingerprint()));
+    let shared = parse(&with("[maps]\nshare = true\n")).expect("good");
+    assert_eq!(shared.maps, Some(MapParams::default()));
+    assert_ne!(shared.fingerprint(), silent.fingerprint());
+    let brief = parse(&with("[maps]\nshare = true\nforget_after_s = 1.5\n")).expect("good");
+    assert_eq!(brief.maps.map(|maps| maps.forget_after.as_micros()), Some(1_500_000));
+    for (rest, expected) in [
+        ("[maps]\nforget_after_s = 9\n", "s.toml:8: maps.forget_after_s: nobody shares a map; give maps.share = true"),
+        (
+            "[maps]\nshare = true\nforget_after_s = 0.5\n",
+            "s.toml:9: maps.forget_after_s: 0.5 is out of range; give 1 to 2100",
+        ),
+        ("[maps]\nshares = true\n", "s.toml:8: maps.shares: unknown field `shares`"),
+        ("[maps]\nshare = true\n[route]\nexit = \"ray\"\n", "s.toml:8: maps.share: with route.exit = \"ray\""),
+        ("[maps]\nshare = true\n[scouting]\n", "s.toml:8: maps.share: robots that have a map"),
+        ("[maps]\nshare = true\n[route]\nreplan = \"until_changed\"\n", "s.toml:8: maps.share: with route.replan"),
+    ] {
+        let refusal = refusal(&with(rest));
+        assert!(refusal.starts_with(expected), "{refusal}");
+    }
+}
+
+#[test]
 fn a_formation_that_no_controller_holds_is_refused() {
     let star = |leaves: usize| {
         let places: Vec<_> = (0..=leaves).map(|i| format!("[{}, {}]", i % 3, i / 3)).collect();

@@ -151,6 +151,7 @@ impl Scenario {
             key_remark: None,
             keeping: None,
             claims: Claims::ANY,
+            maps: None,
             attacks: Vec::new(),
         };
         scenario.claims = scenario.usual_claims();

@@ -64,7 +64,7 @@ fn what_silence_means_is_read() {
 fn the_readme_says_the_defaults_of_orca() {
     let readme = include_str!("../../../../../scenarios/README.md");
     let row = |field: &str| {
-        let mut rows = readme.lines();
+        let mut rows = readme.lines().skip_while(|line| !line.contains("`[plane.orca]`"));
         let row = rows.find(|line| line.starts_with(&format!("| `{field}`")));
         let row = row.unwrap_or_else(|| panic!("no row of {field}"));
         row.trim_end_matches(" |").rsplit(" | ").next().expect("a column")

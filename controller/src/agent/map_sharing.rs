@@ -1,0 +1,207 @@
+//! A robot that tells others what it has seen of the land, and finds its way by what they tell.
+
+use super::guidance::{BadInput, Decision, Guidance, GuidanceInput, Teamwork};
+use super::{Parameter, Surroundings, Waypoint};
+use crate::grid::Cell;
+use crate::land::{FarLand, LandMap, LandPatch, MapParams};
+use crate::list::Seldom;
+use crate::rand::Rng;
+use crate::robot::RobotId;
+use crate::scalar::Scalar;
+use crate::time::Instant;
+use crate::wire::TemplateAssignment;
+use serde::Serialize;
+
+/// Guidance law `G` with a map of `T` tiles beyond the window: [`LandMap`]. Laws on the grid price the exits of their windows by it
+/// ([`GuidanceInput::land`]), whoever leads; the others have no use for it.
+///
+/// What others tell costs time at most, whoever they are: the robot goes by its map as long as it comes nearer to its goal than it ever was at
+/// least once in 32 moves. When it does not, it goes as `G` does alone until it is nearer, and the next time it has a quarter of the
+/// patience: in all 42 moves for a goal, and the ways back from where they led.
+///
+/// With each beacon the robot says one patch of its map. Who is not to share keeps nothing, says nothing and does as `G` does.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+pub struct MapSharing<G, const T: usize> {
+    inside: G,
+    #[serde(with = "counted_if_shared")]
+    map: Seldom<Map<T>, 1>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+struct Map<const T: usize> {
+    land: LandMap<T>,
+    params: MapParams,
+    progress: Progress,
+}
+
+/// Moves without coming nearer to the goal for which a robot goes by its map at first.
+const PATIENCE: u8 = 32;
+
+/// Whether the map gets the robot on.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+struct Progress {
+    /// Where it was and where it goes.
+    way: Option<(Cell, Cell)>,
+    /// Least squared distance to the goal so far.
+    least: u64,
+    /// Moves since then.
+    idle: u8,
+    /// How many there may be.
+    patience: u8,
+}
+
+impl Progress {
+    /// Whether the robot in `cell` goes on by its map.
+    fn goes_on(&mut self, cell: Cell, goal: Cell) -> bool {
+        let before = self.way.replace((cell, goal));
+        if before.is_none_or(|(_, old)| old != goal) {
+            *self = Self { way: self.way, least: u64::MAX, idle: 0, patience: PATIENCE };
+        }
+        let distance = cell.distance_squared(goal);
+        if distance < self.least {
+            if self.idle > self.patience {
+                self.patience >>= 2;
+            }
+            (self.least, self.idle) = (distance, 0);
+        } else if before.is_some_and(|(here, _)| here != cell) {
+            self.idle = self.idle.saturating_add(1);
+        }
+        self.idle <= self.patience
+    }
+}
+
+/// What a robot without a map writes of it: for digests nothing.
+mod counted_if_shared {
+    use super::{Map, Seldom};
+    #[cfg(feature = "state")]
+    use serde::{Deserialize, Deserializer};
+    use serde::{Serialize, Serializer};
+
+    pub(super) fn serialize<const T: usize, Z: Serializer>(map: &Seldom<Map<T>, 1>, to: Z) -> Result<Z::Ok, Z::Error> {
+        match map.first() {
+            #[cfg(feature = "state")]
+            None => crate::digest::uncounted::serialize(map, to),
+            #[cfg(not(feature = "state"))]
+            None => to.serialize_unit(),
+            Some(_) => map.serialize(to),
+        }
+    }
+
+    #[cfg(feature = "state")]
+    pub(super) fn deserialize<'de, const T: usize, D: Deserializer<'de>>(
+        from: D,
+    ) -> Result<Seldom<Map<T>, 1>, D::Error> {
+        Seldom::deserialize(from)
+    }
+}
+
+impl<G, const T: usize> MapSharing<G, T> {
+    /// `inside`, with a map kept by `params`; `None`: without one.
+    #[must_use]
+    pub fn new(inside: G, params: Option<MapParams>) -> Self {
+        let mut map = Seldom::new();
+        if let Some(params) = params {
+            // One has room.
+            let _ = map.push(Map { land: LandMap::new(), params, progress: Progress::default() });
+        }
+        Self { inside, map }
+    }
+
+    /// The guidance law inside.
+    #[must_use]
+    pub const fn inside(&self) -> &G {
+        &self.inside
+    }
+
+    /// What it knows of the land, if it shares.
+    #[must_use]
+    pub fn land(&self) -> Option<&LandMap<T>> {
+        self.map.first().map(|map| &map.land)
+    }
+}
+
+impl<G: Teamwork, const T: usize> Teamwork for MapSharing<G, T> {
+    fn redirect(&mut self) {
+        self.inside.redirect();
+    }
+
+    fn note_stop(&mut self, is_asked: bool) {
+        self.inside.note_stop(is_asked);
+    }
+
+    fn assign_template(&mut self, part: &TemplateAssignment, is_anew: bool) -> bool {
+        self.inside.assign_template(part, is_anew)
+    }
+
+    fn hear_land(&mut self, patch: &LandPatch) {
+        if let Some(map) = self.map.first_mut() {
+            map.land.hear(patch);
+        }
+    }
+
+    fn say_land(&mut self, now: Instant) -> Option<LandPatch> {
+        let map = self.map.first_mut()?;
+        map.land.age(&map.params, now);
+        map.land.say()
+    }
+
+    fn goal_offset(&self) -> Cell {
+        self.inside.goal_offset()
+    }
+
+    fn needs(&self, id: RobotId) -> bool {
+        self.inside.needs(id)
+    }
+}
+
+impl<S: Scalar, G: Guidance<S>, const T: usize> Guidance<S> for MapSharing<G, T> {
+    type Input<'a> = G::Input<'a>;
+    type Destination = G::Destination;
+    type Workspace = G::Workspace;
+
+    fn decide(
+        &mut self,
+        input: &GuidanceInput<'_, S>,
+        here: &Self::Input<'_>,
+        rng: &mut Rng,
+        workspace: &mut Self::Workspace,
+    ) -> Result<Decision<S>, BadInput> {
+        let Some(map) = self.map.first_mut() else {
+            return self.inside.decide(input, here, rng, workspace);
+        };
+        if let Some((cell, window)) = here.on_grid().and_then(|grid| Some((grid.cell.cell, grid.window?))) {
+            map.land.see(&window, cell);
+            let land: &dyn FarLand = &map.land;
+            let land = map.progress.goes_on(cell, input.goal).then_some(land);
+            return self.inside.decide(&GuidanceInput { land, ..*input }, here, rng, workspace);
+        }
+        self.inside.decide(input, here, rng, workspace)
+    }
+
+    fn goes_to_cells(&self) -> bool {
+        self.inside.goes_to_cells()
+    }
+
+    fn goes_by_velocity(&self) -> bool {
+        self.inside.goes_by_velocity()
+    }
+
+    fn has_own_goal(&self) -> bool {
+        self.inside.has_own_goal()
+    }
+
+    fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool {
+        self.inside.assign_waypoint(index, waypoint)
+    }
+
+    fn parameter(&self, parameter: Parameter) -> Option<S> {
+        self.inside.parameter(parameter)
+    }
+
+    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
+        self.inside.tune(parameter, value)
+    }
+}

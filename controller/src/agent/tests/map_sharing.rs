@@ -1,0 +1,125 @@
+//! Robots that share maps, on the grid, hearing each other's bytes.
+
+use super::*;
+use crate::agent::{CELLS, GridWorkspace, MAP_TILES, MapSharing, OnGrid, RouteGuidance, VISITS};
+use crate::digest::digest;
+use crate::grid::{BLOCKED, Window};
+use crate::land::{LandPatch, MapParams, PATCH_TILES, Tile, tile_of};
+use crate::route::RouteParams;
+use crate::wire::{Header, Message, encode};
+use heapless::Vec;
+
+type Sharing = MapSharing<RouteGuidance<CELLS, VISITS>, MAP_TILES>;
+type Sharer = Agent<f32, Sharing, NEIGHBORS>;
+
+const TICK: Duration = Duration::from_millis(1000);
+
+fn sharer(id: u32, maps: Option<MapParams>) -> Sharer {
+    let config = AgentConfig::new(RobotId(id), 0.0, TICK);
+    let law = MapSharing::new(RouteGuidance::new(RouteParams::default()), maps);
+    Agent::new(&config, law, Unguarded, Postcard)
+}
+
+/// A step on land that is known everywhere; the cell that it goes to, and what it says.
+fn step(
+    agent: &mut Sharer,
+    land: &dyn Fn(Cell) -> u8,
+    cell: Cell,
+    now: Instant,
+    inbox: &[u8],
+) -> (Cell, Vec<u8, OUTBOX>) {
+    let origin = cell - Cell::new(5, 5);
+    let cells: std::vec::Vec<u8> =
+        (0..11).flat_map(|y| (0..11).map(move |x| (x, y))).map(|(x, y)| land(origin + Cell::new(x, y))).collect();
+    let inputs = Inputs {
+        state: KinematicState::default(),
+        surroundings: OnGrid {
+            cell: CellState { cell, busy: Duration::ZERO },
+            window: Window::new(&cells, origin, 11, 11),
+        },
+        inbox,
+    };
+    let out = agent.step(&inputs, now, &mut GridWorkspace::new());
+    let to = match &out.command {
+        Command::Move(moves) => cell + moves[0].offset(),
+        _ => cell,
+    };
+    (to, out.outbox)
+}
+
+#[test]
+fn who_does_not_share_says_nothing_and_is_as_the_law_inside() {
+    let config = AgentConfig::new(RobotId(1), 0.0, TICK);
+    let law = RouteGuidance::<CELLS, VISITS>::new(RouteParams::default());
+    let plain = Agent::<f32, _, NEIGHBORS>::new(&config, law, Unguarded, Postcard);
+    let mut wrapped = sharer(1, None);
+    assert_eq!(digest(&wrapped), digest(&plain));
+    wrapped.assign_goal(Cell::new(50, 5));
+    let (_, said) = step(&mut wrapped, &|_| 1, Cell::new(5, 5), Instant::from_micros(0), &[]);
+    let messages = crate::wire::frames(&said).map(|frame| crate::wire::decode(frame).unwrap().message);
+    assert_eq!(messages.filter(|message| matches!(message, Message::Land(_))).count(), 0);
+}
+
+#[test]
+fn land_goes_behind_each_beacon_and_another_robot_knows_it() {
+    let (mut one, mut two) = (sharer(1, Some(MapParams::default())), sharer(2, Some(MapParams::default())));
+    one.assign_goal(Cell::new(50, 5));
+    two.assign_goal(Cell::new(50, 5));
+    let mut now = Instant::from_micros(0);
+    let mut said = Vec::<u8, OUTBOX>::new();
+    for _ in 0..6 {
+        (_, said) = step(&mut one, &|_| 4, Cell::new(5, 5), now, &[]);
+        let _ = step(&mut two, &|_| 1, Cell::new(-40, 5), now, &said);
+        now = now + TICK;
+    }
+    let messages = crate::wire::frames(&said).map(|frame| crate::wire::decode(frame).unwrap().message);
+    let kinds: std::vec::Vec<bool> = messages.map(|message| matches!(message, Message::Land(_))).collect();
+    assert_eq!(kinds, [false, true]);
+    let known = two.guidance().land().unwrap().get(tile_of(Cell::new(5, 5)));
+    assert_eq!(known.ticks_16(), Some(64));
+}
+
+/// Moves until the robot is at `goal` on open land with a wall in it, while `liar` speaks at every tick; `None`: never.
+fn moves_among_lies(liar: &dyn Fn(Cell) -> [LandPatch; 3]) -> Option<u32> {
+    let land = |cell: Cell| if cell.x == 20 && (-6..7).contains(&cell.y) { BLOCKED } else { 2 };
+    let goal = Cell::new(40, 0);
+    let mut robot = sharer(1, Some(MapParams::default()));
+    robot.assign_goal(goal);
+    let (mut cell, mut now) = (Cell::new(0, 0), Instant::from_micros(0));
+    let mut sequence = 0;
+    for moves in 0..1000 {
+        let mut inbox = Vec::<u8, OUTBOX>::new();
+        for patch in liar(cell) {
+            let header = Header { boot: 1, sender: RobotId(9), sequence };
+            sequence += 1;
+            encode(header, &Message::Land(patch), &mut inbox).unwrap();
+        }
+        (cell, _) = step(&mut robot, &land, cell, now, &inbox);
+        now = now + TICK;
+        if cell == goal {
+            return Some(moves);
+        }
+    }
+    None
+}
+
+#[test]
+fn a_liar_costs_time_and_walls_nobody_in() {
+    let nothing = LandPatch { corner: Cell::new(0, 0), tiles: [Tile::UNKNOWN; PATCH_TILES] };
+    let honest = moves_among_lies(&|_| [nothing; 3]).expect("arrives");
+    // The worst price for all land around the robot, wherever it is, as if just seen.
+    let wall = |corner| LandPatch { corner, tiles: [Tile::new(u16::MAX); PATCH_TILES] };
+    let among = moves_among_lies(&|cell| {
+        let at = tile_of(cell);
+        [Cell::new(-4, -6), Cell::new(-4, -2), Cell::new(-4, 2)].map(|corner| wall(at + corner))
+    });
+    // All land ahead, and the best price for what lies behind.
+    let lure = moves_among_lies(&|cell| {
+        let at = tile_of(cell);
+        let behind = LandPatch { tiles: [Tile::new(0); PATCH_TILES], ..wall(at + Cell::new(-9, -2)) };
+        [wall(at + Cell::new(1, -4)), wall(at + Cell::new(1, 0)), behind]
+    });
+    for lied in [among, lure] {
+        assert!(lied.is_some_and(|moves| moves < 12 * honest), "{lied:?} moves instead of {honest}");
+    }
+}

@@ -1,0 +1,244 @@
+//! What one robot knows of the land around it.
+
+use super::tile::{AGES, LandPatch, PATCH_HEIGHT, PATCH_TILES, PATCH_WIDTH, Tile};
+use super::tile_of;
+use crate::grid::{Cell, Window};
+use crate::list::Seldom;
+use crate::time::{Duration, Instant};
+use serde::{Deserialize, Serialize};
+
+/// Ages for which what the robot saw itself beats what it is told.
+const OWN_STANDS: u8 = AGES >> 2;
+/// log2 of a patch's sides.
+const PATCH_BITS: [u32; 2] = [PATCH_WIDTH.trailing_zeros(), PATCH_HEIGHT.trailing_zeros()];
+
+/// How a map is kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct MapParams {
+    /// What was seen longer ago is forgotten; 16 times the step of ages. Shorter follows land that changes and loses liars' words sooner;
+    /// longer keeps what was seen at the start of a long way. More than 0, at most 35 minutes.
+    pub forget_after: Duration,
+}
+
+impl Default for MapParams {
+    /// 10 minutes.
+    fn default() -> Self {
+        Self { forget_after: Duration::from_millis(600_000) }
+    }
+}
+
+/// A tile, and where it is from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Known {
+    pub(super) tile: Tile,
+    /// The robot saw it itself.
+    is_own: bool,
+    /// The robot saw it itself and has not told it yet.
+    is_news: bool,
+}
+
+/// A square of `T` tiles that moves with the robot: `T` is 0 (none), 256, 1024 or 4096, for 64, 128 or 256 cells along each side, of which
+/// at least three eighths lie ahead wherever the robot is in its patch.
+///
+/// Memory: 3 bytes a tile. What leaves the square is forgotten. On a host nothing is held before the first tile is known.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+pub struct LandMap<const T: usize> {
+    /// By their places modulo the side; all or none.
+    tiles: Seldom<Known, T>,
+    /// The south-west tile, a patch's corner.
+    origin: Cell,
+    /// When the tiles last became older.
+    aged_at: Option<Instant>,
+    /// The patch that is to be told again next.
+    next: u16,
+    /// Whose turn it is: what is new, or what was told before.
+    repeats: bool,
+}
+
+impl<const T: usize> Default for LandMap<T> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<const T: usize> LandMap<T> {
+    /// log2 of the tiles along each side.
+    pub(super) const BITS: u32 = {
+        let bits = T.trailing_zeros() >> 1;
+        assert!(T == 0 || T == 256 || T == 1024 || T == 4096, "a map has 0, 256, 1024 or 4096 tiles");
+        if T == 0 { 0 } else { bits }
+    };
+    /// Tiles along each side.
+    const SIDE: i16 = if T == 0 { 0 } else { 1 << Self::BITS };
+
+    /// Nothing known yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { tiles: Seldom::new(), origin: Cell::new(0, 0), aged_at: None, next: 0, repeats: false }
+    }
+
+    /// What is known of a tile, by its place in tiles.
+    #[must_use]
+    pub fn get(&self, at: Cell) -> Tile {
+        self.index(at).and_then(|index| self.tiles.get(index)).map_or(Tile::UNKNOWN, |known| known.tile)
+    }
+
+    /// The south-west tile of the square.
+    pub(super) const fn origin(&self) -> Cell {
+        self.origin
+    }
+
+    /// Whether no tile has ever been known.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.tiles.is_empty()
+    }
+
+    /// Index of a tile of the square.
+    fn index(&self, at: Cell) -> Option<usize> {
+        let inside = |at: i16, origin: i16| (0..i32::from(Self::SIDE)).contains(&(i32::from(at) - i32::from(origin)));
+        let mask = Self::SIDE.saturating_sub(1);
+        let index =
+            usize::from((at.x & mask).cast_unsigned()) | usize::from((at.y & mask).cast_unsigned()) << Self::BITS;
+        (inside(at.x, self.origin.x) && inside(at.y, self.origin.y)).then_some(index)
+    }
+
+    fn get_mut(&mut self, at: Cell) -> Option<&mut Known> {
+        let index = self.index(at)?;
+        self.tiles.get_mut(index)
+    }
+
+    /// Moves the square so that the robot in `cell` is in the middle of it. O(T) when it crosses the middle of a patch.
+    fn center(&mut self, cell: Cell) {
+        while T > 0 && self.tiles.push(Known::default()).is_ok() {}
+        let at = tile_of(cell);
+        let along = |at: i16, bits: u32| {
+            let half = 1_i16 << (bits - 1);
+            (at.saturating_add(half) >> bits << bits).saturating_sub(Self::SIDE >> 1)
+        };
+        let [x, y] = PATCH_BITS;
+        let before = self.origin;
+        self.origin = Cell::new(along(at.x, x), along(at.y, y));
+        if self.origin == before {
+            return;
+        }
+        // What is now where nothing was, or something else.
+        for place in self.places(self.origin) {
+            let was_inside =
+                |at: i16, origin: i16| i32::from(at) - i32::from(origin) < i32::from(Self::SIDE) && at >= origin;
+            if !(was_inside(place.x, before.x) && was_inside(place.y, before.y))
+                && let Some(known) = self.get_mut(place)
+            {
+                *known = Known::default();
+            }
+        }
+    }
+
+    /// The places of a square.
+    fn places(&self, origin: Cell) -> impl Iterator<Item = Cell> + use<T> {
+        (0..Self::SIDE).flat_map(move |y| (0..Self::SIDE).map(move |x| origin + Cell::new(x, y)))
+    }
+
+    /// Lets the tiles grow older, and forgets the oldest; to be called now and then. O(T) when they do.
+    pub fn age(&mut self, params: &MapParams, now: Instant) {
+        let step = Duration::from_micros(params.forget_after.as_micros() >> 4);
+        let since = self.aged_at.map(|at| now.since(at));
+        match since {
+            // A clock that went back, or half round: a new beginning.
+            Some(since) if since >= Duration::ZERO => {
+                let due = since.as_micros().checked_div(step.as_micros()).unwrap_or(0).min(AGES.into());
+                if due <= 0 {
+                    return;
+                }
+                for known in self.tiles.iter_mut() {
+                    for _ in 0..due {
+                        known.tile = known.tile.older();
+                    }
+                    if !known.tile.is_known() {
+                        *known = Known::default();
+                    }
+                }
+            }
+            _ => {}
+        }
+        self.aged_at = Some(now);
+    }
+
+    /// Takes in what the robot in `cell` sees. O(cells of the window).
+    pub fn see(&mut self, window: &Window<'_>, cell: Cell) {
+        self.center(cell);
+        let origin = self.origin;
+        let last = |from: i16, size: u16| from.saturating_add_unsigned(size.saturating_sub(1));
+        let from = tile_of(window.origin());
+        let to = tile_of(Cell::new(last(window.origin().x, window.width()), last(window.origin().y, window.height())));
+        let inside = |at: i16, origin: i16| at >= origin && at < origin.saturating_add(Self::SIDE);
+        for y in (from.y..=to.y).filter(|&y| inside(y, origin.y)) {
+            for x in (from.x..=to.x).filter(|&x| inside(x, origin.x)) {
+                let at = Cell::new(x, y);
+                let (Some(tile), Some(known)) = (Tile::seen(window, at), self.get_mut(at)) else { continue };
+                let is_same = known.is_own && known.tile.level() == tile.level();
+                *known = Known { tile, is_own: true, is_news: known.is_news || !is_same };
+            }
+        }
+    }
+
+    /// Takes in what somebody says. What lies outside of the square is dropped; what the robot saw itself not long ago stands;
+    /// of the rest the newer tile stays. O([`PATCH_TILES`]).
+    pub fn hear(&mut self, patch: &LandPatch) {
+        for (at, tile) in patch.iter() {
+            let Some(known) = self.get_mut(at) else { continue };
+            if known.is_own && known.tile.age() < OWN_STANDS {
+                continue;
+            }
+            let merged = known.tile.merged(tile);
+            if merged != known.tile {
+                *known = Known { tile: merged, is_own: false, is_news: false };
+            }
+        }
+    }
+
+    /// What to tell next: the patch with the most news, and in every second packet one that was told before, in turn, for
+    /// those who have missed it. `None` when nothing is known. O(T).
+    pub fn say(&mut self) -> Option<LandPatch> {
+        self.repeats = !self.repeats;
+        let news = self.corners().map(|corner| (corner, self.count(corner, |known| known.is_news)));
+        let news = news.filter(|&(_, news)| news > 0).max_by_key(|&(_, news)| news).map(|(corner, _)| corner);
+        let again = || {
+            let count = self.corners().count();
+            let turns = self.corners().zip(0..).cycle().skip(self.next.into()).take(count);
+            turns.into_iter().find(|&(corner, _)| self.count(corner, |known| known.tile.is_known()) > 0)
+        };
+        let corner = match news {
+            Some(corner) if self.repeats => corner,
+            _ => {
+                let (corner, turn) = again()?;
+                self.next = turn + 1;
+                corner
+            }
+        };
+        let mut patch = LandPatch { corner, tiles: [Tile::UNKNOWN; PATCH_TILES] };
+        let places = (0..PATCH_HEIGHT).flat_map(|y| (0..PATCH_WIDTH).map(move |x| Cell::new(x, y)));
+        for (place, tile) in places.zip(&mut patch.tiles) {
+            if let Some(known) = self.get_mut(corner + place) {
+                *tile = known.tile;
+                known.is_news = false;
+            }
+        }
+        Some(patch)
+    }
+
+    /// The south-west tiles of the patches.
+    fn corners(&self) -> impl Iterator<Item = Cell> + Clone + use<T> {
+        let (origin, [x_bits, y_bits]) = (self.origin, PATCH_BITS);
+        let rows = 0..Self::SIDE >> y_bits;
+        rows.flat_map(move |y| (0..Self::SIDE >> x_bits).map(move |x| origin + Cell::new(x << x_bits, y << y_bits)))
+    }
+
+    fn count(&self, corner: Cell, is_counted: impl Fn(&Known) -> bool) -> usize {
+        let places = (0..PATCH_HEIGHT).flat_map(|y| (0..PATCH_WIDTH).map(move |x| corner + Cell::new(x, y)));
+        let known = places.filter_map(|at| self.tiles.get(self.index(at)?));
+        known.filter(|known| is_counted(known)).count()
+    }
+}

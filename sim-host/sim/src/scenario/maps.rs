@@ -1,0 +1,70 @@
+//! `[maps]`: what robots tell each other of the land.
+
+use super::ranges::within;
+use super::source::Source;
+use super::{PlaneSetup, ScenarioError, ScenarioFile};
+use serde::Deserialize;
+use staya_controller::agent::RouteSetup;
+use staya_controller::formation::published::FormationLaw;
+use staya_controller::land::MapParams;
+use staya_controller::route::{ExitRule, Replan};
+use staya_controller::time::Duration;
+
+/// The longest time for which a map can hold what it was told, seconds: half the range of the robots' clocks.
+const LONGEST_S: f64 = 2100.0;
+
+/// `[maps]`: robots that go by land tell each other what they see of it.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct MapsTable {
+    /// Whether they do. Default: false.
+    pub share: bool,
+    /// How long they hold what they were told, seconds, 1 to 2100. Default: 600.
+    pub forget_after_s: Option<f64>,
+}
+
+/// How the robots share their maps; `None`: not at all.
+pub(super) fn sharing(
+    source: &Source<'_>,
+    file: &ScenarioFile,
+    route: &RouteSetup,
+    plane: Option<&PlaneSetup>,
+) -> Result<Option<MapParams>, ScenarioError> {
+    let mut params = MapParams::default();
+    if let Some(seconds) = file.maps.forget_after_s {
+        within(source, "maps.forget_after_s", seconds, 1.0, LONGEST_S, "s")?;
+        params.forget_after = Duration::from_micros((seconds * 1e6) as i32);
+    }
+    if !file.maps.share {
+        let what = "nobody shares a map";
+        let is_alone = file.maps.forget_after_s.is_some();
+        return if is_alone {
+            Err(source.error("maps.forget_after_s", what, "give maps.share = true, or leave it out"))
+        } else {
+            Ok(None)
+        };
+    }
+    let refused = |what: &str, remedy: &str| Err(source.error("maps.share", what, remedy));
+    if plane.is_some_and(|plane| !plane.kinds().any(|group| group.guidance.kind().is_on_grid())) {
+        return refused(
+            "none of the robots goes by land",
+            "give a guidance \"route\" or \"formation\", or leave it out",
+        );
+    }
+    if route.params.exit == ExitRule::Ray {
+        return refused("with route.exit = \"ray\" nobody asks what lies beyond the window", "give exit = \"best\"");
+    }
+    if route.replan == Replan::UntilChanged {
+        return refused(
+            "with route.replan = \"until_changed\" ways are planned by the window alone",
+            "give \"each_cell\"",
+        );
+    }
+    if file.scouting.is_some() {
+        return refused("robots that have a map ([scouting]) plan by that one", "leave one of the two out");
+    }
+    if file.formation.law == Some(FormationLaw::Paper) {
+        return refused("the paper's law knows the window alone", "give formation.law = \"staya\", or leave it out");
+    }
+    Ok(Some(params))
+}
