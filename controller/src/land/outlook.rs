@@ -142,7 +142,8 @@ impl<const T: usize> LandMap<T> {
     /// The price of a tile: what is known, or for one beside known ones a mean of theirs and of what unknown land is taken to cost, as
     /// land changes little by little.
     fn price(&self, gains: &Gains, at: Cell) -> u16 {
-        let known = |tile: Tile| tile.ticks_16().map(|ticks| u32::from(gains.a0.sixteenths()) * u32::from(ticks) >> 4);
+        let known =
+            |tile: Tile| tile.ticks_16().map(|ticks| (u32::from(gains.a0.sixteenths()) * u32::from(ticks)) >> 4);
         let narrow = |price: u32| price.min(u16::MAX.into()) as u16;
         if let Some(price) = known(self.get(at)) {
             return narrow(price);

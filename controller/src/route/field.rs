@@ -8,11 +8,12 @@
 use super::{ExitRule, RouteParams, VisitMemory, ray_exit};
 use crate::cost::{Cost, EXCLUDED, Weights};
 use crate::grid::{BLOCKED, Cell, DIAGONAL, Dir, Norm, UNIT, Window};
-use crate::land::Outlook;
 
+mod beyond;
 mod learning;
 mod queue;
 
+pub(super) use beyond::Beyond;
 use queue::{MOST_CELLS, Queue, RING};
 
 /// The robot's surroundings are closed: no exit can be reached.
@@ -55,15 +56,6 @@ impl<const CELLS: usize> Default for CostField<CELLS> {
     fn default() -> Self {
         Self::new()
     }
-}
-
-/// What is known of what lies beyond the window.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Beyond<'a> {
-    /// What the ways from some cells cost at least.
-    pub learned: &'a [(Cell, Cost)],
-    /// What the land is like there.
-    pub land: Option<&'a Outlook<'a>>,
 }
 
 /// The window as the search sees it, between [`CostField::load`] and the end of a query.
@@ -420,29 +412,6 @@ impl<const CELLS: usize> CostField<CELLS> {
             *known = price;
             self.queue.unlink(cell);
             self.queue.link(cell, price >> self.shift);
-        }
-    }
-
-    /// Makes every border cell an exit, priced by its distance to the target (eq. 10) and what is known of the land
-    /// there, or by what was learned if that is more.
-    fn offer_border(&mut self, query: &Query<'_>, beyond: &Beyond<'_>) {
-        let Query { params, target, .. } = *query;
-        let distance = |cell: Cell| cell.distance(target, params.norm);
-        // Where prices would leave the range of costs, all are less by the least of them.
-        let size = u32::from(self.width) + u32::from(self.height);
-        let farthest = (query.from_cell.chebyshev(target) + size) * DIAGONAL;
-        let base =
-            if params.a3.of(farthest) < EXCLUDED >> 1 { 0 } else { self.border().map(distance).min().unwrap_or(0) };
-        for cell in self.border() {
-            if let Some(at) = self.index(cell) {
-                let known = beyond.learned.iter().find(|&&(at, _)| at == cell).map_or(0, |&(_, cost)| cost);
-                let straight = params.a3.of(distance(cell) - base);
-                let price = beyond.land.map_or(straight, |land| {
-                    let price = i64::from(straight).saturating_add(land.surplus(cell));
-                    price.clamp(0, (EXCLUDED - 1).into()) as Cost
-                });
-                self.offer(at, price.max(known.min(EXCLUDED - 1)));
-            }
         }
     }
 

@@ -1,0 +1,40 @@
+//! What is known of the land beyond the window, and what exits cost by it.
+
+use super::{CostField, Query};
+use crate::cost::{Cost, EXCLUDED};
+use crate::grid::{Cell, DIAGONAL};
+use crate::land::Outlook;
+
+/// What is known of what lies beyond the window.
+#[derive(Clone, Copy, Default)]
+pub(in crate::route) struct Beyond<'a> {
+    /// What the ways from some cells cost at least.
+    pub learned: &'a [(Cell, Cost)],
+    /// What the land is like there.
+    pub land: Option<&'a Outlook<'a>>,
+}
+
+impl<const CELLS: usize> CostField<CELLS> {
+    /// Makes every border cell an exit, priced by its distance to the target (eq. 10) and what is known of the land
+    /// there, or by what was learned if that is more.
+    pub(super) fn offer_border(&mut self, query: &Query<'_>, beyond: &Beyond<'_>) {
+        let Query { params, target, .. } = *query;
+        let distance = |cell: Cell| cell.distance(target, params.norm);
+        // Where prices would leave the range of costs, all are less by the least of them.
+        let size = u32::from(self.width) + u32::from(self.height);
+        let farthest = (query.from_cell.chebyshev(target) + size) * DIAGONAL;
+        let base =
+            if params.a3.of(farthest) < EXCLUDED >> 1 { 0 } else { self.border().map(distance).min().unwrap_or(0) };
+        for cell in self.border() {
+            if let Some(at) = self.index(cell) {
+                let known = beyond.learned.iter().find(|&&(at, _)| at == cell).map_or(0, |&(_, cost)| cost);
+                let straight = params.a3.of(distance(cell) - base);
+                let price = beyond.land.map_or(straight, |land| {
+                    let price = i64::from(straight).saturating_add(land.surplus(cell));
+                    price.clamp(0, (EXCLUDED - 1).into()) as Cost
+                });
+                self.offer(at, price.max(known.min(EXCLUDED - 1)));
+            }
+        }
+    }
+}
