@@ -30,6 +30,16 @@ type Large<G> = G;
 #[cfg(feature = "host")]
 type Large<G> = alloc::boxed::Box<G>;
 
+/// Gives such a law its room.
+#[cfg(not(feature = "host"))]
+pub(in crate::agent) const fn large<G>(law: G) -> Large<G> {
+    law
+}
+#[cfg(feature = "host")]
+pub(in crate::agent) fn large<G>(law: G) -> Large<G> {
+    Large::new(law)
+}
+
 /// Any guidance law, on the grid, in the plane or in space.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(feature = "state", derive(serde::Deserialize))]

@@ -2,7 +2,7 @@
 //!
 //! Numbers are `f32` here whatever the robot computes with, so that host and robot need not agree on a kind of number.
 
-use super::any::{AnyGuidance, AnyHalfPlanes, AnySafety};
+use super::any::{AnyGuidance, AnyHalfPlanes, AnySafety, large};
 use super::cell_follower::CellFollower;
 use super::flock_guidance::{BoidsGuidance, GoalFlockGuidance, LatticeGuidance};
 use super::formation_guidance::{FormationGuidance, FormationInPlane};
@@ -320,7 +320,7 @@ impl GuidanceSetup {
             Self::Route { route, speed_mps } => {
                 let guidance = route.guidance();
                 match speed_mps {
-                    Some(speed) => AnyGuidance::Route(CellFollower::new(guidance, cast(*speed)).into()),
+                    Some(speed) => AnyGuidance::Route(large(CellFollower::new(guidance, cast(*speed)))),
                     None => AnyGuidance::RouteOnGrid(guidance),
                 }
             }
@@ -328,14 +328,14 @@ impl GuidanceSetup {
                 let guidance =
                     FormationGuidance::new(route.params, *formation, template.clone()).sharpness(route.sharpness);
                 match speed_mps {
-                    Some(speed) => AnyGuidance::Formation(FormationInPlane::new(guidance, cast(*speed)).into()),
-                    None => AnyGuidance::FormationOnGrid(guidance.into()),
+                    Some(speed) => AnyGuidance::Formation(large(FormationInPlane::new(guidance, cast(*speed)))),
+                    None => AnyGuidance::FormationOnGrid(large(guidance)),
                 }
             }
             #[cfg(feature = "published")]
-            Self::Published { route, formation, template } => AnyGuidance::Published(
-                PublishedFormation::new(route.params, *formation, template.clone()).sharpness(route.sharpness).into(),
-            ),
+            Self::Published { route, formation, template } => AnyGuidance::Published(large(
+                PublishedFormation::new(route.params, *formation, template.clone()).sharpness(route.sharpness),
+            )),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::nonsense::{frame, noise_and_frames};
 use super::*;
+use crate::agent::any::large;
 use crate::flock::boids::BoidsParams;
 use crate::flock::goal::GoalParams;
 use crate::flock::lattice::{LatticeParams, ReferenceMotion};
@@ -134,13 +135,13 @@ fn guidance(which: u8, speed: f32, length: f32) -> AnyGuidance<f32, CELLS, VISIT
         }
         4 => {
             let inside = RouteGuidance::new(RouteParams::default());
-            AnyGuidance::Route(CellFollower::new(inside, speed).into())
+            AnyGuidance::Route(large(CellFollower::new(inside, speed)))
         }
         _ => {
             let template = Template::from_graph(&[Cell::new(0, 0), Cell::new(-3, 0)], &[(0, 1)], 1, 2);
             let (route, keeping) = (RouteParams::default(), FormationParams::default());
             let inside = FormationGuidance::new(route, keeping, template.unwrap());
-            AnyGuidance::Formation(FormationInPlane::new(inside, speed).into())
+            AnyGuidance::Formation(large(FormationInPlane::new(inside, speed)))
         }
     }
 }

@@ -3,6 +3,7 @@
 mod places;
 
 use super::*;
+use crate::agent::any::large;
 use crate::geom::{Position, Vec2, Vec3};
 use crate::neighbor::StalenessInflation;
 use crate::orca::AvoidParams;
@@ -433,5 +434,5 @@ fn any_law_with_the_input_of_another_one_is_a_fault() {
     let goal = || Task::Cell(Cell::new(9, 5));
     assert_eq!(modes(Any::RouteOnGrid(route()), goal()), [Cruise, Fault, Fault]);
     let follower = CellFollower::new(route(), 1.0);
-    assert_eq!(modes(Any::Route(follower.into()), goal()), [Fault, Fault, Cruise]);
+    assert_eq!(modes(Any::Route(large(follower)), goal()), [Fault, Fault, Cruise]);
 }
