@@ -55,7 +55,8 @@ impl Outlook<'_> {
     pub fn surplus(&self, cell: Cell) -> i64 {
         // In eighths of a tile, from the centre of the first one.
         let last = (8 << self.bits) - 9;
-        let along = |at: i16, origin: i16| (2 * i32::from(at) - 3 - 8 * i32::from(origin)).clamp(0, last);
+        // Not `clamp`, which could panic.
+        let along = |at: i16, origin: i16| (2 * i32::from(at) - 3 - 8 * i32::from(origin)).min(last).max(0);
         let (x, y) = (along(cell.x, self.origin.x), along(cell.y, self.origin.y));
         let at = |dx: i32, dy: i32| {
             let (x, y) = ((x >> 3) + dx, (y >> 3) + dy);
