@@ -6,7 +6,7 @@
 //! [`crate::route`] prices the exits of its window.
 //!
 //! Merging is by age: newer wins, and of equally new tiles the dearer one, so that neither the order nor the repetition of
-//! packets changes what comes out. What the robot saw itself beats what it is told for a third of the time that tiles live. What is told
+//! packets changes what comes out. What the robot saw itself beats what it is told for a quarter of the time that tiles live. What is told
 //! is never a wall but a high price, and it ages out: whoever lies makes detours, and cannot wall anybody in.
 
 mod map;
