@@ -1,6 +1,6 @@
 //! A robot that an operator may take over for a while.
 
-use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork};
+use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, pass_on};
 use super::waypoint_guidance::WaypointGuidance;
 use super::{Parameter, Surroundings, Wait, Waypoint, WrongTask};
 use crate::geom::Vec3;
@@ -137,29 +137,8 @@ fn on_order<S>(action: Action<S>, goal: Cell) -> Decision<S> {
 }
 
 impl<S, G: Teamwork> Teamwork for Commanded<S, G> {
-    fn redirect(&mut self) {
-        self.inside.redirect();
-    }
-
-    fn assign_template(&mut self, part: &TemplateAssignment, is_anew: bool) -> bool {
-        self.inside.assign_template(part, is_anew)
-    }
-
-    fn hear_land(&mut self, patch: &LandPatch) {
-        self.inside.hear_land(patch);
-    }
-
-    fn say_land(&mut self, now: Instant) -> Option<LandPatch> {
-        self.inside.say_land(now)
-    }
-
-    fn goal_offset(&self) -> Cell {
-        self.inside.goal_offset()
-    }
-
-    fn needs(&self, id: RobotId) -> bool {
-        self.inside.needs(id)
-    }
+    pass_on!(orders: self => self.inside);
+    pass_on!(land: self => self.inside);
 }
 
 /// An ordered velocity leads to a place so many own radii ahead: farther than any from which one swerves.

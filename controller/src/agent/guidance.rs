@@ -198,27 +198,47 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for alloc::boxed::Box<G> {
     }
 }
 
+/// The functions of [`Teamwork`] in a law around another one, `$inside`, that does nothing of its own in them: `orders` those
+/// about formations, `land` those about the land. A function that is forgotten in such a law is lost without a word
+/// (`tests/wrapped.rs` looks).
+macro_rules! pass_on {
+    (orders: $self:ident => $inside:expr) => {
+        fn redirect(&mut $self) {
+            $inside.redirect();
+        }
+
+        fn note_stop(&mut $self, is_asked: bool) {
+            $inside.note_stop(is_asked);
+        }
+
+        fn assign_template(&mut $self, part: &TemplateAssignment, is_anew: bool) -> bool {
+            $inside.assign_template(part, is_anew)
+        }
+
+        fn goal_offset(&$self) -> Cell {
+            $inside.goal_offset()
+        }
+
+        fn needs(&$self, id: RobotId) -> bool {
+            $inside.needs(id)
+        }
+    };
+    (land: $self:ident => $inside:expr) => {
+        fn hear_land(&mut $self, patch: &LandPatch) {
+            $inside.hear_land(patch);
+        }
+
+        fn say_land(&mut $self, now: Instant) -> Option<LandPatch> {
+            $inside.say_land(now)
+        }
+    };
+}
+pub(super) use pass_on;
+
 #[cfg(feature = "host")]
 impl<G: Teamwork> Teamwork for alloc::boxed::Box<G> {
-    fn redirect(&mut self) {
-        (**self).redirect();
-    }
-
-    fn note_stop(&mut self, is_asked: bool) {
-        (**self).note_stop(is_asked);
-    }
-
-    fn assign_template(&mut self, part: &TemplateAssignment, is_anew: bool) -> bool {
-        (**self).assign_template(part, is_anew)
-    }
-
-    fn goal_offset(&self) -> Cell {
-        (**self).goal_offset()
-    }
-
-    fn needs(&self, id: RobotId) -> bool {
-        (**self).needs(id)
-    }
+    pass_on!(orders: self => (**self));
+    pass_on!(land: self => (**self));
 }
 
 /// Where a guidance law can be sent: one of [`ToCells`], [`ToWaypoints`], [`Roams`] and [`ToAny`].

@@ -1,6 +1,6 @@
 //! A robot that tells others what it has seen of the land, and finds its way by what they tell.
 
-use super::guidance::{BadInput, Decision, Guidance, GuidanceInput, Teamwork};
+use super::guidance::{BadInput, Decision, Guidance, GuidanceInput, Teamwork, pass_on};
 use super::{Parameter, Surroundings, Waypoint};
 use crate::grid::Cell;
 use crate::land::{FarLand, LandMap, LandPatch, MapParams};
@@ -124,17 +124,7 @@ impl<G, const T: usize> MapSharing<G, T> {
 }
 
 impl<G: Teamwork, const T: usize> Teamwork for MapSharing<G, T> {
-    fn redirect(&mut self) {
-        self.inside.redirect();
-    }
-
-    fn note_stop(&mut self, is_asked: bool) {
-        self.inside.note_stop(is_asked);
-    }
-
-    fn assign_template(&mut self, part: &TemplateAssignment, is_anew: bool) -> bool {
-        self.inside.assign_template(part, is_anew)
-    }
+    pass_on!(orders: self => self.inside);
 
     fn hear_land(&mut self, patch: &LandPatch) {
         if let Some(map) = self.map.first_mut() {
@@ -146,14 +136,6 @@ impl<G: Teamwork, const T: usize> Teamwork for MapSharing<G, T> {
         let map = self.map.first_mut()?;
         map.land.age(&map.params, now);
         map.land.say()
-    }
-
-    fn goal_offset(&self) -> Cell {
-        self.inside.goal_offset()
-    }
-
-    fn needs(&self, id: RobotId) -> bool {
-        self.inside.needs(id)
     }
 }
 

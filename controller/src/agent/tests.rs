@@ -413,3 +413,4 @@ mod sealed;
 mod setup;
 mod silence;
 mod waits;
+mod wrapped;
