@@ -1,6 +1,7 @@
 //! One MAVLink frame of each of the swarm's messages, for other implementations: `tests/python/test_dialect.py` reads the golden file.
 
 use staya_controller::grid::{Cell, Dir};
+use staya_controller::land::LandPatch;
 use staya_controller::robot::{Mode, RobotId};
 use staya_controller::template::TemplateEntry;
 use staya_controller::time::Instant;
@@ -14,7 +15,7 @@ use std::fmt::Write as _;
 const TO: RobotId = RobotId(254);
 
 /// Name, message, and its fields as the dialect has them.
-fn messages() -> [(&'static str, Message, &'static str); 8] {
+fn messages() -> [(&'static str, Message, &'static str); 9] {
     let entry = |x, id, hops| TemplateEntry { offset: Cell::new(x, -x), id: RobotId(id), hops };
     let template = |entries: &[TemplateEntry]| {
         Message::Template(TemplateAssignment {
@@ -87,6 +88,15 @@ fn messages() -> [(&'static str, Message, &'static str); 8] {
             "STAYA_PLACE",
             Message::Waypoint(place),
             "target_system=0 version=1 index=2 x_mm=1 y_mm=-2 z_mm=3 vx_mmps=-4 vy_mmps=5 vz_mmps=-6",
+        ),
+        (
+            "STAYA_LAND",
+            Message::Land(LandPatch::from_bytes(
+                Cell::new(-3, 1_000),
+                core::array::from_fn(|index| 255 - 8 * index as u8),
+            )),
+            "corner_x=-3 corner_y=1000 tiles=255,247,239,231,223,215,207,199,191,183,175,167,159,151,143,135,127,119,111,103,95,\
+             87,79,71,63,55,47,39,31,23,15,7",
         ),
     ]
 }
