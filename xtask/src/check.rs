@@ -1,5 +1,6 @@
 //! `cargo xtask check`: everything that can be said without running the code.
 
+use crate::device::FeatureChecks;
 use crate::repo::{Repo, output_of};
 use crate::report::Report;
 
@@ -9,7 +10,7 @@ const OTHERS: [(&str, &[&str]); 2] = [("tests/peers", &[]), ("tests/fuzz", &["--
 /// What a user's own firmware depends on.
 const PACKAGES: [&str; 4] = ["staya-controller", "staya-mavlink", "staya-robot", "staya-voxel"];
 
-/// Formatting, layers, lints, documentation; the quick ones first.
+/// Formatting, layers, lints, documentation; the quick ones first, and beside the lints what has folders of its own.
 pub fn run(repo: &Repo, report: &mut Report) {
     if has(repo, "fmt", "rustfmt", report) {
         let check = ["fmt", "--all", "--check"];
@@ -25,6 +26,7 @@ pub fn run(repo: &Repo, report: &mut Report) {
     report.step("no log that panics", || crate::plants::check_logs(&repo.root));
     crate::minimal::check(repo, report);
     report.step("what the documentation names", || crate::documents::check(&repo.root));
+    let feature_checks = FeatureChecks::begin(repo);
     if has(repo, "clippy", "clippy", report) {
         let deny = ["--", "-D", "warnings"];
         let arguments = |arguments: &[&'static str]| [&["clippy", "--locked"], arguments, &deny].concat();
@@ -41,13 +43,13 @@ pub fn run(repo: &Repo, report: &mut Report) {
     }
     let bare = ["clippy", "--locked", "--package", "staya-c", "--no-default-features", "--", "-D", "warnings"];
     report.command("clippy of the library for C without features", repo.cargo(&bare));
-    crate::device::check_features(repo, report);
     let mut package = repo.cargo(&["package", "--locked", "--allow-dirty", "--no-verify"]);
     package.args(PACKAGES.iter().flat_map(|name| ["--package", name]));
     report.command("packages that users depend on", package);
     let mut doc = repo.cargo(&["doc", "--locked", "--workspace", "--no-deps"]);
     doc.env("RUSTDOCFLAGS", "-D warnings");
     report.command("rustdoc", doc);
+    feature_checks.end(report);
 }
 
 /// Whether a component of the toolchain is there; records a skipped part otherwise.

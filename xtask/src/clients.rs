@@ -12,7 +12,7 @@ const TESTS: &str = "tests/python";
 /// Looks into a capture.
 const TSHARK: &str = "tshark";
 /// Tests wait for real time more than they compute.
-const WORKERS: &str = "4";
+const WORKERS: &str = "12";
 
 /// The command: builds the program, and runs the tests.
 pub fn run_command(repo: &Repo, report: &mut Report, only: Option<&str>, extent: Extent) {

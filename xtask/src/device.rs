@@ -2,10 +2,11 @@
 
 use crate::debian;
 use crate::part::PARTS;
-use crate::repo::{Repo, output_of};
+use crate::repo::{Repo, ended, output_of};
 use crate::report::Report;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::thread::JoinHandle;
 
 /// Where `core` for a microcontroller comes from.
 pub enum Toolchain {
@@ -22,45 +23,62 @@ pub struct Toolchains {
     debian: Option<Result<debian::Rust, String>>,
 }
 
-/// Checks the controller with each set of features that its manifest lists, on the part with a Cortex-M4F; on the one
-/// with a Cortex-M0, which has no FPU, with those that have fixed point. Both parts at once: the compiler has one thread for one crate.
-pub fn check_features(repo: &Repo, report: &mut Report) {
-    let manifest = std::fs::read_to_string(repo.root.join("controller/Cargo.toml"));
-    let sets = feature_sets(&manifest.unwrap_or_default());
-    let mut toolchains = Toolchains::default();
-    std::thread::scope(|scope| {
-        let mut checks = Vec::new();
-        for part in PARTS.iter().filter(|part| part.target.starts_with("thumb")) {
+/// Checks of the controller with each set of features that its manifest lists, which go on while other steps run: on the part
+/// with a Cortex-M4F; on the one with a Cortex-M0, which has no FPU, with those that have fixed point.
+pub struct FeatureChecks {
+    /// Names of steps, and what checks them or why nothing does.
+    checks: Vec<(String, Result<Check, String>)>,
+}
+
+/// What came out, when it has ended.
+type Check = JoinHandle<Result<(), String>>;
+
+impl FeatureChecks {
+    /// Begins them, one thread a part: the compiler has one thread for one crate.
+    pub fn begin(repo: &Repo) -> Self {
+        let manifest = std::fs::read_to_string(repo.root.join("controller/Cargo.toml"));
+        let sets = feature_sets(&manifest.unwrap_or_default());
+        let mut toolchains = Toolchains::default();
+        let parts = PARTS.iter().filter(|part| part.target.starts_with("thumb"));
+        let checks = parts.map(|part| {
             let has_fpu = part.target.ends_with("hf");
             let fits = |features: &&String| has_fpu || features.split(',').any(|feature| feature == "fixed");
-            let name = format!("feature sets of the controller for {}", part.target);
-            match toolchains.find(repo, part.target) {
-                Ok(toolchain) => {
-                    // Cargo lets one command at a time into a folder.
-                    let folder = toolchain.target_folder(repo).join("sets").join(part.target);
-                    let commands = sets.iter().filter(fits).map(|features| {
-                        let mut check = toolchain.cargo(repo, part.target, "check");
-                        check.args(["--locked", "--package", "staya-controller"]);
-                        check.args(["--no-default-features", "--features", features]);
-                        check.env("CARGO_TARGET_DIR", &folder);
-                        (features.clone(), check)
-                    });
-                    let commands: Vec<_> = commands.collect();
-                    checks.push((name, scope.spawn(move || check_each(commands))));
+            let check = toolchains.find(repo, part.target).map(|toolchain| {
+                // Cargo lets one command at a time into a folder.
+                let folder = toolchain.target_folder(repo).join("sets").join(part.target);
+                let commands = sets.iter().filter(fits).map(|features| {
+                    let mut check = toolchain.cargo(repo, part.target, "check");
+                    check.args(["--locked", "--quiet", "--package", "staya-controller"]);
+                    check.args(["--no-default-features", "--features", features]);
+                    check.env("CARGO_TARGET_DIR", &folder);
+                    (features.clone(), check)
+                });
+                let commands: Vec<_> = commands.collect();
+                std::thread::spawn(move || check_each(commands))
+            });
+            (format!("feature sets of the controller for {}", part.target), check)
+        });
+        Self { checks: checks.collect() }
+    }
+
+    /// Waits for them: one step a part.
+    pub fn end(self, report: &mut Report) {
+        for (name, check) in self.checks {
+            match check {
+                Ok(check) => {
+                    report.step(&name, || check.join().unwrap_or_else(|_| Err(String::from("the check panicked"))));
                 }
                 Err(reason) => report.skip(&name, &reason),
             }
         }
-        for (name, check) in checks {
-            report.step(&name, || check.join().unwrap_or_else(|_| Err(String::from("the check panicked"))));
-        }
-    });
+    }
 }
 
+/// Quiet, because other steps run beside it, but for what the compiler finds.
 fn check_each(commands: Vec<(String, Command)>) -> Result<(), String> {
-    commands.into_iter().try_for_each(|(features, mut check)| {
-        crate::repo::run(&mut check).map_err(|reason| format!("`{features}`: {reason}"))
-    })
+    commands
+        .into_iter()
+        .try_for_each(|(features, mut check)| ended(check.status()).map_err(|reason| format!("`{features}`: {reason}")))
 }
 
 /// The list `feature-sets` in a manifest's metadata, and the set without any feature.

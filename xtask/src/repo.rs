@@ -110,7 +110,8 @@ pub fn output_of(command: &mut Command) -> Option<String> {
     output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim_end().to_string())
 }
 
-fn ended(status: std::io::Result<std::process::ExitStatus>) -> Result<(), String> {
+/// What is wrong with how a command ended.
+pub fn ended(status: std::io::Result<std::process::ExitStatus>) -> Result<(), String> {
     match status {
         Ok(status) if status.success() => Ok(()),
         Ok(status) => Err(status.to_string()),

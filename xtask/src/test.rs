@@ -67,12 +67,13 @@ pub fn run(repo: &Repo, report: &mut Report, extent: Extent) {
         });
     }
     crate::swarms::run(repo, report, &mut toolchains);
-    crate::plants::run(repo, report, &mut toolchains);
     crate::c::run(repo, report, &mut toolchains);
     crate::size::run(repo, report, &mut toolchains, false);
     crate::faults::run(repo, report, &mut toolchains);
     crate::emulated::run(repo, report);
     crate::emulated::run_ten(repo, report);
+    // Cargo takes a copy of the firmware for the same packages, and builds those anew afterwards.
+    crate::plants::run(repo, report, &mut toolchains);
     crate::soak::run_short(repo, report);
     crate::example::run(repo, report);
     let mut peers = repo.cargo_in("tests/peers", &["test", "--locked"]);
