@@ -14,10 +14,55 @@ use staya_controller::agent::{Setup, Task};
 /// How long to wait for a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// A request is sent again after this, microseconds: more than the line needs for a request and its answer.
+    /// A request is sent again after this at the latest, microseconds: more than the line needs for a request and its answer. A step
+    /// is sent again sooner, by the round trips of steps before it (see [`Port`]).
     pub resend_after_us: u64,
-    /// How often it is sent before the device is given up; at least 1.
-    pub attempts: u32,
+    /// A device that has not answered for so long is given up, microseconds; it is asked once at least.
+    pub give_up_after_us: u64,
+}
+
+/// Steps are not sent again sooner than this: no host looks more often.
+const LEAST_RESEND_US: u64 = 1000;
+/// The time to wait doubles at most so often.
+const MOST_DOUBLINGS: u32 = 10;
+
+/// How long steps have taken: the retransmission timer of RFC 6298 (section 2), in microseconds.
+#[derive(Clone, Copy, Debug, Default)]
+struct RoundTrip {
+    /// The mean, by an eighth of each; 0: none yet.
+    mean_us: u64,
+    /// The mean distance from it, by a quarter of each.
+    deviation_us: u64,
+    /// How often the time to wait has doubled since the last step that was answered at once (section 5.5).
+    doublings: u32,
+}
+
+impl RoundTrip {
+    /// A step that was sent once took so long. One that was sent again says nothing: which of them was answered, nobody knows (Karn).
+    fn note(&mut self, took_us: u64) {
+        let Self { mean_us, deviation_us, doublings } = self;
+        *doublings = 0;
+        if *mean_us == 0 {
+            (*mean_us, *deviation_us) = (took_us.max(1), took_us >> 1);
+            return;
+        }
+        let off = took_us.abs_diff(*mean_us);
+        *deviation_us = deviation_us.saturating_sub(*deviation_us >> 2).saturating_add(off >> 2);
+        *mean_us = mean_us.saturating_sub(*mean_us >> 3).saturating_add(took_us >> 3).max(1);
+    }
+
+    /// How long to wait for the next one, at most `most_us`.
+    fn patience_us(self, most_us: u64) -> u64 {
+        if self.mean_us == 0 {
+            return most_us;
+        }
+        let usual_us = self.mean_us.saturating_add(self.deviation_us.saturating_mul(4)).max(LEAST_RESEND_US);
+        usual_us.saturating_mul(1_u64 << self.doublings.min(MOST_DOUBLINGS)).min(most_us)
+    }
+
+    fn double(&mut self) {
+        self.doublings = self.doublings.saturating_add(1).min(MOST_DOUBLINGS);
+    }
 }
 
 /// What the device was asked for.
@@ -138,6 +183,9 @@ pub struct Counts {
 }
 
 /// The host's end for one device; requests of at most `N` bytes.
+///
+/// A lost frame costs about a round trip: a step is sent again after the mean of the round trips and four times their deviation,
+/// then after twice as long, and so on up to [`Limits::resend_after_us`]. The device answers a repeated step with the same bytes.
 #[derive(Clone, Debug)]
 pub struct Port<const N: usize> {
     deframer: Deframer<MAX_ANSWER>,
@@ -147,6 +195,7 @@ pub struct Port<const N: usize> {
     seq: u16,
     boot: Option<u32>,
     waiting: Option<Waiting>,
+    round_trip: RoundTrip,
     counts: Counts,
 }
 
@@ -171,6 +220,7 @@ impl<const N: usize> Port<N> {
             seq: 0,
             boot: None,
             waiting: None,
+            round_trip: RoundTrip { mean_us: 0, deviation_us: 0, doublings: 0 },
             counts: Counts { sent: 0, resent: 0, sent_bytes: 0, received_bytes: 0, damaged: 0, stale: 0 },
         }
     }
@@ -251,20 +301,24 @@ impl<const N: usize> Port<N> {
         if now_us < waiting.due_us {
             return Ok(Next::WaitUntil(waiting.due_us));
         }
-        if waiting.attempts >= limits.attempts {
-            let error = PortError::Silent {
-                asked: waiting.asked,
-                attempts: waiting.attempts,
-                waited_us: now_us.saturating_sub(waiting.since_us),
-            };
+        let waited_us = now_us.saturating_sub(waiting.since_us);
+        if waiting.attempts > 0 && waited_us >= limits.give_up_after_us {
+            let error = PortError::Silent { asked: waiting.asked, attempts: waiting.attempts, waited_us };
             self.waiting = None;
             return Err(error);
         }
+        let is_step = matches!(waiting.asked, Asked::Step(_));
         if waiting.attempts > 0 {
             self.counts.resent = self.counts.resent.wrapping_add(1);
+            if is_step {
+                self.round_trip.double();
+            }
         }
-        waiting.attempts += 1;
-        waiting.due_us = now_us.saturating_add(limits.resend_after_us);
+        waiting.attempts = waiting.attempts.saturating_add(1);
+        let most_us = limits.resend_after_us;
+        let patience_us = if is_step { self.round_trip.patience_us(most_us) } else { most_us };
+        let end_us = waiting.since_us.saturating_add(limits.give_up_after_us);
+        waiting.due_us = now_us.saturating_add(patience_us).min(end_us.max(now_us.saturating_add(1)));
         let frame = self.request.bytes();
         self.counts.sent = self.counts.sent.wrapping_add(1);
         self.counts.sent_bytes = self.counts.sent_bytes.wrapping_add(frame.len() as u64);
@@ -292,7 +346,12 @@ impl<const N: usize> Port<N> {
         };
         let event = self.understand(said, now_us)?;
         match event {
-            Some(_) => self.waiting = None,
+            Some(_) => {
+                if let (Some(Event::Stepped(_)), Some(Waiting { attempts: 1, since_us, .. })) = (&event, self.waiting) {
+                    self.round_trip.note(now_us.saturating_sub(since_us));
+                }
+                self.waiting = None;
+            }
             None => self.counts.stale = self.counts.stale.wrapping_add(1),
         }
         Ok(event)

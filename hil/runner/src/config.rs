@@ -39,7 +39,8 @@ pub struct Options {
     pub firmware: PathBuf,
     /// The folder for the logs of emulated devices, one file per robot; `None`: no logs.
     pub logs: Option<PathBuf>,
-    /// A request is sent again after this, and the time that the line takes for it.
+    /// A request is sent again after this, and the time that the line takes for it, at the latest; a step sooner, by the round trips
+    /// of steps before it ([`Port`](staya_link::port::Port)).
     pub resend_after: Duration,
     /// A step that takes longer is an error.
     pub step_limit: Duration,

@@ -396,9 +396,7 @@ impl Unit {
 
 /// Resends until the limit is over.
 fn limits(resend_after: Duration, limit: Duration) -> Limits {
-    let resend_after_us = micros(resend_after).max(1);
-    let attempts = micros(limit).div_ceil(resend_after_us).max(1);
-    Limits { resend_after_us, attempts: u32::try_from(attempts).unwrap_or(u32::MAX) }
+    Limits { resend_after_us: micros(resend_after).max(1), give_up_after_us: micros(limit) }
 }
 
 /// The robot in this process that computes as the device does: the same numbers, the same capacities.

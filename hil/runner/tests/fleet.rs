@@ -253,7 +253,7 @@ fn silent_device_is_named_with_its_step_and_the_time() {
     let _ = decided(answers.pop().expect("two"));
     let text = cause(answers);
     let known = "robot 1 on qemu:microbit: no answer to step 7 within ";
-    assert!(text.starts_with(known) && text.ends_with("(5 attempts)"), "{text}");
+    assert!(text.starts_with(known) && text.ends_with(" attempts)"), "{text}");
     // It stays out.
     let mut answers = tick(&mut fleet, 8);
     let _ = decided(answers.pop().expect("two"));

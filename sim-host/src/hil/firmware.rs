@@ -5,6 +5,7 @@ use staya_runner::{Part, find_emulator};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::time::Instant;
 
 /// Names the folder of firmware, as `--firmware` does.
 const VARIABLE: &str = "STAYA_FIRMWARE";
@@ -91,7 +92,12 @@ fn prepare(root: &Path, parts: &[Part]) -> Result<()> {
     if parts.iter().any(|part| !part.elf(&folder).is_file()) {
         eprintln!("staya: building the firmware for {}; the first time takes some minutes", names.join(", "));
     }
+    let began = Instant::now();
     xtask(root, &[&["firmware", "--bin", "lockstep"], names.as_slice()].concat())?;
+    for part in parts {
+        let elf = part.elf(&folder);
+        eprintln!("staya: {} is up to date, after {:.0} s", elf.display(), began.elapsed().as_secs_f64());
+    }
     if !parts.iter().all(|part| find_emulator(part.emulator()).is_some()) {
         eprintln!("staya: fetching the emulators; this takes a minute");
         xtask(root, &["qemu"])?;

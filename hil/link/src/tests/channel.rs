@@ -8,7 +8,7 @@ use self::world::{World, inbox};
 use super::{in_plane, on_grid};
 use crate::frame::VERSION;
 use crate::message::{StepInputs, StepResult};
-use crate::port::{Asked, Event, Next, Port, PortError};
+use crate::port::{Asked, Event, Limits, Next, Port, PortError};
 use crate::robot::{Controller, Large, Robot, Small};
 use crate::surroundings::{PackedSurroundings, pack};
 use proptest::prelude::*;
@@ -149,31 +149,66 @@ fn device_that_resets_is_noticed_and_rejoins() {
     }
 }
 
+/// A step of a robot that stands and hears nothing.
+fn nothing_new(tick: u32) -> StepInputs<'static> {
+    StepInputs {
+        tick,
+        now: Instant::from_micros(tick * 100_000),
+        state: KinematicState::default(),
+        cell: Some(CellState::default()),
+        window: None,
+        surroundings: None,
+        inbox: &[],
+    }
+}
+
+/// Half of the steps, and 99 of 100, took at most so long, microseconds.
+fn median_and_p99(faults: Faults, seed: u64) -> (u64, u64) {
+    let mut bench = Bench::<Large>::new(Faults { lost: 0, ..faults }, seed);
+    bench.port.set_limits(Limits { resend_after_us: 500_000, give_up_after_us: 10_000_000 });
+    bench.configure(&in_plane(), None);
+    (bench.there.faults, bench.back.faults) = (faults, faults);
+    let mut took_us: Vec<u64> = (0..2000)
+        .map(|tick| {
+            let since = bench.now;
+            bench.step(&nothing_new(tick)).expect("no reset");
+            bench.now - since
+        })
+        .collect();
+    took_us.sort_unstable();
+    (took_us[999], took_us[1979])
+}
+
+/// One frame in twenty is lost in each direction: one step in a hundred is sent three times.
+#[test]
+fn a_lost_frame_costs_round_trips_and_not_the_longest_wait() {
+    for delay_us in [1, 2000, 20_000] {
+        for seed in 0..3 {
+            let lossy = Faults { lost: 5, delay_us, ..Faults::default() };
+            let (median_us, p99_us) = median_and_p99(lossy, seed);
+            // The host looks once a millisecond at most.
+            assert!(p99_us <= 3100 + 11 * median_us, "delay {delay_us}: {median_us} {p99_us}");
+            let (_, most_us) = median_and_p99(Faults { lost: 0, ..lossy }, seed);
+            assert!(most_us <= 2 * (100 + u64::from(delay_us)), "what is not lost waits for nothing: {most_us}");
+        }
+    }
+}
+
 #[test]
 fn silent_device_is_given_up_with_what_was_asked_and_for_how_long() {
     let deaf = Faults { lost: 100, ..Faults::default() };
     let mut bench = Bench::<Small>::new(deaf, 1);
     bench.port.greet(0);
     let error = bench.wait().expect_err("nobody is there");
-    let waited_us = u64::from(LIMITS.attempts) * LIMITS.resend_after_us;
-    let (asked, attempts) = (Asked::Hello, LIMITS.attempts);
-    assert_eq!(error, PortError::Silent { asked, attempts, waited_us });
+    let (asked, waited_us) = (Asked::Hello, LIMITS.give_up_after_us);
+    assert_eq!(error, PortError::Silent { asked, attempts: 60, waited_us });
     assert_eq!(std::format!("{error}"), "no answer to greeting within 1200 ms (60 attempts)");
     assert_eq!(bench.port.poll(bench.now), Ok(Next::Idle));
     // In the middle of a run the step is named.
     let mut bench = Bench::<Small>::new(Faults::default(), 1);
     bench.configure(&in_plane(), None);
     bench.there.faults = deaf;
-    let inputs = StepInputs {
-        tick: 77,
-        now: Instant::from_micros(0),
-        state: KinematicState::default(),
-        cell: Some(CellState::default()),
-        window: None,
-        surroundings: None,
-        inbox: &[],
-    };
-    bench.port.step(&inputs, bench.now).expect("fits");
+    bench.port.step(&nothing_new(77), bench.now).expect("fits");
     let error = bench.wait().expect_err("cut off");
     assert_eq!(std::format!("{error}"), "no answer to step 77 within 1200 ms (60 attempts)");
 }

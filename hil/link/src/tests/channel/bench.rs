@@ -9,7 +9,7 @@ use staya_controller::agent::{Setup, Task};
 use staya_controller::rand::Rng;
 use std::vec::Vec;
 
-pub const LIMITS: Limits = Limits { resend_after_us: 20_000, attempts: 60 };
+pub const LIMITS: Limits = Limits { resend_after_us: 20_000, give_up_after_us: 1_200_000 };
 
 /// What one direction does to frames, probabilities in percent.
 #[derive(Clone, Copy, Debug, Default)]
