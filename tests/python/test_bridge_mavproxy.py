@@ -19,7 +19,7 @@ class Console:
         self.out = open(self.log, "wb")
         arguments = [
             sys.executable, str(PROXY), f"--master=udpin:127.0.0.1:{port}", "--dialect=ardupilotmega", "--target-system=2",
-            "--default-modules=param,cmdlong,mode,arm,wp", "--nowait", "--state-basedir", str(folder),
+            "--default-modules=param,cmdlong,mode,arm,wp,fence,console", "--nowait", "--state-basedir", str(folder),
         ]
         environment = {**os.environ, "MAVLINK_DIALECT": "ardupilotmega", "HOME": str(folder), "PYTHONUNBUFFERED": "1", "TERM": "dumb"}
         self.child = subprocess.Popen(
@@ -66,6 +66,9 @@ def test_modes_arming_and_parameters(staya, free_port, tmp_path):
         console.type("param set SPEED_MPS 0.5", "GUIDED>")
         console.type("param show SPEED_MPS", "SPEED_MPS        0.5")
         console.type("mode HOLD", "HOLD>")
+        # Its fence and console modules have seen some SYS_STATUS by now.
+        text = console.text().lower()
+        assert "fence breach" not in text and "pre-arm fail" not in text and "prearm" not in text, console.text()
     finally:
         console.close()
     bridge.interrupt()

@@ -143,11 +143,33 @@ impl Vehicle {
     }
 
     /// Takes an item of an upload in.
-    pub(super) fn take_item(&mut self, from: Sender, seq: u16, item: Item) -> MavMessage {
+    pub(super) fn take_item(&mut self, from: Sender, seq: u16, item: Item, out: &mut Out) -> MavMessage {
         let mut mission = core::mem::take(&mut self.mission);
         let now_us = self.now_us;
-        let answer = mission.take(from, seq, item, now_us, |item| self.item_fault(item));
+        let mut fault = MAV_MISSION_ACCEPTED;
+        let answer = mission.take(from, seq, item, now_us, |item| {
+            fault = self.item_fault(item);
+            fault
+        });
         self.mission = mission;
+        if fault != MAV_MISSION_ACCEPTED {
+            // The acknowledgement has no room for which one it was.
+            let text = format!("mission item {seq}: {}", self.fault_in_words(&item, fault));
+            self.text(out, Kind::News, MAV_SEVERITY_WARNING, &text);
+        }
         answer
+    }
+
+    /// Why an item is refused, short enough for a STATUSTEXT behind its number.
+    fn fault_in_words(&self, item: &Item, fault: u8) -> String {
+        match fault {
+            MAV_MISSION_UNSUPPORTED if self.model.in_formation => String::from("robot is in formation"),
+            MAV_MISSION_UNSUPPORTED => format!("no command {} here", item.command),
+            MAV_MISSION_UNSUPPORTED_FRAME => format!("frame {} is unknown", item.frame),
+            MAV_MISSION_INVALID_PARAM1 => String::from("param1, the wait, is wrong"),
+            MAV_MISSION_INVALID_PARAM2 => String::from("param2, the speed, is wrong"),
+            MAV_MISSION_INVALID_PARAM7 => String::from("param7, height, is no number"),
+            _ => String::from("no room at its place"),
+        }
     }
 }

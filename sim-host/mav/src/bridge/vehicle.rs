@@ -5,6 +5,7 @@
 //! (`commands`), setpoints never (`guided`), as the protocol has it; what was wrong with them is said as STATUSTEXT.
 
 use super::files;
+use super::guided::Ordered;
 use super::mission::{Item, Mission};
 use super::model::{FlightMode, Sample, VehicleModel};
 use super::params::{Meaning, Parameters};
@@ -70,6 +71,8 @@ pub struct Vehicle {
     pub(super) there_since_us: Option<u64>,
     /// It lands because an item of its mission says so.
     pub(super) is_landing_item: bool,
+    /// What it was last told of a formation.
+    pub(super) ordered: Ordered,
     /// When a text of each kind was last sent, and the time now.
     texts: [Option<u64>; Kind::COUNT],
     pub(super) now_us: u64,
@@ -118,6 +121,7 @@ impl Vehicle {
             is_on_mission: false,
             there_since_us: None,
             is_landing_item: false,
+            ordered: Ordered::default(),
             texts: [None; Kind::COUNT],
             now_us: 0,
             model,
@@ -318,10 +322,10 @@ impl Vehicle {
                 self.mission.count(from, told, now_us)
             }
             MavMessage::MISSION_ITEM_INT(item) if item.current < 2 => {
-                self.take_item(from, item.seq, Item::from_int(item))
+                self.take_item(from, item.seq, Item::from_int(item), out)
             }
             MavMessage::MISSION_ITEM(item) if item.current < 2 => {
-                self.take_item(from, item.seq, Item::from_float(item))
+                self.take_item(from, item.seq, Item::from_float(item), out)
             }
             // How clients of old say "go there now": an item of no mission.
             MavMessage::MISSION_ITEM_INT(item) => self.guided_item(from, item.current, &Item::from_int(item), out),

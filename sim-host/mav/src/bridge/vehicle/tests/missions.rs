@@ -108,17 +108,24 @@ fn a_landing_at_the_end_of_a_mission_is_reached_on_the_ground() {
 
 #[test]
 fn mission_items_that_cannot_be_are_refused() {
-    for (change, fault) in [
-        ((|item| item.command = 82) as fn(&mut MISSION_ITEM_INT_DATA), MAV_MISSION_UNSUPPORTED),
-        (|item| item.command = MAV_CMD_NAV_LAND, MAV_MISSION_UNSUPPORTED),
-        (|item| item.frame = 8, MAV_MISSION_UNSUPPORTED_FRAME),
-        (|item| item.x = i32::MAX, MAV_MISSION_INVALID_PARAM5_X),
-        (|item| item.param1 = -1.0, MAV_MISSION_INVALID_PARAM1),
+    for (change, fault, text) in [
+        (
+            (|item| item.command = 82) as fn(&mut MISSION_ITEM_INT_DATA),
+            MAV_MISSION_UNSUPPORTED,
+            "mission item 2: no command 82 here",
+        ),
+        (|item| item.command = MAV_CMD_NAV_LAND, MAV_MISSION_UNSUPPORTED, "mission item 2: no command 21 here"),
+        (|item| item.frame = 8, MAV_MISSION_UNSUPPORTED_FRAME, "mission item 2: frame 8 is unknown"),
+        (|item| item.x = i32::MAX, MAV_MISSION_INVALID_PARAM5_X, "mission item 2: no room at its place"),
+        (|item| item.param1 = -1.0, MAV_MISSION_INVALID_PARAM1, "mission item 2: param1, the wait, is wrong"),
     ] {
         let mut bench = Bench::new(model());
-        let mut bad = item(1, 1.0, 1.0);
+        let mut bad = item(2, 1.0, 1.0);
         change(&mut bad);
-        assert_eq!(load(&mut bench, &[item(0, 0.0, 0.0), bad]), fault);
+        assert_eq!(load(&mut bench, &[item(0, 0.0, 0.0), item(1, 1.0, 1.0), bad]), fault);
+        assert_eq!(bench.texts(), [text]);
+        // STATUSTEXT holds 50 bytes.
+        assert!(text.len() <= 50 - 3);
         assert!(bench.vehicle.mission.is_empty());
     }
 }
@@ -168,4 +175,36 @@ fn orders_of_the_dialect_reach_the_controller() {
         panic!("{:?}", out.actions);
     };
     assert_eq!((told.entries.len(), told.entries[0].offset.x, told.entries[0].id.0), (1, 5, 6));
+}
+
+#[test]
+fn orders_of_a_formation_are_confirmed_once_when_all_of_them_is_there() {
+    let mut bench = Bench::new(VehicleModel { in_formation: true, ..on_grid() });
+    let part = |part, version| {
+        let data = STAYA_TEMPLATE_DATA { part, version, parts: 2, slot: 4, count: 1, ..STAYA_TEMPLATE_DATA::DEFAULT };
+        MavMessage::STAYA_TEMPLATE(STAYA_TEMPLATE_DATA { target_system: 7, ..data })
+    };
+    let goal = |version| {
+        let data = STAYA_GOAL_DATA { target_x: 3, target_y: 4, version, ..STAYA_GOAL_DATA::DEFAULT };
+        MavMessage::STAYA_GOAL(data)
+    };
+    for (message, texts) in [
+        (part(1, 1), None),
+        (part(1, 1), None),
+        (part(0, 1), Some("place 5 of a new formation")),
+        (part(0, 1), None),
+        (part(0, 2), None),
+        (part(1, 2), Some("place 5 of a new formation")),
+        (goal(1), Some("goal: cell 3, 4")),
+        (goal(1), None),
+        (goal(2), Some("goal: cell 3, 4")),
+        // A part that no template has.
+        (part(200, 3), None),
+    ] {
+        bench.give(message);
+        assert_eq!(bench.texts(), Vec::from_iter(texts));
+    }
+    let mut alone = Bench::new(model());
+    alone.give(part(0, 1));
+    assert_eq!(alone.texts(), ["STAYA_TEMPLATE: not in a formation"]);
 }
