@@ -1,4 +1,4 @@
-//! The command line: `staya run | sweep | view | page | hil | bridge | companion | terrain | orca | voxel | experiment`,
+//! The command line: `staya run | sweep | view | page | hil | bridge | formation | companion | terrain | orca | voxel | experiment`,
 //! and `completions | man` for its users' shells.
 //!
 //! A new command is a module with a `clap::Args` struct and `run(&self, &Global) -> Result<Ended>`,
@@ -8,6 +8,7 @@
 
 mod bridge;
 mod companion;
+mod formation;
 mod hil;
 mod page;
 mod run;
@@ -48,6 +49,8 @@ enum Command {
     Hil(hil::HilArgs),
     /// Let ground stations and scripts see and command a simulated swarm over MAVLink.
     Bridge(bridge::BridgeArgs),
+    /// Tell a swarm in formation to take another shape and to go elsewhere, over MAVLink.
+    Formation(formation::FormationArgs),
     /// Steer ArduPilot or PX4 vehicles as a swarm.
     Companion(companion::CompanionArgs),
     /// Make, measure and draw terrain.
@@ -96,6 +99,7 @@ fn run(cli: &Cli) -> Result<Ended> {
         Command::Page(args) => args.run(&cli.global),
         Command::Hil(args) => args.run(&cli.global),
         Command::Bridge(args) => args.run(&cli.global),
+        Command::Formation(args) => args.run(&cli.global),
         Command::Companion(args) => args.run(&cli.global),
         Command::Terrain(args) => args.run(&cli.global),
         Command::Orca(args) => args.run(&cli.global),

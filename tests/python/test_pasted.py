@@ -1,0 +1,74 @@
+"""The Python of docs/bridge.md, as it is pasted: each block runs against the bridge of the command above it."""
+
+import re
+import subprocess
+import sys
+
+import pytest
+from conftest import ROOT
+
+PAGE = (ROOT / "docs/bridge.md").read_text()
+PORT = "14550"
+DIALECT = r"```sh\npython3 (-m pymavlink.tools.mavgen .*)\n```"
+
+
+def blocks():
+    """The bridge's arguments, and the script that is meant for it."""
+    arguments = None
+    for kind, text in re.findall(r"^```(\w*)\n(.*?)^```$", PAGE, re.M | re.S):
+        if kind == "python":
+            assert arguments, "no bridge above the script"
+            yield pytest.param(arguments, text, id=re.search(r"[a-z-]+.toml", arguments).group() + f"-{len(text)}")
+        elif command := re.search(r"-- (bridge scenarios/.*)", text):
+            arguments = command.group(1)
+
+
+def generate(folder):
+    """What the page says, in a folder of its own."""
+    (command,) = re.findall(DIALECT, PAGE)
+    arguments = command.replace("controller/", f"{ROOT}/controller/").split()
+    made = subprocess.run([sys.executable, *arguments], cwd=folder, capture_output=True, text=True, timeout=60)
+    assert made.returncode == 0, made.stdout + made.stderr
+
+
+@pytest.mark.parametrize("arguments, script", list(blocks()))
+def test_pasted_python_runs(arguments, script, staya, run, free_port, tmp_path):
+    generate(tmp_path)
+    port = str(free_port())
+    staya(*arguments.replace(PORT, port).split(), "--quiet")
+    assert PORT in script
+    path = tmp_path / "pasted.py"
+    path.write_text(script.replace(PORT, port))
+    # Nothing of these tests' own environment helps.
+    pasted = run("env", "-u", "MAVLINK20", "-u", "MAVLINK_DIALECT", sys.executable, path, cwd=tmp_path)
+    assert pasted.wait(90) == 0, pasted.output()
+    assert "robot" in pasted.output() or "vehicle" in pasted.output() or "item" in pasted.output(), pasted.output()
+    if "82" in script:
+        assert "mission item 2: no command 82 here" in pasted.output()
+
+
+def test_a_wedge_is_sent_and_taken(staya, free_port):
+    port = free_port()
+    staya("bridge", "scenarios/six-robots.toml", "--speed", 20, "--mavlink", f"udpin:127.0.0.1:{port}", "--quiet")
+    sent = staya("formation", "wedge", "--to", f"udpout:127.0.0.1:{port}", "--goal", "60,40")
+    assert sent.wait() == 0, sent.output()
+    assert "wedge: 6 of 6 robots have their places, 6 head for cell 60, 40" in sent.output()
+    # Another call is another order, whatever the first one counted.
+    sent = staya("formation", "column", "--to", f"udpout:127.0.0.1:{port}")
+    assert sent.wait() == 0, sent.output()
+
+
+def test_a_swarm_without_a_formation_says_so(staya, free_port):
+    port = free_port()
+    staya("bridge", "scenarios/bridge.toml", "--mavlink", f"udpin:127.0.0.1:{port}", "--quiet")
+    sent = staya("formation", "line", "--to", f"udpout:127.0.0.1:{port}")
+    assert sent.wait() == 1
+    assert "not in a formation" in sent.output(), sent.output()
+
+
+def test_nobody_there_and_no_such_shape_are_errors(staya, free_port):
+    port = free_port()
+    sent = staya("formation", "line", "--to", f"udpout:127.0.0.1:{port}", "--wait", 1)
+    assert sent.wait() == 1 and "no robot is heard" in sent.output(), sent.output()
+    sent = staya("formation", "triangle", "--to", f"udpout:127.0.0.1:{port}")
+    assert sent.wait() == 1 and "line, column, wedge, grid, circle" in sent.output(), sent.output()
