@@ -11,6 +11,7 @@ use serde::Serialize;
 use staya_console::{Ended, Global, Progress, Stop, print, print_json};
 use staya_runner::{Device, LineFaults, Options, Part, Reset, Spread, Statistics};
 use staya_sim::engine::{Moment, Outcome, simulate, simulate_with};
+use staya_sim::expected::Expected;
 use staya_sim::record::RobotRow;
 use staya_sim::scenario::Scenario;
 use staya_view::watch::{About, DeviceFigures, Insight};
@@ -206,12 +207,17 @@ impl HilArgs {
         let count = scenario.robots.len();
         let mut pace = self.real_time.then(|| Pace::new(scenario.tick_s()));
         let mut page = self.page.watcher(scenario)?;
+        let mut expected = Expected::new(scenario.ticks);
         let mut watch = |moment: &Moment<'_>, robots: &mut dyn Iterator<Item = RobotRow>| {
+            let mut robots = robots.inspect(|robot| expected.see(robot));
             if let Some(page) = &mut page
                 && page.is_due()
             {
-                page.show(moment, robots, &log);
+                page.show(moment, &mut robots, &log);
+            } else {
+                robots.for_each(drop);
             }
+            progress.of(expected.ticks(moment.row.tick).into());
             progress.set(moment.row.tick.into(), || format!("ticks, {} of {count} robots arrived", moment.arrived));
             if stop.is_requested() || log.trouble().is_some() {
                 return ControlFlow::Break(());

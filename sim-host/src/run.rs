@@ -12,6 +12,7 @@ use staya_console::{Ended, Global, Progress, Stop, print, print_json};
 use staya_plot::{motion_pictures, run_pictures};
 use staya_sim::checkpoint::{Checkpoint, Place};
 use staya_sim::engine::{Moment, Outcome, Unable, simulate, simulate_from};
+use staya_sim::expected::Expected;
 use staya_sim::record::{self, History, Options, Recorder, Results, RobotRow, write_summary};
 use staya_sim::scenario::{Overrides, Scenario, Setting};
 use staya_sim::summary::Summary;
@@ -193,6 +194,8 @@ fn run_into(task: Task<'_>, dir: &Path, mut also: Also<'_>, global: &Global) -> 
     files.extend(pictures.iter().map(|file| out.join(file.strip_prefix(dir).unwrap_or(file))));
     files.extend(also.paths());
     let mut summary = Summary::new(scenario, &outcome, files);
+    summary.version = staya_sweep::VERSION;
+    summary.arrivals = summary.arrivals.filter(|_| keeps_robots);
     summary.wall_seconds = wall_seconds;
     summary.interrupted = stop.is_requested();
     also.finish(&summary, &history)?;
@@ -211,7 +214,9 @@ fn simulate_recorded(
     let mut progress = Progress::new(&scenario.name, scenario.ticks.into(), global);
     let mut failed: Option<anyhow::Error> = None;
     let count = scenario.robots.len();
+    let mut expected = Expected::new(scenario.ticks);
     let mut watch = |moment: &Moment<'_>, robots: &mut dyn Iterator<Item = RobotRow>| {
+        let robots = robots.inspect(|robot| expected.see(robot));
         let done = if !also.wants_rows() {
             recorder.tick(moment.row, robots).map_err(Into::into)
         } else {
@@ -224,6 +229,7 @@ fn simulate_recorded(
             return ControlFlow::Break(());
         }
         let Moment { arrived, waiting, .. } = *moment;
+        progress.of(expected.ticks(moment.row.tick).into());
         progress.set(moment.row.tick.into(), || format!("ticks, {arrived} of {count} robots arrived, {waiting} wait"));
         let is_stopped = stop.is_requested();
         if let Some(checkpoints) = &mut checkpoints {

@@ -199,6 +199,8 @@ impl RunArgs {
         let busy = link.gather(busy_seconds().unwrap_or(f64::NAN).to_le_bytes().to_vec())?;
         let files = self.files(scenario, &history?, dir, out)?;
         let mut summary = Summary::new(scenario, &outcome, files);
+        summary.version = env!("CARGO_PKG_VERSION");
+        summary.arrivals = summary.arrivals.filter(|_| !self.no_trace);
         summary.wall_seconds = wall_seconds;
         summary.interrupted = stop.is_requested();
         write_summary(dir, &summary)?;

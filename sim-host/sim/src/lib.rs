@@ -2,10 +2,12 @@
 //!
 //! [`scenario`] reads what to simulate, [`terrain`] the land, [`engine`] runs every robot's
 //! [`staya_controller::agent::Agent`] through two-phase ticks over [`world`] and [`radio`],
-//! [`metrics`] measures, [`record`] keeps what happened, [`checkpoint`] what it takes to go on later, [`summary`] has the figures. [`nearby`] tells who is near whom, [`key`] reads the secret of a swarm.
+//! [`metrics`] measures, [`record`] keeps what happened, [`checkpoint`] what it takes to go on later,
+//! [`summary`] has the figures, [`expected`] says how long a run will take. [`nearby`] tells who is near whom, [`key`] reads the secret of a swarm.
 
 pub mod checkpoint;
 pub mod engine;
+pub mod expected;
 pub mod file;
 pub mod key;
 pub mod metrics;

@@ -5,6 +5,7 @@ use crate::metrics::free_formation_s;
 use crate::metrics::waits::WaitCount;
 use crate::record::PacketCounts;
 use crate::scenario::Scenario;
+use crate::world::plane::Solid;
 use serde::Serialize;
 use staya_controller::agent::Wait;
 use staya_controller::grid::UNIT;
@@ -16,6 +17,8 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
     scenario: String,
+    /// Of the program; its owner says it.
+    pub version: &'static str,
     seed: u64,
     robots: usize,
     /// Ticks done.
@@ -32,6 +35,8 @@ pub struct Summary {
     arrival_last_seconds: Option<f64>,
     /// Robots in a wall, in another one's cell, or overlapping another one or an obstacle, summed over ticks.
     collisions: u64,
+    /// When each robot arrived; null where what grows with the robots is left out.
+    pub arrivals: Option<Vec<Arrival>>,
     packets: PacketCounts,
     /// Whether the robots have a key.
     is_authenticated: bool,
@@ -65,8 +70,40 @@ pub struct Summary {
     washed: u64,
     /// 16 hex digits; equal for equal traces.
     trace_hash: String,
+    /// What the scenario's file says, with what the command line says instead; defaults are not in it.
+    parameters: serde_json::Value,
+    /// What stands in the plane at the start.
+    obstacles: Vec<Obstacle>,
     /// What was written.
     files: Vec<PathBuf>,
+}
+
+/// When a robot's journey was over.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Arrival {
+    /// Its number.
+    pub robot: u32,
+    /// Simulated seconds after the start; null: it is on its way.
+    pub seconds: Option<f64>,
+}
+
+/// What bodies in the plane must keep off; lengths in metres, as in scenarios.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+enum Obstacle {
+    Segment { from_m: [f64; 2], to_m: [f64; 2] },
+    Ball { center_m: [f64; 3], radius_m: f64 },
+    HalfSpace { point_m: [f64; 3], normal: [f64; 3] },
+}
+
+impl From<&Solid> for Obstacle {
+    fn from(solid: &Solid) -> Self {
+        match *solid {
+            Solid::Wall([from_m, to_m]) => Self::Segment { from_m, to_m },
+            Solid::Ball { center_m, radius_m } => Self::Ball { center_m, radius_m },
+            Solid::Plane { point_m, normal } => Self::HalfSpace { point_m, normal },
+        }
+    }
 }
 
 /// One reason to wait, over the run.
@@ -132,6 +169,7 @@ impl Summary {
         let formation = outcome.formation;
         Self {
             scenario: scenario.name.clone(),
+            version: "",
             seed: scenario.seed,
             robots: scenario.robots.len(),
             ticks: outcome.ticks,
@@ -142,6 +180,17 @@ impl Summary {
             arrival_mean_seconds: (!units.is_empty()).then(|| seconds(mean)),
             arrival_last_seconds: units.iter().max().map(|&last| seconds(last as f64)),
             collisions: outcome.collisions,
+            arrivals: Some(
+                scenario
+                    .robots
+                    .iter()
+                    .zip(&outcome.arrival_times)
+                    .map(|(robot, units)| Arrival {
+                        robot: robot.id.0,
+                        seconds: units.map(|units| seconds(units as f64)),
+                    })
+                    .collect(),
+            ),
             packets: outcome.packets,
             is_authenticated: scenario.key.is_some(),
             packets_throttled: outcome.throttled,
@@ -163,6 +212,8 @@ impl Summary {
             intruder_overlaps: outcome.clearance.map_or(0, |c| c.intruder_overlaps),
             washed: outcome.clearance.map_or(0, |c| c.washed),
             trace_hash: format!("{:016x}", outcome.trace_hash),
+            parameters: scenario.parameters.clone(),
+            obstacles: scenario.plane.iter().flat_map(|setup| &setup.solids).map(Obstacle::from).collect(),
             files,
         }
     }
@@ -363,6 +414,7 @@ mod tests {
         let mut written = BTreeMap::new();
         flat("", &serde_json::to_value(&summary).expect("JSON"), &mut written);
         // What was asked for and how fast the machine was say nothing of how the run went.
+        written.retain(|name, _| !name.starts_with("parameters."));
         for name in ["seed", "wall_seconds", "interrupted"] {
             assert!(written.remove(name).is_some(), "{name}");
         }
@@ -373,5 +425,30 @@ mod tests {
         for (name, value) in figures.iter().filter(|(name, _)| !written.contains_key(*name)) {
             assert!(name.starts_with("waits.") && *value == Some(0.0), "{name} is not in summary.json");
         }
+    }
+
+    #[test]
+    fn the_summary_says_what_was_run_and_when_each_arrived() {
+        let text = format!(
+            "{DUEL}[[plane.ball]]\ncenter_m = [9, 9, 0]\nradius_m = 0.5\n\
+            [authentication]\nkey = '{}'\n",
+            "ab".repeat(32)
+        );
+        let overrides = Overrides { seed: Some(7), ticks: Some(200) };
+        let scenario = Scenario::parse(&text, "duel.toml".as_ref(), &overrides).expect("a scenario");
+        let outcome = simulate(&scenario, |_, _| ControlFlow::Continue(())).expect("room for four");
+        let summary = serde_json::to_value(Summary::new(&scenario, &outcome, Vec::new())).expect("JSON");
+        let parameters = &summary["parameters"];
+        assert_eq!((&parameters["seed"], &parameters["ticks"]), (&Value::from(7), &Value::from(200)));
+        assert_eq!(parameters["plane"]["max_speed_mps"], 1);
+        assert_eq!(parameters["authentication"]["key"], "(left out)");
+        let obstacle = serde_json::json!({ "kind": "ball", "center_m": [9.0, 9.0, 0.0], "radius_m": 0.5 });
+        assert_eq!(summary["obstacles"], Value::from(vec![obstacle]));
+        let arrivals = summary["arrivals"].as_array().expect("a list");
+        assert_eq!(arrivals.len(), 4);
+        let times: Vec<f64> = arrivals.iter().filter_map(|arrival| arrival["seconds"].as_f64()).collect();
+        assert_eq!(Value::from(times.len()), summary["arrived"]);
+        assert_eq!(times.iter().copied().reduce(f64::max), summary["arrival_last_seconds"].as_f64());
+        assert!(times[0] > 5.0, "{times:?}");
     }
 }

@@ -171,6 +171,8 @@ impl Swarm<'_> {
             target_m: seen.and_then(|seen| seen.goal_m),
             wait: seen.and_then(|seen| seen.wait),
             formation_error_cells: f32::NAN,
+            radius_m: self.shown.robots.get(index).map(|(_, radius_m)| *radius_m),
+            has_cells: false,
         }
     }
 

@@ -274,6 +274,7 @@ impl Plan {
             claims: Claims::ANY,
             maps: None,
             attacks: Vec::new(),
+            parameters: Default::default(),
         }
     }
 

@@ -254,6 +254,7 @@ impl Plan {
             misnumbered: Vec::new(),
             claims: Claims::ANY,
             attacks: Vec::new(),
+            parameters: Default::default(),
         })
     }
 

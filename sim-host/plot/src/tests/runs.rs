@@ -23,6 +23,8 @@ fn row(id: u32, position_m: [f64; 2], target: Cell) -> RobotRow {
         target_m: None,
         wait: None,
         formation_error_cells: f32::NAN,
+        radius_m: None,
+        has_cells: true,
     }
 }
 

@@ -130,6 +130,11 @@ pub trait Ground: Send + Sync {
         None
     }
 
+    /// The radius of body `index`, metres; `None` where bodies have no size.
+    fn radius_m(&self, _index: usize) -> Option<f64> {
+        None
+    }
+
     /// The land, if there is any.
     fn terrain(&self) -> Option<&Terrain>;
 

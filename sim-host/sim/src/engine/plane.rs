@@ -384,6 +384,10 @@ impl Ground for PlaneGround {
         self.gap_m
     }
 
+    fn radius_m(&self, index: usize) -> Option<f64> {
+        Some(self.plane.discs()[index].radius_m)
+    }
+
     fn target_m(&self, index: usize, tick: u32, status: &Status) -> Option<[f64; 3]> {
         let number = self.number(index);
         let guidance = self.setup.group(number).guidance.kind();

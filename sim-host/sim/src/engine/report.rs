@@ -31,7 +31,8 @@ where
 
     /// The robots' lines of the record, by rising number, as of now.
     pub fn rows(&self) -> impl Iterator<Item = RobotRow> {
-        self.statuses.iter().enumerate().map(|(index, status)| RobotRow {
+        let has_cells = self.ground.terrain().is_some();
+        self.statuses.iter().enumerate().map(move |(index, status)| RobotRow {
             id: self.id(index).0,
             motion: self.ground.motion(index, self.tick),
             mode: status.mode,
@@ -40,6 +41,8 @@ where
             target_m: self.ground.target_m(index, self.tick, status),
             wait: status.wait,
             formation_error_cells: self.ground.formation_error(self.number(index)) as f32,
+            radius_m: self.ground.radius_m(index),
+            has_cells,
         })
     }
 

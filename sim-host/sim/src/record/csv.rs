@@ -10,12 +10,12 @@ use std::path::Path;
 type Column = (&'static str, &'static str, &'static str, &'static str);
 
 /// `trace.csv`: one line per robot and sampled tick.
-pub const TRACE: [Column; 17] = [
+pub const TRACE: [Column; 21] = [
     ("tick", "integer", "1", "number of the tick"),
     ("time_s", "number", "s", "simulated time"),
     ("robot", "integer", "1", "the robot's number"),
-    ("x_cell", "integer", "cells", "column of its cell, growing east"),
-    ("y_cell", "integer", "cells", "row of its cell, growing north"),
+    ("x_cell", "integer", "cells", "column of its cell, growing east; empty: there are no cells"),
+    ("y_cell", "integer", "cells", "row of its cell, growing north; empty: there are no cells"),
     ("x_m", "number", "m", "world position, east"),
     ("y_m", "number", "m", "world position, north"),
     ("z_m", "number", "m", "world position, up"),
@@ -24,8 +24,8 @@ pub const TRACE: [Column; 17] = [
     ("vz_mps", "number", "m/s", "world velocity, up"),
     ("mode", "string", "", "idle, forming, cruise, hold, arrived, fault or passive"),
     ("leader", "integer", "1", "its leader's number, 0 = none"),
-    ("target_x", "integer", "cells", "column of the cell it heads for"),
-    ("target_y", "integer", "cells", "row of the cell it heads for"),
+    ("target_x", "integer", "cells", "column of the cell it heads for; empty: there are no cells"),
+    ("target_y", "integer", "cells", "row of the cell it heads for; empty: there are no cells"),
     ("formation_error_cells", "number", "cells", "distance from its place in the formation; empty: it has none"),
     (
         "wait",
@@ -33,6 +33,15 @@ pub const TRACE: [Column; 17] = [
         "",
         "formation, request, way, radio, turn, others or place: what it waits for; empty: it gets on",
     ),
+    (
+        "goal_x_m",
+        "number",
+        "m",
+        "where in the world it heads for, east; empty: nowhere, or that is for its law to choose",
+    ),
+    ("goal_y_m", "number", "m", "the same, north"),
+    ("goal_z_m", "number", "m", "the same, up"),
+    ("radius_m", "number", "m", "radius of its body; empty: bodies have no size"),
 ];
 
 /// `series.csv`: one line per tick.
@@ -82,15 +91,17 @@ pub fn trace_line(out: &mut Vec<u8>, tick: &TickRow, robot: &RobotRow) {
         Mode::Passive => "passive",
     };
     let ([x, y, z], [vx, vy, vz]) = (robot.motion.position_m, robot.motion.velocity_mps);
+    let [goal_x, goal_y, goal_z] = robot.target_m.unwrap_or([f64::NAN; 3]);
+    let cell = |x: i16| Number(if robot.has_cells { x.into() } else { f64::NAN });
     append(
         out,
         format_args!(
-            "{},{},{},{},{},{},{},{},{},{},{},{mode},{},{},{},{},{}\n",
+            "{},{},{},{},{},{},{},{},{},{},{},{mode},{},{},{},{},{},{},{},{},{}\n",
             tick.tick,
             Number(tick.time_s),
             robot.id,
-            robot.motion.cell.x,
-            robot.motion.cell.y,
+            cell(robot.motion.cell.x),
+            cell(robot.motion.cell.y),
             Number(x),
             Number(y),
             Number(z),
@@ -98,10 +109,14 @@ pub fn trace_line(out: &mut Vec<u8>, tick: &TickRow, robot: &RobotRow) {
             Number(vy),
             Number(vz),
             robot.leader,
-            robot.target.x,
-            robot.target.y,
+            cell(robot.target.x),
+            cell(robot.target.y),
             Number(f64::from(robot.formation_error_cells)),
             robot.wait.map_or("", Wait::name),
+            Number(goal_x),
+            Number(goal_y),
+            Number(goal_z),
+            Number(robot.radius_m.unwrap_or(f64::NAN)),
         ),
     );
 }

@@ -54,6 +54,10 @@ pub struct RobotRow {
     pub wait: Option<Wait>,
     /// Distance from its place in the formation, cells; NaN when it has no place.
     pub formation_error_cells: f32,
+    /// Radius of its body, metres; `None` where bodies have no size.
+    pub radius_m: Option<f64>,
+    /// Whether there are cells: there are none in the plane without land.
+    pub has_cells: bool,
 }
 
 /// The whole swarm after one tick.

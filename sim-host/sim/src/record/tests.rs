@@ -22,9 +22,11 @@ fn robot(id: u32, x: i16) -> RobotRow {
         mode: Mode::Cruise,
         leader: id - 1,
         target: Cell::new(9, 9),
-        target_m: None,
+        target_m: (id == 1).then_some([2.5, -3.0, 0.0]),
         wait: (x == 2).then_some(Wait::Others),
         formation_error_cells: f32::NAN,
+        radius_m: (id == 1).then_some(0.25),
+        has_cells: id > 1,
     }
 }
 
@@ -57,8 +59,9 @@ fn csv_reads_back_with_the_columns_of_its_schema() {
 
     let (header, lines) = read(&out.join("trace.csv"));
     assert_eq!(lines.len(), 6);
-    assert_eq!(lines[3].join(","), "1,0.1,2,1,-1,1.5,-0.5,0,1,0,0,cruise,1,9,9,,", "an unknown value is empty");
-    assert_eq!(lines[5].last().map(String::as_str), Some("others"));
+    assert_eq!(lines[3].join(","), "1,0.1,2,1,-1,1.5,-0.5,0,1,0,0,cruise,1,9,9,,,,,,", "an unknown value is empty");
+    assert_eq!(lines[2].join(","), "1,0.1,1,,,1.5,-0.5,0,1,0,0,cruise,0,,,,,2.5,-3,0,0.25", "without cells");
+    assert_eq!(lines[5][16], "others");
     let (series_header, series) = read(&out.join("series.csv"));
     assert_eq!(series[2].join(","), "2,0.2,1.5,,6,20,9,2,1");
     for (name, header) in [("trace", header), ("series", series_header)] {

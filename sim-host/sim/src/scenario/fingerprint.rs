@@ -62,6 +62,7 @@ impl Scenario {
             key_remark: _,
             claims,
             attacks,
+            parameters: _,
         } = self;
         let mut all = Fingerprint(0xCBF2_9CE4_8422_2325);
         all.mix(terrain.cells());

@@ -178,6 +178,8 @@ pub struct Scenario {
     pub claims: Claims<f32>,
     /// Those who want something else.
     pub attacks: Vec<Attack>,
+    /// What its file says, with what the command line says instead, for results; secrets are left out.
+    pub parameters: serde_json::Value,
 }
 
 impl Scenario {
@@ -270,6 +272,7 @@ impl Scenario {
             keeping,
             claims: Claims::ANY,
             attacks,
+            parameters: parameters(source.text(), &file),
         };
         scenario.claims = claims::said(&source, &file, &scenario.robots, scenario.usual_claims())?;
         Ok(scenario)
@@ -300,6 +303,23 @@ impl Scenario {
     pub fn tick_s(&self) -> f64 {
         f64::from(self.tick_us) / 1e6
     }
+}
+
+/// The fields of a scenario's text, which is sound, with the seed and the ticks that are in force.
+fn parameters(text: &str, file: &ScenarioFile) -> serde_json::Value {
+    let mut fields: serde_json::Value = toml::from_str(text).unwrap_or_default();
+    if let Some(fields) = fields.as_object_mut() {
+        fields.insert("seed".into(), file.seed.into());
+        fields.insert("ticks".into(), file.ticks.into());
+        if let Some(table) = fields.get_mut("authentication").and_then(serde_json::Value::as_object_mut) {
+            for secret in ["key", "master"] {
+                if let Some(said) = table.get_mut(secret) {
+                    *said = "(left out)".into();
+                }
+            }
+        }
+    }
+    fields
 }
 
 #[cfg(test)]

@@ -151,14 +151,16 @@ pub(super) struct Row {
     target: Cell,
     target_m: Option<[f64; 3]>,
     wait: Option<u8>,
+    radius_m: Option<f64>,
+    has_cells: bool,
 }
 
 impl From<RobotRow> for Row {
     fn from(row: RobotRow) -> Self {
         let Motion { cell, position_m, velocity_mps } = row.motion;
-        let RobotRow { id, mode, leader, target, target_m, .. } = row;
+        let RobotRow { id, mode, leader, target, target_m, radius_m, has_cells, .. } = row;
         let wait = row.wait.map(number_of);
-        Self { id, cell, position_m, velocity_mps, mode, leader, target, target_m, wait }
+        Self { id, cell, position_m, velocity_mps, mode, leader, target, target_m, wait, radius_m, has_cells }
     }
 }
 
@@ -169,9 +171,10 @@ impl Row {
 
     /// With how far it is from its place in a formation, which rank 0 knows.
     pub(super) fn with_error(self, formation_error_cells: f32) -> RobotRow {
-        let Self { id, cell, position_m, velocity_mps, mode, leader, target, target_m, wait } = self;
+        let Self { id, cell, position_m, velocity_mps, mode, leader, target, target_m, wait, radius_m, has_cells } =
+            self;
         let motion = Motion { cell, position_m, velocity_mps };
         let wait = wait.and_then(reason);
-        RobotRow { id, motion, mode, leader, target, target_m, wait, formation_error_cells }
+        RobotRow { id, motion, mode, leader, target, target_m, wait, formation_error_cells, radius_m, has_cells }
     }
 }

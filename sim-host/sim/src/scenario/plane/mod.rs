@@ -153,6 +153,7 @@ impl Scenario {
             claims: Claims::ANY,
             maps: None,
             attacks: Vec::new(),
+            parameters: serde_json::Value::Null,
         };
         scenario.claims = scenario.usual_claims();
         scenario
