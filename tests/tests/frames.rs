@@ -6,8 +6,8 @@ use staya_controller::robot::{Mode, RobotId};
 use staya_controller::template::TemplateEntry;
 use staya_controller::time::Instant;
 use staya_controller::wire::{
-    Ack, Beacon, CompactBeacon, Frame, GoalAssignment, Header, Message, Request, RequestKind, TemplateAssignment,
-    WaypointAssignment,
+    Ack, Beacon, CompactBeacon, Frame, GoalAssignment, Header, Message, PayloadBytes, Request, RequestKind,
+    TemplateAssignment, WaypointAssignment,
 };
 use staya_mavlink::wire::{decode, encode};
 use std::fmt::Write as _;
@@ -15,7 +15,7 @@ use std::fmt::Write as _;
 const TO: RobotId = RobotId(254);
 
 /// Name, message, and its fields as the dialect has them.
-fn messages() -> [(&'static str, Message, &'static str); 9] {
+fn messages() -> [(&'static str, Message, &'static str); 10] {
     let entry = |x, id, hops| TemplateEntry { offset: Cell::new(x, -x), id: RobotId(id), hops };
     let template = |entries: &[TemplateEntry]| {
         Message::Template(TemplateAssignment {
@@ -97,6 +97,11 @@ fn messages() -> [(&'static str, Message, &'static str); 9] {
             )),
             "corner_x=-3 corner_y=1000 tiles=255,247,239,231,223,215,207,199,191,183,175,167,159,151,143,135,127,119,111,103,95,\
              87,79,71,63,55,47,39,31,23,15,7",
+        ),
+        (
+            "STAYA_PAYLOAD",
+            Message::Payload(PayloadBytes::of(&(7_u8, -300_i16, 1.5_f32)).expect("fits")),
+            "count=7 bytes=7,215,4,0,0,192,63,0,0,0,0,0,0,0,0,0",
         ),
     ]
 }

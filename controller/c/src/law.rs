@@ -136,6 +136,7 @@ impl Guidance<Number> for Law {
     type Input<'a> = AnySurroundings<'a, Number>;
     type Destination = ToAny;
     type Workspace = Workspace;
+    type Payload = ();
 
     #[cfg_attr(not(feature = "grid"), expect(unused_variables, reason = "only the laws of the grid have one"))]
     fn decide(

@@ -8,8 +8,8 @@
 //! damage. Everything else between frames comes out of [`Wire::next_frame`] as one piece, which [`Wire::decode`] refuses, so that it counts.
 
 use crate::dialect::{
-    STAYA_ACK_DATA, STAYA_BEACON_DATA, STAYA_COMPACT_DATA, STAYA_GOAL_DATA, STAYA_LAND_DATA, STAYA_PLACE_DATA,
-    STAYA_REQUEST_DATA, STAYA_TEMPLATE_DATA,
+    STAYA_ACK_DATA, STAYA_BEACON_DATA, STAYA_COMPACT_DATA, STAYA_GOAL_DATA, STAYA_LAND_DATA, STAYA_PAYLOAD_DATA,
+    STAYA_PLACE_DATA, STAYA_REQUEST_DATA, STAYA_TEMPLATE_DATA,
 };
 use crate::frame::{self, Full, RawFrame, Scan, Sender, scan};
 use heapless::Vec;
@@ -21,8 +21,8 @@ use staya_controller::robot::{Mode, RobotId};
 use staya_controller::template::TemplateEntry;
 use staya_controller::time::Instant;
 use staya_controller::wire::{
-    Ack, Beacon, CompactBeacon, DecodeError, EncodeError, Frame, GoalAssignment, Header, Message, Request, RequestKind,
-    TEMPLATE_PART, TemplateAssignment, WaypointAssignment, Wire,
+    Ack, Beacon, CompactBeacon, DecodeError, EncodeError, Frame, GoalAssignment, Header, MAX_PAYLOAD, Message,
+    PayloadBytes, Request, RequestKind, TEMPLATE_PART, TemplateAssignment, WaypointAssignment, Wire,
 };
 
 /// The component that robots speak as: an onboard computer (`MAV_COMP_ID_ONBOARD_COMPUTER`).
@@ -206,6 +206,14 @@ pub fn encode<const N: usize>(header: Header, message: &Message, out: &mut Vec<u
             let data = STAYA_LAND_DATA { sequence, corner_x, corner_y, boot, tiles: patch.bytes() };
             frame::encode(sender, &data, out)
         }
+        Message::Payload(payload) => {
+            let mut data = STAYA_PAYLOAD_DATA { sequence, boot, ..STAYA_PAYLOAD_DATA::DEFAULT };
+            for (byte, told) in data.bytes.iter_mut().zip(payload.as_slice()) {
+                *byte = *told;
+                data.count = data.count.saturating_add(1);
+            }
+            frame::encode(sender, &data, out)
+        }
         // MAVLink's signatures have one key: see `Sealed` for robots with keys of their own.
         Message::Key(_) | Message::KeyHeld(_) => return Err(EncodeError::Full),
     };
@@ -255,6 +263,12 @@ pub fn decode(bytes: &[u8]) -> Result<Frame, DecodeError> {
             let data: STAYA_LAND_DATA = body(&raw)?;
             let corner = Cell::new(data.corner_x, data.corner_y);
             (data.boot, data.sequence, Message::Land(LandPatch::from_bytes(corner, data.tiles)))
+        }
+        STAYA_PAYLOAD_DATA::ID => {
+            let data: STAYA_PAYLOAD_DATA = body(&raw)?;
+            let bytes = data.bytes.get(..usize::from(data.count));
+            let payload = bytes.and_then(PayloadBytes::new).ok_or(DecodeError::Body)?;
+            (data.boot, data.sequence, Message::Payload(payload))
         }
         _ => return Err(DecodeError::Foreign),
     };
@@ -354,7 +368,8 @@ fn template(part: &TemplateAssignment, boot: u8, sequence: u16) -> Result<STAYA_
     Ok(data)
 }
 
-// A part of the controller's fits one message.
+// A part of the controller's fits one message, and so does what a law tells.
+const _: () = assert!(MAX_PAYLOAD == STAYA_PAYLOAD_DATA::DEFAULT.bytes.len());
 const _: () = assert!(TEMPLATE_PART == STAYA_TEMPLATE_DATA::DEFAULT.entry_id.len());
 
 fn template_part(data: &STAYA_TEMPLATE_DATA) -> Parts {

@@ -105,6 +105,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
     type Input<'a> = AnySurroundings<'a, S>;
     type Destination = ToAny;
     type Workspace = GridWorkspace<CELLS>;
+    type Payload = ();
 
     fn decide(
         &mut self,

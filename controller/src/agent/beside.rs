@@ -59,7 +59,7 @@ impl<S: Scalar> Beside<S> {
     pub(super) const NEW: Self = Self { nearest_m: S::ZERO, idle_m: S::ZERO, is_beside: false };
 
     /// What to do about a goal `way_m` off that does not move; to be asked in each step. O(nearby).
-    pub(super) fn claim(&mut self, input: &GuidanceInput<'_, S>, way_m: Vec3<S>, tolerance_m: S) -> Claim<S> {
+    pub(super) fn claim<P>(&mut self, input: &GuidanceInput<'_, S, P>, way_m: Vec3<S>, tolerance_m: S) -> Claim<S> {
         let GuidanceInput { body, nearby, .. } = input;
         let distance = way_m.norm();
         let radii = |thousandths: i32| body.radius_m * S::from_milli(thousandths);

@@ -89,16 +89,21 @@ where
     type Input<'a> = InCells<'a, S>;
     type Destination = G::Destination;
     type Workspace = G::Workspace;
+    type Payload = G::Payload;
 
     fn decide(
         &mut self,
-        input: &GuidanceInput<'_, S>,
+        input: &GuidanceInput<'_, S, Self::Payload>,
         here: &InCells<'_, S>,
         rng: &mut Rng,
         workspace: &mut Self::Workspace,
     ) -> Result<Decision<S>, BadInput> {
         let Self { law, speed_mps, last } = self;
         follow(*speed_mps, last, input, here, &mut |grid| law.decide(input, &grid, rng, workspace))
+    }
+
+    fn payload(&mut self, now: Instant) -> Self::Payload {
+        self.law.payload(now)
     }
 
     fn parameter(&self, parameter: Parameter) -> Option<S> {
@@ -117,10 +122,10 @@ where
 
 /// One step behind a law of the grid that decides by `decide`; the same code whichever law it is.
 #[inline(never)]
-fn follow<S: Scalar>(
+fn follow<S: Scalar, P>(
     speed_mps: S,
     last: &mut Option<Last<S>>,
-    input: &GuidanceInput<'_, S>,
+    input: &GuidanceInput<'_, S, P>,
     here: &InCells<'_, S>,
     decide: &mut dyn FnMut(OnGrid<'_>) -> Result<Decision<S>, BadInput>,
 ) -> Result<Decision<S>, BadInput> {

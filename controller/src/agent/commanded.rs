@@ -2,7 +2,7 @@
 
 use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, pass_on};
 use super::waypoint_guidance::WaypointGuidance;
-use super::{Parameter, Surroundings, Wait, Waypoint, WrongTask};
+use super::{Parameter, Wait, Waypoint, WrongTask};
 use crate::geom::Vec3;
 use crate::grid::Cell;
 use crate::land::LandPatch;
@@ -148,10 +148,11 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
     type Input<'a> = G::Input<'a>;
     type Destination = G::Destination;
     type Workspace = G::Workspace;
+    type Payload = G::Payload;
 
     fn decide(
         &mut self,
-        input: &GuidanceInput<'_, S>,
+        input: &GuidanceInput<'_, S, Self::Payload>,
         here: &Self::Input<'_>,
         rng: &mut Rng,
         workspace: &mut Self::Workspace,
@@ -171,8 +172,7 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
                 Ok(on_order(action, input.goal))
             }
             Wish::Waypoint { .. } => {
-                let plane = here.in_plane().ok_or(BadInput)?;
-                let mut decision = self.straight.decide(input, &plane, rng, &mut ())?;
+                let mut decision = self.straight.head(input)?;
                 decision.target = input.goal;
                 decision.status.recovers = true;
                 Ok(decision)
@@ -198,6 +198,10 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
 
     fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool {
         self.inside.assign_waypoint(index, waypoint)
+    }
+
+    fn payload(&mut self, now: Instant) -> Self::Payload {
+        self.inside.payload(now)
     }
 
     fn parameter(&self, parameter: Parameter) -> Option<S> {

@@ -99,7 +99,7 @@ pub(super) fn place(message: &Message) -> Option<Position> {
 
 /// Whether a robot that was heard as `known` can be at `place` after `time` at `fastest_mps`, or as it went if that is faster (by
 /// its components, without a root: this is asked of each beacon), give or take its body's width.
-pub(super) fn is_within<S: Scalar>(place: Position, known: &Neighbor<S>, time: Duration, fastest_mps: S) -> bool {
+pub(super) fn is_within<S: Scalar, P>(place: Position, known: &Neighbor<S, P>, time: Duration, fastest_mps: S) -> bool {
     let Vec3 { x, y, z } = known.velocity_mps;
     let went_mps = x.abs().max(y.abs()).max(z.abs()) * S::TWO;
     let slack_m = known.radius_m + known.radius_m;

@@ -46,6 +46,7 @@ impl<S: Scalar> Guidance<S> for LatticeGuidance<S> {
     type Input<'a> = InPlane<'a, S>;
     type Destination = ToWaypoints;
     type Workspace = ();
+    type Payload = ();
 
     fn decide(
         &mut self,
@@ -146,6 +147,7 @@ impl<S: Scalar> Guidance<S> for GoalFlockGuidance<S> {
     type Input<'a> = InPlane<'a, S>;
     type Destination = ToWaypoints;
     type Workspace = ();
+    type Payload = ();
 
     fn decide(
         &mut self,
@@ -219,6 +221,7 @@ impl<S: Scalar> Guidance<S> for BoidsGuidance<S> {
     type Input<'a> = InPlane<'a, S>;
     type Destination = Roams;
     type Workspace = ();
+    type Payload = ();
 
     fn decide(
         &mut self,

@@ -10,7 +10,7 @@ use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
-use crate::wire::{RequestKind, TemplateAssignment};
+use crate::wire::{Payload, RequestKind, TemplateAssignment};
 use heapless::Vec;
 use serde::Serialize;
 
@@ -78,13 +78,16 @@ pub trait Guidance<S: Scalar>: Teamwork {
     /// Scratch memory; holds nothing between calls, so that many robots can share one.
     type Workspace;
 
+    /// What it tells others of its kind behind each beacon, and knows of them as [`Neighbor::payload`]; `()` for nothing, at no cost.
+    type Payload: Payload;
+
     /// Chooses what to do next. Called when the robot has somewhere to go and is free to move.
     ///
     /// # Errors
     /// [`BadInput`] puts the robot into [`Mode::Fault`](crate::robot::Mode::Fault).
     fn decide(
         &mut self,
-        input: &GuidanceInput<'_, S>,
+        input: &GuidanceInput<'_, S, Self::Payload>,
         here: &Self::Input<'_>,
         rng: &mut Rng,
         workspace: &mut Self::Workspace,
@@ -108,6 +111,12 @@ pub trait Guidance<S: Scalar>: Teamwork {
     /// Takes a waypoint to go to, number `index` of those that the robot has; whether it was of use.
     fn assign_waypoint(&mut self, _index: u8, _waypoint: &Waypoint<S>) -> bool {
         false
+    }
+
+    /// What to tell others of its kind, asked when a beacon is due. Several robots hear it late, repeatedly or never, so it should be
+    /// what holds now, not what has changed.
+    fn payload(&mut self, _now: Instant) -> Self::Payload {
+        Self::Payload::default()
     }
 
     /// What a parameter is now; `None` when it has no such one.
@@ -162,10 +171,11 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for alloc::boxed::Box<G> {
     type Input<'a> = G::Input<'a>;
     type Destination = G::Destination;
     type Workspace = G::Workspace;
+    type Payload = G::Payload;
 
     fn decide(
         &mut self,
-        input: &GuidanceInput<'_, S>,
+        input: &GuidanceInput<'_, S, Self::Payload>,
         here: &Self::Input<'_>,
         rng: &mut Rng,
         workspace: &mut Self::Workspace,
@@ -187,6 +197,10 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for alloc::boxed::Box<G> {
 
     fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool {
         (**self).assign_waypoint(index, waypoint)
+    }
+
+    fn payload(&mut self, now: Instant) -> Self::Payload {
+        (**self).payload(now)
     }
 
     fn parameter(&self, parameter: Parameter) -> Option<S> {
@@ -283,9 +297,9 @@ impl Destination for ToAny {
     const IS_CELL: bool = false;
 }
 
-/// What any guidance law may know at a decision.
+/// What any guidance law may know at a decision; `P` is its [`Guidance::Payload`].
 #[derive(Clone, Copy, Debug)]
-pub struct GuidanceInput<'a, S> {
+pub struct GuidanceInput<'a, S, P = ()> {
     /// Own number.
     pub id: RobotId,
     /// The moment of the decision.
@@ -301,14 +315,14 @@ pub struct GuidanceInput<'a, S> {
     /// Who is near by, nearest first; nobody for robots that move cell by cell.
     pub nearby: &'a [Nearby<S>],
     /// Who was heard, by rising number; nobody older than [`Ages::expire_after`].
-    pub neighbors: &'a [Neighbor<S>],
+    pub neighbors: &'a [Neighbor<S, P>],
     /// How old news may be.
     pub ages: Ages,
     /// What is known of the land beyond the window: see [`MapSharing`](super::MapSharing).
     pub land: Option<&'a dyn FarLand>,
 }
 
-impl<S: Scalar> GuidanceInput<'_, S> {
+impl<S: Scalar, P> GuidanceInput<'_, S, P> {
     /// Whether the body can go by velocities.
     ///
     /// # Errors
@@ -318,10 +332,10 @@ impl<S: Scalar> GuidanceInput<'_, S> {
     }
 }
 
-impl<'a, S> GuidanceInput<'a, S> {
+impl<'a, S, P> GuidanceInput<'a, S, P> {
     /// A neighbour by its number. O(log N).
     #[must_use]
-    pub fn neighbor(&self, id: RobotId) -> Option<&'a Neighbor<S>> {
+    pub fn neighbor(&self, id: RobotId) -> Option<&'a Neighbor<S, P>> {
         let at = self.neighbors.binary_search_by_key(&id, |n| n.id).ok()?;
         self.neighbors.get(at)
     }

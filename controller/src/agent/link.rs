@@ -12,8 +12,8 @@ use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 use crate::wire::{
-    Arrival, Beacon, DecodeError, Due, EncodeError, Frame, Header, KeyHeld, Message, Newest, Orders, Request,
-    RequestKind, Requests, Retry, SequenceWindow, TemplateAssignment, Wire,
+    Arrival, Beacon, DecodeError, Due, EncodeError, Frame, Header, KeyHeld, Message, Newest, Orders, Payload,
+    PayloadBytes, Request, RequestKind, Requests, Retry, SequenceWindow, TemplateAssignment, Wire,
 };
 use heapless::Vec;
 use serde::Serialize;
@@ -47,16 +47,16 @@ pub(super) enum News<S> {
     Waypoint { index: u8, version: u8, waypoint: Waypoint<S> },
 }
 
-/// What the link keeps between steps.
+/// What the link keeps between steps; `P` is what the law tells others.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(feature = "state", derive(serde::Deserialize))]
-pub(super) struct Link<S, const N: usize, W> {
+pub(super) struct Link<S, const N: usize, W, P> {
     /// The format of the frames.
     wire: W,
     header: Header,
     /// What was said last, to know it again.
     said: Said,
-    pub(super) table: NeighborTable<S, N>,
+    pub(super) table: NeighborTable<S, N, P>,
     pub(super) company: Company,
     suspects: Suspects,
     loss: LossEstimate,
@@ -83,7 +83,7 @@ pub(super) struct Listener<'a, S> {
     pub(super) needs: &'a dyn Fn(RobotId) -> bool,
 }
 
-impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
+impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
     pub(super) const fn new(id: RobotId, boot: u8, ages: Ages, retry: Retry, wire: W) -> Self {
         Self {
             wire,
@@ -201,7 +201,10 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
         let is_mine = |to: RobotId| to == self.header.sender;
         match frame.message {
             Message::Beacon(beacon) if arrival.is_latest() => {
-                let neighbor = Neighbor::from_beacon(id, &beacon, listener.heard_at);
+                let mut neighbor = Neighbor::from_beacon(id, &beacon, listener.heard_at);
+                // What its law told comes by itself; that of an earlier life is void.
+                let known = self.table.get(id, now).known().filter(|_| arrival != Arrival::Rebooted);
+                neighbor.payload = known.map_or(neighbor.payload, |known| known.payload);
                 self.keep(neighbor, frame.header, now, listener, out);
             }
             Message::Compact(beacon) if arrival.is_latest() => {
@@ -264,6 +267,7 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
                 }
             }
             Message::Land(patch) => return Some(News::Land(patch)),
+            Message::Payload(bytes) if arrival.is_latest() => self.table.tell(id, bytes.get()),
             Message::Key(key) if is_mine(key.to) => {
                 if let Some((generation, phase)) = self.wire.held() {
                     self.say_early(&Message::KeyHeld(KeyHeld { to: sender, generation, phase }), out);
@@ -277,7 +281,7 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
 
     fn keep(
         &mut self,
-        mut neighbor: Neighbor<S>,
+        mut neighbor: Neighbor<S, P>,
         header: Header,
         now: Instant,
         listener: &Listener<'_, S>,
@@ -325,13 +329,13 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
         self.orders.is_stopped(now)
     }
 
-    /// Sends requests that are due, then the beacon if it is due, and land behind it if there is room.
+    /// Sends requests that are due, then the beacon if it is due, and behind it what the law tells and land if there is room.
     pub(super) fn speak(
         &mut self,
         now: Instant,
         period: Duration,
         beacon: impl FnOnce() -> Beacon,
-        land: impl FnOnce() -> Option<LandPatch>,
+        told: impl FnOnce() -> (P, Option<LandPatch>),
         out: &mut Outputs<S>,
     ) {
         // Twice as many polls as requests always empty the list.
@@ -350,8 +354,12 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
             if self.say(&beacon, 0, out) == Err(EncodeError::Exhausted) {
                 report(out, Event::Muted);
             }
-            if let Some(patch) = land() {
-                // What finds no room is told again when its turn comes.
+            // What finds no room is told again when its turn comes.
+            let (payload, land) = told();
+            if let Some(bytes) = PayloadBytes::of(&payload).filter(|_| size_of::<P>() > 0) {
+                let _ = self.say(&Message::Payload(bytes), 0, out);
+            }
+            if let Some(patch) = land {
                 let _ = self.say(&Message::Land(patch), 0, out);
             }
             self.has_sent = true;

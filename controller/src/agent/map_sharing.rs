@@ -143,10 +143,11 @@ impl<S: Scalar, G: Guidance<S>, const T: usize> Guidance<S> for MapSharing<G, T>
     type Input<'a> = G::Input<'a>;
     type Destination = G::Destination;
     type Workspace = G::Workspace;
+    type Payload = G::Payload;
 
     fn decide(
         &mut self,
-        input: &GuidanceInput<'_, S>,
+        input: &GuidanceInput<'_, S, Self::Payload>,
         here: &Self::Input<'_>,
         rng: &mut Rng,
         workspace: &mut Self::Workspace,
@@ -177,6 +178,10 @@ impl<S: Scalar, G: Guidance<S>, const T: usize> Guidance<S> for MapSharing<G, T>
 
     fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool {
         self.inside.assign_waypoint(index, waypoint)
+    }
+
+    fn payload(&mut self, now: Instant) -> Self::Payload {
+        self.inside.payload(now)
     }
 
     fn parameter(&self, parameter: Parameter) -> Option<S> {

@@ -91,6 +91,7 @@
 //! ```
 
 mod any;
+mod any_world;
 mod beside;
 mod cell_follower;
 mod commanded;
@@ -125,6 +126,7 @@ mod waypoint_guidance;
 mod tests;
 
 pub use any::{AnyGuidance, AnyHalfPlanes, AnySafety};
+pub use any_world::AnyWorld;
 pub use cell_follower::CellFollower;
 pub use commanded::{Commanded, Wish};
 pub use config::AgentConfig;
@@ -155,8 +157,10 @@ use crate::grid::{Cell, Dir};
 use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
 use crate::supervisor::Situation;
-use crate::wire::{Postcard, Wire};
+use crate::wire::{MAX_PAYLOAD, Postcard, Wire};
 use link::Link;
+#[cfg(feature = "state")]
+use serde::Deserialize;
 use serde::Serialize;
 
 /// Cells of a search for windows of radius 5 (A. V. Kuznetsov 2017, KUZ) with their border: (2 * 5 + 3)^2.
@@ -200,12 +204,16 @@ const _: () = assert!(matches!(BYTES, [4408, 4680, 2008, 2720]));
 /// on the grid of a processor share; on a 64-bit host 4408, 4680, 2008 and 2720, or with the feature `host` what is in
 /// their lists. The build fails when one of them changes unnoticed.
 #[derive(Clone, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
-pub struct Agent<S, G, const N: usize, A = Unguarded, W = Postcard> {
+#[cfg_attr(feature = "state", derive(Deserialize))]
+#[cfg_attr(
+    feature = "state",
+    serde(bound(deserialize = "G: Deserialize<'de>, A: Deserialize<'de>, W: Deserialize<'de>"))
+)]
+pub struct Agent<S: Scalar, G: Guidance<S>, const N: usize, A = Unguarded, W = Postcard> {
     config: AgentConfig<S>,
     guidance: G,
     safety: A,
-    link: Link<S, N, W>,
+    link: Link<S, N, W, G::Payload>,
     mode: Mode,
     goal: Option<Goal>,
     /// Decisions so far: each has random numbers of its own.
@@ -242,6 +250,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
     /// all robots of a swarm have the same `wire`, such as [`Postcard`].
     #[must_use]
     pub const fn new(config: &AgentConfig<S>, guidance: G, safety: A, wire: W) -> Self {
+        const { assert!(size_of::<G::Payload>() <= MAX_PAYLOAD, "what a law tells does not fit a frame") };
         Self {
             config: *config,
             guidance,

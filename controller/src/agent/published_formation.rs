@@ -237,6 +237,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S> 
     type Input<'a> = OnGrid<'a>;
     type Destination = ToCells;
     type Workspace = GridWorkspace<CELLS>;
+    type Payload = ();
 
     fn decide(
         &mut self,

@@ -41,13 +41,13 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
 
     /// Whom it knows, by rising number.
     #[must_use]
-    pub fn neighbors(&self) -> &[Neighbor<S>] {
+    pub fn neighbors(&self) -> &[Neighbor<S, G::Payload>] {
         self.link.table.as_slice()
     }
 
     /// What is known of robot `id` at `now`, and whether it can still be trusted. O(log N).
     #[must_use]
-    pub fn neighbor(&self, id: RobotId, now: Instant) -> Knowledge<'_, S> {
+    pub fn neighbor(&self, id: RobotId, now: Instant) -> Knowledge<'_, S, G::Payload> {
         self.link.table.get(id, now)
     }
 

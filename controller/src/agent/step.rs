@@ -335,7 +335,8 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         let on_grid = inputs.surroundings.on_grid();
         let on_grid = on_grid.map_or_else(CellState::default, |grid| grid.cell);
         let beacon = || beacon(config, last, mode, &inputs.state, on_grid, velocity_mps, now);
-        self.link.speak(now, config.beacon_period, beacon, || guidance.say_land(now), out);
+        let told = || (guidance.payload(now), guidance.say_land(now));
+        self.link.speak(now, config.beacon_period, beacon, told, out);
         // A robot that is free decides anew after a tick at the latest.
         let busy = on_grid.busy;
         let decision = now + if busy > Duration::ZERO { busy } else { config.tick };

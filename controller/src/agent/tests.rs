@@ -406,6 +406,7 @@ mod make_way;
 mod map_sharing;
 mod nonsense;
 mod nonsense_in_plane;
+mod payload;
 mod plane;
 #[cfg(feature = "published")]
 mod published;

@@ -40,7 +40,7 @@ impl<S: Scalar> WaypointGuidance<S> {
 
     /// The way to the waypoint that it heads for, metres, and that one's velocity; goes on to the next one when it is
     /// there. O([`WAYPOINTS`]).
-    fn next(&mut self, input: &GuidanceInput<'_, S>) -> Option<(Vec3<S>, Vec3<S>)> {
+    fn next<P>(&mut self, input: &GuidanceInput<'_, S, P>) -> Option<(Vec3<S>, Vec3<S>)> {
         let passed_m = self.tolerance_m.max(input.body.radius_m * S::from_i32(PASSED_RADII));
         let mut ahead = self.course.iter_mut().skip(usize::from(self.leg));
         let mut waypoint = ahead.next()?;
@@ -55,22 +55,9 @@ impl<S: Scalar> WaypointGuidance<S> {
         }
         Some((way, waypoint.velocity_mps))
     }
-}
 
-impl<S> Teamwork for WaypointGuidance<S> {}
-
-impl<S: Scalar> Guidance<S> for WaypointGuidance<S> {
-    type Input<'a> = InPlane<'a, S>;
-    type Destination = ToWaypoints;
-    type Workspace = ();
-
-    fn decide(
-        &mut self,
-        input: &GuidanceInput<'_, S>,
-        _: &InPlane<'_, S>,
-        _: &mut Rng,
-        (): &mut (),
-    ) -> Result<Decision<S>, BadInput> {
+    /// What [`Guidance::decide`] decides, whatever its robots tell each other.
+    pub(super) fn head<P>(&mut self, input: &GuidanceInput<'_, S, P>) -> Result<Decision<S>, BadInput> {
         input.can_go()?;
         let (way, velocity_mps) = self.next(input).ok_or(BadInput)?;
         let is_last = usize::from(self.leg) + 1 >= self.course.len();
@@ -105,6 +92,25 @@ impl<S: Scalar> Guidance<S> for WaypointGuidance<S> {
             },
             ..Decision::default()
         })
+    }
+}
+
+impl<S> Teamwork for WaypointGuidance<S> {}
+
+impl<S: Scalar> Guidance<S> for WaypointGuidance<S> {
+    type Input<'a> = InPlane<'a, S>;
+    type Destination = ToWaypoints;
+    type Workspace = ();
+    type Payload = ();
+
+    fn decide(
+        &mut self,
+        input: &GuidanceInput<'_, S>,
+        _: &InPlane<'_, S>,
+        _: &mut Rng,
+        (): &mut (),
+    ) -> Result<Decision<S>, BadInput> {
+        self.head(input)
     }
 
     fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool {

@@ -87,7 +87,7 @@ impl<S: Scalar> Claims<S> {
 
     /// Cuts what a robot says of itself down to what is believed. Whether its radius and its speed were beyond.
     #[must_use]
-    pub fn cut(&self, said: &mut Neighbor<S>) -> (bool, bool) {
+    pub fn cut<P>(&self, said: &mut Neighbor<S, P>) -> (bool, bool) {
         let is_large = said.radius_m > self.max_radius_m;
         let is_fast = self.max_speed_mps < S::MAX && is_longer(said.velocity_mps, self.max_speed_mps);
         if is_large {

@@ -30,11 +30,11 @@ pub use tie::tie;
 /// Thousandths of the distance to the farthest fresh robot from which on one that is lost has gone out of range.
 const LEAVES_FROM: i32 = 750;
 
-/// One robot as last heard.
+/// One robot as last heard; `P` is what its law tells, of size 0 unless it tells something.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[cfg_attr(feature = "state", derive(serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Neighbor<S> {
+pub struct Neighbor<S, P = ()> {
     /// Who it is.
     pub id: RobotId,
     /// When it was heard, own clock.
@@ -63,9 +63,11 @@ pub struct Neighbor<S> {
     pub is_lost: bool,
     /// How far it is from the own body at least while it is silent, metres: what [`Room`] makes of it.
     pub gap_m: S,
+    /// What its law told last, beside its beacons; the default until it has told something.
+    pub payload: P,
 }
 
-impl<S: Scalar> Neighbor<S> {
+impl<S: Scalar, P> Neighbor<S, P> {
     /// Time since it was heard; `None` when that lies in the future, which means that more than
     /// half the clock's range has passed.
     #[must_use]
@@ -98,19 +100,19 @@ pub struct Ages {
 /// What is known of one robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Knowledge<'a, S> {
+pub enum Knowledge<'a, S, P = ()> {
     /// Heard a short while ago.
-    Fresh(&'a Neighbor<S>),
+    Fresh(&'a Neighbor<S, P>),
     /// Heard, but not lately.
-    Stale(&'a Neighbor<S>),
+    Stale(&'a Neighbor<S, P>),
     /// Never heard, forgotten, or pushed out.
     Unknown,
 }
 
-impl<'a, S> Knowledge<'a, S> {
+impl<'a, S, P> Knowledge<'a, S, P> {
     /// The neighbour if it is fresh.
     #[must_use]
-    pub const fn fresh(self) -> Option<&'a Neighbor<S>> {
+    pub const fn fresh(self) -> Option<&'a Neighbor<S, P>> {
         match self {
             Self::Fresh(neighbor) => Some(neighbor),
             Self::Stale(_) | Self::Unknown => None,
@@ -119,7 +121,7 @@ impl<'a, S> Knowledge<'a, S> {
 
     /// The neighbour, fresh or stale.
     #[must_use]
-    pub const fn known(self) -> Option<&'a Neighbor<S>> {
+    pub const fn known(self) -> Option<&'a Neighbor<S, P>> {
         match self {
             Self::Fresh(neighbor) | Self::Stale(neighbor) => Some(neighbor),
             Self::Unknown => None,
@@ -143,24 +145,24 @@ pub enum Put {
 }
 
 #[cfg(not(feature = "host"))]
-type Entries<S, const N: usize> = heapless::Vec<Neighbor<S>, N, u16>;
+type Entries<S, const N: usize, P> = heapless::Vec<Neighbor<S, P>, N, u16>;
 #[cfg(feature = "host")]
-type Entries<S, const N: usize> = crate::list::Seldom<Neighbor<S>, N>;
+type Entries<S, const N: usize, P> = crate::list::Seldom<Neighbor<S, P>, N>;
 
 /// The known robots, at most `N`, sorted by id; behind them the lost ones that are still remembered, by id too.
 ///
-/// Bytes: `N` times those of [`Neighbor`] (60 for `f32` and fixed point) and 16 more; with the feature `host` those of the
+/// Bytes: `N` times those of [`Neighbor`] (60 for `f32` and fixed point, and those of a payload) and 16 more; with the feature `host` those of the
 /// robots in it.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(feature = "state", derive(serde::Deserialize))]
-pub struct NeighborTable<S, const N: usize> {
-    entries: Entries<S, N>,
+pub struct NeighborTable<S, const N: usize, P = ()> {
+    entries: Entries<S, N, P>,
     ages: Ages,
     /// The farthest that anybody was heard from while another one was lost, metres; 0: that never was.
     range_m: S,
 }
 
-impl<S: Scalar, const N: usize> NeighborTable<S, N> {
+impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
     /// An empty table.
     #[must_use]
     pub const fn new(ages: Ages) -> Self {
@@ -187,7 +189,7 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
     /// their order (unless more than `N` of them are protected).
     pub fn put(
         &mut self,
-        newcomer: Neighbor<S>,
+        newcomer: Neighbor<S, P>,
         own: Position,
         now: Instant,
         protect: impl Fn(RobotId) -> bool,
@@ -225,24 +227,25 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
     /// Who must go so that `newcomer` can come in; `None`: nobody.
     fn victim(
         &self,
-        newcomer: &Neighbor<S>,
+        newcomer: &Neighbor<S, P>,
         own: Position,
         now: Instant,
         protect: impl Fn(RobotId) -> bool,
     ) -> Option<RobotId> {
         let is_double = newcomer.id.doubled().is_some();
-        let may_go =
-            |entry: &&Neighbor<S>| entry.is_lost || !protect(entry.id) && (!is_double || entry.id.doubled().is_some());
+        let may_go = |entry: &&Neighbor<S, P>| {
+            entry.is_lost || !protect(entry.id) && (!is_double || entry.id.doubled().is_some())
+        };
         let candidates = || self.entries.iter().filter(may_go);
         // An age beyond half the clock's range is older than any that can be told.
-        let age = |entry: &Neighbor<S>| entry.age(now).unwrap_or(Duration::MAX);
+        let age = |entry: &Neighbor<S, P>| entry.age(now).unwrap_or(Duration::MAX);
         let stalest = candidates()
             .filter(|entry| !entry.is_lost && age(entry) > self.ages.expire_after)
             .max_by_key(|entry| (age(entry), entry.id));
         if let Some(stalest) = stalest {
             return Some(stalest.id);
         }
-        let distance = |entry: &Neighbor<S>| {
+        let distance = |entry: &Neighbor<S, P>| {
             let offset_m = entry.offset_at(own, now, self.ages.stale_after);
             (offset_m.length_key(), entry.id)
         };
@@ -269,8 +272,8 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
     ) {
         let ages = self.ages;
         let longest = longest.min(ages.expire_after);
-        let distance = |entry: &Neighbor<S>| entry.offset_at(own, now, ages.expire_after).norm();
-        let is_within = |entry: &Neighbor<S>, longest| entry.age(now).is_some_and(|age| age <= longest);
+        let distance = |entry: &Neighbor<S, P>| entry.offset_at(own, now, ages.expire_after).norm();
+        let is_within = |entry: &Neighbor<S, P>, longest| entry.age(now).is_some_and(|age| age <= longest);
         while let Some(&silent) = self.as_slice().iter().find(|entry| !is_within(entry, longest)) {
             lost(silent.id);
             self.entries.retain(|entry| entry.id != silent.id);
@@ -293,6 +296,15 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
         self.entries.retain(|entry| !entry.is_lost || is_within(entry, remember));
     }
 
+    /// Takes in what the law of robot `id` tells, if that robot is known; `None` is what makes no sense. O(log N).
+    pub fn tell(&mut self, id: RobotId, payload: Option<P>) {
+        if let Some(payload) = payload
+            && let Some(entry) = self.place(id).and_then(|i| self.entries.get_mut(i))
+        {
+            entry.payload = payload;
+        }
+    }
+
     /// Forgets how near the silent ones can be: to be called in a step in which nobody asks [`Room`]. O(N).
     pub fn forget_gaps(&mut self) {
         for entry in &mut self.entries {
@@ -307,7 +319,7 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
 
     /// What is known of robot `id`. O(log N).
     #[must_use]
-    pub fn get(&self, id: RobotId, now: Instant) -> Knowledge<'_, S> {
+    pub fn get(&self, id: RobotId, now: Instant) -> Knowledge<'_, S, P> {
         match self.place(id).and_then(|i| self.entries.get(i)) {
             Some(entry) => self.judge(entry, now),
             None => Knowledge::Unknown,
@@ -320,7 +332,7 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
 
     /// How far an entry of this table can be trusted at `now`.
     #[must_use]
-    pub fn judge<'a>(&self, entry: &'a Neighbor<S>, now: Instant) -> Knowledge<'a, S> {
+    pub fn judge<'a>(&self, entry: &'a Neighbor<S, P>, now: Instant) -> Knowledge<'a, S, P> {
         match entry.age(now) {
             Some(age) if age > self.ages.expire_after => Knowledge::Unknown,
             Some(age) if age > self.ages.stale_after => Knowledge::Stale(entry),
@@ -331,23 +343,23 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
 
     /// Everybody, in the order of ids; fresh and stale ones, if [`NeighborTable::expire`] is called
     /// every step.
-    pub fn iter(&self) -> core::slice::Iter<'_, Neighbor<S>> {
+    pub fn iter(&self) -> core::slice::Iter<'_, Neighbor<S, P>> {
         self.as_slice().iter()
     }
 
     /// Everybody, in the order of ids.
     #[must_use]
-    pub fn as_slice(&self) -> &[Neighbor<S>] {
+    pub fn as_slice(&self) -> &[Neighbor<S, P>] {
         self.halves().0
     }
 
     /// The lost that are remembered, in the order of ids.
     #[must_use]
-    pub fn lost(&self) -> &[Neighbor<S>] {
+    pub fn lost(&self) -> &[Neighbor<S, P>] {
         self.halves().1
     }
 
-    fn halves(&self) -> (&[Neighbor<S>], &[Neighbor<S>]) {
+    fn halves(&self) -> (&[Neighbor<S, P>], &[Neighbor<S, P>]) {
         let entries = &*self.entries;
         // Few robots have lost anybody: who is last tells.
         let known = match entries.last() {
@@ -370,9 +382,9 @@ impl<S: Scalar, const N: usize> NeighborTable<S, N> {
     }
 }
 
-impl<'a, S: Scalar, const N: usize> IntoIterator for &'a NeighborTable<S, N> {
-    type Item = &'a Neighbor<S>;
-    type IntoIter = core::slice::Iter<'a, Neighbor<S>>;
+impl<'a, S: Scalar, const N: usize, P: Copy> IntoIterator for &'a NeighborTable<S, N, P> {
+    type Item = &'a Neighbor<S, P>;
+    type IntoIter = core::slice::Iter<'a, Neighbor<S, P>>;
     fn into_iter(self) -> Self::IntoIter {
         self.iter()
     }

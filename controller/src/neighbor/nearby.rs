@@ -60,7 +60,7 @@ impl<S: Scalar> StalenessInflation<S> {
 /// O(N K); beside the answer 24 K bytes of stack (`f32`, pointers of 32 bits).
 #[must_use]
 pub fn nearest<S: Scalar, const K: usize>(
-    known: &[Neighbor<S>],
+    known: &[Neighbor<S, impl Copy>],
     flock: u8,
     own: Position,
     own_radius_m: S,
@@ -68,7 +68,7 @@ pub fn nearest<S: Scalar, const K: usize>(
     ages: &Ages,
     inflation: &StalenessInflation<S>,
 ) -> Vec<Nearby<S>, K> {
-    let mut nearest = Vec::<(u64, Vec3<S>, &Neighbor<S>), K>::new();
+    let mut nearest = Vec::<(u64, Vec3<S>, &Neighbor<S, _>), K>::new();
     for entry in known {
         if entry.age(now).is_none_or(|age| age > ages.expire_after) {
             continue;
@@ -83,7 +83,7 @@ pub fn nearest<S: Scalar, const K: usize>(
             sink_last(&mut nearest, |before, after| before.0 > after.0);
         }
     }
-    let seen = |&(_, offset_m, entry): &(u64, Vec3<S>, &Neighbor<S>)| Nearby {
+    let seen = |&(_, offset_m, entry): &(u64, Vec3<S>, &Neighbor<S, _>)| Nearby {
         is_stranger: entry.slot != flock,
         ..seen(entry, offset_m, own_radius_m, now, ages, inflation)
     };
@@ -94,19 +94,19 @@ pub fn nearest<S: Scalar, const K: usize>(
 /// stand, as a stale one's does, for as long as they are remembered. Those that find no room come to nothing. O(lost).
 pub fn add_lost<S: Scalar, const K: usize>(
     nearby: &mut Vec<Nearby<S>, K>,
-    lost: &[Neighbor<S>],
+    lost: &[Neighbor<S, impl Copy>],
     own: Position,
     own_radius_m: S,
     now: Instant,
     ages: &Ages,
     inflation: &StalenessInflation<S>,
 ) {
-    let offset_m = |entry: &Neighbor<S>| entry.offset_at(own, now, ages.stale_after);
+    let offset_m = |entry: &Neighbor<S, _>| entry.offset_at(own, now, ages.stale_after);
     list::extend(nearby, lost.iter().map(|entry| seen(entry, offset_m(entry), own_radius_m, now, ages, inflation)));
 }
 
 fn seen<S: Scalar>(
-    entry: &Neighbor<S>,
+    entry: &Neighbor<S, impl Copy>,
     offset_m: Vec3<S>,
     own_radius_m: S,
     now: Instant,

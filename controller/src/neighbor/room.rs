@@ -85,14 +85,14 @@ impl<S: Scalar> Room<'_, S> {
     /// O(N + obstacles), and a root or two for each robot; 20 N bytes of stack (`f32`).
     #[must_use]
     #[inline(never)]
-    pub fn limit<const N: usize>(
+    pub fn limit<const N: usize, P: Copy>(
         &self,
-        table: &mut NeighborTable<S, N>,
+        table: &mut NeighborTable<S, N, P>,
         obstacles: &[Obstacle<S>],
         velocity_mps: Vec3<S>,
     ) -> Option<Vec3<S>> {
         let (known, lost, ages) = (table.as_slice(), table.lost(), table.ages());
-        let is_fresh = |other: &&Neighbor<S>| other.age(self.now).is_some_and(|age| age <= ages.stale_after);
+        let is_fresh = |other: &&Neighbor<S, P>| other.age(self.now).is_some_and(|age| age <= ages.stale_after);
         let fresh = known.iter().filter(is_fresh).count();
         let is_bad = !self.may_be_alone && fresh + fresh < known.len() + lost.len();
         let mut limits = Vec::<Limit<S>, N>::new();
@@ -144,7 +144,7 @@ impl<S: Scalar> Room<'_, S> {
     }
 
     /// What a robot leaves, and whether it can be right here. Notes the least gap to it.
-    fn limit_of(&self, other: &mut Neighbor<S>, is_bad: bool) -> (Limit<S>, bool) {
+    fn limit_of<P>(&self, other: &mut Neighbor<S, P>, is_bad: bool) -> (Limit<S>, bool) {
         let Room { body, inflation, .. } = self;
         let age = other.age(self.now).unwrap_or(Duration::MAX);
         let silent = age.as_micros().saturating_sub(self.news.as_micros()).max(0);

@@ -113,5 +113,8 @@ pub fn message() -> impl Strategy<Value = Message> {
         .prop_map(|(to, generation, phase)| Message::KeyHeld(KeyHeld { to, generation, phase }));
     let land =
         (cell(), any::<[u8; 32]>()).prop_map(|(corner, bytes)| Message::Land(LandPatch::from_bytes(corner, bytes)));
-    prop_oneof![beacon(), compact(), request, ack, template(), goal, place, key, held, land]
+    let payload = vec(any::<u8>(), 0..=MAX_PAYLOAD);
+    let payload = payload.prop_map(|bytes| Message::Payload(PayloadBytes::new(&bytes).unwrap_or_default()));
+    let keys = prop_oneof![key, held];
+    prop_oneof![beacon(), compact(), request, ack, template(), goal, place, keys, land, payload]
 }

@@ -34,6 +34,7 @@ use super::message::{
     Ack, Beacon, CompactBeacon, GoalAssignment, KeyAssignment, KeyHeld, Message, Request, TEMPLATE_PART,
     TemplateAssignment, WaypointAssignment,
 };
+use super::payload::{MAX_PAYLOAD, PayloadBytes};
 use crate::land::{LandPatch, PATCH_TILES};
 use crate::robot::RobotId;
 use core::fmt;
@@ -114,6 +115,11 @@ impl LandPatch {
     pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + CELL + PATCH_TILES;
 }
 
+impl PayloadBytes {
+    /// Bytes of a frame that carries one, at most: tag and delimiter included.
+    pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + 1 + MAX_PAYLOAD;
+}
+
 /// Bytes of any frame, at most: tag and delimiter included.
 pub const MAX_FRAME_LEN: usize = {
     let lens = [
@@ -127,6 +133,7 @@ pub const MAX_FRAME_LEN: usize = {
         KeyAssignment::MAX_FRAME_LEN,
         KeyHeld::MAX_FRAME_LEN,
         LandPatch::MAX_FRAME_LEN,
+        PayloadBytes::MAX_FRAME_LEN,
     ];
     let mut max = 0;
     let mut rest = lens.as_slice();

@@ -8,7 +8,7 @@ use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 
-impl<S: Scalar> Neighbor<S> {
+impl<S: Scalar, P: Default> Neighbor<S, P> {
     /// The robot `id` as its beacon, received at `now`, describes it.
     #[must_use]
     #[expect(clippy::arithmetic_side_effects, reason = "an `Instant` wraps, as is meant")]
@@ -28,6 +28,7 @@ impl<S: Scalar> Neighbor<S> {
             mode: beacon.mode,
             is_lost: false,
             gap_m: S::ZERO,
+            payload: P::default(),
         }
     }
 
@@ -53,6 +54,7 @@ impl<S: Scalar> Neighbor<S> {
             mode: beacon.mode,
             is_lost: false,
             gap_m: S::ZERO,
+            payload: P::default(),
         }
     }
 }

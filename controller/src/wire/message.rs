@@ -5,6 +5,7 @@
 //! [`VERSION`](super::VERSION); a further message at the end of [`Message`] is not: who does not know it refuses it
 //! ([`DecodeError::Body`](super::DecodeError::Body)) and hears all others.
 
+use super::payload::PayloadBytes;
 use crate::fixint;
 use crate::grid::{Cell, Dir};
 use crate::land::LandPatch;
@@ -236,6 +237,8 @@ pub enum Message {
     KeyHeld(KeyHeld),
     /// Land that the sender knows of.
     Land(LandPatch),
+    /// What the sender's law tells others of its kind.
+    Payload(PayloadBytes),
 }
 
 impl Message {
@@ -243,7 +246,7 @@ impl Message {
     #[must_use]
     pub const fn addressee(&self) -> Option<RobotId> {
         let to = match self {
-            Self::Beacon(_) | Self::Compact(_) | Self::Land(_) => return None,
+            Self::Beacon(_) | Self::Compact(_) | Self::Land(_) | Self::Payload(_) => return None,
             Self::Request(request) => request.to,
             Self::Ack(ack) => ack.to,
             Self::Template(part) => part.to,

@@ -9,6 +9,7 @@ mod newest;
 #[cfg(feature = "auth")]
 mod operator;
 mod orders;
+mod payload;
 mod requests;
 #[cfg(feature = "auth")]
 mod ring;
@@ -30,6 +31,7 @@ pub use newest::Newest;
 #[cfg(feature = "auth")]
 pub use operator::OperatorWire;
 pub use orders::{Answer, Orders};
+pub use payload::{MAX_PAYLOAD, Payload, PayloadBytes};
 pub use requests::{AskError, Due, Requests, Retry};
 #[cfg(feature = "auth")]
 pub use ring::{Ring, Signer};

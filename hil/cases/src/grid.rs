@@ -34,7 +34,7 @@ pub(crate) type GridAgent<S, G, W = Postcard> = Agent<S, G, ROBOTS, Unguarded, W
 pub(crate) const TICK: Duration = Duration::from_millis(UNIT.cast_signed());
 
 /// A robot with its body.
-pub(crate) struct Walker<S, G, W = Postcard> {
+pub(crate) struct Walker<S: Scalar, G: Guidance<S>, W = Postcard> {
     pub(crate) agent: GridAgent<S, G, W>,
     pub(crate) cell: Cell,
     /// When it may leave its cell, milliseconds after the start.
@@ -157,7 +157,7 @@ where
 }
 
 /// Moves one body by the first of its wishes that leads into a free cell (KUZ algorithm 4).
-fn advance<S, G, W>(
+fn advance<S: Scalar, G: Guidance<S>, W>(
     scene: &Scene,
     walkers: &mut [Walker<S, G, W>],
     index: usize,
@@ -194,7 +194,7 @@ fn advance<S, G, W>(
 }
 
 /// Pairs of bodies in one cell.
-fn overlaps<S, G, W>(walkers: &[Walker<S, G, W>]) -> u32 {
+fn overlaps<S: Scalar, G: Guidance<S>, W>(walkers: &[Walker<S, G, W>]) -> u32 {
     let mut count = 0;
     for (index, one) in walkers.iter().enumerate() {
         let others = walkers.iter().skip(index.saturating_add(1));

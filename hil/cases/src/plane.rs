@@ -28,7 +28,7 @@ const CELL_MM: i32 = 1000;
 pub(crate) type PlaneAgent<S, G, A> = Agent<S, G, KNOWN, A>;
 
 /// A robot with its body.
-pub(crate) struct Mover<S, G, A> {
+pub(crate) struct Mover<S: Scalar, G: Guidance<S>, A> {
     pub(crate) agent: PlaneAgent<S, G, A>,
     pub(crate) position: Position,
     pub(crate) velocity_mps: Vec3<S>,
@@ -173,19 +173,19 @@ fn seen<S: Scalar>(solid: &Solid, from: Position) -> Obstacle<S> {
 }
 
 /// Pairs of bodies that overlap.
-fn overlaps<S, G, A>(scene: &Scene<S>, movers: &[Mover<S, G, A>]) -> u32 {
+fn overlaps<S: Scalar, G: Guidance<S>, A>(scene: &Scene<S>, movers: &[Mover<S, G, A>]) -> u32 {
     let least = u64::from(scene.apart_mm.unsigned_abs());
     pairs(movers).filter(|squared| *squared < least * least).count() as u32
 }
 
 /// Distances of the nearest and of the farthest pair, millimetres.
-fn apart<S, G, A>(movers: &[Mover<S, G, A>]) -> [u32; 2] {
+fn apart<S: Scalar, G: Guidance<S>, A>(movers: &[Mover<S, G, A>]) -> [u32; 2] {
     let millimetres = |squared: Option<u64>| squared.unwrap_or(0).isqrt() as u32;
     [pairs(movers).min(), pairs(movers).max()].map(millimetres)
 }
 
 /// The squared distance of each pair, square millimetres.
-fn pairs<S, G, A>(movers: &[Mover<S, G, A>]) -> impl Iterator<Item = u64> {
+fn pairs<S: Scalar, G: Guidance<S>, A>(movers: &[Mover<S, G, A>]) -> impl Iterator<Item = u64> {
     movers.iter().enumerate().flat_map(move |(index, one)| {
         let others = movers.iter().skip(index.saturating_add(1));
         others.map(|other| {

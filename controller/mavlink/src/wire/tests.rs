@@ -100,7 +100,9 @@ fn any_message() -> impl Strategy<Value = Message> {
     });
     let land =
         (cell(), any::<[u8; 32]>()).prop_map(|(corner, bytes)| Message::Land(LandPatch::from_bytes(corner, bytes)));
-    prop_oneof![beacon, compact, request, ack, template, goal, place, land]
+    let payload = vec(any::<u8>(), 0..=MAX_PAYLOAD);
+    let payload = payload.prop_map(|bytes| Message::Payload(PayloadBytes::new(&bytes).unwrap_or_default()));
+    prop_oneof![beacon, compact, request, ack, template, goal, place, land, payload]
 }
 
 proptest! {

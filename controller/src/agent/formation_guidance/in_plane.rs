@@ -281,6 +281,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
     type Input<'a> = InCells<'a, S>;
     type Destination = ToCells;
     type Workspace = GridWorkspace<CELLS>;
+    type Payload = ();
 
     fn decide(
         &mut self,

@@ -8,9 +8,9 @@ use crate::neighbor::{Claim, Claims, Doubt, Neighbor};
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use crate::time::Duration;
-use crate::wire::{Frame, Header, Wire};
+use crate::wire::{Frame, Header, Payload, Wire};
 
-impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
+impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
     /// Whose frame it is: as whom its sender is known here, which is the number that it says unless two have it. `None` for an
     /// own one that comes back, and for a beacon of a number or a place that is not believed.
     pub(super) fn known_as(
@@ -44,13 +44,13 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
     }
 
     /// What is known of a robot, the lost left out.
-    fn known(&self, id: RobotId) -> Option<&Neighbor<S>> {
+    fn known(&self, id: RobotId) -> Option<&Neighbor<S, P>> {
         let all = self.table.as_slice();
         all.binary_search_by_key(&id, |known| known.id).ok().and_then(|at| all.get(at))
     }
 
     /// How much time a robot has had since it was heard as `known`: by the clock, or by its sequence numbers if its news were held back.
-    fn time_since(&self, known: &Neighbor<S>, header: Header, listener: &Listener<'_, S>) -> Duration {
+    fn time_since(&self, known: &Neighbor<S, P>, header: Header, listener: &Listener<'_, S>) -> Duration {
         let window = self.windows.iter().find(|(id, _)| *id == known.id);
         let frames = window.map_or(0, |(_, window)| window.distance(header));
         let counted = listener.period.saturating_mul(frames.into());
@@ -69,7 +69,7 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
             (Some(known), None) => !is_within(place, known, self.time_since(known, header, listener), fastest_mps),
             (Some(known), Some(double)) => {
                 let longest = self.table.ages().stale_after;
-                let distance = |known: &Neighbor<S>| known.offset_at(place, at, longest).length_key();
+                let distance = |known: &Neighbor<S, P>| known.offset_at(place, at, longest).length_key();
                 distance(double) < distance(known)
             }
         }
@@ -108,7 +108,7 @@ impl<S: Scalar, const N: usize, W: Wire> Link<S, N, W> {
     }
 
     /// Cuts what a robot says of its size and speed down to what is believed. Of one that lies all the time, the first lie is news.
-    pub(super) fn cut(&self, said: &mut Neighbor<S>, claims: &Claims<S>, out: &mut Outputs<S>) {
+    pub(super) fn cut(&self, said: &mut Neighbor<S, P>, claims: &Claims<S>, out: &mut Outputs<S>) {
         let (is_large, is_fast) = claims.cut(said);
         if !is_large && !is_fast {
             return;

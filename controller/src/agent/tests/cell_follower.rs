@@ -37,6 +37,7 @@ impl Guidance<f32> for Counting {
     type Input<'a> = OnGrid<'a>;
     type Destination = ToCells;
     type Workspace = ();
+    type Payload = ();
 
     fn decide(
         &mut self,
@@ -96,7 +97,7 @@ fn counting() -> CellFollower<f32, Counting> {
 
 fn decide<G>(law: &mut G, (input, here): &Told) -> Result<Decision<f32>, BadInput>
 where
-    G: for<'a> Guidance<f32, Input<'a> = InCells<'a, f32>, Workspace = ()>,
+    G: for<'a> Guidance<f32, Input<'a> = InCells<'a, f32>, Workspace = (), Payload = ()>,
 {
     law.decide(input, here, &mut Rng::new(1), &mut ())
 }
@@ -202,6 +203,7 @@ impl Guidance<f32> for Stays {
     type Input<'a> = OnGrid<'a>;
     type Destination = ToCells;
     type Workspace = ();
+    type Payload = ();
 
     fn decide(
         &mut self,

@@ -44,7 +44,7 @@ pub(super) fn length([x, y]: [f64; 2]) -> f64 {
 }
 
 /// An agent with a body that does at once what it is told.
-pub(super) struct Robot<S: Scalar, G, A> {
+pub(super) struct Robot<S: Scalar, G: Guidance<S>, A> {
     pub(super) agent: Agent<S, G, 8, A>,
     pub(super) at_m: [f64; 2],
     pub(super) velocity_mps: [f64; 2],
@@ -101,6 +101,7 @@ impl Guidance<f32> for Onlooker {
     type Input<'a> = InPlane<'a, f32>;
     type Destination = Roams;
     type Workspace = ();
+    type Payload = ();
 
     fn decide(
         &mut self,
@@ -336,6 +337,7 @@ fn a_wish_that_is_no_number_is_no_wish() {
         type Input<'a> = InPlane<'a, f32>;
         type Destination = Roams;
         type Workspace = ();
+        type Payload = ();
         fn decide(
             &mut self,
             _: &GuidanceInput<'_, f32>,

@@ -71,6 +71,13 @@ fn a_law_that_an_operator_may_take_over_hears_all() {
 }
 
 #[test]
+fn a_law_that_is_told_of_any_surroundings_hears_all() {
+    let mut law = AnyWorld(Listener::default());
+    passes_orders_on(&mut law, |law| &law.0);
+    passes_land_on(&mut law, |law| &law.0);
+}
+
+#[test]
 fn a_law_with_a_map_hears_all_but_what_is_for_the_map() {
     let mut law = MapSharing::<_, 0>::new(Listener::default(), None);
     passes_orders_on(&mut law, MapSharing::inside);

@@ -88,6 +88,7 @@ fn bound(message: &Message) -> usize {
         Message::Key(_) => KeyAssignment::MAX_FRAME_LEN,
         Message::KeyHeld(_) => KeyHeld::MAX_FRAME_LEN,
         Message::Land(_) => LandPatch::MAX_FRAME_LEN,
+        Message::Payload(_) => PayloadBytes::MAX_FRAME_LEN,
     }
 }
 

@@ -26,8 +26,8 @@ pub struct Known {
 }
 
 /// Whom an agent knows, `now`, by number. `own` is where it is by its own reckoning, `own_m` the same place in the world. O(neighbours).
-pub fn known<'a>(
-    neighbors: &'a [Neighbor<f32>],
+pub fn known<'a, P>(
+    neighbors: &'a [Neighbor<f32, P>],
     own: Position,
     own_m: [f64; 3],
     now: Instant,

@@ -21,6 +21,7 @@ mod intervene;
 mod intruder;
 mod keeper;
 mod operator;
+mod own;
 mod plane;
 pub mod ranks;
 mod report;
@@ -37,6 +38,7 @@ pub use ground::{Ground, HostLaw, StateWords};
 pub use inspect::{Choice, Inspection, Known, Permitted, Scratchpad, SeenLand, known};
 pub use intervene::Change;
 pub use operator::{Observation, Operated, operated};
+pub use own::{NotInPlane, OwnLaw, operated_own, simulate_own};
 pub use plane::{PlaneGround, Senses};
 pub use simulate::{Moment, Outcome, Unable, WIDE, Watch, simulate, simulate_from, simulate_with};
 pub use state::{Saves, State, StateError};
@@ -55,7 +57,7 @@ use intruder::Intruder;
 use keeper::Keeper;
 use rayon::prelude::*;
 use staya_controller::agent::{
-    Agent, AgentConfig, AnyInputs, Command, Event, Inputs, NEIGHBORS, Outputs, Safety, Setup,
+    Agent, AgentConfig, AnyInputs, Command, Event, Guidance, Inputs, NEIGHBORS, Outputs, Safety, Setup,
 };
 use staya_controller::auth::Key;
 use staya_controller::neighbor::Claims;
@@ -69,7 +71,7 @@ const BATCH: usize = 64;
 
 /// A robot's computer.
 #[derive(Debug)]
-struct Computer<G, A> {
+struct Computer<G: Guidance<f32>, A> {
     /// `None`: elsewhere.
     agent: Option<Agent<f32, G, NEIGHBORS, A, HostWire>>,
     /// What the last step sent: no longer than that.
@@ -89,7 +91,7 @@ struct Computer<G, A> {
     heard_bytes: u64,
 }
 
-impl<G, A> Computer<G, A> {
+impl<G: Guidance<f32>, A> Computer<G, A> {
     /// Its own clock.
     const fn now(&self, tick: u32, tick_us: u32) -> Instant {
         Instant::from_micros(tick.wrapping_sub(self.epoch).wrapping_mul(tick_us))
@@ -105,7 +107,7 @@ struct Tick<'a, W> {
 
 impl<W: Ground> Tick<'_, W> {
     /// What robot `index` senses and hears.
-    fn inputs<'b, G, A>(
+    fn inputs<'b, G: Guidance<f32>, A>(
         &'b self,
         index: usize,
         computer: &Computer<G, A>,
@@ -136,7 +138,7 @@ impl<W: Ground> Tick<'_, W> {
 type Brains<G, A> = Box<dyn Fn(usize) -> (G, A) + Send + Sync>;
 
 /// A scenario in motion on ground `W`. `G` is the guidance law of all its robots, `A` their safety layer.
-pub struct Engine<W, G, A> {
+pub struct Engine<W, G: Guidance<f32>, A> {
     seed: u64,
     format: Format,
     key: Option<Key>,

@@ -8,7 +8,7 @@ use crate::scenario::{Intervention, Scenario};
 use crate::terrain::Terrain;
 use crate::world::plane::{Disc, Solid};
 use crate::world::{Misplaced, Refusal};
-use staya_controller::agent::{Commanded, Event, Parameter, Wish};
+use staya_controller::agent::{Commanded, Event, Guidance, Parameter, Wish};
 use staya_controller::auth::Master;
 use staya_controller::robot::RobotId;
 use staya_controller::wire::{Header, Message, OperatorWire, Wire as _};
@@ -106,7 +106,7 @@ pub fn operated(scenario: &Scenario) -> Result<Box<dyn Operated>, Misplaced> {
     })
 }
 
-fn boxed<W, G>(scenario: &Scenario, mut engine: Engine<W, Commanded<f32, G>, SafetyOf>) -> Box<dyn Operated>
+pub(super) fn boxed<W, G>(scenario: &Scenario, mut engine: Engine<W, Commanded<f32, G>, SafetyOf>) -> Box<dyn Operated>
 where
     W: Ground + 'static,
     G: HostLaw + Clone + 'static,
@@ -123,7 +123,7 @@ where
 }
 
 /// A swarm, and what its operator speaks.
-struct OperatedEngine<W, G> {
+struct OperatedEngine<W, G: Guidance<f32>> {
     engine: Engine<W, Commanded<f32, G>, SafetyOf>,
     /// The swarm's line of the record after the last tick.
     row: TickRow,

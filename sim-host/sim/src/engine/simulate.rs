@@ -202,7 +202,7 @@ pub(super) fn agents<const C: usize>(
 }
 
 /// Ticks until the end.
-fn go<W, G, A>(
+pub(super) fn go<W, G, A>(
     scenario: &Scenario,
     mut engine: Engine<W, G, A>,
     external: Option<Box<dyn ExternalController>>,

@@ -47,6 +47,7 @@ impl Guidance<f32> for Scout {
     type Input<'a> = AnySurroundings<'a, f32>;
     type Destination = ToCells;
     type Workspace = ();
+    type Payload = ();
 
     fn decide(
         &mut self,

@@ -14,7 +14,7 @@ use crate::metrics::Keeping;
 use crate::radio::Sent;
 use crate::record::{PacketCounts, RobotRow, TickRow};
 use crate::scenario::{AttackKind, Intervention, Scenario};
-use staya_controller::agent::{CELLS, Safety};
+use staya_controller::agent::{CELLS, Guidance, Safety};
 use staya_controller::grid::Cell;
 use staya_controller::robot::RobotId;
 use staya_controller::wire::Ring;
@@ -133,7 +133,7 @@ fn go(
 }
 
 /// One rank.
-pub(super) struct Rank<'a, W, G, A> {
+pub(super) struct Rank<'a, W, G: Guidance<f32>, A> {
     pub(super) scenario: &'a Scenario,
     pub(super) sharing: &'a Sharing,
     pub(super) engine: Engine<W, G, A>,

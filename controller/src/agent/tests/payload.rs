@@ -1,0 +1,174 @@
+//! What laws tell each other behind their beacons.
+
+use super::*;
+use crate::auth::Key;
+use crate::geom::Position;
+use crate::neighbor::{Neighbor, NeighborTable};
+use crate::wire::{MAX_PAYLOAD, PayloadBytes, Sealed, Wire};
+use proptest::prelude::{any, prop_assert_eq, proptest};
+
+type Told = (u8, i16, f32);
+
+/// Stands, tells what it was made with, and remembers what others told.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+struct Teller {
+    own: Told,
+    heard: Vec<(u32, Told)>,
+}
+
+impl Teamwork for Teller {}
+
+impl Guidance<f32> for Teller {
+    type Input<'a> = InPlane<'a, f32>;
+    type Destination = Roams;
+    type Workspace = ();
+    type Payload = Told;
+
+    fn decide(
+        &mut self,
+        input: &GuidanceInput<'_, f32, Told>,
+        _: &InPlane<'_, f32>,
+        _: &mut Rng,
+        (): &mut (),
+    ) -> Result<Decision<f32>, BadInput> {
+        self.heard = input.neighbors.iter().map(|other| (other.id.0, other.payload)).collect();
+        Ok(Decision::default())
+    }
+
+    fn has_own_goal(&self) -> bool {
+        true
+    }
+
+    fn payload(&mut self, _: Instant) -> Told {
+        self.own
+    }
+}
+
+const OWN: Told = (7, -300, 1.5);
+
+fn teller<G: Guidance<f32>, W: Wire>(id: u32, law: G, wire: W) -> Agent<f32, G, 4, Unguarded, W> {
+    Agent::new(&config(id), law, Unguarded, wire)
+}
+
+fn step<G, W: Wire>(agent: &mut Agent<f32, G, 4, Unguarded, W>, n: u32, inbox: &[u8]) -> Outputs<f32>
+where
+    G: for<'a> Guidance<f32, Input<'a> = InPlane<'a, f32>, Workspace = ()>,
+{
+    let surroundings = InPlane { max_speed_mps: 1.0, obstacles: &[] };
+    agent.step(&Inputs { state: KinematicState::default(), surroundings, inbox }, tick(n), &mut ())
+}
+
+fn law(own: Told) -> Teller {
+    Teller { own, heard: Vec::new() }
+}
+
+fn told(payload: Told) -> Message {
+    Message::Payload(PayloadBytes::of(&payload).unwrap())
+}
+
+fn beacon() -> Message {
+    Message::Beacon(beacon_at(3, 4))
+}
+
+#[test]
+fn a_payload_goes_behind_each_beacon_and_neighbours_have_it_in_their_entry() {
+    let (mut one, mut two) = (teller(1, law(OWN), Postcard), teller(2, law((9, 0, 0.0)), Postcard));
+    let out = step(&mut one, 0, &[]);
+    let kinds: Vec<bool> = sent(&out).iter().map(|frame| frame.message == told(OWN)).collect();
+    assert_eq!(kinds, [false, true]);
+    let _ = step(&mut two, 0, &out.outbox);
+    assert_eq!(two.neighbors().iter().map(|other| other.payload).collect::<Vec<_>>(), [OWN]);
+    assert_eq!(two.guidance().heard, [(1, OWN)]);
+}
+
+#[test]
+fn a_law_around_another_one_tells_what_the_one_inside_tells() {
+    let mut plain = teller(1, law(OWN), Postcard);
+    let said = step(&mut plain, 0, &[]).outbox;
+    let mut commanded = teller(1, Commanded::new(law(OWN), 1.0, 0.1), Postcard);
+    assert_eq!(step(&mut commanded, 0, &[]).outbox, said);
+    let mut told = teller(1, AnyWorld(law(OWN)), Postcard);
+    let plane = AnySurroundings::InPlane(InPlane { max_speed_mps: 1.0, obstacles: &[] });
+    let inputs = Inputs { state: KinematicState::default(), surroundings: plane, inbox: &[] };
+    assert_eq!(told.step(&inputs, tick(0), &mut ()).outbox, said);
+    let mut shares = teller(1, MapSharing::<_, 0>::new(law(OWN), None), Postcard);
+    assert_eq!(step(&mut shares, 0, &[]).outbox, said);
+}
+
+#[test]
+fn what_was_told_stays_with_the_next_beacons_and_not_with_another_life() {
+    let mut agent = teller(1, law(OWN), Postcard);
+    let mut hear = |n, inbox: &[u8]| {
+        let _ = step(&mut agent, n, inbox);
+        agent.neighbors().first().map(|other| other.payload)
+    };
+    assert_eq!(hear(0, &bytes(2, 0, 0, &[told(OWN)])), None, "nobody is known by a payload alone");
+    assert_eq!(hear(0, &bytes(2, 0, 1, &[beacon()])), Some(Told::default()));
+    assert_eq!(hear(0, &bytes(2, 0, 2, &[told(OWN)])), Some(OWN));
+    assert_eq!(hear(0, &bytes(2, 0, 4, &[beacon()])), Some(OWN));
+    assert_eq!(hear(0, &bytes(2, 0, 3, &[told((1, 1, 1.0))])), Some(OWN), "an older one came later");
+    assert_eq!(hear(0, &bytes(2, 1, 0, &[beacon()])), Some(Told::default()), "its computer has started anew");
+}
+
+#[test]
+fn bytes_that_are_no_value_of_the_type_change_nothing() {
+    let mut agent = teller(1, law(OWN), Postcard);
+    let _ = step(&mut agent, 0, &bytes(2, 0, 0, &[beacon(), told(OWN)]));
+    let right = PayloadBytes::of(&OWN).unwrap();
+    for (wrong, sequence) in [&right.as_slice()[..6], &[right.as_slice(), &[0]].concat(), &[]].into_iter().zip(2..) {
+        let wrong = Message::Payload(PayloadBytes::new(wrong).unwrap());
+        let out = step(&mut agent, 0, &bytes(2, 0, sequence, &[wrong]));
+        assert_eq!(out.received, 1);
+        assert_eq!(agent.neighbors()[0].payload, OWN);
+    }
+}
+
+#[test]
+fn with_a_key_a_forged_payload_is_not_believed() {
+    let wire = |passphrase: &[u8]| Sealed::<4>::at_start(&Key::of_passphrase(passphrase), 0).unwrap();
+    let mut one = teller(1, law(OWN), wire(b"swarm"));
+    let (mut two, mut forger) = (teller(2, law(OWN), wire(b"swarm")), teller(1, law((1, 1, 1.0)), wire(b"guessed")));
+    let _ = step(&mut two, 0, &step(&mut one, 0, &[]).outbox);
+    assert_eq!(two.guidance().heard, [(1, OWN)]);
+    let out = step(&mut two, 1, &step(&mut forger, 1, &[]).outbox);
+    assert_eq!((out.refused.forged, &two.guidance().heard[..]), (2, &[(1, OWN)][..]));
+}
+
+#[test]
+fn who_tells_nothing_has_no_byte_for_it_on_the_air_or_in_memory() {
+    assert_eq!(size_of::<Neighbor<f32>>(), size_of::<Neighbor<f32, [u8; 0]>>());
+    assert_eq!(size_of::<Neighbor<f32, [u8; 16]>>(), size_of::<Neighbor<f32>>() + 16);
+    let mut agent = route_agent(1);
+    let heard = bytes(2, 0, 0, &[beacon(), told(OWN)]);
+    let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &heard), tick(0), &mut workspace());
+    assert_eq!((sent(&out).len(), out.received, out.rejected), (1, 2, 0));
+    let without = Neighbor::<f32>::from_beacon(RobotId(2), &beacon_at(3, 4), tick(0));
+    assert_eq!(agent.neighbors(), [without]);
+}
+
+#[test]
+fn a_value_that_is_too_long_is_not_said() {
+    assert_eq!(PayloadBytes::of(&[u32::MAX; 4]), None);
+    assert_eq!(PayloadBytes::of(&[[u8::MAX; 16]]).unwrap().as_slice().len(), MAX_PAYLOAD);
+    assert_eq!(PayloadBytes::new(&[0; MAX_PAYLOAD + 1]), None);
+    let mut table = NeighborTable::<f32, 1, u8>::new(config(1).ages);
+    table.tell(RobotId(1), Some(3));
+    let heard = Neighbor::from_beacon(RobotId(2), &beacon_at(1, 1), tick(0));
+    let _ = table.put(heard, Position::default(), tick(0), |_| false);
+    table.tell(RobotId(1), Some(3));
+    assert_eq!(table.as_slice()[0].payload, 0);
+    table.tell(RobotId(2), Some(3));
+    assert_eq!(table.as_slice()[0].payload, 3);
+}
+
+proptest! {
+    #[test]
+    fn any_bytes_are_a_value_or_none(bytes in proptest::collection::vec(any::<u8>(), 0..=MAX_PAYLOAD)) {
+        let bytes = PayloadBytes::new(&bytes).unwrap();
+        if let Some(value) = bytes.get::<Told>() {
+            let again = PayloadBytes::of(&value).and_then(|bytes| bytes.get::<Told>()).unwrap();
+            prop_assert_eq!((again.0, again.1, again.2.to_bits()), (value.0, value.1, value.2.to_bits()));
+        }
+        prop_assert_eq!(bytes.get::<[u8; 17]>(), None);
+    }
+}

@@ -1,0 +1,120 @@
+//! An auction without an auctioneer: 16 robots, 16 places, and no list of who goes where. Beside its beacons each robot tells which
+//! place it bids for and how far off it is; of two that bid for one place the farther one gives it up and bids for the nearest that
+//! nobody nearer has (a greedy form of H.-L. Choi, L. Brunet, J. P. How 2009, "Consensus-based decentralized auctions for robust
+//! task allocation", section III). Run it by `cargo run --example auction`.
+
+use serde::{Deserialize, Serialize};
+use staya_controller::agent::*;
+use staya_controller::geom::{Position, Vec3};
+use staya_controller::rand::Rng;
+use staya_controller::robot::RobotId;
+use staya_controller::time::Instant;
+use staya_sim::engine::simulate_own;
+use staya_sim::scenario::{Overrides, Scenario};
+use std::{collections::BTreeSet, error::Error, ops::ControlFlow, path::Path};
+
+const SCENARIO: &str = r#"
+name = "auction"
+seed = 1
+ticks = 1200
+tick_s = 0.1
+[radio]
+range_m = 30
+loss = 0.2
+[plane]
+radius_m = 0.15
+max_speed_mps = 0.8
+[plane.robots.cloud]
+count = 16
+from_m = [-6, -6]
+to_m = [6, 6]
+"#;
+const TASKS: u8 = 16;
+const NEAR_M: f32 = 0.05;
+
+/// Four rows of four places, 2 m apart.
+fn place(task: u8) -> Position {
+    let along = |number: u8| 2000 * i32::from(number) - 3000;
+    Position::from_mm([along(task % 4), along(task / 4), 0])
+}
+
+/// A place, and how far the bidder is from it. Five bytes on the air at most.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct Bid {
+    task: u8,
+    distance_mm: u32,
+}
+
+/// What a robot bids for.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+struct Auction {
+    bid: Option<Bid>,
+}
+
+impl Teamwork for Auction {}
+
+impl Guidance<f32> for Auction {
+    type Input<'a> = InPlane<'a, f32>;
+    type Destination = Roams;
+    type Workspace = ();
+    type Payload = Option<Bid>;
+
+    fn decide(
+        &mut self,
+        input: &GuidanceInput<'_, f32, Option<Bid>>,
+        _: &InPlane<'_, f32>,
+        _: &mut Rng,
+        (): &mut (),
+    ) -> Result<Decision<f32>, BadInput> {
+        let way_m = |task: u8| place(task).since::<f32>(input.state.position);
+        let own = |task: u8| Bid { task, distance_mm: (way_m(task).norm() * 1000.0) as u32 };
+        // Of equal bids that of the lower number counts.
+        let is_outbid = |own: &Bid| {
+            let rank = |bid: &Bid, id: RobotId| (bid.distance_mm, id);
+            let bids = input.neighbors.iter().filter_map(|other| Some((other.payload?, other.id)));
+            bids.filter(|(bid, _)| bid.task == own.task).any(|(bid, id)| rank(&bid, id) < rank(own, input.id))
+        };
+        let kept = self.bid.map(|bid| own(bid.task)).filter(|bid| !is_outbid(bid));
+        let open = || (0..TASKS).map(own).filter(|bid| !is_outbid(bid)).min_by_key(|bid| bid.distance_mm);
+        self.bid = kept.or_else(open);
+        let Some(bid) = self.bid else { return Ok(Decision::default()) };
+        let way_m: Vec3<f32> = way_m(bid.task);
+        // The task's number also shows as the slot, in inspections.
+        let status = Status { is_at_goal: way_m.norm() <= NEAR_M, ..Status::default() };
+        let action = Action::Velocity { wish_mps: (way_m * 2.0).clamp_norm(0.8), way_m: Some(way_m) };
+        Ok(Decision { action, status, ..Decision::default() })
+    }
+
+    fn has_own_goal(&self) -> bool {
+        true
+    }
+
+    fn payload(&mut self, _: Instant) -> Option<Bid> {
+        self.bid
+    }
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let scenario = Scenario::parse(SCENARIO, Path::new("auction.toml"), &Overrides::default())?;
+    let mut places_m = Vec::new();
+    let outcome = simulate_own(&scenario, |_| Auction::default(), |moment, rows| {
+        places_m = rows.map(|row| row.motion.position_m).collect();
+        if moment.row.tick % 100 == 0 {
+            println!("{:4.0} s: {} of 16 are at a place", moment.row.time_s, taken(&places_m).len());
+        }
+        ControlFlow::Continue(())
+    })?;
+    let taken = taken(&places_m);
+    println!("{} places taken, {} overlaps", taken.len(), outcome.collisions);
+    assert!(taken.len() == 16 && outcome.collisions == 0, "two for one place, or none");
+    Ok(())
+}
+
+/// The tasks at whose places somebody is.
+fn taken(places_m: &[[f64; 3]]) -> BTreeSet<u8> {
+    let off = |task: u8, [x, y, _]: [f64; 3]| {
+        let [at_x, at_y, _] = place(task).mm.map(|mm| f64::from(mm) / 1000.0);
+        (x - at_x).hypot(y - at_y)
+    };
+    (0..TASKS).filter(|&task| places_m.iter().any(|&at| off(task, at) <= 0.1)).collect()
+}

@@ -1,0 +1,128 @@
+use super::*;
+use crate::engine::{Unable, simulate};
+use crate::scenario::Overrides;
+use serde::{Deserialize, Serialize};
+use staya_controller::agent::{
+    Action, BadInput, Decision, GuidanceInput, Roams, Status, Teamwork, Waypoint, WaypointGuidance,
+};
+use staya_controller::rand::Rng;
+use staya_controller::robot::RobotId;
+use staya_controller::time::Instant;
+use staya_controller::wire::Format;
+use std::path::Path;
+
+/// Stands, and takes over the highest number that it has heard of.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+struct Highest(u32);
+
+impl Teamwork for Highest {}
+
+impl Guidance<f32> for Highest {
+    type Input<'a> = InPlane<'a, f32>;
+    type Destination = Roams;
+    type Workspace = ();
+    type Payload = u32;
+
+    fn decide(
+        &mut self,
+        input: &GuidanceInput<'_, f32, u32>,
+        _: &InPlane<'_, f32>,
+        _: &mut Rng,
+        (): &mut (),
+    ) -> Result<Decision<f32>, BadInput> {
+        let heard = input.neighbors.iter().map(|other| other.payload);
+        self.0 = heard.fold(self.0.max(input.id.0), u32::max);
+        // The number is told by whom it follows, too, so that rows show it.
+        let status = Status { is_at_goal: self.0 == ROBOTS, ..Status::default() };
+        Ok(Decision { action: Action::Stay, status, leader: RobotId(self.0), ..Decision::default() })
+    }
+
+    fn has_own_goal(&self) -> bool {
+        true
+    }
+
+    fn assign_waypoint(&mut self, _: u8, _: &Waypoint<f32>) -> bool {
+        true
+    }
+
+    fn payload(&mut self, _: Instant) -> u32 {
+        self.0
+    }
+}
+
+const ROBOTS: u32 = 9;
+
+/// A line of robots that hear their neighbours alone.
+fn line(rest: &str) -> Scenario {
+    let robots: Vec<_> = (0..ROBOTS).map(|i| format!("{{ start_m = [{i}, 0], goal_m = [{i}, 0] }}")).collect();
+    let text = format!(
+        "name = \"line\"\nseed = 3\nticks = 60\ntick_s = 0.1\n[radio]\nrange_m = 1.5\n{rest}\n[plane]\nradius_m = 0.1\n\
+         max_speed_mps = 1.0\n[plane.robots]\nlist = [{}]\n",
+        robots.join(", ")
+    );
+    Scenario::parse(&text, Path::new("line.toml"), &Overrides::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn run(scenario: &Scenario) -> Outcome {
+    simulate_own(scenario, |_| Highest::default(), |_, _| ControlFlow::Continue(())).unwrap()
+}
+
+#[test]
+fn what_laws_tell_each_other_goes_from_robot_to_robot_in_both_formats_and_sealed() {
+    let passphrase = "[authentication]\nkey = \"passphrase: swarm\"\n";
+    for (rest, format) in [
+        (String::new(), Format::Postcard),
+        ("format = \"mavlink\"".into(), Format::Mavlink),
+        (passphrase.into(), Format::Postcard),
+        (format!("format = \"mavlink\"\n{passphrase}"), Format::Mavlink),
+    ] {
+        let scenario = line(&rest);
+        assert_eq!(scenario.radio.format, format);
+        let outcome = run(&scenario);
+        assert_eq!((outcome.arrived, outcome.packets.rejected), (ROBOTS as usize, 0), "{rest}");
+    }
+}
+
+#[test]
+fn payloads_that_are_lost_are_told_again() {
+    let outcome = run(&line("loss = 0.5"));
+    assert_eq!(outcome.arrived, ROBOTS as usize);
+}
+
+#[test]
+fn a_law_of_ones_own_that_is_one_of_ours_gives_the_very_same_run() {
+    let scenario = line("");
+    let ours = simulate(&scenario, |_, _| ControlFlow::Continue(())).unwrap();
+    let setup = scenario.plane.clone().unwrap();
+    let [speed_mps, tolerance_m] = [setup.general.cruise_mps, setup.general.tolerance_m].map(|x| x as f32);
+    let law = move |_| WaypointGuidance::new(speed_mps, tolerance_m);
+    let own = simulate_own(&scenario, law, |_, _| ControlFlow::Continue(())).unwrap();
+    assert_eq!(own.clearance, ours.clearance);
+    assert_eq!((own.arrived, own.packets), (ours.arrived, ours.packets));
+}
+
+#[test]
+fn a_run_goes_on_from_a_checkpoint_and_ends_as_if_it_had_never_stopped() {
+    let scenario = line("loss = 0.3");
+    let whole = run(&scenario);
+    let mut bytes = Vec::new();
+    let mut saved = engine(&scenario, |_| Highest::default()).unwrap();
+    for _ in 0..5 {
+        let _ = saved.step();
+    }
+    saved.save(&mut bytes).unwrap();
+    let mut again = engine(&scenario, |_| Highest::default()).unwrap();
+    again.restore(&bytes).map_err(Unable::State).unwrap();
+    while !again.is_over() && again.ticks() < scenario.ticks {
+        let _ = again.step();
+    }
+    assert_eq!(again.outcome(), whole);
+}
+
+#[test]
+fn a_scenario_of_the_grid_is_refused() {
+    let scenario = Scenario { plane: None, ..line("") };
+    let refused = simulate_own(&scenario, |_| Highest::default(), |_, _| ControlFlow::Continue(()));
+    assert_eq!(refused.err(), Some(NotInPlane));
+    assert!(NotInPlane.to_string().contains("give it one"));
+}
