@@ -79,7 +79,6 @@ impl Guidance<f32> for Auction {
         self.bid = kept.or_else(open);
         let Some(bid) = self.bid else { return Ok(Decision::default()) };
         let way_m: Vec3<f32> = way_m(bid.task);
-        // The task's number also shows as the slot, in inspections.
         let status = Status { is_at_goal: way_m.norm() <= NEAR_M, ..Status::default() };
         let action = Action::Velocity { wish_mps: (way_m * 2.0).clamp_norm(0.8), way_m: Some(way_m) };
         Ok(Decision { action, status, ..Decision::default() })
@@ -97,13 +96,17 @@ impl Guidance<f32> for Auction {
 fn main() -> Result<(), Box<dyn Error>> {
     let scenario = Scenario::parse(SCENARIO, Path::new("auction.toml"), &Overrides::default())?;
     let mut places_m = Vec::new();
-    let outcome = simulate_own(&scenario, |_| Auction::default(), |moment, rows| {
-        places_m = rows.map(|row| row.motion.position_m).collect();
-        if moment.row.tick % 100 == 0 {
-            println!("{:4.0} s: {} of 16 are at a place", moment.row.time_s, taken(&places_m).len());
-        }
-        ControlFlow::Continue(())
-    })?;
+    let outcome = simulate_own(
+        &scenario,
+        |_| Auction::default(),
+        |moment, rows| {
+            places_m = rows.map(|row| row.motion.position_m).collect();
+            if moment.row.tick % 100 == 0 {
+                println!("{:4.0} s: {} of 16 are at a place", moment.row.time_s, taken(&places_m).len());
+            }
+            ControlFlow::Continue(())
+        },
+    )?;
     let taken = taken(&places_m);
     println!("{} places taken, {} overlaps", taken.len(), outcome.collisions);
     assert!(taken.len() == 16 && outcome.collisions == 0, "two for one place, or none");
@@ -114,7 +117,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn taken(places_m: &[[f64; 3]]) -> BTreeSet<u8> {
     let off = |task: u8, [x, y, _]: [f64; 3]| {
         let [at_x, at_y, _] = place(task).mm.map(|mm| f64::from(mm) / 1000.0);
-        (x - at_x).hypot(y - at_y)
+        libm::hypot(x - at_x, y - at_y)
     };
     (0..TASKS).filter(|&task| places_m.iter().any(|&at| off(task, at) <= 0.1)).collect()
 }

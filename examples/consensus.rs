@@ -14,12 +14,12 @@ use std::{error::Error, ops::ControlFlow, path::Path};
 
 const ROBOTS: u32 = 20;
 const SPACING_M: f64 = 0.6;
-/// Where the robots have told their beliefs for long enough, they go, s.
+/// When they go, s: the time to tell each other their beliefs. A longer line takes longer, by the square of its robots.
 const TALK_S: f64 = 100.0;
-/// How far a belief moves towards another one: below one by the number of those heard, so that it settles.
+/// How far a belief moves towards each of those heard; among many less, so that it settles.
 const STEP: f32 = 0.2;
 
-/// Where all should meet, metres, and who believes so: `None` until it has decided once. Neighbours know it of each other.
+/// Where it believes that all should meet, metres; `None` until it has decided once, as of those of whom nothing was heard.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Meeting {
     belief_m: Option<[f32; 2]>,
@@ -44,15 +44,19 @@ impl Guidance<f32> for Meeting {
         let place = input.state.position.since::<f32>(Position::default());
         let [mut x, mut y] = self.belief_m.unwrap_or([place.x, place.y]);
         let own = [x, y];
+        let step = STEP.min(1.0 / (1 + input.neighbors.len()) as f32);
         for [other_x, other_y] in input.neighbors.iter().filter_map(|other| other.payload) {
-            x += STEP * (other_x - own[0]);
-            y += STEP * (other_y - own[1]);
+            x += step * (other_x - own[0]);
+            y += step * (other_y - own[1]);
         }
         self.belief_m = Some([x, y]);
         let way_m = Vec3::new(x, y, 0.0) - place;
         let goes = input.now.since(Instant::from_micros(0)).as_micros() >= (TALK_S * 1e6) as i32;
         let wish_mps = if goes { way_m.clamp_norm(0.5) } else { Vec3::ZERO };
-        Ok(Decision { action: Action::Velocity { wish_mps, way_m: goes.then_some(way_m) }, ..Decision::default() })
+        Ok(Decision {
+            action: Action::Velocity { wish_mps, way_m: goes.then_some(way_m) },
+            ..Decision::default()
+        })
     }
 
     fn has_own_goal(&self) -> bool {
@@ -66,7 +70,8 @@ impl Guidance<f32> for Meeting {
 
 fn main() -> Result<(), Box<dyn Error>> {
     // Each hears one on either side, and one packet in ten is lost.
-    let starts: Vec<_> = (0..ROBOTS).map(|i| format!("{{ start_m = [{}, {}] }}", SPACING_M * f64::from(i), i % 2)).collect();
+    let starts: Vec<_> =
+        (0..ROBOTS).map(|i| format!("{{ start_m = [{}, {}] }}", SPACING_M * f64::from(i), i % 2)).collect();
     let text = format!(
         "name = \"consensus\"\nseed = 1\nticks = 1300\ntick_s = 0.1\n[radio]\nrange_m = 1.2\nloss = 0.1\n[plane]\n\
          radius_m = 0.1\nmax_speed_mps = 0.5\n[plane.robots]\nlist = [{}]\n",
@@ -75,22 +80,32 @@ fn main() -> Result<(), Box<dyn Error>> {
     let scenario = Scenario::parse(&text, Path::new("consensus.toml"), &Overrides::default())?;
     let mean_m = [SPACING_M * f64::from(ROBOTS - 1) / 2.0, 0.5];
     let spread = |places: &[[f64; 3]]| {
-        let off = |[x, y, _]: &[f64; 3]| (x - mean_m[0]).hypot(y - mean_m[1]);
+        let off = |[x, y, _]: &[f64; 3]| libm::hypot(x - mean_m[0], y - mean_m[1]);
         places.iter().map(off).fold(0.0, f64::max)
     };
     let (mut first_m, mut last_m) = (0.0, 0.0);
-    let outcome = simulate_own(&scenario, |_| Meeting { belief_m: None }, |moment, rows| {
-        let places: Vec<_> = rows.map(|row| row.motion.position_m).collect();
-        last_m = spread(&places);
-        if moment.row.tick == 0 {
-            first_m = last_m;
-        }
-        if moment.row.tick % 100 == 0 {
-            println!("{:5.0} s: the farthest is {last_m:.2} m from where the mean was", moment.row.time_s);
-        }
-        ControlFlow::Continue(())
-    })?;
-    println!("{} packets delivered, {} lost, {} overlaps", outcome.packets.delivered, outcome.packets.lost, outcome.collisions);
+    let outcome = simulate_own(
+        &scenario,
+        |_| Meeting { belief_m: None },
+        |moment, rows| {
+            let places: Vec<_> = rows.map(|row| row.motion.position_m).collect();
+            last_m = spread(&places);
+            if moment.row.tick == 0 {
+                first_m = last_m;
+            }
+            if moment.row.tick % 100 == 0 {
+                println!(
+                    "{:5.0} s: the farthest is {last_m:.2} m from where the mean was",
+                    moment.row.time_s
+                );
+            }
+            ControlFlow::Continue(())
+        },
+    )?;
+    println!(
+        "{} packets delivered, {} lost, {} overlaps",
+        outcome.packets.delivered, outcome.packets.lost, outcome.collisions
+    );
     assert!(first_m > 5.0 && last_m < 1.5 && outcome.collisions == 0, "they have not met");
     Ok(())
 }

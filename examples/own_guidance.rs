@@ -18,7 +18,7 @@ use std::{error::Error, fs, ops::ControlFlow, path::Path};
 const SCENARIO: &str = r#"
 name = "patrol"
 seed = 1
-ticks = 1200
+ticks = 1800
 tick_s = 0.1
 [radio]
 range_m = 12
@@ -68,7 +68,7 @@ impl<S: Scalar> Guidance<S> for Patrol {
         }
         let out = place.normalized().unwrap_or_default();
         let along = out.xy().perp().extend(S::ZERO);
-        let pace = number(CRUISE_MPS) + (ahead - behind).clamp(-number(0.4), number(0.4));
+        let pace = number(CRUISE_MPS) + ((ahead - behind) * number(4.0)).clamp(-number(0.4), number(0.4));
         let wish_mps = along * pace + out * (number(self.ring_m) - place.norm());
         let wish_mps = wish_mps.clamp_norm(input.body.max_speed_mps);
         Ok(Decision { action: Action::Velocity { wish_mps, way_m: None }, ..Decision::default() })
@@ -92,15 +92,19 @@ fn main() -> Result<(), Box<dyn Error>> {
         None => None,
     };
     let mut places_m = Vec::new();
-    let outcome = simulate_own(&scenario, |_| Patrol { ring_m: RING_M }, |moment, rows| {
-        let rows: Vec<_> = rows.collect();
-        places_m = rows.iter().map(|row| row.motion.position_m).collect();
-        recorder.tick(moment.row, rows.iter().copied()).expect("memory takes everything");
-        if let Some(recording) = &mut recording {
-            recording.tick(moment, rows.into_iter()).expect("the disk has room");
-        }
-        ControlFlow::Continue(())
-    })?;
+    let outcome = simulate_own(
+        &scenario,
+        |_| Patrol { ring_m: RING_M },
+        |moment, rows| {
+            let rows: Vec<_> = rows.collect();
+            places_m = rows.iter().map(|row| row.motion.position_m).collect();
+            recorder.tick(moment.row, rows.iter().copied()).expect("memory takes everything");
+            if let Some(recording) = &mut recording {
+                recording.tick(moment, rows.into_iter()).expect("the disk has room");
+            }
+            ControlFlow::Continue(())
+        },
+    )?;
     if let (Some(folder), Some(recording), Some(plane)) = (folder, recording, &scenario.plane) {
         recording.finish(&())?;
         for file in motion_pictures(plane, &recorder.finish()?, Path::new(&folder))? {
@@ -108,15 +112,18 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         println!("look at it: staya view {folder}/patrol.staya");
     }
-    let mut bearings: Vec<f64> = places_m.iter().map(|[x, y, _]| y.atan2(*x)).collect();
+    let mut bearings: Vec<f64> = places_m.iter().map(|[x, y, _]| libm::atan2(*y, *x)).collect();
     bearings.sort_by(f64::total_cmp);
     let turn = f64::from(TAU);
     let next = bearings.iter().skip(1).copied().chain([bearings[0] + turn]);
     let gaps: Vec<f64> = next.zip(&bearings).map(|(next, own)| (next - own) * 360.0 / turn).collect();
-    let (least, most) = gaps.iter().fold((360.0_f64, 0.0_f64), |(least, most), &gap| (least.min(gap), most.max(gap)));
+    let (least, most) =
+        gaps.iter().fold((360.0_f64, 0.0_f64), |(least, most), &gap| (least.min(gap), most.max(gap)));
     let collisions = outcome.collisions;
-    println!("20 robots, {:.1} to {:.1} degrees apart (18 would be even), {collisions} overlaps, trace hash {:016x}",
-        least, most, outcome.trace_hash);
+    println!(
+        "20 robots, {:.1} to {:.1} degrees apart (18 would be even), {collisions} overlaps, trace hash {:016x}",
+        least, most, outcome.trace_hash
+    );
     assert!(least > 16.0 && most < 20.0 && collisions == 0, "no patrol");
     Ok(())
 }

@@ -53,6 +53,11 @@ fn a_flock_in_the_plane_is_the_same_on_any_number_of_threads() {
 }
 
 #[test]
+fn groups_with_guidance_and_safety_of_their_own_are_the_same_on_any_number_of_threads() {
+    same_on_any_number("groups", Some(200));
+}
+
+#[test]
 fn a_thousand_discs_among_pillars_are_the_same_on_any_number_of_threads() {
     same_on_any_number("scale-plane-small", Some(30));
 }

@@ -267,7 +267,8 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
                 }
             }
             Message::Land(patch) => return Some(News::Land(patch)),
-            Message::Payload(bytes) if arrival.is_latest() => self.table.tell(id, bytes.get()),
+            // Of no size: nothing that could be told.
+            Message::Payload(bytes) if size_of::<P>() > 0 && arrival.is_latest() => self.table.tell(id, bytes.get()),
             Message::Key(key) if is_mine(key.to) => {
                 if let Some((generation, phase)) = self.wire.held() {
                     self.say_early(&Message::KeyHeld(KeyHeld { to: sender, generation, phase }), out);
@@ -356,7 +357,9 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
             }
             // What finds no room is told again when its turn comes.
             let (payload, land) = told();
-            if let Some(bytes) = PayloadBytes::of(&payload).filter(|_| size_of::<P>() > 0) {
+            if size_of::<P>() > 0
+                && let Some(bytes) = PayloadBytes::of(&payload)
+            {
                 let _ = self.say(&Message::Payload(bytes), 0, out);
             }
             if let Some(patch) = land {

@@ -176,8 +176,14 @@ fn a_message_that_is_none_names_its_sender() {
 
 #[test]
 fn a_checkpoint_goes_on_to_the_same_end_on_any_number_of_ranks_and_on_none() {
-    let scenarios =
-        [parse(GRID), parse(PLANE), load("insider.toml", 60), load("revoked.toml", 60), load("six-robots.toml", 60)];
+    let scenarios = [
+        parse(GRID),
+        parse(PLANE),
+        load("insider.toml", 60),
+        load("revoked.toml", 60),
+        load("six-robots.toml", 60),
+        load("groups.toml", 60),
+    ];
     for scenario in scenarios {
         let alone = simulate(&scenario, |_, _| ControlFlow::Continue(())).expect("room");
         let sharing = Sharing { every_ticks: 4, checkpoints: Some(Every::Ticks(25)), ..Sharing::default() };

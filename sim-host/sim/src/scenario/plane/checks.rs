@@ -4,8 +4,9 @@ use super::super::ScenarioError;
 use super::super::source::Source;
 use super::spec::Spec;
 use super::table::{CloudEntry, Place, PlaneRobotEntry};
-use super::{PlaneSetup, check_count};
+use super::{PlaneSetup, Start, check_count};
 use crate::nearby::{Cells, Query, Search, Space};
+use crate::terrain::Terrain;
 use crate::world::plane::{Solid, Solids};
 use staya_controller::agent::{GOALS, GuidanceKind, WAYPOINTS};
 
@@ -40,13 +41,59 @@ pub(crate) const fn goals(guidance: GuidanceKind) -> u8 {
     }
 }
 
+/// Robots that go from cell to cell start with a goal, which no order moves.
 fn goal_count(source: &Source<'_>, field: &str, guidance: GuidanceKind, count: usize) -> Result<(), ScenarioError> {
-    let most = goals(guidance);
+    let most = if guidance == GuidanceKind::Route { 1 } else { goals(guidance) };
     if count <= usize::from(most) {
         return Ok(());
     }
     let what = format!("{count} goals are too many for guidance \"{}\"", guidance.name());
     Err(source.error(field, what, format!("give at most {most}, or another guidance")))
+}
+
+/// Robots of a group in metres, if their guidance goes from cell to cell: each starts on the land and has one goal there.
+pub(super) fn in_cells(
+    source: &Source<'_>,
+    spec: &Spec,
+    terrain: Option<&Terrain>,
+    starts: &[Start],
+) -> Result<(), ScenarioError> {
+    if !spec.guidance.is_on_grid() {
+        return Ok(());
+    }
+    let field = spec.field(source, "guidance");
+    if spec.guidance == GuidanceKind::Formation {
+        let remedy = "give guidance \"route\", or the formation to all robots, with the top-level [robots]";
+        return Err(source.error(&field, "a formation has all robots of a scenario", remedy));
+    }
+    let Some(land) = terrain else {
+        return Err(source.error(
+            &field,
+            "this guidance goes from cell to cell",
+            "give [terrain], or another guidance",
+        ));
+    };
+    let is_open = |[x, y, z]: [f64; 3]| {
+        let cell = land.nearest_cell([x, y]);
+        let [at_x, at_y] = land.center_m(cell);
+        let half_m = land.cell_m / 2.0;
+        z == 0.0 && (x - at_x).abs() <= half_m && (y - at_y).abs() <= half_m && land.is_passable(cell)
+    };
+    for (index, start) in starts.iter().enumerate() {
+        let what = match &start.places[..] {
+            _ if !is_open(start.position_m) => "starts in no free cell",
+            [goal] if goal.velocity_mps == [0.0; 3] && is_open(goal.position_m) => continue,
+            [_] => "has its goal in no free cell",
+            _ => "has no goal",
+        };
+        let what = format!("robot {} of the group goes from cell to cell and {what}", index + 1);
+        return Err(source.error(
+            &format!("{}.robots", spec.table()),
+            what,
+            "give each one start and one goal on free land",
+        ));
+    }
+    Ok(())
 }
 
 pub(super) fn list(source: &Source<'_>, spec: &Spec, list: &[PlaneRobotEntry]) -> Result<(), ScenarioError> {

@@ -115,11 +115,21 @@ impl PlaneSetup {
         general.into_iter().chain(&self.groups)
     }
 
-    /// Numbers for the robots: 1, 2, 3, ... in the order of their starts; their cells mean nothing.
-    fn robots(&self) -> Vec<Robot> {
-        let ids = 1..=self.starts.len() as u32;
-        let robot = |id| Robot { id: RobotId(id), start: Cell::default(), goal: Cell::default() };
-        ids.map(robot).collect()
+    /// The robots: those that have been given in cells, and behind them, numbered on, those that are given in metres. Cells of the latter
+    /// mean something only where their guidance goes from cell to cell.
+    fn robots(&self, in_cells: &[Robot], terrain: Option<&Terrain>) -> Vec<Robot> {
+        let cell = |index: usize, place_m: Option<[f64; 3]>| {
+            let land = terrain.filter(|_| self.group(index).guidance.kind().is_on_grid());
+            land.zip(place_m).map_or_else(Cell::default, |(land, [x, y, _])| land.nearest_cell([x, y]))
+        };
+        let last = in_cells.last().map_or(0, |robot| robot.id.0);
+        let others = (in_cells.len()..).zip(&self.starts[in_cells.len()..]).zip(last.saturating_add(1)..);
+        let others = others.map(|((index, start), id)| Robot {
+            id: RobotId(id),
+            start: cell(index, Some(start.position_m)),
+            goal: cell(index, start.places.first().map(|target| target.position_m)),
+        });
+        in_cells.iter().copied().chain(others).collect()
     }
 }
 
@@ -138,7 +148,7 @@ impl Scenario {
             scouting: None,
             rules: MoveRules::default(),
             radio,
-            robots: setup.robots(),
+            robots: setup.robots(&[], None),
             formation: None,
             plane: Some(setup),
             route: RouteSetup::default(),
@@ -185,42 +195,36 @@ pub(super) fn build(
     let spec = Spec::general(table);
     let mut general = spec.build(source, file)?;
     let solids = solids(source, file, table)?;
-    let (mut groups, mut starts) = (Vec::new(), Vec::new());
-    match (cells, &table.robots, table.group.is_empty()) {
-        (Some(robots), None, true) => {
-            let terrain = terrain.expect("cells have been checked against the land");
-            starts = starts::on_land(robots, terrain);
-        }
-        (None, own, no_groups) if own.is_some() || !no_groups => {
-            let mut placing = starts::Placing {
-                source,
-                file,
-                general_m: general.radius_m,
-                solids: &solids,
-                groups: &mut groups,
-                starts: &mut starts,
-            };
-            if let Some(robots) = own {
-                placing.place(&spec, None, robots)?;
-            }
-            for (index, group) in table.group.iter().enumerate() {
-                let spec = spec.group(index, group);
-                if spec.guidance.is_on_grid() {
-                    let what = "this guidance goes from cell to cell";
-                    let remedy = "give it to all robots, in plane.guidance with the top-level [robots]";
-                    return Err(source.error(&spec.field(source, "guidance"), what, remedy));
-                }
-                let number = placing.add(&spec)?;
-                placing.place(&spec, Some(number), &group.robots)?;
-            }
-        }
-        _ => {
-            return Err(source.error(
-                "plane.robots",
-                "it is not clear who takes part",
-                "give either plane.robots in metres, with plane.group if you like, or the top-level robots in cells",
-            ));
-        }
+    let has_groups = !table.group.is_empty();
+    if cells.is_some() == table.robots.is_some() && (cells.is_some() || !has_groups) {
+        return Err(source.error(
+            "plane.robots",
+            "it is not clear who takes part",
+            "give either plane.robots in metres or the top-level robots in cells, with plane.group if you like",
+        ));
+    }
+    if has_groups && file.in_formation() {
+        let remedy = "give the robots in cells guidance \"route\" and no formation, or leave the groups out";
+        return Err(source.error("plane.group", "a formation has all robots of a scenario", remedy));
+    }
+    let mut starts = cells.zip(terrain).map_or_else(Vec::new, |(robots, land)| starts::on_land(robots, land));
+    let mut groups = Vec::new();
+    let mut placing = starts::Placing {
+        source,
+        file,
+        general_m: general.radius_m,
+        solids: &solids,
+        groups: &mut groups,
+        starts: &mut starts,
+    };
+    if let Some(robots) = &table.robots {
+        placing.place(&spec, None, robots)?;
+    }
+    for (index, group) in table.group.iter().enumerate() {
+        let (spec, before) = (spec.group(index, group), placing.starts.len());
+        let number = placing.add(&spec)?;
+        placing.place(&spec, Some(number), &group.robots)?;
+        checks::in_cells(source, &spec, terrain, &placing.starts[before..])?;
     }
     group::grow_as_the_fastest(&mut general, &mut groups);
     let setup = PlaneSetup {
@@ -235,7 +239,7 @@ pub(super) fn build(
     checks::starts(source, &setup)?;
     checks::outside(source, &setup)?;
     let setup = PlaneSetup { orders: orders(source, file, table, &setup)?, ..setup };
-    let robots = cells.map_or_else(|| setup.robots(), <[Robot]>::to_vec);
+    let robots = setup.robots(cells.unwrap_or_default(), terrain);
     Ok((setup, robots))
 }
 

@@ -126,7 +126,7 @@ pub struct GroupTable {
     pub tolerance_m: Option<f64>,
     /// How far they see obstacles, metres.
     pub sight_m: Option<f64>,
-    /// Where they want to go; not from cell to cell.
+    /// Where they want to go; not in formation, and from cell to cell on land alone.
     pub guidance: Option<GuidanceKind>,
     /// The flock that they are of; 0 is that of the robots of `[plane]`. Default: one of their own.
     pub flock: Option<u8>,
