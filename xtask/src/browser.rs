@@ -43,7 +43,7 @@ pub fn run_tests(repo: &Repo, report: &mut Report) {
 /// Browser and environment. Returns the Python that drives it; the error says what is missing.
 fn prepare(repo: &Repo) -> Result<PathBuf, String> {
     chromium(repo)?;
-    let python = python::environment(repo)?;
+    let python = python::environment(repo, python::CLIENTS)?;
     python::install(repo, &python, &format!("{TESTS}/requirements.txt"), &[])?;
     Ok(python)
 }

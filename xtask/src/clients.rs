@@ -48,7 +48,7 @@ pub fn run_tests(repo: &Repo, report: &mut Report, only: Option<&str>, extent: E
 
 /// An environment with pytest, pymavlink and the dialect, up to date. Returns its Python; the error says why there is none.
 pub fn environment(repo: &Repo) -> Result<PathBuf, String> {
-    let python = python::environment(repo)?;
+    let python = python::environment(repo, python::CLIENTS)?;
     python::install(repo, &python, &format!("{TESTS}/requirements.txt"), &[])?;
     let mut dialect = repo.command(&python);
     run(dialect.arg(format!("{TESTS}/dialect.py")))

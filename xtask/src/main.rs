@@ -30,6 +30,7 @@ mod mpi;
 mod part;
 mod plants;
 mod python;
+mod python_package;
 mod qemu;
 mod repo;
 mod report;
@@ -65,6 +66,7 @@ Usage: cargo xtask COMMAND
   browser         the page of `staya view` in Chromium, driven from Python
   clients [NAME]  MAVLink clients (pymavlink, MAVSDK, MAVProxy, tshark) against staya, from Python: all tests or those whose names contain NAME
   cluster         sweeps on Slurm and GNU parallel, on this machine: the same rows as without them
+  python          the package for Python: its wheel, its types, its tests, its notebook
   mpi             one world over ranks of OpenMPI, on this machine: the trace hash of one process; a rank that dies
   mpi --scaling   times of 200,000 robots on 1, 2 and 4 ranks; on a machine that does nothing else
   faults [PART...]
@@ -127,6 +129,7 @@ fn main() -> ExitCode {
         ["c"] => c::run_command(&repo, &mut report),
         ["browser"] => browser::run_command(&repo, &mut report),
         ["cluster"] => cluster::run_command(&repo, &mut report),
+        ["python"] => python_package::run_command(&repo, &mut report),
         ["mpi"] => mpi::run_command(&repo, &mut report),
         ["mpi", "--scaling"] => mpi::run_scaling(&repo, &mut report),
         ["example"] => example::run(&repo, &mut report),

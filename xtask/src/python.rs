@@ -9,9 +9,12 @@ use std::process::Command;
 const PACKAGES: [&str; 2] = ["python3", "python3-venv"];
 const REMEDY: &str = "on Debian run, as root, `apt-get update && apt-get install python3 python3-venv`";
 
-/// Makes the environment if it is not there. Returns its Python; the error says why there is none.
-pub fn environment(repo: &Repo) -> Result<PathBuf, String> {
-    let folder = repo.target.join("python");
+/// The environment of clients and of what drives a browser.
+pub const CLIENTS: &str = "python";
+
+/// Makes an environment in a folder of the target folder if it is not there. Returns its Python; the error says why there is none.
+pub fn environment(repo: &Repo, folder: &str) -> Result<PathBuf, String> {
+    let folder = repo.target.join(folder);
     let python = folder.join("bin/python");
     if output_of(repo.command(&python).arg("--version")).is_some() {
         return Ok(python);

@@ -60,6 +60,7 @@ pub fn run(repo: &Repo, report: &mut Report, extent: Extent) {
         crate::cluster::run_command(repo, report);
         crate::mpi::run_command(repo, report);
     }
+    crate::python_package::run_command(repo, report);
     if let Some(mut firmware) = firmware {
         report.part("the rest of the firmware, begun during the tests", || {
             let _ = firmware.wait();

@@ -32,4 +32,4 @@ pub mod route;
 pub mod scale;
 pub mod scouting;
 pub mod share;
-pub mod walk;
+pub use staya_sim::walk;

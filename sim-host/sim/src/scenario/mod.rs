@@ -39,7 +39,7 @@ pub use schema::{
     FormationEntry, Lie, MisnumberedTable, NaturalTable, RobotEntry, RobotsTable, RollTable, ScatteredEntry, ScenEntry,
     ScenarioFile, ScoutingTable, TerrainTable, UniformTable,
 };
-pub use setting::{Setting, text_with};
+pub use setting::{Setting, text_with, with_settings};
 pub use source::ScenarioError;
 pub use source::Source;
 

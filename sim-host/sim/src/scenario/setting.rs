@@ -37,11 +37,23 @@ impl Scenario {
     /// # Errors
     /// See [`Scenario::load`]; the line is that of the file, if the field stands there.
     pub fn load_with(path: &Path, overrides: &Overrides, settings: &[Setting]) -> Result<Self, ScenarioError> {
-        let text = read(path)?;
+        Self::parse_with(&read(path)?, path, overrides, settings)
+    }
+
+    /// The same of a text that stands (or might stand) in the file `path`.
+    ///
+    /// # Errors
+    /// See [`Scenario::load_with`].
+    pub fn parse_with(
+        text: &str,
+        path: &Path,
+        overrides: &Overrides,
+        settings: &[Setting],
+    ) -> Result<Self, ScenarioError> {
         if settings.is_empty() {
-            return Self::parse(&text, path, overrides);
+            return Self::parse(text, path, overrides);
         }
-        let source = Source::new(path, &text)?;
+        let source = Source::new(path, text)?;
         Self::parse(&set(&source, settings)?, path, overrides).map_err(|error| match error {
             ScenarioError::Field { field, what, remedy, .. } => {
                 let is_set = settings.iter().any(|setting| is_about(&field, setting.field.name()));
@@ -59,10 +71,15 @@ impl Scenario {
 /// The file cannot be read, is no TOML, or has something else where a field's table should be.
 pub fn text_with(path: &Path, settings: &[Setting]) -> Result<String, ScenarioError> {
     let text = read(path)?;
-    if settings.is_empty() {
-        return Ok(text);
-    }
-    set(&Source::new(path, &text)?, settings)
+    if settings.is_empty() { Ok(text) } else { with_settings(&text, path, settings) }
+}
+
+/// The same of a text that stands (or might stand) in the file `path`; without its comments.
+///
+/// # Errors
+/// See [`text_with`].
+pub fn with_settings(text: &str, path: &Path, settings: &[Setting]) -> Result<String, ScenarioError> {
+    set(&Source::new(path, text)?, settings)
 }
 
 fn read(path: &Path) -> Result<String, ScenarioError> {

@@ -12,7 +12,7 @@ use staya_sim::terrain::change::LandChange;
 use std::path::Path;
 
 /// Takes the moments of a run, and writes those that are due: every so many ticks, and the last one.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct RunRecorder<W: Sink> {
     writer: Writer<W>,
     framer: Framer,
@@ -76,6 +76,14 @@ impl<W: Sink> RunRecorder<W> {
         self.framer.fill(&mut self.frame, moment, robots);
         self.is_written = tick.is_multiple_of(self.every);
         if self.is_written { self.writer.frame(&self.frame) } else { Ok(()) }
+    }
+
+    /// Takes note of what somebody does to the run before its next tick.
+    pub fn note(&mut self, what: &Intervention) {
+        if changes_scene(what) {
+            self.changes.push(self.seen);
+        }
+        self.orders.push(json!({ "tick": self.seen, "order": order(what, &self.scene) }));
     }
 
     /// Writes what has gathered.

@@ -34,7 +34,7 @@ impl Sink for Vec<u8> {
 /// Writes a recording block by block. Whatever becomes of the run, the file ends with a whole block. Memory: a block
 /// and a
 /// frame.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Writer<W: Sink> {
     out: W,
     path: PathBuf,

@@ -1,12 +1,12 @@
 //! One robot on the move, by nothing but the controller's router.
 
+use crate::terrain::Terrain;
 use staya_controller::agent::VISITS;
 use staya_controller::cost::Gain;
 use staya_controller::grid::{BLOCKED, Cell, Dir, Window};
 use staya_controller::rand::Rng;
 use staya_controller::route::{CostField, Replan, RouteParams, Router};
 use staya_controller::shuffle::{Sharpness, weighted_shuffle};
-use staya_sim::terrain::Terrain;
 
 /// Moves after which a robot is lost, per cell of the map's half circumference (width + height).
 const PATIENCE: usize = 200;
@@ -140,7 +140,7 @@ impl<const CELLS: usize, const M: usize, const L: usize> Walker<CELLS, M, L> {
     }
 }
 
-/// How far beyond the map windows show walls, as [`World::window`](staya_sim::world::World::window) does: by the radius.
+/// How far beyond the map windows show walls, as [`World::window`](crate::world::World::window) does: by the radius.
 /// By nothing where the window of a robot anywhere holds the whole map, or would be too large for the search.
 fn margin(cells: usize, land: &Terrain, radius: u8) -> u16 {
     let side = 2 * usize::from(radius) + 3;

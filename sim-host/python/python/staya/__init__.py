@@ -1,0 +1,14 @@
+"""Swarms of robots, each with its own onboard controller.
+
+`Simulation` runs a scenario, with the trace hash of the command `staya run`. `orca`, `route` and the laws in
+`staya.flock` are the controller's behaviours by themselves, over all robots at once. `staya.rl` (the extra `rl`) has environments for
+Gymnasium and PettingZoo. Lengths are metres, times seconds, speeds metres per second; x is east, y north, z up.
+"""
+
+from . import flock
+from ._staya import ScenarioError
+from .behaviors import Orca, Routes, orca, route
+from .result import Page, Result
+from .simulation import Mode, Simulation
+
+__all__ = ["Mode", "Orca", "Page", "Result", "Routes", "ScenarioError", "Simulation", "flock", "orca", "route"]

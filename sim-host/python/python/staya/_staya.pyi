@@ -1,0 +1,128 @@
+"""The compiled module: arguments come checked from the modules beside it."""
+
+from os import PathLike
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+_Floats = NDArray[np.float64]
+
+class ScenarioError(ValueError):
+    """A scenario that cannot be read or is wrong: file, line, field and remedy."""
+
+class Run:
+    """A scenario in motion."""
+
+    def __new__(
+        cls,
+        text: str,
+        path: str | PathLike[str],
+        seed: int | None,
+        ticks: int | None,
+        settings: list[str],
+        record: int | None,
+    ) -> Run: ...
+    @property
+    def tick(self) -> int: ...
+    @property
+    def ticks(self) -> int: ...
+    @property
+    def tick_s(self) -> float: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def seed(self) -> int: ...
+    @property
+    def records(self) -> bool: ...
+    @property
+    def is_over(self) -> bool: ...
+    @property
+    def trace_hash(self) -> str: ...
+    @property
+    def has_wishes(self) -> bool: ...
+    def step(self, ticks: int) -> None: ...
+    def run(self, until: int | None) -> None: ...
+    def begin_trace(self, every: int) -> None: ...
+    def end_trace(self) -> dict[str, dict[str, NDArray[Any]]]: ...
+    def ids(self) -> NDArray[np.uint32]: ...
+    def bodies(self) -> _Floats | None: ...
+    def positions(self) -> _Floats: ...
+    def velocities(self) -> _Floats: ...
+    def goals(self) -> _Floats: ...
+    def modes(self) -> NDArray[np.uint8]: ...
+    def is_up(self) -> NDArray[np.bool_]: ...
+    def neighbors(self) -> NDArray[np.uint32]: ...
+    def wish(self, velocities_mps: _Floats, mask: NDArray[np.bool_]) -> None: ...
+    def intervene(self, table: str) -> None: ...
+    def summary(self) -> str: ...
+    def scenario_text(self) -> str: ...
+    def page(self) -> str | None: ...
+
+class Avoiders:
+    """The collision avoidance of each of many robots."""
+
+    def __new__(
+        cls,
+        count: int,
+        in_space: bool,
+        horizon_s: float,
+        wall_horizon_s: float,
+        share: float,
+        margin_m: float,
+        lean_rad: float,
+        patience_radii: float,
+        downwash: float,
+        seed: int,
+    ) -> Avoiders: ...
+    def velocities(
+        self,
+        positions_m: _Floats,
+        velocities_mps: _Floats,
+        wishes_mps: _Floats,
+        goals_m: _Floats | None,
+        radii_m: _Floats,
+        max_speeds_mps: _Floats,
+        walls_m: _Floats,
+        discs_m: _Floats,
+        step_s: float,
+    ) -> _Floats: ...
+
+def lattice_acceleration(
+    positions_m: _Floats,
+    velocities_mps: _Floats,
+    reference: tuple[list[float], list[float]] | None,
+    walls_m: _Floats,
+    discs_m: _Floats,
+    algorithm: int,
+    spacing_m: float,
+    ratios: list[float],
+    bounds: list[float],
+    gains: list[list[float]],
+) -> _Floats: ...
+def goal_wish(
+    positions_m: _Floats,
+    goals_m: _Floats,
+    gains: list[float],
+    neighborhood_m: float,
+    min_distance_m: float,
+    speed_mps: float,
+    step_s: float,
+) -> _Floats: ...
+def boids_steer(
+    positions_m: _Floats,
+    headings: _Floats,
+    torus_m: list[float] | None,
+    values: list[float],
+    radii_m: _Floats,
+) -> _Floats: ...
+def route(
+    land: NDArray[np.uint8],
+    starts: NDArray[np.int16],
+    goals: NDArray[np.int16],
+    radius: int,
+    gains: list[float],
+    ray_exit: bool,
+    chebyshev: bool,
+    corner_cutting: bool,
+) -> tuple[list[NDArray[np.int16]], _Floats, NDArray[np.bool_]]: ...

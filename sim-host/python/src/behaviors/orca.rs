@@ -1,0 +1,115 @@
+//! ORCA (J. van den Berg and others 2011) of all robots at once.
+
+use super::{Neighborhood, Obstacles, Robots, array, rows, vector};
+use crate::simulation;
+use numpy::{PyArray2, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::sync::MutexExt as _;
+use rayon::prelude::*;
+use staya_controller::agent::HALF_PLANES;
+use staya_controller::orca::{AvoidParams, Avoider, DeadlockParams, InSpace};
+use staya_controller::rand::Rng;
+use std::sync::{Mutex, PoisonError};
+
+/// Keeps the draws that end ties apart from all others.
+const RANDOM: u32 = u32::from_be_bytes(*b"pyth");
+/// Robots that a thread takes at least at a time.
+const BATCH: usize = 32;
+
+/// The collision avoidance of each of many robots, with what it remembers from step to step.
+#[pyclass(frozen, module = "staya._staya")]
+pub struct Avoiders {
+    all: Mutex<Vec<(AnyAvoider, Rng)>>,
+    horizon_s: f64,
+}
+
+#[derive(Clone)]
+enum AnyAvoider {
+    Plane(Avoider<f32, HALF_PLANES>),
+    Space(Avoider<f32, HALF_PLANES, InSpace<f32>>),
+}
+
+#[pymethods]
+impl Avoiders {
+    /// Of `count` robots, in the plane or in space.
+    #[new]
+    #[expect(clippy::too_many_arguments, reason = "Python gives them by name")]
+    fn new(
+        count: usize,
+        in_space: bool,
+        horizon_s: f64,
+        wall_horizon_s: f64,
+        share: f64,
+        margin_m: f64,
+        lean_rad: f64,
+        patience_radii: f64,
+        downwash: f64,
+        seed: u64,
+    ) -> Self {
+        let params = AvoidParams {
+            horizon_s: horizon_s as f32,
+            wall_horizon_s: wall_horizon_s as f32,
+            share: share as f32,
+            margin_m: margin_m as f32,
+            deadlock: DeadlockParams { lean_rad: lean_rad as f32, patience_radii: patience_radii as f32 },
+        };
+        let avoider = match in_space {
+            true => AnyAvoider::Space(Avoider::with_source(params, InSpace { downwash: downwash as f32 })),
+            false => AnyAvoider::Plane(Avoider::new(params)),
+        };
+        let random = |number| Rng::keyed(seed, RANDOM, number, 0);
+        let all = (1..).take(count).map(|number| (avoider.clone(), random(number))).collect();
+        Self { all: Mutex::new(all), horizon_s }
+    }
+
+    /// The velocities to take until the next step, m/s. Each robot reckons with the 16 nearest that it could meet within the
+    /// horizon. O(robots * 16) and the search, on all cores, without Python's interpreter.
+    #[expect(clippy::too_many_arguments, reason = "Python gives them by name")]
+    fn velocities<'py>(
+        &self,
+        py: Python<'py>,
+        positions_m: PyReadonlyArray2<'py, f64>,
+        velocities_mps: PyReadonlyArray2<'py, f64>,
+        wishes_mps: PyReadonlyArray2<'py, f64>,
+        goals_m: Option<PyReadonlyArray2<'py, f64>>,
+        radii_m: PyReadonlyArray1<'py, f64>,
+        max_speeds_mps: PyReadonlyArray1<'py, f64>,
+        walls_m: PyReadonlyArray2<'py, f64>,
+        discs_m: PyReadonlyArray2<'py, f64>,
+        step_s: f64,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let (positions_m, velocities_mps) = (rows::<3>(&positions_m)?, rows::<3>(&velocities_mps)?);
+        let (radii_m, speeds_mps) = (radii_m.as_slice()?, max_speeds_mps.as_slice()?);
+        let (wishes_mps, goals_m) = (rows::<3>(&wishes_mps)?, goals_m.as_ref().map(rows::<3>).transpose()?);
+        let obstacles = Obstacles { walls_m: rows(&walls_m)?, discs_m: rows(&discs_m)? };
+        let mut all = self.all.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
+        let all = all.as_mut_slice();
+        let best = py.detach(|| {
+            let largest = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+            // Who is farther cannot be met within the horizon, whatever both do.
+            let reach_m = 2.0 * largest(speeds_mps) * (self.horizon_s + step_s) + 2.0 * largest(radii_m);
+            let neighborhood = Neighborhood::new(Robots { positions_m, velocities_mps, radii_m }, reach_m, None);
+            let robots = all.par_iter_mut().enumerate().with_min_len(BATCH);
+            let best = robots.map_init(Vec::new, |found, (index, (avoider, rng))| {
+                let body = neighborhood.body(index, speeds_mps[index], step_s);
+                let nearby = neighborhood.of(index, found);
+                let seen: Vec<_> = obstacles.from(positions_m[index]).collect();
+                let way = goals_m.map(|goals_m| {
+                    let (goal_m, here_m) = (goals_m[index], positions_m[index]);
+                    vector([0, 1, 2].map(|axis| goal_m[axis] - here_m[axis]))
+                });
+                let wish = vector(wishes_mps[index]);
+                array(match avoider {
+                    AnyAvoider::Plane(avoider) => {
+                        let way = way.map(|way| way.xy());
+                        let best = avoider.velocity(&body, wish.xy(), way, &nearby, &seen, rng);
+                        best.velocity_mps.extend(wish.z)
+                    }
+                    AnyAvoider::Space(avoider) => avoider.velocity(&body, wish, way, &nearby, &seen, rng).velocity_mps,
+                })
+            });
+            best.collect::<Vec<[f64; 3]>>()
+        });
+        Ok(simulation::rows(py, best.into_iter()))
+    }
+}

@@ -1,0 +1,72 @@
+//! Windowed routing (A. V. Kuznetsov 2017) of many robots across one land, each as if it were alone.
+
+use numpy::{IntoPyArray as _, PyArray1, PyArray2, PyReadonlyArray2, PyUntypedArrayMethods as _};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use rayon::prelude::*;
+use staya_controller::agent::{LEARNED, VISITS};
+use staya_controller::cost::Gain;
+use staya_controller::grid::{Cell, Norm, UNIT};
+use staya_controller::route::{ExitRule, Replan, RouteParams};
+use staya_sim::engine::WIDE;
+use staya_sim::terrain::Terrain;
+use staya_sim::walk::{Task, Walk, Walker};
+
+/// A way: its cells, its time in ticks, and whether it leads to the goal.
+type Routes<'py> = (Vec<Bound<'py, PyArray2<i16>>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<bool>>);
+
+/// Walks robots from their starts to their goals, each by what its window shows: the cells of each way (x, y), its travel time in
+/// ticks, and whether it arrived. `land` is row by row from the south, 0 a wall. `gains` are a0 to a3, from 0 to 4095. On all cores, without
+/// Python's interpreter.
+///
+/// # Errors
+/// Land of a size that none can have.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "Python gives them by name")]
+pub fn route<'py>(
+    py: Python<'py>,
+    land: PyReadonlyArray2<'py, u8>,
+    starts: PyReadonlyArray2<'py, i16>,
+    goals: PyReadonlyArray2<'py, i16>,
+    radius: u8,
+    gains: [f64; 4],
+    ray_exit: bool,
+    chebyshev: bool,
+    corner_cutting: bool,
+) -> PyResult<Routes<'py>> {
+    let [height, width] = [land.shape()[0], land.shape()[1]].map(|side| u16::try_from(side).unwrap_or(u16::MAX));
+    let land = Terrain::from_cells(width, height, land.as_slice()?.to_vec());
+    let land = land.map_err(|error| PyValueError::new_err(format!("land: {error}")))?;
+    // The same as in scenarios: sixteenths.
+    let [a0, a1, a2, a3] = gains.map(|gain| Gain::from_sixteenths((gain * 16.0).round() as u16));
+    let params = RouteParams {
+        radius,
+        exit: if ray_exit { ExitRule::Ray } else { ExitRule::Best },
+        norm: if chebyshev { Norm::Chebyshev } else { Norm::Euclidean },
+        corner_cutting,
+        a0,
+        a1,
+        a2,
+        a3,
+    };
+    let cells = |array: &PyReadonlyArray2<'py, i16>| -> PyResult<Vec<Cell>> {
+        Ok(array.as_slice()?.as_chunks::<2>().0.iter().map(|&[x, y]| Cell::new(x, y)).collect())
+    };
+    let (starts, goals) = (cells(&starts)?, cells(&goals)?);
+    let walks = py.detach(|| {
+        let pairs = starts.par_iter().zip(&goals).with_max_len(16);
+        let walks = pairs.map_init(Walker::<WIDE, VISITS, LEARNED>::default, |walker, (&from, &to)| {
+            let task = Task { land: &land, parked: &[], from, to };
+            let walk = walker.walk(&task, &params, Replan::EachCell);
+            (walk, walker.path().iter().flat_map(|cell| [cell.x, cell.y]).collect::<Vec<i16>>())
+        });
+        walks.collect::<Vec<(Walk, Vec<i16>)>>()
+    });
+    let ticks: Vec<f64> = walks.iter().map(|(walk, _)| walk.cost as f64 / f64::from(UNIT)).collect();
+    let arrived: Vec<bool> = walks.iter().map(|(walk, _)| walk.arrived).collect();
+    let paths = walks.into_iter().map(|(_, path)| {
+        let path = numpy::ndarray::Array2::from_shape_vec([path.len() / 2, 2], path);
+        PyArray2::from_owned_array(py, path.unwrap_or_default())
+    });
+    Ok((paths.collect(), ticks.into_pyarray(py), arrived.into_pyarray(py)))
+}

@@ -1,0 +1,419 @@
+//! A scenario in motion, as Python holds it: [`Run`].
+
+use crate::trace::Trace;
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::create_exception;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::sync::MutexExt as _;
+use pyo3::types::PyDict;
+use serde::Deserialize;
+use staya_controller::agent::Wish;
+use staya_controller::geom::Vec3;
+use staya_controller::time::Duration as Valid;
+use staya_sim::engine::{Moment, Operated, operated};
+use staya_sim::record::RobotRow;
+use staya_sim::scenario::{Intervention, Overrides, Scenario, Setting, with_interventions, with_settings};
+use staya_sim::summary::Summary;
+use staya_view::page;
+use staya_view::recording::RunRecorder;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+create_exception!(
+    staya._staya,
+    ScenarioError,
+    PyValueError,
+    "A scenario that cannot be read or is wrong: file, line, field and remedy."
+);
+
+/// How long Python waits for its interpreter at most: then signals are looked for, Ctrl-C among them.
+const SLICE: Duration = Duration::from_millis(50);
+/// Wishes are renewed with each tick.
+const VALID: Valid = Valid::from_millis(60_000);
+
+/// A scenario in motion. Whatever is asked of it by several threads is done in turn.
+#[pyclass(frozen, module = "staya._staya")]
+pub struct Run {
+    inner: Mutex<Inner>,
+}
+
+struct Inner {
+    scenario: Scenario,
+    /// The file's, with what was said otherwise.
+    text: String,
+    engine: Box<dyn Operated>,
+    tick: u32,
+    /// By hand, by rising tick.
+    done: Vec<(u32, Intervention)>,
+    /// Velocities that robots are told to wish for, m/s; `None`: what their own law says. Empty: nobody was ever told.
+    wishes: Vec<Option<Vec3<f32>>>,
+    recorder: Option<RunRecorder<Vec<u8>>>,
+    trace: Option<Trace>,
+    wall_seconds: f64,
+}
+
+impl Inner {
+    /// Tells robots their wishes. O(robots), nothing without wishes.
+    fn command(&mut self) -> PyResult<()> {
+        for (index, wish) in self.wishes.iter().enumerate() {
+            let wish = wish.map_or(Wish::Own, |velocity_mps| Wish::Velocity { velocity_mps, valid: VALID });
+            let is_own = wish == Wish::Own;
+            if !self.engine.command(index, wish) && !is_own && self.engine.observation(index).is_up {
+                let number = self.scenario.robots[index].id;
+                return Err(PyValueError::new_err(format!(
+                    "robot {number} goes from cell to cell and has no use for a velocity; give a scenario with [plane]"
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// One tick.
+    fn advance(&mut self) -> PyResult<()> {
+        let began = Instant::now();
+        self.command()?;
+        self.engine.advance();
+        self.tick += 1;
+        self.wall_seconds += began.elapsed().as_secs_f64();
+        if let Some(trace) = &mut self.trace {
+            trace.take(&*self.engine);
+        }
+        self.record()
+    }
+
+    /// Puts the moment into the recording, if there is one.
+    fn record(&mut self) -> PyResult<()> {
+        let (Some(recorder), engine) = (&mut self.recorder, &self.engine) else {
+            return Ok(());
+        };
+        let mut done = Ok(());
+        engine.show(&mut |moment: &Moment<'_>, robots: &mut dyn Iterator<Item = RobotRow>| {
+            done = recorder.tick(moment, robots);
+        });
+        done.map_err(|error| PyRuntimeError::new_err(error.to_string()))
+    }
+
+    /// Whether `staya run` would end here.
+    fn is_over(&self) -> bool {
+        self.engine.is_over() || self.tick >= self.scenario.ticks
+    }
+
+    fn summary(&self) -> Summary {
+        let mut summary = Summary::new(&self.scenario, &self.engine.outcome(), Vec::new());
+        summary.wall_seconds = self.wall_seconds;
+        summary
+    }
+}
+
+/// An order as Python says it.
+#[derive(Deserialize)]
+struct Said {
+    order: Intervention,
+}
+
+/// A refusal of a file's, as a person reads it who gave arguments.
+fn scenario_error(error: &impl ToString) -> PyErr {
+    ScenarioError::new_err(error.to_string().replace("(by --set)", "(by an argument)"))
+}
+
+#[pymethods]
+impl Run {
+    /// A scenario before its first tick: the text of the file `path`, with `settings` (`FIELD=VALUE`) for what it says. With
+    /// `record` every so many ticks are recorded.
+    #[new]
+    fn new(
+        py: Python<'_>,
+        text: &str,
+        path: PathBuf,
+        seed: Option<u64>,
+        ticks: Option<u32>,
+        settings: Vec<String>,
+        record: Option<u32>,
+    ) -> PyResult<Self> {
+        let settings: Result<Vec<Setting>, _> = settings.iter().map(|setting| setting.parse()).collect();
+        let settings = settings.map_err(ScenarioError::new_err)?;
+        py.detach(|| {
+            let overrides = Overrides { seed, ticks };
+            let scenario = Scenario::parse_with(text, &path, &overrides, &settings).map_err(|e| scenario_error(&e))?;
+            let text = match settings.is_empty() {
+                true => text.to_owned(),
+                false => with_settings(text, &path, &settings).map_err(|e| scenario_error(&e))?,
+            };
+            let engine = operated(&scenario)
+                .map_err(|error| ScenarioError::new_err(format!("the robots cannot be placed: {error}")))?;
+            let recorder =
+                record.map(|every| RunRecorder::new(Vec::new(), Path::new(&scenario.name), &scenario, every));
+            let recorder = recorder.transpose().map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
+            let mut inner = Inner {
+                scenario,
+                text,
+                engine,
+                tick: 0,
+                done: Vec::new(),
+                wishes: Vec::new(),
+                recorder,
+                trace: None,
+                wall_seconds: 0.0,
+            };
+            inner.record()?;
+            Ok(Self { inner: Mutex::new(inner) })
+        })
+    }
+
+    /// So many ticks, without Python's interpreter.
+    fn step(&self, py: Python<'_>, ticks: u32) -> PyResult<()> {
+        let mut left = ticks;
+        self.in_slices(py, |inner| {
+            if left > 0 {
+                left -= 1;
+                inner.advance()?;
+            }
+            Ok(left > 0)
+        })
+    }
+
+    /// Ticks up to the end of the run, or up to `until`.
+    fn run(&self, py: Python<'_>, until: Option<u32>) -> PyResult<()> {
+        self.in_slices(py, |inner| {
+            let goes_on = !inner.is_over() && until.is_none_or(|until| inner.tick < until);
+            if goes_on {
+                inner.advance()?;
+            }
+            Ok(goes_on)
+        })
+    }
+
+    /// Keeps columns from this moment on; see [`Trace::new`].
+    fn begin_trace(&self, py: Python<'_>, every: u32) {
+        let mut inner = self.lock(py);
+        let mut trace = Trace::new(every, inner.scenario.robots.len());
+        trace.take(&*inner.engine);
+        inner.trace = Some(trace);
+    }
+
+    /// What was kept: the columns of its trace and of its series, by name.
+    fn end_trace<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let mut inner = self.lock(py);
+        let mut trace = inner.trace.take().ok_or_else(|| PyRuntimeError::new_err("no trace was begun"))?;
+        trace.finish(&*inner.engine);
+        drop(inner);
+        trace.columns(py)
+    }
+
+    /// Ticks done.
+    #[getter]
+    fn tick(&self, py: Python<'_>) -> u32 {
+        self.lock(py).tick
+    }
+
+    /// Ticks after which the run ends.
+    #[getter]
+    fn ticks(&self, py: Python<'_>) -> u32 {
+        self.lock(py).scenario.ticks
+    }
+
+    /// Length of a tick, seconds.
+    #[getter]
+    fn tick_s(&self, py: Python<'_>) -> f64 {
+        self.lock(py).scenario.tick_s()
+    }
+
+    /// The scenario's name.
+    #[getter]
+    fn name(&self, py: Python<'_>) -> String {
+        self.lock(py).scenario.name.clone()
+    }
+
+    /// The seed of everything random.
+    #[getter]
+    fn seed(&self, py: Python<'_>) -> u64 {
+        self.lock(py).scenario.seed
+    }
+
+    /// Whether it records.
+    #[getter]
+    fn records(&self, py: Python<'_>) -> bool {
+        self.lock(py).recorder.is_some()
+    }
+
+    /// Whether `staya run` would end here.
+    #[getter]
+    fn is_over(&self, py: Python<'_>) -> bool {
+        self.lock(py).is_over()
+    }
+
+    /// The run's fingerprint so far, 16 hex digits.
+    #[getter]
+    fn trace_hash(&self, py: Python<'_>) -> String {
+        let mut hash = 0;
+        self.lock(py).engine.show(&mut |moment, _| hash = moment.trace_hash);
+        format!("{hash:016x}")
+    }
+
+    /// Robots' numbers, rising.
+    fn ids<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
+        let inner = self.lock(py);
+        PyArray1::from_iter(py, inner.scenario.robots.iter().map(|robot| robot.id.0))
+    }
+
+    /// Radius, m; highest speed, m/s; of each robot in the plane.
+    fn bodies<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray2<f64>>> {
+        let inner = self.lock(py);
+        let plane = inner.scenario.plane.as_ref()?;
+        let groups = (0..inner.scenario.robots.len()).map(|index| plane.group(index));
+        Some(rows(py, groups.map(|group| [group.radius_m, group.abilities.max_speed_mps])))
+    }
+
+    /// World positions, metres.
+    fn positions<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        let inner = self.lock(py);
+        rows(py, inner.robots().map(|index| inner.engine.observation(index).motion.position_m))
+    }
+
+    /// World velocities, m/s.
+    fn velocities<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        let inner = self.lock(py);
+        rows(py, inner.robots().map(|index| inner.engine.observation(index).motion.velocity_mps))
+    }
+
+    /// Where robots are to go, metres; NaN: nowhere in particular.
+    fn goals<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        let inner = self.lock(py);
+        rows(py, inner.robots().map(|index| inner.engine.goal_m(index).unwrap_or([f64::NAN; 3])))
+    }
+
+    /// What robots are doing, by number.
+    fn modes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u8>> {
+        let inner = self.lock(py);
+        PyArray1::from_iter(py, inner.robots().map(|index| inner.engine.observation(index).status.mode as u8))
+    }
+
+    /// Whose computers run.
+    fn is_up<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
+        let inner = self.lock(py);
+        PyArray1::from_iter(py, inner.robots().map(|index| inner.engine.observation(index).is_up))
+    }
+
+    /// How many robots each knows.
+    fn neighbors<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
+        let inner = self.lock(py);
+        PyArray1::from_iter(py, inner.robots().map(|index| inner.engine.observation(index).neighbors as u32))
+    }
+
+    /// Tells robots which velocities to wish for from the next tick on, those with a mask of true; the others do what their
+    /// own law says.
+    fn wish(
+        &self,
+        py: Python<'_>,
+        velocities_mps: PyReadonlyArray2<'_, f64>,
+        mask: PyReadonlyArray1<'_, bool>,
+    ) -> PyResult<()> {
+        let mut inner = self.lock(py);
+        let wishes = velocities_mps.as_slice()?.chunks_exact(3).zip(mask.as_slice()?);
+        let wishes = wishes.map(|(row, mask)| {
+            let [x, y, z] = [row[0], row[1], row[2]].map(|component| component as f32);
+            mask.then_some(Vec3::new(x, y, z))
+        });
+        inner.wishes = wishes.collect();
+        let told = inner.command();
+        if told.is_err() {
+            inner.wishes.clear();
+        }
+        told
+    }
+
+    /// Whether robots were ever told what to wish for.
+    #[getter]
+    fn has_wishes(&self, py: Python<'_>) -> bool {
+        !self.lock(py).wishes.is_empty()
+    }
+
+    /// Does what the table `order = { kind = "goal", ... }` says, before the next tick.
+    fn intervene(&self, py: Python<'_>, table: &str) -> PyResult<()> {
+        let said = toml::from_str::<Said>(table);
+        let order = said.map_err(|error| PyValueError::new_err(error.message().to_owned()))?.order;
+        let mut guard = self.lock(py);
+        let inner = &mut *guard;
+        inner
+            .engine
+            .intervene(&order)
+            .map_err(|refusal| PyValueError::new_err(format!("{}: {refusal}", refusal.field)))?;
+        if let Some(recorder) = &mut inner.recorder {
+            recorder.note(&order);
+        }
+        inner.done.push((inner.tick, order));
+        Ok(())
+    }
+
+    /// The figures so far, as JSON.
+    fn summary(&self, py: Python<'_>) -> PyResult<String> {
+        serde_json::to_string(&self.lock(py).summary()).map_err(|error| PyRuntimeError::new_err(error.to_string()))
+    }
+
+    /// The scenario that `staya run` makes the same run of, orders included; wishes are in no scenario.
+    fn scenario_text(&self, py: Python<'_>) -> PyResult<String> {
+        let inner = self.lock(py);
+        let Scenario { seed, ticks, tick_us, .. } = inner.scenario;
+        let last = [format!("seed={seed}"), format!("ticks={}", ticks.max(inner.tick))];
+        let settings: Result<Vec<Setting>, String> = last.iter().map(|setting| setting.parse()).collect();
+        let settings = settings.map_err(ScenarioError::new_err)?;
+        let path = Path::new(&inner.scenario.name);
+        let text = with_settings(&inner.text, path, &settings).map_err(|error| scenario_error(&error))?;
+        Ok(with_interventions(&text, tick_us, &inner.done))
+    }
+
+    /// What was recorded so far, as one HTML page.
+    fn page(&self, py: Python<'_>) -> PyResult<Option<String>> {
+        let inner = self.lock(py);
+        let Some(recorder) = inner.recorder.clone() else {
+            return Ok(None);
+        };
+        let failed = |error: &dyn std::error::Error| PyRuntimeError::new_err(error.to_string());
+        let recording = recorder.finish(&inner.summary()).map_err(|error| failed(&error))?;
+        page::with_recording(&recording).map(Some).map_err(|error| failed(&error))
+    }
+}
+
+impl Inner {
+    fn robots(&self) -> std::ops::Range<usize> {
+        0..self.scenario.robots.len()
+    }
+}
+
+impl Run {
+    fn lock(&self, py: Python<'_>) -> MutexGuard<'_, Inner> {
+        self.inner.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Does it again and again, as long as it says so, without Python's interpreter but for a look at signals now and then.
+    fn in_slices(&self, py: Python<'_>, mut act: impl FnMut(&mut Inner) -> PyResult<bool> + Send) -> PyResult<()> {
+        loop {
+            let goes_on = py.detach(|| {
+                let mut inner = self.inner.lock().unwrap_or_else(PoisonError::into_inner);
+                let end = Instant::now() + SLICE;
+                while act(&mut inner)? {
+                    if Instant::now() >= end {
+                        return Ok::<_, PyErr>(true);
+                    }
+                }
+                Ok(false)
+            })?;
+            py.check_signals()?;
+            if !goes_on {
+                return Ok(());
+            }
+        }
+    }
+}
+
+/// An array of rows.
+pub(crate) fn rows<'py, const D: usize>(
+    py: Python<'py>,
+    rows: impl Iterator<Item = [f64; D]>,
+) -> Bound<'py, PyArray2<f64>> {
+    let values: Vec<f64> = rows.flatten().collect();
+    let array = numpy::ndarray::Array2::from_shape_vec([values.len() / D, D], values);
+    PyArray2::from_owned_array(py, array.unwrap_or_default())
+}

@@ -1,0 +1,26 @@
+"""What all tests of the package share: the scenarios, and what the golden tables say of them."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+TOP = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture
+def scenario():
+    """The file of a scenario by its name."""
+    return lambda name: TOP / "scenarios" / f"{name}.toml"
+
+
+@pytest.fixture
+def golden():
+    """The trace hash and the ticks that `staya run` has, from the table of a scenario."""
+
+    def read(name):
+        text = (TOP / "tests" / "golden" / f"{name}.txt").read_text()
+        trace_hash = re.search(r"^hash +([0-9a-f]{16})$", text, re.MULTILINE).group(1)
+        return trace_hash, int(re.search(r"^ticks +(\d+) of", text, re.MULTILINE).group(1))
+
+    return read
