@@ -350,29 +350,28 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
     /// Everybody, in the order of ids.
     #[must_use]
     pub fn as_slice(&self) -> &[Neighbor<S, P>] {
-        self.halves().0
+        self.entries.get(..self.count()).unwrap_or(&self.entries)
     }
 
     /// The lost that are remembered, in the order of ids.
     #[must_use]
     pub fn lost(&self) -> &[Neighbor<S, P>] {
-        self.halves().1
+        self.entries.get(self.count()..).unwrap_or_default()
     }
 
-    fn halves(&self) -> (&[Neighbor<S, P>], &[Neighbor<S, P>]) {
-        let entries = &*self.entries;
+    /// How many are known: the first ones of all entries.
+    fn count(&self) -> usize {
         // Few robots have lost anybody: who is last tells.
-        let known = match entries.last() {
-            Some(last) if last.is_lost => entries.partition_point(|entry| !entry.is_lost),
-            _ => entries.len(),
-        };
-        entries.split_at_checked(known).unwrap_or((entries, &[]))
+        match self.entries.last() {
+            Some(last) if last.is_lost => self.entries.partition_point(|entry| !entry.is_lost),
+            _ => self.entries.len(),
+        }
     }
 
     /// How many are known.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.as_slice().len()
+        self.count()
     }
 
     /// Whether nobody is known.

@@ -81,8 +81,8 @@ impl<'a, S: Scalar> Scan<'a, S> {
 /// For [`LocalMap::observe`] and [`outline`]: `|place| is_neighbor(agent.neighbors(), own, now, longest, place,
 /// margin)`. O(neighbours).
 #[must_use]
-pub fn is_neighbor<S: Scalar>(
-    neighbors: &[Neighbor<S>],
+pub fn is_neighbor<S: Scalar, P>(
+    neighbors: &[Neighbor<S, P>],
     own: Position,
     now: Instant,
     longest: Duration,

@@ -280,7 +280,7 @@ fn neighbours_are_where_their_last_word_leads_and_as_large_as_they_say() {
     assert!(seen(0, 2.24) && seen(0, 1.76) && !seen(0, 2.26) && !seen(0, 1.74));
     assert!(seen(200, 2.34) && !seen(200, 1.84));
     assert!(seen(9_000, 2.44) && !seen(9_000, 2.46), "not for ever");
-    assert!(!is_neighbor::<f32>(&[], own, NOW, Duration::ZERO, Vec2::ZERO, 9.0));
+    assert!(!is_neighbor::<f32, ()>(&[], own, NOW, Duration::ZERO, Vec2::ZERO, 9.0));
 }
 
 /// How far the hit is away that what was found misses most.
