@@ -167,6 +167,7 @@ def test_wrong_wishes_name_the_place(scenario):
     wishes[4, 1] = np.nan
     with pytest.raises(ValueError, match=r"velocities\[4, 1\] is nan; give finite numbers"):
         sim.wish(wishes)
+    sim.wish(np.full((16, 2), 1e300))
     with pytest.raises(ValueError, match="mask has the shape"):
         sim.wish(np.zeros((16, 2)), mask=[True])
     with pytest.raises(ValueError, match="velocities is no array of numbers"):

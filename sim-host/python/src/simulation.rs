@@ -30,6 +30,8 @@ create_exception!(
 
 /// How long Python waits for its interpreter at most: then signals are looked for, Ctrl-C among them.
 const SLICE: Duration = Duration::from_millis(50);
+/// What no body can do anyway.
+const FAST_MPS: f64 = 1e6;
 /// Wishes are renewed with each tick.
 const VALID: Valid = Valid::from_millis(60_000);
 
@@ -313,7 +315,7 @@ impl Run {
         let mut inner = self.lock(py);
         let wishes = velocities_mps.as_slice()?.chunks_exact(3).zip(mask.as_slice()?);
         let wishes = wishes.map(|(row, mask)| {
-            let [x, y, z] = [row[0], row[1], row[2]].map(|component| component as f32);
+            let [x, y, z] = [row[0], row[1], row[2]].map(|component| component.clamp(-FAST_MPS, FAST_MPS) as f32);
             mask.then_some(Vec3::new(x, y, z))
         });
         inner.wishes = wishes.collect();

@@ -44,7 +44,7 @@ class Orca:
         seed: int = 0,
     ) -> None:
         self._count = _check.whole("count", count, 0, 2**31 - 2)
-        self._axes = 3 if in_space else 2
+        self._axes = (3,) if in_space else (2,)
         self._avoiders = Avoiders(
             self._count,
             bool(in_space),
@@ -77,25 +77,24 @@ class Orca:
     ) -> Floats:
         """The velocities to take for the next `step_s`: the nearest to `preferred` that others and obstacles permit.
 
-        `positions`, `velocities`, `preferred` and `goals` have the shape (n, 2) or (n, 3), the answer that of `preferred`; `radii` and
+        `positions`, `velocities`, `preferred`, `goals` and the answer have the shape (n, 2), in space (n, 3); `radii` and
         `max_speeds` are numbers or have the shape (n,). Near its goal nobody swerves. `walls` has rows of from x, y to x, y, `discs` of x, y,
         radius. Each robot reckons with the 16 nearest that it could meet within the horizon. O(16 n + n m) on all cores; the
         interpreter is free meanwhile.
         """
-        count = self._count
-        wishes = _check.vectors("preferred", preferred, count)
+        count, axes = self._count, self._axes
         best = self._avoiders.velocities(
-            _check.vectors("positions", positions, count),
-            _check.vectors("velocities", velocities, count),
-            wishes,
-            None if goals is None else _check.vectors("goals", goals, count),
+            _check.vectors("positions", positions, count, axes),
+            _check.vectors("velocities", velocities, count, axes),
+            _check.vectors("preferred", preferred, count, axes),
+            None if goals is None else _check.vectors("goals", goals, count, axes),
             _check.scalars("radii", radii, count),
             _check.scalars("max_speeds", max_speeds, count),
             _check.rows("walls", walls, 4, "from x, y to x, y"),
             _check.rows("discs", discs, 3, "x, y, radius"),
             _check.number("step_s", step_s, 0.0, above=True),
         )
-        return best[:, : np.shape(preferred)[1]]
+        return best[:, : axes[0]]
 
 
 def orca(
@@ -119,7 +118,7 @@ def orca(
 ) -> Floats:
     """One step of `Orca` that remembers nothing; see there for parameters, and its call for arrays."""
     avoid = Orca(
-        len(_check.vectors("positions", positions)),
+        len(_check.vectors("positions", positions, axes=(3,) if in_space else (2,))),
         in_space=in_space,
         horizon_s=horizon_s,
         wall_horizon_s=wall_horizon_s,

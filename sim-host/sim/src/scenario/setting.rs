@@ -146,6 +146,20 @@ mod tests {
     }
 
     #[test]
+    fn a_text_with_settings_is_the_scenario_with_them() {
+        let settings = ["ticks=7", "radio.loss=0.25"].map(|text| text.parse().expect("a setting"));
+        let (path, none) = (Path::new("t.toml"), Overrides::default());
+        let set = Scenario::parse_with(SCENARIO, path, &none, &settings).expect("sound");
+        assert_eq!((set.ticks, set.radio.loss), (7, 0.25));
+        let text = with_settings(SCENARIO, path, &settings).expect("a scenario");
+        let read = Scenario::parse(&text, path, &none).expect("sound");
+        assert_eq!((read.ticks, read.radio.loss), (7, 0.25));
+        let wrong = ["radio.loss=2".parse().expect("a setting")];
+        let error = Scenario::parse_with(SCENARIO, path, &none, &wrong).expect_err("wrong").to_string();
+        assert!(error.starts_with("t.toml:8: radio.loss: ") && error.contains("(by --set)"), "{error}");
+    }
+
+    #[test]
     fn settings_are_read_as_toml_or_as_words() {
         let value = |text: &str| text.parse::<Setting>().map(|setting| setting.value);
         assert_eq!(value("a.b=3"), Ok(Value::Integer(3)));

@@ -4,8 +4,8 @@ use crate::frame::tests::frames;
 use crate::scene::{Mode, Scene};
 use proptest::prelude::*;
 use serde_json::json;
-use staya_sim::engine::simulate;
-use staya_sim::scenario::{Overrides, Scenario};
+use staya_sim::engine::{Operated, operated, simulate};
+use staya_sim::scenario::{Intervention, Overrides, Scenario};
 use std::io::Cursor;
 use std::ops::ControlFlow;
 
@@ -112,6 +112,42 @@ fn land_that_changes_by_itself_is_shown_as_it_is() {
     let (open, closed) = (land(4), land(5));
     assert_ne!(open, closed, "it closes before the tick that begins at 4 s");
     assert_eq!([land(0), land(7), land(8), land(12)], [&open, &closed, &open, &open].map(String::from));
+}
+
+#[test]
+fn what_is_done_by_hand_is_noted_and_shown_and_a_copy_is_whole_at_any_time() {
+    let text = "name = \"t\"\nticks = 9\n[terrain]\nuniform = { width = 4, height = 1, classes = 1 }\n\
+        [robots]\nlist = [{ start = [0, 0], goal = [3, 0] }]\n";
+    let scenario = Scenario::parse(text, Path::new("t.toml"), &Overrides::default()).unwrap();
+    let mut engine = operated(&scenario).unwrap();
+    let mut recorder = RunRecorder::new(Vec::new(), Path::new("a.rec"), &scenario, 1).unwrap();
+    let take = |engine: &dyn Operated, recorder: &mut RunRecorder<Vec<u8>>| {
+        engine.show(&mut |moment, robots| recorder.tick(moment, robots).unwrap());
+    };
+    take(&*engine, &mut recorder);
+    let closed = Intervention::Cell { cell: [3, 0], class: 0 };
+    for tick in 0..5 {
+        if tick == 2 {
+            engine.intervene(&closed).unwrap();
+            recorder.note(&closed);
+        }
+        engine.advance();
+        take(&*engine, &mut recorder);
+    }
+    let early = recorder.clone().finish(&json!({})).unwrap();
+    engine.advance();
+    take(&*engine, &mut recorder);
+    for (bytes, last) in [(early, 5), (recorder.finish(&json!({})).unwrap(), 6)] {
+        let mut reader = read(&bytes).unwrap();
+        assert_eq!(reader.ticks(), Some((0, last)));
+        assert_eq!(reader.orders().unwrap(), json!([{ "tick": 2, "order": closed }]));
+        let mut land = |tick| {
+            let scene: serde_json::Value = serde_json::from_str(&reader.scene_text_at(tick).unwrap()).unwrap();
+            scene["land"]["cells"].as_str().unwrap().to_owned()
+        };
+        assert_ne!(land(2), land(3));
+        assert_eq!(land(3), land(last));
+    }
 }
 
 #[test]
