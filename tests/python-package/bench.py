@@ -1,7 +1,9 @@
-"""How quick a thousand robots behind ORCA are from Python: `python tests/python-package/bench.py [STAYA]`, on a quiet machine.
+"""How quick a thousand robots behind ORCA are from Python: `python tests/python-package/bench.py [STAYA]`, on a
+quiet machine.
 
-A run through `Simulation.step` with positions after each tick, beside the command `staya` (built with the wheel's profile, its path as the argument); and
-`staya.Orca` beside RVO2's Python loop (the package `pyrvo`), if it is installed. Processor time on one thread, the least of three, in turn.
+A run through `Simulation.step` with positions after each tick, beside the command `staya` (built with the wheel's
+profile, its path as the argument); and `staya.Orca` beside RVO2's Python loop (the package `pyrvo`), if it is
+installed. Processor time on one thread, the least of three, in turn.
 """
 
 import json
@@ -29,7 +31,7 @@ def stepped():
     began = time.process_time()
     for _ in range(TICKS):
         sim.step()
-        sim.positions
+        sim.positions.sum()
     return time.process_time() - began, sim.trace_hash
 
 
@@ -128,7 +130,8 @@ def main():
             one, least[name] = work()
             spent[name].append(one)
     for name in loops:
-        print(f"  {name:32} {min(spent[name]) * 1e3:8.3f} ms a step, least distance {least[name]:.3f} m (radii: {2 * RADIUS} m)")
+        apart = f"least distance {least[name]:.3f} m (radii: {2 * RADIUS} m)"
+        print(f"  {name:32} {min(spent[name]) * 1e3:8.3f} ms a step, {apart}")
 
 
 if __name__ == "__main__":

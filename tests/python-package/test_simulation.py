@@ -203,8 +203,11 @@ def test_threads_share_the_interpreter(scenario):
 
 @pytest.mark.skipif(os.name != "posix", reason="signals are sent as POSIX has them")
 def test_ctrl_c_ends_a_long_run(scenario):
-    code = f"import staya; sim = staya.Simulation({str(scenario('swap-circle'))!r}); print('go', flush=True); sim.step(4_000_000_000)"
-    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as child:
+    file = str(scenario("swap-circle"))
+    code = f"import staya; sim = staya.Simulation({file!r}); print('go', flush=True); sim.step(4_000_000_000)"
+    with subprocess.Popen(
+        [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as child:
         assert child.stdout.readline() == "go\n"
         time.sleep(0.3)
         child.send_signal(signal.SIGINT)

@@ -1,4 +1,5 @@
-"""Arguments as arrays that the compiled module can read, or an error that says which one is wrong, where, and what to give."""
+"""Arguments as arrays that the compiled module can read, or an error that says which one is wrong, where, and what
+to give."""
 
 from __future__ import annotations
 

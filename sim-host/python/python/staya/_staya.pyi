@@ -1,16 +1,19 @@
 """The compiled module: arguments come checked from the modules beside it."""
 
 from os import PathLike
-from typing import Any
+from typing import Any, final
 
 import numpy as np
 from numpy.typing import NDArray
 
 _Floats = NDArray[np.float64]
 
+__all__ = ["Avoiders", "Run", "ScenarioError", "boids_steer", "goal_wish", "lattice_acceleration", "route"]
+
 class ScenarioError(ValueError):
     """A scenario that cannot be read or is wrong: file, line, field and remedy."""
 
+@final
 class Run:
     """A scenario in motion."""
 
@@ -59,6 +62,7 @@ class Run:
     def scenario_text(self) -> str: ...
     def page(self) -> str | None: ...
 
+@final
 class Avoiders:
     """The collision avoidance of each of many robots."""
 

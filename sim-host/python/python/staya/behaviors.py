@@ -1,4 +1,5 @@
-"""The controller's behaviours by themselves, over all robots at once: ORCA and routes. The flocks are in `staya.flock`."""
+"""The controller's behaviours by themselves, over all robots at once: ORCA and routes. The flocks are in
+`staya.flock`."""
 
 from __future__ import annotations
 
@@ -15,12 +16,13 @@ Floats = NDArray[np.float64]
 
 
 class Orca:
-    """Optimal reciprocal collision avoidance (J. van den Berg and others 2011) of `count` robots, with what each remembers from step to step.
+    """Optimal reciprocal collision avoidance (J. van den Berg and others 2011) of `count` robots, with what each
+    remembers from step to step.
 
     The memory is what ends symmetry and jams; `orca` is one step without. In the plane, or with `in_space` in space.
 
-    - `horizon_s`, `wall_horizon_s`: time ahead for which no collision with robots, with obstacles may happen. Longer gives way
-      earlier and slows crowds; shorter than a body needs to stop is not safe.
+    - `horizon_s`, `wall_horizon_s`: time ahead for which no collision with robots, with obstacles may happen.
+      Longer gives way earlier and slows crowds; shorter than a body needs to stop is not safe.
     - `share`: own share of a correction, 0.5 when all do the same; less is not safe.
     - `margin`: kept on top of radii, metres.
     - `lean_rad`: how far to the right of the wish to lean while somebody is in the way; 0.4 to 0.6, 0 never.
@@ -77,10 +79,10 @@ class Orca:
     ) -> Floats:
         """The velocities to take for the next `step_s`: the nearest to `preferred` that others and obstacles permit.
 
-        `positions`, `velocities`, `preferred`, `goals` and the answer have the shape (n, 2), in space (n, 3); `radii` and
-        `max_speeds` are numbers or have the shape (n,). Near its goal nobody swerves. `walls` has rows of from x, y to x, y, `discs` of x, y,
-        radius. Each robot reckons with the 16 nearest that it could meet within the horizon. O(16 n + n m) on all cores; the
-        interpreter is free meanwhile.
+        `positions`, `velocities`, `preferred`, `goals` and the answer have the shape (n, 2), in space (n, 3);
+        `radii` and `max_speeds` are numbers or have the shape (n,). Near its goal nobody swerves. `walls` has rows
+        of from x, y to x, y, `discs` of x, y, radius. Each robot reckons with the 16 nearest that it could meet
+        within the horizon. O(16 n + n m) on all cores; the interpreter is free meanwhile.
         """
         count, axes = self._count, self._axes
         best = self._avoiders.velocities(
@@ -165,12 +167,14 @@ def route(
     norm: Literal["euclidean", "chebyshev"] = "euclidean",
     corner_cutting: bool = False,
 ) -> Routes:
-    """Walks each robot from its start to its goal by what it sees of the land (A. V. Kuznetsov 2017), as if it were alone.
+    """Walks each robot from its start to its goal by what it sees of the land (A. V. Kuznetsov 2017), as if it were
+    alone.
 
-    `land[y, x]` is how many ticks it takes to cross a cell, 0 a wall, row 0 in the south; `starts` and `goals` are cells (x, y), shape (n, 2). A
-    robot sees `radius` cells around it (1 to 16), remembers where it was, and learns from dead ends. `a0` to `a3` weigh travel time, other robots, earlier
-    visits and the distance from where a way leaves the window to the goal, 0 to 4095. Bounded: at most 200 moves per cell of width + height. On
-    all cores; the interpreter is free meanwhile.
+    `land[y, x]` is how many ticks it takes to cross a cell, 0 a wall, row 0 in the south; `starts` and `goals` are
+    cells (x, y), shape (n, 2). A robot sees `radius` cells around it (1 to 16), remembers where it was, and learns
+    from dead ends. `a0` to `a3` weigh travel time, other robots, earlier visits and the distance from where a way
+    leaves the window to the goal, 0 to 4095. Bounded: at most 200 moves per cell of width + height. On all cores;
+    the interpreter is free meanwhile.
     """
     array = np.asarray(land)
     if array.ndim != 2 or not np.issubdtype(array.dtype, np.integer):

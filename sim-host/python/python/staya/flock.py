@@ -34,11 +34,12 @@ def lattice(
 ) -> Floats:
     """Accelerations of a flock that settles at equal distances, m/s^2 (R. Olfati-Saber 2006, algorithms 1 to 3).
 
-    `positions` and `velocities` have the shape (n, 2) or (n, 3), the answer that of `positions`. `spacing` is the distance of neighbours,
-    0.01 to 100 m; they count up to `range_ratio` times that, obstacles up to `obstacle_ratio` times. `reference` is the place that pulls the flock,
-    with its velocity. The gains `alpha` (others), `beta` (obstacles) and `gamma` (reference) are one on places, 1/s^2, with critical damping, or a
-    pair with that on velocities, 1/s. `walls` has rows of from x, y to x, y, `discs` of x, y, radius. Not bounded by what
-    bodies can do, and knows no bodies: put a safety layer behind it.
+    `positions` and `velocities` have the shape (n, 2) or (n, 3), the answer that of `positions`. `spacing` is the
+    distance of neighbours, 0.01 to 100 m; they count up to `range_ratio` times that, obstacles up to
+    `obstacle_ratio` times. `reference` is the place that pulls the flock, with its velocity. The gains `alpha`
+    (others), `beta` (obstacles) and `gamma` (reference) are one on places, 1/s^2, with critical damping, or a pair
+    with that on velocities, 1/s. `walls` has rows of from x, y to x, y, `discs` of x, y, radius. Not bounded by
+    what bodies can do, and knows no bodies: put a safety layer behind it.
     """
     places = _check.vectors("positions", positions)
     if algorithm not in (1, 2, 3):
@@ -78,9 +79,10 @@ def goal(
 ) -> Floats:
     """Velocities that robots wish for who go to goals together, m/s (V. E. and V. V. Pavlovsky).
 
-    `positions` and `goals` have the shape (n, 2) or (n, 3), the answer that of `positions`; one goal, shape (1, 2) or (1, 3), is for all.
-    `min_distance` is the least distance of two centres, `neighborhood` how far others are seen (4 times that without it, at least 2 times), metres. Only
-    the ratios of the gains matter: pull of the goal, of the middle of the neighbours, push of those too near.
+    `positions` and `goals` have the shape (n, 2) or (n, 3), the answer that of `positions`; one goal, shape (1, 2)
+    or (1, 3), is for all. `min_distance` is the least distance of two centres, `neighborhood` how far others are
+    seen (4 times that without it, at least 2 times), metres. Only the ratios of the gains matter: pull of the goal,
+    of the middle of the neighbours, push of those too near.
     """
     places = _check.vectors("positions", positions)
     shape = np.shape(goals)
@@ -110,8 +112,9 @@ def boids(
 ) -> Floats:
     """Headings of boids one step later, unit vectors of shape (n, 2) (V. A. Starovoitova 2018).
 
-    `positions` and `headings` have the shape (n, 2). Nearer than `crowded` a boid turns away, up to `closest` a neighbour counts, metres; `max_turn` and
-    `max_turn_away` are the largest turns in a step, radians. On a torus with these circumferences if `torus` is given.
+    `positions` and `headings` have the shape (n, 2). Nearer than `crowded` a boid turns away, up to `closest` a
+    neighbour counts, metres; `max_turn` and `max_turn_away` are the largest turns in a step, radians. On a torus
+    with these circumferences if `torus` is given.
     """
     places = _check.vectors("positions", positions, axes=(2,))
     sides = None if torus is None else _sides(torus)

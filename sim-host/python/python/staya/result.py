@@ -48,12 +48,16 @@ class Page:
 
 
 class Result:
-    """What came of a run: `summary` has the figures, `trace` a line per robot and sampled tick, `series` a line per tick.
+    """What came of a run: `summary` has the figures, `trace` a line per robot and sampled tick, `series` a line per
+    tick.
 
-    Tables are dictionaries of numpy arrays with the names of the files of `staya run`; `to_pandas` and `to_polars` make frames of them.
+    Tables are dictionaries of numpy arrays with the names of the files of `staya run`; `to_pandas` and `to_polars`
+    make frames of them.
     """
 
-    def __init__(self, columns: dict[str, Columns], summary: dict[str, Any], page: Callable[[], str | None] | None) -> None:
+    def __init__(
+        self, columns: dict[str, Columns], summary: dict[str, Any], page: Callable[[], str | None] | None
+    ) -> None:
         self.summary = summary
         self.trace: Columns = dict(columns["trace"])
         self.series: Columns = dict(columns["series"])

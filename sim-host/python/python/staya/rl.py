@@ -1,14 +1,16 @@
-"""Environments for reinforcement learning, of any scenario in the plane or in space whose robots have goals; the extra `rl`.
+"""Environments for reinforcement learning, of any scenario in the plane or in space whose robots have goals; the
+extra `rl`.
 
-`SwarmEnv` is a Gymnasium environment in which one agent steers all robots, `SwarmVectorEnv` many of those at once, `RobotsEnv` a PettingZoo
-parallel environment in which each robot is an agent. What an agent says is a wish: behind it each robot's own collision avoidance and radio
-work as ever.
+`SwarmEnv` is a Gymnasium environment in which one agent steers all robots, `SwarmVectorEnv` many of those at once,
+`RobotsEnv` a PettingZoo parallel environment in which each robot is an agent. What an agent says is a wish: behind
+it each robot's own collision avoidance and radio work as ever.
 
 - An action is a velocity per robot, each component from -1 to 1 times the robot's highest speed.
-- An observation is, per robot: its velocity over its highest speed, the way to its goal over 10 m, then for each of the `neighbors`
-  nearest robots the way to it over 10 m and its velocity over the own highest speed; all cut to -1 to 1. Where there are fewer
-  neighbours, the rest is 0. It is the truth, not what the radio brings.
-- A reward is, per robot, the way that it came nearer to its goal over the way that it can go in a step, and -1 if it overlaps another one.
+- An observation is, per robot: its velocity over its highest speed, the way to its goal over 10 m, then for each of
+  the `neighbors` nearest robots the way to it over 10 m and its velocity over the own highest speed; all cut to -1
+  to 1. Where there are fewer neighbours, the rest is 0. It is the truth, not what the radio brings.
+- A reward is, per robot, the way that it came nearer to its goal over the way that it can go in a step, and -1 if
+  it overlaps another one.
 - A robot is done within `tolerance` metres of its goal; then it stands.
 """
 
@@ -36,14 +38,18 @@ _FAR_M = 10.0
 class _Swarm:
     """A scenario that begins anew, as numbers per robot."""
 
-    def __init__(self, scenario: str | os.PathLike[str], neighbors: int, ticks_per_step: int, tolerance: float, fields: Any) -> None:
+    def __init__(
+        self, scenario: str | os.PathLike[str], neighbors: int, ticks_per_step: int, tolerance: float, fields: Any
+    ) -> None:
         self._scenario, self._fields = scenario, fields
         self._neighbors = _check.whole("neighbors", neighbors, 0, 1000)
         self._ticks_per_step = _check.whole("ticks_per_step", ticks_per_step, 1)
         self._tolerance = _check.number("tolerance", tolerance, 0.0, above=True)
         self.begin(None)
         if not (np.isfinite(self.sim.goals).all() and np.isfinite(self.sim.max_speeds).all()):
-            raise ValueError("scenario has robots without a goal, or without [plane]; give one in which all have a place to go to")
+            raise ValueError(
+                "scenario has robots without a goal, or without [plane]; give one in which all have a place to go to"
+            )
 
     def begin(self, seed: int | None) -> None:
         """Makes the run anew."""
@@ -107,10 +113,11 @@ def _box(*shape: int) -> spaces.Box:
 
 
 class SwarmEnv(gymnasium.Env[Any, Any]):
-    """A scenario in which one agent steers all robots: actions of shape (n, 2) or (n, 3), the reward is the mean of theirs.
+    """A scenario in which one agent steers all robots: actions of shape (n, 2) or (n, 3), the reward is the mean of
+    theirs.
 
-    A scenario's fields can be said otherwise as in `Simulation`. An episode is terminated when all robots are done, truncated when the
-    scenario's ticks are used up; each has another seed.
+    A scenario's fields can be said otherwise as in `Simulation`. An episode is terminated when all robots are done,
+    truncated when the scenario's ticks are used up; each has another seed.
     """
 
     metadata: dict[str, Any] = {"render_modes": []}
@@ -151,8 +158,9 @@ class SwarmEnv(gymnasium.Env[Any, Any]):
 
 
 class SwarmVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
-    """`num_envs` swarms at once, each with a run of its own; they step on all cores. The next step after an episode's end begins
-    another (Gymnasium's `AutoresetMode.NEXT_STEP`); the same numbers as `gymnasium.vector.SyncVectorEnv` over `SwarmEnv`."""
+    """`num_envs` swarms at once, each with a run of its own; they step on all cores. The next step after an
+    episode's end begins another (Gymnasium's `AutoresetMode.NEXT_STEP`); the same numbers as
+    `gymnasium.vector.SyncVectorEnv` over `SwarmEnv`."""
 
     metadata: dict[str, Any] = {"render_modes": [], "autoreset_mode": AutoresetMode.NEXT_STEP}
 
@@ -207,7 +215,8 @@ class SwarmVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
 
 
 class RobotsEnv(pettingzoo.ParallelEnv[str, Any, Any]):
-    """A scenario in which each robot is an agent, `robot_1` and so on by its number, with an action of shape (2,) or (3,).
+    """A scenario in which each robot is an agent, `robot_1` and so on by its number, with an action of shape (2,)
+    or (3,).
 
     An agent is terminated when it is done; all are truncated when the scenario's ticks are used up.
     """
@@ -255,9 +264,9 @@ class RobotsEnv(pettingzoo.ParallelEnv[str, Any, Any]):
         self.agents = list(self.possible_agents)
         return self._observations(), {agent: {} for agent in self.agents}
 
-    def step(self, actions: dict[str, Floats]) -> tuple[
-        dict[str, Floats], dict[str, float], dict[str, bool], dict[str, bool], dict[str, dict[str, Any]]
-    ]:
+    def step(
+        self, actions: dict[str, Floats]
+    ) -> tuple[dict[str, Floats], dict[str, float], dict[str, bool], dict[str, bool], dict[str, dict[str, Any]]]:
         """A step of all robots; those without an action stand."""
         wishes = np.zeros((len(self.possible_agents), self._swarm.axes))
         for agent, action in actions.items():

@@ -34,8 +34,9 @@ class Simulation:
     """A scenario before its first tick: `Simulation("scenarios/six-robots.toml", seed=3, radio__loss=0.3)`.
 
     Whatever a scenario says can be said otherwise, by its name with `__` for each dot, or in a dictionary as
-    `overrides={"plane.group[0].count": 40}`. With `record=N` every N-th tick is kept for `page`. The run is, to the bit, the one of the
-    command `staya run`, as long as nobody commands. Raises `ScenarioError`, which names file, line, field and remedy.
+    `overrides={"plane.group[0].count": 40}`. With `record=N` every N-th tick is kept for `page`. The run is, to the
+    bit, the one of the command `staya run`, as long as nobody commands. Raises `ScenarioError`, which names file,
+    line, field and remedy.
     """
 
     def __init__(
@@ -179,10 +180,11 @@ class Simulation:
         return self._run.neighbors()
 
     def step(self, n: int = 1, *, guidance: Guidance | None = None) -> None:
-        """Does `n` ticks, also beyond the end of the run; the interpreter is free meanwhile, and Ctrl-C ends it after a tick.
+        """Does `n` ticks, also beyond the end of the run; the interpreter is free meanwhile, and Ctrl-C ends it
+        after a tick.
 
-        With `guidance` each tick begins with `wish(guidance(self))`: your own law over all robots, behind the robots' own
-        collision avoidance and with what their radio brings.
+        With `guidance` each tick begins with `wish(guidance(self))`: your own law over all robots, behind the
+        robots' own collision avoidance and with what their radio brings.
         """
         n = _check.whole("n", n, 0)
         if guidance is None:
@@ -192,10 +194,11 @@ class Simulation:
             self._run.step(1)
 
     def run(self, *, every: int | None = None, guidance: Guidance | None = None, until: int | None = None) -> Result:
-        """Goes on to the end of the run, or up to tick `until`: a result with the figures, and the trace from here on.
+        """Goes on to the end of the run, or up to tick `until`: a result with the figures, and the trace from here
+        on.
 
-        Robots' lines are kept every `every` ticks; without it, as `staya run` does, one line per robot and tick for each started
-        thousand robots. Memory: 78 bytes a line.
+        Robots' lines are kept every `every` ticks; without it, as `staya run` does, one line per robot and tick for
+        each started thousand robots. Memory: 78 bytes a line.
         """
         every = 0 if every is None else _check.whole("every", every, 1)
         until = None if until is None else _check.whole("until", until, 0)
@@ -212,8 +215,9 @@ class Simulation:
         return Result(columns, figures(self._run), self._run.page if self._run.records else None)
 
     def wish(self, velocities: ArrayLike, *, mask: Sequence[bool] | NDArray[np.bool_] | None = None) -> None:
-        """Tells robots which velocities to wish for from now on, m/s: shape (n, 2) or (n, 3); those where `mask` is false
-        follow their own law. What they then do is up to their safety layers. Only in the plane or in space."""
+        """Tells robots which velocities to wish for from now on, m/s: shape (n, 2) or (n, 3); those where `mask` is
+        false follow their own law. What they then do is up to their safety layers. Only in the plane or in
+        space."""
         wishes = _check.vectors("velocities", velocities, len(self))
         self._run.wish(wishes, _check.mask("mask", mask, len(self)))
 
@@ -222,7 +226,8 @@ class Simulation:
         self._run.wish(np.zeros((len(self), 3)), np.zeros(len(self), dtype=np.bool_))
 
     def order(self, kind: str, **fields: Any) -> None:
-        """Does what `[[intervention]]` in a scenario does, before the next tick: `order("goal", robot=3, place_m=[4, 5, 0])`.
+        """Does what `[[intervention]]` in a scenario does, before the next tick: `order("goal", robot=3,
+        place_m=[4, 5, 0])`.
 
         Kinds and their fields are in scenarios/README.md. Robots go by their numbers (`ids`).
         """
@@ -253,10 +258,12 @@ class Simulation:
         return Page(html)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the scenario with all orders, so that `staya run` makes the same run of it. File names in it are relative to the
-        folder of the scenario that it was made of."""
+        """Writes the scenario with all orders, so that `staya run` makes the same run of it. File names in it are
+        relative to the folder of the scenario that it was made of."""
         if self._run.has_wishes:
-            raise ValueError("robots were told velocities, which no scenario can say; give orders instead, or keep the program")
+            raise ValueError(
+                "robots were told velocities, which no scenario can say; give orders instead, or keep the program"
+            )
         Path(path).write_text(self._run.scenario_text(), encoding="utf-8")
 
     def _repr_html_(self) -> str | None:
@@ -265,4 +272,3 @@ class Simulation:
 
 def _fields(fields: dict[str, Any]) -> dict[str, Any]:
     return {name.replace("__", "."): value for name, value in fields.items()}
-
