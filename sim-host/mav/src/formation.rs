@@ -54,7 +54,7 @@ impl Shape {
     /// The places of `count` robots whose neighbours stand `spacing` cells apart, and who is whose neighbour.
     ///
     /// # Errors
-    /// See [`Graph::new`].
+    /// Too few or too many robots, or a spacing that takes them off any map or into one cell: see [`GraphError`].
     pub fn graph(self, count: usize, spacing: i16) -> Result<Graph, GraphError> {
         let robots = i32::try_from(count).unwrap_or(i32::MAX).min(i32::from(MAX_ROBOT) + 1);
         let step = i32::from(spacing);
@@ -160,7 +160,7 @@ impl Graph {
     /// Reads a file's text: `places` and `edges` as in a scenario's `[robots.formation]`.
     ///
     /// # Errors
-    /// It is no such file; or [`Graph::new`]'s.
+    /// It is no such file, or its robots are too many, too far, on one place, or not joined: see [`GraphError`].
     pub fn parse(text: &str) -> Result<Self, GraphError> {
         let file: GraphFile = toml::from_str(text).map_err(|error| GraphError::File(error.to_string()))?;
         if file.places.first() != Some(&[0, 0]) {

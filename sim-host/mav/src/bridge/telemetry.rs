@@ -181,7 +181,7 @@ impl Vehicle {
             onboard_control_sensors_present: present,
             onboard_control_sensors_enabled: present,
             // There is no fence, and so none is broken: MAVProxy reads an unset bit as a breach.
-            onboard_control_sensors_health: present & !unsound | MAV_SYS_STATUS_GEOFENCE,
+            onboard_control_sensors_health: (present & !unsound) | MAV_SYS_STATUS_GEOFENCE,
             voltage_battery: UNKNOWN,
             current_battery: -1,
             battery_remaining: -1,
