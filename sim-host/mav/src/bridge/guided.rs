@@ -172,46 +172,13 @@ impl Vehicle {
 
     /// The dialect has no answers to orders: a text says once that one has arrived as a whole.
     fn confirm(&mut self, header: Header, message: &Message, out: &mut Out) {
-        let text = match message {
-            Message::Goal(goal) => {
-                let order = Some((header.sender, header.boot, goal.version));
-                if core::mem::replace(&mut self.ordered.goal, order) == order {
-                    return;
-                }
-                format!("goal: cell {}, {}", goal.target.x, goal.target.y)
-            }
-            Message::Template(_) if !self.model.in_formation => {
-                return self.refuse("STAYA_TEMPLATE: not in a formation", out);
-            }
-            Message::Template(part) => {
-                let order = Some((header.sender, header.boot, part.version));
-                if self.ordered.template != order {
-                    (self.ordered.template, self.ordered.parts) = (order, 0);
-                }
-                let all = u64::MAX >> (64 - u32::from(part.parts).clamp(1, 64));
-                let before = self.ordered.parts;
-                self.ordered.parts |= 1_u64.checked_shl(part.part.into()).unwrap_or(0);
-                if before & all == all || self.ordered.parts & all != all {
-                    return;
-                }
-                format!("place {} of a new formation", u16::from(part.slot) + 1)
-            }
-            _ => return,
-        };
-        self.text(out, Kind::News, MAV_SEVERITY_INFO, &text);
+        if matches!(message, Message::Template(_)) && !self.model.in_formation {
+            return self.refuse("STAYA_TEMPLATE: not in a formation", out);
+        }
+        if let Some(text) = self.ordered.hear(header, message) {
+            self.text(out, Kind::News, MAV_SEVERITY_INFO, &text);
+        }
     }
-}
-
-/// Which order: by whom, in which of their starts, and its version.
-type Order = Option<(RobotId, u8, u8)>;
-
-/// What a vehicle was last told of a formation.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Ordered {
-    goal: Order,
-    template: Order,
-    /// Parts of the template that have come, a bit each.
-    parts: u64,
 }
 
 /// Boot, sequence and the controller's own form of an order; `None` for what is none.

@@ -11,6 +11,7 @@ mod guided;
 mod items;
 mod mission;
 mod model;
+mod ordered;
 mod params;
 mod report;
 mod streams;

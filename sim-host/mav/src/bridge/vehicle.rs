@@ -5,9 +5,9 @@
 //! (`commands`), setpoints never (`guided`), as the protocol has it; what was wrong with them is said as STATUSTEXT.
 
 use super::files;
-use super::guided::Ordered;
 use super::mission::{Item, Mission};
 use super::model::{FlightMode, Sample, VehicleModel};
+use super::ordered::Ordered;
 use super::params::{Meaning, Parameters};
 use super::streams::Streams;
 use crate::geo::FAR_M;
