@@ -24,7 +24,7 @@ use std::time::{Duration, SystemTime};
         staya formation wedge --to udpout:127.0.0.1:14551 --goal 60,40"
 )]
 pub struct FormationArgs {
-    /// line, column, wedge, grid, circle, or a .toml file with `places` and `edges` as in a scenario's [robots.formation].
+    /// line, column, wedge, grid, circle, or a .toml file with `places` and `edges` as in a scenario's table robots.formation.
     shape: String,
     /// Where the swarm is: udpout:HOST:PORT, udpin:HOST:PORT, tcpout:HOST:PORT, tcpin:HOST:PORT or serial:PORT,baud=N.
     #[arg(long, value_name = "LINE")]
