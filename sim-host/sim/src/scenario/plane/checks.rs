@@ -51,28 +51,31 @@ fn goal_count(source: &Source<'_>, field: &str, guidance: GuidanceKind, count: u
     Err(source.error(field, what, format!("give at most {most}, or another guidance")))
 }
 
-/// Robots of a group in metres, if their guidance goes from cell to cell: each starts on the land and has one goal there.
+/// The land that a group's guidance goes over from cell to cell, if it is of that kind.
+pub(super) fn land<'a>(
+    source: &Source<'_>,
+    spec: &Spec,
+    terrain: Option<&'a Terrain>,
+) -> Result<Option<&'a Terrain>, ScenarioError> {
+    let (what, remedy) = match (spec.guidance, terrain) {
+        (GuidanceKind::Formation, _) => (
+            "a formation has all robots of a scenario",
+            "give guidance \"route\", or the formation to all robots, with the top-level [robots]",
+        ),
+        (GuidanceKind::Route, None) => ("this guidance goes from cell to cell", "give [terrain], or another guidance"),
+        (GuidanceKind::Route, Some(land)) => return Ok(Some(land)),
+        _ => return Ok(None),
+    };
+    Err(source.error(&spec.field(source, "guidance"), what, remedy))
+}
+
+/// Robots of a group in metres that go from cell to cell: each starts on the land and has one goal there.
 pub(super) fn in_cells(
     source: &Source<'_>,
     spec: &Spec,
-    terrain: Option<&Terrain>,
+    land: &Terrain,
     starts: &[Start],
 ) -> Result<(), ScenarioError> {
-    if !spec.guidance.is_on_grid() {
-        return Ok(());
-    }
-    let field = spec.field(source, "guidance");
-    if spec.guidance == GuidanceKind::Formation {
-        let remedy = "give guidance \"route\", or the formation to all robots, with the top-level [robots]";
-        return Err(source.error(&field, "a formation has all robots of a scenario", remedy));
-    }
-    let Some(land) = terrain else {
-        return Err(source.error(
-            &field,
-            "this guidance goes from cell to cell",
-            "give [terrain], or another guidance",
-        ));
-    };
     let is_open = |[x, y, z]: [f64; 3]| {
         let cell = land.nearest_cell([x, y]);
         let [at_x, at_y] = land.center_m(cell);

@@ -222,9 +222,12 @@ pub(super) fn build(
     }
     for (index, group) in table.group.iter().enumerate() {
         let (spec, before) = (spec.group(index, group), placing.starts.len());
+        let land = checks::land(source, &spec, terrain)?;
         let number = placing.add(&spec)?;
         placing.place(&spec, Some(number), &group.robots)?;
-        checks::in_cells(source, &spec, terrain, &placing.starts[before..])?;
+        if let Some(land) = land {
+            checks::in_cells(source, &spec, land, &placing.starts[before..])?;
+        }
     }
     group::grow_as_the_fastest(&mut general, &mut groups);
     let setup = PlaneSetup {

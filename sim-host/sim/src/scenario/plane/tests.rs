@@ -19,32 +19,6 @@ fn parse(text: &str) -> Result<Scenario, ScenarioError> {
     Scenario::parse(text, Path::new("s.toml"), &Overrides::default())
 }
 
-/// Robots of a group that goes from cell to cell.
-fn by_route(list: &str) -> String {
-    format!("{HEAD}{LAND}{PLANE}[[plane.group]]\nguidance = \"route\"\nrobots.list = [{list}]\n")
-}
-
-#[test]
-fn groups_in_metres_stand_beside_robots_in_cells_and_may_go_from_cell_to_cell() {
-    let text =
-        by_route("{ start_m = [1, 1], goal_m = [9, 5] }").replace("[plane]\n", "[plane]\nguidance = \"route\"\n");
-    let text = format!(
-        "{text}[[plane.group]]\nguidance = \"waypoint\"\nsafety = \"none\"\nrobots.list = [{{ start_m = [17, 17] }}]\n"
-    );
-    let text = format!("{text}[robots]\nlist = [{{ id = 4, start = [3, 3], goal = [5, 5] }}]\n");
-    let scenario = parse(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    let robots: Vec<_> = scenario.robots.iter().map(|robot| (robot.id.0, robot.start, robot.goal)).collect();
-    let cell = Cell::new;
-    assert_eq!(robots, [(4, cell(3, 3), cell(5, 5)), (5, cell(0, 0), cell(4, 2)), (6, cell(0, 0), cell(0, 0))]);
-    let kinds: Vec<_> = (0..3).map(|index| (scenario.guidance(index).kind(), scenario.safety(index).kind())).collect();
-    let expected = [
-        (GuidanceKind::Route, SafetyKind::Orca),
-        (GuidanceKind::Route, SafetyKind::Orca),
-        (GuidanceKind::Waypoint, SafetyKind::None),
-    ];
-    assert_eq!(kinds, expected);
-}
-
 fn setup(text: &str) -> PlaneSetup {
     let scenario = parse(text).unwrap_or_else(|error| panic!("{error}\n{text}"));
     scenario.plane.expect("robots in the plane")
@@ -220,29 +194,6 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         (
             robots("circle = { count = 40, radius_m = 2 }"),
             "s.toml:6: plane.robots: robots 1 and 2 overlap at the start",
-        ),
-        // What goes from cell to cell beside others.
-        (
-            format!(
-                "{HEAD}{PLANE}[[plane.group]]\nguidance = \"route\"\nrobots.list = [{{ start_m = [1, 1], goal_m = [9, 1] }}]\n"
-            ),
-            "s.toml:7: plane.group[0].guidance: this guidance goes from cell to cell; give [terrain]",
-        ),
-        (
-            by_route("{ start_m = [1, 1] }"),
-            "s.toml:8: plane.group[0].robots: robot 1 of the group goes from cell to cell and has no",
-        ),
-        (
-            by_route("{ start_m = [1, 1], goal_m = [9, 1] }, { start_m = [19, 1], goal_m = [9, 1] }"),
-            "s.toml:8: plane.group[0].robots: robot 2 of the group goes from cell to cell and starts in no free cell",
-        ),
-        (
-            by_route("{ start_m = [1, 1], goal_m = [9, -0.1] }"),
-            "s.toml:8: plane.group[0].robots: robot 1 of the group goes from cell to cell and has its goal in no free",
-        ),
-        (
-            by_route("{ start_m = [1, 1], goal_m = [9, 1] }").replace("\"route\"", "\"formation\""),
-            "s.toml:9: plane.group[0].guidance: a formation has all robots of a scenario",
         ),
         // What goes with what.
         (

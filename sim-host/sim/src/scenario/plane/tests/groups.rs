@@ -2,12 +2,40 @@
 
 use super::*;
 
+/// Robots of a group that goes from cell to cell.
+fn by_route(list: &str) -> String {
+    format!("{HEAD}{LAND}{PLANE}[[plane.group]]\nguidance = \"route\"\nrobots.list = [{list}]\n")
+}
+
 #[test]
 fn mistakes_in_groups_ways_and_intruders_are_named_with_line_field_and_remedy() {
     let after = |rest: &str| format!("{HEAD}{PLANE}{TWO}{rest}");
     let robots = |robots: &str| format!("{HEAD}{PLANE}[plane.robots]\n{robots}\n");
     let group = |fields: &str| after(&format!("[[plane.group]]\n{fields}\nrobots.list = [{{ start_m = [9, 9] }}]\n"));
     let cases = [
+        // What goes from cell to cell beside others.
+        (
+            format!(
+                "{HEAD}{PLANE}[[plane.group]]\nguidance = \"route\"\nrobots.list = [{{ start_m = [1, 1], goal_m = [9, 1] }}]\n"
+            ),
+            "s.toml:7: plane.group[0].guidance: this guidance goes from cell to cell; give [terrain]",
+        ),
+        (
+            by_route("{ start_m = [1, 1] }"),
+            "s.toml:11: plane.group[0].robots: robot 1 of the group goes from cell to cell and has no",
+        ),
+        (
+            by_route("{ start_m = [1, 1], goal_m = [9, 1] }, { start_m = [19, 1], goal_m = [9, 1] }"),
+            "s.toml:11: plane.group[0].robots: robot 2 of the group goes from cell to cell and starts in no free cell",
+        ),
+        (
+            by_route("{ start_m = [1, 1], goal_m = [9, -0.1] }"),
+            "s.toml:11: plane.group[0].robots: robot 1 of the group goes from cell to cell and has its goal in no free",
+        ),
+        (
+            by_route("{ start_m = [1, 1], goal_m = [9, 1] }").replace("\"route\"", "\"formation\""),
+            "s.toml:10: plane.group[0].guidance: a formation has all robots of a scenario",
+        ),
         // Groups.
         (group("radius_m = -1"), "s.toml:9: plane.group[0].radius_m: -1 is out of range; give 0.001 to 65 metres"),
         (group("max_speed_mps = 0.5\ncruise_mps = 0.6"), "s.toml:10: plane.group[0].cruise_mps: 0.6 is out of range"),
@@ -15,7 +43,7 @@ fn mistakes_in_groups_ways_and_intruders_are_named_with_line_field_and_remedy() 
         (group("guidance = \"lattice\""), "s.toml:8: plane.group[0].lattice: this guidance needs distances"),
         (
             group("guidance = \"route\""),
-            "s.toml:9: plane.group[0].guidance: this guidance goes from cell to cell; give it to all robots",
+            "s.toml:9: plane.group[0].guidance: this guidance goes from cell to cell; give [terrain]",
         ),
         (group("orca = { share = 2 }"), "s.toml:9: plane.group[0].orca.share: 2 is out of range; give 0 to 1"),
         (
@@ -125,4 +153,25 @@ fn groups_and_robots_differ_in_what_they_say_and_share_the_rest() {
     // Robots of the last group are drawn between those before them, and overlap none.
     assert_eq!((plane.starts.len(), plane.group(12).guidance.kind()), (13, GuidanceKind::Boids));
     assert_eq!(plane.group(12).safety, SafetySetup::None);
+}
+
+#[test]
+fn groups_in_metres_stand_beside_robots_in_cells_and_may_go_from_cell_to_cell() {
+    let text =
+        by_route("{ start_m = [1, 1], goal_m = [9, 5] }").replace("[plane]\n", "[plane]\nguidance = \"route\"\n");
+    let text = format!(
+        "{text}[[plane.group]]\nguidance = \"waypoint\"\nsafety = \"none\"\nrobots.list = [{{ start_m = [17, 17] }}]\n"
+    );
+    let text = format!("{text}[robots]\nlist = [{{ id = 4, start = [3, 3], goal = [5, 5] }}]\n");
+    let scenario = parse(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let robots: Vec<_> = scenario.robots.iter().map(|robot| (robot.id.0, robot.start, robot.goal)).collect();
+    let cell = Cell::new;
+    assert_eq!(robots, [(4, cell(3, 3), cell(5, 5)), (5, cell(0, 0), cell(4, 2)), (6, cell(0, 0), cell(0, 0))]);
+    let kinds: Vec<_> = (0..3).map(|index| (scenario.guidance(index).kind(), scenario.safety(index).kind())).collect();
+    let expected = [
+        (GuidanceKind::Route, SafetyKind::Orca),
+        (GuidanceKind::Route, SafetyKind::Orca),
+        (GuidanceKind::Waypoint, SafetyKind::None),
+    ];
+    assert_eq!(kinds, expected);
 }
