@@ -9,6 +9,7 @@ use clap::Args;
 use devices::{DevicePlan, Log, OnDevices};
 use serde::Serialize;
 use staya_console::{Ended, Global, Progress, Stop, print, print_json};
+use staya_controller::formation::published::FormationLaw;
 use staya_runner::{Device, LineFaults, Options, Part, Reset, Spread, Statistics};
 use staya_sim::engine::{Moment, Outcome, simulate, simulate_with};
 use staya_sim::expected::Expected;
@@ -115,8 +116,9 @@ impl HilArgs {
     /// from its shadow.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         let scenario = self.scenario.load()?;
-        if scenario.published.is_some() {
-            bail!("formation.law = \"paper\" is in no firmware; give \"staya\", or run it without devices");
+        if scenario.published.is_some() || scenario.looks_ahead {
+            let law = if scenario.looks_ahead { FormationLaw::Lookahead } else { FormationLaw::Paper };
+            bail!("formation.law = \"{law}\" is in no firmware; give \"staya\", or run it without devices");
         }
         if scenario.maps.is_some() {
             bail!("maps.share is in no firmware for devices; leave [maps] out, or run it without devices");

@@ -13,6 +13,8 @@ use super::route_guidance::{GridWorkspace, RouteGuidance};
 use super::safety::{Safety, SafetyInput, Unguarded};
 use super::waypoint_guidance::WaypointGuidance;
 use super::{AnySurroundings, Parameter, Surroundings, Waypoint};
+#[cfg(feature = "published")]
+use crate::formation::Course;
 use crate::geom::{Vec2, Vec3};
 use crate::grid::Cell;
 use crate::neighbor::StalenessInflation;
@@ -55,6 +57,8 @@ pub enum AnyGuidance<S, const CELLS: usize, const M: usize, const F: usize, cons
     FormationOnGrid(Large<FormationGuidance<CELLS, M, F, L>>),
     #[cfg(feature = "published")]
     Published(Large<PublishedFormation<CELLS, M, F>>),
+    #[cfg(feature = "published")]
+    LooksAhead(Large<FormationGuidance<CELLS, M, F, L, Course>>),
 }
 
 /// Does the same with whatever is inside.
@@ -71,6 +75,8 @@ macro_rules! each {
             AnyGuidance::FormationOnGrid($inside) => $action,
             #[cfg(feature = "published")]
             AnyGuidance::Published($inside) => $action,
+            #[cfg(feature = "published")]
+            AnyGuidance::LooksAhead($inside) => $action,
         }
     };
 }
@@ -134,6 +140,8 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             Self::FormationOnGrid(law) => law.decide(input, grid()?, rng, workspace),
             #[cfg(feature = "published")]
             Self::Published(law) => law.decide(input, grid()?, rng, workspace),
+            #[cfg(feature = "published")]
+            Self::LooksAhead(law) => law.decide(input, grid()?, rng, workspace),
         }
     }
 

@@ -8,8 +8,8 @@ use super::tunable::Tunable;
 use super::{OnGrid, Parameter, Wait};
 use crate::cost::Weights;
 use crate::formation::{
-    Anchor, Footprint, FormationParams, Found, GraphDistance, Member, Pace, Ranks, Recovery, Seen, aim, blended, def,
-    distances, find_leader, find_neighbors, graph_distance, lag, should_stay,
+    Anchor, Footprint, FormationParams, Found, GraphDistance, Member, NextMove, Pace, Ranks, Recovery, Seen, Steering,
+    blended, def, distances, find_leader, find_neighbors, graph_distance, should_stay,
 };
 use crate::grid::{Cell, Dir, Window};
 use crate::list;
@@ -36,10 +36,11 @@ const ALTERNATIVES: usize = 2;
 
 /// Travelling in formation; remembers visits of `M` cells and a template of `F` neighbours.
 ///
-/// Without a template the robot travels alone.
+/// Without a template the robot travels alone. `K` is how followers take their leader to go on: by its next move, or by its
+/// [`Course`](crate::formation::Course).
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(feature = "state", derive(serde::Deserialize))]
-pub struct FormationGuidance<const CELLS: usize, const M: usize, const F: usize, const L: usize = 0> {
+pub struct FormationGuidance<const CELLS: usize, const M: usize, const F: usize, const L: usize = 0, K = NextMove> {
     route: RouteParams,
     formation: FormationParams,
     sharpness: Sharpness,
@@ -65,6 +66,7 @@ pub struct FormationGuidance<const CELLS: usize, const M: usize, const F: usize,
     #[cfg_attr(feature = "state", serde(with = "crate::digest::uncounted"))]
     #[cfg_attr(not(feature = "state"), serde(skip))]
     is_rigid: bool,
+    steering: K,
 }
 
 /// What a follower steers by.
@@ -81,6 +83,16 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize> Formati
     /// With these parameters and this place in the formation.
     #[must_use]
     pub const fn new(route: RouteParams, formation: FormationParams, template: Template<F>) -> Self {
+        Self::steered(route, formation, template, NextMove)
+    }
+}
+
+impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Steering>
+    FormationGuidance<CELLS, M, F, L, K>
+{
+    /// The same, with followers who steer by `steering`.
+    #[must_use]
+    pub const fn steered(route: RouteParams, formation: FormationParams, template: Template<F>, steering: K) -> Self {
         Self {
             route,
             formation,
@@ -98,6 +110,7 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize> Formati
             waited: 0,
             behind: 0,
             is_rigid: false,
+            steering,
         }
     }
 
@@ -202,10 +215,15 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize> Formati
         found: &Found<F>,
         workspace: &mut GridWorkspace<CELLS>,
     ) -> Option<Weights> {
-        let (place, members): (Cell, &[Member]) =
-            if guide.has_arrived { (target, &[]) } else { (aim(&guide.anchor, self.formation.lead), &found.members) };
-        let place = reachable_goal(window, place);
-        let price = distances(&self.formation, cell, Some(place), members);
+        let (aims, members): (_, &[Member]) = if guide.has_arrived {
+            ([target; 2], &[])
+        } else {
+            (self.steering.aims(&self.formation, &guide.anchor, target), &found.members)
+        };
+        let [far, near] = aims;
+        let place = reachable_goal(window, far);
+        let near = if near == far { place } else { reachable_goal(window, near) };
+        let price = distances(&self.formation, cell, Some(near), members);
         if place == cell {
             return Some(price);
         }
@@ -219,13 +237,21 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize> Formati
     }
 
     /// The top leader seen by a follower.
-    fn guide<S>(&self, input: &GuidanceInput<'_, S>, view: &Template<F>, cell: Cell, seen: &[Seen]) -> Option<Guide> {
-        let (top, offset) = self.top(input, view)?;
-        let seen = seen.iter().find(|seen| seen.id == top)?;
+    fn guide<S>(
+        &mut self,
+        input: &GuidanceInput<'_, S>,
+        view: &Template<F>,
+        cell: Cell,
+        seen: &[Seen],
+    ) -> Option<Guide> {
+        let top = self.top(input, view);
+        let top = top.and_then(|(top, offset)| Some((seen.iter().find(|seen| seen.id == top)?, offset)));
+        self.steering.note(top.map_or((input.id, cell), |(seen, _)| (seen.id, seen.cell)));
+        let (seen, offset) = top?;
         let off = cell - (seen.cell + offset);
         Some(Guide {
             anchor: Anchor { predicted: seen.predicted, offset, heading: seen.heading },
-            lag: lag(off, seen.heading),
+            lag: self.steering.lag(off, seen.heading),
             has_arrived: seen.mode == Mode::Arrived,
         })
     }
@@ -286,8 +312,8 @@ fn seen_at<S>(other: &Neighbor<S>, predicted: Cell) -> Seen {
     Seen { id: other.id, cell: other.cell, predicted, heading: other.heading, leader: other.leader, mode: other.mode }
 }
 
-impl<const CELLS: usize, const M: usize, const F: usize, const L: usize> Teamwork
-    for FormationGuidance<CELLS, M, F, L>
+impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K> Teamwork
+    for FormationGuidance<CELLS, M, F, L, K>
 {
     fn redirect(&mut self) {
         self.travel.redirect();
@@ -320,8 +346,8 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize> Teamwor
     }
 }
 
-impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usize> Guidance<S>
-    for FormationGuidance<CELLS, M, F, L>
+impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Steering> Guidance<S>
+    for FormationGuidance<CELLS, M, F, L, K>
 {
     type Input<'a> = OnGrid<'a>;
     type Destination = ToCells;
@@ -364,7 +390,8 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             let weights = self.follow(input, &window, (cell, target), guide, &found, workspace);
             if let (Some(first), false) = (weights.and_then(|w| w.best()), guide.has_arrived) {
                 // By the place that it should have, be it in a wall.
-                stays = should_stay(cell, aim(&guide.anchor, self.formation.lead), first);
+                let [_, place] = self.steering.aims(&self.formation, &guide.anchor, target);
+                stays = should_stay(cell, place, first);
             }
             weights
         } else {
@@ -378,7 +405,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             });
             let behind = able.map(|member| {
                 let off = member.seen.cell - (cell + member.offset);
-                lag(off, self.travel.choice())
+                self.steering.lag(off, self.travel.choice())
             });
             let waits = self.pace.update(&self.formation, behind.max().unwrap_or(0));
             self.waited = if waits { self.waited.saturating_add(1) } else { 0 };

@@ -17,6 +17,8 @@ use super::{Agent, AgentConfig, TEMPLATE, WAYPOINTS, Waypoint};
 use crate::flock::boids::BoidsParams;
 use crate::flock::goal::GoalParams;
 use crate::flock::lattice::{LatticeParams, ReferenceMotion};
+#[cfg(feature = "published")]
+use crate::formation::Course;
 use crate::formation::FormationParams;
 #[cfg(feature = "published")]
 use crate::formation::published::PublishedParams;
@@ -135,6 +137,13 @@ pub enum GuidanceSetup {
     Published {
         route: RouteSetup,
         formation: PublishedParams,
+        template: Template<TEMPLATE>,
+    },
+    /// As `Formation` without a speed, with followers who look ahead ([`Course`]).
+    #[cfg(feature = "published")]
+    LooksAhead {
+        route: RouteSetup,
+        formation: FormationParams,
         template: Template<TEMPLATE>,
     },
 }
@@ -277,7 +286,7 @@ impl Setup {
         match &self.guidance {
             GuidanceSetup::Route { route, .. } | GuidanceSetup::Formation { route, .. } => route.cells(),
             #[cfg(feature = "published")]
-            GuidanceSetup::Published { route, .. } => route.cells(),
+            GuidanceSetup::Published { route, .. } | GuidanceSetup::LooksAhead { route, .. } => route.cells(),
             _ => 0,
         }
     }
@@ -295,7 +304,7 @@ impl GuidanceSetup {
             Self::Route { .. } => GuidanceKind::Route,
             Self::Formation { .. } => GuidanceKind::Formation,
             #[cfg(feature = "published")]
-            Self::Published { .. } => GuidanceKind::Formation,
+            Self::Published { .. } | Self::LooksAhead { .. } => GuidanceKind::Formation,
         }
     }
 
@@ -335,6 +344,11 @@ impl GuidanceSetup {
             #[cfg(feature = "published")]
             Self::Published { route, formation, template } => AnyGuidance::Published(large(
                 PublishedFormation::new(route.params, *formation, template.clone()).sharpness(route.sharpness),
+            )),
+            #[cfg(feature = "published")]
+            Self::LooksAhead { route, formation, template } => AnyGuidance::LooksAhead(large(
+                FormationGuidance::steered(route.params, *formation, template.clone(), Course::new())
+                    .sharpness(route.sharpness),
             )),
         }
     }

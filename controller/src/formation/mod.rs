@@ -31,11 +31,13 @@
 //!   chooses at t = 0 only), so that a formation outlives any robot.
 //! - Nobody waits for ever: see [`FormationParams::patience`]. A leader does not wait for those who follow
 //!   somebody else.
+//! - By the law "lookahead" those who follow plan their way to where their places will be some moves later ([`Course`]).
 //! - When the ranks are closed ([`FormationParams::closes_ranks`]), those behind a dead robot move up.
 //! - Who has no direct neighbour to follow follows a farther one ([`find_leader`]).
 //! - The listing's misprints are resolved: `less` is counted once (algorithm 5), the leader is the
 //!   smallest number (algorithm 6), sums restart for each direction (algorithm 7).
 
+mod lookahead;
 mod measure;
 mod neighbors;
 mod places;
@@ -47,6 +49,7 @@ mod steering;
 #[cfg(test)]
 mod tests;
 
+pub use lookahead::{Course, NextMove, Steering};
 pub use measure::{FormationError, GraphDistance, graph_distance};
 pub use neighbors::{Found, Member, Seen, find_leader, find_neighbors};
 pub(crate) use places::scaled;
@@ -121,6 +124,15 @@ pub struct FormationParams {
     pub prediction: Prediction,
     /// What the top leader does while somebody is too far behind.
     pub recovery: Recovery,
+}
+
+impl FormationParams {
+    /// What followers who look ahead ([`Course`]) do well with: a leader who waits from 3 cells on (210 units), and twice the price for
+    /// being off one's place; chosen on seed 1 of `staya experiment formation`.
+    #[must_use]
+    pub fn looking_ahead() -> Self {
+        Self { gain: Gain::from_sixteenths(32), halt_lag: 210, resume_lag: 210, ..Self::default() }
+    }
 }
 
 impl Default for FormationParams {

@@ -24,6 +24,8 @@ named! {
         Staya = "staya",
         /// The paper's: each robot weighs its own shortest way against all neighbours found; see [`PublishedParams`].
         Paper = "paper",
+        /// Staya's, with followers who plan their way to where their places will be; see [`Course`](super::Course).
+        Lookahead = "lookahead",
     }
 }
 

@@ -70,7 +70,10 @@ impl ExperimentArgs {
             Experiment::Swap(args) => args.plan().command(&args.out(), keeping, global, &stop),
             Experiment::Doorway(args) => args.plan().command(&args.out(), keeping, global, &stop),
             Experiment::Crossing(args) => args.plan().command(&args.out, keeping, global, &stop),
-            Experiment::Movingai(args) => args.plan()?.command(&args.out, keeping, global, &stop),
+            Experiment::Movingai(args) => match args.share()? {
+                Some(plan) => plan.command(&args.out.join("share"), keeping, global, &stop),
+                None => args.plan()?.command(&args.out, keeping, global, &stop),
+            },
             Experiment::Boids(plan) => plan.command(&plan.out, keeping, global, &stop),
             Experiment::Flock(args) => match args.closing() {
                 Some(closing) => closing.command(&args.plan.out.join("closing"), keeping, global, &stop),

@@ -5,8 +5,10 @@
 //! is what they learn of the costs of ways, as far as they can remember it ([`Learning`]), and at last the wall. A map
 //! that is too large for the router's search is answered by the planner ([`optimal`]).
 
+mod groups;
 mod report;
 
+pub use groups::{GroupPlan, GroupPoint, GroupReport};
 pub use report::{Answer, Report};
 
 use crate::experiment::Experiment;

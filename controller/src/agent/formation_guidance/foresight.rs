@@ -3,7 +3,7 @@
 use super::{FormationGuidance, seen_at};
 use crate::agent::guidance::GuidanceInput;
 use crate::cost::Gain;
-use crate::formation::{Prediction, Seen, distances};
+use crate::formation::{Prediction, Seen, Steering, distances};
 use crate::grid::{BLOCKED, Cell, Dir, Window};
 use crate::neighbor::Neighbor;
 use crate::robot::{Mode, RobotId};
@@ -15,7 +15,9 @@ use heapless::Vec;
 /// Cells by which old news may be carried forward.
 const MAX_FORESIGHT: i16 = 3;
 
-impl<const CELLS: usize, const M: usize, const F: usize, const L: usize> FormationGuidance<CELLS, M, F, L> {
+impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Steering>
+    FormationGuidance<CELLS, M, F, L, K>
+{
     /// The others, each with the cell where it will be when one's own next move is over; of more than
     /// 32 those of the template and the leader, then the smallest numbers.
     #[inline(never)]

@@ -34,7 +34,13 @@ pub struct FormationArgs {
     #[arg(long, value_name = "LOSS,...", value_delimiter = ',', default_value = "0.1,0.3,0.6")]
     other_losses: Vec<f64>,
     /// Other laws to try on the same landscapes, at each loss.
-    #[arg(long, value_name = "LAW,...", value_delimiter = ',', default_value = "unwaiting,paper", value_enum)]
+    #[arg(
+        long,
+        value_name = "LAW,...",
+        value_delimiter = ',',
+        default_value = "lookahead,loose,shared,unwaiting,paper",
+        value_enum
+    )]
     other_laws: Vec<Law>,
     /// Sum of deviations from all neighbours found that the paper's law takes for too far (much more than r0), cells.
     #[arg(long, value_name = "CELLS")]

@@ -1,6 +1,6 @@
 //! `staya experiment movingai`.
 
-use crate::movingai::{Benchmark, Learning, Memory, Plan, Robots, Sight};
+use crate::movingai::{Benchmark, GroupPlan, Learning, Memory, Plan, Robots, Sight};
 use crate::options::RouteOptions;
 use anyhow::Result;
 use clap::Args;
@@ -28,6 +28,22 @@ pub struct MovingAiArgs {
     learned: Learning,
     #[command(flatten)]
     route: RouteOptions,
+    /// Send groups of robots, each with a query of its own, through the whole simulator, with maps shared over the radio and
+    /// without; results go to the folder's `share`.
+    #[arg(long, conflicts_with_all = ["visits", "learned", "replan", "exit"])]
+    share: bool,
+    /// Robots of a group.
+    #[arg(long, value_name = "ROBOTS,...", value_delimiter = ',', default_value = "6,20", requires = "share")]
+    group: Vec<u32>,
+    /// Losses of packets, 0 to 1.
+    #[arg(long, value_name = "LOSS,...", value_delimiter = ',', default_value = "0,0.3,0.6", requires = "share")]
+    losses: Vec<f64>,
+    /// Groups of each size.
+    #[arg(long, default_value_t = 50, requires = "share")]
+    runs: u32,
+    /// Equal seeds give equal results; what robots make of maps was chosen on seed 1 of natural land.
+    #[arg(long, default_value_t = 3, requires = "share")]
+    seed: u64,
     /// Folder for the rows.
     #[arg(long, value_name = "DIR", default_value = "out/experiment-movingai")]
     pub out: PathBuf,
@@ -45,6 +61,18 @@ fn sight(word: &str) -> Result<Sight, String> {
 }
 
 impl MovingAiArgs {
+    /// What is to be done with groups, if that is asked for.
+    ///
+    /// # Errors
+    /// As [`Self::plan`].
+    pub fn share(&self) -> Result<Option<GroupPlan>> {
+        if !self.share {
+            return Ok(None);
+        }
+        let (groups, losses) = (self.group.clone(), self.losses.clone());
+        Ok(Some(GroupPlan { robots: self.plan()?, groups, losses, runs: self.runs, seed: self.seed }))
+    }
+
     /// What is to be done.
     ///
     /// # Errors

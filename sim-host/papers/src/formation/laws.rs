@@ -1,12 +1,14 @@
-//! Other laws on the same landscapes: the paper's own, and ours without its waiting.
+//! Other laws on the same landscapes: ours with followers who look ahead, with shared maps, without its waiting, and the paper's own.
 
 use super::Plan;
 use anyhow::Result;
 use clap::ValueEnum;
 use serde::Serialize;
 use staya_controller::cost::Gain;
-use staya_controller::formation::NEVER;
 use staya_controller::formation::published::PublishedParams;
+use staya_controller::formation::{FormationParams, NEVER};
+use staya_controller::grid::UNIT;
+use staya_controller::land::MapParams;
 use staya_controller::shuffle::Sharpness;
 use staya_sim::scenario::Scenario;
 
@@ -16,6 +18,12 @@ use staya_sim::scenario::Scenario;
 pub enum Law {
     /// Staya's as planned
     Staya,
+    /// Staya's, with followers who plan their way to where their places will be
+    Lookahead,
+    /// The same, with a leader who waits from 12 cells on
+    Loose,
+    /// Staya's, with maps shared over the radio
+    Shared,
     /// Staya's, but nobody waits for those behind
     Unwaiting,
     /// The paper's: each robot weighs its own way against all neighbours that it finds
@@ -26,6 +34,9 @@ impl Law {
     pub(super) const fn name(self) -> &'static str {
         match self {
             Self::Staya => "staya",
+            Self::Lookahead => "lookahead",
+            Self::Loose => "loose",
+            Self::Shared => "shared",
             Self::Unwaiting => "unwaiting",
             Self::Paper => "paper",
         }
@@ -35,12 +46,30 @@ impl Law {
 /// How strictly the paper's shuffle follows the weights: half as likely for each half tick that a move costs more.
 const SHUFFLE: Sharpness = Sharpness::HalvedPer(Gain::from_sixteenths(8));
 
+/// The lag from which a leader waits whose formation may be as loose as the paper's, [`UNIT`]s; chosen on seed 1.
+const LOOSE: u16 = 12 * UNIT as u16;
+
 impl Law {
+    /// All, ours as planned first.
+    pub(super) const ALL: [Self; 6] =
+        [Self::Staya, Self::Lookahead, Self::Loose, Self::Shared, Self::Unwaiting, Self::Paper];
+
     /// How far from its place a neighbour counts as found, cells.
     pub(super) const fn eps(self, plan: &Plan) -> u8 {
         match self {
-            Self::Staya | Self::Unwaiting => plan.formation.eps,
             Self::Paper => plan.published.params.eps,
+            _ => plan.formation.eps,
+        }
+    }
+
+    /// How robots keep the formation, but for the paper's law.
+    pub(super) fn params(self, plan: &Plan) -> FormationParams {
+        let ahead = FormationParams { eps: plan.formation.eps, ..FormationParams::looking_ahead() };
+        match self {
+            Self::Staya | Self::Shared | Self::Paper => plan.formation,
+            Self::Lookahead => ahead,
+            Self::Loose => FormationParams { halt_lag: LOOSE, resume_lag: LOOSE, ..ahead },
+            Self::Unwaiting => FormationParams { halt_lag: NEVER, resume_lag: NEVER, ..plan.formation },
         }
     }
 
@@ -50,13 +79,12 @@ impl Law {
     /// A radius rho without a template.
     pub(super) fn on(self, plan: &Plan, together: &Scenario, loss: f64) -> Result<Scenario> {
         let mut scenario = together.clone();
-        scenario.formation_params = plan.formation;
+        scenario.formation_params = self.params(plan);
         scenario.radio.loss = loss;
         match self {
-            Self::Staya => {}
-            Self::Unwaiting => {
-                (scenario.formation_params.halt_lag, scenario.formation_params.resume_lag) = (NEVER, NEVER);
-            }
+            Self::Staya | Self::Unwaiting => {}
+            Self::Lookahead | Self::Loose => scenario.looks_ahead = true,
+            Self::Shared => scenario.maps = Some(MapParams::default()),
             Self::Paper => {
                 let published = plan.published;
                 scenario.published = Some(published.params);

@@ -108,7 +108,7 @@ impl Default for Plan {
             loss: 0.0,
             other_eps: vec![1, 2, 3, 5],
             other_losses: vec![0.1, 0.3, 0.6],
-            other_laws: vec![Law::Unwaiting, Law::Paper],
+            other_laws: vec![Law::Lookahead, Law::Loose, Law::Shared, Law::Unwaiting, Law::Paper],
             published: Published::default(),
             ticks: 10_000,
             seed: 2,
@@ -265,6 +265,7 @@ impl Plan {
             route: RouteSetup { params: self.route, replan: Replan::EachCell, sharpness: self.sharpness },
             formation_params: self.formation,
             published: None,
+            looks_ahead: false,
             faults: Vec::new(),
             key: None,
             key_remark: None,
@@ -356,7 +357,7 @@ impl Experiment for Plan {
             spacing,
             rho,
             route,
-            formation,
+            formation: _,
             sharpness,
             loss: _,
             other_eps: _,
@@ -368,7 +369,7 @@ impl Experiment for Plan {
         } = self;
         let (obstacles, way) = self.point(point);
         let (is_formation, law, eps, loss) = match way {
-            Way::Alone => (false, Law::Staya, formation.eps, 0.0),
+            Way::Alone => (false, Law::Staya, self.formation.eps, 0.0),
             Way::Together { eps, loss } => (true, Law::Staya, eps, loss),
             Way::Under { law, loss } => (true, law, law.eps(self), loss),
         };
@@ -385,7 +386,7 @@ impl Experiment for Plan {
             closes_ranks,
             prediction,
             recovery,
-        } = *formation;
+        } = law.params(self);
         vec![
             ("obstacles", obstacles.into()),
             ("formation", is_formation.into()),

@@ -52,6 +52,24 @@ fn keeping_a_formation_is_what_makes_the_difference() {
 }
 
 #[test]
+fn who_looks_ahead_is_nearer_its_place_and_sooner_there() {
+    let plan = Plan {
+        obstacles: vec![20],
+        runs: 20,
+        size: 70,
+        other_losses: vec![],
+        other_laws: vec![Law::Lookahead],
+        ..small()
+    };
+    let report = report(&plan);
+    let (ours, ahead) = (&report.points[0].formation, &report.points[0].other_laws[0].journey);
+    assert_eq!((ours.arrived, ahead.arrived), (20, 20));
+    assert_eq!(ahead.collisions, 0);
+    assert!(ahead.error_per_agent.mean < ours.error_per_agent.mean, "{report}");
+    assert!(ahead.time_ratio < ours.time_ratio, "{report}");
+}
+
+#[test]
 fn the_papers_law_and_ours_without_waiting_are_beside_ours() {
     let plan = Plan { obstacles: vec![10], other_laws: vec![Law::Unwaiting, Law::Paper], ..small() };
     let report = report(&plan);

@@ -28,7 +28,7 @@ use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;
 use staya_controller::route::{Replan, RouteParams};
 use staya_controller::shuffle::Sharpness;
-use staya_sim::engine::simulate;
+use staya_sim::engine::{Outcome, simulate};
 use staya_sim::radio::RadioParams;
 use staya_sim::scenario::{Fault, Robot, Scenario};
 use staya_sim::terrain::generate::{self, Hills, natural_by};
@@ -229,33 +229,10 @@ impl Plan {
             from_tick: 0,
             to_tick: self.departure(case, robot.id),
         });
-        Ok(Scenario {
-            name: String::from("share"),
-            seed: Rng::keyed(self.seed, RUNS, case.obstacles, run).next_u64(),
-            ticks: TICKS,
-            tick_us: TICK_US,
-            terrain: self.landscape(case.obstacles, run)?,
-            changes: Vec::new(),
-            scouting: None,
-            rules: MoveRules { norm: self.route.norm, corner_cutting: self.route.corner_cutting },
-            radio: RadioParams { range_m: f64::INFINITY, loss: case.shared.unwrap_or(0.0), ..RadioParams::default() },
-            faults: faults.collect(),
-            robots,
-            plane: None,
-            formation: None,
-            route: RouteSetup { params: self.route, replan: Replan::EachCell, sharpness: Sharpness::Greedy },
-            maps: case.shared.map(|_| MapParams::default()),
-            formation_params: FormationParams::default(),
-            published: None,
-            key: None,
-            key_remark: None,
-            keeping: None,
-            interventions: Vec::new(),
-            misnumbered: Vec::new(),
-            claims: Claims::ANY,
-            attacks: Vec::new(),
-            parameters: Default::default(),
-        })
+        let faults = faults.collect();
+        let seed = Rng::keyed(self.seed, RUNS, case.obstacles, run).next_u64();
+        let scenario = scenario(self.landscape(case.obstacles, run)?, robots, self.route, case.shared, seed);
+        Ok(Scenario { faults, ..scenario })
     }
 
     /// The tick in which a robot sets out.
@@ -267,15 +244,25 @@ impl Plan {
         let scenario = self.scenario(case, run)?;
         let outcome = simulate(&scenario, |_, _| ControlFlow::Continue(()))?;
         let rules = scenario.rules;
-        let mut losses = Vec::new();
-        for (robot, &at) in scenario.robots.iter().zip(&outcome.arrival_times) {
-            let fastest = planner.route(&scenario.terrain, robot.start, robot.goal, rules.norm, rules.corner_cutting);
-            let fastest = fastest.context("natural land has a way between any two cells")?.cost as f64;
-            let since = u64::from(self.departure(case, robot.id)) * u64::from(UNIT);
-            losses.push(at.map(|at| 100.0 * (at.saturating_sub(since) as f64 / fastest - 1.0)));
-        }
+        let fastest = scenario.robots.iter().map(|robot| {
+            let route = planner.route(&scenario.terrain, robot.start, robot.goal, rules.norm, rules.corner_cutting);
+            let cost = route.context("natural land has a way between any two cells")?.cost;
+            Ok((self.departure(case, robot.id), cost as f64))
+        });
+        Ok(Trip::of(&outcome, &fastest.collect::<Result<Vec<_>>>()?))
+    }
+}
+
+impl Trip {
+    /// Of a run whose robots set out in these ticks and have these fastest routes, [`UNIT`]s of a tick.
+    pub(crate) fn of(outcome: &Outcome, fastest: &[(u32, f64)]) -> Self {
+        let over = |(&at, &(departure, fastest)): (&Option<u64>, &(u32, f64))| {
+            let since = u64::from(departure) * u64::from(UNIT);
+            at.map(|at| 100.0 * (at.saturating_sub(since) as f64 / fastest - 1.0))
+        };
+        let losses: Vec<Option<f64>> = outcome.arrival_times.iter().zip(fastest).map(over).collect();
         let arrived: Vec<f64> = losses.iter().copied().flatten().collect();
-        Ok(Trip {
+        Self {
             arrived: arrived.len() as u32,
             loss_percent: staya_stats::mean(&arrived).unwrap_or(0.0),
             first_percent: losses.first().copied().flatten(),
@@ -283,7 +270,45 @@ impl Plan {
             packets: outcome.packets.sent,
             collisions: outcome.collisions,
             hash: outcome.trace_hash,
-        })
+        }
+    }
+}
+
+/// Robots on a landscape, each for itself; `shared`: they share maps at that loss of packets.
+pub(crate) fn scenario(
+    terrain: Terrain,
+    robots: Vec<Robot>,
+    route: RouteParams,
+    shared: Option<f64>,
+    seed: u64,
+) -> Scenario {
+    Scenario {
+        name: String::from("share"),
+        seed,
+        ticks: TICKS,
+        tick_us: TICK_US,
+        terrain,
+        changes: Vec::new(),
+        scouting: None,
+        rules: MoveRules { norm: route.norm, corner_cutting: route.corner_cutting },
+        radio: RadioParams { range_m: f64::INFINITY, loss: shared.unwrap_or(0.0), ..RadioParams::default() },
+        faults: Vec::new(),
+        robots,
+        plane: None,
+        formation: None,
+        route: RouteSetup { params: route, replan: Replan::EachCell, sharpness: Sharpness::Greedy },
+        maps: shared.map(|_| MapParams::default()),
+        formation_params: FormationParams::default(),
+        published: None,
+        looks_ahead: false,
+        key: None,
+        key_remark: None,
+        keeping: None,
+        interventions: Vec::new(),
+        misnumbered: Vec::new(),
+        claims: Claims::ANY,
+        attacks: Vec::new(),
+        parameters: Default::default(),
     }
 }
 

@@ -55,32 +55,38 @@ pub struct Report {
     pub points: Vec<Point>,
 }
 
+impl Outlook {
+    /// Of a point's groups; `shared`: the loss of packets at which they share maps. `None`: nobody arrived.
+    pub(crate) fn of(shared: Option<f64>, trips: &[Trip]) -> Option<Self> {
+        let over = |value: fn(&Trip) -> Option<f64>| mean(&trips.iter().filter_map(value).collect::<Vec<_>>());
+        let arrived = trips.iter().filter(|trip| trip.arrived > 0);
+        let losses: Vec<f64> = arrived.map(|trip| trip.loss_percent).collect();
+        Some(Self {
+            shared: shared.is_some(),
+            loss: shared.unwrap_or(0.0),
+            arrived: trips.iter().map(|trip| trip.arrived).sum(),
+            loss_percent: Summary::of(&losses)?,
+            first_percent: over(|trip| trip.first_percent),
+            last_percent: over(|trip| trip.last_percent),
+            packets: over(|trip| Some(trip.packets as f64))?,
+            collisions: trips.iter().map(|trip| trip.collisions).sum(),
+        })
+    }
+
+    /// Its maps as a word.
+    pub(crate) fn maps(&self) -> String {
+        if self.shared { format!("shared, {:.0} %", 100.0 * self.loss) } else { String::from("own") }
+    }
+}
+
 impl Report {
     /// Of the runs of each case, in the plan's order.
     pub(super) fn of(plan: &Plan, runs: &[Vec<Trip>]) -> Self {
         let cases = plan.cases();
         let of_point = 1 + plan.losses.len();
         let points = cases.chunks(of_point).zip(runs.chunks(of_point)).filter_map(|(cases, runs)| {
-            let outlooks: Option<Vec<Outlook>> = cases
-                .iter()
-                .zip(runs)
-                .map(|(case, trips)| {
-                    let over =
-                        |value: fn(&Trip) -> Option<f64>| mean(&trips.iter().filter_map(value).collect::<Vec<_>>());
-                    let arrived = trips.iter().filter(|trip| trip.arrived > 0);
-                    let losses: Vec<f64> = arrived.map(|trip| trip.loss_percent).collect();
-                    Some(Outlook {
-                        shared: case.shared.is_some(),
-                        loss: case.shared.unwrap_or(0.0),
-                        arrived: trips.iter().map(|trip| trip.arrived).sum(),
-                        loss_percent: Summary::of(&losses)?,
-                        first_percent: over(|trip| trip.first_percent),
-                        last_percent: over(|trip| trip.last_percent),
-                        packets: over(|trip| Some(trip.packets as f64))?,
-                        collisions: trips.iter().map(|trip| trip.collisions).sum(),
-                    })
-                })
-                .collect();
+            let outlooks: Option<Vec<Outlook>> =
+                cases.iter().zip(runs).map(|(case, trips)| Outlook::of(case.shared, trips)).collect();
             Some(Point {
                 starts: cases[0].starts.name(),
                 robots: cases[0].group,
@@ -104,7 +110,7 @@ impl Display for Report {
         )?;
         for point in &self.points {
             for outlook in &point.outlooks {
-                let maps = if outlook.shared { format!("shared, {:.0} %", 100.0 * outlook.loss) } else { "own".into() };
+                let maps = outlook.maps();
                 writeln!(
                     f,
                     "{:<9}{:>7}{:>5}{:>6}  {maps:<14}{:>8}{:>8.1}{:>7}{:>8}{:>8}{:>10.0}",

@@ -223,9 +223,11 @@ pub(super) fn formation_only(source: &Source<'_>, file: &ScenarioFile) -> Result
 
 /// Refuses what the chosen law of a formation has no use for.
 fn law_only(source: &Source<'_>, file: &ScenarioFile) -> Result<(), ScenarioError> {
-    let is_paper = file.formation.law == Some(FormationLaw::Paper);
-    if is_paper && file.plane.is_some() {
-        let (what, remedy) = ("the paper's law goes from cell to cell", "give \"staya\", or leave [plane] out");
+    let law = file.formation.law.unwrap_or_default();
+    let is_paper = law == FormationLaw::Paper;
+    if law != FormationLaw::Staya && file.plane.is_some() {
+        let (what, remedy) =
+            (format!("the law \"{law}\" goes from cell to cell"), "give \"staya\", or leave [plane] out");
         return Err(source.error("formation.law", what, remedy));
     }
     let foreign: &[&str] =
@@ -233,7 +235,6 @@ fn law_only(source: &Source<'_>, file: &ScenarioFile) -> Result<(), ScenarioErro
     for name in foreign {
         let field = format!("formation.{name}");
         if source.stands(&field) {
-            let law = file.formation.law.unwrap_or_default();
             return Err(source.error(&field, format!("the law \"{law}\" has no use for it"), "leave it out"));
         }
     }

@@ -54,6 +54,7 @@ impl Scenario {
             maps,
             formation_params,
             published,
+            looks_ahead,
             faults,
             interventions,
             misnumbered,
@@ -76,7 +77,10 @@ impl Scenario {
             all.mix(map.cells());
             all.add(sight);
         }
-        // Runs of before had none.
+        // Runs of before had none of these.
+        if *looks_ahead {
+            all.add(looks_ahead);
+        }
         if let Some(maps) = maps {
             all.add(maps);
         }

@@ -162,6 +162,8 @@ pub struct Scenario {
     pub formation_params: FormationParams,
     /// How they do instead, if they do as the paper has it: cell by cell only.
     pub published: Option<PublishedParams>,
+    /// Whether those who follow look ahead ([`Course`](staya_controller::formation::Course)): cell by cell only.
+    pub looks_ahead: bool,
     /// Robots that go down.
     pub faults: Vec<Fault>,
     /// What somebody does to the run, by rising tick.
@@ -247,6 +249,7 @@ impl Scenario {
         let maps = maps::sharing(&source, &file, &route, plane.as_ref())?;
         let formation_params = params::formation(&source, &file.formation)?;
         let published = params::published(&source, &file.formation)?;
+        let looks_ahead = params::looks_ahead(&file.formation);
         let mut scenario = Self {
             name: file.name.clone(),
             seed: file.seed,
@@ -264,6 +267,7 @@ impl Scenario {
             maps,
             formation_params,
             published,
+            looks_ahead,
             faults,
             interventions,
             misnumbered,

@@ -54,7 +54,8 @@ pub struct RouteTable {
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct FormationTable {
-    /// Which law: `"staya"`, or `"paper"` as A. V. Kuznetsov has it (cell by cell only).
+    /// Which law: `"staya"`; `"lookahead"`, the same with followers who plan their way to where their places will be; `"paper"` as
+    /// A. V. Kuznetsov has it. The last two go cell by cell only.
     pub law: Option<FormationLaw>,
     /// Steps along edges of the formation's graph within which robots are each other's neighbours, 1 or
     /// more; nobody may have more than 8. Default: the largest of 3, 2, 1 that fits.
@@ -130,7 +131,7 @@ pub(super) fn routing(source: &Source<'_>, file: &ScenarioFile) -> Result<RouteS
 }
 
 pub(super) fn formation(source: &Source<'_>, table: &FormationTable) -> Result<FormationParams, ScenarioError> {
-    let mut params = FormationParams::default();
+    let mut params = if looks_ahead(table) { FormationParams::looking_ahead() } else { FormationParams::default() };
     params.eps = table.eps.unwrap_or(params.eps);
     params.lead = table.lead.unwrap_or(params.lead);
     if let Some(value) = table.gain {
@@ -157,6 +158,11 @@ pub(super) fn formation(source: &Source<'_>, table: &FormationTable) -> Result<F
     params.prediction = table.prediction.unwrap_or(params.prediction);
     params.recovery = table.recovery.unwrap_or(params.recovery);
     Ok(params)
+}
+
+/// Whether the robots keep a formation with followers who look ahead.
+pub(super) fn looks_ahead(table: &FormationTable) -> bool {
+    table.law == Some(FormationLaw::Lookahead)
 }
 
 /// The paper's law, if the robots keep a formation by it.

@@ -16,6 +16,11 @@ impl Scenario {
             (None, Some(_), Some(formation)) => {
                 GuidanceSetup::Published { route: self.route, formation, template: Default::default() }
             }
+            (None, Some(_), None) if self.looks_ahead => GuidanceSetup::LooksAhead {
+                route: self.route,
+                formation: self.formation_params,
+                template: Default::default(),
+            },
             (None, Some(_), None) => GuidanceSetup::Formation {
                 route: self.route,
                 formation: self.formation_params,
@@ -23,7 +28,10 @@ impl Scenario {
                 speed_mps: None,
             },
         };
-        if let GuidanceSetup::Formation { template, .. } | GuidanceSetup::Published { template, .. } = &mut guidance {
+        if let GuidanceSetup::Formation { template, .. }
+        | GuidanceSetup::Published { template, .. }
+        | GuidanceSetup::LooksAhead { template, .. } = &mut guidance
+        {
             let own = self.formation.as_ref().and_then(|graph| graph.templates.get(index));
             *template = own.cloned().unwrap_or_default();
         }

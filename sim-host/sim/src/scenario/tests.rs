@@ -325,12 +325,18 @@ fn a_formation_has_the_law_that_its_file_says() {
     let expected = PublishedParams { eps: 3, halt: 420, resume: 140, crowd: 2, ..PublishedParams::default() };
     assert_eq!((paper.published, paper.eps()), (Some(expected), 3));
     assert!(matches!(paper.guidance(1), GuidanceSetup::Published { template, .. } if template.slot == 1));
+    let ahead = parse(&with("law = \"lookahead\"\n")).expect("good");
+    assert_eq!((ahead.looks_ahead, ahead.formation_params), (true, FormationParams::looking_ahead()));
+    assert!(matches!(ahead.guidance(1), GuidanceSetup::LooksAhead { template, .. } if template.slot == 1));
+    assert_ne!(ahead.fingerprint(), parse(&with("")).expect("good").fingerprint());
     let low = parse(&with("law = \"paper\"\nhalt_cells = 1\n")).expect("good");
     assert_eq!(low.published.map(|params| params.resume), Some(70), "resume is at most halt");
     for (rest, expected) in [
         ("law = \"other\"\n", "law: unknown variant `other`"),
         ("law = \"paper\"\nlead = 2\n", "lead: the law \"paper\" has no use for it; leave it out"),
         ("crowd = 2\n", "crowd: the law \"staya\" has no use for it; leave it out"),
+        ("law = \"lookahead\"\ncrowd = 2\n", "crowd: the law \"lookahead\" has no use for it; leave it out"),
+        ("law = \"lookahead\"\nresume_cells = 3.1\n", "resume_cells: 3.1 is out of range; give 0 to 3"),
         ("waits = false\nhalt_cells = 3\n", "halt_cells: nobody waits"),
         ("law = \"paper\"\nhalt_cells = 901\n", "halt_cells: 901 is out of range"),
     ] {

@@ -41,7 +41,7 @@ impl Report {
         let mut losses: Vec<f64> = tried.iter().map(|other| other.journey.loss).collect();
         losses.sort_by(f64::total_cmp);
         losses.dedup();
-        ([Law::Staya, Law::Unwaiting, Law::Paper].into_iter().filter(|&law| has(law)).collect(), losses)
+        (Law::ALL.into_iter().filter(|&law| has(law)).collect(), losses)
     }
 
     /// A line per law and loss, a column per point.
@@ -50,12 +50,24 @@ impl Report {
         if losses.is_empty() {
             return Ok(());
         }
-        f.write_str("\nother laws on the same landscapes; staya: ours as above, unwaiting: ours, but nobody waits for those behind,\n")?;
-        f.write_str("paper: each robot weighs its own way against all neighbours found (algorithms 2 and 5 to 7)\n")?;
-        f.write_str("landscapes that all six crossed, dPhi/6 over all, travel time ratio over those crossed\n")?;
+        f.write_str("\nother laws on the same landscapes; staya: ours as above; lookahead: ours, those who follow plan their way to where their\n")?;
+        f.write_str("places will be; loose: the same, the leader waits from 12 cells on; shared: ours, maps shared over the radio; unwaiting: ours,\n")?;
+        f.write_str("nobody waits for those behind; paper: each robot weighs its own way against all neighbours found (algorithms 2 and 5 to 7)\n")?;
+        f.write_str("landscapes that all six crossed, dPhi/6 over all, travel time ratio over those crossed; S: entropy of the land;\n")?;
+        f.write_str("figure 6: the paper's dPhi/6 at this N, and on land of this S\n")?;
         write!(f, "{:>8}{:>11}", "loss %", "law")?;
         for point in &self.points {
             write!(f, "{:>18}", format!("N = {}", point.obstacles))?;
+        }
+        writeln!(f)?;
+        write!(f, "{:>19}", "S")?;
+        for point in &self.points {
+            write!(f, "{:>18.3}", point.entropy)?;
+        }
+        write!(f, "\n{:>19}", "figure 6")?;
+        for point in &self.points {
+            let [same_n, same_s] = [point.paper_error_per_agent, point.paper_error_at_entropy].map(|at| Maybe(at, 2));
+            write!(f, "{:>18}", format!("{same_n} {same_s}"))?;
         }
         writeln!(f)?;
         for &loss in &losses {

@@ -154,6 +154,7 @@ impl Scenario {
             route: RouteSetup::default(),
             formation_params: FormationParams::default(),
             published: None,
+            looks_ahead: false,
             faults: Vec::new(),
             interventions: Vec::new(),
             misnumbered: Vec::new(),
