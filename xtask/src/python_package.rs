@@ -16,13 +16,13 @@ const AS_MODULE: (&str, &str) = ("PYO3_BUILD_EXTENSION_MODULE", "1");
 
 /// The command: lints of what is compiled and of what is not, the wheel, tests.
 pub fn run_command(repo: &Repo, report: &mut Report) {
-    let mut clippy = repo.cargo(&["clippy", "--locked", "--package", "staya-python", "--features", "module"]);
-    clippy.env(AS_MODULE.0, AS_MODULE.1).args(["--", "-D", "warnings"]);
-    report.command("clippy of the module for Python", clippy);
     let python = match prepare(repo) {
         Ok(python) => python,
         Err(reason) => return report.skip(NAME, &reason),
     };
+    let mut clippy = repo.cargo(&["clippy", "--locked", "--package", "staya-python", "--features", "module"]);
+    clippy.env("PYO3_PYTHON", &python).env(AS_MODULE.0, AS_MODULE.1).args(["--", "-D", "warnings"]);
+    report.command("clippy of the module for Python", clippy);
     if !report.step("the wheel", || wheel(repo, &python)) {
         return report.skip(NAME, "it was not built");
     }
