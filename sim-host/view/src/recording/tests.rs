@@ -140,7 +140,7 @@ fn what_is_done_by_hand_is_noted_and_shown_and_a_copy_is_whole_at_any_time() {
     for (bytes, last) in [(early, 5), (recorder.finish(&json!({})).unwrap(), 6)] {
         let mut reader = read(&bytes).unwrap();
         assert_eq!(reader.ticks(), Some((0, last)));
-        assert_eq!(reader.orders().unwrap(), json!([{ "tick": 2, "order": closed }]));
+        assert_eq!(reader.orders().unwrap(), [json!({ "tick": 2, "order": closed })]);
         let mut land = |tick| {
             let scene: serde_json::Value = serde_json::from_str(&reader.scene_text_at(tick).unwrap()).unwrap();
             scene["land"]["cells"].as_str().unwrap().to_owned()
