@@ -254,13 +254,13 @@ mod tests {
     }
 
     #[test]
-    fn who_hears_of_a_dead_end_stays_out_of_it() {
+    fn all_get_out_of_a_dead_end_whether_they_share_or_not() {
         let report = plan().measure().unwrap();
         let [own, shared] = &report.points[0].outlooks[..] else { panic!("{report}") };
         assert_eq!((own.arrived, shared.arrived), (18, 18), "{report}");
         assert_eq!((own.collisions, shared.collisions), (0, 0), "{report}");
-        assert!(shared.loss_percent.mean < own.loss_percent.mean, "{report}");
-        assert!(own.loss_percent.mean > 10.0, "{report}");
+        assert!(own.loss_percent.mean > 10.0 && shared.loss_percent.mean > 10.0, "it is one: {report}");
+        assert!(shared.packets > own.packets, "{report}");
     }
 
     #[test]
