@@ -22,6 +22,11 @@
 //!   turns to the right. So flocks that meet keep to the right of each other; without the turn two lattices of the same
 //!   spacing catch in each other like combs, and stand.
 //!
+//! - In a gap for one robot two that come to it side by side stand for ever: each is pushed at the other by all behind it. With
+//!   [`Algorithm::ThreeInTurn`] who is nearer to the reference goes first: the pull of the reference and the velocity that it
+//!   asks for fade for whoever comes nearer than d to one of those, from all at d to nothing at 0.8 d, as long as the reference is
+//!   ahead; and who goes first is not held back by those behind. So a crowd before a gap stands in a queue and does not press.
+//!
 //! **Old news.** The paper's robots see each other at once. By radio they act on what a neighbour was a delay and up to
 //! a period of its beacons ago, and a stiff lattice then swings itself apart: at a delay of 0.1 s gains of (10, 6.3)
 //! leave pieces that never settle. [`LatticeParams::stable_for`] softens them as far as that asks;
@@ -52,6 +57,8 @@ pub enum Algorithm {
     /// And obstacles; the pull of the reference is bounded.
     #[default]
     Three,
+    /// As three, and nobody presses on who is nearer to the reference. Not in the paper: see the head of this module.
+    ThreeInTurn,
 }
 
 /// The two gains of one kind of agent.
@@ -220,7 +227,7 @@ pub struct Reference<S> {
 /// finite whatever comes in, and not bounded by what the body can do: see [`Body::reach`]. Zero for
 /// parameters that are not sound.
 ///
-/// O(nearby + obstacles): each costs two roots and a cosine.
+/// O(nearby + obstacles): each costs two roots and a cosine, a neighbour a third root in [`Algorithm::ThreeInTurn`].
 #[must_use]
 #[inline(never)]
 pub fn acceleration<S: Scalar>(
@@ -241,13 +248,17 @@ pub fn acceleration<S: Scalar>(
             sum = next;
         }
     };
+    let in_turn = reference.filter(|reference| {
+        params.algorithm == Algorithm::ThreeInTurn && reference.offset_m.dot(reference.velocity_mps) >= S::ZERO
+    });
     for other in nearby {
-        add(law.alpha(body, other));
+        let is_after = in_turn.is_some_and(|reference| !goes_first(other, body, reference));
+        add(law.alpha(body, other, is_after));
         if other.is_stranger {
             turn += law.turn(way, other);
         }
     }
-    if params.algorithm == Algorithm::Three {
+    if matches!(params.algorithm, Algorithm::Three | Algorithm::ThreeInTurn) {
         for obstacle in obstacles {
             add(law.beta(body, obstacle));
         }
@@ -255,7 +266,8 @@ pub fn acceleration<S: Scalar>(
     if params.algorithm != Algorithm::One
         && let Some(reference) = reference
     {
-        add(law.gamma(body, reference, turn));
+        let share = in_turn.map_or(S::ONE, |reference| law.share(body, nearby, reference));
+        add(law.gamma(body, reference, turn, share));
     }
     sum
 }
@@ -308,8 +320,9 @@ impl<'a, S: Scalar> Law<'a, S> {
         })
     }
 
-    /// c1 phi_alpha(||q_j - q_i||_sigma) n_ij + c2 a_ij (p_j - p_i) of one neighbour j, m/s^2.
-    fn alpha(&self, body: &Body<S>, other: &Nearby<S>) -> Vec3<S> {
+    /// c1 phi_alpha(||q_j - q_i||_sigma) n_ij + c2 a_ij (p_j - p_i) of one neighbour j, m/s^2. One that `is_after` does not
+    /// hold back.
+    fn alpha(&self, body: &Body<S>, other: &Nearby<S>, is_after: bool) -> Vec3<S> {
         let offset = other.offset_m * self.units;
         let squared = offset.norm_squared();
         // False for NaN; fixed point saturates beyond the range.
@@ -328,6 +341,8 @@ impl<'a, S: Scalar> Law<'a, S> {
         let (mut phi, mut gain) = (self.phi_alpha.at(sigma, adjacency), self.params.alpha.velocity * adjacency);
         if other.is_stranger {
             (phi, gain) = (phi.min(S::ZERO), S::ZERO);
+        } else if is_after {
+            phi = phi.min(S::ZERO);
         }
         let pull = self.params.alpha.position * phi;
         n_ij * (pull * self.metres) + drag(gain, other.velocity_mps - body.velocity_mps)
@@ -368,9 +383,19 @@ impl<'a, S: Scalar> Law<'a, S> {
         if is_in_the_way { nearness * ahead } else { S::ZERO }
     }
 
+    /// How much of the reference counts, from 0 to 1, for one that goes in its turn: 1 unless somebody of the flock is nearer to
+    /// the reference, by the number if as near, and nearer than d.
+    fn share(&self, body: &Body<S>, nearby: &[Nearby<S>], reference: &Reference<S>) -> S {
+        nearby.iter().filter(|other| goes_first(other, body, reference)).fold(S::ONE, |share, other| {
+            let spacings = other.offset_m.norm().checked_div(self.params.spacing_m).unwrap_or(S::ONE);
+            // All at d, nothing at 0.8 d: with d / 2 pairs stood at 0.9 d and jammed.
+            share.min((spacings * S::from_i32(5) - S::from_i32(4)).max(S::ZERO))
+        })
+    }
+
     /// -c1 sigma_1(q - q_r) - c2 (p - p_r), in algorithm 2 without sigma_1; m/s^2. The pull is turned to the right, by `turn` of a
-    /// quarter turn, as it were.
-    fn gamma(&self, body: &Body<S>, reference: &Reference<S>, turn: S) -> Vec3<S> {
+    /// quarter turn, as it were. Of the pull and of p_r, `share` counts.
+    fn gamma(&self, body: &Body<S>, reference: &Reference<S>, turn: S, share: S) -> Vec3<S> {
         let Gain { position, velocity } = self.params.gamma;
         let mut way = reference.offset_m;
         if turn > S::ZERO {
@@ -386,8 +411,15 @@ impl<'a, S: Scalar> Law<'a, S> {
             direction * (position * sigma_1(distance) * self.metres)
         };
         let pull = if pull.is_finite() { pull } else { Vec3::ZERO };
-        pull + drag(velocity, reference.velocity_mps - body.velocity_mps)
+        pull * share + drag(velocity, reference.velocity_mps * share - body.velocity_mps)
     }
+}
+
+/// Whether one of the flock is nearer to the reference than the own body, or as near with a lower number.
+fn goes_first<S: Scalar>(other: &Nearby<S>, body: &Body<S>, reference: &Reference<S>) -> bool {
+    let (way, other_way) = (reference.offset_m, reference.offset_m - other.offset_m);
+    let is_nearer = (other_way.length_key(), other.id) < (way.length_key(), body.id);
+    is_nearer && !other.is_stranger && other.id != body.id
 }
 
 /// A velocity term; zero when a velocity is not known.

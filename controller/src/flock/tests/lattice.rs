@@ -387,3 +387,48 @@ fn strangers_in_the_way_turn_the_pull_of_the_reference_to_the_right() {
     let turned = acceleration(&params, &body([0.0; 3]), &crowd, &[], Some(&reference));
     assert!(turned.x.abs() < 1e-9 && is_close(turned.y, -alone.x), "{turned:?}");
 }
+
+/// Two beside each other before a gap: the one nearer to the reference is pulled, the other one is not.
+#[test]
+fn in_turn_nobody_presses_on_who_is_nearer_to_the_reference() {
+    let params = LatticeParams { algorithm: Algorithm::ThreeInTurn, ..LatticeParams::new(7.0) };
+    let reference = Reference { offset_m: Vec3::new(80.0, 0.0, 0.0), velocity_mps: Vec3::new(6.0, 0.0, 0.0) };
+    let pulled = |params: &LatticeParams<f64>, others: &[Nearby<f64>], reference: &Reference<f64>| {
+        let with = acceleration(params, &body([0.0; 3]), others, &[], Some(reference));
+        with - acceleration(params, &body([0.0; 3]), others, &[], None)
+    };
+    // Nor is anybody held back by who is behind: this one pulls without an order.
+    let behind = near(2, [-8.0, 0.0, 0.0], [0.0; 3]);
+    assert!(acceleration(&params, &body([0.0; 3]), &[behind], &[], None).x < -1.0);
+    assert_eq!(
+        acceleration(&params, &body([0.0; 3]), &[behind], &[], Some(&reference)),
+        acceleration(&params, &body([0.0; 3]), &[], &[], Some(&reference))
+    );
+    let alone = pulled(&params, &[], &reference);
+    let three = LatticeParams { algorithm: Algorithm::Three, ..params };
+    assert_eq!(alone, pulled(&three, &[], &reference));
+    for (other, share) in [
+        // Ahead, from a spacing on to four fifths of one.
+        (near(2, [7.0, 0.0, 0.0], [0.0; 3]), 1.0),
+        (near(2, [6.3, 0.0, 0.0], [0.0; 3]), 0.5),
+        (near(2, [5.6, 0.0, 0.0], [0.0; 3]), 0.0),
+        (near(2, [1.0, 0.0, 0.0], [0.0; 3]), 0.0),
+        // Behind.
+        (near(2, [-3.5, 0.0, 0.0], [0.0; 3]), 1.0),
+        // Of another flock.
+        (Nearby { is_stranger: true, ..near(2, [0.1, 6.9, 0.0], [0.0; 3]) }, 1.0),
+    ] {
+        let got = pulled(&params, &[other], &reference);
+        let is_turned = other.is_stranger;
+        assert!(is_turned || (got - alone * share).norm() < 1e-9, "{other:?} {got:?}");
+        assert!(!is_turned || got.norm() > 0.9 * alone.norm(), "{got:?}");
+    }
+    // As near as the own place: the lower number goes first, and one of two always does.
+    let beside = Reference { offset_m: Vec3::new(80.0, 1.5, 0.0), ..reference };
+    let other = |id| near(id, [0.0, 3.0, 0.0], [0.0; 3]);
+    assert!(pulled(&params, &[other(2)], &beside).norm() > 0.9 * alone.norm());
+    assert!(pulled(&params, &[other(0)], &beside).norm() < 1e-9);
+    // Past the reference nobody waits.
+    let past = Reference { offset_m: Vec3::new(-1.0, 0.0, 0.0), ..reference };
+    assert_eq!(pulled(&params, &[other(2)], &past), pulled(&three, &[other(2)], &past));
+}

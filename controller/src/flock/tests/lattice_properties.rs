@@ -127,7 +127,7 @@ proptest! {
             Obstacle::Plane { normal: v(6), distance_m: f[0] },
         ];
         let reference = Reference { offset_m: v(9), velocity_mps: v(0) };
-        for algorithm in [Algorithm::One, Algorithm::Two, Algorithm::Three] {
+        for algorithm in [Algorithm::One, Algorithm::Two, Algorithm::Three, Algorithm::ThreeInTurn] {
             let params = LatticeParams { algorithm, ..LatticeParams::new(spacing) };
             let got = acceleration(&params, &own, &[other, other], &obstacles, Some(&reference));
             prop_assert!(got.is_finite());

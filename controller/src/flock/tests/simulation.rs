@@ -340,3 +340,20 @@ fn fifty_robots_meet_in_space() {
         flock.places.iter().fold((f64::MAX, f64::MIN), |(low, high), place| (low.min(place.z), high.max(place.z)));
     assert!(high - low > 14.0, "a body in space, not a layer");
 }
+
+/// Two beside each other before a gap for one, one more in their wedge and four behind, as they jam: see the head of
+/// `lattice.rs`.
+#[test]
+fn those_who_stand_before_a_gap_for_one_pass_it_in_turn() {
+    let jam = [(139.1, 57.1), (139.1, 62.9), (132.9, 60.0), (132.7, 54.1), (132.7, 65.9), (127.3, 49.9), (127.3, 70.1)];
+    let past = |algorithm| {
+        let places = jam.map(|(x, y)| V::new(x, y, 0.0)).to_vec();
+        let params = LatticeParams { algorithm, obstacle_ratio: 3.0 / 7.0, ..LatticeParams::new(7.0) };
+        let mut flock = Flock::new(params, places, (V::new(230.0, 60.0, 0.0), V::new(6.0, 0.0, 0.0)));
+        flock.balls = balls(&[[150.0, 26.0, 30.0], [150.0, 94.0, 30.0]]);
+        (0..2000).for_each(|_| flock.step(0.03));
+        assert!(flock.least_clearance > 0.0);
+        flock.places.iter().filter(|place| place.x > 180.0).count()
+    };
+    assert_eq!((past(Algorithm::Three), past(Algorithm::ThreeInTurn)), (0, 7));
+}
