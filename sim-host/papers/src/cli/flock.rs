@@ -17,7 +17,7 @@ pub struct FlockArgs {
     /// Instead, drive flocks at each other, bare and with ORCA: overlaps and least distances by speed.
     #[arg(
         long,
-        conflicts_with_all = ["cases", "robots", "safety", "horizon_s", "seconds", "c_alpha", "c_beta", "c_gamma", "c2_alpha", "c2_gamma", "obstacle_ratio", "references", "rest", "ideal", "loss"]
+        conflicts_with_all = ["cases", "robots", "safety", "horizon_s", "seconds", "c_alpha", "c_beta", "c_gamma", "c2_alpha", "c2_gamma", "obstacle_ratio", "references", "rest", "takes_turns", "gap", "ideal", "loss"]
     )]
     closing: bool,
     /// Closing speeds, spacings per second.

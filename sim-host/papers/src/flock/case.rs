@@ -35,7 +35,7 @@ pub enum Case {
     Split,
     /// E: 150 robots through a gap, algorithm 3 (figure 11).
     Squeeze,
-    /// Not in the paper: as E, through a gap that one robot fits through, 8/7 d between balls of 30/7 d.
+    /// Not in the paper: as E, through a gap that one robot fits through, 8/7 d between balls of 30/7 d unless a plan says otherwise.
     Gap,
     /// Not in the paper: as E, through 30 balls at random places, 8/7 d apart at least.
     Forest,
@@ -72,8 +72,8 @@ impl Case {
         }
     }
 
-    /// Balls in the way of a run: x, y, radius.
-    fn balls(self, seed: u64, run: u32) -> Vec<[f64; 3]> {
+    /// Balls in the way of a run: x, y, radius; `gap` is in spacings.
+    fn balls(self, gap: f64, seed: u64, run: u32) -> Vec<[f64; 3]> {
         match self {
             Self::Free | Self::Fragment | Self::Rendezvous3d => Vec::new(),
             Self::Split => vec![
@@ -85,7 +85,10 @@ impl Case {
                 [160.0, 0.0, 3.0],
             ],
             Self::Squeeze => vec![[150.0, 30.0, 25.0], [150.0, 100.0, 25.0]],
-            Self::Gap => vec![[150.0, 26.0, 30.0], [150.0, 94.0, 30.0]],
+            Self::Gap => {
+                let off = gap * UNITS / 2.0 + 30.0;
+                vec![[150.0, 60.0 - off, 30.0], [150.0, 60.0 + off, 30.0]]
+            }
             Self::Forest => forest(&mut Rng::keyed(seed, TREES, run, 0)),
         }
     }
@@ -184,14 +187,14 @@ impl Case {
         }
     }
 
-    /// Obstacles of a run where a robot's spacing is `spacing_m`.
-    pub(super) fn solids(self, spacing_m: f64, seed: u64, run: u32) -> Vec<Solid> {
+    /// Obstacles of one of a plan's runs.
+    pub(super) fn solids(self, (spacing_m, gap): (f64, f64), seed: u64, run: u32) -> Vec<Solid> {
         let unit_m = spacing_m / UNITS;
         let ball = |[x, y, radius]: [f64; 3]| Solid::Ball {
             center_m: [x * unit_m, y * unit_m, 0.0],
             radius_m: radius * unit_m,
         };
-        self.balls(seed, run).into_iter().map(ball).collect()
+        self.balls(gap, seed, run).into_iter().map(ball).collect()
     }
 }
 
@@ -272,7 +275,10 @@ impl Plan {
         // Algorithm 1 stands in the paper without gains.
         let c2_alpha = self.c2_alpha.or((setting.algorithm == Algorithm::One).then_some(alpha));
         let params = LatticeParams {
-            algorithm: setting.algorithm,
+            algorithm: match setting.algorithm {
+                Algorithm::Three if self.takes_turns => Algorithm::ThreeInTurn,
+                other => other,
+            },
             alpha: damped(alpha, c2_alpha),
             beta: gain(beta),
             gamma: damped(gamma, self.c2_gamma),
@@ -303,7 +309,7 @@ impl Plan {
             },
             orca: AvoidParams { horizon_s, wall_horizon_s: horizon_s, ..AvoidParams::default() },
             push_out: PushOutParams::new(1.0),
-            solids: case.solids(self.spacing_m, self.seed, run),
+            solids: case.solids((self.spacing_m, self.gap), self.seed, run),
         };
         let setup = arena.setup(starts);
         Ok(arena.scenario(setup))

@@ -56,7 +56,7 @@ impl Report {
             Solid::Ball { center_m, radius_m } => Some(Obstacle::Disc { centre_m: view.of(center_m), radius_m }),
             Solid::Wall(_) | Solid::Plane { .. } => None,
         };
-        let solids = case.case.solids(self.spacing_m, self.seed, 0);
+        let solids = case.case.solids((self.spacing_m, self.gap), self.seed, 0);
         let (is_flat, range_m) = (case.case != Case::Rendezvous3d, 1.2 * self.spacing_m);
         let axis = if view == View::Plan { "" } else { ", from the south" };
         Snapshot {

@@ -110,6 +110,10 @@ pub struct Report {
     pub horizon_s: f64,
     /// Loss of packets.
     pub loss: f64,
+    /// Whether robots press on nobody who is nearer to the reference.
+    pub takes_turns: bool,
+    /// How wide the gap of case "gap" is, spacings.
+    pub gap: f64,
     /// Whether these are the paper's particles, who know everything at once.
     pub ideal: bool,
     /// How many nearest ones each of those knows, if not all.
@@ -132,6 +136,8 @@ impl Report {
             safety: word(plan.safety),
             horizon_s: plan.horizon_s,
             loss: plan.loss,
+            takes_turns: plan.takes_turns,
+            gap: plan.gap,
             ideal: plan.ideal,
             nearest: plan.nearest,
             fastest: plan.fastest,
@@ -258,12 +264,13 @@ fn lattice_radius_m(plan: &Plan, case: Case, robots: usize) -> f64 {
 impl Report {
     /// Who flies.
     pub(super) fn who(&self) -> String {
+        let turns = if self.takes_turns { ", in turn" } else { "" };
         if !self.ideal {
-            return format!("safety {}, loss {}", self.safety, self.loss);
+            return format!("safety {}, loss {}{turns}", self.safety, self.loss);
         }
         let nearest = self.nearest.map(|n| format!(", each knows {n}"));
         let fastest = self.fastest.map(|speed| format!(", at most {speed} units/s"));
-        format!("ideal particles{}{}", nearest.unwrap_or_default(), fastest.unwrap_or_default())
+        format!("ideal particles{turns}{}{}", nearest.unwrap_or_default(), fastest.unwrap_or_default())
     }
 }
 
