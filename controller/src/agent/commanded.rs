@@ -3,7 +3,7 @@
 use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, pass_on};
 use super::waypoint_guidance::WaypointGuidance;
 use super::{Parameter, Wait, Waypoint, WrongTask};
-use crate::geom::Vec3;
+use crate::geom::{Torus, Vec3};
 use crate::grid::Cell;
 use crate::land::LandPatch;
 use crate::rand::Rng;
@@ -194,6 +194,10 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
 
     fn has_own_goal(&self) -> bool {
         self.wish != Wish::Own || self.inside.has_own_goal()
+    }
+
+    fn torus(&self) -> Option<Torus<S>> {
+        self.inside.torus()
     }
 
     fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool {

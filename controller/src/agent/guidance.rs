@@ -2,7 +2,7 @@
 
 use super::{KinematicState, Parameter, Surroundings, Wait, Waypoint};
 use crate::body::Body;
-use crate::geom::Vec3;
+use crate::geom::{Torus, Vec3};
 use crate::grid::{Cell, Dir};
 use crate::land::{FarLand, LandPatch};
 use crate::neighbor::{Ages, Nearby, Neighbor};
@@ -108,6 +108,12 @@ pub trait Guidance<S: Scalar>: Teamwork {
         false
     }
 
+    /// The torus that it lives on: then it is told of others at the images of theirs that are nearest to it. `None`: the open
+    /// plane.
+    fn torus(&self) -> Option<Torus<S>> {
+        None
+    }
+
     /// Takes a waypoint to go to, number `index` of those that the robot has; whether it was of use.
     fn assign_waypoint(&mut self, _index: u8, _waypoint: &Waypoint<S>) -> bool {
         false
@@ -193,6 +199,10 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for alloc::boxed::Box<G> {
 
     fn has_own_goal(&self) -> bool {
         G::has_own_goal(self)
+    }
+
+    fn torus(&self) -> Option<Torus<S>> {
+        G::torus(self)
     }
 
     fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool {

@@ -4,7 +4,7 @@ use super::double::Said;
 use super::io::{Event, KinematicState, OUTBOX, Outputs};
 use super::silence::Company;
 use super::{AgentConfig, CellState, Last, Waypoint};
-use crate::geom::{Position, Vec3};
+use crate::geom::{Position, Torus, Vec3};
 use crate::grid::Cell;
 use crate::land::LandPatch;
 use crate::neighbor::{Ages, Claims, LossEstimate, Neighbor, NeighborTable, Put, Suspects};
@@ -72,15 +72,23 @@ pub(super) struct Link<S, const N: usize, W, P> {
     has_sent: bool,
 }
 
-/// Own position, when what arrives was said, how fast others can be (if that is known), how often they speak, what they may say of
+/// Own position, the torus that it is on, when what arrives was said, how fast others can be (if that is known), how often they speak, what they may say of
 /// themselves, and who must stay in a full table.
 pub(super) struct Listener<'a, S> {
     pub(super) position: Position,
+    pub(super) torus: Option<Torus<S>>,
     pub(super) heard_at: Instant,
     pub(super) fastest_mps: Option<S>,
     pub(super) period: Duration,
     pub(super) claims: &'a Claims<S>,
     pub(super) needs: &'a dyn Fn(RobotId) -> bool,
+}
+
+impl<S: Scalar> Listener<'_, S> {
+    /// The image of a place that is nearest to another one.
+    fn image(&self, place: Position, other: Position) -> Position {
+        self.torus.map_or(place, |torus| torus.image(place, other))
+    }
 }
 
 impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
@@ -289,6 +297,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         out: &mut Outputs<S>,
     ) {
         let id = neighbor.id;
+        neighbor.position = listener.image(neighbor.position, listener.position);
         self.cut(&mut neighbor, listener.claims, out);
         self.company = Company::Heard(neighbor.heard);
         let put = self.table.put(neighbor, listener.position, now, listener.needs);

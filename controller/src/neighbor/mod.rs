@@ -305,6 +305,13 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
         }
     }
 
+    /// Has everybody, the lost too, at another place: on a torus, at the image nearest to oneself. O(N).
+    pub fn see_at(&mut self, place: impl Fn(Position) -> Position) {
+        for entry in &mut self.entries {
+            entry.position = place(entry.position);
+        }
+    }
+
     /// Forgets how near the silent ones can be: to be called in a step in which nobody asks [`Room`]. O(N).
     pub fn forget_gaps(&mut self) {
         for entry in &mut self.entries {

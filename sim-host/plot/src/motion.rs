@@ -2,6 +2,7 @@
 
 use super::flock::{Obstacle, Sheet, Snapshot};
 use super::run::packets;
+use staya_sim::nearby::Space;
 use staya_sim::record::{self, Error, Frame, History};
 use staya_sim::scenario::PlaneSetup;
 use staya_sim::world::plane::Solid;
@@ -52,7 +53,11 @@ pub fn motion_sheet(setup: &PlaneSetup, history: &History) -> Sheet {
     goals_m.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
     goals_m.dedup();
     let largest_m = setup.kinds().map(|group| group.radius_m).fold(0.0, f64::max);
-    let view_m = view(frames, largest_m);
+    let view_m = match setup.torus_m {
+        Some(sides) => Some([0, 1].map(|axis| [0.0, sides[axis]])),
+        None => view(frames, largest_m),
+    };
+    let space = setup.space();
     let mut sheet = Sheet::new("", 2);
     let last = frames.len().saturating_sub(1);
     let mut before = None;
@@ -67,13 +72,13 @@ pub fn motion_sheet(setup: &PlaneSetup, history: &History) -> Sheet {
         sheet = sheet.with(Snapshot {
             title: format!("after {:.1} s", frame.time_s),
             positions_m: frame.samples.iter().map(|s| s.position_m).collect(),
-            velocities_mps: velocities(frames, at),
+            velocities_mps: velocities(frames, at, &space),
             radius_m: largest_m,
             radii_m: (0..robots).map(|robot| setup.group(robot).radius_m).collect(),
             groups: (0..robots).map(|robot| robot % COLOURS).collect(),
             obstacles: obstacles.clone(),
             goals_m: goals_m.clone(),
-            trails_m: trails(&frames[..=at], robots.min(MOST_TRAILS)),
+            trails_m: trails(&frames[..=at], robots.min(MOST_TRAILS), &space),
             view_m,
             ..Snapshot::default()
         });
@@ -107,7 +112,7 @@ fn view(frames: &[Frame], radius_m: f64) -> Option<[[f64; 2]; 2]> {
 }
 
 /// Velocities by the difference to a neighbouring frame.
-fn velocities(frames: &[Frame], at: usize) -> Vec<[f64; 2]> {
+fn velocities(frames: &[Frame], at: usize, space: &Space<f64, 3>) -> Vec<[f64; 2]> {
     let [from, to] = match frames.get(at + 1) {
         Some(_) => [at, at + 1],
         None => [at.saturating_sub(1), at],
@@ -116,21 +121,37 @@ fn velocities(frames: &[Frame], at: usize) -> Vec<[f64; 2]> {
     let pairs = frames[from].samples.iter().zip(&frames[to].samples);
     pairs
         .map(|(before, after)| {
-            [0, 1].map(|axis| {
-                let way = after.position_m[axis] - before.position_m[axis];
-                if span_s > 0.0 { way / span_s } else { 0.0 }
-            })
+            let way_m = way(before.position_m, after.position_m, space);
+            way_m.map(|way_m| if span_s > 0.0 { way_m / span_s } else { 0.0 })
         })
         .collect()
 }
 
-fn trails(frames: &[Frame], robots: usize) -> Vec<Vec<[f64; 2]>> {
+/// From one place to another, the shortest around a torus.
+fn way([x, y]: [f64; 2], [to_x, to_y]: [f64; 2], space: &Space<f64, 3>) -> [f64; 2] {
+    let [x, y, _] = space.offset([x, y, 0.0], [to_x, to_y, 0.0]);
+    [x, y]
+}
+
+/// Ways of robots; who leaves a torus on one side and comes in on the other leaves a gap in its way.
+fn trails(frames: &[Frame], robots: usize, space: &Space<f64, 3>) -> Vec<Vec<[f64; 2]>> {
     let every = frames.len().div_ceil(TRAIL_POINTS).max(1);
     let thinned = || frames.iter().step_by(every).chain(frames.last());
     (0..robots)
         .map(|robot| {
             let samples = thinned().filter_map(|frame| frame.samples.get(robot));
-            samples.map(|sample| sample.position_m).collect()
+            let mut trail: Vec<[f64; 2]> = Vec::new();
+            for at in samples.map(|sample| sample.position_m) {
+                let is_over_a_seam = trail.last().is_some_and(|&last| {
+                    let way_m = way(last, at, space);
+                    (0..2).any(|axis| (at[axis] - last[axis] - way_m[axis]).abs() > 1e-3)
+                });
+                if is_over_a_seam {
+                    trail.push([f64::NAN; 2]);
+                }
+                trail.push(at);
+            }
+            trail
         })
         .collect()
 }

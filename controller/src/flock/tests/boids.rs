@@ -1,6 +1,6 @@
-use super::super::boids::{BoidsParams, Torus};
+use super::super::boids::BoidsParams;
 use super::{near, number, vec3};
-use crate::geom::{Position, Vec2};
+use crate::geom::{Position, Torus, Vec2};
 use crate::neighbor::{Nearby, tie};
 use crate::rand::Rng;
 use crate::robot::RobotId;
@@ -177,6 +177,29 @@ fn torus_has_no_edges() {
         assert_eq!(plane.wrap(v(-5.0, 1e9)), v(-5.0, 1e9));
         assert_eq!(plane.shortest(v(-5.0, 1e9)), v(-5.0, 1e9));
         assert_eq!(plane.wrap_position(place(-5, 5)), place(-5, 5));
+    }
+}
+
+#[test]
+fn others_are_seen_at_the_image_that_is_nearest() {
+    let torus = Torus { size_m: [800.0_f32, 600.0] };
+    let place = |x, y| Position::from_mm([x, y, 7]);
+    for (other, own, seen) in [
+        (place(5_000, 5_000), place(4_000, 9_000), place(5_000, 5_000)),
+        (place(799_000, 1_000), place(1_000, 599_000), place(-1_000, 601_000)),
+        // As others see it from the image: a turn or more away.
+        (place(-1_000, 2_401_000), place(1_000, 1_000), place(-1_000, 1_000)),
+        // Half a turn: each on its own side of the other.
+        (place(500_000, 300_000), place(100_000, 0), place(500_000, 300_000)),
+        (place(100_000, 0), place(500_000, 300_000), place(100_000, 0)),
+        // Places that differ by more than 32 bits hold.
+        (place(i32::MAX, 0), place(i32::MIN, 0), place(i32::MAX, 0)),
+    ] {
+        assert_eq!(torus.image(other, own), seen, "{other:?} from {own:?}");
+    }
+    for size in [0.0, -3.0, f32::NAN] {
+        let plane = Torus { size_m: [size; 2] };
+        assert_eq!(plane.image(place(-5, 5), place(900, 900)), place(-5, 5));
     }
 }
 

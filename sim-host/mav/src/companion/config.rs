@@ -264,6 +264,10 @@ fn check_scenario(source: &Source<'_>, scenario: &Scenario) -> Result<(), Scenar
         let what = String::from("[[plane.intruder]] has no meaning here");
         return refused(what, "leave it out: whoever comes is real");
     }
+    if plane.torus_m.is_some() {
+        let what = String::from("vehicles do not come in on one side when they leave on the other");
+        return refused(what, "leave plane.torus_m out");
+    }
     if scenario.route.params.radius > RADIUS {
         let what = format!("route.radius {} is too large", scenario.route.params.radius);
         return refused(what, "give 16 or less");

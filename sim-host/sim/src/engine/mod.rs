@@ -233,7 +233,7 @@ where
             tuned: Vec::new(),
             keeps_shape: scenario.formation.is_some(),
             brains: Box::new(brains),
-            radio: Radio::new(&scenario.radio, scenario.seed, scenario.tick_us, ids),
+            radio: Radio::new(&scenario.radio, scenario.seed, scenario.tick_us, ids).on_torus(scenario.torus_m()),
             ground,
             computers: Vec::new(),
             commands: vec![Command::Hold; here.len()],

@@ -79,7 +79,7 @@ impl PlaneGround {
         let intruders = intruders.collect();
         let sights = setup.kinds().map(|group| group.sight_m + group.radius_m);
         let plane = Plane::new(land, setup.solids.clone(), discs.collect()).with_intruders(intruders);
-        let plane = plane.with_sight(sights.fold(0.0, f64::max));
+        let plane = plane.with_sight(sights.fold(0.0, f64::max)).in_space(setup.space());
         Self {
             clearance: Clearance::FREE,
             gap_m: None,

@@ -56,6 +56,8 @@ pub(super) struct Medium {
     wire: AnyWire,
     seed: u64,
     range_m: f64,
+    /// Sides of the torus that all are on, metres.
+    torus_m: Option<[f64; 2]>,
     buckets: Option<Buckets>,
     /// In order of senders.
     parts: Vec<Part>,
@@ -85,6 +87,7 @@ impl Medium {
             wire: AnyWire::new(params.format),
             seed,
             range_m: params.range_m,
+            torus_m: None,
             buckets,
             parts: Vec::new(),
             packets: Vec::new(),
@@ -95,6 +98,10 @@ impl Medium {
 
     pub(super) const fn set_range_m(&mut self, range_m: f64) {
         self.range_m = range_m;
+    }
+
+    pub(super) const fn set_torus_m(&mut self, torus_m: Option<[f64; 2]>) {
+        self.torus_m = torus_m;
     }
 
     pub(super) const fn range_m(&self) -> f64 {
@@ -222,6 +229,21 @@ impl Medium {
     /// The packets that can be heard at a place, by sender and number; all but one's own.
     pub(super) fn heard_at(&self, at_m: [f64; 2], own: RobotId, heard: &mut Vec<u32>) {
         heard.clear();
+        self.add_heard_at(at_m, own, heard);
+        if let Some(torus_m) = self.torus_m {
+            let near = images(at_m, torus_m).filter(|&image_m| self.lattice.is_within(image_m, self.range_m));
+            near.for_each(|image_m| self.add_heard_at(image_m, own, heard));
+        }
+        heard.sort_unstable_by_key(|&at| {
+            let packet = self.packet(at);
+            (packet.sender, packet.number)
+        });
+        // Who reaches around the torus is heard once all the same.
+        heard.dedup();
+    }
+
+    /// Adds the packets that are in reach of a place, in no order.
+    fn add_heard_at(&self, at_m: [f64; 2], own: RobotId, heard: &mut Vec<u32>) {
         let reach = self.range_m * self.range_m;
         for cells in self.lattice.around(at_m) {
             let begin = match cells.start {
@@ -237,10 +259,6 @@ impl Medium {
                 }
             }
         }
-        heard.sort_unstable_by_key(|&at| {
-            let packet = self.packet(at);
-            (packet.sender, packet.number)
-        });
     }
 
     pub(super) fn packet(&self, at: u32) -> &Packet {
@@ -263,6 +281,12 @@ fn packets<'a>(wire: &AnyWire, outbox: &'a [u8]) -> impl Iterator<Item = &'a [u8
     })
 }
 
+/// Where a place on a torus is, too, one turn around it along each axis at most.
+fn images([x, y]: [f64; 2], [width, height]: [f64; 2]) -> impl Iterator<Item = [f64; 2]> {
+    let turns = (-1..=1).flat_map(|i| (-1..=1).map(move |j| [i, j])).filter(|turns| *turns != [0, 0]);
+    turns.map(move |[i, j]| [x + f64::from(i) * width, y + f64::from(j) * height])
+}
+
 impl Lattice {
     /// Cells at least as wide as the range, and not many more of them than robots.
     fn over(positions_m: &[[f64; 2]], range_m: f64) -> Self {
@@ -282,6 +306,15 @@ impl Lattice {
         let side_m = range_m.max(longest / (2.0 * per_side)).max(f64::MIN_POSITIVE);
         let count = |length: f64| (length / side_m) as usize + 1;
         Self { corner_m: low, side_m, columns: count(extent[0]), rows: count(extent[1]) }
+    }
+
+    /// Whether a place is in the cells, or as near to them.
+    fn is_within(&self, at_m: [f64; 2], reach_m: f64) -> bool {
+        let counts = [self.columns, self.rows];
+        (0..2).all(|axis| {
+            let off_m = at_m[axis] - self.corner_m[axis];
+            off_m >= -reach_m && off_m <= counts[axis] as f64 * self.side_m + reach_m
+        })
     }
 
     fn column_and_row(&self, at_m: [f64; 2]) -> (usize, usize) {

@@ -136,6 +136,13 @@ impl Radio {
         }
     }
 
+    /// The same on a torus with these sides, metres: packets reach over its seams, too.
+    #[must_use]
+    pub const fn on_torus(mut self, torus_m: Option<[f64; 2]>) -> Self {
+        self.medium.set_torus_m(torus_m);
+        self
+    }
+
     /// What robot number `index` (in the order given to [`Radio::new`]) received for its next step.
     #[must_use]
     pub fn inbox(&self, index: usize) -> &[u8] {

@@ -253,4 +253,34 @@ proptest! {
             prop_assert_eq!(radio.inbox(i), expected);
         }
     }
+
+    /// Over the seams too, and once each, however small the torus.
+    #[test]
+    fn on_a_torus_everybody_in_range_of_the_nearest_image_is_heard_once(
+        range_m in 0.0..30.0_f64,
+        sides in (1.0..60.0_f64, 1.0..60.0_f64),
+        places in prop::collection::vec((0.0..1.0_f64, 0.0..1.0_f64), 1..60),
+    ) {
+        let sides = [sides.0, sides.1];
+        let positions: Vec<_> = places.iter().map(|&(x, y)| [x * sides[0], y * sides[1]]).collect();
+        let frames: Vec<_> = (1..=places.len()).map(|i| [i as u8, 0]).collect();
+        let params = RadioParams { range_m, ..RadioParams::default() };
+        let ids = (1..).map(RobotId).take(places.len());
+        let mut radio = Radio::new(&params, 0, TICK_US, ids).on_torus(Some(sides));
+        radio.carry(0, &positions, |i| &frames[i]);
+        for (i, a) in positions.iter().enumerate() {
+            let distance_m = |b: &[f64; 2]| {
+                let along = |axis: usize| {
+                    let way = (a[axis] - b[axis]).abs();
+                    way.min(sides[axis] - way)
+                };
+                libm::hypot(along(0), along(1))
+            };
+            // What lies on the border but for rounding is nobody's.
+            prop_assume!(positions.iter().all(|b| (distance_m(b) - range_m).abs() > 1e-9));
+            let near = (0..positions.len()).filter(|&j| j != i && distance_m(&positions[j]) <= range_m);
+            let expected: Vec<u8> = near.flat_map(|j| frames[j]).collect();
+            prop_assert_eq!(radio.inbox(i), expected);
+        }
+    }
 }

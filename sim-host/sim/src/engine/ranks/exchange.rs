@@ -53,6 +53,12 @@ pub enum RankError {
         /// Robots.
         robots: usize,
     },
+    /// Ranks know of no seam.
+    #[error("{ranks} ranks cannot share a torus (plane.torus_m): start one, or leave it out")]
+    Torus {
+        /// Ranks.
+        ranks: usize,
+    },
     /// Somebody is not there any more.
     #[error(transparent)]
     Lost(#[from] Lost),

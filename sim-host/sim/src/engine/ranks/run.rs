@@ -59,8 +59,11 @@ const RECEPTION: f64 = 0.1;
 ///
 /// # Errors
 /// There are more ranks than robots.
-pub const fn check(scenario: &Scenario, ranks: usize) -> Result<(), RankError> {
+pub fn check(scenario: &Scenario, ranks: usize) -> Result<(), RankError> {
     let robots = scenario.robots.len();
+    if ranks > 1 && scenario.torus_m().is_some() {
+        return Err(RankError::Torus { ranks });
+    }
     if ranks > robots { Err(RankError::TooMany { ranks, robots }) } else { Ok(()) }
 }
 

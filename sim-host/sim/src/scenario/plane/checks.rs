@@ -5,7 +5,7 @@ use super::super::source::Source;
 use super::spec::Spec;
 use super::table::{CloudEntry, Place, PlaneRobotEntry};
 use super::{PlaneSetup, Start, check_count};
-use crate::nearby::{Cells, Query, Search, Space};
+use crate::nearby::{Cells, Query, Search};
 use crate::terrain::Terrain;
 use crate::world::plane::{Solid, Solids};
 use staya_controller::agent::{GOALS, GuidanceKind, WAYPOINTS};
@@ -157,7 +157,7 @@ pub(super) fn cloud(source: &Source<'_>, spec: &Spec, cloud: &CloudEntry) -> Res
 pub(super) fn starts(source: &Source<'_>, setup: &PlaneSetup) -> Result<(), ScenarioError> {
     let centers: Vec<_> = setup.starts.iter().map(|start| start.position_m).collect();
     let largest_m = setup.kinds().map(|group| group.radius_m).fold(0.0, f64::max);
-    let mut index = Cells::<f64, 3>::new(Space::OPEN, (2.0 * largest_m).max(1e-3));
+    let mut index = Cells::<f64, 3>::new(setup.space(), (2.0 * largest_m).max(1e-3));
     index.rebuild(&centers);
     let mut found = Vec::new();
     for (number, at) in (0..).zip(centers) {

@@ -55,6 +55,13 @@ pub(super) fn lattice(
             return Err(source.error(&spec.field(source, "lattice.algorithm"), what, "give 1, 2 or 3"));
         }
     };
+    if given.takes_turns == Some(true) {
+        if params.algorithm != Algorithm::Three {
+            let (what, remedy) = ("robots take turns in algorithm 3 only", "give algorithm = 3, or leave it out");
+            return Err(source.error(&spec.field(source, "lattice.takes_turns"), what, remedy));
+        }
+        params.algorithm = Algorithm::ThreeInTurn;
+    }
     if params.algorithm == Algorithm::Two {
         // Its pull grows with the flock's size.
         params.gamma = Gain::critical(params.alpha.position / GAMMA_OF_TWO);
@@ -156,6 +163,7 @@ pub(super) fn boids(source: &Source<'_>, spec: &Spec, cruise_mps: f64) -> Result
     spec.within(source, "boids.max_turn", max_turn, [0.0, 3.15], "radians")?;
     spec.within(source, "boids.max_turn_away", max_turn_away, [0.0, 3.15], "radians")?;
     let [crowded, closest, turn, away] = [given.crowded_m, given.closest_m, max_turn, max_turn_away].map(|x| x as f32);
-    let params = BoidsSetup { crowded_m: crowded, closest_m: closest, max_turn: turn, max_turn_away: away };
+    let torus_m = spec.torus_m.map(|sides| sides.map(|side| side as f32));
+    let params = BoidsSetup { crowded_m: crowded, closest_m: closest, max_turn: turn, max_turn_away: away, torus_m };
     Ok(Some(GuidanceSetup::Boids { params, speed_mps: cruise_mps as f32 }))
 }

@@ -8,6 +8,7 @@ mod scattered;
 mod spec;
 mod starts;
 mod table;
+mod torus;
 
 pub(crate) use checks::goals;
 pub(super) use flocks::remark;
@@ -23,6 +24,7 @@ pub use table::*;
 use super::ranges::within;
 use super::source::Source;
 use super::{Robot, Scenario, ScenarioError, ScenarioFile};
+use crate::nearby::Space;
 use crate::radio::RadioParams;
 use crate::terrain::Terrain;
 use crate::world::MoveRules;
@@ -71,6 +73,8 @@ pub struct PlaneSetup {
     pub groups: Vec<RobotGroup>,
     /// Whether there is land under the bodies.
     pub has_terrain: bool,
+    /// Sides of the torus that all is on, metres; `None`: the open plane.
+    pub torus_m: Option<[f64; 2]>,
     /// What does not move.
     pub solids: Vec<Solid>,
     /// Bodies that are no robots.
@@ -89,11 +93,18 @@ impl PlaneSetup {
             general,
             groups: Vec::new(),
             has_terrain: false,
+            torus_m: None,
             solids: Vec::new(),
             intruders: Vec::new(),
             starts,
             orders: Vec::new(),
         }
+    }
+
+    /// The space that bodies are in.
+    #[must_use]
+    pub fn space(&self) -> Space<f64, 3> {
+        torus::space(self.torus_m)
     }
 
     /// What robot number `index` is like.
@@ -134,6 +145,12 @@ impl PlaneSetup {
 }
 
 impl Scenario {
+    /// Sides of the torus that all is on, metres; `None`: an open plane.
+    #[must_use]
+    pub fn torus_m(&self) -> Option<[f64; 2]> {
+        self.plane.as_ref()?.torus_m
+    }
+
     /// A scenario in the plane that no file says: `ticks` of `setup.abilities.step_s`, with a radio. Robots are numbered
     /// from 1 in the order of their starts.
     #[must_use]
@@ -235,11 +252,13 @@ pub(super) fn build(
         general,
         groups,
         has_terrain: terrain.is_some(),
+        torus_m: table.torus_m,
         solids,
         intruders: intruders(source, table)?,
         starts,
         orders: Vec::new(),
     };
+    torus::check(source, file, table, &setup)?;
     checks::starts(source, &setup)?;
     checks::outside(source, &setup)?;
     let setup = PlaneSetup { orders: orders(source, file, table, &setup)?, ..setup };

@@ -27,6 +27,8 @@ pub(super) struct Spec {
     pub goal_flock: Option<GoalFlockTable>,
     pub boids: Option<BoidsTable>,
     pub flock: u8,
+    /// The same for all.
+    pub torus_m: Option<[f64; 2]>,
 }
 
 impl Spec {
@@ -48,6 +50,7 @@ impl Spec {
             goal_flock: table.goal_flock,
             boids: table.boids,
             flock: 0,
+            torus_m: table.torus_m,
         }
     }
 
@@ -77,6 +80,7 @@ impl Spec {
             boids: group.boids.or(self.boids.filter(|_| goes_alike)),
             // Each its own; the last ones share the last.
             flock: group.flock.unwrap_or(u8::try_from(index + 1).unwrap_or(u8::MAX)),
+            torus_m: self.torus_m,
         }
     }
 

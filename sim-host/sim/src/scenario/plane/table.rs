@@ -22,6 +22,8 @@ pub struct PlaneTable {
     /// How far robots see obstacles, metres. Default: 10.
     #[serde(default = "ten")]
     pub sight_m: f64,
+    /// Sides of a torus that robots live on instead of the open plane, metres: who leaves on one side comes in on the other.
+    pub torus_m: Option<[f64; 2]>,
     /// Where they want to go; `"route"` and `"formation"` need `[terrain]`, the latter `robots.formation`.
     #[serde(default)]
     pub guidance: GuidanceKind,
@@ -373,6 +375,8 @@ pub struct LatticeTable {
     pub goal_moves: Option<bool>,
     /// Over which way behind a goal that stays its velocity fades, metres: the flock comes to rest within it. Default: never.
     pub goal_rest_m: Option<f64>,
+    /// Whether robots in algorithm 3 press on nobody who is nearer to the goal: so they pass gaps one after the other. Default: false.
+    pub takes_turns: Option<bool>,
     /// Distance kept from obstacles over spacing (d' / d). Default: 0.6.
     pub obstacle_ratio: Option<f64>,
 }

@@ -67,6 +67,7 @@ pub struct Plane {
     intruders: Vec<Disc>,
     centers: Vec<[f64; 3]>,
     index: Cells<f64, 3>,
+    space: Space<f64, 3>,
     /// How far neighbours are looked for, metres.
     reach_m: f64,
     /// Radius of the largest body, metres.
@@ -140,6 +141,7 @@ impl Plane {
             shut: vec![Vec::new(); discs.len()],
             centers: Vec::with_capacity(discs.len()),
             index: Cells::new(Space::OPEN, reach_m.max(1e-3)),
+            space: Space::OPEN,
             reach_m,
             largest_m,
             discs,
@@ -150,6 +152,14 @@ impl Plane {
     #[must_use]
     pub fn with_intruders(mut self, intruders: Vec<Disc>) -> Self {
         self.intruders = intruders;
+        self
+    }
+
+    /// The same in another space, such as a torus: who leaves on one side comes in on the other.
+    #[must_use]
+    pub fn in_space(mut self, space: Space<f64, 3>) -> Self {
+        self.space = space;
+        self.index = Cells::new(space, self.reach_m.max(1e-3));
         self
     }
 
@@ -297,7 +307,7 @@ impl Plane {
     /// When there are fewer commands than bodies.
     pub fn advance(&mut self, commands: &[Command<f32>]) {
         assert!(commands.len() >= self.discs.len(), "a command for each body");
-        let land = self.terrain.as_ref();
+        let (land, space) = (self.terrain.as_ref(), self.space);
         let bodies = self.discs.par_iter_mut().zip(&mut self.shut).zip(commands).with_min_len(BATCH);
         bodies.for_each(|((disc, shut), command)| {
             let wish = match *command {
@@ -316,6 +326,11 @@ impl Plane {
             let v = limits.reach(wish);
             disc.velocity_mps = [v.x, v.y, v.z];
             disc.go();
+            if space.period().is_some() {
+                // Heights do not close.
+                let [x, y, _] = space.fold(disc.position_m);
+                (disc.position_m[0], disc.position_m[1]) = (x, y);
+            }
             if let Some(land) = land.filter(|_| !shut.is_empty()) {
                 let under: Vec<Cell> = cells_under(land, disc).collect();
                 shut.retain(|(cell, _)| under.contains(cell));
