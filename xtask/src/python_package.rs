@@ -50,7 +50,7 @@ fn wheel(repo: &Repo, python: &Path) -> Result<(), String> {
     // Nothing but the new one.
     let _ = fs::remove_dir_all(&wheels);
     let mut build = repo.command(python);
-    build.args(["-m", "maturin", "build", "--profile", "dev", "--target-dir"]).arg(&repo.target);
+    build.args(["-m", "maturin", "build", "--locked", "--profile", "dev", "--target-dir"]).arg(&repo.target);
     run(build.arg("--out").arg(&wheels))?;
     let built = fs::read_dir(&wheels).map_err(|error| format!("{}: {error}", wheels.display()))?;
     let mut install = repo.command(python);

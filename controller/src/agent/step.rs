@@ -96,7 +96,9 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         let fastest_mps = fastest_mps.filter(|fastest| keeps_clear && *fastest > S::ZERO);
         let remember = if keeps_clear { config.silence.remember } else { Duration::ZERO };
         let radio = (config.beacon_period, config.latency);
-        let (own, torus) = (inputs.state.position, guidance.torus());
+        // No robot lives on one.
+        let torus = guidance.torus().filter(|_| cfg!(feature = "published"));
+        let own = inputs.state.position;
         if let Some(torus) = torus {
             link.table.see_at(|place| torus.image(place, own));
         }

@@ -12,7 +12,9 @@ staya_firmware::faults_are_printed!();
 mod program {
     use core::hint::black_box;
     use heapless::Vec;
-    use staya_cases::{Case, Probe, Summary, WorstCase};
+    #[cfg(not(part = "nrf51"))]
+    use staya_cases::Case;
+    use staya_cases::{Probe, Summary, WorstCase};
     use staya_controller::agent::{Agent, Guidance, Inputs, OUTBOX, Outputs, Safety};
     use staya_controller::grid::{Cell, Dir};
     use staya_controller::robot::{Mode, RobotId};
@@ -151,9 +153,12 @@ mod program {
         // Needs an FPU; the flash has no room for it unoptimised.
         #[cfg(all(part = "stm32f405", not(debug_assertions)))]
         worst::<Fast32, 16, 32>("Fast32", &row);
-        swarms::<Q16>("Q16", &row);
+        // The micro:bit has room for the worst cases alone; `replay` runs the swarms there.
         #[cfg(not(part = "nrf51"))]
-        worst::<Q16, 16, 32>("Q16", &row);
+        {
+            swarms::<Q16>("Q16", &row);
+            worst::<Q16, 16, 32>("Q16", &row);
+        }
         #[cfg(part = "nrf51")]
         worst::<Q16, 8, 16>("Q16", &row);
         runtime::exit(0)
@@ -226,6 +231,7 @@ mod program {
         wire.decode(frame)
     }
 
+    #[cfg(not(part = "nrf51"))]
     fn swarms<S: Scalar>(scalar: &str, row: &impl Print) {
         for &case in Case::ALL {
             let mut meter = Meter::new();

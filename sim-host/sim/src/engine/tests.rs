@@ -342,6 +342,7 @@ mod land;
 mod operator;
 mod plane;
 mod state;
+mod torus;
 
 /// A swarm has a million of these: what one is made of is known, and what is rare in it lies elsewhere.
 #[test]
