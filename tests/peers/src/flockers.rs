@@ -81,6 +81,26 @@ struct World {
     start: Vec<Boid>,
 }
 
+impl World {
+    /// A flock that nobody has put into the field yet.
+    fn new(flock: &Flock) -> Self {
+        let plan = plan();
+        let [width, height] = flock.sides();
+        let boids = flock.places().iter().zip(flock.headings());
+        let start = (0..).zip(boids).map(|(id, (&[x, y], &heading))| Boid { id, place: Real2D { x, y }, heading });
+        Self {
+            // Not "toroidal": then the field's own search stops at the borders (version 0.6.2), while
+            // otherwise it goes on at the other side.
+            field: Field2D::new(width, height, plan.closest, false),
+            torus: Torus { size_m: [width, height] },
+            params: BoidsParams::new(plan.crowded, plan.closest, plan.max_turn, plan.max_turn_away),
+            closest: plan.closest,
+            speed: plan.speed,
+            start: start.collect(),
+        }
+    }
+}
+
 impl State for World {
     fn init(&mut self, schedule: &mut Schedule) {
         for boid in &self.start {
@@ -151,20 +171,7 @@ impl Peer {
     /// The same start.
     #[must_use]
     pub fn new(flock: &Flock) -> Self {
-        let plan = plan();
-        let [width, height] = flock.sides();
-        let boids = flock.places().iter().zip(flock.headings());
-        let start = (0..).zip(boids).map(|(id, (&[x, y], &heading))| Boid { id, place: Real2D { x, y }, heading });
-        let mut world = World {
-            // Not "toroidal": then the field's own search stops at the borders (version 0.6.2), while
-            // otherwise it goes on at the other side.
-            field: Field2D::new(width, height, plan.closest, false),
-            torus: Torus { size_m: [width, height] },
-            params: BoidsParams::new(plan.crowded, plan.closest, plan.max_turn, plan.max_turn_away),
-            closest: plan.closest,
-            speed: plan.speed,
-            start: start.collect(),
-        };
+        let mut world = World::new(flock);
         let mut schedule = Schedule::new();
         world.init(&mut schedule);
         Self { schedule, world }
@@ -186,10 +193,45 @@ impl Peer {
     }
 }
 
+/// The grid of `krabmaga` alone, with the places of a flock.
+pub struct Grid {
+    field: Field2D<Boid>,
+    torus: Torus<f32>,
+    closest: f32,
+    boids: Vec<Boid>,
+}
+
+impl Grid {
+    /// The grid of this flock's torus.
+    #[must_use]
+    pub fn new(flock: &Flock) -> Self {
+        let World { field, torus, closest, start, .. } = World::new(flock);
+        Self { field, torus, closest, boids: start }
+    }
+
+    /// Takes all places in and counts the neighbours of all boids. The field hands out who is in the cells around; who is too far is
+    /// left out here.
+    pub fn neighbours(&mut self) -> usize {
+        for boid in &self.boids {
+            self.field.set_object_location(*boid, boid.place);
+        }
+        self.field.lazy_update();
+        let near = self.boids.iter().map(|boid| {
+            let others = self.field.get_neighbors_within_relax_distance(boid.place, self.closest);
+            let is_near = |other: &&Boid| {
+                let offset = Vec2::new(other.place.x - boid.place.x, other.place.y - boid.place.y);
+                other.id != boid.id && self.torus.shortest(offset).norm_squared() <= self.closest * self.closest
+            };
+            others.iter().filter(is_near).count()
+        });
+        near.sum()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use staya_sim::nearby::{Cells, Space};
+    use staya_sim::nearby::{Cells, Query, Search, Space};
 
     #[test]
     fn both_fly_the_same_way() {
@@ -205,5 +247,21 @@ mod tests {
         // Sums of neighbours run in another order; a boid between two choices may take the other one.
         let alike = same.filter(|(one, other)| (**one - *other).norm() < 1e-4).count();
         assert!(alike >= 1990, "{alike} of 2000");
+    }
+
+    #[test]
+    fn the_grid_finds_the_same_neighbours() {
+        let flock = flock(2000);
+        let mut cells = Cells::new(Space::torus(flock.sides()).expect("a torus"), plan().closest);
+        cells.rebuild(flock.places());
+        let mut found = Vec::new();
+        let near = (0..).zip(flock.places()).map(|(boid, &at)| {
+            let query = Query { at, radius: plan().closest, most: usize::MAX, except: Some(boid) };
+            cells.within(&query, &mut found);
+            found.len()
+        });
+        let mut grid = Grid::new(&flock);
+        let wanted: usize = near.sum();
+        assert_eq!((grid.neighbours(), grid.neighbours()), (wanted, wanted));
     }
 }

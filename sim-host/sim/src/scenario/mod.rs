@@ -282,7 +282,7 @@ impl Scenario {
         Ok(scenario)
     }
 
-    /// What who runs it should know: lines for people, about the key's file and about gains that are dangerous.
+    /// What who runs it should know: lines for people, about the key's file, gains that are dangerous, and what is hardly meant in `[plane]`.
     #[must_use]
     pub fn remarks(&self) -> Vec<String> {
         let groups = self.plane.iter().flat_map(PlaneSetup::kinds);
@@ -290,7 +290,8 @@ impl Scenario {
             GuidanceSetup::Lattice { params, .. } => plane::remark(params, &self.radio, self.tick_s()),
             _ => None,
         });
-        self.key_remark.clone().into_iter().chain(gains).collect()
+        let plane = self.plane.iter().flat_map(|setup| plane::remarks(setup, self.tick_s()));
+        self.key_remark.clone().into_iter().chain(gains).chain(plane).collect()
     }
 
     /// The robots, each with the number that it says.

@@ -4,6 +4,7 @@ mod checks;
 mod flocks;
 mod group;
 mod place;
+mod remarks;
 mod scattered;
 mod spec;
 mod starts;
@@ -12,6 +13,7 @@ mod torus;
 
 pub(crate) use checks::goals;
 pub(super) use flocks::remark;
+pub(super) use remarks::remarks;
 
 #[cfg(test)]
 mod tests;

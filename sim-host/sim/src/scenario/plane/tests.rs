@@ -1,5 +1,6 @@
 mod flocks;
 mod groups;
+mod remarks;
 
 use super::super::Overrides;
 use super::*;

@@ -1,0 +1,136 @@
+//! What is allowed in `[plane]` and hardly meant, told to people.
+
+use super::{PlaneSetup, RobotGroup, Start};
+use crate::world::plane::{Solid, Solids};
+use staya_controller::agent::{GuidanceKind, SafetySetup};
+
+/// So many robots with the same trouble are named, and the others counted.
+const NAMED: usize = 3;
+
+/// A wall that comes back to its first point: its corners, metres.
+type Loop = Vec<[f64; 2]>;
+
+/// Ticks too long for bodies, closed walls that cross themselves, goals that nobody can be at. O(robots x walls +
+/// sides of a closed wall squared).
+pub(in super::super) fn remarks(setup: &PlaneSetup, tick_s: f64) -> Vec<String> {
+    let loops = loops(&setup.solids);
+    let mut remarks: Vec<_> = setup.kinds().filter_map(|group| long_tick(group, tick_s)).collect();
+    remarks.extend(loops.iter().filter_map(|corners| crossing(corners)));
+    let robots = || setup.starts.iter().enumerate();
+    let is = |trouble: &dyn Fn(&RobotGroup, &Start, [f64; 3]) -> bool| {
+        let robots = robots().filter(|(index, start)| {
+            let group = setup.group(*index);
+            goal(group, start).is_some_and(|goal_m| trouble(group, start, goal_m))
+        });
+        named(robots.map(|(index, _)| index + 1))
+    };
+    let largest_m = setup.kinds().map(|group| group.radius_m).fold(0.0, f64::max);
+    let solids = Solids::new(setup.solids.clone(), largest_m);
+    let in_obstacle = is(&|group, _, goal_m| {
+        let least_m = group.radius_m - group.tolerance_m;
+        solids.near(goal_m, group.radius_m).any(|solid| solid.distance_m(goal_m) < least_m)
+    });
+    let shut = is(&|_, start, goal_m| {
+        loops.iter().any(|corners| is_inside(corners, start.position_m) != is_inside(corners, goal_m))
+    });
+    let in_space = is(&|group, start, goal_m| {
+        let is_plane = matches!(group.safety, SafetySetup::Orca { .. } | SafetySetup::PushOut { .. });
+        is_plane && (goal_m[2] - start.position_m[2]).abs() > group.tolerance_m
+    });
+    let troubles = [
+        (in_obstacle, "nearer to an obstacle than the body's radius: nobody gets there"),
+        (shut, "on the other side of a closed wall: there is no way there"),
+        (in_space, "at another height, and this safety layer keeps to the plane: give safety = \"fly\""),
+    ];
+    remarks.extend(
+        troubles.into_iter().filter_map(|(who, what)| Some(format!("plane.robots: the goal of {} is {what}", who?))),
+    );
+    remarks
+}
+
+/// Where a robot shall come to rest, if it goes straight to a place.
+fn goal(group: &RobotGroup, start: &Start) -> Option<[f64; 3]> {
+    let last = start.places.last()?;
+    (group.guidance.kind() == GuidanceKind::Waypoint && last.velocity_mps == [0.0; 3]).then_some(last.position_m)
+}
+
+fn named(robots: impl Iterator<Item = usize>) -> Option<String> {
+    let numbers: Vec<_> = robots.collect();
+    let (first, rest) = numbers.split_at(numbers.len().min(NAMED));
+    let mut text: Vec<_> = first.iter().map(usize::to_string).collect();
+    if !rest.is_empty() {
+        text.push(format!("{} more", rest.len()));
+    }
+    let last = text.pop()?;
+    let robots = if numbers.len() == 1 { "robot" } else { "robots" };
+    Some(if text.is_empty() { format!("{robots} {last}") } else { format!("{robots} {} and {last}", text.join(", ")) })
+}
+
+/// Who goes farther in a tick than the body is wide is never seen in between.
+fn long_tick(group: &RobotGroup, tick_s: f64) -> Option<String> {
+    let (speed_mps, wide_m) = (group.abilities.max_speed_mps, 2.0 * group.radius_m);
+    let way_m = speed_mps * tick_s;
+    (way_m > wide_m).then(|| {
+        format!(
+            "tick_s = {tick_s}: at {speed_mps} m/s a robot goes {way_m:.2} m in a tick, more than its body's {wide_m:.2} m, and can be \
+             through another one unseen; at most {:.3} would do",
+            wide_m / speed_mps
+        )
+    })
+}
+
+fn loops(solids: &[Solid]) -> Vec<Loop> {
+    let mut loops = Vec::new();
+    let mut chain = Loop::new();
+    let mut end = None;
+    for solid in solids {
+        let &Solid::Wall([from, to]) = solid else {
+            (chain, end) = (Loop::new(), None);
+            continue;
+        };
+        if end != Some(from) {
+            chain.clear();
+        }
+        chain.push(from);
+        end = Some(to);
+        if chain.len() > 2 && chain.first() == Some(&to) {
+            loops.push(std::mem::take(&mut chain));
+            end = None;
+        }
+    }
+    loops
+}
+
+/// Which side of the line from `a` to `b` a point is on: positive on the left.
+fn side(a: [f64; 2], b: [f64; 2], point: [f64; 2]) -> f64 {
+    (b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0])
+}
+
+/// Two sides that are no neighbours and cross.
+fn crossing(corners: &[[f64; 2]]) -> Option<String> {
+    let count = corners.len();
+    let ends = |index: usize| (corners[index], corners[(index + 1) % count]);
+    let cross = |one: usize, other: usize| {
+        let ((a, b), (c, d)) = (ends(one), ends(other));
+        side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
+    };
+    let mut pairs = (0..count).flat_map(|one| (one + 2..count).map(move |other| (one, other)));
+    let (one, other) = pairs.find(|&(one, other)| cross(one, other))?;
+    let [x, y] = corners[0];
+    Some(format!(
+        "plane.wall: sides {} and {} of the closed wall that begins at [{x}, {y}] cross: what is inside it is not clear",
+        one + 1,
+        other + 1
+    ))
+}
+
+/// By how often a way to the east leaves the loop.
+fn is_inside(corners: &[[f64; 2]], place: [f64; 3]) -> bool {
+    let [x, y, _] = place;
+    let next = corners.iter().cycle().skip(1);
+    let crossed = corners
+        .iter()
+        .zip(next)
+        .filter(|&(&[x1, y1], &[x2, y2])| (y1 > y) != (y2 > y) && x < x1 + (y - y1) / (y2 - y1) * (x2 - x1));
+    crossed.count() % 2 == 1
+}

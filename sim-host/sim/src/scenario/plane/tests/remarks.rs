@@ -1,0 +1,85 @@
+//! What is allowed and hardly meant.
+
+use super::super::remarks;
+use super::*;
+
+/// What is said of robots with these starts and goals, and of the rest of a scenario.
+fn said(robots: &str, rest: &str) -> Vec<String> {
+    let scenario = parse(&format!("tick_s = 0.1\n{HEAD}{PLANE}{rest}\n[plane.robots]\nlist = [{robots}]\n"));
+    scenario.unwrap_or_else(|error| panic!("{error}")).remarks()
+}
+
+const YARD: &str = "[[plane.wall]]\npoints_m = [[4, -2], [8, -2], [8, 2], [4, 2]]\nclosed = true\n";
+const ONE: &str = "{ start_m = [0, 0], goal_m = [6, 0] }";
+
+#[test]
+fn goals_that_nobody_can_be_at_are_remarked_on() {
+    assert_eq!(said(ONE, ""), Vec::<String>::new());
+    let ball = "[[plane.ball]]\ncenter_m = [6.5, 0]\nradius_m = 0.4\n";
+    assert_eq!(
+        said(ONE, ball),
+        ["plane.robots: the goal of robot 1 is nearer to an obstacle than the body's radius: nobody gets there"]
+    );
+    assert_eq!(
+        said(ONE, YARD),
+        ["plane.robots: the goal of robot 1 is on the other side of a closed wall: there is no way there"]
+    );
+    // Who is inside already may have its goal there, and an open wall has a way in.
+    assert_eq!(said("{ start_m = [5, 1], goal_m = [6, 0] }", YARD), Vec::<String>::new());
+    assert_eq!(said(ONE, &YARD.replace("closed = true", "closed = false")), Vec::<String>::new());
+    let many: Vec<_> = (0..6).map(|y| format!("{{ start_m = [0, {y}], goal_m = [6, 0] }}")).collect();
+    let many = said(&many.join(", "), YARD);
+    assert!(many.len() == 1 && many[0].contains("the goal of robots 1, 2, 3 and 3 more is"), "{many:?}");
+    // A yard beside another one, and none of both.
+    let two = format!("{YARD}{}", YARD.replace("[4, ", "[14, ").replace("[8, ", "[18, "));
+    assert_eq!(said("{ start_m = [0, 0], goal_m = [11, 0] }", &two), Vec::<String>::new());
+}
+
+#[test]
+fn goals_at_another_height_need_a_layer_that_goes_there() {
+    let up = "{ start_m = [0, 0, 1], goal_m = [6, 0, 3] }";
+    for safety in ["orca", "template_2k"] {
+        let said = said(up, &format!("safety = \"{safety}\"\n"));
+        assert!(said.len() == 1 && said[0].contains("keeps to the plane: give safety = \"fly\""), "{safety}: {said:?}");
+    }
+    for safety in ["fly", "none"] {
+        assert_eq!(said(up, &format!("safety = \"{safety}\"\n")), Vec::<String>::new(), "{safety}");
+    }
+}
+
+#[test]
+fn a_tick_in_which_bodies_pass_each_other_unseen_is_remarked_on() {
+    let of_tick = |tick_s: f64| {
+        let text = format!("tick_s = {tick_s}\n{HEAD}{PLANE}[plane.robots]\nlist = [{ONE}]\n");
+        parse(&text).expect("good").remarks()
+    };
+    assert_eq!(of_tick(0.4), Vec::<String>::new());
+    let [remark] = &of_tick(0.5)[..] else { panic!("one remark") };
+    assert!(remark.contains("goes 0.50 m in a tick") && remark.contains("at most 0.400 would do"), "{remark}");
+}
+
+#[test]
+fn a_closed_wall_that_crosses_itself_is_remarked_on() {
+    let bow = "[[plane.wall]]\npoints_m = [[4, 4], [8, 8], [8, 4], [4, 8]]\nclosed = true\n";
+    assert_eq!(
+        said("{ start_m = [0, 0] }", bow),
+        ["plane.wall: sides 1 and 3 of the closed wall that begins at [4, 4] cross: what is inside it is not clear"]
+    );
+    // A corner that turns in, and walls that touch at their ends, do not cross.
+    let notch = "[[plane.wall]]\npoints_m = [[4, 4], [8, 4], [8, 8], [6, 6], [4, 8]]\nclosed = true\n";
+    assert_eq!(said("{ start_m = [0, 0] }", notch), Vec::<String>::new());
+}
+
+#[test]
+fn scenarios_of_this_repository_mean_what_they_say() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
+    let files = std::fs::read_dir(folder).expect("scenarios").flatten().map(|entry| entry.path());
+    let mut count = 0;
+    for file in files.filter(|file| file.extension().is_some_and(|end| end == "toml")) {
+        let scenario = Scenario::load(&file, &Overrides::default()).unwrap_or_else(|error| panic!("{error}"));
+        let plane = scenario.plane.iter().flat_map(|setup| remarks::remarks(setup, scenario.tick_s()));
+        assert_eq!(plane.collect::<Vec<_>>(), Vec::<String>::new(), "{}", file.display());
+        count += 1;
+    }
+    assert!(count > 20, "{count}");
+}

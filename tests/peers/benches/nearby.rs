@@ -1,0 +1,59 @@
+//! Who is near whom, of all boids of a flock at the paper's density (STA, section 2.3): the project's searches, the
+//! library's k-d tree among them, beside the grid of `krabmaga`. A sample takes the places in and asks once for each boid, as a step does.
+
+use core::hint::black_box;
+use criterion::measurement::WallTime;
+use criterion::{BenchmarkGroup, Criterion, SamplingMode, criterion_group, criterion_main};
+use staya_papers::boids::Flock;
+use staya_peers::flockers::{Grid, flock, plan};
+use staya_sim::nearby::{AllPairs, Cells, MidpointTree, MutualPairs, Query, Search, Space, Tree};
+use std::time::Duration;
+
+/// Beyond this, all pairs take minutes.
+const MOST_BY_ALL_PAIRS: u32 = 10_000;
+
+/// Neighbours of all boids.
+fn neighbours(flock: &Flock, search: &mut impl Search<f32, 2>) -> usize {
+    search.rebuild(flock.places());
+    let mut found = Vec::new();
+    let near = (0..).zip(flock.places()).map(|(boid, &at)| {
+        let query = Query { at, radius: plan().closest, most: usize::MAX, except: Some(boid) };
+        search.within(&query, &mut found);
+        found.len()
+    });
+    near.sum()
+}
+
+fn measure(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, wanted: usize, mut neighbours: impl FnMut() -> usize) {
+    assert_eq!(neighbours(), wanted, "{name} finds others");
+    group.bench_function(name, |bencher| bencher.iter(|| black_box(neighbours())));
+}
+
+fn nearby(c: &mut Criterion) {
+    for boids in [100, 1000, 10_000, 100_000] {
+        let flock = flock(boids);
+        let (space, radius) = (Space::torus(flock.sides()).unwrap_or(Space::OPEN), plan().closest);
+        let mut cells = Cells::new(space, radius);
+        let wanted = neighbours(&flock, &mut cells);
+        let mut group = c.benchmark_group(format!("nearby_{boids}"));
+        group.sample_size(10).sampling_mode(SamplingMode::Flat);
+        group.warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_secs(1));
+        if boids <= MOST_BY_ALL_PAIRS {
+            let mut all = AllPairs::new(space);
+            measure(&mut group, "all_pairs", wanted, || neighbours(&flock, &mut all));
+            let mut mutual = MutualPairs::new(space, radius);
+            measure(&mut group, "mutual_pairs", wanted, || neighbours(&flock, &mut mutual));
+        }
+        measure(&mut group, "cells", wanted, || neighbours(&flock, &mut cells));
+        let mut midpoint = MidpointTree::new(space);
+        measure(&mut group, "midpoint_tree", wanted, || neighbours(&flock, &mut midpoint));
+        let mut tree = Tree::new(space);
+        measure(&mut group, "kiddo_tree", wanted, || neighbours(&flock, &mut tree));
+        let mut grid = Grid::new(&flock);
+        measure(&mut group, "krabmaga_grid", wanted, || grid.neighbours());
+        group.finish();
+    }
+}
+
+criterion_group!(benches, nearby);
+criterion_main!(benches);
