@@ -1,7 +1,7 @@
 //! Staya for Python: the module `staya._staya`, which the package in `python/staya` puts into words. Arguments come checked from
 //! there: arrays are contiguous, of the right shape, and finite.
 //!
-//! [`simulation`] runs scenarios, [`behaviors`] has the controller's behaviours by themselves, over all robots at once.
+//! `simulation` runs scenarios, `behaviors` has the controller's behaviours by themselves, over all robots at once.
 #![cfg(feature = "module")]
 
 pub mod behaviors;
