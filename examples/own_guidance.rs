@@ -107,7 +107,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     )?;
     if let (Some(folder), Some(recording), Some(plane)) = (folder, recording, &scenario.plane) {
         recording.finish(&())?;
-        for file in motion_pictures(plane, &recorder.finish()?, Path::new(&folder))? {
+        for file in motion_pictures(&scenario, plane, &recorder.finish()?, Path::new(&folder))? {
             println!("{}", file.display());
         }
         println!("look at it: staya view {folder}/patrol.staya");

@@ -189,7 +189,7 @@ fn run_into(task: Task<'_>, dir: &Path, mut also: Also<'_>, global: &Global) -> 
     let mut files: Vec<_> = names.iter().map(|name| out.join(name)).collect();
     let pictures = match &scenario.plane {
         None => run_pictures(&scenario.terrain, &scenario.changing_cells(), &history, &edges, dir)?,
-        Some(setup) => motion_pictures(setup, &history, dir)?,
+        Some(setup) => motion_pictures(scenario, setup, &history, dir)?,
     };
     files.extend(pictures.iter().map(|file| out.join(file.strip_prefix(dir).unwrap_or(file))));
     files.extend(also.paths());

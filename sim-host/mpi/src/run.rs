@@ -224,7 +224,7 @@ impl RunArgs {
         let edges: Vec<_> = edges.map(|&(a, b)| (id(a), id(b))).collect();
         let pictures = match &scenario.plane {
             None => run_pictures(&scenario.terrain, &scenario.changing_cells(), history, &edges, dir)?,
-            Some(setup) => motion_pictures(setup, history, dir)?,
+            Some(setup) => motion_pictures(scenario, setup, history, dir)?,
         };
         files.extend(pictures.iter().map(|file| out.join(file.strip_prefix(dir).unwrap_or(file))));
         Ok(files)

@@ -55,8 +55,16 @@ pub const PALETTE: [Colour; 7] = [
     Colour::hex(0x00_00_00),
 ];
 
-/// The colour of the `index`-th thing; after seven they come again.
+/// How many colours [`nth`] has.
+pub const COUNT: usize = 3 * PALETTE.len();
+
+/// The colour of the `index`-th thing: the palette, then its colours darker, then paler; after that they come again.
 #[must_use]
-pub const fn nth(index: usize) -> Colour {
-    PALETTE[index % PALETTE.len()]
+pub fn nth(index: usize) -> Colour {
+    let colour = PALETTE[index % PALETTE.len()];
+    match index / PALETTE.len() % 3 {
+        0 => colour,
+        1 => colour.towards(INK, 0.5),
+        _ => colour.towards(WHITE, 0.5),
+    }
 }

@@ -25,6 +25,8 @@ mod marks;
 use super::canvas::Canvas;
 use super::layout;
 use frame::Frame;
+use staya_sim::terrain::Terrain;
+use std::sync::Arc;
 
 /// Most robots that are drawn one by one; of larger crowds each is a dot or a dart of the least size.
 pub const MOST_DISCS: usize = 3000;
@@ -45,6 +47,17 @@ pub enum Obstacle {
     Segment([[f64; 2]; 2]),
 }
 
+impl Obstacle {
+    /// Points that are around it, metres.
+    pub(crate) fn corners(&self) -> Vec<[f64; 2]> {
+        match self {
+            Self::Polygon(corners) => corners.clone(),
+            Self::Disc { centre_m: [x, y], radius_m: r } => vec![[x - r, y - r], [x + r, y + r]],
+            Self::Segment(ends) => ends.to_vec(),
+        }
+    }
+}
+
 /// One moment. What has a coordinate that is not finite is left out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Snapshot {
@@ -54,6 +67,9 @@ pub struct Snapshot {
     pub positions_m: Vec<[f64; 2]>,
     /// Their velocities, metres per second: one each, or none at all. Robots that stand are drawn without direction.
     pub velocities_mps: Vec<[f64; 2]>,
+    /// The speed whose arrow is the longest, metres per second, so that those of several snapshots compare; the fastest robot's if
+    /// that is more.
+    pub fastest_mps: f64,
     /// Radius of their bodies, metres; drawn to scale where that can be seen, as darts where not.
     pub radius_m: f64,
     /// Radii of bodies that are smaller, metres: one each, or none at all.
@@ -68,6 +84,8 @@ pub struct Snapshot {
     pub goals_m: Vec<[f64; 2]>,
     /// The ways that robots came, metres, one line each.
     pub trails_m: Vec<Vec<[f64; 2]>>,
+    /// The land under them.
+    pub land: Option<Arc<Terrain>>,
     /// Least and greatest x and y that are shown; `None`: everything.
     pub view_m: Option<[[f64; 2]; 2]>,
     /// Names of the axes.
@@ -83,6 +101,7 @@ impl Default for Snapshot {
             title: String::new(),
             positions_m: Vec::new(),
             velocities_mps: Vec::new(),
+            fastest_mps: 0.0,
             radius_m: 0.0,
             radii_m: Vec::new(),
             groups: Vec::new(),
@@ -90,6 +109,7 @@ impl Default for Snapshot {
             obstacles: Vec::new(),
             goals_m: Vec::new(),
             trails_m: Vec::new(),
+            land: None,
             view_m: None,
             labels: ["x (m)".into(), "y (m)".into()],
             size: [420.0, 400.0],
@@ -124,11 +144,7 @@ impl Snapshot {
     fn extent(&self) -> Option<[[f64; 2]; 2]> {
         let disc = |[x, y]: [f64; 2], r: f64| [[x - r, y - r], [x + r, y + r]];
         let robots = self.positions_m.iter().flat_map(|&at| disc(at, self.radius_m.max(0.0)));
-        let obstacles = self.obstacles.iter().flat_map(|obstacle| match obstacle {
-            Obstacle::Polygon(corners) => corners.clone(),
-            Obstacle::Disc { centre_m, radius_m } => disc(*centre_m, *radius_m).to_vec(),
-            Obstacle::Segment(ends) => ends.to_vec(),
-        });
+        let obstacles = self.obstacles.iter().flat_map(Obstacle::corners);
         let trails = self.trails_m.iter().flatten().copied();
         let all = robots.chain(obstacles).chain(self.goals_m.iter().copied()).chain(trails);
         all.filter(|at| at.iter().all(|c| c.is_finite())).fold(None, |extent: Option<[[f64; 2]; 2]>, at| {
@@ -180,7 +196,7 @@ impl View {
 pub struct Sheet {
     title: String,
     columns: usize,
-    snapshots: Vec<Snapshot>,
+    pub(crate) snapshots: Vec<Snapshot>,
 }
 
 impl Sheet {

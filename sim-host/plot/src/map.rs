@@ -68,6 +68,12 @@ impl<'a> Map<'a> {
         Self { terrain, area: [left, top, width, height], cell }
     }
 
+    /// The same with `cell` units per cell.
+    pub fn of_scale(terrain: &'a Terrain, [left, top]: Point, cell: f64) -> Self {
+        let [width, height] = [terrain.width(), terrain.height()].map(|side| f64::from(side) * cell);
+        Self { terrain, area: [left, top, width, height], cell }
+    }
+
     /// Where a place of the world lies, north up.
     pub fn place(&self, position_m: [f64; 2]) -> Point {
         let cells: [f64; 2] =

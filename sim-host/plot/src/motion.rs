@@ -4,9 +4,11 @@ use super::flock::{Obstacle, Sheet, Snapshot};
 use super::run::packets;
 use staya_sim::nearby::Space;
 use staya_sim::record::{self, Error, Frame, History};
-use staya_sim::scenario::PlaneSetup;
+use staya_sim::scenario::{PlaneSetup, Scenario};
+use staya_sim::terrain::Terrain;
 use staya_sim::world::plane::Solid;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Moments in the picture.
 const MOMENTS: usize = 4;
@@ -14,76 +16,94 @@ const MOMENTS: usize = 4;
 const MOST_TRAILS: usize = 100;
 /// Points of a way.
 const TRAIL_POINTS: usize = 400;
-/// Palette.
-const COLOURS: usize = 8;
+/// Obstacles so many times as large as the place that robots go through are not shown whole.
+const LARGE: f64 = 10.0;
 
 /// Draws the pictures of one run into `out_dir`, which is made if needed, each as SVG and PNG, and names the
 /// files.
 ///
 /// - `motion`: where robots are, with their ways so far, at four moments from start to end, if the history has frames; seen
-///   from above;
+///   from above, on their land if they have some;
 /// - `packets`: packets per second by their fate, over time.
 ///
 /// O(samples of the history).
 ///
 /// # Errors
 /// The directory or a file cannot be written.
-pub fn motion_pictures(setup: &PlaneSetup, history: &History, out_dir: &Path) -> Result<Vec<PathBuf>, Error> {
+pub fn motion_pictures(
+    scenario: &Scenario,
+    setup: &PlaneSetup,
+    history: &History,
+    out_dir: &Path,
+) -> Result<Vec<PathBuf>, Error> {
     record::make_dir(out_dir)?;
     let mut files = Vec::new();
     if !history.frames().is_empty() {
-        files.extend(motion_sheet(setup, history).draw().write(&out_dir.join("motion"))?);
+        let land = setup.has_terrain.then_some(&scenario.terrain);
+        files.extend(motion_sheet(&scenario.name, setup, land, history).draw().write(&out_dir.join("motion"))?);
     }
     files.extend(packets(history).write(&out_dir.join("packets"))?);
     Ok(files)
 }
 
-/// Four moments of a run beside each other.
+/// Four moments of a run beside each other; the title may be empty.
 #[must_use]
-pub fn motion_sheet(setup: &PlaneSetup, history: &History) -> Sheet {
+pub fn motion_sheet(title: &str, setup: &PlaneSetup, land: Option<&Terrain>, history: &History) -> Sheet {
     let frames = history.frames();
     let obstacles: Vec<_> = setup.solids.iter().filter_map(drawn).collect();
-    let goals: Vec<[f64; 2]> = setup
-        .starts
-        .iter()
-        .flat_map(|start| &start.places)
-        .map(|target| [target.position_m[0], target.position_m[1]])
-        .collect();
-    let mut goals_m = goals;
-    goals_m.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
-    goals_m.dedup();
+    let last = frames.len().saturating_sub(1);
+    let mut moments: Vec<_> = (0..MOMENTS).map(|moment| last * moment / (MOMENTS - 1)).collect();
+    moments.dedup();
+    moments.retain(|&at| at < frames.len());
+    let goals: Vec<_> = moments.iter().map(|&at| goals(setup, frames[at].tick)).collect();
     let largest_m = setup.kinds().map(|group| group.radius_m).fold(0.0, f64::max);
     let view_m = match setup.torus_m {
         Some(sides) => Some([0, 1].map(|axis| [0.0, sides[axis]])),
-        None => view(frames, largest_m),
+        None => view(frames, largest_m, goals.iter().flatten(), &obstacles),
     };
+    let land = land.cloned().map(Arc::new);
     let space = setup.space();
-    let mut sheet = Sheet::new("", 2);
-    let last = frames.len().saturating_sub(1);
-    let mut before = None;
-    for moment in 0..MOMENTS {
-        let at = last * moment / (MOMENTS - 1);
-        if before == Some(at) || frames.is_empty() {
-            continue;
-        }
-        before = Some(at);
+    let velocities: Vec<_> = moments.iter().map(|&at| velocities(frames, at, &space)).collect();
+    let speeds = velocities.iter().flatten().map(|&[x, y]| libm::hypot(x, y));
+    let fastest_mps = speeds.filter(|speed| speed.is_finite()).fold(0.0, f64::max);
+    let mut sheet = Sheet::new(title, 2);
+    for ((at, goals_m), velocities_mps) in moments.into_iter().zip(goals).zip(velocities) {
         let frame = &frames[at];
         let robots = frame.samples.len();
         sheet = sheet.with(Snapshot {
             title: format!("after {:.1} s", frame.time_s),
             positions_m: frame.samples.iter().map(|s| s.position_m).collect(),
-            velocities_mps: velocities(frames, at, &space),
+            velocities_mps,
+            fastest_mps,
             radius_m: largest_m,
             radii_m: (0..robots).map(|robot| setup.group(robot).radius_m).collect(),
-            groups: (0..robots).map(|robot| robot % COLOURS).collect(),
+            groups: (0..robots).collect(),
             obstacles: obstacles.clone(),
-            goals_m: goals_m.clone(),
+            goals_m,
             trails_m: trails(&frames[..=at], robots.min(MOST_TRAILS), &space),
+            land: land.clone(),
             view_m,
             ..Snapshot::default()
         });
     }
     sheet
+}
+
+/// Where the places to go to are in a tick, by what the scenario says of them: from the start, or from the last order on.
+fn goals(setup: &PlaneSetup, tick: u32) -> Vec<[f64; 2]> {
+    let places = (0..setup.starts.len()).flat_map(|robot| {
+        let step_s = setup.group(robot).abilities.step_s;
+        setup.starts[robot].places.iter().enumerate().map(move |(goal, place)| {
+            let orders = setup.orders.iter().filter(|order| usize::from(order.index) == goal && order.tick <= tick);
+            let (since, place) = orders.last().map_or((0, place), |order| (order.tick, &order.target));
+            let time_s = f64::from(tick - since) * step_s;
+            [0, 1].map(|axis| place.position_m[axis] + place.velocity_mps[axis] * time_s)
+        })
+    });
+    let mut places: Vec<_> = places.collect();
+    places.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+    places.dedup();
+    places
 }
 
 fn drawn(solid: &Solid) -> Option<Obstacle> {
@@ -95,19 +115,30 @@ fn drawn(solid: &Solid) -> Option<Obstacle> {
     }
 }
 
-/// What robots go through.
-fn view(frames: &[Frame], radius_m: f64) -> Option<[[f64; 2]; 2]> {
-    let places = frames.iter().flat_map(|frame| &frame.samples);
-    let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-    for sample in places {
-        for axis in 0..2 {
-            low[axis] = low[axis].min(sample.position_m[axis]);
-            high[axis] = high[axis].max(sample.position_m[axis]);
-        }
-    }
-    let widest = (high[0] - low[0]).max(high[1] - low[1]);
-    let margin = 2.0 * radius_m + 0.05 * widest;
-    let is_sound = widest.is_finite();
+/// What robots go through, with their goals and the obstacles.
+fn view<'a>(
+    frames: &[Frame],
+    radius_m: f64,
+    goals_m: impl Iterator<Item = &'a [f64; 2]>,
+    obstacles: &[Obstacle],
+) -> Option<[[f64; 2]; 2]> {
+    let places = frames.iter().flat_map(|frame| &frame.samples).map(|sample| sample.position_m);
+    let places = places.chain(goals_m.copied());
+    let around = |extent: [[f64; 2]; 2], [x, y]: [f64; 2]| {
+        let [low, high] = extent;
+        [[low[0].min(x), low[1].min(y)], [high[0].max(x), high[1].max(y)]]
+    };
+    let widest = |[low, high]: [[f64; 2]; 2]| (high[0] - low[0]).max(high[1] - low[1]);
+    let robots = places.fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], around);
+    let most_m = LARGE * widest(robots).max(2.0 * radius_m);
+    let corners = obstacles.iter().map(Obstacle::corners);
+    let near = corners.filter(|corners| {
+        let own = corners.iter().copied().fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], around);
+        widest(own) < most_m
+    });
+    let [low, high] = near.flatten().fold(robots, around);
+    let margin = 2.0 * radius_m + 0.05 * widest([low, high]);
+    let is_sound = margin.is_finite();
     is_sound.then(|| [0, 1].map(|axis| [low[axis] - margin, high[axis] + margin]))
 }
 

@@ -139,7 +139,7 @@ fn picture(scenario: &Scenario) -> Sheet {
     let _ = outcome.expect("bodies in the plane can start anywhere");
     let history = recorder.finish().expect(in_memory);
     let setup = scenario.plane.as_ref().expect("it was made in the plane");
-    motion_sheet(setup, &history)
+    motion_sheet("", setup, None, &history)
 }
 
 /// Least gap of a run, metres; `None` when nobody came near.

@@ -1,10 +1,12 @@
-//! What is inside of a snapshot, the lowest first: obstacles, trails, edges, goals, robots.
+//! What is inside of a snapshot, the lowest first: land, obstacles, trails, edges, goals, robots.
 
 use super::frame::Frame;
 use super::{MOST_DISCS, Obstacle, Snapshot};
 use crate::canvas::{Canvas, Point, Shape, Stroke};
 use crate::colour::{self, Colour, INK, WHITE};
+use crate::map::Map;
 use staya_sim::nearby::{Cells, Query, Search as _, Space};
+use staya_sim::terrain::Terrain;
 
 const STONE: Colour = Colour::hex(0xc9_c4_bb);
 const STONE_EDGE: Colour = Colour::hex(0x6f_68_5c);
@@ -20,6 +22,9 @@ const DART: f64 = 4.2;
 const SMALL_DART: f64 = 2.2;
 
 pub fn draw(snapshot: &Snapshot, frame: &Frame, canvas: &mut Canvas) {
+    if let Some(land) = &snapshot.land {
+        ground(land, frame, canvas);
+    }
     obstacles(&snapshot.obstacles, frame, canvas);
     trails(snapshot, frame, canvas);
     if let Some(range) = snapshot.edges_within_m {
@@ -29,6 +34,13 @@ pub fn draw(snapshot: &Snapshot, frame: &Frame, canvas: &mut Canvas) {
         cross(at, canvas);
     }
     robots(snapshot, frame, canvas);
+}
+
+fn ground(land: &Terrain, frame: &Frame, canvas: &mut Canvas) {
+    let [west, south] = land.origin_m;
+    if let Some(corner) = frame.at([west, south + f64::from(land.height()) * land.cell_m]) {
+        Map::of_scale(land, corner, land.cell_m * frame.scale).ground(canvas);
+    }
 }
 
 fn obstacles(obstacles: &[Obstacle], frame: &Frame, canvas: &mut Canvas) {
@@ -59,7 +71,9 @@ fn obstacles(obstacles: &[Obstacle], frame: &Frame, canvas: &mut Canvas) {
 
 fn trails(snapshot: &Snapshot, frame: &Frame, canvas: &mut Canvas) {
     for (robot, trail) in snapshot.trails_m.iter().enumerate() {
-        let colour = colour_of(snapshot, robot).towards(WHITE, 0.45);
+        // On land it would not be seen paler.
+        let paler = if snapshot.land.is_some() { 0.0 } else { 0.45 };
+        let colour = colour_of(snapshot, robot).towards(WHITE, paler);
         // A place that cannot be drawn leaves a gap.
         let lines = trail
             .split(|&at| frame.at(at).is_none())
@@ -111,10 +125,11 @@ fn robots(snapshot: &Snapshot, frame: &Frame, canvas: &mut Canvas) {
         // Nonsense has no direction.
         if speed.is_finite() { (velocity, speed) } else { (still, 0.0) }
     };
-    let fastest = (0..snapshot.velocities_mps.len()).map(|robot| velocity(robot).1).fold(0.0, f64::max);
+    let fastest = (0..snapshot.velocities_mps.len()).map(|robot| velocity(robot).1);
+    let fastest = fastest.fold(snapshot.fastest_mps.max(0.0), f64::max);
     // One shape a colour, however many robots there are.
     let groups = snapshot.groups.iter().max().map_or(1, |most| most + 1);
-    let groups = groups.min(colour::PALETTE.len());
+    let groups = groups.min(colour::COUNT);
     let (mut arrows, mut darts) = (Vec::new(), vec![Vec::new(); groups]);
     let mut dots = vec![Vec::new(); groups];
     for (robot, &place) in snapshot.positions_m.iter().enumerate() {

@@ -2,6 +2,7 @@
 
 mod charts;
 mod flocks;
+mod motion;
 mod runs;
 mod ticks;
 
