@@ -94,8 +94,8 @@ fn goals(setup: &PlaneSetup, tick: u32) -> Vec<[f64; 2]> {
     let places = (0..setup.starts.len()).flat_map(|robot| {
         let step_s = setup.group(robot).abilities.step_s;
         setup.starts[robot].places.iter().enumerate().map(move |(goal, place)| {
-            let orders = setup.orders.iter().filter(|order| usize::from(order.index) == goal && order.tick <= tick);
-            let (since, place) = orders.last().map_or((0, place), |order| (order.tick, &order.target));
+            let mut orders = setup.orders.iter().filter(|order| usize::from(order.index) == goal && order.tick <= tick);
+            let (since, place) = orders.next_back().map_or((0, place), |order| (order.tick, &order.target));
             let time_s = f64::from(tick - since) * step_s;
             [0, 1].map(|axis| place.position_m[axis] + place.velocity_mps[axis] * time_s)
         })
