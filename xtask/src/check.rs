@@ -30,8 +30,10 @@ pub fn run(repo: &Repo, report: &mut Report) {
     if has(repo, "clippy", "clippy", report) {
         let deny = ["--", "-D", "warnings"];
         let arguments = |arguments: &[&'static str]| [&["clippy", "--locked"], arguments, &deny].concat();
-        let own = ["--workspace", "--all-targets"];
-        report.command("clippy", repo.cargo(&arguments(&own)));
+        let own = ["--workspace", "--all-targets", "--features", crate::python_package::FEATURE];
+        let mut clippy = repo.cargo(&arguments(&own));
+        clippy.envs(crate::python_package::WITHOUT_PYTHON);
+        report.command("clippy", clippy);
         let packages = PACKAGES.iter().flat_map(|name| ["--package", name]);
         let defmt: Vec<_> = packages.chain(["--features", "staya-controller/defmt"]).collect();
         report.command("clippy with defmt", repo.cargo(&arguments(&defmt)));
