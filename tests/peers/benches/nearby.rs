@@ -13,11 +13,11 @@ use std::time::Duration;
 const MOST_BY_ALL_PAIRS: u32 = 10_000;
 
 /// Neighbours of all boids.
-fn neighbours(flock: &Flock, search: &mut impl Search<f32, 2>) -> usize {
+fn neighbours(flock: &Flock, radius: f32, search: &mut impl Search<f32, 2>) -> usize {
     search.rebuild(flock.places());
     let mut found = Vec::new();
     let near = (0..).zip(flock.places()).map(|(boid, &at)| {
-        let query = Query { at, radius: plan().closest, most: usize::MAX, except: Some(boid) };
+        let query = Query { at, radius, most: usize::MAX, except: Some(boid) };
         search.within(&query, &mut found);
         found.len()
     });
@@ -34,21 +34,21 @@ fn nearby(c: &mut Criterion) {
         let flock = flock(boids);
         let (space, radius) = (Space::torus(flock.sides()).unwrap_or(Space::OPEN), plan().closest);
         let mut cells = Cells::new(space, radius);
-        let wanted = neighbours(&flock, &mut cells);
+        let wanted = neighbours(&flock, radius, &mut cells);
         let mut group = c.benchmark_group(format!("nearby_{boids}"));
         group.sample_size(10).sampling_mode(SamplingMode::Flat);
         group.warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_secs(1));
         if boids <= MOST_BY_ALL_PAIRS {
             let mut all = AllPairs::new(space);
-            measure(&mut group, "all_pairs", wanted, || neighbours(&flock, &mut all));
+            measure(&mut group, "all_pairs", wanted, || neighbours(&flock, radius, &mut all));
             let mut mutual = MutualPairs::new(space, radius);
-            measure(&mut group, "mutual_pairs", wanted, || neighbours(&flock, &mut mutual));
+            measure(&mut group, "mutual_pairs", wanted, || neighbours(&flock, radius, &mut mutual));
         }
-        measure(&mut group, "cells", wanted, || neighbours(&flock, &mut cells));
+        measure(&mut group, "cells", wanted, || neighbours(&flock, radius, &mut cells));
         let mut midpoint = MidpointTree::new(space);
-        measure(&mut group, "midpoint_tree", wanted, || neighbours(&flock, &mut midpoint));
+        measure(&mut group, "midpoint_tree", wanted, || neighbours(&flock, radius, &mut midpoint));
         let mut tree = Tree::new(space);
-        measure(&mut group, "kiddo_tree", wanted, || neighbours(&flock, &mut tree));
+        measure(&mut group, "kiddo_tree", wanted, || neighbours(&flock, radius, &mut tree));
         let mut grid = Grid::new(&flock);
         measure(&mut group, "krabmaga_grid", wanted, || grid.neighbours());
         group.finish();
