@@ -34,8 +34,7 @@ fn main() -> ExitCode {
         Ok(Ended::Done) => ExitCode::SUCCESS,
         Ok(Ended::Interrupted) => ExitCode::from(130),
         Err(error) => {
-            // What all have seen, rank 0 says.
-            if !error.to_string().is_empty() {
+            if !error.is::<run::Agreed>() {
                 let _ = writeln!(std::io::stderr(), "staya-mpi: {error:#}");
             }
             ExitCode::FAILURE

@@ -66,13 +66,13 @@ struct Report<'a> {
     ranks: &'a [Sent],
 }
 
-/// Something that all ranks know of, so that all end in order; rank 0 has the words.
+/// Something that all ranks know of and rank 0 has said, so that all end in order.
 #[derive(Debug)]
-pub struct Agreed(String);
+pub struct Agreed;
 
 impl Display for Agreed {
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&self.0)
+        f.write_str("rank 0 has said why")
     }
 }
 
@@ -91,14 +91,16 @@ impl RunArgs {
         let own = loaded.as_ref().err().map_or(String::new(), |error| format!("{error:#}"));
         let said = link.gather(own.into_bytes())?;
         let wrong = said.iter().enumerate().find(|(_, said)| !said.is_empty());
+        let wrong = wrong.map(|(rank, said)| (rank, String::from_utf8_lossy(said)));
         match (wrong, loaded) {
-            (None, Ok(loaded)) => Ok(loaded),
-            (Some((0, said)), _) if link.rank() == 0 => Err(Agreed(String::from_utf8_lossy(said).into_owned()).into()),
-            (Some((rank, said)), _) if link.rank() == 0 => {
-                Err(Agreed(format!("rank {rank}: {}", String::from_utf8_lossy(said))).into())
-            }
-            _ => Err(Agreed(String::new()).into()),
+            (None, Ok(loaded)) => return Ok(loaded),
+            (Some((0, said)), _) if link.rank() == 0 => eprintln!("staya-mpi: {said}"),
+            (Some((rank, said)), _) if link.rank() == 0 => eprintln!("staya-mpi: rank {rank}: {said}"),
+            _ => {}
         }
+        // With the first one that ends mpirun ends all: nobody does before it is said.
+        link.gather(Vec::new())?;
+        Err(Agreed.into())
     }
 
     /// Runs the command on one rank.
