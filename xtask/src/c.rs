@@ -34,6 +34,7 @@ pub fn run_command(repo: &Repo, report: &mut Report) {
 /// On the host, on the emulated part, and for other people's firmware.
 pub fn run(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains) {
     on_host(repo, report);
+    sanitized(repo, report);
     on_part(repo, report, toolchains);
 }
 
@@ -56,6 +57,33 @@ fn on_host(repo: &Repo, report: &mut Report) {
         }
         Ok(())
     });
+}
+
+/// Machines for which rustup's and Debian's stable Rust have the run-time part of AddressSanitizer.
+const SANITIZED: [&str; 2] = ["x86_64-unknown-linux-gnu", "aarch64-unknown-linux-gnu"];
+
+/// The tests of the library, misuse above all, with each access to memory checked: the sanitizer ends a test at the first byte that is not
+/// the library's to touch. Stable Rust has it behind the variable that lets it take unstable options.
+fn sanitized(repo: &Repo, report: &mut Report) {
+    let name = "the library for C, each access to memory checked";
+    let Some(host) = SANITIZED.into_iter().find(|host| has_sanitizer(repo, host)) else {
+        return report.skip(name, "this Rust has no librustc-stable_rt.asan.a; rustup's for Linux has");
+    };
+    report.step(name, || {
+        let mut test = repo.cargo(&["test", "--locked", "--package", "staya-c", "--target", host]);
+        // A folder of its own, or flags that differ would have everything compiled anew.
+        test.env("CARGO_TARGET_DIR", repo.target.join("asan")).env("CARGO_INCREMENTAL", "0");
+        test.env("RUSTC_BOOTSTRAP", "1").env("RUSTFLAGS", "-Zsanitizer=address").env("RUST_MIN_STACK", "16777216");
+        run_command_line(test.args(["--config", "profile.dev.opt-level=0", "--config", "profile.dev.debug=1"]))
+    });
+}
+
+/// Whether this machine is such a one and has it.
+fn has_sanitizer(repo: &Repo, host: &str) -> bool {
+    let about = output_of(repo.command("rustc").arg("-vV")).unwrap_or_default();
+    let root = output_of(repo.command("rustc").args(["--print", "sysroot"])).unwrap_or_default();
+    let library = Path::new(root.trim()).join("lib/rustlib").join(host).join("lib/librustc-stable_rt.asan.a");
+    about.lines().any(|line| line.strip_prefix("host: ") == Some(host)) && library.is_file()
 }
 
 /// Compiles a program, runs it, and gives what it prints.
@@ -85,7 +113,14 @@ fn on_part(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains) {
                 has_no_panic(repo, &library)?;
                 templates(repo)?;
                 let elf = link(repo, &library)?;
-                compare(repo, &emulate::run(repo, part, &elf)?)
+                let output = emulate::run(repo, part, &elf)?;
+                let (stack, rows): (Vec<&str>, Vec<&str>) = output.lines().partition(|line| line.starts_with(STACK));
+                let stack = stack
+                    .first()
+                    .and_then(|line| line.strip_prefix(STACK))
+                    .ok_or("the program says nothing of its stack")?;
+                println!("{} bytes of stack at most, the program's own included", stack.trim());
+                compare(repo, &rows.join("\n"))
             });
         }
     }
@@ -107,6 +142,9 @@ fn library(repo: &Repo, toolchain: &Toolchain, part: &Part) -> Result<PathBuf, S
     run_command_line(build.args(["--locked", "--profile", "firmware", "--package", "staya-c"]))?;
     Ok(toolchain.target_folder(repo).join(part.target).join("firmware/libstaya_c.a"))
 }
+
+/// What the program on the part puts before the deepest stack that it has seen.
+const STACK: &str = "stack";
 
 /// Everything that C can call is in the library, and what is left of the panic handler would be undefined in it.
 fn has_no_panic(repo: &Repo, library: &Path) -> Result<(), String> {

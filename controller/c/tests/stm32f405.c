@@ -43,6 +43,21 @@ void fail(const char *why)
     end(1);
 }
 
+/* A space, the number, and the end of the line. */
+static void print_number(uint32_t number)
+{
+    char decimal[13];
+    int at = 12;
+    decimal[at] = 0;
+    decimal[--at] = '\n';
+    do {
+        decimal[--at] = (char)('0' + number % 10);
+        number /= 10;
+    } while (number != 0);
+    decimal[--at] = ' ';
+    print(&decimal[at]);
+}
+
 void print_row(const char *name, uint64_t hash, uint32_t steps)
 {
     char digits[17];
@@ -53,16 +68,20 @@ void print_row(const char *name, uint64_t hash, uint32_t steps)
     print(name);
     print(" f32 ");
     print(digits);
-    char decimal[12];
-    int at = 11;
-    decimal[at] = 0;
-    do {
-        decimal[--at] = (char)('0' + steps % 10);
-        steps /= 10;
-    } while (steps != 0);
-    decimal[--at] = ' ';
-    print(&decimal[at]);
-    print("\n");
+    print_number(steps);
+}
+
+/* What is written all over the memory of the stack; where it still stands, the stack has not been. */
+#define UNTOUCHED 0xA55AA55Au
+
+static void print_deepest_stack(void)
+{
+    const uint32_t *lowest = &bss_end;
+    while (lowest < &stack_top && *lowest == UNTOUCHED) {
+        lowest++;
+    }
+    print("stack");
+    print_number((uint32_t)&stack_top - (uint32_t)lowest);
 }
 
 void reset(void)
@@ -76,7 +95,14 @@ void reset(void)
     for (uint32_t *to = &bss_start; to < &bss_end;) {
         *to++ = 0;
     }
-    end((uint32_t)run_swarms());
+    uint32_t *here;
+    __asm__ volatile("mov %0, sp" : "=r"(here));
+    for (uint32_t *to = &bss_end; to < here - 32; to++) {
+        *(volatile uint32_t *)to = UNTOUCHED;
+    }
+    const int result = run_swarms();
+    print_deepest_stack();
+    end((uint32_t)result);
 }
 
 static void fault(void)
