@@ -47,7 +47,9 @@ fn a_doorway_is_run_drawn_and_told() {
         assert_eq!((&run["arrived"], &run["overlaps"]), (&2.into(), &0.into()));
         assert_eq!(run["through"], serde_json::json!([1, 1]));
     }
-    assert!(dir.path().join("doorway.png").exists());
+    for width in ["0.8", "2"] {
+        assert!(dir.path().join(format!("doorway-{width}m.png")).exists(), "a picture of each width");
+    }
 }
 
 #[test]

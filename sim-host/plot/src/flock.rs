@@ -20,6 +20,7 @@
 //! ```
 
 mod frame;
+mod legend;
 mod marks;
 
 use super::canvas::Canvas;
@@ -196,6 +197,7 @@ impl View {
 pub struct Sheet {
     title: String,
     columns: usize,
+    has_legend: bool,
     pub(crate) snapshots: Vec<Snapshot>,
 }
 
@@ -203,7 +205,7 @@ impl Sheet {
     /// No snapshots yet, `columns` (1 or more) in a row. The title may be empty.
     #[must_use]
     pub fn new(title: impl Into<String>, columns: usize) -> Self {
-        Self { title: title.into(), columns: columns.max(1), snapshots: Vec::new() }
+        Self { title: title.into(), columns: columns.max(1), has_legend: false, snapshots: Vec::new() }
     }
 
     /// Adds a snapshot; it keeps its size.
@@ -211,6 +213,12 @@ impl Sheet {
     pub fn with(mut self, snapshot: Snapshot) -> Self {
         self.snapshots.push(snapshot);
         self
+    }
+
+    /// Says below the title what the marks mean.
+    #[must_use]
+    pub fn with_legend(self) -> Self {
+        Self { has_legend: true, ..self }
     }
 
     /// Draws them all.
@@ -222,11 +230,15 @@ impl Sheet {
         let widths: Vec<f64> =
             (0..columns).map(|column| most(&mut sizes.iter().skip(column).step_by(columns).map(|s| s[0]))).collect();
         let heights: Vec<f64> = sizes.chunks(columns).map(|row| most(&mut row.iter().map(|size| size[1]))).collect();
-        let top = layout::headline_height(&self.title);
         let width = widths.iter().sum::<f64>().max(200.0);
+        let below_title = layout::headline_height(&self.title);
+        let top = below_title + if self.has_legend { 8.0 + legend::height(self, width) } else { 0.0 };
         let height = (top + heights.iter().sum::<f64>()).max(150.0);
         let mut canvas = Canvas::new(width, height, &self.title);
         layout::headline(&mut canvas, &self.title, width);
+        if self.has_legend {
+            legend::draw(self, &mut canvas, below_title + 8.0, width);
+        }
         let mut y = top;
         for (row, height) in self.snapshots.chunks(columns).zip(heights) {
             let mut x = 0.0;

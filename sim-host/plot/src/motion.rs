@@ -66,7 +66,7 @@ pub fn motion_sheet(title: &str, setup: &PlaneSetup, land: Option<&Terrain>, his
     let velocities: Vec<_> = moments.iter().map(|&at| velocities(frames, at, &space)).collect();
     let speeds = velocities.iter().flatten().map(|&[x, y]| libm::hypot(x, y));
     let fastest_mps = speeds.filter(|speed| speed.is_finite()).fold(0.0, f64::max);
-    let mut sheet = Sheet::new(title, 2);
+    let mut sheet = Sheet::new(title, 2).with_legend();
     for ((at, goals_m), velocities_mps) in moments.into_iter().zip(goals).zip(velocities) {
         let frame = &frames[at];
         let robots = frame.samples.len();

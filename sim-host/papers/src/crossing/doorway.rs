@@ -189,7 +189,8 @@ impl Plan {
     /// Four moments of the first run through a gap.
     #[must_use]
     pub fn picture(&self, width_m: f64) -> Sheet {
-        picture(&self.scenario(width_m, self.seed))
+        let title = format!("{0} and {0} robots, a door of {width_m} m, seed {1}", self.robots, self.seed);
+        picture(&title, &self.scenario(width_m, self.seed))
     }
 }
 
@@ -247,13 +248,13 @@ impl Experiment for Plan {
     }
 
     fn draw(&self, _: &[Vec<Passage>], report: &Report, dir: &Path) -> Result<Vec<PathBuf>> {
-        // Who stopped the runs does not wait for another one.
-        match report.runs.first() {
-            Some(run) if report.runs.len() == self.total() => {
-                Ok(self.picture(run.width_m).draw().write(&dir.join("doorway"))?)
-            }
-            _ => Ok(Vec::new()),
+        // Who stopped the runs does not wait for others.
+        let widths_m = if report.runs.len() == self.total() { &self.widths_m[..] } else { &[] };
+        let mut pictures = Vec::new();
+        for &width_m in widths_m {
+            pictures.extend(self.picture(width_m).draw().write(&dir.join(format!("doorway-{width_m}m")))?);
         }
+        Ok(pictures)
     }
 }
 

@@ -128,8 +128,8 @@ fn run(
     (!stopped).then_some(outcome)
 }
 
-/// Four moments of a run.
-fn picture(scenario: &Scenario) -> Sheet {
+/// Four moments of a run, with this title.
+fn picture(title: &str, scenario: &Scenario) -> Sheet {
     let in_memory = "a recorder without files cannot fail";
     let mut recorder = Recorder::in_memory(Options::default());
     let outcome = simulate(scenario, |moment, robots| {
@@ -139,7 +139,7 @@ fn picture(scenario: &Scenario) -> Sheet {
     let _ = outcome.expect("bodies in the plane can start anywhere");
     let history = recorder.finish().expect(in_memory);
     let setup = scenario.plane.as_ref().expect("it was made in the plane");
-    motion_sheet("", setup, None, &history)
+    motion_sheet(title, setup, None, &history)
 }
 
 /// Least gap of a run, metres; `None` when nobody came near.

@@ -166,7 +166,8 @@ impl Plan {
     /// Four moments of the first run with so many robots.
     #[must_use]
     pub fn picture(&self, robots: u32) -> Sheet {
-        picture(&self.scenario(robots, self.seed))
+        let title = format!("{robots} robots change places, seed {}", self.seed);
+        picture(&title, &self.scenario(robots, self.seed))
     }
 }
 

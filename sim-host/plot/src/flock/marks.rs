@@ -9,8 +9,8 @@ use staya_sim::nearby::{Cells, Query, Search as _, Space};
 use staya_sim::terrain::Terrain;
 
 const STONE: Colour = Colour::hex(0xc9_c4_bb);
-const STONE_EDGE: Colour = Colour::hex(0x6f_68_5c);
-const EDGE: Colour = Colour::hex(0x9a_a8_b5);
+pub const STONE_EDGE: Colour = Colour::hex(0x6f_68_5c);
+pub const EDGE: Colour = Colour::hex(0x9a_a8_b5);
 const GOAL: Colour = Colour::hex(0xd5_5e_00);
 /// Discs of a smaller radius, in units, are darts.
 const LEAST_RADIUS: f64 = 2.6;
@@ -102,7 +102,8 @@ fn edges(positions: &[[f64; 2]], range: f64, frame: &Frame) -> Vec<Vec<Point>> {
     lines
 }
 
-fn cross([x, y]: Point, canvas: &mut Canvas) {
+/// A goal.
+pub fn cross([x, y]: Point, canvas: &mut Canvas) {
     let arm = 5.0;
     let lines = vec![vec![[x - arm, y - arm], [x + arm, y + arm]], vec![[x - arm, y + arm], [x + arm, y - arm]]];
     canvas.lines(lines.clone(), Stroke::new(WHITE, 4.2));
@@ -168,7 +169,7 @@ fn robots(snapshot: &Snapshot, frame: &Frame, canvas: &mut Canvas) {
 }
 
 /// A line from the centre on with two barbs.
-fn arrow([x, y]: Point, [dx, dy]: Point, length: f64) -> [Vec<Point>; 2] {
+pub fn arrow([x, y]: Point, [dx, dy]: Point, length: f64) -> [Vec<Point>; 2] {
     let tip = [x + dx * length, y + dy * length];
     let barb = |side: f64| {
         let back = 3.4;
