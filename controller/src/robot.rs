@@ -25,6 +25,19 @@ impl RobotId {
         self.0 != 0
     }
 
+    /// Somebody whose number nobody has told, as number `n` of those whom a robot [sees](crate::neighbor::Tracker): one of the last 2^16 numbers
+    /// before those of doubles. It means something to that robot alone; no robot should be given one.
+    #[must_use]
+    pub const fn local(n: u16) -> Self {
+        Self(FIRST_LOCAL | n as u32)
+    }
+
+    /// Whether it is one of [`RobotId::local`].
+    #[must_use]
+    pub const fn is_local(self) -> bool {
+        self.0 & !0xFFFF == FIRST_LOCAL
+    }
+
     /// What a second robot of this number is known as; a number that nobody has.
     #[must_use]
     pub const fn double(self) -> Self {
@@ -41,6 +54,7 @@ impl RobotId {
 impl fmt::Display for RobotId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.doubled() {
+            None if self.is_local() => write!(f, "seen {}", self.0 - FIRST_LOCAL),
             None => write!(f, "{}", self.0),
             Some(first) => write!(f, "{} (the second one)", first.0),
         }
@@ -49,6 +63,9 @@ impl fmt::Display for RobotId {
 
 /// Set in the numbers of doubles.
 const DOUBLE: u32 = 1 << 31;
+
+/// The first of those that a robot gives to whom it sees.
+const FIRST_LOCAL: u32 = DOUBLE - (1 << 16);
 
 /// What the robot is doing as a whole; see [`crate::supervisor`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]

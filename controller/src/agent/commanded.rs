@@ -6,6 +6,7 @@ use super::{Parameter, Wait, Waypoint, WrongTask};
 use crate::geom::{Torus, Vec3};
 use crate::grid::Cell;
 use crate::land::LandPatch;
+use crate::neighbor::Tracker;
 use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
@@ -198,6 +199,10 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
 
     fn torus(&self) -> Option<Torus<S>> {
         self.inside.torus()
+    }
+
+    fn tracker(&mut self) -> Option<&mut Tracker<S>> {
+        self.inside.tracker()
     }
 
     fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool {

@@ -5,7 +5,7 @@ use crate::body::Body;
 use crate::geom::{Torus, Vec3};
 use crate::grid::{Cell, Dir};
 use crate::land::{FarLand, LandPatch};
-use crate::neighbor::{Ages, Nearby, Neighbor};
+use crate::neighbor::{Ages, Nearby, Neighbor, Tracker};
 use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
@@ -114,6 +114,11 @@ pub trait Guidance<S: Scalar>: Teamwork {
         None
     }
 
+    /// What follows those whom the robot sees; `None`: it knows of nobody but by radio. See [`NeighborTracking`](super::NeighborTracking).
+    fn tracker(&mut self) -> Option<&mut Tracker<S>> {
+        None
+    }
+
     /// Takes a waypoint to go to, number `index` of those that the robot has; whether it was of use.
     fn assign_waypoint(&mut self, _index: u8, _waypoint: &Waypoint<S>) -> bool {
         false
@@ -203,6 +208,10 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for alloc::boxed::Box<G> {
 
     fn torus(&self) -> Option<Torus<S>> {
         G::torus(self)
+    }
+
+    fn tracker(&mut self) -> Option<&mut Tracker<S>> {
+        (**self).tracker()
     }
 
     fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool {

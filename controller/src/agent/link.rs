@@ -18,6 +18,7 @@ use crate::wire::{
 use heapless::Vec;
 use serde::Serialize;
 
+mod sight;
 mod who;
 
 /// Requests to others on their way at a time.

@@ -6,6 +6,7 @@ use crate::geom::Torus;
 use crate::grid::Cell;
 use crate::land::{FarLand, LandMap, LandPatch, MapParams};
 use crate::list::Seldom;
+use crate::neighbor::Tracker;
 use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
@@ -179,6 +180,10 @@ impl<S: Scalar, G: Guidance<S>, const T: usize> Guidance<S> for MapSharing<G, T>
 
     fn torus(&self) -> Option<Torus<S>> {
         self.inside.torus()
+    }
+
+    fn tracker(&mut self) -> Option<&mut Tracker<S>> {
+        self.inside.tracker()
     }
 
     fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool {

@@ -103,6 +103,7 @@ mod guidance;
 mod io;
 mod link;
 mod map_sharing;
+mod neighbor_tracking;
 mod orca_safety;
 mod other_safety;
 mod parameter;
@@ -138,6 +139,7 @@ pub use guidance::{
 };
 pub use io::{AnyInputs, Command, EVENTS, Event, Inputs, KinematicState, OUTBOX, Outputs, Overclaims, Refused};
 pub use map_sharing::MapSharing;
+pub use neighbor_tracking::NeighborTracking;
 pub use orca_safety::{FlySafety, OrcaSafety};
 pub use other_safety::PushOutSafety;
 pub use parameter::Parameter;

@@ -53,6 +53,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
     ) {
         out.clear();
         self.hear(inputs, now, out);
+        self.merge_sightings(inputs.state.position, now, out);
         let mut nearby = self.look(inputs, now);
         let mut rng = Rng::keyed(self.config.seed, PURPOSE, self.config.id.0, self.decisions);
         let decision = self.decide(inputs, &nearby, now, &mut rng, workspace, out);

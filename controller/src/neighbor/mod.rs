@@ -20,12 +20,16 @@ mod room;
 #[cfg(all(test, feature = "wire"))]
 mod tests;
 mod tie;
+mod track;
+mod tracker;
 
 pub use claims::{Claim, Claims, Doubt, Suspects};
 pub use loss::LossEstimate;
 pub use nearby::{Nearby, StalenessInflation, add_lost, nearest};
 pub use room::Room;
 pub use tie::tie;
+pub use track::Track;
+pub use tracker::{SIGHTINGS, Sighted, Sighting, TRACKS, TrackParams, Tracker};
 
 /// Thousandths of the distance to the farthest fresh robot from which on one that is lost has gone out of range.
 const LEAVES_FROM: i32 = 750;
@@ -303,6 +307,15 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
         {
             entry.payload = payload;
         }
+    }
+
+    /// Forgets robot `id`, whom it does not remember as lost; whether it was known. O(N).
+    pub fn forget(&mut self, id: RobotId) -> bool {
+        let is_known = self.place(id).is_some();
+        if is_known {
+            self.entries.retain(|entry| entry.is_lost || entry.id != id);
+        }
+        is_known
     }
 
     /// Has everybody, the lost too, at another place: on a torus, at the image nearest to oneself. O(N).

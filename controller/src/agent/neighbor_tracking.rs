@@ -1,0 +1,159 @@
+//! A robot that sees others, beside or instead of hearing them.
+
+use super::guidance::{BadInput, Decision, Guidance, GuidanceInput, Teamwork, pass_on};
+use super::{Agent, KinematicState, Outputs, Parameter, Safety, Waypoint};
+use crate::geom::{Position, Torus};
+use crate::grid::Cell;
+use crate::land::LandPatch;
+use crate::list::{self, Seldom};
+use crate::neighbor::{Sighted, Sighting, TrackParams, Tracker};
+use crate::rand::Rng;
+use crate::robot::RobotId;
+use crate::scalar::Scalar;
+use crate::time::Instant;
+use crate::wire::{TemplateAssignment, Wire};
+use heapless::Vec;
+use serde::Serialize;
+
+/// Guidance law `G` of a robot that is told whom it sees ([`Agent::see`]): in the plane and in space. The law and its safety layer find those in the
+/// neighbour table, as others are there, merged with what is heard: see [`Tracker`].
+///
+/// It is a wrapper, so that a robot without eyes has no byte of it. One without [`TrackParams`] does as `G` does.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+pub struct NeighborTracking<S: Scalar, G> {
+    inside: G,
+    #[serde(with = "counted_if_it_sees")]
+    tracker: Seldom<Tracker<S>, 1>,
+}
+
+/// What a robot without eyes writes of them: for digests nothing.
+mod counted_if_it_sees {
+    use super::{Scalar, Seldom, Tracker};
+    #[cfg(feature = "state")]
+    use serde::{Deserialize, Deserializer};
+    use serde::{Serialize, Serializer};
+
+    pub(super) fn serialize<S: Scalar, Z: Serializer>(
+        tracker: &Seldom<Tracker<S>, 1>,
+        to: Z,
+    ) -> Result<Z::Ok, Z::Error> {
+        match tracker.first() {
+            #[cfg(feature = "state")]
+            None => crate::digest::uncounted::serialize(tracker, to),
+            #[cfg(not(feature = "state"))]
+            None => to.serialize_unit(),
+            Some(_) => tracker.serialize(to),
+        }
+    }
+
+    #[cfg(feature = "state")]
+    pub(super) fn deserialize<'de, S: Scalar, D: Deserializer<'de>>(from: D) -> Result<Seldom<Tracker<S>, 1>, D::Error> {
+        Seldom::deserialize(from)
+    }
+}
+
+impl<S: Scalar, G> NeighborTracking<S, G> {
+    /// `inside`, of a robot with eyes; `None`: without.
+    #[must_use]
+    pub fn new(inside: G, params: Option<TrackParams<S>>) -> Self {
+        let mut tracker = Seldom::new();
+        if let Some(params) = params {
+            // One has room.
+            let _ = tracker.push(Tracker::new(params));
+        }
+        Self { inside, tracker }
+    }
+
+    /// The guidance law inside.
+    #[must_use]
+    pub const fn inside(&self) -> &G {
+        &self.inside
+    }
+}
+
+impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, G, N, A, W> {
+    /// Takes in whom the robot sees at `now`, in the state that the next step is told; to be called before each
+    /// [`step`](Agent::step) that there is something for, with all sensors' sightings at once. A robot whose law is not within a [`NeighborTracking`] has no
+    /// use for them.
+    ///
+    /// Work: see [`Tracker::see`]; and in each step O(N TRACKS).
+    pub fn see(&mut self, sightings: &[Sighting<S>], state: &KinematicState<S>, now: Instant) -> Sighted {
+        let own = self.config.id;
+        match self.guidance.tracker() {
+            Some(tracker) => tracker.see(sightings, own, state.position, state.velocity_mps, now),
+            None => Sighted { no_room: u16::try_from(sightings.len()).unwrap_or(u16::MAX), ..Sighted::default() },
+        }
+    }
+
+    /// Those who are seen become neighbours, once the step has heard what there is to hear.
+    pub(super) fn merge_sightings(&mut self, position: Position, now: Instant, out: &mut Outputs<S>) {
+        if self.guidance.tracker().is_none() {
+            return;
+        }
+        let Self { config, guidance, link, last, .. } = self;
+        let is_needed = |id: &RobotId| *id == last.leader || *id == config.id.double() || guidance.needs(*id);
+        let needed: Vec<RobotId, N> = list::collect(link.table.iter().map(|known| known.id).filter(is_needed));
+        if let Some(tracker) = guidance.tracker() {
+            link.see(tracker, position, &needed, config.flock, now, out);
+        }
+    }
+}
+
+impl<S: Scalar, G: Teamwork> Teamwork for NeighborTracking<S, G> {
+    pass_on!(orders: self => self.inside);
+    pass_on!(land: self => self.inside);
+}
+
+impl<S: Scalar, G: Guidance<S>> Guidance<S> for NeighborTracking<S, G> {
+    type Input<'a> = G::Input<'a>;
+    type Destination = G::Destination;
+    type Workspace = G::Workspace;
+    type Payload = G::Payload;
+
+    fn decide(
+        &mut self,
+        input: &GuidanceInput<'_, S, Self::Payload>,
+        here: &Self::Input<'_>,
+        rng: &mut Rng,
+        workspace: &mut Self::Workspace,
+    ) -> Result<Decision<S>, BadInput> {
+        self.inside.decide(input, here, rng, workspace)
+    }
+
+    fn tracker(&mut self) -> Option<&mut Tracker<S>> {
+        self.tracker.first_mut()
+    }
+
+    fn goes_to_cells(&self) -> bool {
+        self.inside.goes_to_cells()
+    }
+
+    fn goes_by_velocity(&self) -> bool {
+        self.inside.goes_by_velocity()
+    }
+
+    fn has_own_goal(&self) -> bool {
+        self.inside.has_own_goal()
+    }
+
+    fn torus(&self) -> Option<Torus<S>> {
+        self.inside.torus()
+    }
+
+    fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool {
+        self.inside.assign_waypoint(index, waypoint)
+    }
+
+    fn payload(&mut self, now: Instant) -> Self::Payload {
+        self.inside.payload(now)
+    }
+
+    fn parameter(&self, parameter: Parameter) -> Option<S> {
+        self.inside.parameter(parameter)
+    }
+
+    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
+        self.inside.tune(parameter, value)
+    }
+}
