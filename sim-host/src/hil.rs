@@ -123,6 +123,9 @@ impl HilArgs {
         if scenario.maps.is_some() {
             bail!("maps.share is in no firmware for devices; leave [maps] out, or run it without devices");
         }
+        if scenario.eyes.is_some() {
+            bail!("no link tells devices whom they see (plane.eyes); leave it out, or run it without devices");
+        }
         if scenario.key.is_some() {
             bail!(
                 "the robots of {} have a key, and the link does not carry keys to devices; leave [authentication] out",

@@ -266,6 +266,7 @@ impl Plan {
             formation_params: self.formation,
             published: None,
             looks_ahead: false,
+            eyes: None,
             faults: Vec::new(),
             key: None,
             key_remark: None,

@@ -301,6 +301,7 @@ pub(crate) fn scenario(
         formation_params: FormationParams::default(),
         published: None,
         looks_ahead: false,
+        eyes: None,
         key: None,
         key_remark: None,
         keeping: None,

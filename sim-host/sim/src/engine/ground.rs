@@ -11,6 +11,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use staya_controller::agent::{AgentConfig, AnyInputs, AnySurroundings, Command, Guidance, Task, WAYPOINTS};
 use staya_controller::grid::Cell;
+use staya_controller::neighbor::Sighting;
 use staya_controller::time::Duration;
 
 /// A world with bodies, as the engine needs it. `number` is the place of a robot in
@@ -55,6 +56,16 @@ pub trait Ground: Send + Sync {
 
     /// What the robot of body `index` senses at the start of `tick`; the inbox is empty.
     fn sense<'a>(&'a self, index: usize, tick: u32, scratch: &'a mut Self::Scratch) -> AnyInputs<'a, f32>;
+
+    /// Whom the robot of body `index` sees at the start of `tick`, in place of what is in `sightings`.
+    fn sightings(&self, _index: usize, _tick: u32, sightings: &mut Vec<Sighting<f32>>) {
+        sightings.clear();
+    }
+
+    /// Whether robots have no transmitter: what they would say, nobody hears.
+    fn is_mute(&self) -> bool {
+        false
+    }
 
     /// How the body moves at the start of `tick`.
     fn motion(&self, index: usize, tick: u32) -> Motion;

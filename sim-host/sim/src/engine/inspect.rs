@@ -133,6 +133,9 @@ where
         let inputs = moment.inputs(index, computer, &mut senses, &mut heard);
         let now = computer.now(self.tick, self.tick_us);
         let mut workspace = <Commanded<f32, G> as Guidance<f32>>::Workspace::default();
+        let mut seen = Vec::new();
+        self.ground.sightings(index, self.tick, &mut seen);
+        let _ = agent.see(&seen, &inputs.state, now);
         let out = agent.step(&inputs, now, &mut workspace);
         let own = inputs.state.position;
         let own_m = self.ground.motion(index, self.tick).position_m;

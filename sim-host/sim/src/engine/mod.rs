@@ -429,12 +429,13 @@ where
     fn decide_here(&mut self) -> PacketCounts {
         let (tick, tick_us, keeps_events) = (self.tick, self.tick_us, self.keeps_events);
         let moment = Tick { tick, ground: &self.ground, radio: &self.radio };
-        let scratch = || (G::Workspace::default(), W::Scratch::default(), Vec::new(), Outputs::default());
+        let scratch = || (G::Workspace::default(), W::Scratch::default(), Vec::new(), Vec::new(), Outputs::default());
+        let is_mute = self.ground.is_mute();
         let work = (&mut self.computers, &mut self.commands, &mut self.statuses, &mut self.positions_m);
         work.into_par_iter()
             .enumerate()
             .with_min_len(BATCH)
-            .map_init(scratch, |(workspace, senses, heard, out), (index, (computer, command, status, position_m))| {
+            .map_init(scratch, |(workspace, senses, heard, seen, out), (index, (computer, command, status, position_m))| {
                 let [x, y, _] = moment.ground.motion(index, tick).position_m;
                 *position_m = [x, y];
                 computer.outbox.clear();
@@ -452,7 +453,14 @@ where
                 let Some(agent) = &mut computer.agent else {
                     return PacketCounts::default();
                 };
+                moment.ground.sightings(index, tick, seen);
+                if !seen.is_empty() {
+                    let _ = agent.see(seen, &inputs.state, now);
+                }
                 agent.step_into(&inputs, now, workspace, out);
+                if is_mute {
+                    out.outbox.clear();
+                }
                 let heard_bytes = inputs.inbox.len() as u64;
                 computer.heard_bytes += heard_bytes;
                 computer.sent_bytes += out.outbox.len() as u64;

@@ -7,7 +7,7 @@ use super::witness::Witness;
 use super::{Engine, Moment, Outcome, PlaneGround};
 use crate::record::RobotRow;
 use crate::scenario::Scenario;
-use staya_controller::agent::{AnyWorld, Commanded, Guidance, InPlane};
+use staya_controller::agent::{AnyWorld, Commanded, Guidance, InPlane, NeighborTracking};
 use std::ops::ControlFlow;
 use thiserror::Error;
 
@@ -53,7 +53,7 @@ pub fn operated_own<G: OwnLaw>(
 }
 
 /// What a robot's agent is made of: the law, which an operator may take over.
-type GuidanceOf<G> = Commanded<f32, AnyWorld<G>>;
+type GuidanceOf<G> = Commanded<f32, NeighborTracking<f32, AnyWorld<G>>>;
 
 fn engine<G: OwnLaw>(
     scenario: &Scenario,
@@ -65,9 +65,11 @@ fn engine<G: OwnLaw>(
         (scenario.safety(index), [group.cruise_mps, group.tolerance_m].map(|x| x as f32))
     });
     let robots: Vec<_> = robots.collect();
+    let tracking = scenario.eyes.map(|eyes| eyes.tracking);
     let brains = move |index: usize| {
         let (safety, [speed_mps, tolerance_m]) = &robots[index];
-        let guidance = Commanded::new(AnyWorld(law(index)), *speed_mps, *tolerance_m);
+        let law = NeighborTracking::new(AnyWorld(law(index)), tracking);
+        let guidance = Commanded::new(law, *speed_mps, *tolerance_m);
         (guidance, Witness::new(safety.safety()))
     };
     Ok(Engine::new(scenario, PlaneGround::new(scenario, setup), brains))

@@ -16,16 +16,17 @@ use crate::record::Motion;
 use crate::scenario::{Order, PlaneSetup, Robot, Scenario, Target, goals};
 use crate::terrain::Terrain;
 use crate::world::Refusal;
-use crate::world::plane::{Clearance, Disc, Plane, Solid, narrow};
+use crate::world::plane::{Clearance, Disc, Plane, Sight, Solid, narrow};
 use crate::world::scouts::{Memory, Scouts};
 use crate::world::window_but;
 use staya_controller::agent::{
     AgentConfig, AnyInputs, AnySurroundings, CellState, Command, GuidanceKind, InCell, InCells, InPlane, Inputs,
-    KinematicState, OnGrid, Task, WAYPOINTS, Waypoint,
+    KinematicState, OnGrid, SafetyKind, Task, WAYPOINTS, Waypoint,
 };
 use staya_controller::auth::Key;
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Cell, GridFrame, UNIT};
+use staya_controller::neighbor::Sighting;
 use staya_controller::obstacle::{Obstacle, grid_walls};
 use staya_controller::robot::{Mode, RobotId};
 use staya_controller::time::Duration;
@@ -43,6 +44,9 @@ pub struct PlaneGround {
     pub(super) gap_m: Option<f64>,
     pub(super) meter: Option<FormationMeter>,
     changed: Changed,
+    /// Whom robots see, if they have eyes.
+    sight: Option<Sight>,
+    is_mute: bool,
     /// What robots know of land that they do not see.
     pub(super) scouts: Option<Scouts>,
     robots: Vec<Robot>,
@@ -80,7 +84,17 @@ impl PlaneGround {
         let sights = setup.kinds().map(|group| group.sight_m + group.radius_m);
         let plane = Plane::new(land, setup.solids.clone(), discs.collect()).with_intruders(intruders);
         let plane = plane.with_sight(sights.fold(0.0, f64::max)).in_space(setup.space());
+        // In space there are those who start at other heights, or avoid each other by going up and down.
+        let is_flat = setup.starts.iter().all(|start| start.position_m[2] == 0.0)
+            && setup.kinds().all(|group| group.safety.kind() != SafetyKind::Fly);
+        let sight = scenario.eyes.map(|eyes| {
+            let mut sight = Sight::new(eyes, scenario.seed, scenario.tick_us, is_flat);
+            sight.look(&plane);
+            sight
+        });
         Self {
+            sight,
+            is_mute: scenario.eyes.is_some_and(|eyes| !eyes.has_beacons),
             clearance: Clearance::FREE,
             gap_m: None,
             changed: Changed::new(),
@@ -245,6 +259,17 @@ impl Ground for PlaneGround {
         self.sense_at(index, position_m, velocity_mps, senses)
     }
 
+    fn sightings(&self, index: usize, tick: u32, sightings: &mut Vec<Sighting<f32>>) {
+        match &self.sight {
+            Some(sight) => sight.sightings(&self.plane, index, tick, sightings),
+            None => sightings.clear(),
+        }
+    }
+
+    fn is_mute(&self) -> bool {
+        self.is_mute
+    }
+
     fn motion(&self, index: usize, _: u32) -> Motion {
         let disc = &self.plane.discs()[index];
         Motion {
@@ -266,6 +291,9 @@ impl Ground for PlaneGround {
             scouts.observe(land, |index| plane.cell(discs[index].position_m));
         }
         self.plane.advance(commands);
+        if let Some(sight) = &mut self.sight {
+            sight.look(&self.plane);
+        }
     }
 
     fn count_collisions(&mut self, _: u32) -> u64 {

@@ -11,7 +11,7 @@ use crate::terrain::Terrain;
 use crate::world::Misplaced;
 use crate::world::plane::{Clearance, Disc, Solid};
 use staya_controller::agent::{
-    AnyGuidance, AnySafety, CELLS, Commanded, HALF_PLANES, LEARNED, MAP_TILES, MapSharing, Safety, TEMPLATE, VISITS,
+    AnyGuidance, AnySafety, CELLS, Commanded, HALF_PLANES, LEARNED, MAP_TILES, MapSharing, NeighborTracking, Safety, TEMPLATE, VISITS,
     WAYPOINTS,
 };
 use std::collections::HashMap;
@@ -137,7 +137,7 @@ pub fn simulate_from(scenario: &Scenario, state: &[u8], watch: &mut Watch<'_>) -
 
 /// What a robot's agent is made of: any guidance with searches of up to `C` cells, which an operator may take over, and any safety layer.
 pub(super) type GuidanceOf<const C: usize> =
-    Commanded<f32, MapSharing<AnyGuidance<f32, C, VISITS, TEMPLATE, LEARNED>, MAP_TILES>>;
+    Commanded<f32, NeighborTracking<f32, MapSharing<AnyGuidance<f32, C, VISITS, TEMPLATE, LEARNED>, MAP_TILES>>>;
 pub(super) type SafetyOf = Witness<AnySafety<f32, HALF_PLANES>>;
 
 /// The engines that there are. Only here are they made of generic code, so that it is compiled once.
@@ -191,12 +191,12 @@ pub(super) fn agents<const C: usize>(
         })
     });
     let of_robots: Vec<usize> = of_robots.collect();
-    let maps = scenario.maps;
+    let (maps, tracking) = (scenario.maps, scenario.eyes.map(|eyes| eyes.tracking));
     move |index| {
         let (guidance, safety, speed_mps, tolerance_m) = &kinds[of_robots[index]];
         // Who goes by no land has none to tell of.
         let maps = maps.filter(|_| guidance.kind().is_on_grid());
-        let law = MapSharing::new(guidance.guidance(), maps);
+        let law = NeighborTracking::new(MapSharing::new(guidance.guidance(), maps), tracking);
         (Commanded::new(law, *speed_mps, *tolerance_m), Witness::new(safety.safety()))
     }
 }

@@ -55,6 +55,7 @@ impl Scenario {
             formation_params,
             published,
             looks_ahead,
+            eyes,
             faults,
             interventions,
             misnumbered,
@@ -83,6 +84,9 @@ impl Scenario {
         }
         if let Some(maps) = maps {
             all.add(maps);
+        }
+        if let Some(eyes) = eyes {
+            all.add(eyes);
         }
         // Debug texts keep secrets.
         all.key(key.as_ref());

@@ -28,7 +28,7 @@ pub use maps::MapsTable;
 pub use params::{FormationTable, GridTable, RouteTable};
 pub(crate) use plane::goals;
 pub use plane::{
-    BallEntry, BallsEntry, BoidsTable, CircleEntry, CloudEntry, GoalFlockTable, GroupTable, HalfSpaceEntry, Intruder,
+    BallEntry, BallsEntry, BoidsTable, CircleEntry, CloudEntry, Eyes, EyesTable, GoalFlockTable, GroupTable, HalfSpaceEntry, Intruder,
     IntruderEntry, LatticeTable, OrcaTable, Order, OrderEntry, Place, PlaneRobotEntry, PlaneRobots, PlaneSetup,
     PlaneTable, PushOutTable, RobotGroup, ScatteredDiscs, Start, Target, WallEntry, circle_starts,
 };
@@ -154,6 +154,8 @@ pub struct Scenario {
     pub formation: Option<Formation>,
     /// Bodies in the plane or in space, if they do not move from cell to cell.
     pub plane: Option<PlaneSetup>,
+    /// How robots in the plane see each other, if they do.
+    pub eyes: Option<Eyes>,
     /// How robots find their ways.
     pub route: RouteSetup,
     /// How robots share what they see of the land, if they do.
@@ -246,6 +248,10 @@ impl Scenario {
         let route = params::routing(&source, &file)?;
         let land = Some(&terrain).filter(|_| file.terrain.is_some());
         let scouting = scouting::scouting(&source, &file, land, params::sight(&file))?;
+        let eyes = match file.plane.as_ref().zip(plane.as_ref()) {
+            Some((table, setup)) => plane::eyes(&source, &file, table, setup)?,
+            None => None,
+        };
         let maps = maps::sharing(&source, &file, &route, plane.as_ref())?;
         let formation_params = params::formation(&source, &file.formation)?;
         let published = params::published(&source, &file.formation)?;
@@ -263,6 +269,7 @@ impl Scenario {
             robots,
             formation,
             plane,
+            eyes,
             route,
             maps,
             formation_params,

@@ -8,6 +8,7 @@ use crate::world::plane::{Clearance, Solid};
 use crate::world::scouts::Memory;
 use serde::{Deserialize, Serialize};
 use staya_controller::grid::Cell;
+use std::collections::VecDeque;
 
 /// What of a body changes, and what its robot is told when it starts anew.
 #[derive(Debug, Serialize, Deserialize)]
@@ -32,6 +33,8 @@ pub struct PlaneShared {
     orders: Vec<Order>,
     /// Where intruders are, and how they go.
     intruders: Vec<[[f64; 3]; 2]>,
+    /// Where everybody was, for eyes that see late.
+    past: VecDeque<Vec<[f64; 3]>>,
 }
 
 fn is_finite(vectors: &[[f64; 3]]) -> bool {
@@ -82,13 +85,21 @@ impl PlaneGround {
             solids: self.plane.solids().to_vec(),
             orders: self.setup.orders.clone(),
             intruders: intruders.map(|disc| [disc.position_m, disc.velocity_mps]).collect(),
+            past: self.sight.as_ref().map(|sight| sight.past().clone()).unwrap_or_default(),
         }
     }
 
     pub(super) fn put_shared(&mut self, shared: PlaneShared) -> Result<(), &'static str> {
-        let PlaneShared { clearance, gap_m, meter, changed, solids, orders, intruders } = shared;
+        let PlaneShared { clearance, gap_m, meter, changed, solids, orders, intruders, past } = shared;
         if intruders.len() != self.plane.intruders().len() || !is_finite(intruders.as_flattened()) {
             return Err("it has other intruders");
+        }
+        if let Some(sight) = &mut self.sight {
+            let bodies = self.plane.discs().len() + self.plane.intruders().len();
+            if past.is_empty() || past.iter().any(|places| places.len() != bodies || !is_finite(places)) {
+                return Err("its robots have seen others");
+            }
+            sight.put_past(past);
         }
         restore_meter(&mut self.meter, meter)?;
         for (&(x, y), &class) in &changed {

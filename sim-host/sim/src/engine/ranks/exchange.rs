@@ -59,6 +59,12 @@ pub enum RankError {
         /// Ranks.
         ranks: usize,
     },
+    /// Ranks do not tell each other whom eyes see over their borders.
+    #[error("{ranks} ranks cannot share robots with eyes (plane.eyes): start one, or leave it out")]
+    Eyes {
+        /// Ranks.
+        ranks: usize,
+    },
     /// Somebody is not there any more.
     #[error(transparent)]
     Lost(#[from] Lost),

@@ -64,6 +64,9 @@ pub fn check(scenario: &Scenario, ranks: usize) -> Result<(), RankError> {
     if ranks > 1 && scenario.torus_m().is_some() {
         return Err(RankError::Torus { ranks });
     }
+    if ranks > 1 && scenario.eyes.is_some() {
+        return Err(RankError::Eyes { ranks });
+    }
     if ranks > robots { Err(RankError::TooMany { ranks, robots }) } else { Ok(()) }
 }
 

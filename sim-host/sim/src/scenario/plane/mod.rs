@@ -1,6 +1,7 @@
 //! `[plane]`: robots that move in the plane or in space, and how they choose their velocities.
 
 mod checks;
+mod eyes;
 mod flocks;
 mod group;
 mod place;
@@ -12,6 +13,8 @@ mod table;
 mod torus;
 
 pub(crate) use checks::goals;
+pub use eyes::Eyes;
+pub(super) use eyes::eyes;
 pub(super) use flocks::remark;
 pub(super) use remarks::remarks;
 
@@ -174,6 +177,7 @@ impl Scenario {
             formation_params: FormationParams::default(),
             published: None,
             looks_ahead: false,
+            eyes: None,
             faults: Vec::new(),
             interventions: Vec::new(),
             misnumbered: Vec::new(),

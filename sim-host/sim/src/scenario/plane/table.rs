@@ -61,6 +61,8 @@ pub struct PlaneTable {
     pub goal_flock: Option<GoalFlockTable>,
     /// Parameters of boids; required for them.
     pub boids: Option<BoidsTable>,
+    /// Robots see each other.
+    pub eyes: Option<EyesTable>,
     /// What moves during the run: goals that an operator sends.
     #[serde(default)]
     pub order: Vec<OrderEntry>,
@@ -73,6 +75,56 @@ const fn infinite() -> f64 {
 /// How far robots see, metres.
 pub(super) const fn ten() -> f64 {
     10.0
+}
+
+/// `[plane.eyes]`: robots see each other, beside the radio or without it.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct EyesTable {
+    /// How far, from centre to centre, metres.
+    pub range_m: f64,
+    /// Standard deviation of places seen along each axis, metres. Default: 0.
+    #[serde(default)]
+    pub noise_m: f64,
+    /// Whether bodies, obstacles and closed cells hide whose centre is behind them. Default: true.
+    #[serde(default = "yes")]
+    pub occlusion: bool,
+    /// Whether they see who it is. Default: false.
+    #[serde(default)]
+    pub names: bool,
+    /// Each robot looks once in so many ticks. Default: 1.
+    #[serde(default = "one")]
+    pub every_ticks: u32,
+    /// How many ticks later what was seen is there. Default: 0.
+    #[serde(default)]
+    pub delay_ticks: u32,
+    /// Whether robots say anything on the radio; orders reach them all the same. Default: true.
+    #[serde(default = "yes")]
+    pub beacons: bool,
+    /// Standard deviation of the others' accelerations, m/s^2, as the filter has it. Default: what they can do, at most four times the highest
+    /// speed in a second.
+    pub acceleration_mps2: Option<f64>,
+    /// Standard deviations within which a sighting is of a robot that is known. Default: 4.
+    #[serde(default = "four")]
+    pub gate: f64,
+    /// Standard deviations of a place that are added to the radius of who is seen. Default: 2.
+    #[serde(default = "two")]
+    pub margin: f64,
+    /// After how long somebody who says nothing and is not seen any more is forgotten, seconds. Default: three looks and
+    /// the delay, at least four ticks.
+    pub forget_s: Option<f64>,
+}
+
+const fn one() -> u32 {
+    1
+}
+
+const fn two() -> f64 {
+    2.0
+}
+
+const fn four() -> f64 {
+    4.0
 }
 
 /// `[plane.robots]`: exactly one of these.

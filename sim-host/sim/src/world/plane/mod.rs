@@ -5,11 +5,13 @@
 //! obstacles, and each such overlap is counted, so that no controller can rely on the world to be safe.
 
 mod border;
+mod eyes;
 mod shape;
 mod solid;
 mod solids;
 
 pub(crate) use border::Beside;
+pub use eyes::Sight;
 pub use shape::{FAR_M, Shape};
 pub use solid::Solid;
 pub use solid::narrow;

@@ -1,0 +1,99 @@
+//! `[plane.eyes]`: robots that see each other.
+
+use super::super::source::Source;
+use super::super::{ScenarioError, ScenarioFile};
+use super::table::PlaneTable;
+use super::{PlaneSetup, within};
+use staya_controller::neighbor::TrackParams;
+use staya_controller::time::Duration;
+
+/// The longest delay, and the longest time between two looks, ticks.
+const MOST_TICKS: u32 = 1000;
+/// Standard deviation of places in beacons, metres: they are whole millimetres, and simulated robots know where they are.
+const HEARD_M: f64 = 0.002;
+/// Standard deviation of velocities in beacons, m/s.
+const HEARD_MPS: f64 = 0.01;
+
+/// Checked `[plane.eyes]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Eyes {
+    /// How far robots see each other, from centre to centre, metres.
+    pub range_m: f64,
+    /// Standard deviation of places seen along each axis, metres.
+    pub noise_m: f64,
+    /// Whether bodies, obstacles and closed cells hide what is behind them.
+    pub is_occluded: bool,
+    /// Whether they see who it is.
+    pub sees_names: bool,
+    /// Each robot looks once in so many ticks.
+    pub every_ticks: u32,
+    /// Ticks from a look to what comes of it.
+    pub delay_ticks: u32,
+    /// Whether robots say anything.
+    pub has_beacons: bool,
+    /// What the controller makes of it.
+    pub tracking: TrackParams<f32>,
+}
+
+/// Checks the table, if there is one.
+pub(in super::super) fn eyes(
+    source: &Source<'_>,
+    file: &ScenarioFile,
+    table: &PlaneTable,
+    setup: &PlaneSetup,
+) -> Result<Option<Eyes>, ScenarioError> {
+    let Some(eyes) = table.eyes else {
+        return Ok(None);
+    };
+    let refuse = |what: String, remedy: &str| Err(source.error("plane.eyes", what, remedy));
+    if setup.torus_m.is_some() {
+        return refuse("nobody sees over the seams of a torus".into(), "leave one of the two out");
+    }
+    if let Some(group) = setup.kinds().find(|group| group.guidance.kind().is_on_grid()) {
+        let what = format!("guidance \"{}\" goes by cells, which nobody sees", group.guidance.kind().name());
+        return refuse(what, "give a guidance that goes by velocities, or leave it out");
+    }
+    let number = |name: &str, value: f64, low: f64, high: f64, unit: &str| {
+        within(source, &format!("plane.eyes.{name}"), value, low, high, unit)
+    };
+    number("range_m", eyes.range_m, 0.01, 1e6, "metres")?;
+    number("noise_m", eyes.noise_m, 0.0, 10.0, "metres")?;
+    number("every_ticks", eyes.every_ticks.into(), 1.0, MOST_TICKS.into(), "ticks")?;
+    number("delay_ticks", eyes.delay_ticks.into(), 0.0, MOST_TICKS.into(), "ticks")?;
+    number("gate", eyes.gate, 0.1, 100.0, "standard deviations")?;
+    number("margin", eyes.margin, 0.0, 100.0, "standard deviations")?;
+    // As long as the controller has news for fresh, and as long as three looks take.
+    let usual_s = f64::from((3 * eyes.every_ticks + eyes.delay_ticks).max(4)) * file.tick_s;
+    let forget_s = eyes.forget_s.unwrap_or(usual_s);
+    number("forget_s", forget_s, file.tick_s, 1000.0, "seconds")?;
+    let abilities = setup.kinds().map(|group| group.abilities);
+    let (speed_mps, most_mps2) = abilities.fold((0.0, 0.0), |(speed, most): (f64, f64), can| {
+        (speed.max(can.max_speed_mps), most.max(can.max_acceleration_mps2))
+    });
+    let acceleration_mps2 = match eyes.acceleration_mps2 {
+        // From its speed to the opposite one within a second, twice over for those who can do it at once.
+        None => most_mps2.min(4.0 * speed_mps),
+        Some(said) => {
+            number("acceleration_mps2", said, 0.001, 1000.0, "m/s^2")?;
+            said
+        }
+    };
+    Ok(Some(Eyes {
+        range_m: eyes.range_m,
+        noise_m: eyes.noise_m,
+        is_occluded: eyes.occlusion,
+        sees_names: eyes.names,
+        every_ticks: eyes.every_ticks,
+        delay_ticks: eyes.delay_ticks,
+        has_beacons: eyes.beacons,
+        tracking: TrackParams {
+            acceleration_mps2: acceleration_mps2 as f32,
+            speed_mps: speed_mps as f32,
+            heard_m: HEARD_M as f32,
+            heard_mps: HEARD_MPS as f32,
+            gate: eyes.gate as f32,
+            margin: eyes.margin as f32,
+            forget: Duration::from_micros((forget_s * 1e6) as i32),
+        },
+    }))
+}
