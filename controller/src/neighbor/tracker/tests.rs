@@ -1,0 +1,301 @@
+//! Sightings and tracks: association, errors, bounds, nonsense.
+
+use super::*;
+use crate::neighbor::Ages;
+use crate::rand::Rng;
+use crate::scalar::Q16;
+use proptest::prelude::*;
+
+const STEP: Duration = Duration::from_millis(50);
+const OWN: RobotId = RobotId(1);
+const AGES: Ages = Ages { stale_after: STEP.saturating_mul(4), expire_after: STEP.saturating_mul(30) };
+
+type Table<S> = NeighborTable<S, 16>;
+
+fn params<S: Scalar>() -> TrackParams<S> {
+    let params = TrackParams {
+        acceleration_mps2: 2.0_f64,
+        speed_mps: 0.5,
+        heard_m: 0.002,
+        heard_mps: 0.01,
+        gate: 4.0,
+        margin: 2.0,
+        forget: STEP.saturating_mul(4),
+    };
+    params.cast()
+}
+
+fn at(step: i32) -> Instant {
+    Instant::from_micros(0) + STEP.saturating_mul(step)
+}
+
+/// Somebody at (x, y), metres, seen with a deviation of 5 cm.
+fn sighting<S: Scalar>(x: f64, y: f64) -> Sighting<S> {
+    let s = |x: f64| S::from_f64(x).unwrap();
+    Sighting {
+        offset_m: Vec3::new(s(x), s(y), S::ZERO),
+        deviation_m: s(0.05),
+        age: Duration::ZERO,
+        radius_m: s(0.15),
+        id: None,
+        velocity_mps: None,
+    }
+}
+
+fn named<S: Scalar>(id: u32, x: f64, y: f64) -> Sighting<S> {
+    Sighting { id: Some(RobotId(id)), ..sighting(x, y) }
+}
+
+fn see<S: Scalar>(tracker: &mut Tracker<S>, sightings: &[Sighting<S>], step: i32) -> Sighted {
+    tracker.see(sightings, OWN, Position::ORIGIN, Vec3::ZERO, at(step))
+}
+
+/// A beacon of robot `id` at (x, y), metres, at rest, that is heard in `step`.
+fn heard<S: Scalar>(id: u32, x: f64, y: f64, step: i32) -> Neighbor<S> {
+    let position = Position::from_metres([x, y, 0.0]).unwrap();
+    let track = Track::new(RobotId(id), at(step), position, S::ONE, &params());
+    Neighbor { velocity_mps: Vec3::ZERO, radius_m: S::from_milli(150), ..stranger(&track, 0) }
+}
+
+/// What an agent does with both in a step.
+fn merge<S: Scalar>(tracker: &mut Tracker<S>, table: &mut Table<S>, step: i32) -> std::vec::Vec<RobotId> {
+    let mut gone = std::vec::Vec::new();
+    tracker.hear(table, Position::ORIGIN);
+    tracker.forget(table, at(step), |id| gone.push(id));
+    for &neighbor in &tracker.seen(table, 0, at(step)) {
+        let _ = table.put(neighbor, Position::ORIGIN, at(step), |_| false);
+    }
+    gone
+}
+
+fn ids<S: Scalar>(tracker: &Tracker<S>) -> std::vec::Vec<RobotId> {
+    tracker.tracks().iter().map(|track| track.id).collect()
+}
+
+fn goes_with_even_speed<S: Scalar>() -> (f64, f64) {
+    let mut tracker = Tracker::<S>::new(params());
+    let mut rng = Rng::keyed(7, 0, 0, 0);
+    // The sum of twelve even draws is nearly normal, of deviation 1.
+    let mut error = || (0..12).map(|_| f64::from(rng.next_u32()) / f64::from(u32::MAX)).sum::<f64>() - 6.0;
+    let mut off = (0.0_f64, 0.0_f64);
+    for step in 0..200 {
+        let x = 0.5 * 0.05 * f64::from(step) - 2.0;
+        let seen = see(&mut tracker, &[sighting(x + 0.05 * error(), 1.0 + 0.05 * error())], step);
+        assert_eq!(seen, if step == 0 { Sighted { new: 1, ..seen } } else { Sighted { known: 1, ..Sighted::default() } });
+        if step >= 50 {
+            let track = tracker.tracks()[0];
+            let place = track.offset_m(Position::ORIGIN);
+            let [dx, dy] = [place.x.to_f64() - x, place.y.to_f64() - 1.0];
+            let [vx, vy] = [track.velocity_mps.x.to_f64() - 0.5, track.velocity_mps.y.to_f64()];
+            off = (off.0 + dx * dx + dy * dy, off.1 + vx * vx + vy * vy);
+        }
+    }
+    assert_eq!(tracker.tracks().len(), 1);
+    ((off.0 / 300.0).sqrt(), (off.1 / 300.0).sqrt())
+}
+
+#[test]
+fn places_come_out_better_than_they_were_seen_and_velocities_come_out_at_all() {
+    for (place_m, velocity_mps) in [goes_with_even_speed::<f64>(), goes_with_even_speed::<f32>(), goes_with_even_speed::<Q16>()] {
+        assert!(place_m < 0.035 && velocity_mps < 0.2, "{place_m} {velocity_mps}");
+    }
+}
+
+#[test]
+fn two_who_stand_apart_keep_their_tracks_whatever_order_they_are_seen_in() {
+    let mut tracker = Tracker::<f32>::new(params());
+    let _ = see(&mut tracker, &[sighting(1.0, 0.0), sighting(2.0, 0.0)], 0);
+    let before = ids(&tracker);
+    for step in 1..20 {
+        let seen = see(&mut tracker, &[sighting(2.03, 0.0), sighting(0.97, 0.0)], step);
+        assert_eq!(seen, Sighted { known: 2, ..Sighted::default() });
+    }
+    assert_eq!(ids(&tracker), before);
+    assert!(before.iter().all(|id| id.is_local() && id.doubled().is_none()));
+    assert!(tracker.tracks()[0].position.mm[0] < 1100 && tracker.tracks()[1].position.mm[0] > 1900);
+}
+
+#[test]
+fn one_that_jumps_beyond_the_gate_is_somebody_else() {
+    let mut tracker = Tracker::<f32>::new(params());
+    for step in 0..10 {
+        let _ = see(&mut tracker, &[sighting(1.0, 0.0)], step);
+    }
+    assert_eq!(see(&mut tracker, &[sighting(2.0, 0.0)], 10).new, 1);
+    assert_eq!(tracker.tracks().len(), 2);
+}
+
+#[test]
+fn a_number_once_and_a_body_once() {
+    let mut tracker = Tracker::<f32>::new(params());
+    let seen = see(&mut tracker, &[named(7, 1.0, 0.0), named(7, 1.0, 0.1)], 0);
+    assert_eq!(seen, Sighted { new: 1, repeated: 1, ..Sighted::default() });
+    // Two cameras: the one fits the track, the other lies within the body.
+    let seen = see(&mut tracker, &[sighting(1.0, 0.0), sighting(1.02, 0.0)], 1);
+    assert_eq!(seen, Sighted { known: 1, repeated: 1, ..Sighted::default() });
+    // UWB with a number and a camera without one are of one robot.
+    let seen = see(&mut tracker, &[sighting(1.0, 0.0), named(7, 1.0, 0.0)], 2);
+    assert_eq!(seen, Sighted { known: 2, ..Sighted::default() });
+    assert_eq!(ids(&tracker), [RobotId(7)]);
+}
+
+#[test]
+fn who_is_seen_without_a_number_gets_the_one_that_is_seen_or_heard_later() {
+    let mut tracker = Tracker::<f32>::new(params());
+    let _ = see(&mut tracker, &[sighting(1.0, 0.0), sighting(3.0, 0.0)], 0);
+    assert_eq!(see(&mut tracker, &[named(9, 1.0, 0.0), sighting(3.0, 0.0)], 1).known, 2);
+    let mut table = Table::new(AGES);
+    let _ = table.put(heard(4, 3.0, 0.0, 1), Position::ORIGIN, at(1), |_| false);
+    assert_eq!(merge(&mut tracker, &mut table, 1), []);
+    assert_eq!(ids(&tracker), [RobotId(9), RobotId(4)]);
+    assert_eq!(table.iter().map(|known| known.id).collect::<std::vec::Vec<_>>(), [RobotId(4), RobotId(9)]);
+}
+
+#[test]
+fn who_is_only_heard_is_in_the_table_as_he_said() {
+    let (mut tracker, mut table) = (Tracker::<f32>::new(params()), Table::new(AGES));
+    let said = heard(4, 3.0, 0.0, 1);
+    let _ = table.put(said, Position::ORIGIN, at(1), |_| false);
+    let _ = merge(&mut tracker, &mut table, 1);
+    assert_eq!(table.as_slice(), [said]);
+}
+
+#[test]
+fn what_is_seen_of_one_who_was_heard_long_ago_counts_more_than_what_he_said() {
+    let (mut tracker, mut table) = (Tracker::<f64>::new(params()), Table::new(AGES));
+    let said = heard(4, 1.0, 0.0, 0);
+    let _ = table.put(said, Position::ORIGIN, at(0), |_| false);
+    let _ = merge(&mut tracker, &mut table, 0);
+    // He was at 1 m to 2 mm; now he is seen at 1.2 m, 5 cm off.
+    let place_m = |table: &Table<f64>| f64::from(table.as_slice()[0].position.mm[0]) / 1000.0;
+    let mut soon = (tracker.clone(), table.clone());
+    let _ = see(&mut soon.0, &[named(4, 1.2, 0.0)], 1);
+    let _ = merge(&mut soon.0, &mut soon.1, 1);
+    let _ = see(&mut tracker, &[named(4, 1.2, 0.0)], 20);
+    let _ = merge(&mut tracker, &mut table, 20);
+    assert!(place_m(&soon.1) < 1.01 && place_m(&table) > 1.19, "{} {}", place_m(&soon.1), place_m(&table));
+    let known = table.as_slice()[0];
+    assert_eq!((known.heard, known.mode), (at(20), said.mode));
+    assert!(known.radius_m > 0.15 && known.radius_m < 0.15 + 2.0 * 0.051);
+}
+
+#[test]
+fn who_says_nothing_is_forgotten_when_out_of_sight_and_not_remembered_as_lost() {
+    let (mut tracker, mut table) = (Tracker::<f32>::new(params()), Table::new(AGES));
+    let _ = see(&mut tracker, &[sighting(1.0, 0.0), named(5, 2.0, 0.0)], 0);
+    for step in 0..=4 {
+        assert_eq!(merge(&mut tracker, &mut table, step), []);
+        assert_eq!(table.len(), 2, "{step}");
+    }
+    assert_eq!(merge(&mut tracker, &mut table, 5).len(), 2);
+    assert!(table.is_empty() && table.lost().is_empty() && tracker.tracks().is_empty());
+}
+
+#[test]
+fn who_has_spoken_lately_is_silent_when_out_of_sight_and_stays() {
+    let (mut tracker, mut table) = (Tracker::<f32>::new(params()), Table::new(AGES));
+    let _ = table.put(heard(4, 1.0, 0.0, 0), Position::ORIGIN, at(0), |_| false);
+    let _ = see(&mut tracker, &[named(4, 1.0, 0.0)], 0);
+    let _ = merge(&mut tracker, &mut table, 0);
+    assert_eq!(merge(&mut tracker, &mut table, 10), []);
+    assert_eq!(table.as_slice()[0].heard, at(0));
+}
+
+#[test]
+fn seventeen_have_room_for_the_sixteen_nearest() {
+    let mut tracker = Tracker::<f32>::new(params());
+    let crowd: std::vec::Vec<_> = (0..17).map(|n| sighting(17.0 - f64::from(n), 0.0)).collect();
+    assert_eq!(see(&mut tracker, &crowd, 0), Sighted { new: 17, ..Sighted::default() });
+    assert_eq!(tracker.tracks().len(), TRACKS);
+    assert!(tracker.tracks().iter().all(|track| track.position.mm[0] < 16_500));
+    assert_eq!(see(&mut tracker, &[sighting(30.0, 0.0)], 1).no_room, 1);
+    let many: std::vec::Vec<_> = (0..SIGHTINGS + 3).map(|_| sighting(1.0, 0.0)).collect();
+    assert_eq!(see(&mut tracker, &many, 2).no_room, 3);
+}
+
+#[test]
+fn nonsense_is_counted_and_leaves_no_trace() {
+    let mut tracker = Tracker::<f32>::new(params());
+    let good = sighting::<f32>(1.0, 0.0);
+    let bad = [
+        Sighting { offset_m: Vec3::new(f32::NAN, 0.0, 0.0), ..good },
+        Sighting { offset_m: Vec3::new(f32::INFINITY, 0.0, 0.0), ..good },
+        Sighting { deviation_m: -0.05, ..good },
+        Sighting { deviation_m: 0.0, ..good },
+        Sighting { deviation_m: f32::NAN, ..good },
+        Sighting { radius_m: -1.0, ..good },
+        Sighting { age: Duration::from_millis(-1), ..good },
+        Sighting { id: Some(RobotId::NOBODY), ..good },
+        Sighting { id: Some(OWN), ..good },
+        Sighting { id: Some(RobotId(3).double()), ..good },
+        Sighting { id: Some(RobotId::local(3)), ..good },
+        Sighting { velocity_mps: Some((Vec3::new(0.0, f32::NAN, 0.0), 0.1)), ..good },
+        Sighting { velocity_mps: Some((Vec3::ZERO, -0.1)), ..good },
+    ];
+    assert_eq!(usize::from(see(&mut tracker, &bad, 0).refused), bad.len());
+    assert!(tracker.tracks().is_empty());
+}
+
+#[test]
+fn a_late_sighting_tells_less_than_a_prompt_one() {
+    let variance = |age_ms: i32| {
+        let mut tracker = Tracker::<f64>::new(params());
+        let _ = see(&mut tracker, &[sighting(1.0, 0.0)], 10);
+        let late = Sighting { age: Duration::from_millis(age_ms), ..sighting(1.0, 0.0) };
+        let _ = see(&mut tracker, &[late], 10);
+        (tracker.tracks().len(), tracker.tracks()[0].position_variance, tracker.tracks()[0].at)
+    };
+    let (prompt, late) = (variance(0), variance(300));
+    assert_eq!((prompt.0, late.0, late.2), (1, 1, at(10)));
+    assert!(prompt.1 < late.1 && late.1 < 0.05 * 0.05, "{prompt:?} {late:?}");
+}
+
+proptest! {
+    #[test]
+    fn what_is_merged_is_never_worse_than_either(
+        known in 0.005_f64..1.0, seen in 0.005_f64..1.0, heard_m in 0.005_f64..1.0, off in -0.1_f64..0.1,
+    ) {
+        let params = TrackParams { heard_m, ..params::<f64>() };
+        let mut track = Track::new(RobotId(2), at(0), Position::ORIGIN, known, &params);
+        let place = Position::from_metres([off, 0.0, 0.0]).unwrap();
+        track.see(&Sighting { deviation_m: seen, ..sighting(off, 0.0) }, place, at(0), &params);
+        let both = known.min(seen);
+        prop_assert!(track.deviation_m() <= both * (1.0 + 1e-12));
+        track.hear(place, Vec3::ZERO, at(0), &params);
+        prop_assert!(track.deviation_m() <= both.min(heard_m) * (1.0 + 1e-12));
+        // And lies between what it was made of.
+        let x = track.offset_m(Position::ORIGIN).x;
+        prop_assert!(x * off.signum() >= -1e-9 && x.abs() <= off.abs() + 1e-3);
+    }
+
+    #[test]
+    fn whatever_is_seen_tracks_are_bounded_and_their_numbers_are_their_own(
+        steps in proptest::collection::vec(
+            proptest::collection::vec((0_u32..6, any::<i16>(), any::<i16>(), 0_i32..400_000, -50_i16..3000), 0..40), 1..12,
+        ),
+    ) {
+        let (mut tracker, mut table) = (Tracker::<f32>::new(params()), Table::new(AGES));
+        for (step, seen) in (0..).zip(&steps) {
+            let sightings: std::vec::Vec<_> = seen.iter().map(|&(id, x, y, age, deviation)| Sighting {
+                offset_m: Vec3::from_milli([i32::from(x), i32::from(y), 0]),
+                deviation_m: f32::from(deviation) / 1000.0,
+                age: Duration::from_micros(age),
+                id: (id > 0).then_some(RobotId(id)),
+                ..sighting(0.0, 0.0)
+            }).collect();
+            let count = see(&mut tracker, &sightings, step);
+            let all = [count.known, count.new, count.repeated, count.refused, count.no_room];
+            prop_assert_eq!(all.iter().map(|&n| usize::from(n)).sum::<usize>(), sightings.len());
+            let _ = merge(&mut tracker, &mut table, step);
+            let mut ids = ids(&tracker);
+            ids.sort_unstable();
+            ids.dedup();
+            prop_assert_eq!(ids.len(), tracker.tracks().len());
+            for track in tracker.tracks() {
+                prop_assert!(track.position_variance > 0.0 && track.position_variance.is_finite());
+                prop_assert!(track.velocity_mps.is_finite() && track.velocity_variance >= 0.0);
+                prop_assert!(track.id != OWN);
+            }
+        }
+    }
+}
