@@ -412,6 +412,7 @@ mod plane;
 mod published;
 mod sealed;
 mod setup;
+mod sighted;
 mod silence;
 mod waits;
 mod wrapped;

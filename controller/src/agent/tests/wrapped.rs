@@ -85,6 +85,13 @@ fn a_law_with_a_map_hears_all_but_what_is_for_the_map() {
     assert_eq!((law.inside().land, law.say_land(tick(0))), (0, None));
 }
 
+#[test]
+fn a_law_of_a_robot_with_eyes_hears_all() {
+    let mut law = NeighborTracking::<f32, _>::new(Listener::default(), None);
+    passes_orders_on(&mut law, NeighborTracking::inside);
+    passes_land_on(&mut law, NeighborTracking::inside);
+}
+
 #[cfg(feature = "host")]
 #[test]
 fn a_law_in_memory_of_its_own_hears_all() {

@@ -336,6 +336,7 @@ proptest! {
 
 mod attack;
 mod external;
+mod eyes;
 mod intervene;
 mod intruder;
 mod land;

@@ -175,6 +175,15 @@ fn what_somebody_did_to_a_run_goes_on() {
 }
 
 #[test]
+fn whom_robots_have_seen_goes_on() {
+    let text = "tick_s = 0.05\nname = \"t\"\nticks = 200\n[radio]\nloss = 0.5\n[plane]\nradius_m = 0.15\nmax_speed_mps = 0.5\n\
+        [plane.eyes]\nrange_m = 3\nnoise_m = 0.05\nevery_ticks = 2\ndelay_ticks = 3\n\
+        [plane.robots.circle]\ncount = 8\nradius_m = 1\n[[fault]]\nrobot = 2\nat_s = 1\ndown_s = 1\n";
+    let scenario = Scenario::parse(text, Path::new("t.toml"), &Overrides::default()).expect("a good scenario");
+    with_engines!(&scenario, goes_on("eyes", 80, &[1, 2, 3, 4, 5, 21, 41, 50]));
+}
+
+#[test]
 fn land_that_changes_and_what_robots_have_seen_of_it_goes_on() {
     let changes = "[[terrain.change]]\nat_s = 2\nevery_s = 4\nfor_s = 2\nclass = 0\nrectangle = { x = 4, y = 3, width = 6, height = 1 }\n\
         [[terrain.change]]\nevery_s = 1\ndrift = { share = 0.2, classes = 4 }\n\

@@ -1,3 +1,4 @@
+mod eyes;
 mod flocks;
 mod groups;
 mod remarks;

@@ -1,0 +1,122 @@
+//! Robots that see each other: without a word, beside the radio, late, on any number of threads.
+
+use super::super::simulate::AnyEngine;
+use super::*;
+use crate::scenario::Eyes;
+
+/// Robots that swap places on a circle of 2 m.
+fn circle(count: u32, eyes: &str, radio: &str) -> Scenario {
+    seeded(count, eyes, radio, 11)
+}
+
+fn seeded(count: u32, eyes: &str, radio: &str, seed: u64) -> Scenario {
+    let text = format!(
+        "name = \"t\"\nseed = {seed}\nticks = 1200\ntick_s = 0.05\n[radio]\nrange_m = 3\n{radio}\n[plane]\nradius_m = 0.15\n\
+         max_speed_mps = 0.5\ntolerance_m = 0.02\n[plane.eyes]\nrange_m = 3\n{eyes}\n\
+         [plane.robots.circle]\ncount = {count}\nradius_m = 2\nnoise_m = 0.1\n"
+    );
+    Scenario::parse(&text, Path::new("t.toml"), &Overrides::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn run(scenario: &Scenario) -> Outcome {
+    simulate(scenario, |_, _| ControlFlow::Continue(())).expect("they can be placed")
+}
+
+#[test]
+fn without_a_word_they_swap_places_and_touch_nobody() {
+    let outcome = run(&circle(12, "beacons = false", ""));
+    assert_eq!((outcome.arrived, outcome.collisions, outcome.packets.sent), (12, 0, 0));
+    // Who is blind besides runs into others: it was the eyes.
+    let blind = run(&with_range(circle(12, "beacons = false", ""), 0.01));
+    assert!(blind.collisions > 0);
+}
+
+/// The same with other eyes.
+fn with_range(scenario: Scenario, range_m: f64) -> Scenario {
+    Scenario { eyes: scenario.eyes.map(|eyes| Eyes { range_m, ..eyes }), ..scenario }
+}
+
+#[test]
+fn who_hears_is_as_he_was_with_eyes_that_see_nobody() {
+    let blind = with_range(circle(8, "", "loss = 0.2"), 0.01);
+    let without = Scenario { eyes: None, ..blind.clone() };
+    assert_eq!(run(&blind).trace_hash, run(&without).trace_hash);
+}
+
+#[test]
+fn threads_make_no_difference() {
+    let scenario = circle(80, "beacons = false\nnoise_m = 0.05\nevery_ticks = 2\ndelay_ticks = 1", "");
+    let scenario = Scenario { ticks: 60, ..scenario };
+    let on = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        pool.install(|| run(&scenario).trace_hash)
+    };
+    assert_eq!(on(1), on(3));
+}
+
+#[test]
+fn an_order_reaches_those_who_say_nothing() {
+    let text = "name = \"t\"\nticks = 400\ntick_s = 0.05\n[plane]\nradius_m = 0.2\nmax_speed_mps = 1\n\
+         [plane.eyes]\nrange_m = 3\nbeacons = false\n[[plane.robots.list]]\nstart_m = [0, 0]\ngoal_m = [5, 0]\n\
+         [[plane.order]]\nat_s = 1\nplace_m = [0, 3]\n";
+    let text = text.replacen("[[plane.robots.list]]", "[plane.robots]\n[[plane.robots.list]]", 1);
+    let scenario = Scenario::parse(&text, Path::new("t.toml"), &Overrides::default());
+    let mut last_m = [0.0; 3];
+    let outcome = simulate(&scenario.unwrap_or_else(|error| panic!("{error}")), |_, rows| {
+        last_m = rows.last().map_or(last_m, |row| row.motion.position_m);
+        ControlFlow::Continue(())
+    });
+    assert_eq!(outcome.expect("room").packets.sent, 0);
+    assert!(last_m[0].abs() < 0.05 && (last_m[1] - 3.0).abs() < 0.05, "{last_m:?}");
+}
+
+/// How far from where they are robots take their neighbours to be, root mean square in metres, and how many they know at a time; over runs of
+/// some seconds on seeds that nothing was chosen on.
+fn errors(eyes: &str, radio: &str, range_m: f64) -> (f64, f64) {
+    let (mut squares, mut count, mut moments) = (0.0, 0.0, 0.0);
+    for seed in 500..503 {
+        let scenario = with_range(seeded(12, eyes, radio, seed), range_m);
+        let AnyEngine::Plane(mut engine) = AnyEngine::new(&scenario).expect("room") else { panic!("no plane") };
+        for _ in 0..160 {
+            let places: Vec<_> = engine.ground.plane().discs().iter().map(|disc| disc.position_m).collect();
+            let tick = engine.tick;
+            engine.step();
+            for (own, computer) in places.iter().zip(&engine.computers) {
+                let now = computer.now(tick, engine.tick_us);
+                let agent = computer.agent.as_ref().expect("it is here");
+                let here = staya_controller::geom::Position::from_metres(*own).expect("a place");
+                for known in super::super::inspect::known(agent.neighbors(), here, *own, now) {
+                    let off = |place: &[f64; 3]| libm::hypot(place[0] - known.position_m[0], place[1] - known.position_m[1]);
+                    // One without a number is whoever is nearest.
+                    let error_m = match places.get((known.id.0 as usize).wrapping_sub(1)) {
+                        Some(place) => off(place),
+                        None => places.iter().map(off).fold(f64::INFINITY, f64::min),
+                    };
+                    (squares, count) = (squares + error_m * error_m, count + 1.0);
+                }
+                moments += 1.0;
+            }
+        }
+    }
+    (libm::sqrt(squares / count), count / moments)
+}
+
+#[test]
+fn what_is_both_seen_and_heard_is_known_better_than_either() {
+    const EYES: &str = "noise_m = 0.05\nocclusion = false";
+    const RADIO: &str = "loss = 0.7\ndelay_ms = 200";
+    let mut table = Vec::new();
+    for (what, eyes, radio) in [
+        ("nameless", EYES.to_owned(), RADIO),
+        ("named", format!("{EYES}\nnames = true"), RADIO),
+    ] {
+        let heard = errors(&eyes, radio, 0.01);
+        let seen = errors(&format!("{eyes}\nbeacons = false"), radio, 3.0);
+        let both = errors(&eyes, radio, 3.0);
+        println!("{what}: heard {heard:.4?}, seen {seen:.4?}, both {both:.4?} (m, neighbours)");
+        table.push((heard.0, seen.0, both.0));
+    }
+    for (heard, seen, both) in table {
+        assert!(both < heard && both < seen, "{heard} {seen} {both}");
+    }
+}
