@@ -48,7 +48,9 @@ mod counted_if_it_sees {
     }
 
     #[cfg(feature = "state")]
-    pub(super) fn deserialize<'de, S: Scalar, D: Deserializer<'de>>(from: D) -> Result<Seldom<Tracker<S>, 1>, D::Error> {
+    pub(super) fn deserialize<'de, S: Scalar, D: Deserializer<'de>>(
+        from: D,
+    ) -> Result<Seldom<Tracker<S>, 1>, D::Error> {
         Seldom::deserialize(from)
     }
 }

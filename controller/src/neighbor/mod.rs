@@ -17,6 +17,7 @@ mod claims;
 mod loss;
 mod nearby;
 mod room;
+mod sighting;
 #[cfg(all(test, feature = "wire"))]
 mod tests;
 mod tie;
@@ -27,9 +28,10 @@ pub use claims::{Claim, Claims, Doubt, Suspects};
 pub use loss::LossEstimate;
 pub use nearby::{Nearby, StalenessInflation, add_lost, nearest};
 pub use room::Room;
+pub use sighting::{Sighted, Sighting, TrackParams};
 pub use tie::tie;
 pub use track::Track;
-pub use tracker::{SIGHTINGS, Sighted, Sighting, TRACKS, TrackParams, Tracker};
+pub use tracker::{SIGHTINGS, TRACKS, Tracker};
 
 /// Thousandths of the distance to the farthest fresh robot from which on one that is lost has gone out of range.
 const LEAVES_FROM: i32 = 750;

@@ -1,6 +1,6 @@
 //! One neighbour that is seen: a Kalman filter.
 
-use super::{Sighting, TrackParams};
+use super::sighting::{Sighting, TrackParams};
 use crate::geom::{Position, Vec3};
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
@@ -119,7 +119,15 @@ impl<S: Scalar> Track<S> {
 
     /// Takes in where it was seen, at `place`, at `at`.
     pub(super) fn see(&mut self, sighting: &Sighting<S>, place: Position, at: Instant, params: &TrackParams<S>) {
+        let off = self.off(place, sighting.deviation_m, at, params);
         *self = self.predicted(at, params);
+        if let Some((off_m, surprise)) = off
+            && surprise > params.gate
+        {
+            // It has turned as nobody expected: little of what was known of it holds.
+            self.position_variance += square(off_m);
+            (self.covariance, self.velocity_variance) = (S::ZERO, self.velocity_variance.max(square(params.speed_mps)));
+        }
         let late = seconds::<S>(self.at.since(at));
         let drift = square(late) * (self.velocity_variance + square(params.acceleration_mps2 * late * S::HALF));
         self.correct_position(place, self.velocity_mps * late, variance(sighting.deviation_m) + drift);
@@ -172,20 +180,28 @@ impl<S: Scalar> Track<S> {
         self.velocity_variance = known * left;
     }
 
-    /// How far from where it should be a sighting is, in standard deviations; `None`: nobody can say.
-    pub(super) fn surprise(
+    /// How well a measured place of a body of `radius_m` goes with it: the distance in standard deviations. `None`: it is
+    /// beyond the gate, and so far off that both have room beside each other.
+    pub(super) fn fit(
         &self,
         place: Position,
         deviation_m: S,
+        radius_m: S,
         at: Instant,
         params: &TrackParams<S>,
     ) -> Option<S> {
+        let (off_m, surprise) = self.off(place, deviation_m, at, params)?;
+        (surprise <= params.gate || off_m < self.radius_m + radius_m).then_some(surprise)
+    }
+
+    /// How far from where it should be a measured place is, metres and in standard deviations; `None`: nobody can say.
+    fn off(&self, place: Position, deviation_m: S, at: Instant, params: &TrackParams<S>) -> Option<(S, S)> {
         let then = self.predicted(at, params);
         // Of a late one the track's way since then is not known better than its velocity.
         let late = seconds::<S>(then.at.since(at));
         let spread = then.position_variance + square(late) * then.velocity_variance + variance(deviation_m);
-        let off_m = then.offset_m(place) - then.velocity_mps * late;
-        off_m.norm().checked_div(spread.sqrt())
+        let off_m = (then.offset_m(place) - then.velocity_mps * late).norm();
+        Some((off_m, off_m.checked_div(spread.sqrt())?))
     }
 }
 

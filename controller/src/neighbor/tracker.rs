@@ -1,15 +1,16 @@
 //! Neighbours that are seen, not heard: by a camera, by UWB, by motion capture. Read [`Tracker`] first.
 
+use super::sighting::{Sighted, Sighting, TrackParams};
 use super::track::Track;
 use super::{Neighbor, NeighborTable};
 use crate::geom::{Position, Vec3};
 use crate::grid::{Cell, Dir};
 use crate::list;
 use crate::robot::{Mode, RobotId};
-use crate::scalar::{Scalar, cast};
+use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 use heapless::Vec;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 #[cfg(all(test, feature = "fixed"))]
 mod tests;
@@ -22,93 +23,15 @@ pub const SIGHTINGS: usize = 32;
 /// Where a robot that stands in no known cell is: in the corner of all maps.
 const NO_CELL: Cell = Cell::new(i16::MIN, i16::MIN);
 
-/// Another robot, as somebody's own sensors show it.
-///
-/// The place is relative to the own one, since that is what a camera or UWB measures and needs no frame in common: a robot that goes by
-/// odometry alone avoids whom it sees. What is heard besides is in the common frame, and merging both needs it. Motion capture
-/// tells places in it: subtract the own one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Sighting<S> {
-    /// Its place minus the own one when it was seen, metres, along the axes of the world (not of the body).
-    pub offset_m: Vec3<S>,
-    /// Standard deviation of that along each axis, metres; above 0. Less than 4 mm counts as 4 mm.
-    pub deviation_m: S,
-    /// How long ago it was seen; 0 or more.
-    pub age: Duration,
-    /// Radius of the ball around its body, metres.
-    pub radius_m: S,
-    /// Who it is, if the sensor can tell; `None`: somebody.
-    pub id: Option<RobotId>,
-    /// Its world velocity and the standard deviation of that along each axis, m/s, if the sensor can tell.
-    pub velocity_mps: Option<(Vec3<S>, S)>,
-}
-
-/// How sightings become neighbours.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct TrackParams<S> {
-    /// Standard deviation of the others' accelerations, m/s^2. Larger: the estimate follows turns sooner and believes each single
-    /// sighting more; smaller: it is smoother, and late where somebody turns.
-    pub acceleration_mps2: S,
-    /// Standard deviation of the velocity along each axis of somebody who has just come into sight, m/s: about what others can do.
-    pub speed_mps: S,
-    /// Standard deviation of the places that others say, metres: their positioning.
-    pub heard_m: S,
-    /// Standard deviation of the velocities that others say, m/s: how well their bodies do what they say.
-    pub heard_mps: S,
-    /// How many standard deviations from where it should be a sighting may be and still be of that robot. Larger: two who pass
-    /// each other are taken for each other; smaller: one robot becomes two.
-    pub gate: S,
-    /// How many standard deviations of its place are added to the radius of one that is seen. Smaller: errors lead to overlaps; larger:
-    /// crowds stand still. (D. Hennes, D. Claes, W. Meeussen, K. Tuyls, "Multi-robot collision avoidance with localization
-    /// uncertainty", AAMAS 2012, section 3: bodies grow by the error of localization.)
-    pub margin: S,
-    /// After how long one that says nothing and is not seen any more is forgotten. It is behind something or out of sight, so its silence
-    /// is no sign that it is near. Longer: who comes out from behind others is known sooner, and places where somebody was are kept
-    /// clear for longer. With more than [`Ages::stale_after`](super::Ages::stale_after) it counts as fallen silent meanwhile.
-    pub forget: Duration,
-}
-
-impl<S: Scalar> TrackParams<S> {
-    /// The same in another kind of number.
-    #[must_use]
-    pub fn cast<T: Scalar>(&self) -> TrackParams<T> {
-        TrackParams {
-            acceleration_mps2: cast(self.acceleration_mps2),
-            speed_mps: cast(self.speed_mps),
-            heard_m: cast(self.heard_m),
-            heard_mps: cast(self.heard_mps),
-            gate: cast(self.gate),
-            margin: cast(self.margin),
-            forget: self.forget,
-        }
-    }
-}
-
-/// What became of the sightings of a step.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Sighted {
-    /// Of robots that were known.
-    pub known: u16,
-    /// Of robots that were not.
-    pub new: u16,
-    /// Of one robot a second time: of the same number, or in the place of one that was seen already.
-    pub repeated: u16,
-    /// That cannot be: no numbers, a deviation of 0 or less, an age below 0, the own number, one that no robot has.
-    pub refused: u16,
-    /// For which there is no room.
-    pub no_room: u16,
-}
-
 /// Follows those who are seen, and merges what is seen of them with what is heard.
 ///
 /// | what comes | it goes to |
 /// | --- | --- |
-/// | a sighting with a number | the track of that number; else the nearest nameless track within the gate, which has this number from then on; else a new one |
-/// | one without | the track within the gate whose place it fits best, seen or heard, the best fits first and each track once in a step (greedy nearest neighbour: S. Blackman, R. Popoli, "Design and Analysis of Modern Tracking Systems", 1999, section 6.4); else, unless it lies within the body of one that was seen already, a new one |
-/// | a beacon | the track of that number, or a nameless one within the gate, or a new one |
+/// | a sighting with a number | the track of that number; else the nameless track that it fits best, which has this number from then on; else a new one |
+/// | one without | the track that it fits best, seen or heard, the best fits first and each track once in a step (greedy nearest neighbour: S. Blackman, R. Popoli, "Design and Analysis of Modern Tracking Systems", 1999, section 6.4); else, unless it lies within the body of one that was seen already, a new one |
+/// | a beacon | the track of that number, or a nameless one that it fits, or a new one |
+///
+/// It fits within the gate, and beyond it where two bodies would overlap, for there are no two: that one has turned as nobody expected.
 ///
 /// Each is weighted by its error, which grows with its age ([`Track`]). Who is seen is in the neighbour table as that makes it,
 /// fresh from when it was seen, its radius enlarged by [`margin`](TrackParams::margin) deviations; who is only heard is there as
@@ -129,6 +52,14 @@ struct Placed<'a, S> {
     sighting: &'a Sighting<S>,
     place: Position,
     at: Instant,
+}
+
+impl<S: Scalar> Placed<'_, S> {
+    /// See [`Track::fit`].
+    fn fit(&self, track: &Track<S>, params: &TrackParams<S>) -> Option<S> {
+        let Sighting { deviation_m, radius_m, .. } = *self.sighting;
+        track.fit(self.place, deviation_m, radius_m, self.at, params)
+    }
 }
 
 impl<S: Scalar> Tracker<S> {
@@ -159,7 +90,7 @@ impl<S: Scalar> Tracker<S> {
         let mut all = Vec::<Placed<'_, S>, SIGHTINGS>::new();
         for sighting in sightings {
             let back_m = velocity_mps * S::from_micro(sighting.age.as_micros());
-            match position.moved(sighting.offset_m - back_m).filter(|_| is_sound(sighting, own)) {
+            match position.moved(sighting.offset_m - back_m).filter(|_| sighting.is_sound(own)) {
                 None => add(&mut count.refused),
                 Some(place) => {
                     if all.push(Placed { sighting, place, at: now - sighting.age }).is_err() {
@@ -177,9 +108,7 @@ impl<S: Scalar> Tracker<S> {
             }
             // As many as there are sightings.
             let _ = named.push(id);
-            let place = self.place_of(id, |track, params| {
-                track.surprise(placed.place, placed.sighting.deviation_m, placed.at, params)
-            });
+            let place = self.place_of(id, |track, params| placed.fit(track, params));
             match place.and_then(|place| self.tracks.get_mut(place)) {
                 Some(track) => {
                     track.id = id;
@@ -196,10 +125,10 @@ impl<S: Scalar> Tracker<S> {
     /// Sightings without numbers, the best fits first.
     fn see_nameless(&mut self, all: &[Placed<'_, S>], own: Position, count: &mut Sighted) {
         let Self { params, tracks, .. } = self;
-        let fits = all.iter().filter(|placed| placed.sighting.id.is_none()).map(|placed| {
-            let fit = |track: &Track<S>| track.surprise(placed.place, placed.sighting.deviation_m, placed.at, params);
-            (placed, list::collect::<_, TRACKS>(tracks.iter().map(fit)))
-        });
+        let fits = all
+            .iter()
+            .filter(|placed| placed.sighting.id.is_none())
+            .map(|placed| (placed, list::collect::<_, TRACKS>(tracks.iter().map(|track| placed.fit(track, params)))));
         let mut fits: Vec<(&Placed<'_, S>, Vec<Option<S>, TRACKS>), SIGHTINGS> = list::collect(fits);
         let mut is_left = [true; SIGHTINGS];
         for _ in 0..TRACKS {
@@ -207,7 +136,6 @@ impl<S: Scalar> Tracker<S> {
             for (row, (_, fits)) in fits.iter().enumerate().filter(|(row, _)| is_left.get(*row) == Some(&true)) {
                 for (column, fit) in fits.iter().enumerate() {
                     if let Some(fit) = *fit
-                        && fit <= params.gate
                         && best.is_none_or(|(least, ..)| fit < least)
                     {
                         best = Some((fit, row, column));
@@ -243,13 +171,12 @@ impl<S: Scalar> Tracker<S> {
         }
     }
 
-    /// The track of a number: its own, or the nameless one that `surprise` likes best, within the gate.
-    fn place_of(&self, id: RobotId, surprise: impl Fn(&Track<S>, &TrackParams<S>) -> Option<S>) -> Option<usize> {
+    /// The track of a number: its own, or the nameless one that goes best with it by `fit`.
+    fn place_of(&self, id: RobotId, fit: impl Fn(&Track<S>, &TrackParams<S>) -> Option<S>) -> Option<usize> {
         self.tracks.iter().position(|track| track.id == id).or_else(|| {
             let nameless = self.tracks.iter().enumerate().filter(|(_, track)| track.id.is_local());
-            let fits = nameless.filter_map(|(place, track)| Some((surprise(track, &self.params)?, place)));
-            let best = fits.min_by(|(one, _), (other, _)| one.order(*other));
-            best.filter(|(surprise, _)| *surprise <= self.params.gate).map(|(_, place)| place)
+            let fits = nameless.filter_map(|(place, track)| Some((fit(track, &self.params)?, place)));
+            fits.min_by(|(one, _), (other, _)| one.order(*other)).map(|(_, place)| place)
         })
     }
 
@@ -290,7 +217,7 @@ impl<S: Scalar> Tracker<S> {
             let news = Some((entry.heard, entry.position));
             let params = self.params;
             let place = self.place_of(entry.id, |track, params| {
-                track.surprise(entry.position, params.heard_m, entry.heard, params)
+                track.fit(entry.position, params.heard_m, entry.radius_m, entry.heard, params)
             });
             let track = match place.and_then(|place| self.tracks.get_mut(place)) {
                 Some(track) if track.known == news => continue,
@@ -389,19 +316,6 @@ fn stranger<S: Scalar, P: Default>(track: &Track<S>, flock: u8) -> Neighbor<S, P
         gap_m: S::ZERO,
         payload: P::default(),
     }
-}
-
-/// Whether it can be what robot `own` saw.
-fn is_sound<S: Scalar>(sighting: &Sighting<S>, own: RobotId) -> bool {
-    let Sighting { offset_m, deviation_m, age, radius_m, id, velocity_mps } = sighting;
-    let is_size = |x: S| x.is_finite() && x >= S::ZERO;
-    offset_m.is_finite()
-        && is_size(*deviation_m)
-        && *deviation_m > S::ZERO
-        && is_size(*radius_m)
-        && *age >= Duration::ZERO
-        && id.is_none_or(|id| id.is_somebody() && id != own && id.doubled().is_none() && !id.is_local())
-        && velocity_mps.is_none_or(|(v, deviation)| v.is_finite() && is_size(deviation))
 }
 
 fn add(count: &mut u16) {

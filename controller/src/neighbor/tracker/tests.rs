@@ -81,7 +81,10 @@ fn goes_with_even_speed<S: Scalar>() -> (f64, f64) {
     for step in 0..200 {
         let x = 0.5 * 0.05 * f64::from(step) - 2.0;
         let seen = see(&mut tracker, &[sighting(x + 0.05 * error(), 1.0 + 0.05 * error())], step);
-        assert_eq!(seen, if step == 0 { Sighted { new: 1, ..seen } } else { Sighted { known: 1, ..Sighted::default() } });
+        assert_eq!(
+            seen,
+            if step == 0 { Sighted { new: 1, ..seen } } else { Sighted { known: 1, ..Sighted::default() } }
+        );
         if step >= 50 {
             let track = tracker.tracks()[0];
             let place = track.offset_m(Position::ORIGIN);
@@ -96,7 +99,9 @@ fn goes_with_even_speed<S: Scalar>() -> (f64, f64) {
 
 #[test]
 fn places_come_out_better_than_they_were_seen_and_velocities_come_out_at_all() {
-    for (place_m, velocity_mps) in [goes_with_even_speed::<f64>(), goes_with_even_speed::<f32>(), goes_with_even_speed::<Q16>()] {
+    for (place_m, velocity_mps) in
+        [goes_with_even_speed::<f64>(), goes_with_even_speed::<f32>(), goes_with_even_speed::<Q16>()]
+    {
         assert!(place_m < 0.035 && velocity_mps < 0.2, "{place_m} {velocity_mps}");
     }
 }

@@ -435,51 +435,54 @@ where
         work.into_par_iter()
             .enumerate()
             .with_min_len(BATCH)
-            .map_init(scratch, |(workspace, senses, heard, seen, out), (index, (computer, command, status, position_m))| {
-                let [x, y, _] = moment.ground.motion(index, tick).position_m;
-                *position_m = [x, y];
-                computer.outbox.clear();
-                computer.events.clear();
-                *command = Command::Hold;
-                if tick < computer.down_until {
-                    status.fall_silent();
-                    return PacketCounts::default();
-                }
-                if computer.agent.is_none() {
-                    return PacketCounts::default();
-                }
-                let now = computer.now(tick, tick_us);
-                let inputs = moment.inputs(index, computer, senses, heard);
-                let Some(agent) = &mut computer.agent else {
-                    return PacketCounts::default();
-                };
-                moment.ground.sightings(index, tick, seen);
-                if !seen.is_empty() {
-                    let _ = agent.see(seen, &inputs.state, now);
-                }
-                agent.step_into(&inputs, now, workspace, out);
-                if is_mute {
-                    out.outbox.clear();
-                }
-                let heard_bytes = inputs.inbox.len() as u64;
-                computer.heard_bytes += heard_bytes;
-                computer.sent_bytes += out.outbox.len() as u64;
-                // Beacons are about as long as ever: no more memory than that.
-                computer.outbox.reserve_exact(out.outbox.len());
-                computer.outbox.extend_from_slice(&out.outbox);
-                computer.mail.clear();
-                if keeps_events {
-                    computer.events.extend_from_slice(&out.events);
-                }
-                command.clone_from(&out.command);
-                *status = Status {
-                    mode: agent.mode(),
-                    leader: agent.leader(),
-                    target: agent.target().unwrap_or(status.target),
-                    wait: out.wait,
-                };
-                PacketCounts::refused(out.rejected, out.refused, out.overclaims)
-            })
+            .map_init(
+                scratch,
+                |(workspace, senses, heard, seen, out), (index, (computer, command, status, position_m))| {
+                    let [x, y, _] = moment.ground.motion(index, tick).position_m;
+                    *position_m = [x, y];
+                    computer.outbox.clear();
+                    computer.events.clear();
+                    *command = Command::Hold;
+                    if tick < computer.down_until {
+                        status.fall_silent();
+                        return PacketCounts::default();
+                    }
+                    if computer.agent.is_none() {
+                        return PacketCounts::default();
+                    }
+                    let now = computer.now(tick, tick_us);
+                    let inputs = moment.inputs(index, computer, senses, heard);
+                    let Some(agent) = &mut computer.agent else {
+                        return PacketCounts::default();
+                    };
+                    moment.ground.sightings(index, tick, seen);
+                    if !seen.is_empty() {
+                        let _ = agent.see(seen, &inputs.state, now);
+                    }
+                    agent.step_into(&inputs, now, workspace, out);
+                    if is_mute {
+                        out.outbox.clear();
+                    }
+                    let heard_bytes = inputs.inbox.len() as u64;
+                    computer.heard_bytes += heard_bytes;
+                    computer.sent_bytes += out.outbox.len() as u64;
+                    // Beacons are about as long as ever: no more memory than that.
+                    computer.outbox.reserve_exact(out.outbox.len());
+                    computer.outbox.extend_from_slice(&out.outbox);
+                    computer.mail.clear();
+                    if keeps_events {
+                        computer.events.extend_from_slice(&out.events);
+                    }
+                    command.clone_from(&out.command);
+                    *status = Status {
+                        mode: agent.mode(),
+                        leader: agent.leader(),
+                        target: agent.target().unwrap_or(status.target),
+                        wait: out.wait,
+                    };
+                    PacketCounts::refused(out.rejected, out.refused, out.overclaims)
+                },
+            )
             .reduce(PacketCounts::default, |one, other| one + other)
     }
 

@@ -11,8 +11,8 @@ use crate::terrain::Terrain;
 use crate::world::Misplaced;
 use crate::world::plane::{Clearance, Disc, Solid};
 use staya_controller::agent::{
-    AnyGuidance, AnySafety, CELLS, Commanded, HALF_PLANES, LEARNED, MAP_TILES, MapSharing, NeighborTracking, Safety, TEMPLATE, VISITS,
-    WAYPOINTS,
+    AnyGuidance, AnySafety, CELLS, Commanded, HALF_PLANES, LEARNED, MAP_TILES, MapSharing, NeighborTracking, Safety,
+    TEMPLATE, VISITS, WAYPOINTS,
 };
 use std::collections::HashMap;
 use std::ops::ControlFlow;

@@ -28,9 +28,9 @@ pub use maps::MapsTable;
 pub use params::{FormationTable, GridTable, RouteTable};
 pub(crate) use plane::goals;
 pub use plane::{
-    BallEntry, BallsEntry, BoidsTable, CircleEntry, CloudEntry, Eyes, EyesTable, GoalFlockTable, GroupTable, HalfSpaceEntry, Intruder,
-    IntruderEntry, LatticeTable, OrcaTable, Order, OrderEntry, Place, PlaneRobotEntry, PlaneRobots, PlaneSetup,
-    PlaneTable, PushOutTable, RobotGroup, ScatteredDiscs, Start, Target, WallEntry, circle_starts,
+    BallEntry, BallsEntry, BoidsTable, CircleEntry, CloudEntry, EyesTable, GoalFlockTable, GroupTable, HalfSpaceEntry,
+    Intruder, IntruderEntry, LatticeTable, OrcaTable, Order, OrderEntry, Place, PlaneRobotEntry, PlaneRobots,
+    PlaneSetup, PlaneTable, PushOutTable, RobotGroup, ScatteredDiscs, Start, Target, WallEntry, circle_starts,
 };
 pub use ranges::within;
 pub use robots::{Formation, Robot};
@@ -48,6 +48,7 @@ use crate::radio::RadioParams;
 use crate::terrain::Terrain;
 use crate::terrain::change::LandChange;
 use crate::world::MoveRules;
+pub use crate::world::plane::Eyes;
 pub use crate::world::scouts::Scouting;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{GuidanceSetup, RouteSetup};

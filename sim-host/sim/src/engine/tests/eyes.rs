@@ -86,7 +86,8 @@ fn errors(eyes: &str, radio: &str, range_m: f64) -> (f64, f64) {
                 let agent = computer.agent.as_ref().expect("it is here");
                 let here = staya_controller::geom::Position::from_metres(*own).expect("a place");
                 for known in super::super::inspect::known(agent.neighbors(), here, *own, now) {
-                    let off = |place: &[f64; 3]| libm::hypot(place[0] - known.position_m[0], place[1] - known.position_m[1]);
+                    let off =
+                        |place: &[f64; 3]| libm::hypot(place[0] - known.position_m[0], place[1] - known.position_m[1]);
                     // One without a number is whoever is nearest.
                     let error_m = match places.get((known.id.0 as usize).wrapping_sub(1)) {
                         Some(place) => off(place),
@@ -106,10 +107,8 @@ fn what_is_both_seen_and_heard_is_known_better_than_either() {
     const EYES: &str = "noise_m = 0.05\nocclusion = false";
     const RADIO: &str = "loss = 0.7\ndelay_ms = 200";
     let mut table = Vec::new();
-    for (what, eyes, radio) in [
-        ("nameless", EYES.to_owned(), RADIO),
-        ("named", format!("{EYES}\nnames = true"), RADIO),
-    ] {
+    for (what, eyes, radio) in [("nameless", EYES.to_owned(), RADIO), ("named", format!("{EYES}\nnames = true"), RADIO)]
+    {
         let heard = errors(&eyes, radio, 0.01);
         let seen = errors(&format!("{eyes}\nbeacons = false"), radio, 3.0);
         let both = errors(&eyes, radio, 3.0);

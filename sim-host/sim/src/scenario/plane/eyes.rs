@@ -4,6 +4,7 @@ use super::super::source::Source;
 use super::super::{ScenarioError, ScenarioFile};
 use super::table::PlaneTable;
 use super::{PlaneSetup, within};
+use crate::world::plane::Eyes;
 use staya_controller::neighbor::TrackParams;
 use staya_controller::time::Duration;
 
@@ -13,27 +14,6 @@ const MOST_TICKS: u32 = 1000;
 const HEARD_M: f64 = 0.002;
 /// Standard deviation of velocities in beacons, m/s.
 const HEARD_MPS: f64 = 0.01;
-
-/// Checked `[plane.eyes]`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Eyes {
-    /// How far robots see each other, from centre to centre, metres.
-    pub range_m: f64,
-    /// Standard deviation of places seen along each axis, metres.
-    pub noise_m: f64,
-    /// Whether bodies, obstacles and closed cells hide what is behind them.
-    pub is_occluded: bool,
-    /// Whether they see who it is.
-    pub sees_names: bool,
-    /// Each robot looks once in so many ticks.
-    pub every_ticks: u32,
-    /// Ticks from a look to what comes of it.
-    pub delay_ticks: u32,
-    /// Whether robots say anything.
-    pub has_beacons: bool,
-    /// What the controller makes of it.
-    pub tracking: TrackParams<f32>,
-}
 
 /// Checks the table, if there is one.
 pub(in super::super) fn eyes(

@@ -13,7 +13,6 @@ mod table;
 mod torus;
 
 pub(crate) use checks::goals;
-pub use eyes::Eyes;
 pub(super) use eyes::eyes;
 pub(super) use flocks::remark;
 pub(super) use remarks::remarks;

@@ -2,15 +2,35 @@
 
 use super::{Disc, Plane, Solid};
 use crate::nearby::{Cells, Found, Query, Search, Space};
-use crate::scenario::Eyes;
 use staya_controller::geom::Vec3;
-use staya_controller::neighbor::{SIGHTINGS, Sighting};
+use staya_controller::neighbor::{SIGHTINGS, Sighting, TrackParams};
 use staya_controller::rand::Rng;
 use staya_controller::time::Duration;
 use std::collections::VecDeque;
 
 /// Keeps what eyes draw apart from other uses of randomness.
 const PURPOSE: u32 = u32::from_be_bytes(*b"eyes");
+
+/// What eyes robots have: `[plane.eyes]` of a scenario.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Eyes {
+    /// How far robots see each other, from centre to centre, metres.
+    pub range_m: f64,
+    /// Standard deviation of places seen along each axis, metres.
+    pub noise_m: f64,
+    /// Whether bodies, obstacles and closed cells hide what is behind them.
+    pub is_occluded: bool,
+    /// Whether they see who it is.
+    pub sees_names: bool,
+    /// Each robot looks once in so many ticks.
+    pub every_ticks: u32,
+    /// Ticks from a look to what comes of it.
+    pub delay_ticks: u32,
+    /// Whether robots say anything.
+    pub has_beacons: bool,
+    /// What the controller makes of it.
+    pub tracking: TrackParams<f32>,
+}
 
 /// The robots' eyes, and where everybody was when they looked.
 #[derive(Clone, Debug)]
@@ -82,9 +102,8 @@ impl Sight {
         for (place, other) in found.iter().enumerate() {
             let body = disc(other);
             let to = then[other.index as usize];
-            let is_behind = |nearer: &Found<f64, 3>| {
-                distance_m(at, to, then[nearer.index as usize]) < disc(nearer).radius_m
-            };
+            let is_behind =
+                |nearer: &Found<f64, 3>| distance_m(at, to, then[nearer.index as usize]) < disc(nearer).radius_m;
             let is_hidden = eyes.is_occluded && (found[..place].iter().any(is_behind) || is_walled(plane, at, to));
             if !body.id.is_somebody() || is_hidden {
                 continue;
@@ -158,9 +177,8 @@ fn hides(solid: &Solid, from: [f64; 3], to: [f64; 3]) -> bool {
             [from, to].into_iter().any(|place| dot(minus(place, point_m), normal) < 0.0)
         }
         Solid::Wall([a, b]) => {
-            let side = |[px, py]: [f64; 2], [qx, qy]: [f64; 2], [x, y]: [f64; 2]| {
-                (qx - px) * (y - py) - (qy - py) * (x - px)
-            };
+            let side =
+                |[px, py]: [f64; 2], [qx, qy]: [f64; 2], [x, y]: [f64; 2]| (qx - px) * (y - py) - (qy - py) * (x - px);
             let ([p, q], flat) = ([from, to], |[x, y, _]: [f64; 3]| [x, y]);
             let (p, q) = (flat(p), flat(q));
             side(a, b, p) * side(a, b, q) < 0.0 && side(p, q, a) * side(p, q, b) < 0.0

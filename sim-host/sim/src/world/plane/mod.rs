@@ -11,7 +11,7 @@ mod solid;
 mod solids;
 
 pub(crate) use border::Beside;
-pub use eyes::Sight;
+pub use eyes::{Eyes, Sight};
 pub use shape::{FAR_M, Shape};
 pub use solid::Solid;
 pub use solid::narrow;

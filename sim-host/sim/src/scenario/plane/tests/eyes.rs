@@ -38,7 +38,9 @@ fn eyes_that_make_no_sense_are_refused_with_a_remedy() {
         (format!("{PLANE}{EYES}forget_s = 0\n{TWO}"), "plane.eyes.forget_s"),
         (format!("{PLANE}{EYES}acceleration_mps2 = 0\n{TWO}"), "plane.eyes.acceleration_mps2"),
         (
-            format!("{LAND}{PLANE}guidance = \"route\"\n{EYES}[robots]\nlist = [{{ start = [1, 1], goal = [5, 5] }}]\n"),
+            format!(
+                "{LAND}{PLANE}guidance = \"route\"\n{EYES}[robots]\nlist = [{{ start = [1, 1], goal = [5, 5] }}]\n"
+            ),
             "goes by cells",
         ),
         (
