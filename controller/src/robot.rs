@@ -3,10 +3,10 @@
 use core::fmt;
 use serde::{Deserialize, Serialize};
 
-/// A robot's number, 1 to 2^31 - 1; 0 means nobody (the paper's "anyone").
+/// A robot's number, 1 to 2^31 - 2^16 - 1; 0 means nobody (the paper's "anyone").
 ///
 /// Each robot has one of its own. When two have the same by mistake, those that hear both know one of them as its
-/// [double](Self::double): the numbers from 2^31 on are for these.
+/// [double](Self::double): the numbers from 2^31 on are for these. Those before them are for whom a robot [sees](Self::local).
 ///
 /// 32 bits, because a simulated swarm has up to a million robots; small numbers stay small on the
 /// wire (varint).

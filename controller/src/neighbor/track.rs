@@ -161,7 +161,7 @@ impl<S: Scalar> Track<S> {
         self.velocity_mps += surprise * gain_mps;
         self.go(surprise * gain_m);
         self.velocity_variance = (self.velocity_variance - gain_mps * self.covariance).max(S::ZERO);
-        self.covariance = self.covariance * left;
+        self.covariance *= left;
         self.position_variance = known * left;
     }
 
@@ -176,7 +176,7 @@ impl<S: Scalar> Track<S> {
         self.go(surprise * gain_m);
         self.velocity_mps += surprise * gain_mps;
         self.position_variance = (self.position_variance - gain_m * self.covariance).max(S::ZERO);
-        self.covariance = self.covariance * left;
+        self.covariance *= left;
         self.velocity_variance = known * left;
     }
 

@@ -213,7 +213,7 @@ impl<S: Scalar> Tracker<S> {
 
     /// Takes in what `table` has heard since the last step. O(N TRACKS).
     pub fn hear<const N: usize, P: Copy>(&mut self, table: &NeighborTable<S, N, P>, own: Position) {
-        for entry in table {
+        for entry in table.iter().filter(|entry| !entry.id.is_local()) {
             let news = Some((entry.heard, entry.position));
             let params = self.params;
             let place = self.place_of(entry.id, |track, params| {
@@ -258,6 +258,15 @@ impl<S: Scalar> Tracker<S> {
             }
         }
         self.tracks.retain(|track| track.seen.is_some() || table.get(track.id, now).known().is_some());
+        // Who has a number now, or had to make room, is not there a second time without one.
+        for n in (0..table.len()).rev() {
+            let id = table.as_slice().get(n).map(|known| known.id).filter(|id| id.is_local());
+            if let Some(id) = id.filter(|id| !self.tracks.iter().any(|track| track.id == *id))
+                && table.forget(id)
+            {
+                gone(id);
+            }
+        }
     }
 
     /// Those who are seen as neighbours, each with what `table` knows of it otherwise, if anything; to be put there. The flock of those who say

@@ -157,6 +157,19 @@ fn who_is_seen_without_a_number_gets_the_one_that_is_seen_or_heard_later() {
 }
 
 #[test]
+fn who_gets_a_number_is_not_in_the_table_a_second_time_without_one() {
+    let (mut tracker, mut table) = (Tracker::<f32>::new(params()), Table::new(AGES));
+    let _ = see(&mut tracker, &[sighting(1.0, 0.0), sighting(3.0, 0.0)], 0);
+    assert_eq!(merge(&mut tracker, &mut table, 0), []);
+    assert_eq!(table.len(), 2);
+    let _ = see(&mut tracker, &[named(9, 1.0, 0.0), sighting(3.0, 0.0)], 1);
+    let _ = table.put(heard(4, 3.0, 0.0, 1), Position::ORIGIN, at(1), |_| false);
+    let gone = merge(&mut tracker, &mut table, 1);
+    assert!(gone.len() == 2 && gone.iter().all(|id| id.is_local()));
+    assert_eq!(table.iter().map(|known| known.id).collect::<std::vec::Vec<_>>(), [RobotId(4), RobotId(9)]);
+}
+
+#[test]
 fn who_is_only_heard_is_in_the_table_as_he_said() {
     let (mut tracker, mut table) = (Tracker::<f32>::new(params()), Table::new(AGES));
     let said = heard(4, 3.0, 0.0, 1);
@@ -296,6 +309,7 @@ proptest! {
             ids.sort_unstable();
             ids.dedup();
             prop_assert_eq!(ids.len(), tracker.tracks().len());
+            prop_assert!(table.iter().all(|known| ids.contains(&known.id)) && table.lost().is_empty());
             for track in tracker.tracks() {
                 prop_assert!(track.position_variance > 0.0 && track.position_variance.is_finite());
                 prop_assert!(track.velocity_mps.is_finite() && track.velocity_variance >= 0.0);

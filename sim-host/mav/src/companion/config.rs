@@ -268,6 +268,10 @@ fn check_scenario(source: &Source<'_>, scenario: &Scenario) -> Result<(), Scenar
         let what = String::from("vehicles do not come in on one side when they leave on the other");
         return refused(what, "leave plane.torus_m out");
     }
+    if scenario.eyes.is_some() {
+        let what = String::from("autopilots do not tell whom their vehicles see");
+        return refused(what, "leave plane.eyes out");
+    }
     if scenario.route.params.radius > RADIUS {
         let what = format!("route.radius {} is too large", scenario.route.params.radius);
         return refused(what, "give 16 or less");

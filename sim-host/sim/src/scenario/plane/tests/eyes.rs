@@ -1,6 +1,7 @@
 //! `[plane.eyes]`.
 
 use super::*;
+use crate::world::plane::Eyes;
 
 const EYES: &str = "[plane.eyes]\nrange_m = 3\n";
 
