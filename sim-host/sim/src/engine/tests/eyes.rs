@@ -4,16 +4,17 @@ use super::super::simulate::AnyEngine;
 use super::*;
 use crate::scenario::Eyes;
 
-/// Robots that swap places on a circle of 2 m.
+/// Robots that swap places on a circle of 2 m, or a larger one where they are many.
 fn circle(count: u32, eyes: &str, radio: &str) -> Scenario {
     seeded(count, eyes, radio, 11)
 }
 
 fn seeded(count: u32, eyes: &str, radio: &str, seed: u64) -> Scenario {
+    let radius_m = (f64::from(count) * 0.1).max(2.0);
     let text = format!(
         "name = \"t\"\nseed = {seed}\nticks = 1200\ntick_s = 0.05\n[radio]\nrange_m = 3\n{radio}\n[plane]\nradius_m = 0.15\n\
          max_speed_mps = 0.5\ntolerance_m = 0.02\n[plane.eyes]\nrange_m = 3\n{eyes}\n\
-         [plane.robots.circle]\ncount = {count}\nradius_m = 2\nnoise_m = 0.1\n"
+         [plane.robots.circle]\ncount = {count}\nradius_m = {radius_m}\nnoise_m = 0.1\n"
     );
     Scenario::parse(&text, Path::new("t.toml"), &Overrides::default()).unwrap_or_else(|error| panic!("{error}"))
 }
