@@ -127,19 +127,19 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         &self.template
     }
 
-    /// How far the neighbours are from what the template wants, for a robot in `cell` that knows
+    /// How far the neighbours are from what the template wants, for robot `id` in `cell` that knows
     /// `neighbors`: see [`Agent::neighbors`](super::Agent::neighbors). O(F N).
     #[must_use]
-    pub fn graph_distance<S>(&self, cell: Cell, neighbors: &[Neighbor<S>]) -> GraphDistance {
+    pub fn graph_distance<S>(&self, id: RobotId, cell: Cell, neighbors: &[Neighbor<S>]) -> GraphDistance {
         let robots = neighbors.iter().map(|other| seen_at(other, other.cell));
-        let found = find_neighbors(&self.view(neighbors), cell, self.formation.eps, robots);
+        let found = find_neighbors(&self.view(id, neighbors), cell, self.formation.eps, robots);
         graph_distance(cell, &found)
     }
 
     /// The template as it is when some have died and others closed ranks.
-    fn view<S>(&self, neighbors: &[Neighbor<S>]) -> Template<F> {
+    fn view<S>(&self, own: RobotId, neighbors: &[Neighbor<S>]) -> Template<F> {
         if self.formation.closes_ranks {
-            self.ranks.view(&self.template, holders(neighbors))
+            self.ranks.view(own, &self.template, holders(neighbors))
         } else {
             self.template.clone()
         }
@@ -365,7 +365,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         if self.formation.closes_ranks && cell != input.goal + self.ranks.shift() {
             self.ranks.close(input.id, &self.template, holders(input.neighbors));
         }
-        let view = &self.view(input.neighbors);
+        let view = &self.view(input.id, input.neighbors);
         let target = reachable_goal(&window, input.goal + self.ranks.shift());
         self.router.observe(&self.route, cell, target);
 

@@ -14,8 +14,10 @@ use serde::Serialize;
 /// smaller number keeps it and the other goes back to its own, so that a robot that comes back finds its own place
 /// free again, and who follows whom is settled after a few beacons.
 ///
-/// Holds where robot i + 1 has place i, as in [`Template::from_graph`]; others keep their places. The paper (A. V. Kuznetsov 2017) has no
-/// such rule: there the place of a missing robot stays empty.
+/// Holds where robots are numbered on by their places, from any number: robot k + i has place i. Each finds k by its own number and
+/// place; who hears a neighbour in a place that it could not have come to so keeps its own. Several formations hence need no
+/// word for which of them one is in: a template names its members. The paper (A. V. Kuznetsov 2017) has no such rule: there
+/// the place of a missing robot stays empty.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "state", derive(serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -54,9 +56,11 @@ impl Ranks {
         template: &Template<F>,
         holders: impl Iterator<Item = (RobotId, u8)> + Clone,
     ) {
-        if place_of(own) != Some(template.slot) {
+        let Some(first) = first_of(own, template, holders.clone()) else {
+            *self = Self::new();
             return;
-        }
+        };
+        let place_of = |id: RobotId| place_of(id, first);
         let named = |id: RobotId| template.entries.iter().any(|entry| entry.id == id);
         let held_by = |slot: u8| holders.clone().find(|&(id, holds)| holds == slot && named(id)).map(|(id, _)| id);
         if self.taken.is_some_and(|(slot, _)| held_by(slot).is_some_and(|id| id < own)) {
@@ -82,9 +86,14 @@ impl Ranks {
     #[must_use]
     pub fn view<const F: usize>(
         &self,
+        own: RobotId,
         template: &Template<F>,
         holders: impl Iterator<Item = (RobotId, u8)> + Clone,
     ) -> Template<F> {
+        let Some(first) = first_of(own, template, holders.clone()) else {
+            return template.clone();
+        };
+        let place_of = |id: RobotId| place_of(id, first);
         let (held, shift) = (self.slot(template), self.shift());
         let named = |id: RobotId| template.entries.iter().any(|entry| entry.id == id);
         let holder = |slot: u8| holders.clone().find(|&(id, holds)| holds == slot && named(id)).map(|(id, _)| id);
@@ -105,9 +114,22 @@ impl Ranks {
     }
 }
 
-/// The place that belongs to a robot.
-fn place_of(id: RobotId) -> Option<u8> {
-    u8::try_from(id.0.checked_sub(1)?).ok()
+/// The number of the robot that has the first place, if robots are numbered on by their places. Those of the template
+/// then hold their own or, having stepped forward, smaller ones. O(F * robots).
+fn first_of<const F: usize>(
+    own: RobotId,
+    template: &Template<F>,
+    mut holders: impl Iterator<Item = (RobotId, u8)>,
+) -> Option<u32> {
+    let first = own.0.checked_sub(template.slot.into()).filter(|&first| first > 0)?;
+    let named = |id: RobotId| template.entries.iter().any(|entry| entry.id == id);
+    let is_below = |(id, slot): (RobotId, u8)| named(id) && id.0 < first.saturating_add(slot.into());
+    (!holders.any(is_below)).then_some(first)
+}
+
+/// The place that belongs to a robot where `first` has the first.
+fn place_of(id: RobotId, first: u32) -> Option<u8> {
+    u8::try_from(id.0.checked_sub(first)?).ok()
 }
 
 #[cfg(test)]
@@ -122,19 +144,32 @@ mod tests {
         Template::from_graph(&places, &edges, own, 3).unwrap()
     }
 
-    /// Six robots that hear each other, each with its ranks; `is_alive` says who does.
+    /// Six robots that hear each other, each with its ranks and number; `is_alive` says who does.
     struct File {
         ranks: [Ranks; 6],
         is_alive: [bool; 6],
+        numbers: [u32; 6],
     }
 
     impl File {
         fn new() -> Self {
-            Self { ranks: [Ranks::new(); 6], is_alive: [true; 6] }
+            Self::numbered([1, 2, 3, 4, 5, 6])
+        }
+
+        fn numbered(numbers: [u32; 6]) -> Self {
+            Self { ranks: [Ranks::new(); 6], is_alive: [true; 6], numbers }
+        }
+
+        fn template(&self, own: usize) -> Template<8> {
+            let mut template = template(own);
+            for entry in &mut template.entries {
+                entry.id = RobotId(self.numbers[entry.id.0 as usize - 1]);
+            }
+            template
         }
 
         fn slots(&self) -> [Option<u8>; 6] {
-            core::array::from_fn(|own| self.is_alive[own].then(|| self.ranks[own].slot(&template(own))))
+            core::array::from_fn(|own| self.is_alive[own].then(|| self.ranks[own].slot(&self.template(own))))
         }
 
         /// All decide by what was said before.
@@ -142,8 +177,9 @@ mod tests {
             let slots = self.slots();
             for own in (0..6).filter(|&own| self.is_alive[own]) {
                 let others = (0..6).filter(|&other| other != own);
-                let heard = others.filter_map(|other| Some((RobotId(other as u32 + 1), slots[other]?)));
-                self.ranks[own].close(RobotId(own as u32 + 1), &template(own), heard);
+                let heard = others.filter_map(|other| Some((RobotId(self.numbers[other]), slots[other]?)));
+                let template = self.template(own);
+                self.ranks[own].close(RobotId(self.numbers[own]), &template, heard);
             }
         }
 
@@ -179,6 +215,48 @@ mod tests {
     }
 
     #[test]
+    fn a_second_formation_closes_ranks_by_its_own_numbers() {
+        let deaths = |numbers: [u32; 6], dead: usize| {
+            let mut file = File::numbered(numbers);
+            file.ticks(3);
+            file.is_alive[dead] = false;
+            file.ticks(30)
+        };
+        for dead in 0..6 {
+            assert_eq!(deaths([7, 8, 9, 10, 11, 12], dead), deaths([1, 2, 3, 4, 5, 6], dead), "{dead}");
+        }
+    }
+
+    #[test]
+    fn where_numbers_are_no_places_nobody_takes_a_place_that_is_held_and_sees_who_is_where() {
+        for numbers in [[1, 2, 4, 5, 6, 7], [3, 5, 8, 9, 10, 12], [1, 3, 4, 5, 6, 7], [6, 5, 4, 3, 2, 1]] {
+            for dead in 0..6 {
+                for second in 0..6 {
+                    let mut file = File::numbered(numbers);
+                    file.ticks(3);
+                    file.is_alive[dead] = false;
+                    file.ticks(9);
+                    file.is_alive[second] = false;
+                    let slots = file.ticks(30);
+                    let mut held: Vec<u8> = slots.into_iter().flatten().collect();
+                    held.sort_unstable();
+                    assert!(held.windows(2).all(|pair| pair[0] < pair[1]), "{numbers:?} {dead} {second}: {slots:?}");
+                    // Nobody is seen in two places.
+                    for own in (0..6).filter(|&own| file.is_alive[own]) {
+                        let others = (0..6).filter(|&other| other != own);
+                        let heard = others.filter_map(|other| Some((RobotId(numbers[other]), slots[other]?)));
+                        let template = file.template(own);
+                        let view = file.ranks[own].view(RobotId(numbers[own]), &template, heard);
+                        let mut ids: Vec<_> = view.entries.iter().map(|entry| entry.id).collect();
+                        ids.sort_unstable();
+                        assert!(ids.windows(2).all(|pair| pair[0] < pair[1]), "{numbers:?} {dead} {second}: {ids:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
     fn who_comes_back_finds_its_place() {
         for dead in 0..6 {
             let mut file = File::new();
@@ -196,13 +274,13 @@ mod tests {
         let holders = [(1, 0), (3, 2), (4, 1), (5, 4), (6, 3)].map(|(id, slot)| (RobotId(id), slot));
         let ranks = Ranks { taken: Some((1, Cell::new(0, 3))), front: None };
         let others = holders.into_iter().filter(|(id, _)| *id != RobotId(4));
-        let view = ranks.view(&template(3), others);
+        let view = ranks.view(RobotId(4), &template(3), others);
         assert_eq!((view.slot, view.offset), (1, Cell::new(3, 0)));
         let mut seen: Vec<_> = view.entries.iter().map(|entry| (entry.id.0, entry.offset.x, entry.offset.y)).collect();
         seen.sort_unstable();
         assert_eq!(seen, [(1, -3, 0), (3, -3, -3), (5, -3, -6), (6, 0, -3)]);
         // And robot 1 sees robot 4 beside it, not behind.
-        let view = Ranks::new().view(&template(0), holders.into_iter().skip(1));
+        let view = Ranks::new().view(RobotId(1), &template(0), holders.into_iter().skip(1));
         let beside = view.entries.iter().find(|entry| entry.id == RobotId(4)).unwrap();
         assert_eq!(beside.offset, Cell::new(3, 0));
     }

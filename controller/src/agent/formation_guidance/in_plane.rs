@@ -141,7 +141,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             cell_m: here.in_cell.cell_m,
             drive: Drive::new(&input.body),
         };
-        let view = self.inside().view(input.neighbors);
+        let view = self.inside().view(input.id, input.neighbors);
         let to_goal_m = step.to_middle(decision.target);
         let status = &mut decision.status;
         let is_straight;

@@ -340,7 +340,7 @@ fn strangers_in_a_neighbour_s_place_are_asked_to_choose_another_direction() {
         let at = Cell::new(5, 5);
         let out = agent.step(&inputs(&FLAT, at, &inbox), tick(n.into()), &mut ws);
         asked.extend(requests(&out).iter().map(|ask| (n, ask.to, ask.kind)));
-        let distance = agent.guidance().graph_distance(at, agent.neighbors());
+        let distance = agent.guidance().graph_distance(RobotId(1), at, agent.neighbors());
         assert_eq!((distance.less, distance.more), (2, 1));
     }
     assert_eq!(asked, [(3, RobotId(9), RequestKind::Redirect)]);
