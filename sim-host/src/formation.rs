@@ -5,17 +5,18 @@ use clap::Args;
 use staya_console::{Ended, Global, print, print_json};
 use staya_controller::grid::{Cell, Dir};
 use staya_mav::Endpoint;
-use staya_mav::formation::station::{Given, give};
+use staya_mav::formation::station::{Given, Members, Places, give, numbers};
 use staya_mav::formation::{Graph, Order, Shape};
 use staya_mavlink::signing::Signing;
 use staya_sim::key::{KeyFile, timestamp};
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::time::{Duration, SystemTime};
 
 /// Tell a swarm in formation, over MAVLink, to take another shape and to go to another place.
 ///
-/// Robots 1 to n that are heard at the line get the places of the shape, robot 1 the one in front. Exit code 1 if one of them does not
-/// say that it has its orders.
+/// The robots that are heard at the line, or some of them, get the places of the shape, each one that is near. Exit code 1 if one of
+/// them does not say that it has its orders. Who is ordered in several calls is in several formations.
 #[derive(Args, Clone, Debug)]
 #[command(
     allow_negative_numbers = true,
@@ -29,7 +30,13 @@ pub struct FormationArgs {
     /// Where the swarm is: udpout:HOST:PORT, udpin:HOST:PORT, tcpout:HOST:PORT, tcpin:HOST:PORT or serial:PORT,baud=N.
     #[arg(long, value_name = "LINE")]
     to: Endpoint,
-    /// Where robot 1 is to go, a cell of the grid: east, north [default: where it was going].
+    /// Which robots: numbers and ranges, as in 3,5,8-12 [default: all that are heard].
+    #[arg(long, value_name = "NUMBERS", value_parser = robots)]
+    robots: Option<Numbers>,
+    /// Who gets which place: nearest (the least sum of squared ways), or number (by rising numbers, the first in front).
+    #[arg(long, value_name = "BY", default_value = "nearest", value_parser = places)]
+    places: Places,
+    /// Where the front of the formation is to go, a cell of the grid: east, north [default: where robots were going].
     #[arg(long, value_name = "X,Y", value_parser = cell)]
     goal: Option<Cell>,
     /// Cells between neighbours; not with a file.
@@ -57,6 +64,30 @@ fn cell(text: &str) -> Result<Cell, String> {
     match numbers.as_deref() {
         Ok(&[x, y]) => Ok(Cell::new(x, y)),
         _ => Err(String::from("two whole numbers, as in 60,40")),
+    }
+}
+
+/// A set that clap takes for one value.
+type Numbers = BTreeSet<u8>;
+
+fn robots(text: &str) -> Result<Numbers, String> {
+    let mut robots = Numbers::new();
+    for part in text.split(',').map(str::trim) {
+        let (first, last) = part.split_once('-').unwrap_or((part, part));
+        let number = |text: &str| text.trim().parse::<u8>().ok().filter(|robot| (1..=254).contains(robot));
+        match (number(first), number(last)) {
+            (Some(first), Some(last)) if first <= last => robots.extend(first..=last),
+            _ => return Err(format!("`{part}`: numbers from 1 to 254 and rising ranges of them, as in 3,5,8-12")),
+        }
+    }
+    Ok(robots)
+}
+
+fn places(text: &str) -> Result<Places, String> {
+    match text {
+        "nearest" => Ok(Places::Nearest),
+        "number" => Ok(Places::Number),
+        _ => Err(String::from("nearest or number")),
     }
 }
 
@@ -106,26 +137,27 @@ impl FormationArgs {
         };
         let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
         // Each call is another start of the station: robots forget what earlier ones counted.
-        let order = Order { heading: self.heading, goal: self.goal, boot: (since.as_millis() / 100) as u8, version: 1 };
+        let order = Order { goal: self.goal, to_all: true, boot: (since.as_millis() / 100) as u8, version: 1 };
+        let members = Members { robots: self.robots.clone(), places: self.places, heading: self.heading };
         let wait = Duration::from_secs_f64(self.wait);
-        let given = give(&self.to, signing.as_mut(), graph, &order, wait).with_context(|| self.shape.clone())?;
+        let given =
+            give(&self.to, signing.as_mut(), graph, &members, &order, wait).with_context(|| self.shape.clone())?;
         if global.json {
             print_json(&given)?;
         } else {
             print(&self.table(&given))?;
         }
-        let silent: Vec<String> = (1..=given.robots)
-            .filter(|&robot| {
-                let has = |set: &std::collections::BTreeSet<u8>| set.contains(&(robot as u8));
-                !has(&given.placed) || (self.goal.is_some() && !has(&given.heading_for_goal))
+        let robots = given.robots.iter().copied();
+        let silent: BTreeSet<u8> = robots
+            .filter(|robot| {
+                !given.placed.contains(robot) || (self.goal.is_some() && !given.heading_for_goal.contains(robot))
             })
-            .map(|robot| robot.to_string())
             .collect();
         if let Some((robot, objection)) = given.objections.first() {
             bail!("robot {robot}: {objection}; give the scenario [robots.formation]");
         }
         if !silent.is_empty() {
-            bail!("no word that they have their orders from robots {}; call again", silent.join(", "));
+            bail!("no word that they have their orders from robots {}; call again", numbers(&silent));
         }
         Ok(Ended::Done)
     }
@@ -147,7 +179,7 @@ impl FormationArgs {
             "{}: {} of {} robots have their places{goal} ({} frames sent)\n",
             self.shape,
             given.placed.len(),
-            given.robots,
+            given.robots.len(),
             given.frames
         )
     }
@@ -165,5 +197,12 @@ mod tests {
             assert!(cell(bad).is_err(), "{bad}");
         }
         assert!(heading("up").is_err());
+        assert_eq!(robots("3, 5,8-12,12"), Ok(Numbers::from([3, 5, 8, 9, 10, 11, 12])));
+        assert_eq!(numbers(&Numbers::from([1, 2, 5, 7, 8, 9])), "1, 2, 5, 7 to 9");
+        for bad in ["", "0", "255", "3-", "5-3", "a", "1;2"] {
+            let error = robots(bad).expect_err(bad);
+            assert!(error.contains("as in 3,5,8-12"), "{error}");
+        }
+        assert!(places("near").is_err());
     }
 }

@@ -72,3 +72,17 @@ def test_nobody_there_and_no_such_shape_are_errors(staya, free_port):
     assert sent.wait() == 1 and "no robot is heard" in sent.output(), sent.output()
     sent = staya("formation", "triangle", "--to", f"udpout:127.0.0.1:{port}")
     assert sent.wait() == 1 and "line, column, wedge, grid, circle" in sent.output(), sent.output()
+
+
+def test_some_robots_become_a_formation_of_their_own(staya, free_port):
+    port = free_port()
+    staya("bridge", "scenarios/six-robots.toml", "--speed", 20, "--mavlink", f"udpin:127.0.0.1:{port}", "--quiet")
+    to = ("--to", f"udpout:127.0.0.1:{port}")
+    for robots, goal in [("2,4-5", "60,40"), ("1,3,6", "40,20")]:
+        sent = staya("formation", "wedge", *to, "--robots", robots, "--goal", goal)
+        assert sent.wait() == 0, sent.output()
+        assert "wedge: 3 of 3 robots have their places, 3 head for cell" in sent.output()
+    sent = staya("formation", "line", *to, "--robots", "5-8", "--wait", 2)
+    assert sent.wait() == 1 and "robots 7, 8 are not heard" in sent.output(), sent.output()
+    sent = staya("formation", "line", *to, "--robots", "6-2")
+    assert sent.wait() == 2 and "as in 3,5,8-12" in sent.output(), sent.output()

@@ -1,8 +1,10 @@
 //! Another shape and another goal for a formation that is under way: what each robot has to be told. [`Shape`] gives a [`Graph`],
 //! [`orders`] the frames, [`station::give`] sends them and waits until every robot has said that it has its own.
 //!
-//! Shapes look east, as the scenarios' do; [`orders`] turns them. Robot i + 1 gets place i, and robot 1 is in front.
+//! Shapes look east, as the scenarios' do; [`Graph::turned`] turns them. Robots have places by rising numbers, the first one in
+//! front, unless [`Graph::nearest`] gives each one that is near.
 
+mod nearest;
 pub mod station;
 
 use serde::Deserialize;
@@ -110,7 +112,7 @@ pub enum GraphError {
     )]
     First,
     /// Two robots in one cell.
-    #[error("robots {0} and {1} would share a cell: give a larger spacing, or another heading")]
+    #[error("places {0} and {1} would share a cell: give a larger spacing, or another heading")]
     Shared(usize, usize),
     /// A pair of numbers that joins nobody.
     #[error("edges: [{0}, {1}] joins no two robots of the formation: give two different numbers from 1 to {2}")]
@@ -179,6 +181,16 @@ impl Graph {
         Self::new(&places, edges.into_iter().collect())
     }
 
+    /// The same formation looking elsewhere than east; `Stay`: east.
+    ///
+    /// # Errors
+    /// Places that would share a cell after the turn.
+    pub fn turned(&self, heading: Dir) -> Result<Self, GraphError> {
+        let places: Vec<_> = self.places.iter().map(|&place| rotated(place, heading)).collect();
+        self.check_apart(&places)?;
+        Ok(Self { places, edges: self.edges.clone() })
+    }
+
     /// How many robots it is for.
     #[must_use]
     pub fn robots(&self) -> usize {
@@ -228,39 +240,42 @@ impl Graph {
 /// What is to be told, and as whose order.
 #[derive(Clone, Copy, Debug)]
 pub struct Order {
-    /// Where the formation looks; `Stay`: east.
-    pub heading: Dir,
-    /// The cell that robot 1 is to go to; `None`: where it was going anyway.
+    /// The cell for the place in front, [0, 0]; `None`: robots go where they were going anyway.
     pub goal: Option<Cell>,
+    /// Whether the goal is said to everybody at once, or to each robot of the formation by itself: others are there.
+    pub to_all: bool,
     /// Tells this start of the ground station from others.
     pub boot: u8,
     /// Counts orders of this start.
     pub version: u8,
 }
 
-/// The frames that make a swarm this formation: parts of a template for each robot, then the goal for all. O(robots * edges).
+/// The frames that make `robots`, by rising numbers, this formation: parts of a template for each, then the goal. O(robots * edges).
 ///
 /// # Errors
-/// Robots that would share a cell after the turn, or have more neighbours than they have room for.
-pub fn orders(graph: &Graph, order: &Order) -> Result<Vec<Vec<u8>>, GraphError> {
-    let turned: Vec<_> = graph.places.iter().map(|&place| rotated(place, order.heading)).collect();
-    graph.check_apart(&turned)?;
-    let graph = Graph { places: turned, edges: graph.edges.clone() };
+/// Another number of robots than of places, or robots that have more neighbours than they have room for.
+pub fn orders(graph: &Graph, robots: &[u8], order: &Order) -> Result<Vec<Vec<u8>>, GraphError> {
+    if robots.len() != graph.robots() {
+        return Err(GraphError::Count(robots.len()));
+    }
+    let id = |place: usize| robots.get(place).map_or(RobotId::NOBODY, |&robot| RobotId(robot.into()));
     let mut messages = Vec::new();
-    for (number, template) in (1..).zip(graph.templates()?) {
-        let parts = TemplateAssignment::split(
-            RobotId(number),
-            order.version,
-            template.slot,
-            template.offset,
-            &template.entries,
-        )
-        .map_err(|_| GraphError::Neighbors(number as usize))?;
+    for (own, mut template) in graph.templates()?.into_iter().enumerate() {
+        for entry in &mut template.entries {
+            // A graph numbers its places from 1.
+            entry.id = id(entry.id.0 as usize - 1);
+        }
+        let parts =
+            TemplateAssignment::split(id(own), order.version, template.slot, template.offset, &template.entries)
+                .map_err(|_| GraphError::Neighbors(own + 1))?;
         messages.extend(parts.map(Message::Template));
     }
-    messages.extend(
-        order.goal.map(|target| Message::Goal(GoalAssignment { to: RobotId::NOBODY, version: order.version, target })),
-    );
+    // Robots go to their places beside the first robot's, which need not be the one in front.
+    let target = order.goal.zip(graph.places.first()).map(|(goal, &first)| goal + first);
+    let to = if order.to_all { vec![RobotId::NOBODY] } else { (0..robots.len()).map(id).collect() };
+    messages.extend(target.iter().flat_map(|&target| {
+        to.iter().map(move |&to| Message::Goal(GoalAssignment { to, version: order.version, target }))
+    }));
     let frame = |(sequence, message): (u16, &Message)| {
         let header = Header { boot: order.boot, sender: RobotId(STATION.into()), sequence };
         let mut frame = heapless::Vec::<u8, MAX_FRAME_LEN>::new();

@@ -3,12 +3,13 @@
 use super::{Graph, GraphError, Order, STATION, orders};
 use crate::{Endpoint, Lines, OpenError};
 use serde::Serialize;
+use staya_controller::grid::Dir;
 use staya_mavlink::constants::{MAV_COMP_ID_AUTOPILOT1, MAV_SEVERITY_WARNING, MAV_TYPE_GCS};
 use staya_mavlink::dialect::{HEARTBEAT_DATA, MavMessage};
 use staya_mavlink::frame::{MAX_FRAME_LEN, RawFrame, Sender, encode};
 use staya_mavlink::signing::{Signing, Verdict};
 use staya_mavlink::wire::MAX_ROBOT;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::time::{Duration, Instant};
 
 /// Our own heartbeat comes so often, and orders are repeated so often.
@@ -23,8 +24,8 @@ const GLANCE: Duration = Duration::from_millis(20);
 /// What became of the orders.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Given {
-    /// Robots that are there.
-    pub robots: usize,
+    /// Robots that the formation is of.
+    pub robots: BTreeSet<u8>,
     /// Who has said that it has its place.
     pub placed: BTreeSet<u8>,
     /// Who has said that it has the goal.
@@ -49,12 +50,47 @@ pub enum StationError {
         "no robot is heard at {0}: run `staya bridge SCENARIO --mavlink udpin:HOST:PORT` there, or give it more time (--wait), or its key (--key)"
     )]
     Nobody(String),
-    /// Places are those of robots 1 to n.
-    #[error("the robots that are heard are not 1 to {0}, but {1}: a formation's robots have the numbers of its places")]
-    Numbers(usize, String),
+    /// Robots that were asked for and are not there.
+    #[error(
+        "robots {missing} are not heard at {line}, but {heard}: give those that are there (--robots), or it more time (--wait)"
+    )]
+    Missing {
+        /// They.
+        missing: String,
+        /// Where.
+        line: String,
+        /// Who is there.
+        heard: String,
+    },
+    /// Nobody knows who is near what.
+    #[error(
+        "robots {0} do not say where they are (GLOBAL_POSITION_INT): give it more time (--wait), or `--places number`"
+    )]
+    Nowhere(String),
     /// A file's formation is for another number of robots.
-    #[error("the formation is for {0} robots, and {1} are heard")]
+    #[error("the formation is for {0} robots, and {1} are to keep it: say which (--robots)")]
     Count(usize, usize),
+}
+
+/// Who gets which place.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Places {
+    /// Robots by rising numbers, the first one in front.
+    Number,
+    /// So that robots go little and not across each other, see [`Graph::nearest`].
+    #[default]
+    Nearest,
+}
+
+/// Which robots take part in what.
+#[derive(Clone, Debug, Default)]
+pub struct Members {
+    /// Their numbers; `None`: all that are heard.
+    pub robots: Option<BTreeSet<u8>>,
+    /// Who of them gets which place.
+    pub places: Places,
+    /// Where the formation looks; `Stay`: east.
+    pub heading: Dir,
 }
 
 /// A line to a swarm.
@@ -62,6 +98,8 @@ struct Station<'a> {
     lines: Lines,
     signing: Option<&'a mut Signing>,
     heard: BTreeSet<u8>,
+    /// Where robots say that they are: degrees of longitude and latitude by 1e7.
+    at: BTreeMap<u8, [i32; 2]>,
     greeted: Option<Instant>,
     sequence: u8,
     given: Given,
@@ -114,6 +152,7 @@ impl Station<'_> {
             self.lines.believe(received.line, received.peer);
             match frame.message() {
                 Some(MavMessage::HEARTBEAT(_)) => drop(self.heard.insert(system)),
+                Some(MavMessage::GLOBAL_POSITION_INT(fix)) => drop(self.at.insert(system, [fix.lon, fix.lat])),
                 Some(MavMessage::STATUSTEXT(said)) => {
                     self.note(system, said.severity, said.text.to_str().unwrap_or(""))
                 }
@@ -135,25 +174,73 @@ impl Station<'_> {
         }
     }
 
-    /// Waits for all robots that there are; their numbers are 1 to what it returns.
-    fn gather(&mut self, endpoint: &Endpoint, until: Instant) -> Result<usize, StationError> {
+    /// Waits for the robots that are wanted, or for all that there are, and for where they are if that counts.
+    fn gather(&mut self, endpoint: &Endpoint, wanted: &Members, until: Instant) -> Result<BTreeSet<u8>, StationError> {
         let mut first = None;
-        while Instant::now() < until && first.is_none_or(|at: Instant| at.elapsed() < GATHER) {
+        loop {
+            let robots = wanted.robots.as_ref().unwrap_or(&self.heard);
+            let mut nowhere = robots.iter().filter(|robot| !self.at.contains_key(robot)).peekable();
+            let is_found = wanted.places == Places::Number || nowhere.peek().is_none();
+            let is_there = match &wanted.robots {
+                Some(robots) => robots.is_subset(&self.heard),
+                None => first.is_some_and(|at: Instant| at.elapsed() >= GATHER),
+            };
+            if (is_there && is_found) || Instant::now() >= until {
+                break;
+            }
             self.listen();
             if !self.heard.is_empty() {
                 first.get_or_insert_with(Instant::now);
             }
         }
-        let count = self.heard.len();
-        match self.heard.last() {
-            None => Err(StationError::Nobody(endpoint.to_string())),
-            Some(&last) if usize::from(last) != count => {
-                let numbers: Vec<_> = self.heard.iter().map(u8::to_string).collect();
-                Err(StationError::Numbers(count, numbers.join(", ")))
-            }
-            Some(_) => Ok(count),
+        if self.heard.is_empty() {
+            return Err(StationError::Nobody(endpoint.to_string()));
+        }
+        let robots = wanted.robots.as_ref().unwrap_or(&self.heard).clone();
+        let missing: BTreeSet<u8> = robots.difference(&self.heard).copied().collect();
+        if !missing.is_empty() {
+            let (missing, heard) = (numbers(&missing), numbers(&self.heard));
+            return Err(StationError::Missing { missing, line: endpoint.to_string(), heard });
+        }
+        let nowhere: BTreeSet<u8> = robots.iter().copied().filter(|robot| !self.at.contains_key(robot)).collect();
+        if wanted.places == Places::Nearest && !nowhere.is_empty() {
+            return Err(StationError::Nowhere(numbers(&nowhere)));
+        }
+        Ok(robots)
+    }
+
+    /// Where robots are, east and north in a common unit from some place near them.
+    fn positions(&self, robots: &BTreeSet<u8>) -> Vec<[f64; 2]> {
+        let at: Vec<_> = robots.iter().filter_map(|robot| self.at.get(robot)).collect();
+        let Some(&&[lon, lat]) = at.first() else {
+            return Vec::new();
+        };
+        let east = libm::cos((f64::from(lat) * 1e-7).to_radians());
+        let half_turn = 1_800_000_000_i64;
+        let position = |[x, y]: [i32; 2]| {
+            let off = (i64::from(x) - i64::from(lon) + half_turn).rem_euclid(2 * half_turn) - half_turn;
+            [off as f64 * east, (i64::from(y) - i64::from(lat)) as f64]
+        };
+        at.into_iter().map(|&at| position(at)).collect()
+    }
+}
+
+/// Numbers as people write them: 1 to 4, 7.
+#[must_use]
+pub fn numbers(robots: &BTreeSet<u8>) -> String {
+    let mut runs: Vec<[u8; 2]> = Vec::new();
+    for &robot in robots {
+        match runs.last_mut() {
+            Some([_, last]) if last.checked_add(1) == Some(robot) => *last = robot,
+            _ => runs.push([robot, robot]),
         }
     }
+    let text = |[first, last]: &[u8; 2]| match last - first {
+        0 => first.to_string(),
+        1 => format!("{first}, {last}"),
+        _ => format!("{first} to {last}"),
+    };
+    runs.iter().map(text).collect::<Vec<_>>().join(", ")
 }
 
 /// Gives the swarm at `endpoint` these orders, again and again until every robot has said that it has them or `wait` is over.
@@ -164,20 +251,26 @@ pub fn give(
     endpoint: &Endpoint,
     signing: Option<&mut Signing>,
     graph: impl FnOnce(usize) -> Result<Graph, GraphError>,
+    members: &Members,
     order: &Order,
     wait: Duration,
 ) -> Result<Given, StationError> {
     let lines = Lines::open(std::slice::from_ref(endpoint))?;
     let until = Instant::now() + wait;
-    let (heard, given) = (BTreeSet::new(), Given::default());
-    let mut station = Station { lines, signing, heard, greeted: None, sequence: 0, given };
-    let robots = station.gather(endpoint, until)?;
-    let graph = graph(robots)?;
-    if graph.robots() != robots {
-        return Err(StationError::Count(graph.robots(), robots));
+    let (heard, at, given) = (BTreeSet::new(), BTreeMap::new(), Given::default());
+    let mut station = Station { lines, signing, heard, at, greeted: None, sequence: 0, given };
+    let robots = station.gather(endpoint, members, until)?;
+    let mut graph = graph(robots.len())?.turned(members.heading)?;
+    if graph.robots() != robots.len() {
+        return Err(StationError::Count(graph.robots(), robots.len()));
     }
+    if members.places == Places::Nearest {
+        graph = graph.nearest(&station.positions(&robots));
+    }
+    let order = Order { to_all: robots == station.heard, ..*order };
+    let numbers: Vec<u8> = robots.iter().copied().collect();
+    let frames = orders(&graph, &numbers, &order)?;
     station.given.robots = robots;
-    let frames = orders(&graph, order)?;
     // Whoever was found at the last moment is told at least once.
     let until = until.max(Instant::now() + EVERY * 2);
     while Instant::now() < until {
@@ -189,8 +282,8 @@ pub fn give(
         let again = Instant::now() + EVERY;
         while Instant::now() < again {
             station.listen();
-            let Given { placed, heading_for_goal, objections, .. } = &station.given;
-            let has_all = placed.len() == robots && (order.goal.is_none() || heading_for_goal.len() == robots);
+            let Given { robots, placed, heading_for_goal, objections, .. } = &station.given;
+            let has_all = placed.is_superset(robots) && (order.goal.is_none() || heading_for_goal.is_superset(robots));
             if has_all || !objections.is_empty() {
                 return Ok(station.given);
             }

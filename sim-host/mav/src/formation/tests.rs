@@ -22,10 +22,11 @@ fn every_shape_of_every_number_is_told_consistently() {
     for (name, shape) in Shape::NAMES {
         for count in [1, 2, 3, 6, 25, 254] {
             let graph = shape.graph(count, 3).expect(name);
-            let order = Order { heading: Dir::Stay, goal: Some(Cell::new(7, -8)), boot: 9, version: 4 };
+            let order = Order { goal: Some(Cell::new(7, -8)), to_all: true, boot: 9, version: 4 };
+            let robots: Vec<u8> = (1..=count as u8).collect();
             let mut heard = vec![Vec::new(); count];
             let mut goals = 0;
-            for frame in orders(&graph, &order).expect(name) {
+            for frame in orders(&graph, &robots, &order).expect(name) {
                 let frame = decode(&frame).expect("a sound frame");
                 assert_eq!((frame.header.sender.0, frame.header.boot), (255, 9));
                 match frame.message {
@@ -54,9 +55,9 @@ fn every_shape_of_every_number_is_told_consistently() {
 
 #[test]
 fn a_heading_turns_the_shape() {
-    let graph = Shape::Column.graph(2, 3).expect("room");
-    let order = Order { heading: Dir::North, goal: None, boot: 0, version: 0 };
-    let frames = orders(&graph, &order).expect("room");
+    let graph = Shape::Column.graph(2, 3).and_then(|graph| graph.turned(Dir::North)).expect("room");
+    let order = Order { goal: None, to_all: true, boot: 0, version: 0 };
+    let frames = orders(&graph, &[1, 2], &order).expect("room");
     let Message::Template(part) = decode(&frames[1]).expect("sound").message else {
         panic!("a template");
     };
@@ -74,7 +75,7 @@ fn a_file_is_read_and_what_is_wrong_with_it_is_said() {
         ("places = [[0, 0], [3, 0]]\nedges = [[1, 3]]", "[1, 3] joins no two robots"),
         ("places = [[0, 0], [3, 0]]\nedges = [[0, 1]]", "numbers from 1 to 2"),
         ("places = [[0, 0], [3, 0]]\nedges = []", "robot 1 to robot 2"),
-        ("places = [[0, 0], [0, 0]]\nedges = [[1, 2]]", "robots 1 and 2 would share a cell"),
+        ("places = [[0, 0], [0, 0]]\nedges = [[1, 2]]", "places 1 and 2 would share a cell"),
         ("places = [[0, 0], [40000, 0]]\nedges = [[1, 2]]", "robot 2 would be off any map"),
         ("places = [[0, 0]]\nedge = []", "unknown field `edge`"),
     ] {
@@ -84,13 +85,120 @@ fn a_file_is_read_and_what_is_wrong_with_it_is_said() {
     let star: Vec<_> = (2..=10).map(|other| format!("[1, {other}]")).collect();
     let places: Vec<_> = (0..10).map(|x| format!("[{x}, 0]")).collect();
     let graph = Graph::parse(&format!("places = [{}]\nedges = [{}]", places.join(","), star.join(",")));
-    let order = Order { heading: Dir::East, goal: None, boot: 0, version: 0 };
-    assert_eq!(orders(&graph.expect("a formation"), &order), Err(GraphError::Neighbors(1)));
+    let order = Order { goal: None, to_all: true, boot: 0, version: 0 };
+    let ten: Vec<u8> = (1..=10).collect();
+    assert_eq!(orders(&graph.expect("a formation"), &ten, &order), Err(GraphError::Neighbors(1)));
     assert_eq!(Shape::Line.graph(255, 3), Err(GraphError::Count(255)));
     assert_eq!(Shape::Line.graph(0, 3), Err(GraphError::Count(0)));
     assert_eq!(Shape::Column.graph(254, 100), Err(GraphError::Far(101)));
     // 45 degrees bring cells that touch together.
     let graph = Shape::Grid.graph(9, 1).expect("room");
-    let order = Order { heading: Dir::NorthEast, ..order };
-    assert!(matches!(orders(&graph, &order), Err(GraphError::Shared(..))));
+    assert!(matches!(graph.turned(Dir::NorthEast), Err(GraphError::Shared(..))));
+}
+
+/// Robots in a column that form a line by numbers go across each other; by what is near they do not.
+#[test]
+fn near_places_are_shorter_and_nobody_crosses_anybody() {
+    use staya_controller::rand::Rng;
+    let squared = |[x, y]: [f64; 2]| x * x + y * y;
+    for (name, shape) in Shape::NAMES {
+        for (seed, count) in [(1, 2), (2, 6), (3, 12), (4, 40), (5, 100)] {
+            let graph = shape.graph(count, 3).and_then(|graph| graph.turned(Dir::North)).expect(name);
+            let mut rng = Rng::keyed(seed, 1, 0, 0);
+            let mut draw = || f64::from(rng.below(100_000)) / 500.0;
+            let at: Vec<_> = (0..count).map(|_| [draw(), draw()]).collect();
+            let near = graph.nearest(&at);
+            let mut sorted = [places(&near), places(&graph)];
+            sorted.iter_mut().for_each(|places| places.sort_unstable());
+            assert_eq!(sorted[0], sorted[1], "{name}: the same places");
+            let to = |graph: &Graph, robot: usize| [graph.places[robot].x, graph.places[robot].y].map(f64::from);
+            for a in 0..count {
+                for b in 0..a {
+                    // Who goes straight and evenly meets nobody: the two ways do not turn the pair around.
+                    let (pa, pb) = (to(&near, a), to(&near, b));
+                    let off = [at[a][0] - at[b][0], at[a][1] - at[b][1]];
+                    let dot = off[0] * (pa[0] - pb[0]) + off[1] * (pa[1] - pb[1]);
+                    assert!(dot > -0.1, "{name} {count}: {a} and {b} by {dot}");
+                }
+            }
+            // Everybody but the first has somebody to follow, and the orders fit.
+            for robot in 1..count as u16 {
+                assert!(near.edges.iter().any(|&(_, larger)| larger == robot), "{name} {count}: {robot}");
+            }
+            let robots: Vec<u8> = (1..=count as u8).map(|robot| robot * 2).collect();
+            let order = Order { goal: Some(Cell::new(50, 60)), to_all: false, boot: 0, version: 0 };
+            let frames = orders(&near, &robots, &order).expect(name);
+            let goals: Vec<_> = frames
+                .iter()
+                .filter_map(|frame| match decode(frame).expect("sound").message {
+                    Message::Goal(goal) => Some((goal.to.0 as u8, goal.target)),
+                    _ => None,
+                })
+                .collect();
+            let front = Cell::new(50, 60) + near.places[0];
+            assert_eq!(goals, robots.iter().map(|&robot| (robot, front)).collect::<Vec<_>>());
+            let total = |graph: &Graph| -> f64 {
+                let middle = |of: &dyn Fn(usize) -> [f64; 2]| {
+                    [0, 1].map(|axis| (0..count).map(|robot| of(robot)[axis]).sum::<f64>() / count as f64)
+                };
+                let (here, there) = (middle(&|robot| at[robot]), middle(&|robot| to(graph, robot)));
+                let way = |robot: usize| {
+                    [0, 1].map(|axis| at[robot][axis] - here[axis] - to(graph, robot)[axis] + there[axis])
+                };
+                (0..count).map(|robot| squared(way(robot))).sum()
+            };
+            assert!(total(&near) <= total(&graph), "{name} {count}");
+        }
+    }
+}
+
+#[test]
+fn where_and_how_large_the_swarm_is_makes_no_difference_to_who_is_near() {
+    let graph = Shape::Wedge.graph(5, 3).expect("room");
+    let at = [[0.0, 9.0], [-7.0, 2.0], [4.0, 1.0], [1.0, -5.0], [3.0, 8.0]];
+    let near = graph.nearest(&at);
+    assert_ne!(near.places, graph.places);
+    let moved = at.map(|[x, y]| [7e8 + 90.0 * x, -3e8 + 90.0 * y]);
+    assert_eq!(graph.nearest(&moved), near);
+    // All at one place: any will do.
+    assert_eq!(graph.nearest(&[[1.0, 2.0]; 5]).robots(), 5);
+}
+
+/// From each shape to each other one: the way of all, in cells beside the formation's own, and pairs that come within a cell of
+/// each other if all go straight and arrive at once. `--nocapture` prints the table of `docs/bridge.md`.
+#[test]
+fn from_shape_to_shape_near_places_are_shorter_and_nobody_comes_near_anybody() {
+    for count in [6, 12, 40] {
+        let (mut ways, mut meetings) = ([0.0, 0.0], [0, 0]);
+        for (from_name, from) in Shape::NAMES {
+            for (to_name, to) in Shape::NAMES.into_iter().filter(|(name, _)| *name != from_name) {
+                let graph = |shape: Shape| shape.graph(count, 3).expect("room");
+                let (from, to) = (graph(from), graph(to));
+                let at: Vec<_> = from.places.iter().map(|place| [place.x, place.y].map(f64::from)).collect();
+                for (order, goal) in [&to, &to.nearest(&at)].into_iter().enumerate() {
+                    let there: Vec<_> = goal.places.iter().map(|place| [place.x, place.y].map(f64::from)).collect();
+                    let middle = |of: &[[f64; 2]]| {
+                        [0, 1].map(|axis| of.iter().map(|at| at[axis]).sum::<f64>() / of.len() as f64)
+                    };
+                    let (here, gone) = (middle(&at), middle(&there));
+                    let way = |robot: usize| {
+                        [0, 1].map(|axis| there[robot][axis] - gone[axis] - at[robot][axis] + here[axis])
+                    };
+                    ways[order] += (0..count).map(|robot| libm::hypot(way(robot)[0], way(robot)[1])).sum::<f64>();
+                    for (a, b) in (0..count).flat_map(|a| (0..a).map(move |b| (a, b))) {
+                        let off = [0, 1].map(|axis| at[a][axis] - at[b][axis]);
+                        let turn = [0, 1].map(|axis| way(a)[axis] - way(b)[axis]);
+                        let length = turn[0] * turn[0] + turn[1] * turn[1];
+                        let when = if length > 0.0 { -(off[0] * turn[0] + off[1] * turn[1]) / length } else { 0.0 };
+                        let when = when.clamp(0.0, 1.0);
+                        let [x, y] = [0, 1].map(|axis| off[axis] + when * turn[axis]);
+                        meetings[order] += usize::from(libm::hypot(x, y) < 1.0);
+                    }
+                    assert!(order == 0 || ways[1] <= ways[0] + 1e-9, "{count}: {from_name} to {to_name}");
+                }
+            }
+        }
+        println!("| {count} | {:.0} | {:.0} | {} | {} |", ways[0] / 20.0, ways[1] / 20.0, meetings[0], meetings[1]);
+        assert!(ways[1] < 0.7 * ways[0] && meetings[1] * 10 < meetings[0], "{count}: {ways:?} {meetings:?}");
+    }
 }
