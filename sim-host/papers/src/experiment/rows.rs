@@ -249,6 +249,12 @@ impl<'a, E: Experiment> Jobs<'a, E> {
         Self { sheet: Sheet::new(plan), goes_on, place, course: Mutex::new(None) }
     }
 
+    /// The folder of results, where more than rows can be kept of a run; `None`: nothing is kept.
+    #[must_use]
+    pub fn folder(&self) -> Option<&Path> {
+        self.place.map(|(out, _)| out)
+    }
+
     /// Whether to go on with a run that is under way.
     #[must_use]
     pub fn goes_on(&self) -> bool {

@@ -217,6 +217,9 @@ fn check_spacing_and_step(spacing_m: f64, step_s: f64) -> Result<()> {
     Ok(())
 }
 
+/// The folder of the runs' courses, beside the rows.
+const COURSES: &str = "courses";
+
 impl Experiment for Plan {
     const NAME: &'static str = "flock";
     const UNIT: &'static str = "runs";
@@ -329,12 +332,25 @@ impl Experiment for Plan {
         Run::default()
     }
 
-    /// Rows have no course of the measures, which pictures show: runs that were read of rows are made again for it.
+    /// Rows have no course of the measures, which pictures show: that of each run is kept beside the rows. Runs that were read of
+    /// rows are made again for it only where it is missing.
     fn perform(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Run>>> {
-        let mut runs = jobs.each(|(): &mut (), point, run| self.run(self.lines()[point], run).map(Some))?;
-        for (point, runs) in self.lines().into_iter().zip(&mut runs) {
+        let lines = self.lines();
+        let file = |point: usize, run: usize| {
+            jobs.folder().map(|out| out.join(COURSES).join(format!("{point}-{run}.postcard")))
+        };
+        let mut runs = jobs.each(|(): &mut (), point, number| {
+            let run = self.run(lines[point], number)?;
+            file(point, number as usize).map_or(Ok(()), |file| run.keep(&file))?;
+            Ok(Some(run))
+        })?;
+        for (index, (point, runs)) in lines.iter().zip(&mut runs).enumerate() {
             runs.par_iter_mut().enumerate().filter(|(_, run)| run.trace.is_empty()).try_for_each(|(number, run)| {
-                let again = self.run(point, number as u32)?;
+                if let Some(kept) = file(index, number).and_then(|file| Run::kept(&file, run.hash)) {
+                    *run = kept;
+                    return Ok(());
+                }
+                let again = self.run(*point, number as u32)?;
                 ensure!(
                     again.hash == run.hash,
                     "run {number} of {} is not that of its row; begin --anew",

@@ -1,5 +1,6 @@
 use super::closing::{Closing, Flock, Sides};
 use super::*;
+use crate::experiment::rows::Keeping;
 
 /// Small enough for a test, large enough to show something.
 fn small(case: Case, robots: u32, seconds: f64) -> Plan {
@@ -198,4 +199,25 @@ fn a_resting_reference_gathers_what_a_static_one_lets_go_apart() {
         assert_eq!((together.one_flock, together.past), (2, Some(120)), "{case:?}");
         assert_eq!((together.inside, apart.inside), (0, 0));
     }
+}
+
+#[test]
+fn runs_that_are_there_are_not_made_again_for_their_pictures() {
+    let plan = small(Case::Free, 5, 0.2);
+    let dir = tempfile::tempdir().unwrap();
+    let perform = |keeping: &Keeping| plan.perform(&Jobs::new(&plan, &|_| true, Some((dir.path(), keeping)))).unwrap();
+    let made = perform(&Keeping::default());
+    // A course that no run has: it comes from the file.
+    let file = dir.path().join("courses/0-1.postcard");
+    let mut other = Run::kept(&file, made[0][1].hash).unwrap();
+    assert_eq!(other, made[0][1]);
+    other.energies[0] = 12345.0;
+    other.keep(&file).unwrap();
+    let resume = Keeping { resume: true, ..Keeping::default() };
+    assert_eq!(perform(&resume)[0][1], other);
+    // One that is missing, or another run's, is made again.
+    std::fs::copy(dir.path().join("courses/0-0.postcard"), &file).unwrap();
+    assert_eq!(perform(&resume), made);
+    std::fs::remove_dir_all(dir.path().join("courses")).unwrap();
+    assert_eq!(perform(&resume), made);
 }

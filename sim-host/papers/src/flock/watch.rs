@@ -2,18 +2,22 @@
 
 use super::{Case, Plan};
 use crate::experiment::rows::{Each, Record};
+use anyhow::{Context as _, Result};
+use serde::{Deserialize, Serialize};
 use staya_controller::agent::GuidanceSetup;
 use staya_sim::metrics::flock::{EnergyMeter, FlockMeasure, FlockMeter, gaps};
 use staya_sim::nearby::Space;
-use staya_sim::record::RobotRow;
+use staya_sim::record::{RobotRow, write_atomically};
 use staya_sim::scenario::Scenario;
 use staya_sim::world::plane::Solid;
+use std::fs::create_dir_all;
+use std::path::Path;
 
 /// Pairs count from here on, seconds: the random starts have robots almost in one place.
 const SETTLED_S: f64 = 2.0;
 
 /// What one run gave.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Run {
     /// The flock before the first tick and after each.
     pub trace: Vec<Option<FlockMeasure>>,
@@ -38,7 +42,7 @@ pub struct Run {
 }
 
 /// When it was a flock, and what it was at the end.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
     /// Iteration from which on the conditions of alpha-flocking hold until the end.
     pub alpha_from: Option<usize>,
@@ -93,8 +97,24 @@ impl Record for Run {
     }
 }
 
+impl Run {
+    /// Writes all of it into a file, whose folder is made.
+    pub fn keep(&self, file: &Path) -> Result<()> {
+        let bytes = postcard::to_stdvec(self).context("a run as bytes")?;
+        let folder = file.parent().unwrap_or(Path::new(""));
+        create_dir_all(folder).with_context(|| folder.display().to_string())?;
+        Ok(write_atomically(file, &bytes)?)
+    }
+
+    /// The run with this trace hash that [`Run::keep`] wrote; `None`: the file is of another one, or not there.
+    pub fn kept(file: &Path, hash: u64) -> Option<Self> {
+        let run: Self = postcard::from_bytes(&std::fs::read(file).ok()?).ok()?;
+        (run.hash == hash && !run.trace.is_empty()).then_some(run)
+    }
+}
+
 /// All robots at a moment.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
     pub tick: u32,
     pub places_m: Vec<[f64; 3]>,

@@ -176,6 +176,8 @@ impl Experiment for Plan {
             ("ground", Value::Word(report::word(ground).into())),
             ("robots", Value::Number(f64::from(robots))),
             ("ticks", Value::Number(f64::from(self.ticks))),
+            // Times and memory are those of so many threads: rows of others are of another plan.
+            ("threads", Value::from(rayon::current_num_threads() as u32)),
         ]
     }
 
@@ -213,6 +215,7 @@ impl Experiment for Plan {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::experiment::rows::Keeping;
 
     #[test]
     fn swarms_of_one_density_run_on_both_grounds() {
@@ -230,6 +233,22 @@ mod tests {
             assert!(!plan.run(&scenario(80), &mut row, &|| false).unwrap(), "stopped");
             assert_eq!(row.ticks, 3);
         }
+    }
+
+    #[test]
+    fn rows_of_other_numbers_of_threads_are_not_gone_on_with() {
+        let plan = Plan { robots: vec![20, 80], ticks: 3, ground: vec![Ground::Grid], ..Plan::default() };
+        let dir = tempfile::tempdir().unwrap();
+        let go = |threads: usize, keeping: &Keeping| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let jobs =
+                || plan.perform(&Jobs::new(&plan, &|_| true, Some((dir.path(), keeping)))).map(|rows| rows.len());
+            pool.install(jobs)
+        };
+        assert_eq!(go(1, &Keeping::default()).unwrap(), 2);
+        let resume = Keeping { resume: true, ..Keeping::default() };
+        assert_eq!(go(1, &resume).unwrap(), 2);
+        assert!(go(2, &resume).is_err());
     }
 
     #[test]

@@ -18,10 +18,10 @@ pub use energy::{Energy, EnergyMeter};
 pub use gaps::{Gaps, Obstacle, gaps};
 
 use crate::nearby::{Cells, Found, Query, Search as _, Space};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A crowd at one moment.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FlockMeasure {
     /// Robots.
     pub robots: usize,
