@@ -176,14 +176,7 @@ fn run_into(task: Task<'_>, dir: &Path, mut also: Also<'_>, global: &Global) -> 
     let (outcome, history) =
         simulate_recorded(scenario, recorder, &mut also, from.as_ref(), checkpoints.as_mut(), stop, global)?;
     let wall_seconds = from.map_or(0.0, |from| from.wall_seconds()) + began.elapsed().as_secs_f64();
-    let edges: Vec<_> = match &scenario.formation {
-        Some(formation) => {
-            let id = |place: u16| u32::from(place) + 1;
-            let edges = formation.edges.iter();
-            edges.map(|&(a, b)| (id(a), id(b))).collect()
-        }
-        None => Vec::new(),
-    };
+    let edges = scenario.numbered_edges();
     let names = ["summary.json", "series.csv", "series.schema.json", "trace.csv", "trace.schema.json"];
     let names = if keeps_robots { &names[..] } else { &names[..3] };
     let mut files: Vec<_> = names.iter().map(|name| out.join(name)).collect();

@@ -221,9 +221,7 @@ impl RunArgs {
             return Ok(files);
         }
         files.extend(trace.map(|name| out.join(name)));
-        let id = |place: u16| u32::from(place) + 1;
-        let edges = scenario.formation.iter().flat_map(|formation| &formation.edges);
-        let edges: Vec<_> = edges.map(|&(a, b)| (id(a), id(b))).collect();
+        let edges = scenario.numbered_edges();
         let pictures = match &scenario.plane {
             None => run_pictures(&scenario.terrain, &scenario.changing_cells(), history, &edges, dir)?,
             Some(setup) => motion_pictures(scenario, setup, history, dir)?,

@@ -241,10 +241,9 @@ impl View {
     /// What moves at a moment.
     fn moving(&self, scenario: &Scenario, frame: &Frame) -> Canvas {
         let mut canvas = Canvas::new(self.size[0], self.size[1], "");
-        if let Some(formation) = &scenario.formation {
-            let at = |place: u16| frame.samples.get(usize::from(place)).map(|sample| self.at(sample.position_m));
-            let edges = formation.edges.iter().filter_map(|&(a, b)| Some(vec![at(a)?, at(b)?]));
-            let edges: Vec<_> = edges.collect();
+        if !scenario.formations.is_empty() {
+            let at = |index: usize| frame.samples.get(index).map(|sample| self.at(sample.position_m));
+            let edges: Vec<_> = scenario.edges().filter_map(|[a, b]| Some(vec![at(a)?, at(b)?])).collect();
             canvas.lines(edges.clone(), Stroke::new(WHITE.with_alpha(150), 2.8));
             canvas.lines(edges, Stroke::new(EDGE, 1.2));
         }

@@ -5,10 +5,12 @@
 
 pub mod flock;
 mod formation;
+mod formations;
 pub mod waits;
 
 pub(crate) use formation::in_cells;
 pub use formation::{FORMED_AFTER_S, FormationMeter, Keeping, PlaceError, free_formation_s};
+pub use formations::{FormationKept, FormationMeters};
 
 use rayon::prelude::*;
 

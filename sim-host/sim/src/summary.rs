@@ -1,11 +1,14 @@
 //! The figures of a run, for programs and for readers.
 
+mod groups;
+
 use crate::engine::Outcome;
 use crate::metrics::free_formation_s;
 use crate::metrics::waits::WaitCount;
 use crate::record::PacketCounts;
 use crate::scenario::Scenario;
 use crate::world::plane::Solid;
+use groups::GroupFigures;
 use serde::Serialize;
 use staya_controller::agent::Wait;
 use staya_controller::grid::UNIT;
@@ -55,6 +58,9 @@ pub struct Summary {
     place_error_worst_m: Option<f64>,
     place_error_worst_robot: Option<u32>,
     place_error_worst_s: Option<f64>,
+    /// Groups of robots that differ, each by itself; left out where all are alike.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    groups: Vec<GroupFigures>,
     /// The time until the last one arrived over what the slowest would need by itself: straight to its goal on easy land,
     /// getting going and braking as hard as it can; null: no formation in the plane, or not all arrived.
     time_over_free_time: Option<f64>,
@@ -202,6 +208,7 @@ impl Summary {
             place_error_worst_m: outcome.place_error.map(|error| error.worst_m),
             place_error_worst_robot: outcome.place_error.map(|error| error.robot),
             place_error_worst_s: outcome.place_error.map(|error| error.at_s),
+            groups: scenario.parts.iter().map(|part| GroupFigures::new(part, scenario, outcome)).collect(),
             time_over_free_time: units.iter().max().and_then(|&last| {
                 let free_s = free_formation_s(scenario).filter(|_| outcome.arrived == scenario.robots.len())?;
                 Some(seconds(last as f64) / free_s)
@@ -328,6 +335,9 @@ impl Summary {
         {
             let worst = format!("at most {worst:.3} m (robot {robot} after {at_s:.1} s)");
             line("off their places", format!("after 10 s, {worst}, {mean:.3} m on average"))?;
+        }
+        for (index, group) in self.groups.iter().enumerate() {
+            line(if index == 0 { "groups" } else { "" }, group.to_string())?;
         }
         if let Some(ratio) = self.time_over_free_time {
             line("time", format!("{ratio:.3} times of what the slowest needs by itself, straight"))?;

@@ -219,10 +219,8 @@ impl Scene {
             land: has_land.then(|| land(&scenario.terrain, origin)),
             solids: setup.map_or_else(Vec::new, |setup| solids(&setup.solids, is_in_space(scenario), origin)),
             intruders: setup.map_or(&[][..], |setup| &setup.intruders).iter().map(Intruder::from).collect(),
-            formation: scenario
-                .formation
-                .as_ref()
-                .map(|graph| Formation { edges: graph.edges.iter().map(|&(a, b)| [a.into(), b.into()]).collect() }),
+            formation: (!scenario.formations.is_empty())
+                .then(|| Formation { edges: scenario.edges().map(|edge| edge.map(|at| at as u32)).collect() }),
             radio: Radio::of(scenario),
             parameters: Vec::new(),
             words: Words { modes: MODES.map(str::to_owned).into(), waits: wait_names().map(str::to_owned).collect() },

@@ -42,7 +42,7 @@ impl VehicleModel {
         Self {
             flies: plane.is_some_and(|plane| plane.kinds().any(|group| group.safety.kind() == SafetyKind::Fly)),
             grid: on_grid.then(|| scenario.terrain.clone()),
-            in_formation: on_grid && scenario.formation.is_some(),
+            in_formation: on_grid && !scenario.formations.is_empty(),
             max_speed_mps: largest(|group| group.abilities.max_speed_mps),
             radius_m: largest(|group| group.radius_m),
             solids: plane.map_or_else(Vec::new, |plane| plane.solids.clone()),

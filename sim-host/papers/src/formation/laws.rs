@@ -88,7 +88,7 @@ impl Law {
             Self::Paper => {
                 let published = plan.published;
                 scenario.published = Some(published.params);
-                scenario.formation = Some(plan.graph_within(published.rho)?);
+                scenario.formations = vec![plan.graph_within(published.rho)?];
                 scenario.route.sharpness = SHUFFLE;
             }
         }

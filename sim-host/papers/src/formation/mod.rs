@@ -200,6 +200,7 @@ impl Plan {
             })?,
             places,
             edges: EDGES.to_vec(),
+            first: 0,
         })
     }
 
@@ -261,7 +262,8 @@ impl Plan {
             radio: RadioParams { range_m: f64::INFINITY, ..RadioParams::default() },
             robots: robots.collect(),
             plane: None,
-            formation: graph,
+            formations: graph.into_iter().collect(),
+            parts: Vec::new(),
             route: RouteSetup { params: self.route, replan: Replan::EachCell, sharpness: self.sharpness },
             formation_params: self.formation,
             published: None,

@@ -5,7 +5,7 @@ use super::body::Kinematics;
 use super::ground::{Ground, StateWords};
 use super::hash::grid_words;
 use super::intervene::Change;
-use crate::metrics::{FormationMeter, Keeping, in_cells};
+use crate::metrics::{FormationMeters, Keeping, in_cells};
 use crate::record::Motion;
 use crate::scenario::{Robot, Scenario};
 use crate::terrain::Terrain;
@@ -23,7 +23,7 @@ pub struct Grid {
     pub(super) world: World,
     kinematics: Kinematics,
     robots: Vec<Robot>,
-    pub(super) meter: Option<FormationMeter>,
+    pub(super) meter: Option<FormationMeters>,
     changed: Changed,
     /// What robots know of land that they do not see.
     pub(super) scouts: Option<Scouts>,
@@ -41,10 +41,7 @@ impl Grid {
     pub fn new(scenario: &Scenario) -> Result<Self, Misplaced> {
         let starts = scenario.robots.iter().map(|robot| (robot.id, robot.start));
         let world = World::new(scenario.terrain.clone(), scenario.rules, scenario.seed, starts)?;
-        let meter = scenario
-            .formation
-            .as_ref()
-            .map(|graph| FormationMeter::new(graph, scenario.eps(), world.terrain(), scenario.tick_s()));
+        let meter = FormationMeters::new(scenario);
         Ok(Self {
             kinematics: Kinematics::new(world.terrain(), scenario.tick_s()),
             robots: scenario.numbered(),
@@ -97,8 +94,8 @@ pub struct GridBody {
 
 /// Puts back what a meter had measured.
 pub(super) fn restore_meter(
-    meter: &mut Option<FormationMeter>,
-    measured: Option<FormationMeter>,
+    meter: &mut Option<FormationMeters>,
+    measured: Option<FormationMeters>,
 ) -> Result<(), &'static str> {
     let is_same = match (&*meter, &measured) {
         (Some(meter), Some(measured)) => meter.is_of(measured),
@@ -128,7 +125,7 @@ pub(super) fn busy(free_at: u64, now_units: u64, tick_us: u32) -> Duration {
 impl Ground for Grid {
     type Scratch = Vec<u8>;
     type Body = GridBody;
-    type Shared = (Option<FormationMeter>, Changed);
+    type Shared = (Option<FormationMeters>, Changed);
 
     fn body(&self, index: usize) -> GridBody {
         let Body { id: _, cell, entered_by, free_at, crossing, is_shut_in } = self.world.bodies()[index];
@@ -277,12 +274,11 @@ impl Ground for Grid {
         Some(if counts { meter.measure(&bodies) } else { meter.look(&bodies) })
     }
 
-    fn mean_keeping(&self) -> Option<Keeping> {
-        self.meter.as_ref().and_then(FormationMeter::mean)
+    fn formations(&self) -> Option<&FormationMeters> {
+        self.meter.as_ref()
     }
 
     fn formation_error(&self, number: usize) -> f64 {
-        let errors = self.meter.as_ref().map_or(&[][..], FormationMeter::errors);
-        errors.get(number).copied().unwrap_or(f64::NAN)
+        self.meter.as_ref().map_or(f64::NAN, |meter| meter.error_of(number))
     }
 }

@@ -2,7 +2,7 @@
 
 use super::inspect::Scratchpad;
 use super::{Change, Status};
-use crate::metrics::{Keeping, PlaceError};
+use crate::metrics::{FormationKept, FormationMeters, Keeping, PlaceError};
 use crate::record::Motion;
 use crate::terrain::Terrain;
 use crate::world::Refusal;
@@ -109,14 +109,24 @@ pub trait Ground: Send + Sync {
         None
     }
 
-    /// The mean of what [`Ground::keeping`] counted.
-    fn mean_keeping(&self) -> Option<Keeping> {
+    /// What [`Ground::keeping`] counted.
+    fn formations(&self) -> Option<&FormationMeters> {
         None
     }
 
-    /// How far bodies were from their places in a formation, in metres; `None` on the grid, where places are cells.
-    fn place_error(&self) -> Option<PlaceError> {
-        None
+    /// Whether bodies are in the plane or in space: distances in metres mean something then.
+    fn has_bodies(&self) -> bool {
+        self.clearance().is_some()
+    }
+
+    /// What is known of all formations, and of each.
+    fn kept(&self) -> (Option<Keeping>, Option<PlaceError>, Vec<FormationKept>) {
+        let Some(meters) = self.formations() else {
+            return (None, None, Vec::new());
+        };
+        // On the grid places are cells.
+        let place_error = meters.place_error().filter(|_| self.has_bodies());
+        (meters.mean(), place_error, meters.each(self.has_bodies()))
     }
 
     /// How far a robot was from its place in the formation when [`Ground::keeping`] last looked, cells; NaN when it

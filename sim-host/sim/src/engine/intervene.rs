@@ -121,10 +121,13 @@ where
         if !self.ground.is_open(place_m) {
             return Err(Refusal::new("place_m", "nobody can stand there", "give a place on the map and not in a wall"));
         }
-        let shape_of = self.ground.goal_m(0).filter(|_| number.is_none() && self.keeps_shape);
         let robots = number.map_or(0..self.robots.len(), |number| number..number + 1);
+        // Where the top leader of each formation was to go: the others go beside it.
+        let tops = self.shapes.iter().filter(|_| number.is_none());
+        let tops: Vec<_> = tops.map(|members| (members.clone(), self.ground.goal_m(members.start))).collect();
         for number in robots.clone() {
-            let own = shape_of.zip(self.ground.goal_m(number));
+            let top = tops.iter().find(|(members, _)| members.contains(&number)).and_then(|(_, goal_m)| *goal_m);
+            let own = top.zip(self.ground.goal_m(number));
             let off_m = own.map_or([0.0; 3], |(first, own)| [0, 1, 2].map(|axis| own[axis] - first[axis]));
             self.ground.set_goal(number, self.tick, [0, 1, 2].map(|axis| place_m[axis] + off_m[axis]));
         }

@@ -48,7 +48,7 @@ use crate::metrics::Arrivals;
 use crate::metrics::waits::Waits;
 use crate::radio::{self, HostWire, Radio};
 use crate::record::{PacketCounts, TickRow};
-use crate::scenario::{Fault, Intervention, Robot, Scenario};
+use crate::scenario::{Fault, Formation, Intervention, Robot, Scenario};
 use crate::terrain::change::LandChange;
 use attacker::Attacker;
 use hash::Chain;
@@ -65,6 +65,7 @@ use staya_controller::robot::RobotId;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{Format, Ring};
 use std::collections::{HashMap, VecDeque};
+use std::ops::Range;
 
 /// Robots that a thread takes at least at a time: less would cost more in handing out than in work.
 const BATCH: usize = 64;
@@ -156,8 +157,8 @@ pub struct Engine<W, G: Guidance<f32>, A> {
     /// What is still to be done to the run, by rising tick.
     interventions: VecDeque<(u32, Intervention)>,
     tuned: Vec<Tuned>,
-    /// Goals of all move together.
-    keeps_shape: bool,
+    /// The robots of each formation, whose goals move together.
+    shapes: Vec<Range<usize>>,
     brains: Brains<G, A>,
     ground: W,
     radio: Radio,
@@ -231,7 +232,7 @@ where
             changes: scenario.changes.clone(),
             interventions: scenario.interventions.iter().cloned().collect(),
             tuned: Vec::new(),
-            keeps_shape: scenario.formation.is_some(),
+            shapes: scenario.formations.iter().map(Formation::members).collect(),
             brains: Box::new(brains),
             radio: Radio::new(&scenario.radio, scenario.seed, scenario.tick_us, ids).on_torus(scenario.torus_m()),
             ground,

@@ -11,7 +11,7 @@ use super::Status;
 use super::grid::Changed;
 use super::ground::{Ground, StateWords};
 use super::intervene::Change;
-use crate::metrics::{FormationMeter, Keeping, PlaceError};
+use crate::metrics::{FormationMeters, Keeping};
 use crate::record::Motion;
 use crate::scenario::{Order, PlaneSetup, Robot, Scenario, Target, goals};
 use crate::terrain::Terrain;
@@ -42,7 +42,7 @@ pub struct PlaneGround {
     pub(super) clearance: Clearance,
     /// After the last tick, metres.
     pub(super) gap_m: Option<f64>,
-    pub(super) meter: Option<FormationMeter>,
+    pub(super) meter: Option<FormationMeters>,
     changed: Changed,
     /// Whom robots see, if they have eyes.
     sight: Option<Sight>,
@@ -99,10 +99,7 @@ impl PlaneGround {
             gap_m: None,
             changed: Changed::new(),
             scouts: scenario.scouts(),
-            meter: scenario
-                .formation
-                .as_ref()
-                .map(|graph| FormationMeter::new(graph, scenario.eps(), &scenario.terrain, scenario.tick_s())),
+            meter: FormationMeters::new(scenario),
             plane,
             robots: scenario.numbered(),
             numbers: (0..scenario.robots.len() as u32).collect(),
@@ -310,17 +307,12 @@ impl Ground for PlaneGround {
         Some(if counts { meter.measure(&places) } else { meter.look(&places) })
     }
 
-    fn mean_keeping(&self) -> Option<Keeping> {
-        self.meter.as_ref().and_then(FormationMeter::mean)
-    }
-
-    fn place_error(&self) -> Option<PlaceError> {
-        self.meter.as_ref().and_then(FormationMeter::place_error)
+    fn formations(&self) -> Option<&FormationMeters> {
+        self.meter.as_ref()
     }
 
     fn formation_error(&self, number: usize) -> f64 {
-        let errors = self.meter.as_ref().map_or(&[][..], FormationMeter::errors);
-        errors.get(number).copied().unwrap_or(f64::NAN)
+        self.meter.as_ref().map_or(f64::NAN, |meter| meter.error_of(number))
     }
 
     fn clearance(&self) -> Option<Clearance> {

@@ -90,6 +90,7 @@ where
     /// What came of it so far.
     #[must_use]
     pub fn outcome(&self) -> Outcome {
+        let (formation, place_error, formations) = self.ground.kept();
         Outcome {
             ticks: self.tick,
             seconds: self.seconds(),
@@ -99,8 +100,9 @@ where
             packets: self.packets,
             throttled: self.throttled,
             waits: self.waits.counts(),
-            formation: self.ground.mean_keeping(),
-            place_error: self.ground.place_error(),
+            formation,
+            place_error,
+            formations,
             clearance: self.ground.clearance(),
             trace_hash: hash::sum(&self.chains),
         }

@@ -4,7 +4,7 @@ use super::state::{Saves, State, StateError};
 use super::witness::Witness;
 use super::{Engine, ExternalController, Grid, Ground, HostLaw, PlaneGround};
 use crate::metrics::waits::WaitCount;
-use crate::metrics::{Keeping, PlaceError};
+use crate::metrics::{FormationKept, Keeping, PlaceError};
 use crate::record::{PacketCounts, RobotRow, TickRow};
 use crate::scenario::Scenario;
 use crate::terrain::Terrain;
@@ -75,6 +75,8 @@ pub struct Outcome {
     pub formation: Option<Keeping>,
     /// How far robots in the plane were from their places once they had had time to form.
     pub place_error: Option<PlaceError>,
+    /// The same of each formation, in the order of [`Scenario::formations`](crate::scenario::Scenario::formations).
+    pub formations: Vec<FormationKept>,
     /// How near bodies came to each other and to obstacles; `None` on the grid, where bodies have no size.
     pub clearance: Option<Clearance>,
     /// The same for equal traces, on any machine and any number of threads.
@@ -178,8 +180,9 @@ pub(super) fn agents<const C: usize>(
         (scenario.guidance(index), scenario.safety(index), speed_mps, tolerance_m)
     };
     // Places in a formation differ from robot to robot, otherwise groups at most: each is made once.
-    let group_of = |index: usize| match (&scenario.formation, &scenario.plane) {
-        (Some(_), _) => index + 1,
+    let groups = scenario.plane.as_ref().map_or(0, |plane| plane.groups.len());
+    let group_of = |index: usize| match (scenario.formation_of(index), &scenario.plane) {
+        (Some(_), _) => groups + 1 + index,
         (None, Some(plane)) => plane.starts[index].group.map_or(0, |group| group + 1),
         (None, None) => 0,
     };

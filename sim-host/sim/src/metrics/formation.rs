@@ -205,8 +205,9 @@ pub(crate) fn in_cells(cell: Cell) -> [f64; 2] {
 /// getting going and braking as hard as it can, seconds; `None` without such a formation.
 #[must_use]
 pub fn free_formation_s(scenario: &Scenario) -> Option<f64> {
-    let plane = scenario.plane.as_ref().filter(|_| scenario.formation.is_some())?;
-    let free = plane.starts.iter().enumerate().filter_map(|(index, start)| {
+    let plane = scenario.plane.as_ref().filter(|_| !scenario.formations.is_empty())?;
+    let keeps_one = |(index, _): &(usize, _)| scenario.formation_of(*index).is_some();
+    let free = plane.starts.iter().enumerate().filter(keeps_one).filter_map(|(index, start)| {
         let group = plane.group(index);
         let goal_m = start.places.first()?.position_m;
         let off = [0, 1].map(|axis| goal_m[axis] - start.position_m[axis]);
@@ -241,6 +242,7 @@ mod tests {
             places: places.iter().map(|&(x, y)| Cell::new(x, y)).collect(),
             edges: Vec::new(),
             templates: Vec::new(),
+            first: 0,
         };
         // Diagonal: 5 cells.
         FormationMeter::new(&formation, eps, &Terrain::flat(5, 4), 4.0)

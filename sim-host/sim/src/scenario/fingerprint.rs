@@ -48,7 +48,8 @@ impl Scenario {
             rules,
             radio,
             robots,
-            formation,
+            formations,
+            parts: _,
             plane,
             route,
             maps,
@@ -69,10 +70,13 @@ impl Scenario {
         let mut all = Fingerprint(0xCBF2_9CE4_8422_2325);
         all.mix(terrain.cells());
         all.add(&(terrain.width(), terrain.height(), terrain.cell_m, terrain.origin_m));
-        all.add(&(seed, tick_us, rules, radio, robots, formation, plane, route, formation_params, published));
+        all.add(&(seed, tick_us, rules, radio, robots, formations.first(), plane, route, formation_params, published));
         all.add(&(faults, interventions, misnumbered, claims, attacks));
         if !changes.is_empty() {
             all.add(changes);
+        }
+        if formations.len() > 1 {
+            all.add(formations);
         }
         if let Some(Scouting { map, sight }) = scouting {
             all.mix(map.cells());

@@ -8,6 +8,7 @@ mod check;
 mod claims;
 mod field;
 mod fingerprint;
+mod formation;
 mod intervention;
 mod land;
 mod maps;
@@ -23,6 +24,7 @@ mod source;
 
 pub use claims::ClaimsTable;
 pub use field::Field;
+pub use formation::FormationEntry;
 pub use intervention::{Intervention, InterventionTable, with_interventions};
 pub use maps::MapsTable;
 pub use params::{FormationTable, GridTable, RouteTable};
@@ -35,9 +37,9 @@ pub use plane::{
 pub use ranges::within;
 pub use robots::{Formation, Robot};
 pub use schema::{
-    AttackKind, AttackTable, AuthenticationTable, ChangeTable, Crop, DriftTable, EntropyTable, FaultTable,
-    FormationEntry, Lie, MisnumberedTable, NaturalTable, RobotEntry, RobotsTable, RollTable, ScatteredEntry, ScenEntry,
-    ScenarioFile, ScoutingTable, TerrainTable, UniformTable,
+    AttackKind, AttackTable, AuthenticationTable, ChangeTable, Crop, DriftTable, EntropyTable, FaultTable, Lie,
+    MisnumberedTable, NaturalTable, RobotEntry, RobotsTable, RollTable, ScatteredEntry, ScenEntry, ScenarioFile,
+    ScoutingTable, TerrainTable, UniformTable,
 };
 pub use setting::{Setting, text_with, with_settings};
 pub use source::ScenarioError;
@@ -58,6 +60,7 @@ use staya_controller::formation::published::PublishedParams;
 use staya_controller::land::MapParams;
 use staya_controller::neighbor::Claims;
 use staya_controller::robot::RobotId;
+use std::ops::Range;
 use std::path::Path;
 
 /// Where the fields are listed.
@@ -70,6 +73,15 @@ pub struct Overrides {
     pub seed: Option<u64>,
     /// Instead of `ticks`; at least 1.
     pub ticks: Option<u32>,
+}
+
+/// Robots that stand in one place of the file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// The table that describes them: `plane`, `plane.group[0]`, `robots.formation[1]`.
+    pub table: String,
+    /// The robots, counted from 0.
+    pub members: Range<usize>,
 }
 
 /// A robot that goes down for a while.
@@ -151,8 +163,10 @@ pub struct Scenario {
     pub radio: RadioParams,
     /// Who takes part, by rising number; starts are free and no two are the same, nor are goals.
     pub robots: Vec<Robot>,
-    /// The formation of robots 1, 2, ..., if they keep one.
-    pub formation: Option<Formation>,
+    /// The formations that robots keep; nobody is in two.
+    pub formations: Vec<Formation>,
+    /// Groups of robots that differ, as the file has them; empty: all are alike.
+    pub parts: Vec<Part>,
     /// Bodies in the plane or in space, if they do not move from cell to cell.
     pub plane: Option<PlaneSetup>,
     /// How robots in the plane see each other, if they do.
@@ -208,11 +222,17 @@ impl Scenario {
         file.ticks = overrides.ticks.unwrap_or(file.ticks);
         check::general(&source, &file)?;
         check::radio(&source, &file)?;
-        let (terrain, robots, formation, plane) = match &file.plane {
+        let (terrain, robots, formations, parts, plane) = match &file.plane {
             None => {
                 let terrain = check::terrain(&source, &file)?;
-                let (robots, formation) = robots::build(&source, &file, &terrain)?;
-                (terrain, robots, formation, None)
+                let (robots, formations) = robots::build(&source, &file, &terrain)?;
+                let parts = formations.iter().enumerate().filter(|_| formations.len() > 1);
+                let parts = parts.map(|(index, formation)| Part {
+                    table: format!("robots.formation[{index}]"),
+                    members: formation.members(),
+                });
+                let parts = parts.collect();
+                (terrain, robots, formations, parts, None)
             }
             Some(table) => {
                 let land = match &file.terrain {
@@ -227,11 +247,10 @@ impl Scenario {
                     }
                     (None, _) => None,
                 };
-                let (robots, formation) = cells.unzip();
-                let robots = robots.as_deref();
-                let (plane, robots) = plane::build(&source, &file, table, land.as_ref(), robots)?;
+                let plane::Placed { setup, robots, formations, parts } =
+                    plane::build(&source, &file, table, land.as_ref(), cells)?;
                 let land = land.unwrap_or_else(|| Terrain::flat(1, 1));
-                (land, robots, formation.flatten(), Some(plane))
+                (land, robots, formations, parts, Some(setup))
             }
         };
         let heard = plane.as_ref().map_or(0, PlaneSetup::heard);
@@ -268,7 +287,8 @@ impl Scenario {
             rules: MoveRules { norm: file.grid.norm, corner_cutting: file.grid.corner_cutting },
             radio: file.radio.clone(),
             robots,
-            formation,
+            formations,
+            parts,
             plane,
             eyes,
             route,

@@ -1,6 +1,7 @@
 //! Who takes part: from the `[robots]` table to robots with starts and goals.
 
-use super::schema::{FormationEntry, RobotEntry, ScatteredEntry, ScenEntry};
+use super::formation::FormationEntry;
+use super::schema::{RobotEntry, ScatteredEntry, ScenEntry};
 use super::source::Source;
 use super::{ScenarioError, ScenarioFile};
 use crate::terrain::Terrain;
@@ -11,6 +12,7 @@ use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;
 use staya_controller::template::{Template, TemplateError};
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 /// Keep the draws of this module apart from all others.
 const PLACES: u32 = 0x0053_0001;
@@ -33,7 +35,7 @@ pub struct Robot {
     pub goal: Cell,
 }
 
-/// The graph that a formation keeps (KUZ section 2: Phi). Robot i + 1 has place i.
+/// The graph that a formation keeps (KUZ section 2: Phi).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Formation {
     /// Where each robot should be, in cells relative to the first.
@@ -42,6 +44,26 @@ pub struct Formation {
     pub edges: Vec<(u16, u16)>,
     /// What the robot of each place knows of it.
     pub templates: Vec<Template<TEMPLATE>>,
+    /// The robot that has the first place, the top leader, counted from 0; the others follow it in the order of places.
+    pub first: usize,
+}
+
+impl Formation {
+    /// Its robots, counted from 0, in the order of their places.
+    #[must_use]
+    pub fn members(&self) -> Range<usize> {
+        self.first..self.first + self.places.len()
+    }
+
+    /// The same formation of robots from robot `first` on, counted from 0, whose number is `id`: templates name members by
+    /// numbers, which is what tells formations apart.
+    pub(super) fn of(mut self, first: usize, id: u32) -> Self {
+        self.first = first;
+        for entry in self.templates.iter_mut().flat_map(|template| &mut template.entries) {
+            entry.id = RobotId(entry.id.0 - 1 + id);
+        }
+        self
+    }
 }
 
 /// A robot and the field that put it there.
@@ -56,21 +78,28 @@ pub(super) fn build(
     source: &Source<'_>,
     file: &ScenarioFile,
     terrain: &Terrain,
-) -> Result<(Vec<Robot>, Option<Formation>), ScenarioError> {
+) -> Result<(Vec<Robot>, Vec<Formation>), ScenarioError> {
     let Some(table) = &file.robots else {
         return Err(source.error("robots", "it is missing", "say who takes part"));
     };
-    let mut formation = None;
-    let entries = match (&table.list, &table.formation, &table.scen, &table.scattered) {
-        (Some(list), None, None, None) => listed(list),
-        (None, Some(entry), None, None) => {
-            let graph = graph(source, entry, file.formation.rho)?;
-            let entries = placed(source, entry, &graph)?;
-            formation = Some(graph);
+    let mut formations = Vec::new();
+    let entries = match (&table.list, &table.formation[..], &table.scen, &table.scattered) {
+        (Some(list), [], None, None) => listed(list),
+        (None, [_, ..], None, None) => {
+            let mut entries = Vec::new();
+            for (index, entry) in table.formation.iter().enumerate() {
+                let field = match table.formation.len() {
+                    1 => "robots.formation".to_owned(),
+                    _ => format!("robots.formation[{index}]"),
+                };
+                let (graph, mut members) = formation(source, &field, entry, file.formation.rho, entries.len())?;
+                entries.append(&mut members);
+                formations.push(graph);
+            }
             entries
         }
-        (None, None, Some(entry), None) => from_scen(source, entry, terrain)?,
-        (None, None, None, Some(entry)) => scattered(source, entry, terrain, file.seed)?,
+        (None, [], Some(entry), None) => from_scen(source, entry, terrain)?,
+        (None, [], None, Some(entry)) => scattered(source, entry, terrain, file.seed)?,
         _ => {
             return Err(source.error(
                 "robots",
@@ -82,7 +111,34 @@ pub(super) fn build(
     check(source, &entries, terrain)?;
     let mut robots: Vec<_> = entries.into_iter().map(|entry| entry.robot).collect();
     robots.sort_unstable_by_key(|robot| robot.id);
-    Ok((robots, formation))
+    Ok((robots, formations))
+}
+
+/// A formation of a group in the plane, as if there were no other robots; [`Formation::of`] says which they are.
+pub(super) fn of_group(
+    source: &Source<'_>,
+    field: &str,
+    entry: &FormationEntry,
+    file: &ScenarioFile,
+    terrain: &Terrain,
+) -> Result<(Vec<Robot>, Formation), ScenarioError> {
+    let (formation, entries) = formation(source, field, entry, file.formation.rho, 0)?;
+    check(source, &entries, terrain)?;
+    Ok((entries.into_iter().map(|entry| entry.robot).collect(), formation))
+}
+
+/// A formation of the robots behind `before` others.
+fn formation(
+    source: &Source<'_>,
+    field: &str,
+    entry: &FormationEntry,
+    rho: Option<u8>,
+    before: usize,
+) -> Result<(Formation, Vec<Entry>), ScenarioError> {
+    let graph = graph(source, field, entry, rho)?;
+    let first = u32::try_from(before).unwrap_or(u32::MAX).saturating_add(1);
+    let entries = placed(source, field, entry, &graph, first)?;
+    Ok((graph.of(before, first), entries))
 }
 
 fn cell([x, y]: [i16; 2]) -> Cell {
@@ -102,19 +158,24 @@ fn listed(list: &[RobotEntry]) -> Vec<Entry> {
 
 type Graph = (Vec<Cell>, Vec<(u16, u16)>);
 
-fn graph(source: &Source<'_>, entry: &FormationEntry, rho: Option<u8>) -> Result<Formation, ScenarioError> {
+fn graph(
+    source: &Source<'_>,
+    field: &str,
+    entry: &FormationEntry,
+    rho: Option<u8>,
+) -> Result<Formation, ScenarioError> {
     let (places, edges) = match (entry.rows, entry.columns, &entry.places, &entry.edges) {
         (Some(rows), Some(columns), None, None) => grid_graph(rows, columns, entry.spacing.unwrap_or([3, -3]))
             .ok_or_else(|| {
                 source.error(
-                    "robots.formation",
+                    field,
                     format!("{rows} rows of {columns} robots do not fit any map or any memory"),
                     format!("give 1 or more of both, at most {MAX_PLACES} robots, and a smaller spacing"),
                 )
             }),
-        (None, None, Some(places), Some(edges)) => given_graph(source, places, edges),
+        (None, None, Some(places), Some(edges)) => given_graph(source, field, places, edges),
         _ => Err(source.error(
-            "robots.formation",
+            field,
             "its shape is not clear",
             "give rows and columns (and spacing), or places and edges",
         )),
@@ -129,11 +190,11 @@ fn graph(source: &Source<'_>, entry: &FormationEntry, rho: Option<u8>) -> Result
         Some(rho) => templates(rho),
         None => templates(3).or_else(|_| templates(2)).or_else(|_| templates(1)),
     }
-    .map_err(|error| template_error(source, error))?;
-    Ok(Formation { places, edges, templates })
+    .map_err(|error| template_error(source, field, error))?;
+    Ok(Formation { places, edges, templates, first: 0 })
 }
 
-fn template_error(source: &Source<'_>, error: TemplateError) -> ScenarioError {
+fn template_error(source: &Source<'_>, field: &str, error: TemplateError) -> ScenarioError {
     match error {
         TemplateError::TooMany => source.error(
             "formation.rho",
@@ -141,7 +202,7 @@ fn template_error(source: &Source<'_>, error: TemplateError) -> ScenarioError {
             "give a smaller rho, or fewer edges per robot",
         ),
         TemplateError::NoSuchPlace | TemplateError::BadEdge => source.error(
-            "robots.formation",
+            field,
             format!("the formation has more than {MAX_PLACES} places"),
             format!("give at most {MAX_PLACES} robots"),
         ),
@@ -170,17 +231,22 @@ fn grid_graph(rows: u16, columns: u16, [dx, dy]: [i16; 2]) -> Option<Graph> {
     Some((places, edges))
 }
 
-fn given_graph(source: &Source<'_>, places: &[[i16; 2]], edges: &[[u32; 2]]) -> Result<Graph, ScenarioError> {
+fn given_graph(
+    source: &Source<'_>,
+    field: &str,
+    places: &[[i16; 2]],
+    edges: &[[u32; 2]],
+) -> Result<Graph, ScenarioError> {
     if places.first() != Some(&[0, 0]) {
         return Err(source.error(
-            "robots.formation.places",
+            &format!("{field}.places"),
             "the first place is not [0, 0]",
             "places are relative to robot 1, the top leader",
         ));
     }
     if places.len() > usize::from(MAX_PLACES) {
         return Err(source.error(
-            "robots.formation.places",
+            &format!("{field}.places"),
             format!("{} robots are more than a formation holds", places.len()),
             format!("give at most {MAX_PLACES}"),
         ));
@@ -197,7 +263,7 @@ fn given_graph(source: &Source<'_>, places: &[[i16; 2]], edges: &[[u32; 2]]) -> 
             }
             _ => {
                 return Err(source.error(
-                    &format!("robots.formation.edges[{index}]"),
+                    &format!("{field}.edges[{index}]"),
                     format!("[{a}, {b}] joins no two robots of the formation"),
                     format!("give two different numbers from 1 to {}", places.len()),
                 ));
@@ -206,7 +272,7 @@ fn given_graph(source: &Source<'_>, places: &[[i16; 2]], edges: &[[u32; 2]]) -> 
     }
     if let Some(lost) = unreached(places.len(), &pairs) {
         return Err(source.error(
-            "robots.formation.edges",
+            &format!("{field}.edges"),
             format!("no edges lead from robot 1 to robot {}", lost + 1),
             "join every robot to the formation",
         ));
@@ -230,7 +296,13 @@ fn unreached(count: usize, edges: &BTreeSet<(u16, u16)>) -> Option<usize> {
     reached.iter().position(|is_reached| !is_reached)
 }
 
-fn placed(source: &Source<'_>, entry: &FormationEntry, graph: &Formation) -> Result<Vec<Entry>, ScenarioError> {
+fn placed(
+    source: &Source<'_>,
+    field: &str,
+    entry: &FormationEntry,
+    graph: &Formation,
+    first: u32,
+) -> Result<Vec<Entry>, ScenarioError> {
     let shifted = |[x, y]: [i16; 2], by: Cell| Some(Cell::new(x.checked_add(by.x)?, y.checked_add(by.y)?));
     let count = graph.places.len();
     match (&entry.start, &entry.starts) {
@@ -238,11 +310,11 @@ fn placed(source: &Source<'_>, entry: &FormationEntry, graph: &Formation) -> Res
         (None, Some(starts)) if starts.len() == count => {}
         (None, Some(starts)) => {
             let what = format!("{} starts for {count} robots", starts.len());
-            return Err(source.error("robots.formation.starts", what, "give one for each robot, by their numbers"));
+            return Err(source.error(&format!("{field}.starts"), what, "give one for each robot, by their numbers"));
         }
         _ => {
             let remedy = "give start, of robot 1, or starts, of all, and not both";
-            return Err(source.error("robots.formation", "it is not clear where they start", remedy));
+            return Err(source.error(field, "it is not clear where they start", remedy));
         }
     }
     let start = |index: usize, place: Cell| match (&entry.starts, entry.start) {
@@ -250,15 +322,15 @@ fn placed(source: &Source<'_>, entry: &FormationEntry, graph: &Formation) -> Res
         (None, start) => shifted(start?, place),
     };
     let placed = |(index, &place): (usize, &Cell)| {
-        let number = index as u32 + 1;
+        let number = index as u32 + first;
         match (start(index, place), shifted(entry.goal, place)) {
             (Some(start), Some(goal)) => Ok(Entry {
                 robot: Robot { id: RobotId(number), start, goal },
-                field: "robots.formation".to_owned(),
-                goal_moves: number > 1,
+                field: field.to_owned(),
+                goal_moves: index > 0,
             }),
             _ => Err(source.error(
-                "robots.formation",
+                field,
                 format!("robot {number} would be outside of any map"),
                 "give a smaller formation or another start and goal",
             )),

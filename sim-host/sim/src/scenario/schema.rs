@@ -4,6 +4,7 @@
 //! simulated. File names are relative to the scenario file.
 
 use super::claims::ClaimsTable;
+use super::formation::{self, FormationEntry};
 use super::intervention::InterventionTable;
 use super::maps::MapsTable;
 use super::params::{FormationTable, GridTable, RouteTable};
@@ -73,10 +74,22 @@ pub struct ScenarioFile {
 }
 
 impl ScenarioFile {
-    /// Whether the robots keep a formation.
+    /// Whether robots given in cells keep a formation.
+    #[must_use]
+    pub fn cells_in_formation(&self) -> bool {
+        self.robots.as_ref().is_some_and(|robots| !robots.formation.is_empty())
+    }
+
+    /// Whether any robots keep one.
     #[must_use]
     pub fn in_formation(&self) -> bool {
-        self.robots.as_ref().is_some_and(|robots| robots.formation.is_some())
+        self.cells_in_formation() || !self.group_formations().is_empty()
+    }
+
+    /// The formations of groups in the plane.
+    pub(super) fn group_formations(&self) -> Vec<&FormationEntry> {
+        let groups = self.plane.iter().flat_map(|plane| &plane.group);
+        groups.filter_map(|group| group.robots.formation.as_ref()).collect()
     }
 }
 
@@ -253,8 +266,9 @@ pub struct Crop {
 pub struct RobotsTable {
     /// Each robot by itself.
     pub list: Option<Vec<RobotEntry>>,
-    /// A formation that travels together.
-    pub formation: Option<FormationEntry>,
+    /// A formation that travels together, or several: `[[robots.formation]]`.
+    #[serde(default, deserialize_with = "formation::one_or_more")]
+    pub formation: Vec<FormationEntry>,
     /// The first robots of a Moving AI multi-agent scenario.
     pub scen: Option<ScenEntry>,
     /// Robots at random places.
@@ -270,30 +284,6 @@ pub struct RobotEntry {
     /// The cell where it starts.
     pub start: [i16; 2],
     /// The cell where it should go.
-    pub goal: [i16; 2],
-}
-
-/// `robots.formation`: robots 1, 2, 3, ... in rows, or at given places.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct FormationEntry {
-    /// Rows of a grid formation: robots are numbered row by row, neighbours in a row or column are
-    /// joined by an edge.
-    pub rows: Option<u16>,
-    /// Robots in a row.
-    pub columns: Option<u16>,
-    /// Cells from one column to the next (x) and from one row to the next (y), either may be
-    /// negative. Default: `[3, -3]`, which looks as on paper.
-    pub spacing: Option<[i16; 2]>,
-    /// Instead of rows and columns: where each robot should be, in cells relative to the first.
-    pub places: Option<Vec<[i16; 2]>>,
-    /// With `places`: pairs of robot numbers that are neighbours in the formation's graph.
-    pub edges: Option<Vec<[u32; 2]>>,
-    /// The cell where robot 1, the top leader, starts, and the others in their places around it.
-    pub start: Option<[i16; 2]>,
-    /// Instead of `start`: the cell where each robot starts, by its number; they form on the way.
-    pub starts: Option<Vec<[i16; 2]>>,
-    /// The cell where robot 1 should go; the others go to their places around it.
     pub goal: [i16; 2],
 }
 

@@ -1,6 +1,6 @@
 //! The controller's setup of each robot of a scenario.
 
-use super::{Intervention, Scenario};
+use super::{Formation, Intervention, Scenario};
 use crate::terrain::change::ChangeKind;
 use crate::world::scouts::Scouts;
 use staya_controller::agent::{GuidanceSetup, SafetySetup};
@@ -10,7 +10,7 @@ impl Scenario {
     /// How robot number `index` goes.
     #[must_use]
     pub fn guidance(&self, index: usize) -> GuidanceSetup {
-        let mut guidance = match (&self.plane, &self.formation, self.published) {
+        let mut guidance = match (&self.plane, self.formation_of(index), self.published) {
             (Some(plane), ..) => plane.group(index).guidance.clone(),
             (None, None, _) => GuidanceSetup::Route { route: self.route, speed_mps: None },
             (None, Some(_), Some(formation)) => {
@@ -32,10 +32,33 @@ impl Scenario {
         | GuidanceSetup::Published { template, .. }
         | GuidanceSetup::LooksAhead { template, .. } = &mut guidance
         {
-            let own = self.formation.as_ref().and_then(|graph| graph.templates.get(index));
+            let graph = self.formation_of(index);
+            let own = graph.and_then(|graph| graph.templates.get(index - graph.first));
             *template = own.cloned().unwrap_or_default();
         }
         guidance
+    }
+
+    /// The formation that robot number `index` is in. O(formations).
+    #[must_use]
+    pub fn formation_of(&self, index: usize) -> Option<&Formation> {
+        self.formations.iter().find(|formation| formation.members().contains(&index))
+    }
+
+    /// Pairs of robots, counted from 0, that are neighbours in a formation.
+    pub fn edges(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
+        let edges = |formation: &'_ Formation| {
+            let first = formation.first;
+            formation.edges.clone().into_iter().map(move |(a, b)| [a, b].map(|place| first + usize::from(place)))
+        };
+        self.formations.iter().flat_map(edges)
+    }
+
+    /// The same by the robots' numbers.
+    #[must_use]
+    pub fn numbered_edges(&self) -> Vec<(u32, u32)> {
+        let id = |index: usize| self.robots.get(index).map_or(0, |robot| robot.id.0);
+        self.edges().map(|[a, b]| (id(a), id(b))).collect()
     }
 
     /// The cells that rules of the scenario, or somebody, make something else, by rising cell; not those that drift. O(cells).

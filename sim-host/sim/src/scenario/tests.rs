@@ -194,8 +194,8 @@ fn grid_formation_is_numbered_row_by_row_with_edges_to_both_sides() {
     let scenario = parse(&text).expect("good");
     let starts = scenario.robots.iter().map(|r| (r.id.0, r.start.x, r.start.y));
     assert!(starts.eq([(1, 2, 2), (2, 3, 2), (3, 2, 1), (4, 3, 1)]));
-    let edges = scenario.formation.expect("a formation").edges;
-    assert_eq!(edges, [(0, 1), (0, 2), (1, 3), (2, 3)]);
+    let edges = &scenario.formations[0].edges;
+    assert_eq!(*edges, [(0, 1), (0, 2), (1, 3), (2, 3)]);
 }
 
 #[test]
@@ -206,7 +206,7 @@ fn only_the_top_leader_of_a_formation_needs_a_free_goal() {
         ))
     };
     let scenario = parse(&at(2)).expect("robot 2 moves its goal itself");
-    let formation = scenario.formation.expect("a formation");
+    let formation = &scenario.formations[0];
     assert_eq!(formation.edges, [(0, 1)]);
     assert!(refusal(&at(1)).contains("the goal (1, 1) of robot 1 is in a wall"));
 }

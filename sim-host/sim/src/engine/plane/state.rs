@@ -2,7 +2,7 @@
 
 use super::{PlaneGround, frames};
 use crate::engine::grid::{Changed, restore_meter};
-use crate::metrics::FormationMeter;
+use crate::metrics::FormationMeters;
 use crate::scenario::{Order, Target};
 use crate::world::plane::{Clearance, Solid};
 use crate::world::scouts::Memory;
@@ -27,7 +27,7 @@ pub struct PlaneBody {
 pub struct PlaneShared {
     clearance: Clearance,
     gap_m: Option<f64>,
-    meter: Option<FormationMeter>,
+    meter: Option<FormationMeters>,
     changed: Changed,
     solids: Vec<Solid>,
     orders: Vec<Order>,

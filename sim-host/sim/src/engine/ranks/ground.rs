@@ -3,7 +3,7 @@
 use super::exchange::{RankError, decode, encode};
 use super::region::Region;
 use crate::engine::{Grid, Ground, PlaneGround};
-use crate::metrics::{FormationMeter, Keeping, in_cells};
+use crate::metrics::{FormationMeters, Keeping, in_cells};
 use crate::world::border::{Beside, DEPTH, Settled};
 use crate::world::plane::{self, Clearance};
 use crate::world::scouts::Scouts;
@@ -69,7 +69,7 @@ pub trait Part: Ground {
     fn keeping_of(&mut self, places: &[[f64; 2]], counts: bool) -> Option<Keeping>;
 }
 
-fn measure(meter: Option<&mut FormationMeter>, places: &[[f64; 2]], counts: bool) -> Option<Keeping> {
+fn measure(meter: Option<&mut FormationMeters>, places: &[[f64; 2]], counts: bool) -> Option<Keeping> {
     let meter = meter.filter(|_| !places.is_empty())?;
     Some(if counts { meter.measure(places) } else { meter.look(places) })
 }

@@ -123,6 +123,7 @@ impl Outcome {
             waits: Vec::new(),
             formation: None,
             place_error: None,
+            formations: Vec::new(),
             clearance: has_clearance.then_some(Clearance::FREE),
             trace_hash: 0,
         }

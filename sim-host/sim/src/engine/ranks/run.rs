@@ -320,7 +320,7 @@ where
 
     /// How well a formation is kept: rank 0 has all places, and sums them in the order of robots.
     fn keeping(&mut self, counts: bool) -> Result<Option<Keeping>, RankError> {
-        if self.scenario.formation.is_none() {
+        if self.scenario.formations.is_empty() {
             return Ok(None);
         }
         let engine = &self.engine;
@@ -452,12 +452,14 @@ where
         }
         times.sort_unstable_by_key(|&(number, _)| number);
         let engine = &self.engine;
+        let (formation, place_error, formations) = engine.ground.kept();
         let mut outcome = Outcome {
             ticks: engine.tick,
             seconds: engine.seconds(),
             arrival_times: times.into_iter().map(|(_, time)| time).collect(),
-            formation: engine.ground.mean_keeping(),
-            place_error: engine.ground.place_error(),
+            formation,
+            place_error,
+            formations,
             ..Outcome::none(engine.ground.clearance().is_some())
         };
         let mut all = Vec::new();

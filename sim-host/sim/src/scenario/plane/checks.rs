@@ -57,16 +57,14 @@ pub(super) fn land<'a>(
     spec: &Spec,
     terrain: Option<&'a Terrain>,
 ) -> Result<Option<&'a Terrain>, ScenarioError> {
-    let (what, remedy) = match (spec.guidance, terrain) {
-        (GuidanceKind::Formation, _) => (
-            "a formation has all robots of a scenario",
-            "give guidance \"route\", or the formation to all robots, with the top-level [robots]",
-        ),
-        (GuidanceKind::Route, None) => ("this guidance goes from cell to cell", "give [terrain], or another guidance"),
-        (GuidanceKind::Route, Some(land)) => return Ok(Some(land)),
-        _ => return Ok(None),
-    };
-    Err(source.error(&spec.field(source, "guidance"), what, remedy))
+    match (spec.guidance.is_on_grid(), terrain) {
+        (true, None) => {
+            let (what, remedy) = ("this guidance goes from cell to cell", "give [terrain], or another guidance");
+            Err(source.error(&spec.field(source, "guidance"), what, remedy))
+        }
+        (true, Some(land)) => Ok(Some(land)),
+        (false, _) => Ok(None),
+    }
 }
 
 /// Robots of a group in metres that go from cell to cell: each starts on the land and has one goal there.

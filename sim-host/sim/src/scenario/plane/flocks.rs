@@ -11,6 +11,33 @@ use staya_controller::flock::lattice::{Algorithm, Gain, LatticeParams, Reference
 /// Robots among each other over the goal in algorithm 2: see `LatticeParams::gamma`.
 const GAMMA_OF_TWO: f32 = 50.0;
 
+/// Places of the largest formation: on the air the number of a place stands where that of a flock does, so that flocks
+/// beside formations are numbered from here on.
+pub(super) fn places(file: &ScenarioFile) -> u8 {
+    let in_cells = file.robots.iter().flat_map(|robots| &robots.formation);
+    let formations = in_cells.chain(file.group_formations());
+    let places = formations.map(|formation| match (formation.rows, formation.columns, &formation.places) {
+        (Some(rows), Some(columns), _) => usize::from(rows) * usize::from(columns),
+        (_, _, places) => places.as_ref().map_or(0, Vec::len),
+    });
+    places.max().map_or(0, |most| u8::try_from(most).unwrap_or(u8::MAX))
+}
+
+/// An error for a flock whose number is a place's, or a formation's.
+pub(super) fn number(source: &Source<'_>, spec: &Spec, given: Option<u8>, places: u8) -> Result<(), ScenarioError> {
+    let (what, remedy) = match given {
+        Some(_) if spec.guidance == GuidanceKind::Formation => {
+            ("robots in formation are in no flock".to_owned(), "leave it out".to_owned())
+        }
+        Some(given) if given < places => (
+            format!("{given} is also the number of a place in a formation, and robots cannot tell these apart"),
+            format!("give {places} or more, or leave it out"),
+        ),
+        _ => return Ok(()),
+    };
+    Err(source.error(&spec.field(source, "flock"), what, remedy))
+}
+
 /// An error when a flock's guidance is chosen without its table, or the table is there without it.
 fn goes_with<T: Copy>(
     source: &Source<'_>,

@@ -27,7 +27,7 @@ pub use table::*;
 
 use super::ranges::within;
 use super::source::Source;
-use super::{Robot, Scenario, ScenarioError, ScenarioFile};
+use super::{Formation, Part, Robot, Scenario, ScenarioError, ScenarioFile};
 use crate::nearby::Space;
 use crate::radio::RadioParams;
 use crate::terrain::Terrain;
@@ -170,7 +170,8 @@ impl Scenario {
             rules: MoveRules::default(),
             radio,
             robots: setup.robots(&[], None),
-            formation: None,
+            formations: Vec::new(),
+            parts: Vec::new(),
             plane: Some(setup),
             route: RouteSetup::default(),
             formation_params: FormationParams::default(),
@@ -193,14 +194,22 @@ impl Scenario {
     }
 }
 
+/// What [`build`] makes.
+pub(super) struct Placed {
+    pub setup: PlaneSetup,
+    pub robots: Vec<Robot>,
+    pub formations: Vec<Formation>,
+    pub parts: Vec<Part>,
+}
+
 /// Checks the table and places the robots; `cells` are those that the top-level `robots` gives.
 pub(super) fn build(
     source: &Source<'_>,
     file: &ScenarioFile,
     table: &PlaneTable,
     terrain: Option<&Terrain>,
-    cells: Option<&[Robot]>,
-) -> Result<(PlaneSetup, Vec<Robot>), ScenarioError> {
+    cells: Option<(Vec<Robot>, Vec<Formation>)>,
+) -> Result<Placed, ScenarioError> {
     if table.guidance.is_on_grid() && (terrain.is_none() || cells.is_none()) {
         return Err(source.error(
             "plane.guidance",
@@ -208,14 +217,19 @@ pub(super) fn build(
             "give [terrain] and the top-level [robots], or another guidance",
         ));
     }
-    if (table.guidance == GuidanceKind::Formation) != file.in_formation() {
+    if (table.guidance == GuidanceKind::Formation) != file.cells_in_formation() && cells.is_some() {
         return Err(source.error(
             "plane.guidance",
             "robots.formation and guidance \"formation\" go together",
             "give both or none of them",
         ));
     }
-    let spec = Spec::general(table);
+    if table.robots.as_ref().is_some_and(|robots| robots.formation.is_some()) {
+        let remedy = "give it as the top-level robots.formation, or to a plane.group";
+        return Err(source.error("plane.robots.formation", "a formation stands in cells", remedy));
+    }
+    let places = flocks::places(file);
+    let spec = Spec::general(table, places);
     let mut general = spec.build(source, file)?;
     let solids = solids(source, file, table)?;
     let has_groups = !table.group.is_empty();
@@ -226,11 +240,9 @@ pub(super) fn build(
             "give either plane.robots in metres or the top-level robots in cells, with plane.group if you like",
         ));
     }
-    if has_groups && file.in_formation() {
-        let remedy = "give the robots in cells guidance \"route\" and no formation, or leave the groups out";
-        return Err(source.error("plane.group", "a formation has all robots of a scenario", remedy));
-    }
-    let mut starts = cells.zip(terrain).map_or_else(Vec::new, |(robots, land)| starts::on_land(robots, land));
+    let (cells, mut formations) = cells.unwrap_or_default();
+    let mut starts = terrain.map_or_else(Vec::new, |land| starts::on_land(&cells, land));
+    let last = cells.last().map_or(0, |robot| robot.id.0);
     let mut groups = Vec::new();
     let mut placing = starts::Placing {
         source,
@@ -243,15 +255,40 @@ pub(super) fn build(
     if let Some(robots) = &table.robots {
         placing.place(&spec, None, robots)?;
     }
+    let mut parts = vec![Part { table: "plane".to_owned(), members: 0..placing.starts.len() }];
     for (index, group) in table.group.iter().enumerate() {
-        let (spec, before) = (spec.group(index, group), placing.starts.len());
+        let (spec, before) = (spec.group(index, group, places), placing.starts.len());
         let land = checks::land(source, &spec, terrain)?;
+        flocks::number(source, &spec, group.flock, places)?;
         let number = placing.add(&spec)?;
-        placing.place(&spec, Some(number), &group.robots)?;
-        if let Some(land) = land {
-            checks::in_cells(source, &spec, land, &placing.starts[before..])?;
+        match (spec.guidance == GuidanceKind::Formation, &group.robots, land) {
+            (
+                true,
+                PlaneRobots { formation: Some(entry), list: None, circle: None, cloud: None, scattered: None },
+                Some(land),
+            ) => {
+                let field = format!("{}.robots.formation", spec.table());
+                let (robots, formation) = super::robots::of_group(source, &field, entry, file, land)?;
+                let mut members = starts::on_land(&robots, land);
+                members.iter_mut().for_each(|start| start.group = Some(number));
+                placing.starts.append(&mut members);
+                let id = last.saturating_add(u32::try_from(before - cells.len()).unwrap_or(u32::MAX)).saturating_add(1);
+                formations.push(formation.of(before, id));
+            }
+            (false, PlaneRobots { formation: None, .. }, land) => {
+                placing.place(&spec, Some(number), &group.robots)?;
+                if let Some(land) = land {
+                    checks::in_cells(source, &spec, land, &placing.starts[before..])?;
+                }
+            }
+            _ => {
+                let what = "guidance \"formation\" and robots.formation go together, without other robots";
+                return Err(source.error(&spec.field(source, "guidance"), what, "give both or none of them"));
+            }
         }
+        parts.push(Part { table: spec.table().to_owned(), members: before..placing.starts.len() });
     }
+    parts.retain(|part| has_groups && !part.members.is_empty());
     group::grow_as_the_fastest(&mut general, &mut groups);
     let setup = PlaneSetup {
         general,
@@ -267,8 +304,8 @@ pub(super) fn build(
     checks::starts(source, &setup)?;
     checks::outside(source, &setup)?;
     let setup = PlaneSetup { orders: orders(source, file, table, &setup)?, ..setup };
-    let robots = setup.robots(cells.unwrap_or_default(), terrain);
-    Ok((setup, robots))
+    let robots = setup.robots(&cells, terrain);
+    Ok(Placed { setup, robots, formations, parts })
 }
 
 fn intruders(source: &Source<'_>, table: &PlaneTable) -> Result<Vec<Intruder>, ScenarioError> {

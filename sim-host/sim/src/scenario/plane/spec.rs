@@ -32,8 +32,8 @@ pub(super) struct Spec {
 }
 
 impl Spec {
-    /// What `[plane]` says.
-    pub fn general(table: &PlaneTable) -> Self {
+    /// What `[plane]` says, beside formations that have up to `places` places.
+    pub fn general(table: &PlaneTable, places: u8) -> Self {
         Self {
             tables: vec!["plane".to_owned()],
             radius_m: table.radius_m,
@@ -49,14 +49,14 @@ impl Spec {
             lattice: table.lattice,
             goal_flock: table.goal_flock,
             boids: table.boids,
-            flock: 0,
+            flock: if table.guidance == GuidanceKind::Formation { 0 } else { places },
             torus_m: table.torus_m,
         }
     }
 
     /// What `plane.group[index]` says instead. Tables of a guidance law or a safety layer that it does not share are not
     /// its own.
-    pub fn group(&self, index: usize, group: &GroupTable) -> Self {
+    pub fn group(&self, index: usize, group: &GroupTable, places: u8) -> Self {
         let guidance = group.guidance.unwrap_or(self.guidance);
         let safety = group.safety.unwrap_or(self.safety);
         let goes_alike = guidance == self.guidance;
@@ -78,8 +78,12 @@ impl Spec {
             lattice: group.lattice.or(self.lattice.filter(|_| goes_alike)),
             goal_flock: group.goal_flock.or(self.goal_flock.filter(|_| goes_alike)),
             boids: group.boids.or(self.boids.filter(|_| goes_alike)),
-            // Each its own; the last ones share the last.
-            flock: group.flock.unwrap_or(u8::try_from(index + 1).unwrap_or(u8::MAX)),
+            flock: match guidance {
+                // On the air the number of a place stands where that of a flock does.
+                GuidanceKind::Formation => 0,
+                // Each its own; the last ones share the last.
+                _ => group.flock.unwrap_or(places.saturating_add(u8::try_from(index + 1).unwrap_or(u8::MAX))),
+            },
             torus_m: self.torus_m,
         }
     }

@@ -1,5 +1,6 @@
 //! `[plane]` as it stands in the file: every field is documented here.
 
+use super::super::formation::FormationEntry;
 use serde::Deserialize;
 use staya_controller::agent::{GuidanceKind, SafetyKind};
 use staya_controller::push_out::Model;
@@ -139,6 +140,8 @@ pub struct PlaneRobots {
     pub cloud: Option<CloudEntry>,
     /// Robots at random places, each with a goal of its own.
     pub scattered: Option<ScatteredDiscs>,
+    /// A formation, in cells of the land; of a group, with guidance `"formation"`.
+    pub formation: Option<FormationEntry>,
 }
 
 /// One robot of `plane.robots.list`.
@@ -180,9 +183,9 @@ pub struct GroupTable {
     pub tolerance_m: Option<f64>,
     /// How far they see obstacles, metres.
     pub sight_m: Option<f64>,
-    /// Where they want to go; not in formation, and from cell to cell on land alone.
+    /// Where they want to go; from cell to cell, and in formation, on land alone.
     pub guidance: Option<GuidanceKind>,
-    /// The flock that they are of; 0 is that of the robots of `[plane]`. Default: one of their own.
+    /// The flock that they are of; 0 is that of the robots of `[plane]`; beside formations not less than these have places. Default: one of their own.
     pub flock: Option<u8>,
     /// What keeps them apart.
     pub safety: Option<SafetyKind>,

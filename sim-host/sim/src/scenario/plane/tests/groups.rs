@@ -7,6 +7,12 @@ fn by_route(list: &str) -> String {
     format!("{HEAD}{LAND}{PLANE}[[plane.group]]\nguidance = \"route\"\nrobots.list = [{list}]\n")
 }
 
+/// Two robots of a group in formation.
+fn in_formation(fields: &str) -> String {
+    let formation = format!("{{ rows = 1, columns = 2, spacing = [2, 2], {fields} }}");
+    format!("{HEAD}{LAND}{PLANE}[[plane.group]]\nguidance = \"formation\"\nrobots.formation = {formation}\n")
+}
+
 #[test]
 fn mistakes_in_groups_ways_and_intruders_are_named_with_line_field_and_remedy() {
     let after = |rest: &str| format!("{HEAD}{PLANE}{TWO}{rest}");
@@ -34,7 +40,36 @@ fn mistakes_in_groups_ways_and_intruders_are_named_with_line_field_and_remedy() 
         ),
         (
             by_route("{ start_m = [1, 1], goal_m = [9, 1] }").replace("\"route\"", "\"formation\""),
-            "s.toml:10: plane.group[0].guidance: a formation has all robots of a scenario",
+            "s.toml:10: plane.group[0].guidance: guidance \"formation\" and robots.formation go together, without other",
+        ),
+        (
+            in_formation("start = [0, 0], goal = [0, 8]").replace("\"formation\"", "\"route\""),
+            "s.toml:10: plane.group[0].guidance: guidance \"formation\" and robots.formation go together, without other",
+        ),
+        (
+            in_formation("goal = [0, 8]"),
+            "s.toml:11: plane.group[0].robots.formation: it is not clear where they start; give start, of robot 1",
+        ),
+        (
+            in_formation("start = [0, 0], goal = [99, 9]"),
+            "s.toml:11: plane.group[0].robots.formation.goal: the goal (99, 9) of robot 1 is not on the map",
+        ),
+        (
+            in_formation("start = [0, 0], goal = [0, 8]").replace("guidance", "flock = 9\nguidance"),
+            "s.toml:10: plane.group[0].flock: robots in formation are in no flock; leave it out",
+        ),
+        (
+            format!(
+                "{}[[plane.group]]\nflock = 1\nrobots.list = [{{ start_m = [9, 9] }}]\n",
+                in_formation("start = [0, 0], goal = [0, 8]")
+            ),
+            "s.toml:13: plane.group[1].flock: 1 is also the number of a place in a formation, and robots cannot tell these apart; give 2 or",
+        ),
+        (
+            format!(
+                "{HEAD}{LAND}{PLANE}[plane.robots.formation]\nrows = 1\ncolumns = 2\nstart = [0, 0]\ngoal = [0, 8]\n"
+            ),
+            "s.toml:9: plane.robots.formation: a formation stands in cells; give it as the top-level robots.formation, or",
         ),
         // Groups.
         (group("radius_m = -1"), "s.toml:9: plane.group[0].radius_m: -1 is out of range; give 0.001 to 65 metres"),
@@ -174,4 +209,38 @@ fn groups_in_metres_stand_beside_robots_in_cells_and_may_go_from_cell_to_cell() 
         (GuidanceKind::Waypoint, SafetyKind::None),
     ];
     assert_eq!(kinds, expected);
+}
+
+#[test]
+fn formations_of_groups_are_told_apart_by_numbers_and_flocks_by_numbers_that_are_no_places() {
+    let one = in_formation("start = [0, 0], goal = [0, 8]");
+    let text = format!(
+        "{one}[[plane.group]]\nguidance = \"formation\"\nsafety = \"none\"\nradius_m = 0.3\n\
+         robots.formation = {{ rows = 1, columns = 3, spacing = [2, 2], start = [0, 4], goal = [3, 4] }}\n\
+         [[plane.group]]\nguidance = \"waypoint\"\nrobots.list = [{{ start_m = [13, 17] }}]\n\
+         [robots]\nlist = [{{ id = 4, start = [8, 8], goal = [5, 5] }}]\n"
+    );
+    let text = text.replace("[plane]\n", "[plane]\nguidance = \"route\"\n");
+    let scenario = parse(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let members: Vec<_> = scenario.formations.iter().map(|formation| formation.members()).collect();
+    assert_eq!(members, [1..3, 3..6]);
+    let named = |index: usize| match scenario.guidance(index) {
+        GuidanceSetup::Formation { template, .. } => {
+            (template.slot, template.entries.iter().map(|entry| entry.id.0).collect::<Vec<_>>())
+        }
+        other => panic!("{other:?}"),
+    };
+    // Robot 4 stands in a cell, 5 and 6 are the first formation, 7 to 9 the second.
+    let templates: Vec<_> = (1..6).map(named).collect();
+    let expected: [(u8, &[u32]); 5] = [(0, &[6]), (1, &[5]), (0, &[8, 9]), (1, &[7, 9]), (2, &[8, 7])];
+    assert_eq!(templates, expected.map(|(slot, ids)| (slot, ids.to_vec())));
+    let plane = scenario.plane.as_ref().expect("a plane");
+    let flocks: Vec<_> = (0..7).map(|index| plane.group(index).flock).collect();
+    assert_eq!(flocks, [3, 0, 0, 0, 0, 0, 6], "no number below 3 is a flock's");
+    let safety: Vec<_> = (0..7).map(|index| scenario.safety(index).kind()).collect();
+    assert_eq!((safety[1], safety[4], plane.group(4).radius_m), (SafetyKind::Orca, SafetyKind::None, 0.3));
+    let parts: Vec<_> = scenario.parts.iter().map(|part| (part.table.as_str(), part.members.clone())).collect();
+    let of = |index: usize| ["plane", "plane.group[0]", "plane.group[1]", "plane.group[2]"][index];
+    assert_eq!(parts, [(of(0), 0..1), (of(1), 1..3), (of(2), 3..6), (of(3), 6..7)]);
+    assert_eq!(scenario.numbered_edges(), [(5, 6), (7, 8), (8, 9)]);
 }

@@ -1,0 +1,92 @@
+//! The figures of groups of robots that differ.
+
+use crate::engine::Outcome;
+use crate::scenario::{Part, Scenario};
+use serde::Serialize;
+use staya_controller::agent::GuidanceKind;
+use staya_controller::grid::UNIT;
+use std::fmt::{Display, Formatter};
+
+/// The figures of one group.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct GroupFigures {
+    /// The table of the scenario's file that describes it.
+    table: String,
+    /// Numbers of its first and its last robot; they are numbered on.
+    first_robot: u32,
+    last_robot: u32,
+    robots: usize,
+    /// Where they go and what keeps them apart: of those whose bodies do not differ within the group.
+    guidance: &'static str,
+    safety: &'static str,
+    /// Robots that stand at their targets and know it.
+    arrived: usize,
+    /// Mean and last of their travel times, simulated seconds; null: nobody arrived.
+    arrival_mean_seconds: Option<f64>,
+    arrival_last_seconds: Option<f64>,
+    /// As of all formations together; null: no formation.
+    formation_error_per_agent: Option<f64>,
+    formation_error_per_agent_best_fit: Option<f64>,
+    graph_distance_mean: Option<f64>,
+    place_error_mean_m: Option<f64>,
+    place_error_worst_m: Option<f64>,
+    place_error_worst_robot: Option<u32>,
+    place_error_worst_s: Option<f64>,
+}
+
+impl GroupFigures {
+    pub(super) fn new(part: &Part, scenario: &Scenario, outcome: &Outcome) -> Self {
+        let times = outcome.arrival_times.get(part.members.clone()).unwrap_or_default();
+        let times: Vec<u64> = times.iter().flatten().copied().collect();
+        let seconds = |units: f64| units / f64::from(UNIT) * scenario.tick_s();
+        let number = |index: usize| scenario.robots.get(index).map_or(0, |robot| robot.id.0);
+        let kept = outcome.formations.iter().find(|kept| kept.members == part.members);
+        let (keeping, place) = (kept.and_then(|kept| kept.keeping), kept.and_then(|kept| kept.place_error));
+        Self {
+            table: part.table.clone(),
+            first_robot: number(part.members.start),
+            last_robot: number(part.members.end - 1),
+            robots: part.members.len(),
+            guidance: scenario.guidance(part.members.start).kind().name(),
+            safety: scenario.safety(part.members.start).kind().name(),
+            arrived: times.len(),
+            arrival_mean_seconds: (!times.is_empty())
+                .then(|| seconds(times.iter().sum::<u64>() as f64 / times.len() as f64)),
+            arrival_last_seconds: times.iter().max().map(|&last| seconds(last as f64)),
+            formation_error_per_agent: keeping.map(|kept| kept.error_per_agent),
+            formation_error_per_agent_best_fit: keeping.map(|kept| kept.best_fit_error_per_agent),
+            graph_distance_mean: keeping.map(|kept| kept.graph_distance),
+            place_error_mean_m: place.map(|error| error.mean_m),
+            place_error_worst_m: place.map(|error| error.worst_m),
+            place_error_worst_robot: place.map(|error| error.robot),
+            place_error_worst_s: place.map(|error| error.at_s),
+        }
+    }
+
+    /// Whether its robots go somewhere to stay there.
+    fn has_goals(&self) -> bool {
+        [GuidanceKind::Route, GuidanceKind::Formation, GuidanceKind::Waypoint]
+            .map(GuidanceKind::name)
+            .contains(&self.guidance)
+    }
+}
+
+impl Display for GroupFigures {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let Self { table, first_robot, last_robot, robots, guidance, safety, arrived, .. } = self;
+        write!(f, "robots {first_robot} to {last_robot} ({table}): {guidance}, safety {safety}")?;
+        if self.has_goals() || *arrived > 0 {
+            write!(f, "; {arrived} of {robots} arrived")?;
+        }
+        if let Some(last) = self.arrival_last_seconds {
+            write!(f, ", the last after {last:.1} s")?;
+        }
+        match (self.place_error_mean_m, self.place_error_worst_m, self.formation_error_per_agent) {
+            (Some(mean), Some(worst), _) => {
+                write!(f, "; off their places {mean:.3} m on average, {worst:.3} m at most")
+            }
+            (_, _, Some(error)) => write!(f, "; formation error {error:.3} cells per robot"),
+            _ => Ok(()),
+        }
+    }
+}
