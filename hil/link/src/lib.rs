@@ -40,10 +40,12 @@
 #[cfg(test)]
 extern crate std;
 
+mod body;
 pub mod capacities;
 pub mod fit;
 pub mod frame;
 pub mod message;
+pub mod own;
 pub mod port;
 pub mod robot;
 pub mod session;

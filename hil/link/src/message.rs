@@ -69,7 +69,7 @@ pub struct Configure {
     pub seq: u16,
     /// What the robot is.
     pub setup: Setup,
-    /// What it has to do, if anything.
+    /// What it has to do, if anything. The rest of the frame is the guidance law, if it is one of somebody's [own](crate::own).
     pub task: Option<Task>,
 }
 

@@ -9,6 +9,7 @@ use crate::message::{
 };
 use core::fmt;
 use postcard::from_bytes;
+use serde::ser::{Serialize, SerializeTuple as _, Serializer};
 use staya_controller::agent::{Setup, Task};
 
 /// How long to wait for a device.
@@ -258,14 +259,21 @@ impl<const N: usize> Port<N> {
         self.ask(Asked::Restart, now_us);
     }
 
-    /// Tells the device what to be. Replaces a request that is on its way.
+    /// Tells the device what to be; `law` as in [`Controller::configure`](crate::robot::Controller::configure). Replaces a request that
+    /// is on its way.
     ///
     /// # Errors
     /// [`TooLong`] for `N`; then nothing is on its way.
-    pub fn configure(&mut self, setup: &Setup, task: Option<&Task>, now_us: u64) -> Result<(), TooLong> {
+    pub fn configure(
+        &mut self,
+        setup: &Setup,
+        task: Option<&Task>,
+        law: &[u8],
+        now_us: u64,
+    ) -> Result<(), TooLong> {
         self.waiting = None;
         self.seq = self.seq.wrapping_add(1);
-        self.request.fill(kind::CONFIGURE, &(self.seq, setup, task))?;
+        self.request.fill(kind::CONFIGURE, &(self.seq, setup, task, Rest(law)))?;
         self.ask(Asked::Configure, now_us);
         Ok(())
     }
@@ -429,5 +437,16 @@ impl Said {
             kind::FAULT => from_bytes(body).map(Self::Fault).ok(),
             _ => None,
         }
+    }
+}
+
+/// Bytes that end with the frame: without their number before them.
+struct Rest<'a>(&'a [u8]);
+
+impl Serialize for Rest<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut bytes = serializer.serialize_tuple(self.0.len())?;
+        self.0.iter().try_for_each(|byte| bytes.serialize_element(byte))?;
+        bytes.end()
     }
 }

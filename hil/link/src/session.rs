@@ -284,11 +284,11 @@ impl<C: Controller, const CONTENT: usize> Core<C, CONTENT> {
     #[inline(never)]
     fn configure(&mut self, seq: u16, body: &[u8]) -> Reaction<'_> {
         self.last = None;
-        let Ok((Setting { setup, task }, [])) = take_from_bytes(body) else {
+        let Ok((Setting { setup, task }, law)) = take_from_bytes(body) else {
             self.controller.forget();
             return self.malformed(seq);
         };
-        match self.controller.configure(&setup, task.as_ref()) {
+        match self.controller.configure(&setup, task.as_ref(), law) {
             Ok(digest) => {
                 // An answer has room for it.
                 let _ = self.answer.fill(kind::CONFIGURED, &Configured { seq, digest });
@@ -331,7 +331,9 @@ impl<C: Controller, const CONTENT: usize> Core<C, CONTENT> {
     fn refused(&mut self, seq: u16, refusal: Refusal) -> Reaction<'_> {
         let kind = match refusal {
             Refusal::NotConfigured => FaultKind::NotConfigured,
-            Refusal::Nobody | Refusal::Format(_) | Refusal::Table | Refusal::Task => FaultKind::Setup,
+            Refusal::Nobody | Refusal::Format(_) | Refusal::Table | Refusal::Task | Refusal::Law => {
+                FaultKind::Setup
+            },
             Refusal::Search { .. } | Refusal::Obstacles { .. } => FaultKind::Capacity,
             Refusal::Nonsense => FaultKind::Malformed,
         };
@@ -374,7 +376,7 @@ impl<C: Controller, const CONTENT: usize> Core<C, CONTENT> {
     }
 }
 
-/// [`Configure`](crate::message::Configure) without its number.
+/// [`Configure`](crate::message::Configure) without its number and without the law behind it.
 #[derive(serde::Deserialize)]
 struct Setting {
     setup: staya_controller::agent::Setup,

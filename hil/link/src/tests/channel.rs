@@ -97,7 +97,7 @@ fn steps_over_a_bad_line_are_those_of_a_plain_agent() {
 fn fixed_point_steps_over_a_bad_line_are_those_of_its_shadow() {
     let (setup, task) = (in_plane(), to_the_east());
     let mut shadow = Small::new();
-    shadow.configure(&setup, Some(&task)).expect("fits");
+    shadow.configure(&setup, Some(&task), &[]).expect("fits");
     thousand_steps::<Small>(BAD, 4, (&setup, Some(&task)), |_, step| {
         let result = decide(&mut shadow, step);
         (result.outputs.command, result.digest)
@@ -112,7 +112,7 @@ fn device_that_resets_is_noticed_and_rejoins() {
         bench.configure(&setup, Some(&task));
         let (mut resets, mut done) = (0, 0);
         let mut shadow = Large::new();
-        shadow.configure(&setup, Some(&task)).expect("fits");
+        shadow.configure(&setup, Some(&task), &[]).expect("fits");
         for tick in 0..300 {
             let inbox = inbox(tick, Instant::from_micros(tick * 100_000));
             let packed = pack(&Obstacle::Wall([Vec2::new(9.0, 1.0), Vec2::new(9.0, -1.0)]));
@@ -138,7 +138,7 @@ fn device_that_resets_is_noticed_and_rejoins() {
                 let mut again = setup.clone();
                 again.agent.boot = resets;
                 let digest = bench.configure(&again, Some(&task));
-                assert_eq!(shadow.configure(&again, Some(&task)), Ok(digest));
+                assert_eq!(shadow.configure(&again, Some(&task), &[]), Ok(digest));
                 continue;
             }
             let result = bench.step(&step).expect("no reset");
@@ -236,12 +236,12 @@ fn refusal_names_what_was_asked_and_why() {
     bench.port.greet(0);
     assert!(matches!(bench.wait(), Ok(Event::Hello(_))));
     let (setup, task) = on_grid(9);
-    bench.port.configure(&setup, Some(&task), bench.now).expect("fits");
+    bench.port.configure(&setup, Some(&task), &[], bench.now).expect("fits");
     let error = bench.wait().expect_err("too far");
     let text = std::format!("{error}");
     assert_eq!(text, "the device answers to setup: Capacity: a search of 441 cells, and room for 169");
     let panic = crate::session::fault_frame(crate::message::FaultKind::Panic, "at main.rs:3");
-    bench.port.configure(&setup, None, bench.now).expect("fits");
+    bench.port.configure(&setup, None, &[], bench.now).expect("fits");
     let mut errors = Vec::new();
     for byte in panic.bytes() {
         errors.extend(bench.port.receive(*byte, 0).err());
@@ -252,7 +252,7 @@ fn refusal_names_what_was_asked_and_why() {
 #[test]
 fn requests_longer_than_the_buffer_are_not_sent() {
     let mut port = Port::<64>::new(1, LIMITS);
-    assert!(port.configure(&in_plane(), None, 0).is_err());
+    assert!(port.configure(&in_plane(), None, &[], 0).is_err());
     assert_eq!(port.poll(0), Ok(Next::Idle));
 }
 
@@ -272,7 +272,7 @@ proptest! {
         let mut bench = Bench::<Large>::new(faults, seed);
         let mut shadow: Robot<f32, CELLS, VISITS, NEIGHBORS, HALF_PLANES, 32, AnyWire> = Robot::new();
         let digest = bench.configure(&setup, Some(&task));
-        prop_assert_eq!(shadow.configure(&setup, Some(&task)), Ok(digest));
+        prop_assert_eq!(shadow.configure(&setup, Some(&task), &[]), Ok(digest));
         for tick in 0..20 {
             let now = Instant::from_micros(tick * 100_000);
             let inbox = inbox(tick, now);

@@ -328,13 +328,13 @@ fn robots_speak_any_format_and_one_that_was_built_for_one_says_so() {
     let setup = |format| Setup { format, ..super::in_plane() };
     let (mut large, mut small) = (Large::new(), Small::new());
     let mut lean = Robot::<Q16, CELLS, VISITS, 8, 16, 16, Postcard>::new();
-    let postcard = large.configure(&setup(Format::Postcard), None);
+    let postcard = large.configure(&setup(Format::Postcard), None, &[]);
     // How it speaks is no part of what it knows.
-    assert_eq!(large.configure(&setup(Format::Mavlink), None), postcard);
-    let in_small = small.configure(&setup(Format::Mavlink), None);
-    assert_eq!(lean.configure(&setup(Format::Postcard), None), in_small);
+    assert_eq!(large.configure(&setup(Format::Mavlink), None, &[]), postcard);
+    let in_small = small.configure(&setup(Format::Mavlink), None, &[]);
+    assert_eq!(lean.configure(&setup(Format::Postcard), None, &[]), in_small);
     assert!(postcard.is_ok() && in_small.is_ok());
-    let refusal = lean.configure(&setup(Format::Mavlink), None).unwrap_err();
+    let refusal = lean.configure(&setup(Format::Mavlink), None, &[]).unwrap_err();
     assert_eq!(std::format!("{refusal}"), "this firmware was built without mavlink");
     assert!(lean.result().is_none());
 }

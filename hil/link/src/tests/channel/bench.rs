@@ -147,7 +147,7 @@ impl<B: Controller + Default> Bench<B> {
             if !matches!(self.wait(), Ok(Event::Hello(_))) {
                 continue;
             }
-            self.port.configure(setup, task, self.now).expect("fits");
+            self.port.configure(setup, task, &[], self.now).expect("fits");
             match self.wait() {
                 Ok(Event::Configured(configured)) => return configured.digest,
                 Ok(Event::Restarted) => {}

@@ -1,0 +1,85 @@
+//! Robots that go by a guidance law of somebody's own. Such a firmware has one law; what it keeps, the host tells, as postcard writes
+//! it: what a simulation makes by `|index| MyLaw { .. }` is what the device steps.
+
+use crate::body::{Body, capacities, check, number};
+use crate::capacities::Capacities;
+use crate::message::{NumberFormat, StepInputs, StepResult};
+use crate::robot::{Controller, Refusal};
+use postcard::take_from_bytes;
+use serde::{Deserialize, Serialize};
+use staya_controller::agent::{Agent, AnySafety, AnyWorld, Guidance, HALF_PLANES, InPlane, NEIGHBORS, Setup, Task};
+use staya_controller::scalar::{Q16, Scalar};
+use staya_controller::wire::FromFormat;
+use staya_mavlink::any::AnyWire;
+
+/// A robot with law `G` on an STM32F405 or larger: 16 neighbours, 32 obstacles, `f32`.
+pub type OwnLarge<G> = Own<f32, G, NEIGHBORS, HALF_PLANES, 32, AnyWire>;
+/// A robot with law `G` on the micro:bit's nRF51: 8 neighbours, 16 obstacles, fixed point.
+pub type OwnSmall<G> = Own<Q16, G, 8, 16, 16, AnyWire>;
+
+/// A guidance law of somebody's own, in the plane or in space, that a host can tell a device of.
+pub trait LinkedLaw<S: Scalar>:
+    for<'a> Guidance<S, Input<'a> = InPlane<'a, S>, Workspace = ()> + Serialize + for<'de> Deserialize<'de>
+{
+}
+
+impl<S: Scalar, G> LinkedLaw<S> for G where
+    G: for<'a> Guidance<S, Input<'a> = InPlane<'a, S>, Workspace = ()> + Serialize + for<'de> Deserialize<'de>
+{
+}
+
+/// A robot that goes by law `G` behind the safety layer that it is told of. `N` neighbours, `K` half-planes, `O` obstacles, wire format `W`.
+#[derive(Clone, Debug)]
+pub struct Own<S: Scalar, G: LinkedLaw<S>, const N: usize, const K: usize, const O: usize, W> {
+    body: Body<S, AnyWorld<G>, AnySafety<S, K>, W, N, O>,
+}
+
+impl<S: Scalar, G: LinkedLaw<S>, const N: usize, const K: usize, const O: usize, W> Own<S, G, N, K, O, W> {
+    /// Nobody yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { body: Body::new(()) }
+    }
+}
+
+impl<S: Scalar, G: LinkedLaw<S>, const N: usize, const K: usize, const O: usize, W> Default
+    for Own<S, G, N, K, O, W>
+{
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<S: Scalar, G: LinkedLaw<S>, const N: usize, const K: usize, const O: usize, W: FromFormat + Serialize> Controller
+    for Own<S, G, N, K, O, W>
+{
+    fn number(&self) -> NumberFormat {
+        number::<S>()
+    }
+
+    fn capacities(&self) -> Capacities {
+        capacities(N, K, O)
+    }
+
+    fn configure(&mut self, setup: &Setup, task: Option<&Task>, law: &[u8]) -> Result<u64, Refusal> {
+        self.body.forget();
+        check(setup)?;
+        let Ok((law, [])) = take_from_bytes::<G>(law) else {
+            return Err(Refusal::Law);
+        };
+        let wire = W::from_format(setup.format).ok_or(Refusal::Format(setup.format))?;
+        self.body.start(task, || Agent::new(&setup.agent.cast(), AnyWorld(law), setup.safety.safety(), wire))
+    }
+
+    fn step(&mut self, inputs: &StepInputs<'_>) -> Result<(), Refusal> {
+        self.body.step(inputs)
+    }
+
+    fn result(&self) -> Option<StepResult> {
+        self.body.result()
+    }
+
+    fn forget(&mut self) {
+        self.body.forget();
+    }
+}
