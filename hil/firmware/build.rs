@@ -34,9 +34,10 @@ fn main() {
     }
     println!("cargo:rustc-link-search={}", here.display());
     let is_optimised = env::var("PROFILE").is_ok_and(|profile| profile == "release");
+    offer_script(here, part, scripts, is_optimised);
     for bin in bins(here) {
         let is_only_linked = bin.starts_with("nopanic");
-        for script in scripts.iter().chain(&["defmt.x"]) {
+        for script in scripts.iter().chain(&["defmt.x", "note.x"]) {
             let script = match *script {
                 "nrf51-memory.x" if is_only_linked => "nrf51-nopanic-memory.x",
                 script => script,
@@ -53,6 +54,28 @@ fn main() {
     println!("cargo:rustc-link-arg-bin=bench=--emit-relocs");
     // Sections stay as small as they are: without it the linker fills up to 64 KiB pages.
     println!("cargo:rustc-link-arg-bins=--nmagic");
+}
+
+/// One script for firmware in crates elsewhere, `-Tstaya-firmware.x`, where the linker looks: all of a part's, and the map of the
+/// STM32F405 for who has no memory.x of his own.
+fn offer_script(here: &Path, part: &str, scripts: &[&str], is_optimised: bool) {
+    let out = std::path::PathBuf::from(env::var_os("OUT_DIR").unwrap_or_default());
+    let mut all: String =
+        scripts.iter().chain(&["defmt.x", "note.x"]).map(|name| format!("INCLUDE {name}\n")).collect();
+    if is_optimised {
+        // See below.
+        all += "__defmt_default_panic = 0;\n";
+    }
+    let write = |name: &str, text: &[u8]| {
+        let path = out.join(name);
+        std::fs::write(&path, text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    };
+    write("staya-firmware.x", all.as_bytes());
+    if part == "stm32f405" {
+        let map = here.join("../../memory.x");
+        write("memory.x", &std::fs::read(&map).unwrap_or_else(|error| panic!("{}: {error}", map.display())));
+    }
+    println!("cargo:rustc-link-search={}", out.display());
 }
 
 /// The programs: each file in src/bin is one.

@@ -23,7 +23,7 @@ pub struct BridgeArgs {
     #[arg(long, value_name = "LINE", default_value = "udpout:127.0.0.1:14550")]
     mavlink: Vec<Endpoint>,
     #[command(flatten)]
-    page: crate::watch::WatchArgs,
+    page: staya_hil::WatchArgs,
     /// Simulated seconds per second of real time.
     #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = speed)]
     speed: f64,

@@ -2,11 +2,11 @@
 
 mod page;
 
-use crate::watch::WatchArgs;
 use anyhow::Result;
 use clap::Args;
 use page::Page;
 use staya_console::{Ended, Global, Stop, print, print_json};
+use staya_hil::WatchArgs;
 use staya_mav::Tlog;
 use staya_mav::companion::{Config, Options, Sight, run};
 use std::path::PathBuf;

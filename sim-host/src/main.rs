@@ -16,13 +16,11 @@ mod shell;
 mod sweep;
 mod terrain;
 mod view;
-mod watch;
 
-use anyhow::{Context as _, Result};
+use anyhow::Result;
 use clap::{CommandFactory as _, Parser, Subcommand};
-use staya_console::{Ended, Global};
+use staya_console::{Ended, Global, exit};
 use staya_papers::cli as papers;
-use std::io::{self, ErrorKind, Write as _};
 use std::process::ExitCode;
 
 /// Swarms of robots, each with its own onboard controller, in one world with a lossy radio.
@@ -46,7 +44,7 @@ enum Command {
     /// Make one HTML file of a run, for any browser, without server or network.
     Page(page::PageArgs),
     /// Run some robots of a scenario as firmware, on emulated microcontrollers or boards.
-    Hil(hil::HilArgs),
+    Hil(hil::HilCommand),
     /// Let ground stations and scripts see and command a simulated swarm over MAVLink.
     Bridge(bridge::BridgeArgs),
     /// Tell a swarm in formation to take another shape and to go elsewhere, over MAVLink.
@@ -70,28 +68,11 @@ enum Command {
 /// Parses the command line, runs the command and reports its errors.
 fn main() -> ExitCode {
     let cli = Cli::parse();
-    match run(&cli) {
-        Ok(Ended::Done) => ExitCode::SUCCESS,
-        Ok(Ended::Interrupted) => ExitCode::from(130),
-        // The reader of a pipe (`staya ... | head`) went away: nothing to tell anybody.
-        Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
-        Err(error) => {
-            // Standard error may be closed as well; the exit code still tells.
-            let _ = writeln!(io::stderr(), "staya: {}", in_one_line(&error));
-            ExitCode::FAILURE
-        }
-    }
+    exit("staya", run(&cli))
 }
 
 fn run(cli: &Cli) -> Result<Ended> {
-    if let Some(threads) = cli.global.threads {
-        // More than one for each processor only cost time.
-        let processors = std::thread::available_parallelism().map_or(usize::MAX, usize::from);
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(usize::from(threads).min(processors))
-            .build_global()
-            .with_context(|| format!("cannot start {threads} threads"))?;
-    }
+    cli.global.begin()?;
     match &cli.command {
         Command::Run(args) => args.run(&cli.global),
         Command::Sweep(args) => args.run(&cli.global),
@@ -108,20 +89,4 @@ fn run(cli: &Cli) -> Result<Ended> {
         Command::Completions(args) => args.run(Cli::command()),
         Command::Man(args) => args.run(Cli::command(), &cli.global),
     }
-}
-
-/// An error and its causes; a cause that the message before it quotes is not said again.
-fn in_one_line(error: &anyhow::Error) -> String {
-    let mut text = error.to_string();
-    for cause in error.chain().skip(1).map(ToString::to_string) {
-        if !text.contains(&cause) {
-            text.push_str(": ");
-            text.push_str(&cause);
-        }
-    }
-    text
-}
-
-fn is_broken_pipe(error: &anyhow::Error) -> bool {
-    error.chain().any(|cause| cause.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == ErrorKind::BrokenPipe))
 }

@@ -1,10 +1,10 @@
 //! `staya page`: a run as one HTML file.
 
-use crate::run::ScenarioArgs;
 use anyhow::{Context as _, Result};
 use clap::Args;
 use serde::Serialize;
 use staya_console::{Ended, Global, Progress, Stop, print, print_json};
+use staya_hil::ScenarioArgs;
 use staya_sim::engine::{Moment, simulate};
 use staya_sim::file::{MAP, read};
 use staya_sim::record::{RobotRow, write_atomically};

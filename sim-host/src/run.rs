@@ -3,12 +3,12 @@
 mod also;
 mod checkpoint;
 
-use crate::watch::WatchArgs;
 use also::{Also, AlsoArgs};
 use anyhow::{Context as _, Result, anyhow};
 use checkpoint::{CheckpointArgs, Checkpoints};
 use clap::Args;
 use staya_console::{Ended, Global, Progress, Stop, print, print_json};
+use staya_hil::{ScenarioArgs, WatchArgs};
 use staya_plot::{motion_pictures, run_pictures};
 use staya_sim::checkpoint::{Checkpoint, Place};
 use staya_sim::engine::{Moment, Outcome, Unable, simulate, simulate_from};
@@ -21,51 +21,6 @@ use staya_view::watch::Watcher;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-
-/// Which scenario, and what of it is otherwise.
-#[derive(Args, Clone, Debug)]
-pub struct ScenarioArgs {
-    /// The scenario, a .toml file; scenarios/README.md lists the ones that come with Staya, and all fields.
-    scenario: PathBuf,
-    /// Seed of all random numbers, instead of the scenario's.
-    #[arg(long, value_name = "N")]
-    seed: Option<u64>,
-    /// End after this many ticks, instead of the scenario's number.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
-    ticks: Option<u32>,
-    /// Say something else in a field of the scenario, as in radio.loss=0.3 or plane.orca.horizon_s=3; as often as needed.
-    #[arg(long = "set", value_name = "FIELD=VALUE")]
-    settings: Vec<Setting>,
-}
-
-impl ScenarioArgs {
-    /// The file.
-    pub fn path(&self) -> &Path {
-        &self.scenario
-    }
-
-    /// Which fields say something else.
-    pub fn settings(&self) -> &[Setting] {
-        &self.settings
-    }
-
-    /// What is otherwise than in the file.
-    pub const fn overrides(&self) -> Overrides {
-        Overrides { seed: self.seed, ticks: self.ticks }
-    }
-
-    /// Reads it.
-    ///
-    /// # Errors
-    /// It cannot be read, or is wrong.
-    pub fn load(&self) -> Result<Scenario> {
-        let scenario = Scenario::load_with(&self.scenario, &self.overrides(), &self.settings)?;
-        for remark in scenario.remarks() {
-            eprintln!("{remark}");
-        }
-        Ok(scenario)
-    }
-}
 
 /// Run a scenario.
 #[derive(Args, Clone, Debug)]

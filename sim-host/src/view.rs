@@ -1,10 +1,10 @@
 //! `staya view`: a run, or a recording, in the browser.
 
-use crate::run::ScenarioArgs;
 use anyhow::{Context as _, Result};
 use clap::Args;
 use serde::Serialize;
 use staya_console::{Ended, Global, Stop, print, print_json};
+use staya_hil::ScenarioArgs;
 use staya_sim::scenario::text_with;
 use staya_view::page;
 use staya_view::playback::Playback;

@@ -13,10 +13,20 @@
 
 pub mod ring;
 
+// For the macros, wherever they are used; cortex-m-rt's own macro asks for the crate itself there.
+#[doc(hidden)]
+#[cfg(target_os = "none")]
+pub use staya_link as link;
+#[doc(hidden)]
+#[cfg(all(target_os = "none", target_arch = "riscv32"))]
+pub use {riscv, riscv_rt};
+
 #[cfg(target_os = "none")]
 mod boots;
 #[cfg(target_os = "none")]
 pub mod fault;
+#[cfg(target_os = "none")]
+pub mod lockstep;
 #[cfg(target_os = "none")]
 mod log;
 #[cfg(target_os = "none")]
@@ -41,8 +51,68 @@ macro_rules! entry {
 
         #[cfg(not(target_os = "none"))]
         fn main() {
-            eprintln!(concat!(env!("CARGO_BIN_NAME"), " is firmware: `cargo xtask firmware` builds it for the parts."));
+            eprintln!(concat!(env!("CARGO_BIN_NAME"), " is firmware for microcontrollers: `cargo xtask firmware`, in Staya's repository, builds it for the parts."));
             std::process::exit(2);
+        }
+    };
+}
+
+/// A whole firmware whose robot goes by a guidance law of one's own, `$law`: `staya hil` and its library step it over the part's serial
+/// line. On Arm the crate needs `cortex-m-rt` (with its feature `device`) among its dependencies. The law is a [`LinkedLaw`](staya_link::own::LinkedLaw) in the part's numbers (`f32`, on the nRF51 `Q16`). The firmware calls
+/// itself by name and version of the package that it is written in, and links only if no panic is reachable, unless it is built for
+/// debugging.
+///
+/// ```ignore
+/// #![cfg_attr(target_os = "none", no_std, no_main)]
+/// staya_firmware::lockstep!(my_crate::MyLaw);
+/// ```
+#[macro_export]
+macro_rules! lockstep {
+    ($law:ty) => {
+        $crate::lockstep_as!(
+            $crate::lockstep::Own<$law>,
+            $crate::lockstep::OWN_CONTENT,
+            concat!(env!("CARGO_PKG_NAME"), " ", env!("CARGO_PKG_VERSION"))
+        );
+    };
+}
+
+/// The same for any robot that has a `const fn new()`, with frames of at most `$content` bytes, under this name.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! lockstep_as {
+    ($robot:ty, $content:expr, $firmware:expr) => {
+        $crate::entry!(staya_program::run);
+        // What is flashed has no panic, which the linker has seen: start-up, interrupts, logs and exceptions included. Built for
+        // debugging it has those of the checks that are on then.
+        #[cfg(debug_assertions)]
+        $crate::faults_go_over_the_link!();
+        #[cfg(not(debug_assertions))]
+        $crate::panics_do_not_link!();
+        #[cfg(not(debug_assertions))]
+        $crate::exceptions_go_over_the_link!();
+
+        #[cfg(target_os = "none")]
+        mod staya_program {
+            #[allow(unused_imports, reason = "the robot may be named by a whole path")]
+            use super::*;
+
+            const FIRMWARE: &str = $firmware;
+
+            // SAFETY: no other section has this name; the linker script takes it out of what is loaded.
+            #[unsafe(link_section = ".staya")]
+            #[used]
+            static NOTE: $crate::lockstep::Note = $crate::lockstep::note(FIRMWARE);
+
+            /// Too large for a stack, so made where it stays; what the part is, is known only later.
+            static mut SESSION: $crate::link::session::Session<$robot, { $content }> =
+                $crate::link::session::Session::unnamed(<$robot>::new());
+
+            pub fn run() -> ! {
+                // SAFETY: the only place that names it, which runs once.
+                let session = unsafe { &mut *core::ptr::addr_of_mut!(SESSION) };
+                $crate::lockstep::run(session, FIRMWARE)
+            }
         }
     };
 }
@@ -121,8 +191,8 @@ macro_rules! on_exception {
         // that has no handler of its own.
         #[cfg(all(target_os = "none", target_arch = "riscv32"))]
         #[unsafe(export_name = "ExceptionHandler")]
-        extern "C" fn exception(_: &riscv_rt::TrapFrame) -> ! {
-            $report($crate::fault::trap(riscv::register::mepc::read() as u32))
+        extern "C" fn exception(_: &$crate::riscv_rt::TrapFrame) -> ! {
+            $report($crate::fault::trap($crate::riscv::register::mepc::read() as u32))
         }
     };
 }

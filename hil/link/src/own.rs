@@ -42,9 +42,7 @@ impl<S: Scalar, G: LinkedLaw<S>, const N: usize, const K: usize, const O: usize,
     }
 }
 
-impl<S: Scalar, G: LinkedLaw<S>, const N: usize, const K: usize, const O: usize, W> Default
-    for Own<S, G, N, K, O, W>
-{
+impl<S: Scalar, G: LinkedLaw<S>, const N: usize, const K: usize, const O: usize, W> Default for Own<S, G, N, K, O, W> {
     fn default() -> Self {
         Self::new()
     }

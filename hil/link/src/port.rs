@@ -264,13 +264,7 @@ impl<const N: usize> Port<N> {
     ///
     /// # Errors
     /// [`TooLong`] for `N`; then nothing is on its way.
-    pub fn configure(
-        &mut self,
-        setup: &Setup,
-        task: Option<&Task>,
-        law: &[u8],
-        now_us: u64,
-    ) -> Result<(), TooLong> {
+    pub fn configure(&mut self, setup: &Setup, task: Option<&Task>, law: &[u8], now_us: u64) -> Result<(), TooLong> {
         self.waiting = None;
         self.seq = self.seq.wrapping_add(1);
         self.request.fill(kind::CONFIGURE, &(self.seq, setup, task, Rest(law)))?;

@@ -50,6 +50,10 @@ pub enum Cause {
     #[error("the firmware is for `{said}`, not for `{expected}`")]
     OtherPart { expected: &'static str, said: String },
     #[error(
+        "it runs `{said}`, this program steps `{expected}`: build firmware and program from the same source, and flash it anew"
+    )]
+    OtherProgram { expected: String, said: String },
+    #[error(
         "no robot in this process has the numbers and capacities of {0:?}: build firmware and host from the same source"
     )]
     NoShadow(Box<Hello>),

@@ -2,6 +2,7 @@
 
 use crate::line::LineFaults;
 use staya_controller::agent::{Setup, Task};
+use staya_link::robot::{Controller, Large, Small};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -16,6 +17,8 @@ pub struct DeviceConfig {
     pub setup: Setup,
     /// What it has to do.
     pub task: Option<Task>,
+    /// The guidance law if it is one of somebody's own, as postcard writes it; otherwise empty.
+    pub law: Vec<u8>,
     /// What the line does to frames.
     pub faults: LineFaults,
     /// When the device starts anew.
@@ -32,11 +35,18 @@ pub struct Reset {
     pub down_ticks: u32,
 }
 
+/// Robots in this process, one of which computes as a device does.
+pub type Shadows = fn() -> Vec<Box<dyn Controller + Send>>;
+
 /// How a fleet is run.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// The folder that `cargo xtask firmware` writes to.
+    /// The folder that `cargo xtask firmware` writes to, or one ELF file for all emulated devices.
     pub firmware: PathBuf,
+    /// What devices must say that they run, such as `lockstep 0.1.0`; `None`: anything.
+    pub program: Option<String>,
+    /// Among which a device's shadow is looked for, by its numbers and capacities: by default the robots that can have any law of Staya's.
+    pub shadows: Shadows,
     /// The folder for the logs of emulated devices, one file per robot; `None`: no logs.
     pub logs: Option<PathBuf>,
     /// A request is sent again after this, and the time that the line takes for it, at the latest; a step sooner, by the round trips
@@ -59,6 +69,8 @@ impl Options {
     pub fn new(firmware: PathBuf) -> Self {
         Self {
             firmware,
+            program: None,
+            shadows: || vec![Box::new(Large::new()), Box::new(Small::new())],
             logs: None,
             resend_after: Duration::from_millis(500),
             step_limit: Duration::from_secs(10),

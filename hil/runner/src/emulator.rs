@@ -5,6 +5,7 @@
 //! sockets in pairs, named Unix sockets and FIFOs take the same time per byte: the emulator takes and hands out one
 //! byte at a time.
 
+use crate::note::{Note, NoteError};
 use crate::part::Part;
 use std::fs::File;
 use std::io::{self, Read};
@@ -30,6 +31,8 @@ pub enum EmulatorError {
     NoEmulator { program: &'static str, package: &'static str },
     #[error("no firmware in {}: `cargo xtask firmware {part}` makes it", .elf.display())]
     NoFirmware { elf: PathBuf, part: &'static str },
+    #[error(transparent)]
+    Firmware(#[from] NoteError),
     #[error("cannot start {program}: {source}")]
     Start { program: &'static str, source: io::Error },
     #[error("cannot write the log {}: {source}", .path.display())]
@@ -72,6 +75,7 @@ pub fn start(part: Part, elf: &Path, log: Option<&Path>) -> Result<(Emulator, Un
         let (elf, part) = (elf.to_owned(), part.firmware_name());
         return Err(EmulatorError::NoFirmware { elf, part });
     }
+    Note::check(elf, part, None)?;
     let Some(path) = find_emulator(program) else {
         return Err(EmulatorError::NoEmulator { program, package });
     };

@@ -52,9 +52,12 @@ impl Part {
         }
     }
 
-    /// Its firmware below a folder of firmware, as `cargo xtask firmware` lays it out.
+    /// Its firmware below a folder of firmware, as `cargo xtask firmware` lays it out; or the file itself, if it is one.
     #[must_use]
     pub fn elf(self, folder: &Path) -> PathBuf {
+        if folder.is_file() {
+            return folder.to_owned();
+        }
         folder.join(self.firmware_name()).join("lockstep")
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::answer::{Answer, Cause, FleetError};
 use crate::channel::Channel;
-use crate::config::{DeviceConfig, Options};
+use crate::config::{DeviceConfig, Options, Shadows};
 use crate::line::{Line, micros};
 use crate::mismatch::Mismatch;
 use crate::statistics::{Collector, Load, Spread, Statistics};
@@ -12,7 +12,7 @@ use staya_link::capacities::Capacities;
 use staya_link::frame::TooLong;
 use staya_link::message::{Hello, MAX_ANSWER, StepResult, Stepped};
 use staya_link::port::{Event, Limits, Next, Port};
-use staya_link::robot::{Controller, Large, Small};
+use staya_link::robot::Controller;
 use staya_link::surroundings::OBSTACLE_BYTES;
 use staya_mavlink::any::AnyWire;
 use std::io::Write;
@@ -51,6 +51,9 @@ pub struct Unit {
     config: DeviceConfig,
     channel: Channel,
     port: Box<Port<REQUEST>>,
+    /// What it must say that it runs.
+    program: Option<String>,
+    shadows: Shadows,
     shadow: Option<Box<dyn Controller + Send>>,
     hello: Option<Hello>,
     there: Line,
@@ -75,6 +78,8 @@ impl Unit {
         let faults = config.faults;
         let mut unit = Self {
             port: Box::new(Port::new(options.run, limits(Duration::ZERO, Duration::ZERO))),
+            program: options.program.clone(),
+            shadows: options.shadows,
             shadow: None,
             hello: None,
             there: Line::new(faults, 0, robot),
@@ -249,7 +254,7 @@ impl Unit {
             Event::Configured(configured) => {
                 let shadow = self.shadow.as_mut();
                 let (setup, task) = (&self.config.setup, self.config.task.as_ref());
-                match shadow.map(|shadow| shadow.configure(setup, task)) {
+                match shadow.map(|shadow| shadow.configure(setup, task, &self.config.law)) {
                     Some(Ok(digest)) if digest == configured.digest => self.phase = Phase::Ready,
                     Some(Ok(shadow)) => {
                         let device = configured.digest;
@@ -288,14 +293,19 @@ impl Unit {
             let (expected, said) = (part.firmware_name(), hello.part.to_string());
             return Err(Cause::OtherPart { expected, said });
         }
+        if let Some(expected) = &self.program
+            && hello.firmware != expected.as_str()
+        {
+            return Err(Cause::OtherProgram { expected: expected.clone(), said: hello.firmware.to_string() });
+        }
         if self.shadow.is_none() {
-            let shadow = shadow(&hello).ok_or_else(|| Cause::NoShadow(Box::new(hello.clone())))?;
+            let shadow = shadow(self.shadows, &hello).ok_or_else(|| Cause::NoShadow(Box::new(hello.clone())))?;
             self.shadow = Some(shadow);
         }
         self.packed = vec![0; usize::from(hello.capacities.obstacles) * OBSTACLE_BYTES];
         self.hello = Some(hello);
         let (setup, task) = (&self.config.setup, self.config.task.as_ref());
-        self.port.configure(setup, task, now_us).map_err(|TooLong| Cause::TooLong(REQUEST))?;
+        self.port.configure(setup, task, &self.config.law, now_us).map_err(|TooLong| Cause::TooLong(REQUEST))?;
         self.set_limits(REQUEST / 16, self.start_limit);
         self.phase = Phase::Configuring;
         Ok(())
@@ -399,13 +409,12 @@ fn limits(resend_after: Duration, limit: Duration) -> Limits {
     Limits { resend_after_us: micros(resend_after).max(1), give_up_after_us: micros(limit) }
 }
 
-/// The robot in this process that computes as the device does: the same numbers, the same capacities.
-fn shadow(hello: &Hello) -> Option<Box<dyn Controller + Send>> {
+/// The robot among `shadows` that computes as the device does: the same numbers, the same capacities.
+fn shadow(shadows: Shadows, hello: &Hello) -> Option<Box<dyn Controller + Send>> {
     let is_same = |controller: &dyn Controller| {
         let inbox_bytes = hello.capacities.inbox_bytes;
         let capacities = Capacities { inbox_bytes, ..controller.capacities() };
         controller.number() == hello.number && capacities == hello.capacities
     };
-    let candidates: [Box<dyn Controller + Send>; 2] = [Box::new(Large::new()), Box::new(Small::new())];
-    candidates.into_iter().find(|controller| is_same(controller.as_ref()))
+    shadows().into_iter().find(|controller| is_same(controller.as_ref()))
 }

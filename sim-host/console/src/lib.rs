@@ -9,7 +9,8 @@ pub use progress::{Progress, Stop};
 use anyhow::{Context as _, Result};
 use clap::Args;
 use serde::Serialize;
-use std::io::{self, Write as _};
+use std::io::{self, ErrorKind, Write as _};
+use std::process::ExitCode;
 
 /// Options that every command understands.
 #[derive(Args, Clone, Copy, Debug, Default)]
@@ -23,6 +24,24 @@ pub struct Global {
     /// Show no progress.
     #[arg(long, short, global = true, help_heading = "Options of every command")]
     pub quiet: bool,
+}
+
+impl Global {
+    /// Makes the pool of as many threads as are wanted; once, before the first of them works.
+    ///
+    /// # Errors
+    /// They cannot be started.
+    pub fn begin(&self) -> Result<()> {
+        if let Some(threads) = self.threads {
+            // More than one for each processor only cost time.
+            let processors = std::thread::available_parallelism().map_or(usize::MAX, usize::from);
+            rayon::ThreadPoolBuilder::new()
+                .num_threads(usize::from(threads).min(processors))
+                .build_global()
+                .with_context(|| format!("cannot start {threads} threads"))?;
+        }
+        Ok(())
+    }
 }
 
 /// How a command that did not fail came to its end.
@@ -59,4 +78,36 @@ pub fn print_json(value: &impl Serialize) -> Result<()> {
     let mut text = serde_json::to_string_pretty(value)?;
     text.push('\n');
     print(&text)
+}
+
+/// The exit code of a command of `program`: 0 done, 1 failed, with the reason on standard error, 130 stopped by Ctrl-C.
+#[must_use]
+pub fn exit(program: &str, ended: Result<Ended>) -> ExitCode {
+    match ended {
+        Ok(Ended::Done) => ExitCode::SUCCESS,
+        Ok(Ended::Interrupted) => ExitCode::from(130),
+        // The reader of a pipe (`staya ... | head`) went away: nothing to tell anybody.
+        Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) => {
+            // Standard error may be closed as well; the exit code still tells.
+            let _ = writeln!(io::stderr(), "{program}: {}", in_one_line(&error));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// An error and its causes; a cause that the message before it quotes is not said again.
+fn in_one_line(error: &anyhow::Error) -> String {
+    let mut text = error.to_string();
+    for cause in error.chain().skip(1).map(ToString::to_string) {
+        if !text.contains(&cause) {
+            text.push_str(": ");
+            text.push_str(&cause);
+        }
+    }
+    text
+}
+
+fn is_broken_pipe(error: &anyhow::Error) -> bool {
+    error.chain().any(|cause| cause.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == ErrorKind::BrokenPipe))
 }

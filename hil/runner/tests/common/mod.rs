@@ -49,6 +49,7 @@ pub fn config(robot: u32, device: &str) -> DeviceConfig {
         device: device.to_owned(),
         setup: Setup { agent, guidance, safety, format: Format::Postcard },
         task: Some(task),
+        law: Vec::new(),
         faults: LineFaults::default(),
         resets: Vec::new(),
     }

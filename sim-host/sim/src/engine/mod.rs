@@ -38,7 +38,7 @@ pub use ground::{Ground, HostLaw, StateWords};
 pub use inspect::{Choice, Inspection, Known, Permitted, Scratchpad, SeenLand, known};
 pub use intervene::Change;
 pub use operator::{Observation, Operated, operated};
-pub use own::{NotInPlane, OwnLaw, operated_own, simulate_own};
+pub use own::{NotInPlane, OwnLaw, operated_own, simulate_own, simulate_own_with};
 pub use plane::{PlaneGround, Senses};
 pub use simulate::{Moment, Outcome, Unable, WIDE, Watch, simulate, simulate_from, simulate_with};
 pub use state::{Saves, State, StateError};

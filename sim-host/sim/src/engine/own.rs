@@ -4,7 +4,7 @@ use super::operator::{Operated, boxed};
 use super::simulate::{SafetyOf, go};
 use super::state::State;
 use super::witness::Witness;
-use super::{Engine, Moment, Outcome, PlaneGround};
+use super::{Engine, ExternalController, Moment, Outcome, PlaneGround, Watch};
 use crate::record::RobotRow;
 use crate::scenario::Scenario;
 use staya_controller::agent::{AnyWorld, Commanded, Guidance, InPlane, NeighborTracking};
@@ -38,7 +38,20 @@ pub fn simulate_own<G: OwnLaw>(
     law: impl Fn(usize) -> G + Send + Sync + 'static,
     mut watch: impl FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>) -> ControlFlow<()>,
 ) -> Result<Outcome, NotInPlane> {
-    Ok(go(scenario, engine(scenario, law)?, None, &mut watch))
+    simulate_own_with(scenario, law, None, &mut watch)
+}
+
+/// The same with some of the robots' controllers outside of this process; where those have another law than `law(i)`, the run is another one.
+///
+/// # Errors
+/// [`NotInPlane`].
+pub fn simulate_own_with<G: OwnLaw>(
+    scenario: &Scenario,
+    law: impl Fn(usize) -> G + Send + Sync + 'static,
+    external: Option<Box<dyn ExternalController>>,
+    watch: &mut Watch<'_>,
+) -> Result<Outcome, NotInPlane> {
+    Ok(go(scenario, engine(scenario, law)?, external, watch))
 }
 
 /// The same before its first tick, for who looks into robots and tells them what to do: bridges and live pages.

@@ -1,6 +1,6 @@
 //! Robots of a run whose controllers run on devices: on emulated parts or on boards.
 //!
-//! [`OnDevices`] is what the engine sees; [`firmware`](super::firmware) finds what the devices run. The devices themselves, their line and
+//! [`OnDevices`] is what the engine sees; [`firmware`](crate::firmware) finds what the devices run. The devices themselves, their line and
 //! the comparison with their shadows are `staya-runner`'s.
 
 use staya_controller::agent::{AnyInputs, Setup, Task};
@@ -63,6 +63,8 @@ impl Log {
 pub struct OnDevices {
     plan: DevicePlan,
     options: Option<Options>,
+    /// What a robot's device is told of its law.
+    law: Box<dyn Fn(usize) -> Vec<u8> + Send>,
     /// What each device is to be; then they are part of the fleet.
     orders: Vec<Option<DeviceConfig>>,
     fleet: Option<Fleet>,
@@ -77,11 +79,12 @@ pub struct OnDevices {
 impl OnDevices {
     /// Devices of a plan, and where to ask what became of them.
     #[must_use]
-    pub fn new(plan: DevicePlan, options: Options) -> (Self, Log) {
+    pub fn new(plan: DevicePlan, options: Options, law: Box<dyn Fn(usize) -> Vec<u8> + Send>) -> (Self, Log) {
         let (log, count) = (Log::default(), plan.devices.len());
         let devices = Self {
             plan,
             options: Some(options),
+            law,
             orders: (0..count).map(|_| None).collect(),
             fleet: None,
             asked: Vec::new(),
@@ -169,6 +172,7 @@ impl ExternalController for OnDevices {
             device: self.plan.devices[at].1.to_string(),
             setup,
             task: Some(task),
+            law: (self.law)(index),
             faults: self.plan.faults,
             resets: resets.collect(),
         });

@@ -1,0 +1,270 @@
+//! What emulated devices run: ELF files that `cargo xtask firmware` makes, wherever they are.
+
+use anyhow::{Context as _, Result, bail};
+use staya_runner::{Note, Part, find_emulator};
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::Instant;
+
+/// Names the folder of firmware, or one ELF file, as `--firmware` does.
+const VARIABLE: &str = "STAYA_FIRMWARE";
+
+/// What emulated devices are to run.
+pub(crate) struct Program {
+    /// The host program's name: what is installed with it is in `share/NAME/firmware`.
+    pub(crate) name: &'static str,
+    /// What the firmware says that it is: its name and version.
+    pub(crate) says: String,
+    /// Where it is made.
+    pub(crate) made: Made,
+}
+
+/// Where a firmware is made.
+pub(crate) enum Made {
+    /// In Staya's repository, as `hil/firmware`.
+    InRepository,
+    /// In the package in this folder.
+    InPackage(PathBuf),
+}
+
+/// The folder with firmware for these parts, or the one file: what is given; what the environment names; what is installed
+/// beside this program or among the user's data; or what the sources that the program was made of give, which builds what is missing or
+/// old and fetches the emulators.
+///
+/// # Errors
+/// Firmware that is not there, with where it was looked for and what to do, or that is of another part, version or program.
+pub(crate) fn find(parts: &[Part], given: Option<&Path>, program: &Program) -> Result<PathBuf> {
+    if parts.is_empty() {
+        return Ok(PathBuf::new());
+    }
+    let named = std::env::var_os(VARIABLE).map(PathBuf::from);
+    let mut looked = String::from("no firmware:");
+    let chosen = match (given, named) {
+        (Some(folder), _) => Some(("--firmware", folder.to_owned())),
+        (None, Some(folder)) => Some((VARIABLE, folder)),
+        (None, None) => None,
+    };
+    if let Some((by, folder)) = chosen {
+        return match lacking(parts, &folder) {
+            None => checked(parts, folder, program),
+            Some(elf) => {
+                write!(looked, "\n  {} is not there ({by})", elf.display())?;
+                bail!("{looked}\n{}", remedy(parts, program))
+            }
+        };
+    }
+    for folder in installed(program.name) {
+        match lacking(parts, &folder) {
+            None => return checked(parts, folder, program),
+            Some(elf) => write!(looked, "\n  {} is not there", elf.display())?,
+        }
+    }
+    let root = repository();
+    let sources = match &program.made {
+        Made::InRepository => root.as_deref(),
+        Made::InPackage(folder) => root.as_deref().and(Some(folder.as_path())),
+    };
+    match (&root, sources.filter(|sources| sources.is_dir())) {
+        (Some(root), Some(_)) => {
+            let folder = prepare(root, parts, &program.made)?;
+            match lacking(parts, &folder) {
+                None => checked(parts, folder, program),
+                Some(elf) => {
+                    write!(looked, "\n  {} is not there, and no toolchain here builds it", elf.display())?;
+                    bail!("{looked}\n{}", remedy(parts, program))
+                }
+            }
+        }
+        _ => {
+            write!(looked, "\n  the sources that this program was made of are not at {} any more", home().display())?;
+            bail!("{looked}\n{}", remedy(parts, program))
+        }
+    }
+}
+
+/// The first ELF file that is not there.
+fn lacking(parts: &[Part], folder: &Path) -> Option<PathBuf> {
+    parts.iter().map(|part| part.elf(folder)).find(|elf| !elf.is_file())
+}
+
+/// The folder, if all its firmware is what this program steps.
+fn checked(parts: &[Part], folder: PathBuf, program: &Program) -> Result<PathBuf> {
+    for part in parts {
+        Note::check(&part.elf(&folder), *part, Some(&program.says))?;
+    }
+    Ok(folder)
+}
+
+/// What to do where there is none.
+fn remedy(parts: &[Part], program: &Program) -> String {
+    let names: Vec<&str> = parts.iter().map(|part| part.firmware_name()).collect();
+    let names = names.join(" ");
+    match &program.made {
+        Made::InRepository => format!(
+            "In a clone of Staya's repository `cargo xtask firmware --bin lockstep {names}` makes it, in CLONE/target/firmware; then add \
+             `--firmware CLONE/target/firmware` here, or set {VARIABLE} to that folder. `cargo xtask install --prefix DIR` there puts it \
+             beside the program"
+        ),
+        Made::InPackage(folder) => format!(
+            "In a clone of Staya's repository `cargo xtask firmware --crate {folder} {names}` makes it, in {folder}/target/firmware; then \
+             add `--firmware {folder}/target/firmware` here, or set {VARIABLE} to that folder, or name one ELF file in place of it",
+            folder = folder.display()
+        ),
+    }
+}
+
+/// Where installed firmware is: in `share` beside the folder of this program, and among the user's data.
+fn installed(name: &str) -> Vec<PathBuf> {
+    let program = std::env::current_exe().ok();
+    let beside = program.as_deref().and_then(|program| Some(program.ancestors().nth(2)?.join("share")));
+    let data = std::env::var_os("XDG_DATA_HOME").map(PathBuf::from);
+    let home = || Some(Path::new(&std::env::var_os("HOME")?).join(".local/share"));
+    let places = [beside, data.or_else(home)].into_iter().flatten();
+    let mut places: Vec<PathBuf> = places.map(|folder| folder.join(name).join("firmware")).collect();
+    places.dedup();
+    places
+}
+
+/// Where Staya's repository was when this was built.
+fn home() -> PathBuf {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    here.ancestors().nth(2).unwrap_or(here).to_owned()
+}
+
+/// Staya's repository: the one in which cargo started this program, or the one that it was built from.
+fn repository() -> Option<PathBuf> {
+    let started = std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from);
+    let started = started.as_deref().and_then(Path::parent).map(Path::to_owned);
+    [started, Some(home())].into_iter().flatten().find(|root| is_repository(root))
+}
+
+fn is_repository(folder: &Path) -> bool {
+    folder.join("xtask/Cargo.toml").is_file() && folder.join("hil/firmware").is_dir()
+}
+
+fn target(root: &Path) -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR")
+        .map_or_else(|| root.join("target"), |folder| std::path::absolute(&folder).unwrap_or_else(|_| folder.into()))
+}
+
+/// Brings the firmware for these parts up to date, and fetches the emulators; the folder that it is in then.
+fn prepare(root: &Path, parts: &[Part], made: &Made) -> Result<PathBuf> {
+    let names: Vec<&str> = parts.iter().map(|part| part.firmware_name()).collect();
+    let (folder, what) = match made {
+        Made::InRepository => (target(root).join("firmware"), vec!["--bin", "lockstep"]),
+        Made::InPackage(package) => {
+            let text = package.to_str().with_context(|| format!("{} is no text", package.display()))?;
+            (package.join("target/firmware"), vec!["--crate", text])
+        }
+    };
+    if lacking(parts, &folder).is_some() {
+        eprintln!("staya: building the firmware for {}; the first time takes some minutes", names.join(", "));
+    }
+    let began = Instant::now();
+    xtask(root, &[&["firmware"], what.as_slice(), names.as_slice()].concat())?;
+    for part in parts {
+        let elf = part.elf(&folder);
+        if elf.is_file() {
+            eprintln!("staya: {} is up to date, after {:.0} s", elf.display(), began.elapsed().as_secs_f64());
+        }
+    }
+    if !parts.iter().all(|part| find_emulator(part.emulator()).is_some()) {
+        eprintln!("staya: fetching the emulators; this takes a minute");
+        xtask(root, &["qemu"])?;
+    }
+    Ok(folder)
+}
+
+/// One of the repository's own commands; what it prints goes to standard error, all of it only if it fails.
+fn xtask(root: &Path, arguments: &[&str]) -> Result<()> {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let line = format!("cargo xtask {}", arguments.join(" "));
+    eprintln!("staya: {line}");
+    let mut command = Command::new(cargo);
+    // What cargo told this program about its package is not true of the next one.
+    for (name, _) in std::env::vars_os() {
+        let is_cargos =
+            name.to_str().is_some_and(|name| name.starts_with("CARGO_PKG_") || name.starts_with("CARGO_MANIFEST_"));
+        if is_cargos {
+            command.env_remove(name);
+        }
+    }
+    let output = command
+        .args(["run", "--quiet", "--locked", "--package", "xtask", "--"])
+        .args(arguments)
+        .current_dir(root)
+        .stdin(Stdio::null())
+        .stderr(Stdio::inherit())
+        .output()
+        .with_context(|| format!("cannot start `{line}`"))?;
+    let said = String::from_utf8_lossy(&output.stdout);
+    if !output.status.success() {
+        eprint!("{said}");
+        bail!("`{line}` failed");
+    }
+    for skipped in said.lines().filter(|line| line.contains("no toolchain") || line.contains("no qemu")) {
+        eprintln!("staya: {}", skipped.trim());
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PARTS: [Part; 2] = [Part::Stm32f405, Part::Microbit];
+
+    /// A folder with a file for each of these parts, which is no firmware.
+    fn folder(parts: &[Part]) -> tempfile::TempDir {
+        let top = tempfile::tempdir().expect("a folder");
+        for part in parts {
+            let elf = part.elf(top.path());
+            std::fs::create_dir_all(elf.parent().expect("a parent")).expect("a folder");
+            std::fs::write(elf, "").expect("a file");
+        }
+        top
+    }
+
+    fn program(made: Made) -> Program {
+        Program { name: "staya", says: String::from("lockstep 0.1.0"), made }
+    }
+
+    #[test]
+    fn what_is_given_must_be_there_and_be_firmware() {
+        let refusal =
+            |given: &Path, made| find(&PARTS, Some(given), &program(made)).expect_err("no firmware").to_string();
+        let one = folder(&PARTS[..1]);
+        let text = refusal(one.path(), Made::InRepository);
+        for piece in [
+            PARTS[1].elf(one.path()).display().to_string(),
+            String::from("(--firmware)"),
+            String::from("cargo xtask firmware --bin lockstep stm32f405 nrf51"),
+            String::from("cargo xtask install"),
+            String::from(VARIABLE),
+        ] {
+            assert!(text.contains(&piece), "{text}");
+        }
+        let text = refusal(one.path(), Made::InPackage(PathBuf::from("/my/law")));
+        assert!(text.contains("cargo xtask firmware --crate /my/law stm32f405 nrf51"), "{text}");
+        let both = folder(&PARTS);
+        let text = refusal(both.path(), Made::InRepository);
+        assert!(text.contains("no ELF file"), "{text}");
+        // One file for all.
+        let text = refusal(&PARTS[0].elf(one.path()), Made::InRepository);
+        assert!(text.contains("stm32f405/lockstep is no ELF file"), "{text}");
+    }
+
+    #[test]
+    fn boards_need_no_file() {
+        assert!(find(&[], Some(Path::new("no/such/folder")), &program(Made::InRepository)).is_ok());
+    }
+
+    #[test]
+    fn installed_firmware_is_looked_for_beside_the_program_first() {
+        let places = installed("staya");
+        let program = std::env::current_exe().expect("this test's path");
+        let beside = program.ancestors().nth(2).expect("a folder").join("share/staya/firmware");
+        assert_eq!(places.first(), Some(&beside));
+    }
+}

@@ -1,0 +1,45 @@
+//! Robots of a scenario as firmware, on emulated microcontrollers or boards, in lockstep with the rest: what `staya hil` does, for Staya's
+//! own guidance laws ([`run`]) and for one that is the caller's ([`Own`]).
+//!
+//! A whole program for a law of one's own, which takes the arguments of `staya hil`:
+//!
+//! ```no_run
+//! # use serde::{Deserialize, Serialize};
+//! # use staya_controller::agent::*;
+//! # use staya_controller::{geom::Vec3, rand::Rng, scalar::Scalar};
+//! #[derive(Clone, Debug, Serialize, Deserialize)]
+//! struct East {
+//!     speed_mps: f32,
+//! }
+//! # impl Teamwork for East {}
+//! # impl<S: Scalar> Guidance<S> for East {
+//! #     type Input<'a> = InPlane<'a, S>;
+//! #     type Destination = Roams;
+//! #     type Workspace = ();
+//! #     type Payload = ();
+//! #     fn decide(&mut self, _: &GuidanceInput<'_, S>, _: &InPlane<'_, S>, _: &mut Rng, (): &mut ()) -> Result<Decision<S>, BadInput> {
+//! #         let x = S::from_f32(self.speed_mps).unwrap_or(S::ZERO);
+//! #         let wish_mps = Vec3 { x, ..Vec3::ZERO };
+//! #         Ok(Decision { action: Action::Velocity { wish_mps, way_m: None }, ..Decision::default() })
+//! #     }
+//! # }
+//! fn main() -> std::process::ExitCode {
+//!     staya_hil::Own::new(staya_hil::package!(), |_robot| East { speed_mps: 0.5 }).main()
+//! }
+//! ```
+//!
+//! Its firmware, in the same package, is `staya_firmware::lockstep!(East);`. docs/own.md has all of it.
+
+mod args;
+mod devices;
+mod firmware;
+mod options;
+mod own;
+mod pace;
+mod run;
+mod summary;
+
+pub use args::{ScenarioArgs, WatchArgs};
+pub use options::DeviceArgs;
+pub use own::{Own, Package};
+pub use run::{HilArgs, run};

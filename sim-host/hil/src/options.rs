@@ -1,0 +1,164 @@
+//! Options of a run with devices.
+
+use crate::devices::DevicePlan;
+use anyhow::{Result, bail};
+use clap::Args;
+use staya_runner::{Device, LineFaults, Part, Reset};
+use staya_sim::scenario::Scenario;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// Which robots run on which devices, and what happens to them there.
+#[derive(Args, Clone, Debug)]
+pub struct DeviceArgs {
+    /// Where a robot runs: qemu:stm32f405, qemu:microbit, qemu:riscv32 or serial:PORT[,baud=N]; may be repeated to mix kinds.
+    #[arg(long = "device", value_name = "DEVICE", required = true)]
+    kinds: Vec<Device>,
+    /// How many robots run on devices: the first ones of the scenario, kinds taken in turn [default: one per --device].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    devices: Option<u32>,
+    /// Run in real time, and count the ticks that are late.
+    #[arg(long)]
+    pub(crate) real_time: bool,
+    /// Firmware for emulated devices: a folder with PART/lockstep, or one ELF file [default: $STAYA_FIRMWARE, or what is installed
+    /// beside this program, or what the sources that it was made of give, which builds it when needed].
+    #[arg(long, value_name = "DIR|FILE")]
+    pub(crate) firmware: Option<PathBuf>,
+    /// Folder for the logs of emulated devices, one file per robot [default: no logs].
+    #[arg(long, value_name = "DIR")]
+    pub(crate) logs: Option<PathBuf>,
+    /// Probability that a frame between host and device is lost.
+    #[arg(long, value_name = "P", default_value_t = 0.0, value_parser = probability, help_heading = "Faults of the line")]
+    loss: f64,
+    /// Probability that a bit between host and device flips.
+    #[arg(long, value_name = "P", default_value_t = 0.0, value_parser = probability, help_heading = "Faults of the line")]
+    bit_errors: f64,
+    /// Delay of each frame, milliseconds.
+    #[arg(long, value_name = "MS", default_value_t = 0, value_parser = clap::value_parser!(u64).range(..=10_000), help_heading = "Faults of the line")]
+    delay: u64,
+    /// Reset the devices one after the other from this tick on; may be repeated.
+    #[arg(long, value_name = "TICK", help_heading = "Faults of the line")]
+    reset: Vec<u32>,
+    /// Ticks for which a robot that was reset stands still.
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..), help_heading = "Faults of the line")]
+    down: u32,
+}
+
+fn probability(text: &str) -> Result<f64, String> {
+    let value: Option<f64> = text.parse().ok();
+    value.filter(|value| (0.0..1.0).contains(value)).ok_or_else(|| String::from("a number from 0 to less than 1"))
+}
+
+impl DeviceArgs {
+    /// Which robots run where.
+    pub(crate) fn plan(&self, scenario: &Scenario) -> Result<DevicePlan> {
+        let count = self.devices.map_or(self.kinds.len(), |n| n as usize);
+        let robots = scenario.robots.len();
+        if count > robots {
+            bail!("--devices {count}: {} has {robots} robots", scenario.name);
+        }
+        if count < self.kinds.len() {
+            bail!("--devices {count}: fewer than the {} given with --device", self.kinds.len());
+        }
+        let mut devices: Vec<(usize, Device)> = Vec::new();
+        // A port has one board; emulators there are as many as anybody wants.
+        let emulated: Vec<&Device> = self.kinds.iter().filter(|kind| is_emulated(kind)).collect();
+        for index in 0..count {
+            let device = match self.kinds.get(index) {
+                Some(device) => device,
+                None if emulated.is_empty() => {
+                    bail!("--devices {count}: a port has one board, and {} are given with --device", self.kinds.len())
+                }
+                None => emulated[(index - self.kinds.len()) % emulated.len()],
+            };
+            if !is_emulated(device) && devices.iter().any(|(_, other)| other == device) {
+                bail!("--device {device} is given twice: a port has one board");
+            }
+            devices.push((index, device.clone()));
+        }
+        Ok(DevicePlan {
+            devices,
+            faults: LineFaults {
+                loss: self.loss,
+                bit_errors: self.bit_errors,
+                delay: Duration::from_millis(self.delay),
+                seed: scenario.seed,
+            },
+            resets: self.reset.iter().map(|&tick| Reset { tick, down_ticks: self.down }).collect(),
+        })
+    }
+}
+
+/// The parts that emulators run in a plan, each once.
+pub(crate) fn emulated_parts(plan: &DevicePlan) -> Vec<Part> {
+    let mut parts: Vec<Part> = Vec::new();
+    for (_, device) in &plan.devices {
+        if let Device::Emulated(part) = device
+            && !parts.contains(part)
+        {
+            parts.push(*part);
+        }
+    }
+    parts
+}
+
+fn is_emulated(device: &Device) -> bool {
+    matches!(device, Device::Emulated(_))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+    use staya_sim::scenario::Overrides;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        devices: DeviceArgs,
+    }
+
+    fn plan(arguments: &str) -> Result<Vec<(usize, String)>, String> {
+        let line = Line::try_parse_from(format!("hil {arguments}").split_whitespace());
+        let line = line.map_err(|error| error.to_string())?;
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+        let path = path.join("../../scenarios/six-robots.toml");
+        let scenario = Scenario::load(&path, &Overrides::default()).expect("a good scenario");
+        let plan = line.devices.plan(&scenario).map_err(|error| error.to_string())?;
+        let devices = plan.devices.into_iter();
+        Ok(devices.map(|(at, device)| (at, device.to_string())).collect())
+    }
+
+    #[test]
+    fn kinds_are_taken_in_turn_and_a_port_once() {
+        let names = |arguments: &str| {
+            let devices = plan(arguments).expect(arguments).into_iter().enumerate();
+            let named = devices.map(|(at, (index, name))| {
+                assert_eq!(at, index);
+                name
+            });
+            named.collect::<Vec<_>>().join(" ")
+        };
+        assert_eq!(names("--device qemu:microbit"), "qemu:microbit");
+        assert_eq!(
+            names("--device qemu:stm32f405 --device serial:/dev/x --device qemu:riscv32 --devices 6"),
+            "qemu:stm32f405 serial:/dev/x,baud=115200 qemu:riscv32 qemu:stm32f405 qemu:riscv32 qemu:stm32f405"
+        );
+    }
+
+    #[test]
+    fn plans_that_cannot_be_carried_out_say_why() {
+        for (arguments, why) in [
+            ("--device qemu:z80", "no part `z80`"),
+            ("--device qemu:stm32f405 --devices 7", "has 6 robots"),
+            ("--device serial:/dev/x --devices 2", "a port has one board"),
+            ("--device serial:/dev/x --device serial:/dev/x", "given twice"),
+            ("--device qemu:microbit --device qemu:riscv32 --devices 1", "fewer than the 2"),
+            ("--device qemu:microbit --loss 1", "less than 1"),
+            ("", "--device"),
+        ] {
+            let error = plan(arguments).expect_err(arguments);
+            assert!(error.contains(why), "{arguments}: {error}");
+        }
+    }
+}

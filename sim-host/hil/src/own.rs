@@ -1,0 +1,132 @@
+//! Robots by a guidance law of the caller's own, some of them on devices.
+
+use crate::WatchArgs;
+use crate::firmware::{Made, Program};
+use crate::options::DeviceArgs;
+use crate::run::{HilArgs, Swarm, drive};
+use anyhow::{Context as _, Result};
+use clap::{CommandFactory as _, FromArgMatches as _};
+use staya_console::{Ended, Global};
+use staya_controller::agent::Guidance;
+use staya_controller::scalar::Q16;
+use staya_link::own::{LinkedLaw, OwnLarge, OwnSmall};
+use staya_link::robot::Controller;
+use staya_runner::Shadows;
+use staya_sim::engine::{ExternalController, Outcome, OwnLaw, Watch, simulate_own_with};
+use staya_sim::scenario::Scenario;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Arc;
+
+/// The package that a program and its firmware are both in; [`package!`](crate::package) makes it.
+#[derive(Clone, Copy, Debug)]
+pub struct Package {
+    /// Its name.
+    pub name: &'static str,
+    /// Its version.
+    pub version: &'static str,
+    /// Its folder when the program was built.
+    pub folder: &'static str,
+}
+
+/// The [`Package`] in which this is written.
+#[macro_export]
+macro_rules! package {
+    () => {
+        $crate::Package {
+            name: env!("CARGO_PKG_NAME"),
+            version: env!("CARGO_PKG_VERSION"),
+            folder: env!("CARGO_MANIFEST_DIR"),
+        }
+    };
+}
+
+/// Robots that go by law `G`. Devices are told what the law keeps, as serde writes it, and make the law of it: so a parameter that the
+/// host program changes needs no other firmware.
+pub struct Own<G> {
+    package: Package,
+    law: Arc<dyn Fn(usize) -> G + Send + Sync>,
+    shadows: Shadows,
+}
+
+impl<G> std::fmt::Debug for Own<G> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Own").field("package", &self.package).finish_non_exhaustive()
+    }
+}
+
+impl<G: OwnLaw + LinkedLaw<f32>> Own<G> {
+    /// Robots of which number `i` in [`Scenario::robots`] goes by `law(i)`, made at its first start and at each restart, here and on
+    /// devices, as [`simulate_own`](staya_sim::engine::simulate_own) has it.
+    #[must_use]
+    pub fn new(package: Package, law: impl Fn(usize) -> G + Send + Sync + 'static) -> Self {
+        Self { package, law: Arc::new(law), shadows: || vec![Box::new(OwnLarge::<G>::new())] }
+    }
+
+    /// The same also for parts that compute in fixed point (the micro:bit), where the law is one in [`Q16`], too.
+    #[must_use]
+    pub fn in_fixed_point(self) -> Self
+    where
+        G: for<'a> Guidance<Q16, Input<'a> = staya_controller::agent::InPlane<'a, Q16>, Workspace = ()>,
+    {
+        let shadows: Shadows = || {
+            let both: [Box<dyn Controller + Send>; 2] =
+                [Box::new(OwnLarge::<G>::new()), Box::new(OwnSmall::<G>::new())];
+            both.into()
+        };
+        Self { shadows, ..self }
+    }
+
+    /// A whole program with the arguments of `staya hil`: parses them, runs, prints, and gives the exit code.
+    #[must_use]
+    pub fn main(self) -> ExitCode {
+        #[derive(clap::Parser)]
+        struct Line {
+            #[command(flatten)]
+            hil: HilArgs,
+            #[command(flatten)]
+            global: Global,
+        }
+        let Package { name, version, .. } = self.package;
+        let command = Line::command().name(name).version(version).after_help("");
+        let line = Line::from_arg_matches(&command.get_matches()).unwrap_or_else(|error| error.exit());
+        let ended = line.global.begin().and_then(|()| line.hil.run_own(&self, &line.global));
+        staya_console::exit(name, ended)
+    }
+
+    /// Runs a scenario, and prints its figures.
+    ///
+    /// # Errors
+    /// Devices or firmware that are not there; a device that fell silent or differed from its shadow; a scenario that no law of one's own
+    /// can run.
+    pub fn run(&self, scenario: &Scenario, devices: &DeviceArgs, page: &WatchArgs, global: &Global) -> Result<Ended> {
+        drive(self, scenario, devices, page, global)
+    }
+}
+
+impl<G: OwnLaw + LinkedLaw<f32>> Swarm for Own<G> {
+    fn program(&self) -> Program {
+        let Package { name, version, folder } = self.package;
+        Program { name, says: format!("{name} {version}"), made: Made::InPackage(PathBuf::from(folder)) }
+    }
+
+    fn shadows(&self) -> Option<Shadows> {
+        Some(self.shadows)
+    }
+
+    fn law(&self) -> Box<dyn Fn(usize) -> Vec<u8> + Send> {
+        let law = Arc::clone(&self.law);
+        // What serde can write into a vector it does; a law that it cannot write has no checkpoint and no digest either.
+        Box::new(move |index| postcard::to_stdvec(&law(index)).unwrap_or_default())
+    }
+
+    fn simulate(
+        &self,
+        scenario: &Scenario,
+        external: Option<Box<dyn ExternalController>>,
+        watch: &mut Watch<'_>,
+    ) -> Result<Outcome> {
+        let law = Arc::clone(&self.law);
+        simulate_own_with(scenario, move |index| law(index), external, watch).context("the law cannot run it")
+    }
+}

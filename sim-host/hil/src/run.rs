@@ -1,0 +1,243 @@
+//! `staya hil SCENARIO`: some of the robots run as firmware on emulated parts or boards, in lockstep with the rest.
+
+use crate::devices::{Log, OnDevices};
+use crate::firmware::{self, Made, Program};
+use crate::options::{DeviceArgs, emulated_parts};
+use crate::own::Own;
+use crate::pace::Pace;
+use crate::summary::Summary;
+use crate::{ScenarioArgs, WatchArgs};
+use anyhow::{Context as _, Result, bail};
+use clap::Args;
+use staya_console::{Ended, Global, Progress, Stop, print, print_json};
+use staya_controller::formation::published::FormationLaw;
+use staya_link::own::LinkedLaw;
+use staya_runner::{Options, Shadows};
+use staya_sim::engine::{ExternalController, Moment, Outcome, OwnLaw, Watch, simulate_with};
+use staya_sim::expected::Expected;
+use staya_sim::record::RobotRow;
+use staya_sim::scenario::Scenario;
+use staya_view::watch::{About, DeviceFigures, Insight};
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+/// Run some robots of a scenario as firmware, on emulated microcontrollers or boards.
+///
+/// The other robots run in this process. For every robot on a device a shadow runs here too: the first step at which both differ
+/// by a bit ends the run and is printed. Exit code 1 if that happens, or a device falls silent.
+#[derive(Args, Clone, Debug)]
+pub struct HilArgs {
+    #[command(flatten)]
+    scenario: ScenarioArgs,
+    #[command(flatten)]
+    devices: DeviceArgs,
+    #[command(flatten)]
+    page: WatchArgs,
+}
+
+impl HilArgs {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// A scenario that cannot be read or is wrong; devices or firmware that are not there; a device that fell silent or differed
+    /// from its shadow.
+    pub fn run(&self, global: &Global) -> Result<Ended> {
+        run(&self.scenario.load()?, &self.devices, &self.page, global)
+    }
+
+    /// The same with a guidance law of one's own.
+    pub(crate) fn run_own<G: OwnLaw + LinkedLaw<f32>>(&self, own: &Own<G>, global: &Global) -> Result<Ended> {
+        own.run(&self.scenario.load()?, &self.devices, &self.page, global)
+    }
+}
+
+/// Runs a scenario whose robots go by Staya's own guidance laws, some of them on devices, and prints its figures.
+///
+/// # Errors
+/// Devices or firmware that are not there; a device that fell silent or differed from its shadow; what no firmware can do.
+pub fn run(scenario: &Scenario, devices: &DeviceArgs, page: &WatchArgs, global: &Global) -> Result<Ended> {
+    if scenario.published.is_some() || scenario.looks_ahead {
+        let law = if scenario.looks_ahead { FormationLaw::Lookahead } else { FormationLaw::Paper };
+        bail!("formation.law = \"{law}\" is in no firmware; give \"staya\", or run it without devices");
+    }
+    drive(&Ours, scenario, devices, page, global)
+}
+
+/// What the robots of a run go by, here and on devices.
+pub(crate) trait Swarm {
+    /// What emulated devices run.
+    fn program(&self) -> Program;
+
+    /// Among which robots a device's shadow is looked for; `None`: those with Staya's own laws.
+    fn shadows(&self) -> Option<Shadows>;
+
+    /// What devices are told of the law of robot `i`; nothing where its name says it all.
+    fn law(&self) -> Box<dyn Fn(usize) -> Vec<u8> + Send>;
+
+    /// The run.
+    fn simulate(
+        &self,
+        scenario: &Scenario,
+        external: Option<Box<dyn ExternalController>>,
+        watch: &mut Watch<'_>,
+    ) -> Result<Outcome>;
+}
+
+/// By the laws that scenarios name.
+struct Ours;
+
+impl Swarm for Ours {
+    fn program(&self) -> Program {
+        let says = concat!("lockstep ", env!("CARGO_PKG_VERSION"));
+        Program { name: "staya", says: says.into(), made: Made::InRepository }
+    }
+
+    fn shadows(&self) -> Option<Shadows> {
+        None
+    }
+
+    fn law(&self) -> Box<dyn Fn(usize) -> Vec<u8> + Send> {
+        Box::new(|_| Vec::new())
+    }
+
+    fn simulate(
+        &self,
+        scenario: &Scenario,
+        external: Option<Box<dyn ExternalController>>,
+        watch: &mut Watch<'_>,
+    ) -> Result<Outcome> {
+        simulate_with(scenario, external, watch).context("the robots cannot be placed")
+    }
+}
+
+/// Runs a scenario with some of its robots on devices, and prints its figures.
+pub(crate) fn drive(
+    swarm: &impl Swarm,
+    scenario: &Scenario,
+    devices: &DeviceArgs,
+    page: &WatchArgs,
+    global: &Global,
+) -> Result<Ended> {
+    if scenario.maps.is_some() {
+        bail!("maps.share is in no firmware for devices; leave [maps] out, or run it without devices");
+    }
+    if scenario.eyes.is_some() {
+        bail!("no link tells devices whom they see (plane.eyes); leave it out, or run it without devices");
+    }
+    if scenario.key.is_some() {
+        bail!(
+            "the robots of {} have a key, and the link does not carry keys to devices; leave [authentication] out",
+            scenario.name
+        );
+    }
+    let plan = devices.plan(scenario)?;
+    let program = swarm.program();
+    let folder = firmware::find(&emulated_parts(&plan), devices.firmware.as_deref(), &program)?;
+    let mut options = Options::new(folder);
+    options.program = Some(program.says);
+    if let Some(shadows) = swarm.shadows() {
+        options.shadows = shadows;
+    }
+    if let Some(folder) = &devices.logs {
+        std::fs::create_dir_all(folder).with_context(|| format!("{}", folder.display()))?;
+        options.logs = Some(folder.clone());
+    }
+    let stop = Stop::on_ctrl_c()?;
+    options.stop = stop.flag();
+    let (on_devices, log) = OnDevices::new(plan, options, swarm.law());
+    let summary = simulate(swarm, scenario, on_devices, &log, Watched { devices, page, global, stop: &stop })?;
+    if global.json {
+        print_json(&summary)?;
+    } else if !summary.devices.is_empty() {
+        print(&summary.table()?)?;
+    }
+    match summary.trouble {
+        Some(trouble) => bail!("{}", trouble.trim_end()),
+        None => Ok(Ended::by(&stop)),
+    }
+}
+
+/// Who looks on while it runs.
+struct Watched<'a> {
+    devices: &'a DeviceArgs,
+    page: &'a WatchArgs,
+    global: &'a Global,
+    stop: &'a Stop,
+}
+
+/// The run with devices, and if that came to its end the same without.
+fn simulate(
+    swarm: &impl Swarm,
+    scenario: &Scenario,
+    on_devices: OnDevices,
+    log: &Log,
+    by: Watched<'_>,
+) -> Result<Summary> {
+    let began = Instant::now();
+    let stop = by.stop;
+    let mut progress = Progress::new(&scenario.name, scenario.ticks.into(), by.global);
+    let count = scenario.robots.len();
+    let mut pace = by.devices.real_time.then(|| Pace::new(scenario.tick_s()));
+    let mut page = by.page.watcher(scenario)?;
+    let mut expected = Expected::new(scenario.ticks);
+    let mut watch = |moment: &Moment<'_>, robots: &mut dyn Iterator<Item = RobotRow>| {
+        let mut robots = robots.inspect(|robot| expected.see(robot));
+        if let Some(page) = &mut page
+            && page.is_due()
+        {
+            page.show(moment, &mut robots, log);
+        } else {
+            robots.for_each(drop);
+        }
+        progress.of(expected.ticks(moment.row.tick).into());
+        progress.set(moment.row.tick.into(), || format!("ticks, {} of {count} robots arrived", moment.arrived));
+        if stop.is_requested() || log.trouble().is_some() {
+            return ControlFlow::Break(());
+        }
+        if let Some(pace) = &mut pace {
+            pace.wait(moment.row.tick, stop);
+        }
+        ControlFlow::Continue(())
+    };
+    let outcome = swarm.simulate(scenario, Some(Box::new(on_devices)), &mut watch)?;
+    progress.finish();
+    let (trouble, interrupted) = (log.trouble(), stop.is_requested());
+    let wall_seconds = began.elapsed().as_secs_f64();
+    let without = if trouble.is_none() && !interrupted {
+        Some(swarm.simulate(scenario, None, &mut |_, _| ControlFlow::Continue(()))?)
+    } else {
+        None
+    };
+    let hash = |outcome: &Outcome| format!("{:016x}", outcome.trace_hash);
+    Ok(Summary {
+        scenario: scenario.name.clone(),
+        seed: scenario.seed,
+        robots: count,
+        ticks: outcome.ticks,
+        sim_seconds: outcome.seconds,
+        wall_seconds,
+        interrupted,
+        arrived: outcome.arrived,
+        collisions: outcome.collisions,
+        trace_hash: hash(&outcome),
+        trace_hash_without_devices: without.as_ref().map(hash),
+        real_time: pace.map(|pace| pace.report),
+        trouble,
+        devices: log.statistics(),
+    })
+}
+
+impl Insight for Log {
+    fn about(&self, index: usize) -> About {
+        let device = self.load(index).map(|load| DeviceFigures {
+            instructions: load.instructions,
+            most_instructions: load.most_instructions,
+            ticks: load.ticks,
+            stack: load.stack_bytes,
+            mismatches: load.mismatches,
+            steps: load.steps,
+            resets: load.resets,
+        });
+        About { device, ..About::default() }
+    }
+}

@@ -1,0 +1,92 @@
+//! The figures of a run with devices.
+
+use crate::pace::RealTime;
+use serde::Serialize;
+use staya_runner::{Spread, Statistics};
+use std::fmt::Write as _;
+
+/// The figures of a run, as with `--json`.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Summary {
+    pub(crate) scenario: String,
+    pub(crate) seed: u64,
+    pub(crate) robots: usize,
+    /// Ticks done.
+    pub(crate) ticks: u32,
+    pub(crate) sim_seconds: f64,
+    /// Of the run, starting the devices included.
+    pub(crate) wall_seconds: f64,
+    /// Stopped by Ctrl-C.
+    pub(crate) interrupted: bool,
+    pub(crate) arrived: usize,
+    pub(crate) collisions: u64,
+    /// 16 hex digits; equal for equal traces.
+    pub(crate) trace_hash: String,
+    /// The same scenario with all robots in this process; null when the run ended early.
+    pub(crate) trace_hash_without_devices: Option<String>,
+    /// With `--real-time`.
+    pub(crate) real_time: Option<RealTime>,
+    /// What ended the run, if it did not end by itself.
+    pub(crate) trouble: Option<String>,
+    pub(crate) devices: Vec<Statistics>,
+}
+
+impl Summary {
+    /// The figures for a reader.
+    pub(crate) fn table(&self) -> Result<String, std::fmt::Error> {
+        let mut text = String::new();
+        let stopped = if self.interrupted { ", stopped" } else { "" };
+        writeln!(text, "{} (seed {}{stopped})", self.scenario, self.seed)?;
+        let mut line = |name: &str, value: String| writeln!(text, "  {name:<16}{value}");
+        line("simulated", format!("{} s in {} ticks", self.sim_seconds, self.ticks))?;
+        line("took", format!("{:.2} s", self.wall_seconds))?;
+        line("arrived", format!("{} of {} robots", self.arrived, self.robots))?;
+        line("collisions", self.collisions.to_string())?;
+        line("trace hash", self.trace_hash.clone())?;
+        if let Some(hash) = &self.trace_hash_without_devices {
+            let verdict = if *hash == self.trace_hash {
+                "the same"
+            } else {
+                "another one: numbers, capacities or resets of the devices differ"
+            };
+            line("without devices", format!("{hash}, {verdict}"))?;
+        }
+        if let Some(pace) = &self.real_time {
+            line(
+                "real time",
+                format!(
+                    "{} of {} deadlines of {} s missed, slowest tick {:.4} s",
+                    pace.deadlines_missed, self.ticks, pace.tick_seconds, pace.slowest_seconds
+                ),
+            )?;
+        }
+        writeln!(
+            text,
+            "\n{:>6}  {:<24}{:>7}{:>11}{:>16}{:>21}{:>8}{:>8}{:>7}",
+            "robot", "device", "steps", "mismatches", "round trip ms", "instructions", "stack", "resent", "resets"
+        )?;
+        for device in &self.devices {
+            let of = |spread: Option<Spread>, show: &dyn Fn(Spread) -> String| {
+                spread.map_or_else(|| String::from("-"), show)
+            };
+            let ms = |us: u64| us as f64 / 1000.0;
+            writeln!(
+                text,
+                "{:>6}  {:<24}{:>7}{:>11}{:>16}{:>21}{:>8}{:>8}{:>7}",
+                device.robot,
+                device.device,
+                device.steps,
+                device.mismatches,
+                of(device.round_trip_us, &|s| format!("{:.1} / {:.1}", ms(s.median), ms(s.p99))),
+                of(device.instructions.or(device.ticks), &|s| format!("{} / {}", s.median, s.max)),
+                device.stack_bytes,
+                device.resent,
+                device.resets
+            )?;
+        }
+        text.push_str(
+            "round trip: median / p99; instructions (of boards: clock ticks) of a step: median / most; stack: most bytes of a step\n",
+        );
+        Ok(text)
+    }
+}
