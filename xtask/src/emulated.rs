@@ -1,15 +1,20 @@
 //! Fleets of emulated parts: the runner's tests that need the firmware and both emulators.
 
+use crate::device::Toolchains;
 use crate::emulate;
-use crate::firmware::Profile;
-use crate::part::PARTS;
+use crate::firmware::{Profile, build_own};
+use crate::install;
+use crate::part::{PARTS, part};
 use crate::repo::{Repo, run_reading};
 use crate::report::Report;
 use crate::tally::counted;
 use std::process::Command;
 
+/// A crate with a guidance law of its own, as people copy it.
+const OWN: &str = "examples/own_part";
+
 /// Runs the tests with the firmware that was built before, or says why not.
-pub fn run(repo: &Repo, report: &mut Report) {
+pub fn run(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains) {
     let name = "robots on emulated parts";
     let mut missing = Vec::new();
     for part in &PARTS {
@@ -22,10 +27,35 @@ pub fn run(repo: &Repo, report: &mut Report) {
     if !missing.is_empty() {
         return report.skip(name, &missing.join("; "));
     }
+    let stm32f405 = part("stm32f405").unwrap_or(&PARTS[0]);
+    if !build_own(repo, report, toolchains, stm32f405, &repo.root.join(OWN)) {
+        return report.skip(name, &format!("no firmware of {OWN}"));
+    }
+    run_installed(repo, report);
     // Of the whole workspace, as the other tests: alone, the runner would be built anew with other features.
     let mut tests = repo.cargo(&["test", "--locked", "--workspace", "--test", "emulated"]);
     tests.env("STAYA_FIRMWARE", repo.target.join("firmware"));
     report.part(name, || counted(&mut tests, ""));
+}
+
+/// What `cargo xtask install` installs finds its firmware beside itself, from a folder that knows of no repository: it neither asks for
+/// cargo, which is not there, nor for this folder's.
+fn run_installed(repo: &Repo, report: &mut Report) {
+    let prefix = repo.target.join("tmp/installed");
+    if !install::put_step(repo, report, &install::Request::of_tests(prefix.clone())) {
+        return;
+    }
+    report.step("an installed program finds its firmware", || {
+        let mut staya = repo.command(prefix.join("bin/staya"));
+        staya.arg("hil").arg(repo.root.join("scenarios/six-robots.toml"));
+        staya.args(["--device", "qemu:stm32f405", "--ticks", "20"]);
+        staya
+            .current_dir(&prefix)
+            .env("CARGO", "no-cargo")
+            .env_remove("STAYA_FIRMWARE")
+            .env_remove("CARGO_MANIFEST_DIR");
+        is_the_same(&mut staya)
+    });
 }
 
 /// Ten emulated parts for a thousand steps, each compared with its shadow: the run is the one without devices. The

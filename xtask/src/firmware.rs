@@ -45,24 +45,30 @@ pub struct Request<'a> {
     profile: Profile,
     /// The programs to build; all of them if none is named.
     bins: Vec<&'a str>,
+    /// The folder of a crate whose firmware it is, in place of the repository's.
+    folder: Option<&'a str>,
 }
 
 impl<'a> Request<'a> {
-    /// Reads the command line: `[--debug] [--bin NAME]... [PART...]`.
+    /// Reads the command line: `[--debug] [--bin NAME]... [PART...]`, or `--crate DIR [PART...]`.
     pub fn read(arguments: &[&'a str]) -> Option<Self> {
-        let (mut parts, mut profile, mut bins) = (Vec::new(), Profile::Firmware, Vec::new());
+        let (mut parts, mut profile, mut bins, mut folder) = (Vec::new(), Profile::Firmware, Vec::new(), None);
         let mut arguments = arguments.iter().copied();
         while let Some(argument) = arguments.next() {
             match argument {
                 "--debug" => profile = Profile::Debug,
                 "--bin" => bins.push(arguments.next()?),
+                "--crate" => folder = Some(arguments.next()?),
                 name => parts.push(part(name)?),
             }
         }
         if parts.is_empty() {
             parts.extend(&PARTS);
         }
-        Some(Self { parts, profile, bins })
+        if folder.is_some() && (profile == Profile::Debug || !bins.is_empty()) {
+            return None;
+        }
+        Some(Self { parts, profile, bins, folder })
     }
 }
 
@@ -70,7 +76,11 @@ impl<'a> Request<'a> {
 pub fn run_command(repo: &Repo, report: &mut Report, request: &Request<'_>) {
     let mut toolchains = Toolchains::default();
     for part in &request.parts {
-        let Request { profile, bins, .. } = request;
+        let Request { profile, bins, folder, .. } = request;
+        if let Some(folder) = folder {
+            build_own(repo, report, &mut toolchains, part, Path::new(folder));
+            continue;
+        }
         build_some(repo, report, &mut toolchains, part, *profile, bins);
     }
 }
@@ -144,14 +154,52 @@ fn build(repo: &Repo, toolchain: &Toolchain, part: &Part, profile: Profile, only
     let built = toolchain.target_folder(repo).join(part.target).join(folder);
     println!("{:>8} {:>8}  file", "flash", "RAM");
     for bin in &bins {
-        let to = profile.elf(repo, part, bin);
-        let parent = to.parent().unwrap_or(&repo.target);
-        fs::create_dir_all(parent).map_err(|error| format!("{}: {error}", parent.display()))?;
-        let from = built.join(bin);
-        fs::copy(&from, &to).map_err(|error| format!("{}: {error}", from.display()))?;
-        let Sections { flash, ram, .. } = sections(&to)?;
-        println!("{flash:>8} {ram:>8}  {}", to.display());
+        put(&built.join(bin), &profile.elf(repo, part, bin))?;
     }
+    Ok(())
+}
+
+/// Builds the program `firmware` of the crate in `folder` for a part as one step, and puts it where the crate's program on the host looks:
+/// `FOLDER/target/firmware/PART/lockstep`. Returns whether it is there.
+pub fn build_own(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains, part: &Part, folder: &Path) -> bool {
+    let name = format!("firmware of {} for {}", folder.display(), part.name);
+    let toolchain = match toolchains.find(repo, part.target) {
+        Ok(toolchain) => toolchain,
+        Err(reason) => {
+            report.skip(&name, &reason);
+            return false;
+        }
+    };
+    report.step(&name, || {
+        let folder = std::path::absolute(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+        let manifest = folder.join("Cargo.toml");
+        if !manifest.is_file() {
+            return Err(format!("{} is not there; docs/own.md says what such a crate has", manifest.display()));
+        }
+        let mut cargo = toolchain.cargo(repo, part.target, "build");
+        let (profile, built) = Profile::Firmware.names();
+        cargo.arg("--manifest-path").arg(manifest).args(["--bin", "firmware", "--profile", profile]);
+        // The repository's profile, which the crate need not have.
+        for line in ["inherits=\"release\"", "opt-level=\"s\"", "lto=\"fat\"", "codegen-units=1", "panic=\"abort\""] {
+            cargo.args(["--config", &format!("profile.{profile}.{line}")]);
+        }
+        let target = toolchain.target_folder(repo);
+        cargo.env("CARGO_TARGET_DIR", &target);
+        run(&mut cargo)?;
+        let to = folder.join("target/firmware").join(part.name).join("lockstep");
+        let from = target.join(part.target).join(built).join("firmware");
+        println!("{:>8} {:>8}  file", "flash", "RAM");
+        put(&from, &to)
+    })
+}
+
+/// Copies an ELF file to where it is looked for, and says what it takes.
+fn put(from: &Path, to: &Path) -> Result<(), String> {
+    let parent = to.parent().unwrap_or(to);
+    fs::create_dir_all(parent).map_err(|error| format!("{}: {error}", parent.display()))?;
+    fs::copy(from, to).map_err(|error| format!("{}: {error}", from.display()))?;
+    let Sections { flash, ram, .. } = sections(to)?;
+    println!("{flash:>8} {ram:>8}  {}", to.display());
     Ok(())
 }
 
@@ -271,7 +319,10 @@ mod tests {
         let one = Request::read(&["--bin", "lockstep", "nrf51", "--debug"]).unwrap();
         assert_eq!((one.parts.len(), one.bins), (1, vec!["lockstep"]));
         assert!(one.profile == Profile::Debug && one.parts[0].name == "nrf51");
-        for wrong in [&["z80"][..], &["--bin"], &["--binary", "lockstep"]] {
+        let own = Request::read(&["--crate", "examples/own_part", "riscv32"]).unwrap();
+        assert_eq!((own.folder, own.parts.len()), (Some("examples/own_part"), 1));
+        let crate_and_bin = ["--crate", "here", "--bin", "lockstep"];
+        for wrong in [&["z80"][..], &["--bin"], &["--binary", "lockstep"], &["--crate"], &crate_and_bin] {
             assert!(Request::read(wrong).is_none(), "{wrong:?}");
         }
     }

@@ -24,6 +24,7 @@ mod extent;
 mod faults;
 mod firmware;
 mod fuzz;
+mod install;
 mod layers;
 mod minimal;
 mod mpi;
@@ -74,6 +75,10 @@ Usage: cargo xtask COMMAND
   example         the example firmware of examples/stm32f4
   firmware [--debug] [--bin NAME] [PART...]
                   the programs of hil/firmware, or one of them, for stm32f405, nrf51, riscv32 (default: all): target/firmware/PART/BIN
+  firmware --crate DIR [PART...]
+                  the program `firmware` of the crate in DIR, a guidance law of its own: DIR/target/firmware/PART/lockstep
+  install [--prefix DIR] [--debug]
+                  staya, firmware of all parts, manual pages and completions below DIR (default: ~/.local)
   size [--json]   what the firmware takes on each part: flash, RAM, stack, instructions a step; against hil/budgets.toml
   soak [--minutes N] [--json FILE] [PART...]
                   bridges, companions and firmware at once among clients that mean no good (default: 3 minutes), or some of
@@ -145,6 +150,13 @@ fn main() -> ExitCode {
             Some(request) => firmware::run_command(&repo, &mut report, &request),
             None => {
                 eprint!("xtask: no such part or option\n\n{HELP}");
+                return ExitCode::from(2);
+            }
+        },
+        ["install", arguments @ ..] => match install::Request::read(arguments) {
+            Ok(request) => install::run_command(&repo, &mut report, &request),
+            Err(reason) => {
+                eprint!("xtask: {reason}\n\n{HELP}");
                 return ExitCode::from(2);
             }
         },

@@ -49,7 +49,7 @@ pub fn run(repo: &Repo, report: &mut Report, extent: Extent) {
     }
     if extent == Extent::Short {
         crate::swarms::run_short(repo, report, &mut toolchains);
-        return crate::emulated::run(repo, report);
+        return crate::emulated::run(repo, report, &mut toolchains);
     }
     if is_compiled {
         crate::browser::run_tests(repo, report);
@@ -71,7 +71,7 @@ pub fn run(repo: &Repo, report: &mut Report, extent: Extent) {
     crate::c::run(repo, report, &mut toolchains);
     crate::size::run(repo, report, &mut toolchains, false);
     crate::faults::run(repo, report, &mut toolchains);
-    crate::emulated::run(repo, report);
+    crate::emulated::run(repo, report, &mut toolchains);
     crate::emulated::run_ten(repo, report);
     // Cargo takes a copy of the firmware for the same packages, and builds those anew afterwards.
     crate::plants::run(repo, report, &mut toolchains);

@@ -4,6 +4,7 @@ mod channel;
 mod fit;
 mod frames;
 mod messages;
+mod own;
 mod sessions;
 
 use crate::message::{Hello, Stepped, kind};

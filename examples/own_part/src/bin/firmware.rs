@@ -1,0 +1,4 @@
+//! The law as firmware for an STM32F405, an nRF51 or a RISC-V: `cargo xtask firmware --crate examples/own_part`.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+staya_firmware::lockstep!(patrol::Patrol);

@@ -1,0 +1,63 @@
+//! A guidance law that Staya does not have: each robot goes round a ring at the pace that keeps it midway between the two whom it hears
+//! ahead and behind, so that all become a patrol with even gaps.
+#![no_std]
+
+use core::f32::consts::TAU;
+use serde::{Deserialize, Serialize};
+use staya_controller::agent::*;
+use staya_controller::geom::{Position, Vec3};
+use staya_controller::{rand::Rng, scalar::Scalar};
+
+/// What the law keeps between decisions. Serde carries it to devices, through checkpoints and into the run's fingerprint.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Patrol {
+    /// Radius of the ring, metres.
+    pub ring_m: f32,
+    /// Pace where the gaps are even, m/s.
+    pub cruise_mps: f32,
+}
+
+impl Patrol {
+    /// A ring of eight metres, half a metre a second.
+    pub const RING: Self = Self { ring_m: 8.0, cruise_mps: 0.5 };
+}
+
+impl Teamwork for Patrol {}
+
+impl<S: Scalar> Guidance<S> for Patrol {
+    type Input<'a> = InPlane<'a, S>;
+    type Destination = Roams;
+    type Workspace = ();
+    type Payload = ();
+
+    fn decide(
+        &mut self,
+        input: &GuidanceInput<'_, S>,
+        _: &InPlane<'_, S>,
+        _: &mut Rng,
+        (): &mut (),
+    ) -> Result<Decision<S>, BadInput> {
+        input.can_go()?;
+        let number = |x: f32| S::from_f32(x).unwrap_or(S::ZERO);
+        let (turn, place) = (number(TAU), input.state.position.since::<S>(Position::default()));
+        let bearing = |place: Vec3<S>| place.y.atan2(place.x);
+        // How far others are round the ring, ahead of this robot and behind it.
+        let (mut ahead, mut behind) = (turn, turn);
+        for other in input.nearby {
+            let angle = bearing(place + other.offset_m) - bearing(place);
+            let angle = if angle < S::ZERO { angle + turn } else { angle };
+            (ahead, behind) = (ahead.min(angle), behind.min(turn - angle));
+        }
+        let out = place.normalized().unwrap_or_default();
+        let along = out.xy().perp().extend(S::ZERO);
+        let pace =
+            number(self.cruise_mps) + ((ahead - behind) * number(4.0)).clamp(-number(0.4), number(0.4));
+        let wish_mps = along * pace + out * (number(self.ring_m) - place.norm());
+        let wish_mps = wish_mps.clamp_norm(input.body.max_speed_mps);
+        Ok(Decision { action: Action::Velocity { wish_mps, way_m: None }, ..Decision::default() })
+    }
+
+    fn has_own_goal(&self) -> bool {
+        true
+    }
+}

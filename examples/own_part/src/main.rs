@@ -1,0 +1,7 @@
+//! Twenty robots on patrol, some of them on emulated parts or boards; the arguments are those of `staya hil`.
+
+use patrol::Patrol;
+
+fn main() -> std::process::ExitCode {
+    staya_hil::Own::new(staya_hil::package!(), |_robot| Patrol::RING).in_fixed_point().main()
+}

@@ -1,0 +1,136 @@
+//! Robots by laws that the link does not know.
+
+use super::{ABOUT, LARGE, SMALL, answers, frame, in_plane, large, read, stepped};
+use crate::message::{Configured, Fault, FaultKind, Greeting, NumberFormat, Step, StepInputs, Token, kind};
+use crate::own::{OwnLarge, OwnSmall};
+use crate::robot::{Controller, Refusal};
+use crate::session::{About, Session};
+use crate::surroundings::PackedSurroundings;
+use serde::{Deserialize, Serialize};
+use staya_controller::agent::{
+    Action, BadInput, Command, Decision, Guidance, GuidanceInput, InPlane, KinematicState, Roams, Setup, Task,
+    Teamwork, Waypoint,
+};
+use staya_controller::geom::{Position, Vec3};
+use staya_controller::rand::Rng;
+use staya_controller::scalar::Scalar;
+use staya_controller::time::Instant;
+use std::vec::Vec;
+
+/// Goes east, a little faster at each decision.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct East {
+    mmps: u16,
+    gain_mmps: u16,
+}
+
+impl Teamwork for East {}
+
+impl<S: Scalar> Guidance<S> for East {
+    type Input<'a> = InPlane<'a, S>;
+    type Destination = Roams;
+    type Workspace = ();
+    type Payload = u8;
+
+    fn decide(
+        &mut self,
+        _: &GuidanceInput<'_, S, u8>,
+        _: &InPlane<'_, S>,
+        _: &mut Rng,
+        (): &mut (),
+    ) -> Result<Decision<S>, BadInput> {
+        self.mmps += self.gain_mmps;
+        let x = S::from_f32(f32::from(self.mmps) / 1000.0).unwrap_or(S::ZERO);
+        let wish_mps = Vec3 { x, ..Vec3::ZERO };
+        Ok(Decision { action: Action::Velocity { wish_mps, way_m: None }, ..Decision::default() })
+    }
+
+    fn has_own_goal(&self) -> bool {
+        true
+    }
+}
+
+const LAW: East = East { mmps: 100, gain_mmps: 50 };
+
+fn greeting() -> Vec<u8> {
+    frame(kind::GREETING, &Greeting { token: Token { run: 1, number: 1 } })
+}
+
+fn configure(law: &impl Serialize) -> Vec<u8> {
+    frame(kind::CONFIGURE, &(1_u16, in_plane(), None::<Task>, law))
+}
+
+fn inputs(tick: u32) -> StepInputs<'static> {
+    StepInputs {
+        tick,
+        now: Instant::from_micros(tick * 100_000),
+        state: KinematicState::default(),
+        cell: None,
+        window: None,
+        surroundings: Some(PackedSurroundings { max_speed_mps: 1.0, in_cell: None, obstacles: &[] }),
+        inbox: &[],
+    }
+}
+
+/// Steps a session and a shadow of it; how fast the robot wants to go east, m/s.
+fn run<C: Controller, const N: usize>(mut session: Session<C, N>, mut shadow: C, ticks: u16) -> f32 {
+    let law = postcard::to_vec::<_, 16>(&LAW).expect("fits");
+    let digest = shadow.configure(&in_plane(), None, &law).expect("a robot");
+    drop(answers(&mut session, &greeting()));
+    let configured = answers(&mut session, &configure(&LAW));
+    assert_eq!(read::<Configured>(kind::CONFIGURED, &configured[0]), Configured { seq: 1, digest });
+    let mut east = 0.0;
+    for tick in 0..ticks {
+        let inputs = inputs(tick.into());
+        let answer = answers(&mut session, &frame(kind::STEP, &Step { seq: tick + 2, inputs }));
+        let stepped = stepped(&answer[0]);
+        shadow.step(&inputs).expect("it steps");
+        assert!(stepped.result.is_identical(&shadow.result().expect("a result")));
+        let Command::Velocity(velocity_mps) = stepped.result.outputs.command else {
+            panic!("{:?}", stepped.result.outputs.command);
+        };
+        east = velocity_mps.x;
+    }
+    east
+}
+
+#[test]
+fn a_device_steps_the_law_that_the_host_tells_it_in_both_kinds_of_numbers() {
+    let session = Session::<OwnLarge<East>, LARGE>::new(OwnLarge::new(), ABOUT);
+    assert!((run(session, OwnLarge::new(), 4) - 0.3).abs() < 1e-6);
+    let about = About { part: "nrf51", ..ABOUT };
+    let session = Session::<OwnSmall<East>, SMALL>::new(OwnSmall::new(), about);
+    assert!((run(session, OwnSmall::new(), 4) - 0.3).abs() < 1e-4);
+    assert_eq!(OwnSmall::<East>::new().number(), NumberFormat::Q16);
+}
+
+#[test]
+fn laws_that_do_not_read_so_are_refused() {
+    let fault = |answer: &[Vec<u8>]| {
+        let Fault { kind, text, .. } = read(kind::FAULT, &answer[0]);
+        assert_eq!(kind, FaultKind::Setup);
+        assert!(text.contains("another guidance law"), "{text}");
+    };
+    let mut own = Session::<OwnLarge<East>, LARGE>::new(OwnLarge::new(), ABOUT);
+    drop(answers(&mut own, &greeting()));
+    // Nothing, too little, too much.
+    fault(&answers(&mut own, &configure(&())));
+    fault(&answers(&mut own, &configure(&5_u8)));
+    fault(&answers(&mut own, &configure(&(LAW, 1_u8))));
+    // A firmware of Staya's own laws takes none.
+    let mut ours = large();
+    drop(answers(&mut ours, &greeting()));
+    fault(&answers(&mut ours, &configure(&LAW)));
+}
+
+#[test]
+fn tasks_that_the_law_has_no_use_for_are_refused() {
+    let mut robot = OwnLarge::<East>::new();
+    let law = postcard::to_vec::<_, 16>(&LAW).expect("fits");
+    let waypoint = Waypoint::fixed(Position::from_mm([1000, 0, 0]));
+    let task = Task::Waypoints([(0, waypoint)].into_iter().collect());
+    let setup: Setup = in_plane();
+    assert_eq!(robot.configure(&setup, Some(&task), &law), Err(Refusal::Task));
+    assert_eq!(robot.step(&inputs(0)), Err(Refusal::NotConfigured));
+    assert!(robot.configure(&setup, Some(&Task::Waypoints(heapless::Vec::new())), &law).is_ok());
+}
