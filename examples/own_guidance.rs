@@ -30,7 +30,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         |_robot| Patrol::RING,
         |moment, rows| {
             let rows: Vec<_> = rows.collect();
-            bearings = rows.iter().map(|row| libm::atan2(row.motion.position_m[1], row.motion.position_m[0])).collect();
+            bearings = rows
+                .iter()
+                .map(|row| libm::atan2(row.motion.position_m[1], row.motion.position_m[0]))
+                .collect();
             recorder.tick(moment.row, rows.iter().copied()).expect("memory takes everything");
             if let Some(recording) = &mut recording {
                 recording.tick(moment, rows.into_iter()).expect("the disk has room");

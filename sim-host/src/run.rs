@@ -14,7 +14,7 @@ use staya_sim::checkpoint::{Checkpoint, Place};
 use staya_sim::engine::{Moment, Outcome, Unable, simulate, simulate_from};
 use staya_sim::expected::Expected;
 use staya_sim::record::{self, History, Options, Recorder, Results, RobotRow, write_summary};
-use staya_sim::scenario::{Overrides, Scenario, Setting};
+use staya_sim::scenario::Scenario;
 use staya_sim::summary::Summary;
 use staya_view::recording::RecordingError;
 use staya_view::watch::Watcher;
@@ -112,7 +112,7 @@ fn run(task: Task<'_>, also: &AlsoArgs, page: Option<Watcher>, global: &Global) 
             let (kept, out) = (kept.display(), out.display());
             let what =
                 format!("{kept} keeps what was written until the next run into {out}, where nothing has changed");
-            Err(anyhow!("{}; {what}", crate::in_one_line(&error)))
+            Err(anyhow!("{}; {what}", staya_console::in_one_line(&error)))
         }
         Err(error) => Err(error),
     }

@@ -65,7 +65,7 @@ const PLANTS: [Plant; 6] = [
     },
     Plant {
         name: "lockstep itself",
-        file: "hil/firmware/src/bin/lockstep.rs",
+        file: "hil/firmware/src/lockstep.rs",
         right: "fault::over_the_link(format_args!(\"stack overflow: all of {} bytes used\", stack::size()));",
         wrong: "panic!(\"stack overflow: all of {} bytes used\", stack::size());",
         bin: "lockstep",

@@ -97,7 +97,8 @@ pub fn exit(program: &str, ended: Result<Ended>) -> ExitCode {
 }
 
 /// An error and its causes; a cause that the message before it quotes is not said again.
-fn in_one_line(error: &anyhow::Error) -> String {
+#[must_use]
+pub fn in_one_line(error: &anyhow::Error) -> String {
     let mut text = error.to_string();
     for cause in error.chain().skip(1).map(ToString::to_string) {
         if !text.contains(&cause) {
