@@ -58,7 +58,7 @@ macro_rules! entry {
 }
 
 /// A whole firmware whose robot goes by a guidance law of one's own, `$law`: `staya hil` and its library step it over the part's serial
-/// line. On Arm the crate needs `cortex-m-rt` (with its feature `device`) among its dependencies. The law is a [`LinkedLaw`](staya_link::own::LinkedLaw) in the part's numbers (`f32`, on the nRF51 `Q16`). The firmware calls
+/// line. On Arm the crate needs `cortex-m-rt` (with its feature `device`) among its dependencies. The law is a `LinkedLaw` of `staya_link::own` in the part's numbers (`f32`, on the nRF51 `Q16`). The firmware calls
 /// itself by name and version of the package that it is written in, and links only if no panic is reachable, unless it is built for
 /// debugging.
 ///

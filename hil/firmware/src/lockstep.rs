@@ -1,4 +1,4 @@
-//! The device's side of the link as a whole program: a robot that steps when the host says so. [`lockstep!`](crate::lockstep) makes a
+//! The device's side of the link as a whole program: a robot that steps when the host says so. `lockstep!` makes a
 //! firmware of it for a guidance law of one's own; `src/bin/lockstep.rs` is the one for all laws of Staya's.
 
 use crate::fault;
@@ -9,17 +9,17 @@ use staya_link::message::Cost;
 use staya_link::robot::{self, Controller};
 use staya_link::session::{About, Meter, Reaction, Session, content_bytes};
 
-/// The robot with law `G` that this part has room for, and the content of its longest frame.
+/// The robot with law `G` that this part has room for.
 #[cfg(not(part = "nrf51"))]
 pub type Own<G> = staya_link::own::OwnLarge<G>;
 #[cfg(not(part = "nrf51"))]
-#[expect(missing_docs, reason = "the type above says it")]
+/// Bytes of the content of its longest frame, see [`content_bytes`].
 pub const OWN_CONTENT: usize = content_bytes(0, 32, robot::LARGE_INBOX);
-/// The robot with law `G` that this part has room for, and the content of its longest frame.
+/// The robot with law `G` that this part has room for.
 #[cfg(part = "nrf51")]
 pub type Own<G> = staya_link::own::OwnSmall<G>;
 #[cfg(part = "nrf51")]
-#[expect(missing_docs, reason = "the type above says it")]
+/// Bytes of the content of its longest frame, see [`content_bytes`].
 pub const OWN_CONTENT: usize = content_bytes(0, 16, robot::SMALL_INBOX);
 
 /// Is the robot of `session`, which must not be known to anybody else, for good. `firmware` is what it says that it runs.

@@ -3,7 +3,7 @@
 
 use crate::capacities::Capacities;
 use crate::message::{NumberFormat, StepInputs, StepResult};
-use crate::robot::Refusal;
+use crate::refusal::Refusal;
 use heapless::Vec;
 use serde::Serialize;
 use staya_controller::agent::{
@@ -140,7 +140,7 @@ where
         Err(Refusal::Task)
     }
 
-    /// One step, see [`Controller::step`](crate::robot::Controller::step).
+    /// One step, as the controller of a session has it.
     pub(crate) fn step(&mut self, inputs: &StepInputs<'_>) -> Result<(), Refusal> {
         let agent = self.agent.as_mut().ok_or(Refusal::NotConfigured)?;
         let window = match &inputs.window {

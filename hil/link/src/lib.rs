@@ -47,6 +47,7 @@ pub mod frame;
 pub mod message;
 pub mod own;
 pub mod port;
+pub mod refusal;
 pub mod robot;
 pub mod session;
 pub mod surroundings;

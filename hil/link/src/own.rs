@@ -4,7 +4,8 @@
 use crate::body::{Body, capacities, check, number};
 use crate::capacities::Capacities;
 use crate::message::{NumberFormat, StepInputs, StepResult};
-use crate::robot::{Controller, Refusal};
+use crate::refusal::Refusal;
+use crate::robot::Controller;
 use postcard::take_from_bytes;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{Agent, AnySafety, AnyWorld, Guidance, HALF_PLANES, InPlane, NEIGHBORS, Setup, Task};

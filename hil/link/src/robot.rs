@@ -3,13 +3,13 @@
 use crate::body::{Body, capacities, check, count, number};
 use crate::capacities::Capacities;
 use crate::message::{NumberFormat, StepInputs, StepResult};
-use core::fmt;
+use crate::refusal::Refusal;
 use staya_controller::agent::{
     AnyAgent, AnyGuidance, AnySafety, CELLS, GridWorkspace, HALF_PLANES, LEARNED, NEIGHBORS, Setup, TEMPLATE, Task,
-    VISITS, WrongTask,
+    VISITS,
 };
 use staya_controller::scalar::{Q16, Scalar};
-use staya_controller::wire::{Format, FromFormat, Postcard};
+use staya_controller::wire::{FromFormat, Postcard};
 use staya_mavlink::any::AnyWire;
 
 /// The robot that an STM32F405 has room for. As the small one, it speaks whatever format it is told to.
@@ -20,59 +20,6 @@ pub type Small = Robot<Q16, CELLS, VISITS, 8, 16, 16, AnyWire>;
 pub const LARGE_INBOX: usize = 8192;
 /// Bytes of the inbox beside a [`Small`].
 pub const SMALL_INBOX: usize = 1024;
-
-/// Why a controller refused.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Refusal {
-    /// It was not told what to be.
-    NotConfigured,
-    /// The setup is for nobody.
-    Nobody,
-    /// It does not speak this format.
-    Format(Format),
-    /// It has no table of this size.
-    Table,
-    /// The guidance law has no use for the task.
-    Task,
-    /// No guidance law of this firmware's reads so.
-    Law,
-    /// A search of so many cells.
-    Search {
-        /// Cells.
-        needs: usize,
-        /// Cells that fit.
-        room: usize,
-    },
-    /// More obstacles than this.
-    Obstacles {
-        /// Obstacles that fit.
-        room: usize,
-    },
-    /// A window whose cells are not as many as its sides say, an obstacle of no known shape, or neither a cell nor surroundings.
-    Nonsense,
-}
-
-impl fmt::Display for Refusal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotConfigured => f.write_str("not configured"),
-            Self::Nobody => f.write_str("a setup for nobody: numbers begin at 1"),
-            Self::Format(format) => {
-                write!(f, "this firmware was built without {}", format.name())
-            }
-            Self::Table => f.write_str("this firmware was built without voxel tables of more than 2 KiB"),
-            Self::Task => fmt::Display::fmt(&WrongTask, f),
-            Self::Law => f.write_str("the host has another guidance law than this firmware"),
-            Self::Search { needs, room } => {
-                write!(f, "a search of {needs} cells, and room for {room}")
-            }
-            Self::Obstacles { room } => write!(f, "more than {room} obstacles"),
-            Self::Nonsense => f.write_str("terrain or surroundings that make no sense"),
-        }
-    }
-}
-
-impl core::error::Error for Refusal {}
 
 /// The part of a device that decides. Object-safe, so that a host can hold the shadows of different parts.
 pub trait Controller {

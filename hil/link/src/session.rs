@@ -25,7 +25,8 @@ use crate::frame::{Deframer, Frame, FrameError, VERSION};
 use crate::message::{
     Configured, Cost, Fault, FaultKind, Greeting, Hello, MAX_ANSWER, MAX_CONFIGURE, Restart, StepInputs, Token, kind,
 };
-use crate::robot::{Controller, Refusal};
+use crate::refusal::Refusal;
+use crate::robot::Controller;
 use core::fmt::{Display, Write};
 use heapless::String;
 use postcard::take_from_bytes;

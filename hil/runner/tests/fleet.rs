@@ -8,7 +8,8 @@ use staya_controller::agent::{Setup, Task};
 use staya_controller::wire::Format;
 use staya_link::capacities::Capacities;
 use staya_link::message::{NumberFormat, StepInputs, StepResult};
-use staya_link::robot::{Controller, LARGE_INBOX, Large, Refusal, SMALL_INBOX, Small};
+use staya_link::refusal::Refusal;
+use staya_link::robot::{Controller, LARGE_INBOX, Large, SMALL_INBOX, Small};
 use staya_link::session::content_bytes;
 use staya_runner::{Answer, Cause, Channel, DeviceConfig, Fleet, LineFaults, Options, Reset};
 use std::sync::atomic::Ordering;
@@ -186,8 +187,8 @@ impl Controller for Wrong {
         self.controller.capacities()
     }
 
-    fn configure(&mut self, setup: &Setup, task: Option<&Task>) -> Result<u64, Refusal> {
-        self.controller.configure(setup, task)
+    fn configure(&mut self, setup: &Setup, task: Option<&Task>, law: &[u8]) -> Result<u64, Refusal> {
+        self.controller.configure(setup, task, law)
     }
 
     fn step(&mut self, inputs: &StepInputs<'_>) -> Result<(), Refusal> {

@@ -1,6 +1,6 @@
 //! Robots by a guidance law of the caller's own, some of them on devices.
 
-use crate::WatchArgs;
+use crate::args::WatchArgs;
 use crate::firmware::{Made, Program};
 use crate::options::DeviceArgs;
 use crate::run::{HilArgs, Swarm, drive};
@@ -90,8 +90,12 @@ impl<G: OwnLaw + LinkedLaw<f32>> Own<G> {
         let Package { name, version, .. } = self.package;
         let command = Line::command().name(name).version(version).after_help("");
         let line = Line::from_arg_matches(&command.get_matches()).unwrap_or_else(|error| error.exit());
-        let ended = line.global.begin().and_then(|()| line.hil.run_own(&self, &line.global));
-        staya_console::exit(name, ended)
+        let hil = &line.hil;
+        let run = || {
+            line.global.begin()?;
+            self.run(&hil.scenario.load()?, &hil.devices, &hil.page, &line.global)
+        };
+        staya_console::exit(name, run())
     }
 
     /// Runs a scenario, and prints its figures.

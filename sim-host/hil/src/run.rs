@@ -1,19 +1,17 @@
 //! `staya hil SCENARIO`: some of the robots run as firmware on emulated parts or boards, in lockstep with the rest.
 
+use crate::args::{ScenarioArgs, WatchArgs};
 use crate::devices::{Log, OnDevices};
 use crate::firmware::{self, Made, Program};
 use crate::options::{DeviceArgs, emulated_parts};
-use crate::own::Own;
 use crate::pace::Pace;
 use crate::summary::Summary;
-use crate::{ScenarioArgs, WatchArgs};
 use anyhow::{Context as _, Result, bail};
 use clap::Args;
 use staya_console::{Ended, Global, Progress, Stop, print, print_json};
 use staya_controller::formation::published::FormationLaw;
-use staya_link::own::LinkedLaw;
 use staya_runner::{Options, Shadows};
-use staya_sim::engine::{ExternalController, Moment, Outcome, OwnLaw, Watch, simulate_with};
+use staya_sim::engine::{ExternalController, Moment, Outcome, Watch, simulate_with};
 use staya_sim::expected::Expected;
 use staya_sim::record::RobotRow;
 use staya_sim::scenario::Scenario;
@@ -28,11 +26,11 @@ use std::time::Instant;
 #[derive(Args, Clone, Debug)]
 pub struct HilArgs {
     #[command(flatten)]
-    scenario: ScenarioArgs,
+    pub(crate) scenario: ScenarioArgs,
     #[command(flatten)]
-    devices: DeviceArgs,
+    pub(crate) devices: DeviceArgs,
     #[command(flatten)]
-    page: WatchArgs,
+    pub(crate) page: WatchArgs,
 }
 
 impl HilArgs {
@@ -43,11 +41,6 @@ impl HilArgs {
     /// from its shadow.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         run(&self.scenario.load()?, &self.devices, &self.page, global)
-    }
-
-    /// The same with a guidance law of one's own.
-    pub(crate) fn run_own<G: OwnLaw + LinkedLaw<f32>>(&self, own: &Own<G>, global: &Global) -> Result<Ended> {
-        own.run(&self.scenario.load()?, &self.devices, &self.page, global)
     }
 }
 

@@ -3,7 +3,8 @@
 use super::{ABOUT, LARGE, SMALL, answers, frame, in_plane, large, read, stepped};
 use crate::message::{Configured, Fault, FaultKind, Greeting, NumberFormat, Step, StepInputs, Token, kind};
 use crate::own::{OwnLarge, OwnSmall};
-use crate::robot::{Controller, Refusal};
+use crate::refusal::Refusal;
+use crate::robot::Controller;
 use crate::session::{About, Session};
 use crate::surroundings::PackedSurroundings;
 use serde::{Deserialize, Serialize};
@@ -74,8 +75,9 @@ fn inputs(tick: u32) -> StepInputs<'static> {
 
 /// Steps a session and a shadow of it; how fast the robot wants to go east, m/s.
 fn run<C: Controller, const N: usize>(mut session: Session<C, N>, mut shadow: C, ticks: u16) -> f32 {
-    let law = postcard::to_vec::<_, 16>(&LAW).expect("fits");
-    let digest = shadow.configure(&in_plane(), None, &law).expect("a robot");
+    let mut law = [0; 16];
+    let law = postcard::to_slice(&LAW, &mut law).expect("fits");
+    let digest = shadow.configure(&in_plane(), None, law).expect("a robot");
     drop(answers(&mut session, &greeting()));
     let configured = answers(&mut session, &configure(&LAW));
     assert_eq!(read::<Configured>(kind::CONFIGURED, &configured[0]), Configured { seq: 1, digest });
@@ -126,11 +128,12 @@ fn laws_that_do_not_read_so_are_refused() {
 #[test]
 fn tasks_that_the_law_has_no_use_for_are_refused() {
     let mut robot = OwnLarge::<East>::new();
-    let law = postcard::to_vec::<_, 16>(&LAW).expect("fits");
+    let mut law = [0; 16];
+    let law = postcard::to_slice(&LAW, &mut law).expect("fits");
     let waypoint = Waypoint::fixed(Position::from_mm([1000, 0, 0]));
     let task = Task::Waypoints([(0, waypoint)].into_iter().collect());
     let setup: Setup = in_plane();
-    assert_eq!(robot.configure(&setup, Some(&task), &law), Err(Refusal::Task));
+    assert_eq!(robot.configure(&setup, Some(&task), law), Err(Refusal::Task));
     assert_eq!(robot.step(&inputs(0)), Err(Refusal::NotConfigured));
-    assert!(robot.configure(&setup, Some(&Task::Waypoints(heapless::Vec::new())), &law).is_ok());
+    assert!(robot.configure(&setup, Some(&Task::Waypoints(heapless::Vec::new())), law).is_ok());
 }
