@@ -51,7 +51,7 @@ impl<S: Scalar> Guidance<S> for East {
     }
 }
 
-const LAW: East = East { mmps: 100, gain_mmps: 50 };
+const LAW: East = East { mmps: 20, gain_mmps: 10 };
 
 fn greeting() -> Vec<u8> {
     frame(kind::GREETING, &Greeting { token: Token { run: 1, number: 1 } })
@@ -99,10 +99,10 @@ fn run<C: Controller, const N: usize>(mut session: Session<C, N>, mut shadow: C,
 #[test]
 fn a_device_steps_the_law_that_the_host_tells_it_in_both_kinds_of_numbers() {
     let session = Session::<OwnLarge<East>, LARGE>::new(OwnLarge::new(), ABOUT);
-    assert!((run(session, OwnLarge::new(), 4) - 0.3).abs() < 1e-6);
+    assert!((run(session, OwnLarge::new(), 4) - 0.06).abs() < 1e-6);
     let about = About { part: "nrf51", ..ABOUT };
     let session = Session::<OwnSmall<East>, SMALL>::new(OwnSmall::new(), about);
-    assert!((run(session, OwnSmall::new(), 4) - 0.3).abs() < 1e-4);
+    assert!((run(session, OwnSmall::new(), 4) - 0.06).abs() < 1e-4);
     assert_eq!(OwnSmall::<East>::new().number(), NumberFormat::Q16);
 }
 
