@@ -1,4 +1,4 @@
-//! The command line: `staya run | sweep | view | page | hil | bridge | formation | companion | terrain | orca | voxel | experiment`,
+//! The command line: `staya new | run | sweep | view | page | hil | bridge | formation | companion | terrain | orca | voxel | experiment`,
 //! and `completions | man` for its users' shells.
 //!
 //! A new command is a module with a `clap::Args` struct and `run(&self, &Global) -> Result<Ended>`,
@@ -35,6 +35,8 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Make a project of your own: a guidance law, its scenario, a test, firmware.
+    New(staya_new::NewArgs),
     /// Run a scenario.
     Run(run::RunArgs),
     /// Run a scenario thousands of times, with other values in its fields, on this machine or on a cluster.
@@ -74,6 +76,7 @@ fn main() -> ExitCode {
 fn run(cli: &Cli) -> Result<Ended> {
     cli.global.begin()?;
     match &cli.command {
+        Command::New(args) => args.run(&cli.global),
         Command::Run(args) => args.run(&cli.global),
         Command::Sweep(args) => args.run(&cli.global),
         Command::View(args) => args.run(&cli.global),

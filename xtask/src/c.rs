@@ -127,7 +127,7 @@ fn on_part(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains) {
 }
 
 /// Makes sure that the compiler for the part is there; unpacks it on Debian.
-fn compilers(repo: &Repo) -> Result<(), String> {
+pub fn compilers(repo: &Repo) -> Result<(), String> {
     let are_there = || PROGRAMS.iter().all(|name| output_of(repo.command(name).arg("--version")).is_some());
     if are_there() {
         return Ok(());
@@ -137,7 +137,7 @@ fn compilers(repo: &Repo) -> Result<(), String> {
 }
 
 /// The library as a user of the part makes it.
-fn library(repo: &Repo, toolchain: &Toolchain, part: &Part) -> Result<PathBuf, String> {
+pub fn library(repo: &Repo, toolchain: &Toolchain, part: &Part) -> Result<PathBuf, String> {
     let mut build = toolchain.cargo(repo, part.target, "build");
     run_command_line(build.args(["--locked", "--profile", "firmware", "--package", "staya-c"]))?;
     Ok(toolchain.target_folder(repo).join(part.target).join("firmware/libstaya_c.a"))

@@ -113,7 +113,7 @@ impl Toolchain {
             Self::Debian(rust) => {
                 let mut command = rust.cargo(repo, &[subcommand, "-Zbuild-std=core"]);
                 // The targets ask for Rust's own copy of the linker, which Debian does not have.
-                let target = target.to_uppercase().replace('-', "_");
+                let target = target.to_uppercase().replace(['-', '.'], "_");
                 command.env(format!("CARGO_TARGET_{target}_LINKER"), "ld.lld");
                 command
             }

@@ -30,6 +30,7 @@ mod minimal;
 mod mpi;
 mod part;
 mod plants;
+mod project;
 mod python;
 mod python_package;
 mod qemu;
@@ -84,6 +85,7 @@ Usage: cargo xtask COMMAND
                   bridges, companions and firmware at once among clients that mean no good (default: 3 minutes), or some of
                   flood, key, companion, hil: memory, deadlines, every frame accounted for
   swarms          the canned swarms give the same hashes on the host and on every part
+  new             what `staya new` makes, of each kind: compiled, tested, its law on the emulated STM32F405
   plants          panics planted in a copy of the firmware's sources, one at a time: the linker must refuse each
   qemu            the emulators of the parts; fetches them on Debian
   help            this text
@@ -160,6 +162,7 @@ fn main() -> ExitCode {
                 return ExitCode::from(2);
             }
         },
+        ["new"] => project::run_command(&repo, &mut report),
         ["plants"] => plants::run_command(&repo, &mut report),
         ["qemu"] => qemu::run(&repo, &mut report),
         ["size"] => size::run(&repo, &mut report, &mut Toolchains::default(), false),

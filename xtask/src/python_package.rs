@@ -1,7 +1,7 @@
 //! `cargo xtask python`: the package for Python, as a wheel in an environment of its own, and its tests.
 
 use crate::python::{self, pytest};
-use crate::repo::{Repo, run};
+use crate::repo::{Repo, output_of, run};
 use crate::report::Report;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -34,6 +34,16 @@ pub fn run_command(repo: &Repo, report: &mut Report) {
         tests.args(["-m", "pytest", "-q", TESTS, "--color", "no", "--timeout", "300", "-p", "no:cacheprovider"]);
         pytest(&mut tests, "")
     });
+}
+
+/// The Python of the environment that [`run_command`] has made, with the wheel in it; makes it if it is not there. The error says why it
+/// cannot.
+pub fn installed(repo: &Repo) -> Result<PathBuf, String> {
+    let python = prepare(repo)?;
+    if output_of(repo.command(&python).args(["-c", "import staya"])).is_none() {
+        wheel(repo, &python)?;
+    }
+    Ok(python)
 }
 
 /// An environment with what builds the wheel and what its tests need. Returns its Python; the error says why there is none.

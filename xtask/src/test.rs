@@ -48,6 +48,7 @@ pub fn run(repo: &Repo, report: &mut Report, extent: Extent) {
         crate::clients::run_command(repo, report, None, extent);
     }
     if extent == Extent::Short {
+        crate::project::run(repo, report, &mut toolchains, extent, is_compiled);
         crate::swarms::run_short(repo, report, &mut toolchains);
         return crate::emulated::run(repo, report, &mut toolchains);
     }
@@ -77,6 +78,7 @@ pub fn run(repo: &Repo, report: &mut Report, extent: Extent) {
     crate::plants::run(repo, report, &mut toolchains);
     crate::soak::run_short(repo, report);
     crate::example::run(repo, report);
+    crate::project::run(repo, report, &mut toolchains, extent, is_compiled);
     let mut peers = repo.cargo_in("tests/peers", &["test", "--locked"]);
     report.part("same results as peers", || counted(&mut peers, ""));
     let fuzz = ["test", "--locked", "--no-default-features"];

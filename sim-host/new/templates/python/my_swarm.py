@@ -1,0 +1,35 @@
+"""How the robots of my-swarm go: a velocity for each, once a tick. Each robot's safety layer makes of it one that hits nobody."""
+
+from pathlib import Path
+
+import numpy as np
+import staya
+
+SCENARIO = Path(__file__).parent / "scenario.toml"
+SPEED_MPS = 0.5
+# Where somebody is nearer than this, a robot goes at half speed; metres from centre to centre.
+CAREFUL_M = 0.6
+
+
+def law(sim: staya.Simulation) -> np.ndarray:
+    """Straight to the goal, slower among others: velocities in m/s, shape (robots, 2). Write your own here."""
+    places = sim.positions[:, :2]
+    way = sim.goals[:, :2] - places
+    distance = np.linalg.norm(way, axis=1, keepdims=True)
+    gaps = np.linalg.norm(places[:, None] - places[None], axis=2)
+    np.fill_diagonal(gaps, np.inf)
+    speed = np.where(gaps.min(axis=1, keepdims=True) < CAREFUL_M, SPEED_MPS / 2, SPEED_MPS)
+    # Slows down over the last half second.
+    return way / np.maximum(distance, 1e-9) * np.minimum(speed, 2 * distance)
+
+
+def has_arrived(sim: staya.Simulation) -> bool:
+    """Whether all stand at their goals."""
+    return bool((np.linalg.norm((sim.goals - sim.positions)[:, :2], axis=1) < 0.02).all())
+
+
+def run(sim: staya.Simulation) -> dict:
+    """Runs until all have arrived, or the scenario's ticks are over: the figures of the run."""
+    while not (sim.is_over or has_arrived(sim)):
+        sim.step(guidance=law)
+    return sim.run(until=sim.tick).summary

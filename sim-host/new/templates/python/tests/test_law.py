@@ -1,0 +1,13 @@
+"""The law in the simulator, with as many robots and as bad a radio as scenario.toml says."""
+
+import my_swarm
+import pytest
+import staya
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_all_arrive_and_none_overlap(seed):
+    sim = staya.Simulation(my_swarm.SCENARIO, seed=seed)
+    figures = my_swarm.run(sim)
+    assert my_swarm.has_arrived(sim), f"not there after {sim.time_s} s"
+    assert figures["collisions"] == 0

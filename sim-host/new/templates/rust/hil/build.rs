@@ -1,0 +1,9 @@
+//! Tells the linker what makes a program of the part's firmware.
+
+fn main() {
+    println!("cargo:rerun-if-changed=build.rs");
+    if std::env::var("CARGO_CFG_TARGET_OS").is_ok_and(|system| system == "none") {
+        println!("cargo:rustc-link-arg-bins=-Tstaya-firmware.x");
+        println!("cargo:rustc-link-arg-bins=--nmagic");
+    }
+}

@@ -1,0 +1,71 @@
+//! How the robots of my-swarm go: the same code in the simulator and on the robot.
+#![no_std]
+
+use serde::{Deserialize, Serialize};
+use staya_controller::agent::*;
+use staya_controller::geom::Vec3;
+use staya_controller::rand::Rng;
+
+/// Straight to a place, slower among others. Write your own here.
+///
+/// What it keeps between decisions are its fields: serde carries them through checkpoints, and to a robot on the bench.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Law {
+    /// How fast it wants to go, m/s.
+    pub speed_mps: f32,
+    /// How near is there, metres.
+    pub tolerance_m: f32,
+    /// Where somebody is nearer than this, it goes at half speed; metres from centre to centre.
+    pub careful_m: f32,
+    goal: Option<Waypoint<f32>>,
+}
+
+impl Law {
+    /// Without a place to go to yet.
+    #[must_use]
+    pub const fn new(speed_mps: f32, tolerance_m: f32, careful_m: f32) -> Self {
+        Self { speed_mps, tolerance_m, careful_m, goal: None }
+    }
+}
+
+impl Teamwork for Law {}
+
+impl Guidance<f32> for Law {
+    type Input<'a> = InPlane<'a, f32>;
+    type Destination = ToWaypoints;
+    type Workspace = ();
+    type Payload = ();
+
+    /// The velocity that the robot would like best. The safety layer makes of it one that hits nobody.
+    fn decide(
+        &mut self,
+        input: &GuidanceInput<'_, f32>,
+        _: &InPlane<'_, f32>,
+        _: &mut Rng,
+        (): &mut (),
+    ) -> Result<Decision<f32>, BadInput> {
+        input.can_go()?;
+        let goal = self.goal.as_mut().ok_or(BadInput)?;
+        let way_m: Vec3<f32> = goal.way(input.state.position, input.now);
+        let distance_m = way_m.norm();
+        let is_crowded = input.nearby.iter().any(|other| other.offset_m.norm() < self.careful_m);
+        let speed_mps = if is_crowded { self.speed_mps * 0.5 } else { self.speed_mps };
+        // Slows down over the last half second.
+        let speed_mps = speed_mps.min(input.body.max_speed_mps).min(distance_m * 2.0);
+        let wish_mps = way_m.normalized().unwrap_or_default() * speed_mps;
+        Ok(Decision {
+            action: Action::Velocity { wish_mps, way_m: Some(way_m) },
+            status: Status { is_at_goal: distance_m <= self.tolerance_m, ..Status::default() },
+            ..Decision::default()
+        })
+    }
+
+    fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<f32>) -> bool {
+        self.goal = Some(*waypoint);
+        index == 0
+    }
+
+    fn has_own_goal(&self) -> bool {
+        self.goal.is_some()
+    }
+}
