@@ -119,7 +119,9 @@ fn firmware_in_c(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains) 
                 for name in [EMULATED, "nrf52840"] {
                     let folder = make(repo, &format!("c-{name}"), &["--c", "--part", name])?;
                     let mut build = make_in(repo, &folder);
-                    run_command_line(build.arg("build/firmware.elf").arg(format!("LIBRARY_FIRMWARE={}", library.display())))?;
+                    run_command_line(
+                        build.arg("build/firmware.elf").arg(format!("LIBRARY_FIRMWARE={}", library.display())),
+                    )?;
                 }
                 Ok(())
             });
@@ -142,7 +144,8 @@ fn on_emulated_part(repo: &Repo, report: &mut Report, toolchains: &mut Toolchain
         return report.skip(step, "no firmware of it");
     }
     report.step(step, || {
-        let mut hil = repo.cargo(&["run", "--quiet", "--", "../scenario.toml", "--device", "qemu:stm32f405", "--devices", "2"]);
+        let mut hil =
+            repo.cargo(&["run", "--quiet", "--", "../scenario.toml", "--device", "qemu:stm32f405", "--devices", "2"]);
         hil.args(["--quiet", "--ticks", "100", "--firmware", "target/firmware"]);
         run_command_line(hil.current_dir(&folder))
     });

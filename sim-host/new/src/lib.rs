@@ -134,6 +134,9 @@ fn files(kind: Kind, part: &Part) -> Result<Vec<File>> {
     Ok(files)
 }
 
+/// Packages for the computer: with the versions of dependencies that the simulator is tested with.
+const LOCKED: [&str; 2] = ["Cargo.toml", "hil/Cargo.toml"];
+
 /// Makes the folder, which must not be there, and writes the files into it. If that fails the folder is gone again.
 fn write(folder: &Path, name: &str, files: &[File], source: &Source) -> Result<()> {
     let shown = folder.display();
@@ -144,14 +147,15 @@ fn write(folder: &Path, name: &str, files: &[File], source: &Source) -> Result<(
         std::io::ErrorKind::AlreadyExists => anyhow!("{shown} is there already; take another name"),
         _ => anyhow!("{shown}: {error}; take a folder that can be written to"),
     })?;
-    let lock = source.lock().map(|text| (String::from("Cargo.lock"), text));
-    let filled = files.iter().map(|(path, text)| ((*path).to_string(), source.fill(text, name)));
-    let has_lock = files.iter().any(|(path, _)| *path == "Cargo.toml");
-    for (path, text) in filled.chain(lock.filter(|_| has_lock)) {
-        if let Err(error) = write_file(&folder.join(&path), &text) {
+    let filled = files.iter().map(|(path, text)| (folder.join(path), source.fill(text, name)));
+    let lock = source.lock().unwrap_or_default();
+    let locked = LOCKED.iter().filter(|path| !lock.is_empty() && files.iter().any(|(other, _)| other == *path));
+    let locks = locked.map(|path| (folder.join(path).with_extension("lock"), lock.clone()));
+    for (path, text) in filled.chain(locks) {
+        if let Err(error) = write_file(&path, &text) {
             // It was made above, so all that is in it is this program's.
             let _ = fs::remove_dir_all(folder);
-            bail!("{}: {error}; nothing was made", folder.join(&path).display());
+            bail!("{}: {error}; nothing was made", path.display());
         }
     }
     Ok(())

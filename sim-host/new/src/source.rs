@@ -26,7 +26,9 @@ impl Source {
         let is_there = folder.join("controller/Cargo.toml").is_file() && folder.join("sim-host/sim").is_dir();
         let shown = folder.display();
         let why = match said {
-            Some(_) => format!("{shown}: no repository of Staya's; give --staya the folder of a clone, or an address for git"),
+            Some(_) => {
+                format!("{shown}: no repository of Staya's; give --staya the folder of a clone, or an address for git")
+            }
             None => format!(
                 "the sources that this program was built from are not at {shown} any more; say where they are by --staya PATH or --staya URL"
             ),
@@ -35,7 +37,10 @@ impl Source {
         let root = fs::canonicalize(folder)?;
         let text = root.to_str().map(|text| text.replace('\\', "/")).filter(|text| is_plain(text));
         let text = text.ok_or_else(|| {
-            anyhow::anyhow!("{}: blanks, quotes, $ or # in the path of Staya's sources, which Makefiles cannot hold; move them", root.display())
+            anyhow::anyhow!(
+                "{}: blanks, quotes, $ or # in the path of Staya's sources, which Makefiles cannot hold; move them",
+                root.display()
+            )
         })?;
         Ok(Self::Folder { root, text })
     }

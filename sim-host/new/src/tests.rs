@@ -42,7 +42,9 @@ fn each_kind_has_its_files_and_no_placeholder_is_left() {
                     assert!(!text.contains(left), "{left} in {}", file.display());
                 }
             }
-            assert!(folder.join("README.md").is_file() && folder.join("scenario.toml").is_file() != kind.contains(&"--c"));
+            assert!(
+                folder.join("README.md").is_file() && folder.join("scenario.toml").is_file() != kind.contains(&"--c")
+            );
         }
     }
 }

@@ -85,7 +85,8 @@ where
     config.max_acceleration_mps2 = ahead.max_speed(LIMITS.acceleration_mps2, TRACK_M);
     let safety = OrcaSafety::new(AvoidParams::default(), StalenessInflation { growth_mps: 0.1, max_m: 0.2 });
     let law = Law::new(max_speed_mps, 0.02, 0.6);
-    let mut agent: Agent<f32, Law, NEIGHBORS, OrcaSafety<f32, HALF_PLANES>> = Agent::new(&config, law, safety, Postcard);
+    let mut agent: Agent<f32, Law, NEIGHBORS, OrcaSafety<f32, HALF_PLANES>> =
+        Agent::new(&config, law, safety, Postcard);
     agent.assign_waypoint(0, &Waypoint::fixed(GOAL));
 
     let mut ticker = Ticker::every(embassy_time::Duration::from_micros(TICK.as_micros() as u64));

@@ -28,9 +28,8 @@ async fn wire(p: Peripherals) -> Option<()> {
     modem.baudrate = Baudrate::BAUD57600;
     let (timer, one, other, group) = (p.TIMER0, p.PPI_CH0, p.PPI_CH1, p.PPI_GROUP0);
     let (receive, send) = (p.P0_08, p.P0_06);
-    let uart = BufferedUarte::new(
-        p.UARTE0, timer, one, other, group, receive, send, Irqs, modem, &mut heard, &mut to_send,
-    );
+    let uart =
+        BufferedUarte::new(p.UARTE0, timer, one, other, group, receive, send, Irqs, modem, &mut heard, &mut to_send);
     let radio = uart.split();
     let (left, right) = (Cell::new(0), Cell::new(0));
     let channel = |pin| Input::new(pin, Pull::Up);

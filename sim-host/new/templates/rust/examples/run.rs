@@ -16,15 +16,17 @@ fn main() -> Result<(), Box<dyn Error>> {
         None => None,
     };
     let mut failed = None;
-    let outcome = simulate_own(&scenario, |_robot| Law::new(0.5, 0.02, 0.6), |moment, rows| {
-        match recording.as_mut().map(|recording| recording.tick(moment, rows)) {
+    let outcome = simulate_own(
+        &scenario,
+        |_robot| Law::new(0.5, 0.02, 0.6),
+        |moment, rows| match recording.as_mut().map(|recording| recording.tick(moment, rows)) {
             Some(Err(error)) => {
                 failed = Some(error);
                 ControlFlow::Break(())
             }
             _ => ControlFlow::Continue(()),
-        }
-    })?;
+        },
+    )?;
     if let Some(error) = failed {
         return Err(error.into());
     }
