@@ -20,7 +20,9 @@ pub(crate) struct Part {
     pub(crate) is_emulated: bool,
     /// Its files of a project in Rust.
     pub(crate) rust: &'static [File],
-    /// The same in C; empty where there is no template.
+    /// The lock file of this repository whose versions its firmware takes.
+    pub(crate) lock: Option<&'static str>,
+    /// Its files of a project in C; empty where there is no template.
     pub(crate) c: &'static [File],
 }
 
@@ -35,10 +37,10 @@ pub(crate) static PARTS: [Part; 4] = [
             "firmware/Cargo.toml" = "stm32f405/Cargo.toml.in",
             "firmware/.cargo/config.toml" = "stm32f405/config.toml",
             "firmware/build.rs" = "firmware/build.rs",
-            "firmware/memory.x" = "stm32f405/memory.x",
             "firmware/src/main.rs" = "stm32f405/main.rs",
             "firmware/src/robot.rs" = "firmware/robot.rs",
         },
+        lock: Some("examples/stm32f4/Cargo.lock"),
         c: files! { "firmware/memory.ld" = "stm32f405/memory.x", },
     },
     Part {
@@ -55,6 +57,7 @@ pub(crate) static PARTS: [Part; 4] = [
             "firmware/src/main.rs" = "rp2350/main.rs",
             "firmware/src/robot.rs" = "firmware/robot.rs",
         },
+        lock: None,
         c: &[],
     },
     Part {
@@ -71,6 +74,7 @@ pub(crate) static PARTS: [Part; 4] = [
             "firmware/src/main.rs" = "nrf52840/main.rs",
             "firmware/src/robot.rs" = "firmware/robot.rs",
         },
+        lock: None,
         c: files! { "firmware/memory.ld" = "nrf52840/memory.x", },
     },
     Part {
@@ -86,6 +90,7 @@ pub(crate) static PARTS: [Part; 4] = [
             "firmware/src/main.rs" = "esp32c3/main.rs",
             "firmware/src/robot.rs" = "firmware/robot.rs",
         },
+        lock: None,
         c: &[],
     },
 ];

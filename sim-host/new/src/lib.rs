@@ -64,7 +64,7 @@ impl NewArgs {
         let name = name(folder)?;
         let source = Source::find(self.staya.as_deref())?;
         let files = files(kind, part)?;
-        write(folder, name, &files, &source)?;
+        write(folder, name, &files, &locks(kind, part), &source)?;
         if !global.quiet {
             print(&next(folder, kind, part))?;
         }
@@ -134,11 +134,20 @@ fn files(kind: Kind, part: &Part) -> Result<Vec<File>> {
     Ok(files)
 }
 
-/// Packages for the computer: with the versions of dependencies that the simulator is tested with.
-const LOCKED: [&str; 2] = ["Cargo.toml", "hil/Cargo.toml"];
+/// Lock files of a project, and those of this repository that they are: the versions of dependencies that are tested here. They hold more
+/// than a project needs; cargo drops the rest.
+fn locks(kind: Kind, part: &Part) -> Vec<(&'static str, &'static str)> {
+    let firmware = part.lock.map(|lock| ("firmware/Cargo.lock", lock));
+    match kind {
+        Kind::Rust => {
+            [("Cargo.lock", "Cargo.lock"), ("hil/Cargo.lock", "Cargo.lock")].into_iter().chain(firmware).collect()
+        }
+        Kind::C | Kind::Python => Vec::new(),
+    }
+}
 
-/// Makes the folder, which must not be there, and writes the files into it. If that fails the folder is gone again.
-fn write(folder: &Path, name: &str, files: &[File], source: &Source) -> Result<()> {
+/// Makes the folder, which must not be there, and writes the files and the lock files into it. If that fails the folder is gone again.
+fn write(folder: &Path, name: &str, files: &[File], locks: &[(&str, &str)], source: &Source) -> Result<()> {
     let shown = folder.display();
     if let Some(parent) = folder.parent().filter(|parent| !parent.as_os_str().is_empty()) {
         ensure!(parent.is_dir(), "{}: no such folder; make it first", parent.display());
@@ -148,9 +157,7 @@ fn write(folder: &Path, name: &str, files: &[File], source: &Source) -> Result<(
         _ => anyhow!("{shown}: {error}; take a folder that can be written to"),
     })?;
     let filled = files.iter().map(|(path, text)| (folder.join(path), source.fill(text, name)));
-    let lock = source.lock().unwrap_or_default();
-    let locked = LOCKED.iter().filter(|path| !lock.is_empty() && files.iter().any(|(other, _)| other == *path));
-    let locks = locked.map(|path| (folder.join(path).with_extension("lock"), lock.clone()));
+    let locks = locks.iter().filter_map(|(path, own)| Some((folder.join(path), source.lock(own)?)));
     for (path, text) in filled.chain(locks) {
         if let Err(error) = write_file(&path, &text) {
             // It was made above, so all that is in it is this program's.

@@ -65,10 +65,10 @@ impl Source {
         }
     }
 
-    /// The versions of all dependencies that the simulator is tested with, for a project in Rust.
-    pub(crate) fn lock(&self) -> Option<String> {
+    /// A lock file of this repository, if it is a folder.
+    pub(crate) fn lock(&self, path: &str) -> Option<String> {
         match self {
-            Self::Folder { root, .. } => fs::read_to_string(root.join("Cargo.lock")).ok(),
+            Self::Folder { root, .. } => fs::read_to_string(root.join(path)).ok(),
             Self::Address(_) => None,
         }
     }

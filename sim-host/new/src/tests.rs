@@ -72,7 +72,7 @@ fn a_file_that_cannot_be_written_is_named_and_nothing_is_left() {
     // The second one would have to be inside the first.
     let files: [File; 2] = [("a", ""), ("a/b", "")];
     let source = Source::Address(String::from("https://example.org/staya.git"));
-    let error = write(&folder, "pack", &files, &source).expect_err("a file in a file").to_string();
+    let error = write(&folder, "pack", &files, &[], &source).expect_err("a file in a file").to_string();
     assert!(error.contains("a/b") && error.contains("nothing was made"), "{error}");
     assert!(!folder.exists());
 }

@@ -1,4 +1,4 @@
-//! Hands cortex-m-rt's script, and the part's memory.x, to the linker.
+//! Hands cortex-m-rt's script to the linker, and the folder with memory.x, where there is one.
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");

@@ -11,12 +11,12 @@ use core::convert::Infallible;
 use embassy_executor::Spawner;
 use embassy_futures::select::select3;
 use embassy_nrf::buffered_uarte::{BufferedUarte, InterruptHandler};
-use embassy_nrf::gpio::{Input, Pull};
+use embassy_nrf::gpio::{AnyPin, Input, Pull};
 use embassy_nrf::pwm::{DutyCycle, Prescaler, SimpleConfig, SimplePwm};
 use embassy_nrf::rng::Rng;
 use embassy_nrf::uarte::{Baudrate, Config as UartConfig};
 use embassy_nrf::wdt::{self, Watchdog};
-use embassy_nrf::{Peripherals, bind_interrupts, config::HfclkSource, peripherals::UARTE0};
+use embassy_nrf::{Peri, Peripherals, bind_interrupts, config::HfclkSource, peripherals::UARTE0};
 use embedded_hal::pwm::{ErrorType, SetDutyCycle};
 
 bind_interrupts!(struct Irqs {
@@ -25,14 +25,14 @@ bind_interrupts!(struct Irqs {
 
 async fn wire(p: Peripherals) -> Option<()> {
     let (mut to_send, mut heard, mut modem) = ([0; 256], [0; 512], UartConfig::default());
-    modem.baudrate = Baudrate::BAUD57600;
+    modem.baudrate = Baudrate::Baud57600;
     let (timer, one, other, group) = (p.TIMER0, p.PPI_CH0, p.PPI_CH1, p.PPI_GROUP0);
     let (receive, send) = (p.P0_08, p.P0_06);
     let uart =
         BufferedUarte::new(p.UARTE0, timer, one, other, group, receive, send, Irqs, modem, &mut heard, &mut to_send);
     let radio = uart.split();
     let (left, right) = (Cell::new(0), Cell::new(0));
-    let channel = |pin| Input::new(pin, Pull::Up);
+    let channel = |pin: Peri<'static, AnyPin>| Input::new(pin, Pull::Up);
     let count_left = encoder::count(channel(p.P0_13.into()), channel(p.P0_14.into()), &left);
     let count_right = encoder::count(channel(p.P0_15.into()), channel(p.P0_16.into()), &right);
     // 16 MHz / 800 = 20 kHz.

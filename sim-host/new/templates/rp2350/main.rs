@@ -10,10 +10,10 @@ use core::cell::Cell;
 use embassy_executor::Spawner;
 use embassy_futures::select::select3;
 use embassy_rp::clocks::RoscRng;
-use embassy_rp::gpio::{Input, Pull};
+use embassy_rp::gpio::{AnyPin, Input, Pull};
 use embassy_rp::pwm::{Config as PwmConfig, Pwm};
 use embassy_rp::uart::{BufferedInterruptHandler, BufferedUart, Config as UartConfig};
-use embassy_rp::{Peripherals, bind_interrupts, peripherals::UART0, watchdog::Watchdog};
+use embassy_rp::{Peri, Peripherals, bind_interrupts, peripherals::UART0, watchdog::Watchdog};
 use embassy_time::Duration;
 
 bind_interrupts!(struct Irqs {
@@ -26,7 +26,7 @@ async fn wire(p: Peripherals) -> Option<()> {
     let uart = BufferedUart::new(p.UART0, p.PIN_0, p.PIN_1, Irqs, &mut to_send, &mut heard, modem);
     let (tx, rx) = uart.split();
     let (left, right) = (Cell::new(0), Cell::new(0));
-    let channel = |pin| Input::new(pin, Pull::Up);
+    let channel = |pin: Peri<'static, AnyPin>| Input::new(pin, Pull::Up);
     let count_left = encoder::count(channel(p.PIN_2.into()), channel(p.PIN_3.into()), &left);
     let count_right = encoder::count(channel(p.PIN_4.into()), channel(p.PIN_5.into()), &right);
     // 150 MHz / 7500 = 20 kHz.
