@@ -10,7 +10,7 @@ use crate::repo::{Repo, output_of, run as run_command_line};
 use crate::report::Report;
 use crate::{emulate, python};
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Parts of `staya new`, and what their code is compiled for.
@@ -20,7 +20,7 @@ const PARTS: [(&str, &str); 4] = [
     ("nrf52840", "thumbv7em-none-eabihf"),
     ("esp32c3", "riscv32imc-unknown-none-elf"),
 ];
-/// The part that is emulated, and the first one of the others.
+/// The part that is emulated.
 const EMULATED: &str = "stm32f405";
 
 /// The command: all of it, with the program built first.
@@ -30,7 +30,7 @@ pub fn run_command(repo: &Repo, report: &mut Report) {
     run(repo, report, &mut Toolchains::default(), Extent::All, is_compiled);
 }
 
-/// Rust and C on this machine; of all extent also firmware for each part, the law on the emulated one, Python. `is_compiled`: the program
+/// Rust on this machine; of all extent also C, firmware for each part, the law on the emulated one, Python. `is_compiled`: the program
 /// has been built.
 pub fn run(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains, extent: Extent, is_compiled: bool) {
     if !is_compiled {
@@ -43,6 +43,9 @@ pub fn run(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains, extent
         let mut keep = repo.cargo(&["run", "--quiet", "--example", "run", "--", "run.staya"]);
         run_command_line(keep.current_dir(folder))
     });
+    if extent == Extent::Short {
+        return;
+    }
     let tools = ["cc", "make"];
     match tools.iter().find(|tool| output_of(repo.command(tool).arg("--version")).is_none()) {
         Some(tool) => report.skip(C, &format!("no {tool}; on Debian run, as root, `apt-get install gcc make`")),
@@ -52,9 +55,6 @@ pub fn run(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains, extent
                 run_command_line(make_in(repo, &folder).arg("test"))
             });
         }
-    }
-    if extent == Extent::Short {
-        return;
     }
     for (name, target) in PARTS {
         firmware(repo, report, toolchains, name, target);
@@ -82,7 +82,7 @@ fn make(repo: &Repo, kind: &str, options: &[&str]) -> Result<PathBuf, String> {
 }
 
 /// Its Makefile, with this repository's target folder.
-fn make_in(repo: &Repo, folder: &PathBuf) -> Command {
+fn make_in(repo: &Repo, folder: &Path) -> Command {
     let mut make = repo.command("make");
     make.arg("--directory").arg(folder).arg("--no-print-directory").env("CARGO_TARGET_DIR", &repo.target);
     make
