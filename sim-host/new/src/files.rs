@@ -27,7 +27,7 @@ pub(crate) struct Part {
 }
 
 /// All of them, the usual one first.
-pub(crate) static PARTS: [Part; 4] = [
+pub(crate) static PARTS: [Part; 3] = [
     Part {
         name: "stm32f405",
         title: "STM32F405, Cortex-M4F at 168 MHz",
@@ -76,22 +76,6 @@ pub(crate) static PARTS: [Part; 4] = [
         },
         lock: None,
         c: files! { "firmware/memory.ld" = "nrf52840/memory.x", },
-    },
-    Part {
-        name: "esp32c3",
-        title: "ESP32-C3, RISC-V at 160 MHz, without an FPU",
-        target: "riscv32imc-unknown-none-elf",
-        is_emulated: false,
-        rust: files! {
-            "firmware/Cargo.toml" = "esp32c3/Cargo.toml.in",
-            "firmware/.cargo/config.toml" = "esp32c3/config.toml",
-            "firmware/build.rs" = "esp32c3/build.rs",
-            "firmware/src/encoder.rs" = "firmware/encoder.rs",
-            "firmware/src/main.rs" = "esp32c3/main.rs",
-            "firmware/src/robot.rs" = "firmware/robot.rs",
-        },
-        lock: None,
-        c: &[],
     },
 ];
 
