@@ -5,7 +5,7 @@ mod files;
 mod source;
 
 use anyhow::{Context as _, Result, anyhow, bail, ensure};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use files::{C, File, PARTS, PYTHON, Part, RUST};
 use source::Source;
 use staya_console::{Ended, Global, print};
@@ -38,7 +38,7 @@ pub struct NewArgs {
 }
 
 /// What a project is written in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Rust,
     C,
