@@ -8,7 +8,7 @@ use crate::neighbor::{Put, Tracker};
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use crate::time::Instant;
-use crate::wire::{Payload, Wire};
+use crate::wire::{Payload, SequenceWindow, Wire};
 
 impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
     /// Puts those who are seen among those who are known, each merged with what was heard of it. Behind the frames of a step. Those who are `needed`
@@ -36,14 +36,15 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
             if self.company != Company::Unknown {
                 self.company = Company::Heard(now);
             }
-            match self.table.put(neighbor, own, now, |id| needed.contains(&id)) {
-                Put::Inserted => report(out, Event::NeighborFound(id)),
-                Put::Evicted(evicted) => {
-                    self.windows.retain(|(id, _)| *id != evicted);
-                    report(out, Event::NeighborEvicted(evicted));
-                    report(out, Event::NeighborFound(id));
-                }
-                Put::Updated | Put::Refused => {}
+            let put = self.table.put(neighbor, own, now, |id| needed.contains(&id));
+            if let Put::Evicted(evicted) = put {
+                self.windows.retain(|(id, _)| *id != evicted);
+                report(out, Event::NeighborEvicted(evicted));
+            }
+            if matches!(put, Put::Inserted | Put::Evicted(_)) {
+                // Its frames will be told from repeated ones as those of one that was heard first; as many windows as entries.
+                let _ = self.windows.push((id, SequenceWindow::new()));
+                report(out, Event::NeighborFound(id));
             }
         }
     }

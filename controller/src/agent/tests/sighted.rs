@@ -33,6 +33,15 @@ fn seer<S: Scalar>(id: u32, at_m: [f64; 2], goal: Waypoint<S>) -> Seer<S> {
 
 /// Sees a body of its own size.
 fn look<S: Scalar>(robot: &mut Seer<S>, other_m: [f64; 2], now: Instant) -> crate::neighbor::Sighted {
+    recognize(robot, None, other_m, now)
+}
+
+fn recognize<S: Scalar>(
+    robot: &mut Seer<S>,
+    id: Option<RobotId>,
+    other_m: [f64; 2],
+    now: Instant,
+) -> crate::neighbor::Sighted {
     let number = |x: f64| S::from_f64(x).unwrap();
     let [[x, y], [vx, vy]] = [robot.at_m, robot.velocity_mps];
     let state = KinematicState {
@@ -44,7 +53,7 @@ fn look<S: Scalar>(robot: &mut Seer<S>, other_m: [f64; 2], now: Instant) -> crat
         deviation_m: cast(0.005_f32),
         age: Duration::ZERO,
         radius_m: S::from_milli(RADIUS_MM),
-        id: None,
+        id,
         velocity_mps: None,
     };
     robot.agent.see(&[sighting], &state, now)
@@ -115,4 +124,20 @@ fn who_fell_silent_and_is_seen_is_company_and_whoever_is_neither_is_lost() {
     };
     assert_eq!(run(true), (std::vec![RobotId(2)], false));
     assert_eq!(run(false), (std::vec![], true));
+}
+
+#[test]
+fn frames_of_one_who_was_seen_first_are_told_from_repeated_ones() {
+    let mut robot = seer::<f32>(1, [0.0; 2], place(0, 0));
+    let _ = recognize(&mut robot, Some(RobotId(2)), [3.0, 0.0], step_number(0));
+    let _ = robot.step(step_number(0), &[]);
+    let header = Header { boot: 0, sender: RobotId(2), sequence: 7 };
+    let mut frame = heapless::Vec::<u8, 64>::new();
+    encode(header, &body_at([3000, 0], [0, 0], Mode::Cruise), &mut frame).unwrap();
+    let counts: [(u16, u16); 2] = [1, 2].map(|n| {
+        let _ = recognize(&mut robot, Some(RobotId(2)), [3.0, 0.0], step_number(n));
+        let out = robot.step(step_number(n), &frame);
+        (out.received, out.rejected)
+    });
+    assert_eq!(counts, [(1, 0), (0, 1)]);
 }

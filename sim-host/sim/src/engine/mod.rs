@@ -21,6 +21,7 @@ mod intervene;
 mod intruder;
 mod keeper;
 mod operator;
+mod others;
 mod own;
 mod plane;
 pub mod ranks;
@@ -55,6 +56,7 @@ use hash::Chain;
 use intervene::Tuned;
 use intruder::Intruder;
 use keeper::Keeper;
+use others::ring;
 use rayon::prelude::*;
 use staya_controller::agent::{
     Agent, AgentConfig, AnyInputs, Command, Event, Guidance, Inputs, NEIGHBORS, Outputs, Safety, Setup,
@@ -378,46 +380,6 @@ where
         packets
     }
 
-    /// Attackers hear and speak, as robots do.
-    fn attack(&mut self) {
-        let robots = self.computers.len();
-        for at in 0..self.attackers.len() {
-            if let Some(taken) = self.attackers[at].takes(self.tick)
-                && let Some(ring) = self.ring_of(taken).or_else(|| self.taken.get(&taken).cloned())
-            {
-                self.attackers[at].take(&ring);
-            }
-            self.attackers[at].act(self.tick, self.radio.inbox(robots + at));
-        }
-    }
-
-    /// The keys that a robot has that is here.
-    fn ring_of(&self, robot: RobotId) -> Option<Ring> {
-        let agent = self.computers[self.index_of(robot)?].agent.as_ref()?;
-        ring(agent.wire()).cloned()
-    }
-
-    /// Whoever has the master hears and speaks.
-    fn keep_keys(&mut self) {
-        let at = self.computers.len() + self.attackers.len() + self.intruders.len();
-        if let Some(keeper) = &mut self.keeper {
-            keeper.act(self.tick, self.radio.inbox(at));
-        }
-    }
-
-    /// Intruders say where they are.
-    fn intrude(&mut self) {
-        let now = Instant::from_micros(self.tick.wrapping_mul(self.tick_us));
-        let first = self.computers.len() + self.attackers.len();
-        let positions_m = self.positions_m.iter_mut().skip(first);
-        for ((intruder, position_m), (disc, cell)) in
-            self.intruders.iter_mut().zip(positions_m).zip(self.ground.heard())
-        {
-            intruder.speak(disc, cell, now);
-            *position_m = intruder.position_m;
-        }
-    }
-
     /// Phase one: everybody decides. Returns how many frames were refused, and nothing else.
     fn decide(&mut self) -> PacketCounts {
         self.send_out();
@@ -496,14 +458,6 @@ where
         for (index, status) in statuses.iter().enumerate() {
             self.waits.note(index, status.wait);
         }
-    }
-}
-
-/// The keys in a format that has more than one.
-fn ring(wire: &HostWire) -> Option<&Ring> {
-    match wire {
-        HostWire::Sealed(sealed) => Some(sealed.ring()),
-        _ => None,
     }
 }
 

@@ -1,0 +1,63 @@
+//! Who is not of the swarm and has a radio: attackers, intruders, the operator who keeps the keys.
+
+use super::{Engine, Ground, HostLaw};
+use crate::radio::HostWire;
+use staya_controller::agent::Safety;
+use staya_controller::robot::RobotId;
+use staya_controller::time::Instant;
+use staya_controller::wire::Ring;
+
+impl<W, G, A> Engine<W, G, A>
+where
+    W: Ground,
+    G: HostLaw,
+    A: Safety<f32> + Send,
+{
+    /// Attackers hear and speak, as robots do.
+    pub(super) fn attack(&mut self) {
+        let robots = self.computers.len();
+        for at in 0..self.attackers.len() {
+            if let Some(taken) = self.attackers[at].takes(self.tick)
+                && let Some(ring) = self.ring_of(taken).or_else(|| self.taken.get(&taken).cloned())
+            {
+                self.attackers[at].take(&ring);
+            }
+            self.attackers[at].act(self.tick, self.radio.inbox(robots + at));
+        }
+    }
+
+    /// The keys that a robot has that is here.
+    pub(super) fn ring_of(&self, robot: RobotId) -> Option<Ring> {
+        let agent = self.computers[self.index_of(robot)?].agent.as_ref()?;
+        ring(agent.wire()).cloned()
+    }
+
+    /// Whoever has the master hears and speaks.
+    pub(super) fn keep_keys(&mut self) {
+        let at = self.computers.len() + self.attackers.len() + self.intruders.len();
+        if let Some(keeper) = &mut self.keeper {
+            keeper.act(self.tick, self.radio.inbox(at));
+        }
+    }
+
+    /// Intruders say where they are.
+    pub(super) fn intrude(&mut self) {
+        let now = Instant::from_micros(self.tick.wrapping_mul(self.tick_us));
+        let first = self.computers.len() + self.attackers.len();
+        let positions_m = self.positions_m.iter_mut().skip(first);
+        for ((intruder, position_m), (disc, cell)) in
+            self.intruders.iter_mut().zip(positions_m).zip(self.ground.heard())
+        {
+            intruder.speak(disc, cell, now);
+            *position_m = intruder.position_m;
+        }
+    }
+}
+
+/// The keys in a format that has more than one.
+pub(super) fn ring(wire: &HostWire) -> Option<&Ring> {
+    match wire {
+        HostWire::Sealed(sealed) => Some(sealed.ring()),
+        _ => None,
+    }
+}
