@@ -75,9 +75,12 @@ fn every_scenario_has_one_hash_on_any_number_of_ranks() {
             continue;
         }
         eprintln!("{name}");
-        if scenario.torus_m().is_some() {
+        if scenario.torus_m().is_some() || scenario.eyes.is_some() {
             let refused = on_ranks(&scenario, 2, &Sharing::default());
-            assert!(refused.iter().all(|ended| matches!(ended, Err(RankError::Torus { ranks: 2 }))), "{name}");
+            let is_said = |ended: &Result<_, _>| {
+                matches!(ended, Err(RankError::Torus { ranks: 2 } | RankError::Eyes { ranks: 2 }))
+            };
+            assert!(refused.iter().all(is_said), "{name}");
             compare(&name, &scenario, &[1]);
             continue;
         }
