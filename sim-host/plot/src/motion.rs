@@ -17,7 +17,7 @@ const MOST_TRAILS: usize = 100;
 /// Points of a way.
 const TRAIL_POINTS: usize = 400;
 /// Obstacles so many times as large as the place that robots go through are not shown whole.
-const LARGE: f64 = 10.0;
+const LARGE: f64 = 2.0;
 
 /// Draws the pictures of one run into `out_dir`, which is made if needed, each as SVG and PNG, and names the
 /// files.

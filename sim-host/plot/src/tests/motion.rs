@@ -49,3 +49,10 @@ fn arrows_compare_over_moments_and_land_is_under_all() {
     let flat = TEXT.replace("[terrain]\nuniform = { width = 20, height = 12, classes = 3 }\n", "");
     assert_eq!(images(&self::sheet(&flat)), 0);
 }
+
+#[test]
+fn a_wall_far_longer_than_the_way_does_not_make_robots_small() {
+    let walls = "[[plane.wall]]\npoints_m = [[5, -200], [5, -1]]\n";
+    let [[west, east], [south, north]] = sheet(&format!("{TEXT}{walls}")).snapshots[0].view_m.expect("a view");
+    assert!(east - west < 30.0 && south > -20.0 && north < 40.0, "{west} {east} {south} {north}");
+}
