@@ -156,7 +156,8 @@ fn write(folder: &Path, name: &str, files: &[File], locks: &[(&str, &str)], sour
         std::io::ErrorKind::AlreadyExists => anyhow!("{shown} is there already; take another name"),
         _ => anyhow!("{shown}: {error}; take a folder that can be written to"),
     })?;
-    let filled = files.iter().map(|(path, text)| (folder.join(path), source.fill(text, name)));
+    // A module in Python is called as the project is, in files as in texts.
+    let filled = files.iter().map(|(path, text)| (folder.join(source.fill(path, name)), source.fill(text, name)));
     let locks = locks.iter().filter_map(|(path, own)| Some((folder.join(path), source.lock(own)?)));
     for (path, text) in filled.chain(locks) {
         if let Err(error) = write_file(&path, &text) {

@@ -37,6 +37,7 @@ fn each_kind_has_its_files_and_no_placeholder_is_left() {
             arguments.extend(staya.iter().flat_map(|staya| ["--staya", staya]));
             run(&arguments).unwrap_or_else(|error| panic!("{kind:?}: {error}"));
             for file in all_files(&folder).iter().filter(|file| !file.ends_with("Cargo.lock")) {
+                assert!(!file.to_string_lossy().contains("my_swarm"), "{file:?}");
                 let text = fs::read_to_string(file).expect("a file");
                 for left in ["my-swarm", "my_swarm", "/STAYA"] {
                     assert!(!text.contains(left), "{left} in {}", file.display());
