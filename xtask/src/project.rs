@@ -14,10 +14,11 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Parts of `staya new`, and what their code is compiled for.
-const PARTS: [(&str, &str); 3] = [
+const PARTS: [(&str, &str); 4] = [
     ("stm32f405", "thumbv7em-none-eabihf"),
     ("rp2350", "thumbv8m.main-none-eabihf"),
     ("nrf52840", "thumbv7em-none-eabihf"),
+    ("esp32c3", "riscv32imc-unknown-none-elf"),
 ];
 /// The part that is emulated.
 const EMULATED: &str = "stm32f405";

@@ -20,14 +20,14 @@ pub(crate) struct Part {
     pub(crate) is_emulated: bool,
     /// Its files of a project in Rust.
     pub(crate) rust: &'static [File],
-    /// The lock file of this repository whose versions its firmware takes.
+    /// The lock file of this repository whose versions its firmware takes; the others bring one of their own.
     pub(crate) lock: Option<&'static str>,
     /// Its files of a project in C; empty where there is no template.
     pub(crate) c: &'static [File],
 }
 
 /// All of them, the usual one first.
-pub(crate) static PARTS: [Part; 3] = [
+pub(crate) static PARTS: [Part; 4] = [
     Part {
         name: "stm32f405",
         title: "STM32F405, Cortex-M4F at 168 MHz",
@@ -49,6 +49,7 @@ pub(crate) static PARTS: [Part; 3] = [
         target: "thumbv8m.main-none-eabihf",
         is_emulated: false,
         rust: files! {
+            "firmware/Cargo.lock" = "rp2350/Cargo.lock",
             "firmware/Cargo.toml" = "rp2350/Cargo.toml.in",
             "firmware/.cargo/config.toml" = "rp2350/config.toml",
             "firmware/build.rs" = "firmware/build.rs",
@@ -66,6 +67,7 @@ pub(crate) static PARTS: [Part; 3] = [
         target: "thumbv7em-none-eabihf",
         is_emulated: false,
         rust: files! {
+            "firmware/Cargo.lock" = "nrf52840/Cargo.lock",
             "firmware/Cargo.toml" = "nrf52840/Cargo.toml.in",
             "firmware/.cargo/config.toml" = "nrf52840/config.toml",
             "firmware/build.rs" = "firmware/build.rs",
@@ -76,6 +78,23 @@ pub(crate) static PARTS: [Part; 3] = [
         },
         lock: None,
         c: files! { "firmware/memory.ld" = "nrf52840/memory.x", },
+    },
+    Part {
+        name: "esp32c3",
+        title: "ESP32-C3, RISC-V at 160 MHz, without an FPU",
+        target: "riscv32imc-unknown-none-elf",
+        is_emulated: false,
+        rust: files! {
+            "firmware/Cargo.lock" = "esp32c3/Cargo.lock",
+            "firmware/Cargo.toml" = "esp32c3/Cargo.toml.in",
+            "firmware/.cargo/config.toml" = "esp32c3/config.toml",
+            "firmware/build.rs" = "esp32c3/build.rs",
+            "firmware/src/encoder.rs" = "firmware/encoder.rs",
+            "firmware/src/main.rs" = "esp32c3/main.rs",
+            "firmware/src/robot.rs" = "firmware/robot.rs",
+        },
+        lock: None,
+        c: &[],
     },
 ];
 

@@ -98,7 +98,7 @@ fn names_are_those_of_packages() {
 fn wrong_arguments_say_what_there_is() {
     let error = run(&["pack", "--part", "stm32f103"]).expect_err("no such part");
     assert!(PARTS.iter().all(|part| error.contains(part.name)), "{error}");
-    let error = run(&["pack", "--c", "--part", "rp2350"]).expect_err("no template");
+    let error = run(&["pack", "--c", "--part", "esp32c3"]).expect_err("no template");
     assert!(error.contains("stm32f405, nrf52840"), "{error}");
     assert!(run(&["pack", "--c", "--python"]).is_err());
     assert!(run(&["pack", "--python", "--part", "rp2350"]).is_err());
