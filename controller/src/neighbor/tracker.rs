@@ -43,8 +43,20 @@ const NO_CELL: Cell = Cell::new(i16::MIN, i16::MIN);
 pub struct Tracker<S> {
     params: TrackParams<S>,
     tracks: Vec<Track<S>, TRACKS>,
+    /// Whose tracks had to make room in this step.
+    displaced: Vec<Displaced, TRACKS>,
     /// Nameless tracks so far, wraps.
     nameless: u16,
+}
+
+/// One that was seen and is followed no more, since others are nearer.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+struct Displaced {
+    id: RobotId,
+    heard: Option<Instant>,
+    /// [`Track::known`].
+    known: Option<(Instant, Position)>,
 }
 
 /// A sighting with its place and time in the robot's world.
@@ -66,7 +78,7 @@ impl<S: Scalar> Tracker<S> {
     /// One that has seen nobody.
     #[must_use]
     pub const fn new(params: TrackParams<S>) -> Self {
-        Self { params, tracks: Vec::new(), nameless: 0 }
+        Self { params, tracks: Vec::new(), displaced: Vec::new(), nameless: 0 }
     }
 
     /// Those that it follows.
@@ -202,6 +214,11 @@ impl<S: Scalar> Tracker<S> {
             let farthest = self.tracks.iter_mut().max_by_key(|track| key(track));
             return match farthest {
                 Some(farthest) if key(&track) < key(farthest) => {
+                    if farthest.seen.is_some() && farthest.known.is_some() {
+                        let Track { id, heard, known, .. } = *farthest;
+                        // At most those tracks that were there before the step.
+                        let _ = self.displaced.push(Displaced { id, heard, known });
+                    }
                     *farthest = track;
                     true
                 }
@@ -215,6 +232,10 @@ impl<S: Scalar> Tracker<S> {
     pub fn hear<const N: usize, P: Copy>(&mut self, table: &NeighborTable<S, N, P>, own: Position) {
         for entry in table.iter().filter(|entry| !entry.id.is_local()) {
             let news = Some((entry.heard, entry.position));
+            if self.displaced.iter().any(|gone| gone.id == entry.id && gone.known == news) {
+                // Not heard, but what was seen of it.
+                continue;
+            }
             let params = self.params;
             let place = self.place_of(entry.id, |track, params| {
                 track.fit(entry.position, params.heard_m, entry.radius_m, entry.heard, params)
@@ -236,7 +257,7 @@ impl<S: Scalar> Tracker<S> {
         }
     }
 
-    /// Stops following those who are neither seen any more nor in `table`, and those who are neither seen nor have been heard for
+    /// Stops following those who are neither seen any more nor in `table`, and drops there those who are neither followed by sight nor have been heard for
     /// longer than [`Ages::expire_after`](super::Ages::expire_after): `gone` hears the numbers of the latter that were followed by sight. O(N TRACKS).
     pub fn forget<const N: usize, P: Copy>(
         &mut self,
@@ -255,6 +276,13 @@ impl<S: Scalar> Tracker<S> {
             let was_seen = track.seen.take().is_some();
             if was_seen && !is_within(track.heard, expire) && table.forget(track.id) {
                 gone(track.id);
+            }
+        }
+        for Displaced { id, heard, known } in core::mem::take(&mut self.displaced) {
+            let is_news = table.get(id, now).known().is_none_or(|entry| known != Some((entry.heard, entry.position)));
+            let is_followed = self.tracks.iter().any(|track| track.id == id);
+            if !is_news && !is_followed && !is_within(heard, expire) && table.forget(id) {
+                gone(id);
             }
         }
         self.tracks.retain(|track| track.seen.is_some() || table.get(track.id, now).known().is_some());

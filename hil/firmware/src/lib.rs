@@ -62,7 +62,7 @@ macro_rules! entry {
 /// itself by name and version of the package that it is written in, and links only if no panic is reachable, unless it is built for
 /// debugging.
 ///
-/// ```ignore
+/// ```text
 /// #![cfg_attr(target_os = "none", no_std, no_main)]
 /// staya_firmware::lockstep!(my_crate::MyLaw);
 /// ```
