@@ -1,5 +1,6 @@
 //! What `staya new` makes compiles, and its tests run: a project of each kind in `target/new`, in the target folder that all share.
 
+use crate::apt;
 use crate::c;
 use crate::device::Toolchains;
 use crate::extent::Extent;
@@ -46,10 +47,9 @@ pub fn run(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains, extent
     if extent == Extent::Short {
         return;
     }
-    let tools = ["cc", "make"];
-    match tools.iter().find(|tool| output_of(repo.command(tool).arg("--version")).is_none()) {
-        Some(tool) => report.skip(C, &format!("no {tool}; on Debian run, as root, `apt-get install gcc make`")),
-        None => {
+    match make_is_there(repo) {
+        Err(reason) => report.skip(C, &reason),
+        Ok(()) => {
             report.step(C, || {
                 let folder = make(repo, "c", &["--c"])?;
                 run_command_line(make_in(repo, &folder).arg("test"))
@@ -67,6 +67,19 @@ pub fn run(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains, extent
 }
 
 const C: &str = "a new project in C";
+
+/// Makes sure that there is what projects in C are compiled by; `make` is unpacked on Debian.
+fn make_is_there(repo: &Repo) -> Result<(), String> {
+    let is_there = |program: &str| output_of(repo.command(program).arg("--version")).is_some();
+    if !is_there("cc") {
+        return Err(String::from("no cc; on Debian run, as root, `apt-get install gcc libc6-dev`"));
+    }
+    if is_there("make") {
+        return Ok(());
+    }
+    apt::unpack(repo, &["make"], &["make"])
+        .map_err(|reason| format!("no make ({reason}); on Debian run, as root, `apt-get install make`"))
+}
 
 /// The folder of a project that was just made.
 fn make(repo: &Repo, kind: &str, options: &[&str]) -> Result<PathBuf, String> {
@@ -112,7 +125,7 @@ fn firmware_in_c(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains) 
     let Some(part) = part(EMULATED) else {
         return;
     };
-    match c::compilers(repo).and_then(|()| toolchains.find(repo, part.target)) {
+    match make_is_there(repo).and_then(|()| c::compilers(repo)).and_then(|()| toolchains.find(repo, part.target)) {
         Ok(toolchain) => {
             report.step(step, || {
                 let library = c::library(repo, &toolchain, part)?;
